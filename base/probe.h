@@ -1,0 +1,26 @@
+// A place in the model where something happens. Costs one branch while nobody listens.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include <vector>
+
+namespace glint {
+
+template <class Event>
+class Probe {
+ public:
+  using Listener = std::function<void(const Event&)>;
+  void listen(Listener listener) { listeners_.push_back(std::move(listener)); }
+
+  template <class Make>
+  void fire(Make&& make) const {  // `make` builds the event, and runs only when somebody listens
+    if (listeners_.empty()) [[likely]] return;
+    const Event event = make();
+    for (const Listener& listener : listeners_) listener(event);
+  }
+
+ private:
+  std::vector<Listener> listeners_;
+};
+
+}  // namespace glint

@@ -1,0 +1,129 @@
+// Name -> factory for policies, filled by static objects in the implementation files.
+//
+// `const Register<RayScheduler, OldestFirst> registered;` at the end of an implementation file is the whole
+// of the wiring. Impl has kName, kDoc, Params (base/params.h) and a constructor (Params, Interface::Context).
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/check.h"
+#include "base/params.h"
+
+namespace glint {
+
+// A policy chosen by a configuration: its name and how to make it with the parameters that were read.
+template <class Interface>
+struct PolicyChoice {
+  using Make = std::function<std::unique_ptr<Interface>(typename Interface::Context)>;
+  std::string name;
+  Make maker;                     // empty: the policy's default parameters
+  std::vector<ParamInfo> params;  // the policy's parameters as read
+
+  PolicyChoice(const char* default_name) : name(default_name) {}  // NOLINT: reads as a default value
+  std::unique_ptr<Interface> make(typename Interface::Context context) const;
+};
+
+template <class Interface>
+class Registry {
+ public:
+  struct Entry {
+    std::string_view doc;
+    // Reads the policy's parameters into `choice`: how to make it, and what to describe.
+    void (*read)(ConfigTable&, PolicyChoice<Interface>&);
+    std::vector<ParamInfo> (*defaults)();
+    std::unique_ptr<Interface> (*make_default)(typename Interface::Context);
+  };
+  // Function-local: no static initialisation order to get wrong.
+  static Registry& instance() {
+    static Registry registry;
+    return registry;
+  }
+  void add(std::string_view name, Entry entry) {
+    GLINT_CHECK(entries_.emplace(name, entry).second, "policy '{}' is registered twice", name);
+  }
+  const std::map<std::string_view, Entry>& entries() const { return entries_; }  // sorted by name
+  const Entry& entry(std::string_view name) const {
+    auto it = entries_.find(name);
+    GLINT_CHECK(it != entries_.end(), "no policy named '{}'", name);
+    return it->second;
+  }
+  static std::vector<std::string> names() {
+    std::vector<std::string> out;
+    for (const auto& [name, entry] : instance().entries_) out.emplace_back(name);
+    return out;
+  }
+
+ private:
+  std::map<std::string_view, Entry> entries_;
+};
+
+template <class Interface>
+std::unique_ptr<Interface> PolicyChoice<Interface>::make(typename Interface::Context context) const {
+  return maker ? maker(context) : Registry<Interface>::instance().entry(name).make_default(context);
+}
+
+template <class Interface, class Impl>
+struct Register {
+  using Params = typename Impl::Params;
+  Register() {
+    Registry<Interface>::instance().add(
+        Impl::kName,
+        {Impl::kDoc,
+         [](ConfigTable& table, PolicyChoice<Interface>& choice) {
+           Params params;
+           read_params(table, params);
+           choice.params = describe_params(params);
+           choice.maker = [params](typename Interface::Context context) -> std::unique_ptr<Interface> {
+             return std::make_unique<Impl>(params, context);
+           };
+         },
+         [] { return describe_params(Params{}); },
+         [](typename Interface::Context context) -> std::unique_ptr<Interface> {
+           return std::make_unique<Impl>(Params{}, context);
+         }});
+  }
+};
+
+// Declares a policy key: `name = "gto"` chooses, and the table `[<section>.gto]` holds its parameters.
+template <class Owner, class Interface>
+struct PolicyParam {
+  PolicyChoice<Interface> Owner::*field;
+  std::string_view name, doc;
+};
+template <class Owner, class Interface>
+constexpr PolicyParam<Owner, Interface> policy(PolicyChoice<Interface> Owner::*field, std::string_view name,
+                                               std::string_view doc) {
+  return {field, name, doc};
+}
+
+template <class Owner, class Interface>
+void read_param(ConfigTable& table, Owner& out, const PolicyParam<Owner, Interface>& p) {
+  PolicyChoice<Interface>& choice = out.*p.field;
+  choice.name = table.take_name(p.name, choice.name, Registry<Interface>::names());
+  for (const auto& [name, entry] : Registry<Interface>::instance().entries()) {
+    ConfigTable params = table.take_table(name);  // the tables of policies not chosen are checked too
+    PolicyChoice<Interface> read(choice.name.c_str());
+    entry.read(params, read);
+    if (name == choice.name) choice = read;
+  }
+}
+
+template <class Owner, class Interface>
+void describe_param(std::vector<ParamInfo>& out, const std::string& prefix, const Owner& o,
+                    const PolicyParam<Owner, Interface>& p) {
+  const PolicyChoice<Interface>& choice = o.*p.field;
+  std::string range;
+  for (const std::string& name : Registry<Interface>::names()) range += (range.empty() ? "" : ", ") + name;
+  out.push_back({prefix + std::string(p.name), "", std::string(p.doc), config_text(choice.name), range});
+  for (ParamInfo info : choice.params) {
+    info.key = prefix + choice.name + "." + info.key;
+    out.push_back(std::move(info));
+  }
+}
+
+}  // namespace glint

@@ -1,0 +1,154 @@
+// Statistics: declared once as members, visited by every writer.
+//
+// A stat is a member with name, unit and sentence; it registers with its Group, and the tree of groups is the
+// tree of instances. Ratios are computed when read. No format knows a unit of hardware, no unit knows a format.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace glint::stats {
+
+class Group;
+class Visitor;
+
+// A named, described, unit-carrying value. Members register themselves with their Group, so a stat
+// exists in every output format as soon as it is declared, and in no list anywhere else.
+class Stat {
+ public:
+  Stat(Group* group, std::string_view name, std::string_view unit, std::string_view doc);
+  Stat(const Stat&) = delete;
+  Stat& operator=(const Stat&) = delete;
+  virtual ~Stat() = default;
+  virtual void accept(Visitor& visitor) const = 0;
+
+  std::string_view name() const { return name_; }
+  std::string_view unit() const { return unit_; }
+  std::string_view doc() const { return doc_; }
+
+ private:
+  std::string_view name_, unit_, doc_;
+};
+
+class Counter final : public Stat {
+ public:
+  using Stat::Stat;
+  Counter& operator++() { ++value_; return *this; }
+  Counter& operator+=(uint64_t n) { value_ += n; return *this; }
+  uint64_t value() const { return value_; }
+  void accept(Visitor& visitor) const override;
+
+ private:
+  uint64_t value_ = 0;
+};
+
+// A quotient of two counters, computed when read: it can never disagree with its parts.
+class Ratio final : public Stat {
+ public:
+  Ratio(Group* group, std::string_view name, std::string_view unit, const Counter& num,
+        const Counter& den, std::string_view doc)
+      : Stat(group, name, unit, doc), num_(num), den_(den) {}
+  double value() const { return den_.value() ? double(num_.value()) / double(den_.value()) : 0.0; }
+  void accept(Visitor& visitor) const override;
+
+ private:
+  const Counter& num_;
+  const Counter& den_;
+};
+
+// A value computed when read from anything else the unit holds (a sum over instances, a peak).
+class Value final : public Stat {
+ public:
+  Value(Group* group, std::string_view name, std::string_view unit, std::function<double()> read, std::string_view doc)
+      : Stat(group, name, unit, doc), read_(std::move(read)) {}
+  double value() const { return read_(); }
+  void accept(Visitor& visitor) const override;
+
+ private:
+  std::function<double()> read_;
+};
+
+// Equal-width bins over [low, high); below and above fall into the first and last bin.
+struct Bins { uint64_t low, high, step; };
+constexpr Bins linear(uint64_t low, uint64_t high, uint64_t step) { return {low, high, step}; }
+
+class Histogram final : public Stat {
+ public:
+  Histogram(Group* group, std::string_view name, std::string_view unit, Bins bins, std::string_view doc)
+      : Stat(group, name, unit, doc), bins_(bins), counts_((bins.high - bins.low) / bins.step) {}
+  void add(uint64_t x) {
+    const uint64_t bin = x < bins_.low ? 0 : (x - bins_.low) / bins_.step;
+    ++counts_[bin < counts_.size() ? bin : counts_.size() - 1];
+  }
+  const Bins& bins() const { return bins_; }
+  const std::vector<uint64_t>& counts() const { return counts_; }
+  void accept(Visitor& visitor) const override;
+
+ private:
+  Bins bins_;
+  std::vector<uint64_t> counts_;
+};
+
+// The visitor's view of a Breakdown of any enum.
+class BreakdownBase : public Stat {
+ public:
+  using Stat::Stat;
+  virtual std::vector<std::pair<std::string_view, uint64_t>> parts() const = 0;
+  void accept(Visitor& visitor) const override;
+};
+
+// One counter per value of an enum. For cycle accounting: every cycle is added to exactly one reason.
+template <class Enum>  // needs: Enum::Count, and a constexpr name_of(Enum) found by ADL
+class Breakdown final : public BreakdownBase {
+ public:
+  using BreakdownBase::BreakdownBase;
+  void add(Enum reason, uint64_t n = 1) { counts_[std::size_t(reason)] += n; }
+  std::vector<std::pair<std::string_view, uint64_t>> parts() const override {
+    std::vector<std::pair<std::string_view, uint64_t>> out;
+    for (std::size_t i = 0; i < counts_.size(); ++i) out.emplace_back(name_of(Enum(i)), counts_[i]);
+    return out;
+  }
+  uint64_t count(Enum reason) const { return counts_[std::size_t(reason)]; }
+  uint64_t total() const {
+    uint64_t sum = 0;
+    for (uint64_t n : counts_) sum += n;
+    return sum;
+  }
+
+ private:
+  std::array<uint64_t, std::size_t(Enum::Count)> counts_{};
+};
+
+class Group {
+ public:
+  Group(Group* parent, std::string name);
+  Group(const Group&) = delete;
+  Group& operator=(const Group&) = delete;
+  void accept(Visitor& visitor) const;
+  const std::string& name() const { return name_; }
+
+ private:
+  friend class Stat;
+  std::string name_;
+  std::vector<const Stat*> stats_;
+  std::vector<const Group*> children_;
+};
+
+class Visitor {
+ public:
+  virtual ~Visitor() = default;
+  virtual void enter(const Group& group) = 0;
+  virtual void leave(const Group& group) = 0;
+  virtual void visit(const Counter& stat) = 0;
+  virtual void visit(const Ratio& stat) = 0;
+  virtual void visit(const Value& stat) = 0;
+  virtual void visit(const Histogram& stat) = 0;
+  virtual void visit(const BreakdownBase& stat) = 0;
+};
+
+}  // namespace glint::stats

@@ -1,0 +1,43 @@
+// GLSL or SPIR-V in, isa::Program out: the frontend's public door.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "isa/program.h"
+
+namespace glint::frontend {
+
+struct GlslOptions {
+  std::vector<std::string> include_dirs;                      // -I
+  std::vector<std::pair<std::string, std::string>> defines;   // -D NAME=VALUE
+};
+
+struct BackendOptions {
+  uint32_t max_registers = 64;  // 32-bit registers a thread; fewer spill to local memory
+  bool schedule = true;         // latency-aware list scheduling
+};
+
+// Stage from the file's ending: .rgen .rint .rahit .rchit .rmiss .rcall .comp; empty when unknown.
+std::optional<isa::Stage> stage_of_file(const std::string& path);
+
+// Runs glslang in process. Returns SPIR-V 1.6 words with OpLine debug info, validated.
+// UserError carries glslang's messages with file and line.
+std::vector<uint32_t> glsl_to_spirv(const std::string& path, const GlslOptions& options);
+
+// Pass list R1 (reference: docs/frontend.md): inline all, scalarise, SSA; validated before and after.
+std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& name);
+
+// SPIR-V text, for `glint compile --emit spirv`.
+std::string disassemble_spirv(const std::vector<uint32_t>& words);
+
+// Lowers one simplified module to a program. UnsupportedError lists everything unsupported at once: op, file, line.
+isa::Program lower(const std::vector<uint32_t>& spirv, const std::string& name, const BackendOptions& options);
+
+// All of the above for one file.
+isa::Program compile_file(const std::string& path, const GlslOptions& glsl, const BackendOptions& options);
+
+}  // namespace glint::frontend

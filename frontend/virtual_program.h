@@ -1,0 +1,77 @@
+// The code between lowering and register allocation: ISA ops over unlimited virtual registers.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "isa/op_row.h"
+#include "isa/program.h"
+
+namespace glint::frontend {
+
+enum class RegisterClass : uint8_t { B32, B64, Predicate };
+
+using VirtualRegister = uint32_t;  // index into VirtualProgram::registers
+inline constexpr VirtualRegister kNoRegister = 0xffff'ffff;
+
+struct VirtualOperand {
+  enum class Kind : uint8_t { None, Register, Constant, Special, StackPointer } kind = Kind::None;
+  VirtualRegister reg = kNoRegister;
+  uint64_t constant = 0;  // 32- or 64-bit, by the op's operand kind
+  isa::Special special = isa::Special::LaneId;
+
+  static VirtualOperand of(VirtualRegister r) { return {Kind::Register, r, 0, {}}; }
+  static VirtualOperand value(uint64_t bits) { return {Kind::Constant, kNoRegister, bits, {}}; }
+  static VirtualOperand of(isa::Special s) { return {Kind::Special, kNoRegister, 0, s}; }
+  static VirtualOperand stack_pointer() { return {Kind::StackPointer, kNoRegister, 0, {}}; }
+};
+
+using BlockId = uint32_t;
+inline constexpr BlockId kNoBlock = 0xffff'ffff;
+
+struct VirtualInst {
+  // Real: `op` is a row. SaveLive/RestoreLive bracket a region with calls: the allocator stores every value
+  // that is live across the region to the frame at SaveLive and loads it back at RestoreLive; between them
+  // all registers and predicates (but %r0) die at each call.sbt.*.
+  enum class Kind : uint8_t { Real, SaveLive, RestoreLive } kind = Kind::Real;
+  uint16_t op = 0;
+  VirtualRegister guard = kNoRegister;  // a Predicate register
+  bool guard_negate = false;
+  int32_t imm = 0;                      // byte displacement
+  BlockId target = kNoBlock;            // of a Label operand
+  std::vector<VirtualOperand> operands; // one a slot, in the order of OpRow::operands
+  isa::Line line;
+};
+
+// A straight run of instructions: control enters at the top and leaves only through the last instructions
+// (guarded bra, then bra, ret, exit, rt.ignore, rt.terminate) or by falling into the next block.
+struct VirtualBlock {
+  std::string name;
+  std::vector<VirtualInst> code;
+  std::vector<BlockId> successors;      // all blocks control may go to next, for liveness
+};
+
+// Not SSA: phis have become moves. Every use is reached by a definition on every path.
+struct VirtualProgram {
+  std::string name;
+  isa::Stage stage = isa::Stage::Compute;
+  std::vector<RegisterClass> registers;
+  std::vector<VirtualBlock> blocks;     // in layout order; block 0 is the entry
+  std::vector<std::string> files;
+  uint32_t local_bytes = 0;             // variables and payloads; spills and saves are placed after them
+  uint32_t payload_bytes = 0, attribute_bytes = 0;
+  std::array<uint32_t, 3> local_size{1, 1, 1};
+
+  VirtualRegister new_register(RegisterClass c) {
+    registers.push_back(c);
+    return VirtualRegister(registers.size() - 1);
+  }
+};
+
+// Schedules each block for latency, allocates registers (linear scan, spills to local memory), saves and
+// restores live values around calls, lays out code and resolves labels.
+struct BackendOptions;
+isa::Program assemble(VirtualProgram program, const BackendOptions& options);
+
+}  // namespace glint::frontend

@@ -1,0 +1,66 @@
+// The bytes of simulated memory: allocations in a 64-bit virtual space where every overrun is seen.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/types.h"
+
+namespace glint::mem {
+
+// Every allocation starts at a multiple of 4 GiB, so that the upper 32 bits of an address name it and
+// an index that runs past the end, or before the start, falls where nothing is. Allocation 0 is never used:
+// null pointers fault. Choice: Vulkan leaves addresses open.
+// `physical` packs the allocations densely, as a driver would: caches and DRAM see physical addresses only.
+class AddressSpace {
+ public:
+  static constexpr int kShift = 32;
+
+  struct Allocation {
+    std::string name;      // for messages: "binding 4 (Vertices)"
+    uint64_t bytes = 0;
+    Address physical = 0;  // of byte 0; aligned to 256 B
+    std::byte* data = nullptr;
+  };
+
+  AddressSpace() : allocations_(1) {}
+  ~AddressSpace();
+  AddressSpace(const AddressSpace&) = delete;
+  AddressSpace& operator=(const AddressSpace&) = delete;
+
+  // Zero-filled; 64-byte aligned on the host. A size past 4 GiB takes several consecutive numbers.
+  Address allocate(std::string name, uint64_t bytes);
+
+  // Host pointer to [address, address + bytes), or null when any of it is outside an allocation.
+  std::byte* find(Address address, uint64_t bytes) const {
+    const uint64_t index = address >> kShift;
+    const uint64_t offset = address & ((uint64_t{1} << kShift) - 1);
+    if (index >= allocations_.size() || offset + bytes > allocations_[index].bytes) [[unlikely]]
+      return nullptr;
+    return allocations_[index].data + offset;
+  }
+  Address physical(Address address) const {
+    return allocations_[address >> kShift].physical + (address & ((uint64_t{1} << kShift) - 1));
+  }
+  // As data of T, which must lie inside an allocation: for hosts, not for shaders.
+  template <class T>
+  std::span<T> view(Address address, uint64_t count) const {
+    return {reinterpret_cast<T*>(find(address, count * sizeof(T))), size_t(count)};
+  }
+  void write(Address address, const void* from, uint64_t bytes) { std::memcpy(find(address, bytes), from, bytes); }
+
+  // "16 bytes past the end of 'binding 4 (Vertices)' (1200 bytes)": names the nearest allocation.
+  std::string explain(Address address, uint64_t bytes) const;
+  uint64_t bytes_allocated() const { return next_physical_; }
+  const std::vector<Allocation>& allocations() const { return allocations_; }
+
+ private:
+  std::vector<Allocation> allocations_;
+  Address next_physical_ = 0;
+};
+
+}  // namespace glint::mem

@@ -1,0 +1,88 @@
+// A scene as the renderer's buffers will hold it: models, instances, materials, textures, camera, light.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace glint::scenes {
+
+using Vec2 = std::array<float, 2>;
+using Vec3 = std::array<float, 3>;
+using Vec4 = std::array<float, 4>;
+
+enum class MaterialModel : uint32_t { Lambertian = 0, Metallic = 1, Dielectric = 2, Isotropic = 3, DiffuseLight = 4 };
+
+// std430 layout of binding 6: 32 bytes.
+struct Material {
+  Vec4 diffuse{};
+  int32_t texture = -1;  // index into Scene::textures, -1 = none
+  float fuzziness = 0;
+  float refraction_index = 0;
+  MaterialModel model = MaterialModel::Lambertian;
+};
+static_assert(sizeof(Material) == 32);
+
+// std430 layout of binding 4: 36 bytes.
+struct Vertex {
+  Vec3 position{}, normal{};
+  Vec2 texture_coordinate{};
+  int32_t material = 0;  // index into Scene::materials
+};
+static_assert(sizeof(Vertex) == 36);
+
+// A model is one bottom-level structure and one instance with the identity transform, as in the original
+// application. Triangles, or (radius > 0) a procedural sphere whose vertices carry only the material.
+struct Model {
+  std::string name;
+  std::vector<Vertex> vertices;
+  std::vector<uint32_t> indices;  // three a triangle, relative to `vertices`
+  Vec3 center{};
+  float radius = 0;               // world units; 0 = triangles
+  bool is_procedural() const { return radius > 0; }
+};
+
+struct Texture {
+  std::string name;
+  uint32_t width = 1, height = 1;
+  std::vector<uint8_t> rgba;  // 4 bytes a texel, row 0 first; UNORM, no mip maps, bilinear, clamp to edge
+};
+
+// Look-at camera; angles in degrees, lengths in world units.
+struct Camera {
+  Vec3 eye{}, target{}, up{0, 1, 0};
+  float field_of_view = 40;  // vertical
+  float aperture = 0, focus_distance = 10;
+  bool has_sky = true;
+  Vec3 light_position{};     // used only without sky
+  float light_radius = 0;
+};
+
+struct Scene {
+  std::string name;
+  std::string form;          // "original", "built-in" or "stand-in": what the geometry really is
+  std::string note;          // one sentence for results: what differs from the original
+  std::vector<Model> models;
+  std::vector<Material> materials;
+  std::vector<Texture> textures;
+  Camera camera;
+  bool alpha_test = false;   // triangle hit groups have the any-hit alpha shader
+  uint64_t triangles() const;
+  uint64_t procedurals() const;
+  uint64_t hash() const;     // of everything that reaches a shader, stable across runs and machines
+};
+
+struct LoadOptions {
+  std::string assets;        // folder of original data, "" = none
+};
+
+struct SceneInfo {
+  std::string name, doc;
+};
+std::vector<SceneInfo> scene_list();
+
+// Builds a scene by name (case-insensitive). UserError with the nearest name when there is none.
+Scene load_scene(const std::string& name, const LoadOptions& options);
+
+}  // namespace glint::scenes
