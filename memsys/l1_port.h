@@ -1,0 +1,29 @@
+// The door between a core's units and its L1 data cache.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+
+#include "base/types.h"
+#include "memsys/request.h"
+
+namespace glint::mem {
+
+enum class Client : uint8_t { Lsu, RtUnit, Count };  // each has its own queue of completions
+
+// Contract (tests/contract/l1_port_test.cpp):
+//  - access() takes a request or refuses it (port, bank, MSHR or queue full this cycle); a refused request has
+//    changed nothing and may be tried again in a later cycle.
+//  - every accepted read gives its token back exactly once: after exactly the hit latency on a hit, when its last
+//    sector has arrived otherwise. Writes give nothing back.
+//  - tokens of one client come back in order of readiness, ties in order of acceptance.
+class L1Port {
+ public:
+  virtual ~L1Port() = default;
+  virtual bool access(Cycle now, Client client, const Request& request) = 0;
+  virtual std::optional<Token> pop(Cycle now, Client client) = 0;
+  virtual void tick(Cycle now) = 0;
+  virtual Cycle next_event(Cycle now) const = 0;  // kNever when nothing is in flight here
+  virtual uint32_t line_bytes() const = 0;
+};
+
+}  // namespace glint::mem
