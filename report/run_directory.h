@@ -1,0 +1,45 @@
+// The folder that a run leaves behind: complete, self-describing, each file written whole or not at all.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/params.h"
+#include "base/stats.h"
+#include "report/image_files.h"
+
+namespace glint::report {
+
+// What run.json says besides schema and paths. The only file of a run that holds wall-clock times.
+struct RunInfo {
+  std::vector<std::string> command;  // argv
+  std::string version, git, compiler;
+  std::string scene, scene_form, scene_note, shader, config, mode;
+  uint64_t scene_hash = 0, config_hash = 0, seed = 0;
+  uint32_t width = 0, height = 0, samples = 0;
+  std::string started;               // ISO 8601, UTC
+  double wall_seconds = 0;
+  int exit = 0;
+  std::string message;               // of the error, when exit is not 0
+};
+
+// Writes through a temporary file and a rename, so that a reader never sees half a file.
+// UserError when the folder or a file cannot be written.
+class RunDirectory {
+ public:
+  explicit RunDirectory(std::string path);  // made with its parents
+  const std::string& path() const { return path_; }
+  std::string path_of(const std::string& name) const { return path_ + "/" + name; }
+
+  void write(const std::string& name, const std::string& bytes) const;
+  void write_image(const ImageView& image) const;       // image.png, image.pfm
+  void write_stats(const stats::Group& root) const;     // stats.<format> of every registered format
+  void write_config(const std::vector<ParamInfo>& params, const std::string& title) const;  // config.toml
+  void write_run(const RunInfo& info) const;            // run.json
+
+ private:
+  std::string path_;
+};
+
+}  // namespace glint::report

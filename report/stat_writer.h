@@ -1,0 +1,23 @@
+// A format that statistics can be written in: one file in report/formats each, registered by name.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "base/registry.h"
+#include "base/stats.h"
+
+namespace glint::report {
+
+// Turns a tree of statistics into bytes. The same tree gives the same bytes, on every machine.
+class StatWriter {
+ public:
+  struct Context {};
+  // Formats take no parameters.
+  struct NoParams {
+    static constexpr auto params() { return std::tuple{}; }
+  };
+  virtual ~StatWriter() = default;
+  virtual std::string write(const stats::Group& root) const = 0;
+};
+
+}  // namespace glint::report
