@@ -1,0 +1,8 @@
+// Closest-hit shader for triangles of ambient occlusion.
+// SPDX-License-Identifier: Apache-2.0
+#version 460
+#extension GL_EXT_ray_tracing : require
+#extension GL_EXT_nonuniform_qualifier : require
+#extension GL_GOOGLE_include_directive : require
+#define GLINT_KEEP_HIT_POINT
+#include "../include/triangle_hit.glsl"
