@@ -27,7 +27,8 @@ struct Issued {
   LaneMask lanes = 0;      // that executed it (active and guard)
   LaneMask active = 0;     // that were running
   // Loads, stores, texture and surface ops: the addresses are in warp.regs.access until the next execute().
-  // Texture: the executor has replaced address[lane] by the first of four texel addresses, see `texels`.
+  // Texture ops read the four texels of texels(); for surface ops address[lane] is the texel's. Shader calls:
+  // address[lane] is the binding-table record of each lane that called, `lanes` those lanes.
   bool finished = false;   // the warp has ended
 };
 
@@ -58,9 +59,37 @@ class Executor {
   const World& world() const { return world_; }
 
  private:
+  using Kind = SimtStack::Kind;
+
+  // Each runs one family of effects and moves the pc; false after a fault (executor_memory.cpp and so on).
+  bool run_memory(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
+  bool run_image(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
+  bool run_rays(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
+  bool run_control(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
+
+  bool load_global(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
+  bool store_global(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
+  bool access_local(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, bool store);
+  bool load_constant(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
+  bool sample(WarpContext& warp, const isa::Inst& inst);
+  bool access_surface(WarpContext& warp, const isa::Inst& inst, bool store);
+  bool trace(WarpContext& warp, const isa::Inst& inst);
+  bool report(WarpContext& warp, const isa::Inst& inst);
+  bool call(WarpContext& warp, isa::Effect effect);
+  bool call_targets(WarpContext& warp, isa::Effect effect, std::array<uint32_t, kLanes>& target);
+  const HitGroup* hit_group(const rt::Ray& ray, const rt::Hit& hit, uint32_t& record) const;
+  void finish_shader(WarpContext& warp, isa::Effect effect);
+  void leave(WarpContext& warp, LaneMask lanes);
+  void resume_if_empty(WarpContext& warp);
+  void fill_specials(WarpContext& warp, LaneMask lanes, const Shader& shader) const;
+  bool fail(WarpContext& warp, int lane, std::string what);
+
   const World& world_;
   std::optional<Fault> fault_;
   std::array<std::array<Address, kLanes>, 4> texels_{};
 };
+
+// Launch coordinates of a lane of a warp: x runs fastest.
+std::array<uint32_t, 3> launch_id(const World& world, uint32_t warp_index, int lane);
 
 }  // namespace glint::core

@@ -20,16 +20,23 @@ struct TraceFrame {
   LaneMask lanes = 0;
 };
 
+// Model: the two attribute buffers are a fixed 64 bytes each (Vulkan's minimum for hit attributes is 32).
+inline constexpr uint32_t kAttributeBytes = 64;
+
 struct WarpContext {
   isa::Warp regs;
   SimtStack simt;
   uint32_t warp_index = 0;            // of the launch: warp w holds launch indices [32 w, 32 w + 32)
-  uint32_t shader = kNoShader;        // running now
   uint32_t depth = 0;                 // open rt.trace levels
   std::vector<std::unique_ptr<TraceFrame>> frames;  // allocated when first needed, then kept
   std::vector<uint32_t> local;        // [word][lane]
   uint64_t instructions = 0;          // retired since start, for the instruction budget
   bool waiting_for_rays = false;      // an rt.trace or rt.resume has not been finished
+  LaneMask ray_lanes = 0;             // that it handed over
+  isa::Slot ray_answer = 0;           // predicate it writes
+
+  // Rows of the specials bank, and of the register bank when the machine has not set one.
+  std::unique_ptr<uint32_t[]> own_registers, own_specials;
 
   TraceFrame& frame() { return *frames[depth - 1]; }
 };
