@@ -1,0 +1,149 @@
+// Backward dataflow over bit sets; call regions found by walking control flow from each SaveLive.
+// SPDX-License-Identifier: Apache-2.0
+#include "frontend/backend/liveness.h"
+
+#include <algorithm>
+
+#include "base/check.h"
+#include "frontend/backend/slots.h"
+
+namespace glint::frontend {
+
+bool RegisterSet::unite(const RegisterSet& other) {
+  bool grew = false;
+  for (size_t w = 0; w < words_.size(); ++w) {
+    const uint64_t all = words_[w] | other.words_[w];
+    grew |= all != words_[w];
+    words_[w] = all;
+  }
+  return grew;
+}
+
+void RegisterSet::intersect(const RegisterSet& other) {
+  for (size_t w = 0; w < words_.size(); ++w) words_[w] &= other.words_[w];
+}
+
+size_t RegisterSet::size() const {
+  size_t bits = 0;
+  for (uint64_t word : words_) bits += size_t(std::popcount(word));
+  return bits;
+}
+
+void step_backward(const VirtualInst& inst, RegisterSet& live) {
+  if (!is_guarded(inst)) for_each_def(inst, [&](VirtualRegister r) { live.erase(r); });
+  for_each_use(inst, [&](VirtualRegister r) { live.insert(r); });
+}
+
+Liveness find_liveness(const VirtualProgram& program) {
+  const size_t blocks = program.blocks.size();
+  Liveness out;
+  out.in.assign(blocks, RegisterSet(program.registers.size()));
+  out.out = out.in;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (size_t b = blocks; b-- > 0;) {
+      const VirtualBlock& block = program.blocks[b];
+      for (BlockId next : block.successors) out.out[b].unite(out.in[next]);
+      RegisterSet live = out.out[b];
+      for (size_t i = block.code.size(); i-- > 0;) step_backward(block.code[i], live);
+      changed |= out.in[b].unite(live);
+    }
+  }
+  return out;
+}
+
+std::vector<float> block_weights(const VirtualProgram& program) {
+  constexpr float kTripsOfALoop = 8.0f;        // Choice: unknown trip counts count as 8
+  constexpr float kMost = 8.0f * 8.0f * 8.0f * 8.0f;
+  std::vector<float> weights(program.blocks.size(), 1.0f);
+  std::vector<BlockId> last_latch(program.blocks.size(), kNoBlock);  // of the loop that a block heads
+  for (BlockId b = 0; b < program.blocks.size(); ++b)
+    for (BlockId next : program.blocks[b].successors)
+      if (next <= b) last_latch[next] = b;
+  for (BlockId head = 0; head < program.blocks.size(); ++head) {
+    if (last_latch[head] == kNoBlock) continue;
+    for (BlockId b = head; b <= last_latch[head]; ++b) weights[b] = std::min(weights[b] * kTripsOfALoop, kMost);
+  }
+  return weights;
+}
+
+std::vector<bool> enters_in_region(const VirtualProgram& program) {
+  enum : char { kUnknown, kOutside, kInside };
+  std::vector<char> state(program.blocks.size(), kUnknown);
+  std::vector<BlockId> work{0};
+  if (!program.blocks.empty()) state[0] = kOutside;
+  while (!work.empty() && !program.blocks.empty()) {
+    const BlockId b = work.back();
+    work.pop_back();
+    char now = state[b];
+    for (const VirtualInst& inst : program.blocks[b].code) {
+      if (inst.kind == VirtualInst::Kind::SaveLive) now = kInside;
+      if (inst.kind == VirtualInst::Kind::RestoreLive) now = kOutside;
+    }
+    for (BlockId next : program.blocks[b].successors) {
+      GLINT_CHECK(state[next] == kUnknown || state[next] == now, "'{}': block '{}' lies inside and outside a call region",
+                  program.name, program.blocks[next].name);
+      if (state[next] != kUnknown) continue;
+      state[next] = now;
+      work.push_back(next);
+    }
+  }
+  std::vector<bool> inside(program.blocks.size());
+  for (size_t b = 0; b < inside.size(); ++b) inside[b] = state[b] == kInside;
+  return inside;
+}
+
+namespace {
+
+// The RestoreLive that control reaches from a SaveLive; the blocks between have been visited once each.
+Place find_restore(const VirtualProgram& program, Place save) {
+  std::vector<bool> seen(program.blocks.size());
+  std::vector<Place> work{{save.block, save.index + 1}};
+  Place found;
+  while (!work.empty()) {
+    const Place at = work.back();
+    work.pop_back();
+    const VirtualBlock& block = program.blocks[at.block];
+    const auto restore = std::find_if(block.code.begin() + std::ptrdiff_t(at.index), block.code.end(), [](const VirtualInst& inst) {
+      return inst.kind == VirtualInst::Kind::RestoreLive;
+    });
+    if (restore != block.code.end()) {
+      const Place here{at.block, size_t(restore - block.code.begin())};
+      GLINT_CHECK(found.block == kNoBlock || found == here, "'{}': a SaveLive reaches two RestoreLive", program.name);
+      found = here;
+      continue;
+    }
+    for (BlockId next : block.successors) {
+      if (seen[next]) continue;
+      seen[next] = true;
+      work.push_back({next, 0});
+    }
+  }
+  GLINT_CHECK(found.block != kNoBlock, "'{}': a SaveLive without RestoreLive", program.name);
+  return found;
+}
+
+RegisterSet live_after(const VirtualProgram& program, const Liveness& liveness, Place place) {
+  const VirtualBlock& block = program.blocks[place.block];
+  RegisterSet live = liveness.out[place.block];
+  for (size_t i = block.code.size(); i-- > place.index + 1;) step_backward(block.code[i], live);
+  return live;
+}
+
+}  // namespace
+
+std::vector<CallRegion> find_call_regions(const VirtualProgram& program, const Liveness& liveness) {
+  std::vector<CallRegion> regions;
+  for (BlockId b = 0; b < program.blocks.size(); ++b) {
+    for (size_t i = 0; i < program.blocks[b].code.size(); ++i) {
+      if (program.blocks[b].code[i].kind != VirtualInst::Kind::SaveLive) continue;
+      CallRegion region{{b, i}, find_restore(program, {b, i}), {}};
+      region.live = live_after(program, liveness, region.restore);
+      region.live.intersect(live_after(program, liveness, region.save));
+      regions.push_back(std::move(region));
+    }
+  }
+  return regions;
+}
+
+}  // namespace glint::frontend

@@ -1,0 +1,71 @@
+// Which virtual registers are live where, and the other facts about control flow that the backend needs.
+//
+// A lane is a thread of its own to this analysis: ops write only the lanes that execute them, so the values of
+// waiting lanes stay in their registers whatever the others do, and liveness along each lane's path suffices.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "frontend/virtual_program.h"
+
+namespace glint::frontend {
+
+// A set of virtual registers, one bit each.
+class RegisterSet {
+ public:
+  RegisterSet() = default;
+  explicit RegisterSet(size_t registers) : words_((registers + 63) / 64) {}
+
+  bool contains(VirtualRegister r) const { return (words_[r / 64] >> (r % 64)) & 1; }
+  void insert(VirtualRegister r) { words_[r / 64] |= uint64_t{1} << (r % 64); }
+  void erase(VirtualRegister r) { words_[r / 64] &= ~(uint64_t{1} << (r % 64)); }
+  bool unite(const RegisterSet& other);        // true when it grew
+  void intersect(const RegisterSet& other);
+  size_t size() const;
+
+  // Calls visit(register) in ascending order.
+  template <class Visit>
+  void for_each(Visit&& visit) const {
+    for (size_t w = 0; w < words_.size(); ++w)
+      for (uint64_t bits = words_[w]; bits; bits &= bits - 1)
+        visit(VirtualRegister(w * 64 + size_t(std::countr_zero(bits))));
+  }
+
+ private:
+  std::vector<uint64_t> words_;
+};
+
+struct Liveness {
+  std::vector<RegisterSet> in, out;  // one a block
+};
+
+Liveness find_liveness(const VirtualProgram& program);
+
+// From the set that is live after `inst` to the one that is live before it. A guarded write does not end the
+// old value: the lanes whose guard is false keep it.
+void step_backward(const VirtualInst& inst, RegisterSet& live);
+
+// How often a block runs, estimated: 8 times its surroundings for each loop around it, capped at 8^4.
+// Choice: a backward branch in layout order makes a loop of everything between its ends.
+std::vector<float> block_weights(const VirtualProgram& program);
+
+// For each block, whether control enters it between a SaveLive and its RestoreLive. Our own bug if paths disagree.
+std::vector<bool> enters_in_region(const VirtualProgram& program);
+
+// The place of an instruction.
+struct Place {
+  BlockId block = kNoBlock;
+  size_t index = 0;
+  bool operator==(const Place&) const = default;
+};
+
+// A SaveLive, its RestoreLive, and what must survive between them: live after both.
+struct CallRegion {
+  Place save, restore;
+  RegisterSet live;
+};
+std::vector<CallRegion> find_call_regions(const VirtualProgram& program, const Liveness& liveness);
+
+}  // namespace glint::frontend

@@ -1,0 +1,316 @@
+// Dependence graph and list scheduler for straight runs of movable instructions.
+// SPDX-License-Identifier: Apache-2.0
+#include "frontend/backend/schedule.h"
+
+#include <algorithm>
+
+#include "frontend/backend/liveness.h"
+
+namespace glint::frontend {
+namespace {
+
+// Cycles from issue to use that the order is tuned for. It does not change results, only how well latencies
+// overlap. Arithmetic: 4 cycles on Volta and later (Z. Jia et al., "Dissecting the NVIDIA Volta GPU architecture via
+// microbenchmarking", 2018, table 4.1); loads: an L1 hit of about 28 cycles (the same, table 3.1).
+// Choice: multi-pass and texture latencies are round numbers of the right order.
+uint32_t latency_of(const VirtualInst& inst) {
+  switch (row_of(inst).unit) {
+    case isa::Unit::Int:
+    case isa::Unit::Fp32:
+    case isa::Unit::Move:
+    case isa::Unit::Predicate: return 4;
+    case isa::Unit::Sfu: return 16;
+    case isa::Unit::IntDiv:
+    case isa::Unit::FpDiv: return 40;
+    case isa::Unit::Fp64: return 16;
+    case isa::Unit::Const: return 8;
+    case isa::Unit::Lsu: return 28;
+    case isa::Unit::Tex: return 80;
+    case isa::Unit::Branch:
+    case isa::Unit::RtUnit:
+    case isa::Unit::Count: return 1;
+  }
+  return 1;
+}
+
+uint32_t words_of(RegisterClass c) { return c == RegisterClass::B64 ? 2 : c == RegisterClass::B32 ? 1 : 0; }
+
+// A memory access as dependences see it.
+struct MemoryUse {
+  bool any = false, writes = false, in_frame = false;
+  isa::Space space = isa::Space::None;
+  int64_t begin = 0, end = 0;  // of the frame, bytes
+};
+
+MemoryUse memory_use(const VirtualInst& inst) {
+  const isa::OpRow& row = row_of(inst);
+  MemoryUse use;
+  if (row.effect == isa::Effect::SurfaceStore || row.effect == isa::Effect::SurfaceLoad ||
+      row.effect == isa::Effect::Texture) {
+    // Choice: images and buffers may share memory, so texture and surface ops are ordered like global accesses.
+    use = {true, row.effect == isa::Effect::SurfaceStore, false, isa::Space::Global, 0, 0};
+  } else if (row.effect == isa::Effect::Load || row.effect == isa::Effect::Store || row.effect == isa::Effect::Atomic) {
+    use = {true, row.effect != isa::Effect::Load, false, row.memory.space, inst.imm,
+           int64_t{inst.imm} + row.memory.bytes * row.memory.count};
+    for (const VirtualOperand& o : inst.operands) use.in_frame |= o.kind == VirtualOperand::Kind::StackPointer;
+  }
+  return use;
+}
+
+bool must_stay_in_order(const MemoryUse& a, const MemoryUse& b) {
+  if (!a.any || !b.any || a.space != b.space || (!a.writes && !b.writes)) return false;
+  if (a.in_frame && b.in_frame) return a.begin < b.end && b.begin < a.end;
+  return true;
+}
+
+bool reads_clock(const VirtualInst& inst) {
+  return std::any_of(inst.operands.begin(), inst.operands.end(), [](const VirtualOperand& o) {
+    return o.kind == VirtualOperand::Kind::Special && o.special == isa::Special::Clock;
+  });
+}
+
+// One run of movable instructions.
+class Run {
+ public:
+  Run(const VirtualProgram& program, std::vector<VirtualInst> code, RegisterSet live_out)
+      : program_(program), code_(std::move(code)), live_out_(std::move(live_out)), nodes_(code_.size()) {
+    live_in_ = live_out_;
+    for (size_t i = code_.size(); i-- > 0;) step_backward(code_[i], live_in_);
+    add_dependences();
+    for (size_t i = code_.size(); i-- > 0;) {
+      nodes_[i].height = latency_of(code_[i]);
+      for (const Edge& edge : nodes_[i].after)
+        nodes_[i].height = std::max(nodes_[i].height, edge.delay + nodes_[edge.to].height);
+    }
+  }
+
+  // The new order; the old one when it needs fewer registers and the new one does not fit `comfortable`.
+  std::vector<VirtualInst> schedule(uint32_t comfortable) {
+    const uint32_t old_peak = peak(code_);
+    std::vector<VirtualInst> ordered = list_schedule(std::max(comfortable, 1u));
+    const uint32_t new_peak = peak(ordered);
+    return new_peak > comfortable && new_peak > old_peak ? std::move(code_) : std::move(ordered);
+  }
+
+ private:
+  struct Edge {
+    size_t to;
+    uint32_t delay;  // cycles between the issues
+  };
+  struct Node {
+    std::vector<Edge> after;
+    uint32_t waits_for = 0, height = 0, earliest = 0;
+  };
+  struct LastAccess {
+    std::vector<size_t> writers, readers;  // writers: the last whole write and guarded ones since
+  };
+
+  void depend(size_t from, size_t to, uint32_t delay) {
+    nodes_[from].after.push_back({to, delay});
+    ++nodes_[to].waits_for;
+  }
+
+  void add_dependences() {
+    std::vector<std::pair<VirtualRegister, LastAccess>> accesses;  // sorted by register
+    const auto access = [&](VirtualRegister r) -> LastAccess& {
+      const auto at = std::lower_bound(accesses.begin(), accesses.end(), r, [](const auto& a, VirtualRegister b) { return a.first < b; });
+      if (at != accesses.end() && at->first == r) return at->second;
+      return accesses.insert(at, {r, {}})->second;
+    };
+    std::vector<std::pair<size_t, MemoryUse>> memory;
+    for (size_t i = 0; i < code_.size(); ++i) {
+      for_each_use(code_[i], [&](VirtualRegister r) {
+        LastAccess& last = access(r);
+        for (size_t w : last.writers) depend(w, i, latency_of(code_[w]));
+        last.readers.push_back(i);
+      });
+      for_each_def(code_[i], [&](VirtualRegister r) {
+        LastAccess& last = access(r);
+        for (size_t reader : last.readers)
+          if (reader != i) depend(reader, i, 1);
+        for (size_t w : last.writers)
+          if (w != i) depend(w, i, 1);
+        if (!is_guarded(code_[i])) last.writers.clear();
+        last.readers.clear();
+        last.writers.push_back(i);
+      });
+      const MemoryUse use = memory_use(code_[i]);
+      if (!use.any) continue;
+      for (const auto& [earlier, other] : memory)
+        if (must_stay_in_order(other, use)) depend(earlier, i, other.writes && !use.writes ? latency_of(code_[earlier]) : 1);
+      memory.emplace_back(i, use);
+    }
+  }
+
+  // Most words of registers that are live at once.
+  uint32_t peak(const std::vector<VirtualInst>& code) const {
+    RegisterSet live = live_out_;
+    uint32_t words = count(live), most = words;
+    for (size_t i = code.size(); i-- > 0;) {
+      uint32_t dead_results = 0;
+      for_each_def(code[i], [&](VirtualRegister r) { dead_results += live.contains(r) ? 0 : words_of(program_.registers[r]); });
+      most = std::max(most, words + dead_results);
+      if (!is_guarded(code[i]))
+        for_each_def(code[i], [&](VirtualRegister r) {
+          if (!live.contains(r)) return;
+          live.erase(r);
+          words -= words_of(program_.registers[r]);
+        });
+      for_each_use(code[i], [&](VirtualRegister r) {
+        if (live.contains(r)) return;
+        live.insert(r);
+        words += words_of(program_.registers[r]);
+      });
+      most = std::max(most, words);
+    }
+    return most;
+  }
+
+  uint32_t count(const RegisterSet& live) const {
+    uint32_t words = 0;
+    live.for_each([&](VirtualRegister r) { words += words_of(program_.registers[r]); });
+    return words;
+  }
+
+  // Words that become live less words that die when instruction `i` issues next.
+  int growth(size_t i, const RegisterSet& live, const std::vector<std::pair<VirtualRegister, uint32_t>>& uses_left) const {
+    int words = 0;
+    for_each_def(code_[i], [&](VirtualRegister r) {
+      if (!live.contains(r)) words += int(words_of(program_.registers[r]));
+    });
+    std::vector<VirtualRegister> counted;
+    for_each_use(code_[i], [&](VirtualRegister r) {
+      if (std::find(counted.begin(), counted.end(), r) != counted.end()) return;
+      counted.push_back(r);
+      if (live.contains(r) && !live_out_.contains(r) && uses_of(uses_left, r) == 1) words -= int(words_of(program_.registers[r]));
+    });
+    return words;
+  }
+
+  // Instructions still to come that read `r`.
+  static uint32_t uses_of(const std::vector<std::pair<VirtualRegister, uint32_t>>& uses, VirtualRegister r) {
+    const auto at = std::lower_bound(uses.begin(), uses.end(), r, [](const auto& a, VirtualRegister b) { return a.first < b; });
+    return at != uses.end() && at->first == r ? at->second : 0;
+  }
+
+  template <class Visit>
+  static void for_each_distinct_use(const VirtualInst& inst, Visit&& visit) {
+    std::vector<VirtualRegister> seen;
+    for_each_use(inst, [&](VirtualRegister r) {
+      if (std::find(seen.begin(), seen.end(), r) != seen.end()) return;
+      seen.push_back(r);
+      visit(r);
+    });
+  }
+
+  std::vector<std::pair<VirtualRegister, uint32_t>> count_uses() const {
+    std::vector<VirtualRegister> all;
+    for (const VirtualInst& inst : code_) for_each_distinct_use(inst, [&](VirtualRegister r) { all.push_back(r); });
+    std::sort(all.begin(), all.end());
+    std::vector<std::pair<VirtualRegister, uint32_t>> uses;
+    for (VirtualRegister r : all) {
+      if (uses.empty() || uses.back().first != r) uses.emplace_back(r, 0);
+      ++uses.back().second;
+    }
+    return uses;
+  }
+
+  std::vector<VirtualInst> list_schedule(uint32_t comfortable) {
+    std::vector<std::pair<VirtualRegister, uint32_t>> uses_left = count_uses();
+    RegisterSet live = live_in_;
+    int words = int(count(live));
+    std::vector<size_t> ready;
+    for (size_t i = 0; i < nodes_.size(); ++i)
+      if (nodes_[i].waits_for == 0) ready.push_back(i);
+    std::vector<VirtualInst> out;
+    for (uint32_t cycle = 0; !ready.empty(); ++cycle) {
+      size_t best = 0;
+      int best_growth = growth(ready[0], live, uses_left);
+      for (size_t k = 1; k < ready.size(); ++k) {
+        const int candidate = growth(ready[k], live, uses_left);
+        if (!is_better(ready[k], candidate, ready[best], best_growth, cycle, words, int(comfortable))) continue;
+        best = k;
+        best_growth = candidate;
+      }
+      const size_t chosen = ready[best];
+      ready.erase(ready.begin() + std::ptrdiff_t(best));
+      cycle = std::max(cycle, nodes_[chosen].earliest);
+      words += best_growth;
+      issue(chosen, cycle, live, uses_left, ready);
+      out.push_back(code_[chosen]);
+    }
+    return out;
+  }
+
+  bool is_better(size_t a, int a_growth, size_t b, int b_growth, uint32_t cycle, int words, int comfortable) const {
+    const bool a_fits = words + a_growth <= comfortable || a_growth <= 0;
+    const bool b_fits = words + b_growth <= comfortable || b_growth <= 0;
+    if (a_fits != b_fits) return a_fits;
+    if (!a_fits || words >= comfortable) {  // no room: what frees most, else the old order
+      if (a_growth != b_growth) return a_growth < b_growth;
+      return a < b;
+    }
+    const uint32_t a_start = std::max(nodes_[a].earliest, cycle), b_start = std::max(nodes_[b].earliest, cycle);
+    if (a_start != b_start) return a_start < b_start;
+    if (nodes_[a].height != nodes_[b].height) return nodes_[a].height > nodes_[b].height;
+    if (a_growth != b_growth) return a_growth < b_growth;
+    return a < b;
+  }
+
+  void issue(size_t chosen, uint32_t cycle, RegisterSet& live, std::vector<std::pair<VirtualRegister, uint32_t>>& uses_left,
+             std::vector<size_t>& ready) {
+    for_each_distinct_use(code_[chosen], [&](VirtualRegister r) {
+      const auto at = std::lower_bound(uses_left.begin(), uses_left.end(), r, [](const auto& a, VirtualRegister b) { return a.first < b; });
+      if (--at->second == 0 && !live_out_.contains(r)) live.erase(r);
+    });
+    for_each_def(code_[chosen], [&](VirtualRegister r) { live.insert(r); });
+    for (const Edge& edge : nodes_[chosen].after) {
+      Node& next = nodes_[edge.to];
+      next.earliest = std::max(next.earliest, cycle + edge.delay);
+      if (--next.waits_for == 0) ready.push_back(edge.to);
+    }
+  }
+
+  const VirtualProgram& program_;
+  std::vector<VirtualInst> code_;
+  RegisterSet live_in_, live_out_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace
+
+void schedule(VirtualProgram& program, uint32_t max_registers) {
+  // Room that allocation wants beyond the words that are live: the stack pointer, and gaps between pairs.
+  constexpr uint32_t kReserve = 4;
+  constexpr size_t kShortestRun = 3, kLongestRun = 2000;  // longer ones are cut: the search is quadratic
+  const uint32_t comfortable = max_registers > 2 * kReserve ? max_registers - kReserve : max_registers / 2;
+  const Liveness liveness = find_liveness(program);
+  const std::vector<bool> enters_inside = enters_in_region(program);
+  for (BlockId b = 0; b < program.blocks.size(); ++b) {
+    std::vector<VirtualInst>& code = program.blocks[b].code;
+    std::vector<bool> moves(code.size());
+    bool inside = enters_inside[b];
+    for (size_t i = 0; i < code.size(); ++i) {
+      if (code[i].kind == VirtualInst::Kind::SaveLive) inside = true;
+      if (code[i].kind == VirtualInst::Kind::RestoreLive) inside = false;
+      moves[i] = !inside && is_movable(code[i]) && !reads_clock(code[i]);
+    }
+    RegisterSet live = liveness.out[b];
+    for (size_t end = code.size(); end > 0;) {
+      if (!moves[end - 1]) {
+        step_backward(code[--end], live);
+        continue;
+      }
+      size_t begin = end;
+      while (begin > 0 && moves[begin - 1] && end - begin < kLongestRun) --begin;
+      if (end - begin >= kShortestRun) {
+        const auto first = code.begin() + std::ptrdiff_t(begin), last = code.begin() + std::ptrdiff_t(end);
+        const std::vector<VirtualInst> ordered = Run(program, {first, last}, live).schedule(comfortable);
+        std::copy(ordered.begin(), ordered.end(), first);
+      }
+      while (end > begin) step_backward(code[--end], live);
+    }
+  }
+}
+
+}  // namespace glint::frontend
