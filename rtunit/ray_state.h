@@ -8,38 +8,49 @@
 
 namespace glint::rt {
 
-inline constexpr int kStackEntries = 96;  // full stack; checked against the structure's depth at build
+// Full stack. Model: hardware keeps a short stack and spills; here every entry is on chip. build_top() proves that
+// no ray can need more.
+inline constexpr int kStackEntries = 192;
 
 // One node still to be visited: where it is and where the ray enters it.
 struct StackEntry {
-  uint32_t node = 0;    // byte offset / 64 from the base of the structure being walked, and kind in low bits as the format defines
-  float t_enter = 0;
+  uint32_t node;  // NodeRef (rtunit/structure.h): block from the base of the structure being walked, and kind
+  float t_enter;
 };
 
-// Plain data: may be copied and compared. The functions live in rtunit/traversal.h.
+// A space that is being walked: the ray in its coordinates and what the tests derive from it.
+struct RaySpace {
+  std::array<float, 3> origin{}, direction{}, inverse_direction{};
+  std::array<float, 3> shear{};        // Woop et al. 2013: Sx, Sy, Sz
+  std::array<uint8_t, 3> axis{0, 1, 2};  // kx, ky, kz: kz is the largest component of the direction
+};
+
+// Plain data: may be copied. The functions live in rtunit/traversal.h.
 struct RayState {
   Ray ray;
   RayStatus status = RayStatus::Idle;
   Hit committed;                         // t = t_max until a hit is confirmed
   Hit candidate;                         // while NeedsIntersection or NeedsAnyHit
+  bool candidate_procedural = false;     // the candidate came from an AABB: its attributes are memory
+  bool candidate_opaque = false;         // NeedsIntersection: a report is confirmed without an any-hit shader
   bool attribute_slot = false;           // which of the two attribute buffers holds the committed attributes
   bool report_accepted = false;          // result of the last rt.report
   bool terminated = false;               // rt.terminate or terminate-on-first-hit: finish after this shader
+  bool broken = false;                   // the structure's bytes led outside memory: the ray ended without meaning
 
-  // The space being walked: the world, or the object space of `instance_leaf`.
-  std::array<float, 3> origin{}, direction{}, inverse_direction{};
-  Address base = 0;                      // virtual address of node 0 of the structure being walked
+  RaySpace space;                        // the world, or the object space of `instance_leaf`
+  Address base = 0;                      // virtual address of the header of the structure being walked
   Address instance_leaf = 0;             // 0 in the top level
   uint32_t instance = kNoHit;
   uint32_t instance_flags = 0, instance_custom_index = 0, instance_sbt_record = 0;
-  int8_t stack_size = 0, bottom_stack_base = -1;  // entries below bottom_stack_base belong to the top level
-  std::array<StackEntry, kStackEntries> stack;
-
-  // Where traversal stands inside a leaf that holds several primitives.
-  uint32_t leaf_cursor = 0;
+  int16_t stack_size = 0, bottom_stack_base = -1;  // entries below bottom_stack_base belong to the top level
+  int16_t stack_peak = 0;
+  uint8_t format = 0;                    // FormatId of the structure
 
   // Counted by the traversal, for probes and statistics.
   uint32_t nodes_visited = 0, box_tests = 0, triangle_tests = 0, leaves_visited = 0, instances_visited = 0;
+
+  std::array<StackEntry, kStackEntries> stack;  // left uninitialised: only entries below stack_size mean anything
 };
 
 }  // namespace glint::rt

@@ -1,0 +1,67 @@
+// Building acceleration structures in simulated memory from geometry, as a driver would.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "memsys/address_space.h"
+#include "rtunit/structure.h"
+
+namespace glint::rt {
+
+inline constexpr std::array<float, 12> kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  // row-major 3x4
+
+// Triangles (positions, and indices unless empty: then three positions a triangle) or AABBs. The spans are only read during
+// build_bottom(). Triangles with a not-a-number corner are inactive (Vulkan); so are those of no area, which no
+// ray can hit. Inactive ones keep their primitive index.
+struct Geometry {
+  std::span<const std::byte> positions;    // float3 at multiples of `stride` bytes
+  uint32_t stride = 12;
+  std::span<const uint32_t> indices;
+  std::span<const Bounds> aabbs;           // not empty: an AABB geometry
+  std::array<float, 12> transform = kIdentity;  // of the triangles, applied at build
+  bool opaque = true;
+  bool no_duplicate_any_hit = false;       // always so here: every primitive lies in one leaf
+};
+struct BottomLevel {
+  std::vector<Geometry> geometries;
+};
+
+struct Instance {
+  std::array<float, 12> transform = kIdentity;  // object to world, row-major 3x4
+  uint32_t custom_index = 0;               // 24 bits
+  uint32_t mask = 0xff;                    // 8 bits
+  uint32_t sbt_offset = 0;                 // 24 bits
+  uint32_t flags = 0;                      // instance_flag::*
+  uint32_t bottom = 0;                     // index of its bottom level
+};
+
+struct BuildOptions {
+  std::string format = "bvh6";
+  bool pair_triangles = true;  // two neighbouring triangles of a geometry in one leaf where that costs no area
+};
+
+struct StructureInfo {
+  Address address = 0;        // virtual, of the header: what descriptors and rays hold
+  Bounds bounds{};
+  uint64_t bytes = 0;
+  uint32_t nodes = 0;         // internal
+  uint32_t leaves = 0;
+  uint32_t depth = 0;         // internal nodes from root to deepest leaf
+  uint64_t primitives = 0;    // active triangles and AABBs, or active instances
+  uint32_t stack_need = 0;    // stack entries that the worst ray needs, instances' bottom levels included
+};
+
+// UserError when an index is out of range or the tree is too deep for the ray stack.
+StructureInfo build_bottom(mem::AddressSpace& memory, const std::string& name, const BottomLevel& input,
+                           const BuildOptions& options = {});
+
+// UserError when a transform cannot be inverted, an index is out of range or the trees are too deep for the
+// ray stack. Instances of empty bottom levels are inactive and keep their index.
+StructureInfo build_top(mem::AddressSpace& memory, const std::string& name, std::span<const Instance> instances,
+                        std::span<const StructureInfo> bottoms, const BuildOptions& options = {});
+
+}  // namespace glint::rt

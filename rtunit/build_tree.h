@@ -1,0 +1,24 @@
+// The shape of a tree over boxes, by Embree's surface-area-heuristic builder.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <span>
+
+#include "rtunit/node_format.h"
+
+namespace glint::rt {
+
+// A leaf to be placed: `leaf_block` and `kind` go into its BuildTree::Node.
+struct BuildItem {
+  Bounds bounds;
+  NodeKind kind = NodeKind::Triangle;
+  uint32_t leaf_block = 0;
+};
+
+// Fills tree.nodes and tree.children, parents before children; one leaf an item, at most `width` children a node, the root
+// internal. The same items give the same tree.
+void build_tree(std::span<const BuildItem> items, uint32_t width, BuildTree& tree);
+
+Bounds empty_bounds();
+void extend(Bounds& bounds, const Bounds& other);
+
+}  // namespace glint::rt

@@ -1,0 +1,54 @@
+// How internal nodes are written: the interface between the builder and a node format.
+//
+// A format is one file pair in rtunit/formats/: `<name>.cpp` encodes and is registered here; `<name>.h` holds a struct
+// with kWidth and the static test() that traversal is compiled for (traversal.cpp lists it by FormatId).
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "rtunit/structure.h"
+
+namespace glint::rt {
+
+// A tree as the builder hands it over. Node 0 is the root and internal; leaves point to their bytes in `leaf_bytes`.
+struct BuildTree {
+  struct Node {
+    Bounds bounds;
+    NodeKind kind = NodeKind::Internal;
+    uint32_t first_child = 0, num_children = 0;  // in `children`; internal nodes
+    uint32_t leaf_block = 0;                     // in blocks from the start of leaf_bytes; leaves
+  };
+  std::vector<Node> nodes;
+  std::vector<uint32_t> children;  // indices into nodes
+  std::vector<std::byte> leaf_bytes;
+};
+
+// A child as found in encoded bytes: for validation and tools, not for traversal.
+struct DecodedChild {
+  NodeRef node = 0;
+  Bounds bounds;  // as the traversal sees it
+};
+
+// Contract (tests/contract/rt_node_format_test.cpp):
+//  - encode() returns the whole structure from the header on, root at block kRootBlock, header left zero.
+//  - every decoded box contains the box that was encoded; children keep their order.
+//  - the same tree gives the same bytes.
+class NodeFormat {
+ public:
+  struct Context {};
+  virtual ~NodeFormat() = default;
+  virtual FormatId id() const = 0;
+  virtual uint32_t width() const = 0;  // most children of a node, at least 2
+  virtual std::vector<std::byte> encode(const BuildTree& tree) const = 0;
+  // Children of the internal node whose bytes start at `node`; returns how many were written to `out` (>= width() long).
+  virtual uint32_t decode(const std::byte* node, std::span<DecodedChild> out) const = 0;
+};
+
+std::unique_ptr<NodeFormat> make_format(std::string_view name);
+std::unique_ptr<NodeFormat> make_format(FormatId id);
+
+}  // namespace glint::rt

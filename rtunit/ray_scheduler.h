@@ -1,0 +1,34 @@
+// Which resident warp of the RT unit sends a node request: the interface of scheduling policies.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <span>
+
+#include "base/stats.h"
+#include "base/types.h"
+
+namespace glint::rt {
+
+// What a policy may know of a resident warp. Slots are 0, 1, ... in the order of the span.
+struct WarpView {
+  bool ready = false;       // some lane wants a node
+  uint32_t lanes_wanting = 0;
+  uint64_t age = 0;         // order of arrival: smaller is older
+  Cycle arrived = 0;
+};
+
+// Contract (tests/contract/rt_ray_scheduler_test.cpp):
+//  - pick() returns the index of a ready warp, or kNone only when none is ready;
+//  - the choice depends on the arguments and the policy's own state only;
+//  - a ready warp is chosen at last when the others leave: no warp is skipped for ever while none is older.
+class RayScheduler {
+ public:
+  static constexpr uint32_t kNone = ~0u;
+  struct Context {
+    stats::Group* stats = nullptr;  // parent for a policy's own statistics; may be null
+  };
+  virtual ~RayScheduler() = default;
+  virtual uint32_t pick(std::span<const WarpView> warps) = 0;
+};
+
+}  // namespace glint::rt

@@ -1,0 +1,29 @@
+// Policy `oldest_first`: the warp that entered the RT unit first sends first, as the published simulators do.
+// SPDX-License-Identifier: Apache-2.0
+#include "base/registry.h"
+#include "rtunit/ray_scheduler.h"
+
+namespace glint::rt {
+namespace {
+
+class OldestFirst final : public RayScheduler {
+ public:
+  static constexpr std::string_view kName = "oldest_first";
+  static constexpr std::string_view kDoc = "The warp that has been in the unit longest sends first.";
+  struct Params {
+    static constexpr auto params() { return std::tuple{}; }
+  };
+  OldestFirst(Params, Context) {}
+
+  uint32_t pick(std::span<const WarpView> warps) override {
+    uint32_t best = kNone;
+    for (uint32_t i = 0; i < warps.size(); ++i)
+      if (warps[i].ready && (best == kNone || warps[i].age < warps[best].age)) best = i;
+    return best;
+  }
+};
+
+const Register<RayScheduler, OldestFirst> registered;
+
+}  // namespace
+}  // namespace glint::rt

@@ -1,0 +1,85 @@
+// Acceleration structures as bytes: header, leaves and references that every node format shares.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "base/types.h"
+
+namespace glint::rt {
+
+// Everything in a structure lies at multiples of a block from its header; block 0 is the header itself and
+// block 1 the root, always an internal node.
+inline constexpr uint32_t kBlockBytes = 64;
+inline constexpr uint32_t kRootBlock = 1;
+
+// TriangleSecond: the second triangle of a leaf whose first one waited for an any-hit shader; stacks only.
+enum class NodeKind : uint8_t { Internal, Instance, Triangle, Procedural, TriangleSecond };
+
+// Block number and kind in 32 bits: 2^29 blocks = 32 GiB a structure.
+using NodeRef = uint32_t;
+inline constexpr int kKindBits = 3;
+constexpr NodeRef node_ref(uint32_t block, NodeKind kind) { return block << kKindBits | uint32_t(kind); }
+constexpr uint32_t block_of(NodeRef ref) { return ref >> kKindBits; }
+constexpr NodeKind kind_of(NodeRef ref) { return NodeKind(ref & ((1u << kKindBits) - 1)); }
+constexpr uint32_t blocks_of(NodeKind kind) { return kind == NodeKind::Instance ? 2 : 1; }
+
+// The node formats that traversal is compiled for (rtunit/formats/).
+enum class FormatId : uint8_t { Bvh6, Count };
+
+struct Bounds {
+  std::array<float, 3> low{}, high{};
+  bool operator==(const Bounds&) const = default;
+};
+
+struct StructureHeader {
+  static constexpr uint32_t kMagic = 0x53424c47;  // "GLBS"
+  uint32_t magic = kMagic;
+  uint8_t format = 0, level = 0, pad[2]{};  // level: 0 bottom, 1 top
+  Bounds bounds;                            // of the level's own space; empty (low > high) without primitives
+  uint32_t num_primitives = 0;              // active triangles and boxes, or active instances
+  uint32_t stack_need = 0;                  // entries that the worst ray needs in this structure
+  uint64_t bytes = 0;
+  uint64_t reserved[2]{};
+};
+static_assert(sizeof(StructureHeader) == kBlockBytes);
+
+// One or two triangles of one geometry. The second shares an edge: its corners are picked from the four vertices.
+struct TriangleLeaf {
+  std::array<std::array<float, 3>, 4> vertex;
+  std::array<uint32_t, 2> primitive;
+  uint32_t geometry = 0;
+  uint8_t count = 1;
+  uint8_t opaque = 0;
+  uint8_t second = 0;  // 2 bits a corner: which vertex
+  uint8_t pad = 0;
+};
+static_assert(sizeof(TriangleLeaf) == kBlockBytes);
+
+// One AABB, in full precision: an intersection shader runs only for rays that enter it.
+struct ProceduralLeaf {
+  Bounds box;
+  uint32_t geometry = 0, primitive = 0;
+  uint32_t opaque = 0;
+  uint32_t pad[7]{};
+};
+static_assert(sizeof(ProceduralLeaf) == kBlockBytes);
+
+// An instance. Transforms are row-major 3x4. What traversal needs comes first; shaders read the rest.
+struct InstanceLeaf {
+  std::array<float, 12> world_to_object{};
+  Address structure = 0;                   // header of the bottom level
+  uint32_t custom_index_and_mask = 0;      // low 24 bits index, high 8 mask
+  uint32_t sbt_offset_and_flags = 0;       // low 24 bits offset, high 8 Vulkan instance flags
+  std::array<float, 12> object_to_world{};
+  uint32_t instance = 0;                   // index in the build input (gl_InstanceID)
+  uint32_t pad[3]{};
+};
+static_assert(sizeof(InstanceLeaf) == 2 * kBlockBytes);
+
+// VkGeometryInstanceFlagBitsKHR.
+namespace instance_flag {
+inline constexpr uint32_t kFacingCullDisable = 0x1, kFlipFacing = 0x2, kForceOpaque = 0x4, kForceNoOpaque = 0x8;
+}
+
+}  // namespace glint::rt

@@ -1,0 +1,312 @@
+// Vulkan's traversal rules, node by node (Vulkan 1.3, chapter "Ray Traversal").
+// SPDX-License-Identifier: Apache-2.0
+#include "rtunit/traversal.h"
+
+#include <cmath>
+#include <tuple>
+
+#include "base/check.h"
+#include "rtunit/formats/bvh6.h"
+#include "rtunit/triangle_test.h"
+
+namespace glint::rt {
+namespace {
+
+bool has(const RayState& s, uint32_t flag) { return (s.ray.flags & flag) != 0; }
+
+void finish(RayState& s) {
+  s.status = RayStatus::Done;
+  s.stack_size = 0;
+}
+
+// Drops entries that cannot matter any more and leaves a finished bottom level, so that the top entry is the next node.
+// An entry at exactly the committed distance stays: a tie may be decided for its primitive.
+void settle(RayState& s) {
+  for (;;) {
+    if (s.stack_size == s.bottom_stack_base) {
+      s.bottom_stack_base = -1;
+      s.base = s.ray.structure;
+      s.instance_leaf = 0;
+      enter_space(s.space, s.ray.origin, s.ray.direction);
+    }
+    if (s.stack_size == 0) return finish(s);
+    if (s.stack[size_t(s.stack_size) - 1].t_enter <= s.committed.t) return;
+    --s.stack_size;
+  }
+}
+
+void push(RayState& s, NodeRef node, float t_enter) {
+  if (s.stack_size >= kStackEntries) [[unlikely]]
+    return break_off(s);  // only a structure that a shader has overwritten is that deep
+  s.stack[size_t(s.stack_size++)] = {node, t_enter};
+  if (s.stack_size > s.stack_peak) s.stack_peak = s.stack_size;
+}
+
+bool culled_by_kind(const RayState& s, NodeKind kind) {
+  return (kind == NodeKind::Triangle && has(s, ray_flag::kSkipTriangles)) ||
+         (kind == NodeKind::Procedural && has(s, ray_flag::kSkipAabbs));
+}
+
+template <class Format>
+void visit_internal(RayState& s, const std::byte* bytes) {
+  float t_enter[Format::kWidth];
+  NodeRef child[Format::kWidth];
+  const int hits = Format::test(bytes, s.space, s.ray.t_min, s.committed.t, t_enter, child, s.box_tests);
+  // nearest on top of the stack; of equals the lower child
+  int order[Format::kWidth], count = 0;
+  for (int i = 0; i < hits; ++i) {
+    if (culled_by_kind(s, kind_of(child[i]))) continue;
+    int at = count++;
+    for (; at > 0 && t_enter[i] < t_enter[order[at - 1]]; --at) order[at] = order[at - 1];
+    order[at] = i;
+  }
+  for (int i = count - 1; i >= 0; --i) push(s, child[order[i]], t_enter[order[i]]);
+}
+
+void visit_instance(RayState& s, const std::byte* bytes, const StackEntry& entry) {
+  InstanceLeaf leaf;
+  std::memcpy(&leaf, bytes, sizeof leaf);
+  ++s.instances_visited;
+  if ((leaf.custom_index_and_mask >> 24 & s.ray.cull_mask) == 0) return;
+  const auto& m = leaf.world_to_object;
+  const auto& o = s.ray.origin;
+  const auto& d = s.ray.direction;
+  std::array<float, 3> origin, direction;  // not normalised: t is the same in both spaces
+  for (size_t r = 0; r < 3; ++r) {
+    origin[r] = ((m[4 * r] * o[0] + m[4 * r + 1] * o[1]) + m[4 * r + 2] * o[2]) + m[4 * r + 3];
+    direction[r] = (m[4 * r] * d[0] + m[4 * r + 1] * d[1]) + m[4 * r + 2] * d[2];
+  }
+  enter_space(s.space, origin, direction);
+  s.instance_leaf = s.base + Address(block_of(entry.node)) * kBlockBytes;
+  s.base = leaf.structure;
+  s.instance = leaf.instance;
+  s.instance_flags = leaf.sbt_offset_and_flags >> 24;
+  s.instance_custom_index = leaf.custom_index_and_mask & 0xff'ffff;
+  s.instance_sbt_record = leaf.sbt_offset_and_flags & 0xff'ffff;
+  s.bottom_stack_base = s.stack_size;
+  push(s, node_ref(kRootBlock, NodeKind::Internal), entry.t_enter);
+}
+
+// Opacity: the geometry's flag, overridden by the instance's, overridden by the ray's.
+bool is_opaque(const RayState& s, bool geometry_opaque) {
+  bool opaque = geometry_opaque;
+  if (s.instance_flags & instance_flag::kForceOpaque) opaque = true;
+  if (s.instance_flags & instance_flag::kForceNoOpaque) opaque = false;
+  if (has(s, ray_flag::kOpaque)) opaque = true;
+  if (has(s, ray_flag::kNoOpaque)) opaque = false;
+  return opaque;
+}
+bool culled_by_opacity(const RayState& s, bool opaque) { return has(s, opaque ? ray_flag::kCullOpaque : ray_flag::kCullNoOpaque); }
+
+// Choice: at equal t the lowest (instance, geometry, primitive) wins, so results do not depend on the order of visits.
+bool wins(const RayState& s, float t, uint32_t geometry, uint32_t primitive) {
+  if (t != s.committed.t) return t < s.committed.t;
+  return s.committed.valid() && std::tuple(s.instance, geometry, primitive) <
+                                    std::tuple(s.committed.instance, s.committed.geometry, s.committed.primitive);
+}
+
+Hit candidate_of(const RayState& s, uint32_t geometry, uint32_t primitive) {
+  Hit hit;
+  hit.instance = s.instance;
+  hit.geometry = geometry;
+  hit.primitive = primitive;
+  hit.custom_index = s.instance_custom_index;
+  hit.sbt_record = s.instance_sbt_record;
+  hit.instance_leaf = s.instance_leaf;
+  return hit;
+}
+
+// Facing culls only triangles, and is disabled by the instance (Vulkan, "Ray Face Culling").
+bool culled_by_facing(const RayState& s, bool front) {
+  if (s.instance_flags & instance_flag::kFacingCullDisable) return false;
+  return has(s, front ? ray_flag::kCullFrontFacing : ray_flag::kCullBackFacing);
+}
+
+void visit_triangles(RayState& s, const std::byte* bytes, const StackEntry& entry) {
+  TriangleLeaf leaf;
+  std::memcpy(&leaf, bytes, sizeof leaf);
+  const bool resumed = kind_of(entry.node) == NodeKind::TriangleSecond;
+  if (!resumed) ++s.leaves_visited;
+  const bool opaque = is_opaque(s, leaf.opaque != 0);
+  if (culled_by_opacity(s, opaque)) return;
+  for (uint32_t i = resumed ? 1 : 0; i < leaf.count && i < 2; ++i) {
+    const uint32_t a = i ? leaf.second & 3 : 0, b = i ? leaf.second >> 2 & 3 : 1, c = i ? leaf.second >> 4 & 3 : 2;
+    ++s.triangle_tests;
+    TriangleHit found;
+    if (!intersect_triangle(s.space, leaf.vertex[a], leaf.vertex[b], leaf.vertex[c], found)) continue;
+    const bool front = found.front != ((s.instance_flags & instance_flag::kFlipFacing) != 0);
+    if (culled_by_facing(s, front)) continue;
+    if (!(found.t > s.ray.t_min) || !wins(s, found.t, leaf.geometry, leaf.primitive[i])) continue;
+    s.candidate = candidate_of(s, leaf.geometry, leaf.primitive[i]);
+    s.candidate.t = found.t;
+    s.candidate.u = found.u;
+    s.candidate.v = found.v;
+    s.candidate.kind = front ? kHitKindFront : kHitKindBack;
+    if (!opaque) {
+      s.candidate_procedural = false;
+      s.status = RayStatus::NeedsAnyHit;
+      if (i == 0 && leaf.count > 1) push(s, node_ref(block_of(entry.node), NodeKind::TriangleSecond), entry.t_enter);
+      return;
+    }
+    s.committed = s.candidate;
+    if (has(s, ray_flag::kTerminateOnFirstHit)) return finish(s);
+  }
+}
+
+void visit_procedural(RayState& s, const std::byte* bytes) {
+  ProceduralLeaf leaf;
+  std::memcpy(&leaf, bytes, sizeof leaf);
+  ++s.leaves_visited;
+  ++s.box_tests;
+  const bool opaque = is_opaque(s, leaf.opaque != 0);
+  if (culled_by_opacity(s, opaque)) return;
+  float t_near = -__builtin_inff(), t_far = __builtin_inff();
+  for (size_t a = 0; a < 3; ++a) {
+    const bool backward = std::signbit(s.space.inverse_direction[a]);
+    clip_slab(backward ? leaf.box.high[a] : leaf.box.low[a], backward ? leaf.box.low[a] : leaf.box.high[a],
+              s.space.origin[a], s.space.inverse_direction[a], t_near, t_far);
+  }
+  const float enter = std::fmax(widen_near(t_near), s.ray.t_min), leave = std::fmin(widen_far(t_far), s.committed.t);
+  if (!(enter <= leave)) return;
+  s.candidate = candidate_of(s, leaf.geometry, leaf.primitive);
+  s.candidate.t = enter;
+  s.candidate_procedural = true;
+  s.candidate_opaque = opaque;
+  s.status = RayStatus::NeedsIntersection;
+}
+
+template <class Format>
+void step_as(RayState& s, const std::byte* bytes) {
+  const StackEntry entry = s.stack[size_t(--s.stack_size)];
+  ++s.nodes_visited;
+  switch (kind_of(entry.node)) {
+    case NodeKind::Internal: visit_internal<Format>(s, bytes); break;
+    case NodeKind::Instance: visit_instance(s, bytes, entry); break;
+    case NodeKind::Triangle:
+    case NodeKind::TriangleSecond: visit_triangles(s, bytes, entry); break;
+    case NodeKind::Procedural: visit_procedural(s, bytes); break;
+    default: return break_off(s);
+  }
+  if (s.status == RayStatus::Traversing) settle(s);
+}
+
+template <class Format>
+void run_as(RayState& s, const mem::AddressSpace& memory) {
+  while (s.status == RayStatus::Traversing) {
+    const Fetch fetch = next_fetch(s);
+    const std::byte* bytes = memory.find(fetch.address, fetch.bytes);
+    if (!bytes) [[unlikely]]
+      return break_off(s);
+    step_as<Format>(s, bytes);
+  }
+}
+
+// The accepted candidate becomes the hit; the ray goes on, or ends when it asked for any hit.
+void commit(RayState& s, bool end) {
+  s.committed = s.candidate;
+  end = end || has(s, ray_flag::kTerminateOnFirstHit);
+  s.terminated = end;
+  if (s.candidate_procedural) {
+    s.attribute_slot = !s.attribute_slot;
+    s.report_accepted = true;
+    s.status = RayStatus::NeedsIntersection;  // the intersection shader runs on
+  } else if (end) {
+    finish(s);
+  } else {
+    s.status = RayStatus::Traversing;
+    settle(s);
+  }
+}
+
+bool is_finite(const std::array<float, 3>& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
+
+}  // namespace
+
+bool begin(RayState& s, const mem::AddressSpace& memory) {
+  s.committed = Hit{};
+  s.committed.t = s.ray.t_max;
+  s.candidate = Hit{};
+  s.candidate_procedural = s.candidate_opaque = s.attribute_slot = s.report_accepted = s.terminated = s.broken = false;
+  s.instance_leaf = 0;
+  s.instance = kNoHit;
+  s.instance_flags = s.instance_custom_index = s.instance_sbt_record = 0;
+  s.stack_size = s.stack_peak = 0;
+  s.bottom_stack_base = -1;
+  s.nodes_visited = s.box_tests = s.triangle_tests = s.leaves_visited = s.instances_visited = 0;
+  s.status = RayStatus::Done;
+  if (s.ray.structure == 0) return true;
+  const auto* bytes = memory.find(s.ray.structure, sizeof(StructureHeader));
+  if (!bytes) return false;
+  StructureHeader header;
+  std::memcpy(&header, bytes, sizeof header);
+  if (header.magic != StructureHeader::kMagic || header.level != 1 || header.format >= uint8_t(FormatId::Count)) return false;
+  const bool sane = is_finite(s.ray.origin) && is_finite(s.ray.direction) && std::isfinite(s.ray.t_min) &&
+                    s.ray.t_min <= s.ray.t_max;
+  if (!sane) return true;
+  s.format = header.format;
+  s.base = s.ray.structure;
+  enter_space(s.space, s.ray.origin, s.ray.direction);
+  s.status = RayStatus::Traversing;
+  push(s, node_ref(kRootBlock, NodeKind::Internal), s.ray.t_min);
+  return true;
+}
+
+StepFunction step_function(FormatId format) {
+  switch (format) {
+    case FormatId::Bvh6: return step_as<Bvh6>;
+    case FormatId::Count: break;
+  }
+  GLINT_PANIC("no such node format: {}", int(format));
+}
+
+void step(RayState& s, const std::byte* bytes) { step_function(FormatId(s.format))(s, bytes); }
+
+void break_off(RayState& s) {
+  s.broken = true;
+  finish(s);
+}
+
+void run(RayState& s, const mem::AddressSpace& memory) {
+  switch (FormatId(s.format)) {
+    case FormatId::Bvh6: return run_as<Bvh6>(s, memory);
+    case FormatId::Count: break;
+  }
+  GLINT_PANIC("no such node format: {}", int(s.format));
+}
+
+void accept_candidate(RayState& s) { commit(s, false); }
+void terminate_candidate(RayState& s) { commit(s, true); }
+
+void ignore_candidate(RayState& s) {
+  if (s.candidate_procedural) {
+    s.report_accepted = false;
+    s.status = RayStatus::NeedsIntersection;
+    return;
+  }
+  s.status = RayStatus::Traversing;
+  settle(s);
+}
+
+Report report(RayState& s, float t, uint32_t kind) {
+  s.report_accepted = false;
+  // inclusive at both ends for shaders' own hits (Vulkan: "Ray Intersection Candidate Determination")
+  const bool at_end_of_ray = !s.committed.valid() && t == s.committed.t;
+  if (s.terminated || !(t >= s.ray.t_min) || !(at_end_of_ray || wins(s, t, s.candidate.geometry, s.candidate.primitive)))
+    return Report::Rejected;
+  s.candidate.t = t;
+  s.candidate.kind = kind;
+  if (!s.candidate_opaque) {
+    s.status = RayStatus::NeedsAnyHit;
+    return Report::NeedsAnyHit;
+  }
+  commit(s, false);
+  return Report::Accepted;
+}
+
+void finish_intersection(RayState& s) {
+  if (s.terminated) return finish(s);
+  s.status = RayStatus::Traversing;
+  settle(s);
+}
+
+}  // namespace glint::rt

@@ -1,0 +1,55 @@
+// Ray traversal one node at a time, with Vulkan's rules: the same steps for the functional and the timing machine.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+
+#include "memsys/address_space.h"
+#include "rtunit/ray_state.h"
+#include "rtunit/structure.h"
+
+namespace glint::rt {
+
+// Starts the ray in `state.ray`: resets everything else. A null structure, a not-a-number or infinite ray and an empty
+// interval end at once as a miss (Choice: Vulkan leaves them undefined). False when `ray.structure` is not a
+// top-level structure: the program's fault; the ray is then Done.
+bool begin(RayState& state, const mem::AddressSpace& memory);
+
+// What step() must be given next. Only while Traversing.
+struct Fetch {
+  Address address = 0;  // virtual
+  uint32_t bytes = 0;
+  NodeKind kind = NodeKind::Internal;
+};
+inline Fetch next_fetch(const RayState& state) {
+  const NodeRef ref = state.stack[size_t(state.stack_size) - 1].node;
+  const NodeKind kind = kind_of(ref);
+  return {state.base + Address(block_of(ref)) * kBlockBytes, blocks_of(kind) * kBlockBytes, kind};
+}
+
+// Visits the node of next_fetch(). Afterwards the ray is Traversing, Done or needs a shader.
+using StepFunction = void (*)(RayState& state, const std::byte* bytes);
+StepFunction step_function(FormatId format);
+void step(RayState& state, const std::byte* bytes);
+
+// Ends a ray whose next node lies outside memory: Done, `broken`.
+void break_off(RayState& state);
+
+// Steps until the ray is Done or needs a shader.
+void run(RayState& state, const mem::AddressSpace& memory);
+
+// Answers of shaders. NeedsAnyHit ends with one of the first three; NeedsIntersection with any number of
+// report() (each that answers NeedsAnyHit followed by one of the three), then finish_intersection().
+void accept_candidate(RayState& state);
+void ignore_candidate(RayState& state);
+void terminate_candidate(RayState& state);  // accept, and end the traversal
+
+enum class Report : uint8_t {
+  Rejected,     // outside the interval, or the traversal is over
+  Accepted,     // opaque: committed; attribute_slot has flipped
+  NeedsAnyHit,  // status is NeedsAnyHit until the candidate is decided, then NeedsIntersection again
+};
+// reportIntersectionEXT(t, kind). Sets report_accepted unless the answer is NeedsAnyHit: then the decision does.
+Report report(RayState& state, float t, uint32_t kind);
+void finish_intersection(RayState& state);
+
+}  // namespace glint::rt
