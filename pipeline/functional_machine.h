@@ -1,0 +1,27 @@
+// The functional machine: warps one after the other, every effect at once. A picture and counts, no cycles.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+
+#include "pipeline/render.h"
+
+namespace glint::pipeline {
+
+struct FunctionalCounts {
+  std::array<ClassCounts, size_t(isa::Class::Count)> by_class{};
+  RayCounts rays;
+};
+
+// Error(Exit::Fault) when a warp does something wrong or executes more than `instruction_budget` instructions.
+FunctionalCounts run_functional(const core::World& world, uint64_t instruction_budget,
+                                const std::function<void(uint64_t done, uint64_t total)>& progress);
+
+// Traverses the rays that `warp` waits for and answers them. Adds to `counts` what the traversal did.
+void answer_rays(core::Executor& executor, core::WarpContext& warp, RayCounts& counts);
+
+// The fault of a warp that has run for longer than any real one: where it is now.
+core::Fault no_end_in_sight(const core::World& world, const core::WarpContext& warp, uint64_t instruction_budget);
+
+}  // namespace glint::pipeline

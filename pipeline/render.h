@@ -1,0 +1,78 @@
+// One frame of a scene with one of the built-in workloads: compile, upload, launch, run, read back.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/stats.h"
+#include "core/executor.h"
+#include "frontend/compile.h"
+#include "pipeline/params.h"
+#include "scenes/camera.h"
+#include "scenes/scene.h"
+
+namespace glint::pipeline {
+
+using Workload = scenes::Workload;
+
+struct RenderJob {
+  scenes::Scene scene;
+  Workload workload = Workload::PathTracing;
+  scenes::RenderParams frame;
+  GpuParams gpu;
+  bool timing = true;
+  bool no_skip = false;             // steps every cycle: slow, for checking
+  std::string shader_dir;           // folder with raygen.rgen, miss.rmiss, triangle.rchit and so on
+  frontend::GlslOptions glsl;
+  // Told now and then how many of the launch's warps have ended.
+  std::function<void(uint64_t done, uint64_t total)> progress;
+};
+
+// Counted by either machine.
+struct RayCounts {
+  uint64_t rays = 0, nodes = 0, box_tests = 0, triangle_tests = 0;
+  uint64_t shader_calls[size_t(isa::Stage::Compute) + 1] = {};  // lanes, by stage
+};
+
+// What the acceleration structures came to.
+struct StructureCounts {
+  uint64_t bytes = 0, triangles = 0, procedurals = 0, bottom_levels = 0, instances = 0;
+  uint32_t top_depth = 0, bottom_depth = 0;
+};
+
+struct ClassCounts {
+  uint64_t instructions = 0;  // warp instructions
+  uint64_t lanes = 0;         // lane instructions
+  uint64_t latency = 0;       // issue to completion, cycles, summed; 0 on the functional machine
+};
+
+class RunStats;  // owns the tree of statistics and the machine that counts them
+
+struct RenderResult {
+  RenderResult();
+  ~RenderResult();
+  RenderResult(RenderResult&&) noexcept;
+  RenderResult& operator=(RenderResult&&) noexcept;
+
+  uint32_t width = 0, height = 0;
+  std::vector<float> rgba;          // what the shader stored to binding 2, row 0 first
+  std::vector<float> accumulation;  // binding 1: the sum over samples
+  uint64_t cycles = 0;              // timing machine
+  uint64_t warp_instructions = 0, lane_instructions = 0;
+  ClassCounts by_class[size_t(isa::Class::Count)];
+  RayCounts rays;
+  StructureCounts structures;
+  double wall_seconds = 0;          // of the run alone, without compiling and building
+  std::unique_ptr<RunStats> stats;
+  const stats::Group& statistics() const;  // root of the tree
+};
+
+// UserError, UnsupportedError: before anything runs. Error(Exit::Fault): the shaders did something wrong, with
+// place and launch id. Error(Exit::Stuck): the machine makes no progress.
+RenderResult render(const RenderJob& job);
+
+}  // namespace glint::pipeline

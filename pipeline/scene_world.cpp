@@ -1,0 +1,189 @@
+// Upload of a scene: buffers in the original application's layout, one bottom level and instance a model.
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/scene_world.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+
+#include "base/check.h"
+
+namespace glint::pipeline {
+namespace {
+
+using scenes::Model;
+
+// Bindings of set 0 (shaders/README.md).
+enum Binding : uint32_t { kTopLevel, kAccumulationImage, kPictureImage, kFrame, kVertices, kIndices, kMaterials, kOffsets, kTextures, kSpheres };
+
+constexpr uint32_t kSphereRecord = 1;  // hit record of procedural models; triangles have 0
+constexpr uint32_t kRecordBytes = 32;
+
+rt::Bounds sphere_bounds(const Model& model) {
+  rt::Bounds box;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    box.low[axis] = model.center[axis] - model.radius;
+    box.high[axis] = model.center[axis] + model.radius;
+  }
+  return box;
+}
+
+// Frames of the ray generation shader and of the deepest chain it can call: hit or candidate shader, any-hit
+// below an intersection shader.
+uint32_t stack_bytes(const core::Image& image) {
+  uint32_t largest[size_t(isa::Stage::Compute) + 1] = {};
+  for (const core::Shader& shader : image.shaders) {
+    uint32_t& bytes = largest[size_t(shader.stage)];
+    bytes = std::max(bytes, shader.local_bytes);
+  }
+  auto of = [&](isa::Stage stage) { return largest[size_t(stage)]; };
+  const uint32_t called = std::max({of(isa::Stage::ClosestHit), of(isa::Stage::Miss),
+                                    of(isa::Stage::Intersection) + of(isa::Stage::AnyHit)});
+  return (of(isa::Stage::RayGeneration) + called + 15) / 16 * 16;
+}
+
+}  // namespace
+
+WorkloadShaders compile_workload(const RenderJob& job) {
+  WorkloadShaders out;
+  frontend::GlslOptions glsl = job.glsl;
+  if (job.scene.alpha_test) glsl.defines.emplace_back("GLINT_ALPHA_TEST", "1");
+  const frontend::BackendOptions backend{job.gpu.compiler.max_registers, job.gpu.compiler.schedule};
+  auto compile = [&](const char* file) {
+    out.programs.push_back(frontend::compile_file(job.shader_dir + "/" + file, glsl, backend));
+    return uint32_t(out.programs.size() - 1);
+  };
+  out.raygen = compile("raygen.rgen");
+  out.miss = compile("miss.rmiss");
+  out.triangle.closest_hit = compile("triangle.rchit");
+  if (job.scene.alpha_test) out.triangle.any_hit = compile("alpha.rahit");
+  out.sphere.closest_hit = compile("sphere.rchit");
+  out.sphere.intersection = compile("sphere.rint");
+  return out;
+}
+
+SceneWorld::SceneWorld(const RenderJob& job) {
+  world.memory = &memory_;
+  world.constant_bank.resize(isa::kConstantBankBytes);
+  world.launch_size = {job.frame.width, job.frame.height, 1};
+  link_shaders(job);
+  upload_geometry(job.scene);
+  upload_images(job);
+  const std::vector<std::byte> frame = scenes::uniform_block(job.scene, job.workload, job.frame);
+  bind(kFrame, upload("binding 3 (frame)", frame.data(), frame.size()), frame.size());
+  build_structures(job);
+}
+
+void SceneWorld::link_shaders(const RenderJob& job) {
+  const WorkloadShaders shaders = compile_workload(job);
+  image_ = core::link(shaders.programs);
+  world.image = &image_;
+  world.raygen = shaders.raygen;
+  world.miss = {shaders.miss};
+  world.hit = {shaders.triangle, shaders.sphere};
+  world.local_bytes = stack_bytes(image_);
+  world.binding_table = memory_.allocate("shader binding table", (1 + world.miss.size() + world.hit.size()) * kRecordBytes);
+}
+
+Address SceneWorld::upload(const std::string& name, const void* data, uint64_t bytes) {
+  const Address address = memory_.allocate(name, std::max<uint64_t>(bytes, 4));
+  if (bytes) memory_.write(address, data, bytes);
+  return address;
+}
+
+void SceneWorld::bind(uint32_t binding, uint64_t address_or_handle, uint64_t bytes_or_count) {
+  const uint64_t descriptor[2] = {address_or_handle, bytes_or_count};
+  static_assert(sizeof(descriptor) == isa::kDescriptorBytes);
+  std::memcpy(world.constant_bank.data() + binding * isa::kDescriptorBytes, descriptor, sizeof(descriptor));
+}
+
+void SceneWorld::upload_geometry(const scenes::Scene& scene) {
+  std::vector<scenes::Vertex> vertices;
+  std::vector<uint32_t> indices;
+  std::vector<std::array<uint32_t, 2>> offsets;  // first index, first vertex
+  std::vector<scenes::Vec4> spheres;
+  for (const Model& model : scene.models) {
+    offsets.push_back({uint32_t(indices.size()), uint32_t(vertices.size())});
+    spheres.push_back(model.is_procedural() ? scenes::Vec4{model.center[0], model.center[1], model.center[2], model.radius}
+                                            : scenes::Vec4{});
+    vertices.insert(vertices.end(), model.vertices.begin(), model.vertices.end());
+    indices.insert(indices.end(), model.indices.begin(), model.indices.end());
+  }
+  auto buffer = [&](uint32_t binding, const char* name, const auto& values) {
+    const uint64_t bytes = values.size() * sizeof(values[0]);
+    bind(binding, upload(fmt::format("binding {} ({})", binding, name), values.data(), bytes), bytes);
+  };
+  buffer(kVertices, "vertices", vertices);
+  buffer(kIndices, "indices", indices);
+  buffer(kMaterials, "materials", scene.materials);
+  buffer(kOffsets, "offsets", offsets);
+  buffer(kSpheres, "spheres", spheres);
+}
+
+void SceneWorld::upload_images(const RenderJob& job) {
+  auto add = [&](std::string name, core::ImageView::Format format, uint32_t width, uint32_t height, const void* texels) {
+    const uint64_t bytes = uint64_t(width) * height * (format == core::ImageView::Format::Rgba8Unorm ? 4 : 16);
+    const Address base = memory_.allocate(name, bytes);
+    if (texels) memory_.write(base, texels, bytes);
+    world.images.push_back({format, width, height, base, std::move(name)});
+    return uint64_t(world.images.size() - 1);
+  };
+  using Format = core::ImageView::Format;
+  bind(kAccumulationImage, add("binding 1 (accumulation)", Format::Rgba32Float, job.frame.width, job.frame.height, nullptr), 1);
+  bind(kPictureImage, add("binding 2 (picture)", Format::Rgba32Float, job.frame.width, job.frame.height, nullptr), 1);
+  // A scene without textures binds one white texel, as the original application does.
+  static constexpr uint8_t kWhite[4] = {255, 255, 255, 255};
+  const uint64_t first = world.images.size();
+  for (const scenes::Texture& texture : job.scene.textures)
+    add("texture " + texture.name, Format::Rgba8Unorm, texture.width, texture.height, texture.rgba.data());
+  if (job.scene.textures.empty()) add("texture (white)", Format::Rgba8Unorm, 1, 1, kWhite);
+  bind(kTextures, first, world.images.size() - first);
+}
+
+void SceneWorld::build_structures(const RenderJob& job) {
+  std::vector<rt::StructureInfo> bottoms;
+  std::vector<rt::Instance> instances;
+  for (const Model& model : job.scene.models) {
+    rt::BottomLevel level;
+    rt::Geometry geometry;
+    const rt::Bounds box = sphere_bounds(model);
+    if (model.is_procedural()) {
+      geometry.aabbs = {&box, 1};
+      geometry.opaque = true;
+      ++structures.procedurals;
+    } else {
+      geometry.positions = std::as_bytes(std::span(model.vertices));
+      geometry.stride = sizeof(scenes::Vertex);
+      geometry.indices = model.indices;
+      geometry.opaque = false;  // the original sets NO_DUPLICATE_ANY_HIT and not OPAQUE
+      geometry.no_duplicate_any_hit = true;
+      structures.triangles += model.indices.size() / 3;
+    }
+    level.geometries.push_back(geometry);
+    bottoms.push_back(rt::build_bottom(memory_, "bottom level " + model.name, level));
+    rt::Instance instance;
+    instance.bottom = instance.custom_index = uint32_t(bottoms.size() - 1);
+    instance.sbt_offset = model.is_procedural() ? kSphereRecord : 0;
+    instance.flags = rt::instance_flag::kFacingCullDisable;
+    instances.push_back(instance);
+    structures.bytes += bottoms.back().bytes;
+    structures.bottom_depth = std::max(structures.bottom_depth, bottoms.back().depth);
+  }
+  const rt::StructureInfo top = rt::build_top(memory_, "top level", instances, bottoms);
+  structures.bytes += top.bytes;
+  structures.top_depth = top.depth;
+  structures.bottom_levels = bottoms.size();
+  structures.instances = instances.size();
+  bind(kTopLevel, top.address, top.bytes);
+}
+
+std::vector<float> SceneWorld::read_image(uint32_t handle) const {
+  const core::ImageView& image = world.images[handle];
+  GLINT_CHECK(image.format == core::ImageView::Format::Rgba32Float, "image {} is not float", image.name);
+  const auto texels = memory_.view<float>(image.base, uint64_t(image.width) * image.height * 4);
+  return {texels.begin(), texels.end()};
+}
+
+}  // namespace glint::pipeline

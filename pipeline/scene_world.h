@@ -1,0 +1,42 @@
+// A scene in simulated memory, as the shaders' descriptor set 0 wants it, with its pipeline and binding table.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "pipeline/render.h"
+#include "rtunit/build.h"
+
+namespace glint::pipeline {
+
+// The built-in workloads' shaders, compiled: the files of job.shader_dir by their fixed names.
+struct WorkloadShaders {
+  std::vector<isa::Program> programs;
+  uint32_t raygen = 0, miss = 0;
+  core::HitGroup triangle, sphere;
+};
+WorkloadShaders compile_workload(const RenderJob& job);
+
+// Memory, images and records of one launch. Not movable: `world` points into it.
+class SceneWorld {
+ public:
+  explicit SceneWorld(const RenderJob& job);
+  SceneWorld(const SceneWorld&) = delete;
+  SceneWorld& operator=(const SceneWorld&) = delete;
+
+  core::World world;
+  StructureCounts structures;
+  mem::AddressSpace& memory() { return memory_; }
+  std::vector<float> read_image(uint32_t handle) const;  // 4 floats a texel
+  static constexpr uint32_t kAccumulation = 0, kPicture = 1;  // image handles
+
+ private:
+  void upload_geometry(const scenes::Scene& scene);
+  void upload_images(const RenderJob& job);
+  void build_structures(const RenderJob& job);
+  void link_shaders(const RenderJob& job);
+  void bind(uint32_t binding, uint64_t address_or_handle, uint64_t bytes_or_count);
+  Address upload(const std::string& name, const void* data, uint64_t bytes);
+
+  mem::AddressSpace memory_;
+  core::Image image_;
+};
+
+}  // namespace glint::pipeline
