@@ -25,8 +25,9 @@ struct Config::Layers {
 
 namespace {
 
-SourceLocation location(const toml::node& node) {
-  const toml::source_region& region = node.source();
+// The key's place, not the value's: copying a value forgets where it stood.
+SourceLocation location(const toml::key& key) {
+  const toml::source_region& region = key.source();
   return {region.path ? *region.path : std::string(), int(region.begin.line), int(region.begin.column)};
 }
 
@@ -44,14 +45,22 @@ const char* type_name(const toml::node& node) {
   return "a date";
 }
 
-// Copies node by node so that each keeps the file and line it came from.
+SourceLocation location(const toml::table& table, std::string_view key) {
+  const auto it = table.find(key);
+  return it == table.end() ? SourceLocation{} : location(it->first);
+}
+
+// Copies node by node so that each key keeps the file and line it came from.
 void merge(toml::table& into, const toml::table& from) {
   for (const auto& [key, node] : from) {
     toml::table* old = into.contains(key) ? into[key].as_table() : nullptr;
     if (old && node.is_table())
       merge(*old, *node.as_table());
     else
-      node.visit([&](const auto& value) { into.insert_or_assign(key, value); });
+      node.visit([&](const auto& value) {
+        into.erase(key);  // assigning would keep the old key, and with it the old place
+        into.insert(key, value);
+      });
   }
 }
 
@@ -108,8 +117,7 @@ ConfigTable Config::root(Diagnostics& diagnostics) const {
 bool ConfigTable::has(std::string_view key) const { return state_->table.contains(key); }
 
 SourceLocation ConfigTable::where(std::string_view key) const {
-  const toml::node* node = state_->table.get(key);
-  return node ? location(*node) : state_->place;
+  return has(key) ? location(state_->table, key) : state_->place;
 }
 
 bool ConfigTable::take_bool(std::string_view key, bool fallback) {
@@ -117,7 +125,7 @@ bool ConfigTable::take_bool(std::string_view key, bool fallback) {
   const toml::node* node = state_->table.get(key);
   if (!node) return fallback;
   if (const auto value = node->value_exact<bool>()) return *value;
-  state_->diagnostics->error(location(*node), fmt::format("'{}' is {}, expected true or false",
+  state_->diagnostics->error(location(state_->table, key), fmt::format("'{}' is {}, expected true or false",
                                                           dotted(state_->path, key), type_name(*node)));
   return fallback;
 }
@@ -130,12 +138,12 @@ int64_t ConfigTable::take_integer(std::string_view key, int64_t fallback, int64_
   const std::string name = dotted(state_->path, key);
   const auto value = node->value_exact<int64_t>();
   if (!value) {
-    state_->diagnostics->error(location(*node), fmt::format("'{}' is {}, expected an integer{}{}", name,
+    state_->diagnostics->error(location(state_->table, key), fmt::format("'{}' is {}, expected an integer{}{}", name,
                                                             type_name(*node), unit.empty() ? "" : " in ", unit));
     return fallback;
   }
   if (*value < min || *value > max) {
-    state_->diagnostics->error(location(*node), fmt::format("'{}' is {}, expected {} to {} {}", name, *value, min, max, unit));
+    state_->diagnostics->error(location(state_->table, key), fmt::format("'{}' is {}, expected {} to {} {}", name, *value, min, max, unit));
     return fallback;
   }
   return *value;
@@ -149,12 +157,12 @@ double ConfigTable::take_number(std::string_view key, double fallback, double mi
   const auto value = node->is_integer() ? std::optional<double>(double(*node->value_exact<int64_t>()))
                                         : node->value_exact<double>();
   if (!value) {
-    state_->diagnostics->error(location(*node), fmt::format("'{}' is {}, expected a number{}{}", name, type_name(*node),
+    state_->diagnostics->error(location(state_->table, key), fmt::format("'{}' is {}, expected a number{}{}", name, type_name(*node),
                                                             unit.empty() ? "" : " in ", unit));
     return fallback;
   }
   if (!(*value >= min && *value <= max)) {
-    state_->diagnostics->error(location(*node), fmt::format("'{}' is {}, expected {} to {} {}", name, *value, min, max, unit));
+    state_->diagnostics->error(location(state_->table, key), fmt::format("'{}' is {}, expected {} to {} {}", name, *value, min, max, unit));
     return fallback;
   }
   return *value;
@@ -165,7 +173,7 @@ std::string ConfigTable::take_string(std::string_view key, const std::string& fa
   const toml::node* node = state_->table.get(key);
   if (!node) return fallback;
   if (const auto value = node->value_exact<std::string>()) return *value;
-  state_->diagnostics->error(location(*node),
+  state_->diagnostics->error(location(state_->table, key),
                              fmt::format("'{}' is {}, expected a string", dotted(state_->path, key), type_name(*node)));
   return fallback;
 }
@@ -190,7 +198,7 @@ ConfigTable ConfigTable::take_table(std::string_view key) {
   sub->diagnostics = state_->diagnostics;
   sub->place = state_->place;
   if (const toml::node* node = state_->table.get(key)) {
-    sub->place = location(*node);
+    sub->place = location(state_->table, key);
     if (const toml::table* table = node->as_table())
       sub->table = *table;
     else
@@ -206,9 +214,7 @@ void ConfigTable::reject_the_rest() {
     const std::string name(key.str());
     if (state_->known.contains(name)) continue;
     const std::string guess = nearest(name, known);
-    const toml::source_region& region = key.source();
-    const SourceLocation place{region.path ? *region.path : std::string(), int(region.begin.line), int(region.begin.column)};
-    state_->diagnostics->error(place, fmt::format("unknown key '{}'", dotted(state_->path, name)),
+    state_->diagnostics->error(location(key), fmt::format("unknown key '{}'", dotted(state_->path, name)),
                                guess.empty() ? fmt::format("known here: {}", fmt::join(known, ", "))
                                              : fmt::format("did you mean '{}'?", guess));
   }

@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <functional>
-
 namespace glint::report {
 namespace {
 
@@ -67,11 +65,13 @@ class FindVisitor final : public PathVisitor {
   void visit(const stats::Ratio& stat) override { look(stat, stat.value()); }
   void visit(const stats::Value& stat) override { look(stat, stat.value()); }
   void visit(const stats::Histogram&) override {}
-  void visit(const stats::BreakdownBase&) override {}
+  void visit(const stats::BreakdownBase& stat) override {
+    for (const auto& [name, count] : stat.parts()) look(stat, double(count), "::" + std::string(name));
+  }
 
  private:
-  void look(const stats::Stat& stat, double found) {
-    if (path_of(stat) == wanted_) value = found;
+  void look(const stats::Stat& stat, double found, const std::string& part = {}) {
+    if (path_of(stat) + part == wanted_) value = found;
   }
   const std::string& wanted_;
 };

@@ -18,7 +18,7 @@ struct StatRow {
 // Depth first, in order of declaration. The root's own name is the first part of every path.
 std::vector<StatRow> stat_rows(const stats::Group& root);
 
-// The value of the counter, ratio or value at `path` (with the root's name), or `fallback` when there is none.
+// The value at `path` (as in StatRow, bins of histograms apart), or `fallback` when there is none.
 double stat_value(const stats::Group& root, const std::string& path, double fallback);
 
 }  // namespace glint::report

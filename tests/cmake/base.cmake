@@ -1,0 +1,1 @@
+glint_test(unit_base FOLDER unit/base LINKS glint::base)

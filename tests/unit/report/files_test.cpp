@@ -1,0 +1,134 @@
+// Images, resolved configurations and run directories as files.
+// SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "base/config.h"
+#include "report/config_file.h"
+#include "report/image_files.h"
+#include "report/run_directory.h"
+#include "tests/support/catch.h"
+
+namespace glint::report {
+namespace {
+namespace fs = std::filesystem;
+
+// A folder that goes when the test ends.
+struct TemporaryFolder {
+  fs::path path = fs::temp_directory_path() / ("glint-test-" + std::to_string(::getpid()));
+  ~TemporaryFolder() { fs::remove_all(path); }
+  std::string read(const std::string& name) const {
+    std::ifstream in(path / name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+};
+
+float float_at(const std::string& bytes, size_t at) {
+  float value;
+  std::memcpy(&value, bytes.data() + at, 4);
+  return value;
+}
+
+const std::vector<float> kTwoRows{0.25f, 0.5f, 1.0f, 1.0f, 2.0f, -1.0f, std::numeric_limits<float>::quiet_NaN(), 0.0f};
+
+TEST_CASE("a PFM holds the bottom row first, three little-endian floats a pixel, unclamped") {
+  const std::string bytes = pfm_bytes({1, 2, kTwoRows});
+
+  const std::string header = "PF\n1 2\n-1.0\n";
+  REQUIRE(bytes.size() == header.size() + 24);
+  CHECK(bytes.substr(0, header.size()) == header);
+  CHECK(float_at(bytes, header.size()) == 2.0f);
+  CHECK(float_at(bytes, header.size() + 4) == -1.0f);
+  CHECK(std::isnan(float_at(bytes, header.size() + 8)));
+  CHECK(float_at(bytes, header.size() + 12) == 0.25f);
+}
+
+TEST_CASE("a PNG states its size, 8 bits and three channels in its header") {
+  const std::string bytes = png_bytes({1, 2, kTwoRows});
+
+  REQUIRE(bytes.size() > 33);
+  CHECK(bytes.substr(0, 8) == "\x89PNG\r\n\x1a\n");
+  CHECK(bytes.substr(16, 10) == std::string("\0\0\0\x01\0\0\0\x02\x08\x02", 10));
+}
+
+const std::vector<ParamInfo> kParams{{"core.warps", "warp", "Warps.", "32", "1 to 64"},
+                                     {"core.units.fp32.latency", "cycle", "Latency.", "4", "1 to 1000"},
+                                     {"core.issue", "", "Policy.", "\"gto\"", "gto, lrr"},
+                                     {"clock", "MHz", "Clock.", "1365.0", ""}};
+
+TEST_CASE("a resolved configuration loads back to the same values") {
+  const std::string text = config_file(kParams, "title");
+  Config config;
+  config.add_text("config.toml", text);
+  Diagnostics diagnostics;
+  ConfigTable root = config.root(diagnostics);
+  ConfigTable core = root.take_table("core");
+
+  CHECK(root.take_number("clock", 0, 0, 1e9, "") == 1365.0);
+  CHECK(core.take_integer("warps", 0, 0, 100, "") == 32);
+  CHECK(core.take_name("issue", "", {"gto"}) == "gto");
+  CHECK(core.take_table("units").take_table("fp32").take_integer("latency", 0, 0, 100, "") == 4);
+  CHECK_FALSE(diagnostics.has_errors());
+}
+
+TEST_CASE("a resolved configuration says unit, meaning and range beside each key, tables once") {
+  CHECK(config_file(kParams, "title") ==
+        "# title\n"
+        "clock = 1365.0  # [MHz] Clock.\n"
+        "\n[core]\n"
+        "warps = 32     # [warp] Warps. (1 to 64)\n"
+        "issue = \"gto\"  # Policy. (gto, lrr)\n"
+        "\n[core.units.fp32]\n"
+        "latency = 4  # [cycle] Latency. (1 to 1000)\n");
+}
+
+TEST_CASE("a configuration's hash is FNV-1a of its keys and values and ignores the docs") {
+  CHECK(fnv1a("") == 0xcbf29ce484222325);
+  CHECK(fnv1a("a") == 0xaf63dc4c8601ec8c);  // published test vector
+  auto other = kParams;
+  other[0].doc = "other";
+  CHECK(config_key_values(other) == config_key_values(kParams));
+  other[0].value = "31";
+  CHECK(config_key_values(other) != config_key_values(kParams));
+}
+
+TEST_CASE("a run directory is complete and leaves no temporary file") {
+  const TemporaryFolder folder;
+  const RunDirectory directory((folder.path / "a/b").string());
+  stats::Group root(nullptr, "gpu");
+  stats::Counter counter(&root, "cycles", "cycle", "Cycles.");
+  directory.write_image({1, 2, kTwoRows});
+  directory.write_stats(root);
+  directory.write_config(kParams, "t");
+  RunInfo info;
+  info.command = {"glint", "run", "bad \xff byte"};
+  info.scene_hash = 0xab;
+  directory.write_run(info);
+
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(directory.path())) names.push_back(entry.path().filename());
+  std::sort(names.begin(), names.end());
+  CHECK(names == std::vector<std::string>{"config.toml", "image.pfm", "image.png", "run.json", "stats.csv", "stats.json", "stats.txt"});
+  const auto json = nlohmann::json::parse(folder.read("a/b/run.json"));
+  CHECK(json.at("scene").at("hash") == "00000000000000ab");
+  CHECK(json.at("exit") == 0);
+}
+
+TEST_CASE("an output folder that is a file is a user error") {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path);
+  std::ofstream(folder.path / "file") << "x";
+
+  CHECK_THROWS_AS(RunDirectory((folder.path / "file").string()), UserError);
+}
+
+}  // namespace
+}  // namespace glint::report
