@@ -1,0 +1,62 @@
+// Merges the addresses of a warp's lanes into sectors of cache lines.
+// SPDX-License-Identifier: Apache-2.0
+#include "core/coalesce.h"
+
+#include <bit>
+
+#include "base/check.h"
+#include "memsys/request.h"
+
+namespace glint::core {
+
+void LineList::add(Address physical, uint32_t bytes) {
+  const Address first = physical / mem::kSectorBytes;
+  const Address last = (physical + bytes - 1) / mem::kSectorBytes;
+  for (Address sector = first; sector <= last; ++sector) {
+    const Address address = sector * mem::kSectorBytes;
+    add_sector(address & ~mask_, uint32_t((address & mask_) / mem::kSectorBytes));
+  }
+}
+
+void LineList::add_sector(Address line, uint32_t sector) {
+  const auto bit = uint8_t(1u << sector);
+  // Neighbouring lanes mostly share a line, so the line hit last is tried first.
+  if (count_ > 0 && lines_[last_].line == line) {
+    lines_[last_].sectors |= bit;
+    return;
+  }
+  for (uint32_t i = count_; i-- > 0;) {
+    if (lines_[i].line == line) {
+      lines_[i].sectors |= bit;
+      last_ = i;
+      return;
+    }
+  }
+  GLINT_CHECK(count_ < kMaxLines, "an access of more than {} lines", kMaxLines);
+  last_ = count_;
+  lines_[count_++] = {line, bit};
+}
+
+uint32_t LineList::num_sectors() const {
+  uint32_t sum = 0;
+  for (const LineSectors& line : lines()) sum += uint32_t(std::popcount(line.sectors));
+  return sum;
+}
+
+void coalesce_global(LineList& out, const mem::AddressSpace& memory, const isa::Access& access, LaneMask lanes,
+                     uint32_t bytes) {
+  for_each_lane(lanes, [&](int lane) { out.add(memory.physical(access.address[size_t(lane)]), bytes); });
+}
+
+void coalesce_local(LineList& out, const LocalLayout& layout, uint32_t warp_slot, const isa::Access& access,
+                    LaneMask lanes, uint32_t bytes) {
+  // Part by part, as the hardware moves one word of every lane at a time.
+  for (uint32_t byte = 0; byte < bytes; byte += 4) {
+    for_each_lane(lanes, [&](int lane) {
+      const uint64_t word = (access.address[size_t(lane)] + byte) / 4;
+      out.add(layout.base + ((uint64_t{warp_slot} * layout.words + word) * kLanes + uint64_t(lane)) * 4, 4);
+    });
+  }
+}
+
+}  // namespace glint::core

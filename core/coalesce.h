@@ -1,0 +1,55 @@
+// Merges the addresses of a warp's lanes into sectors of cache lines.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "base/types.h"
+#include "core/image.h"
+#include "core/warp_context.h"
+#include "isa/op_row.h"
+
+namespace glint::core {
+
+// The widest access: four texels, or four words of local memory, of 32 lanes, each in a line of its own.
+inline constexpr uint32_t kMaxLines = 4 * kLanes;
+
+struct LineSectors {
+  Address line = 0;      // physical
+  uint8_t sectors = 0;   // bit i: sector i
+};
+
+// The lines that one warp instruction touches, in the order of their first lane.
+class LineList {
+ public:
+  explicit LineList(uint32_t line_bytes) : mask_(line_bytes - 1) {}
+  void clear() { count_ = last_ = 0; }
+  // Adds [physical, physical + bytes).
+  void add(Address physical, uint32_t bytes);
+  std::span<const LineSectors> lines() const { return {lines_.data(), count_}; }
+  uint32_t num_sectors() const;
+
+ private:
+  void add_sector(Address line, uint32_t sector);
+
+  Address mask_;         // line size - 1
+  uint32_t count_ = 0, last_ = 0;
+  std::array<LineSectors, kMaxLines> lines_;
+};
+
+// Where the lanes' stacks lie in physical memory: word w of lane l of warp slot s at
+// base + ((s * words + w) * 32 + l) * 4, so that lanes at the same offset share lines.
+struct LocalLayout {
+  Address base = 0;      // physical, of this core
+  uint32_t words = 0;    // a lane
+  uint64_t bytes_per_warp() const { return uint64_t{words} * kLanes * 4; }
+};
+
+// Loads and stores: `access.address` of `lanes`. Virtual addresses must be valid (the executor has checked them).
+void coalesce_global(LineList& out, const mem::AddressSpace& memory, const isa::Access& access, LaneMask lanes,
+                     uint32_t bytes);
+void coalesce_local(LineList& out, const LocalLayout& layout, uint32_t warp_slot, const isa::Access& access,
+                    LaneMask lanes, uint32_t bytes);
+
+}  // namespace glint::core

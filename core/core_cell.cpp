@@ -1,0 +1,141 @@
+// A core from outside: construction, launching warps, going through time and accounting for it.
+// SPDX-License-Identifier: Apache-2.0
+#include "core/core_cell.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/check.h"
+
+namespace glint::core {
+
+CoreCell::CoreCell(const Params& params, const Context& context)
+    : params_(params),
+      world_(context.world),
+      l1_(context.l1),
+      rt_(context.rt),
+      no_skip_(context.no_skip),
+      num_slots_(occupancy(params, context.world.image->num_registers)),
+      local_{context.local_physical, context.world.local_bytes / 4},
+      table_(*context.world.image, params),
+      executor_(context.world),
+      lsu_(params, context.l1),
+      schedulers_(params.schedulers),
+      warps_(num_slots_),
+      scoreboards_(num_slots_),
+      front_(num_slots_),
+      outstanding_(num_slots_),
+      rays_issued_(num_slots_),
+      rays_pc_(num_slots_),
+      stats_(context.parent, context.name),
+      op_counts_(isa::op_table().size()),
+      op_lanes_(isa::op_table().size()) {
+  GLINT_CHECK(num_slots_ > 0, "no warp fits: check() reports this");
+  const uint32_t warps_each = (num_slots_ + params.schedulers - 1) / params.schedulers;
+  for (uint32_t s = 0; s < params.schedulers; ++s) {
+    schedulers_[s].index = s;
+    schedulers_[s].policy = params.issue.make({warps_each});
+  }
+}
+
+CoreCell::~CoreCell() = default;
+
+uint64_t CoreCell::local_bytes(const Params& params, const World& world) {
+  const LocalLayout layout{0, world.local_bytes / 4};
+  return layout.bytes_per_warp() * occupancy(params, world.image->num_registers);
+}
+
+void CoreCell::launch(Cycle now, uint32_t warp_index, Cycle ready) {
+  GLINT_CHECK(has_free_slot(), "no free warp slot");
+  if (num_resident_ == 0)
+    for (SchedulerState& scheduler : schedulers_) scheduler.reason = Stall::NoWarp;
+  account_until(now);
+  uint32_t slot = 0;
+  while (scheduler_of(slot).resident >> (slot / params_.schedulers) & 1) ++slot;
+  SchedulerState& scheduler = scheduler_of(slot);
+  const uint32_t local = slot / params_.schedulers;
+  executor_.start(warps_[slot], warp_index);
+  scoreboards_[slot].reset();
+  front_[slot] = {ready, Stall::Dispatch};
+  scheduler.resident |= uint64_t{1} << local;
+  scheduler.age[local] = num_launched_++;
+  ++num_resident_;
+  ++stats_.warps;
+  ++progress_;
+  refresh(slot);
+}
+
+void CoreCell::advance(Cycle from, Cycle until) {
+  Cycle now = no_skip_ ? from : next_event(from);
+  while (now < until && !fault_) {
+    step(now);
+    now = no_skip_ ? now + 1 : next_event(now + 1);
+  }
+}
+
+Cycle CoreCell::next_event(Cycle from) const {
+  if (fault_) return kNever;
+  Cycle next = kNever;
+  for (const SchedulerState& scheduler : schedulers_) next = std::min(next, scheduler.sleep_until);
+  if (next <= from) return from;
+  if (from == 0) return finished() ? next : from;
+  next = std::min({next, lsu_.next_event(from - 1), l1_.next_event(from - 1), rt_.next_event(from - 1)});
+  return std::max(next, from);
+}
+
+void CoreCell::step(Cycle now) {
+  const bool had_warps = num_resident_ > 0;
+  if (had_warps) account_until(now);
+  l1_.tick(now);
+  // Choice: who comes to the L1 first alternates, so that neither starves the other.
+  if (now & 1) rt_.tick(now);
+  lsu_.tick(now);
+  if (!(now & 1)) rt_.tick(now);
+  for (uint32_t id : lsu_.completed()) complete(id, now);
+  while (const auto slot = rt_.pop_completion(now)) complete_rays(*slot, now);
+  for (SchedulerState& scheduler : schedulers_) {
+    if (now < scheduler.sleep_until && !scheduler.watches_doors && !no_skip_) continue;
+    run_scheduler(scheduler, now);
+    if (fault_) break;
+  }
+  // An empty core's time is accounted for when a warp comes or the run ends.
+  if (had_warps) account_until(now + 1);
+}
+
+// Gives the cycles since the last call to the schedulers' reasons.
+void CoreCell::account_until(Cycle now) {
+  if (now <= accounted_) return;
+  const uint64_t cycles = now - accounted_;
+  for (SchedulerState& scheduler : schedulers_) stats_.stalls.add(scheduler.reason, cycles);
+  stats_.cycles += cycles;
+  stats_.resident_cycles += cycles * num_resident_;
+  stats_.slot_cycles += cycles * params_.warps;
+  accounted_ = now;
+}
+
+void CoreCell::finish(Cycle end) {
+  GLINT_CHECK_LE(accounted_, end);
+  if (num_resident_ == 0)
+    for (SchedulerState& scheduler : schedulers_) scheduler.reason = Stall::NoWarp;
+  account_until(end);
+}
+
+std::string CoreCell::describe_stall() const {
+  std::string out = fmt::format("{}: {} of {} warp slots in use\n", stats_.name(), num_resident_, num_slots_);
+  for (uint32_t slot = 0; slot < num_slots_; ++slot) {
+    const SchedulerState& scheduler = schedulers_[slot % params_.schedulers];
+    const uint32_t local = slot / params_.schedulers;
+    if (!(scheduler.resident >> local & 1)) continue;
+    const WarpContext& warp = warps_[slot];
+    const Cycle ready = scheduler.ready_at[local];
+    out += fmt::format("  slot {}, warp {}: at {}, waits for {} {}, {} accesses in flight\n", slot, warp.warp_index,
+                       warp.simt.finished() ? "its end" : world_.image->place_of(warp.simt.pc),
+                       name_of(scheduler.wait[local]),
+                       ready == kNever ? std::string("without a known end") : fmt::format("until cycle {}", ready),
+                       outstanding_[slot]);
+  }
+  return out;
+}
+
+}  // namespace glint::core

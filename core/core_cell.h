@@ -1,0 +1,115 @@
+// One core: resident warps, their schedulers and execution units, and the doors to its L1 and RT unit.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/engine.h"
+#include "core/executor.h"
+#include "core/issue_scheduler.h"
+#include "core/lsu.h"
+#include "core/params.h"
+#include "core/scoreboard.h"
+#include "core/sm_scheduler.h"
+#include "core/sm_stats.h"
+#include "core/units.h"
+#include "memsys/l1_port.h"
+#include "rtunit/rt_port.h"
+
+namespace glint::core {
+
+// A cycle, in order: L1, RT unit and load-store unit; their answers wake warps; each scheduler issues one
+// instruction, which is executed at once and charged for afterwards. Cycles in which nothing can happen are
+// skipped, and give the same result as stepping through them.
+// Model: no instruction cache (every fetch hits) and no register-file banks (operands never conflict).
+class CoreCell final : public Cell {
+ public:
+  struct Context {
+    const World& world;
+    mem::L1Port& l1;               // ticked here; its next_event covers what it waits for
+    rt::RtPort& rt;                // ticked here
+    Address local_physical = 0;    // of local_bytes() bytes: the stacks of this core's lanes
+    stats::Group* parent = nullptr;
+    std::string name = "core";     // of its statistics: "core[3]"
+    bool no_skip = false;          // steps every cycle: slow, for checking
+  };
+  // Program and parameters must have passed check().
+  CoreCell(const Params& params, const Context& context);
+  ~CoreCell() override;
+
+  // Simulated memory that a core's lanes need for their stacks, in bytes.
+  static uint64_t local_bytes(const Params& params, const World& world);
+
+  // Launching, between windows only.
+  uint32_t num_slots() const { return num_slots_; }
+  bool has_free_slot() const { return num_resident_ < num_slots_; }
+  // Puts warp `warp_index` of the launch into the lowest free slot; its first instruction can issue at `ready`.
+  void launch(Cycle now, uint32_t warp_index, Cycle ready);
+
+  // Cell.
+  void advance(Cycle from, Cycle until) override;
+  Cycle next_event(Cycle from) const override;
+  bool finished() const override { return num_resident_ == 0 && lsu_.idle(); }
+  uint64_t progress() const override { return progress_; }
+  std::string describe_stall() const override;
+
+  // The first fault of a warp here; the cell does nothing from then on.
+  const std::optional<Fault>& fault() const { return fault_; }
+  // Cycle after the last one in which anything happened here.
+  Cycle active_until() const { return accounted_; }
+  // Gives the cycles up to `end` to their reasons: once, at the end of the run. `end` >= active_until().
+  void finish(Cycle end);
+
+  const CoreStats& stats() const { return stats_; }
+  // Warp instructions and lanes by op, indexed as isa::op_table().
+  const std::vector<uint64_t>& op_counts() const { return op_counts_; }
+  const std::vector<uint64_t>& op_lanes() const { return op_lanes_; }
+
+ private:
+  void step(Cycle now);
+  void account_until(Cycle now);
+  SchedulerState& scheduler_of(uint32_t slot) { return schedulers_[slot % params_.schedulers]; }
+  void run_scheduler(SchedulerState& scheduler, Cycle now);
+  uint64_t find_ready(SchedulerState& scheduler, Cycle now);
+  void issue(SchedulerState& scheduler, uint32_t local, Cycle now);
+  void count(const IssueRow& row, const Issued& issued);
+  void count_access(const isa::OpRow& op);
+  bool start_access(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now);
+  void collect_lines(MemoryAccess& access, const Issued& issued);
+  void start_rays(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now);
+  void complete(uint32_t access_id, Cycle now);
+  void complete_rays(uint32_t slot, Cycle now);
+  void retire(uint32_t slot);
+  void free_slot(uint32_t slot);
+  void refresh(uint32_t slot);
+  void fail_without_end(uint32_t slot, uint32_t pc);
+
+  const Params params_;
+  const World& world_;
+  mem::L1Port& l1_;
+  rt::RtPort& rt_;
+  const bool no_skip_;
+  const uint32_t num_slots_;
+  const LocalLayout local_;
+  IssueTable table_;
+  Executor executor_;
+  Lsu lsu_;
+  std::vector<SchedulerState> schedulers_;
+  std::vector<WarpContext> warps_;
+  std::vector<Scoreboard> scoreboards_;
+  std::vector<Scoreboard::Ready> front_;   // a slot: before this the warp issues nothing, whatever the registers
+  std::vector<uint32_t> outstanding_;      // a slot: accesses in flight
+  std::vector<Cycle> rays_issued_;         // a slot: when its rays were handed over
+  std::vector<uint32_t> rays_pc_;
+  uint32_t num_resident_ = 0;
+  uint64_t num_launched_ = 0, progress_ = 0;
+  Cycle accounted_ = 0;                    // every cycle before has been given to a reason
+  std::optional<Fault> fault_;
+  CoreStats stats_;
+  std::vector<uint64_t> op_counts_, op_lanes_;
+};
+
+}  // namespace glint::core

@@ -1,0 +1,114 @@
+// The load-store unit of a core.
+// SPDX-License-Identifier: Apache-2.0
+#include "core/lsu.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "base/check.h"
+
+namespace glint::core {
+
+Lsu::Lsu(const Params& params, mem::L1Port& l1)
+    : l1_(l1), params_(params.lsu), lsu_unit_(params.units.lsu), tex_unit_(params.units.tex),
+      num_queues_(params.schedulers), queue_capacity_(params.lsu.queue),
+      accesses_(params.lsu.accesses, MemoryAccess(l1.line_bytes())) {
+  for (Pipe& pipe : pipes_) pipe.id.resize(accesses_.size());
+  for (uint32_t id = uint32_t(accesses_.size()); id-- > 0;) free_.push_back(id);
+  completed_.reserve(accesses_.size());
+}
+
+MemoryAccess& Lsu::take(uint32_t scheduler, Cycle now) {
+  GLINT_DCHECK(can_take(scheduler), "scheduler {} has no room for an access", scheduler);
+  Queue& queue = queues_[scheduler];
+  const uint32_t id = free_.back();
+  free_.pop_back();
+  queue.id[(queue.head + queue.count++) % kMaxQueue] = id;
+  MemoryAccess& access = accesses_[id];
+  access.lines.clear();
+  access.num_sent = access.num_answers = 0;
+  access.issued = now;
+  return access;
+}
+
+void Lsu::tick(Cycle now) {
+  completed_.clear();
+  take_answers(now);
+  accept(now);
+  send(now);
+}
+
+void Lsu::take_answers(Cycle now) {
+  while (const auto token = l1_.pop(now, mem::Client::Lsu)) {
+    MemoryAccess& access = accesses_[*token];
+    ++access.num_answers;
+    if (access.num_answers == access.lines.lines().size()) completed_.push_back(*token);
+  }
+}
+
+// Round robin over the schedulers' queues, one access in accept_interval cycles.
+void Lsu::accept(Cycle now) {
+  if (now < accept_at_) return;
+  for (uint32_t i = 0; i < num_queues_; ++i) {
+    const uint32_t q = (next_queue_ + i) % num_queues_;
+    Queue& queue = queues_[q];
+    if (queue.count == 0 || now < queue.free_at) continue;
+    const uint32_t id = queue.id[queue.head];
+    MemoryAccess& access = accesses_[id];
+    Pipe& pipe = pipes_[access.texture];
+    if (access.issued >= now || now < pipe.free_at) continue;
+    queue.head = (queue.head + 1) % kMaxQueue;
+    --queue.count;
+    queue.free_at = now + lsu_unit_.interval;
+    // The cycle between issue and here is the first of the latency, so that an unloaded unit adds just that.
+    access.ready = now - 1 + (access.texture ? tex_unit_ : lsu_unit_).latency;
+    if (access.texture) pipe.free_at = now + tex_unit_.interval;
+    pipe.id[(pipe.head + pipe.count++) % pipe.id.size()] = id;
+    accept_at_ = now + params_.accept_interval;
+    next_queue_ = (q + 1) % num_queues_;
+    return;
+  }
+}
+
+// One line a cycle; the pipe not served last goes first.
+void Lsu::send(Cycle now) {
+  if (now < port_free_) return;
+  for (uint32_t i = 0; i < 2; ++i) {
+    const uint32_t p = (next_pipe_ + i) % 2;
+    if (pipes_[p].count > 0 && accesses_[pipes_[p].front()].ready <= now && send_line(now, pipes_[p])) {
+      next_pipe_ = 1 - p;
+      return;
+    }
+  }
+}
+
+bool Lsu::send_line(Cycle now, Pipe& pipe) {
+  const uint32_t id = pipe.front();
+  MemoryAccess& access = accesses_[id];
+  const auto lines = access.lines.lines();
+  const LineSectors& line = lines[access.num_sent];
+  if (!l1_.access(now, mem::Client::Lsu, {line.line, line.sectors, access.write, access.traffic, id})) return false;
+  const auto sectors = uint32_t(std::popcount(line.sectors));
+  port_free_ = now + (sectors + params_.sectors_per_cycle - 1) / params_.sectors_per_cycle;
+  if (++access.num_sent == lines.size()) {
+    pipe.head = uint32_t((pipe.head + 1) % pipe.id.size());
+    --pipe.count;
+    if (access.write) completed_.push_back(id);
+  }
+  return true;
+}
+
+Cycle Lsu::next_event(Cycle now) const {
+  Cycle next = kNever;
+  for (const Pipe& pipe : pipes_)
+    if (pipe.count > 0) next = std::min(next, std::max(accesses_[pipe.front()].ready, port_free_));
+  for (uint32_t q = 0; q < num_queues_; ++q) {
+    const Queue& queue = queues_[q];
+    if (queue.count == 0) continue;
+    const MemoryAccess& access = accesses_[queue.id[queue.head]];
+    next = std::min(next, std::max({queue.free_at, access.issued + 1, accept_at_, pipes_[access.texture].free_at}));
+  }
+  return next == kNever ? kNever : std::max(next, now + 1);
+}
+
+}  // namespace glint::core

@@ -1,0 +1,84 @@
+// The load-store unit of a core: takes warp accesses from the schedulers' queues, sends their lines to the L1.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/types.h"
+#include "core/coalesce.h"
+#include "core/params.h"
+#include "memsys/l1_port.h"
+
+namespace glint::core {
+
+// A warp's access between issue and completion.
+struct MemoryAccess {
+  explicit MemoryAccess(uint32_t line_bytes) : lines(line_bytes) {}
+  uint32_t slot = 0;          // warp slot
+  uint32_t pc = 0;
+  Cycle issued = 0;
+  mem::Traffic traffic = mem::Traffic::ShaderGlobal;
+  bool write = false;
+  bool texture = false;       // through the texture unit
+  LineList lines;
+
+ private:
+  friend class Lsu;
+  uint32_t num_sent = 0, num_answers = 0;
+  Cycle ready = 0;            // in the pipe: when its first line can go to the L1
+};
+
+// Queue of each scheduler -> (accept_interval) -> load-store or texture pipe -> one line a cycle -> L1.
+// Model: one queue for both pipes, in order; the texture unit shares the L1's door with loads and stores.
+class Lsu {
+ public:
+  Lsu(const Params& params, mem::L1Port& l1);
+
+  // Whether an instruction of that scheduler can issue: room in its queue and in the table of accesses.
+  bool can_take(uint32_t scheduler) const { return !free_.empty() && queues_[scheduler].count < queue_capacity_; }
+  // A new access at the end of the scheduler's queue: the caller fills all of it in before the next tick.
+  MemoryAccess& take(uint32_t scheduler, Cycle now);
+  // Advances to `now`; afterwards completed() holds the accesses that ended in this cycle, each once:
+  // reads when their last line has come, writes when the L1 has taken the last line.
+  void tick(Cycle now);
+  std::span<const uint32_t> completed() const { return {completed_.data(), completed_.size()}; }
+  const MemoryAccess& access(uint32_t id) const { return accesses_[id]; }
+  void release(uint32_t id) { free_.push_back(id); }
+  // Earliest cycle after `now` with work of its own (answers are the L1's events); kNever when none.
+  Cycle next_event(Cycle now) const;
+  bool idle() const { return free_.size() == accesses_.size(); }
+
+ private:
+  static constexpr uint32_t kMaxQueue = 16;
+  struct Queue {
+    std::array<uint32_t, kMaxQueue> id{};
+    uint32_t head = 0, count = 0;
+    Cycle free_at = 0;        // of this scheduler's address generation
+  };
+  struct Pipe {               // accesses in order, as a ring
+    std::vector<uint32_t> id;
+    uint32_t head = 0, count = 0;
+    Cycle free_at = 0;
+    uint32_t front() const { return id[head]; }
+  };
+
+  void take_answers(Cycle now);
+  void accept(Cycle now);
+  void send(Cycle now);
+  bool send_line(Cycle now, Pipe& pipe);
+
+  mem::L1Port& l1_;
+  const LsuParams params_;
+  const UnitParams lsu_unit_, tex_unit_;
+  const uint32_t num_queues_, queue_capacity_;
+  std::array<Queue, kMaxSchedulers> queues_{};
+  std::array<Pipe, 2> pipes_;  // load-store, texture
+  uint32_t next_queue_ = 0, next_pipe_ = 0;
+  Cycle accept_at_ = 0, port_free_ = 0;
+  std::vector<MemoryAccess> accesses_;
+  std::vector<uint32_t> free_, completed_;  // reserved once
+};
+
+}  // namespace glint::core

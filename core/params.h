@@ -1,0 +1,107 @@
+// Tunables of a core: warps, schedulers, execution units, load-store unit, launch.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "base/diagnostics.h"
+#include "base/params.h"
+#include "base/registry.h"
+#include "base/types.h"
+#include "core/issue_scheduler.h"
+#include "isa/op_row.h"
+
+namespace glint::core {
+
+inline constexpr uint32_t kMaxWarps = 64;        // resident warps of a core (GA100, GH100)
+inline constexpr uint32_t kMaxSchedulers = 8;
+inline constexpr uint32_t kRegisterUnit = 8;     // registers of a lane are given out in eights (CUDA occupancy tables)
+
+struct UnitParams {
+  uint32_t latency = 4;    // from issue to the first cycle in which a dependent instruction can issue
+  uint32_t interval = 2;   // from issue to the next issue on the same pipe of the same scheduler
+  static constexpr auto params() {
+    return std::tuple{param(&UnitParams::latency, "latency", "cycle", "Issue to issue of a dependent instruction.", 1, 1000),
+                      param(&UnitParams::interval, "interval", "cycle", "Issue to the next issue on this pipe.", 1, 1000)};
+  }
+};
+
+// Defaults: Accel-Sim's tested RTX 2060 (SM75) configuration unless noted; the divisions are Vulkan-Sim's PTX
+// table, because ours are single instructions too.
+struct Units {
+  UnitParams integer{4, 2}, int_div{145, 8}, fp32{4, 2}, fp_div{39, 4}, fp64{64, 64}, sfu{21, 8};
+  UnitParams move{4, 2}, predicate{4, 2};
+  // Latency up to the L1's door: 12 + 20 of the L1 is the measured load-to-use 32 (RTX A6000, MICRO 2025, table 2).
+  // Interval: one address-generation unit a scheduler, one instruction in 4 cycles (same paper, section 5.4).
+  UnitParams lsu{12, 4};
+  UnitParams constant{26, 2};     // constant-cache hit of a T4: 26 cycles (Jia et al. 2019, table 3.1)
+  UnitParams tex{180, 4};         // 200 in all with the L1 hit in it
+  UnitParams branch{4, 2};
+  UnitParams rt_unit{4, 4};       // handing over rays; charged on the way back
+  static constexpr auto params() {
+    return std::tuple{section(&Units::integer, "int", "Integer arithmetic and logic."),
+                      section(&Units::int_div, "int_div", "Integer division, on the special-function pipe."),
+                      section(&Units::fp32, "fp32", "Single precision."),
+                      section(&Units::fp_div, "fp_div", "Division, on the special-function pipe."),
+                      section(&Units::fp64, "fp64", "Double precision."),
+                      section(&Units::sfu, "sfu", "Transcendentals and roots."),
+                      section(&Units::move, "move", "Moves and selections, on the integer pipe."),
+                      section(&Units::predicate, "predicate", "Comparisons and predicate logic, on the integer pipe."),
+                      section(&Units::lsu, "lsu", "Address generation: latency up to the L1, interval a scheduler."),
+                      section(&Units::constant, "const", "Constant loads."),
+                      section(&Units::tex, "tex", "Texture and image unit: latency up to the L1, interval a core."),
+                      section(&Units::branch, "branch", "Branches, calls, returns: the warp waits for the latency."),
+                      section(&Units::rt_unit, "rt_unit", "Ray instructions; the latency follows the RT unit's answer.")};
+  }
+  std::array<UnitParams, size_t(isa::Unit::Count)> by_unit() const {  // in the order of isa::Unit
+    return {integer, int_div, fp32, fp_div, fp64, sfu, move, predicate, lsu, constant, tex, branch, rt_unit};
+  }
+};
+
+// Defaults: RTX A6000, MICRO 2025 ("Analyzing Modern NVIDIA GPU cores"), sections 5.3 and 5.4.
+struct LsuParams {
+  uint32_t queue = 5;              // 4 entries and a latch: 5 back to back
+  uint32_t accept_interval = 2;
+  uint32_t sectors_per_cycle = 2;  // 512 bits a cycle between L1 and registers
+  uint32_t accesses = 128;         // Choice: unpublished; 4 a resident warp at 32 warps
+  static constexpr auto params() {
+    return std::tuple{
+        param(&LsuParams::queue, "queue", "instruction", "Memory instructions that wait in each scheduler's queue.", 1, 16),
+        param(&LsuParams::accept_interval, "accept_interval", "cycle", "The core's unit takes one warp instruction in so many.", 1, 64),
+        param(&LsuParams::sectors_per_cycle, "sectors_per_cycle", "sector", "32 B sectors asked of the L1 a cycle.", 1, 4),
+        param(&LsuParams::accesses, "accesses", "instruction", "Memory instructions of a core between issue and completion.", 1, 1024)};
+  }
+};
+
+struct Params {
+  uint32_t warps = 32;
+  uint32_t schedulers = 4;
+  uint32_t registers = 32768;
+  PolicyChoice<IssueScheduler> issue{"gto"};
+  Units units;
+  LsuParams lsu;
+  uint32_t launch_latency = 5000;  // Vulkan-Sim, -gpgpu_kernel_launch_latency
+  uint32_t warp_launch_latency = 0;
+  uint64_t instruction_budget = 100'000'000;
+  static constexpr auto params() {
+    return std::tuple{
+        param(&Params::warps, "warps", "warp", "Resident warps of a core, registers permitting.", 1, kMaxWarps),
+        param(&Params::schedulers, "schedulers", "scheduler", "Schedulers of a core; warp slot w belongs to scheduler w mod this.", 1, kMaxSchedulers),
+        param(&Params::registers, "registers", "register", "32-bit registers of a core.", 256, 1 << 20),
+        policy(&Params::issue, "issue", "Which ready warp a scheduler issues from."),
+        section(&Params::units, "units", "Latency and initiation interval of the execution units."),
+        section(&Params::lsu, "lsu", "Load-store unit."),
+        param(&Params::launch_latency, "launch_latency", "cycle", "From the launch to the first instruction.", 0, 1'000'000),
+        param(&Params::warp_launch_latency, "warp_launch_latency", "cycle", "From taking a warp slot to the first instruction.", 0, 100'000),
+        param(&Params::instruction_budget, "instruction_budget", "instruction", "Instructions after which a warp is held to have no end.", 1, uint64_t{1} << 40)};
+  }
+};
+
+// Warps that fit when each lane holds `num_registers` registers; 0 when not even one does.
+uint32_t occupancy(const Params& params, uint32_t num_registers);
+
+// Reports a program that cannot run on such a core.
+void check(const Params& params, uint32_t num_registers, Diagnostics& diagnostics);
+
+}  // namespace glint::core

@@ -1,0 +1,39 @@
+// Issue policy `gto`: stay with the warp issued last while it is ready, else take the oldest ready warp.
+// SPDX-License-Identifier: Apache-2.0
+#include "core/issue_scheduler.h"
+
+namespace glint::core {
+namespace {
+
+// Rogers et al., "Cache-Conscious Wavefront Scheduling", MICRO 2012, section 5: greedy then oldest.
+class GreedyThenOldest final : public IssueScheduler {
+ public:
+  static constexpr std::string_view kName = "gto";
+  static constexpr std::string_view kDoc = "Greedy, then oldest: the warp issued last while it is ready.";
+  struct Params {
+    static constexpr auto params() { return std::tuple{}; }
+  };
+  GreedyThenOldest(Params, Context) {}
+
+  uint32_t pick(const IssueView& view) override {
+    // A new warp in the same place is not the one we were greedy for.
+    if ((view.ready >> last_ & 1) && view.age[last_] == last_age_) return last_;
+    uint32_t oldest = uint32_t(std::countr_zero(view.ready));
+    for (uint64_t rest = view.ready & (view.ready - 1); rest; rest &= rest - 1) {
+      const uint32_t i = uint32_t(std::countr_zero(rest));
+      if (view.age[i] < view.age[oldest]) oldest = i;
+    }
+    last_ = oldest;
+    last_age_ = view.age[oldest];
+    return oldest;
+  }
+
+ private:
+  uint32_t last_ = 0;
+  uint64_t last_age_ = ~uint64_t{0};
+};
+
+const Register<IssueScheduler, GreedyThenOldest> registered;
+
+}  // namespace
+}  // namespace glint::core

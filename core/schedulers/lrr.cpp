@@ -1,0 +1,31 @@
+// Issue policy `lrr`: loose round robin, the next ready warp after the one issued last.
+// SPDX-License-Identifier: Apache-2.0
+#include "core/issue_scheduler.h"
+
+namespace glint::core {
+namespace {
+
+class LooseRoundRobin final : public IssueScheduler {
+ public:
+  static constexpr std::string_view kName = "lrr";
+  static constexpr std::string_view kDoc = "Loose round robin: the next ready warp after the one issued last.";
+  struct Params {
+    static constexpr auto params() { return std::tuple{}; }
+  };
+  LooseRoundRobin(Params, Context context) : last_(context.num_warps - 1) {}
+
+  uint32_t pick(const IssueView& view) override {
+    // Two shifts, because a shift by 64 is undefined.
+    const uint64_t after = view.ready & (~uint64_t{0} << last_ << 1);
+    last_ = uint32_t(std::countr_zero(after ? after : view.ready));
+    return last_;
+  }
+
+ private:
+  uint32_t last_;
+};
+
+const Register<IssueScheduler, LooseRoundRobin> registered;
+
+}  // namespace
+}  // namespace glint::core

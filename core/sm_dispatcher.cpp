@@ -1,0 +1,27 @@
+// Hands the warps of a launch to the cores.
+// SPDX-License-Identifier: Apache-2.0
+#include "core/sm_dispatcher.h"
+
+#include <algorithm>
+
+namespace glint::core {
+
+Dispatcher::Dispatcher(const Params& params, uint32_t num_warps, std::vector<CoreCell*> cores)
+    : launch_latency_(params.launch_latency),
+      warp_launch_latency_(params.warp_launch_latency),
+      num_warps_(num_warps),
+      cores_(std::move(cores)) {}
+
+void Dispatcher::dispatch(Cycle now) {
+  const Cycle ready = std::max(now, launch_latency_) + warp_launch_latency_;
+  for (bool any = true; any && !done();) {
+    any = false;
+    for (CoreCell* core : cores_) {
+      if (done() || !core->has_free_slot()) continue;
+      core->launch(now, next_++, ready);
+      any = true;
+    }
+  }
+}
+
+}  // namespace glint::core

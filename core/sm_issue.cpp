@@ -1,0 +1,271 @@
+// A core from inside: choosing warps, issuing instructions and charging time for them.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+
+#include "core/core_cell.h"
+
+namespace glint::core {
+
+using isa::Effect;
+
+// Gives this cycle of the scheduler to an instruction or to a reason.
+void CoreCell::run_scheduler(SchedulerState& scheduler, Cycle now) {
+  const uint64_t ready = find_ready(scheduler, now);
+  if (!ready) return;
+  const uint32_t local = scheduler.policy->pick({ready, {scheduler.age.data(), scheduler.age.size()}, now});
+  GLINT_DCHECK(ready >> local & 1, "the issue policy chose warp {}, which is not ready", local);
+  scheduler.reason = Stall::Issued;
+  scheduler.sleep_until = now + 1;
+  issue(scheduler, local, now);
+}
+
+// Warps that can issue now. When there are none: the reason, and until when it stays.
+uint64_t CoreCell::find_ready(SchedulerState& scheduler, Cycle now) {
+  uint64_t ready = 0;
+  Cycle next = kNever;
+  Stall reason = Stall::NoWarp;
+  scheduler.watches_doors = false;
+  for (uint64_t rest = scheduler.resident; rest; rest &= rest - 1) {
+    const auto i = size_t(std::countr_zero(rest));
+    const Cycle pipe_free = scheduler.pipe_free[size_t(scheduler.pipe[i])];
+    if (scheduler.ready_at[i] > now) {
+      next = std::min(next, scheduler.ready_at[i]);
+      reason = std::min(reason, scheduler.wait[i]);
+    } else if (pipe_free > now) {
+      next = std::min(next, pipe_free);
+      reason = std::min(reason, Stall::MathThrottle);
+    } else if (scheduler.door[i] == Door::Lsu && !lsu_.can_take(scheduler.index)) {
+      scheduler.watches_doors = true;
+      reason = std::min(reason, Stall::LsuThrottle);
+    } else if (scheduler.door[i] == Door::RtUnit && !rt_.can_accept()) {
+      scheduler.watches_doors = true;
+      reason = std::min(reason, Stall::RtFull);
+    } else {
+      ready |= uint64_t{1} << i;
+    }
+  }
+  scheduler.reason = reason;
+  scheduler.sleep_until = next;
+  return ready;
+}
+
+void CoreCell::issue(SchedulerState& scheduler, uint32_t local, Cycle now) {
+  const uint32_t slot = local * params_.schedulers + scheduler.index;
+  WarpContext& warp = warps_[slot];
+  const IssueRow& row = table_.row(warp.simt.pc);
+  const Issued issued = executor_.execute(warp, now);
+  if (executor_.fault()) {
+    fault_ = executor_.fault();
+    return;
+  }
+  ++progress_;
+  count(row, issued);
+  if (row.pipe != Pipe::Memory) scheduler.pipe_free[size_t(row.pipe)] = now + row.interval;
+  const Cycle done = now + row.latency;
+  front_[slot] = {now + 1, Stall::RawFixed};
+  switch (row.finish) {
+    case Finish::Fixed:
+      scoreboards_[slot].set(table_.defs(row), {done, row.wait});
+      stats_.latency.add(row.klass, row.latency);
+      break;
+    case Finish::Control:
+      front_[slot] = {done, row.wait};
+      stats_.latency.add(row.klass, row.latency);
+      break;
+    case Finish::Memory:
+    case Finish::CallRecord:
+      if (!start_access(slot, row, issued, now)) {
+        front_[slot].at = row.finish == Finish::Memory ? now + 1 : done;
+        stats_.latency.add(row.klass, front_[slot].at - now);
+      }
+      break;
+    case Finish::Rays:
+      start_rays(slot, row, issued, now);
+      break;
+  }
+  if (warp.instructions > params_.instruction_budget) {
+    fail_without_end(slot, issued.pc);
+  } else if (issued.finished) {
+    retire(slot);
+  } else {
+    refresh(slot);
+  }
+}
+
+void CoreCell::count(const IssueRow& row, const Issued& issued) {
+  const auto lanes = uint64_t(std::popcount(issued.lanes));
+  ++stats_.instructions;
+  stats_.lane_instructions += lanes;
+  stats_.lane_slots += uint64_t(kLanes);
+  stats_.by_class.add(row.klass);
+  stats_.lanes_by_class.add(row.klass, lanes);
+  StageStats& stage = *stats_.stage[size_t(row.stage)];
+  stage.instructions.add(row.klass);
+  stage.lanes.add(row.klass, lanes);
+  ++op_counts_[issued.inst->op];
+  op_lanes_[issued.inst->op] += lanes;
+  if (row.is_conditional) {
+    ++stats_.branches;
+    if (issued.lanes != 0 && issued.lanes != issued.active) ++stats_.divergent_branches;
+  }
+  if (row.pipe == Pipe::Const) ++stats_.constant_loads;
+}
+
+void CoreCell::count_access(const isa::OpRow& op) {
+  const bool local = op.memory.space == isa::Space::Local;
+  // Every other effect makes no access.
+  if (op.effect == Effect::Load || op.effect == Effect::Atomic) {
+    ++(local ? stats_.local_loads : stats_.global_loads);
+  } else if (op.effect == Effect::Store) {
+    ++(local ? stats_.local_stores : stats_.global_stores);
+  } else if (op.effect == Effect::Texture) {
+    ++stats_.texture_fetches;
+  } else if (op.effect == Effect::SurfaceLoad) {
+    ++stats_.surface_loads;
+  } else if (op.effect == Effect::SurfaceStore) {
+    ++stats_.surface_stores;
+  } else {
+    ++stats_.binding_reads;
+  }
+}
+
+// Hands the access to the load-store unit; false when no lane makes one.
+bool CoreCell::start_access(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now) {
+  if (issued.lanes == 0) return false;
+  MemoryAccess& access = lsu_.take(slot % params_.schedulers, now);
+  access.slot = slot;
+  access.pc = issued.pc;
+  access.write = issued.row->effect == Effect::Store || issued.row->effect == Effect::SurfaceStore;
+  collect_lines(access, issued);
+  ++outstanding_[slot];
+  if (row.finish == Finish::CallRecord)
+    front_[slot] = {kNever, Stall::Call};
+  else
+    scoreboards_[slot].set(table_.defs(row), {kNever, row.wait});
+  count_access(*issued.row);
+  ++stats_.accesses;
+  stats_.lines += access.lines.lines().size();
+  stats_.sectors += access.lines.num_sectors();
+  return true;
+}
+
+void CoreCell::collect_lines(MemoryAccess& access, const Issued& issued) {
+  const isa::Memory& memory = issued.row->memory;
+  const isa::Access& addresses = warps_[access.slot].regs.access;
+  access.texture = false;
+  if (memory.space == isa::Space::Local) {
+    access.traffic = mem::Traffic::ShaderLocal;
+    coalesce_local(access.lines, local_, access.slot, addresses, issued.lanes, uint32_t(memory.bytes * memory.count));
+  } else if (issued.row->effect == Effect::Texture) {
+    access.traffic = mem::Traffic::ShaderTexture;  // a texel is aligned to its size: one sector each
+    access.texture = true;
+    for (const auto& corner : executor_.texels())
+      for_each_lane(issued.lanes, [&](int lane) { access.lines.add(world_.memory->physical(corner[size_t(lane)]), 4); });
+  } else if (issued.row->effect == Effect::SurfaceLoad || issued.row->effect == Effect::SurfaceStore) {
+    access.traffic = mem::Traffic::ShaderSurface;
+    access.texture = true;
+    coalesce_global(access.lines, *world_.memory, addresses, issued.lanes, 4);
+  } else if (issued.row->effect == Effect::CallCandidate || issued.row->effect == Effect::CallAnyHit ||
+             issued.row->effect == Effect::CallHit) {
+    access.traffic = mem::Traffic::ShaderBinding;
+    coalesce_global(access.lines, *world_.memory, addresses, issued.lanes, mem::kSectorBytes);
+  } else {
+    access.traffic = mem::Traffic::ShaderGlobal;
+    coalesce_global(access.lines, *world_.memory, addresses, issued.lanes, uint32_t(memory.bytes * memory.count));
+  }
+}
+
+void CoreCell::complete(uint32_t access_id, Cycle now) {
+  const MemoryAccess& access = lsu_.access(access_id);
+  const uint32_t slot = access.slot;
+  const IssueRow& row = table_.row(access.pc);
+  stats_.latency.add(row.klass, now - access.issued);
+  if (row.finish == Finish::CallRecord) {
+    // The branch itself was resolved long ago, or now.
+    front_[slot] = {std::max(now, access.issued + row.latency), Stall::Call};
+  } else if (!access.write) {
+    scoreboards_[slot].set(table_.defs(row), {now, row.wait});
+  }
+  lsu_.release(access_id);
+  --outstanding_[slot];
+  ++progress_;
+  if (!warps_[slot].simt.finished())
+    refresh(slot);
+  else if (outstanding_[slot] == 0)
+    free_slot(slot);
+}
+
+// Gives the rays of an rt.trace or rt.resume to the RT unit, or goes on at once when none has to travel.
+void CoreCell::start_rays(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now) {
+  WarpContext& warp = warps_[slot];
+  LaneMask travelling = 0;
+  if (warp.waiting_for_rays) {
+    TraceFrame& frame = warp.frame();
+    for_each_lane(issued.lanes, [&](int lane) {
+      if (frame.ray[size_t(lane)].status == rt::RayStatus::Traversing) travelling |= LaneMask{1} << lane;
+    });
+  }
+  if (travelling) {
+    rt_.submit(now, slot, travelling, warp.frame().ray.data());
+    front_[slot] = {kNever, Stall::RtWait};
+    rays_issued_[slot] = now;
+    rays_pc_[slot] = issued.pc;
+    ++stats_.rt_warps;
+    stats_.rt_lanes += uint64_t(std::popcount(travelling));
+    return;
+  }
+  if (warp.waiting_for_rays) executor_.finish_rays(warp);
+  front_[slot] = {now + row.latency, Stall::RtWait};
+  stats_.latency.add(row.klass, row.latency);
+}
+
+void CoreCell::complete_rays(uint32_t slot, Cycle now) {
+  const IssueRow& row = table_.row(rays_pc_[slot]);
+  executor_.finish_rays(warps_[slot]);
+  front_[slot] = {now + row.latency, Stall::RtWait};
+  stats_.latency.add(row.klass, now + row.latency - rays_issued_[slot]);
+  ++progress_;
+  refresh(slot);
+}
+
+void CoreCell::retire(uint32_t slot) {
+  if (outstanding_[slot] == 0) {
+    free_slot(slot);
+    return;
+  }
+  SchedulerState& scheduler = scheduler_of(slot);
+  scheduler.ready_at[slot / params_.schedulers] = kNever;
+  scheduler.wait[slot / params_.schedulers] = Stall::Drain;
+}
+
+void CoreCell::free_slot(uint32_t slot) {
+  SchedulerState& scheduler = scheduler_of(slot);
+  scheduler.resident &= ~(uint64_t{1} << (slot / params_.schedulers));
+  scheduler.wake();
+  --num_resident_;
+}
+
+// Looks up when the warp's next instruction has its operands, after anything about that changed.
+void CoreCell::refresh(uint32_t slot) {
+  SchedulerState& scheduler = scheduler_of(slot);
+  const uint32_t local = slot / params_.schedulers;
+  const IssueRow& row = table_.row(warps_[slot].simt.pc);
+  const Scoreboard::Ready ready = scoreboards_[slot].ready(table_.uses(row), front_[slot]);
+  scheduler.ready_at[local] = ready.at;
+  scheduler.wait[local] = ready.wait;
+  scheduler.pipe[local] = row.pipe;
+  scheduler.door[local] = row.finish == Finish::Memory || row.finish == Finish::CallRecord ? Door::Lsu
+                          : row.finish == Finish::Rays                                     ? Door::RtUnit
+                                                                                           : Door::None;
+  scheduler.wake();
+}
+
+void CoreCell::fail_without_end(uint32_t slot, uint32_t pc) {
+  fault_ = Fault{fmt::format("no end in sight: the warp has executed more than {} instructions", params_.instruction_budget),
+                 world_.image->place_of(pc), launch_id(world_, warps_[slot].warp_index, 0)};
+}
+
+}  // namespace glint::core

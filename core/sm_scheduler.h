@@ -1,0 +1,40 @@
+// The issue state of one scheduler's warps, in flat arrays: what every cycle of a core looks at.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include "base/types.h"
+#include "core/issue_scheduler.h"
+#include "core/stall.h"
+#include "core/units.h"
+
+namespace glint::core {
+
+// What the next instruction of a warp needs beside its operands and its pipe.
+enum class Door : uint8_t { None, Lsu, RtUnit };
+
+// Warps are numbered locally: warp slot w is warp w / schedulers of scheduler w mod schedulers.
+struct SchedulerState {
+  uint32_t index = 0;
+  uint64_t resident = 0;                                    // bit i: warp i is there
+  std::array<Cycle, kMaxWarpsPerScheduler> ready_at{};      // operands of its next instruction; kNever: not known
+  std::array<Stall, kMaxWarpsPerScheduler> wait{};          // what it waits for until then
+  std::array<Pipe, kMaxWarpsPerScheduler> pipe{};           // of its next instruction
+  std::array<Door, kMaxWarpsPerScheduler> door{};
+  std::array<uint64_t, kMaxWarpsPerScheduler> age{};        // launch number
+  std::array<Cycle, kNumPipes> pipe_free{};
+
+  // Until `sleep_until` no warp can issue and the reason stays, unless something wakes the scheduler or, with
+  // `watches_doors`, something happens in the core at all.
+  Cycle sleep_until = 0;
+  bool watches_doors = false;
+  Stall reason = Stall::NoWarp;
+
+  std::unique_ptr<IssueScheduler> policy;
+
+  void wake() { sleep_until = 0; }
+};
+
+}  // namespace glint::core

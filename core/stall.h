@@ -1,0 +1,41 @@
+// What an issue slot was spent on: each scheduler gives each of its cycles exactly one of these.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <string_view>
+
+namespace glint::core {
+
+// Ordered by nearness to issue. When several warps of a scheduler wait for different things, the cycle is
+// given to the first of them in this order: the warp that had least left to wait for is what was missed.
+enum class Stall : uint8_t {
+  Issued,           // an instruction was issued
+  MathThrottle,     // operands ready, the execution pipe still takes the previous instruction
+  LsuThrottle,      // operands ready, the scheduler's memory queue or the table of accesses is full
+  RtFull,           // rays ready, the RT unit takes no more warps
+  RawFixed,         // result of an integer, floating-point, move or predicate instruction
+  RawSfu,           // result of the special-function pipe: transcendentals and divisions
+  Const,            // result of a constant load
+  Branch,           // target of a branch not yet known
+  LocalMemory,      // load from local memory
+  Texture,          // texture or image load
+  LongScoreboard,   // load from global memory, whichever level answers
+  Call,             // record of the shader binding table
+  RtWait,           // the warp is in the RT unit
+  Dispatch,         // the warp is being launched
+  Drain,            // the warp has ended, its last accesses have not
+  NoWarp,           // no warp is resident
+  Count
+};
+
+constexpr std::string_view name_of(Stall s) {
+  constexpr std::string_view kNames[] = {
+      "issued", "math_pipe_throttle", "lsu_throttle", "rt_full", "raw_fixed", "raw_sfu", "const", "branch",
+      "local_memory", "texture", "long_scoreboard", "call", "rt_wait", "dispatch", "drain", "no_warp"};
+  static_assert(std::size(kNames) == size_t(Stall::Count));
+  return kNames[size_t(s)];
+}
+
+}  // namespace glint::core

@@ -1,0 +1,128 @@
+// Decodes instructions for the issue logic.
+// SPDX-License-Identifier: Apache-2.0
+#include "core/units.h"
+
+#include "base/check.h"
+
+namespace glint::core {
+namespace {
+
+using isa::Effect;
+using isa::OperandKind;
+using isa::Unit;
+
+// Appends the scoreboard entries of one operand. Constants and specials are always ready.
+void add_operand(std::vector<uint16_t>& out, OperandKind kind, const isa::Slot* slot) {
+  const bool predicate = kind == OperandKind::DstPred || kind == OperandKind::SrcPred;
+  const bool pair = kind == OperandKind::Dst64 || kind == OperandKind::Src64 || kind == OperandKind::Address64;
+  for (int i = 0; i < isa::slots_of(kind); ++i) {
+    if (predicate) {
+      out.push_back(uint16_t(kFirstPredicate + slot[i]));
+    } else if (slot[i] >> isa::kBankShift == 0) {
+      out.push_back(slot[i]);
+      if (pair) out.push_back(uint16_t(slot[i] + 1));
+    }
+  }
+}
+
+void add_operands(std::vector<uint16_t>& out, const isa::OpRow& row, const isa::Inst& inst, bool destinations) {
+  int slot = 0;
+  for (OperandKind kind : row.operands.view()) {
+    if (isa::is_destination(kind) == destinations) add_operand(out, kind, &inst.operand[slot]);
+    slot += isa::slots_of(kind);
+  }
+}
+
+Finish finish_of(const isa::OpRow& row) {
+  switch (row.effect) {
+    case Effect::Load:
+    case Effect::Store:
+    case Effect::Atomic: return row.memory.space == isa::Space::Const ? Finish::Fixed : Finish::Memory;
+    case Effect::Texture:
+    case Effect::SurfaceLoad:
+    case Effect::SurfaceStore: return Finish::Memory;
+    case Effect::Trace:
+    case Effect::Resume: return Finish::Rays;
+    case Effect::CallCandidate:
+    case Effect::CallAnyHit:
+    case Effect::CallHit: return Finish::CallRecord;
+    case Effect::Branch:
+    case Effect::Join:
+    case Effect::Exit:
+    case Effect::Return:
+    case Effect::Ignore:
+    case Effect::Terminate: return Finish::Control;
+    // ssy only notes a place; the next instruction is the next one.
+    case Effect::PushReconvergence:
+    case Effect::None:
+    case Effect::Report:
+    case Effect::Accepted:
+    case Effect::EndTrace: return Finish::Fixed;
+  }
+  GLINT_PANIC("effect {} of '{}'", int(row.effect), row.name);
+}
+
+Stall wait_of(const isa::OpRow& row, Finish finish) {
+  if (finish == Finish::Memory) {
+    if (row.effect == Effect::Load || row.effect == Effect::Atomic)
+      return row.memory.space == isa::Space::Local ? Stall::LocalMemory : Stall::LongScoreboard;
+    return Stall::Texture;  // stores have no dependents
+  }
+  if (finish == Finish::Rays) return Stall::RtWait;
+  if (finish == Finish::Control) return Stall::Branch;
+  if (finish == Finish::CallRecord) return Stall::Call;
+  if (row.unit == Unit::Const) return Stall::Const;
+  return pipe_of(row.unit) == Pipe::Sfu ? Stall::RawSfu : Stall::RawFixed;
+}
+
+}  // namespace
+
+Pipe pipe_of(Unit unit) {
+  switch (unit) {
+    case Unit::Int:
+    case Unit::Move:
+    case Unit::Predicate: return Pipe::Int;
+    case Unit::Fp32: return Pipe::Fp32;
+    case Unit::Fp64: return Pipe::Fp64;
+    case Unit::Sfu:
+    case Unit::IntDiv:
+    case Unit::FpDiv: return Pipe::Sfu;
+    case Unit::Const: return Pipe::Const;
+    case Unit::Branch: return Pipe::Branch;
+    case Unit::RtUnit: return Pipe::RtUnit;
+    case Unit::Lsu:
+    case Unit::Tex: return Pipe::Memory;
+    case Unit::Count: break;
+  }
+  GLINT_PANIC("unit {}", int(unit));
+}
+
+IssueTable::IssueTable(const Image& image, const Params& params) {
+  const auto units = params.units.by_unit();
+  rows_.reserve(image.code.size());
+  for (size_t pc = 0; pc < image.code.size(); ++pc) {
+    const isa::Inst& inst = image.code[pc];
+    const isa::OpRow& op = *image.rows[pc];
+    const UnitParams& unit = units[size_t(op.unit)];
+    IssueRow row;
+    row.first_use = uint32_t(registers_.size());
+    add_operands(registers_, op, inst, false);
+    if (inst.guard != isa::kNoGuard)
+      registers_.push_back(uint16_t(kFirstPredicate + (inst.guard & ~isa::kGuardNegate)));
+    const size_t first_def = registers_.size();
+    add_operands(registers_, op, inst, true);
+    row.num_uses = uint8_t(registers_.size() - row.first_use);
+    row.num_defs = uint8_t(registers_.size() - first_def);
+    row.finish = finish_of(op);
+    row.pipe = row.finish == Finish::Memory ? Pipe::Memory : pipe_of(op.unit);
+    row.klass = op.klass;
+    row.stage = image.shaders[image.shader_of[pc]].stage;
+    row.wait = wait_of(op, row.finish);
+    row.is_conditional = op.effect == Effect::Branch && inst.guard != isa::kNoGuard;
+    row.latency = uint16_t(unit.latency);
+    row.interval = uint16_t(unit.interval);
+    rows_.push_back(row);
+  }
+}
+
+}  // namespace glint::core

@@ -1,0 +1,66 @@
+// What the issue logic needs of each instruction, decoded once: its pipe, its latency, its registers.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/image.h"
+#include "core/params.h"
+#include "core/stall.h"
+#include "isa/op_row.h"
+
+namespace glint::core {
+
+// Model: each scheduler has one pipe of each kind, as a Turing sub-core has; int, move and predicate share the
+// integer pipe; divisions run on the special-function pipe. Memory is the door to the units that all schedulers share
+// (load-store, texture): it is limited by a queue (core/lsu.h), not by an interval.
+enum class Pipe : uint8_t { Int, Fp32, Fp64, Sfu, Const, Branch, RtUnit, Memory, Count };
+inline constexpr int kNumPipes = int(Pipe::Count);
+Pipe pipe_of(isa::Unit unit);
+
+// How an instruction's end is known.
+enum class Finish : uint8_t {
+  Fixed,       // `latency` cycles after issue
+  Memory,      // when the L1 has answered
+  Rays,        // when the RT unit has answered
+  Control,     // fixed, and the warp does not issue before
+  CallRecord,  // as Control, and then when the record of the binding table has been read
+};
+
+struct IssueRow {
+  uint32_t first_use = 0;       // of IssueTable's list: registers to be ready, the destinations last
+  uint8_t num_uses = 0;         // with the destinations
+  uint8_t num_defs = 0;
+  Pipe pipe = Pipe::Int;
+  Finish finish = Finish::Fixed;
+  isa::Class klass = isa::Class::Alu;
+  isa::Stage stage = isa::Stage::Compute;
+  Stall wait = Stall::RawFixed; // what a dependent instruction waits for
+  bool is_conditional = false;  // a guarded branch
+  uint16_t latency = 1;
+  uint16_t interval = 1;        // of the pipe
+};
+static_assert(sizeof(IssueRow) == 16);
+
+// Scoreboard index of a predicate; 32-bit registers come first.
+inline constexpr uint16_t kFirstPredicate = 256;
+inline constexpr uint16_t kScoreboardEntries = kFirstPredicate + isa::kNumPredicates;
+
+// All instructions of an image. Read-only while running.
+class IssueTable {
+ public:
+  IssueTable(const Image& image, const Params& params);
+  const IssueRow& row(uint32_t pc) const { return rows_[pc]; }
+  // Sources, guard and destinations: all have to be ready before issue.
+  std::span<const uint16_t> uses(const IssueRow& row) const { return {registers_.data() + row.first_use, row.num_uses}; }
+  std::span<const uint16_t> defs(const IssueRow& row) const {
+    return {registers_.data() + row.first_use + row.num_uses - row.num_defs, row.num_defs};
+  }
+
+ private:
+  std::vector<IssueRow> rows_;
+  std::vector<uint16_t> registers_;
+};
+
+}  // namespace glint::core
