@@ -1,0 +1,157 @@
+// GLSL to SPIR-V 1.6 through glslang in process: includes, defines, debug lines, messages with file and line.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <glslang/Public/ResourceLimits.h>
+#include <glslang/Public/ShaderLang.h>
+#include <glslang/SPIRV/GlslangToSpv.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <sstream>
+
+#include "frontend/compile.h"
+#include "frontend/spirv.h"
+
+namespace glint::frontend {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<std::string> read_text(const fs::path& path) {
+  std::error_code failed;
+  if (!fs::is_regular_file(path, failed)) return std::nullopt;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return std::nullopt;
+  return std::string(std::istreambuf_iterator<char>(file), {});
+}
+
+// Looks next to the including file first, then in the include directories in order.
+class Includer final : public glslang::TShader::Includer {
+ public:
+  explicit Includer(const std::vector<std::string>& dirs) : dirs_(dirs) {}
+
+  IncludeResult* includeLocal(const char* header, const char* includer, size_t) override {
+    return load(fs::path(includer).parent_path() / header);
+  }
+  IncludeResult* includeSystem(const char* header, const char*, size_t) override {
+    for (const std::string& dir : dirs_)
+      if (IncludeResult* found = load(fs::path(dir) / header)) return found;
+    return nullptr;
+  }
+  void releaseInclude(IncludeResult* result) override { delete result; }
+
+ private:
+  // The texts live as long as the includer: glslang names them in messages after it has released them.
+  IncludeResult* load(const fs::path& path) {
+    std::optional<std::string> text = read_text(path);
+    if (!text) return nullptr;
+    texts_.push_back(std::make_unique<std::string>(std::move(*text)));
+    return new IncludeResult(path.lexically_normal().string(), texts_.back()->data(), texts_.back()->size(), nullptr);
+  }
+
+  const std::vector<std::string>& dirs_;
+  std::vector<std::unique_ptr<std::string>> texts_;
+};
+
+// glslang keeps tables for the life of the process; the first compile makes them, exit frees them.
+struct Process {
+  Process() { glslang::InitializeProcess(); }
+  ~Process() { glslang::FinalizeProcess(); }
+};
+
+EShLanguage language_of(isa::Stage stage) {
+  switch (stage) {
+    case isa::Stage::RayGeneration: return EShLangRayGen;
+    case isa::Stage::Intersection: return EShLangIntersect;
+    case isa::Stage::AnyHit: return EShLangAnyHit;
+    case isa::Stage::ClosestHit: return EShLangClosestHit;
+    case isa::Stage::Miss: return EShLangMiss;
+    case isa::Stage::Callable: return EShLangCallable;
+    case isa::Stage::Compute: return EShLangCompute;
+  }
+  return EShLangCompute;
+}
+
+// glslang writes "ERROR: file:line: 'token' : text"; ours is "file:line: error: 'token' : text". Lines that
+// only count the errors are left out.
+std::string in_our_form(const std::string& log) {
+  std::istringstream lines(log);
+  std::string result;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty() || line.find("compilation errors.") != std::string::npos ||
+        line.find("compilation terminated") != std::string::npos)
+      continue;
+    const bool is_error = line.rfind("ERROR: ", 0) == 0;
+    const bool is_warning = line.rfind("WARNING: ", 0) == 0;
+    if (is_error || is_warning) {
+      const std::string text = line.substr(is_error ? 7 : 9);
+      const size_t end_of_place = text.find(": ");
+      const std::string severity = is_error ? "error: " : "warning: ";
+      line = end_of_place == std::string::npos ? severity + text
+                                               : text.substr(0, end_of_place + 2) + severity + text.substr(end_of_place + 2);
+    }
+    if (!result.empty()) result += '\n';
+    result += line;
+  }
+  return result;
+}
+
+std::string preamble(const GlslOptions& options) {
+  std::string text = "#extension GL_GOOGLE_include_directive : require\n";
+  for (const auto& [name, value] : options.defines) text += fmt::format("#define {} {}\n", name, value);
+  return text;
+}
+
+constexpr int kDefaultGlslVersion = 460;  // GL_EXT_ray_tracing needs it
+
+std::vector<uint32_t> generate(glslang::TShader& shader, EShLanguage language, EShMessages messages,
+                               const std::string& path) {
+  glslang::TProgram program;
+  program.addShader(&shader);
+  if (!program.link(messages)) throw UserError(in_our_form(program.getInfoLog()));
+  glslang::SpvOptions options;
+  options.generateDebugInfo = true;
+  options.disableOptimizer = true;
+  options.validate = false;  // done below, with scalar block layout
+  std::vector<uint32_t> words;
+  spv::SpvBuildLogger log;
+  glslang::GlslangToSpv(*program.getIntermediate(language), words, &log, &options);
+  const std::string invalid = validate_spirv(words);
+  if (!invalid.empty()) throw UserError({path, 0, 0}, "glslang made invalid SPIR-V\n" + invalid);
+  return words;
+}
+
+}  // namespace
+
+std::vector<uint32_t> glsl_to_spirv(const std::string& path, const GlslOptions& options) {
+  const std::optional<isa::Stage> stage = stage_of_file(path);
+  if (!stage)
+    throw UserError({path, 0, 0}, "unknown shader stage",
+                    "name the file .rgen, .rint, .rahit, .rchit, .rmiss, .rcall or .comp");
+  const std::optional<std::string> source = read_text(path);
+  if (!source) throw UserError({path, 0, 0}, "cannot read the shader");
+
+  static const Process process;  // thread-safe since C++11
+  const EShLanguage language = language_of(*stage);
+  glslang::TShader shader(language);
+  const char* text = source->c_str();
+  const int length = int(source->size());
+  const char* name = path.c_str();
+  shader.setStringsWithLengthsAndNames(&text, &length, &name, 1);
+  const std::string before = preamble(options);
+  shader.setPreamble(before.c_str());
+  shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, kDefaultGlslVersion);
+  shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
+  shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_6);
+  shader.setDebugInfo(true);
+  shader.setEnhancedMsgs();
+  const auto messages = EShMessages(EShMsgSpvRules | EShMsgVulkanRules | EShMsgDebugInfo | EShMsgEnhanced);
+  Includer includer(options.include_dirs);
+  if (!shader.parse(GetDefaultResources(), kDefaultGlslVersion, ENoProfile, false, false, messages, includer))
+    throw UserError(in_our_form(shader.getInfoLog()));
+  return generate(shader, language, messages, path);
+}
+
+}  // namespace glint::frontend

@@ -1,0 +1,240 @@
+// The driver of the lowering: entry point, constants, dispatch of instructions, the report of what is missing.
+// SPDX-License-Identifier: Apache-2.0
+#include "frontend/lower.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/check.h"
+#include "base/diagnostics.h"
+#include "frontend/compile.h"
+#include "frontend/spirv.h"
+
+namespace glint::frontend {
+namespace {
+
+isa::Stage stage_of_model(spv::ExecutionModel model, bool* known) {
+  *known = true;
+  switch (int(model)) {
+    case int(spv::ExecutionModel::RayGenerationKHR): return isa::Stage::RayGeneration;
+    case int(spv::ExecutionModel::IntersectionKHR): return isa::Stage::Intersection;
+    case int(spv::ExecutionModel::AnyHitKHR): return isa::Stage::AnyHit;
+    case int(spv::ExecutionModel::ClosestHitKHR): return isa::Stage::ClosestHit;
+    case int(spv::ExecutionModel::MissKHR): return isa::Stage::Miss;
+    case int(spv::ExecutionModel::CallableKHR): return isa::Stage::Callable;
+    case int(spv::ExecutionModel::GLCompute): return isa::Stage::Compute;
+    default: *known = false; return isa::Stage::Compute;
+  }
+}
+
+// Capabilities that add nothing to lower, or only opcodes that are reported one by one where they stand.
+bool is_known_capability(spv::Capability capability) {
+  switch (int(capability)) {
+    case int(spv::Capability::Shader):
+    case int(spv::Capability::Matrix):
+    case int(spv::Capability::Int64):
+    case int(spv::Capability::RayTracingKHR):
+    case int(spv::Capability::RayTraversalPrimitiveCullingKHR):
+    case int(spv::Capability::ShaderClockKHR):
+    case int(spv::Capability::RuntimeDescriptorArray):
+    case int(spv::Capability::ShaderNonUniform):
+    case int(spv::Capability::SampledImageArrayNonUniformIndexing):
+    case int(spv::Capability::StorageImageArrayNonUniformIndexing):
+    case int(spv::Capability::SampledImageArrayDynamicIndexing):
+    case int(spv::Capability::StorageImageArrayDynamicIndexing):
+    case int(spv::Capability::StorageBufferArrayDynamicIndexing):
+    case int(spv::Capability::UniformBufferArrayDynamicIndexing):
+    case int(spv::Capability::StorageImageReadWithoutFormat):
+    case int(spv::Capability::StorageImageWriteWithoutFormat):
+    case int(spv::Capability::StorageImageExtendedFormats):
+    case int(spv::Capability::ImageQuery):  // its opcodes are reported where they stand
+    case int(spv::Capability::VulkanMemoryModel):
+    case int(spv::Capability::VulkanMemoryModelDeviceScope): return true;
+    default: return false;
+  }
+}
+
+}  // namespace
+
+Lowering::Lowering(const Module& module, const std::string& name) : module_(module), layout_(module), emitter_(program_) {
+  program_.name = name;
+  program_.files = module.files;
+}
+
+VirtualProgram Lowering::run() {
+  choose_entry_point();
+  check_capabilities();
+  index_definitions();
+  lower_control(*this);
+  throw_if_unsupported();
+  emitter_.finish();
+  remove_dead_code(&program_);
+  program_.local_bytes = (program_.local_bytes + 15) / 16 * 16;
+  return std::move(program_);
+}
+
+void Lowering::choose_entry_point() {
+  if (module_.entry_points.size() != 1)
+    throw UnsupportedError(fmt::format("{}: a module with {} entry points; one is supported", program_.name, module_.entry_points.size()));
+  const EntryPoint& entry = module_.entry_points[0];
+  bool known = false;
+  program_.stage = stage_of_model(entry.model, &known);
+  if (!known) throw UnsupportedError(fmt::format("{}: a shader stage of execution model {}", program_.name, uint32_t(entry.model)));
+  program_.local_size = entry.local_size;
+  function_ = module_.function(entry.function);
+  if (!function_ || function_->blocks.empty()) throw UserError({program_.name, 0, 0}, "the entry point has no function body");
+}
+
+void Lowering::check_capabilities() {
+  for (const auto& [capability, line] : module_.capabilities)
+    if (!is_known_capability(capability)) unsupported(fmt::format("capability {}", uint32_t(capability)), line);
+}
+
+void Lowering::index_definitions() {
+  for (const auto& [id, constant] : module_.constants) type_of_id_[id] = constant.type;
+  for (const auto& [id, variable] : module_.variables) type_of_id_[id] = variable.type;
+  for (const Block& block : function_->blocks)
+    for (const Instruction& inst : block.code) {
+      if (inst.result == 0) continue;
+      type_of_id_[inst.result] = inst.type;
+      definition_[inst.result] = &inst;
+      if (inst.op == spv::Op::OpVariable)
+        local_variables_[inst.result] = {inst.result, inst.type, spv::StorageClass(inst.operands[0]),
+                                         inst.operands.size() > 1 ? inst.operands[1] : 0, inst.line};
+    }
+}
+
+void Lowering::prologue() {
+  const auto initialise = [&](const Variable& variable) {
+    if (variable.initializer != 0) store(variable_pointer(variable), value(variable.initializer));
+  };
+  for (const auto& [id, variable] : module_.variables)
+    if (variable.storage == spv::StorageClass::Private) initialise(variable);
+  for (const auto& [id, variable] : local_variables_) initialise(variable);
+  if (stage() != isa::Stage::Intersection) return;
+  for (const auto& [id, variable] : module_.variables)
+    if (variable.storage == spv::StorageClass::HitAttributeKHR && pointer(id).place == Place::AttributePair)
+      unsupported("hit attribute of exactly two floats in an intersection shader", variable.line);
+}
+
+void Lowering::instruction(const Instruction& inst) {
+  emitter_.set_line(inst.line);
+  if (inst.op == spv::Op::OpVariable) return;
+  if (inst.op == spv::Op::OpExtInst) {
+    const auto import = module_.imports.find(inst.operands[0]);
+    if (import != module_.imports.end() && import->second == "GLSL.std.450") lower_glsl_std(*this, inst);
+    else if (import == module_.imports.end() || import->second.rfind("NonSemantic.", 0) != 0) unsupported("OpExtInst of an unknown set");
+  } else if (const LoweringRow* row = find_lowering_row(inst.op)) {
+    row->lower(*this, inst, *row);
+  } else {
+    unsupported(name_of_opcode(uint32_t(inst.op)));
+  }
+  if (inst.result != 0) set_zero(inst);
+  for (Id type : layout_.unsupported())
+    if (reported_types_.insert(type).second) {
+      const Type& what = module_.type(type);
+      unsupported(fmt::format("{}{}", name_of_opcode(uint32_t(what.op)), what.width ? fmt::format(" {}", what.width) : ""));
+    }
+}
+
+// After something unsupported the result still has a value, so that the search for more can go on.
+void Lowering::set_zero(const Instruction& inst) {
+  if (inst.type == 0 || values_.count(inst.result) || pointers_.count(inst.result)) return;
+  if (module_.type(inst.type).kind == Type::Kind::Pointer) pointers_[inst.result] = nowhere(module_.type(inst.type).element);
+  else values_[inst.result] = Operands(layout_.num_parts(inst.type), Operand::value(0));
+}
+
+void Lowering::set(Id id, Operands parts) {
+  const Id type = type_of(id);
+  GLINT_CHECK(parts.size() == layout_.num_parts(type), "%{} has {} parts, its type {}", id, parts.size(), layout_.num_parts(type));
+  values_[id] = std::move(parts);
+}
+
+const Operands& Lowering::value(Id id) {
+  if (const auto it = values_.find(id); it != values_.end()) return it->second;
+  if (module_.constants.count(id)) return values_[id] = constant_parts(id);
+  unsupported(fmt::format("{} as a value", module_.name_of(id)));  // a pointer where a value is wanted
+  const auto type = type_of_id_.find(id);
+  const uint32_t parts = type == type_of_id_.end() ? 1 : layout_.num_parts(type->second);
+  return values_[id] = Operands(std::max(parts, 1u), Operand::value(0));
+}
+
+Operands Lowering::constant_parts(Id id) {
+  const Instruction& constant = module_.constants.at(id);
+  switch (constant.op) {
+    case spv::Op::OpConstantTrue:
+    case spv::Op::OpSpecConstantTrue: return {Operand::value(1)};
+    case spv::Op::OpConstantFalse:
+    case spv::Op::OpSpecConstantFalse: return {Operand::value(0)};
+    case spv::Op::OpConstant:
+    case spv::Op::OpSpecConstant: {
+      uint64_t bits = constant.operands[0];
+      if (constant.operands.size() > 1) bits |= uint64_t(constant.operands[1]) << 32;
+      layout_.parts(constant.type);  // notes widths that are not supported
+      return {Operand::value(bits)};
+    }
+    case spv::Op::OpConstantComposite:
+    case spv::Op::OpSpecConstantComposite: {
+      Operands parts;
+      for (Id member : constant.operands) {
+        const Operands& more = value(member);
+        parts.insert(parts.end(), more.begin(), more.end());
+      }
+      return parts;
+    }
+    default: unsupported(name_of_opcode(uint32_t(constant.op)), constant.line); [[fallthrough]];
+    case spv::Op::OpConstantNull:
+    case spv::Op::OpUndef:  // Choice: undefined values are 0
+      return Operands(layout_.num_parts(constant.type), Operand::value(0));
+  }
+}
+
+const Instruction* Lowering::definition(Id id) const {
+  const auto it = definition_.find(id);
+  return it == definition_.end() ? nullptr : it->second;
+}
+
+const Decorations& Lowering::decorations(Id id) const {
+  static const Decorations kNone;
+  const auto it = module_.decorations.find(id);
+  return it == module_.decorations.end() ? kNone : it->second;
+}
+
+void Lowering::unsupported(const std::string& what) { unsupported(what, emitter_.line()); }
+
+void Lowering::unsupported(const std::string& what, isa::Line line) { ++unsupported_[{what, {line.file, line.line}}]; }
+
+void Lowering::throw_if_unsupported() const {
+  if (unsupported_.empty()) return;
+  std::string message = fmt::format("{}: not supported:", program_.name);
+  for (const auto& [place, count] : unsupported_) {
+    const auto& [what, line] = place;
+    const std::string file = line.first < program_.files.size() ? program_.files[line.first] : program_.name;
+    message += fmt::format("\n  {}: {}", line.second != 0 ? fmt::format("{}:{}", file, line.second) : file, what);
+    if (count > 1) message += fmt::format(" ({} times)", count);
+  }
+  throw UnsupportedError(message);
+}
+
+const LoweringRow* find_lowering_row(spv::Op op) {
+  static const std::map<spv::Op, const LoweringRow*> kRows = [] {
+    std::map<spv::Op, const LoweringRow*> rows;
+    for (const auto family : {arithmetic_rows(), comparison_rows(), composite_rows(), memory_rows(), image_rows(), ray_tracing_rows()})
+      for (const LoweringRow& row : family) GLINT_CHECK(rows.emplace(row.op, &row).second, "two rows for op {}", uint32_t(row.op));
+    return rows;
+  }();
+  const auto it = kRows.find(op);
+  return it == kRows.end() ? nullptr : it->second;
+}
+
+VirtualProgram lower_to_virtual(const std::vector<uint32_t>& spirv, const std::string& name) {
+  const Module module = Module::parse(spirv, name);
+  return Lowering(module, name).run();
+}
+
+isa::Program lower(const std::vector<uint32_t>& spirv, const std::string& name, const BackendOptions& options) {
+  return assemble(lower_to_virtual(spirv, name), options);
+}
+
+}  // namespace glint::frontend

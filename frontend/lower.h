@@ -1,0 +1,138 @@
+// Lowers one SPIR-V module to a VirtualProgram: what the families of op-lowering functions share.
+//
+// Every SSA value is a list of scalar operands. Each SPIR-V opcode has one row in a table; a row names a
+// function that reads the operands of one instruction and emits code. Whatever is not supported is noted
+// and given the value 0, so that one run finds all of it; lower_to_virtual() then throws.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "frontend/lower_emitter.h"
+#include "frontend/lower_layout.h"
+#include "frontend/module.h"
+#include "frontend/virtual_program.h"
+
+namespace glint::frontend {
+
+// The lowering without the backend: for tests and for `--emit virtual`. UnsupportedError as lower().
+VirtualProgram lower_to_virtual(const std::vector<uint32_t>& spirv, const std::string& name);
+
+// Where a pointer points. Attribute pairs: hit attributes of two floats, which triangles keep in %hit.u and %hit.v.
+enum class Place : uint8_t { Local, Global, Constant, Builtin, Resource, AttributePair, Nowhere };
+
+struct Pointer {
+  Id type = 0;                       // of the pointee
+  Place place = Place::Nowhere;
+  Operand base = Operand::value(0);  // Local, Constant: 32-bit address; Global: 64-bit; Resource: array index
+  int64_t displacement = 0;          // bytes; Builtin, AttributePair: parts
+  uint32_t alignment = 16;           // bytes, of base
+  uint32_t component_stride = 0;     // bytes; not 0 in a column of a row-major matrix
+  MatrixLayout matrix;
+  Id variable = 0;                   // the root
+  bool is_constant = false;          // memory that no shader writes
+  bool is_volatile = false;          // two loads may differ
+  Operand part_index = Operand::value(0);  // Builtin, AttributePair: dynamic part index
+};
+
+inline Pointer nowhere(Id pointee) {
+  Pointer pointer;
+  pointer.type = pointee;
+  return pointer;
+}
+
+class Lowering;
+struct LoweringRow {
+  spv::Op op;
+  void (*lower)(Lowering&, const Instruction&, const LoweringRow&);
+  std::string_view name32;           // the ISA op for 32-bit parts, where the family uses one
+  std::string_view name64 = {};
+};
+// One table a family; find_lowering_row() searches them all.
+std::span<const LoweringRow> arithmetic_rows();
+std::span<const LoweringRow> comparison_rows();
+std::span<const LoweringRow> composite_rows();
+std::span<const LoweringRow> memory_rows();
+std::span<const LoweringRow> image_rows();
+std::span<const LoweringRow> ray_tracing_rows();
+const LoweringRow* find_lowering_row(spv::Op op);
+
+// The GLSL.std.450 instruction set: operands[0] is the import, operands[1] the function's number.
+void lower_glsl_std(Lowering& lowering, const Instruction& inst);
+
+class Lowering {
+ public:
+  Lowering(const Module& module, const std::string& name);
+  VirtualProgram run();
+
+  // --- Control: called block by block by lower_control()
+  void prologue();                                    // initialisers of variables
+  void instruction(const Instruction& inst);          // neither phi nor terminator
+  const Function& function() const { return *function_; }
+
+  // --- Values
+  const Operands& value(Id id);                       // constants appear on first use
+  Operand scalar(Id id) { return value(id).at(0); }
+  void set(Id id, Operands parts);
+  Pointer pointer(Id id);
+  void set_pointer(Id id, Pointer pointer) { pointers_[id] = pointer; }
+  Id type_of(Id id) const { return type_of_id_.at(id); }
+  const Instruction* definition(Id id) const;         // in the function; null for constants and variables
+
+  // --- Memory
+  Operands load(const Pointer& pointer);
+  void store(const Pointer& pointer, const Operands& parts);
+  Operands load_builtin(spv::BuiltIn builtin, Id type);
+  uint32_t local_offset(Id variable);                 // bytes in the frame; allotted on first use
+  uint32_t attribute_buffers();                       // bytes in the frame of the two buffers of 64 bytes
+  void note_store(Place place);                       // loads of that place are not reused any more
+  void note_payload(uint32_t bytes, bool incoming);
+
+  // --- Reports
+  void unsupported(const std::string& what);          // at the present line
+  void unsupported(const std::string& what, isa::Line line);
+
+  Emitter& emit() { return emitter_; }
+  Layout& layout() { return layout_; }
+  const Module& module() const { return module_; }
+  VirtualProgram& program() { return program_; }
+  isa::Stage stage() const { return program_.stage; }
+  const Decorations& decorations(Id id) const;
+
+ private:
+  void choose_entry_point();
+  void index_definitions();
+  void check_capabilities();
+  Operands constant_parts(Id id);
+  Pointer variable_pointer(const Variable& variable);
+  Pointer buffer_pointer(const Variable& variable, Pointer pointer);
+  void set_zero(const Instruction& inst);
+  void throw_if_unsupported() const;
+
+  const Module& module_;
+  Layout layout_;
+  VirtualProgram program_;
+  Emitter emitter_;
+  const Function* function_ = nullptr;
+  std::map<Id, Operands> values_;
+  std::map<Id, Pointer> pointers_;
+  std::map<Id, Id> type_of_id_;
+  std::map<Id, const Instruction*> definition_;
+  std::map<Id, Variable> local_variables_;            // Function storage
+  std::map<Id, uint32_t> frame_;                      // variable to byte offset
+  uint32_t attribute_buffers_ = 0xffff'ffff;
+  uint64_t local_version_ = 1, global_version_ = 1;   // of memory, for the reuse of loads
+  std::map<std::pair<std::string, std::pair<uint16_t, uint32_t>>, int> unsupported_;
+  std::set<Id> reported_types_;
+};
+
+// Lowers all reachable blocks of the entry function: phis, structured control flow, terminators.
+void lower_control(Lowering& lowering);
+
+// Removes instructions whose results nobody reads and that do nothing else.
+void remove_dead_code(VirtualProgram* program);
+
+}  // namespace glint::frontend

@@ -1,0 +1,93 @@
+// Writes virtual instructions block by block: picks destination registers, folds constants, reuses values.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <bit>
+#include <cstdint>
+#include <initializer_list>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "frontend/virtual_program.h"
+
+namespace glint::frontend {
+
+using Operand = VirtualOperand;
+using Operands = std::vector<Operand>;
+
+inline Operand constant_f32(float value) { return Operand::value(std::bit_cast<uint32_t>(value)); }
+bool is_constant(const Operand& operand, uint64_t bits);
+bool same(const Operand& a, const Operand& b);
+
+// The result of a pure op over constants or by an identity (x + 0, x * 8 = x << 3, ...) that gives the same
+// bits for every x; `folded` false when no rule applies. A predicate result may be the constant 0 or 1.
+struct Folded {
+  bool folded = false;
+  Operand operand;
+};
+Folded fold(std::string_view op, const Operands& sources);
+
+class Emitter {
+ public:
+  // Values computed before, which may be used again. Valid in the blocks that the computing block dominates.
+  using Known = std::map<std::vector<uint64_t>, Operands>;
+
+  explicit Emitter(VirtualProgram& program) : program_(program) {}
+
+  // --- Blocks. place() puts a block next in the layout; an open block before it falls into it.
+  BlockId new_block(std::string name);
+  void place(BlockId block);
+  BlockId here() const { return here_; }
+  bool is_open() const { return open_; }
+  void set_line(isa::Line line) {
+    if (line.line != 0) line_ = line;
+  }
+  isa::Line line() const { return line_; }
+  // Renumbers the blocks into layout order, drops those never placed and branches to the next block.
+  void finish();
+
+  // --- Values. The destination's class follows from the op's row.
+  Operand value(std::string_view op, Operands sources);
+  // As value(), for ops whose result changes from one execution to the next; never folded or reused.
+  Operand fresh(std::string_view op, Operands sources);
+  // Loads `count` parts; reused while `version` is the same (0: never reused).
+  Operands load(std::string_view op, const Operand& base, int32_t displacement, int count, uint64_t version);
+  Operand in_register(const Operand& operand, RegisterClass c);  // as a register, moved there when it is not one
+  void copy(VirtualRegister to, RegisterClass c, const Operand& from);
+
+  // --- Effects and control. A guard is a Predicate register.
+  VirtualInst& effect(std::string_view op, Operands operands, int32_t displacement = 0);
+  void marker(VirtualInst::Kind kind);
+  void push_reconvergence(BlockId at);                                // ssy
+  void branch(BlockId to);                                            // ends the block
+  void branch_if(const Operand& predicate, bool when, BlockId to);    // the block goes on after it
+  void end(std::string_view op);                                      // exit, ret, rt.ignore, rt.terminate
+
+  // --- Shorthand for the commonest ops.
+  Operand add(Operand a, Operand b) { return value("add.rn.f32", {a, b}); }
+  Operand sub(Operand a, Operand b) { return value("sub.rn.f32", {a, b}); }
+  Operand mul(Operand a, Operand b) { return value("mul.rn.f32", {a, b}); }
+  Operand div(Operand a, Operand b) { return value("div.rn.f32", {a, b}); }
+  Operand fma(Operand a, Operand b, Operand c) { return value("fma.rn.f32", {a, b, c}); }
+  Operand select(Operand predicate, Operand a, Operand b);  // of any class, by the class of a and b
+  RegisterClass class_of(const Operand& operand, RegisterClass of_constant = RegisterClass::B32) const;
+  Operand select_bool(Operand predicate, Operand a, Operand b);
+
+  const Known& known() const { return known_; }
+  void set_known(Known known) { known_ = std::move(known); }
+  void forget() { known_.clear(); }
+
+ private:
+  VirtualInst& append(std::string_view op, Operands operands, int32_t displacement);
+  void add_successor(BlockId to);
+
+  VirtualProgram& program_;
+  std::vector<BlockId> layout_;
+  BlockId here_ = kNoBlock;
+  bool open_ = false;
+  isa::Line line_;
+  Known known_;
+};
+
+}  // namespace glint::frontend

@@ -1,0 +1,139 @@
+// Loads and stores of whole values, as few vector accesses as their alignment allows.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+
+#include "frontend/lower.h"
+
+namespace glint::frontend {
+namespace {
+
+std::string_view space_of(Place place) {
+  return place == Place::Local ? "local" : place == Place::Constant ? "const" : "global";
+}
+
+// Consecutive 32-bit leaves from `first` that one access of 4, 2 or 1 words can move. `address` is what is
+// known of the first leaf's address: a multiple of the base's alignment plus this displacement.
+int words_together(const std::vector<Leaf>& leaves, size_t first, int64_t displacement, uint32_t alignment) {
+  for (int words : {4, 2}) {
+    if (first + words > leaves.size() || alignment < 4u * words) continue;
+    const int64_t at = displacement + leaves[first].offset;
+    bool fits = at % (4 * words) == 0;
+    for (int i = 0; fits && i < words; ++i)
+      fits = class_of(leaves[first + i].part) != RegisterClass::B64 && leaves[first + i].offset == leaves[first].offset + 4 * i;
+    if (fits) return words;
+  }
+  return 1;
+}
+
+// A displacement that the instruction's 32-bit field cannot hold goes into the base.
+Pointer in_reach(Lowering& l, Pointer p) {
+  constexpr int64_t kReach = int64_t(1) << 30;
+  if (p.displacement > -kReach && p.displacement < kReach) return p;
+  if (p.place == Place::Global) p.base = l.emit().value("add.u64", {p.base, Operand::value(uint64_t(p.displacement))});
+  else p.base = l.emit().value("add.u32", {p.base, Operand::value(uint32_t(p.displacement))});
+  p.displacement = 0;
+  p.alignment = 4;
+  return p;
+}
+
+Operands slice(Lowering& l, const Pointer& p, const Operands& parts) {
+  const uint32_t count = l.layout().num_parts(p.type);
+  Operands result;
+  for (uint32_t i = 0; i < count; ++i) {
+    Operand part = parts.at(size_t(p.displacement) + i);
+    if (!is_constant(p.part_index, 0))
+      for (uint32_t at = 1; at < parts.size(); ++at)
+        part = l.emit().select(l.emit().value("setp.eq.u32", {p.part_index, Operand::value(at)}), parts[at], part);
+    result.push_back(part);
+  }
+  return result;
+}
+
+Operands load_resource(Lowering& l, const Pointer& p) {
+  const Decorations& d = l.decorations(p.variable);
+  const int32_t at = int32_t(d.set.value_or(0) * isa::kSetBytes + d.binding.value_or(0) * isa::kDescriptorBytes);
+  if (l.module().type(p.type).kind == Type::Kind::AccelerationStructure) {
+    if (!is_constant(p.base, 0)) l.unsupported("arrays of acceleration structures");
+    return l.emit().load("ld.const.b64", Operand::value(0), at, 1, 1);
+  }
+  // The images of an array have consecutive handles.
+  const Operand first = l.emit().load("ld.const.b32", Operand::value(0), at, 1, 1)[0];
+  return {l.emit().value("add.u32", {first, p.base})};
+}
+
+}  // namespace
+
+Operands Lowering::load(const Pointer& pointer) {
+  switch (pointer.place) {
+    case Place::Nowhere: return Operands(layout_.num_parts(pointer.type), Operand::value(0));
+    case Place::Builtin: {
+      const Variable& variable = module_.variables.at(pointer.variable);
+      return slice(*this, pointer, load_builtin(*decorations(variable.id).builtin, module_.type(variable.type).element));
+    }
+    case Place::AttributePair:
+      return slice(*this, pointer, {Operand::of(isa::Special::HitU), Operand::of(isa::Special::HitV)});
+    case Place::Resource: return load_resource(*this, pointer);
+    case Place::Local: case Place::Global: case Place::Constant: break;
+  }
+  const Pointer p = in_reach(*this, pointer);
+  const std::vector<Leaf> leaves = layout_.leaves(p.type, p.matrix, p.component_stride);
+  const uint64_t version = p.is_volatile ? 0 : p.is_constant ? 1 : p.place == Place::Local ? local_version_ : global_version_;
+  Operands result;
+  for (size_t i = 0; i < leaves.size();) {
+    const bool wide = class_of(leaves[i].part) == RegisterClass::B64;
+    const int words = wide ? 1 : words_together(leaves, i, p.displacement, p.alignment);
+    const std::string_view shape = wide ? "b64" : words == 4 ? "v4.b32" : words == 2 ? "v2.b32" : "b32";
+    const Operands parts = emitter_.load(fmt::format("ld.{}.{}", space_of(p.place), shape), p.base,
+                                         int32_t(p.displacement + leaves[i].offset), words, version);
+    for (int w = 0; w < words; ++w) {
+      const bool is_bool = leaves[i + w].part == Part::Bool;
+      result.push_back(is_bool ? emitter_.value("setp.ne.u32", {parts[w], Operand::value(0)}) : parts[w]);
+    }
+    i += size_t(words);
+  }
+  return result;
+}
+
+void Lowering::store(const Pointer& pointer, const Operands& parts) {
+  if (pointer.place == Place::Nowhere) return;
+  if (pointer.place != Place::Local && pointer.place != Place::Global) return unsupported("OpStore to this kind of variable");
+  const Pointer p = in_reach(*this, pointer);
+  const std::vector<Leaf> leaves = layout_.leaves(p.type, p.matrix, p.component_stride);
+  for (size_t i = 0; i < leaves.size();) {
+    const bool wide = class_of(leaves[i].part) == RegisterClass::B64;
+    const int words = wide ? 1 : words_together(leaves, i, p.displacement, p.alignment);
+    const std::string_view shape = wide ? "b64" : words == 4 ? "v4.b32" : words == 2 ? "v2.b32" : "b32";
+    Operands operands{p.base};
+    for (int w = 0; w < words; ++w) {
+      const Operand& part = parts.at(i + size_t(w));
+      const bool is_bool = leaves[i + w].part == Part::Bool;
+      operands.push_back(is_bool ? emitter_.value("selp.b32", {Operand::value(1), Operand::value(0), part}) : part);
+    }
+    emitter_.effect(fmt::format("st.{}.{}", space_of(p.place), shape), std::move(operands), int32_t(p.displacement + leaves[i].offset));
+    i += size_t(words);
+  }
+  note_store(p.place);
+}
+
+void Lowering::note_store(Place place) { ++(place == Place::Local ? local_version_ : global_version_); }
+
+uint32_t Lowering::local_offset(Id variable) {
+  if (const auto it = frame_.find(variable); it != frame_.end()) return it->second;
+  constexpr uint32_t kAlign = 16;  // so that vectors of four words can be moved at once
+  const uint32_t at = (program_.local_bytes + kAlign - 1) / kAlign * kAlign;
+  program_.local_bytes = at + layout_.size(module_.type(type_of(variable)).element);
+  return frame_[variable] = at;
+}
+
+uint32_t Lowering::attribute_buffers() {
+  if (attribute_buffers_ != 0xffff'ffff) return attribute_buffers_;
+  constexpr uint32_t kTwoBuffers = 2 * 64;  // docs/abi.md, Calls and rays
+  attribute_buffers_ = (program_.local_bytes + 15) / 16 * 16;
+  program_.local_bytes = attribute_buffers_ + kTwoBuffers;
+  return attribute_buffers_;
+}
+
+}  // namespace glint::frontend

@@ -1,0 +1,110 @@
+// A parsed SPIR-V module: types with layout, constants, variables with decorations, blocks with source lines.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <spirv/unified1/spirv.hpp11>
+#include <string>
+#include <vector>
+
+#include "isa/program.h"
+
+namespace glint::frontend {
+
+using Id = uint32_t;  // a SPIR-V result id; 0 is none
+
+struct Type {
+  enum class Kind : uint8_t {
+    Void, Bool, Int, Float, Vector, Matrix, Array, RuntimeArray, Struct, Pointer, Image, SampledImage,
+    AccelerationStructure, Function, Other
+  } kind = Kind::Other;
+  uint32_t width = 0;          // Int, Float: bits
+  bool is_signed = false;      // Int
+  Id element = 0;              // Vector, Matrix (column), arrays, Pointer (pointee), SampledImage (image), Image (texel)
+  uint32_t count = 0;          // Vector, Matrix (columns), Array: elements
+  uint32_t array_stride = 0;   // bytes; 0 = not decorated
+  spv::StorageClass storage{}; // Pointer
+  spv::Dim dim{};              // Image
+  bool is_storage_image = false;
+  bool is_block = false;       // Struct: decorated Block or BufferBlock
+  struct Member {
+    Id type = 0;
+    std::optional<uint32_t> offset;  // bytes
+    uint32_t matrix_stride = 0;      // bytes
+    bool row_major = false;
+    std::optional<spv::BuiltIn> builtin;
+    std::string name;
+  };
+  std::vector<Member> members;  // Struct
+  std::string name;
+  spv::Op op{};                 // the declaration's opcode, for messages
+};
+
+struct Instruction {
+  spv::Op op{};
+  Id type = 0, result = 0;
+  std::vector<uint32_t> operands;  // the words after type and result
+  isa::Line line;
+};
+
+struct Block {
+  Id label = 0;
+  std::vector<Instruction> code;   // phis first; the last one is the terminator
+  spv::Op merge = spv::Op::OpNop;  // OpSelectionMerge, OpLoopMerge or OpNop
+  Id merge_block = 0, continue_block = 0;
+  isa::Line merge_line;
+
+  const Instruction& terminator() const { return code.back(); }
+  std::vector<Id> successors() const;  // in the terminator's order, duplicates kept
+};
+
+struct Function {
+  Id id = 0;
+  std::vector<Block> blocks;
+};
+
+struct Variable {
+  Id id = 0, type = 0;  // of the pointer
+  spv::StorageClass storage{};
+  Id initializer = 0;
+  isa::Line line;
+};
+
+struct Decorations {
+  std::optional<uint32_t> set, binding;
+  std::optional<spv::BuiltIn> builtin;
+  bool is_volatile = false;
+  bool is_coherent = false;
+};
+
+struct EntryPoint {
+  spv::ExecutionModel model{};
+  Id function = 0;
+  std::string name;
+  std::array<uint32_t, 3> local_size{1, 1, 1};
+};
+
+struct Module {
+  Id bound = 0;
+  std::vector<std::pair<spv::Capability, isa::Line>> capabilities;
+  std::map<Id, Type> types;
+  std::map<Id, Instruction> constants;  // OpConstant*, OpSpecConstant* (unfrozen), OpUndef at module level
+  std::map<Id, Variable> variables;     // module level
+  std::map<Id, Decorations> decorations;
+  std::map<Id, std::string> names;
+  std::map<Id, std::string> imports;    // OpExtInstImport
+  std::vector<EntryPoint> entry_points;
+  std::vector<Function> functions;
+  std::vector<std::string> files;       // isa::Line::file indexes it
+
+  // Throws UserError when the words are not a well-formed module. The words should have been validated.
+  static Module parse(const std::vector<uint32_t>& words, const std::string& name);
+
+  const Type& type(Id id) const;
+  std::optional<uint32_t> constant_u32(Id id) const;  // of a 32-bit integer constant
+  std::string name_of(Id id) const;                   // debug name, or "%id"
+  const Function* function(Id id) const;
+};
+
+}  // namespace glint::frontend

@@ -1,0 +1,80 @@
+// Reflection from the parsed module: descriptor kinds by storage class and type.
+// SPDX-License-Identifier: Apache-2.0
+#include "frontend/reflection.h"
+
+#include <algorithm>
+
+#include "base/diagnostics.h"
+#include "frontend/compile.h"
+#include "frontend/lower_layout.h"
+#include "frontend/module.h"
+
+namespace glint::frontend {
+namespace {
+
+using Storage = spv::StorageClass;
+
+BindingKind kind_of(const Type& type, Storage storage) {
+  switch (type.kind) {
+    case Type::Kind::Struct: return storage == Storage::Uniform ? BindingKind::UniformBuffer : BindingKind::StorageBuffer;
+    case Type::Kind::SampledImage: return BindingKind::SampledImage;
+    case Type::Kind::AccelerationStructure: return BindingKind::AccelerationStructure;
+    case Type::Kind::Image: return type.is_storage_image ? BindingKind::StorageImage : BindingKind::Other;
+    default: return BindingKind::Other;
+  }
+}
+
+Binding binding_of(const Module& module, const Variable& variable, const Decorations& d) {
+  Binding binding{d.set.value_or(0), d.binding.value_or(0), BindingKind::Other, "", 1};
+  Id type = module.type(variable.type).element;
+  if (module.type(type).kind == Type::Kind::Array || module.type(type).kind == Type::Kind::RuntimeArray) {
+    binding.count = module.type(type).count;  // 0 for a runtime array
+    type = module.type(type).element;
+  }
+  binding.kind = kind_of(module.type(type), variable.storage);
+  const auto name = module.names.find(variable.id);
+  binding.name = name != module.names.end() && !name->second.empty() ? name->second : module.type(type).name;
+  return binding;
+}
+
+isa::Stage stage_of(const Module& module, const std::string& name) {
+  if (module.entry_points.empty()) throw UserError({name, 0, 0}, "the module has no entry point");
+  switch (int(module.entry_points[0].model)) {
+    case int(spv::ExecutionModel::RayGenerationKHR): return isa::Stage::RayGeneration;
+    case int(spv::ExecutionModel::IntersectionKHR): return isa::Stage::Intersection;
+    case int(spv::ExecutionModel::AnyHitKHR): return isa::Stage::AnyHit;
+    case int(spv::ExecutionModel::ClosestHitKHR): return isa::Stage::ClosestHit;
+    case int(spv::ExecutionModel::MissKHR): return isa::Stage::Miss;
+    case int(spv::ExecutionModel::CallableKHR): return isa::Stage::Callable;
+    default: return isa::Stage::Compute;
+  }
+}
+
+}  // namespace
+
+Reflection reflect(const std::vector<uint32_t>& spirv, const std::string& name) {
+  const Module module = Module::parse(spirv, name);
+  Layout layout(module);
+  Reflection result;
+  result.stage = stage_of(module, name);
+  result.entry_point = module.entry_points[0].name;
+  for (const auto& [id, variable] : module.variables) {
+    const uint32_t bytes = layout.size(module.type(variable.type).element);
+    switch (variable.storage) {
+      case Storage::IncomingRayPayloadKHR: result.incoming_payload_bytes = std::max(result.incoming_payload_bytes, bytes); break;
+      case Storage::RayPayloadKHR: result.largest_payload_bytes = std::max(result.largest_payload_bytes, bytes); break;
+      case Storage::HitAttributeKHR: result.attribute_bytes = std::max(result.attribute_bytes, bytes); break;
+      case Storage::PushConstant: result.push_constant_bytes = bytes; break;
+      default: {
+        const auto d = module.decorations.find(id);
+        if (d != module.decorations.end() && d->second.binding) result.bindings.push_back(binding_of(module, variable, d->second));
+        break;
+      }
+    }
+  }
+  std::sort(result.bindings.begin(), result.bindings.end(),
+            [](const Binding& a, const Binding& b) { return std::pair(a.set, a.binding) < std::pair(b.set, b.binding); });
+  return result;
+}
+
+}  // namespace glint::frontend

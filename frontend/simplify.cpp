@@ -1,0 +1,90 @@
+// Pass list R1 of SPIRV-Tools: everything inlined, scalarised and in SSA form, nothing numerically changed.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <spirv-tools/optimizer.hpp>
+#include <spirv/unified1/spirv.hpp11>
+
+#include "frontend/compile.h"
+#include "frontend/spirv.h"
+
+namespace glint::frontend {
+namespace {
+
+// Left out on purpose: the passes behind -O that merge loads of volatile built-ins across
+// reportIntersectionEXT (redundancy elimination), contract a*b+c to Fma (simplify-instructions), fold sin and
+// cos with the host's libm (ccp) or remove divergence that hardware has (if-conversion).
+const std::vector<std::string>& pass_list() {
+  static const std::vector<std::string> kPasses = {
+      "--strip-nonsemantic",  // imports such as NonSemantic.DebugPrintf make later passes skip the module
+      "--freeze-spec-const", "--fold-spec-const-op-composite", "--wrap-opkill", "--eliminate-dead-branches",
+      "--merge-return", "--inline-entry-points-exhaustive", "--eliminate-dead-functions",
+      "--eliminate-dead-code-aggressive", "--private-to-local", "--eliminate-local-single-block",
+      "--eliminate-local-single-store", "--eliminate-dead-code-aggressive", "--scalar-replacement=100",
+      "--convert-local-access-chains", "--eliminate-local-single-block", "--eliminate-local-single-store",
+      "--eliminate-dead-code-aggressive", "--ssa-rewrite", "--eliminate-dead-code-aggressive", "--vector-dce",
+      "--eliminate-dead-inserts", "--eliminate-dead-branches", "--cfg-cleanup", "--merge-blocks",
+      "--eliminate-dead-code-aggressive", "--eliminate-dead-const"};
+  return kPasses;
+}
+
+constexpr size_t kHeaderWords = 5;  // SPIR-V specification, 2.3 Physical Layout
+
+// Many passes skip a whole module that declares an extension they do not list, and say nothing. The
+// capability that the extension allows stays, so the declaration is only needed again for validation.
+std::vector<uint32_t> without_extensions(const std::vector<uint32_t>& words, std::vector<uint32_t>* removed) {
+  std::vector<uint32_t> kept(words.begin(), words.begin() + kHeaderWords);
+  for (size_t i = kHeaderWords; i < words.size();) {
+    const size_t length = words[i] >> 16;
+    const bool is_extension = spv::Op(words[i] & 0xffff) == spv::Op::OpExtension;
+    std::vector<uint32_t>& to = is_extension ? *removed : kept;
+    to.insert(to.end(), words.begin() + long(i), words.begin() + long(i + length));
+    i += length;
+  }
+  return kept;
+}
+
+// Puts the extension declarations back where the logical layout wants them: after the capabilities.
+std::vector<uint32_t> with_extensions(std::vector<uint32_t> words, const std::vector<uint32_t>& extensions) {
+  size_t at = kHeaderWords;
+  while (at < words.size() && spv::Op(words[at] & 0xffff) == spv::Op::OpCapability) at += words[at] >> 16;
+  words.insert(words.begin() + long(at), extensions.begin(), extensions.end());
+  return words;
+}
+
+void warn(const std::string& name, const std::string& what) {
+  fmt::print(stderr, "{}: warning: {}\n", name, what);
+}
+
+}  // namespace
+
+std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& name) {
+  const std::string before = spirv.size() < kHeaderWords ? "too short to hold a header\n" : validate_spirv(spirv);
+  if (!before.empty()) throw UserError({name, 0, 0}, "invalid SPIR-V\n" + before);
+
+  std::vector<uint32_t> extensions;
+  const std::vector<uint32_t> input = without_extensions(spirv, &extensions);
+  std::string messages;
+  spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_3);
+  optimizer.SetMessageConsumer([&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {
+    if (level <= SPV_MSG_ERROR) messages += fmt::format("{}\n", text);
+  });
+  if (!optimizer.RegisterPassesFromFlags(pass_list())) throw Error(Exit::Failure, "SPIRV-Tools lacks a pass of R1: " + messages);
+  spvtools::OptimizerOptions options;
+  options.set_run_validator(false);  // done here, with the extensions in place
+  std::vector<uint32_t> output;
+  if (!optimizer.Run(input.data(), input.size(), &output, options)) {
+    warn(name, "the SPIR-V optimiser failed, going on with the module as it was: " + messages);
+    return spirv;
+  }
+  output = with_extensions(std::move(output), extensions);
+  const std::string after = validate_spirv(output);
+  if (!after.empty()) {
+    warn(name, "the optimised SPIR-V is invalid, going on with the module as it was: " + after);
+    return spirv;
+  }
+  return output;
+}
+
+}  // namespace glint::frontend
