@@ -63,6 +63,7 @@ class CoreCell final : public Cell {
   // Gives the cycles up to `end` to their reasons: once, at the end of the run. `end` >= active_until().
   void finish(Cycle end);
 
+  Executor& executor() { return executor_; }  // to listen to what retires
   const CoreStats& stats() const { return stats_; }
   // Warp instructions and lanes by op, indexed as isa::op_table().
   const std::vector<uint64_t>& op_counts() const { return op_counts_; }

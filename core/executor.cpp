@@ -110,8 +110,11 @@ Issued Executor::execute(WarpContext& warp, Cycle now) {
       issued.lanes = warp.regs.exec;
       break;
   }
-  if (ok) ++warp.instructions;
   issued.finished = warp.simt.finished();
+  if (ok) {
+    ++warp.instructions;
+    retired.fire([&] { return Retired{warp, issued}; });
+  }
   return issued;
 }
 

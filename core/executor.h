@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "base/probe.h"
 #include "core/image.h"
 #include "core/warp_context.h"
 #include "isa/op_row.h"
@@ -32,8 +33,16 @@ struct Issued {
   bool finished = false;   // the warp has ended
 };
 
+// One instruction that a warp has executed, for whoever listens: co-simulation, traces.
+struct Retired {
+  const WarpContext& warp;  // its registers after the instruction
+  const Issued& issued;
+};
+
 class Executor {
  public:
+  Probe<Retired> retired;
+
   explicit Executor(const World& world);
 
   // Puts warp `warp_index` of the launch into `warp`, at the entry of the ray generation (or compute) shader.

@@ -32,9 +32,11 @@ void answer_rays(Executor& executor, WarpContext& warp, RayCounts& counts) {
 }
 
 FunctionalCounts run_functional(const core::World& world, uint64_t instruction_budget,
-                                const std::function<void(uint64_t, uint64_t)>& progress) {
+                                const std::function<void(uint64_t, uint64_t)>& progress,
+                                const Probe<core::Retired>::Listener& listener) {
   FunctionalCounts counts;
   Executor executor(world);
+  if (listener) executor.retired.listen(listener);
   WarpContext warp;
   const uint32_t num_warps = executor.num_warps();
   for (uint32_t index = 0; index < num_warps; ++index) {

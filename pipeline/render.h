@@ -35,7 +35,6 @@ struct RenderJob {
 // Counted by either machine.
 struct RayCounts {
   uint64_t rays = 0, nodes = 0, box_tests = 0, triangle_tests = 0;
-  uint64_t shader_calls[size_t(isa::Stage::Compute) + 1] = {};  // lanes, by stage
 };
 
 // What the acceleration structures came to.

@@ -1,0 +1,91 @@
+// Building the GPU and running a launch on it.
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/timing_machine.h"
+
+#include <fmt/format.h>
+
+#include "pipeline/functional_machine.h"
+
+namespace glint::pipeline {
+namespace {
+
+// Checked before anything is built from them.
+const GpuParams& checked(const GpuParams& params, const core::World& world) {
+  Diagnostics diagnostics;
+  core::check(params.core, world.image->num_registers, diagnostics);
+  mem::check(params.memory, diagnostics);
+  diagnostics.throw_if_errors();
+  return params;
+}
+
+Address allocate_physical(const core::World& world, const std::string& name, uint64_t bytes) {
+  return world.memory->physical(world.memory->allocate(name, bytes));
+}
+
+}  // namespace
+
+TimingMachine::TimingMachine(const GpuParams& params, const core::World& world, bool no_skip)
+    : params_(checked(params, world)),
+      world_(world),
+      memory_(params_.memory, params_.cores, params_.clock_mhz, &root_),
+      engine_({memory_.shortest_latency(), no_skip}) {
+  for (uint32_t i = 0; i < params_.cores; ++i) {
+    const std::string name = fmt::format("core[{}]", i);
+    rt_groups_.push_back(std::make_unique<stats::Group>(&root_, fmt::format("rt_unit[{}]", i)));
+    rt::RtUnit::Context rt{*world.memory, memory_.l1(i), rt_groups_.back().get(), 0};
+    if (params_.rt.result_store)
+      rt.results = allocate_physical(world, name + " ray results", uint64_t(params_.rt.warps) * kLanes * mem::kSectorBytes);
+    rt_units_.push_back(std::make_unique<rt::RtUnit>(params_.rt, rt));
+    const Address local = allocate_physical(world, name + " local memory", core::CoreCell::local_bytes(params_.core, world));
+    cores_.push_back(std::make_unique<core::CoreCell>(
+        params_.core, core::CoreCell::Context{world, memory_.l1(i), *rt_units_.back(), local, &root_, name, no_skip}));
+    engine_.add(*cores_.back());
+  }
+  for (Cell* cell : memory_.cells()) engine_.add(*cell);
+  for (ChannelBase* channel : memory_.channels()) engine_.add(*channel);
+}
+
+Cycle TimingMachine::run(const std::function<void(uint64_t, uint64_t)>& progress) {
+  std::vector<core::CoreCell*> cores;
+  for (auto& core : cores_) cores.push_back(core.get());
+  const uint32_t num_warps = core::Executor(world_).num_warps();
+  core::Dispatcher dispatcher(params_.core, num_warps, cores);
+  const core::Fault* fault = nullptr;
+  engine_.run([&](Cycle now) {
+    for (const auto& core : cores_)
+      if (!fault && core->fault()) fault = &*core->fault();
+    if (fault) return EngineLoop::Next::Stop;
+    dispatcher.dispatch(now);
+    if (progress) progress(dispatcher.num_dispatched(), num_warps);
+    return dispatcher.done() ? EngineLoop::Next::NothingMore : EngineLoop::Next::Continue;
+  });
+  if (fault) throw Error(Exit::Fault, fault->to_string());
+  Cycle end = 0;
+  for (const auto& core : cores_) end = std::max(end, core->active_until());
+  for (auto& core : cores_) core->finish(end);
+  for (auto& unit : rt_units_) unit->tick(end);
+  memory_.finish(end);
+  memory_.check_drained();
+  root_.cycles += end;
+  return end;
+}
+
+void TimingMachine::collect(RenderResult& result) const {
+  for (const auto& core : cores_) {
+    const core::CoreStats& stats = core->stats();
+    for (size_t c = 0; c < size_t(isa::Class::Count); ++c) {
+      result.by_class[c].instructions += stats.by_class.count(isa::Class(c));
+      result.by_class[c].lanes += stats.lanes_by_class.count(isa::Class(c));
+      result.by_class[c].latency += stats.latency.count(isa::Class(c));
+    }
+  }
+  for (const auto& unit : rt_units_) {
+    const rt::RtStats& stats = unit->stats();
+    result.rays.rays += stats.rays.value();
+    result.rays.nodes += stats.nodes.value();
+    result.rays.box_tests += stats.box_tests.value();
+    result.rays.triangle_tests += stats.triangle_tests.value();
+  }
+}
+
+}  // namespace glint::pipeline

@@ -1,0 +1,53 @@
+// The timing machine: cores with their L1 and RT unit, and the memory system, run cycle by cycle over one launch.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "base/stats.h"
+#include "core/core_cell.h"
+#include "core/sm_dispatcher.h"
+#include "memsys/memory_system.h"
+#include "pipeline/engine_loop.h"
+#include "pipeline/render.h"
+#include "rtunit/rt_unit.h"
+
+namespace glint::pipeline {
+
+// Builds the whole GPU for one launch. `world` outlives it.
+class TimingMachine {
+ public:
+  // UserError lists every parameter that cannot be.
+  TimingMachine(const GpuParams& params, const core::World& world, bool no_skip);
+
+  // Runs the launch to its end; returns its cycles. Errors as render().
+  Cycle run(const std::function<void(uint64_t done, uint64_t total)>& progress);
+
+  // Sums over the cores for the caller's result.
+  void collect(RenderResult& result) const;
+
+  const stats::Group& root() const { return root_; }
+  const core::CoreCell& core(uint32_t index) const { return *cores_[index]; }
+  core::CoreCell& core(uint32_t index) { return *cores_[index]; }
+  const rt::RtUnit& rt_unit(uint32_t index) const { return *rt_units_[index]; }
+  const mem::MemorySystem& memory() const { return memory_; }
+  uint32_t num_cores() const { return uint32_t(cores_.size()); }
+
+ private:
+  struct Root : stats::Group {
+    Root() : Group(nullptr, "gpu") {}
+    stats::Counter cycles{this, "cycles", "cycle", "From the launch until nothing was left to do."};
+  };
+
+  const GpuParams params_;
+  const core::World& world_;
+  Root root_;
+  mem::MemorySystem memory_;
+  std::vector<std::unique_ptr<stats::Group>> rt_groups_;
+  std::vector<std::unique_ptr<rt::RtUnit>> rt_units_;
+  std::vector<std::unique_ptr<core::CoreCell>> cores_;
+  EngineLoop engine_;
+};
+
+}  // namespace glint::pipeline
