@@ -1,0 +1,100 @@
+// Triangle meshes under construction: transforms, smooth normals, and pieces appended into one model.
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace glint::scenes {
+namespace {
+
+constexpr uint32_t kSphereSlices = 32;  // LumiBench's application, sphere tessellation
+constexpr uint32_t kSphereStacks = 16;
+
+}  // namespace
+
+Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+float length(const Vec3& v) { return std::sqrt(dot(v, v)); }
+
+Vec3 normalized(const Vec3& v) {
+  const float l = length(v);
+  return l > 0 ? Vec3{v[0] / l, v[1] / l, v[2] / l} : v;
+}
+
+float sine(double radians) { return float(std::sin(radians)); }
+float cosine(double radians) { return float(std::cos(radians)); }
+
+void place(Model& model, const Placement& placement) {
+  const double angle = double(placement.rotation_y) * std::numbers::pi / 180;
+  const float c = cosine(angle), s = sine(angle);
+  const auto rotate = [c, s](const Vec3& v) -> Vec3 { return {c * v[0] + s * v[2], v[1], c * v[2] - s * v[0]}; };
+  for (Vertex& vertex : model.vertices) {
+    vertex.position = rotate(vertex.position) * placement.scale + placement.translation;
+    vertex.normal = rotate(vertex.normal) * (1 / placement.scale);
+  }
+}
+
+void compute_smooth_normals(Model& model) {
+  for (Vertex& vertex : model.vertices) vertex.normal = {};
+  for (size_t i = 0; i + 2 < model.indices.size(); i += 3) {
+    Vertex* corner[3];
+    for (size_t k = 0; k < 3; ++k) corner[k] = &model.vertices[model.indices[i + k]];
+    const Vec3 normal = normalized(
+        cross(corner[1]->position - corner[0]->position, corner[2]->position - corner[0]->position));
+    for (Vertex* vertex : corner) vertex->normal = vertex->normal + normal;
+  }
+  for (Vertex& vertex : model.vertices) vertex.normal = normalized(vertex.normal);
+}
+
+Bounds bounds(const Model& model) {
+  constexpr float inf = std::numeric_limits<float>::infinity();
+  Bounds box{{inf, inf, inf}, {-inf, -inf, -inf}};
+  for (const Vertex& vertex : model.vertices)
+    for (size_t axis = 0; axis < 3; ++axis) {
+      box.lower[axis] = std::min(box.lower[axis], vertex.position[axis]);
+      box.upper[axis] = std::max(box.upper[axis], vertex.position[axis]);
+    }
+  return box;
+}
+
+uint32_t add_vertex(Model& model, const Vec3& position, const Vec3& normal, int32_t material,
+                    const Vec2& texture_coordinate) {
+  model.vertices.push_back({position, normal, texture_coordinate, material});
+  return uint32_t(model.vertices.size() - 1);
+}
+
+void add_triangle(Model& model, uint32_t a, uint32_t b, uint32_t c) {
+  model.indices.insert(model.indices.end(), {a, b, c});
+}
+
+Model make_sphere(std::string name, const Vec3& center, float radius, int32_t material) {
+  Model model;
+  model.name = std::move(name);
+  model.center = center;
+  model.radius = radius;
+  model.vertices.reserve((kSphereStacks + 1) * (kSphereSlices + 1));
+  model.indices.reserve(kSphereStacks * kSphereSlices * 6);
+  for (uint32_t j = 0; j <= kSphereStacks; ++j) {
+    const double polar = std::numbers::pi * j / kSphereStacks;
+    for (uint32_t i = 0; i <= kSphereSlices; ++i) {
+      const double azimuth = 2 * std::numbers::pi * i / kSphereSlices;
+      const Vec3 normal{sine(polar) * sine(azimuth), cosine(polar), sine(polar) * cosine(azimuth)};
+      add_vertex(model, center + normal * radius, normal, material,
+                 {float(i) / kSphereSlices, float(j) / kSphereStacks});
+    }
+  }
+  for (uint32_t j = 0; j < kSphereStacks; ++j)
+    for (uint32_t i = 0; i < kSphereSlices; ++i) {
+      const uint32_t a = j * (kSphereSlices + 1) + i, b = a + kSphereSlices + 1;
+      add_triangle(model, a, b, b + 1);
+      add_triangle(model, a, b + 1, a + 1);
+    }
+  return model;
+}
+
+}  // namespace glint::scenes

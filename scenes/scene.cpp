@@ -1,0 +1,134 @@
+// Scenes by name, and what can be counted in one.
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/scene.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cctype>
+
+#include "base/diagnostics.h"
+#include "scenes/builders.h"
+
+namespace glint::scenes {
+namespace {
+
+struct Entry {
+  const char* name;
+  const char* doc;
+  Scene (*build)(const LoadOptions&);
+};
+
+constexpr Entry kScenes[] = {
+    {"WKND", "487 procedural spheres under a sky, complete.", build_weekend},
+    {"SHIP", "A schooner with thin masts and rigging, one structure; built-in form without assets.", build_ship},
+    {"BUNNY", "A bunny in a Cornell box; stand-in without assets.", build_bunny},
+    {"REF", "A statue and a glass sphere in a box with mirror walls; stand-in without assets.", build_mirror_box},
+    {"CORNELL", "The Cornell box alone, for tests; not a LumiBench scene.", build_cornell},
+};
+
+// FNV-1a widened to 64-bit words and finished as in MurmurHash3, fed with values, never with struct bytes:
+// neither padding nor byte order reaches it.
+class ContentHash {
+ public:
+  void add(uint64_t word) { state_ = (state_ ^ word) * 0x100000001b3 ^ state_ >> 29; }
+  void add(float value) { add(uint64_t{std::bit_cast<uint32_t>(value)}); }
+  template <size_t N>
+  void add(const std::array<float, N>& values) {
+    for (const float value : values) add(value);
+  }
+  uint64_t result() const {
+    uint64_t x = state_;
+    x = (x ^ x >> 33) * 0xff51afd7ed558ccd;
+    x = (x ^ x >> 33) * 0xc4ceb9fe1a85ec53;
+    return x ^ x >> 33;
+  }
+
+ private:
+  uint64_t state_ = 0xcbf29ce484222325;
+};
+
+void add(ContentHash& hash, const Model& model) {
+  hash.add(uint64_t{model.vertices.size()});
+  for (const Vertex& v : model.vertices) {
+    hash.add(v.position);
+    hash.add(v.normal);
+    hash.add(v.texture_coordinate);
+    hash.add(uint64_t(uint32_t(v.material)));
+  }
+  hash.add(uint64_t{model.indices.size()});
+  for (const uint32_t index : model.indices) hash.add(uint64_t{index});
+  hash.add(model.center);
+  hash.add(model.radius);
+}
+
+void add(ContentHash& hash, const Texture& texture) {
+  hash.add(uint64_t{texture.width} << 32 | texture.height);
+  for (const uint8_t byte : texture.rgba) hash.add(uint64_t{byte});
+}
+
+void add(ContentHash& hash, const Camera& c) {
+  for (const Vec3& v : {c.eye, c.target, c.up, c.light_position}) hash.add(v);
+  for (const float value : {c.field_of_view, c.aperture, c.focus_distance, c.light_radius}) hash.add(value);
+  hash.add(uint64_t{c.has_sky});
+}
+
+std::string upper_case(std::string text) {
+  for (char& c : text) c = char(std::toupper(static_cast<unsigned char>(c)));
+  return text;
+}
+
+}  // namespace
+
+uint64_t Scene::triangles() const {
+  uint64_t count = 0;
+  for (const Model& model : models)
+    if (!model.is_procedural()) count += model.indices.size() / 3;
+  return count;
+}
+
+uint64_t Scene::procedurals() const {
+  uint64_t count = 0;
+  for (const Model& model : models) count += model.is_procedural();
+  return count;
+}
+
+uint64_t Scene::hash() const {
+  ContentHash content;
+  content.add(uint64_t{models.size()});
+  for (const Model& model : models) add(content, model);
+  content.add(uint64_t{materials.size()});
+  for (const Material& m : materials) {
+    content.add(m.diffuse);
+    content.add(uint64_t(uint32_t(m.texture)));
+    content.add(m.fuzziness);
+    content.add(m.refraction_index);
+    content.add(uint64_t(m.model));
+  }
+  content.add(uint64_t{textures.size()});
+  for (const Texture& texture : textures) add(content, texture);
+  add(content, camera);
+  content.add(uint64_t{alpha_test});
+  return content.result();
+}
+
+std::vector<SceneInfo> scene_list() {
+  std::vector<SceneInfo> list;
+  for (const Entry& entry : kScenes) list.push_back({entry.name, entry.doc});
+  return list;
+}
+
+Scene load_scene(const std::string& name, const LoadOptions& options) {
+  const std::string wanted = upper_case(name);
+  std::vector<std::string> names;
+  for (const Entry& entry : kScenes) {
+    if (wanted == entry.name) return entry.build(options);
+    names.push_back(entry.name);
+  }
+  const std::string near = nearest(wanted, names);
+  throw UserError({}, fmt::format("unknown scene '{}'", name),
+                  near.empty() ? fmt::format("the scenes are {}", fmt::join(names, ", "))
+                               : fmt::format("did you mean '{}'?", near));
+}
+
+}  // namespace glint::scenes

@@ -1,0 +1,10 @@
+# Scenes, and the reference renderer that checks pictures of them.
+find_package(embree 3 REQUIRED)
+add_library(glint_reference STATIC reference/embree_intersector.cpp reference/reference.cpp reference/shapes.cpp)
+add_library(glint::reference ALIAS glint_reference)
+target_link_libraries(glint_reference PUBLIC glint::scenes PRIVATE embree glint_warnings)
+target_include_directories(glint_reference PUBLIC ${PROJECT_SOURCE_DIR})
+add_executable(render_reference reference/render_reference.cpp)
+target_link_libraries(render_reference PRIVATE glint::reference)
+glint_test(unit_scenes FOLDER unit/scenes LINKS glint::scenes)
+glint_test(reference LINKS glint::reference)
