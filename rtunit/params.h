@@ -1,0 +1,50 @@
+// Tunables of an RT unit: warp buffer, request port, test pipelines.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "base/params.h"
+#include "base/registry.h"
+#include "rtunit/ray_scheduler.h"
+
+namespace glint::rt {
+
+// A pipeline that tests nodes: in each `interval` it starts `units` tests, each done after `latency`.
+struct PipelineParams {
+  uint32_t latency = 1, interval = 1, units = 1;
+  static constexpr auto params() {
+    return std::tuple{
+        param(&PipelineParams::latency, "latency", "cycle", "From the start of a test to its result.", 1, 1000),
+        param(&PipelineParams::interval, "interval", "cycle", "From a start to the next start on the same unit.", 1, 1000),
+        param(&PipelineParams::units, "units", "unit", "Tests that can start together.", 1, 4096)};
+  }
+};
+
+struct Params {
+  uint32_t warps = 4;              // Vulkan-Sim 2.0, -gpgpu_rt_max_warps, both shipped configurations
+  uint32_t requests_per_cycle = 1; // Vulkan-Sim: one request a cycle
+  uint32_t request_bytes = 64;     // Choice: a node in one request; Vulkan-Sim sends 32
+  uint32_t responses_per_cycle = 1;
+  uint32_t retires_per_cycle = 1;  // Vulkan-Sim: one warp a cycle
+  bool result_store = false;       // Choice: results go to registers; Vulkan-Sim stores 32 B a hit
+  // A node of six boxes a cycle after 13, a triangle every second cycle after 37: estimates for a Turing-class unit; vendors publish
+  // rates (AMD RDNA3: 4 boxes and 1 triangle a cycle; Intel Xe-HPG: 12 and 1) but no latencies.
+  PipelineParams box{13, 1, 1}, triangle{37, 2, 1};
+  PipelineParams transform{8, 1, 1};  // latency: Vulkan-Sim, instance leaf
+  PolicyChoice<RayScheduler> scheduler{"oldest_first"};
+  static constexpr auto params() {
+    return std::tuple{
+        param(&Params::warps, "warps", "warp", "Warps in the unit's buffer.", 1, 64),
+        param(&Params::requests_per_cycle, "requests_per_cycle", "request", "Requests sent to the L1 a cycle.", 1, 16),
+        param(&Params::request_bytes, "request_bytes", "B", "Largest request; a multiple of the 32 B sector.", 32, 128),
+        param(&Params::responses_per_cycle, "responses_per_cycle", "response", "Answers taken from the L1 a cycle.", 1, 64),
+        param(&Params::retires_per_cycle, "retires_per_cycle", "warp", "Warps given back to the core a cycle.", 1, 64),
+        flag(&Params::result_store, "result_store", "Write 32 B a ray through the L1 before its warp is given back."),
+        section(&Params::box, "box", "Tests of internal nodes and of AABBs; one test a node."),
+        section(&Params::triangle, "triangle", "Ray-triangle tests; one test a triangle."),
+        section(&Params::transform, "transform", "Transforms of rays to object space; one test an instance."),
+        policy(&Params::scheduler, "scheduler", "Which resident warp sends a node request.")};
+  }
+};
+
+}  // namespace glint::rt

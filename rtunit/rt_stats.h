@@ -1,0 +1,70 @@
+// What an RT unit counts.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <iterator>
+
+#include "base/stats.h"
+
+namespace glint::rt {
+
+// What a cycle of the unit was spent on: exactly one each, the first that holds.
+enum class Stall : uint8_t {
+  NodeRequest,    // sent a request to the L1
+  L1Refused,      // had a request and the L1 did not take it
+  TestBusy,       // a node waits for a test pipeline
+  WaitingMemory,  // nodes are on their way
+  TestLatency,    // only tests in flight
+  Handover,       // a warp is being taken over or given back
+  Idle,           // holds no warp
+  Count
+};
+constexpr std::string_view name_of(Stall s) {
+  constexpr std::string_view kNames[] = {"node_request", "l1_refused", "test_busy", "waiting_memory",
+                                         "test_latency", "handover",   "idle"};
+  static_assert(std::size(kNames) == size_t(Stall::Count));
+  return kNames[size_t(s)];
+}
+
+struct RtStats : stats::Group {
+  explicit RtStats(Group* parent) : Group(parent, "rt") {}
+  stats::Breakdown<Stall> cycles{this, "cycles", "cycle", "Every cycle of the unit, by what it was spent on."};
+
+  stats::Counter warps{this, "warps", "warp", "Warps accepted, again after shaders included."};
+  stats::Counter rays{this, "rays", "ray", "Rays accepted for the first time."};
+  stats::Counter resumed{this, "resumed_rays", "ray", "Rays accepted again after an intersection or any-hit shader."};
+  stats::Counter finished{this, "finished_rays", "ray", "Rays whose traversal ended in the unit."};
+  stats::Counter suspended{this, "suspended_rays", "ray", "Times a ray was given back to run a shader."};
+
+  stats::Counter internal_nodes{this, "internal_nodes", "node", "Internal nodes visited."};
+  stats::Counter instance_leaves{this, "instance_leaves", "node", "Instance leaves visited."};
+  stats::Counter triangle_leaves{this, "triangle_leaves", "node", "Triangle leaves visited."};
+  stats::Counter procedural_leaves{this, "procedural_leaves", "node", "Procedural leaves visited."};
+  stats::Counter nodes{this, "nodes", "node", "Nodes visited, all kinds."};
+  stats::Ratio nodes_per_ray{this, "nodes_per_ray", "node/ray", nodes, rays, "Mean nodes visited by a ray."};
+  stats::Counter box_tests{this, "box_tests", "test", "Ray-box tests, each child counted."};
+  stats::Counter triangle_tests{this, "triangle_tests", "test", "Ray-triangle tests."};
+
+  stats::Counter fetches{this, "fetches", "node", "Distinct nodes asked for: one a group of lanes of a warp."};
+  stats::Counter merged_lanes{this, "merged_lanes", "lane", "Lanes that shared another lane's fetch."};
+  stats::Counter requests{this, "requests", "request", "Read requests that the L1 took."};
+  stats::Counter sectors{this, "sectors", "sector", "32 B sectors asked for."};
+  stats::Counter refusals{this, "refusals", "request", "Times the L1 refused a request."};
+  stats::Counter result_writes{this, "result_writes", "request", "Write requests for results."};
+
+  stats::Counter unit_cycles{this, "unit_cycles", "cycle", "Cycles accounted."};
+  stats::Counter warp_cycles{this, "warp_cycles", "warp*cycle", "Sum over cycles of resident warps."};
+  stats::Counter lane_slots{this, "lane_slots", "lane*cycle", "Sum over cycles of 32 lanes a resident warp."};
+  stats::Counter ray_cycles{this, "ray_cycles", "ray*cycle", "Sum over cycles of rays in flight."};
+  stats::Ratio occupancy{this, "occupancy", "warp", warp_cycles, unit_cycles, "Mean resident warps."};
+  stats::Ratio efficiency{this, "efficiency", "ray/lane", ray_cycles, lane_slots, "Share of resident lanes with a ray in flight."};
+  stats::Counter warp_latency_sum{this, "warp_latency_sum", "cycle", "Sum over warps of the cycles from acceptance to return."};
+  stats::Ratio warp_latency{this, "warp_latency", "cycle", warp_latency_sum, warps, "Mean cycles a warp is in the unit."};
+  stats::Histogram ray_latency{this, "ray_latency", "cycle", stats::linear(0, 20000, 500), "From a ray's acceptance to its stop."};
+  stats::Histogram ray_nodes{this, "ray_nodes", "node", stats::linear(0, 512, 8), "Nodes visited by finished rays."};
+
+  uint32_t most_nodes = 0, deepest_stack = 0;
+  stats::Value max_ray_nodes{this, "max_ray_nodes", "node", [this] { return double(most_nodes); }, "Most nodes that one ray visited."};
+  stats::Value max_stack{this, "max_stack", "entry", [this] { return double(deepest_stack); }, "Deepest ray stack."};
+};
+
+}  // namespace glint::rt

@@ -1,0 +1,135 @@
+// The RT unit of a core: a warp buffer whose rays fetch nodes through the L1 and test them in pipelines.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/probe.h"
+#include "memsys/address_space.h"
+#include "memsys/l1_port.h"
+#include "memsys/ring.h"
+#include "rtunit/params.h"
+#include "rtunit/rt_port.h"
+#include "rtunit/rt_stats.h"
+#include "rtunit/traversal.h"
+
+namespace glint::rt {
+
+// A lane's visit of a node, told when its test starts.
+struct NodeVisited {
+  Cycle cycle = 0;
+  uint32_t warp_slot = 0;
+  int lane = 0;
+  Fetch node;
+};
+
+class RtUnit final : public RtPort {
+ public:
+  struct Context {
+    const mem::AddressSpace& memory;
+    mem::L1Port& l1;
+    stats::Group* stats = nullptr;
+    Address results = 0;  // physical, line-aligned: 32 B x 32 lanes x warps, used with result_store only
+  };
+  RtUnit(const Params& params, const Context& context);
+
+  bool can_accept() const override { return num_resident_ < slots_.size(); }
+  void submit(Cycle now, uint32_t warp_slot, LaneMask mask, RayState* states) override;
+  std::optional<uint32_t> pop_completion(Cycle now) override;
+  void tick(Cycle now) override;
+  // The L1's answers are new input: the L1's own next_event() tells of them.
+  Cycle next_event(Cycle now) const override;
+
+  const RtStats& stats() const { return stats_; }
+  uint32_t num_resident() const { return num_resident_; }
+  Probe<NodeVisited>& node_visited() { return node_visited_; }
+
+ private:
+  static constexpr uint32_t kNone = ~0u;
+
+  // A place in the warp buffer. A lane of `mask` is in exactly one of: `wanting` a node, a fetch, a test, `stopped`.
+  struct Slot {
+    bool used = false;
+    uint32_t warp = 0;
+    LaneMask mask = 0, wanting = 0, stopped = 0, unwritten = 0;
+    RayState* states = nullptr;
+    uint64_t age = 0;
+    Cycle arrived = 0;
+    std::array<Fetch, kLanes> node;
+  };
+  // A node on its way for some lanes of one slot. Its index is the token of its requests.
+  struct NodeFetch {
+    uint32_t slot = 0;
+    LaneMask lanes = 0;
+    Fetch node;
+    uint32_t sent = 0;        // bytes
+    uint32_t unanswered = 0;  // requests
+  };
+  struct Test {
+    uint32_t slot = 0;
+    uint8_t lane = 0;
+    uint8_t starts_left = 1;  // a leaf of two triangles takes two
+  };
+  struct Running {
+    Cycle ready = 0;
+    uint32_t slot = 0;
+    uint8_t lane = 0;
+  };
+  struct Pipeline {
+    PipelineParams params;
+    mem::Ring<Test> waiting;
+    mem::Ring<Running> running;
+    Cycle interval_start = 0;
+    uint32_t started = 0;  // in the interval that began at interval_start
+    bool used = false;     // interval_start means something
+  };
+  enum Pipe : size_t { kBox, kTriangle, kTransform, kNumPipes };
+
+  void account_gap(Cycle now);
+  void account(Cycle now, Stall reason);
+  void retire(Cycle now);
+  void finish_tests(Cycle now);
+  void receive_nodes(Cycle now);
+  void start_tests(Cycle now);
+  Stall send_requests(Cycle now);
+  Stall waiting_reason() const;
+
+  void place(uint32_t slot_index, int lane, Cycle now);
+  void stop(Slot& slot, uint32_t slot_index, int lane, Cycle now);
+  void visit(const Test& test, Cycle now);
+  bool choose_fetch(Cycle now);
+  bool send_node(Cycle now);
+  bool send_result(Cycle now);
+  bool wants_to_send() const;
+
+  const Params params_;
+  const mem::AddressSpace& memory_;
+  mem::L1Port& l1_;
+  const Address results_;
+  RtStats stats_;
+  Probe<NodeVisited> node_visited_;
+  std::unique_ptr<RayScheduler> scheduler_;
+  StepFunction step_ = nullptr;  // of the structure's format; chosen at submit
+
+  std::vector<Slot> slots_;
+  std::vector<WarpView> views_;
+  std::vector<NodeFetch> fetches_;      // one a lane at most
+  std::vector<uint32_t> free_fetches_;
+  std::array<Pipeline, kNumPipes> pipes_;
+  mem::Ring<uint32_t> finished_;        // slots whose lanes have all stopped and whose results are written
+  mem::Ring<uint32_t> writing_;         // slots with results to write
+  mem::Ring<uint32_t> completions_;     // warps given back
+  uint32_t sending_ = kNone;            // fetch whose requests have not all been taken
+  uint32_t num_resident_ = 0, num_rays_ = 0, num_fetches_ = 0;
+  uint64_t next_age_ = 0;
+
+  // The past, for cycles that are skipped: nothing happened in them, so they were like the end of the last one.
+  Cycle next_unaccounted_ = 0;
+  Stall gap_reason_ = Stall::Idle;
+  uint32_t gap_warps_ = 0, gap_rays_ = 0;
+};
+
+}  // namespace glint::rt
