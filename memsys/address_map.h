@@ -1,0 +1,66 @@
+// Where a physical address lives: its partition, and its bank, row and column there.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "base/types.h"
+
+namespace glint::mem {
+
+// Partitions. Memory is cut into chunks of `interleave` bytes and the chunks into groups of one chunk a partition.
+// Inside a group chunk r goes to partition (r + hash(group)) mod N: each group fills every partition once, whatever N
+// is, so partitions stay equally full and their local addresses dense; and the hash turns each group differently, so
+// that strides which are multiples of N chunks still spread. (IPOLY hashes need N = 16, 32 or 64.)
+class PartitionMap {
+ public:
+  PartitionMap(uint32_t partitions, uint32_t interleave) : partitions_(partitions), interleave_(interleave) {}
+
+  uint32_t partition(Address address) const {
+    const uint64_t chunk = address / interleave_;
+    const uint64_t group = chunk / partitions_;
+    return uint32_t((chunk % partitions_ + (hash(group) >> 40)) % partitions_);
+  }
+  // Dense inside the partition: the group number takes the place of the chunk number.
+  Address local(Address address) const {
+    return address / interleave_ / partitions_ * interleave_ + address % interleave_;
+  }
+  uint32_t partitions() const { return partitions_; }
+
+ private:
+  // The finaliser of MurmurHash3 (Appleby): every input bit reaches every output bit.
+  static uint64_t hash(uint64_t x) {
+    x = (x ^ (x >> 33)) * 0xff51'afd7'ed55'8ccdull;
+    x = (x ^ (x >> 33)) * 0xc4ce'b9fe'1a85'ec53ull;
+    return x ^ (x >> 33);
+  }
+  uint32_t partitions_, interleave_;
+};
+
+struct DramLocation {
+  uint32_t bank = 0;   // bank_in_group * groups + group
+  uint32_t group = 0;
+  uint32_t row = 0;
+};
+
+// Banks and rows, from the low end of the local address: interleave chunk, bank group, rest of the column, bank in the
+// group, row. Neighbouring chunks so alternate between bank groups and never pay the longer tCCD_L, and the row number
+// turns the bank (permutation-based interleaving; Zhang, Zhu, Zhang, MICRO 2000).
+class DramMap {
+ public:
+  DramMap(uint32_t banks, uint32_t groups, uint32_t row_bytes, uint32_t interleave)
+      : groups_(groups), per_group_(banks / groups), chunks_(row_bytes / interleave), interleave_(interleave) {}
+
+  DramLocation locate(Address local) const {
+    uint64_t rest = local / interleave_;
+    const uint32_t group = uint32_t(rest % groups_);
+    rest = rest / groups_ / chunks_;
+    const uint64_t row = rest / per_group_;
+    const uint32_t in_group = uint32_t((rest + row) % per_group_);
+    return {in_group * groups_ + group, group, uint32_t(row)};
+  }
+
+ private:
+  uint32_t groups_, per_group_, chunks_, interleave_;
+};
+
+}  // namespace glint::mem

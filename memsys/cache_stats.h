@@ -1,0 +1,43 @@
+// What a cache counts, by traffic class: the same words for L1 and L2.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "base/stats.h"
+#include "memsys/line_table.h"
+#include "memsys/request.h"
+
+namespace glint::mem {
+
+// Why a request was turned away, or had to wait at the head of its queue.
+enum class Refusal : uint8_t { Port, Bank, MshrFull, MergeLimit, QueueFull, Count };
+constexpr std::string_view name_of(Refusal reason) {
+  constexpr std::string_view kNames[] = {"port", "bank", "mshr_full", "merge_limit", "queue_full"};
+  return kNames[size_t(reason)];
+}
+
+// reads = hits + pending_hits + misses; write hits and misses likewise.
+struct CacheStats {
+  CacheStats(stats::Group* parent, const char* name) : group(parent, name) {}
+  stats::Group group;
+  stats::Breakdown<Traffic> reads{&group, "reads", "request", "Reads taken, by traffic class."};
+  stats::Breakdown<Traffic> hits{&group, "hits", "request", "Reads that found all their sectors present."};
+  stats::Breakdown<Traffic> pending_hits{&group, "pending_hits", "request", "Reads whose missing sectors were all on the way already."};
+  stats::Breakdown<Traffic> misses{&group, "misses", "request", "Reads that fetched at least one sector."};
+  stats::Breakdown<Traffic> cold_misses{&group, "cold_misses", "request", "Misses of lines this cache had never held or fetched."};
+  stats::Breakdown<Traffic> writes{&group, "writes", "request", "Writes taken."};
+  stats::Breakdown<Traffic> write_hits{&group, "write_hits", "request", "Writes whose line was present."};
+  stats::Breakdown<Traffic> sectors_fetched{&group, "sectors_fetched", "sector", "Sectors asked of the level below."};
+  stats::Counter write_backs{&group, "write_backs", "line", "Dirty lines evicted."};
+  stats::Counter evictions{&group, "evictions", "line", "Lines replaced, clean or dirty."};
+
+  // One call for every read taken. `seen` is the cache's set of lines.
+  void count_read(Traffic traffic, uint8_t missing, uint8_t fetched, Address line, LineTable& seen) {
+    reads.add(traffic);
+    if (missing == 0) return hits.add(traffic);
+    if (fetched == 0) return pending_hits.add(traffic);
+    misses.add(traffic);
+    sectors_fetched.add(traffic, uint64_t(std::popcount(fetched)));
+    if (seen.insert_if_new(line)) cold_misses.add(traffic);
+  }
+};
+
+}  // namespace glint::mem

@@ -1,0 +1,83 @@
+// Timestamped messages from several cells to one: the inbound side of a crossbar port.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <algorithm>
+#include <vector>
+
+#include "base/check.h"
+#include "base/engine.h"
+
+namespace glint::mem {
+
+// A Channel (base/engine.h) with one outbox a producer. The consumer sees all messages in order of (arrival, producer,
+// sending order): the order depends on nothing but the messages, so neither the window nor the threads change it.
+template <class Message>
+class FanIn final : public ChannelBase {
+ public:
+  explicit FanIn(size_t producers) : outboxes_(producers) {}
+
+  // `arrival` may not decrease from one send of a producer to its next.
+  void send(size_t producer, Cycle arrival, const Message& message) {
+    std::vector<Timed>& sent = outboxes_[producer].sent;
+    GLINT_DCHECK(sent.empty() || sent.back().arrival <= arrival, "messages must be sent in order");
+    sent.push_back({arrival, uint32_t(producer), message});
+  }
+
+  bool ready(Cycle now) const { return arrival() <= now; }
+  Cycle arrival() const { return head_ < inbox_.size() ? inbox_[head_].arrival : kNever; }
+  const Message& front() const { return inbox_[head_].message; }
+  void pop() { ++head_; }
+  size_t waiting() const {
+    size_t n = inbox_.size() - head_;
+    for (const Outbox& box : outboxes_) n += box.sent.size();
+    return n;
+  }
+
+  void deliver() override {
+    if (head_ == inbox_.size()) {
+      inbox_.clear();
+      head_ = 0;
+    } else if (head_ > kCompact && head_ > inbox_.size() / 2) {  // amortised: a busy inbox never runs empty
+      inbox_.erase(inbox_.begin(), inbox_.begin() + ptrdiff_t(head_));
+      head_ = 0;
+    }
+    for (Outbox& box : outboxes_) {
+      for (const Timed& timed : box.sent) insert(timed);
+      box.sent.clear();
+    }
+  }
+  Cycle next_arrival() const override {
+    Cycle next = arrival();
+    for (const Outbox& box : outboxes_)
+      if (!box.sent.empty()) next = std::min(next, box.sent.front().arrival);
+    return next;
+  }
+
+ private:
+  static constexpr size_t kCompact = 256;
+  struct Timed {
+    Cycle arrival;
+    uint32_t producer;
+    Message message;
+    bool before(const Timed& o) const {
+      return arrival != o.arrival ? arrival < o.arrival : producer < o.producer;
+    }
+  };
+  struct alignas(64) Outbox {  // a cache line of its own: producers run on different threads
+    std::vector<Timed> sent;
+  };
+
+  // Insertion from the back: messages of one window lie close together in time.
+  void insert(const Timed& timed) {
+    inbox_.push_back(timed);
+    size_t i = inbox_.size() - 1;
+    for (; i > head_ && timed.before(inbox_[i - 1]); --i) inbox_[i] = inbox_[i - 1];
+    inbox_[i] = timed;
+  }
+
+  std::vector<Outbox> outboxes_;
+  std::vector<Timed> inbox_;
+  size_t head_ = 0;
+};
+
+}  // namespace glint::mem

@@ -1,0 +1,83 @@
+// Open-addressed map from a line address to a small number: tags, MSHRs and the set of lines ever seen use it.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <bit>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "base/types.h"
+
+namespace glint::mem {
+
+// Linear probing, at most half full, deletion by shifting back: no tombstones, so lookups never slow down.
+// Grows by doubling, and so allocates only while it holds more lines than ever before.
+class LineTable {
+ public:
+  static constexpr uint32_t kNone = ~0u;
+
+  explicit LineTable(size_t expected = 16) { resize(std::bit_ceil(expected * 2 < 16 ? 16 : expected * 2)); }
+
+  uint32_t find(Address line) const {
+    for (size_t i = home(line);; i = (i + 1) & mask_) {
+      if (cells_[i].line == line) return cells_[i].value;
+      if (cells_[i].line == kEmpty) return kNone;
+    }
+  }
+  // `line` must be absent.
+  void insert(Address line, uint32_t value) {
+    if (2 * (size_ + 1) > cells_.size()) grow();
+    place({line, value});
+    ++size_;
+  }
+  // `line` must be present.
+  void erase(Address line) {
+    size_t hole = home(line);
+    while (cells_[hole].line != line) hole = (hole + 1) & mask_;
+    for (size_t i = (hole + 1) & mask_; cells_[i].line != kEmpty; i = (i + 1) & mask_) {
+      // The cell at i may move to the hole when its home does not lie between them.
+      if (((i - home(cells_[i].line)) & mask_) >= ((i - hole) & mask_)) cells_[hole] = cells_[i], hole = i;
+    }
+    cells_[hole].line = kEmpty;
+    --size_;
+  }
+  // True when `line` was absent and is now remembered.
+  bool insert_if_new(Address line) {
+    if (find(line) != kNone) return false;
+    insert(line, 0);
+    return true;
+  }
+  size_t size() const { return size_; }
+
+ private:
+  static constexpr Address kEmpty = ~Address{0};
+  struct Cell {
+    Address line;
+    uint32_t value;
+  };
+
+  // Fibonacci hashing (Knuth, TAOCP 3, 6.4): the upper bits of a product with 2^64 / golden ratio.
+  size_t home(Address line) const { return size_t((line * 0x9e37'79b9'7f4a'7c15ull) >> shift_); }
+  void place(Cell cell) {
+    size_t i = home(cell.line);
+    while (cells_[i].line != kEmpty) i = (i + 1) & mask_;
+    cells_[i] = cell;
+  }
+  void resize(size_t cells) {
+    cells_.assign(cells, {kEmpty, 0});
+    mask_ = cells - 1;
+    shift_ = 64 - std::countr_zero(cells);
+  }
+  void grow() {
+    std::vector<Cell> old = std::move(cells_);
+    resize(old.size() * 2);
+    for (const Cell& cell : old)
+      if (cell.line != kEmpty) place(cell);
+  }
+
+  std::vector<Cell> cells_;
+  size_t mask_ = 0, size_ = 0;
+  int shift_ = 0;
+};
+
+}  // namespace glint::mem

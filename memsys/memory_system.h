@@ -1,0 +1,49 @@
+// The whole memory system of a machine: every core's L1, the network, every partition.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "base/engine.h"
+#include "base/stats.h"
+#include "memsys/address_map.h"
+#include "memsys/fan_in.h"
+#include "memsys/l1_cache.h"
+#include "memsys/params.h"
+#include "memsys/partition.h"
+
+namespace glint::mem {
+
+// Owns all parts and wires them. The engine advances cells() and delivers channels(); each core ticks its own l1() as
+// part of its own cell. `params` must have passed check().
+class MemorySystem {
+ public:
+  MemorySystem(const Params& params, uint32_t num_cores, double core_mhz, stats::Group* parent);
+
+  L1Cache& l1(uint32_t core) { return *l1s_[core]; }
+  const L1Cache& l1(uint32_t core) const { return *l1s_[core]; }
+  const Partition& partition(uint32_t index) const { return *partitions_[index]; }
+  uint32_t num_cores() const { return uint32_t(l1s_.size()); }
+  uint32_t num_partitions() const { return uint32_t(partitions_.size()); }
+  const PartitionMap& map() const { return map_; }
+
+  std::vector<Cell*> cells();             // one a partition
+  std::vector<ChannelBase*> channels();   // one a partition, then one a core
+  // The engine's window may be this long: no message arrives sooner after it was sent. At least 1.
+  Cycle shortest_latency() const { return shortest_latency_; }
+
+  void finish(Cycle end);  // attributes the cycles up to the end of the run: call once, before reading statistics
+  void check_drained() const;  // at the end of a run: every request was answered and nothing is left; aborts otherwise
+
+ private:
+  stats::Group group_;
+  PartitionMap map_;
+  Cycle shortest_latency_;
+  std::vector<std::unique_ptr<FanIn<Packet>>> requests_;  // by partition
+  std::vector<std::unique_ptr<FanIn<Reply>>> replies_;    // by core
+  std::vector<std::unique_ptr<stats::Group>> core_groups_;
+  std::vector<std::unique_ptr<L1Cache>> l1s_;
+  std::vector<std::unique_ptr<Partition>> partitions_;
+};
+
+}  // namespace glint::mem

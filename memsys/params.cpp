@@ -1,0 +1,106 @@
+// What makes a memory configuration impossible, and the peaks of a possible one.
+// SPDX-License-Identifier: Apache-2.0
+#include "memsys/params.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+
+#include "memsys/packet.h"
+
+namespace glint::mem {
+namespace {
+
+class Checker {
+ public:
+  explicit Checker(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
+
+  void require(bool ok, const std::string& what, const std::string& note = {}) {
+    if (!ok) diagnostics_.error({}, what, note);
+  }
+  void at_least_one(const char* key, uint64_t value, const char* why) {
+    require(value >= 1, fmt::format("'{}' is 0, expected at least 1", key), why);
+  }
+  void cache(const char* key, uint64_t size, uint32_t ways, uint32_t line) {
+    if (line == 0) return;
+    require(size >= line, fmt::format("'{}' is {} bytes, expected at least one line of {} bytes", key, size, line));
+    const uint64_t set = uint64_t{std::max(ways, 1u)} * line;
+    if (size < line) return;
+    require(size >= set, fmt::format("'{}' is {} bytes, expected at least one set: {} ways x {} bytes = {} bytes", key,
+                                     size, ways, line, set));
+    require(size < set || size % set == 0,
+            fmt::format("'{}' is {} bytes, expected a multiple of {} bytes ({} ways x {} bytes)", key, size, set,
+                        std::max(ways, 1u), line));
+  }
+
+ private:
+  Diagnostics& diagnostics_;
+};
+
+void check_dram(const DramParams& d, uint32_t line, uint32_t interleave, Checker& c) {
+  c.at_least_one("dram.channels", d.channels, "a machine has at least one memory partition");
+  c.at_least_one("dram.queue", d.queue, "the scheduler needs a place for the request it serves");
+  c.at_least_one("dram.transfers_per_clock", d.transfers_per_clock, "data must move");
+  c.require(d.bank_groups >= 1 && d.banks >= d.bank_groups && d.banks % d.bank_groups == 0,
+            fmt::format("'dram.banks' is {}, expected a multiple of 'dram.bank_groups' = {}", d.banks, d.bank_groups));
+  c.require(interleave == 0 || (d.row_bytes >= interleave && d.row_bytes % interleave == 0),
+            fmt::format("'dram.row_bytes' is {}, expected a multiple of 'interleave' = {}", d.row_bytes, interleave));
+  const uint32_t atom = d.atom_bytes();
+  c.require(std::has_single_bit(atom) && atom >= 8 && atom <= line,
+            fmt::format("'dram.bus_bytes' x 'dram.burst' is {} bytes, expected a power of two from 8 to the line of {} bytes",
+                        atom, line));
+  c.require(d.transfers_per_clock == 0 || d.burst % d.transfers_per_clock == 0,
+            fmt::format("'dram.burst' is {}, expected a multiple of 'dram.transfers_per_clock' = {}", d.burst,
+                        d.transfers_per_clock));
+  c.require(d.rc + 1e-9 >= d.ras, fmt::format("'dram.rc' is {} ns, expected at least 'dram.ras' = {} ns", d.rc, d.ras));
+}
+
+}  // namespace
+
+void check(const Params& p, Diagnostics& diagnostics) {
+  Checker c(diagnostics);
+  c.require(std::has_single_bit(p.line) && p.line >= kSectorBytes && p.line <= 8 * kSectorBytes,
+            fmt::format("'line' is {} bytes, expected a power of two from 32 to 256", p.line));
+  c.require(std::has_single_bit(p.interleave) && p.interleave >= p.line,
+            fmt::format("'interleave' is {} bytes, expected a power of two of at least the line of {} bytes", p.interleave, p.line));
+  c.cache("l1.size", p.l1.size, p.l1.ways, p.line);
+  c.cache("l2.slice_size", p.l2.slice_size, p.l2.ways, p.line);
+  c.at_least_one("l1.ports", p.l1.ports, "no access would ever be taken");
+  c.at_least_one("l1.banks", p.l1.banks, "no access would ever be taken");
+  c.at_least_one("l1.mshr_entries", p.l1.mshr_entries, "no miss could ever leave the cache");
+  c.at_least_one("l1.mshr_merges", p.l1.mshr_merges, "the read that misses itself waits in the entry");
+  c.at_least_one("l1.miss_queue", p.l1.miss_queue, "no miss could ever leave the cache");
+  c.at_least_one("l2.mshr_entries", p.l2.mshr_entries, "no miss could ever leave the slice");
+  c.at_least_one("l2.mshr_merges", p.l2.mshr_merges, "the read that misses itself waits in the entry");
+  c.at_least_one("l2.sectors_per_cycle", p.l2.sectors_per_cycle, "no request would ever be served");
+  const uint32_t whole_line = 2 * p.line / kSectorBytes;  // a miss and the write-back of its victim
+  c.require(p.l2.dram_queue >= whole_line,
+            fmt::format("'l2.dram_queue' is {}, expected at least {}: the sectors of a line and of its victim", p.l2.dram_queue, whole_line));
+  c.at_least_one("noc.core_request_bytes", p.noc.core_request_bytes, "packets must move");
+  c.at_least_one("noc.core_reply_bytes", p.noc.core_reply_bytes, "packets must move");
+  c.at_least_one("noc.partition_request_bytes", p.noc.partition_request_bytes, "packets must move");
+  c.at_least_one("noc.partition_reply_bytes", p.noc.partition_reply_bytes, "packets must move");
+  check_dram(p.dram, p.line, p.interleave, c);
+}
+
+Peak peak(const Params& p, uint32_t num_cores, double core_mhz) {
+  const double hz = core_mhz * 1e6;
+  const double channels = p.dram.channels;
+  // Of a port's bytes the share that is data, when every reply carries one sector.
+  const double data_share = double(kSectorBytes) / double(kSectorBytes + kHeaderBytes);
+  Peak out;
+  out.l2_bytes = p.l2.slice_size * p.dram.channels;
+  out.l1_bytes_per_second = hz * num_cores * std::min(p.l1.ports, p.l1.banks) * p.line;
+  out.noc_bytes_per_second = hz * data_share * std::min(double(num_cores) * p.noc.core_reply_bytes, channels * p.noc.partition_reply_bytes);
+  out.l2_bytes_per_second = hz * channels * p.l2.sectors_per_cycle * kSectorBytes;
+  out.dram_bytes_per_second = channels * p.dram.clock_mhz * 1e6 * p.dram.transfers_per_clock * p.dram.bus_bytes;
+  return out;
+}
+
+std::string Peak::to_string() const {
+  return fmt::format("L1 {:.1f} GB/s, NoC {:.1f} GB/s, L2 {} KiB at {:.1f} GB/s, DRAM {:.1f} GB/s", l1_bytes_per_second / 1e9,
+                     noc_bytes_per_second / 1e9, l2_bytes / 1024, l2_bytes_per_second / 1e9, dram_bytes_per_second / 1e9);
+}
+
+}  // namespace glint::mem

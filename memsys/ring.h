@@ -1,0 +1,40 @@
+// A first-in first-out queue without heap traffic once it has grown to its largest use.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <bit>
+#include <cstddef>
+#include <vector>
+
+namespace glint::mem {
+
+template <class T>
+class Ring {
+ public:
+  explicit Ring(size_t expected = 16) : items_(std::bit_ceil(expected < 2 ? size_t{2} : expected)) {}
+
+  void push(const T& item) {
+    if (size_ == items_.size()) grow();
+    items_[(head_ + size_++) & (items_.size() - 1)] = item;
+  }
+  const T& front() const { return items_[head_]; }
+  T& front() { return items_[head_]; }
+  void pop() {
+    head_ = (head_ + 1) & (items_.size() - 1);
+    --size_;
+  }
+  bool empty() const { return size_ == 0; }
+  size_t size() const { return size_; }
+
+ private:
+  void grow() {
+    std::vector<T> larger(items_.size() * 2);
+    for (size_t i = 0; i < size_; ++i) larger[i] = items_[(head_ + i) & (items_.size() - 1)];
+    items_.swap(larger);
+    head_ = 0;
+  }
+
+  std::vector<T> items_;
+  size_t head_ = 0, size_ = 0;
+};
+
+}  // namespace glint::mem
