@@ -1,0 +1,272 @@
+# What `glint` answers to good and bad input: exit codes, messages, files. Runs the real binary.
+# SPDX-License-Identifier: Apache-2.0
+"""usage: cli_test.py GLINT SOURCE_DIR [SUITE...]"""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+GLINT, ROOT = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+SMALL = ["--size", "16x16", "--spp", "1"]
+
+
+class GlintTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def glint(self, *arguments):
+        return subprocess.run([GLINT, *map(str, arguments)], capture_output=True, text=True, cwd=self.folder, timeout=300)
+
+    def expect(self, code, parts, *arguments):
+        """Runs glint; it must exit with `code` and say every one of `parts` on stderr."""
+        done = self.glint(*arguments)
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        for part in parts:
+            self.assertIn(part, done.stderr)
+        return done
+
+    def write(self, name, text):
+        (self.folder / name).write_text(text)
+        return name
+
+    def shaders_with(self, name, text):
+        """A copy of the path tracer in which one file is replaced; the copied includes lie beside it."""
+        shutil.copytree(ROOT / "shaders", self.folder / "shaders", dirs_exist_ok=True)
+        folder = self.folder / "shaders/path_tracing"
+        (folder / name).write_text(text)
+        return folder
+
+
+class Usage(GlintTest):
+    def test_an_unknown_subcommand_is_refused_with_the_nearest(self):
+        self.expect(2, ["did you mean 'compile'?"], "compil")
+
+    def test_an_unknown_option_is_refused_with_the_nearest(self):
+        self.expect(2, ["did you mean '--shader'?"], "run", "WKND", "--shadre", "pt")
+
+    def test_no_subcommand_is_refused(self):
+        self.expect(2, ["error:"])
+
+    def test_help_names_every_subcommand(self):
+        done = self.glint("--help")
+        self.assertEqual(done.returncode, 0)
+        for word in ("run", "compile", "asm", "isa", "list", "describe"):
+            self.assertIn(word, done.stdout)
+
+    def test_an_unknown_scene_is_refused_with_the_nearest(self):
+        self.expect(2, ["did you mean", "WKND"], "run", "WKNDD")
+
+    def test_an_unknown_shader_set_is_refused(self):
+        self.expect(2, ["pt, sh or ao"], "run", "WKND", "--shader", "ptx")
+
+    def test_sizes_that_are_none_are_refused(self):
+        for size in ("0x16", "16", "16x", "x16", "16x16x16", "-1x4", "99999x1", "axb"):
+            with self.subTest(size=size):
+                self.expect(2, ["--size"], "run", "WKND", "--size=" + size)
+
+    def test_every_list_prints_something(self):
+        for what in ("scenes", "shaders", "configs", "policies", "ops", "stats"):
+            with self.subTest(what=what):
+                done = self.glint("list", what)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertGreaterEqual(len(done.stdout.splitlines()), 2)
+
+    def test_isa_explains_an_op_and_refuses_an_unknown_one(self):
+        done = self.glint("isa", "fma.rn.f32")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("fma.rn.f32", done.stdout)
+        self.expect(2, ["did you mean", "fma.rn.f32"], "isa", "fma.rn.f31")
+
+
+class Compile(GlintTest):
+    SHADER = "#version 460\nlayout(local_size_x = 32) in;\nlayout(set = 0, binding = 0) buffer Out { uint x[]; } o;\n%s\n"
+
+    def test_a_syntax_error_is_reported_with_file_and_line(self):
+        name = self.write("bad.comp", self.SHADER % "void main() {\n  o.x[0] = ;\n}")
+        self.expect(2, ["bad.comp:5"], "compile", name)
+
+    def test_a_missing_file_is_refused(self):
+        self.expect(2, ["nothing.comp"], "compile", "nothing.comp")
+
+    def test_a_file_without_a_stage_is_refused(self):
+        self.expect(2, ["bad.txt"], "compile", self.write("bad.txt", "void main() {}"))
+
+    def test_an_unsupported_feature_exits_with_3_and_names_the_line(self):
+        body = "void main() {\n  double d = double(o.x[0]);\n  o.x[1] = uint(sqrt(d));\n}"
+        self.expect(3, ["double.comp"], "compile", self.write("double.comp", self.SHADER % body))
+
+    def test_a_good_shader_compiles_to_text_that_asm_reads_and_prints_again_unchanged(self):
+        name = self.write("good.comp", self.SHADER % "void main() { o.x[gl_GlobalInvocationID.x] = 7u * gl_GlobalInvocationID.x; }")
+        text = self.glint("compile", name)
+        self.assertEqual(text.returncode, 0, text.stderr)
+        again = self.glint("asm", self.write("good.isa", text.stdout))
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertEqual(again.stdout, text.stdout)
+
+    def test_a_define_reaches_the_shader(self):
+        name = self.write("define.comp", self.SHADER % "void main() { o.x[0] = VALUE; }")
+        self.expect(2, ["VALUE"], "compile", name)
+        self.assertEqual(self.glint("compile", "-D", "VALUE=41u", name).returncode, 0)
+
+    def test_spirv_is_printed_on_demand(self):
+        name = self.write("good.comp", self.SHADER % "void main() { o.x[0] = 1u; }")
+        self.assertIn("OpEntryPoint GLCompute", self.glint("compile", "--emit", "spirv", name).stdout)
+
+    def test_an_unknown_op_in_text_is_refused_with_its_line(self):
+        self.expect(2, ["bad.isa:"], "asm", self.write("bad.isa", "\n    frobnicate %r1;\n"))
+
+    def test_the_built_in_shaders_compile(self):
+        for shader in sorted((ROOT / "shaders").glob("*/*.r*")):
+            with self.subTest(shader=shader.name):
+                done = self.glint("compile", "-I", ROOT / "shaders/include", "-o", "out.isa", shader)
+                self.assertEqual(done.returncode, 0, done.stderr)
+
+
+class Configuration(GlintTest):
+    def test_an_unknown_key_is_refused_at_its_line_with_the_nearest(self):
+        self.write("gpu.toml", "cores = 2\n[core]\nwraps = 8\n")
+        self.expect(2, ["gpu.toml:3:1", "core.wraps", "did you mean 'warps'?"], "run", "WKND", "--config", "gpu.toml")
+
+    def test_a_wrong_type_is_refused_at_its_line(self):
+        self.write("gpu.toml", "[core]\nwarps = \"many\"\n")
+        self.expect(2, ["gpu.toml:2:1", "expected an integer"], "describe", "--config", "gpu.toml")
+
+    def test_every_error_of_a_file_is_reported_at_once(self):
+        self.write("gpu.toml", "croes = 2\n[core]\nwarps = 10000\n")
+        self.expect(2, ["croes", "core.warps"], "describe", "--config", "gpu.toml")
+
+    def test_text_that_is_not_toml_is_refused(self):
+        self.write("gpu.toml", "[core\n")
+        self.expect(2, ["gpu.toml:1"], "describe", "--config", "gpu.toml")
+
+    def test_a_missing_configuration_is_refused_with_the_nearest(self):
+        self.expect(2, ["did you mean 'mobile'?"], "describe", "--config", "moblie")
+
+    def test_a_wrong_setting_is_refused(self):
+        self.expect(2, ["core.wraps"], "run", "WKND", "--set", "core.wraps=8")
+        self.expect(2, ["expected key=value"], "run", "WKND", "--set", "core.warps")
+
+    def test_an_impossible_cache_is_refused_before_anything_runs(self):
+        self.expect(2, ["l1.size"], "run", "WKND", *SMALL, "--set", "memory.l1.size=100")
+
+    def test_an_unknown_policy_is_refused_with_the_nearest(self):
+        self.expect(2, ["did you mean \"gto\"?"], "describe", "--set", "core.issue=gtoo")
+
+    def test_every_preset_loads_and_defaults_are_shown_with_unit_and_range(self):
+        for preset in sorted((ROOT / "configs").glob("*.toml")):
+            done = self.glint("describe", "core.warps", "--config", preset.stem)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("core.warps = 32", done.stdout)
+            self.assertIn("range  1 to", done.stdout)
+
+    def test_an_unknown_key_to_describe_is_refused_with_the_nearest(self):
+        self.expect(2, ["did you mean 'core.warps'?"], "describe", "core.warp")
+
+
+ENDLESS = """#version 460
+#extension GL_EXT_ray_tracing : require
+layout(set = 0, binding = 1, rgba32f) uniform image2D accumulation;
+void main() {
+  uint i = 0;
+  while (imageLoad(accumulation, ivec2(0)).x > -1.0) ++i;
+  imageStore(accumulation, ivec2(0), vec4(i));
+}
+"""
+OUT_OF_BOUNDS = """#version 460
+#extension GL_EXT_ray_tracing : require
+layout(set = 0, binding = 5, std430) buffer Indices { uint indices[]; };
+void main() {
+  indices[1u << 28] = 1;
+}
+"""
+
+
+class Faults(GlintTest):
+    def test_an_endless_loop_ends_with_4_and_names_the_shader_in_both_modes(self):
+        folder = self.shaders_with("raygen.rgen", ENDLESS)
+        for mode in ("functional", "timing"):
+            with self.subTest(mode=mode):
+                self.expect(4, ["raygen.rgen"], "run", "WKND", *SMALL, "--mode", mode, "--shader-dir", folder,
+                            "--max-instructions", 10000, "--out", "out")
+                self.assertEqual(json.loads((self.folder / "out/run.json").read_text())["exit"], 4)
+
+    def test_an_access_out_of_bounds_ends_with_4_and_names_file_and_line_in_both_modes(self):
+        folder = self.shaders_with("raygen.rgen", OUT_OF_BOUNDS)
+        for mode in ("functional", "timing"):
+            with self.subTest(mode=mode):
+                self.expect(4, ["raygen.rgen:5"], "run", "WKND", *SMALL, "--mode", mode, "--shader-dir", folder)
+
+    def test_a_broken_shader_of_a_workload_ends_with_2(self):
+        folder = self.shaders_with("raygen.rgen", "#version 460\nvoid main() { x = 1; }\n")
+        self.expect(2, ["raygen.rgen:2"], "run", "WKND", *SMALL, "--shader-dir", folder)
+
+
+class RunDirectory(GlintTest):
+    FILES = ["config.toml", "image.pfm", "image.png", "run.json", "stats.csv", "stats.json", "stats.txt"]
+
+    def test_a_run_leaves_a_complete_directory_with_valid_json(self):
+        done = self.glint("run", "WKND", *SMALL, "--out", "out")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(sorted(p.name for p in (self.folder / "out").iterdir()), self.FILES)
+        run = json.loads((self.folder / "out/run.json").read_text())
+        self.assertEqual((run["exit"], run["scene"]["name"], run["width"], run["samples"]), (0, "WKND", 16, 1))
+        stats = json.loads((self.folder / "out/stats.json").read_text())
+        self.assertGreater(stats["gpu"]["cycles"]["value"], 5000)  # more than the launch alone
+        self.assertIn("out/image.png", done.stdout)
+
+    def test_the_same_command_gives_the_same_statistics_and_image_bytes(self):
+        for out in ("a", "b"):
+            done = self.glint("run", "WKND", *SMALL, "--out", out)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        for name in self.FILES:
+            if name != "run.json":
+                self.assertEqual((self.folder / "a" / name).read_bytes(), (self.folder / "b" / name).read_bytes(), name)
+
+    def test_the_resolved_configuration_loads_back_to_the_same_run(self):
+        self.assertEqual(self.glint("run", "WKND", *SMALL, "--set", "core.warps=8", "--out", "a").returncode, 0)
+        self.assertEqual(self.glint("run", "WKND", *SMALL, "--config", "a/config.toml", "--out", "b").returncode, 0)
+        self.assertEqual((self.folder / "a/stats.json").read_bytes(), (self.folder / "b/stats.json").read_bytes())
+        hashes = [json.loads((self.folder / out / "run.json").read_text())["config"]["hash"] for out in ("a", "b")]
+        self.assertEqual(hashes[0], hashes[1])
+
+    def test_functional_and_timing_runs_give_the_same_picture(self):
+        for mode in ("functional", "timing"):
+            self.assertEqual(self.glint("run", "WKND", *SMALL, "--mode", mode, "--out", mode).returncode, 0)
+        self.assertEqual((self.folder / "functional/image.pfm").read_bytes(), (self.folder / "timing/image.pfm").read_bytes())
+
+    def test_another_seed_gives_another_picture(self):
+        for seed in (1, 2):
+            done = self.glint("run", "WKND", *SMALL, "--mode", "functional", "--seed", seed, "--out", f"s{seed}")
+            self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotEqual((self.folder / "s1/image.pfm").read_bytes(), (self.folder / "s2/image.pfm").read_bytes())
+
+    def test_json_prints_the_statistics_and_nothing_else(self):
+        done = self.glint("run", "WKND", *SMALL, "--mode", "functional", "--json", "--out", "out")
+        self.assertEqual(json.loads(done.stdout), json.loads((self.folder / "out/stats.json").read_text()))
+
+    def test_a_pipe_gets_plain_text(self):
+        done = self.glint("run", "WKND", *SMALL, "--mode", "functional", "--out", "out")
+        self.assertNotIn("\x1b", done.stdout)
+        self.assertNotIn("\r", done.stdout)
+
+    def test_an_output_folder_that_cannot_be_made_is_refused(self):
+        self.write("file", "x")
+        self.expect(2, ["file"], "run", "WKND", *SMALL, "--mode", "functional", "--out", "file")
+
+
+class Docs(GlintTest):
+    def test_the_generated_docs_are_fresh(self):
+        script = ROOT / "tools/update_golden.py"
+        done = subprocess.run([sys.executable, script, "--check", GLINT], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+
+if __name__ == "__main__":
+    os.environ.pop("NO_COLOR", None)
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:])

@@ -1,0 +1,69 @@
+# The lint rules notice what they are for: each is shown a small tree with one violation.
+# SPDX-License-Identifier: Apache-2.0
+import pathlib
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import lint
+
+HEAD = "// Models a thing.\n// SPDX-License-Identifier: Apache-2.0\n"
+
+
+class LintNotices(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.root = pathlib.Path(self.folder.name)
+        self.write("tests/lint/layers.txt", (pathlib.Path(__file__).parent / "layers.txt").read_text())
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def write(self, name, text):
+        path = self.root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+
+    def test_an_include_up_the_layers(self):
+        self.write("core/a.h", HEAD)
+        self.write("isa/b.cpp", HEAD + '#include "core/a.h"\n')
+        self.assertEqual(lint.layers(self.root), ["isa/b.cpp:3: isa may not include core/a.h"])
+
+    def test_no_finding_for_an_include_down_the_layers(self):
+        self.write("isa/a.h", HEAD)
+        self.write("core/b.cpp", HEAD + '#include "isa/a.h"\n')
+        self.assertEqual(lint.layers(self.root), [])
+
+    def test_an_include_that_is_not_from_the_root(self):
+        self.write("isa/a.h", HEAD)
+        self.write("isa/b.cpp", HEAD + '#include "a.h"\n')
+        self.assertEqual(len(lint.layers(self.root)), 1)
+
+    def test_a_long_file(self):
+        self.write("isa/a.cpp", HEAD + "\n" * lint.MAX_FILE_LINES)
+        self.assertEqual(len(lint.sizes(self.root)), 1)
+
+    def test_a_long_function_and_not_a_short_one(self):
+        body = "  x();\n"
+        self.write("isa/a.cpp", HEAD + "int f() {\n" + body * 50 + "}\nint g(int a,\n      int b) {\n" + body * 90 + "}\n")
+        findings = lint.sizes(self.root)
+        self.assertEqual(len(findings), 1)
+        self.assertIn("isa/a.cpp:55 g: 93 lines", findings[0])
+
+    def test_a_missing_sentence_licence_and_guard(self):
+        self.write("isa/a.h", "int x;\n")
+        self.assertEqual(len(lint.headers(self.root)), 3)
+
+    def test_a_path_in_the_docs_that_does_not_exist(self):
+        self.write("docs/a.md", "See `docs/b.md` and `docs/a.md`.\n")
+        self.assertEqual(lint.doc_paths(self.root), ["docs/a.md:1: docs/b.md does not exist"])
+
+    def test_loose_ends_and_printing_libraries(self):
+        self.write("isa/a.cpp", HEAD + "// TO" + "DO later\nprintf(\"x\");\nauto s = snprintf(b, 1, f);\n")
+        self.write("apps/glint/a.cpp", HEAD + "printf(\"x\");\n")
+        self.assertEqual(len(lint.wording(self.root)), 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
