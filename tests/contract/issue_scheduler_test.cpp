@@ -1,0 +1,100 @@
+// The promises of IssueScheduler, for every registered policy; and what each policy is for.
+// SPDX-License-Identifier: Apache-2.0
+#include "core/issue_scheduler.h"
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+#include "core/params.h"
+#include "tests/support/catch.h"
+
+namespace glint::core {
+namespace {
+
+std::unique_ptr<IssueScheduler> make(const std::string& name, uint32_t num_warps) {
+  return PolicyChoice<IssueScheduler>(name.c_str()).make({num_warps});
+}
+
+std::vector<uint64_t> ages(uint32_t n) {  // not in the order of the slots
+  std::vector<uint64_t> out;
+  for (uint32_t i = 0; i < n; ++i) out.push_back(uint64_t{1000} - i * 7 % 31);
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("every issue policy picks a ready warp, and the same one for the same views") {
+  for (const std::string& name : Registry<IssueScheduler>::names())
+    for (uint32_t n : {1u, 2u, 8u, 16u, 64u}) {
+      CAPTURE(name, n);
+      const auto one = make(name, n), two = make(name, n);
+      const std::vector<uint64_t> age = ages(n);
+      std::mt19937_64 random(n);
+      const uint64_t all = n == 64 ? ~uint64_t{0} : (uint64_t{1} << n) - 1;
+      for (Cycle now = 0; now < 2000; ++now) {
+        const uint64_t ready = random() & random() & all;
+        if (!ready) continue;
+        const uint32_t pick = one->pick({ready, age, now});
+        REQUIRE(pick < n);
+        REQUIRE((ready >> pick & 1) == 1);
+        REQUIRE(two->pick({ready, age, now}) == pick);
+      }
+    }
+}
+
+TEST_CASE("every issue policy reaches every warp when picked warps have to wait") {
+  for (const std::string& name : Registry<IssueScheduler>::names()) {
+    CAPTURE(name);
+    constexpr uint32_t kWarps = 16;
+    const auto policy = make(name, kWarps);
+    const std::vector<uint64_t> age = ages(kWarps);
+    uint64_t ready = 0xffff;
+    for (Cycle now = 0; ready; ++now) {  // a picked warp never becomes ready again: each pick is a new one
+      REQUIRE(now < kWarps);
+      ready &= ~(uint64_t{1} << policy->pick({ready, age, now}));
+    }
+  }
+}
+
+TEST_CASE("gto stays with its warp while that is ready, then takes the oldest") {
+  const auto gto = make("gto", 4);
+  const std::vector<uint64_t> age = {30, 10, 20, 40};
+
+  CHECK(gto->pick({0b1001, age, 0}) == 0);   // oldest of 0 and 3
+  CHECK(gto->pick({0b1111, age, 1}) == 0);   // greedy, although 1 is older
+  CHECK(gto->pick({0b1110, age, 2}) == 1);   // then the oldest
+  CHECK(gto->pick({0b1101, age, 3}) == 2);
+  CHECK(gto->pick({0b1111, age, 4}) == 2);
+}
+
+TEST_CASE("gto is not greedy for a new warp in the old one's place") {
+  const auto gto = make("gto", 2);
+  CHECK(gto->pick({0b01, std::vector<uint64_t>{0, 1}, 0}) == 0);
+  CHECK(gto->pick({0b11, std::vector<uint64_t>{2, 1}, 1}) == 1);
+}
+
+TEST_CASE("lrr goes round") {
+  const auto lrr = make("lrr", 4);
+  const std::vector<uint64_t> age = {30, 10, 20, 40};
+
+  for (uint32_t i = 0; i < 8; ++i) CHECK(lrr->pick({0b1111, age, i}) == i % 4);
+  CHECK(lrr->pick({0b1101, age, 8}) == 0);
+  CHECK(lrr->pick({0b1101, age, 9}) == 2);
+}
+
+TEST_CASE("oldest never stays with a younger warp") {
+  const auto oldest = make("oldest", 4);
+  const std::vector<uint64_t> age = {30, 10, 20, 40};
+
+  CHECK(oldest->pick({0b1001, age, 0}) == 0);
+  CHECK(oldest->pick({0b1111, age, 1}) == 1);
+}
+
+TEST_CASE("the default issue policy is one of several that are registered") {
+  const std::vector<std::string> names = Registry<IssueScheduler>::names();
+  CHECK(names.size() >= 3);
+  CHECK(std::count(names.begin(), names.end(), Params{}.issue.name) == 1);
+}
+
+}  // namespace glint::core

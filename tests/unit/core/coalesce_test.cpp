@@ -1,0 +1,94 @@
+// Merging of lane addresses into sectors of lines.
+// SPDX-License-Identifier: Apache-2.0
+#include "core/coalesce.h"
+
+#include "tests/support/catch.h"
+
+namespace glint::core {
+namespace {
+
+constexpr uint32_t kLineBytes = 128;
+
+struct Fixture {
+  Fixture() { base = memory.allocate("buffer", 1 << 16); }
+  LineList& with_stride(uint64_t stride, uint32_t bytes, LaneMask lanes = kAllLanes, uint64_t offset = 0) {
+    for (size_t i = 0; i < kLanes; ++i) access.address[i] = base + offset + i * stride;
+    list.clear();
+    coalesce_global(list, memory, access, lanes, bytes);
+    return list;
+  }
+  mem::AddressSpace memory;
+  Address base = 0;
+  isa::Access access;
+  LineList list{kLineBytes};
+};
+
+}  // namespace
+
+TEST_CASE_METHOD(Fixture, "consecutive words of a warp are one line of four sectors") {
+  with_stride(4, 4);
+
+  REQUIRE(list.lines().size() == 1);
+  CHECK(list.lines()[0].line == memory.physical(base));
+  CHECK(list.lines()[0].sectors == 0xf);
+}
+
+TEST_CASE_METHOD(Fixture, "a stride of a line makes 32 lines of one sector, in lane order") {
+  with_stride(128, 4);
+
+  REQUIRE(list.lines().size() == 32);
+  CHECK(list.num_sectors() == 32);
+  for (size_t i = 0; i < 32; ++i) CHECK(list.lines()[i].line == memory.physical(base) + i * 128);
+}
+
+TEST_CASE_METHOD(Fixture, "lanes that read one word share one sector") {
+  with_stride(0, 4, kAllLanes, 100);
+
+  REQUIRE(list.lines().size() == 1);
+  CHECK(list.lines()[0].sectors == 0x8);
+}
+
+TEST_CASE_METHOD(Fixture, "lanes that are off ask for nothing") {
+  with_stride(128, 4, 0x8000'0001);
+
+  REQUIRE(list.lines().size() == 2);
+  CHECK(list.lines()[1].line == memory.physical(base) + 31 * 128);
+}
+
+TEST_CASE_METHOD(Fixture, "an access across a line's end touches both lines") {
+  with_stride(0, 16, 0x1, 120);
+
+  REQUIRE(list.lines().size() == 2);
+  CHECK(list.lines()[0].sectors == 0x8);
+  CHECK(list.lines()[1].sectors == 0x1);
+}
+
+TEST_CASE_METHOD(Fixture, "lanes that alternate between two lines still make two lines") {
+  for (size_t i = 0; i < kLanes; ++i) access.address[i] = base + (i % 2) * 1024 + i * 4;
+  coalesce_global(list, memory, access, kAllLanes, 4);
+
+  CHECK(list.lines().size() == 2);
+  CHECK(list.num_sectors() == 8);
+}
+
+TEST_CASE_METHOD(Fixture, "one word of local memory of all lanes is one whole line") {
+  const LocalLayout layout{0x10000, 64};
+  access.address.fill(8);  // word 2
+  coalesce_local(list, layout, 3, access, kAllLanes, 4);
+
+  REQUIRE(list.lines().size() == 1);
+  CHECK(list.lines()[0].line == 0x10000 + (3 * 64 + 2) * 128);
+  CHECK(list.lines()[0].sectors == 0xf);
+}
+
+TEST_CASE_METHOD(Fixture, "four words of local memory are four lines, one for each word") {
+  const LocalLayout layout{0x10000, 64};
+  access.address.fill(16);
+  coalesce_local(list, layout, 0, access, kAllLanes, 16);
+
+  REQUIRE(list.lines().size() == 4);
+  CHECK(list.num_sectors() == 16);
+  for (size_t i = 0; i < 4; ++i) CHECK(list.lines()[i].line == 0x10000 + (4 + i) * 128);
+}
+
+}  // namespace glint::core

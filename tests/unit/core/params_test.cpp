@@ -1,0 +1,54 @@
+// Occupancy: how many warps a core's registers hold.
+// SPDX-License-Identifier: Apache-2.0
+#include "core/params.h"
+
+#include "tests/support/catch.h"
+
+namespace glint::core {
+
+TEST_CASE("registers limit the resident warps, rounded up to eights") {
+  Params params;
+  params.warps = 32;
+  params.registers = 32768;
+
+  CHECK(occupancy(params, 1) == 32);
+  CHECK(occupancy(params, 32) == 32);   // 32 * 32 * 32 is just the file
+  CHECK(occupancy(params, 33) == 25);   // 40 a lane: 25.6
+  CHECK(occupancy(params, 64) == 16);
+  CHECK(occupancy(params, 255) == 4);
+  params.warps = 3;
+  CHECK(occupancy(params, 255) == 3);
+}
+
+TEST_CASE("a program that does not fit once is reported with the number that would do") {
+  Params params;
+  params.registers = 1024;
+  Diagnostics fits, too_large;
+
+  check(params, 32, fits);
+  check(params, 33, too_large);
+
+  CHECK_FALSE(fits.has_errors());
+  REQUIRE(too_large.has_errors());
+  CHECK(too_large.messages()[0].find("core.registers to 1280") != std::string::npos);
+}
+
+TEST_CASE("units have their keys under the names of the instruction table") {
+  std::vector<std::string> keys;
+  for (const ParamInfo& info : describe_params(Units{}))
+    if (info.key.ends_with(".latency")) keys.push_back(info.key.substr(0, info.key.size() - 8));
+
+  REQUIRE(keys.size() == size_t(isa::Unit::Count));
+  for (size_t i = 0; i < keys.size(); ++i) CHECK(keys[i] == name_of(isa::Unit(i)));
+}
+
+TEST_CASE("by_unit gives each unit its own parameters") {
+  Units units;
+  units.sfu.latency = 99;
+  units.rt_unit.latency = 77;
+
+  CHECK(units.by_unit()[size_t(isa::Unit::Sfu)].latency == 99);
+  CHECK(units.by_unit()[size_t(isa::Unit::RtUnit)].latency == 77);
+}
+
+}  // namespace glint::core
