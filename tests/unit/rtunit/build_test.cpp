@@ -1,0 +1,189 @@
+// Structures in memory: contents, sizes, determinism, and a validator that sees damage.
+// SPDX-License-Identifier: Apache-2.0
+#include "base/diagnostics.h"
+#include "rtunit/node_format.h"
+#include "rtunit/validate.h"
+#include "tests/support/catch.h"
+#include "tests/support/rt_scenes.h"
+
+namespace glint::rt::test {
+namespace {
+
+std::vector<std::byte> bytes_of(const mem::AddressSpace& memory, const StructureInfo& info) {
+  const auto view = memory.view<std::byte>(info.address, info.bytes);
+  return {view.begin(), view.end()};
+}
+
+TEST_CASE("a structure is its header, 64 B a node and a leaf, and nothing more") {
+  Random random{1};
+  const Positions positions = soup(random, 1000, 10, 1);
+  mem::AddressSpace memory;
+  const StructureInfo info = build_bottom(memory, "b", {{triangles(positions)}}, {"bvh6", false});
+  CHECK(info.primitives == 1000);
+  CHECK(info.leaves == 1000);
+  CHECK(info.bytes == 64 + 64 * (uint64_t(info.nodes) + info.leaves));
+  CHECK(info.nodes >= 200);  // (1000 - 1) / 5
+  CHECK(info.nodes < 400);
+  CHECK(info.depth >= 4);
+  CHECK(info.depth <= 12);
+  CHECK(validate(memory, info.address).empty());
+}
+
+TEST_CASE("the two triangles of a quad share a leaf") {
+  Positions quads;
+  std::vector<uint32_t> indices;
+  for (uint32_t i = 0; i < 50; ++i) {
+    const float x = 3 * float(i);
+    for (const std::array<float, 3>& p : {std::array{x, 0.f, 0.f}, {x + 1, 0.f, 0.f}, {x + 1, 1.f, 0.f}, {x, 1.f, 0.f}}) quads.push_back(p);
+    for (uint32_t k : {0, 1, 2, 0, 2, 3}) indices.push_back(4 * i + k);
+  }
+  Geometry g = triangles(quads);
+  g.indices = indices;
+  mem::AddressSpace memory;
+  const StructureInfo paired = build_bottom(memory, "p", {{g}}), single = build_bottom(memory, "s", {{g}}, {"bvh6", false});
+  CHECK(paired.leaves == 50);
+  CHECK(single.leaves == 100);
+  CHECK(paired.primitives == 100);
+  CHECK(validate(memory, paired.address).empty());
+  const StructureInfo top = build_top(memory, "t", std::vector<Instance>(1), std::vector{paired});
+  for (uint32_t i = 0; i < 100; ++i) {
+    const bool second = i % 2;
+    RayState state = ray_of(top.address, {3 * float(i / 2) + (second ? 0.25f : 0.75f), second ? 0.75f : 0.25f, 5}, {0, 0, -1});
+    REQUIRE(begin(state, memory));
+    run(state, memory);
+    CHECK(state.committed.primitive == i);
+    CHECK(state.committed.u == (second ? 0.25f : 0.5f));  // weights in the order of the triangle's own corners
+    CHECK(state.committed.v == (second ? 0.5f : 0.25f));
+  }
+}
+
+TEST_CASE("the same geometry gives the same bytes") {
+  Random random{2};
+  const Positions positions = soup(random, 20000, 10, 0.2f);
+  mem::AddressSpace a, b;
+  CHECK(bytes_of(a, build_bottom(a, "b", {{triangles(positions)}})) == bytes_of(b, build_bottom(b, "b", {{triangles(positions)}})));
+}
+
+TEST_CASE("thousands of identical triangles still make a tree that a ray's stack can hold") {
+  Positions positions;
+  for (int i = 0; i < 5000; ++i)
+    for (const std::array<float, 3>& p : {std::array{0.f, 0.f, 0.f}, {1.f, 0.f, 0.f}, {0.f, 1.f, 0.f}}) positions.push_back(p);
+  mem::AddressSpace memory;
+  const StructureInfo info = build_bottom(memory, "b", {{triangles(positions)}}, {"bvh6", false});
+  CHECK(info.stack_need <= kStackEntries);
+  CHECK(info.primitives == 5000);
+  CHECK(validate(memory, info.address).empty());
+}
+
+TEST_CASE("geometries, AABBs and instances lie where the input says") {
+  const Positions positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  const std::vector<Bounds> boxes{{{5, 5, 5}, {6, 6, 6}}, {{NAN, 0, 0}, {1, 1, 1}}, {{7, 5, 5}, {8, 6, 6}}};
+  Geometry moved = triangles(positions), procedural;
+  moved.transform = {1, 0, 0, 10, 0, 1, 0, 0, 0, 0, 1, 0};
+  procedural.aabbs = boxes;
+  mem::AddressSpace memory;
+  const StructureInfo bottom = build_bottom(memory, "b", {{triangles(positions), moved, procedural}});
+  CHECK(bottom.primitives == 4);
+  CHECK(bottom.bounds == Bounds{{0, 0, 0}, {11, 6, 6}});
+  const StructureInfo top = build_top(memory, "t", std::vector<Instance>(3), std::vector{bottom});
+  CHECK(top.primitives == 3);
+  CHECK(validate(memory, top.address).empty());
+  RayState state = ray_of(top.address, {10.2f, 0.2f, 3}, {0, 0, -1});
+  REQUIRE(begin(state, memory));
+  run(state, memory);
+  CHECK(state.committed.geometry == 1);
+  state = ray_of(top.address, {7.5f, 5.5f, 30}, {0, 0, -1});
+  REQUIRE(begin(state, memory));
+  run(state, memory);
+  REQUIRE(state.status == RayStatus::NeedsIntersection);
+  CHECK(state.candidate.geometry == 2);
+  CHECK(state.candidate.primitive == 2);
+}
+
+TEST_CASE("empty structures are sound and rays miss them") {
+  mem::AddressSpace memory;
+  const StructureInfo bottom = build_bottom(memory, "b", {});
+  const StructureInfo top = build_top(memory, "t", std::vector<Instance>(2), std::vector{bottom});
+  CHECK(top.primitives == 0);
+  CHECK(validate(memory, top.address).empty());
+  RayState state = ray_of(top.address, {0, 0, 0}, {0, 0, 1});
+  REQUIRE(begin(state, memory));
+  run(state, memory);
+  CHECK(state.status == RayStatus::Done);
+  CHECK_FALSE(state.broken);
+}
+
+TEST_CASE("input that cannot be built is refused with its index") {
+  const Positions positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  const std::vector<uint32_t> indices{0, 1, 3};
+  Geometry g = triangles(positions);
+  g.indices = indices;
+  mem::AddressSpace memory;
+  CHECK_THROWS_WITH(build_bottom(memory, "b", {{g}}), Catch::Matchers::Contains("triangle 0 names vertex 3"));
+  const StructureInfo bottom = build_bottom(memory, "b", {{triangles(positions)}});
+  std::vector<Instance> instances(2);
+  instances[1].transform = {1, 0, 0, 0, 2, 0, 0, 0, 0, 0, 1, 0};
+  CHECK_THROWS_WITH(build_top(memory, "t", instances, std::vector{bottom}), Catch::Matchers::Contains("instance 1 cannot be inverted"));
+  instances[1] = {};
+  instances[1].bottom = 1;
+  CHECK_THROWS_WITH(build_top(memory, "t", instances, std::vector{bottom}), Catch::Matchers::Contains("instance 1 names bottom level 1 of 1"));
+}
+
+// Must fail: each kind of damage turns the validator red.
+TEST_CASE("the validator finds damage") {
+  Random random{3};
+  const Positions positions = soup(random, 100, 10, 1);
+  mem::AddressSpace memory;
+  const StructureInfo info = build_bottom(memory, "b", {{triangles(positions)}}, {"bvh6", false});
+  const auto view = memory.view<std::byte>(info.address, info.bytes);
+  REQUIRE(validate(memory, info.address).empty());
+  const auto damaged = [&](size_t offset, std::byte value) {
+    const std::byte before = view[offset];
+    view[offset] = value;
+    const auto errors = validate(memory, info.address);
+    view[offset] = before;
+    return !errors.empty();
+  };
+  CHECK(damaged(0, std::byte{1}));                     // the magic number
+  CHECK(damaged(32, std::byte{99}));                   // number of primitives
+  CHECK(damaged(64 + 12, std::byte{200}));             // the first child's block
+  CHECK(damaged(64 + 16, std::byte{1}));               // an exponent: the boxes shrink
+  CHECK(damaged(64 + 19, std::byte{1}));               // five children lost
+}
+
+TEST_CASE("quantised boxes contain what they were made of, at any size and place") {
+  Random random{4};
+  const auto format = make_format("bvh6");
+  for (int round = 0; round < 2000; ++round) {
+    BuildTree tree;
+    tree.nodes.resize(1);
+    tree.leaf_bytes.resize(kBlockBytes * 6);
+    const float size = std::pow(10.f, random.uniform(-20, 20)), place = size * std::pow(10.f, random.uniform(-2, 6));
+    const auto center = random.point(place);
+    tree.nodes[0].num_children = 1 + random.below(6);
+    for (uint32_t i = 0; i < tree.nodes[0].num_children; ++i) {
+      BuildTree::Node leaf;
+      leaf.kind = NodeKind::Triangle;
+      leaf.leaf_block = i;
+      const auto a = random.point(size), b = random.point(size);
+      for (size_t k = 0; k < 3; ++k) {
+        leaf.bounds.low[k] = center[k] + std::fmin(a[k], b[k]);
+        leaf.bounds.high[k] = random.below(8) ? center[k] + std::fmax(a[k], b[k]) : leaf.bounds.low[k];
+      }
+      tree.nodes.push_back(leaf);
+      tree.children.push_back(i + 1);
+    }
+    const auto bytes = format->encode(tree);
+    std::array<DecodedChild, 6> decoded;
+    const uint32_t count = format->decode(&bytes[kBlockBytes], decoded);
+    REQUIRE(count == tree.nodes[0].num_children);
+    for (uint32_t i = 0; i < count; ++i)
+      for (size_t k = 0; k < 3; ++k) {
+        REQUIRE(decoded[i].bounds.low[k] <= tree.nodes[i + 1].bounds.low[k]);
+        REQUIRE(decoded[i].bounds.high[k] >= tree.nodes[i + 1].bounds.high[k]);
+      }
+  }
+}
+
+}  // namespace
+}  // namespace glint::rt::test
