@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <set>
+#include <string_view>
+
 namespace glint::report {
 namespace {
 
@@ -56,24 +59,63 @@ class RowVisitor final : public PathVisitor {
   }
 };
 
-class FindVisitor final : public PathVisitor {
- public:
-  FindVisitor(const std::string& wanted, double fallback) : value(fallback), wanted_(wanted) {}
-  double value;
+// "core[3].l1" -> "core[*].l1"
+std::string without_numbers(const std::string& path) {
+  std::string out;
+  for (size_t i = 0; i < path.size(); ++i) {
+    out += path[i];
+    if (path[i] != '[') continue;
+    const size_t close = path.find(']', i);
+    if (close == std::string::npos) continue;
+    out += '*';
+    i = close - 1;
+  }
+  return out;
+}
 
-  void visit(const stats::Counter& stat) override { look(stat, double(stat.value())); }
-  void visit(const stats::Ratio& stat) override { look(stat, stat.value()); }
-  void visit(const stats::Value& stat) override { look(stat, stat.value()); }
+class NameVisitor final : public PathVisitor {
+ public:
+  std::vector<StatRow> rows;
+
+  void visit(const stats::Counter& stat) override { add(stat); }
+  void visit(const stats::Ratio& stat) override { add(stat); }
+  void visit(const stats::Value& stat) override { add(stat); }
+  void visit(const stats::Histogram& stat) override { add(stat); }
+  void visit(const stats::BreakdownBase& stat) override { add(stat); }
+
+ private:
+  void add(const stats::Stat& stat) {
+    std::string path = without_numbers(path_of(stat));
+    if (seen_.insert(path).second) rows.push_back({std::move(path), "", std::string(stat.unit()), std::string(stat.doc())});
+  }
+  std::set<std::string> seen_;
+};
+
+bool matches(std::string_view pattern, std::string_view text) {
+  if (pattern.empty()) return text.empty();
+  if (pattern[0] == '*')
+    return matches(pattern.substr(1), text) || (!text.empty() && text[0] != '.' && matches(pattern, text.substr(1)));
+  return !text.empty() && pattern[0] == text[0] && matches(pattern.substr(1), text.substr(1));
+}
+
+class SumVisitor final : public PathVisitor {
+ public:
+  explicit SumVisitor(const std::string& pattern) : pattern_(pattern) {}
+  std::optional<double> sum;
+
+  void visit(const stats::Counter& stat) override { add(stat, double(stat.value())); }
+  void visit(const stats::Ratio& stat) override { add(stat, stat.value()); }
+  void visit(const stats::Value& stat) override { add(stat, stat.value()); }
   void visit(const stats::Histogram&) override {}
   void visit(const stats::BreakdownBase& stat) override {
-    for (const auto& [name, count] : stat.parts()) look(stat, double(count), "::" + std::string(name));
+    for (const auto& [name, count] : stat.parts()) add(stat, double(count), "::" + std::string(name));
   }
 
  private:
-  void look(const stats::Stat& stat, double found, const std::string& part = {}) {
-    if (path_of(stat) + part == wanted_) value = found;
+  void add(const stats::Stat& stat, double value, const std::string& part = {}) {
+    if (matches(pattern_, path_of(stat) + part)) sum = sum.value_or(0.0) + value;
   }
-  const std::string& wanted_;
+  const std::string& pattern_;
 };
 
 }  // namespace
@@ -84,10 +126,16 @@ std::vector<StatRow> stat_rows(const stats::Group& root) {
   return std::move(visitor.rows);
 }
 
-double stat_value(const stats::Group& root, const std::string& path, double fallback) {
-  FindVisitor visitor(path, fallback);
+std::vector<StatRow> stat_names(const stats::Group& root) {
+  NameVisitor visitor;
   root.accept(visitor);
-  return visitor.value;
+  return std::move(visitor.rows);
+}
+
+std::optional<double> stat_sum(const stats::Group& root, const std::string& pattern) {
+  SumVisitor visitor(pattern);
+  root.accept(visitor);
+  return visitor.sum;
 }
 
 }  // namespace glint::report

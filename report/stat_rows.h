@@ -1,6 +1,7 @@
 // A tree of statistics as a flat list of rows: what line-based formats and `glint list stats` show.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,12 @@ struct StatRow {
 // Depth first, in order of declaration. The root's own name is the first part of every path.
 std::vector<StatRow> stat_rows(const stats::Group& root);
 
-// The value at `path` (as in StatRow, bins of histograms apart), or `fallback` when there is none.
-double stat_value(const stats::Group& root, const std::string& path, double fallback);
+// Every statistic once, without values: an instance's number in brackets reads [*], parts and bins are left out.
+// A histogram that is empty is there too. In order of first appearance.
+std::vector<StatRow> stat_names(const stats::Group& root);
+
+// The sum of the values whose path (as in StatRow, bins of histograms apart) matches `pattern`, in which '*'
+// stands for any characters but '.'; absent when no path matches.
+std::optional<double> stat_sum(const stats::Group& root, const std::string& pattern);
 
 }  // namespace glint::report

@@ -54,10 +54,10 @@ def function_lengths(path):
     for i, line in enumerate(lines):
         if not line.endswith("{") or re.match(r"\s*(namespace|struct|class|enum|union|extern|using|}|//)", line):
             continue
-        indent = len(line) - len(line.lstrip())
-        start = i
-        while start > 0 and "(" not in lines[start] and i - start < 6:
+        start = i  # a declaration may take several lines, an initialiser list among them
+        while start > 0 and lines[start - 1].strip() and not re.search(r"([;{}>:]|//.*)$", lines[start - 1]):
             start -= 1
+        indent = len(lines[start]) - len(lines[start].lstrip())
         match = re.search(r"([\w:~]+)\s*\(", lines[start])
         if not match or match.group(1) in ("if", "for", "while", "switch", "catch", "return") or re.match(r"\s*\[", lines[start]):
             continue

@@ -66,11 +66,29 @@ TEST_CASE("json nests groups and keeps value, unit and doc of each statistic") {
   CHECK(unit.at("cycles").at("value") == nlohmann::json{{"busy", 0}, {"idle", 9}});
 }
 
-TEST_CASE("a value is found by its path, a part of a breakdown too, and a wrong path gives the fallback") {
-  const Tree tree;
-  CHECK(stat_value(tree.root, "gpu.l1.accesses", -1) == 3);
-  CHECK(stat_value(tree.root, "gpu.l1.cycles::idle", -1) == 9);
-  CHECK(stat_value(tree.root, "gpu.l2.accesses", -1) == -1);
+TEST_CASE("names list each statistic once for all instances, empty histograms too") {
+  stats::Group root(nullptr, "gpu");
+  stats::Group a(&root, "core[0]"), b(&root, "core[12]");
+  Unit in_a(&a), in_b(&b);
+  const auto rows = stat_names(root);
+
+  REQUIRE(rows.size() == 5);
+  CHECK(rows[0].path == "gpu.core[*].l1.hits");
+  CHECK(rows[3].path == "gpu.core[*].l1.sizes");
+  CHECK(rows[3].unit == "byte");
+}
+
+TEST_CASE("a sum takes every path that the pattern matches, parts of breakdowns too, and is absent without any") {
+  Tree tree;
+  stats::Group other(&tree.root, "l1b");
+  stats::Counter more(&other, "accesses", "access", "More.");
+  more += 10;
+
+  CHECK(stat_sum(tree.root, "gpu.l1.accesses") == 3.0);
+  CHECK(stat_sum(tree.root, "gpu.l1*.accesses") == 13.0);
+  CHECK(stat_sum(tree.root, "gpu.l1.cycles::idle") == 9.0);
+  CHECK_FALSE(stat_sum(tree.root, "gpu.l2.accesses").has_value());
+  CHECK_FALSE(stat_sum(tree.root, "gpu.*accesses").has_value());  // a star does not cross a dot
 }
 
 }  // namespace

@@ -1,0 +1,67 @@
+// `glint describe KEY`: what a configuration key means, its value in a preset, unit and range.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "apps/glint/config.h"
+#include "apps/glint/session.h"
+#include "base/params.h"
+
+namespace glint::app {
+namespace {
+
+struct Options {
+  std::string key, config = "mobile";
+  std::vector<std::string> settings;
+  bool markdown = false;
+};
+
+void print(const ParamInfo& info) {
+  fmt::print("{} = {}\n", info.key, info.value);
+  fmt::print("  {}\n", info.doc);
+  if (!info.unit.empty()) fmt::print("  unit   {}\n", info.unit);
+  if (!info.range.empty()) fmt::print("  range  {}\n", info.range);
+}
+
+void print_markdown(const std::vector<ParamInfo>& infos) {
+  fmt::print("| key | value | unit | range | meaning |\n|---|---|---|---|---|\n");
+  for (const ParamInfo& info : infos)
+    fmt::print("| `{}` | {} | {} | {} | {} |\n", info.key, info.value, info.unit, info.range, info.doc);
+}
+
+Exit describe(const Session& session, const Options& options) {
+  const pipeline::GpuParams params = read_config(session.resources, options.config, options.settings);
+  std::vector<ParamInfo> found;
+  std::vector<std::string> names;
+  for (const ParamInfo& info : describe_params(params)) {
+    names.push_back(info.key);
+    const bool inside = info.key.rfind(options.key + ".", 0) == 0;
+    if (options.key.empty() || info.key == options.key || inside) found.push_back(info);
+  }
+  if (found.empty()) {
+    const std::string guess = nearest(options.key, names);
+    throw UserError({}, fmt::format("no configuration key '{}'", options.key),
+                    guess.empty() ? "'glint describe' lists all keys" : fmt::format("did you mean '{}'?", guess));
+  }
+  if (options.markdown)
+    print_markdown(found);
+  else
+    for (const ParamInfo& info : found) print(info);
+  return Exit::Ok;
+}
+
+}  // namespace
+
+void add_describe(CLI::App& app, Session& session) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("describe", "Explain configuration keys");
+  command->add_option("KEY", options->key, "A key or the beginning of keys: core.warps, core, rt (default: all)");
+  command->add_option("--config", options->config, "Preset or TOML file whose values are shown")->capture_default_str();
+  command->add_option("--set", options->settings, "Overrides, as for run")->type_name("KEY=VALUE");
+  command->add_flag("--markdown", options->markdown, "As the table of docs/config.md");
+  command->callback([&session, options] { session.action = [&session, options] { return describe(session, *options); }; });
+}
+
+}  // namespace glint::app

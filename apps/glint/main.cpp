@@ -1,0 +1,88 @@
+// The command `glint`: reads the command line, runs one subcommand, turns errors into exit codes.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+#include <string>
+
+#include "apps/glint/session.h"
+#include "apps/glint/suggest.h"
+#include "base/diagnostics.h"
+
+namespace glint::app {
+namespace {
+
+bool is_utf8(const char* locale) {
+  const std::string name = locale;
+  return name.find("UTF-8") != std::string::npos || name.find("utf8") != std::string::npos;
+}
+
+// POSIX: LC_ALL wins over LC_CTYPE wins over LANG; an empty one counts as unset.
+bool locale_is_utf8() {
+  for (const char* variable : {"LC_ALL", "LC_CTYPE", "LANG"})
+    if (const char* value = std::getenv(variable); value && *value) return is_utf8(value);
+  return false;
+}
+
+void look_at_terminal(Session& session) {
+  const char* no_colour = std::getenv("NO_COLOR");  // no-color.org: any non-empty value
+  const char* kind = std::getenv("TERM");
+  session.on_terminal = ::isatty(STDOUT_FILENO) != 0;
+  session.terminal.utf8 = session.on_terminal && locale_is_utf8();
+  session.terminal.colour =
+      session.on_terminal && !(no_colour && *no_colour) && kind && std::string(kind) != "dumb";
+}
+
+int report_parse_error(const CLI::App& app, const CLI::ParseError& error, const Session& session) {
+  if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+  fmt::print(stderr, "error: {}\n", error.what());
+  const std::string hint = suggestion(app, session.arguments);
+  fmt::print(stderr, "  note: {}\n", hint.empty() ? "'glint --help' and 'glint COMMAND --help' list what there is" : hint);
+  return int(Exit::UserInput);
+}
+
+int run_action(const Session& session) {
+  try {
+    const Exit exit = session.action();
+    if (std::fflush(stdout) != 0) {
+      fmt::print(stderr, "error: cannot write to standard output\n");
+      return int(Exit::Failure);
+    }
+    return int(exit);
+  } catch (const Error& error) {
+    fmt::print(stderr, "{}{}\n", std::string(error.what()).find("error: ") == std::string::npos ? "error: " : "", error.what());
+    return int(error.exit());
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "error: out of memory\n  note: a smaller --size, or a smaller scene\n");
+    return int(Exit::Failure);
+  }
+}
+
+int main_of(int argc, char** argv) {
+  Session session{{argv, argv + argc}, Resources::find(), {}, false, {}};
+  look_at_terminal(session);
+  CLI::App app("Glint: a GPU you can read. Runs ray-tracing shaders on a simulated GPU and says what it did, cycle by cycle.", "glint");
+  app.set_version_flag("--version", GLINT_VERSION);
+  app.require_subcommand(1);
+  add_run(app, session);
+  add_compile(app, session);
+  add_asm(app, session);
+  add_isa(app, session);
+  add_list(app, session);
+  add_describe(app, session);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return report_parse_error(app, error, session);
+  }
+  return run_action(session);
+}
+
+}  // namespace
+}  // namespace glint::app
+
+int main(int argc, char** argv) { return glint::app::main_of(argc, argv); }

@@ -1,0 +1,33 @@
+// The one place that names all interfaces with registered implementations.
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/glint/policies.h"
+
+#include "base/registry.h"
+#include "core/issue_scheduler.h"
+#include "memsys/dram_scheduler.h"
+#include "report/stat_writer.h"
+#include "rtunit/node_format.h"
+#include "rtunit/ray_scheduler.h"
+
+namespace glint::app {
+namespace {
+
+template <class Interface>
+void add(std::vector<PolicyInfo>& out, const char* key, const char* folder) {
+  for (const auto& [name, entry] : Registry<Interface>::instance().entries())
+    out.push_back({key, folder, std::string(name), std::string(entry.doc)});
+}
+
+}  // namespace
+
+std::vector<PolicyInfo> all_policies() {
+  std::vector<PolicyInfo> out;
+  add<core::IssueScheduler>(out, "core.issue", "core/schedulers");
+  add<mem::DramScheduler>(out, "memory.dram.scheduler", "memsys/dram_schedulers");
+  add<rt::RayScheduler>(out, "rt.scheduler", "rtunit/schedulers");
+  add<rt::NodeFormat>(out, "(node format)", "rtunit/formats");
+  add<report::StatWriter>(out, "(statistics file)", "report/formats");
+  return out;
+}
+
+}  // namespace glint::app

@@ -1,0 +1,31 @@
+// Where presets and shaders lie: beside an installed executable, or in the source tree of a built one.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+namespace glint::app {
+
+class Resources {
+ public:
+  // Looks relative to the running executable first, then in the source folder known when it was compiled.
+  static Resources find();
+  explicit Resources(std::string root) : root_(std::move(root)) {}
+
+  // A preset's name ("mobile") or a path to a TOML file. UserError with the nearest name when neither.
+  std::string config_path(const std::string& name_or_path) const;
+  std::vector<std::string> config_names() const;  // sorted
+
+  // The folder of a built-in shader set; `folder` as in shaders/.
+  std::string shader_dir(const std::string& folder) const { return root_ + "/shaders/" + folder; }
+
+ private:
+  std::string root_;
+};
+
+// Whole file as bytes. UserError when it cannot be read.
+std::string read_file(const std::string& path);
+// Writes to `path`, or to stdout when it is empty or "-". UserError when it cannot be written.
+void write_output(const std::string& path, const std::string& bytes);
+
+}  // namespace glint::app

@@ -1,0 +1,34 @@
+// What every subcommand needs: the command line, where resources lie, what the terminal can, what to run.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "apps/glint/resources.h"
+#include "base/diagnostics.h"
+#include "report/table.h"
+
+namespace CLI {
+class App;
+}
+
+namespace glint::app {
+
+struct Session {
+  std::vector<std::string> arguments;  // argv
+  Resources resources;
+  report::Terminal terminal;           // of stdout
+  bool on_terminal = false;            // stdout is one: progress may be drawn
+  std::function<Exit()> action;        // set by the subcommand that was chosen
+};
+
+// Each adds its subcommand; its callback sets Session::action.
+void add_run(CLI::App& app, Session& session);
+void add_compile(CLI::App& app, Session& session);
+void add_asm(CLI::App& app, Session& session);
+void add_isa(CLI::App& app, Session& session);
+void add_list(CLI::App& app, Session& session);
+void add_describe(CLI::App& app, Session& session);
+
+}  // namespace glint::app

@@ -1,0 +1,50 @@
+// Builds a machine with an empty program just to ask it for its statistics.
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/glint/stat_list.h"
+
+#include <fmt/format.h>
+
+#include "core/image.h"
+#include "isa/program.h"
+#include "pipeline/params.h"
+#include "pipeline/timing_machine.h"
+#include "report/stat_rows.h"
+#include "report/table.h"
+
+namespace glint::app {
+namespace {
+
+std::vector<report::StatRow> rows() {
+  isa::Program program;
+  program.name = "empty.rgen";
+  program.stage = isa::Stage::RayGeneration;
+  program.code.resize(1);
+  program.code[0].op = isa::op_index("exit");
+  program.lines.resize(1);
+  const core::Image image = core::link({program});
+  mem::AddressSpace memory;
+  core::World world;
+  world.image = &image;
+  world.memory = &memory;
+  world.constant_bank.resize(isa::kConstantBankBytes);
+  world.raygen = 0;
+  pipeline::GpuParams params;
+  params.cores = 1;
+  return report::stat_names(pipeline::TimingMachine(params, world, false).root());
+}
+
+}  // namespace
+
+std::string stat_list() {
+  std::vector<std::vector<std::string>> cells;
+  for (const report::StatRow& row : rows()) cells.push_back({row.path, row.unit, row.doc});
+  return report::table(cells, "");
+}
+
+std::string stat_list_markdown() {
+  std::string out = "| statistic | unit | meaning |\n|---|---|---|\n";
+  for (const report::StatRow& row : rows()) out += fmt::format("| `{}` | {} | {} |\n", row.path, row.unit, row.doc);
+  return out;
+}
+
+}  // namespace glint::app

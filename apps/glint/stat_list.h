@@ -1,0 +1,11 @@
+// The statistics of the timing machine without a run: what there is, in which unit, and what it means.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+namespace glint::app {
+
+std::string stat_list();           // aligned columns
+std::string stat_list_markdown();  // the table of docs/stats.md
+
+}  // namespace glint::app

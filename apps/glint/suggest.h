@@ -1,0 +1,16 @@
+// "Did you mean": the nearest subcommand or option to a word that the command line does not know.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace glint::app {
+
+// A sentence to print after a parse error, or "" when nothing is near.
+std::string suggestion(const CLI::App& app, const std::vector<std::string>& arguments);
+
+}  // namespace glint::app
