@@ -1,0 +1,145 @@
+// One traversal, three ways to drive it: run(), step by step, and the timed unit give the same bits.
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/catch.h"
+#include "tests/support/rt_launch.h"
+
+namespace glint::rt::test {
+namespace {
+
+// Opaque and alpha triangles and boxes in several instances; rays of every kind.
+struct Zoo {
+  mem::AddressSpace memory;
+  Positions opaque, alpha;
+  std::vector<Bounds> boxes;
+  StructureInfo top;
+  Random random;
+
+  explicit Zoo(uint64_t seed) : random{seed} {
+    opaque = soup(random, 200, 10, 2);
+    alpha = soup(random, 100, 10, 3);
+    for (int i = 0; i < 60; ++i) {
+      const auto p = random.point(10), s = random.point(1);
+      boxes.push_back({{p[0], p[1], p[2]}, {p[0] + std::fabs(s[0]), p[1] + std::fabs(s[1]), p[2] + std::fabs(s[2])}});
+    }
+    Geometry procedural;
+    procedural.aabbs = boxes;
+    procedural.opaque = seed % 2;
+    const std::vector<StructureInfo> bottoms{
+        build_bottom(memory, "mixed", {{triangles(opaque), triangles(alpha, false), procedural}}),
+        build_bottom(memory, "alpha", {{triangles(alpha, false)}})};
+    std::vector<Instance> instances(12);
+    for (size_t i = 0; i < instances.size(); ++i) {
+      instances[i].transform = random_transform(random, random.uniform(0.3f, 1.5f) * (i % 2 ? 1.f : -1.f), 15);
+      instances[i].bottom = uint32_t(i % 3 == 2);
+      instances[i].flags = random.below(16);
+      instances[i].mask = 1u << random.below(8) | 0x80;
+    }
+    top = build_top(memory, "top", instances, bottoms);
+  }
+  RayState ray() {
+    RayState state = ray_of(top.address, random.point(20), random.point(1), random.uniform(0, 1), random.below(4) ? 100.f : 3.f);
+    static constexpr uint32_t kFlags[] = {0, 0, 0, 1, 2, 4, 0x10, 0x20, 0x40, 0x80, 0x100, 0x200, 5};
+    state.ray.flags = kFlags[random.below(13)];
+    state.ray.cull_mask = random.below(2) ? 0xff : random.bits() & 0xff;
+    REQUIRE(begin(state, memory));
+    return state;
+  }
+  std::vector<WarpRays> rays(size_t warps) {
+    std::vector<WarpRays> out(warps);
+    for (WarpRays& warp : out)
+      for (RayState& state : warp) state = ray();
+    return out;
+  }
+};
+
+void check_same(const RayState& a, const RayState& b) {
+  REQUIRE(a.status == b.status);
+  REQUIRE(a.committed.instance == b.committed.instance);
+  REQUIRE(a.committed.geometry == b.committed.geometry);
+  REQUIRE(a.committed.primitive == b.committed.primitive);
+  REQUIRE(std::memcmp(&a.committed.t, &b.committed.t, 12) == 0);  // t, u, v
+  REQUIRE(a.committed.kind == b.committed.kind);
+  REQUIRE(a.committed.instance_leaf == b.committed.instance_leaf);
+  REQUIRE(a.attribute_slot == b.attribute_slot);
+  REQUIRE(a.nodes_visited == b.nodes_visited);
+  REQUIRE(a.triangle_tests == b.triangle_tests);
+}
+
+TEST_CASE("run and steps give the same bits") {
+  Zoo zoo(1);
+  uint32_t hits = 0, asked = 0;
+  for (int i = 0; i < 3000; ++i) {
+    RayState whole = zoo.ray(), stepped = whole;
+    run_to_end(whole, zoo.memory);
+    while (stepped.status != RayStatus::Done) {
+      if (stepped.status == RayStatus::Traversing) {
+        const Fetch fetch = next_fetch(stepped);
+        step(stepped, zoo.memory.find(fetch.address, fetch.bytes));
+      } else {
+        ++asked;
+        resolve(stepped);
+      }
+    }
+    check_same(whole, stepped);
+    hits += whole.committed.valid();
+  }
+  CHECK(hits > 500);
+  CHECK(asked > 500);
+}
+
+TEST_CASE("the timed unit finds what run finds, under every scheduler, memory and port") {
+  for (uint64_t seed = 0; seed < 8; ++seed) {
+    Zoo zoo(seed);
+    std::vector<WarpRays> timed = zoo.rays(6), functional = timed;
+    Params params;
+    params.warps = 1 + uint32_t(seed % 4);
+    params.scheduler.name = seed % 2 ? "oldest_first" : "round_robin";
+    params.request_bytes = 32u << (seed % 3);
+    params.requests_per_cycle = 1 + uint32_t(seed % 2);
+    params.responses_per_cycle = 1 + uint32_t(seed % 3);
+    params.result_store = seed % 4 == 3;
+    mem::FixedLatencyMemory l1(1 + 7 * seed, 1 + uint32_t(seed % 2));
+    RtUnit unit(params, {zoo.memory, l1});
+    const Launch done = launch(unit, l1, timed, false);
+    CHECK(done.last_completion > 0);
+    for (size_t w = 0; w < timed.size(); ++w)
+      for (size_t lane = 0; lane < kLanes; ++lane) {
+        run_to_end(functional[w][lane], zoo.memory);
+        check_same(functional[w][lane], timed[w][lane]);
+      }
+    // conservation
+    const RtStats& s = unit.stats();
+    CHECK(s.finished.value() + s.suspended.value() == s.rays.value() + s.resumed.value());
+    CHECK(done.completions == s.warps.value());
+    CHECK(s.cycles.total() == s.unit_cycles.value());
+    CHECK(s.nodes.value() == s.internal_nodes.value() + s.instance_leaves.value() + s.triangle_leaves.value() + s.procedural_leaves.value());
+    CHECK(s.nodes.value() == s.fetches.value() + s.merged_lanes.value());
+  }
+}
+
+// Each interface's promise that skipping changes nothing: same cycles, same accounts.
+TEST_CASE("ticking at events only gives the same cycles and counts as ticking always") {
+  for (uint64_t seed = 20; seed < 26; ++seed) {
+    Zoo zoo(seed);
+    const std::vector<WarpRays> rays = zoo.rays(5);
+    Params params;
+    params.warps = 1 + uint32_t(seed % 3);
+    params.triangle.interval = 1 + uint32_t(seed % 5);
+    params.result_store = seed % 2;
+    std::vector<WarpRays> a = rays, b = rays;
+    mem::FixedLatencyMemory l1_a(40 + 30 * (seed % 3), 1), l1_b(40 + 30 * (seed % 3), 1);
+    RtUnit unit_a(params, {zoo.memory, l1_a}), unit_b(params, {zoo.memory, l1_b});
+    const Launch all = launch(unit_a, l1_a, a, true), some = launch(unit_b, l1_b, b, false);
+    CHECK(all.last_completion == some.last_completion);
+    CHECK(all.completion == some.completion);
+    CHECK(unit_a.stats().cycles.parts() == unit_b.stats().cycles.parts());
+    CHECK(unit_a.stats().ray_cycles.value() == unit_b.stats().ray_cycles.value());
+    CHECK(unit_a.stats().warp_cycles.value() == unit_b.stats().warp_cycles.value());
+    CHECK(unit_a.stats().refusals.value() == unit_b.stats().refusals.value());
+    CHECK(unit_a.stats().ray_latency.counts() == unit_b.stats().ray_latency.counts());
+    CHECK(l1_a.log().size() == l1_b.log().size());
+  }
+}
+
+}  // namespace
+}  // namespace glint::rt::test
