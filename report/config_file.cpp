@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/config_file.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace glint::report {
 namespace {
@@ -59,7 +58,7 @@ std::string config_key_values(const std::vector<ParamInfo>& params) {
 }
 
 uint64_t fnv1a(const std::string& bytes) {
-  uint64_t hash = 0xcbf29ce484222325;  // offset basis
+  uint64_t hash = 0xcbf29ce484222325;                                     // offset basis
   for (const char c : bytes) hash = (hash ^ uint8_t(c)) * 0x100000001b3;  // prime
   return hash;
 }

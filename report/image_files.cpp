@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/image_files.h"
 
-#include <fmt/format.h>
-
 #include <bit>
+#include <fmt/format.h>
 #include <vector>
 
 #include "base/check.h"

@@ -13,14 +13,16 @@ constexpr std::chrono::milliseconds kRedraw{100};
 std::string progress_line(const std::string& label, uint64_t done, uint64_t total, double elapsed,
                           const Terminal& terminal) {
   const double fraction = total ? double(done) / double(total) : 0.0;
-  std::string line = fmt::format(" {} [{}] {:3.0f} %", label, bar(fraction, kBarWidth, terminal), fraction * 100);
+  std::string line =
+      fmt::format(" {} [{}] {:3.0f} %", label, bar(fraction, kBarWidth, terminal), fraction * 100);
   line += "  " + seconds(elapsed);
   if (done > 0 && done < total) line += "  ETA " + seconds(elapsed * (1 - fraction) / fraction);
   return line;
 }
 
 Progress::Progress(std::FILE* stream, std::string label, Terminal terminal)
-    : stream_(stream), label_(std::move(label)), terminal_(terminal), start_(Clock::now()), last_(start_) {}
+    : stream_(stream), label_(std::move(label)), terminal_(terminal), start_(Clock::now()), last_(start_) {
+}
 
 void Progress::update(uint64_t done, uint64_t total) {
   if (!stream_) return;

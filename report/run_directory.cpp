@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/run_directory.h"
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-#include <unistd.h>
-
 #include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <system_error>
+#include <unistd.h>
 
 #include "base/diagnostics.h"
 #include "report/config_file.h"
@@ -31,7 +30,8 @@ void RunDirectory::write(const std::string& name, const std::string& bytes) cons
     std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
     out.write(bytes.data(), std::streamsize(bytes.size()));
     out.flush();
-    if (!out) throw UserError({target}, "cannot write the file", "is the disk full, or the folder read-only?");
+    if (!out)
+      throw UserError({target}, "cannot write the file", "is the disk full, or the folder read-only?");
   }
   std::error_code error;
   fs::rename(temporary, target, error);

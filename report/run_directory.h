@@ -18,10 +18,10 @@ struct RunInfo {
   std::string scene, scene_form, scene_note, shader, config, mode;
   uint64_t scene_hash = 0, config_hash = 0, seed = 0;
   uint32_t width = 0, height = 0, samples = 0;
-  std::string started;               // ISO 8601, UTC
+  std::string started;  // ISO 8601, UTC
   double wall_seconds = 0;
   int exit = 0;
-  std::string message;               // of the error, when exit is not 0
+  std::string message;  // of the error, when exit is not 0
 };
 
 // Writes through a temporary file and a rename, so that a reader never sees half a file.
@@ -33,10 +33,10 @@ class RunDirectory {
   std::string path_of(const std::string& name) const { return path_ + "/" + name; }
 
   void write(const std::string& name, const std::string& bytes) const;
-  void write_image(const ImageView& image) const;       // image.png, image.pfm
-  void write_stats(const stats::Group& root) const;     // stats.<format> of every registered format
+  void write_image(const ImageView& image) const;    // image.png, image.pfm
+  void write_stats(const stats::Group& root) const;  // stats.<format> of every registered format
   void write_config(const std::vector<ParamInfo>& params, const std::string& title) const;  // config.toml
-  void write_run(const RunInfo& info) const;            // run.json
+  void write_run(const RunInfo& info) const;                                                // run.json
 
  private:
   std::string path_;

@@ -3,7 +3,6 @@
 #include "report/stat_rows.h"
 
 #include <fmt/format.h>
-
 #include <set>
 #include <string_view>
 
@@ -50,12 +49,14 @@ class RowVisitor final : public PathVisitor {
     }
   }
   void visit(const stats::BreakdownBase& stat) override {
-    for (const auto& [name, count] : stat.parts()) add(stat, "::" + std::string(name), fmt::format("{}", count));
+    for (const auto& [name, count] : stat.parts())
+      add(stat, "::" + std::string(name), fmt::format("{}", count));
   }
 
  private:
   void add(const stats::Stat& stat, const std::string& part, std::string value) {
-    rows.push_back({path_of(stat) + part, std::move(value), std::string(stat.unit()), std::string(stat.doc())});
+    rows.push_back(
+        {path_of(stat) + part, std::move(value), std::string(stat.unit()), std::string(stat.doc())});
   }
 };
 
@@ -86,7 +87,8 @@ class NameVisitor final : public PathVisitor {
  private:
   void add(const stats::Stat& stat) {
     std::string path = without_numbers(path_of(stat));
-    if (seen_.insert(path).second) rows.push_back({std::move(path), "", std::string(stat.unit()), std::string(stat.doc())});
+    if (seen_.insert(path).second)
+      rows.push_back({std::move(path), "", std::string(stat.unit()), std::string(stat.doc())});
   }
   std::set<std::string> seen_;
 };
@@ -94,7 +96,8 @@ class NameVisitor final : public PathVisitor {
 bool matches(std::string_view pattern, std::string_view text) {
   if (pattern.empty()) return text.empty();
   if (pattern[0] == '*')
-    return matches(pattern.substr(1), text) || (!text.empty() && text[0] != '.' && matches(pattern, text.substr(1)));
+    return matches(pattern.substr(1), text) ||
+           (!text.empty() && text[0] != '.' && matches(pattern, text.substr(1)));
   return !text.empty() && pattern[0] == text[0] && matches(pattern.substr(1), text.substr(1));
 }
 

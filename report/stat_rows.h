@@ -19,8 +19,8 @@ struct StatRow {
 // Depth first, in order of declaration. The root's own name is the first part of every path.
 std::vector<StatRow> stat_rows(const stats::Group& root);
 
-// Every statistic once, without values: an instance's number in brackets reads [*], parts and bins are left out.
-// A histogram that is empty is there too. In order of first appearance.
+// Every statistic once, without values: an instance's number in brackets reads [*], parts and bins are left
+// out. A histogram that is empty is there too. In order of first appearance.
 std::vector<StatRow> stat_names(const stats::Group& root);
 
 // The sum of the values whose path (as in StatRow, bins of histograms apart) matches `pattern`, in which '*'

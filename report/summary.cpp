@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/summary.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace glint::report {
 namespace {
@@ -12,18 +11,22 @@ namespace {
 using Rows = std::vector<std::vector<std::string>>;
 constexpr int kBarWidth = 20;  // columns
 
-double part(uint64_t of, uint64_t whole) { return whole ? double(of) / double(whole) : 0.0; }
+double part(uint64_t of, uint64_t whole) {
+  return whole ? double(of) / double(whole) : 0.0;
+}
 
 std::string paint(const std::string& text, const char* code, const Terminal& terminal) {
   return terminal.colour ? fmt::format("\x1b[{}m{}\x1b[0m", code, text) : text;
 }
-std::string heading(const std::string& text, const Terminal& terminal) { return paint(text, "1", terminal); }
+std::string heading(const std::string& text, const Terminal& terminal) {
+  return paint(text, "1", terminal);
+}
 std::string shaded_bar(double fraction, const Terminal& terminal) {
   return paint(bar(fraction, kBarWidth, terminal), "36", terminal);
 }
 
-void add_fraction(Rows& rows, const std::string& name, std::optional<double> fraction, const std::string& remark,
-                  const Terminal& terminal) {
+void add_fraction(Rows& rows, const std::string& name, std::optional<double> fraction,
+                  const std::string& remark, const Terminal& terminal) {
   if (fraction) rows.push_back({name, percent(*fraction), shaded_bar(*fraction, terminal), remark});
 }
 
@@ -32,7 +35,8 @@ void add_hit_rate(Rows& rows, const std::string& name, const HitRate& rate, cons
     rows.push_back({name, "-", "", "no accesses"});
   else
     add_fraction(rows, name, part(rate.hits, rate.accesses),
-                 fmt::format("{} of {} accesses", with_thousands(rate.hits), with_thousands(rate.accesses)), terminal);
+                 fmt::format("{} of {} accesses", with_thousands(rate.hits), with_thousands(rate.accesses)),
+                 terminal);
 }
 
 std::string execution(const Summary& s) {
@@ -40,9 +44,11 @@ std::string execution(const Summary& s) {
   if (s.timing && s.timing->cycles > 0) {
     const TimingSummary& t = *s.timing;
     rows.push_back({"cycles", with_thousands(t.cycles),
-                    t.clock_mhz > 0 ? fmt::format("= {:.3f} ms at {:g} MHz", double(t.cycles) / (t.clock_mhz * 1000), t.clock_mhz)
+                    t.clock_mhz > 0 ? fmt::format("= {:.3f} ms at {:g} MHz",
+                                                  double(t.cycles) / (t.clock_mhz * 1000), t.clock_mhz)
                                     : ""});
-    rows.push_back({"IPC", fmt::format("{:.3f}", part(s.warp_instructions, t.cycles)), "warp instructions a cycle, all cores"});
+    rows.push_back({"IPC", fmt::format("{:.3f}", part(s.warp_instructions, t.cycles)),
+                    "warp instructions a cycle, all cores"});
   }
   rows.push_back({"warp instructions", with_thousands(s.warp_instructions), ""});
   rows.push_back({"SIMT efficiency", percent(s.simt_efficiency), "lanes that do work"});
@@ -74,7 +80,8 @@ std::string machine(const TimingSummary& t, const Terminal& terminal) {
   add_fraction(rows, "DRAM utilisation", t.dram_utilisation, "of the data bus", terminal);
   add_fraction(rows, "DRAM efficiency", t.dram_efficiency, "of the data bus while requests wait", terminal);
   add_fraction(rows, "RT-unit occupancy", t.rt_occupancy, "of its warp slots", terminal);
-  add_fraction(rows, "RT-unit efficiency", t.rt_efficiency, "of resident lanes with a ray in flight", terminal);
+  add_fraction(rows, "RT-unit efficiency", t.rt_efficiency, "of resident lanes with a ray in flight",
+               terminal);
   return table(rows, "<><<", " ");
 }
 

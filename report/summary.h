@@ -33,15 +33,15 @@ struct TimingSummary {
 };
 
 struct Summary {
-  std::string title;                    // "WKND pt 128x128 2 spp on mobile"
-  std::string note;                     // what differs from the original scene; "" = nothing
-  std::vector<std::string> files;       // paths written, picture first
+  std::string title;               // "WKND pt 128x128 2 spp on mobile"
+  std::string note;                // what differs from the original scene; "" = nothing
+  std::vector<std::string> files;  // paths written, picture first
   uint64_t warp_instructions = 0;
-  double simt_efficiency = 0;           // active lanes / 32, averaged over instructions
+  double simt_efficiency = 0;  // active lanes / 32, averaged over instructions
   std::vector<MixRow> mix;
   uint64_t rays = 0;
-  double nodes_per_ray = 0;             // BVH nodes visited, average
-  uint32_t bvh_depth = 0;               // levels of the deepest path, top and bottom structure together
+  double nodes_per_ray = 0;  // BVH nodes visited, average
+  uint32_t bvh_depth = 0;    // levels of the deepest path, top and bottom structure together
   double wall_seconds = 0;
   std::optional<TimingSummary> timing;  // absent: a functional run
 };

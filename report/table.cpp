@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/table.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
 namespace glint::report {
 
@@ -62,7 +61,9 @@ std::string with_thousands(uint64_t value) {
   return text;
 }
 
-std::string percent(double fraction) { return fmt::format("{:.1f} %", fraction * 100); }
+std::string percent(double fraction) {
+  return fmt::format("{:.1f} %", fraction * 100);
+}
 
 std::string seconds(double value) {
   if (value < 0.9995) return fmt::format("{:.0f} ms", value * 1000);

@@ -1,8 +1,7 @@
 // `glint asm FILE`: reads the ISA's text, verifies it, prints it again.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 #include <memory>
 
 #include "apps/glint/resources.h"
@@ -33,7 +32,9 @@ void add_asm(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand("asm", "Assemble and verify a program in the ISA's text");
   command->add_option("FILE", options->file, "Text as 'glint compile' prints it")->required();
   command->add_option("-o,--output", options->output, "File to write instead of stdout")->type_name("FILE");
-  command->callback([&session, options] { session.action = [options] { return assemble(options->file, options->output); }; });
+  command->callback([&session, options] {
+    session.action = [options] { return assemble(options->file, options->output); };
+  });
 }
 
 }  // namespace glint::app

@@ -1,13 +1,13 @@
 // `glint compile FILE...`: GLSL to SPIR-V text or to the ISA's text.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include "frontend/compile.h"
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 #include <memory>
 
 #include "apps/glint/resources.h"
 #include "apps/glint/session.h"
-#include "frontend/compile.h"
 #include "isa/text.h"
 
 namespace glint::app {
@@ -50,12 +50,23 @@ Exit compile(const Options& options) {
 void add_compile(CLI::App& app, Session& session) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("compile", "Compile GLSL shaders and print the result");
-  command->add_option("FILE", options->files, "Shaders; the stage is the file's ending: .rgen .rchit .rmiss .rahit .rint .rcall .comp")->required();
-  command->add_option("--emit", options->emit, "What to print")->check(CLI::IsMember({"spirv", "isa"}))->capture_default_str();
-  command->add_option("-I,--include", options->include_dirs, "Folder to look for #include in")->type_name("DIR")->allow_extra_args(false);
-  command->add_option("-D,--define", options->defines, "Macro")->type_name("NAME[=VALUE]")->allow_extra_args(false);
+  command
+      ->add_option("FILE", options->files,
+                   "Shaders; the stage is the file's ending: .rgen .rchit .rmiss .rahit .rint .rcall .comp")
+      ->required();
+  command->add_option("--emit", options->emit, "What to print")
+      ->check(CLI::IsMember({"spirv", "isa"}))
+      ->capture_default_str();
+  command->add_option("-I,--include", options->include_dirs, "Folder to look for #include in")
+      ->type_name("DIR")
+      ->allow_extra_args(false);
+  command->add_option("-D,--define", options->defines, "Macro")
+      ->type_name("NAME[=VALUE]")
+      ->allow_extra_args(false);
   command->add_option("-o,--output", options->output, "File to write instead of stdout")->type_name("FILE");
-  command->add_option("--registers", options->registers, "32-bit registers a thread before values spill")->check(CLI::Range(16, 255))->capture_default_str();
+  command->add_option("--registers", options->registers, "32-bit registers a thread before values spill")
+      ->check(CLI::Range(16, 255))
+      ->capture_default_str();
   command->callback([&session, options] { session.action = [options] { return compile(*options); }; });
 }
 

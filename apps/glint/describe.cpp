@@ -1,8 +1,7 @@
 // `glint describe KEY`: what a configuration key means, its value in a preset, unit and range.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 #include <memory>
 
 #include "apps/glint/config.h"
@@ -42,8 +41,9 @@ Exit describe(const Session& session, const Options& options) {
   }
   if (found.empty()) {
     const std::string guess = nearest(options.key, names);
-    throw UserError({}, fmt::format("no configuration key '{}'", options.key),
-                    guess.empty() ? "'glint describe' lists all keys" : fmt::format("did you mean '{}'?", guess));
+    throw UserError(
+        {}, fmt::format("no configuration key '{}'", options.key),
+        guess.empty() ? "'glint describe' lists all keys" : fmt::format("did you mean '{}'?", guess));
   }
   if (options.markdown)
     print_markdown(found);
@@ -57,11 +57,14 @@ Exit describe(const Session& session, const Options& options) {
 void add_describe(CLI::App& app, Session& session) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("describe", "Explain configuration keys");
-  command->add_option("KEY", options->key, "A key or the beginning of keys: core.warps, core, rt (default: all)");
-  command->add_option("--config", options->config, "Preset or TOML file whose values are shown")->capture_default_str();
+  command->add_option("KEY", options->key,
+                      "A key or the beginning of keys: core.warps, core, rt (default: all)");
+  command->add_option("--config", options->config, "Preset or TOML file whose values are shown")
+      ->capture_default_str();
   command->add_option("--set", options->settings, "Overrides, as for run")->type_name("KEY=VALUE");
   command->add_flag("--markdown", options->markdown, "As the table of docs/config.md");
-  command->callback([&session, options] { session.action = [&session, options] { return describe(session, *options); }; });
+  command->callback(
+      [&session, options] { session.action = [&session, options] { return describe(session, *options); }; });
 }
 
 }  // namespace glint::app

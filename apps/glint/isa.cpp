@@ -1,14 +1,12 @@
 // `glint isa [OP]`: the reference of the instruction set, from its table.
 // SPDX-License-Identifier: Apache-2.0
-#include "isa/op_row.h"
-
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 #include <memory>
 
 #include "apps/glint/resources.h"
 #include "apps/glint/session.h"
+#include "isa/op_row.h"
 #include "isa/reference.h"
 
 namespace glint::app {
@@ -26,8 +24,9 @@ Exit print_reference(const std::string& op) {
   std::vector<std::string> names;
   for (const isa::OpRow& row : isa::op_table()) names.emplace_back(row.name);
   const std::string guess = nearest(op, names);
-  throw UserError({}, fmt::format("no op '{}'", op),
-                  guess.empty() ? "'glint list ops' names them all" : fmt::format("did you mean '{}'?", guess));
+  throw UserError(
+      {}, fmt::format("no op '{}'", op),
+      guess.empty() ? "'glint list ops' names them all" : fmt::format("did you mean '{}'?", guess));
 }
 
 }  // namespace

@@ -1,8 +1,7 @@
 // `glint list WHAT`: scenes, shaders, configs, policies, ops, stats.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 #include <memory>
 
 #include "apps/glint/policies.h"
@@ -50,7 +49,8 @@ Rows policy_rows() {
 Rows op_rows() {
   Rows rows;
   for (const isa::OpRow& row : isa::op_table())
-    rows.push_back({std::string(row.name), std::string(name_of(row.klass)), std::string(name_of(row.unit)), std::string(row.doc)});
+    rows.push_back({std::string(row.name), std::string(name_of(row.klass)), std::string(name_of(row.unit)),
+                    std::string(row.doc)});
   return rows;
 }
 
@@ -77,9 +77,13 @@ void add_list(CLI::App& app, Session& session) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("list", "List scenes, shaders, configs, policies, ops or stats");
-  command->add_option("WHAT", options->what, "What to list")->required()->check(CLI::IsMember({"scenes", "shaders", "configs", "policies", "ops", "stats"}));
+  command->add_option("WHAT", options->what, "What to list")
+      ->required()
+      ->check(CLI::IsMember({"scenes", "shaders", "configs", "policies", "ops", "stats"}));
   command->add_flag("--markdown", options->markdown, "Of stats: as docs/stats.md");
-  command->callback([&session, options] { session.action = [&session, options] { return list(session, options->what, options->markdown); }; });
+  command->callback([&session, options] {
+    session.action = [&session, options] { return list(session, options->what, options->markdown); };
+  });
 }
 
 }  // namespace glint::app

@@ -1,13 +1,12 @@
 // The command `glint`: reads the command line, runs one subcommand, turns errors into exit codes.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
+#include <fmt/format.h>
 #include <new>
 #include <string>
+#include <unistd.h>
 
 #include "apps/glint/session.h"
 #include "apps/glint/suggest.h"
@@ -41,7 +40,8 @@ int report_parse_error(const CLI::App& app, const CLI::ParseError& error, const 
   if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
   fmt::print(stderr, "error: {}\n", error.what());
   const std::string hint = suggestion(app, session.arguments);
-  fmt::print(stderr, "  note: {}\n", hint.empty() ? "'glint --help' and 'glint COMMAND --help' list what there is" : hint);
+  fmt::print(stderr, "  note: {}\n",
+             hint.empty() ? "'glint --help' and 'glint COMMAND --help' list what there is" : hint);
   return int(Exit::UserInput);
 }
 
@@ -54,7 +54,8 @@ int run_action(const Session& session) {
     }
     return int(exit);
   } catch (const Error& error) {
-    fmt::print(stderr, "{}{}\n", std::string(error.what()).find("error: ") == std::string::npos ? "error: " : "", error.what());
+    fmt::print(stderr, "{}{}\n",
+               std::string(error.what()).find("error: ") == std::string::npos ? "error: " : "", error.what());
     return int(error.exit());
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "error: out of memory\n  note: a smaller --size, or a smaller scene\n");
@@ -65,7 +66,10 @@ int run_action(const Session& session) {
 int main_of(int argc, char** argv) {
   Session session{{argv, argv + argc}, Resources::find(), {}, false, {}};
   look_at_terminal(session);
-  CLI::App app("Glint: a GPU you can read. Runs ray-tracing shaders on a simulated GPU and says what it did, cycle by cycle.", "glint");
+  CLI::App app(
+      "Glint: a GPU you can read. Runs ray-tracing shaders on a simulated GPU and says what it did, cycle by "
+      "cycle.",
+      "glint");
   app.set_version_flag("--version", GLINT_VERSION);
   app.require_subcommand(1);
   add_run(app, session);
@@ -85,4 +89,6 @@ int main_of(int argc, char** argv) {
 }  // namespace
 }  // namespace glint::app
 
-int main(int argc, char** argv) { return glint::app::main_of(argc, argv); }
+int main(int argc, char** argv) {
+  return glint::app::main_of(argc, argv);
+}

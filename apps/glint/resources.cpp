@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/resources.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
 #include <iterator>
 
@@ -18,7 +17,8 @@ namespace {
 
 bool is_root(const fs::path& path) {
   std::error_code ignored;
-  return fs::is_regular_file(path / "configs/mobile.toml", ignored) && fs::is_directory(path / "shaders", ignored);
+  return fs::is_regular_file(path / "configs/mobile.toml", ignored) &&
+         fs::is_directory(path / "shaders", ignored);
 }
 
 }  // namespace
@@ -28,7 +28,8 @@ Resources Resources::find() {
   const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
   if (const fs::path installed = folder.parent_path() / "share/glint"; is_root(installed))
     return Resources(installed.string());
-  for (fs::path path = folder; path.has_relative_path(); path = path.parent_path())  // from the build tree upwards
+  for (fs::path path = folder; path.has_relative_path();
+       path = path.parent_path())  // from the build tree upwards
     if (is_root(path)) return Resources(path.string());
   return Resources(GLINT_SOURCE_DIR);
 }
@@ -49,7 +50,9 @@ std::string Resources::config_path(const std::string& name_or_path) const {
   std::error_code error;
   if (fs::is_regular_file(name_or_path, error)) return name_or_path;
   const std::string guess = nearest(name_or_path, names);
-  throw UserError({}, fmt::format("no configuration '{}': neither a preset ({}) nor a file", name_or_path, fmt::join(names, ", ")),
+  throw UserError({},
+                  fmt::format("no configuration '{}': neither a preset ({}) nor a file", name_or_path,
+                              fmt::join(names, ", ")),
                   guess.empty() ? "" : fmt::format("did you mean '{}'?", guess));
 }
 

@@ -1,11 +1,10 @@
 // `glint run SCENE`: renders one frame on the simulated GPU, leaves a run directory, prints the summary.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/chrono.h>
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <filesystem>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
 #include <memory>
 
 #include "apps/glint/config.h"
@@ -22,7 +21,8 @@ namespace glint::app {
 namespace {
 
 struct Options {
-  std::string scene, shader = "pt", config = "mobile", size = "128x128", mode = "timing", assets, out, shader_dir;
+  std::string scene, shader = "pt", config = "mobile", size = "128x128", mode = "timing", assets, out,
+                     shader_dir;
   std::vector<std::string> settings;
   scenes::RenderParams frame;
   uint64_t max_instructions = 0;
@@ -33,18 +33,21 @@ constexpr uint32_t kMaxSide = 16384;  // pixels; beyond it images exceed what a 
 
 void parse_size(const std::string& text, scenes::RenderParams& frame) {
   const auto number = [&](const std::string& digits) -> uint32_t {
-    if (digits.empty() || digits.size() > 5 || digits.find_first_not_of("0123456789") != std::string::npos) return 0;
+    if (digits.empty() || digits.size() > 5 || digits.find_first_not_of("0123456789") != std::string::npos)
+      return 0;
     return uint32_t(std::stoul(digits));
   };
   const size_t x = text.find('x');
   frame.width = number(text.substr(0, x));
   frame.height = x == std::string::npos ? 0 : number(text.substr(x + 1));
   if (frame.width < 1 || frame.height < 1 || frame.width > kMaxSide || frame.height > kMaxSide)
-    throw UserError({}, fmt::format("--size is '{}', expected WIDTHxHEIGHT, each 1 to {}", text, kMaxSide), "for example --size 128x128");
+    throw UserError({}, fmt::format("--size is '{}', expected WIDTHxHEIGHT, each 1 to {}", text, kMaxSide),
+                    "for example --size 128x128");
 }
 
 std::string now_utc() {
-  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
+                     fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
 }
 
 pipeline::RenderJob make_job(const Session& session, const Options& options) {
@@ -57,14 +60,15 @@ pipeline::RenderJob make_job(const Session& session, const Options& options) {
   parse_size(options.size, job.frame);
   job.timing = options.mode == "timing";
   job.no_skip = options.no_skip;
-  job.shader_dir = options.shader_dir.empty() ? session.resources.shader_dir(std::string(workload.folder)) : options.shader_dir;
+  job.shader_dir = options.shader_dir.empty() ? session.resources.shader_dir(std::string(workload.folder))
+                                              : options.shader_dir;
   job.scene = scenes::load_scene(options.scene, {options.assets});
   return job;
 }
 
 std::string title_of(const pipeline::RenderJob& job, const Options& options) {
-  return fmt::format("{} {}  {}x{}, {} spp, {} on {}", job.scene.name, options.shader, job.frame.width, job.frame.height,
-                     job.frame.samples, options.mode, options.config);
+  return fmt::format("{} {}  {}x{}, {} spp, {} on {}", job.scene.name, options.shader, job.frame.width,
+                     job.frame.height, job.frame.samples, options.mode, options.config);
 }
 
 report::RunInfo describe_run(const Session& session, const Options& options, const pipeline::RenderJob& job) {
@@ -90,8 +94,8 @@ report::RunInfo describe_run(const Session& session, const Options& options, con
 }
 
 // An error still leaves a run directory that says what happened.
-pipeline::RenderResult render(const Session& session, pipeline::RenderJob& job, const report::RunDirectory& directory,
-                              report::RunInfo& info) {
+pipeline::RenderResult render(const Session& session, pipeline::RenderJob& job,
+                              const report::RunDirectory& directory, report::RunInfo& info) {
   report::Progress progress(session.on_terminal ? stdout : nullptr, "rendering", session.terminal);
   job.progress = [&](uint64_t done, uint64_t total) { progress.update(done, total); };
   const auto start = std::chrono::steady_clock::now();
@@ -113,8 +117,9 @@ pipeline::RenderResult render(const Session& session, pipeline::RenderJob& job, 
 
 Exit run(const Session& session, const Options& options) {
   pipeline::RenderJob job = make_job(session, options);
-  const report::RunDirectory directory(options.out.empty() ? fmt::format("out/{}_{}-{}", job.scene.name, options.shader, options.mode)
-                                                           : options.out);
+  const report::RunDirectory directory(
+      options.out.empty() ? fmt::format("out/{}_{}-{}", job.scene.name, options.shader, options.mode)
+                          : options.out);
   report::RunInfo info = describe_run(session, options, job);
   directory.write_config(describe_params(job.gpu), "Resolved configuration of: " + title_of(job, options));
   const pipeline::RenderResult result = render(session, job, directory, info);
@@ -122,22 +127,32 @@ Exit run(const Session& session, const Options& options) {
   directory.write_stats(result.statistics());
 
   if (options.json) {
-    write_output("", Registry<report::StatWriter>::instance().entry("json").make_default({})->write(result.statistics()));
+    write_output("", Registry<report::StatWriter>::instance().entry("json").make_default({})->write(
+                         result.statistics()));
     return Exit::Ok;
   }
   report::Summary summary = summarise(job, result);
   summary.title = title_of(job, options);
-  summary.files = {"picture    " + directory.path_of("image.png"), "statistics " + directory.path_of("stats.txt")};
+  summary.files = {"picture    " + directory.path_of("image.png"),
+                   "statistics " + directory.path_of("stats.txt")};
   write_output("", report::format_summary(summary, session.terminal));
   return Exit::Ok;
 }
 
 void add_frame_options(CLI::App& command, Options& options) {
   command.add_option("--size", options.size, "Image size in pixels")->type_name("WxH")->capture_default_str();
-  command.add_option("--spp", options.frame.samples, "Samples a pixel")->check(CLI::Range(1u, 65536u))->capture_default_str();
-  command.add_option("--bounces", options.frame.bounces, "Longest path of pt, in rays")->check(CLI::Range(1u, 1000u))->capture_default_str();
-  command.add_option("--shadow-rays", options.frame.shadow_rays, "Shadow rays a hit of sh")->check(CLI::Range(1u, 4096u))->capture_default_str();
-  command.add_option("--ao-rays", options.frame.ao_rays, "Occlusion rays a hit of ao")->check(CLI::Range(1u, 4096u))->capture_default_str();
+  command.add_option("--spp", options.frame.samples, "Samples a pixel")
+      ->check(CLI::Range(1u, 65536u))
+      ->capture_default_str();
+  command.add_option("--bounces", options.frame.bounces, "Longest path of pt, in rays")
+      ->check(CLI::Range(1u, 1000u))
+      ->capture_default_str();
+  command.add_option("--shadow-rays", options.frame.shadow_rays, "Shadow rays a hit of sh")
+      ->check(CLI::Range(1u, 4096u))
+      ->capture_default_str();
+  command.add_option("--ao-rays", options.frame.ao_rays, "Occlusion rays a hit of ao")
+      ->check(CLI::Range(1u, 4096u))
+      ->capture_default_str();
   command.add_option("--seed", options.frame.seed, "Seed of the pixel jitter")->capture_default_str();
 }
 
@@ -147,18 +162,31 @@ void add_run(CLI::App& app, Session& session) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("run", "Render a scene on the simulated GPU");
   command->add_option("SCENE", options->scene, "Scene; 'glint list scenes' names them")->required();
-  command->add_option("--shader", options->shader, "pt, sh or ao; 'glint list shaders' explains")->capture_default_str();
-  command->add_option("--shader-dir", options->shader_dir, "Folder with the workload's shaders instead of the built-in ones")->type_name("DIR");
+  command->add_option("--shader", options->shader, "pt, sh or ao; 'glint list shaders' explains")
+      ->capture_default_str();
+  command
+      ->add_option("--shader-dir", options->shader_dir,
+                   "Folder with the workload's shaders instead of the built-in ones")
+      ->type_name("DIR");
   command->add_option("--config", options->config, "Preset or TOML file")->capture_default_str();
-  command->add_option("--set", options->settings, "Override of a key, repeatable: core.warps=16")->type_name("KEY=VALUE")->allow_extra_args(false);
-  command->add_option("--mode", options->mode, "timing: cycle by cycle; functional: picture and counts only")->check(CLI::IsMember({"timing", "functional"}))->capture_default_str();
+  command->add_option("--set", options->settings, "Override of a key, repeatable: core.warps=16")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--mode", options->mode, "timing: cycle by cycle; functional: picture and counts only")
+      ->check(CLI::IsMember({"timing", "functional"}))
+      ->capture_default_str();
   command->add_option("--assets", options->assets, "Folder of original scene data")->type_name("DIR");
-  command->add_option("--out", options->out, "Run directory (default: out/SCENE_SHADER-MODE)")->type_name("DIR");
-  command->add_option("--max-instructions", options->max_instructions, "Instructions after which a warp is held to have no end")->check(CLI::PositiveNumber);
+  command->add_option("--out", options->out, "Run directory (default: out/SCENE_SHADER-MODE)")
+      ->type_name("DIR");
+  command
+      ->add_option("--max-instructions", options->max_instructions,
+                   "Instructions after which a warp is held to have no end")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--json", options->json, "Print the statistics as JSON instead of the summary");
   command->add_flag("--no-skip", options->no_skip, "Step every cycle: slow, same result, for checking");
   add_frame_options(*command, *options);
-  command->callback([&session, options] { session.action = [&session, options] { return run(session, *options); }; });
+  command->callback(
+      [&session, options] { session.action = [&session, options] { return run(session, *options); }; });
 }
 
 }  // namespace glint::app

@@ -8,14 +8,17 @@
 namespace glint::app {
 namespace {
 
-constexpr const char* kClassTitles[] = {"ALU", "SFU", "Mem", "Tex", "Ctrl", "RT"};  // in the order of isa::Class
+constexpr const char* kClassTitles[] = {"ALU", "SFU",  "Mem",
+                                        "Tex", "Ctrl", "RT"};  // in the order of isa::Class
 static_assert(std::size(kClassTitles) == size_t(isa::Class::Count));
 
 // Sums of statistics over all instances.
 class Sums {
  public:
   explicit Sums(const stats::Group& root) : root_(root) {}
-  uint64_t count(const std::string& pattern) const { return uint64_t(report::stat_sum(root_, pattern).value_or(0.0)); }
+  uint64_t count(const std::string& pattern) const {
+    return uint64_t(report::stat_sum(root_, pattern).value_or(0.0));
+  }
   std::optional<double> ratio(const std::string& above, const std::string& below, double scale = 1) const {
     const std::optional<double> a = report::stat_sum(root_, above), b = report::stat_sum(root_, below);
     if (!a || !b || *b == 0) return std::nullopt;
@@ -31,7 +34,8 @@ class Sums {
 
 report::TimingSummary timing_of(const pipeline::RenderJob& job, const pipeline::RenderResult& result) {
   const Sums sums(result.statistics());
-  const std::string l1 = "gpu.memory.core[*].l1", dram = "gpu.memory.partition[*].dram", rt = "gpu.rt_unit[*].rt";
+  const std::string l1 = "gpu.memory.core[*].l1", dram = "gpu.memory.partition[*].dram",
+                    rt = "gpu.rt_unit[*].rt";
   report::TimingSummary out;
   out.cycles = result.cycles;
   out.clock_mhz = job.gpu.clock_mhz;

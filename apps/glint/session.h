@@ -18,9 +18,9 @@ namespace glint::app {
 struct Session {
   std::vector<std::string> arguments;  // argv
   Resources resources;
-  report::Terminal terminal;           // of stdout
-  bool on_terminal = false;            // stdout is one: progress may be drawn
-  std::function<Exit()> action;        // set by the subcommand that was chosen
+  report::Terminal terminal;     // of stdout
+  bool on_terminal = false;      // stdout is one: progress may be drawn
+  std::function<Exit()> action;  // set by the subcommand that was chosen
 };
 
 // Each adds its subcommand; its callback sets Session::action.

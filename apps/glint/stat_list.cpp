@@ -43,7 +43,8 @@ std::string stat_list() {
 
 std::string stat_list_markdown() {
   std::string out = "| statistic | unit | meaning |\n|---|---|---|\n";
-  for (const report::StatRow& row : rows()) out += fmt::format("| `{}` | {} | {} |\n", row.path, row.unit, row.doc);
+  for (const report::StatRow& row : rows())
+    out += fmt::format("| `{}` | {} | {} |\n", row.path, row.unit, row.doc);
   return out;
 }
 

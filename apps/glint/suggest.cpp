@@ -3,7 +3,6 @@
 #include "apps/glint/suggest.h"
 
 #include <CLI/CLI.hpp>
-
 #include <algorithm>
 
 #include "base/diagnostics.h"
@@ -29,7 +28,9 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-std::string did_you_mean(const std::string& guess) { return guess.empty() ? "" : "did you mean '" + guess + "'?"; }
+std::string did_you_mean(const std::string& guess) {
+  return guess.empty() ? "" : "did you mean '" + guess + "'?";
+}
 
 }  // namespace
 

@@ -15,7 +15,8 @@ const WorkloadInfo& find_workload(const std::string& name) {
     names.emplace_back(info.name);
   }
   const std::string guess = nearest(name, names);
-  throw UserError({}, "no shader set '" + name + "', expected pt, sh or ao", guess.empty() ? "" : "did you mean '" + guess + "'?");
+  throw UserError({}, "no shader set '" + name + "', expected pt, sh or ao",
+                  guess.empty() ? "" : "did you mean '" + guess + "'?");
 }
 
 }  // namespace glint::app

@@ -14,9 +14,12 @@ struct WorkloadInfo {
   scenes::Workload workload;
 };
 inline constexpr std::array<WorkloadInfo, 3> kWorkloads{{
-    {"pt", "path_tracing", "Path tracing: one path a sample, up to --bounces rays long.", scenes::Workload::PathTracing},
-    {"sh", "shadow", "Hard and soft shadows: --shadow-rays to the light from each hit.", scenes::Workload::Shadow},
-    {"ao", "ambient_occlusion", "Ambient occlusion: --ao-rays into the hemisphere of each hit.", scenes::Workload::AmbientOcclusion},
+    {"pt", "path_tracing", "Path tracing: one path a sample, up to --bounces rays long.",
+     scenes::Workload::PathTracing},
+    {"sh", "shadow", "Hard and soft shadows: --shadow-rays to the light from each hit.",
+     scenes::Workload::Shadow},
+    {"ao", "ambient_occlusion", "Ambient occlusion: --ao-rays into the hemisphere of each hit.",
+     scenes::Workload::AmbientOcclusion},
 }};
 
 // UserError with the nearest name when there is none.

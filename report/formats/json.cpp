@@ -1,7 +1,6 @@
 // Statistics as a JSON tree: groups are objects, a statistic is {"value", "unit", "doc"}.
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
-
 #include <vector>
 
 #include "base/check.h"
@@ -38,8 +37,9 @@ class JsonVisitor final : public stats::Visitor {
     return parent[name] = std::move(value);
   }
   Json& add(const stats::Stat& stat, Json value) {
-    return place(std::string(stat.name()),
-                 {{"value", std::move(value)}, {"unit", std::string(stat.unit())}, {"doc", std::string(stat.doc())}});
+    return place(
+        std::string(stat.name()),
+        {{"value", std::move(value)}, {"unit", std::string(stat.unit())}, {"doc", std::string(stat.doc())}});
   }
 
   // Pointers stay valid: ordered_json may move an object's members when it grows, but only the innermost

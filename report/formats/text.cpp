@@ -1,8 +1,7 @@
 // Statistics as aligned text for reading and grep: `path   value  unit  # doc`.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 
 #include "report/stat_rows.h"
 #include "report/stat_writer.h"
@@ -27,7 +26,8 @@ class TextWriter final : public StatWriter {
     }
     std::string out;
     for (const StatRow& row : rows)
-      out += fmt::format("{:<{}}  {:>{}}  {:<{}}  # {}\n", row.path, path, row.value, value, row.unit, unit, row.doc);
+      out += fmt::format("{:<{}}  {:>{}}  {:<{}}  # {}\n", row.path, path, row.value, value, row.unit, unit,
+                         row.doc);
     return out;
   }
 };

@@ -53,7 +53,8 @@ TEST_CASE("an unknown key is reported at its line and column with the nearest kn
   core.take_integer("warps", 1, 0, 64, "");
   core.reject_the_rest();
 
-  CHECK(only_message(diagnostics) == "gpu.toml:3:3: error: unknown key 'core.wraps'\n  note: did you mean 'warps'?");
+  CHECK(only_message(diagnostics) ==
+        "gpu.toml:3:3: error: unknown key 'core.wraps'\n  note: did you mean 'warps'?");
 }
 
 TEST_CASE("a wrong type is reported with what was found and expected, and the fallback stays") {
@@ -77,7 +78,8 @@ TEST_CASE("an error in a later layer is reported at the later layer's place") {
 }
 
 TEST_CASE("both ends of a range are allowed and one beyond either is not") {
-  for (const auto& [text, ok] : {std::pair{"w = 1", true}, {"w = 64", true}, {"w = 0", false}, {"w = 65", false}}) {
+  for (const auto& [text, ok] :
+       {std::pair{"w = 1", true}, {"w = 64", true}, {"w = 0", false}, {"w = 65", false}}) {
     Config config;
     config.add_text("gpu.toml", text);
     Diagnostics diagnostics;
@@ -115,7 +117,8 @@ TEST_CASE("a table given as a value is an error at its place") {
   Diagnostics diagnostics;
   config.root(diagnostics).take_table("core");
 
-  CHECK(only_message(diagnostics).rfind("gpu.toml:1:1: error: 'core' is an integer, expected a table", 0) == 0);
+  CHECK(only_message(diagnostics).rfind("gpu.toml:1:1: error: 'core' is an integer, expected a table", 0) ==
+        0);
 }
 
 TEST_CASE("text that is not TOML is a user error with file and line") {

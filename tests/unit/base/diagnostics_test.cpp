@@ -28,7 +28,8 @@ TEST_CASE("a warning alone does not throw and two errors throw together") {
 
   diagnostics.error({"a", 2, 1}, "one");
   diagnostics.error({"a", 3, 1}, "two");
-  CHECK_THROWS_WITH(diagnostics.throw_if_errors(), "a:1:1: warning: odd\na:2:1: error: one\na:3:1: error: two");
+  CHECK_THROWS_WITH(diagnostics.throw_if_errors(),
+                    "a:1:1: warning: odd\na:2:1: error: one\na:3:1: error: two");
 }
 
 TEST_CASE("the nearest word is suggested and a far one is not") {

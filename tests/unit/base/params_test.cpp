@@ -22,7 +22,9 @@ class Dog final : public Animal {
   static constexpr const char* kDoc = "Barks.";
   struct Params {
     uint32_t factor = 3;
-    static constexpr auto params() { return std::tuple{param(&Params::factor, "factor", "", "Speed a leg.", 1, 9)}; }
+    static constexpr auto params() {
+      return std::tuple{param(&Params::factor, "factor", "", "Speed a leg.", 1, 9)};
+    }
   };
   Dog(const Params& params, Context context) : speed_(int(params.factor) * context.legs) {}
   int speed() const override { return speed_; }
@@ -45,7 +47,9 @@ const Register<Animal, Dog> dog;
 
 struct Inner {
   double ratio = 0.5;
-  static constexpr auto params() { return std::tuple{param(&Inner::ratio, "ratio", "fraction", "A share.", 0.0, 1.0)}; }
+  static constexpr auto params() {
+    return std::tuple{param(&Inner::ratio, "ratio", "fraction", "A share.", 0.0, 1.0)};
+  }
 };
 struct Outer {
   uint32_t warps = 32;
@@ -53,8 +57,9 @@ struct Outer {
   Inner inner;
   PolicyChoice<Animal> animal{"snail"};
   static constexpr auto params() {
-    return std::tuple{param(&Outer::warps, "warps", "warp", "Warps.", 1, 64), flag(&Outer::fast, "fast", "Go fast."),
-                      section(&Outer::inner, "inner", "Inside."), policy(&Outer::animal, "animal", "Which.")};
+    return std::tuple{param(&Outer::warps, "warps", "warp", "Warps.", 1, 64),
+                      flag(&Outer::fast, "fast", "Go fast."), section(&Outer::inner, "inner", "Inside."),
+                      policy(&Outer::animal, "animal", "Which.")};
   }
 };
 
@@ -69,7 +74,8 @@ Outer read(const std::string& toml, Diagnostics& diagnostics) {
 
 TEST_CASE("keys of nested sections and of the chosen policy are read") {
   Diagnostics diagnostics;
-  const Outer outer = read("warps = 4\nfast = true\nanimal = \"dog\"\n[inner]\nratio = 0.25\n[dog]\nfactor = 5\n", diagnostics);
+  const Outer outer = read(
+      "warps = 4\nfast = true\nanimal = \"dog\"\n[inner]\nratio = 0.25\n[dog]\nfactor = 5\n", diagnostics);
 
   CHECK_FALSE(diagnostics.has_errors());
   CHECK(outer.warps == 4);

@@ -8,7 +8,9 @@ namespace glint::stats {
 namespace {
 
 enum class Reason { Busy, Idle, Count };
-constexpr std::string_view name_of(Reason r) { return r == Reason::Busy ? "busy" : "idle"; }
+constexpr std::string_view name_of(Reason r) {
+  return r == Reason::Busy ? "busy" : "idle";
+}
 
 struct Unit : Group {
   Unit(Group* parent, std::string name) : Group(parent, std::move(name)) {}
@@ -38,7 +40,8 @@ TEST_CASE("a visit goes depth first in order of declaration") {
   Group root(nullptr, "gpu");
   Unit a(&root, "a");
   Group b(&root, "b");
-  Value peak(&b, "peak", "", [] { return 7.0; }, "");
+  Value peak(
+      &b, "peak", "", [] { return 7.0; }, "");
   Recorder recorder;
   root.accept(recorder);
 

@@ -1,7 +1,5 @@
 // Images, resolved configurations and run directories as files.
 // SPDX-License-Identifier: Apache-2.0
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -10,6 +8,7 @@
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "base/config.h"
 #include "report/config_file.h"
@@ -37,7 +36,8 @@ float float_at(const std::string& bytes, size_t at) {
   return value;
 }
 
-const std::vector<float> kTwoRows{0.25f, 0.5f, 1.0f, 1.0f, 2.0f, -1.0f, std::numeric_limits<float>::quiet_NaN(), 0.0f};
+const std::vector<float> kTwoRows{
+    0.25f, 0.5f, 1.0f, 1.0f, 2.0f, -1.0f, std::numeric_limits<float>::quiet_NaN(), 0.0f};
 
 TEST_CASE("a PFM holds the bottom row first, three little-endian floats a pixel, unclamped") {
   const std::string bytes = pfm_bytes({1, 2, kTwoRows});
@@ -116,7 +116,8 @@ TEST_CASE("a run directory is complete and leaves no temporary file") {
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(directory.path())) names.push_back(entry.path().filename());
   std::sort(names.begin(), names.end());
-  CHECK(names == std::vector<std::string>{"config.toml", "image.pfm", "image.png", "run.json", "stats.csv", "stats.json", "stats.txt"});
+  CHECK(names == std::vector<std::string>{"config.toml", "image.pfm", "image.png", "run.json", "stats.csv",
+                                          "stats.json", "stats.txt"});
   const auto json = nlohmann::json::parse(folder.read("a/b/run.json"));
   CHECK(json.at("scene").at("hash") == "00000000000000ab");
   CHECK(json.at("exit") == 0);

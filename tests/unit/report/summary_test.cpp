@@ -24,7 +24,9 @@ Summary example() {
   return s;
 }
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 TEST_CASE("the summary derives IPC, shares, hit rates and the traversal ratio from its counts") {
   const std::string text = format_summary(example(), {});
@@ -64,7 +66,8 @@ TEST_CASE("without a terminal the summary is plain ASCII") {
 TEST_CASE("colour adds escape sequences and changes no visible character") {
   std::string coloured = format_summary(example(), {false, true});
   REQUIRE(has(coloured, "\x1b["));
-  for (size_t at; (at = coloured.find('\x1b')) != std::string::npos;) coloured.erase(at, coloured.find('m', at) - at + 1);
+  for (size_t at; (at = coloured.find('\x1b')) != std::string::npos;)
+    coloured.erase(at, coloured.find('m', at) - at + 1);
 
   CHECK(coloured == format_summary(example(), {}));
 }
@@ -91,7 +94,8 @@ TEST_CASE("numbers read as people write them") {
 }
 
 TEST_CASE("the progress line extrapolates the time left") {
-  CHECK(progress_line("render", 1, 4, 2.0, {}) == " render [######..................]  25 %  2.0 s  ETA 6.0 s");
+  CHECK(progress_line("render", 1, 4, 2.0, {}) ==
+        " render [######..................]  25 %  2.0 s  ETA 6.0 s");
   CHECK(progress_line("render", 4, 4, 2.0, {}) == " render [########################] 100 %  2.0 s");
 }
 

@@ -11,7 +11,9 @@ namespace glint::report {
 namespace {
 
 enum class Reason { Busy, Idle, Count };
-constexpr std::string_view name_of(Reason r) { return r == Reason::Busy ? "busy" : "idle"; }
+constexpr std::string_view name_of(Reason r) {
+  return r == Reason::Busy ? "busy" : "idle";
+}
 
 struct Unit : stats::Group {
   explicit Unit(stats::Group* parent) : stats::Group(parent, "l1") {}
@@ -78,7 +80,8 @@ TEST_CASE("names list each statistic once for all instances, empty histograms to
   CHECK(rows[3].unit == "byte");
 }
 
-TEST_CASE("a sum takes every path that the pattern matches, parts of breakdowns too, and is absent without any") {
+TEST_CASE(
+    "a sum takes every path that the pattern matches, parts of breakdowns too, and is absent without any") {
   Tree tree;
   stats::Group other(&tree.root, "l1b");
   stats::Counter more(&other, "accesses", "access", "More.");
