@@ -145,7 +145,7 @@ std::vector<uint32_t> glsl_to_spirv(const std::string& path, const GlslOptions& 
   shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, kDefaultGlslVersion);
   shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
   shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_6);
-  shader.setDebugInfo(true);
+  // Not setDebugInfo(true): glslang 12 would then open a debug scope for each block, of a set it never imports.
   shader.setEnhancedMsgs();
   const auto messages = EShMessages(EShMsgSpvRules | EShMsgVulkanRules | EShMsgDebugInfo | EShMsgEnhanced);
   Includer includer(options.include_dirs);
