@@ -23,7 +23,7 @@ class Checker {
     require(value >= 1, fmt::format("'{}' is 0, expected at least 1", key), why);
   }
   void cache(const char* key, uint64_t size, uint32_t ways, uint32_t line) {
-    if (line == 0) return;
+    if (!std::has_single_bit(line)) return;  // reported already
     require(size >= line, fmt::format("'{}' is {} bytes, expected at least one line of {} bytes", key, size, line));
     const uint64_t set = uint64_t{std::max(ways, 1u)} * line;
     if (size < line) return;
@@ -44,7 +44,7 @@ void check_dram(const DramParams& d, uint32_t line, uint32_t interleave, Checker
   c.at_least_one("dram.transfers_per_clock", d.transfers_per_clock, "data must move");
   c.require(d.bank_groups >= 1 && d.banks >= d.bank_groups && d.banks % d.bank_groups == 0,
             fmt::format("'dram.banks' is {}, expected a multiple of 'dram.bank_groups' = {}", d.banks, d.bank_groups));
-  c.require(interleave == 0 || (d.row_bytes >= interleave && d.row_bytes % interleave == 0),
+  c.require(!std::has_single_bit(interleave) || (d.row_bytes >= interleave && d.row_bytes % interleave == 0),
             fmt::format("'dram.row_bytes' is {}, expected a multiple of 'interleave' = {}", d.row_bytes, interleave));
   const uint32_t atom = d.atom_bytes();
   c.require(std::has_single_bit(atom) && atom >= 8 && atom <= line,

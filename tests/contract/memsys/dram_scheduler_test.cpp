@@ -1,0 +1,76 @@
+// The contract of DramScheduler, for every registered policy.
+// SPDX-License-Identifier: Apache-2.0
+#include <random>
+#include <vector>
+
+#include "base/registry.h"
+#include "memsys/dram_scheduler.h"
+#include "tests/support/catch.h"
+
+using namespace glint;
+using namespace glint::mem;
+
+namespace {
+
+constexpr uint32_t kBanks = 8, kSlots = 32;
+
+// Adds and picks at random; returns the picks in order and checks each.
+std::vector<uint32_t> exercise(const std::string& name, uint32_t seed) {
+  const auto scheduler = PolicyChoice<DramScheduler>(name.c_str()).make({kBanks, kSlots});
+  std::mt19937 random(seed);
+  std::vector<DramRequest> held(kSlots);
+  std::vector<bool> in(kSlots);
+  std::vector<uint32_t> picks;
+  uint32_t count = 0;
+  for (uint64_t age = 0; age < 3000 || count > 0;) {
+    const uint32_t slot = random() % kSlots;
+    if (age < 3000 && !in[slot]) {
+      held[slot] = {uint32_t(random() % kBanks), uint32_t(random() % 4), age++, random() % 4 == 0};
+      scheduler->add(slot, held[slot]);
+      in[slot] = true, ++count;
+    }
+    if (random() % 2 && age < 3000) continue;
+    uint32_t answered = 0;
+    for (uint32_t bank = 0; bank < kBanks; ++bank) {
+      const uint32_t picked = scheduler->pick(bank, random() % 5 == 4 ? DramScheduler::kClosed : random() % 4);
+      if (picked == DramScheduler::kNone) continue;
+      REQUIRE(picked < kSlots);
+      REQUIRE(in[picked]);
+      REQUIRE(held[picked].bank == bank);
+      in[picked] = false, --count, ++answered;
+      picks.push_back(picked);
+    }
+    if (count > 0) REQUIRE(answered > 0);
+  }
+  REQUIRE(picks.size() == 3000);
+  return picks;
+}
+
+}  // namespace
+
+TEST_CASE("every DRAM scheduler picks each request once, for its bank, and always makes progress") {
+  REQUIRE(Registry<DramScheduler>::names() == std::vector<std::string>{"fcfs", "frfcfs"});
+  for (const std::string& name : Registry<DramScheduler>::names()) {
+    INFO(name);
+    const std::vector<uint32_t> once = exercise(name, 11);
+    CHECK(once == exercise(name, 11));
+    CHECK(once != exercise(name, 12));
+  }
+}
+
+TEST_CASE("a hit cap lets the oldest request through after that many row hits") {
+  PolicyChoice<DramScheduler> choice("frfcfs");
+  Config config;
+  config.add_text("test", "hit_cap = 2\n");
+  Diagnostics diagnostics;
+  ConfigTable table = config.root(diagnostics);
+  Registry<DramScheduler>::instance().entry("frfcfs").read(table, choice);
+  REQUIRE_FALSE(diagnostics.has_errors());
+  const auto scheduler = choice.make({1, 8});
+  scheduler->add(0, {0, 9, 0, false});
+  for (uint32_t i = 1; i < 6; ++i) scheduler->add(i, {0, 5, i, false});
+  CHECK(scheduler->pick(0, 5) == 1);
+  CHECK(scheduler->pick(0, 5) == 2);
+  CHECK(scheduler->pick(0, 5) == 0);
+  CHECK(scheduler->pick(0, 9) == 3);
+}

@@ -1,0 +1,74 @@
+// Impossible configurations are reported with what was expected; peaks match data sheets.
+// SPDX-License-Identifier: Apache-2.0
+#include "memsys/params.h"
+
+#include <functional>
+
+#include "tests/support/catch.h"
+
+using namespace glint;
+using namespace glint::mem;
+
+namespace {
+
+std::vector<std::string> errors(const std::function<void(Params&)>& change) {
+  Params params;
+  change(params);
+  Diagnostics diagnostics;
+  check(params, diagnostics);
+  return diagnostics.messages();
+}
+
+}  // namespace
+
+TEST_CASE("the default memory system is possible") { CHECK(errors([](Params&) {}).empty()); }
+
+TEST_CASE("each impossible value is reported once with what was expected") {
+  const auto one = [](const std::function<void(Params&)>& change, const std::string& expected) {
+    const std::vector<std::string> messages = errors(change);
+    REQUIRE(messages.size() == 1);
+    CHECK_THAT(messages[0], Catch::Matchers::Contains(expected));
+  };
+  one([](Params& p) { p.l1.mshr_entries = 0; }, "'l1.mshr_entries' is 0, expected at least 1");
+  one([](Params& p) { p.l2.mshr_merges = 0; }, "'l2.mshr_merges' is 0, expected at least 1");
+  one([](Params& p) { p.l1.ports = 0; }, "'l1.ports' is 0, expected at least 1");
+  one([](Params& p) { p.l1.size = 64; }, "'l1.size' is 64 bytes, expected at least one line of 128 bytes");
+  one([](Params& p) { p.l2.slice_size = 1024; }, "expected at least one set: 16 ways x 128 bytes = 2048 bytes");
+  one([](Params& p) { p.l2.slice_size = 3000; }, "expected a multiple of 2048 bytes");
+  one([](Params& p) { p.line = 96; }, "'line' is 96 bytes, expected a power of two");
+  one([](Params& p) { p.interleave = 384; p.dram.row_bytes = 768; }, "'interleave' is 384 bytes, expected a power of two");
+  one([](Params& p) { p.dram.row_bytes = 1000; }, "'dram.row_bytes' is 1000, expected a multiple of 'interleave' = 256");
+  one([](Params& p) { p.dram.banks = 15; }, "'dram.banks' is 15, expected a multiple of 'dram.bank_groups' = 4");
+  one([](Params& p) { p.dram.bus_bytes = 3; }, "is 48 bytes, expected a power of two");
+  one([](Params& p) { p.l2.dram_queue = 4; }, "'l2.dram_queue' is 4, expected at least 8");
+  one([](Params& p) { p.dram.channels = 0; }, "'dram.channels' is 0, expected at least 1");
+}
+
+TEST_CASE("peaks of the mobile part are those of its data sheet") {
+  const Peak p = peak(Params{}, 8, 1365.0);
+  CHECK(p.dram_bytes_per_second == Approx(56e9));
+  CHECK(p.l2_bytes == 512 * 1024);
+  CHECK(p.l1_bytes_per_second == Approx(8 * 128 * 1365e6));
+  CHECK(p.noc_bytes_per_second == Approx(4 * 32 * 1365e6));
+}
+
+TEST_CASE("every parameter can be read from a configuration and unknown policies are refused") {
+  Config config;
+  config.add_text("test", "line = 64\n[l1]\nways = 4\n[dram]\nrcd = 14.5\nscheduler = \"fcfs\"\n[dram.frfcfs]\nhit_cap = 3\n");
+  Diagnostics diagnostics;
+  ConfigTable root = config.root(diagnostics);
+  Params params;
+  read_params(root, params);
+  CHECK(diagnostics.messages().empty());
+  CHECK(params.line == 64);
+  CHECK(params.l1.ways == 4);
+  CHECK(params.dram.rcd == 14.5);
+  CHECK(params.dram.scheduler.name == "fcfs");
+
+  Config wrong;
+  wrong.add_text("test", "[dram]\nscheduler = \"frfcf\"\n");
+  ConfigTable wrong_root = wrong.root(diagnostics);
+  read_params(wrong_root, params);
+  REQUIRE(diagnostics.messages().size() == 1);
+  CHECK_THAT(diagnostics.messages()[0], Catch::Matchers::Contains("did you mean \"frfcfs\""));
+}

@@ -1,0 +1,175 @@
+// The small structures of the caches: line table, tags, MSHRs, fan-in, address maps.
+// SPDX-License-Identifier: Apache-2.0
+#include <map>
+#include <random>
+#include <set>
+
+#include "memsys/address_map.h"
+#include "memsys/dram_timing.h"
+#include "memsys/fan_in.h"
+#include "memsys/mshr.h"
+#include "memsys/tag_array.h"
+#include "tests/support/catch.h"
+
+using namespace glint;
+using namespace glint::mem;
+
+TEST_CASE("a line table agrees with std::map over random insertions and erasures") {
+  LineTable table(8);
+  std::map<Address, uint32_t> reference;
+  std::mt19937 random(7);
+  for (int i = 0; i < 20000; ++i) {
+    const Address line = random() % 300 * 128;
+    const auto found = reference.find(line);
+    REQUIRE(table.find(line) == (found == reference.end() ? LineTable::kNone : found->second));
+    if (found == reference.end()) {
+      table.insert(line, uint32_t(i));
+      reference[line] = uint32_t(i);
+    } else {
+      table.erase(line);
+      reference.erase(found);
+    }
+    REQUIRE(table.size() == reference.size());
+  }
+}
+
+TEST_CASE("the least recently used line of a set is the victim") {
+  TagArray tags(1, 3, 128);
+  for (const Address line : {0, 128, 256}) tags.insert(line).valid = 1;
+  tags.touch(tags.find(0));
+  CHECK(tags.victim(384).address == 128);
+  tags.insert(384).valid = 1;
+  CHECK(tags.find(128) == TagArray::kNone);
+  CHECK(tags.find(0) != TagArray::kNone);
+  CHECK(tags.victim(512).address == 256);
+}
+
+TEST_CASE("a set-associative array replaces only inside a line's set") {
+  TagArray tags(4, 2, 128);
+  std::set<Address> present;
+  for (Address line = 0; line < 64 * 128; line += 128) {
+    const TagArray::Line& victim = tags.victim(line);
+    if (victim.valid) present.erase(victim.address);
+    tags.insert(line).valid = 1;
+    present.insert(line);
+    CHECK(present.size() <= 8);
+  }
+  for (const Address line : present) CHECK(tags.find(line) != TagArray::kNone);
+  CHECK(present.size() == 8);
+}
+
+TEST_CASE("an MSHR serves its waiters oldest first and is free when its last sector arrived") {
+  struct Waiter {
+    int name = 0;
+    uint8_t missing = 0;
+  };
+  Mshr<Waiter> mshr(1, 2);
+  const uint32_t entry = mshr.allocate(640);
+  CHECK(mshr.full());
+  mshr.expect(entry, 0b0011);
+  mshr.add(entry, {1, 0b0011});
+  CHECK_FALSE(mshr.merge_limit(entry));
+  mshr.add(entry, {2, 0b0001});
+  CHECK(mshr.merge_limit(entry));
+  std::vector<int> served;
+  const auto arrive = [&](uint8_t sectors) {
+    mshr.arrive(mshr.find(640), sectors, [&](Waiter& w) {
+      w.missing &= uint8_t(~sectors);
+      if (w.missing == 0) served.push_back(w.name);
+      return w.missing == 0;
+    });
+  };
+  arrive(0b0001);
+  CHECK(served == std::vector<int>{2});
+  CHECK(mshr.full());
+  CHECK_FALSE(mshr.merge_limit(entry));
+  arrive(0b0010);
+  CHECK(served == std::vector<int>{2, 1});
+  CHECK_FALSE(mshr.full());
+  CHECK(mshr.find(640) == LineTable::kNone);
+}
+
+TEST_CASE("a fan-in orders messages by arrival and then by producer, whenever they are delivered") {
+  const auto drain = [](bool deliver_between) {
+    FanIn<int> in(3);
+    in.send(2, 10, 210);
+    in.send(1, 12, 112);
+    if (deliver_between) in.deliver();
+    in.send(0, 12, 12);
+    in.send(2, 12, 212);
+    in.send(0, 12, 13);
+    in.deliver();
+    std::vector<int> out;
+    for (; in.arrival() != kNever; in.pop()) out.push_back(in.front());
+    return out;
+  };
+  CHECK(drain(false) == std::vector<int>{210, 12, 13, 112, 212});
+  CHECK(drain(true) == drain(false));
+}
+
+TEST_CASE("a fan-in shows nothing before delivery but counts it as the next arrival") {
+  FanIn<int> in(1);
+  in.send(0, 5, 1);
+  CHECK(in.arrival() == kNever);
+  CHECK(in.next_arrival() == 5);
+  CHECK(in.waiting() == 1);
+  in.deliver();
+  CHECK_FALSE(in.ready(4));
+  CHECK(in.ready(5));
+}
+
+TEST_CASE("any number of partitions is filled equally and addresses stay unique inside each") {
+  const uint32_t n = GENERATE(1u, 3u, 4u, 12u, 24u, 80u);
+  PartitionMap map(n, 256);
+  std::vector<std::set<Address>> local(n);
+  for (uint32_t chunk = 0; chunk < n * 100; ++chunk) {
+    const Address address = Address{chunk} * 256;
+    CHECK(map.partition(address) == map.partition(address + 255));
+    local[map.partition(address)].insert(map.local(address));
+  }
+  for (const std::set<Address>& one : local) {
+    CHECK(one.size() == 100);
+    CHECK(*one.rbegin() == 99 * 256);  // dense
+  }
+}
+
+TEST_CASE("strides of the number of partitions still reach every partition") {
+  PartitionMap map(12, 256);
+  std::vector<int> count(12);
+  for (uint32_t i = 0; i < 1200; ++i) ++count[map.partition(Address{i} * 12 * 256)];
+  for (const int n : count) CHECK(n > 60);  // 100 on average
+}
+
+TEST_CASE("a row's chunks share bank group turns and a full row has row_bytes bytes") {
+  DramMap map(16, 4, 2048, 256);
+  CHECK(map.locate(0).group != map.locate(256).group);
+  std::map<std::pair<uint32_t, uint32_t>, int> chunks;
+  for (Address local = 0; local < 16 * 2048 * 4; local += 256) {
+    const DramLocation at = map.locate(local);
+    CHECK(at.bank % 4 == at.group);
+    ++chunks[{at.bank, at.row}];
+  }
+  CHECK(chunks.size() == 64);
+  for (const auto& [place, n] : chunks) CHECK(n == 8);
+}
+
+TEST_CASE("clock domains convert without drift") {
+  const ClockDomains clocks(1365.0, 1750.0);
+  CHECK(clocks.clock_at(1365'000'000) == 1750'000'000);
+  CHECK(clocks.cycle_after(1750'000'000) == 1365'000'000);
+  CHECK(clocks.cycle_after(1) == 1);
+  CHECK(clocks.clock_at(1) == 1);
+  CHECK(clocks.clock_at(4) == 5);
+  for (Cycle cycle = 0; cycle < 3000; ++cycle) CHECK(clocks.cycle_after(clocks.clock_at(cycle)) <= cycle);
+}
+
+TEST_CASE("times in nanoseconds round up to whole clocks") {
+  DramParams p;
+  p.clock_mhz = 1000.0;
+  p.rcd = 15.0, p.rp = 15.01;
+  const DramTiming t(p);
+  CHECK(t.rcd == 15);
+  CHECK(t.rp == 16);
+  CHECK(t.data == 4);   // 16 transfers at 4 a clock
+  CHECK(t.ccd_s == 4);  // never shorter than the data
+}
