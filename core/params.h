@@ -22,8 +22,10 @@ struct UnitParams {
   uint32_t latency = 4;    // from issue to the first cycle in which a dependent instruction can issue
   uint32_t interval = 2;   // from issue to the next issue on the same pipe of the same scheduler
   static constexpr auto params() {
-    return std::tuple{param(&UnitParams::latency, "latency", "cycle", "Issue to issue of a dependent instruction.", 1, 1000),
-                      param(&UnitParams::interval, "interval", "cycle", "Issue to the next issue on this pipe.", 1, 1000)};
+    return std::tuple{param(&UnitParams::latency, "latency", "cycle",
+        "Issue to issue of a dependent instruction.", 1, 1000),
+                      param(&UnitParams::interval, "interval", "cycle",
+                          "Issue to the next issue on this pipe.", 1, 1000)};
   }
 };
 
@@ -47,12 +49,14 @@ struct Units {
                       section(&Units::fp64, "fp64", "Double precision."),
                       section(&Units::sfu, "sfu", "Transcendentals and roots."),
                       section(&Units::move, "move", "Moves and selections, on the integer pipe."),
-                      section(&Units::predicate, "predicate", "Comparisons and predicate logic, on the integer pipe."),
+                      section(&Units::predicate, "predicate",
+                          "Comparisons and predicate logic, on the integer pipe."),
                       section(&Units::lsu, "lsu", "Address generation: latency up to the L1, interval a scheduler."),
                       section(&Units::constant, "const", "Constant loads."),
                       section(&Units::tex, "tex", "Texture and image unit: latency up to the L1, interval a core."),
                       section(&Units::branch, "branch", "Branches, calls, returns: the warp waits for the latency."),
-                      section(&Units::rt_unit, "rt_unit", "Ray instructions; the latency follows the RT unit's answer.")};
+                      section(&Units::rt_unit, "rt_unit",
+                          "Ray instructions; the latency follows the RT unit's answer.")};
   }
   std::array<UnitParams, size_t(isa::Unit::Count)> by_unit() const {  // in the order of isa::Unit
     return {integer, int_div, fp32, fp_div, fp64, sfu, move, predicate, lsu, constant, tex, branch, rt_unit};
@@ -67,10 +71,14 @@ struct LsuParams {
   uint32_t accesses = 128;         // Choice: unpublished; 4 a resident warp at 32 warps
   static constexpr auto params() {
     return std::tuple{
-        param(&LsuParams::queue, "queue", "instruction", "Memory instructions that wait in each scheduler's queue.", 1, 16),
-        param(&LsuParams::accept_interval, "accept_interval", "cycle", "The core's unit takes one warp instruction in so many.", 1, 64),
-        param(&LsuParams::sectors_per_cycle, "sectors_per_cycle", "sector", "32 B sectors asked of the L1 a cycle.", 1, 4),
-        param(&LsuParams::accesses, "accesses", "instruction", "Memory instructions of a core between issue and completion.", 1, 1024)};
+        param(&LsuParams::queue, "queue", "instruction",
+            "Memory instructions that wait in each scheduler's queue.", 1, 16),
+        param(&LsuParams::accept_interval, "accept_interval", "cycle",
+            "The core's unit takes one warp instruction in so many.", 1, 64),
+        param(&LsuParams::sectors_per_cycle, "sectors_per_cycle", "sector",
+            "32 B sectors asked of the L1 a cycle.", 1, 4),
+        param(&LsuParams::accesses, "accesses", "instruction",
+            "Memory instructions of a core between issue and completion.", 1, 1024)};
   }
 };
 
@@ -87,14 +95,18 @@ struct Params {
   static constexpr auto params() {
     return std::tuple{
         param(&Params::warps, "warps", "warp", "Resident warps of a core, registers permitting.", 1, kMaxWarps),
-        param(&Params::schedulers, "schedulers", "scheduler", "Schedulers of a core; warp slot w belongs to scheduler w mod this.", 1, kMaxSchedulers),
+        param(&Params::schedulers, "schedulers", "scheduler",
+            "Schedulers of a core; warp slot w belongs to scheduler w mod this.", 1, kMaxSchedulers),
         param(&Params::registers, "registers", "register", "32-bit registers of a core.", 256, 1 << 20),
         policy(&Params::issue, "issue", "Which ready warp a scheduler issues from."),
         section(&Params::units, "units", "Latency and initiation interval of the execution units."),
         section(&Params::lsu, "lsu", "Load-store unit."),
-        param(&Params::launch_latency, "launch_latency", "cycle", "From the launch to the first instruction.", 0, 1'000'000),
-        param(&Params::warp_launch_latency, "warp_launch_latency", "cycle", "From taking a warp slot to the first instruction.", 0, 100'000),
-        param(&Params::instruction_budget, "instruction_budget", "instruction", "Instructions after which a warp is held to have no end.", 1, uint64_t{1} << 40)};
+        param(&Params::launch_latency, "launch_latency", "cycle",
+            "From the launch to the first instruction.", 0, 1'000'000),
+        param(&Params::warp_launch_latency, "warp_launch_latency", "cycle",
+            "From taking a warp slot to the first instruction.", 0, 100'000),
+        param(&Params::instruction_budget, "instruction_budget", "instruction",
+            "Instructions after which a warp is held to have no end.", 1, uint64_t{1} << 40)};
   }
 };
 

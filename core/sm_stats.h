@@ -17,7 +17,8 @@ inline constexpr int kNumStages = int(isa::Stage::Compute) + 1;
 // Instructions of one shader stage, by class.
 struct StageStats : stats::Group {
   StageStats(Group* parent, const char* name) : Group(parent, name) {}
-  stats::Breakdown<isa::Class> instructions{this, "instructions", "instruction", "Warp instructions issued, by class."};
+  stats::Breakdown<isa::Class> instructions{this, "instructions", "instruction",
+      "Warp instructions issued, by class."};
   stats::Breakdown<isa::Class> lanes{this, "lanes", "instruction", "Lane instructions, by class."};
 };
 
@@ -34,10 +35,13 @@ struct CoreStats : stats::Group {
                                "Mean fraction of a warp's lanes that execute."};
   stats::Counter resident_cycles{this, "resident_cycles", "warp-cycle", "Resident warps, summed over cycles."};
   stats::Counter slot_cycles{this, "slot_cycles", "warp-cycle", "Warp slots of the hardware, summed over cycles."};
-  stats::Ratio occupancy{this, "occupancy", "fraction", resident_cycles, slot_cycles, "Mean fraction of warp slots in use."};
-  stats::Breakdown<Stall> stalls{this, "issue_slots", "cycle", "Every cycle of every scheduler, by what it was spent on."};
+  stats::Ratio occupancy{this, "occupancy", "fraction", resident_cycles, slot_cycles,
+      "Mean fraction of warp slots in use."};
+  stats::Breakdown<Stall> stalls{this, "issue_slots", "cycle",
+      "Every cycle of every scheduler, by what it was spent on."};
 
-  stats::Breakdown<isa::Class> by_class{this, "instructions_by_class", "instruction", "Warp instructions issued, by class."};
+  stats::Breakdown<isa::Class> by_class{this, "instructions_by_class", "instruction",
+      "Warp instructions issued, by class."};
   stats::Breakdown<isa::Class> lanes_by_class{this, "lanes_by_class", "instruction", "Lane instructions, by class."};
   stats::Breakdown<isa::Class> latency{this, "latency_by_class", "cycle", "Issue to completion, summed, by class."};
 
@@ -53,11 +57,14 @@ struct CoreStats : stats::Group {
   stats::Counter accesses{this, "accesses", "instruction", "Warp instructions that went to the L1."};
   stats::Counter lines{this, "lines", "request", "Line requests they made."};
   stats::Counter sectors{this, "sectors", "sector", "32 B sectors they touched."};
-  stats::Ratio lines_per_access{this, "lines_per_access", "request/instruction", lines, accesses, "Mean lines of a warp access."};
-  stats::Ratio sectors_per_access{this, "sectors_per_access", "sector/instruction", sectors, accesses, "Mean sectors of a warp access."};
+  stats::Ratio lines_per_access{this, "lines_per_access", "request/instruction", lines, accesses,
+      "Mean lines of a warp access."};
+  stats::Ratio sectors_per_access{this, "sectors_per_access", "sector/instruction", sectors, accesses,
+      "Mean sectors of a warp access."};
 
   stats::Counter branches{this, "branches", "instruction", "Conditional branches."};
-  stats::Counter divergent_branches{this, "divergent_branches", "instruction", "Conditional branches that split their warp."};
+  stats::Counter divergent_branches{this, "divergent_branches", "instruction",
+      "Conditional branches that split their warp."};
   stats::Counter rt_warps{this, "rt_warps", "warp", "Times a warp was handed to the RT unit."};
   stats::Counter rt_lanes{this, "rt_lanes", "ray", "Rays in those warps."};
 
