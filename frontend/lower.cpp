@@ -66,6 +66,7 @@ VirtualProgram Lowering::run() {
   choose_entry_point();
   check_capabilities();
   index_definitions();
+  note_interface();
   lower_control(*this);
   throw_if_unsupported();
   emitter_.finish();
@@ -103,6 +104,20 @@ void Lowering::index_definitions() {
         local_variables_[inst.result] = {inst.result, inst.type, spv::StorageClass(inst.operands[0]),
                                          inst.operands.size() > 1 ? inst.operands[1] : 0, inst.line};
     }
+}
+
+// Payload: the one it reads, or else the largest that it passes.
+void Lowering::note_interface() {
+  uint32_t incoming = 0, outgoing = 0;
+  for (const auto& [id, variable] : module_.variables) {
+    const Id type = module_.type(variable.type).element;
+    if (variable.storage == spv::StorageClass::IncomingRayPayloadKHR) incoming = std::max(incoming, layout_.size(type));
+    if (variable.storage == spv::StorageClass::RayPayloadKHR) outgoing = std::max(outgoing, layout_.size(type));
+    if (variable.storage == spv::StorageClass::HitAttributeKHR) program_.attribute_bytes = std::max(program_.attribute_bytes, layout_.size(type));
+  }
+  program_.payload_bytes = incoming != 0 ? incoming : outgoing;
+  constexpr uint32_t kAttributeBytes = 64;  // docs/abi.md, Calls and rays
+  if (program_.attribute_bytes > kAttributeBytes) unsupported(fmt::format("hit attributes of {} bytes", program_.attribute_bytes));
 }
 
 void Lowering::prologue() {

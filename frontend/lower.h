@@ -89,7 +89,6 @@ class Lowering {
   uint32_t local_offset(Id variable);                 // bytes in the frame; allotted on first use
   uint32_t attribute_buffers();                       // bytes in the frame of the two buffers of 64 bytes
   void note_store(Place place);                       // loads of that place are not reused any more
-  void note_payload(uint32_t bytes, bool incoming);
 
   // --- Reports
   void unsupported(const std::string& what);          // at the present line
@@ -106,6 +105,7 @@ class Lowering {
   void choose_entry_point();
   void index_definitions();
   void check_capabilities();
+  void note_interface();
   Operands constant_parts(Id id);
   Pointer variable_pointer(const Variable& variable);
   Pointer buffer_pointer(const Variable& variable, Pointer pointer);

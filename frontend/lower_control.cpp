@@ -45,6 +45,7 @@ class ControlFlow {
   void conditional(uint32_t b, const Instruction& last);
   void choose(uint32_t b, const Instruction& last);
   void finish_shader(spv::Op op);
+  bool is_next(uint32_t from, uint32_t to);
   BlockId target(uint32_t from, uint32_t to) const;
   std::vector<Copy> copies(uint32_t from, uint32_t to);
   void copy_all(std::vector<Copy> pending);
@@ -158,11 +159,21 @@ void ControlFlow::conditional(uint32_t b, const Instruction& last) {
     const BlockId at = target(b, to);
     return copies(b, to).empty() && at != parts_[to].after_joins() && at != parts_[to].top;
   };
-  const bool when = !leaves_at_once(if_false) || leaves_at_once(if_true);
+  const bool true_leaves = leaves_at_once(if_true), false_leaves = leaves_at_once(if_false);
+  const bool when = true_leaves != false_leaves ? true_leaves : !is_next(b, if_true);
   const uint32_t other = when ? if_false : if_true;
   emit_.branch_if(condition, when, edge(b, when ? if_true : if_false));
   if (!copies(b, other).empty()) emit_.place(emit_.new_block(fmt::format("edge_{}_{}", cfg_.block(b).label, cfg_.block(other).label)));
   go(b, other);
+}
+
+// Is the edge's target the next block in the layout, so that it needs no branch?
+bool ControlFlow::is_next(uint32_t from, uint32_t to) {
+  const auto& order = cfg_.reachable();
+  const auto after = std::upper_bound(order.begin(), order.end(), from);
+  if (after == order.end() || !copies(from, to).empty()) return false;
+  const Parts& parts = parts_[*after];
+  return target(from, to) == (parts.joins.empty() ? parts.after_joins() : parts.joins.front().second);
 }
 
 // A chain of compares: one guarded branch for each target, for all of its literals together.

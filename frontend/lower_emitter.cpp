@@ -3,6 +3,7 @@
 #include "frontend/lower_emitter.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "base/check.h"
 
@@ -24,9 +25,22 @@ std::vector<OperandKind> kinds_by_slot(const isa::OpRow& row) {
   return kinds;
 }
 
+// 1/x where that is exact and normal: x a power of two. Then x / y and x * (1/y) round the same real number.
+std::optional<uint32_t> exact_reciprocal(uint32_t bits) {
+  const uint32_t exponent = bits >> 23 & 0xff;
+  if ((bits & 0x7f'ffff) != 0 || exponent < 1 || exponent > 253) return std::nullopt;
+  return (bits & 0x8000'0000) | (254 - exponent) << 23;
+}
+
 void append_key(std::vector<uint64_t>* key, const Operand& operand) {
   key->push_back(uint64_t(operand.kind) << 40 | uint64_t(operand.special) << 32 | operand.reg);
   key->push_back(operand.constant);
+}
+
+std::vector<uint64_t> load_key(std::string_view op, const Operand& base, int32_t displacement, uint64_t version) {
+  std::vector<uint64_t> key{isa::op_index(op), uint64_t(uint32_t(displacement)), version};
+  append_key(&key, base);
+  return key;
 }
 
 }  // namespace
@@ -87,6 +101,9 @@ Operand Emitter::fresh(std::string_view op, Operands sources) {
 
 Operand Emitter::value(std::string_view op, Operands sources) {
   if (const Folded result = fold(op, sources); result.folded) return result.operand;
+  if (op == "div.rn.f32" && sources[1].kind == Operand::Kind::Constant)
+    if (const auto reciprocal = exact_reciprocal(uint32_t(sources[1].constant)))
+      return value("mul.rn.f32", {sources[0], Operand::value(*reciprocal)});
   if (op == "mul.lo.u32" || op == "mul.lo.s32") {  // x * 2^k: the factor stands on either side
     for (int i = 0; i < 2; ++i)
       if (sources[i].kind == Operand::Kind::Constant && std::has_single_bit(sources[i].constant))
@@ -100,14 +117,14 @@ Operand Emitter::value(std::string_view op, Operands sources) {
   std::vector<uint64_t> key{isa::op_index(op)};
   for (const Operand& source : sources) append_key(&key, source);
   if (const auto it = known_.find(key); it != known_.end()) return it->second[0];
-  const Operand result = fresh(op, std::move(sources));
+  const Operand result = fresh(op, sources);
+  if (op == "not.pred") negation_of_[result.reg] = sources[0].reg;
   known_[key] = {result};
   return result;
 }
 
 Operands Emitter::load(std::string_view op, const Operand& base, int32_t displacement, int count, uint64_t version) {
-  std::vector<uint64_t> key{isa::op_index(op), uint64_t(uint32_t(displacement)), version};
-  append_key(&key, base);
+  const std::vector<uint64_t> key = load_key(op, base, displacement, version);
   if (version != 0)
     if (const auto it = known_.find(key); it != known_.end()) return it->second;
   const RegisterClass c = class_of_kind(isa::op_table()[isa::op_index(op)].operands.kind[0]);
@@ -116,8 +133,16 @@ Operands Emitter::load(std::string_view op, const Operand& base, int32_t displac
   Operands operands = results;
   operands.push_back(base);
   append(op, std::move(operands), displacement);
-  if (version != 0) known_[key] = results;
+  if (version == 0) return results;
+  known_[key] = results;
+  if (const size_t vector = op.find(".v"); vector != std::string_view::npos)
+    for (int i = 0; i < count; ++i)
+      remember(std::string(op.substr(0, vector)) + ".b32", base, displacement + 4 * i, version, results[size_t(i)]);
   return results;
+}
+
+void Emitter::remember(std::string_view op, const Operand& base, int32_t displacement, uint64_t version, const Operand& word) {
+  known_[load_key(op, base, displacement, version)] = {word};
 }
 
 Operand Emitter::in_register(const Operand& operand, RegisterClass c) {
@@ -155,7 +180,12 @@ void Emitter::branch(BlockId to) {
 }
 
 void Emitter::branch_if(const Operand& predicate, bool when, BlockId to) {
-  const Operand guard = in_register(predicate, RegisterClass::Predicate);
+  Operand guard = in_register(predicate, RegisterClass::Predicate);
+  // The source of a negation is still what it was: a phi's register changes only on the edges into its block.
+  for (auto it = negation_of_.find(guard.reg); it != negation_of_.end(); it = negation_of_.find(guard.reg)) {
+    guard.reg = it->second;
+    when = !when;
+  }
   VirtualInst& inst = append("bra", {}, 0);
   inst.guard = guard.reg;
   inst.guard_negate = !when;

@@ -53,6 +53,8 @@ class Emitter {
   Operand fresh(std::string_view op, Operands sources);
   // Loads `count` parts; reused while `version` is the same (0: never reused).
   Operands load(std::string_view op, const Operand& base, int32_t displacement, int count, uint64_t version);
+  // Notes that the 32-bit load `op` would give `word`, because that was just loaded or stored there.
+  void remember(std::string_view op, const Operand& base, int32_t displacement, uint64_t version, const Operand& word);
   Operand in_register(const Operand& operand, RegisterClass c);  // as a register, moved there when it is not one
   void copy(VirtualRegister to, RegisterClass c, const Operand& from);
 
@@ -88,6 +90,7 @@ class Emitter {
   bool open_ = false;
   isa::Line line_;
   Known known_;
+  std::map<VirtualRegister, VirtualRegister> negation_of_;  // results of not.pred and their sources
 };
 
 }  // namespace glint::frontend

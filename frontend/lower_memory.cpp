@@ -101,6 +101,8 @@ void Lowering::store(const Pointer& pointer, const Operands& parts) {
   if (pointer.place == Place::Nowhere) return;
   if (pointer.place != Place::Local && pointer.place != Place::Global) return unsupported("OpStore to this kind of variable");
   const Pointer p = in_reach(*this, pointer);
+  note_store(p.place);
+  const uint64_t version = p.place == Place::Local ? local_version_ : global_version_;
   const std::vector<Leaf> leaves = layout_.leaves(p.type, p.matrix, p.component_stride);
   for (size_t i = 0; i < leaves.size();) {
     const bool wide = class_of(leaves[i].part) == RegisterClass::B64;
@@ -112,10 +114,12 @@ void Lowering::store(const Pointer& pointer, const Operands& parts) {
       const bool is_bool = leaves[i + w].part == Part::Bool;
       operands.push_back(is_bool ? emitter_.value("selp.b32", {Operand::value(1), Operand::value(0), part}) : part);
     }
-    emitter_.effect(fmt::format("st.{}.{}", space_of(p.place), shape), std::move(operands), int32_t(p.displacement + leaves[i].offset));
+    const int32_t at = int32_t(p.displacement + leaves[i].offset);
+    for (int w = 0; !wide && !p.is_volatile && w < words; ++w)
+      emitter_.remember(fmt::format("ld.{}.b32", space_of(p.place)), p.base, at + 4 * w, version, operands[1 + w]);
+    emitter_.effect(fmt::format("st.{}.{}", space_of(p.place), shape), std::move(operands), at);
     i += size_t(words);
   }
-  note_store(p.place);
 }
 
 void Lowering::note_store(Place place) { ++(place == Place::Local ? local_version_ : global_version_); }

@@ -11,13 +11,13 @@ using isa::Special;
 
 Operand special(Special first, uint32_t offset = 0) { return Operand::of(Special(uint32_t(first) + offset)); }
 
-// The lane's local address that a pointer means, as a register that SaveLive does not move.
+// The lane's local address that a pointer means. In a register: SaveLive moves the stack pointer.
 Operand local_address(Lowering& l, const Pointer& p) {
   if (p.place != Place::Local) {
     l.unsupported("a payload that is not in local memory");
     return Operand::value(0);
   }
-  return l.emit().value("add.u32", {p.base, Operand::value(uint32_t(p.displacement))});
+  return l.emit().in_register(l.emit().value("add.u32", {p.base, Operand::value(uint32_t(p.displacement))}), RegisterClass::B32);
 }
 
 // docs/abi.md, Calls and rays.
@@ -31,7 +31,11 @@ void trace(Lowering& l, const Instruction& inst, const LoweringRow&) {
     operands.insert(operands.end(), parts.begin(), parts.end());
   }
   operands.push_back(local_address(l, l.pointer(args[10])));
-  operands.push_back(e.value("add.u32", {Operand::stack_pointer(), Operand::value(l.attribute_buffers())}));
+  Pointer attributes;
+  attributes.place = Place::Local;
+  attributes.base = Operand::stack_pointer();
+  attributes.displacement = l.attribute_buffers();
+  operands.push_back(local_address(l, attributes));
   const BlockId loop = e.new_block("trace_loop"), candidates = e.new_block("trace_candidates"), done = e.new_block("trace_done");
   e.marker(VirtualInst::Kind::SaveLive);
   e.effect("rt.trace", std::move(operands));
