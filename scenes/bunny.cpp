@@ -9,7 +9,7 @@
 namespace glint::scenes {
 namespace {
 
-constexpr float kCell = 0.00865f;  // chosen for about 144,046 triangles
+constexpr float kCell = 0.01018f;  // chosen for about 144,046 triangles
 
 // `mirrored` has z = |z|: the rabbit is symmetric and looks along -x.
 float ear_distance(const Vec3& mirrored) {

@@ -10,13 +10,14 @@ constexpr float kEdge = 555;                   // world units, as in "Ray Tracin
 constexpr float kLightHeight = 0.998f * kEdge;  // 553.89: just under the ceiling
 constexpr int32_t kRed = 0, kGreen = 1, kWhite = 2, kLight = 3;
 
-// Two triangles over four corners in turn; the normal points into the box.
+// Two triangles over four corners, clockwise as seen from inside; the normal points into the box, and so do the
+// triangles, counter-clockwise.
 void add_wall(Model& box, const std::array<Vec3, 4>& corners, const Vec3& normal, int32_t material) {
   constexpr Vec2 kCoordinates[4] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   const uint32_t first = uint32_t(box.vertices.size());
   for (size_t k = 0; k < 4; ++k) add_vertex(box, corners[k], normal, material, kCoordinates[k]);
-  add_triangle(box, first, first + 1, first + 2);
-  add_triangle(box, first, first + 2, first + 3);
+  add_triangle(box, first, first + 2, first + 1);
+  add_triangle(box, first, first + 3, first + 2);
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ Vec3 hull_point(float t, float v, float side) {
 void build_hull(Shipyard& yard) {
   for (const float side : {-1.0f, 1.0f}) {
     const auto outside = [side](float u, float v) { return hull_point(side > 0 ? 1 - u : u, v, side); };
-    add_sheet(yard.ship, 24, 8, yard.planks, outside);
+    add_sheet(yard.ship, 24, 7, yard.planks, outside);
     const auto inside = [side](float u, float v) {
       const float t = side > 0 ? u : 1 - u;
       Vec3 p = hull_point(t, 0.72f + 0.28f * v, side);
@@ -83,17 +83,17 @@ void build_hull(Shipyard& yard) {
         p[1] += thickness * sine(side > 0 ? angle : -angle);
         return p;
       };
-      add_sheet(yard.ship, 20, 3, yard.dark_planks, strake);
+      add_sheet(yard.ship, 16, 3, yard.dark_planks, strake);
     }
   }
   const auto transom = [](float u, float v) { return hull_point(0, v, 1 - 2 * u); };
-  add_sheet(yard.ship, 6, 6, yard.planks, transom);
+  add_sheet(yard.ship, 5, 5, yard.planks, transom);
   const auto deck = [](float u, float v) {
     const float t = 1 - 0.985f * u;
     const float x = half_width(t) * (2 * v - 1) * 0.97f;
     return Vec3{x, rail_height(t) - 0.72f - 0.03f * x * x, along(t)};
   };
-  add_sheet(yard.ship, 20, 2, yard.planks, deck);
+  add_sheet(yard.ship, 16, 2, yard.planks, deck);
   add_box(yard.ship, {-0.06f, kKeel - 0.0f, -8}, {0.06f, kKeel + 0.12f, 3}, yard.dark_planks);
   add_box(yard.ship, {-0.05f, -0.7f, kStern - 0.3f}, {0.05f, 1.2f, kStern + 0.1f}, yard.dark_planks);
 }
@@ -138,11 +138,11 @@ void build_sails(Shipyard& yard) {
                            {{0, 2.9f, 11.6f}, {0, 3.9f, 6.3f}, {0, 11.4f, 3.6f}},
                            {{0, 3.35f, 13.6f}, {0, 5.2f, 8.6f}, {0, 13.6f, 3.5f}}};
   for (const auto& [tack, clew, head] : jibs)
-    add_sail(yard, {{tack, clew, head + Vec3{0, -0.02f, -0.05f}, head}}, {0.45f, 0, -0.1f}, 4, 6);
+    add_sail(yard, {{tack, clew, head + Vec3{0, -0.02f, -0.05f}, head}}, {0.45f, 0, -0.1f}, 4, 5);
 }
 
 void build_shrouds(Shipyard& yard) {
-  constexpr int kShrouds = 6, kRatlines = 14;
+  constexpr int kShrouds = 6, kRatlines = 10;
   for (const Mast& mast : kMasts)
     for (const float side : {-1.0f, 1.0f}) {
       const auto foot = [&](float i) {
@@ -191,7 +191,7 @@ void build_barrels(Shipyard& yard) {
   for (int i = 0; i < 8; ++i)
     place_barrel((i % 2 ? 0.32f : -0.36f), -0.5f - 0.62f * float(i / 2) + 0.1f * float(i % 2), 0.66f, 0.25f, 12,
                  yard.barrel);
-  for (int i = 0; i < 6; ++i)
+  for (int i = 0; i < 5; ++i)
     place_barrel((i % 2 ? 1.05f : -1.1f), -7.2f + 2.3f * float(i), 0.56f, 0.21f, 10, yard.old_barrel);
 }
 

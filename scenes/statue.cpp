@@ -9,7 +9,7 @@
 namespace glint::scenes {
 namespace {
 
-constexpr float kCell = 1.3f;     // chosen for about 448.9K triangles
+constexpr float kCell = 1.602f;   // chosen for about 448.9K triangles
 constexpr int kFeathers = 9;      // a wing
 
 // The figure looks along +z with its right hand at +x; `m` has x = |x|.
