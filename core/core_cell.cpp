@@ -95,7 +95,8 @@ void CoreCell::step(Cycle now) {
   for (uint32_t id : lsu_.completed()) complete(id, now);
   while (const auto slot = rt_.pop_completion(now)) complete_rays(*slot, now);
   for (SchedulerState& scheduler : schedulers_) {
-    if (now < scheduler.sleep_until && !scheduler.watches_doors && !no_skip_) continue;
+    const bool door = scheduler.watches_rt || (scheduler.watches_lsu && scheduler.lsu_vacated != lsu_.num_vacated());
+    if (now < scheduler.sleep_until && !door && !no_skip_) continue;
     run_scheduler(scheduler, now);
     if (fault_) break;
   }

@@ -59,6 +59,7 @@ void Lsu::accept(Cycle now) {
     if (access.issued >= now || now < pipe.free_at) continue;
     queue.head = (queue.head + 1) % kMaxQueue;
     --queue.count;
+    ++num_vacated_;
     queue.free_at = now + lsu_unit_.interval;
     // The cycle between issue and here is the first of the latency, so that an unloaded unit adds just that.
     access.ready = now - 1 + (access.texture ? tex_unit_ : lsu_unit_).latency;

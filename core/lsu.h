@@ -38,6 +38,8 @@ class Lsu {
 
   // Whether an instruction of that scheduler can issue: room in its queue and in the table of accesses.
   bool can_take(uint32_t scheduler) const { return !free_.empty() && queues_[scheduler].count < queue_capacity_; }
+  // Grows whenever can_take() may have become true for some scheduler.
+  uint64_t num_vacated() const { return num_vacated_; }
   // A new access at the end of the scheduler's queue: the caller fills all of it in before the next tick.
   MemoryAccess& take(uint32_t scheduler, Cycle now);
   // Advances to `now`; afterwards completed() holds the accesses that ended in this cycle, each once:
@@ -45,7 +47,10 @@ class Lsu {
   void tick(Cycle now);
   std::span<const uint32_t> completed() const { return {completed_.data(), completed_.size()}; }
   const MemoryAccess& access(uint32_t id) const { return accesses_[id]; }
-  void release(uint32_t id) { free_.push_back(id); }
+  void release(uint32_t id) {
+    free_.push_back(id);
+    ++num_vacated_;
+  }
   // Earliest cycle after `now` with work of its own (answers are the L1's events); kNever when none.
   Cycle next_event(Cycle now) const;
   bool idle() const { return free_.size() == accesses_.size(); }
@@ -77,6 +82,7 @@ class Lsu {
   std::array<Pipe, 2> pipes_;  // load-store, texture
   uint32_t next_queue_ = 0, next_pipe_ = 0;
   Cycle accept_at_ = 0, port_free_ = 0;
+  uint64_t num_vacated_ = 0;
   std::vector<MemoryAccess> accesses_;
   std::vector<uint32_t> free_, completed_;  // reserved once
 };

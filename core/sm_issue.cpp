@@ -27,7 +27,8 @@ uint64_t CoreCell::find_ready(SchedulerState& scheduler, Cycle now) {
   uint64_t ready = 0;
   Cycle next = kNever;
   Stall reason = Stall::NoWarp;
-  scheduler.watches_doors = false;
+  scheduler.watches_rt = scheduler.watches_lsu = false;
+  scheduler.lsu_vacated = lsu_.num_vacated();
   for (uint64_t rest = scheduler.resident; rest; rest &= rest - 1) {
     const auto i = size_t(std::countr_zero(rest));
     const Cycle pipe_free = scheduler.pipe_free[size_t(scheduler.pipe[i])];
@@ -38,10 +39,10 @@ uint64_t CoreCell::find_ready(SchedulerState& scheduler, Cycle now) {
       next = std::min(next, pipe_free);
       reason = std::min(reason, Stall::MathThrottle);
     } else if (scheduler.door[i] == Door::Lsu && !lsu_.can_take(scheduler.index)) {
-      scheduler.watches_doors = true;
+      scheduler.watches_lsu = true;
       reason = std::min(reason, Stall::LsuThrottle);
     } else if (scheduler.door[i] == Door::RtUnit && !rt_.can_accept()) {
-      scheduler.watches_doors = true;
+      scheduler.watches_rt = true;
       reason = std::min(reason, Stall::RtFull);
     } else {
       ready |= uint64_t{1} << i;

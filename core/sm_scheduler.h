@@ -26,10 +26,11 @@ struct SchedulerState {
   std::array<uint64_t, kMaxWarpsPerScheduler> age{};        // launch number
   std::array<Cycle, kNumPipes> pipe_free{};
 
-  // Until `sleep_until` no warp can issue and the reason stays, unless something wakes the scheduler or, with
-  // `watches_doors`, something happens in the core at all.
+  // Until `sleep_until` no warp can issue and the reason stays, unless something wakes the scheduler, or a door that
+  // it watches may have opened: the RT unit's in any cycle of the core, the load-store unit's when vacated.
   Cycle sleep_until = 0;
-  bool watches_doors = false;
+  bool watches_rt = false, watches_lsu = false;
+  uint64_t lsu_vacated = 0;  // Lsu::num_vacated() when it was looked at
   Stall reason = Stall::NoWarp;
 
   std::unique_ptr<IssueScheduler> policy;
