@@ -13,12 +13,11 @@ namespace glint::app {
 namespace {
 
 Exit assemble(const std::string& file, const std::string& output) {
+  const isa::Program program = isa::parse(read_file(file), file);
   Diagnostics diagnostics;
-  const isa::Program program = isa::parse(read_file(file), file, diagnostics);
-  diagnostics.throw_if_errors();
   isa::verify(program, diagnostics);
   diagnostics.throw_if_errors();
-  write_output(output, isa::print(program));
+  write_output(output, isa::to_text(program));
   return Exit::Ok;
 }
 

@@ -39,7 +39,7 @@ Exit compile(const Options& options) {
     if (options.emit == "spirv")
       out += frontend::disassemble_spirv(frontend::glsl_to_spirv(file, glsl));
     else
-      out += isa::print(frontend::compile_file(file, glsl, backend));
+      out += isa::to_text(frontend::compile_file(file, glsl, backend));
   }
   write_output(options.output, out);
   return Exit::Ok;
