@@ -1,0 +1,25 @@
+// Ops that steer a warp: branches, regions whose lanes meet again, and ends.
+// SPDX-License-Identifier: Apache-2.0
+#include "isa/op_makers.h"
+#include "isa/ops/families.h"
+
+namespace glint::isa::GLINT_ISA_PATH {
+namespace {
+
+constexpr OpRow control(std::string_view name, Effect effect, Operands operands, std::string_view doc) {
+  return effect_op(name, Class::Ctrl, Unit::Branch, effect, operands, doc);
+}
+
+constexpr OpRow kRows[] = {
+    control("bra", Effect::Branch, {Label}, "Continues at the label; a guard may split the warp."),
+    control("ssy", Effect::PushReconvergence, {Label}, "Opens a region whose lanes meet at the join of the label."),
+    control("join", Effect::Join, {}, "Waits until every lane of the region has arrived or left it."),
+    control("exit", Effect::Exit, {}, "Ends the lanes."),
+    control("ret", Effect::Return, {}, "Returns from the shader; an any-hit shader accepts its candidate."),
+};
+
+}  // namespace
+
+RowList control_rows() { return {kRows, std::size(kRows)}; }
+
+}  // namespace glint::isa::GLINT_ISA_PATH

@@ -1,0 +1,2 @@
+// Placeholder for the build.
+// SPDX-License-Identifier: Apache-2.0

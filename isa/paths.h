@@ -1,0 +1,31 @@
+// The op table as compiled for each SIMD path, and its families: for tests and the reference.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <span>
+#include <string_view>
+
+#include "isa/op_row.h"
+
+namespace glint::isa {
+
+enum class Path : uint8_t { Baseline, Avx2, Avx512, Count };
+constexpr std::string_view name_of(Path p) {
+  constexpr std::string_view kNames[] = {"baseline", "avx2", "avx512"};
+  return kNames[size_t(p)];
+}
+
+// Whether this machine can run the handlers of `path`.
+bool is_supported(Path path);
+
+// The table with the handlers of one path; rows and indices are the same on all.
+std::span<const OpRow> op_table(Path path);
+
+// A chapter of the table: rows [first, first + count).
+struct Family {
+  std::string_view name;
+  std::string_view doc;
+  uint16_t first = 0, count = 0;
+};
+std::span<const Family> families();
+
+}  // namespace glint::isa
