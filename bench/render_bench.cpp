@@ -1,0 +1,44 @@
+// How fast the machines run whole frames: warp instructions a second of both, node visits, simulated cycles.
+// SPDX-License-Identifier: Apache-2.0
+#include <benchmark/benchmark.h>
+
+#include "tests/support/small_jobs.h"
+
+using namespace glint;
+
+namespace {
+
+// Times the run alone: compiling shaders and building structures is not part of it.
+void run_frame(benchmark::State& state, const char* scene, pipeline::Workload workload, bool timing) {
+  pipeline::RenderJob job = test::small_job(scene, workload, 128, 2);
+  job.gpu.cores = 8;
+  job.timing = timing;
+  double instructions = 0, seconds = 0, nodes = 0, cycles = 0;
+  for (auto _ : state) {
+    const pipeline::RenderResult result = pipeline::render(job);
+    state.SetIterationTime(result.wall_seconds);
+    instructions += double(result.warp_instructions);
+    nodes += double(result.rays.nodes);
+    cycles += double(result.cycles);
+    seconds += result.wall_seconds;
+  }
+  state.counters["warp_instructions/s"] = instructions / seconds;
+  state.counters["nodes/s"] = nodes / seconds;
+  state.counters["warp_instructions"] = instructions / double(state.iterations());
+  if (timing) state.counters["cycles"] = cycles / double(state.iterations());
+}
+
+#define GLINT_FRAME(scene, workload)                                                                                  \
+  BENCHMARK_CAPTURE(run_frame, scene##_##workload##_functional, #scene, pipeline::Workload::workload, false)         \
+      ->UseManualTime()                                                                                               \
+      ->Unit(benchmark::kMillisecond);                                                                                \
+  BENCHMARK_CAPTURE(run_frame, scene##_##workload##_timing, #scene, pipeline::Workload::workload, true)              \
+      ->UseManualTime()                                                                                               \
+      ->Unit(benchmark::kMillisecond)
+GLINT_FRAME(WKND, PathTracing);
+GLINT_FRAME(SHIP, Shadow);
+GLINT_FRAME(BUNNY, AmbientOcclusion);
+
+}  // namespace
+
+BENCHMARK_MAIN();
