@@ -40,16 +40,16 @@ InterferenceGraph::InterferenceGraph(const VirtualProgram& program, const Livene
 
 void InterferenceGraph::scan_block(const VirtualProgram& program, const RegisterSet& live_out, const Ops& ops,
                                    BlockId block, float weight) {
-  RegisterSet live = live_out;
+  LiveWalk walk(live_out);
   const std::vector<VirtualInst>& code = program.blocks[block].code;
   for (size_t i = code.size(); i-- > 0;) {
     const VirtualInst& inst = code[i];
     // The ends of a move hold the same value: that the source lives on is no reason to keep them apart.
     const bool is_copy = is_real(inst) && ops.is_move(inst.op) && !is_guarded(inst) && is_register(inst.operands[1]);
-    add_edges(inst, live, is_copy ? inst.operands[1].reg : kNoRegister);
+    add_edges(inst, walk.live(), is_copy ? inst.operands[1].reg : kNoRegister);
     if (is_copy && has(inst.operands[0].reg)) moves_.push_back({inst.operands[0].reg, inst.operands[1].reg, weight});
     if (is_real(inst)) note_wishes(inst, ops, weight);
-    step_backward(inst, live);
+    walk.step(inst);
   }
 }
 

@@ -29,9 +29,32 @@ size_t RegisterSet::size() const {
   return bits;
 }
 
-void step_backward(const VirtualInst& inst, RegisterSet& live) {
-  if (!is_guarded(inst)) for_each_def(inst, [&](VirtualRegister r) { live.erase(r); });
-  for_each_use(inst, [&](VirtualRegister r) { live.insert(r); });
+bool LiveWalk::is_conditional(VirtualRegister r, const VirtualInst& inst) const {
+  return std::any_of(conditional_.begin(), conditional_.end(), [&](const Conditional& c) {
+    return c.reg == r && c.guard == inst.guard && c.negate == inst.guard_negate;
+  });
+}
+
+void LiveWalk::forget(VirtualRegister r) {
+  std::erase_if(conditional_, [&](const Conditional& c) { return c.reg == r || c.guard == r; });
+}
+
+void LiveWalk::step(const VirtualInst& inst) {
+  for_each_def(inst, [&](VirtualRegister r) {
+    if (!is_guarded(inst) || is_conditional(r, inst)) {
+      live_.erase(r);
+      forget(r);
+    }
+    // A guard that changes here was another one before: what was read under it counts as read by all lanes.
+    std::erase_if(conditional_, [&](const Conditional& c) { return c.guard == r; });
+  });
+  for_each_use(inst, [&](VirtualRegister r) {
+    if (!live_.contains(r) && is_guarded(inst) && r != inst.guard)
+      conditional_.push_back({r, inst.guard, inst.guard_negate});
+    else if (!is_guarded(inst) || r == inst.guard || !is_conditional(r, inst))
+      std::erase_if(conditional_, [&](const Conditional& c) { return c.reg == r; });
+    live_.insert(r);
+  });
 }
 
 Liveness find_liveness(const VirtualProgram& program) {
@@ -44,9 +67,9 @@ Liveness find_liveness(const VirtualProgram& program) {
     for (size_t b = blocks; b-- > 0;) {
       const VirtualBlock& block = program.blocks[b];
       for (BlockId next : block.successors) out.out[b].unite(out.in[next]);
-      RegisterSet live = out.out[b];
-      for (size_t i = block.code.size(); i-- > 0;) step_backward(block.code[i], live);
-      changed |= out.in[b].unite(live);
+      LiveWalk walk(out.out[b]);
+      for (size_t i = block.code.size(); i-- > 0;) walk.step(block.code[i]);
+      changed |= out.in[b].unite(walk.live());
     }
   }
   return out;
@@ -125,9 +148,9 @@ Place find_restore(const VirtualProgram& program, Place save) {
 
 RegisterSet live_after(const VirtualProgram& program, const Liveness& liveness, Place place) {
   const VirtualBlock& block = program.blocks[place.block];
-  RegisterSet live = liveness.out[place.block];
-  for (size_t i = block.code.size(); i-- > place.index + 1;) step_backward(block.code[i], live);
-  return live;
+  LiveWalk walk(liveness.out[place.block]);
+  for (size_t i = block.code.size(); i-- > place.index + 1;) walk.step(block.code[i]);
+  return walk.live();
 }
 
 }  // namespace

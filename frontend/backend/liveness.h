@@ -43,9 +43,28 @@ struct Liveness {
 
 Liveness find_liveness(const VirtualProgram& program);
 
-// From the set that is live after `inst` to the one that is live before it. A guarded write does not end the
-// old value: the lanes whose guard is false keep it.
-void step_backward(const VirtualInst& inst, RegisterSet& live);
+// Walks a block backwards, keeping the set of registers that are live before what it has passed.
+//
+// A guarded write does not end the old value, since lanes whose guard is false keep it, unless every read behind it
+// stands under the same guard: then those lanes never look.
+class LiveWalk {
+ public:
+  explicit LiveWalk(RegisterSet live_out) : live_(std::move(live_out)) {}
+  void step(const VirtualInst& inst);
+  const RegisterSet& live() const { return live_; }
+
+ private:
+  // A live register that has been read only by instructions with this guard.
+  struct Conditional {
+    VirtualRegister reg, guard;
+    bool negate;
+  };
+  bool is_conditional(VirtualRegister r, const VirtualInst& inst) const;
+  void forget(VirtualRegister r);
+
+  RegisterSet live_;
+  std::vector<Conditional> conditional_;
+};
 
 // How often a block runs, estimated: 8 times its surroundings for each loop around it, capped at 8^4.
 // Choice: a backward branch in layout order makes a loop of everything between its ends.

@@ -250,17 +250,17 @@ bool drop_dead_code(VirtualProgram& program) {
   const Liveness liveness = find_liveness(program);
   bool changed = false;
   for (BlockId b = 0; b < program.blocks.size(); ++b) {
-    RegisterSet live = liveness.out[b];
+    LiveWalk walk(liveness.out[b]);
     std::vector<VirtualInst>& code = program.blocks[b].code;
     std::vector<VirtualInst> kept;
     for (size_t i = code.size(); i-- > 0;) {
       bool is_needed = !is_pure(code[i]);
-      for_each_def(code[i], [&](VirtualRegister r) { is_needed |= live.contains(r); });
+      for_each_def(code[i], [&](VirtualRegister r) { is_needed |= walk.live().contains(r); });
       if (!is_needed) {
         changed = true;
         continue;
       }
-      step_backward(code[i], live);
+      walk.step(code[i]);
       kept.push_back(std::move(code[i]));
     }
     code.assign(std::make_move_iterator(kept.rbegin()), std::make_move_iterator(kept.rend()));

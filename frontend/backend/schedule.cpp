@@ -74,8 +74,9 @@ class Run {
  public:
   Run(const VirtualProgram& program, std::vector<VirtualInst> code, RegisterSet live_out)
       : program_(program), code_(std::move(code)), live_out_(std::move(live_out)), nodes_(code_.size()) {
-    live_in_ = live_out_;
-    for (size_t i = code_.size(); i-- > 0;) step_backward(code_[i], live_in_);
+    LiveWalk walk(live_out_);
+    for (size_t i = code_.size(); i-- > 0;) walk.step(code_[i]);
+    live_in_ = walk.live();
     add_dependences();
     for (size_t i = code_.size(); i-- > 0;) {
       nodes_[i].height = latency_of(code_[i]);
@@ -295,20 +296,20 @@ void schedule(VirtualProgram& program, uint32_t max_registers) {
       if (code[i].kind == VirtualInst::Kind::RestoreLive) inside = false;
       moves[i] = !inside && is_movable(code[i]) && !reads_clock(code[i]);
     }
-    RegisterSet live = liveness.out[b];
+    LiveWalk walk(liveness.out[b]);
     for (size_t end = code.size(); end > 0;) {
       if (!moves[end - 1]) {
-        step_backward(code[--end], live);
+        walk.step(code[--end]);
         continue;
       }
       size_t begin = end;
       while (begin > 0 && moves[begin - 1] && end - begin < kLongestRun) --begin;
       if (end - begin >= kShortestRun) {
         const auto first = code.begin() + std::ptrdiff_t(begin), last = code.begin() + std::ptrdiff_t(end);
-        const std::vector<VirtualInst> ordered = Run(program, {first, last}, live).schedule(comfortable);
+        const std::vector<VirtualInst> ordered = Run(program, {first, last}, walk.live()).schedule(comfortable);
         std::copy(ordered.begin(), ordered.end(), first);
       }
-      while (end > begin) step_backward(code[--end], live);
+      while (end > begin) walk.step(code[--end]);
     }
   }
 }
