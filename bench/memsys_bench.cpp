@@ -1,0 +1,70 @@
+// How fast the memory system simulates: accesses a second of host time, by where they are served.
+// SPDX-License-Identifier: Apache-2.0
+#include <benchmark/benchmark.h>
+
+#include <random>
+#include <vector>
+
+#include "memsys/memory_system.h"
+
+namespace {
+
+using namespace glint;
+using namespace glint::mem;
+
+// Windows as the engine runs them: one core that tries one access a cycle over `lines`, in order of the list.
+void run(benchmark::State& state, const Params& params, const std::vector<Address>& lines) {
+  stats::Group root(nullptr, "bench");
+  MemorySystem memory(params, 1, 1365.0, &root);
+  L1Cache& l1 = memory.l1(0);
+  const std::vector<Cell*> cells = memory.cells();
+  const std::vector<ChannelBase*> channels = memory.channels();
+  const Cycle window = memory.shortest_latency();
+  Cycle now = 0;
+  size_t next = 0;
+  uint64_t accepted = 0;
+  for (auto _ : state) {
+    for (const uint64_t goal = accepted + 10000; accepted < goal;) {
+      for (ChannelBase* channel : channels) channel->deliver();
+      for (Cycle c = now; c < now + window; ++c) {
+        l1.tick(c);
+        while (l1.pop(c, Client::RtUnit)) {}
+        if (l1.access(c, Client::RtUnit, {lines[next], 1, false, Traffic::RtNode, 0})) {
+          ++accepted;
+          if (++next == lines.size()) next = 0;
+        }
+      }
+      for (Cell* cell : cells) cell->advance(now, now + window);
+      now += window;
+    }
+  }
+  uint64_t dram = 0;
+  for (uint32_t p = 0; p < memory.num_partitions(); ++p) dram += memory.partition(p).dram().stats().reads.value();
+  state.counters["accesses/s"] = benchmark::Counter(double(accepted), benchmark::Counter::kIsRate);
+  state.counters["dram/s"] = benchmark::Counter(double(dram), benchmark::Counter::kIsRate);
+  state.counters["cycles/s"] = benchmark::Counter(double(now), benchmark::Counter::kIsRate);
+}
+
+std::vector<Address> random_lines(uint32_t count) {
+  std::mt19937 random(1);
+  std::vector<Address> lines(1 << 16);
+  for (Address& line : lines) line = Address{random() % count} * 128;
+  return lines;
+}
+
+void l1_hits(benchmark::State& state) { run(state, {}, random_lines(128)); }
+void l2_hits(benchmark::State& state) { run(state, {}, random_lines(3000)); }
+void dram_random(benchmark::State& state) { run(state, {}, random_lines(1 << 20)); }
+void dram_stream(benchmark::State& state) {
+  std::vector<Address> lines(1 << 16);
+  for (size_t i = 0; i < lines.size(); ++i) lines[i] = i * 128;
+  run(state, {}, lines);
+}
+BENCHMARK(l1_hits)->Unit(benchmark::kMillisecond);
+BENCHMARK(l2_hits)->Unit(benchmark::kMillisecond);
+BENCHMARK(dram_random)->Unit(benchmark::kMillisecond);
+BENCHMARK(dram_stream)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+
+BENCHMARK_MAIN();
