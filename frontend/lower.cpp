@@ -218,15 +218,15 @@ const Decorations& Lowering::decorations(Id id) const {
 
 void Lowering::unsupported(const std::string& what) { unsupported(what, emitter_.line()); }
 
-void Lowering::unsupported(const std::string& what, isa::Line line) { ++unsupported_[{what, {line.file, line.line}}]; }
+void Lowering::unsupported(const std::string& what, isa::Line line) { ++unsupported_[{line.file, line.line, what}]; }
 
 void Lowering::throw_if_unsupported() const {
   if (unsupported_.empty()) return;
   std::string message = fmt::format("{}: not supported:", program_.name);
   for (const auto& [place, count] : unsupported_) {
-    const auto& [what, line] = place;
-    const std::string file = line.first < program_.files.size() ? program_.files[line.first] : program_.name;
-    message += fmt::format("\n  {}: {}", line.second != 0 ? fmt::format("{}:{}", file, line.second) : file, what);
+    const auto& [file, line, what] = place;
+    const std::string& name = line != 0 && file < program_.files.size() ? program_.files[file] : program_.name;
+    message += fmt::format("\n  {}: {}", line != 0 ? fmt::format("{}:{}", name, line) : name, what);
     if (count > 1) message += fmt::format(" ({} times)", count);
   }
   throw UnsupportedError(message);

@@ -9,6 +9,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "frontend/lower_emitter.h"
@@ -125,7 +126,7 @@ class Lowering {
   std::map<Id, uint32_t> frame_;                      // variable to byte offset
   uint32_t attribute_buffers_ = 0xffff'ffff;
   uint64_t local_version_ = 1, global_version_ = 1;   // of memory, for the reuse of loads
-  std::map<std::pair<std::string, std::pair<uint16_t, uint32_t>>, int> unsupported_;
+  std::map<std::tuple<uint16_t, uint32_t, std::string>, int> unsupported_;  // file, line, what: how often
   std::set<Id> reported_types_;
 };
 

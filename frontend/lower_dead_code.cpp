@@ -13,7 +13,8 @@ bool has_effect(const VirtualInst& inst) {
     case isa::Effect::None:
     case isa::Effect::Load:
     case isa::Effect::Texture:
-    case isa::Effect::SurfaceLoad: return false;
+    case isa::Effect::SurfaceLoad:
+    case isa::Effect::Accepted: return false;
     default: return true;
   }
 }

@@ -1,0 +1,156 @@
+// GLSL compilation: includes, defines, messages, debug lines, and what simplification leaves.
+// SPDX-License-Identifier: Apache-2.0
+#include "base/diagnostics.h"
+#include "frontend/module.h"
+#include "frontend/reflection.h"
+#include "frontend/spirv.h"
+#include "tests/support/catch.h"
+#include "tests/unit/frontend/shader_lab.h"
+
+namespace glint::frontend {
+namespace {
+
+using Catch::Matchers::Contains;
+
+std::string message_of(const std::string& path, const GlslOptions& options = {}) {
+  try {
+    glsl_to_spirv(path, options);
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+int count_ops(const std::vector<uint32_t>& words, spv::Op op) {
+  int n = 0;
+  for (size_t i = 5; i < words.size(); i += words[i] >> 16) n += spv::Op(words[i] & 0xffff) == op;
+  return n;
+}
+
+TEST_CASE("a mistake in a shader is reported with its file and line") {
+  const lab::Folder folder;
+  const std::string path = folder.write("bad.comp", "#version 460\nvoid main() {\n  int a = 1;\n  b = a;\n}\n");
+  CHECK_THAT(message_of(path), Contains(path + ":4: error: 'b' : undeclared identifier"));
+}
+
+TEST_CASE("a mistake in an included file is reported at the included file's line") {
+  const lab::Folder folder;
+  const std::string header = folder.write("sub/bad.glsl", "\n\nint broken() { return missing; }\n");
+  const std::string path = folder.write("main.comp", "#version 460\n#include \"sub/bad.glsl\"\nvoid main() {}\n");
+  CHECK_THAT(message_of(path), Contains(header + ":3: error: 'missing'"));
+}
+
+TEST_CASE("an include is looked for next to the including file before the include directories") {
+  const lab::Folder folder, other;
+  folder.write("a/one.glsl", "#include \"two.glsl\"\n");
+  folder.write("a/two.glsl", "int number() { return 1; }\n");
+  const std::string wrong = other.write("two.glsl", "#error wrong file\n");
+  const std::string found = other.write("three.glsl", "int three() { return 3; }\n");
+  const std::string directory = found.substr(0, found.rfind('/'));
+  const std::string path = folder.write("m.comp", "#version 460\n#include \"a/one.glsl\"\n#include \"three.glsl\"\nvoid main() { int x = number() + three(); }\n");
+  CHECK_NOTHROW(glsl_to_spirv(path, {{directory}, {}}));
+  CHECK_THAT(message_of(path), Contains("three.glsl"));
+}
+
+TEST_CASE("a define reaches the shader with its value") {
+  const lab::Folder folder;
+  const std::string path = folder.write("d.comp", "#version 460\n#if VALUE != 42\n#error wrong value\n#endif\nvoid main() {}\n");
+  CHECK_NOTHROW(glsl_to_spirv(path, {{}, {{"VALUE", "42"}}}));
+  CHECK_THAT(message_of(path, {{}, {{"VALUE", "41"}}}), Contains(":3: error:"));
+}
+
+TEST_CASE("an unknown ending and a missing file are user errors that name the file") {
+  CHECK_THAT(message_of("/nowhere/x.frag"), Contains("/nowhere/x.frag") && Contains("shader stage"));
+  CHECK_THAT(message_of("/nowhere/x.rgen"), Contains("/nowhere/x.rgen") && Contains("cannot read"));
+  CHECK(stage_of_file("a/b.rahit") == isa::Stage::AnyHit);
+  CHECK_FALSE(stage_of_file("a/b.vert").has_value());
+}
+
+TEST_CASE("glslang's SPIR-V is version 1.6 and valid, and so is the simplified module") {
+  const lab::Folder folder;
+  const std::string path = folder.write("s.comp", "#version 460\nlayout(binding = 0) buffer B { float a[]; } b;\n"
+      "float twice(float x) { if (x > 1.0) return 2.0 * x; return x; }\nvoid main() { for (int i = 0; i < 4; ++i) b.a[i] = twice(b.a[i]); }\n");
+  const auto words = glsl_to_spirv(path, {});
+  CHECK(words[1] == 0x00010600);
+  CHECK(validate_spirv(words).empty());
+  CHECK(count_ops(words, spv::Op::OpFunctionCall) == 1);
+  const auto simple = simplify(words, path);
+  CHECK(validate_spirv(simple).empty());
+  CHECK(count_ops(simple, spv::Op::OpFunctionCall) == 0);
+  CHECK_THAT(disassemble_spirv(simple), Contains("OpEntryPoint GLCompute"));
+}
+
+TEST_CASE("words that are no valid module are refused") {
+  CHECK_THROWS_AS(simplify({1, 2, 3}, "x"), UserError);
+  CHECK_THROWS_AS(Module::parse({1, 2, 3, 4, 5, 6}, "x"), UserError);
+}
+
+TEST_CASE("an extension that the optimiser does not know does not stop it") {
+  // SPV_KHR_ray_cull_mask makes most passes skip the module and say nothing.
+  const std::string body =
+      "#extension GL_EXT_ray_cull_mask : require\nlayout(location = 0) rayPayloadInEXT vec4 p;\n"
+      "struct S { float a; vec2 b; };\nS make(uint m) { S s; s.a = float(m); s.b = vec2(s.a); return s; }\n"
+      "void main() { S s = make(gl_CullMaskEXT); p = vec4(s.a, s.b, 0); }\n";
+  const auto words = lab::simplified(".rmiss", body);
+  CHECK(count_ops(words, spv::Op::OpFunctionCall) == 0);
+  const Module module = Module::parse(words, "x");
+  for (const Block& block : module.functions.at(0).blocks)
+    for (const Instruction& inst : block.code) CHECK(inst.op != spv::Op::OpVariable);
+  CHECK(count_ops(words, spv::Op::OpExtension) >= 1);  // still declared
+}
+
+TEST_CASE("both reads of the ray's end around a report survive") {
+  const auto words = lab::simplified(".rint", "hitAttributeEXT vec4 a;\nvoid main() { float t = gl_RayTmaxEXT; reportIntersectionEXT(t * 0.5, 0u);\n"
+                                              "a = vec4(t, gl_RayTmaxEXT, 0, 0); reportIntersectionEXT(t * 0.25, 1u); }\n");
+  const Module module = Module::parse(words, "x");
+  int loads = 0;
+  for (const Block& block : module.functions.at(0).blocks)
+    for (const Instruction& inst : block.code)
+      if (inst.op == spv::Op::OpLoad) {
+        const auto d = module.decorations.find(inst.operands[0]);
+        loads += d != module.decorations.end() && d->second.builtin == spv::BuiltIn::RayTmaxKHR;
+      }
+  CHECK(loads == 2);
+}
+
+TEST_CASE("instructions know the file and line of an included function") {
+  const lab::Folder folder;
+  const std::string header = folder.write("f.glsl", "\n\nfloat work(float x) {\n  return sin(x);\n}\n");
+  const std::string path = folder.write("m.comp", "#version 460\n#include \"f.glsl\"\nlayout(binding = 0) buffer B { float a; } b;\nvoid main() {\n  b.a = work(b.a);\n}\n");
+  const VirtualProgram program = lower_to_virtual(simplify(glsl_to_spirv(path, {}), path), path);
+  int found = 0;
+  for (const VirtualBlock& block : program.blocks)
+    for (const VirtualInst& inst : block.code) {
+      const std::string_view op = isa::op_table()[inst.op].name;
+      if (op != "sin.approx.f32" && op != "st.global.b32") continue;
+      CHECK(program.files.at(inst.line.file) == (op == "sin.approx.f32" ? header : path));
+      CHECK(inst.line.line == (op == "sin.approx.f32" ? 4u : 5u));
+      ++found;
+    }
+  CHECK(found == 2);
+}
+
+TEST_CASE("reflection lists bindings with kinds, names and array lengths, and payload sizes") {
+  const lab::Folder folder;
+  const std::string path = folder.write("r.rchit", lab::source(
+      "layout(set = 1, binding = 3) uniform sampler2D textures[5];\nlayout(binding = 2) uniform U { mat4 m; } u;\n"
+      "layout(binding = 7) buffer B { float a[]; } b;\nlayout(binding = 0) uniform accelerationStructureEXT scene;\n"
+      "layout(binding = 1, rgba32f) uniform image2D picture;\nlayout(binding = 9) uniform sampler2D more[];\n"
+      "layout(location = 0) rayPayloadInEXT struct P { vec3 c; bool hit; } p;\nlayout(location = 1) rayPayloadEXT vec4 q[5];\n"
+      "hitAttributeEXT vec2 uv;\nlayout(push_constant) uniform C { vec4 c; float d; } pc;\nvoid main() { p.c = textureLod(more[gl_PrimitiveID], uv, 0.0).xyz; }\n"));
+  const Reflection r = reflect(glsl_to_spirv(path, {}), path);
+  CHECK(r.stage == isa::Stage::ClosestHit);
+  CHECK(r.bindings == std::vector<Binding>{{0, 0, BindingKind::AccelerationStructure, "scene", 1},
+                                           {0, 1, BindingKind::StorageImage, "picture", 1},
+                                           {0, 2, BindingKind::UniformBuffer, "u", 1},
+                                           {0, 7, BindingKind::StorageBuffer, "b", 1},
+                                           {0, 9, BindingKind::SampledImage, "more", 0},
+                                           {1, 3, BindingKind::SampledImage, "textures", 5}});
+  CHECK(r.incoming_payload_bytes == 16);
+  CHECK(r.largest_payload_bytes == 80);
+  CHECK(r.attribute_bytes == 8);
+  CHECK(r.push_constant_bytes == 20);
+}
+
+}  // namespace
+}  // namespace glint::frontend
