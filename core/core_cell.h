@@ -52,7 +52,9 @@ class CoreCell final : public Cell {
   // Cell.
   void advance(Cycle from, Cycle until) override;
   Cycle next_event(Cycle from) const override;
-  bool finished() const override { return num_resident_ == 0 && lsu_.idle(); }
+  bool finished() const override {
+    return num_resident_ == 0 && lsu_.idle() && l1_.next_event(accounted_) == kNever;  // last writes have left
+  }
   uint64_t progress() const override { return progress_; }
   std::string describe_stall() const override;
 

@@ -112,6 +112,7 @@ bool Executor::trace(WarpContext& warp, const isa::Inst& inst) {
     set_ray(warp.regs, inst, size_t(lane), state.ray);
     frame.payload[size_t(lane)] = warp.regs.read(inst.operand[kPayload])[lane];
     frame.attributes[size_t(lane)] = warp.regs.read(inst.operand[kAttributes])[lane];
+    state.end_at_first_hit = !world_.nearest_first_hit;
     if (!rt::begin(state, *world_.memory))
       return fail(warp, lane, fmt::format("traces a ray into {:#x}, which is not a top-level acceleration structure", state.ray.structure));
   }

@@ -65,6 +65,7 @@ struct World {
   std::vector<HitGroup> hit;
   Address binding_table = 0;               // virtual address of the table's bytes: a call reads its 32 B record
   std::array<uint32_t, 3> launch_size{1, 1, 1};
+  bool nearest_first_hit = true;           // rt::RayState::end_at_first_hit is its opposite
   uint32_t local_bytes = 0;                // stack a lane
   uint32_t max_trace_depth = 1;            // nested rt.trace (Vulkan's recursion depth)
 };

@@ -67,6 +67,7 @@ WorkloadShaders compile_workload(const RenderJob& job) {
 SceneWorld::SceneWorld(const RenderJob& job) {
   world.memory = &memory_;
   world.constant_bank.resize(isa::kConstantBankBytes);
+  world.nearest_first_hit = job.gpu.rt.nearest_first_hit;
   world.launch_size = {job.frame.width, job.frame.height, 1};
   link_shaders(job);
   upload_geometry(job.scene);

@@ -31,6 +31,9 @@ struct RayState {
   RayStatus status = RayStatus::Idle;
   Hit committed;                         // t = t_max until a hit is confirmed
   Hit candidate;                         // while NeedsIntersection or NeedsAnyHit
+  // Whether kTerminateOnFirstHit ends the ray at the first hit that is found, or only lets it end once no nearer one
+  // can be. Set before begin().
+  bool end_at_first_hit = true;
   bool candidate_procedural = false;     // the candidate came from an AABB: its attributes are memory
   bool candidate_opaque = false;         // NeedsIntersection: a report is confirmed without an any-hit shader
   bool attribute_slot = false;           // which of the two attribute buffers holds the committed attributes

@@ -13,6 +13,7 @@ namespace glint::rt {
 namespace {
 
 bool has(const RayState& s, uint32_t flag) { return (s.ray.flags & flag) != 0; }
+bool ends_at_first_hit(const RayState& s) { return s.end_at_first_hit && has(s, ray_flag::kTerminateOnFirstHit); }
 
 void finish(RayState& s) {
   s.status = RayStatus::Done;
@@ -149,7 +150,7 @@ void visit_triangles(RayState& s, const std::byte* bytes, const StackEntry& entr
       return;
     }
     s.committed = s.candidate;
-    if (has(s, ray_flag::kTerminateOnFirstHit)) return finish(s);
+    if (ends_at_first_hit(s)) return finish(s);
   }
 }
 
@@ -204,7 +205,7 @@ void run_as(RayState& s, const mem::AddressSpace& memory) {
 // The accepted candidate becomes the hit; the ray goes on, or ends when it asked for any hit.
 void commit(RayState& s, bool end) {
   s.committed = s.candidate;
-  end = end || has(s, ray_flag::kTerminateOnFirstHit);
+  end = end || ends_at_first_hit(s);
   s.terminated = end;
   if (s.candidate_procedural) {
     s.attribute_slot = !s.attribute_slot;
