@@ -1,5 +1,2 @@
-if(NOT TARGET glint::pipeline)
-  return()
-endif()
 glint_test(cosim LINKS glint::pipeline)
 glint_test(picture LINKS glint::pipeline glint_reference)
