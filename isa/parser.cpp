@@ -1,2 +1,389 @@
-// Placeholder for the build.
+// Parses the text of a program (isa/text.h). Newlines end directives, semicolons instructions.
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cctype>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include "base/diagnostics.h"
+#include "isa/op_row.h"
+#include "isa/text.h"
+
+namespace glint::isa {
+namespace {
+
+struct Token {
+  enum class Kind : uint8_t { Word, String, Punctuation, Newline, End } kind = Kind::End;
+  std::string text;
+  int line = 1, column = 1;
+};
+
+class Tokens {
+ public:
+  Tokens(const std::string& text, const std::string& file) : text_(text), file_(file) { advance(); }
+
+  const Token& peek() const { return token_; }
+  Token take() {
+    Token taken = token_;
+    advance();
+    return taken;
+  }
+  void skip_newlines() {
+    while (token_.kind == Token::Kind::Newline) advance();
+  }
+  bool take_if(std::string_view punctuation) {
+    if (token_.kind != Token::Kind::Punctuation || token_.text != punctuation) return false;
+    advance();
+    return true;
+  }
+  void expect(std::string_view punctuation, std::string_view where) {
+    if (!take_if(punctuation)) fail(token_, fmt::format("'{}' {}", punctuation, where));
+  }
+  std::string take_word(std::string_view what) {
+    if (token_.kind != Token::Kind::Word) fail(token_, what);
+    return take().text;
+  }
+  [[noreturn]] void fail(const Token& at, std::string_view expected, const std::string& note = {}) const {
+    const std::string found = at.kind == Token::Kind::End       ? "the end of the file"
+                              : at.kind == Token::Kind::Newline ? "the end of the line"
+                                                                : "'" + at.text + "'";
+    throw UserError({file_, at.line, at.column}, fmt::format("found {}, expected {}", found, expected), note);
+  }
+
+ private:
+  static bool is_word(char c) { return std::isalnum(uint8_t(c)) || c == '_' || c == '.' || c == '%' || c == '$'; }
+
+  char next() const { return at_ < text_.size() ? text_[at_] : '\0'; }
+  void step() {
+    if (text_[at_++] == '\n') {
+      ++line_;
+      column_ = 1;
+    } else {
+      ++column_;
+    }
+  }
+  void skip_blanks() {
+    while (at_ < text_.size()) {
+      if (next() == '/' && at_ + 1 < text_.size() && text_[at_ + 1] == '/')
+        while (at_ < text_.size() && next() != '\n') step();
+      else if (next() == ' ' || next() == '\t' || next() == '\r')
+        step();
+      else
+        return;
+    }
+  }
+  void advance() {
+    skip_blanks();
+    token_ = {Token::Kind::End, "", line_, column_};
+    if (at_ >= text_.size()) return;
+    const char c = next();
+    if (c == '\n') {
+      token_.kind = Token::Kind::Newline;
+      step();
+    } else if (c == '"') {
+      read_string();
+    } else if (is_word(c)) {
+      token_.kind = Token::Kind::Word;
+      for (; at_ < text_.size() && is_word(next()); step()) token_.text += next();
+    } else {
+      token_.kind = Token::Kind::Punctuation;
+      token_.text = c;
+      step();
+    }
+  }
+  void read_string() {
+    token_.kind = Token::Kind::String;
+    step();
+    for (; at_ < text_.size() && next() != '"' && next() != '\n'; step()) {
+      char c = next();
+      if (c == '\\') {
+        step();
+        c = next() == 'n' ? '\n' : next();
+      }
+      if (at_ >= text_.size()) break;
+      token_.text += c;
+    }
+    if (next() != '"') fail(token_, "a closing '\"'");
+    step();
+  }
+
+  const std::string& text_;
+  const std::string& file_;
+  size_t at_ = 0;
+  int line_ = 1, column_ = 1;
+  Token token_;
+};
+
+// The digits of `text` in `base` as a number, if that is all of it and it fits 64 bits.
+std::optional<uint64_t> digits(std::string_view text, unsigned base) {
+  if (text.empty()) return {};
+  uint64_t value = 0;
+  for (const char c : text) {
+    const unsigned d = c >= '0' && c <= '9'   ? unsigned(c - '0')
+                       : c >= 'a' && c <= 'f' ? unsigned(c - 'a') + 10
+                       : c >= 'A' && c <= 'F' ? unsigned(c - 'A') + 10
+                                              : 99;
+    if (d >= base || value > (std::numeric_limits<uint64_t>::max() - d) / base) return {};
+    value = value * base + d;
+  }
+  return value;
+}
+
+// "17", "0x11" or "0f3F800000" (8 digits).
+std::optional<uint64_t> number(const std::string& text) {
+  if (text.starts_with("0x")) return digits(std::string_view(text).substr(2), 16);
+  if (text.starts_with("0f")) return text.size() == 10 ? digits(std::string_view(text).substr(2), 16) : std::nullopt;
+  return digits(text, 10);
+}
+
+// "%rd4" with prefix "%rd" -> 4.
+std::optional<uint64_t> numbered(const std::string& text, std::string_view prefix) {
+  if (!text.starts_with(prefix)) return {};
+  return digits(std::string_view(text).substr(prefix.size()), 10);
+}
+
+class Parser {
+ public:
+  Parser(const std::string& text, const std::string& file) : tokens_(text, file) {}
+
+  Program run() {
+    program_.name = "";
+    for (tokens_.skip_newlines(); tokens_.peek().kind != Token::Kind::End; tokens_.skip_newlines()) statement();
+    resolve_labels();
+    program_.specials_used = specials_ ? *specials_ : specials_read_by(program_.code);
+    return std::move(program_);
+  }
+
+ private:
+  void statement() {
+    const Token& t = tokens_.peek();
+    if (t.kind == Token::Kind::Word && t.text[0] == '.') return directive();
+    if (t.kind == Token::Kind::Punctuation && t.text == "@") return instruction();
+    if (t.kind != Token::Kind::Word) tokens_.fail(t, "a directive, a label or an instruction");
+    const Token word = tokens_.take();
+    if (!tokens_.take_if(":")) return instruction_named(word, kNoGuard);
+    const uint32_t here = uint32_t(program_.code.size());
+    if (!label_at_.emplace(word.text, here).second) tokens_.fail(word, "a label that does not stand twice");
+    program_.labels.emplace_back(here, word.text);
+  }
+
+  // directives
+
+  void directive() {
+    const Token name = tokens_.take();
+    const std::string& d = name.text;
+    if (d == ".program") program_.name = string_value();
+    else if (d == ".stage") stage();
+    else if (d == ".registers") program_.num_registers = small("a number of registers", kMaxRegisters);
+    else if (d == ".local_bytes") program_.local_bytes = small("a number of bytes");
+    else if (d == ".payload_bytes") program_.payload_bytes = small("a number of bytes");
+    else if (d == ".attribute_bytes") program_.attribute_bytes = small("a number of bytes");
+    else if (d == ".local_size") for (uint32_t& n : program_.local_size) n = small("three sizes");
+    else if (d == ".specials") specials_ = unsigned_number("a mask of specials", ~uint64_t{0});
+    else if (d == ".const") program_.constants.push_back(small("the value of a row"));
+    else if (d == ".file") file();
+    else if (d == ".loc") location();
+    else tokens_.fail(name, "a directive", did_you_mean(d, {".program", ".stage", ".registers", ".local_bytes",
+                      ".payload_bytes", ".attribute_bytes", ".local_size", ".specials", ".const", ".file", ".loc"}));
+    if (tokens_.peek().kind != Token::Kind::Newline && tokens_.peek().kind != Token::Kind::End)
+      tokens_.fail(tokens_.peek(), "the end of the line after " + d);
+  }
+  static std::string did_you_mean(const std::string& word, const std::vector<std::string>& all) {
+    const std::string near = nearest(word, all);
+    return near.empty() ? "" : "did you mean '" + near + "'?";
+  }
+  std::string string_value() {
+    if (tokens_.peek().kind != Token::Kind::String) tokens_.fail(tokens_.peek(), "a name in quotes");
+    return tokens_.take().text;
+  }
+  uint64_t unsigned_number(std::string_view what, uint64_t max) {
+    const Token t = tokens_.peek();
+    const std::optional<uint64_t> value = t.kind == Token::Kind::Word ? number(t.text) : std::nullopt;
+    if (!value || *value > max) tokens_.fail(t, fmt::format("{} (0 to {})", what, max));
+    tokens_.take();
+    return *value;
+  }
+  uint32_t small(std::string_view what, uint32_t max = std::numeric_limits<uint32_t>::max()) {
+    return uint32_t(unsigned_number(what, max));
+  }
+  void stage() {
+    const Token t = tokens_.peek();
+    if (!find_stage(t.text, program_.stage))
+      tokens_.fail(t, "a stage", did_you_mean(t.text, {"ray_generation", "intersection", "any_hit", "closest_hit",
+                                                       "miss", "callable", "compute"}));
+    tokens_.take();
+  }
+  void file() {
+    const Token at = tokens_.peek();
+    if (small("the index of a file") != program_.files.size())
+      tokens_.fail(at, fmt::format("file {}: files are numbered from 0 in order", program_.files.size()));
+    program_.files.push_back(string_value());
+  }
+  void location() {
+    line_.file = uint16_t(small("the index of a file", 0xffff));
+    line_.line = small("a line");
+  }
+
+  // instructions
+
+  void instruction() {
+    tokens_.take();
+    const bool negate = tokens_.take_if("!");
+    const uint8_t guard = uint8_t(predicate()) | (negate ? kGuardNegate : uint8_t{0});
+    const Token name = tokens_.peek();
+    if (name.kind != Token::Kind::Word) tokens_.fail(name, "an op after the guard");
+    tokens_.take();
+    instruction_named(name, guard);
+  }
+  void instruction_named(const Token& name, uint8_t guard) {
+    const int index = find_op(name.text);
+    if (index < 0) {
+      std::vector<std::string> names;
+      for (const OpRow& row : op_table()) names.emplace_back(row.name);
+      tokens_.fail(name, "an op", did_you_mean(name.text, names));
+    }
+    Inst inst;
+    inst.op = uint16_t(index);
+    inst.guard = guard;
+    const OpRow& row = op_table()[inst.op];
+    int slot = 0, position = 0;
+    for (const OperandKind kind : row.operands.view()) {
+      if (position++) tokens_.expect(",", fmt::format("before operand {} of {}", position, row.name));
+      operand(inst, kind, slot);
+      slot += slots_of(kind);
+    }
+    tokens_.expect(";", fmt::format("after the {} operands of {}", row.operands.count, row.name));
+    program_.code.push_back(inst);
+    program_.lines.push_back(line_);
+  }
+
+  void operand(Inst& inst, OperandKind kind, int slot) {
+    switch (kind) {
+      case OperandKind::None: return;
+      case OperandKind::Label: return label();
+      case OperandKind::DstPred:
+      case OperandKind::SrcPred: inst.operand[slot] = predicate(); return;
+      case OperandKind::Dst32: inst.operand[slot] = destination(false); return;
+      case OperandKind::Dst64: inst.operand[slot] = destination(true); return;
+      case OperandKind::Src32: inst.operand[slot] = source(false); return;
+      case OperandKind::Src64: inst.operand[slot] = source(true); return;
+      case OperandKind::Address32: return address(inst, slot, false);
+      case OperandKind::Address64: return address(inst, slot, true);
+      case OperandKind::DstVec2: case OperandKind::DstVec4:
+      case OperandKind::SrcVec2: case OperandKind::SrcVec4: return vector(inst, kind, slot);
+    }
+  }
+  void label() {
+    const Token t = tokens_.peek();
+    tokens_.take_word("a label");
+    targets_.push_back({uint32_t(program_.code.size()), t});
+  }
+  void vector(Inst& inst, OperandKind kind, int slot) {
+    const int count = slots_of(kind);
+    tokens_.expect("{", fmt::format("and {} registers", count));
+    for (int i = 0; i < count; ++i) {
+      if (i) tokens_.expect(",", fmt::format("and {} more of {} registers", count - i, count));
+      inst.operand[slot + i] = is_destination(kind) ? destination(false) : source(false);
+    }
+    tokens_.expect("}", fmt::format("after {} registers", count));
+  }
+  Slot predicate() {
+    const Token t = tokens_.peek();
+    const auto index = numbered(t.text, "%p");
+    if (!index || *index >= uint64_t(kNumPredicates)) tokens_.fail(t, "a predicate, %p0 to %p7");
+    tokens_.take();
+    return Slot(*index);
+  }
+  std::optional<Slot> register_named(const Token& t, bool is_wide) {
+    const auto index = numbered(t.text, is_wide ? "%rd" : "%r");
+    if (!index || *index >= uint64_t(kMaxRegisters)) return {};
+    if (is_wide && *index % 2) tokens_.fail(t, "an even register: a pair is named by its low half");
+    return Slot(*index);
+  }
+  Slot destination(bool is_wide) {
+    const Token t = tokens_.peek();
+    const auto slot = register_named(t, is_wide);
+    if (!slot) tokens_.fail(t, is_wide ? "a register pair, %rd0 to %rd252" : "a register, %r0 to %r254");
+    tokens_.take();
+    return *slot;
+  }
+  Slot source(bool is_wide) {
+    const Token t = tokens_.peek();
+    if (t.kind == Token::Kind::Word && t.text[0] == '%') {
+      if (const auto slot = register_named(t, is_wide)) return tokens_.take(), *slot;
+      const auto row = numbered(t.text, "%c");
+      if (row && *row + (is_wide ? 2 : 1) <= program_.constants.size()) return tokens_.take(), Slot(kConstantBank + *row);
+      const Special special = find_special(t.text);
+      if (!is_wide && special != Special::Count) return tokens_.take(), Slot(kSpecialBank + unsigned(special));
+    }
+    return constant(signed_literal(is_wide), is_wide);
+  }
+  Slot constant(uint64_t value, bool is_wide) {
+    const uint32_t row = intern_constant(program_.constants, value, is_wide);
+    if (row + 1 >= kSlotIndexMask) tokens_.fail(tokens_.peek(), "fewer constants: 16382 rows at most");
+    return Slot(kConstantBank + row);
+  }
+  uint64_t signed_literal(bool is_wide) {
+    const Token start = tokens_.peek();
+    const bool negate = tokens_.take_if("-");
+    const Token t = tokens_.peek();
+    const auto value = t.kind == Token::Kind::Word ? number(t.text) : std::nullopt;
+    const uint64_t max = is_wide ? ~uint64_t{0} : 0xffff'ffffull;
+    if (!value || *value > (negate ? max / 2 + 1 : max))
+      tokens_.fail(negate && !value ? t : start, is_wide ? "a register pair or a 64-bit number"
+                                                         : "a register, a special or a 32-bit number");
+    tokens_.take();
+    return negate ? (0 - *value) & max : *value;
+  }
+  // "[base]", "[base + n]", "[base - n]", or "[n]", whose base is the constant 0.
+  void address(Inst& inst, int slot, bool is_wide) {
+    tokens_.expect("[", "and an address");
+    const Token first = tokens_.peek();
+    const bool is_number = first.text == "-" || number(first.text).has_value();
+    const uint64_t value = is_number ? signed_literal(true) : 0;
+    if (is_number && tokens_.peek().text == "]") {
+      inst.operand[slot] = constant(0, is_wide);
+      inst.imm = displacement(first, int64_t(value));
+    } else {
+      inst.operand[slot] = is_number ? constant(value & (is_wide ? ~uint64_t{0} : 0xffff'ffffull), is_wide) : source(is_wide);
+      const bool negate = tokens_.peek().text == "-";
+      const Token at = tokens_.peek();
+      if (tokens_.take_if("+") || tokens_.take_if("-")) {
+        const int64_t n = int64_t(unsigned_number("a displacement", uint64_t{1} << 31));
+        inst.imm = displacement(at, negate ? -n : n);
+      }
+    }
+    tokens_.expect("]", "after the address");
+  }
+  int32_t displacement(const Token& at, int64_t value) {
+    if (value != int64_t(int32_t(value))) tokens_.fail(at, "a displacement of 32 bits");
+    return int32_t(value);
+  }
+
+  void resolve_labels() {
+    for (const auto& [index, token] : targets_) {
+      const auto it = label_at_.find(token.text);
+      if (it == label_at_.end()) {
+        std::vector<std::string> names;
+        for (const auto& [name, at] : label_at_) names.push_back(name);
+        tokens_.fail(token, "a label of this program", did_you_mean(token.text, names));
+      }
+      program_.code[index].imm = int32_t(it->second);
+    }
+  }
+
+  Tokens tokens_;
+  Program program_;
+  Line line_;
+  std::optional<uint64_t> specials_;
+  std::map<std::string, uint32_t> label_at_;
+  std::vector<std::pair<uint32_t, Token>> targets_;
+};
+
+}  // namespace
+
+Program parse(const std::string& text, const std::string& file_name) { return Parser(text, file_name).run(); }
+
+}  // namespace glint::isa
