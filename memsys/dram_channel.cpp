@@ -13,13 +13,13 @@ DramChannel::DramChannel(const DramParams& params, uint32_t interleave, double c
     : timing_(params),
       clocks_(core_mhz, params.clock_mhz),
       map_(params.banks, params.bank_groups, params.row_bytes, interleave),
-      groups_(params.bank_groups),
       dual_command_bus_(params.dual_command_bus),
       stats_(parent),
       scheduler_(params.scheduler.make({params.banks, params.queue})),
       slots_(params.queue),  // a request keeps its place until its column command
       banks_(params.banks),
       group_gates_(params.bank_groups) {
+  for (uint32_t bank = 0; bank < params.banks; ++bank) bank_group_.push_back(uint8_t(bank % params.bank_groups));
   for (uint32_t slot = 0; slot < slots_.size(); ++slot) free_.push_back(uint32_t(slots_.size()) - 1 - slot);
 }
 
@@ -48,87 +48,93 @@ void DramChannel::finish(Cycle end) {
 
 void DramChannel::step(DramClock now) {
   account(now);
-  pick_all();
-
-  uint32_t column = kNone, row = kNone;  // the oldest ready command of each kind
-  for (uint64_t rest = busy_banks_; rest; rest &= rest - 1) {
-    const uint32_t bank = uint32_t(std::countr_zero(rest));
-    if (earliest(bank) > now) continue;
-    uint32_t& best = row_open(banks_[bank]) ? column : row;
-    if (best == kNone || slots_[banks_[bank].current].request.age < slots_[banks_[best].current].request.age) best = bank;
+  if (pick_all()) plan_from(now);
+  if (plan_.at == now) {
+    const Plan plan = plan_;
+    if (plan.column != kNone) issue_column(plan.column, now);
+    if (plan.row != kNone && (plan.column == kNone || dual_command_bus_)) issue_row(plan.row, now);
+    if (plan.column != kNone) pick_all();  // its bank is free for another request
+    plan_from(now + 1);
   }
-  if (column != kNone) issue_column(column, now);
-  const bool bus_free = column == kNone || dual_command_bus_;
-  if (row != kNone && bus_free) issue_row(row, now);
-
-  // Only a bank set free by a column command, or an answer to another bank, changes what pick() says.
-  if (column != kNone) pick_all();
-  next_step_ = kNever;
-  for (uint64_t rest = busy_banks_; rest; rest &= rest - 1)
-    next_step_ = std::min(next_step_, earliest(uint32_t(std::countr_zero(rest))));
-  if (next_step_ != kNever) next_step_ = std::max(next_step_, now + 1);
+  next_step_ = plan_.at;
 }
 
-bool DramChannel::pick_for(uint32_t index) {
+// Gives free banks requests; true when any got one. Only a free bank or a new request changes what pick() answers.
+bool DramChannel::pick_all() {
+  bool any = false;
+  for (bool again = true; again;) {  // an answer may make way for a bank that was asked before (fcfs)
+    again = false;
+    for (uint64_t rest = waiting_banks_ & ~busy_banks_; rest; rest &= rest - 1)
+      pick_for(uint32_t(std::countr_zero(rest)), again);
+    any |= again;
+    again = again && (waiting_banks_ & ~busy_banks_);
+  }
+  return any;
+}
+
+void DramChannel::pick_for(uint32_t index, bool& any) {
   Bank& bank = banks_[index];
   const uint32_t slot = scheduler_->pick(index, bank.row);
-  if (slot == kNone) return false;
+  if (slot == kNone) return;
+  any = true;
   bank.current = slot;
+  bank.age = slots_[slot].request.age;
+  bank.next = next_command_of(bank);
   busy_banks_ |= uint64_t{1} << index;
   if (--bank.queued == 0) waiting_banks_ &= ~(uint64_t{1} << index);
   ++stats_.picks;
   if (bank.row == slots_[slot].request.row) ++stats_.row_hits;
-  return true;
 }
 
-void DramChannel::pick_all() {
-  for (bool again = true; again;) {  // an answer may make way for a bank that was asked before (fcfs)
-    again = false;
-    for (uint64_t rest = waiting_banks_ & ~busy_banks_; rest; rest &= rest - 1)
-      again |= pick_for(uint32_t(std::countr_zero(rest)));
-    again = again && (waiting_banks_ & ~busy_banks_);
-  }
+DramChannel::Command DramChannel::next_command_of(const Bank& bank) const {
+  const DramRequest& request = slots_[bank.current].request;
+  if (bank.row == kClosed) return Activate;
+  if (bank.row != request.row) return Precharge;
+  return request.write ? Write : Read;
 }
 
-// When the next command of the bank's request may go out: a column command, an activate or a precharge.
-DramClock DramChannel::earliest(uint32_t index) const {
-  const Bank& bank = banks_[index];
-  const Gates& group = group_gates_[index % groups_];
-  if (row_open(bank)) {
-    if (slots_[bank.current].request.write)
-      return std::max({bank.gates.write, group.write, channel_gates_.write});
-    return std::max({bank.gates.read, group.read, channel_gates_.read});
+// Finds the first clock from `first` on at which a command can go out.
+void DramChannel::plan_from(DramClock first) {
+  plan_ = {};
+  for (uint64_t rest = busy_banks_; rest; rest &= rest - 1) {
+    const uint32_t index = uint32_t(std::countr_zero(rest));
+    const Bank& bank = banks_[index];
+    const DramClock shared = std::max(group_gates_[bank_group_[index]].at[bank.next], channel_gates_.at[bank.next]);
+    const DramClock at = std::max(std::max(bank.gates.at[bank.next], shared), first);
+    if (at > plan_.at) continue;
+    if (at < plan_.at) plan_ = {at, kNone, kNone};
+    uint32_t& best = bank.next >= Read ? plan_.column : plan_.row;
+    if (best == kNone || bank.age < banks_[best].age) best = index;
   }
-  if (bank.row != kClosed) return bank.gates.precharge;
-  const DramClock faw = num_activates_ < 4 ? 0 : last_activates_[num_activates_ % 4] + timing_.faw;
-  return std::max({bank.gates.activate, group.activate, channel_gates_.activate, faw});
 }
 
 void DramChannel::issue_column(uint32_t index, DramClock now) {
   Bank& bank = banks_[index];
-  Gates& group = group_gates_[index % groups_];
+  Gates& group = group_gates_[bank_group_[index]];
   const Slot& slot = slots_[bank.current];
-  const bool write = slot.request.write;
   const DramTiming& t = timing_;
-  const auto raise = [](DramClock& gate, DramClock to) { gate = std::max(gate, to); };
-  raise(group.read, now + t.ccd_l), raise(channel_gates_.read, now + t.ccd_s);
-  raise(group.write, now + t.ccd_l), raise(channel_gates_.write, now + t.ccd_s);
+  const bool write = slot.request.write;
+  for (const Command column : {Read, Write}) {
+    group.raise(column, now + t.ccd_l);
+    channel_gates_.raise(column, now + t.ccd_s);
+  }
+  run_timers_until(now + t.ccd_s);
   if (write) {
     const DramClock data_end = now + t.wl + t.data;
-    raise(group.read, data_end + t.wtr_l), raise(channel_gates_.read, data_end + t.wtr_s);
-    raise(bank.gates.precharge, data_end + t.wr);
+    group.raise(Read, data_end + t.wtr_l);
+    channel_gates_.raise(Read, data_end + t.wtr_s);
+    bank.gates.raise(Precharge, data_end + t.wr);
     run_timers_until(data_end + t.wtr_s);
     ++stats_.writes;
   } else {
-    raise(channel_gates_.write, now + t.rtw);
-    raise(bank.gates.precharge, now + t.rtp);
+    channel_gates_.raise(Write, now + t.rtw);
+    bank.gates.raise(Precharge, now + t.rtp);
     run_timers_until(now + t.rtw);
     returns_.push({clocks_.cycle_after(now + t.cl + t.data), slot.line, slot.sectors});
     ++stats_.reads;
   }
   if (stats_.reads.value() + stats_.writes.value() > 1 && write != last_was_write_) ++stats_.turnarounds;
   last_was_write_ = write;
-  run_timers_until(now + t.ccd_s);
   // Like GPGPU-Sim, the transfer counts from its command on; that is CL or WL early and changes no sum.
   data_until_ = now + t.data;
   stats_.busy_clocks += t.data;
@@ -142,22 +148,24 @@ void DramChannel::issue_column(uint32_t index, DramClock now) {
 void DramChannel::issue_row(uint32_t index, DramClock now) {
   Bank& bank = banks_[index];
   const DramTiming& t = timing_;
-  const auto raise = [](DramClock& gate, DramClock to) { gate = std::max(gate, to); };
-  if (bank.row != kClosed) {
+  if (bank.next == Precharge) {
     bank.row = kClosed;
-    raise(bank.gates.activate, now + t.rp);
+    bank.next = Activate;
+    bank.gates.raise(Activate, now + t.rp);
     run_timers_until(now + t.rp);
     ++stats_.precharges;
     return;
   }
   bank.row = slots_[bank.current].request.row;
-  bank.gates.read = now + t.rcd;
-  bank.gates.write = now + t.rcd_write;
-  raise(bank.gates.precharge, now + t.ras);
-  raise(bank.gates.activate, now + t.rc);
-  raise(group_gates_[index % groups_].activate, now + t.rrd_l);
-  raise(channel_gates_.activate, now + t.rrd_s);
+  bank.next = next_command_of(bank);
+  bank.gates.raise(Read, now + t.rcd);
+  bank.gates.raise(Write, now + t.rcd_write);
+  bank.gates.raise(Precharge, now + t.ras);
+  bank.gates.raise(Activate, now + t.rc);
+  group_gates_[bank_group_[index]].raise(Activate, now + t.rrd_l);
+  channel_gates_.raise(Activate, now + t.rrd_s);
   last_activates_[num_activates_++ % 4] = now;
+  if (num_activates_ >= 4) channel_gates_.raise(Activate, last_activates_[num_activates_ % 4] + t.faw);
   run_timers_until(now + std::max({t.rc, t.ras, t.rcd}));
   ++stats_.activates;
 }
@@ -168,7 +176,8 @@ void DramChannel::account(DramClock until) {
   const DramClock length = until - accounted_;
   const DramClock data = std::clamp(data_until_, accounted_, until) - accounted_;
   bool open = false;
-  for (uint64_t rest = busy_banks_; rest; rest &= rest - 1) open |= row_open(banks_[std::countr_zero(rest)]);
+  for (uint64_t rest = busy_banks_; rest && !open; rest &= rest - 1)
+    open = banks_[std::countr_zero(rest)].next >= Read;
   const DramUse waiting = open ? DramUse::ColumnWait : busy_banks_ ? DramUse::RowWait : DramUse::Idle;
   stats_.use.add(DramUse::Data, data);
   stats_.use.add(waiting, length - data);

@@ -1,6 +1,7 @@
 // One DRAM channel: banks with row buffers, command timing, the data bus.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -85,21 +86,30 @@ class DramChannel {
     Address line = 0;
     uint8_t sectors = 0;
   };
-  struct Gates {  // earliest clock of each command, as far as one bank, one group or the channel is concerned
-    DramClock activate = 0, precharge = 0, read = 0, write = 0;
+  enum Command : uint8_t { Activate, Precharge, Read, Write, NumCommands };
+  // Earliest clock of each command, as far as one bank, one group or the channel is concerned.
+  struct Gates {
+    DramClock at[NumCommands] = {};
+    void raise(Command command, DramClock to) { at[command] = std::max(at[command], to); }
   };
   struct Bank {
     uint32_t row = kClosed;
-    uint32_t current = kNone;  // slot it works on
-    uint32_t queued = 0;       // requests in the scheduler
+    uint32_t current = kNone;    // slot it works on
+    uint32_t queued = 0;         // requests in the scheduler
+    Command next = Activate;     // for the current request
+    uint64_t age = 0;            // of the current request
     Gates gates;
+  };
+  struct Plan {  // the next clock at which commands can go out, and the oldest ready bank of each kind then
+    DramClock at = kNever;
+    uint32_t column = kNone, row = kNone;
   };
 
   void step(DramClock now);
-  bool pick_for(uint32_t bank);
-  void pick_all();
-  bool row_open(const Bank& bank) const { return bank.row == slots_[bank.current].request.row; }
-  DramClock earliest(uint32_t bank) const;
+  bool pick_all();
+  void pick_for(uint32_t bank, bool& any);
+  Command next_command_of(const Bank& bank) const;
+  void plan_from(DramClock first);
   void issue_column(uint32_t bank, DramClock now);
   void issue_row(uint32_t bank, DramClock now);
   void account(DramClock until);
@@ -108,13 +118,13 @@ class DramChannel {
   const DramTiming timing_;
   const ClockDomains clocks_;
   const DramMap map_;
-  const uint32_t groups_;
   const bool dual_command_bus_;
   DramStats stats_;
   std::unique_ptr<DramScheduler> scheduler_;
   std::vector<Slot> slots_;
   std::vector<uint32_t> free_;
   std::vector<Bank> banks_;
+  std::vector<uint8_t> bank_group_;  // by bank
   std::vector<Gates> group_gates_;
   Gates channel_gates_;
   DramClock last_activates_[4] = {};  // a ring: tFAW allows no fifth inside the window
@@ -122,7 +132,8 @@ class DramChannel {
   uint64_t busy_banks_ = 0;     // bit = bank works on a request
   uint64_t waiting_banks_ = 0;  // bit = bank has requests in the scheduler
   uint64_t next_age_ = 0;
-  DramClock next_step_ = kNever;
+  Plan plan_;
+  DramClock next_step_ = kNever;  // of the plan, or an earlier arrival
   DramClock accounted_ = 0;     // clocks before this have been attributed
   DramClock data_until_ = 0;    // DramUse::Data up to here
   DramClock timers_until_ = 0;  // some bank's timer runs up to here
