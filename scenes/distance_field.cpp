@@ -8,7 +8,8 @@
 namespace glint::scenes {
 namespace {
 
-constexpr int kBlock = 4;         // lattice cells along a block that is skipped or sampled as a whole
+constexpr int kBlock = 4;         // lattice points along a block that is skipped or sampled as a whole
+constexpr int kCoarse = 16;       // the same, tried first
 constexpr float kSlope = 1.5f;    // the field's steepest change, see the header
 constexpr uint32_t kNone = ~0u;
 
@@ -24,7 +25,7 @@ class SurfaceNets {
   SurfaceNets(const DistanceField& field, const Bounds& box, float cell, int32_t material)
       : field_(field), origin_(box.lower), cell_(cell), material_(material) {
     for (size_t axis = 0; axis < 3; ++axis)
-      points_[axis] = (int((box.upper[axis] - box.lower[axis]) / cell) / kBlock + 1) * kBlock;
+      points_[axis] = (int((box.upper[axis] - box.lower[axis]) / cell) / kCoarse + 1) * kCoarse;
     values_.resize(size_t(points_[0]) * size_t(points_[1]) * size_t(points_[2]));
   }
 
@@ -50,22 +51,27 @@ class SurfaceNets {
   Vec3 point(float x, float y, float z) const { return origin_ + Vec3{x, y, z} * cell_; }
 
   void sample() {
-    for (int z = 0; z < points_[2]; z += kBlock)
-      for (int y = 0; y < points_[1]; y += kBlock)
-        for (int x = 0; x < points_[0]; x += kBlock) sample_block(x, y, z);
+    for (int z = 0; z < points_[2]; z += kCoarse)
+      for (int y = 0; y < points_[1]; y += kCoarse)
+        for (int x = 0; x < points_[0]; x += kCoarse) sample_block(x, y, z, kCoarse);
   }
 
-  void sample_block(int x0, int y0, int z0) {
+  void sample_block(int x0, int y0, int z0, int size) {
     // + 1: the cells between this block's last points and the next block's first count as this block's too
-    constexpr float kReach = 0.8660254f * (kBlock + 1);  // half the block's diagonal, in cells
-    constexpr float kMiddle = 0.5f * (kBlock - 1);
-    const float middle = field_(point(float(x0) + kMiddle, float(y0) + kMiddle, float(z0) + kMiddle));
-    const bool far = std::abs(middle) > kSlope * kReach * cell_;
-    for (int z = z0; z < z0 + kBlock; ++z)
-      for (int y = y0; y < y0 + kBlock; ++y)
-        for (int x = x0; x < x0 + kBlock; ++x)
-          values_[size_t(z) * size_t(points_[0]) * size_t(points_[1]) + slot(x, y)] =
-              far ? middle : field_(point(float(x), float(y), float(z)));
+    const float reach = 0.8660254f * float(size + 1);  // half the block's diagonal, in cells
+    const float half = 0.5f * float(size - 1);
+    const float middle = field_(point(float(x0) + half, float(y0) + half, float(z0) + half));
+    const bool far = std::abs(middle) > kSlope * reach * cell_;
+    const int step = far || size == kBlock ? 1 : kBlock;
+    for (int z = z0; z < z0 + size; z += step)
+      for (int y = y0; y < y0 + size; y += step)
+        for (int x = x0; x < x0 + size; x += step) {
+          if (step > 1)
+            sample_block(x, y, z, kBlock);
+          else
+            values_[size_t(z) * size_t(points_[0]) * size_t(points_[1]) + slot(x, y)] =
+                far ? middle : field_(point(float(x), float(y), float(z)));
+        }
   }
 
   // The mean of the crossings of the cell's twelve edges, or kNone.

@@ -85,7 +85,9 @@ float pedestal_distance(const Vec3& p) {
 float statue_distance(const Vec3& p) {
   const Vec3 q{p[2], p[1], -p[0]};
   float d = blended_union(body_distance(q), head_distance(q), 5);
-  d = blended_union(d, wing_distance({std::abs(q[0]), q[1], q[2]}), 6);
+  // nine feathers are dear: left out where a ball around the wing is farther than they could matter
+  const Vec3 m{std::abs(q[0]), q[1], q[2]};
+  if (length(m - Vec3{105, 380, -60}) - 190 < d + 6) d = blended_union(d, wing_distance(m), 6);
   return std::min(d, pedestal_distance(q));
 }
 
