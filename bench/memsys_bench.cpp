@@ -60,6 +60,24 @@ void dram_stream(benchmark::State& state) {
   for (size_t i = 0; i < lines.size(); ++i) lines[i] = i * 128;
   run(state, {}, lines);
 }
+
+// One channel by itself, its queue kept full of random sectors.
+void dram_channel_random(benchmark::State& state) {
+  stats::Group root(nullptr, "bench");
+  DramChannel channel(DramParams{}, 256, 1365.0, &root);
+  std::mt19937_64 random(1);
+  uint64_t requests = 0;
+  for (auto _ : state) {
+    for (const uint64_t goal = requests + 10000; requests < goal;) {
+      const Cycle now = channel.next_command() == kNever ? 0 : channel.next_command();
+      channel.advance(now);
+      while (!channel.returns().empty()) channel.returns().pop();
+      for (; !channel.full(); ++requests) channel.add(now, 0, 1, random() % (1u << 27), false);
+    }
+  }
+  state.counters["dram/s"] = benchmark::Counter(double(requests), benchmark::Counter::kIsRate);
+}
+BENCHMARK(dram_channel_random)->Unit(benchmark::kMillisecond);
 BENCHMARK(l1_hits)->Unit(benchmark::kMillisecond);
 BENCHMARK(l2_hits)->Unit(benchmark::kMillisecond);
 BENCHMARK(dram_random)->Unit(benchmark::kMillisecond);
