@@ -1,12 +1,11 @@
 // GLSL to SPIR-V 1.6 through glslang in process: includes, defines, debug lines, messages with file and line.
 // SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
 #include <fmt/format.h>
+#include <fstream>
 #include <glslang/Public/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>
 #include <glslang/SPIRV/GlslangToSpv.h>
-
-#include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <memory>
 #include <sstream>
@@ -48,7 +47,8 @@ class Includer final : public glslang::TShader::Includer {
     std::optional<std::string> text = read_text(path);
     if (!text) return nullptr;
     texts_.push_back(std::make_unique<std::string>(std::move(*text)));
-    return new IncludeResult(path.lexically_normal().string(), texts_.back()->data(), texts_.back()->size(), nullptr);
+    return new IncludeResult(path.lexically_normal().string(), texts_.back()->data(), texts_.back()->size(),
+                             nullptr);
   }
 
   const std::vector<std::string>& dirs_;
@@ -63,13 +63,20 @@ struct Process {
 
 EShLanguage language_of(isa::Stage stage) {
   switch (stage) {
-    case isa::Stage::RayGeneration: return EShLangRayGen;
-    case isa::Stage::Intersection: return EShLangIntersect;
-    case isa::Stage::AnyHit: return EShLangAnyHit;
-    case isa::Stage::ClosestHit: return EShLangClosestHit;
-    case isa::Stage::Miss: return EShLangMiss;
-    case isa::Stage::Callable: return EShLangCallable;
-    case isa::Stage::Compute: return EShLangCompute;
+    case isa::Stage::RayGeneration:
+      return EShLangRayGen;
+    case isa::Stage::Intersection:
+      return EShLangIntersect;
+    case isa::Stage::AnyHit:
+      return EShLangAnyHit;
+    case isa::Stage::ClosestHit:
+      return EShLangClosestHit;
+    case isa::Stage::Miss:
+      return EShLangMiss;
+    case isa::Stage::Callable:
+      return EShLangCallable;
+    case isa::Stage::Compute:
+      return EShLangCompute;
   }
   return EShLangCompute;
 }
@@ -89,8 +96,9 @@ std::string in_our_form(const std::string& log) {
       const std::string text = line.substr(is_error ? 7 : 9);
       const size_t end_of_place = text.find(": ");
       const std::string severity = is_error ? "error: " : "warning: ";
-      line = end_of_place == std::string::npos ? severity + text
-                                               : text.substr(0, end_of_place + 2) + severity + text.substr(end_of_place + 2);
+      line = end_of_place == std::string::npos
+                 ? severity + text
+                 : text.substr(0, end_of_place + 2) + severity + text.substr(end_of_place + 2);
     }
     if (!result.empty()) result += '\n';
     result += line;
@@ -145,7 +153,8 @@ std::vector<uint32_t> glsl_to_spirv(const std::string& path, const GlslOptions& 
   shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, kDefaultGlslVersion);
   shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
   shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_6);
-  // Not setDebugInfo(true): glslang 12 would then open a debug scope for each block, of a set it never imports.
+  // Not setDebugInfo(true): glslang 12 would then open a debug scope for each block, of a set it never
+  // imports.
   shader.setEnhancedMsgs();
   const auto messages = EShMessages(EShMsgSpvRules | EShMsgVulkanRules | EShMsgDebugInfo | EShMsgEnhanced);
   Includer includer(options.include_dirs);

@@ -1,10 +1,9 @@
-// The driver of the lowering: entry point, constants, dispatch of instructions, the report of what is missing.
-// SPDX-License-Identifier: Apache-2.0
+// The driver of the lowering: entry point, constants, dispatch of instructions, the report of what is
+// missing. SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 
 #include "base/check.h"
 #include "base/diagnostics.h"
@@ -17,14 +16,23 @@ namespace {
 isa::Stage stage_of_model(spv::ExecutionModel model, bool* known) {
   *known = true;
   switch (int(model)) {
-    case int(spv::ExecutionModel::RayGenerationKHR): return isa::Stage::RayGeneration;
-    case int(spv::ExecutionModel::IntersectionKHR): return isa::Stage::Intersection;
-    case int(spv::ExecutionModel::AnyHitKHR): return isa::Stage::AnyHit;
-    case int(spv::ExecutionModel::ClosestHitKHR): return isa::Stage::ClosestHit;
-    case int(spv::ExecutionModel::MissKHR): return isa::Stage::Miss;
-    case int(spv::ExecutionModel::CallableKHR): return isa::Stage::Callable;
-    case int(spv::ExecutionModel::GLCompute): return isa::Stage::Compute;
-    default: *known = false; return isa::Stage::Compute;
+    case int(spv::ExecutionModel::RayGenerationKHR):
+      return isa::Stage::RayGeneration;
+    case int(spv::ExecutionModel::IntersectionKHR):
+      return isa::Stage::Intersection;
+    case int(spv::ExecutionModel::AnyHitKHR):
+      return isa::Stage::AnyHit;
+    case int(spv::ExecutionModel::ClosestHitKHR):
+      return isa::Stage::ClosestHit;
+    case int(spv::ExecutionModel::MissKHR):
+      return isa::Stage::Miss;
+    case int(spv::ExecutionModel::CallableKHR):
+      return isa::Stage::Callable;
+    case int(spv::ExecutionModel::GLCompute):
+      return isa::Stage::Compute;
+    default:
+      *known = false;
+      return isa::Stage::Compute;
   }
 }
 
@@ -50,14 +58,17 @@ bool is_known_capability(spv::Capability capability) {
     case int(spv::Capability::StorageImageExtendedFormats):
     case int(spv::Capability::ImageQuery):  // its opcodes are reported where they stand
     case int(spv::Capability::VulkanMemoryModel):
-    case int(spv::Capability::VulkanMemoryModelDeviceScope): return true;
-    default: return false;
+    case int(spv::Capability::VulkanMemoryModelDeviceScope):
+      return true;
+    default:
+      return false;
   }
 }
 
 }  // namespace
 
-Lowering::Lowering(const Module& module, const std::string& name) : module_(module), layout_(module), emitter_(program_) {
+Lowering::Lowering(const Module& module, const std::string& name)
+    : module_(module), layout_(module), emitter_(program_) {
   program_.name = name;
   program_.files = module.files;
 }
@@ -77,19 +88,24 @@ VirtualProgram Lowering::run() {
 
 void Lowering::choose_entry_point() {
   if (module_.entry_points.size() != 1)
-    throw UnsupportedError(fmt::format("{}: a module with {} entry points; one is supported", program_.name, module_.entry_points.size()));
+    throw UnsupportedError(fmt::format("{}: a module with {} entry points; one is supported", program_.name,
+                                       module_.entry_points.size()));
   const EntryPoint& entry = module_.entry_points[0];
   bool known = false;
   program_.stage = stage_of_model(entry.model, &known);
-  if (!known) throw UnsupportedError(fmt::format("{}: a shader stage of execution model {}", program_.name, uint32_t(entry.model)));
+  if (!known)
+    throw UnsupportedError(
+        fmt::format("{}: a shader stage of execution model {}", program_.name, uint32_t(entry.model)));
   program_.local_size = entry.local_size;
   function_ = module_.function(entry.function);
-  if (!function_ || function_->blocks.empty()) throw UserError({program_.name, 0, 0}, "the entry point has no function body");
+  if (!function_ || function_->blocks.empty())
+    throw UserError({program_.name, 0, 0}, "the entry point has no function body");
 }
 
 void Lowering::check_capabilities() {
   for (const auto& [capability, line] : module_.capabilities)
-    if (!is_known_capability(capability)) unsupported(fmt::format("capability {}", uint32_t(capability)), line);
+    if (!is_known_capability(capability))
+      unsupported(fmt::format("capability {}", uint32_t(capability)), line);
 }
 
 void Lowering::index_definitions() {
@@ -111,13 +127,17 @@ void Lowering::note_interface() {
   uint32_t incoming = 0, outgoing = 0;
   for (const auto& [id, variable] : module_.variables) {
     const Id type = module_.type(variable.type).element;
-    if (variable.storage == spv::StorageClass::IncomingRayPayloadKHR) incoming = std::max(incoming, layout_.size(type));
-    if (variable.storage == spv::StorageClass::RayPayloadKHR) outgoing = std::max(outgoing, layout_.size(type));
-    if (variable.storage == spv::StorageClass::HitAttributeKHR) program_.attribute_bytes = std::max(program_.attribute_bytes, layout_.size(type));
+    if (variable.storage == spv::StorageClass::IncomingRayPayloadKHR)
+      incoming = std::max(incoming, layout_.size(type));
+    if (variable.storage == spv::StorageClass::RayPayloadKHR)
+      outgoing = std::max(outgoing, layout_.size(type));
+    if (variable.storage == spv::StorageClass::HitAttributeKHR)
+      program_.attribute_bytes = std::max(program_.attribute_bytes, layout_.size(type));
   }
   program_.payload_bytes = incoming != 0 ? incoming : outgoing;
   constexpr uint32_t kAttributeBytes = 64;  // docs/abi.md, Calls and rays
-  if (program_.attribute_bytes > kAttributeBytes) unsupported(fmt::format("hit attributes of {} bytes", program_.attribute_bytes));
+  if (program_.attribute_bytes > kAttributeBytes)
+    unsupported(fmt::format("hit attributes of {} bytes", program_.attribute_bytes));
 }
 
 void Lowering::prologue() {
@@ -138,8 +158,10 @@ void Lowering::instruction(const Instruction& inst) {
   if (inst.op == spv::Op::OpVariable) return;
   if (inst.op == spv::Op::OpExtInst) {
     const auto import = module_.imports.find(inst.operands[0]);
-    if (import != module_.imports.end() && import->second == "GLSL.std.450") lower_glsl_std(*this, inst);
-    else if (import == module_.imports.end() || import->second.rfind("NonSemantic.", 0) != 0) unsupported("OpExtInst of an unknown set");
+    if (import != module_.imports.end() && import->second == "GLSL.std.450")
+      lower_glsl_std(*this, inst);
+    else if (import == module_.imports.end() || import->second.rfind("NonSemantic.", 0) != 0)
+      unsupported("OpExtInst of an unknown set");
   } else if (const LoweringRow* row = find_lowering_row(inst.op)) {
     row->lower(*this, inst, *row);
   } else {
@@ -149,20 +171,24 @@ void Lowering::instruction(const Instruction& inst) {
   for (Id type : layout_.unsupported())
     if (reported_types_.insert(type).second) {
       const Type& what = module_.type(type);
-      unsupported(fmt::format("{}{}", name_of_opcode(uint32_t(what.op)), what.width ? fmt::format(" {}", what.width) : ""));
+      unsupported(fmt::format("{}{}", name_of_opcode(uint32_t(what.op)),
+                              what.width ? fmt::format(" {}", what.width) : ""));
     }
 }
 
 // After something unsupported the result still has a value, so that the search for more can go on.
 void Lowering::set_zero(const Instruction& inst) {
   if (inst.type == 0 || values_.count(inst.result) || pointers_.count(inst.result)) return;
-  if (module_.type(inst.type).kind == Type::Kind::Pointer) pointers_[inst.result] = nowhere(module_.type(inst.type).element);
-  else values_[inst.result] = Operands(layout_.num_parts(inst.type), Operand::value(0));
+  if (module_.type(inst.type).kind == Type::Kind::Pointer)
+    pointers_[inst.result] = nowhere(module_.type(inst.type).element);
+  else
+    values_[inst.result] = Operands(layout_.num_parts(inst.type), Operand::value(0));
 }
 
 void Lowering::set(Id id, Operands parts) {
   const Id type = type_of(id);
-  GLINT_CHECK(parts.size() == layout_.num_parts(type), "%{} has {} parts, its type {}", id, parts.size(), layout_.num_parts(type));
+  GLINT_CHECK(parts.size() == layout_.num_parts(type), "%{} has {} parts, its type {}", id, parts.size(),
+              layout_.num_parts(type));
   values_[id] = std::move(parts);
 }
 
@@ -179,9 +205,11 @@ Operands Lowering::constant_parts(Id id) {
   const Instruction& constant = module_.constants.at(id);
   switch (constant.op) {
     case spv::Op::OpConstantTrue:
-    case spv::Op::OpSpecConstantTrue: return {Operand::value(1)};
+    case spv::Op::OpSpecConstantTrue:
+      return {Operand::value(1)};
     case spv::Op::OpConstantFalse:
-    case spv::Op::OpSpecConstantFalse: return {Operand::value(0)};
+    case spv::Op::OpSpecConstantFalse:
+      return {Operand::value(0)};
     case spv::Op::OpConstant:
     case spv::Op::OpSpecConstant: {
       uint64_t bits = constant.operands[0];
@@ -198,7 +226,9 @@ Operands Lowering::constant_parts(Id id) {
       }
       return parts;
     }
-    default: unsupported(name_of_opcode(uint32_t(constant.op)), constant.line); [[fallthrough]];
+    default:
+      unsupported(name_of_opcode(uint32_t(constant.op)), constant.line);
+      [[fallthrough]];
     case spv::Op::OpConstantNull:
     case spv::Op::OpUndef:  // Choice: undefined values are 0
       return Operands(layout_.num_parts(constant.type), Operand::value(0));
@@ -216,16 +246,21 @@ const Decorations& Lowering::decorations(Id id) const {
   return it == module_.decorations.end() ? kNone : it->second;
 }
 
-void Lowering::unsupported(const std::string& what) { unsupported(what, emitter_.line()); }
+void Lowering::unsupported(const std::string& what) {
+  unsupported(what, emitter_.line());
+}
 
-void Lowering::unsupported(const std::string& what, isa::Line line) { ++unsupported_[{line.file, line.line, what}]; }
+void Lowering::unsupported(const std::string& what, isa::Line line) {
+  ++unsupported_[{line.file, line.line, what}];
+}
 
 void Lowering::throw_if_unsupported() const {
   if (unsupported_.empty()) return;
   std::string message = fmt::format("{}: not supported:", program_.name);
   for (const auto& [place, count] : unsupported_) {
     const auto& [file, line, what] = place;
-    const std::string& name = line != 0 && file < program_.files.size() ? program_.files[file] : program_.name;
+    const std::string& name =
+        line != 0 && file < program_.files.size() ? program_.files[file] : program_.name;
     message += fmt::format("\n  {}: {}", line != 0 ? fmt::format("{}:{}", name, line) : name, what);
     if (count > 1) message += fmt::format(" ({} times)", count);
   }
@@ -235,8 +270,10 @@ void Lowering::throw_if_unsupported() const {
 const LoweringRow* find_lowering_row(spv::Op op) {
   static const std::map<spv::Op, const LoweringRow*> kRows = [] {
     std::map<spv::Op, const LoweringRow*> rows;
-    for (const auto family : {arithmetic_rows(), comparison_rows(), composite_rows(), memory_rows(), image_rows(), ray_tracing_rows()})
-      for (const LoweringRow& row : family) GLINT_CHECK(rows.emplace(row.op, &row).second, "two rows for op {}", uint32_t(row.op));
+    for (const auto family : {arithmetic_rows(), comparison_rows(), composite_rows(), memory_rows(),
+                              image_rows(), ray_tracing_rows()})
+      for (const LoweringRow& row : family)
+        GLINT_CHECK(rows.emplace(row.op, &row).second, "two rows for op {}", uint32_t(row.op));
     return rows;
   }();
   const auto it = kRows.find(op);
@@ -248,7 +285,8 @@ VirtualProgram lower_to_virtual(const std::vector<uint32_t>& spirv, const std::s
   return Lowering(module, name).run();
 }
 
-isa::Program lower(const std::vector<uint32_t>& spirv, const std::string& name, const BackendOptions& options) {
+isa::Program lower(const std::vector<uint32_t>& spirv, const std::string& name,
+                   const BackendOptions& options) {
   return assemble(lower_to_virtual(spirv, name), options);
 }
 

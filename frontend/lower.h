@@ -22,20 +22,21 @@ namespace glint::frontend {
 // The lowering without the backend: for tests and for `--emit virtual`. UnsupportedError as lower().
 VirtualProgram lower_to_virtual(const std::vector<uint32_t>& spirv, const std::string& name);
 
-// Where a pointer points. Attribute pairs: hit attributes of two floats, which triangles keep in %hit.u and %hit.v.
+// Where a pointer points. Attribute pairs: hit attributes of two floats, which triangles keep in %hit.u and
+// %hit.v.
 enum class Place : uint8_t { Local, Global, Constant, Builtin, Resource, AttributePair, Nowhere };
 
 struct Pointer {
-  Id type = 0;                       // of the pointee
+  Id type = 0;  // of the pointee
   Place place = Place::Nowhere;
   Operand base = Operand::value(0);  // Local, Constant: 32-bit address; Global: 64-bit; Resource: array index
   int64_t displacement = 0;          // bytes; Builtin, AttributePair: parts
   uint32_t alignment = 16;           // bytes, of base
   uint32_t component_stride = 0;     // bytes; not 0 in a column of a row-major matrix
   MatrixLayout matrix;
-  Id variable = 0;                   // the root
-  bool is_constant = false;          // memory that no shader writes
-  bool is_volatile = false;          // two loads may differ
+  Id variable = 0;                         // the root
+  bool is_constant = false;                // memory that no shader writes
+  bool is_volatile = false;                // two loads may differ
   Operand part_index = Operand::value(0);  // Builtin, AttributePair: dynamic part index
 };
 
@@ -49,7 +50,7 @@ class Lowering;
 struct LoweringRow {
   spv::Op op;
   void (*lower)(Lowering&, const Instruction&, const LoweringRow&);
-  std::string_view name32;           // the ISA op for 32-bit parts, where the family uses one
+  std::string_view name32;  // the ISA op for 32-bit parts, where the family uses one
   std::string_view name64 = {};
 };
 // One table a family; find_lowering_row() searches them all.
@@ -70,29 +71,29 @@ class Lowering {
   VirtualProgram run();
 
   // --- Control: called block by block by lower_control()
-  void prologue();                                    // initialisers of variables
-  void instruction(const Instruction& inst);          // neither phi nor terminator
+  void prologue();                            // initialisers of variables
+  void instruction(const Instruction& inst);  // neither phi nor terminator
   const Function& function() const { return *function_; }
 
   // --- Values
-  const Operands& value(Id id);                       // constants appear on first use
+  const Operands& value(Id id);  // constants appear on first use
   Operand scalar(Id id) { return value(id).at(0); }
   void set(Id id, Operands parts);
   Pointer pointer(Id id);
   void set_pointer(Id id, Pointer pointer) { pointers_[id] = pointer; }
   Id type_of(Id id) const { return type_of_id_.at(id); }
-  const Instruction* definition(Id id) const;         // in the function; null for constants and variables
+  const Instruction* definition(Id id) const;  // in the function; null for constants and variables
 
   // --- Memory
   Operands load(const Pointer& pointer);
   void store(const Pointer& pointer, const Operands& parts);
   Operands load_builtin(spv::BuiltIn builtin, Id type);
-  uint32_t local_offset(Id variable);                 // bytes in the frame; allotted on first use
-  uint32_t attribute_buffers();                       // bytes in the frame of the two buffers of 64 bytes
-  void note_store(Place place);                       // loads of that place are not reused any more
+  uint32_t local_offset(Id variable);  // bytes in the frame; allotted on first use
+  uint32_t attribute_buffers();        // bytes in the frame of the two buffers of 64 bytes
+  void note_store(Place place);        // loads of that place are not reused any more
 
   // --- Reports
-  void unsupported(const std::string& what);          // at the present line
+  void unsupported(const std::string& what);  // at the present line
   void unsupported(const std::string& what, isa::Line line);
 
   Emitter& emit() { return emitter_; }
@@ -122,10 +123,10 @@ class Lowering {
   std::map<Id, Pointer> pointers_;
   std::map<Id, Id> type_of_id_;
   std::map<Id, const Instruction*> definition_;
-  std::map<Id, Variable> local_variables_;            // Function storage
-  std::map<Id, uint32_t> frame_;                      // variable to byte offset
+  std::map<Id, Variable> local_variables_;  // Function storage
+  std::map<Id, uint32_t> frame_;            // variable to byte offset
   uint32_t attribute_buffers_ = 0xffff'ffff;
-  uint64_t local_version_ = 1, global_version_ = 1;   // of memory, for the reuse of loads
+  uint64_t local_version_ = 1, global_version_ = 1;  // of memory, for the reuse of loads
   std::map<std::tuple<uint16_t, uint32_t, std::string>, int> unsupported_;  // file, line, what: how often
   std::set<Id> reported_types_;
 };

@@ -48,7 +48,8 @@ void negate_integer(Lowering& l, const Instruction& inst, const LoweringRow&) {
   Operands result;
   const bool wide = is_64(l, inst.type);
   for (const Operand& a : Operands(l.value(inst.operands[0])))
-    result.push_back(wide ? l.emit().value("sub.s64", {Operand::value(0), a}) : l.emit().value("neg.s32", {a}));
+    result.push_back(wide ? l.emit().value("sub.s64", {Operand::value(0), a})
+                          : l.emit().value("neg.s32", {a}));
   l.set(inst.result, std::move(result));
 }
 
@@ -63,7 +64,8 @@ void signed_modulo(Lowering& l, const Instruction& inst, const LoweringRow& row)
     const Operand rest = e.value(name, {a[i], b[i]});
     const Operand differs = e.value("setp.lt.s32", {e.value("xor.b32", {rest, b[i]}), Operand::value(0)});
     const Operand not_zero = e.value("setp.ne.s32", {rest, Operand::value(0)});
-    result.push_back(e.select(e.value("and.pred", {differs, not_zero}), e.value("add.s32", {rest, b[i]}), rest));
+    result.push_back(
+        e.select(e.value("and.pred", {differs, not_zero}), e.value("add.s32", {rest, b[i]}), rest));
   }
   l.set(inst.result, std::move(result));
 }
@@ -86,7 +88,8 @@ void times_scalar(Lowering& l, const Instruction& inst, const LoweringRow&) {
 }
 
 // Sum of a[i * step_a] * b[i], left to right, no contraction.
-Operand dot(Emitter& e, const Operands& a, size_t first_a, size_t step_a, const Operands& b, size_t first_b, size_t n) {
+Operand dot(Emitter& e, const Operands& a, size_t first_a, size_t step_a, const Operands& b, size_t first_b,
+            size_t n) {
   Operand sum = e.mul(a[first_a], b[first_b]);
   for (size_t i = 1; i < n; ++i) sum = e.add(sum, e.mul(a[first_a + i * step_a], b[first_b + i]));
   return sum;
@@ -97,7 +100,8 @@ void dot_product(Lowering& l, const Instruction& inst, const LoweringRow&) {
   l.set(inst.result, {dot(l.emit(), a, 0, 1, b, 0, a.size())});
 }
 
-// All three products: the left operand has `rows` x `inner` entries by columns, the right `inner` x `columns`.
+// All three products: the left operand has `rows` x `inner` entries by columns, the right `inner` x
+// `columns`.
 void matrix_product(Lowering& l, const Instruction& inst, const LoweringRow&) {
   const Operands a = l.value(inst.operands[0]), b = l.value(inst.operands[1]);
   const Type& left = l.module().type(l.type_of(inst.operands[0]));
@@ -131,7 +135,8 @@ void transpose(Lowering& l, const Instruction& inst, const LoweringRow&) {
 void extract_bits(Lowering& l, const Instruction& inst, const LoweringRow& row) {
   const Operand offset = l.scalar(inst.operands[1]), count = l.scalar(inst.operands[2]);
   Operands result;
-  for (const Operand& base : Operands(l.value(inst.operands[0]))) result.push_back(l.emit().value(row.name32, {base, offset, count}));
+  for (const Operand& base : Operands(l.value(inst.operands[0])))
+    result.push_back(l.emit().value(row.name32, {base, offset, count}));
   l.set(inst.result, std::move(result));
 }
 
@@ -140,7 +145,8 @@ void insert_bits(Lowering& l, const Instruction& inst, const LoweringRow&) {
   const Operands base = l.value(inst.operands[0]), insert = l.value(inst.operands[1]);
   const Operand offset = l.scalar(inst.operands[2]), count = l.scalar(inst.operands[3]);
   Operands result;
-  for (size_t i = 0; i < base.size(); ++i) result.push_back(l.emit().value("bfi.b32", {insert[i], base[i], offset, count}));
+  for (size_t i = 0; i < base.size(); ++i)
+    result.push_back(l.emit().value("bfi.b32", {insert[i], base[i], offset, count}));
   l.set(inst.result, std::move(result));
 }
 
@@ -152,7 +158,8 @@ void extended(Lowering& l, const Instruction& inst, const LoweringRow& row) {
   for (size_t i = 0; i < a.size(); ++i) {
     first.push_back(e.value(row.name32, {a[i], b[i]}));
     if (inst.op == spv::Op::OpIAddCarry || inst.op == spv::Op::OpISubBorrow) {
-      const Operand carry = inst.op == spv::Op::OpIAddCarry ? e.value("setp.lt.u32", {first.back(), a[i]}) : e.value("setp.lt.u32", {a[i], b[i]});
+      const Operand carry = inst.op == spv::Op::OpIAddCarry ? e.value("setp.lt.u32", {first.back(), a[i]})
+                                                            : e.value("setp.lt.u32", {a[i], b[i]});
       second.push_back(e.select(carry, Operand::value(1), Operand::value(0)));
     } else {
       second.push_back(e.value(row.name64, {a[i], b[i]}));
@@ -173,7 +180,8 @@ void convert_width(Lowering& l, const Instruction& inst, const LoweringRow& row)
 
 // Float and 32-bit integer; 64-bit integers have no conversion in the ISA.
 void convert(Lowering& l, const Instruction& inst, const LoweringRow& row) {
-  if (is_64(l, inst.type) || is_64(l, l.type_of(inst.operands[0]))) return l.unsupported("conversion between float and 64-bit integer");
+  if (is_64(l, inst.type) || is_64(l, l.type_of(inst.operands[0])))
+    return l.unsupported("conversion between float and 64-bit integer");
   unary(l, inst, row);
 }
 
@@ -248,6 +256,8 @@ constexpr LoweringRow kRows[] = {
 
 }  // namespace
 
-std::span<const LoweringRow> arithmetic_rows() { return kRows; }
+std::span<const LoweringRow> arithmetic_rows() {
+  return kRows;
+}
 
 }  // namespace glint::frontend

@@ -1,5 +1,5 @@
-// Dominators by the iterative method of Cooper, Harvey and Kennedy, "A Simple, Fast Dominance Algorithm" (2001).
-// SPDX-License-Identifier: Apache-2.0
+// Dominators by the iterative method of Cooper, Harvey and Kennedy, "A Simple, Fast Dominance Algorithm"
+// (2001). SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower_cfg.h"
 
 #include <algorithm>
@@ -9,7 +9,10 @@
 namespace glint::frontend {
 
 ControlGraph::ControlGraph(const Function& function)
-    : function_(function), predecessors_(function.blocks.size()), dominator_(function.blocks.size(), 0), depth_(function.blocks.size(), 0) {
+    : function_(function),
+      predecessors_(function.blocks.size()),
+      dominator_(function.blocks.size(), 0),
+      depth_(function.blocks.size(), 0) {
   for (uint32_t b = 0; b < num_blocks(); ++b) index_[block(b).label] = b;
   find_dominators();
 }
@@ -99,7 +102,9 @@ std::vector<Construct> ControlGraph::constructs_ending_at(uint32_t b) const {
     if (merge_of(header) == b) result.push_back({header, false});
     if (continue_of(header) == b) result.push_back({header, true});
   }
-  std::stable_sort(result.begin(), result.end(), [&](const Construct& x, const Construct& y) { return depth_[x.header] > depth_[y.header]; });
+  std::stable_sort(result.begin(), result.end(), [&](const Construct& x, const Construct& y) {
+    return depth_[x.header] > depth_[y.header];
+  });
   return result;
 }
 

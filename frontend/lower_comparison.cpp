@@ -17,7 +17,8 @@ void compare(Lowering& l, const Instruction& inst, const LoweringRow& row) {
 
 void test(Lowering& l, const Instruction& inst, const LoweringRow& row) {
   Operands result;
-  for (const Operand& a : Operands(l.value(inst.operands[0]))) result.push_back(l.emit().value(row.name32, {a}));
+  for (const Operand& a : Operands(l.value(inst.operands[0])))
+    result.push_back(l.emit().value(row.name32, {a}));
   l.set(inst.result, std::move(result));
 }
 
@@ -42,15 +43,22 @@ void reduce(Lowering& l, const Instruction& inst, const LoweringRow& row) {
 // The condition is one bool, or one a component.
 void select(Lowering& l, const Instruction& inst, const LoweringRow&) {
   if (l.module().type(inst.type).kind == Type::Kind::Pointer) return l.unsupported("OpSelect of pointers");
-  const Operands condition = l.value(inst.operands[0]), a = l.value(inst.operands[1]), b = l.value(inst.operands[2]);
+  const Operands condition = l.value(inst.operands[0]), a = l.value(inst.operands[1]),
+                 b = l.value(inst.operands[2]);
   const std::vector<Part> parts = l.layout().parts(inst.type);
   Operands result;
   for (size_t i = 0; i < a.size(); ++i) {
     const Operand& predicate = condition[condition.size() == 1 ? 0 : i];
     switch (class_of(parts[i])) {
-      case RegisterClass::Predicate: result.push_back(l.emit().select_bool(predicate, a[i], b[i])); break;
-      case RegisterClass::B64: result.push_back(l.emit().value("selp.b64", {a[i], b[i], predicate})); break;
-      case RegisterClass::B32: result.push_back(l.emit().value("selp.b32", {a[i], b[i], predicate})); break;
+      case RegisterClass::Predicate:
+        result.push_back(l.emit().select_bool(predicate, a[i], b[i]));
+        break;
+      case RegisterClass::B64:
+        result.push_back(l.emit().value("selp.b64", {a[i], b[i], predicate}));
+        break;
+      case RegisterClass::B32:
+        result.push_back(l.emit().value("selp.b32", {a[i], b[i], predicate}));
+        break;
     }
   }
   l.set(inst.result, std::move(result));
@@ -94,6 +102,8 @@ constexpr LoweringRow kRows[] = {
 
 }  // namespace
 
-std::span<const LoweringRow> comparison_rows() { return kRows; }
+std::span<const LoweringRow> comparison_rows() {
+  return kRows;
+}
 
 }  // namespace glint::frontend

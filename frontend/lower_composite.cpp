@@ -51,8 +51,10 @@ void shuffle(Lowering& l, const Instruction& inst, const LoweringRow&) {
 }
 
 void copy(Lowering& l, const Instruction& inst, const LoweringRow&) {
-  if (l.module().type(inst.type).kind == Type::Kind::Pointer) l.set_pointer(inst.result, l.pointer(inst.operands[0]));
-  else l.set(inst.result, Operands(l.value(inst.operands[0])));
+  if (l.module().type(inst.type).kind == Type::Kind::Pointer)
+    l.set_pointer(inst.result, l.pointer(inst.operands[0]));
+  else
+    l.set(inst.result, Operands(l.value(inst.operands[0])));
 }
 
 void undefined(Lowering& l, const Instruction& inst, const LoweringRow&) {
@@ -99,6 +101,8 @@ constexpr LoweringRow kRows[] = {
 
 }  // namespace
 
-std::span<const LoweringRow> composite_rows() { return kRows; }
+std::span<const LoweringRow> composite_rows() {
+  return kRows;
+}
 
 }  // namespace glint::frontend

@@ -1,8 +1,7 @@
 // Structured control flow: reconvergence pairs, branches, switches, and phis as copies on edges.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 
 #include "base/check.h"
 #include "frontend/lower.h"
@@ -29,7 +28,11 @@ struct Copy {
 class ControlFlow {
  public:
   explicit ControlFlow(Lowering& lowering)
-      : lowering_(lowering), emit_(lowering.emit()), cfg_(lowering.function()), parts_(cfg_.num_blocks()), known_(cfg_.num_blocks()) {}
+      : lowering_(lowering),
+        emit_(lowering.emit()),
+        cfg_(lowering.function()),
+        parts_(cfg_.num_blocks()),
+        known_(cfg_.num_blocks()) {}
 
   void run() {
     for (uint32_t b : cfg_.reachable()) make_parts(b);
@@ -69,9 +72,12 @@ void ControlFlow::make_parts(uint32_t b) {
   Parts& parts = parts_[b];
   const Block& block = cfg_.block(b);
   for (const Construct& construct : cfg_.constructs_ending_at(b))
-    parts.joins.push_back({construct, emit_.new_block(fmt::format("join_{}_{}", block.label, cfg_.block(construct.header).label))});
-  if (cfg_.merge_of(b) && block.merge == spv::Op::OpLoopMerge) parts.before = emit_.new_block(fmt::format("loop_{}", block.label));
-  if (block.merge == spv::Op::OpLoopMerge) parts.top = emit_.new_block(fmt::format("iteration_{}", block.label));
+    parts.joins.push_back({construct, emit_.new_block(fmt::format("join_{}_{}", block.label,
+                                                                  cfg_.block(construct.header).label))});
+  if (cfg_.merge_of(b) && block.merge == spv::Op::OpLoopMerge)
+    parts.before = emit_.new_block(fmt::format("loop_{}", block.label));
+  if (block.merge == spv::Op::OpLoopMerge)
+    parts.top = emit_.new_block(fmt::format("iteration_{}", block.label));
   parts.body = emit_.new_block(fmt::format("block_{}", block.label));
 }
 
@@ -104,7 +110,8 @@ void ControlFlow::lower_block(uint32_t b) {
   }
   if (parts.top != kNoBlock) {
     emit_.place(parts.top);
-    if (const auto continued = cfg_.continue_of(b)) emit_.push_reconvergence(cfg_join(parts_[*continued].joins, b));
+    if (const auto continued = cfg_.continue_of(b))
+      emit_.push_reconvergence(cfg_join(parts_[*continued].joins, b));
   }
   emit_.place(parts.body);
   const auto only = cfg_.only_predecessor(b);
@@ -123,26 +130,40 @@ void ControlFlow::terminator(uint32_t b) {
   if (block.merge == spv::Op::OpSelectionMerge)
     if (const auto merge = cfg_.merge_of(b)) emit_.push_reconvergence(cfg_join(parts_[*merge].joins, b));
   switch (last.op) {
-    case spv::Op::OpBranch: go(b, cfg_.index_of(last.operands[0])); break;
-    case spv::Op::OpBranchConditional: conditional(b, last); break;
-    case spv::Op::OpSwitch: choose(b, last); break;
-    default: finish_shader(last.op); break;
+    case spv::Op::OpBranch:
+      go(b, cfg_.index_of(last.operands[0]));
+      break;
+    case spv::Op::OpBranchConditional:
+      conditional(b, last);
+      break;
+    case spv::Op::OpSwitch:
+      choose(b, last);
+      break;
+    default:
+      finish_shader(last.op);
+      break;
   }
   place_edges();
 }
 
 void ControlFlow::finish_shader(spv::Op op) {
-  const bool is_called = lowering_.stage() != isa::Stage::RayGeneration && lowering_.stage() != isa::Stage::Compute;
+  const bool is_called =
+      lowering_.stage() != isa::Stage::RayGeneration && lowering_.stage() != isa::Stage::Compute;
   const std::string_view leave = is_called ? "ret" : "exit";
   switch (op) {
     case spv::Op::OpReturn:
     case spv::Op::OpUnreachable:  // never reached by a valid program; leaving is the smallest harm
       emit_.end(leave);
       break;
-    case spv::Op::OpIgnoreIntersectionKHR: emit_.end("rt.ignore"); break;
-    case spv::Op::OpTerminateRayKHR: emit_.end("rt.terminate"); break;
+    case spv::Op::OpIgnoreIntersectionKHR:
+      emit_.end("rt.ignore");
+      break;
+    case spv::Op::OpTerminateRayKHR:
+      emit_.end("rt.terminate");
+      break;
     default:
-      lowering_.unsupported(op == spv::Op::OpReturnValue ? "a function that was not inlined" : fmt::format("terminator {}", uint32_t(op)));
+      lowering_.unsupported(op == spv::Op::OpReturnValue ? "a function that was not inlined"
+                                                         : fmt::format("terminator {}", uint32_t(op)));
       emit_.end(leave);
       break;
   }
@@ -163,7 +184,8 @@ void ControlFlow::conditional(uint32_t b, const Instruction& last) {
   const bool when = true_leaves != false_leaves ? true_leaves : !is_next(b, if_true);
   const uint32_t other = when ? if_false : if_true;
   emit_.branch_if(condition, when, edge(b, when ? if_true : if_false));
-  if (!copies(b, other).empty()) emit_.place(emit_.new_block(fmt::format("edge_{}_{}", cfg_.block(b).label, cfg_.block(other).label)));
+  if (!copies(b, other).empty())
+    emit_.place(emit_.new_block(fmt::format("edge_{}_{}", cfg_.block(b).label, cfg_.block(other).label)));
   go(b, other);
 }
 
@@ -180,15 +202,19 @@ bool ControlFlow::is_next(uint32_t from, uint32_t to) {
 void ControlFlow::choose(uint32_t b, const Instruction& last) {
   const uint32_t otherwise = cfg_.index_of(last.operands[1]);
   const Operand selector = lowering_.scalar(last.operands[0]);
-  if (lowering_.layout().parts(lowering_.type_of(last.operands[0]))[0] > Part::Uint32) lowering_.unsupported("OpSwitch of 64 bits");
+  if (lowering_.layout().parts(lowering_.type_of(last.operands[0]))[0] > Part::Uint32)
+    lowering_.unsupported("OpSwitch of 64 bits");
   std::vector<std::pair<uint32_t, Operand>> cases;  // target, predicate
   for (size_t i = 2; i + 1 < last.operands.size(); i += 2) {
     const uint32_t to = cfg_.index_of(last.operands[i + 1]);
     if (to == otherwise) continue;
     const Operand hit = emit_.value("setp.eq.u32", {selector, Operand::value(last.operands[i])});
-    const auto same_target = std::find_if(cases.begin(), cases.end(), [&](const auto& c) { return c.first == to; });
-    if (same_target == cases.end()) cases.push_back({to, hit});
-    else same_target->second = emit_.value("or.pred", {same_target->second, hit});
+    const auto same_target =
+        std::find_if(cases.begin(), cases.end(), [&](const auto& c) { return c.first == to; });
+    if (same_target == cases.end())
+      cases.push_back({to, hit});
+    else
+      same_target->second = emit_.value("or.pred", {same_target->second, hit});
   }
   for (const auto& [to, predicate] : cases) {
     if (is_constant(predicate, 0)) continue;
@@ -220,7 +246,8 @@ std::vector<Copy> ControlFlow::copies(uint32_t from, uint32_t to) {
       const Operands to_parts = lowering_.value(phi.result);
       for (size_t part = 0; part < to_parts.size(); ++part)
         if (!same(to_parts[part], from_parts[part]))
-          result.push_back({to_parts[part].reg, lowering_.program().registers[to_parts[part].reg], from_parts[part]});
+          result.push_back(
+              {to_parts[part].reg, lowering_.program().registers[to_parts[part].reg], from_parts[part]});
       break;
     }
   }
@@ -231,10 +258,13 @@ std::vector<Copy> ControlFlow::copies(uint32_t from, uint32_t to) {
 // cut by saving one destination.
 void ControlFlow::copy_all(std::vector<Copy> pending) {
   const auto is_read = [&](VirtualRegister r) {
-    return std::any_of(pending.begin(), pending.end(), [&](const Copy& c) { return c.from.kind == Operand::Kind::Register && c.from.reg == r; });
+    return std::any_of(pending.begin(), pending.end(), [&](const Copy& c) {
+      return c.from.kind == Operand::Kind::Register && c.from.reg == r;
+    });
   };
   while (!pending.empty()) {
-    const auto free = std::find_if(pending.begin(), pending.end(), [&](const Copy& c) { return !is_read(c.to); });
+    const auto free =
+        std::find_if(pending.begin(), pending.end(), [&](const Copy& c) { return !is_read(c.to); });
     if (free != pending.end()) {
       const Copy copy = *free;
       pending.erase(free);
@@ -258,7 +288,8 @@ void ControlFlow::go(uint32_t from, uint32_t to) {
 // The target of a branch that does not end its block: the destination, or a block of its own with the copies.
 BlockId ControlFlow::edge(uint32_t from, uint32_t to) {
   if (copies(from, to).empty()) return target(from, to);
-  edges_.push_back({emit_.new_block(fmt::format("edge_{}_{}", cfg_.block(from).label, cfg_.block(to).label)), from, to});
+  edges_.push_back(
+      {emit_.new_block(fmt::format("edge_{}_{}", cfg_.block(from).label, cfg_.block(to).label)), from, to});
   return edges_.back().block;
 }
 
@@ -272,6 +303,8 @@ void ControlFlow::place_edges() {
 
 }  // namespace
 
-void lower_control(Lowering& lowering) { ControlFlow(lowering).run(); }
+void lower_control(Lowering& lowering) {
+  ControlFlow(lowering).run();
+}
 
 }  // namespace glint::frontend

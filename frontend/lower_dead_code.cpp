@@ -14,8 +14,10 @@ bool has_effect(const VirtualInst& inst) {
     case isa::Effect::Load:
     case isa::Effect::Texture:
     case isa::Effect::SurfaceLoad:
-    case isa::Effect::Accepted: return false;
-    default: return true;
+    case isa::Effect::Accepted:
+      return false;
+    default:
+      return true;
   }
 }
 

@@ -37,7 +37,8 @@ void append_key(std::vector<uint64_t>* key, const Operand& operand) {
   key->push_back(operand.constant);
 }
 
-std::vector<uint64_t> load_key(std::string_view op, const Operand& base, int32_t displacement, uint64_t version) {
+std::vector<uint64_t> load_key(std::string_view op, const Operand& base, int32_t displacement,
+                               uint64_t version) {
   std::vector<uint64_t> key{isa::op_index(op), uint64_t(uint32_t(displacement)), version};
   append_key(&key, base);
   return key;
@@ -71,7 +72,8 @@ void Emitter::add_successor(BlockId to) {
 }
 
 VirtualInst& Emitter::append(std::string_view op, Operands operands, int32_t displacement) {
-  GLINT_CHECK(open_, "{} after the end of block {}", op, here_ == kNoBlock ? "?" : program_.blocks[here_].name);
+  GLINT_CHECK(open_, "{} after the end of block {}", op,
+              here_ == kNoBlock ? "?" : program_.blocks[here_].name);
   VirtualInst inst;
   inst.op = isa::op_index(op);
   inst.imm = displacement;
@@ -80,9 +82,11 @@ VirtualInst& Emitter::append(std::string_view op, Operands operands, int32_t dis
   // Predicates are always registers, and so is each part of a vector.
   const isa::OpRow& row = isa::op_table()[inst.op];
   const std::vector<OperandKind> kinds = kinds_by_slot(row);
-  GLINT_CHECK(kinds.size() == inst.operands.size(), "{} takes {} operands, got {}", op, kinds.size(), inst.operands.size());
+  GLINT_CHECK(kinds.size() == inst.operands.size(), "{} takes {} operands, got {}", op, kinds.size(),
+              inst.operands.size());
   for (size_t i = 0; i < kinds.size(); ++i) {
-    if (kinds[i] == OperandKind::SrcPred) inst.operands[i] = in_register(inst.operands[i], RegisterClass::Predicate);
+    if (kinds[i] == OperandKind::SrcPred)
+      inst.operands[i] = in_register(inst.operands[i], RegisterClass::Predicate);
     if (kinds[i] == OperandKind::SrcVec2 || kinds[i] == OperandKind::SrcVec4)
       inst.operands[i] = in_register(inst.operands[i], RegisterClass::B32);
   }
@@ -107,9 +111,11 @@ Operand Emitter::value(std::string_view op, Operands sources) {
   if (op == "mul.lo.u32" || op == "mul.lo.s32") {  // x * 2^k: the factor stands on either side
     for (int i = 0; i < 2; ++i)
       if (sources[i].kind == Operand::Kind::Constant && std::has_single_bit(sources[i].constant))
-        return value("shl.b32", {sources[1 - i], Operand::value(uint64_t(std::countr_zero(sources[i].constant)))});
+        return value("shl.b32",
+                     {sources[1 - i], Operand::value(uint64_t(std::countr_zero(sources[i].constant)))});
   }
-  if (sources.size() == 2 && sources[1].kind == Operand::Kind::Constant && std::has_single_bit(sources[1].constant)) {
+  if (sources.size() == 2 && sources[1].kind == Operand::Kind::Constant &&
+      std::has_single_bit(sources[1].constant)) {
     const uint64_t log2 = uint64_t(std::countr_zero(sources[1].constant));
     if (op == "div.u32") return value("shr.u32", {sources[0], Operand::value(log2)});
     if (op == "rem.u32") return value("and.b32", {sources[0], Operand::value(sources[1].constant - 1)});
@@ -123,7 +129,8 @@ Operand Emitter::value(std::string_view op, Operands sources) {
   return result;
 }
 
-Operands Emitter::load(std::string_view op, const Operand& base, int32_t displacement, int count, uint64_t version) {
+Operands Emitter::load(std::string_view op, const Operand& base, int32_t displacement, int count,
+                       uint64_t version) {
   const std::vector<uint64_t> key = load_key(op, base, displacement, version);
   if (version != 0)
     if (const auto it = known_.find(key); it != known_.end()) return it->second;
@@ -137,17 +144,20 @@ Operands Emitter::load(std::string_view op, const Operand& base, int32_t displac
   known_[key] = results;
   if (const size_t vector = op.find(".v"); vector != std::string_view::npos)
     for (int i = 0; i < count; ++i)
-      remember(std::string(op.substr(0, vector)) + ".b32", base, displacement + 4 * i, version, results[size_t(i)]);
+      remember(std::string(op.substr(0, vector)) + ".b32", base, displacement + 4 * i, version,
+               results[size_t(i)]);
   return results;
 }
 
-void Emitter::remember(std::string_view op, const Operand& base, int32_t displacement, uint64_t version, const Operand& word) {
+void Emitter::remember(std::string_view op, const Operand& base, int32_t displacement, uint64_t version,
+                       const Operand& word) {
   known_[load_key(op, base, displacement, version)] = {word};
 }
 
 Operand Emitter::in_register(const Operand& operand, RegisterClass c) {
   if (operand.kind == Operand::Kind::Register) return operand;
-  if (c == RegisterClass::Predicate) return fresh("setp.ne.u32", {Operand::value(operand.constant), Operand::value(0)});
+  if (c == RegisterClass::Predicate)
+    return fresh("setp.ne.u32", {Operand::value(operand.constant), Operand::value(0)});
   return fresh(c == RegisterClass::B64 ? "mov.b64" : "mov.b32", {operand});
 }
 
@@ -156,7 +166,9 @@ void Emitter::copy(VirtualRegister to, RegisterClass c, const Operand& from) {
     append("setp.ne.u32", {Operand::of(to), Operand::value(from.constant), Operand::value(0)}, 0);
     return;
   }
-  const std::string_view op = c == RegisterClass::B32 ? "mov.b32" : c == RegisterClass::B64 ? "mov.b64" : "mov.pred";
+  const std::string_view op = c == RegisterClass::B32   ? "mov.b32"
+                              : c == RegisterClass::B64 ? "mov.b64"
+                                                        : "mov.pred";
   append(op, {Operand::of(to), from}, 0);
 }
 
@@ -171,7 +183,9 @@ void Emitter::marker(VirtualInst::Kind kind) {
   program_.blocks[here_].code.push_back(std::move(inst));
 }
 
-void Emitter::push_reconvergence(BlockId at) { append("ssy", {}, 0).target = at; }
+void Emitter::push_reconvergence(BlockId at) {
+  append("ssy", {}, 0).target = at;
+}
 
 void Emitter::branch(BlockId to) {
   append("bra", {}, 0).target = to;
@@ -219,7 +233,8 @@ void Emitter::finish() {
   for (size_t i = 0; i < layout_.size(); ++i) place_of[layout_[i]] = BlockId(i);
   std::vector<VirtualBlock> blocks;
   const auto renumber = [&](BlockId* block) {
-    GLINT_CHECK(place_of[*block] != kNoBlock, "block {} is a target but was never placed", program_.blocks[*block].name);
+    GLINT_CHECK(place_of[*block] != kNoBlock, "block {} is a target but was never placed",
+                program_.blocks[*block].name);
     *block = place_of[*block];
   };
   for (size_t i = 0; i < layout_.size(); ++i) {
@@ -229,7 +244,8 @@ void Emitter::finish() {
     for (BlockId& successor : block.successors) renumber(&successor);
     if (!block.code.empty()) {
       const VirtualInst& last = block.code.back();
-      if (last.kind == VirtualInst::Kind::Real && last.guard == kNoRegister && last.op == isa::op_index("bra") && last.target == i + 1)
+      if (last.kind == VirtualInst::Kind::Real && last.guard == kNoRegister &&
+          last.op == isa::op_index("bra") && last.target == i + 1)
         block.code.pop_back();
     }
     blocks.push_back(std::move(block));

@@ -16,7 +16,9 @@ namespace glint::frontend {
 using Operand = VirtualOperand;
 using Operands = std::vector<Operand>;
 
-inline Operand constant_f32(float value) { return Operand::value(std::bit_cast<uint32_t>(value)); }
+inline Operand constant_f32(float value) {
+  return Operand::value(std::bit_cast<uint32_t>(value));
+}
 bool is_constant(const Operand& operand, uint64_t bits);
 bool same(const Operand& a, const Operand& b);
 
@@ -54,17 +56,19 @@ class Emitter {
   // Loads `count` parts; reused while `version` is the same (0: never reused).
   Operands load(std::string_view op, const Operand& base, int32_t displacement, int count, uint64_t version);
   // Notes that the 32-bit load `op` would give `word`, because that was just loaded or stored there.
-  void remember(std::string_view op, const Operand& base, int32_t displacement, uint64_t version, const Operand& word);
-  Operand in_register(const Operand& operand, RegisterClass c);  // as a register, moved there when it is not one
+  void remember(std::string_view op, const Operand& base, int32_t displacement, uint64_t version,
+                const Operand& word);
+  Operand in_register(const Operand& operand,
+                      RegisterClass c);  // as a register, moved there when it is not one
   void copy(VirtualRegister to, RegisterClass c, const Operand& from);
 
   // --- Effects and control. A guard is a Predicate register.
   VirtualInst& effect(std::string_view op, Operands operands, int32_t displacement = 0);
   void marker(VirtualInst::Kind kind);
-  void push_reconvergence(BlockId at);                                // ssy
-  void branch(BlockId to);                                            // ends the block
-  void branch_if(const Operand& predicate, bool when, BlockId to);    // the block goes on after it
-  void end(std::string_view op);                                      // exit, ret, rt.ignore, rt.terminate
+  void push_reconvergence(BlockId at);                              // ssy
+  void branch(BlockId to);                                          // ends the block
+  void branch_if(const Operand& predicate, bool when, BlockId to);  // the block goes on after it
+  void end(std::string_view op);                                    // exit, ret, rt.ignore, rt.terminate
 
   // --- Shorthand for the commonest ops.
   Operand add(Operand a, Operand b) { return value("add.rn.f32", {a, b}); }

@@ -7,9 +7,15 @@
 namespace glint::frontend {
 namespace {
 
-constexpr Folded no() { return {}; }
-Folded yes(const Operand& operand) { return {true, operand}; }
-Folded yes(uint64_t bits) { return {true, Operand::value(bits)}; }
+constexpr Folded no() {
+  return {};
+}
+Folded yes(const Operand& operand) {
+  return {true, operand};
+}
+Folded yes(uint64_t bits) {
+  return {true, Operand::value(bits)};
+}
 
 bool both_constant(const Operands& s) {
   return s[0].kind == Operand::Kind::Constant && s[1].kind == Operand::Kind::Constant;
@@ -35,10 +41,11 @@ Folded fold_constants(std::string_view op, uint32_t a, uint32_t b) {
 }
 
 Folded fold_identity(std::string_view op, const Operand& a, const Operand& b) {
-  const bool is_add = op == "add.u32" || op == "add.s32" || op == "add.u64" || op == "add.s64" || op == "or.b32" ||
-                      op == "xor.b32" || op == "or.b64" || op == "xor.b64";
-  const bool is_sub = op == "sub.u32" || op == "sub.s32" || op == "sub.u64" || op == "sub.s64" || op == "shl.b32" ||
-                      op == "shr.u32" || op == "shr.s32" || op == "shl.b64" || op == "shr.u64" || op == "shr.s64";
+  const bool is_add = op == "add.u32" || op == "add.s32" || op == "add.u64" || op == "add.s64" ||
+                      op == "or.b32" || op == "xor.b32" || op == "or.b64" || op == "xor.b64";
+  const bool is_sub = op == "sub.u32" || op == "sub.s32" || op == "sub.u64" || op == "sub.s64" ||
+                      op == "shl.b32" || op == "shr.u32" || op == "shr.s32" || op == "shl.b64" ||
+                      op == "shr.u64" || op == "shr.s64";
   if ((is_add || is_sub) && is_constant(b, 0)) return yes(a);
   if (is_add && is_constant(a, 0)) return yes(b);
   if (op == "mul.lo.u32" || op == "mul.lo.s32") {
@@ -101,7 +108,8 @@ Folded fold(std::string_view op, const Operands& s) {
   if (s.size() == 2) {
     if (op.ends_with(".pred")) return fold_predicates(op, s[0], s[1]);
     if (both_constant(s))
-      if (const Folded result = fold_constants(op, uint32_t(s[0].constant), uint32_t(s[1].constant)); result.folded)
+      if (const Folded result = fold_constants(op, uint32_t(s[0].constant), uint32_t(s[1].constant));
+          result.folded)
         return result;
     return fold_identity(op, s[0], s[1]);
   }

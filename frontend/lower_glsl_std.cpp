@@ -19,7 +19,9 @@ struct Componentwise {
   std::string_view name;
 };
 
-Operand op(Emitter& e, const Scalars& x, std::string_view name) { return e.value(name, x); }
+Operand op(Emitter& e, const Scalars& x, std::string_view name) {
+  return e.value(name, x);
+}
 
 // min(max(x, low), high), also where low > high (Choice).
 Operand clamp_f32(Emitter& e, const Scalars& x, std::string_view) {
@@ -34,16 +36,27 @@ Operand clamp_u32(Emitter& e, const Scalars& x, std::string_view) {
 Operand mix(Emitter& e, const Scalars& x, std::string_view) {
   return e.add(e.mul(x[0], e.sub(constant_f32(1), x[2])), e.mul(x[1], x[2]));
 }
-Operand inverse_sqrt(Emitter& e, const Scalars& x, std::string_view) { return e.div(constant_f32(1), e.value("sqrt.rn.f32", {x[0]})); }
-Operand scaled(Emitter& e, const Scalars& x, float factor) { return e.mul(x[0], constant_f32(factor)); }
-Operand radians(Emitter& e, const Scalars& x, std::string_view) { return scaled(e, x, 0.017453292519943295f); }
-Operand degrees(Emitter& e, const Scalars& x, std::string_view) { return scaled(e, x, 57.29577951308232f); }
-Operand fract(Emitter& e, const Scalars& x, std::string_view) { return e.sub(x[0], e.value("cvt.rmi.f32.f32", {x[0]})); }
+Operand inverse_sqrt(Emitter& e, const Scalars& x, std::string_view) {
+  return e.div(constant_f32(1), e.value("sqrt.rn.f32", {x[0]}));
+}
+Operand scaled(Emitter& e, const Scalars& x, float factor) {
+  return e.mul(x[0], constant_f32(factor));
+}
+Operand radians(Emitter& e, const Scalars& x, std::string_view) {
+  return scaled(e, x, 0.017453292519943295f);
+}
+Operand degrees(Emitter& e, const Scalars& x, std::string_view) {
+  return scaled(e, x, 57.29577951308232f);
+}
+Operand fract(Emitter& e, const Scalars& x, std::string_view) {
+  return e.sub(x[0], e.value("cvt.rmi.f32.f32", {x[0]}));
+}
 Operand tangent(Emitter& e, const Scalars& x, std::string_view) {
   return e.div(e.value("sin.approx.f32", {x[0]}), e.value("cos.approx.f32", {x[0]}));
 }
 Operand sign_f32(Emitter& e, const Scalars& x, std::string_view) {
-  const Operand negative = e.value("setp.lt.f32", {x[0], constant_f32(0)}), positive = e.value("setp.gt.f32", {x[0], constant_f32(0)});
+  const Operand negative = e.value("setp.lt.f32", {x[0], constant_f32(0)}),
+                positive = e.value("setp.gt.f32", {x[0], constant_f32(0)});
   return e.select(positive, constant_f32(1), e.select(negative, constant_f32(-1), constant_f32(0)));
 }
 Operand sign_s32(Emitter& e, const Scalars& x, std::string_view) {
@@ -57,41 +70,80 @@ Operand smooth_step(Emitter& e, const Scalars& x, std::string_view) {
   const Operand t = clamp_f32(e, {ratio, constant_f32(0), constant_f32(1)}, {});
   return e.mul(e.mul(t, t), e.sub(constant_f32(3), e.mul(constant_f32(2), t)));
 }
-Operand find_lsb(Emitter& e, const Scalars& x, std::string_view) {  // x & -x keeps the lowest bit; of 0 gives -1
+Operand find_lsb(Emitter& e, const Scalars& x,
+                 std::string_view) {  // x & -x keeps the lowest bit; of 0 gives -1
   return e.value("bfind.u32", {e.value("and.b32", {x[0], e.value("neg.s32", {x[0]})})});
 }
-Operand of_math(Emitter& e, const Scalars& x, Operand (*f)(Emitter&, Operand)) { return f(e, x[0]); }
-Operand asine(Emitter& e, const Scalars& x, std::string_view) { return of_math(e, x, math::asin); }
-Operand acosine(Emitter& e, const Scalars& x, std::string_view) { return of_math(e, x, math::acos); }
-Operand atangent(Emitter& e, const Scalars& x, std::string_view) { return of_math(e, x, math::atan); }
-Operand atangent2(Emitter& e, const Scalars& x, std::string_view) { return math::atan2(e, x[0], x[1]); }
-Operand exponential(Emitter& e, const Scalars& x, std::string_view) { return math::exp(e, x[0]); }
-Operand logarithm(Emitter& e, const Scalars& x, std::string_view) { return math::log(e, x[0]); }
-Operand power(Emitter& e, const Scalars& x, std::string_view) { return math::pow(e, x[0], x[1]); }
+Operand of_math(Emitter& e, const Scalars& x, Operand (*f)(Emitter&, Operand)) {
+  return f(e, x[0]);
+}
+Operand asine(Emitter& e, const Scalars& x, std::string_view) {
+  return of_math(e, x, math::asin);
+}
+Operand acosine(Emitter& e, const Scalars& x, std::string_view) {
+  return of_math(e, x, math::acos);
+}
+Operand atangent(Emitter& e, const Scalars& x, std::string_view) {
+  return of_math(e, x, math::atan);
+}
+Operand atangent2(Emitter& e, const Scalars& x, std::string_view) {
+  return math::atan2(e, x[0], x[1]);
+}
+Operand exponential(Emitter& e, const Scalars& x, std::string_view) {
+  return math::exp(e, x[0]);
+}
+Operand logarithm(Emitter& e, const Scalars& x, std::string_view) {
+  return math::log(e, x[0]);
+}
+Operand power(Emitter& e, const Scalars& x, std::string_view) {
+  return math::pow(e, x[0], x[1]);
+}
 
 constexpr Componentwise kComponentwise[] = {
-    {GLSLstd450Round, op, "cvt.rni.f32.f32"}, {GLSLstd450RoundEven, op, "cvt.rni.f32.f32"},
-    {GLSLstd450Trunc, op, "cvt.rzi.f32.f32"}, {GLSLstd450Floor, op, "cvt.rmi.f32.f32"},
-    {GLSLstd450Ceil, op, "cvt.rpi.f32.f32"},  {GLSLstd450Fract, fract, ""},
-    {GLSLstd450FAbs, op, "abs.f32"},          {GLSLstd450SAbs, op, "abs.s32"},
-    {GLSLstd450FSign, sign_f32, ""},          {GLSLstd450SSign, sign_s32, ""},
-    {GLSLstd450Radians, radians, ""},         {GLSLstd450Degrees, degrees, ""},
-    {GLSLstd450Sin, op, "sin.approx.f32"},    {GLSLstd450Cos, op, "cos.approx.f32"},
-    {GLSLstd450Tan, tangent, ""},             {GLSLstd450Asin, asine, ""},
-    {GLSLstd450Acos, acosine, ""},            {GLSLstd450Atan, atangent, ""},
-    {GLSLstd450Atan2, atangent2, ""},         {GLSLstd450Pow, power, ""},
-    {GLSLstd450Exp, exponential, ""},         {GLSLstd450Log, logarithm, ""},
-    {GLSLstd450Exp2, op, "ex2.approx.f32"},   {GLSLstd450Log2, op, "lg2.approx.f32"},
-    {GLSLstd450Sqrt, op, "sqrt.rn.f32"},      {GLSLstd450InverseSqrt, inverse_sqrt, ""},
-    {GLSLstd450FMin, op, "min.f32"},          {GLSLstd450UMin, op, "min.u32"},
-    {GLSLstd450SMin, op, "min.s32"},          {GLSLstd450FMax, op, "max.f32"},
-    {GLSLstd450UMax, op, "max.u32"},          {GLSLstd450SMax, op, "max.s32"},
-    {GLSLstd450FClamp, clamp_f32, ""},        {GLSLstd450UClamp, clamp_u32, ""},
-    {GLSLstd450SClamp, clamp_s32, ""},        {GLSLstd450FMix, mix, ""},
-    {GLSLstd450Step, step, ""},               {GLSLstd450SmoothStep, smooth_step, ""},
-    {GLSLstd450Fma, op, "fma.rn.f32"},        {GLSLstd450FindILsb, find_lsb, ""},
-    {GLSLstd450FindSMsb, op, "bfind.s32"},    {GLSLstd450FindUMsb, op, "bfind.u32"},
-    {GLSLstd450NMin, op, "min.f32"},          {GLSLstd450NMax, op, "max.f32"},
+    {GLSLstd450Round, op, "cvt.rni.f32.f32"},
+    {GLSLstd450RoundEven, op, "cvt.rni.f32.f32"},
+    {GLSLstd450Trunc, op, "cvt.rzi.f32.f32"},
+    {GLSLstd450Floor, op, "cvt.rmi.f32.f32"},
+    {GLSLstd450Ceil, op, "cvt.rpi.f32.f32"},
+    {GLSLstd450Fract, fract, ""},
+    {GLSLstd450FAbs, op, "abs.f32"},
+    {GLSLstd450SAbs, op, "abs.s32"},
+    {GLSLstd450FSign, sign_f32, ""},
+    {GLSLstd450SSign, sign_s32, ""},
+    {GLSLstd450Radians, radians, ""},
+    {GLSLstd450Degrees, degrees, ""},
+    {GLSLstd450Sin, op, "sin.approx.f32"},
+    {GLSLstd450Cos, op, "cos.approx.f32"},
+    {GLSLstd450Tan, tangent, ""},
+    {GLSLstd450Asin, asine, ""},
+    {GLSLstd450Acos, acosine, ""},
+    {GLSLstd450Atan, atangent, ""},
+    {GLSLstd450Atan2, atangent2, ""},
+    {GLSLstd450Pow, power, ""},
+    {GLSLstd450Exp, exponential, ""},
+    {GLSLstd450Log, logarithm, ""},
+    {GLSLstd450Exp2, op, "ex2.approx.f32"},
+    {GLSLstd450Log2, op, "lg2.approx.f32"},
+    {GLSLstd450Sqrt, op, "sqrt.rn.f32"},
+    {GLSLstd450InverseSqrt, inverse_sqrt, ""},
+    {GLSLstd450FMin, op, "min.f32"},
+    {GLSLstd450UMin, op, "min.u32"},
+    {GLSLstd450SMin, op, "min.s32"},
+    {GLSLstd450FMax, op, "max.f32"},
+    {GLSLstd450UMax, op, "max.u32"},
+    {GLSLstd450SMax, op, "max.s32"},
+    {GLSLstd450FClamp, clamp_f32, ""},
+    {GLSLstd450UClamp, clamp_u32, ""},
+    {GLSLstd450SClamp, clamp_s32, ""},
+    {GLSLstd450FMix, mix, ""},
+    {GLSLstd450Step, step, ""},
+    {GLSLstd450SmoothStep, smooth_step, ""},
+    {GLSLstd450Fma, op, "fma.rn.f32"},
+    {GLSLstd450FindILsb, find_lsb, ""},
+    {GLSLstd450FindSMsb, op, "bfind.s32"},
+    {GLSLstd450FindUMsb, op, "bfind.u32"},
+    {GLSLstd450NMin, op, "min.f32"},
+    {GLSLstd450NMax, op, "max.f32"},
     {GLSLstd450NClamp, clamp_f32, ""},
 };
 
@@ -132,7 +184,8 @@ Operands refract(Emitter& e, const Arguments& x) {
   const Operand along = e.add(e.mul(eta, d), e.value("sqrt.rn.f32", {k}));
   Operands result;
   for (size_t i = 0; i < x[0].size(); ++i)
-    result.push_back(e.select(total_reflection, constant_f32(0), e.sub(e.mul(eta, x[0][i]), e.mul(along, x[1][i]))));
+    result.push_back(
+        e.select(total_reflection, constant_f32(0), e.sub(e.mul(eta, x[0][i]), e.mul(along, x[1][i]))));
   return result;
 }
 // dot(Nref, I) < 0: N, else -N
@@ -148,10 +201,14 @@ struct Whole {
   Operands (*compute)(Emitter&, const Arguments&);
 };
 constexpr Whole kWhole[] = {
-    {GLSLstd450Length, length},           {GLSLstd450Distance, distance},
-    {GLSLstd450Normalize, normalize},     {GLSLstd450Cross, cross},
-    {GLSLstd450Reflect, reflect},         {GLSLstd450Refract, refract},
-    {GLSLstd450FaceForward, face_forward}, {GLSLstd450Determinant, math::determinant},
+    {GLSLstd450Length, length},
+    {GLSLstd450Distance, distance},
+    {GLSLstd450Normalize, normalize},
+    {GLSLstd450Cross, cross},
+    {GLSLstd450Reflect, reflect},
+    {GLSLstd450Refract, refract},
+    {GLSLstd450FaceForward, face_forward},
+    {GLSLstd450Determinant, math::determinant},
     {GLSLstd450MatrixInverse, math::inverse},
 };
 
@@ -164,7 +221,8 @@ void lower_glsl_std(Lowering& l, const Instruction& inst) {
     for (size_t i = 2; i < inst.operands.size(); ++i) {
       arguments.push_back(l.value(inst.operands[i]));
       const std::vector<Part>& parts = l.layout().parts(l.type_of(inst.operands[i]));
-      if (!parts.empty() && class_of(parts[0]) == RegisterClass::B64) l.unsupported(fmt::format("GLSL.std.450 function {} of 64 bits", function));
+      if (!parts.empty() && class_of(parts[0]) == RegisterClass::B64)
+        l.unsupported(fmt::format("GLSL.std.450 function {} of 64 bits", function));
     }
   };
   for (const Componentwise& row : kComponentwise) {

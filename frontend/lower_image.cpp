@@ -59,6 +59,8 @@ constexpr LoweringRow kRows[] = {
 
 }  // namespace
 
-std::span<const LoweringRow> image_rows() { return kRows; }
+std::span<const LoweringRow> image_rows() {
+  return kRows;
+}
 
 }  // namespace glint::frontend

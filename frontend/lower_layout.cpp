@@ -26,7 +26,8 @@ const std::vector<Part>& Layout::parts(Id id) {
   std::vector<Part> result;
   switch (type.kind) {
     case Kind::Void:
-    case Kind::Function: break;
+    case Kind::Function:
+      break;
     case Kind::Vector:
     case Kind::Matrix:
     case Kind::Array: {
@@ -41,9 +42,17 @@ const std::vector<Part>& Layout::parts(Id id) {
       }
       break;
     case Kind::RuntimeArray:
-    case Kind::Pointer: break;  // never values; a block's last member is reached by address only
-    case Kind::Bool: case Kind::Int: case Kind::Float: case Kind::Image: case Kind::SampledImage:
-    case Kind::AccelerationStructure: case Kind::Other: result.push_back(scalar(id)); break;
+    case Kind::Pointer:
+      break;  // never values; a block's last member is reached by address only
+    case Kind::Bool:
+    case Kind::Int:
+    case Kind::Float:
+    case Kind::Image:
+    case Kind::SampledImage:
+    case Kind::AccelerationStructure:
+    case Kind::Other:
+      result.push_back(scalar(id));
+      break;
   }
   return parts_[id] = std::move(result);
 }
@@ -96,10 +105,12 @@ uint32_t Layout::size(Id id, MatrixLayout matrix) {
   const Type& type = module_.type(id);
   switch (type.kind) {
     case Kind::Matrix:
-      if (matrix.stride != 0) return matrix.stride * (matrix.row_major ? module_.type(type.element).count : type.count);
+      if (matrix.stride != 0)
+        return matrix.stride * (matrix.row_major ? module_.type(type.element).count : type.count);
       return type.count * size(type.element);
     case Kind::Vector:
-    case Kind::Array: return type.count * element_stride(id, matrix);
+    case Kind::Array:
+      return type.count * element_stride(id, matrix);
     case Kind::Struct: {
       uint32_t end = 0;
       for (uint32_t i = 0; i < type.members.size(); ++i)
@@ -121,7 +132,8 @@ std::vector<Leaf> Layout::leaves(Id type, MatrixLayout matrix, uint32_t componen
   return result;
 }
 
-void Layout::append_leaves(Id id, MatrixLayout matrix, uint32_t component_stride, uint32_t offset, std::vector<Leaf>* to) {
+void Layout::append_leaves(Id id, MatrixLayout matrix, uint32_t component_stride, uint32_t offset,
+                           std::vector<Leaf>* to) {
   const Type& type = module_.type(id);
   switch (type.kind) {
     case Kind::Vector: {
@@ -132,13 +144,16 @@ void Layout::append_leaves(Id id, MatrixLayout matrix, uint32_t component_stride
     case Kind::Matrix: {
       const uint32_t stride = element_stride(id, matrix);
       for (uint32_t i = 0; i < type.count; ++i)
-        if (matrix.row_major) append_leaves(type.element, {}, stride, offset + 4 * i, to);  // columns of 32-bit floats
-        else append_leaves(type.element, {}, 0, offset + stride * i, to);
+        if (matrix.row_major)
+          append_leaves(type.element, {}, stride, offset + 4 * i, to);  // columns of 32-bit floats
+        else
+          append_leaves(type.element, {}, 0, offset + stride * i, to);
       break;
     }
     case Kind::Array: {
       const uint32_t stride = element_stride(id, matrix);
-      for (uint32_t i = 0; i < type.count; ++i) append_leaves(type.element, matrix, 0, offset + stride * i, to);
+      for (uint32_t i = 0; i < type.count; ++i)
+        append_leaves(type.element, matrix, 0, offset + stride * i, to);
       break;
     }
     case Kind::Struct:

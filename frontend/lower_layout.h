@@ -38,13 +38,13 @@ class Layout {
 
   const std::vector<Part>& parts(Id type);
   uint32_t num_parts(Id type) { return uint32_t(parts(type).size()); }
-  uint32_t first_part(Id type, uint32_t member);         // of member, element or column `member`
+  uint32_t first_part(Id type, uint32_t member);  // of member, element or column `member`
   Id member_type(Id type, uint32_t member) const;
 
-  uint32_t size(Id type, MatrixLayout matrix = {});      // bytes
-  uint32_t alignment(Id type);                           // bytes, of undecorated objects
-  uint32_t member_offset(Id type, uint32_t member);      // bytes, Struct
-  uint32_t element_stride(Id type, MatrixLayout matrix); // bytes, arrays, Matrix, Vector
+  uint32_t size(Id type, MatrixLayout matrix = {});       // bytes
+  uint32_t alignment(Id type);                            // bytes, of undecorated objects
+  uint32_t member_offset(Id type, uint32_t member);       // bytes, Struct
+  uint32_t element_stride(Id type, MatrixLayout matrix);  // bytes, arrays, Matrix, Vector
   MatrixLayout member_matrix(Id type, uint32_t member, MatrixLayout outer) const;
   std::vector<Leaf> leaves(Id type, MatrixLayout matrix, uint32_t component_stride);
 
@@ -52,7 +52,8 @@ class Layout {
   const std::set<Id>& unsupported() const { return unsupported_; }
 
  private:
-  void append_leaves(Id type, MatrixLayout matrix, uint32_t component_stride, uint32_t offset, std::vector<Leaf>* to);
+  void append_leaves(Id type, MatrixLayout matrix, uint32_t component_stride, uint32_t offset,
+                     std::vector<Leaf>* to);
   Part scalar(Id type);
 
   const Module& module_;

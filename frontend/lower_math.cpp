@@ -14,10 +14,12 @@ constexpr float kLog2E = 1.44269504088896f;
 constexpr float kLn2 = 0.693147180559945f;
 
 // asin(x) = x + x z P(z), z = x^2 <= 1/4; relative error below 5.1e-9.
-constexpr float kAsin[] = {0.16666750609874725f, 0.07495343685150146f, 0.04546626657247543f, 0.02419474720954895f, 0.04214620217680931f};
+constexpr float kAsin[] = {0.16666750609874725f, 0.07495343685150146f, 0.04546626657247543f,
+                           0.02419474720954895f, 0.04214620217680931f};
 // atan(x) = x + x z P(z), z = x^2 <= 1; relative error below 2.7e-9.
-constexpr float kAtan[] = {-0.33333301544189453f, 0.19998574256896973f, -0.14264485239982605f, 0.10953346639871597f, -0.08406593650579453f,
-                           0.05800812318921089f, -0.03122559003531933f, 0.01093909703195095f, -0.0017988847102969885f};
+constexpr float kAtan[] = {-0.33333301544189453f, 0.19998574256896973f,  -0.14264485239982605f,
+                           0.10953346639871597f,  -0.08406593650579453f, 0.05800812318921089f,
+                           -0.03122559003531933f, 0.01093909703195095f,  -0.0017988847102969885f};
 
 // x + x * z * P(z) with z = x^2
 Operand odd(Emitter& e, Operand x, Operand z, std::span<const float> coefficients) {
@@ -26,9 +28,15 @@ Operand odd(Emitter& e, Operand x, Operand z, std::span<const float> coefficient
   return e.fma(e.mul(x, z), p, x);
 }
 
-Operand greater(Emitter& e, Operand a, Operand b) { return e.value("setp.gt.f32", {a, b}); }
-Operand abs(Emitter& e, Operand x) { return e.value("abs.f32", {x}); }
-Operand with_sign(Emitter& e, Operand magnitude, Operand sign) { return e.value("copysign.f32", {sign, magnitude}); }
+Operand greater(Emitter& e, Operand a, Operand b) {
+  return e.value("setp.gt.f32", {a, b});
+}
+Operand abs(Emitter& e, Operand x) {
+  return e.value("abs.f32", {x});
+}
+Operand with_sign(Emitter& e, Operand magnitude, Operand sign) {
+  return e.value("copysign.f32", {sign, magnitude});
+}
 
 // For |x| > 1/2: asin(x) = pi/2 - 2 asin(sqrt((1 - |x|) / 2)). Returns asin of |x| or of the root.
 struct Reduced {
@@ -43,7 +51,9 @@ Reduced reduced_asin(Emitter& e, Operand magnitude) {
 }
 
 // Of 0 <= x <= 1.
-Operand atan_of_unit(Emitter& e, Operand x) { return odd(e, x, e.mul(x, x), kAtan); }
+Operand atan_of_unit(Emitter& e, Operand x) {
+  return odd(e, x, e.mul(x, x), kAtan);
+}
 
 }  // namespace
 
@@ -80,15 +90,21 @@ Operand atan2(Emitter& e, Operand y, Operand x) {
   const Operand larger = e.value("max.f32", {ax, ay}), smaller = e.value("min.f32", {ax, ay});
   // 0/0 and inf/inf: equal magnitudes stand for 0 and for 1.
   const Operand is_zero = e.value("setp.eq.f32", {larger, constant_f32(0)});
-  const Operand ratio = e.select(is_zero, constant_f32(0), e.select(e.value("setp.eq.f32", {ax, ay}), constant_f32(1), e.div(smaller, larger)));
+  const Operand ratio =
+      e.select(is_zero, constant_f32(0),
+               e.select(e.value("setp.eq.f32", {ax, ay}), constant_f32(1), e.div(smaller, larger)));
   const Operand t = atan_of_unit(e, ratio);
   const Operand right = e.select(greater(e, ay, ax), e.sub(constant_f32(kHalfPi), t), t);
   const Operand is_left = e.value("setp.lt.s32", {x, Operand::value(0)});  // the sign bit, also of -0
   return with_sign(e, e.select(is_left, e.sub(constant_f32(kPi), right), right), y);
 }
 
-Operand exp(Emitter& e, Operand x) { return e.value("ex2.approx.f32", {e.mul(x, constant_f32(kLog2E))}); }
-Operand log(Emitter& e, Operand x) { return e.mul(e.value("lg2.approx.f32", {x}), constant_f32(kLn2)); }
+Operand exp(Emitter& e, Operand x) {
+  return e.value("ex2.approx.f32", {e.mul(x, constant_f32(kLog2E))});
+}
+Operand log(Emitter& e, Operand x) {
+  return e.mul(e.value("lg2.approx.f32", {x}), constant_f32(kLn2));
+}
 
 Operand pow(Emitter& e, Operand x, Operand y) {
   if (is_constant(y, 0)) return constant_f32(1);
@@ -100,19 +116,23 @@ Operand pow(Emitter& e, Operand x, Operand y) {
 namespace {
 
 // The determinant of the rows and columns named; m is n x n by columns.
-Operand minor_of(Emitter& e, const Operands& m, size_t n, const std::vector<size_t>& rows, const std::vector<size_t>& columns) {
+Operand minor_of(Emitter& e, const Operands& m, size_t n, const std::vector<size_t>& rows,
+                 const std::vector<size_t>& columns) {
   if (rows.size() == 1) return m[columns[0] * n + rows[0]];
   Operand sum;
   for (size_t c = 0; c < columns.size(); ++c) {
     std::vector<size_t> rest = columns;
     rest.erase(rest.begin() + long(c));
-    const Operand term = e.mul(m[columns[c] * n + rows[0]], minor_of(e, m, n, {rows.begin() + 1, rows.end()}, rest));
+    const Operand term =
+        e.mul(m[columns[c] * n + rows[0]], minor_of(e, m, n, {rows.begin() + 1, rows.end()}, rest));
     sum = c == 0 ? term : c % 2 ? e.sub(sum, term) : e.add(sum, term);
   }
   return sum;
 }
 
-size_t order_of(const Operands& matrix) { return matrix.size() == 4 ? 2 : matrix.size() == 9 ? 3 : 4; }
+size_t order_of(const Operands& matrix) {
+  return matrix.size() == 4 ? 2 : matrix.size() == 9 ? 3 : 4;
+}
 
 std::vector<size_t> all_but(size_t n, size_t left_out) {
   std::vector<size_t> result;

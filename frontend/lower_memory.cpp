@@ -1,9 +1,8 @@
 // Loads and stores of whole values, as few vector accesses as their alignment allows.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
+#include <fmt/format.h>
 
 #include "frontend/lower.h"
 
@@ -22,7 +21,8 @@ int words_together(const std::vector<Leaf>& leaves, size_t first, int64_t displa
     const int64_t at = displacement + leaves[first].offset;
     bool fits = at % (4 * words) == 0;
     for (int i = 0; fits && i < words; ++i)
-      fits = class_of(leaves[first + i].part) != RegisterClass::B64 && leaves[first + i].offset == leaves[first].offset + 4 * i;
+      fits = class_of(leaves[first + i].part) != RegisterClass::B64 &&
+             leaves[first + i].offset == leaves[first].offset + 4 * i;
     if (fits) return words;
   }
   return 1;
@@ -32,8 +32,10 @@ int words_together(const std::vector<Leaf>& leaves, size_t first, int64_t displa
 Pointer in_reach(Lowering& l, Pointer p) {
   constexpr int64_t kReach = int64_t(1) << 30;
   if (p.displacement > -kReach && p.displacement < kReach) return p;
-  if (p.place == Place::Global) p.base = l.emit().value("add.u64", {p.base, Operand::value(uint64_t(p.displacement))});
-  else p.base = l.emit().value("add.u32", {p.base, Operand::value(uint32_t(p.displacement))});
+  if (p.place == Place::Global)
+    p.base = l.emit().value("add.u64", {p.base, Operand::value(uint64_t(p.displacement))});
+  else
+    p.base = l.emit().value("add.u32", {p.base, Operand::value(uint32_t(p.displacement))});
   p.displacement = 0;
   p.alignment = 4;
   return p;
@@ -46,7 +48,8 @@ Operands slice(Lowering& l, const Pointer& p, const Operands& parts) {
     Operand part = parts.at(size_t(p.displacement) + i);
     if (!is_constant(p.part_index, 0))
       for (uint32_t at = 1; at < parts.size(); ++at)
-        part = l.emit().select(l.emit().value("setp.eq.u32", {p.part_index, Operand::value(at)}), parts[at], part);
+        part = l.emit().select(l.emit().value("setp.eq.u32", {p.part_index, Operand::value(at)}), parts[at],
+                               part);
     result.push_back(part);
   }
   return result;
@@ -54,7 +57,8 @@ Operands slice(Lowering& l, const Pointer& p, const Operands& parts) {
 
 Operands load_resource(Lowering& l, const Pointer& p) {
   const Decorations& d = l.decorations(p.variable);
-  const int32_t at = int32_t(d.set.value_or(0) * isa::kSetBytes + d.binding.value_or(0) * isa::kDescriptorBytes);
+  const int32_t at =
+      int32_t(d.set.value_or(0) * isa::kSetBytes + d.binding.value_or(0) * isa::kDescriptorBytes);
   if (l.module().type(p.type).kind == Type::Kind::AccelerationStructure) {
     if (!is_constant(p.base, 0)) l.unsupported("arrays of acceleration structures");
     return l.emit().load("ld.const.b64", Operand::value(0), at, 1, 1);
@@ -68,19 +72,28 @@ Operands load_resource(Lowering& l, const Pointer& p) {
 
 Operands Lowering::load(const Pointer& pointer) {
   switch (pointer.place) {
-    case Place::Nowhere: return Operands(layout_.num_parts(pointer.type), Operand::value(0));
+    case Place::Nowhere:
+      return Operands(layout_.num_parts(pointer.type), Operand::value(0));
     case Place::Builtin: {
       const Variable& variable = module_.variables.at(pointer.variable);
-      return slice(*this, pointer, load_builtin(*decorations(variable.id).builtin, module_.type(variable.type).element));
+      return slice(*this, pointer,
+                   load_builtin(*decorations(variable.id).builtin, module_.type(variable.type).element));
     }
     case Place::AttributePair:
       return slice(*this, pointer, {Operand::of(isa::Special::HitU), Operand::of(isa::Special::HitV)});
-    case Place::Resource: return load_resource(*this, pointer);
-    case Place::Local: case Place::Global: case Place::Constant: break;
+    case Place::Resource:
+      return load_resource(*this, pointer);
+    case Place::Local:
+    case Place::Global:
+    case Place::Constant:
+      break;
   }
   const Pointer p = in_reach(*this, pointer);
   const std::vector<Leaf> leaves = layout_.leaves(p.type, p.matrix, p.component_stride);
-  const uint64_t version = p.is_volatile ? 0 : p.is_constant ? 1 : p.place == Place::Local ? local_version_ : global_version_;
+  const uint64_t version = p.is_volatile             ? 0
+                           : p.is_constant           ? 1
+                           : p.place == Place::Local ? local_version_
+                                                     : global_version_;
   Operands result;
   for (size_t i = 0; i < leaves.size();) {
     const bool wide = class_of(leaves[i].part) == RegisterClass::B64;
@@ -99,7 +112,8 @@ Operands Lowering::load(const Pointer& pointer) {
 
 void Lowering::store(const Pointer& pointer, const Operands& parts) {
   if (pointer.place == Place::Nowhere) return;
-  if (pointer.place != Place::Local && pointer.place != Place::Global) return unsupported("OpStore to this kind of variable");
+  if (pointer.place != Place::Local && pointer.place != Place::Global)
+    return unsupported("OpStore to this kind of variable");
   const Pointer p = in_reach(*this, pointer);
   note_store(p.place);
   const uint64_t version = p.place == Place::Local ? local_version_ : global_version_;
@@ -112,17 +126,21 @@ void Lowering::store(const Pointer& pointer, const Operands& parts) {
     for (int w = 0; w < words; ++w) {
       const Operand& part = parts.at(i + size_t(w));
       const bool is_bool = leaves[i + w].part == Part::Bool;
-      operands.push_back(is_bool ? emitter_.value("selp.b32", {Operand::value(1), Operand::value(0), part}) : part);
+      operands.push_back(is_bool ? emitter_.value("selp.b32", {Operand::value(1), Operand::value(0), part})
+                                 : part);
     }
     const int32_t at = int32_t(p.displacement + leaves[i].offset);
     for (int w = 0; !wide && !p.is_volatile && w < words; ++w)
-      emitter_.remember(fmt::format("ld.{}.b32", space_of(p.place)), p.base, at + 4 * w, version, operands[1 + w]);
+      emitter_.remember(fmt::format("ld.{}.b32", space_of(p.place)), p.base, at + 4 * w, version,
+                        operands[1 + w]);
     emitter_.effect(fmt::format("st.{}.{}", space_of(p.place), shape), std::move(operands), at);
     i += size_t(words);
   }
 }
 
-void Lowering::note_store(Place place) { ++(place == Place::Local ? local_version_ : global_version_); }
+void Lowering::note_store(Place place) {
+  ++(place == Place::Local ? local_version_ : global_version_);
+}
 
 uint32_t Lowering::local_offset(Id variable) {
   if (const auto it = frame_.find(variable); it != frame_.end()) return it->second;

@@ -1,9 +1,8 @@
 // Pointers: variables, access chains, and the ops that read and write through them.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
+#include <fmt/format.h>
 
 #include "frontend/lower.h"
 
@@ -12,10 +11,12 @@ namespace glint::frontend {
 Pointer Lowering::buffer_pointer(const Variable& variable, Pointer p) {
   const Decorations& d = decorations(variable.id);
   if (module_.type(p.type).kind != Type::Kind::Struct) unsupported("arrays of buffers", variable.line);
-  const uint32_t descriptor = d.set.value_or(0) * isa::kSetBytes + d.binding.value_or(0) * isa::kDescriptorBytes;
+  const uint32_t descriptor =
+      d.set.value_or(0) * isa::kSetBytes + d.binding.value_or(0) * isa::kDescriptorBytes;
   p.place = Place::Global;
   p.base = emitter_.load("ld.const.b64", Operand::value(0), int32_t(descriptor), 1, 1)[0];
-  p.alignment = 16;  // Choice: buffers are bound at multiples of 16 bytes (Vulkan minStorageBufferOffsetAlignment)
+  p.alignment =
+      16;  // Choice: buffers are bound at multiples of 16 bytes (Vulkan minStorageBufferOffsetAlignment)
   p.is_constant = variable.storage == spv::StorageClass::Uniform;
   return p;
 }
@@ -28,7 +29,8 @@ Pointer Lowering::variable_pointer(const Variable& variable) {
   const Decorations& d = decorations(variable.id);
   p.is_volatile = d.is_volatile || d.is_coherent;
   if (d.set.value_or(0) >= isa::kMaxSets || d.binding.value_or(0) >= isa::kBindingsPerSet)
-    unsupported(fmt::format("descriptor set {} binding {}", d.set.value_or(0), d.binding.value_or(0)), variable.line);
+    unsupported(fmt::format("descriptor set {} binding {}", d.set.value_or(0), d.binding.value_or(0)),
+                variable.line);
   switch (variable.storage) {
     case Storage::Function:
     case Storage::Private:
@@ -43,23 +45,33 @@ Pointer Lowering::variable_pointer(const Variable& variable) {
       return p;
     case Storage::HitAttributeKHR: {
       const std::vector<Part>& parts = layout_.parts(p.type);
-      p.place = parts == std::vector<Part>{Part::Float32, Part::Float32} ? Place::AttributePair : Place::Local;
+      p.place =
+          parts == std::vector<Part>{Part::Float32, Part::Float32} ? Place::AttributePair : Place::Local;
       p.base = Operand::of(isa::Special::Attribute);
       return p;
     }
     case Storage::StorageBuffer:
-    case Storage::Uniform: return buffer_pointer(variable, p);
+    case Storage::Uniform:
+      return buffer_pointer(variable, p);
     case Storage::PushConstant:
       p.place = Place::Constant;
       p.displacement = isa::kPushConstantOffset;
       p.is_constant = true;
       return p;
-    case Storage::UniformConstant: p.place = Place::Resource; return p;
-    case Storage::Input:
-      if (d.builtin) p.place = Place::Builtin;
-      else unsupported(fmt::format("input variable {}", module_.name_of(variable.id)), variable.line);
+    case Storage::UniformConstant:
+      p.place = Place::Resource;
       return p;
-    default: unsupported(fmt::format("storage class {} of {}", uint32_t(variable.storage), module_.name_of(variable.id)), variable.line); return p;
+    case Storage::Input:
+      if (d.builtin)
+        p.place = Place::Builtin;
+      else
+        unsupported(fmt::format("input variable {}", module_.name_of(variable.id)), variable.line);
+      return p;
+    default:
+      unsupported(
+          fmt::format("storage class {} of {}", uint32_t(variable.storage), module_.name_of(variable.id)),
+          variable.line);
+      return p;
   }
 }
 
@@ -67,8 +79,10 @@ Pointer Lowering::variable_pointer(const Variable& variable) {
 // the constant bank is cheaper than a register pair that lives across a trace.
 Pointer Lowering::pointer(Id id) {
   if (const auto it = pointers_.find(id); it != pointers_.end()) return it->second;
-  if (const auto it = module_.variables.find(id); it != module_.variables.end()) return variable_pointer(it->second);
-  if (const auto it = local_variables_.find(id); it != local_variables_.end()) return variable_pointer(it->second);
+  if (const auto it = module_.variables.find(id); it != module_.variables.end())
+    return variable_pointer(it->second);
+  if (const auto it = local_variables_.find(id); it != local_variables_.end())
+    return variable_pointer(it->second);
   unsupported(fmt::format("{} as a pointer", module_.name_of(id)));
   return {};
 }
@@ -85,15 +99,21 @@ struct SplitIndex {
 SplitIndex split_index(Lowering& l, Id id) {
   SplitIndex split;
   while (const Instruction* def = l.definition(id)) {
-    if ((def->op != spv::Op::OpIAdd && def->op != spv::Op::OpISub) || l.layout().num_parts(def->type) != 1) break;
-    const auto right = l.module().constant_u32(def->operands[1]), left = l.module().constant_u32(def->operands[0]);
-    if (right) split.addend += def->op == spv::Op::OpIAdd ? int64_t(int32_t(*right)) : -int64_t(int32_t(*right));
-    else if (left && def->op == spv::Op::OpIAdd) split.addend += int32_t(*left);
-    else break;
+    if ((def->op != spv::Op::OpIAdd && def->op != spv::Op::OpISub) || l.layout().num_parts(def->type) != 1)
+      break;
+    const auto right = l.module().constant_u32(def->operands[1]),
+               left = l.module().constant_u32(def->operands[0]);
+    if (right)
+      split.addend += def->op == spv::Op::OpIAdd ? int64_t(int32_t(*right)) : -int64_t(int32_t(*right));
+    else if (left && def->op == spv::Op::OpIAdd)
+      split.addend += int32_t(*left);
+    else
+      break;
     id = def->operands[right ? 0 : 1];
   }
   split.rest = l.scalar(id);
-  if (l.emit().class_of(split.rest) == RegisterClass::B64) split.rest = l.emit().value("cvt.u32.u64", {split.rest});
+  if (l.emit().class_of(split.rest) == RegisterClass::B64)
+    split.rest = l.emit().value("cvt.u32.u64", {split.rest});
   if (split.rest.kind == Operand::Kind::Constant) {
     split.addend += int32_t(split.rest.constant);
     split.rest = Operand::value(0);
@@ -106,7 +126,8 @@ void step_elements(Lowering& l, Pointer* p, Id index, uint32_t stride) {
   p->displacement += split.addend * stride;
   if (is_constant(split.rest, 0)) return;
   p->alignment = std::min(p->alignment, 1u << std::countr_zero(stride | 16u));
-  p->base = l.emit().value(p->place == Place::Global ? "mad.wide.s32" : "mad.lo.u32", {split.rest, Operand::value(stride), p->base});
+  p->base = l.emit().value(p->place == Place::Global ? "mad.wide.s32" : "mad.lo.u32",
+                           {split.rest, Operand::value(stride), p->base});
 }
 
 void step_memory(Lowering& l, Pointer* p, Id index) {
@@ -123,7 +144,8 @@ void step_memory(Lowering& l, Pointer* p, Id index) {
     p->component_stride = l.layout().element_stride(p->type, p->matrix);
   } else {
     const bool scattered = type.kind == Type::Kind::Vector && p->component_stride != 0;
-    step_elements(l, p, index, scattered ? p->component_stride : l.layout().element_stride(p->type, p->matrix));
+    step_elements(l, p, index,
+                  scattered ? p->component_stride : l.layout().element_stride(p->type, p->matrix));
   }
   p->type = type.element;
 }
@@ -131,9 +153,12 @@ void step_memory(Lowering& l, Pointer* p, Id index) {
 // Built-ins and attribute pairs: displacement counts parts.
 void step_parts(Lowering& l, Pointer* p, Id index) {
   const auto constant = l.module().constant_u32(index);
-  if (constant) p->displacement += l.layout().first_part(p->type, *constant);
-  else if (l.module().type(p->type).kind == Type::Kind::Vector && p->displacement == 0) p->part_index = l.scalar(index);
-  else l.unsupported("dynamic index into a built-in matrix");
+  if (constant)
+    p->displacement += l.layout().first_part(p->type, *constant);
+  else if (l.module().type(p->type).kind == Type::Kind::Vector && p->displacement == 0)
+    p->part_index = l.scalar(index);
+  else
+    l.unsupported("dynamic index into a built-in matrix");
   p->type = l.layout().member_type(p->type, constant.value_or(0));
 }
 
@@ -147,8 +172,15 @@ void access_chain(Lowering& l, const Instruction& inst, const LoweringRow&) {
         p.type = l.module().type(p.type).element;
         break;
       case Place::Builtin:
-      case Place::AttributePair: step_parts(l, &p, index); break;
-      case Place::Local: case Place::Global: case Place::Constant: case Place::Nowhere: step_memory(l, &p, index); break;
+      case Place::AttributePair:
+        step_parts(l, &p, index);
+        break;
+      case Place::Local:
+      case Place::Global:
+      case Place::Constant:
+      case Place::Nowhere:
+        step_memory(l, &p, index);
+        break;
     }
   }
   p.type = l.module().type(inst.type).element;
@@ -156,7 +188,8 @@ void access_chain(Lowering& l, const Instruction& inst, const LoweringRow&) {
 }
 
 bool is_volatile(const Instruction& inst, size_t operand) {
-  return inst.operands.size() > operand && (inst.operands[operand] & uint32_t(spv::MemoryAccessMask::Volatile)) != 0;
+  return inst.operands.size() > operand &&
+         (inst.operands[operand] & uint32_t(spv::MemoryAccessMask::Volatile)) != 0;
 }
 
 void load(Lowering& l, const Instruction& inst, const LoweringRow&) {
@@ -181,19 +214,26 @@ void array_length(Lowering& l, const Instruction& inst, const LoweringRow&) {
   const uint32_t descriptor = d.set.value_or(0) * isa::kSetBytes + *d.binding * isa::kDescriptorBytes;
   const Operand bytes = l.emit().load("ld.const.b32", Operand::value(0), int32_t(descriptor + 8), 1, 1)[0];
   const uint32_t offset = l.layout().member_offset(p.type, inst.operands[1]);
-  const uint32_t stride = l.layout().element_stride(l.module().type(p.type).members.at(inst.operands[1]).type, {});
-  l.set(inst.result, {l.emit().value("div.u32", {l.emit().value("sub.u32", {bytes, Operand::value(offset)}), Operand::value(stride)})});
+  const uint32_t stride =
+      l.layout().element_stride(l.module().type(p.type).members.at(inst.operands[1]).type, {});
+  l.set(inst.result, {l.emit().value("div.u32", {l.emit().value("sub.u32", {bytes, Operand::value(offset)}),
+                                                 Operand::value(stride)})});
 }
 
 using enum spv::Op;
 constexpr LoweringRow kRows[] = {
-    {OpAccessChain, access_chain, ""}, {OpInBoundsAccessChain, access_chain, ""},
-    {OpLoad, load, ""},                {OpStore, store, ""},
-    {OpCopyMemory, copy_memory, ""},   {OpArrayLength, array_length, ""},
+    {OpAccessChain, access_chain, ""},
+    {OpInBoundsAccessChain, access_chain, ""},
+    {OpLoad, load, ""},
+    {OpStore, store, ""},
+    {OpCopyMemory, copy_memory, ""},
+    {OpArrayLength, array_length, ""},
 };
 
 }  // namespace
 
-std::span<const LoweringRow> memory_rows() { return kRows; }
+std::span<const LoweringRow> memory_rows() {
+  return kRows;
+}
 
 }  // namespace glint::frontend

@@ -9,7 +9,9 @@ namespace {
 
 using isa::Special;
 
-Operand special(Special first, uint32_t offset = 0) { return Operand::of(Special(uint32_t(first) + offset)); }
+Operand special(Special first, uint32_t offset = 0) {
+  return Operand::of(Special(uint32_t(first) + offset));
+}
 
 // The lane's local address that a pointer means. In a register: SaveLive moves the stack pointer.
 Operand local_address(Lowering& l, const Pointer& p) {
@@ -17,7 +19,8 @@ Operand local_address(Lowering& l, const Pointer& p) {
     l.unsupported("a payload that is not in local memory");
     return Operand::value(0);
   }
-  return l.emit().in_register(l.emit().value("add.u32", {p.base, Operand::value(uint32_t(p.displacement))}), RegisterClass::B32);
+  return l.emit().in_register(l.emit().value("add.u32", {p.base, Operand::value(uint32_t(p.displacement))}),
+                              RegisterClass::B32);
 }
 
 // docs/abi.md, Calls and rays.
@@ -26,7 +29,8 @@ void trace(Lowering& l, const Instruction& inst, const LoweringRow&) {
   const auto& args = inst.operands;
   Operands operands{Operand::of(l.program().new_register(RegisterClass::Predicate))};
   const Operand waits = operands[0];
-  for (size_t i = 0; i < 10; ++i) {  // structure, flags, mask, offset, stride, miss, origin, t min, direction, t max
+  for (size_t i = 0; i < 10;
+       ++i) {  // structure, flags, mask, offset, stride, miss, origin, t min, direction, t max
     const Operands parts = l.value(args[i]);
     operands.insert(operands.end(), parts.begin(), parts.end());
   }
@@ -36,7 +40,8 @@ void trace(Lowering& l, const Instruction& inst, const LoweringRow&) {
   attributes.base = Operand::stack_pointer();
   attributes.displacement = l.attribute_buffers();
   operands.push_back(local_address(l, attributes));
-  const BlockId loop = e.new_block("trace_loop"), candidates = e.new_block("trace_candidates"), done = e.new_block("trace_done");
+  const BlockId loop = e.new_block("trace_loop"), candidates = e.new_block("trace_candidates"),
+                done = e.new_block("trace_done");
   e.marker(VirtualInst::Kind::SaveLive);
   e.effect("rt.trace", std::move(operands));
   e.push_reconvergence(done);
@@ -78,8 +83,10 @@ void report(Lowering& l, const Instruction& inst, const LoweringRow&) {
 // Model: a 64-bit clock whose upper half is 0.
 void read_clock(Lowering& l, const Instruction& inst, const LoweringRow&) {
   const Operand low = l.emit().fresh("mov.b32", {Operand::of(Special::Clock)});
-  if (l.layout().num_parts(inst.type) == 2) l.set(inst.result, {low, Operand::value(0)});
-  else l.set(inst.result, {l.emit().value("cvt.u64.u32", {low})});
+  if (l.layout().num_parts(inst.type) == 2)
+    l.set(inst.result, {low, Operand::value(0)});
+  else
+    l.set(inst.result, {l.emit().value("cvt.u64.u32", {low})});
 }
 
 Operands vector(Special first, uint32_t count) {
@@ -103,7 +110,8 @@ Operands compute_builtin(Lowering& l, spv::BuiltIn builtin) {
     const Operand size = Operand::value(l.program().local_size[i]);
     const bool counts_groups = builtin == spv::BuiltIn::NumWorkgroups;
     const Operand of = special(counts_groups ? Special::LaunchSizeX : Special::LaunchX, i);
-    parts.push_back(l.emit().value(builtin == spv::BuiltIn::LocalInvocationId ? "rem.u32" : "div.u32", {of, size}));
+    parts.push_back(
+        l.emit().value(builtin == spv::BuiltIn::LocalInvocationId ? "rem.u32" : "div.u32", {of, size}));
   }
   return parts;
 }
@@ -120,35 +128,53 @@ constexpr LoweringRow kRows[] = {
 Operands Lowering::load_builtin(spv::BuiltIn builtin, Id type) {
   switch (builtin) {
     case spv::BuiltIn::LaunchIdKHR:
-    case spv::BuiltIn::GlobalInvocationId: return vector(Special::LaunchX, 3);
-    case spv::BuiltIn::LaunchSizeKHR: return vector(Special::LaunchSizeX, 3);
+    case spv::BuiltIn::GlobalInvocationId:
+      return vector(Special::LaunchX, 3);
+    case spv::BuiltIn::LaunchSizeKHR:
+      return vector(Special::LaunchSizeX, 3);
     case spv::BuiltIn::NumWorkgroups:
     case spv::BuiltIn::WorkgroupId:
-    case spv::BuiltIn::LocalInvocationId: return compute_builtin(*this, builtin);
-    case spv::BuiltIn::WorldRayOriginKHR: return vector(Special::RayOriginX, 3);
-    case spv::BuiltIn::WorldRayDirectionKHR: return vector(Special::RayDirectionX, 3);
-    case spv::BuiltIn::ObjectRayOriginKHR: return vector(Special::ObjectOriginX, 3);
-    case spv::BuiltIn::ObjectRayDirectionKHR: return vector(Special::ObjectDirectionX, 3);
-    case spv::BuiltIn::ObjectToWorldKHR: return matrix(Special::ObjectToWorld0);
-    case spv::BuiltIn::WorldToObjectKHR: return matrix(Special::WorldToObject0);
-    case spv::BuiltIn::RayTminKHR: return {special(Special::RayTmin)};
+    case spv::BuiltIn::LocalInvocationId:
+      return compute_builtin(*this, builtin);
+    case spv::BuiltIn::WorldRayOriginKHR:
+      return vector(Special::RayOriginX, 3);
+    case spv::BuiltIn::WorldRayDirectionKHR:
+      return vector(Special::RayDirectionX, 3);
+    case spv::BuiltIn::ObjectRayOriginKHR:
+      return vector(Special::ObjectOriginX, 3);
+    case spv::BuiltIn::ObjectRayDirectionKHR:
+      return vector(Special::ObjectDirectionX, 3);
+    case spv::BuiltIn::ObjectToWorldKHR:
+      return matrix(Special::ObjectToWorld0);
+    case spv::BuiltIn::WorldToObjectKHR:
+      return matrix(Special::WorldToObject0);
+    case spv::BuiltIn::RayTminKHR:
+      return {special(Special::RayTmin)};
     case spv::BuiltIn::RayTmaxKHR:
     case spv::BuiltIn::HitTNV:
       // The end of the ray moves with each report, so an intersection shader reads it anew each time.
       if (stage() == isa::Stage::Intersection) return {emitter_.fresh("mov.b32", {special(Special::HitT)})};
       return {special(Special::HitT)};
-    case spv::BuiltIn::IncomingRayFlagsKHR: return {special(Special::RayFlags)};
-    case spv::BuiltIn::HitKindKHR: return {special(Special::HitKind)};
-    case spv::BuiltIn::PrimitiveId: return {special(Special::HitPrimitive)};
-    case spv::BuiltIn::InstanceId: return {special(Special::HitInstance)};
-    case spv::BuiltIn::InstanceCustomIndexKHR: return {special(Special::HitCustomIndex)};
-    case spv::BuiltIn::RayGeometryIndexKHR: return {special(Special::HitGeometry)};
+    case spv::BuiltIn::IncomingRayFlagsKHR:
+      return {special(Special::RayFlags)};
+    case spv::BuiltIn::HitKindKHR:
+      return {special(Special::HitKind)};
+    case spv::BuiltIn::PrimitiveId:
+      return {special(Special::HitPrimitive)};
+    case spv::BuiltIn::InstanceId:
+      return {special(Special::HitInstance)};
+    case spv::BuiltIn::InstanceCustomIndexKHR:
+      return {special(Special::HitCustomIndex)};
+    case spv::BuiltIn::RayGeometryIndexKHR:
+      return {special(Special::HitGeometry)};
     default:
       unsupported(fmt::format("built-in variable {}", uint32_t(builtin)));
       return Operands(layout_.num_parts(type), Operand::value(0));
   }
 }
 
-std::span<const LoweringRow> ray_tracing_rows() { return kRows; }
+std::span<const LoweringRow> ray_tracing_rows() {
+  return kRows;
+}
 
 }  // namespace glint::frontend

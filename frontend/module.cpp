@@ -3,7 +3,7 @@
 #include "frontend/module.h"
 
 #include <fmt/format.h>
-
+#include <set>
 #include <span>
 
 #include "base/check.h"
@@ -38,7 +38,8 @@ class Parser {
     module_.bound = words_[3];
     for (size_t i = kHeaderWords; i < words_.size();) {
       const size_t length = words_[i] >> 16;
-      if (length == 0 || i + length > words_.size()) malformed(fmt::format("instruction at word {} runs past the end", i));
+      if (length == 0 || i + length > words_.size())
+        malformed(fmt::format("instruction at word {} runs past the end", i));
       instruction(std::span(words_).subspan(i, length));
       i += length;
     }
@@ -47,7 +48,9 @@ class Parser {
   }
 
  private:
-  [[noreturn]] void malformed(const std::string& what) const { throw UserError({name_, 0, 0}, "malformed SPIR-V: " + what); }
+  [[noreturn]] void malformed(const std::string& what) const {
+    throw UserError({name_, 0, 0}, "malformed SPIR-V: " + what);
+  }
 
   void instruction(std::span<const uint32_t> words);
   void debug(spv::Op op, std::span<const uint32_t> args);
@@ -58,6 +61,7 @@ class Parser {
   void declare(const Instruction& inst);
   bool declare_type(const Instruction& inst);
   void in_function(Instruction inst);
+  void check_labels() const;
 
   const std::vector<uint32_t>& words_;
   std::string name_;
@@ -81,17 +85,28 @@ void Parser::instruction(std::span<const uint32_t> words) {
   if (inst.result >= module_.bound) malformed("a result id is not below the bound");
   inst.operands.assign(words.begin() + long(at), words.end());
   switch (inst.op) {
-    case spv::Op::OpString: strings_[inst.result] = string_at(words.subspan(at)); return;
+    case spv::Op::OpString:
+      strings_[inst.result] = string_at(words.subspan(at));
+      return;
     case spv::Op::OpLine:
     case spv::Op::OpName:
-    case spv::Op::OpMemberName: debug(inst.op, words.subspan(1)); return;
-    case spv::Op::OpDecorate: decorate(words.subspan(1)); return;
-    case spv::Op::OpMemberDecorate: decorate_member(words.subspan(1)); return;
-    default: break;
+    case spv::Op::OpMemberName:
+      debug(inst.op, words.subspan(1));
+      return;
+    case spv::Op::OpDecorate:
+      decorate(words.subspan(1));
+      return;
+    case spv::Op::OpMemberDecorate:
+      decorate_member(words.subspan(1));
+      return;
+    default:
+      break;
   }
   inst.line = line_;
-  if (function_) in_function(std::move(inst));
-  else declare(inst);
+  if (function_)
+    in_function(std::move(inst));
+  else
+    declare(inst);
 }
 
 void Parser::debug(spv::Op op, std::span<const uint32_t> args) {
@@ -124,21 +139,37 @@ void Parser::mode(const Instruction& inst) {
 void Parser::apply_local_size_id(Id function, const std::vector<uint32_t>& ids) {
   for (EntryPoint& entry : module_.entry_points)
     if (entry.function == function)
-      for (size_t i = 0; i < 3 && i < ids.size(); ++i) entry.local_size[i] = module_.constant_u32(ids[i]).value_or(1);
+      for (size_t i = 0; i < 3 && i < ids.size(); ++i)
+        entry.local_size[i] = module_.constant_u32(ids[i]).value_or(1);
 }
 
 void Parser::decorate(std::span<const uint32_t> args) {
   Decorations& d = module_.decorations[args[0]];
   switch (spv::Decoration(args[1])) {
-    case spv::Decoration::DescriptorSet: d.set = args[2]; break;
-    case spv::Decoration::Binding: d.binding = args[2]; break;
-    case spv::Decoration::BuiltIn: d.builtin = spv::BuiltIn(args[2]); break;
-    case spv::Decoration::Volatile: d.is_volatile = true; break;
-    case spv::Decoration::Coherent: d.is_coherent = true; break;
-    case spv::Decoration::ArrayStride: module_.types[args[0]].array_stride = args[2]; break;
+    case spv::Decoration::DescriptorSet:
+      d.set = args[2];
+      break;
+    case spv::Decoration::Binding:
+      d.binding = args[2];
+      break;
+    case spv::Decoration::BuiltIn:
+      d.builtin = spv::BuiltIn(args[2]);
+      break;
+    case spv::Decoration::Volatile:
+      d.is_volatile = true;
+      break;
+    case spv::Decoration::Coherent:
+      d.is_coherent = true;
+      break;
+    case spv::Decoration::ArrayStride:
+      module_.types[args[0]].array_stride = args[2];
+      break;
     case spv::Decoration::Block:
-    case spv::Decoration::BufferBlock: module_.types[args[0]].is_block = true; break;
-    default: break;  // the others change nothing here: RelaxedPrecision, NoContraction (never contracted), ...
+    case spv::Decoration::BufferBlock:
+      module_.types[args[0]].is_block = true;
+      break;
+    default:
+      break;  // the others change nothing here: RelaxedPrecision, NoContraction (never contracted), ...
   }
 }
 
@@ -147,32 +178,50 @@ void Parser::decorate_member(std::span<const uint32_t> args) {
   if (members.size() <= args[1]) members.resize(args[1] + 1);
   Type::Member& member = members[args[1]];
   switch (spv::Decoration(args[2])) {
-    case spv::Decoration::Offset: member.offset = args[3]; break;
-    case spv::Decoration::MatrixStride: member.matrix_stride = args[3]; break;
-    case spv::Decoration::RowMajor: member.row_major = true; break;
-    case spv::Decoration::BuiltIn: member.builtin = spv::BuiltIn(args[3]); break;
-    default: break;
+    case spv::Decoration::Offset:
+      member.offset = args[3];
+      break;
+    case spv::Decoration::MatrixStride:
+      member.matrix_stride = args[3];
+      break;
+    case spv::Decoration::RowMajor:
+      member.row_major = true;
+      break;
+    case spv::Decoration::BuiltIn:
+      member.builtin = spv::BuiltIn(args[3]);
+      break;
+    default:
+      break;
   }
 }
 
 void Parser::declare(const Instruction& inst) {
   const auto& args = inst.operands;
   switch (inst.op) {
-    case spv::Op::OpCapability: module_.capabilities.push_back({spv::Capability(args[0]), inst.line}); return;
-    case spv::Op::OpExtInstImport: module_.imports[inst.result] = string_at(args); return;
+    case spv::Op::OpCapability:
+      module_.capabilities.push_back({spv::Capability(args[0]), inst.line});
+      return;
+    case spv::Op::OpExtInstImport:
+      module_.imports[inst.result] = string_at(args);
+      return;
     case spv::Op::OpEntryPoint:
-      module_.entry_points.push_back({spv::ExecutionModel(args[0]), args[1], string_at(std::span(args).subspan(2)), {1, 1, 1}});
+      module_.entry_points.push_back(
+          {spv::ExecutionModel(args[0]), args[1], string_at(std::span(args).subspan(2)), {1, 1, 1}});
       return;
     case spv::Op::OpExecutionMode:
-    case spv::Op::OpExecutionModeId: mode(inst); return;
+    case spv::Op::OpExecutionModeId:
+      mode(inst);
+      return;
     case spv::Op::OpVariable:
-      module_.variables[inst.result] = {inst.result, inst.type, spv::StorageClass(args[0]), args.size() > 1 ? args[1] : 0, inst.line};
+      module_.variables[inst.result] = {inst.result, inst.type, spv::StorageClass(args[0]),
+                                        args.size() > 1 ? args[1] : 0, inst.line};
       return;
     case spv::Op::OpFunction:
       module_.functions.push_back({inst.result, {}});
       function_ = &module_.functions.back();
       return;
-    default: break;
+    default:
+      break;
   }
   if (declare_type(inst)) return;
   if (inst.result != 0 && inst.type != 0) module_.constants[inst.result] = inst;
@@ -186,16 +235,30 @@ bool Parser::declare_type(const Instruction& inst) {
   type.op = inst.op;
   type.name = module_.names.count(inst.result) ? module_.names[inst.result] : "";
   switch (inst.op) {
-    case spv::Op::OpTypeVoid: type.kind = Kind::Void; break;
-    case spv::Op::OpTypeBool: type.kind = Kind::Bool; break;
-    case spv::Op::OpTypeInt: type.kind = Kind::Int, type.width = args[0], type.is_signed = args[1] != 0; break;
-    case spv::Op::OpTypeFloat: type.kind = Kind::Float, type.width = args[0]; break;
-    case spv::Op::OpTypeVector: type.kind = Kind::Vector, type.element = args[0], type.count = args[1]; break;
-    case spv::Op::OpTypeMatrix: type.kind = Kind::Matrix, type.element = args[0], type.count = args[1]; break;
+    case spv::Op::OpTypeVoid:
+      type.kind = Kind::Void;
+      break;
+    case spv::Op::OpTypeBool:
+      type.kind = Kind::Bool;
+      break;
+    case spv::Op::OpTypeInt:
+      type.kind = Kind::Int, type.width = args[0], type.is_signed = args[1] != 0;
+      break;
+    case spv::Op::OpTypeFloat:
+      type.kind = Kind::Float, type.width = args[0];
+      break;
+    case spv::Op::OpTypeVector:
+      type.kind = Kind::Vector, type.element = args[0], type.count = args[1];
+      break;
+    case spv::Op::OpTypeMatrix:
+      type.kind = Kind::Matrix, type.element = args[0], type.count = args[1];
+      break;
     case spv::Op::OpTypeArray:
       type.kind = Kind::Array, type.element = args[0], type.count = module_.constant_u32(args[1]).value_or(0);
       break;
-    case spv::Op::OpTypeRuntimeArray: type.kind = Kind::RuntimeArray, type.element = args[0]; break;
+    case spv::Op::OpTypeRuntimeArray:
+      type.kind = Kind::RuntimeArray, type.element = args[0];
+      break;
     case spv::Op::OpTypeStruct:
       type.kind = Kind::Struct;
       type.members.resize(args.size());
@@ -205,27 +268,53 @@ bool Parser::declare_type(const Instruction& inst) {
       type.kind = Kind::Pointer, type.storage = spv::StorageClass(args[0]), type.element = args[1];
       break;
     case spv::Op::OpTypeImage:
-      type.kind = Kind::Image, type.element = args[0], type.dim = spv::Dim(args[1]), type.is_storage_image = args[5] == 2;
+      type.kind = Kind::Image, type.element = args[0], type.dim = spv::Dim(args[1]),
+      type.is_storage_image = args[5] == 2;
       type.count = args[3];  // arrayed
       break;
-    case spv::Op::OpTypeSampledImage: type.kind = Kind::SampledImage, type.element = args[0]; break;
-    case spv::Op::OpTypeAccelerationStructureKHR: type.kind = Kind::AccelerationStructure; break;
-    case spv::Op::OpTypeFunction: type.kind = Kind::Function; break;
-    default: type.kind = Kind::Other; break;
+    case spv::Op::OpTypeSampledImage:
+      type.kind = Kind::SampledImage, type.element = args[0];
+      break;
+    case spv::Op::OpTypeAccelerationStructureKHR:
+      type.kind = Kind::AccelerationStructure;
+      break;
+    case spv::Op::OpTypeFunction:
+      type.kind = Kind::Function;
+      break;
+    default:
+      type.kind = Kind::Other;
+      break;
   }
   return true;
 }
 
+// Also finds switches over 64-bit values, whose literals take two words: glslang makes none.
+void Parser::check_labels() const {
+  std::set<Id> labels;
+  for (const Block& block : function_->blocks) labels.insert(block.label);
+  for (const Block& block : function_->blocks) {
+    if (block.code.empty()) malformed(fmt::format("block %{} is empty", block.label));
+    for (Id to : block.successors())
+      if (!labels.count(to)) malformed(fmt::format("%{} is a branch target but no block of the function", to));
+    if (block.merge != spv::Op::OpNop && !labels.count(block.merge_block)) malformed("a merge block is missing");
+  }
+}
+
 void Parser::in_function(Instruction inst) {
   switch (inst.op) {
-    case spv::Op::OpFunctionEnd: function_ = nullptr; return;
+    case spv::Op::OpFunctionEnd:
+      check_labels();
+      function_ = nullptr;
+      return;
     case spv::Op::OpNop:
-    case spv::Op::OpNoLine: return;
+    case spv::Op::OpNoLine:
+      return;
     case spv::Op::OpLabel:
       function_->blocks.emplace_back();
       function_->blocks.back().label = inst.result;
       return;
-    default: break;
+    default:
+      break;
   }
   if (inst.op == spv::Op::OpFunctionParameter) return;  // only functions that nothing calls keep theirs
   if (function_->blocks.empty()) malformed("an instruction stands before the first label of a function");
@@ -277,14 +366,18 @@ std::vector<Id> Block::successors() const {
   if (code.empty()) return {};
   const Instruction& last = terminator();
   switch (last.op) {
-    case spv::Op::OpBranch: return {last.operands[0]};
-    case spv::Op::OpBranchConditional: return {last.operands[1], last.operands[2]};
+    case spv::Op::OpBranch:
+      return {last.operands[0]};
+    case spv::Op::OpBranchConditional:
+      return {last.operands[1], last.operands[2]};
     case spv::Op::OpSwitch: {
       std::vector<Id> to{last.operands[1]};
-      for (size_t i = 3; i < last.operands.size(); i += 2) to.push_back(last.operands[i]);  // 32-bit selectors
+      for (size_t i = 3; i < last.operands.size(); i += 2)
+        to.push_back(last.operands[i]);  // 32-bit selectors
       return to;
     }
-    default: return {};
+    default:
+      return {};
   }
 }
 

@@ -16,18 +16,31 @@ using Id = uint32_t;  // a SPIR-V result id; 0 is none
 
 struct Type {
   enum class Kind : uint8_t {
-    Void, Bool, Int, Float, Vector, Matrix, Array, RuntimeArray, Struct, Pointer, Image, SampledImage,
-    AccelerationStructure, Function, Other
+    Void,
+    Bool,
+    Int,
+    Float,
+    Vector,
+    Matrix,
+    Array,
+    RuntimeArray,
+    Struct,
+    Pointer,
+    Image,
+    SampledImage,
+    AccelerationStructure,
+    Function,
+    Other
   } kind = Kind::Other;
-  uint32_t width = 0;          // Int, Float: bits
-  bool is_signed = false;      // Int
-  Id element = 0;              // Vector, Matrix (column), arrays, Pointer (pointee), SampledImage (image), Image (texel)
-  uint32_t count = 0;          // Vector, Matrix (columns), Array: elements
-  uint32_t array_stride = 0;   // bytes; 0 = not decorated
-  spv::StorageClass storage{}; // Pointer
-  spv::Dim dim{};              // Image
+  uint32_t width = 0;      // Int, Float: bits
+  bool is_signed = false;  // Int
+  Id element = 0;  // Vector, Matrix (column), arrays, Pointer (pointee), SampledImage (image), Image (texel)
+  uint32_t count = 0;           // Vector, Matrix (columns), Array: elements
+  uint32_t array_stride = 0;    // bytes; 0 = not decorated
+  spv::StorageClass storage{};  // Pointer
+  spv::Dim dim{};               // Image
   bool is_storage_image = false;
-  bool is_block = false;       // Struct: decorated Block or BufferBlock
+  bool is_block = false;  // Struct: decorated Block or BufferBlock
   struct Member {
     Id type = 0;
     std::optional<uint32_t> offset;  // bytes
@@ -38,7 +51,7 @@ struct Type {
   };
   std::vector<Member> members;  // Struct
   std::string name;
-  spv::Op op{};                 // the declaration's opcode, for messages
+  spv::Op op{};  // the declaration's opcode, for messages
 };
 
 struct Instruction {
@@ -93,10 +106,10 @@ struct Module {
   std::map<Id, Variable> variables;     // module level
   std::map<Id, Decorations> decorations;
   std::map<Id, std::string> names;
-  std::map<Id, std::string> imports;    // OpExtInstImport
+  std::map<Id, std::string> imports;  // OpExtInstImport
   std::vector<EntryPoint> entry_points;
   std::vector<Function> functions;
-  std::vector<std::string> files;       // isa::Line::file indexes it
+  std::vector<std::string> files;  // isa::Line::file indexes it
 
   // Throws UserError when the words are not a well-formed module. The words should have been validated.
   static Module parse(const std::vector<uint32_t>& words, const std::string& name);

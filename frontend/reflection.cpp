@@ -16,11 +16,16 @@ using Storage = spv::StorageClass;
 
 BindingKind kind_of(const Type& type, Storage storage) {
   switch (type.kind) {
-    case Type::Kind::Struct: return storage == Storage::Uniform ? BindingKind::UniformBuffer : BindingKind::StorageBuffer;
-    case Type::Kind::SampledImage: return BindingKind::SampledImage;
-    case Type::Kind::AccelerationStructure: return BindingKind::AccelerationStructure;
-    case Type::Kind::Image: return type.is_storage_image ? BindingKind::StorageImage : BindingKind::Other;
-    default: return BindingKind::Other;
+    case Type::Kind::Struct:
+      return storage == Storage::Uniform ? BindingKind::UniformBuffer : BindingKind::StorageBuffer;
+    case Type::Kind::SampledImage:
+      return BindingKind::SampledImage;
+    case Type::Kind::AccelerationStructure:
+      return BindingKind::AccelerationStructure;
+    case Type::Kind::Image:
+      return type.is_storage_image ? BindingKind::StorageImage : BindingKind::Other;
+    default:
+      return BindingKind::Other;
   }
 }
 
@@ -40,13 +45,20 @@ Binding binding_of(const Module& module, const Variable& variable, const Decorat
 isa::Stage stage_of(const Module& module, const std::string& name) {
   if (module.entry_points.empty()) throw UserError({name, 0, 0}, "the module has no entry point");
   switch (int(module.entry_points[0].model)) {
-    case int(spv::ExecutionModel::RayGenerationKHR): return isa::Stage::RayGeneration;
-    case int(spv::ExecutionModel::IntersectionKHR): return isa::Stage::Intersection;
-    case int(spv::ExecutionModel::AnyHitKHR): return isa::Stage::AnyHit;
-    case int(spv::ExecutionModel::ClosestHitKHR): return isa::Stage::ClosestHit;
-    case int(spv::ExecutionModel::MissKHR): return isa::Stage::Miss;
-    case int(spv::ExecutionModel::CallableKHR): return isa::Stage::Callable;
-    default: return isa::Stage::Compute;
+    case int(spv::ExecutionModel::RayGenerationKHR):
+      return isa::Stage::RayGeneration;
+    case int(spv::ExecutionModel::IntersectionKHR):
+      return isa::Stage::Intersection;
+    case int(spv::ExecutionModel::AnyHitKHR):
+      return isa::Stage::AnyHit;
+    case int(spv::ExecutionModel::ClosestHitKHR):
+      return isa::Stage::ClosestHit;
+    case int(spv::ExecutionModel::MissKHR):
+      return isa::Stage::Miss;
+    case int(spv::ExecutionModel::CallableKHR):
+      return isa::Stage::Callable;
+    default:
+      return isa::Stage::Compute;
   }
 }
 
@@ -61,19 +73,29 @@ Reflection reflect(const std::vector<uint32_t>& spirv, const std::string& name) 
   for (const auto& [id, variable] : module.variables) {
     const uint32_t bytes = layout.size(module.type(variable.type).element);
     switch (variable.storage) {
-      case Storage::IncomingRayPayloadKHR: result.incoming_payload_bytes = std::max(result.incoming_payload_bytes, bytes); break;
-      case Storage::RayPayloadKHR: result.largest_payload_bytes = std::max(result.largest_payload_bytes, bytes); break;
-      case Storage::HitAttributeKHR: result.attribute_bytes = std::max(result.attribute_bytes, bytes); break;
-      case Storage::PushConstant: result.push_constant_bytes = bytes; break;
+      case Storage::IncomingRayPayloadKHR:
+        result.incoming_payload_bytes = std::max(result.incoming_payload_bytes, bytes);
+        break;
+      case Storage::RayPayloadKHR:
+        result.largest_payload_bytes = std::max(result.largest_payload_bytes, bytes);
+        break;
+      case Storage::HitAttributeKHR:
+        result.attribute_bytes = std::max(result.attribute_bytes, bytes);
+        break;
+      case Storage::PushConstant:
+        result.push_constant_bytes = bytes;
+        break;
       default: {
         const auto d = module.decorations.find(id);
-        if (d != module.decorations.end() && d->second.binding) result.bindings.push_back(binding_of(module, variable, d->second));
+        if (d != module.decorations.end() && d->second.binding)
+          result.bindings.push_back(binding_of(module, variable, d->second));
         break;
       }
     }
   }
-  std::sort(result.bindings.begin(), result.bindings.end(),
-            [](const Binding& a, const Binding& b) { return std::pair(a.set, a.binding) < std::pair(b.set, b.binding); });
+  std::sort(result.bindings.begin(), result.bindings.end(), [](const Binding& a, const Binding& b) {
+    return std::pair(a.set, a.binding) < std::pair(b.set, b.binding);
+  });
   return result;
 }
 

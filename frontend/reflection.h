@@ -10,24 +10,29 @@
 namespace glint::frontend {
 
 enum class BindingKind : uint8_t {
-  UniformBuffer, StorageBuffer, StorageImage, SampledImage, AccelerationStructure, Other
+  UniformBuffer,
+  StorageBuffer,
+  StorageImage,
+  SampledImage,
+  AccelerationStructure,
+  Other
 };
 
 struct Binding {
   uint32_t set = 0, binding = 0;
   BindingKind kind = BindingKind::Other;
-  std::string name;        // the variable's, or its block's
-  uint32_t count = 1;      // array length; 0 = runtime array
+  std::string name;    // the variable's, or its block's
+  uint32_t count = 1;  // array length; 0 = runtime array
   bool operator==(const Binding&) const = default;
 };
 
 struct Reflection {
   isa::Stage stage = isa::Stage::Compute;
   std::string entry_point;
-  std::vector<Binding> bindings;       // sorted by set, binding
+  std::vector<Binding> bindings;  // sorted by set, binding
   uint32_t push_constant_bytes = 0;
-  uint32_t incoming_payload_bytes = 0; // scalar-packed, bool as 4 bytes
-  uint32_t largest_payload_bytes = 0;  // of the payloads that the shader declares for its own traces
+  uint32_t incoming_payload_bytes = 0;  // scalar-packed, bool as 4 bytes
+  uint32_t largest_payload_bytes = 0;   // of the payloads that the shader declares for its own traces
   uint32_t attribute_bytes = 0;
 };
 

@@ -1,8 +1,7 @@
 // Pass list R1 of SPIRV-Tools: everything inlined, scalarised and in SSA form, nothing numerically changed.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <cstdio>
+#include <fmt/format.h>
 #include <spirv-tools/optimizer.hpp>
 #include <spirv/unified1/spirv.hpp11>
 
@@ -18,14 +17,32 @@ namespace {
 const std::vector<std::string>& pass_list() {
   static const std::vector<std::string> kPasses = {
       "--strip-nonsemantic",  // imports such as NonSemantic.DebugPrintf make later passes skip the module
-      "--freeze-spec-const", "--fold-spec-const-op-composite", "--wrap-opkill", "--eliminate-dead-branches",
-      "--merge-return", "--inline-entry-points-exhaustive", "--eliminate-dead-functions",
-      "--eliminate-dead-code-aggressive", "--private-to-local", "--eliminate-local-single-block",
-      "--eliminate-local-single-store", "--eliminate-dead-code-aggressive", "--scalar-replacement=100",
-      "--convert-local-access-chains", "--eliminate-local-single-block", "--eliminate-local-single-store",
-      "--eliminate-dead-code-aggressive", "--ssa-rewrite", "--eliminate-dead-code-aggressive", "--vector-dce",
-      "--eliminate-dead-inserts", "--eliminate-dead-branches", "--cfg-cleanup", "--merge-blocks",
-      "--eliminate-dead-code-aggressive", "--eliminate-dead-const"};
+      "--freeze-spec-const",
+      "--fold-spec-const-op-composite",
+      "--wrap-opkill",
+      "--eliminate-dead-branches",
+      "--merge-return",
+      "--inline-entry-points-exhaustive",
+      "--eliminate-dead-functions",
+      "--eliminate-dead-code-aggressive",
+      "--private-to-local",
+      "--eliminate-local-single-block",
+      "--eliminate-local-single-store",
+      "--eliminate-dead-code-aggressive",
+      "--scalar-replacement=100",
+      "--convert-local-access-chains",
+      "--eliminate-local-single-block",
+      "--eliminate-local-single-store",
+      "--eliminate-dead-code-aggressive",
+      "--ssa-rewrite",
+      "--eliminate-dead-code-aggressive",
+      "--vector-dce",
+      "--eliminate-dead-inserts",
+      "--eliminate-dead-branches",
+      "--cfg-cleanup",
+      "--merge-blocks",
+      "--eliminate-dead-code-aggressive",
+      "--eliminate-dead-const"};
   return kPasses;
 }
 
@@ -60,17 +77,20 @@ void warn(const std::string& name, const std::string& what) {
 }  // namespace
 
 std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& name) {
-  const std::string before = spirv.size() < kHeaderWords ? "too short to hold a header\n" : validate_spirv(spirv);
+  const std::string before =
+      spirv.size() < kHeaderWords ? "too short to hold a header\n" : validate_spirv(spirv);
   if (!before.empty()) throw UserError({name, 0, 0}, "invalid SPIR-V\n" + before);
 
   std::vector<uint32_t> extensions;
   const std::vector<uint32_t> input = without_extensions(spirv, &extensions);
   std::string messages;
   spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_3);
-  optimizer.SetMessageConsumer([&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {
-    if (level <= SPV_MSG_ERROR) messages += fmt::format("{}\n", text);
-  });
-  if (!optimizer.RegisterPassesFromFlags(pass_list())) throw Error(Exit::Failure, "SPIRV-Tools lacks a pass of R1: " + messages);
+  optimizer.SetMessageConsumer(
+      [&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {
+        if (level <= SPV_MSG_ERROR) messages += fmt::format("{}\n", text);
+      });
+  if (!optimizer.RegisterPassesFromFlags(pass_list()))
+    throw Error(Exit::Failure, "SPIRV-Tools lacks a pass of R1: " + messages);
   spvtools::OptimizerOptions options;
   options.set_run_validator(false);  // done here, with the extensions in place
   std::vector<uint32_t> output;

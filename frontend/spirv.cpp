@@ -3,7 +3,6 @@
 #include "frontend/spirv.h"
 
 #include <fmt/format.h>
-
 #include <spirv-tools/libspirv.hpp>
 
 #include "frontend/compile.h"
@@ -13,9 +12,10 @@ namespace glint::frontend {
 std::string validate_spirv(const std::vector<uint32_t>& words) {
   std::string messages;
   spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_3);
-  tools.SetMessageConsumer([&](spv_message_level_t level, const char*, const spv_position_t& at, const char* text) {
-    if (level <= SPV_MSG_ERROR) messages += fmt::format("word {}: {}\n", at.index, text);
-  });
+  tools.SetMessageConsumer(
+      [&](spv_message_level_t level, const char*, const spv_position_t& at, const char* text) {
+        if (level <= SPV_MSG_ERROR) messages += fmt::format("word {}: {}\n", at.index, text);
+      });
   spvtools::ValidatorOptions options;
   options.SetScalarBlockLayout(true);
   if (tools.Validate(words.data(), words.size(), options)) return {};
@@ -32,7 +32,8 @@ std::string disassemble_spirv(const std::vector<uint32_t>& words) {
   std::string text;
   const spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_3);
   const uint32_t options = SPV_BINARY_TO_TEXT_OPTION_INDENT | SPV_BINARY_TO_TEXT_OPTION_FRIENDLY_NAMES;
-  if (!tools.Disassemble(words, &text, options)) throw UserError("error: not a SPIR-V module: it cannot be disassembled");
+  if (!tools.Disassemble(words, &text, options))
+    throw UserError("error: not a SPIR-V module: it cannot be disassembled");
   return text;
 }
 

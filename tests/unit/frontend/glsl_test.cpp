@@ -29,14 +29,16 @@ int count_ops(const std::vector<uint32_t>& words, spv::Op op) {
 
 TEST_CASE("a mistake in a shader is reported with its file and line") {
   const lab::Folder folder;
-  const std::string path = folder.write("bad.comp", "#version 460\nvoid main() {\n  int a = 1;\n  b = a;\n}\n");
+  const std::string path =
+      folder.write("bad.comp", "#version 460\nvoid main() {\n  int a = 1;\n  b = a;\n}\n");
   CHECK_THAT(message_of(path), Contains(path + ":4: error: 'b' : undeclared identifier"));
 }
 
 TEST_CASE("a mistake in an included file is reported at the included file's line") {
   const lab::Folder folder;
   const std::string header = folder.write("sub/bad.glsl", "\n\nint broken() { return missing; }\n");
-  const std::string path = folder.write("main.comp", "#version 460\n#include \"sub/bad.glsl\"\nvoid main() {}\n");
+  const std::string path =
+      folder.write("main.comp", "#version 460\n#include \"sub/bad.glsl\"\nvoid main() {}\n");
   CHECK_THAT(message_of(path), Contains(header + ":3: error: 'missing'"));
 }
 
@@ -47,14 +49,17 @@ TEST_CASE("an include is looked for next to the including file before the includ
   const std::string wrong = other.write("two.glsl", "#error wrong file\n");
   const std::string found = other.write("three.glsl", "int three() { return 3; }\n");
   const std::string directory = found.substr(0, found.rfind('/'));
-  const std::string path = folder.write("m.comp", "#version 460\n#include \"a/one.glsl\"\n#include \"three.glsl\"\nvoid main() { int x = number() + three(); }\n");
+  const std::string path = folder.write("m.comp",
+                                        "#version 460\n#include \"a/one.glsl\"\n#include "
+                                        "\"three.glsl\"\nvoid main() { int x = number() + three(); }\n");
   CHECK_NOTHROW(glsl_to_spirv(path, {{directory}, {}}));
   CHECK_THAT(message_of(path), Contains("three.glsl"));
 }
 
 TEST_CASE("a define reaches the shader with its value") {
   const lab::Folder folder;
-  const std::string path = folder.write("d.comp", "#version 460\n#if VALUE != 42\n#error wrong value\n#endif\nvoid main() {}\n");
+  const std::string path =
+      folder.write("d.comp", "#version 460\n#if VALUE != 42\n#error wrong value\n#endif\nvoid main() {}\n");
   CHECK_NOTHROW(glsl_to_spirv(path, {{}, {{"VALUE", "42"}}}));
   CHECK_THAT(message_of(path, {{}, {{"VALUE", "41"}}}), Contains(":3: error:"));
 }
@@ -68,8 +73,11 @@ TEST_CASE("an unknown ending and a missing file are user errors that name the fi
 
 TEST_CASE("glslang's SPIR-V is version 1.6 and valid, and so is the simplified module") {
   const lab::Folder folder;
-  const std::string path = folder.write("s.comp", "#version 460\nlayout(binding = 0) buffer B { float a[]; } b;\n"
-      "float twice(float x) { if (x > 1.0) return 2.0 * x; return x; }\nvoid main() { for (int i = 0; i < 4; ++i) b.a[i] = twice(b.a[i]); }\n");
+  const std::string path =
+      folder.write("s.comp",
+                   "#version 460\nlayout(binding = 0) buffer B { float a[]; } b;\n"
+                   "float twice(float x) { if (x > 1.0) return 2.0 * x; return x; }\nvoid main() { for (int "
+                   "i = 0; i < 4; ++i) b.a[i] = twice(b.a[i]); }\n");
   const auto words = glsl_to_spirv(path, {});
   CHECK(words[1] == 0x00010600);
   CHECK(validate_spirv(words).empty());
@@ -100,8 +108,10 @@ TEST_CASE("an extension that the optimiser does not know does not stop it") {
 }
 
 TEST_CASE("both reads of the ray's end around a report survive") {
-  const auto words = lab::simplified(".rint", "hitAttributeEXT vec4 a;\nvoid main() { float t = gl_RayTmaxEXT; reportIntersectionEXT(t * 0.5, 0u);\n"
-                                              "a = vec4(t, gl_RayTmaxEXT, 0, 0); reportIntersectionEXT(t * 0.25, 1u); }\n");
+  const auto words = lab::simplified(
+      ".rint",
+      "hitAttributeEXT vec4 a;\nvoid main() { float t = gl_RayTmaxEXT; reportIntersectionEXT(t * 0.5, 0u);\n"
+      "a = vec4(t, gl_RayTmaxEXT, 0, 0); reportIntersectionEXT(t * 0.25, 1u); }\n");
   const Module module = Module::parse(words, "x");
   int loads = 0;
   for (const Block& block : module.functions.at(0).blocks)
@@ -116,7 +126,9 @@ TEST_CASE("both reads of the ray's end around a report survive") {
 TEST_CASE("instructions know the file and line of an included function") {
   const lab::Folder folder;
   const std::string header = folder.write("f.glsl", "\n\nfloat work(float x) {\n  return sin(x);\n}\n");
-  const std::string path = folder.write("m.comp", "#version 460\n#include \"f.glsl\"\nlayout(binding = 0) buffer B { float a; } b;\nvoid main() {\n  b.a = work(b.a);\n}\n");
+  const std::string path = folder.write("m.comp",
+                                        "#version 460\n#include \"f.glsl\"\nlayout(binding = 0) buffer B { "
+                                        "float a; } b;\nvoid main() {\n  b.a = work(b.a);\n}\n");
   const VirtualProgram program = lower_to_virtual(simplify(glsl_to_spirv(path, {}), path), path);
   int found = 0;
   for (const VirtualBlock& block : program.blocks)
@@ -132,12 +144,17 @@ TEST_CASE("instructions know the file and line of an included function") {
 
 TEST_CASE("reflection lists bindings with kinds, names and array lengths, and payload sizes") {
   const lab::Folder folder;
-  const std::string path = folder.write("r.rchit", lab::source(
-      "layout(set = 1, binding = 3) uniform sampler2D textures[5];\nlayout(binding = 2) uniform U { mat4 m; } u;\n"
-      "layout(binding = 7) buffer B { float a[]; } b;\nlayout(binding = 0) uniform accelerationStructureEXT scene;\n"
-      "layout(binding = 1, rgba32f) uniform image2D picture;\nlayout(binding = 9) uniform sampler2D more[];\n"
-      "layout(location = 0) rayPayloadInEXT struct P { vec3 c; bool hit; } p;\nlayout(location = 1) rayPayloadEXT vec4 q[5];\n"
-      "hitAttributeEXT vec2 uv;\nlayout(push_constant) uniform C { vec4 c; float d; } pc;\nvoid main() { p.c = textureLod(more[gl_PrimitiveID], uv, 0.0).xyz; }\n"));
+  const std::string path = folder.write(
+      "r.rchit", lab::source("layout(set = 1, binding = 3) uniform sampler2D textures[5];\nlayout(binding = "
+                             "2) uniform U { mat4 m; } u;\n"
+                             "layout(binding = 7) buffer B { float a[]; } b;\nlayout(binding = 0) uniform "
+                             "accelerationStructureEXT scene;\n"
+                             "layout(binding = 1, rgba32f) uniform image2D picture;\nlayout(binding = 9) "
+                             "uniform sampler2D more[];\n"
+                             "layout(location = 0) rayPayloadInEXT struct P { vec3 c; bool hit; } "
+                             "p;\nlayout(location = 1) rayPayloadEXT vec4 q[5];\n"
+                             "hitAttributeEXT vec2 uv;\nlayout(push_constant) uniform C { vec4 c; float d; } "
+                             "pc;\nvoid main() { p.c = textureLod(more[gl_PrimitiveID], uv, 0.0).xyz; }\n"));
   const Reflection r = reflect(glsl_to_spirv(path, {}), path);
   CHECK(r.stage == isa::Stage::ClosestHit);
   CHECK(r.bindings == std::vector<Binding>{{0, 0, BindingKind::AccelerationStructure, "scene", 1},

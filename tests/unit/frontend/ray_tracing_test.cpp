@@ -19,9 +19,10 @@ std::vector<std::string> names(const VirtualProgram& program) {
   std::vector<std::string> result;
   for (const VirtualBlock& block : program.blocks)
     for (const VirtualInst& inst : block.code)
-      result.push_back(inst.kind == VirtualInst::Kind::SaveLive      ? "SaveLive"
-                       : inst.kind == VirtualInst::Kind::RestoreLive ? "RestoreLive"
-                                                                     : std::string(isa::op_table()[inst.op].name));
+      result.push_back(inst.kind == VirtualInst::Kind::SaveLive ? "SaveLive"
+                       : inst.kind == VirtualInst::Kind::RestoreLive
+                           ? "RestoreLive"
+                           : std::string(isa::op_table()[inst.op].name));
   return result;
 }
 
@@ -38,7 +39,8 @@ const VirtualInst& only(const VirtualProgram& program, std::string_view op) {
 }
 
 const std::string kTrace =
-    "layout(binding = 0) uniform accelerationStructureEXT scene;\nlayout(binding = 1, rgba32f) uniform image2D picture;\n"
+    "layout(binding = 0) uniform accelerationStructureEXT scene;\nlayout(binding = 1, rgba32f) uniform "
+    "image2D picture;\n"
     "layout(location = 0) rayPayloadEXT vec4 p;\nvoid main() {\n  p = vec4(1);\n"
     "  traceRayEXT(scene, 5u, 0xff, 1, 2, 3, vec3(0, 1, 2), 0.25, vec3(3, 4, 5), 100.0, 0);\n"
     "  imageStore(picture, ivec2(gl_LaunchIDEXT.xy), p);\n}\n";
@@ -46,8 +48,9 @@ const std::string kTrace =
 TEST_CASE("a trace becomes the sequence of the ABI, in its order") {
   const auto all = names(lowered(".rgen", kTrace));
   const auto first = std::find(all.begin(), all.end(), "SaveLive");
-  const std::vector<std::string> expected{"SaveLive", "rt.trace", "ssy", "bra", "call.sbt.candidate", "rt.resume",
-                                          "bra", "join", "call.sbt.hit", "rt.end", "RestoreLive"};
+  const std::vector<std::string> expected{"SaveLive",           "rt.trace",  "ssy",        "bra",
+                                          "call.sbt.candidate", "rt.resume", "bra",        "join",
+                                          "call.sbt.hit",       "rt.end",    "RestoreLive"};
   REQUIRE(all.end() - first > long(expected.size()));
   CHECK(std::vector<std::string>(first, first + long(expected.size())) == expected);
 }
@@ -56,9 +59,12 @@ TEST_CASE("rt.trace takes its operands in the ABI's order, and addresses from be
   const VirtualProgram program = lowered(".rgen", kTrace);
   const VirtualInst& trace = only(program, "rt.trace");
   REQUIRE(trace.operands.size() == 17);
-  const uint32_t expected[] = {5, 0xff, 1, 2, 3, 0, 0x3f800000, 0x40000000, 0x3e800000, 0x40400000, 0x40800000, 0x40a00000, 0x42c80000};
+  const uint32_t expected[] = {5,          0xff,       1,          2,          3,
+                               0,          0x3f800000, 0x40000000, 0x3e800000, 0x40400000,
+                               0x40800000, 0x40a00000, 0x42c80000};
   for (size_t i = 0; i < std::size(expected); ++i) CHECK(is_constant(trace.operands[2 + i], expected[i]));
-  for (size_t i : {15, 16}) CHECK(trace.operands[i].kind == VirtualOperand::Kind::Register);  // %r0 moves at SaveLive
+  for (size_t i : {15, 16})
+    CHECK(trace.operands[i].kind == VirtualOperand::Kind::Register);  // %r0 moves at SaveLive
   CHECK(trace.line.line == lab::kFirstLine + 5);
   CHECK(program.local_bytes == 16 + 128);  // the payload and two buffers of attributes
   CHECK(program.payload_bytes == 16);
@@ -71,8 +77,10 @@ TEST_CASE("a payload that is stored is read again after the trace, not remembere
 }
 
 TEST_CASE("a closest-hit shader may pass on its own payload") {
-  const VirtualProgram program = lowered(".rchit", 
-      "layout(binding = 0) uniform accelerationStructureEXT scene;\nlayout(location = 0) rayPayloadInEXT vec4 p;\n"
+  const VirtualProgram program = lowered(
+      ".rchit",
+      "layout(binding = 0) uniform accelerationStructureEXT scene;\nlayout(location = 0) rayPayloadInEXT "
+      "vec4 p;\n"
       "void main() { traceRayEXT(scene, 0u, 0xff, 0, 0, 0, vec3(0), 0.0, vec3(1), 1.0, 0); p.x += 1.0; }\n");
   CHECK(count(program, "rt.trace") == 1);
   CHECK(program.payload_bytes == 16);
@@ -82,24 +90,35 @@ TEST_CASE("a closest-hit shader may pass on its own payload") {
 }
 
 TEST_CASE("a report becomes the sequence of the ABI and yields rt.accepted") {
-  const auto all = names(lowered(".rint", "hitAttributeEXT vec4 a;\nvoid main() { a = vec4(1, 2, 3, 4); reportIntersectionEXT(0.5, 7u); }\n"));
-  CHECK(all == std::vector<std::string>{"mov.b32", "mov.b32", "mov.b32", "mov.b32", "st.local.v4.b32", "rt.report", "ssy", "bra",
-                                        "SaveLive", "call.sbt.anyhit", "RestoreLive", "join", "ret"});
-  CHECK(count(lowered(".rint", "hitAttributeEXT float a;\nvoid main() { if (reportIntersectionEXT(0.5, 7u)) { a = 1.0; reportIntersectionEXT(0.25, 0u); } }\n"), "rt.accepted") == 1);
+  const auto all = names(lowered(
+      ".rint",
+      "hitAttributeEXT vec4 a;\nvoid main() { a = vec4(1, 2, 3, 4); reportIntersectionEXT(0.5, 7u); }\n"));
+  CHECK(all == std::vector<std::string>{"mov.b32", "mov.b32", "mov.b32", "mov.b32", "st.local.v4.b32",
+                                        "rt.report", "ssy", "bra", "SaveLive", "call.sbt.anyhit",
+                                        "RestoreLive", "join", "ret"});
+  CHECK(count(lowered(".rint",
+                      "hitAttributeEXT float a;\nvoid main() { if (reportIntersectionEXT(0.5, 7u)) { a = "
+                      "1.0; reportIntersectionEXT(0.25, 0u); } }\n"),
+              "rt.accepted") == 1);
 }
 
 TEST_CASE("triangle attributes are specials, other attributes lie in memory") {
   const std::string payload = "layout(location = 0) rayPayloadInEXT vec4 p;\n";
-  const VirtualProgram pair = lowered(".rchit", payload + "hitAttributeEXT vec2 uv;\nvoid main() { p.xy = uv; }\n");
+  const VirtualProgram pair =
+      lowered(".rchit", payload + "hitAttributeEXT vec2 uv;\nvoid main() { p.xy = uv; }\n");
   CHECK(count(pair, "ld.local.b32") + count(pair, "ld.local.v2.b32") == 0);
-  const VirtualProgram sphere = lowered(".rchit", payload + "hitAttributeEXT vec4 s;\nvoid main() { p = s; }\n");
+  const VirtualProgram sphere =
+      lowered(".rchit", payload + "hitAttributeEXT vec4 s;\nvoid main() { p = s; }\n");
   CHECK(count(sphere, "ld.local.v4.b32") == 1);
   CHECK(sphere.attribute_bytes == 16);
 }
 
 TEST_CASE("ignore and terminate end an any-hit shader, also inside of a loop") {
-  const VirtualProgram program = lowered(".rahit", "hitAttributeEXT vec2 uv;\nlayout(location = 0) rayPayloadInEXT vec4 p;\n"
-      "void main() { for (int i = 0; i < int(p.x); ++i) { if (uv.x > p.y) ignoreIntersectionEXT; if (uv.y > p.z) terminateRayEXT; p.z += 1.0; } }\n");
+  const VirtualProgram program =
+      lowered(".rahit",
+              "hitAttributeEXT vec2 uv;\nlayout(location = 0) rayPayloadInEXT vec4 p;\n"
+              "void main() { for (int i = 0; i < int(p.x); ++i) { if (uv.x > p.y) ignoreIntersectionEXT; if "
+              "(uv.y > p.z) terminateRayEXT; p.z += 1.0; } }\n");
   CHECK(count(program, "rt.ignore") == 1);
   CHECK(count(program, "rt.terminate") == 1);
   CHECK(count(program, "ret") == 1);
@@ -108,25 +127,32 @@ TEST_CASE("ignore and terminate end an any-hit shader, also inside of a loop") {
 TEST_CASE("everything unsupported is listed at once, with op, file and line") {
   const std::string body =
       "layout(binding = 0) buffer B { uint n; float f; } b;\nlayout(binding = 1) uniform sampler3D volume;\n"
-      "layout(local_size_x = 1) in;\nshared uint s;\nvoid main() {\n  atomicAdd(b.n, 1u);\n  atomicAdd(b.n, 2u);\n"
-      "  b.f = textureLod(volume, vec3(0), 0.0).x;\n  s = b.n;\n  barrier();\n  b.f += ldexp(b.f, int(s));\n}\n";
+      "layout(local_size_x = 1) in;\nshared uint s;\nvoid main() {\n  atomicAdd(b.n, 1u);\n  atomicAdd(b.n, "
+      "2u);\n"
+      "  b.f = textureLod(volume, vec3(0), 0.0).x;\n  s = b.n;\n  barrier();\n  b.f += ldexp(b.f, "
+      "int(s));\n}\n";
   std::string message;
   try {
     lowered(".comp", body);
   } catch (const UnsupportedError& error) {
     message = error.what();
   }
-  for (const char* expected : {":10: OpAtomicIAdd", ":11: OpAtomicIAdd", ":12: images that are not 2D", ":14: OpControlBarrier",
-                               "storage class 4", ":15: GLSL.std.450 function 53"})
+  for (const char* expected : {":10: OpAtomicIAdd", ":11: OpAtomicIAdd", ":12: images that are not 2D",
+                               ":14: OpControlBarrier", "storage class 4", ":15: GLSL.std.450 function 53"})
     CHECK_THAT(message, Contains(expected));
 }
 
 TEST_CASE("an intersection shader with a pair of floats as attributes is refused, not miscompiled") {
-  CHECK_THROWS_AS(lowered(".rint", "hitAttributeEXT vec2 a;\nvoid main() { a = vec2(1); reportIntersectionEXT(0.5, 7u); }\n"), UnsupportedError);
+  CHECK_THROWS_AS(
+      lowered(".rint",
+              "hitAttributeEXT vec2 a;\nvoid main() { a = vec2(1); reportIntersectionEXT(0.5, 7u); }\n"),
+      UnsupportedError);
 }
 
 TEST_CASE("textures of an array have consecutive handles") {
-  const VirtualProgram program = lowered(".rmiss", "layout(set = 1, binding = 2) uniform sampler2D t[];\nlayout(location = 0) rayPayloadInEXT vec4 p;\n"
+  const VirtualProgram program = lowered(
+      ".rmiss",
+      "layout(set = 1, binding = 2) uniform sampler2D t[];\nlayout(location = 0) rayPayloadInEXT vec4 p;\n"
       "void main() { p = textureLod(t[nonuniformEXT(int(p.x))], p.yz, 0.0); }\n");
   const VirtualInst& handle = only(program, "ld.const.b32");
   CHECK(handle.imm == 1024 + 2 * 16);

@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/unit/frontend/shader_lab.h"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <bit>
 #include <cstring>
+#include <fmt/format.h>
 #include <fstream>
+#include <unistd.h>
 
 #include "core/executor.h"
 #include "core/image.h"
@@ -36,8 +35,10 @@ std::string Folder::write(const std::string& name, const std::string& text) cons
 }
 
 std::string source(const std::string& body) {
-  return "#version 460\n#extension GL_EXT_ray_tracing : require\n#extension GL_EXT_nonuniform_qualifier : require\n"
-         "#extension GL_EXT_scalar_block_layout : require\n" + body;
+  return "#version 460\n#extension GL_EXT_ray_tracing : require\n#extension GL_EXT_nonuniform_qualifier : "
+         "require\n"
+         "#extension GL_EXT_scalar_block_layout : require\n" +
+         body;
 }
 
 std::vector<uint32_t> simplified(const std::string& ending, const std::string& body) {
@@ -74,8 +75,8 @@ void put_descriptor(core::World& world, uint32_t binding, uint64_t address, uint
 
 }  // namespace
 
-std::vector<uint32_t> run(const std::vector<uint32_t>& inputs, const std::string& statements, const std::string& globals,
-                          const BackendOptions& options) {
+std::vector<uint32_t> run(const std::vector<uint32_t>& inputs, const std::string& statements,
+                          const std::string& globals, const BackendOptions& options) {
   const std::string body =
       "layout(local_size_x = 32) in;\n"
       "layout(binding = 0) readonly buffer In { uint values[]; } inputs;\n"
@@ -117,11 +118,13 @@ std::vector<uint32_t> run(const std::vector<uint32_t>& inputs, const std::string
   return result;
 }
 
-std::vector<float> run_f32(const std::vector<float>& inputs, const std::string& expression_of_f, const std::string& globals) {
+std::vector<float> run_f32(const std::vector<float>& inputs, const std::string& expression_of_f,
+                           const std::string& globals) {
   std::vector<uint32_t> bits;
   for (float f : inputs) bits.push_back(std::bit_cast<uint32_t>(f));
   std::vector<float> result;
-  for (uint32_t y : run(bits, "  y = floatBitsToUint(" + expression_of_f + ");", globals)) result.push_back(std::bit_cast<float>(y));
+  for (uint32_t y : run(bits, "  y = floatBitsToUint(" + expression_of_f + ");", globals))
+    result.push_back(std::bit_cast<float>(y));
   return result;
 }
 
