@@ -21,7 +21,7 @@ struct Query {
 
 class EmbreeIntersector final : public Intersector {
  public:
-  EmbreeIntersector(const scenes::Scene& scene, bool exact) : scene_(scene), device_(rtcNewDevice(nullptr)) {
+  EmbreeIntersector(const scenes::Scene& scene, bool exact) : device_(rtcNewDevice(nullptr)) {
     GLINT_CHECK(device_ != nullptr, "Embree cannot start: error {}", int(rtcGetDeviceError(nullptr)));
     tree_ = rtcNewScene(device_);
     rtcSetSceneFlags(tree_, RTC_SCENE_FLAG_ROBUST);
@@ -129,7 +129,6 @@ class EmbreeIntersector final : public Intersector {
     query.best = hit;
   }
 
-  const scenes::Scene& scene_;
   RTCDevice device_;
   RTCScene tree_ = nullptr;
 };
