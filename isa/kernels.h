@@ -34,7 +34,7 @@ inline constexpr double kRoundMagic = 6755399441055744.0;
 [[gnu::always_inline]] inline double sin_of_reduced(double r) {
   const double s = r * r;
   const double p = -1.0 / 6 + s * (1.0 / 120 + s * (-1.0 / 5040 + s * (1.0 / 362880 + s * (-1.0 / 39916800))));
-  return r + r * (s * p);
+  return r * (1.0 + s * p);  // a product: r + ... would lose the sign of -0
 }
 [[gnu::always_inline]] inline double cos_of_reduced(double r) {
   const double s = r * r;

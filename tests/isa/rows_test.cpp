@@ -1,0 +1,217 @@
+// Tests that follow from the rows of the op table alone: examples, masks, and bits equal on all SIMD paths.
+// SPDX-License-Identifier: Apache-2.0
+#include <set>
+#include <string>
+
+#include "isa/paths.h"
+#include "tests/isa/warp_fixture.h"
+#include "tests/support/catch.h"
+
+using namespace glint;
+using namespace glint::isa;
+
+namespace {
+
+constexpr LaneMask kSparse = 0x8421'0f07;
+
+// xorshift64*: the same inputs on every machine.
+uint64_t next_random(uint64_t& state) {
+  state ^= state >> 12;
+  state ^= state << 25;
+  state ^= state >> 27;
+  return state * 0x2545'f491'4f6c'dd1dull;
+}
+
+// Bits that go wrong: zeros, ones, extremes of integers and floats, NaN, subnormals, shift counts.
+constexpr uint32_t kCorners[] = {0, 1, 2, 7, 31, 32, 33, 63, 64, 255, 0x7fff'ffff, 0x8000'0000, 0x8000'0001, 0xffff'ffff,
+                                 0xffff'fffe, 0x3f80'0000, 0xbf80'0000, 0x3f00'0000, 0xbfc0'0000, 0x7f80'0000, 0xff80'0000,
+                                 0x7fc0'0000, 0x7f80'0001, 0xffc0'1234, 0x0080'0000, 0x007f'ffff, 0x4f00'0000, 0x4f80'0000,
+                                 0xcf00'0000, 0x4b00'0001, 0x7f7f'ffff, 0x4049'0fdb};
+
+uint32_t test_word(uint64_t& state) {
+  const uint64_t r = next_random(state);
+  switch (r >> 62) {
+    case 0: return kCorners[(r >> 32) % std::size(kCorners)];
+    case 1: return 0x3000'0000u + (uint32_t(r) & 0x9fff'ffffu);  // floats of moderate size
+    default: return uint32_t(r >> 8);
+  }
+}
+
+std::vector<Path> paths() {
+  std::vector<Path> out;
+  for (int p = 0; p < int(Path::Count); ++p)
+    if (is_supported(Path(p))) out.push_back(Path(p));
+  return out;
+}
+
+// Fills every register and predicate, runs the op, and returns all of them.
+std::vector<uint32_t> run_random(const OpRow& row, uint16_t op, uint64_t seed, LaneMask exec) {
+  WarpFixture w;
+  for (LaneMask& p : w.warp.predicate) p = LaneMask(next_random(seed));
+  for (int r = 0; r < WarpFixture::kRows; ++r)
+    for (int lane = 0; lane < kLanes; ++lane) w.at(r, lane) = test_word(seed);
+  w.warp.exec = exec;
+  row.run(w.warp, spread(row, op));
+  return w.snapshot();
+}
+
+}  // namespace
+
+TEST_CASE("every row is complete: a name of its own, a sentence, a handler and two examples if it computes") {
+  std::set<std::string> names;
+  for (const OpRow& row : op_table()) {
+    INFO(row.name);
+    CHECK(names.insert(std::string(row.name)).second);
+    CHECK(row.doc.ends_with("."));
+    CHECK(row.run != nullptr);
+    CHECK(find_op(row.name) == &row - op_table().data());
+    if (is_value_op(row)) CHECK(row.examples.count >= 2);
+    int slots = 0;
+    for (const OperandKind kind : row.operands.view()) slots += slots_of(kind);
+    CHECK(slots <= kMaxOperands);
+  }
+  CHECK(find_op("add.u31") == -1);
+}
+
+TEST_CASE("the rows have the same names in the same order on every path") {
+  for (int p = 0; p < int(Path::Count); ++p) {
+    const std::span<const OpRow> table = op_table(Path(p));
+    REQUIRE(table.size() == op_table().size());
+    for (size_t i = 0; i < table.size(); ++i) CHECK(table[i].name == op_table()[i].name);
+  }
+  uint16_t first = 0;
+  for (const Family& family : families()) {
+    CHECK(family.first == first);
+    first = uint16_t(first + family.count);
+  }
+  CHECK(first == op_table().size());
+}
+
+TEST_CASE("each example holds on every path under full and sparse masks, and inactive lanes keep their values") {
+  for (const Path path : paths())
+    for (const OpRow& row : op_table(path))
+      for (const Example& example : row.examples.view())
+        for (const LaneMask exec : {kAllLanes, kSparse, LaneMask{0}}) {
+          WarpFixture w;
+          const Inst inst = spread(row, 0);
+          size_t input = 0;
+          int slot = 0;
+          for (const OperandKind kind : row.operands.view()) {
+            if (!is_destination(kind)) {
+              for (int lane = 0; lane < kLanes; ++lane) w.set(kind, inst.operand[slot], lane, example.in[input]);
+              ++input;
+            }
+            slot += slots_of(kind);
+          }
+          w.warp.predicate[0] |= 0x5555'0000;  // an old value of the destination
+          WarpFixture before;
+          before.warp.predicate = w.warp.predicate;
+          w.warp.exec = exec;
+          row.run(w.warp, inst);
+          const OperandKind kind = row.operands.kind[0];
+          INFO(name_of(path) << " " << row.name << " mask " << exec);
+          int wrong = 0;
+          for (int lane = 0; lane < kLanes; ++lane) {
+            const bool is_active = exec >> lane & 1;
+            const uint64_t expected = is_active ? example.out : before.get(kind, inst.operand[0], lane);
+            wrong += w.get(kind, inst.operand[0], lane) != expected;
+          }
+          CHECK(wrong == 0);
+        }
+}
+
+TEST_CASE("every value op gives the same bits on every path for random and extreme inputs") {
+  for (size_t op = 0; op < op_table().size(); ++op) {
+    const OpRow& row = op_table(Path::Baseline)[op];
+    if (!is_value_op(row)) continue;
+    INFO(row.name);
+    int different = 0;
+    for (uint64_t round = 0; round < 200; ++round) {
+      const LaneMask exec = round % 2 ? kSparse : kAllLanes;
+      const auto expected = run_random(row, uint16_t(op), round * 977 + 1, exec);
+      for (const Path path : paths())
+        different += run_random(op_table(path)[op], uint16_t(op), round * 977 + 1, exec) != expected;
+    }
+    CHECK(different == 0);
+  }
+}
+
+TEST_CASE("a masked run equals the full run on its lanes and changes nothing else") {
+  for (const Path path : paths())
+    for (size_t op = 0; op < op_table().size(); ++op) {
+      const OpRow& row = op_table(path)[op];
+      if (!is_value_op(row)) continue;
+      INFO(name_of(path) << " " << row.name);
+      const auto full = run_random(row, uint16_t(op), 77, kAllLanes);
+      const auto none = run_random(row, uint16_t(op), 77, 0);
+      const auto some = run_random(row, uint16_t(op), 77, kSparse);
+      int wrong = 0;
+      for (size_t i = 0; i < kNumPredicates; ++i) wrong += some[i] != ((full[i] & kSparse) | (none[i] & ~kSparse));
+      for (size_t i = kNumPredicates; i < some.size(); ++i)
+        wrong += some[i] != (kSparse >> ((i - kNumPredicates) % kLanes) & 1 ? full : none)[i];
+      CHECK(wrong == 0);
+    }
+}
+
+TEST_CASE("a destination may be any of its sources") {
+  for (const Path path : paths())
+    for (size_t op = 0; op < op_table().size(); ++op) {
+      const OpRow& row = op_table(path)[op];
+      if (!is_value_op(row) || row.operands.kind[0] == OperandKind::DstVec2) continue;
+      Inst apart = spread(row, uint16_t(op)), same = apart;
+      for (int s = 1; s < row.operands.count; ++s)
+        if (WarpFixture::is_wide(row.operands.kind[s]) == WarpFixture::is_wide(row.operands.kind[0]) &&
+            (row.operands.kind[s] == OperandKind::SrcPred) == (row.operands.kind[0] == OperandKind::DstPred)) {
+          same.operand[0] = apart.operand[s];
+          WarpFixture a, b;
+          uint64_t seed = 5 + op;
+          for (int r = 0; r < WarpFixture::kRows; ++r)
+            for (int lane = 0; lane < kLanes; ++lane) a.at(r, lane) = b.at(r, lane) = test_word(seed);
+          for (int p = 0; p < kNumPredicates; ++p) a.warp.predicate[p] = b.warp.predicate[p] = uint32_t(next_random(seed));
+          a.warp.exec = b.warp.exec = s % 2 ? kAllLanes : kSparse;
+          row.run(a.warp, apart);
+          row.run(b.warp, same);
+          int wrong = 0;
+          for_each_lane(a.warp.exec, [&](int lane) {
+            wrong += a.get(row.operands.kind[0], apart.operand[0], lane) != b.get(row.operands.kind[0], same.operand[0], lane);
+          });
+          INFO(name_of(path) << " " << row.name << " source " << s);
+          CHECK(wrong == 0);
+        }
+    }
+}
+
+TEST_CASE("memory and texture ops form the addresses of the active lanes and touch no register") {
+  for (const Path path : paths())
+    for (size_t op = 0; op < op_table().size(); ++op) {
+      const OpRow& row = op_table(path)[op];
+      if (row.klass != Class::Mem && row.klass != Class::Tex) continue;
+      INFO(name_of(path) << " " << row.name);
+      WarpFixture w;
+      Inst inst = spread(row, uint16_t(op));
+      int slot = 0, at = -1;
+      bool is_wide = false;
+      for (const OperandKind kind : row.operands.view()) {
+        if (at < 0 && (kind == OperandKind::Address64 || kind == OperandKind::Address32 || kind == OperandKind::Src32)) {
+          if (row.klass == Class::Tex || kind != OperandKind::Src32) at = slot, is_wide = kind == OperandKind::Address64;
+        }
+        slot += slots_of(kind);
+      }
+      REQUIRE(at >= 0);
+      inst.imm = row.klass == Class::Tex ? 0 : -16;
+      for (int lane = 0; lane < kLanes; ++lane)
+        w.set(is_wide ? OperandKind::Src64 : OperandKind::Src32, inst.operand[at], lane,
+              is_wide ? 0x1'0000'0008ull + uint64_t(lane) * 4 : uint64_t(lane) * 4);
+      const auto before = w.snapshot();
+      w.warp.exec = kSparse;
+      row.run(w.warp, inst);
+      CHECK(w.snapshot() == before);
+      for_each_lane(kSparse, [&](int lane) {
+        const uint64_t base = is_wide ? 0x1'0000'0008ull + uint64_t(lane) * 4 : uint64_t(lane) * 4;
+        const uint64_t sum = base + uint64_t(int64_t(inst.imm));
+        CHECK(w.warp.access.address[lane] == (is_wide ? sum : uint32_t(sum)));
+        if (row.klass == Class::Tex) CHECK(w.warp.access.u[lane] == w.at(inst.operand[at + 1], lane));
+        if (row.klass == Class::Tex) CHECK(w.warp.access.v[lane] == w.at(inst.operand[at + 2], lane));
+      });
+    }
+}

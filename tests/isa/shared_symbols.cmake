@@ -1,0 +1,13 @@
+# Fails if an object of a SIMD path defines a weak or unique symbol outside the path's namespace, which the
+# linker could hand to code that runs on machines without these instructions.
+# cmake -DNM=nm -DOBJECTS=a;b -DSCOPE=glint::isa::avx2:: -P shared_symbols.cmake
+# SPDX-License-Identifier: Apache-2.0
+foreach(object ${OBJECTS})
+  execute_process(COMMAND ${NM} -C ${object} OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
+  string(REGEX MATCHALL "[^\n]* [WVu] [^\n]*" shared "${symbols}")
+  foreach(symbol ${shared})
+    if(NOT symbol MATCHES " [WVu] [^\n]*${SCOPE}")
+      message(SEND_ERROR "${object} shares '${symbol}'")
+    endif()
+  endforeach()
+endforeach()
