@@ -1,4 +1,4 @@
-// Encoding, branch clean-up and label resolution.
+// Encoding, layout and label resolution.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/backend/emit.h"
 
@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/check.h"
+#include "frontend/backend/branches.h"
 
 namespace glint::frontend {
 
@@ -27,14 +28,6 @@ isa::Slot ConstantTable::pair(uint64_t value) {
 }
 
 namespace {
-
-// An encoded instruction whose label is still a block.
-struct Coded {
-  isa::Inst inst;
-  isa::Line line;
-  BlockId target = kNoBlock;
-};
-using Code = std::vector<std::vector<Coded>>;  // one a block, in layout order
 
 class Encoder {
  public:
@@ -111,100 +104,6 @@ class Encoder {
   ConstantTable constants_;
 };
 
-// Removes what control flow does not need.
-class BranchCleaner {
- public:
-  BranchCleaner(Code& code, const Ops& ops) : code_(code), ops_(ops) {}
-
-  void run() {
-    for (bool changed = true; changed;) {
-      thread();
-      changed = drop_unreachable();
-      for (size_t b = 0; b < code_.size(); ++b) changed |= tidy_end(b);
-    }
-  }
-
- private:
-  static bool is_guarded(const Coded& c) { return c.inst.guard != isa::kNoGuard; }
-  bool is_branch(const Coded& c) const { return c.inst.op == ops_.bra; }
-  bool leaves(const Coded& c) const {
-    const isa::Effect effect = isa::op_table()[c.inst.op].effect;
-    return !is_guarded(c) && (effect == isa::Effect::Branch || effect == isa::Effect::Exit ||
-                              effect == isa::Effect::Return || effect == isa::Effect::Ignore ||
-                              effect == isa::Effect::Terminate);
-  }
-  size_t first_code(size_t block) const {
-    while (block < code_.size() && code_[block].empty()) ++block;
-    return block;
-  }
-
-  // A branch to an unguarded branch goes to that one's target. An endless ring of branches stays as it is.
-  void thread() {
-    for (std::vector<Coded>& block : code_)
-      for (Coded& c : block) {
-        if (!is_branch(c)) continue;
-        for (size_t hops = 0; hops < code_.size(); ++hops) {
-          const size_t at = first_code(c.target);
-          if (at == code_.size() || !is_branch(code_[at].front()) || is_guarded(code_[at].front())) break;
-          c.target = code_[at].front().target;
-        }
-      }
-  }
-
-  bool drop_unreachable() {
-    std::vector<bool> seen(code_.size());
-    std::vector<size_t> work{0};
-    bool changed = false;
-    while (!work.empty()) {
-      const size_t b = work.back();
-      work.pop_back();
-      if (b >= code_.size() || seen[b]) continue;
-      seen[b] = true;
-      std::vector<Coded>& block = code_[b];
-      const auto last = std::find_if(block.begin(), block.end(), [&](const Coded& c) { return leaves(c); });
-      if (last != block.end() && last + 1 != block.end()) {
-        block.erase(last + 1, block.end());
-        changed = true;
-      }
-      for (const Coded& c : block)
-        if (c.target != kNoBlock) work.push_back(c.target);
-      if (block.empty() || !leaves(block.back())) work.push_back(b + 1);
-    }
-    for (size_t b = 0; b < code_.size(); ++b) {
-      if (seen[b] || code_[b].empty()) continue;
-      code_[b].clear();
-      changed = true;
-    }
-    return changed;
-  }
-
-  bool tidy_end(size_t b) {
-    std::vector<Coded>& block = code_[b];
-    const size_t next = first_code(b + 1);
-    const auto goes_next = [&](const Coded& c) { return is_branch(c) && first_code(c.target) == next; };
-    if (!block.empty() && goes_next(block.back())) {
-      block.pop_back();
-      return true;
-    }
-    if (block.size() < 2) return false;
-    Coded& choice = block[block.size() - 2];
-    if (!is_branch(choice) || !is_guarded(choice) || !is_branch(block.back()) || is_guarded(block.back())) return false;
-    if (goes_next(choice)) {
-      choice.inst.guard ^= isa::kGuardNegate;
-      choice.target = block.back().target;
-    } else if (first_code(choice.target) != first_code(block.back().target)) {
-      return false;
-    } else {
-      std::swap(choice, block.back());  // both ways lead to the same place: the guarded one goes
-    }
-    block.pop_back();
-    return true;
-  }
-
-  Code& code_;
-  const Ops& ops_;
-};
-
 std::string label_text(const std::string& name, size_t block, std::set<std::string>& used) {
   std::string text = name.empty() ? "L" + std::to_string(block) : name;
   for (char& c : text)
@@ -248,7 +147,7 @@ isa::Program emit(const VirtualProgram& program, const Allocation& allocation, c
   out.attribute_bytes = program.attribute_bytes;
   out.local_size = program.local_size;
   Code code = Encoder(program, allocation, ops, out).run();
-  BranchCleaner(code, ops).run();
+  clean_branches(code, ops);
   lay_out(program, code, out);
   return out;
 }

@@ -35,6 +35,7 @@ class Sweep {
   bool run() {
     const std::vector<bool> enters_inside = enters_in_region(program_);
     for (BlockId b = 0; b < program_.blocks.size(); ++b) {
+      block_ = &program_.blocks[b];
       inside_region_ = enters_inside[b];
       for (VirtualInst& inst : program_.blocks[b].code) {
         if (inst.kind == VirtualInst::Kind::SaveLive) inside_region_ = true;
@@ -59,6 +60,17 @@ class Sweep {
   // True when the operand means the same at every place that its user's definition reaches.
   bool is_stable(const Operand& o) const {
     return is_constant(o) || definition(o) != nullptr || (o.kind == Operand::Kind::Special && is_fixed(o.special));
+  }
+  // True when the operand still means at `inst` what it meant at `source`: it is stable, or both stand in one block and
+  // nothing between them writes it.
+  bool is_unchanged(const Operand& o, const VirtualInst& source, const VirtualInst& inst) const {
+    if (is_stable(o)) return true;
+    const VirtualInst* const first = block_->code.data();
+    if (!is_register(o) || &source < first || &source >= &inst) return false;
+    bool changes = false;
+    for (const VirtualInst* between = &source; between < &inst; ++between)
+      for_each_def(*between, [&](VirtualRegister r) { changes |= r == o.reg; });
+    return !changes;
   }
   bool is_used_once(const Operand& o) const { return is_register(o) && uses_[o.reg] == 1; }
 
@@ -171,7 +183,7 @@ class Sweep {
       if (!is_constant(b) || b.constant > 31) return false;
       b = Operand::value(uint64_t{1} << b.constant);
     }
-    if (!is_stable(a) || !is_stable(b)) return false;
+    if (!is_unchanged(a, source, inst) || !is_unchanged(b, source, inst)) return false;
     become(inst, ops_.mad_lo_u32, {a, b, addend});
     return true;
   }
@@ -189,13 +201,13 @@ class Sweep {
     }
     const bool is_signed = source->op == ops_.widen_s32 || source->op == ops_.mul_wide_s32;
     if (source->op == ops_.widen_u32 || source->op == ops_.widen_s32) {
-      if (!is_stable(source->operands[1])) return false;
+      if (!is_unchanged(source->operands[1], *source, inst)) return false;
       become(inst, is_signed ? ops_.mad_wide_s32 : ops_.mad_wide_u32,
              {source->operands[1], Operand::value(uint64_t{1} << shift), addend});
       return true;
     }
     if (shift != 0 || (source->op != ops_.mul_wide_u32 && source->op != ops_.mul_wide_s32)) return false;
-    if (!is_stable(source->operands[1]) || !is_stable(source->operands[2])) return false;
+    if (!is_unchanged(source->operands[1], *source, inst) || !is_unchanged(source->operands[2], *source, inst)) return false;
     become(inst, is_signed ? ops_.mad_wide_s32 : ops_.mad_wide_u32, {source->operands[1], source->operands[2], addend});
     return true;
   }
@@ -212,6 +224,7 @@ class Sweep {
   const Ops& ops_;
   std::vector<uint32_t> definitions_, uses_;
   std::vector<VirtualInst*> definition_;
+  const VirtualBlock* block_ = nullptr;  // that the sweep is in
   bool inside_region_ = false, changed_ = false;
 };
 

@@ -1,0 +1,216 @@
+// Branch clean-up over encoded blocks.
+// SPDX-License-Identifier: Apache-2.0
+#include "frontend/backend/branches.h"
+
+#include <algorithm>
+
+namespace glint::frontend {
+namespace {
+
+class BranchCleaner {
+ public:
+  BranchCleaner(Code& code, const Ops& ops) : code_(code), ops_(ops) {}
+
+  void run() {
+    clean();
+    if (!rotate_loops()) return;
+    clean();
+  }
+
+ private:
+  void clean() {
+    for (bool changed = true; changed;) {
+      thread();
+      changed = drop_unreachable();
+      for (size_t b = 0; b < code_.size(); ++b) changed |= tidy_end(b);
+      changed |= merge_straight_lines();
+      changed |= drop_lone_joins();
+    }
+  }
+
+  static bool is_guarded(const Coded& c) { return c.inst.guard != isa::kNoGuard; }
+  bool is_branch(const Coded& c) const { return c.inst.op == ops_.bra; }
+  bool leaves(const Coded& c) const {
+    const isa::Effect effect = isa::op_table()[c.inst.op].effect;
+    return !is_guarded(c) && (effect == isa::Effect::Branch || effect == isa::Effect::Exit ||
+                              effect == isa::Effect::Return || effect == isa::Effect::Ignore ||
+                              effect == isa::Effect::Terminate);
+  }
+  bool falls_through(size_t block) const { return code_[block].empty() || !leaves(code_[block].back()); }
+  size_t first_code(size_t block) const {
+    while (block < code_.size() && code_[block].empty()) ++block;
+    return block;
+  }
+
+  // A branch to an unguarded branch goes to that one's target. An endless ring of branches stays as it is.
+  void thread() {
+    for (std::vector<Coded>& block : code_)
+      for (Coded& c : block) {
+        if (!is_branch(c)) continue;
+        for (size_t hops = 0; hops < code_.size(); ++hops) {
+          const size_t at = first_code(c.target);
+          if (at == code_.size() || !is_branch(code_[at].front()) || is_guarded(code_[at].front())) break;
+          c.target = code_[at].front().target;
+        }
+      }
+  }
+
+  bool drop_unreachable() {
+    std::vector<bool> seen(code_.size());
+    std::vector<size_t> work{0};
+    bool changed = false;
+    while (!work.empty()) {
+      const size_t b = work.back();
+      work.pop_back();
+      if (b >= code_.size() || seen[b]) continue;
+      seen[b] = true;
+      std::vector<Coded>& block = code_[b];
+      const auto last = std::find_if(block.begin(), block.end(), [&](const Coded& c) { return leaves(c); });
+      if (last != block.end() && last + 1 != block.end()) {
+        block.erase(last + 1, block.end());
+        changed = true;
+      }
+      for (const Coded& c : block)
+        if (c.target != kNoBlock) work.push_back(c.target);
+      if (falls_through(b)) work.push_back(b + 1);
+    }
+    for (size_t b = 0; b < code_.size(); ++b) {
+      if (seen[b] || code_[b].empty()) continue;
+      code_[b].clear();
+      changed = true;
+    }
+    return changed;
+  }
+
+  bool tidy_end(size_t b) {
+    std::vector<Coded>& block = code_[b];
+    const size_t next = first_code(b + 1);
+    const auto goes_next = [&](const Coded& c) { return is_branch(c) && first_code(c.target) == next; };
+    if (!block.empty() && goes_next(block.back())) {
+      block.pop_back();
+      return true;
+    }
+    if (block.size() < 2) return false;
+    Coded& choice = block[block.size() - 2];
+    if (!is_branch(choice) || !is_guarded(choice) || !is_branch(block.back()) || is_guarded(block.back())) return false;
+    if (goes_next(choice)) {
+      choice.inst.guard ^= isa::kGuardNegate;
+      choice.target = block.back().target;
+    } else if (first_code(choice.target) != first_code(block.back().target)) {
+      return false;
+    } else {
+      std::swap(choice, block.back());  // both ways lead to the same place: the guarded one goes
+    }
+    block.pop_back();
+    return true;
+  }
+
+  // Edges that lead to each block by a branch, and ssy instructions that name it; empty blocks pass theirs on.
+  struct Edges {
+    uint32_t branches = 0, ssys = 0;
+    size_t from = 0;  // block of the last branch
+  };
+  std::vector<Edges> count_edges() const {
+    std::vector<Edges> edges(code_.size() + 1);
+    for (size_t b = 0; b < code_.size(); ++b)
+      for (const Coded& c : code_[b]) {
+        if (c.target == kNoBlock) continue;
+        Edges& to = edges[first_code(c.target)];
+        if (!is_branch(c)) {
+          ++to.ssys;
+        } else {
+          ++to.branches;
+          to.from = b;
+        }
+      }
+    return edges;
+  }
+
+  bool merge_straight_lines() {
+    const std::vector<Edges> edges = count_edges();
+    bool changed = false;
+    size_t into = first_code(0);
+    for (size_t b = first_code(into + 1); b < code_.size(); b = first_code(b + 1)) {
+      if (edges[b].branches + edges[b].ssys == 0 && falls_through(into)) {
+        code_[into].insert(code_[into].end(), code_[b].begin(), code_[b].end());
+        code_[b].clear();
+        changed = true;
+      } else {
+        into = b;
+      }
+    }
+    return changed;
+  }
+
+  bool drop_lone_joins() {
+    const std::vector<Edges> edges = count_edges();
+    size_t before = code_.size();  // the block that precedes in layout
+    for (size_t b = first_code(0); b < code_.size(); before = b, b = first_code(b + 1)) {
+      if (code_[b].front().inst.op != ops_.join || edges[b].ssys != 1) continue;
+      const bool falls_in = before < code_.size() && falls_through(before);
+      if (edges[b].branches + falls_in != 1) continue;
+      std::vector<Coded>& from = code_[falls_in ? before : edges[b].from];
+      const auto ssy = std::find_if(from.begin(), from.end(), [&](const Coded& c) {
+        return c.inst.op == ops_.ssy && first_code(c.target) == b;
+      });
+      if (ssy == from.end()) continue;
+      code_[b].erase(code_[b].begin());
+      from.erase(ssy);
+      return true;  // the edges have changed
+    }
+    return false;
+  }
+
+  // `bra H` at the end of a loop, where H is a few plain instructions and `@p bra out`, falling into the body: a copy of
+  // them with `@!p bra body` takes the branch's place.
+  bool rotate_loops() {
+    constexpr size_t kLongestTest = 5;  // instructions copied, the branch included
+    bool changed = false;
+    for (size_t b = 0; b < code_.size(); ++b) {
+      std::vector<Coded>& block = code_[b];
+      if (block.empty() || !is_branch(block.back()) || is_guarded(block.back())) continue;
+      const size_t head = first_code(block.back().target);
+      if (head > b || head == code_.size()) continue;
+      const auto test = std::find_if(code_[head].begin(), code_[head].end(), [&](const Coded& c) { return is_branch(c); });
+      const size_t length = size_t(test - code_[head].begin()) + 1;
+      if (test == code_[head].end() || !is_guarded(*test) || length > kLongestTest) continue;
+      if (first_code(test->target) <= head) continue;
+      if (!std::all_of(code_[head].begin(), test, [&](const Coded& c) { return isa::op_table()[c.inst.op].effect == isa::Effect::None || isa::op_table()[c.inst.op].effect == isa::Effect::Load; }))
+        continue;
+      const BlockId body = split_behind(head, length);
+      if (body == kNoBlock) continue;
+      const std::vector<Coded> copied = code_[head];
+      std::vector<Coded>& bottom = code_[b == head ? body : b];
+      bottom.pop_back();
+      bottom.insert(bottom.end(), copied.begin(), copied.end());
+      Coded leave = bottom.back();
+      leave.inst.guard = isa::kNoGuard;
+      bottom.back().inst.guard ^= isa::kGuardNegate;
+      bottom.back().target = body;
+      bottom.push_back(leave);
+      changed = true;
+    }
+    return changed;
+  }
+
+  // Splits a block behind its first `length` instructions; the rest moves to the block behind it, which must be free.
+  BlockId split_behind(size_t block, size_t length) {
+    if (length == code_[block].size()) {
+      const size_t next = first_code(block + 1);
+      return next == code_.size() ? kNoBlock : BlockId(next);
+    }
+    if (block + 1 >= code_.size() || !code_[block + 1].empty()) return kNoBlock;
+    code_[block + 1].assign(code_[block].begin() + std::ptrdiff_t(length), code_[block].end());
+    code_[block].resize(length);
+    return BlockId(block + 1);
+  }
+
+  Code& code_;
+  const Ops& ops_;
+};
+
+}  // namespace
+
+void clean_branches(Code& code, const Ops& ops) { BranchCleaner(code, ops).run(); }
+
+}  // namespace glint::frontend
