@@ -52,7 +52,8 @@ SourceLocation location(const toml::table& table, std::string_view key) {
 
 // Copies node by node so that each key keeps the file and line it came from.
 void merge(toml::table& into, const toml::table& from) {
-  for (const auto& [key, node] : from) {
+  for (const auto& [from_key, node] : from) {
+    const toml::key& key = from_key;  // clang 14 captures no structured bindings
     toml::table* old = into.contains(key) ? into[key].as_table() : nullptr;
     if (old && node.is_table())
       merge(*old, *node.as_table());

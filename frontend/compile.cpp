@@ -18,8 +18,9 @@ std::optional<isa::Stage> stage_of_file(const std::string& path) {
   return std::nullopt;
 }
 
-isa::Program compile_file(const std::string& path, const GlslOptions& glsl, const BackendOptions& options) {
-  return lower(simplify(glsl_to_spirv(path, glsl), path), path, options);
+isa::Program compile_file(const std::string& path, const GlslOptions& glsl, const BackendOptions& options,
+                          Diagnostics& warnings) {
+  return lower(simplify(glsl_to_spirv(path, glsl), path, warnings), path, options);
 }
 
 }  // namespace glint::frontend

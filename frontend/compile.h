@@ -29,7 +29,8 @@ std::optional<isa::Stage> stage_of_file(const std::string& path);
 std::vector<uint32_t> glsl_to_spirv(const std::string& path, const GlslOptions& options);
 
 // Pass list R1 (reference: docs/frontend.md): inline all, scalarise, SSA; validated before and after.
-std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& name);
+// When the optimiser fails, `warnings` hears of it and the module comes back as it was.
+std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& name, Diagnostics& warnings);
 
 // SPIR-V text, for `glint compile --emit spirv`.
 std::string disassemble_spirv(const std::vector<uint32_t>& words);
@@ -38,6 +39,7 @@ std::string disassemble_spirv(const std::vector<uint32_t>& words);
 isa::Program lower(const std::vector<uint32_t>& spirv, const std::string& name, const BackendOptions& options);
 
 // All of the above for one file.
-isa::Program compile_file(const std::string& path, const GlslOptions& glsl, const BackendOptions& options);
+isa::Program compile_file(const std::string& path, const GlslOptions& glsl, const BackendOptions& options,
+                          Diagnostics& warnings);
 
 }  // namespace glint::frontend

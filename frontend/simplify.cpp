@@ -70,13 +70,9 @@ std::vector<uint32_t> with_extensions(std::vector<uint32_t> words, const std::ve
   return words;
 }
 
-void warn(const std::string& name, const std::string& what) {
-  fmt::print(stderr, "{}: warning: {}\n", name, what);
-}
-
 }  // namespace
 
-std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& name) {
+std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& name, Diagnostics& warnings) {
   const std::string before =
       spirv.size() < kHeaderWords ? "too short to hold a header\n" : validate_spirv(spirv);
   if (!before.empty()) throw UserError({name, 0, 0}, "invalid SPIR-V\n" + before);
@@ -95,13 +91,13 @@ std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& n
   options.set_run_validator(false);  // done here, with the extensions in place
   std::vector<uint32_t> output;
   if (!optimizer.Run(input.data(), input.size(), &output, options)) {
-    warn(name, "the SPIR-V optimiser failed, going on with the module as it was: " + messages);
+    warnings.warning({name, 0, 0}, "the SPIR-V optimiser failed, going on with the module as it was: " + messages);
     return spirv;
   }
   output = with_extensions(std::move(output), extensions);
   const std::string after = validate_spirv(output);
   if (!after.empty()) {
-    warn(name, "the optimised SPIR-V is invalid, going on with the module as it was: " + after);
+    warnings.warning({name, 0, 0}, "the optimised SPIR-V is invalid, going on with the module as it was: " + after);
     return spirv;
   }
   return output;

@@ -50,6 +50,7 @@ RenderResult render(const RenderJob& job) {
   result.width = job.frame.width;
   result.height = job.frame.height;
   result.structures = scene.structures;
+  result.warnings = scene.warnings;
   result.rgba = scene.read_image(SceneWorld::kPicture);
   result.accumulation = scene.read_image(SceneWorld::kAccumulation);
   return result;

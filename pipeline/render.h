@@ -65,6 +65,7 @@ struct RenderResult {
   ClassCounts by_class[size_t(isa::Class::Count)];
   RayCounts rays;
   StructureCounts structures;
+  std::vector<std::string> warnings;  // of compiling the shaders
   double wall_seconds = 0;          // of the run alone, without compiling and building
   std::unique_ptr<RunStats> stats;
   const stats::Group& statistics() const;  // root of the tree

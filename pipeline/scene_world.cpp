@@ -52,7 +52,7 @@ WorkloadShaders compile_workload(const RenderJob& job) {
   if (job.scene.alpha_test) glsl.defines.emplace_back("GLINT_ALPHA_TEST", "1");
   const frontend::BackendOptions backend{job.gpu.compiler.max_registers, job.gpu.compiler.schedule};
   auto compile = [&](const char* file) {
-    out.programs.push_back(frontend::compile_file(job.shader_dir + "/" + file, glsl, backend));
+    out.programs.push_back(frontend::compile_file(job.shader_dir + "/" + file, glsl, backend, out.warnings));
     return uint32_t(out.programs.size() - 1);
   };
   out.raygen = compile("raygen.rgen");
@@ -79,6 +79,7 @@ SceneWorld::SceneWorld(const RenderJob& job) {
 
 void SceneWorld::link_shaders(const RenderJob& job) {
   const WorkloadShaders shaders = compile_workload(job);
+  warnings = shaders.warnings.messages();
   image_ = core::link(shaders.programs);
   world.image = &image_;
   world.raygen = shaders.raygen;

@@ -11,6 +11,7 @@ struct WorkloadShaders {
   std::vector<isa::Program> programs;
   uint32_t raygen = 0, miss = 0;
   core::HitGroup triangle, sphere;
+  Diagnostics warnings;
 };
 WorkloadShaders compile_workload(const RenderJob& job);
 
@@ -22,6 +23,7 @@ class SceneWorld {
   SceneWorld& operator=(const SceneWorld&) = delete;
 
   core::World world;
+  std::vector<std::string> warnings;  // of compiling
   StructureCounts structures;
   mem::AddressSpace& memory() { return memory_; }
   std::vector<float> read_image(uint32_t handle) const;  // 4 floats a texel

@@ -3,6 +3,7 @@
 #include "frontend/compile.h"
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <fmt/format.h>
 #include <memory>
 
@@ -35,12 +36,14 @@ Exit compile(const Options& options) {
   frontend::BackendOptions backend;
   backend.max_registers = options.registers;
   std::string out;
+  Diagnostics warnings;
   for (const std::string& file : options.files) {
     if (options.emit == "spirv")
       out += frontend::disassemble_spirv(frontend::glsl_to_spirv(file, glsl));
     else
-      out += isa::to_text(frontend::compile_file(file, glsl, backend));
+      out += isa::to_text(frontend::compile_file(file, glsl, backend, warnings));
   }
+  for (const std::string& warning : warnings.messages()) fmt::print(stderr, "{}\n", warning);
   write_output(options.output, out);
   return Exit::Ok;
 }

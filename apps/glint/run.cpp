@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <filesystem>
+#include <cstdio>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <memory>
@@ -108,6 +109,7 @@ pipeline::RenderResult render(const Session& session, pipeline::RenderJob& job,
   try {
     pipeline::RenderResult result = pipeline::render(job);
     finish(Exit::Ok, "");
+    for (const std::string& warning : result.warnings) fmt::print(stderr, "{}\n", warning);
     return result;
   } catch (const Error& error) {
     finish(error.exit(), error.what());

@@ -82,14 +82,17 @@ TEST_CASE("glslang's SPIR-V is version 1.6 and valid, and so is the simplified m
   CHECK(words[1] == 0x00010600);
   CHECK(validate_spirv(words).empty());
   CHECK(count_ops(words, spv::Op::OpFunctionCall) == 1);
-  const auto simple = simplify(words, path);
+  Diagnostics warnings;
+  const auto simple = simplify(words, path, warnings);
+  CHECK(warnings.messages().empty());
   CHECK(validate_spirv(simple).empty());
   CHECK(count_ops(simple, spv::Op::OpFunctionCall) == 0);
   CHECK_THAT(disassemble_spirv(simple), Contains("OpEntryPoint GLCompute"));
 }
 
 TEST_CASE("words that are no valid module are refused") {
-  CHECK_THROWS_AS(simplify({1, 2, 3}, "x"), UserError);
+  Diagnostics warnings;
+  CHECK_THROWS_AS(simplify({1, 2, 3}, "x", warnings), UserError);
   CHECK_THROWS_AS(Module::parse({1, 2, 3, 4, 5, 6}, "x"), UserError);
 }
 
@@ -129,7 +132,8 @@ TEST_CASE("instructions know the file and line of an included function") {
   const std::string path = folder.write("m.comp",
                                         "#version 460\n#include \"f.glsl\"\nlayout(binding = 0) buffer B { "
                                         "float a; } b;\nvoid main() {\n  b.a = work(b.a);\n}\n");
-  const VirtualProgram program = lower_to_virtual(simplify(glsl_to_spirv(path, {}), path), path);
+  Diagnostics warnings;
+  const VirtualProgram program = lower_to_virtual(simplify(glsl_to_spirv(path, {}), path, warnings), path);
   int found = 0;
   for (const VirtualBlock& block : program.blocks)
     for (const VirtualInst& inst : block.code) {

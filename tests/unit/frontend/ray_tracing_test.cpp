@@ -167,7 +167,8 @@ TEST_CASE("every shader of the project compiles to a program that the verifier a
     const std::string path = entry.path().string();
     if (!entry.is_regular_file() || !stage_of_file(path)) continue;
     INFO(path);
-    const isa::Program program = compile_file(path, {{(root / "include").string()}, {}}, {});
+    Diagnostics warnings;
+    const isa::Program program = compile_file(path, {{(root / "include").string()}, {}}, {}, warnings);
     Diagnostics diagnostics;
     isa::verify(program, diagnostics);
     CHECK(diagnostics.messages() == std::vector<std::string>{});

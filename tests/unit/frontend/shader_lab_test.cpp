@@ -44,7 +44,8 @@ std::string source(const std::string& body) {
 std::vector<uint32_t> simplified(const std::string& ending, const std::string& body) {
   const Folder folder;
   const std::string path = folder.write("shader" + ending, source(body));
-  return simplify(glsl_to_spirv(path, {}), path);
+  Diagnostics warnings;
+  return simplify(glsl_to_spirv(path, {}), path, warnings);
 }
 
 VirtualProgram lowered(const std::string& ending, const std::string& body) {
