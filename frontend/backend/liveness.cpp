@@ -29,6 +29,10 @@ size_t RegisterSet::size() const {
   return bits;
 }
 
+bool LiveWalk::is_conditional(VirtualRegister r) const {
+  return std::any_of(conditional_.begin(), conditional_.end(), [&](const Conditional& c) { return c.reg == r; });
+}
+
 bool LiveWalk::is_conditional(VirtualRegister r, const VirtualInst& inst) const {
   return std::any_of(conditional_.begin(), conditional_.end(), [&](const Conditional& c) {
     return c.reg == r && c.guard == inst.guard && c.negate == inst.guard_negate;
@@ -44,6 +48,8 @@ void LiveWalk::step(const VirtualInst& inst) {
     if (!is_guarded(inst) || is_conditional(r, inst)) {
       live_.erase(r);
       forget(r);
+    } else if (live_.contains(r) && !is_conditional(r)) {
+      conditional_.push_back({r, inst.guard, !inst.guard_negate});
     }
     // A guard that changes here was another one before: what was read under it counts as read by all lanes.
     std::erase_if(conditional_, [&](const Conditional& c) { return c.guard == r; });

@@ -45,8 +45,8 @@ Liveness find_liveness(const VirtualProgram& program);
 
 // Walks a block backwards, keeping the set of registers that are live before what it has passed.
 //
-// A guarded write does not end the old value, since lanes whose guard is false keep it, unless every read behind it
-// stands under the same guard: then those lanes never look.
+// A guarded write does not end the old value, since lanes whose guard is false keep it, unless those lanes never look:
+// because every read behind it stands under the same guard, or because a write under the opposite guard follows.
 class LiveWalk {
  public:
   explicit LiveWalk(RegisterSet live_out) : live_(std::move(live_out)) {}
@@ -54,11 +54,12 @@ class LiveWalk {
   const RegisterSet& live() const { return live_; }
 
  private:
-  // A live register that has been read only by instructions with this guard.
+  // A live register whose present value only lanes with this guard will read.
   struct Conditional {
     VirtualRegister reg, guard;
     bool negate;
   };
+  bool is_conditional(VirtualRegister r) const;
   bool is_conditional(VirtualRegister r, const VirtualInst& inst) const;
   void forget(VirtualRegister r);
 

@@ -93,7 +93,7 @@ class RandomProgram {
     const VirtualRegister word = program_.new_register(RegisterClass::B32), pair = program_.new_register(RegisterClass::B64);
     const VirtualRegister flag = program_.new_register(RegisterClass::Predicate);
     const VirtualRegister address = program_.new_register(RegisterClass::B64);
-    add("mov.b64", {Operand::of(address), Operand::value(0x10000 + 8 * pick(64))});
+    add("mad.wide.u32", {Operand::of(address), Operand::of(isa::Special::LaunchX), Operand::value(64), Operand::value(0x10000 + 8 * pick(64))});
     add("ld.global.b32", {Operand::of(word), Operand::of(address)}, 4);
     add("ld.global.b64", {Operand::of(pair), Operand::of(address)}, 8);
     add("setp.lt.s32", {Operand::of(flag), Operand::of(word), Operand::value(pick(2) ? 0 : 0x40000000)});

@@ -1,13 +1,15 @@
-// Steps virtual and assembled programs for one lane with the op table's own handlers, and records what they do to
-// the world: the measure of whether assembling has kept a program's meaning.
+// Steps virtual programs lane by lane and assembled ones as a diverging warp, with the op table's own handlers, and
+// records what each lane does to the world: the measure of whether assembling has kept a program's meaning.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "base/check.h"
+#include "core/simt_stack.h"
 #include "frontend/virtual_program.h"
 
 namespace glint::frontend::test {
@@ -35,46 +37,57 @@ class Bytes {
   std::map<uint64_t, uint8_t> bytes_;
 };
 
-// The machine around one lane.
-class Lane {
- public:
-  static constexpr int kLane = 5;               // any will do; the others must stay out of it
-  static constexpr size_t kMaxSteps = 200'000;  // a program that runs longer is stuck
+// What one lane owns. Lanes share no memory here, so that their order cannot matter.
+struct LaneWorld {
+  Log log;
+  Bytes global, local;
+  int candidates = 0;  // intersection shaders that its ray still waits for
+};
 
-  explicit Lane(size_t registers, size_t constants)
+// Registers of a warp and the effects of single instructions.
+class Machine {
+ public:
+  static constexpr size_t kMaxSteps = 400'000;  // a program that runs longer is stuck
+
+  Machine(size_t registers, size_t constants)
       : registers_(registers * kLanes + 16), constants_(constants * kLanes + 16), specials_(isa::kNumSpecials * kLanes + 16) {
     warp_ = std::make_unique<isa::Warp>();
     warp_->bank = {aligned(registers_), aligned(constants_), aligned(specials_)};
-    warp_->exec = LaneMask{1} << kLane;
-    for (int s = 0; s < isa::kNumSpecials; ++s) warp_->bank[2][s * kLanes + kLane] = 0x1000u + 77u * uint32_t(s);
+    for (int s = 0; s < isa::kNumSpecials; ++s)
+      for (int lane = 0; lane < kLanes; ++lane) warp_->bank[2][s * kLanes + lane] = 0x1000u + 77u * uint32_t(s) + 1013u * uint32_t(lane);
   }
 
-  Log log;
-  Bytes global, local;
+  std::array<LaneWorld, kLanes> lanes;
 
  protected:
-  uint32_t& reg(isa::Slot slot) { return warp_->bank[slot >> isa::kBankShift][(slot & isa::kSlotIndexMask) * kLanes + kLane]; }
-  bool predicate(size_t p) const { return (warp_->predicate[p] >> kLane) & 1; }
-  void set_predicate(size_t p, bool value) {
-    warp_->predicate[p] = (warp_->predicate[p] & ~(LaneMask{1} << kLane)) | LaneMask{value} << kLane;
+  uint32_t& reg(isa::Slot slot, int lane) {
+    return warp_->bank[slot >> isa::kBankShift][(slot & isa::kSlotIndexMask) * kLanes + lane];
   }
-  uint64_t read(isa::Slot slot, bool is_pair) {
-    return reg(slot) | (is_pair ? uint64_t{reg(isa::Slot(slot + 1))} << 32 : 0);
+  LaneMask& predicate(size_t p) { return warp_->predicate[p]; }
+  void set_predicate(size_t p, int lane, bool value) {
+    predicate(p) = (predicate(p) & ~(LaneMask{1} << lane)) | LaneMask{value} << lane;
+  }
+  uint64_t read(isa::Slot slot, int lane, bool is_pair) {
+    return reg(slot, lane) | (is_pair ? uint64_t{reg(isa::Slot(slot + 1), lane)} << 32 : 0);
   }
 
   // Runs the handler and what the op does beyond the registers, control flow apart.
-  void perform(const isa::Inst& inst) {
+  void perform(const isa::Inst& inst, LaneMask exec) {
     const isa::OpRow& row = isa::op_table()[inst.op];
+    warp_->exec = exec;
     row.run(*warp_, inst);
-    if (row.effect == isa::Effect::Load || row.effect == isa::Effect::Store) access(inst, row);
-    if (row.effect == isa::Effect::Trace || row.effect == isa::Effect::Resume) {
-      if (row.effect == isa::Effect::Trace) candidates_ = 2;
+    for_each_lane(exec, [&](int lane) {
+      LaneWorld& world = lanes[size_t(lane)];
+      if (row.effect == isa::Effect::Load || row.effect == isa::Effect::Store) access(inst, row, lane);
+      if (row.effect != isa::Effect::Trace && row.effect != isa::Effect::Resume) return;
       std::string text(row.name);
-      if (row.effect == isa::Effect::Trace)
-        for (int k = 1; k <= 16; ++k) text += fmt::format(" {:x}", read(inst.operand[size_t(k)], k == 1));
-      log.push_back(text);
-      set_predicate(inst.operand[0], candidates_-- > 0);
-    }
+      if (row.effect == isa::Effect::Trace) {
+        world.candidates = lane % 3;
+        for (size_t k = 1; k <= 16; ++k) text += fmt::format(" {:x}", read(inst.operand[k], lane, k == 1));
+      }
+      world.log.push_back(text);
+      set_predicate(inst.operand[0], lane, world.candidates-- > 0);
+    });
   }
 
   std::unique_ptr<isa::Warp> warp_;
@@ -87,45 +100,46 @@ class Lane {
     return static_cast<uint32_t*>(std::align(64, 64, at, space));
   }
 
-  void access(const isa::Inst& inst, const isa::OpRow& row) {
-    Bytes& memory = row.memory.space == isa::Space::Local ? local : global;
+  void access(const isa::Inst& inst, const isa::OpRow& row, int lane) {
     const bool is_store = row.effect == isa::Effect::Store;
-    const uint64_t address = warp_->access.address[kLane];
+    const uint64_t address = warp_->access.address[size_t(lane)];
     size_t slot = 0, part = 0;
     for (isa::OperandKind kind : row.operands.view()) {
       const bool is_address = kind == isa::OperandKind::Address32 || kind == isa::OperandKind::Address64;
       for (int i = 0; i < isa::slots_of(kind); ++i, ++slot) {
         if (is_address) continue;
-        move_part(memory, row, address + part++ * row.memory.bytes, inst.operand[slot], is_store);
+        move_part(row, lane, address + part++ * row.memory.bytes, inst.operand[slot], is_store);
       }
     }
   }
 
-  void move_part(Bytes& memory, const isa::OpRow& row, uint64_t address, isa::Slot slot, bool is_store) {
+  void move_part(const isa::OpRow& row, int lane, uint64_t address, isa::Slot slot, bool is_store) {
+    LaneWorld& world = lanes[size_t(lane)];
+    Bytes& memory = row.memory.space == isa::Space::Local ? world.local : world.global;
     const int bytes = row.memory.bytes;
     if (is_store) {
-      const uint64_t value = read(slot, bytes == 8) & (bytes == 8 ? ~uint64_t{0} : (uint64_t{1} << (8 * bytes)) - 1);
+      const uint64_t value = read(slot, lane, bytes == 8) & (bytes == 8 ? ~uint64_t{0} : (uint64_t{1} << (8 * bytes)) - 1);
       memory.store(address, bytes, value);
-      if (row.memory.space == isa::Space::Global) log.push_back(fmt::format("st {:x} {} {:x}", address, bytes, value));
+      if (row.memory.space == isa::Space::Global) world.log.push_back(fmt::format("st {:x} {} {:x}", address, bytes, value));
       return;
     }
     uint64_t value = memory.load(address, bytes);
     if (row.memory.sign_extend && bytes < 4 && (value >> (8 * bytes - 1)) & 1) value |= ~uint64_t{0} << (8 * bytes);
-    reg(slot) = uint32_t(value);
-    if (bytes == 8) reg(isa::Slot(slot + 1)) = uint32_t(value >> 32);
+    reg(slot, lane) = uint32_t(value);
+    if (bytes == 8) reg(isa::Slot(slot + 1), lane) = uint32_t(value >> 32);
   }
 
   std::vector<uint32_t> registers_, constants_, specials_;
-  int candidates_ = 0;
 };
 
-// Runs a VirtualProgram: every virtual register has rows of its own, and calls harm nobody.
-class VirtualRun : public Lane {
+// Runs one lane of a VirtualProgram: every virtual register has rows of its own, and calls harm nobody.
+class VirtualRun : public Machine {
  public:
-  explicit VirtualRun(const VirtualProgram& program)
-      : Lane(2 + 2 * program.registers.size(), 64), program_(program), predicates_(program.registers.size()) {
+  VirtualRun(const VirtualProgram& program, int lane)
+      : Machine(2 + 2 * program.registers.size(), 64), program_(program), lane_(lane), predicates_(program.registers.size()) {
     for (BlockId block = 0; block != kNoBlock;) block = run_block(block);
   }
+  const LaneWorld& world() const { return lanes[size_t(lane_)]; }
 
  private:
   BlockId run_block(BlockId b) {
@@ -136,7 +150,8 @@ class VirtualRun : public Lane {
       const isa::OpRow& row = isa::op_table()[inst.op];
       if (row.effect == isa::Effect::Branch) return inst.target;
       if (row.effect == isa::Effect::Exit || row.effect == isa::Effect::Return) return kNoBlock;
-      if (row.effect == isa::Effect::CallHit || row.effect == isa::Effect::CallCandidate) log.emplace_back(row.name);
+      if (row.effect == isa::Effect::CallHit || row.effect == isa::Effect::CallCandidate)
+        lanes[size_t(lane_)].log.emplace_back(row.name);
       step(inst, row);
     }
     return b + 1;
@@ -148,71 +163,106 @@ class VirtualRun : public Lane {
     coded.imm = inst.imm;
     size_t slot = 0, constants = 0;
     for (isa::OperandKind kind : row.operands.view())
-      for (int i = 0; i < isa::slots_of(kind); ++i, ++slot) {
-        const VirtualOperand& o = inst.operands[slot];
-        if (o.kind == VirtualOperand::Kind::Register && program_.registers[o.reg] == RegisterClass::Predicate) {
-          coded.operand[slot] = isa::Slot(slot % isa::kNumPredicates);
-          set_predicate(slot % isa::kNumPredicates, predicates_[o.reg]);
-        } else if (o.kind == VirtualOperand::Kind::Register) {
-          coded.operand[slot] = isa::Slot(2 + 2 * o.reg);
-        } else if (o.kind == VirtualOperand::Kind::Constant) {
-          coded.operand[slot] = isa::Slot(isa::kConstantBank + 2 * constants++);
-          reg(coded.operand[slot]) = uint32_t(o.constant);
-          reg(isa::Slot(coded.operand[slot] + 1)) = uint32_t(o.constant >> 32);
-        } else if (o.kind == VirtualOperand::Kind::Special) {
-          coded.operand[slot] = isa::Slot(isa::kSpecialBank + int(o.special));
-        }
+      for (int i = 0; i < isa::slots_of(kind); ++i, ++slot) coded.operand[slot] = place(inst.operands[slot], slot, constants);
+    perform(coded, LaneMask{1} << lane_);
+    if (inst.operands.empty()) return;
+    const VirtualOperand& first = inst.operands[0];  // predicates are only ever the first destination
+    if (first.kind == VirtualOperand::Kind::Register && program_.registers[first.reg] == RegisterClass::Predicate)
+      predicates_[first.reg] = (predicate(0) >> lane_) & 1;
+  }
+
+  isa::Slot place(const VirtualOperand& o, size_t slot, size_t& constants) {
+    switch (o.kind) {
+      case VirtualOperand::Kind::Register: {
+        if (program_.registers[o.reg] != RegisterClass::Predicate) return isa::Slot(2 + 2 * o.reg);
+        const size_t p = slot % isa::kNumPredicates;
+        set_predicate(p, lane_, predicates_[o.reg]);
+        return isa::Slot(p);
       }
-    perform(coded);
-    for (slot = 0; slot < inst.operands.size(); ++slot) {
-      const VirtualOperand& o = inst.operands[slot];
-      if (o.kind == VirtualOperand::Kind::Register && program_.registers[o.reg] == RegisterClass::Predicate && slot == 0)
-        predicates_[o.reg] = predicate(0);
+      case VirtualOperand::Kind::Constant: {
+        const isa::Slot row = isa::Slot(isa::kConstantBank + 2 * constants++);
+        reg(row, lane_) = uint32_t(o.constant);
+        reg(isa::Slot(row + 1), lane_) = uint32_t(o.constant >> 32);
+        return row;
+      }
+      case VirtualOperand::Kind::Special: return isa::Slot(isa::kSpecialBank + int(o.special));
+      case VirtualOperand::Kind::StackPointer:
+      case VirtualOperand::Kind::None: break;
     }
+    return isa::kStackPointer;
   }
 
   const VirtualProgram& program_;
+  const int lane_;
   std::vector<bool> predicates_;
 };
 
-// Runs an assembled Program. A call destroys every register but %r0, every predicate, and the stack above the frame.
-class ProgramRun : public Lane {
+// Runs an assembled Program for a whole warp (docs/abi.md, "Control flow"). A call destroys every register but %r0,
+// every predicate, and the stack above the frame.
+class ProgramRun : public Machine {
  public:
-  explicit ProgramRun(const isa::Program& program) : Lane(program.num_registers, program.constants.size()), program_(program) {
-    for (size_t row = 0; row < program.constants.size(); ++row) reg(isa::Slot(isa::kConstantBank + row)) = program.constants[row];
-    for (uint32_t r = 1; r < program.num_registers; ++r) reg(isa::Slot(r)) = 0xdead'0000 + r;
-    for (size_t pc = 0; pc < program.code.size();) pc = step(pc);
+  explicit ProgramRun(const isa::Program& program) : Machine(program.num_registers, program.constants.size()), program_(program) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      for (size_t row = 0; row < program.constants.size(); ++row)
+        reg(isa::Slot(isa::kConstantBank + row), lane) = program.constants[row];
+      for (uint32_t r = 1; r < program.num_registers; ++r) reg(isa::Slot(r), lane) = 0xdead'0000 + r;
+    }
+    stack_.start(0, kAllLanes);
+    while (!stack_.finished()) step();
+    GLINT_CHECK_EQ(stack_.depth(), size_t{0});
   }
-  size_t steps() const { return steps_; }
 
  private:
-  size_t step(size_t pc) {
+  void step() {
     GLINT_CHECK(++steps_ < kMaxSteps, "the assembled program does not end");
-    const isa::Inst& inst = program_.code[pc];
+    const isa::Inst& inst = program_.code[stack_.pc];
     const isa::OpRow& row = isa::op_table()[inst.op];
-    if (inst.guard != isa::kNoGuard) {
-      const bool negate = inst.guard & isa::kGuardNegate;
-      if (predicate(inst.guard & 7) == negate) return pc + 1;
+    LaneMask exec = stack_.active;
+    if (inst.guard != isa::kNoGuard) exec &= inst.guard & isa::kGuardNegate ? ~predicate(inst.guard & 7) : predicate(inst.guard & 7);
+    const uint32_t pc = stack_.pc++;
+    if (row.effect == isa::Effect::Branch) {
+      branch(exec, uint32_t(inst.imm));
+    } else if (row.effect == isa::Effect::PushReconvergence) {
+      stack_.push_reconvergence(uint32_t(inst.imm));
+    } else if (row.effect == isa::Effect::Join) {
+      GLINT_CHECK(stack_.arrive(pc, stack_.active), "no ssy names the join at {}", pc);
+      stack_.active = 0;
+    } else if (row.effect == isa::Effect::Exit || row.effect == isa::Effect::Return) {
+      stack_.active &= ~exec;
+    } else {
+      if (row.effect == isa::Effect::CallHit || row.effect == isa::Effect::CallCandidate) call(row, exec);
+      perform(inst, exec);
     }
-    if (row.effect == isa::Effect::Branch) return size_t(inst.imm);
-    if (row.effect == isa::Effect::Exit || row.effect == isa::Effect::Return) return program_.code.size();
-    if (row.effect == isa::Effect::CallHit || row.effect == isa::Effect::CallCandidate) {
-      log.emplace_back(row.name);
-      call();
-      return pc + 1;
-    }
-    perform(inst);
-    return pc + 1;
+    core::SimtStack::Entry resumed;
+    if (stack_.active == 0) stack_.resume_next(&resumed);
   }
 
-  void call() {
-    GLINT_CHECK_LE(program_.local_bytes, reg(0));
-    for (uint32_t r = 1; r < program_.num_registers; ++r) reg(isa::Slot(r)) = 0xbad0'0000 + r;
-    for (size_t p = 0; p < isa::kNumPredicates; ++p) set_predicate(p, (p + steps_) % 2);
-    for (uint32_t offset = 0; offset < 256; offset += 4) local.store(reg(0) + offset, 4, 0xbad1'0000 + offset);
+  void branch(LaneMask taken, uint32_t target) {
+    const LaneMask others = stack_.active & ~taken;
+    if (!taken) return;
+    if (isa::op_table()[program_.code[target].op].effect == isa::Effect::Join) {
+      GLINT_CHECK(stack_.arrive(target, taken), "no ssy names the join at {}", target);
+      stack_.active = others;
+    } else if (!others) {
+      stack_.pc = target;
+    } else {
+      stack_.push_path(target, taken);
+      stack_.active = others;
+    }
+  }
+
+  void call(const isa::OpRow& row, LaneMask exec) {
+    for_each_lane(exec, [&](int lane) {
+      lanes[size_t(lane)].log.emplace_back(row.name);
+      GLINT_CHECK_LE(program_.local_bytes, reg(0, lane));
+      for (uint32_t r = 1; r < program_.num_registers; ++r) reg(isa::Slot(r), lane) = 0xbad0'0000 + r;
+      for (size_t p = 0; p < isa::kNumPredicates; ++p) set_predicate(p, lane, (p + steps_) % 2);
+      for (uint32_t offset = 0; offset < 64; offset += 4) lanes[size_t(lane)].local.store(reg(0, lane) + offset, 4, 0xbad1'0000 + offset);
+    });
   }
 
   const isa::Program& program_;
+  core::SimtStack stack_;
 };
 
 }  // namespace glint::frontend::test

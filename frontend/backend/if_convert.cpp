@@ -1,0 +1,205 @@
+// Recognises hammocks and diamonds from the lowering's block structure.
+// SPDX-License-Identifier: Apache-2.0
+#include "frontend/backend/if_convert.h"
+
+#include <algorithm>
+
+namespace glint::frontend {
+namespace {
+
+constexpr size_t kLongestSingleArm = 4, kLongestTwoArms = 6;
+
+using Instructions = std::vector<VirtualInst>;
+
+class Converter {
+ public:
+  Converter(VirtualProgram& program, const Ops& ops)
+      : program_(program), ops_(ops), predecessors_(program.blocks.size()), ssys_(program.blocks.size()) {
+    for (BlockId b = 0; b < program.blocks.size(); ++b) {
+      for (BlockId next : program.blocks[b].successors) predecessors_[next].push_back(b);
+      for (const VirtualInst& inst : program.blocks[b].code)
+        if (is_real(inst) && inst.op == ops.ssy) ++ssys_[inst.target];
+    }
+  }
+
+  void run() {
+    // Inner selections come later in layout: from the back, so that what encloses them sees them converted.
+    for (BlockId b = BlockId(program_.blocks.size()); b-- > 0;)
+      while (convert(b)) {
+      }
+  }
+
+ private:
+  struct Selection {
+    size_t ssy = 0, branch = 0;             // indices in the head's code
+    BlockId taken = kNoBlock, other = kNoBlock, merge = kNoBlock;
+    VirtualRegister condition = kNoRegister;
+    bool negate = false;                    // of the branch
+  };
+
+  bool is_plain_branch(const VirtualInst& inst) const { return is_real(inst) && inst.op == ops_.bra && !is_guarded(inst); }
+
+  // The selection that ends the block, if one does.
+  bool find(BlockId head, Selection& out) const {
+    const Instructions& code = program_.blocks[head].code;
+    size_t end = code.size();
+    out.other = head + 1;
+    if (end > 0 && is_plain_branch(code[end - 1])) out.other = code[--end].target;
+    if (end == 0 || !is_real(code[end - 1]) || code[end - 1].op != ops_.bra) return false;
+    out.branch = end - 1;
+    out.taken = code[out.branch].target;
+    out.condition = code[out.branch].guard;
+    out.negate = code[out.branch].guard_negate;
+    for (out.ssy = out.branch; out.ssy-- > 0;)
+      if (!is_movable(code[out.ssy])) break;
+    if (out.ssy >= out.branch || !is_real(code[out.ssy]) || code[out.ssy].op != ops_.ssy || is_guarded(code[out.ssy])) return false;
+    out.merge = code[out.ssy].target;
+    return out.merge != head && out.taken != out.other;
+  }
+
+  // The instructions of an arm; false when it cannot be guarded.
+  bool arm(BlockId block, BlockId head, const Selection& selection, Instructions& out) const {
+    if (block == selection.merge) return true;
+    const VirtualBlock& b = program_.blocks[block];
+    if (predecessors_[block] != std::vector<BlockId>{head} || b.successors != std::vector<BlockId>{selection.merge}) return false;
+    if (ssys_[block] != 0) return false;
+    out = b.code;
+    if (!out.empty() && is_plain_branch(out.back())) out.pop_back();
+    if (out.size() > 2 * kLongestTwoArms) return false;
+    for (const VirtualInst& inst : out) {
+      if (!is_movable(inst) || is_guarded(inst)) return false;
+      bool writes_condition = false;
+      for_each_def(inst, [&](VirtualRegister r) { writes_condition |= r == selection.condition; });
+      if (writes_condition) return false;
+    }
+    write_results_directly(out);
+    return true;
+  }
+
+  // `add t, a, b; mov x, t` is `add x, a, b` when nothing else reads t, and nothing between touches x. Temporaries
+  // of an arm that anything outside reads are not renamed.
+  void write_results_directly(Instructions& arm) const {
+    for (size_t m = 0; m < arm.size(); ++m) {
+      if (!ops_.is_move(arm[m].op) || !is_register(arm[m].operands[1])) continue;
+      const VirtualRegister to = arm[m].operands[0].reg, from = arm[m].operands[1].reg;
+      if (count(from) != 2) continue;  // one definition and this use
+      for (size_t d = m; d-- > 0;) {
+        bool defines = false, touches = false;
+        for_each_def(arm[d], [&](VirtualRegister r) { defines |= r == from; touches |= r == to; });
+        if (defines) {
+          if (touches) break;
+          for_each_slot(row_of(arm[d]), [&](size_t slot, isa::OperandKind kind) {
+            VirtualOperand& o = arm[d].operands[slot];
+            if (isa::is_destination(kind) && is_register(o) && o.reg == from) o.reg = to;
+          });
+          arm.erase(arm.begin() + std::ptrdiff_t(m--));
+          break;
+        }
+        for_each_use(arm[d], [&](VirtualRegister r) { touches |= r == to; });
+        if (touches) break;
+      }
+    }
+  }
+
+  // Mentions of a register in the whole program.
+  size_t count(VirtualRegister wanted) const {
+    size_t mentions = 0;
+    const auto visit = [&](VirtualRegister r) { mentions += r == wanted; };
+    for (const VirtualBlock& block : program_.blocks)
+      for (const VirtualInst& inst : block.code) {
+        for_each_def(inst, visit);
+        for_each_use(inst, visit);
+      }
+    return mentions;
+  }
+
+  bool convert(BlockId head) {
+    Selection s;
+    if (!find(head, s) || ssys_[s.merge] != 1) return false;
+    const VirtualBlock& merge = program_.blocks[s.merge];
+    if (merge.code.empty() || !is_real(merge.code.front()) || merge.code.front().op != ops_.join) return false;
+    for (BlockId from : predecessors_[s.merge])
+      if (from != head && from != s.taken && from != s.other) return false;
+    Instructions taken, other;
+    if (!arm(s.taken, head, s, taken) || !arm(s.other, head, s, other)) return false;
+    const bool has_two = !taken.empty() && !other.empty();
+    if (taken.size() + other.size() > (has_two ? kLongestTwoArms : kLongestSingleArm)) return false;
+    rewrite(head, s, std::move(taken), std::move(other));
+    return true;
+  }
+
+  void rewrite(BlockId head, const Selection& s, Instructions taken, Instructions other) {
+    VirtualBlock& block = program_.blocks[head];
+    VirtualBlock& merge = program_.blocks[s.merge];
+    Instructions selected = select_moves(taken, other, s);
+    block.code.resize(s.branch);
+    block.code.erase(block.code.begin() + std::ptrdiff_t(s.ssy));
+    append(block.code, taken, s.condition, s.negate);
+    append(block.code, other, s.condition, !s.negate);
+    block.code.insert(block.code.end(), selected.begin(), selected.end());
+    block.code.insert(block.code.end(), merge.code.begin() + 1, merge.code.end());
+    if (!ends(block.code)) {
+      block.code.push_back(make_inst(ops_.bra, {}, block.code.empty() ? isa::Line{} : block.code.back().line));
+      block.code.back().target = s.merge + 1;
+    }
+    block.successors = merge.successors;
+    for (BlockId next : block.successors)
+      std::replace(predecessors_[next].begin(), predecessors_[next].end(), s.merge, head);
+    for (BlockId gone : {s.taken, s.other, s.merge}) {
+      program_.blocks[gone].code.clear();
+      program_.blocks[gone].successors.clear();
+      predecessors_[gone].clear();
+    }
+  }
+
+  static bool ends(const Instructions& code) {
+    if (code.empty() || !is_real(code.back()) || is_guarded(code.back())) return false;
+    const isa::Effect effect = row_of(code.back()).effect;
+    return effect == isa::Effect::Branch || effect == isa::Effect::Exit || effect == isa::Effect::Return ||
+           effect == isa::Effect::Ignore || effect == isa::Effect::Terminate;
+  }
+
+  static void append(Instructions& code, Instructions& arm, VirtualRegister condition, bool negate) {
+    for (VirtualInst& inst : arm) {
+      inst.guard = condition;
+      inst.guard_negate = negate;
+      code.push_back(std::move(inst));
+    }
+  }
+
+  static bool is_written(const Instructions& arm, const VirtualOperand& o) {
+    bool found = false;
+    for (const VirtualInst& inst : arm)
+      for_each_def(inst, [&](VirtualRegister r) { found |= is_register(o) && r == o.reg; });
+    return found;
+  }
+
+  // Takes moves at the ends of both arms that write the same register, as selp instructions.
+  Instructions select_moves(Instructions& taken, Instructions& other, const Selection& s) const {
+    Instructions out;
+    while (!taken.empty() && !other.empty()) {
+      const VirtualInst &a = taken.back(), &b = other.back();
+      if (a.op != b.op || (a.op != ops_.mov_b32 && a.op != ops_.mov_b64)) break;
+      if (a.operands[0].reg != b.operands[0].reg) break;
+      // A source made in an arm exists only under the guard.
+      if (is_written(taken, a.operands[1]) || is_written(other, b.operands[1])) break;
+      const auto& [yes, no] = s.negate ? std::pair{b, a} : std::pair{a, b};
+      out.insert(out.begin(), make_inst(a.op == ops_.mov_b64 ? ops_.selp_b64 : ops_.selp_b32,
+                                        {a.operands[0], yes.operands[1], no.operands[1], VirtualOperand::of(s.condition)}, a.line));
+      taken.pop_back();
+      other.pop_back();
+    }
+    return out;
+  }
+
+  VirtualProgram& program_;
+  const Ops& ops_;
+  std::vector<std::vector<BlockId>> predecessors_;
+  std::vector<uint32_t> ssys_;
+};
+
+}  // namespace
+
+void convert_selections(VirtualProgram& program, const Ops& ops) { Converter(program, ops).run(); }
+
+}  // namespace glint::frontend
