@@ -133,10 +133,6 @@ constexpr OperandKind destination_kind() {
   return std::is_same_v<T, bool> ? DstPred : sizeof(T) == 8 ? Dst64 : Dst32;
 }
 
-constexpr OpRow with_class(OpRow row, Class klass) {
-  row.klass = klass;
-  return row;
-}
 
 // A row whose handler applies `f` to sources of types A...; units, documentation and examples as OpRow says.
 template <class... A, class F>

@@ -6,14 +6,12 @@
 
 #include "base/check.h"
 #include "isa/op_row.h"
+#include "isa/ops/row_list.h"
 #include "isa/paths.h"
 
 namespace glint::isa {
 
-struct RowList {  // as isa/ops/families.h, which belongs to one path
-  const OpRow* rows = nullptr;
-  size_t count = 0;
-};
+// isa/ops/families.cpp, compiled once for each path.
 namespace baseline { RowList family_rows(int family); }
 namespace avx2 { RowList family_rows(int family); }
 namespace avx512 { RowList family_rows(int family); }
