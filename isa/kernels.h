@@ -11,12 +11,24 @@ namespace glint::isa::GLINT_ISA_PATH {
 
 inline constexpr uint32_t kCanonicalNan = 0x7fffffff;  // PTX ISA: NaN results are this one
 
-[[gnu::always_inline]] inline uint32_t float_bits(float x) { return __builtin_bit_cast(uint32_t, x); }
-[[gnu::always_inline]] inline float float_of(uint32_t x) { return __builtin_bit_cast(float, x); }
-[[gnu::always_inline]] inline uint64_t double_bits(double x) { return __builtin_bit_cast(uint64_t, x); }
-[[gnu::always_inline]] inline double double_of(uint64_t x) { return __builtin_bit_cast(double, x); }
-[[gnu::always_inline]] inline bool is_nan(float x) { return x != x; }
-[[gnu::always_inline]] inline float canonical(float x) { return is_nan(x) ? float_of(kCanonicalNan) : x; }
+[[gnu::always_inline]] inline uint32_t float_bits(float x) {
+  return __builtin_bit_cast(uint32_t, x);
+}
+[[gnu::always_inline]] inline float float_of(uint32_t x) {
+  return __builtin_bit_cast(float, x);
+}
+[[gnu::always_inline]] inline uint64_t double_bits(double x) {
+  return __builtin_bit_cast(uint64_t, x);
+}
+[[gnu::always_inline]] inline double double_of(uint64_t x) {
+  return __builtin_bit_cast(double, x);
+}
+[[gnu::always_inline]] inline bool is_nan(float x) {
+  return x != x;
+}
+[[gnu::always_inline]] inline float canonical(float x) {
+  return is_nan(x) ? float_of(kCanonicalNan) : x;
+}
 
 // Adding and subtracting 1.5 * 2^52 rounds a double of magnitude < 2^51 to an integer, and leaves that
 // integer in the low mantissa bits in between.
@@ -33,34 +45,41 @@ inline constexpr double kRoundMagic = 6755399441055744.0;
 // Taylor coefficients of sin and cos: the truncation error for |r| <= pi/4 is below 1e-11 and 1e-12.
 [[gnu::always_inline]] inline double sin_of_reduced(double r) {
   const double s = r * r;
-  const double p = -1.0 / 6 + s * (1.0 / 120 + s * (-1.0 / 5040 + s * (1.0 / 362880 + s * (-1.0 / 39916800))));
+  const double p =
+      -1.0 / 6 + s * (1.0 / 120 + s * (-1.0 / 5040 + s * (1.0 / 362880 + s * (-1.0 / 39916800))));
   return r * (1.0 + s * p);  // a product: r + ... would lose the sign of -0
 }
 [[gnu::always_inline]] inline double cos_of_reduced(double r) {
   const double s = r * r;
-  return 1.0 + s * (-0.5 + s * (1.0 / 24 + s * (-1.0 / 720 + s * (1.0 / 40320 + s * (-1.0 / 3628800 +
-         s * (1.0 / 479001600))))));
+  return 1.0 +
+         s * (-0.5 + s * (1.0 / 24 + s * (-1.0 / 720 +
+                                          s * (1.0 / 40320 + s * (-1.0 / 3628800 + s * (1.0 / 479001600))))));
 }
 
 // sin(x + quarter * pi/2). Measured against libm's double: at most 0.51 ulp for all |x| < 2^48 tried.
 // pi/2 in two doubles (106 bits) and fma: the reduced argument is good to 2^-50 or so up to 2^48.
-// Choice: at and beyond 2^48, where float neighbours are 2^24 radians apart, x counts as 0 (PTX promises nothing).
+// Choice: at and beyond 2^48, where float neighbours are 2^24 radians apart, x counts as 0 (PTX promises
+// nothing).
 [[gnu::always_inline]] inline float sin_quarter(float x, uint64_t quarter) {
   const bool in_range = x > -281474976710656.0f && x < 281474976710656.0f;
   const double d = in_range ? double(x) : 0.0;
   const double shifted = d * 0.63661977236758134308 + kRoundMagic;  // 2/pi
   const uint64_t k = double_bits(shifted) + quarter;
   const double n = shifted - kRoundMagic;
-  double r = __builtin_fma(-n, 0x1.921fb54442d18p+0, d);   // pi/2, leading 53 bits
-  r = __builtin_fma(-n, 0x1.1a62633145c07p-54, r);         // pi/2, the next 53
+  double r = __builtin_fma(-n, 0x1.921fb54442d18p+0, d);  // pi/2, leading 53 bits
+  r = __builtin_fma(-n, 0x1.1a62633145c07p-54, r);        // pi/2, the next 53
   const double s = sin_of_reduced(r);
   const double c = cos_of_reduced(r);
   const double chosen = (k & 1) != 0 ? c : s;
   const float result = float(double_of(double_bits(chosen) ^ ((k & 2) << 62)));
   return x - x == 0.0f ? result : float_of(kCanonicalNan);  // infinities and NaN
 }
-[[gnu::always_inline]] inline float sin_approx(float x) { return sin_quarter(x, 0); }
-[[gnu::always_inline]] inline float cos_approx(float x) { return sin_quarter(x, 1); }
+[[gnu::always_inline]] inline float sin_approx(float x) {
+  return sin_quarter(x, 0);
+}
+[[gnu::always_inline]] inline float cos_approx(float x) {
+  return sin_quarter(x, 1);
+}
 
 // 2^x, with gradual underflow. Measured: at most 0.51 ulp. Clamped to 200: past overflow and underflow.
 [[gnu::always_inline]] inline float ex2_approx(float x) {
@@ -69,8 +88,14 @@ inline constexpr double kRoundMagic = 6755399441055744.0;
   const double shifted = d + kRoundMagic;
   const double t = (d - (shifted - kRoundMagic)) * 0.69314718055994530942;  // ln 2
   // e^t for |t| <= ln(2)/2: Taylor, truncation error below 1e-11.
-  const double p = 1.0 + t * (1.0 + t * (1.0 / 2 + t * (1.0 / 6 + t * (1.0 / 24 + t * (1.0 / 120 + t * (1.0 / 720 +
-                   t * (1.0 / 5040 + t * (1.0 / 40320 + t * (1.0 / 362880)))))))));
+  const double p =
+      1.0 +
+      t * (1.0 +
+           t * (1.0 / 2 +
+                t * (1.0 / 6 +
+                     t * (1.0 / 24 +
+                          t * (1.0 / 120 + t * (1.0 / 720 + t * (1.0 / 5040 + t * (1.0 / 40320 +
+                                                                                   t * (1.0 / 362880)))))))));
   const double scale = double_of((double_bits(shifted) + 1023) << 52);  // the mantissa's low bits hold k
   return is_nan(x) ? float_of(kCanonicalNan) : float(p * scale);
 }
@@ -88,9 +113,10 @@ inline constexpr double kRoundMagic = 6755399441055744.0;
   // ln m = 2 atanh(s), s = (m - 1) / (m + 1), |s| < 0.172.
   const double s = (m - 1.0) / (m + 1.0);
   const double q = s * s;
-  const double p = 1.0 + q * (1.0 / 3 + q * (1.0 / 5 + q * (1.0 / 7 + q * (1.0 / 9 + q * (1.0 / 11 + q * (1.0 / 13))))));
+  const double p =
+      1.0 + q * (1.0 / 3 + q * (1.0 / 5 + q * (1.0 / 7 + q * (1.0 / 9 + q * (1.0 / 11 + q * (1.0 / 13))))));
   const float finite = float(e + s * p * 2.88539008177792681472);  // 2 / ln 2
-  const float positive = x - x == 0.0f ? finite : x;                // infinity
+  const float positive = x - x == 0.0f ? finite : x;               // infinity
   const float other = x == 0.0f ? -__builtin_inff() : float_of(kCanonicalNan);
   return x > 0.0f ? positive : other;
 }

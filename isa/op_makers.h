@@ -17,9 +17,10 @@ using enum OperandKind;
 
 // Bit i of entry i: the mask bit of each lane, as data, so that masks are tested a vector at a time.
 inline constexpr LaneMask kLaneBit[kLanes] = {
-    1u << 0,  1u << 1,  1u << 2,  1u << 3,  1u << 4,  1u << 5,  1u << 6,  1u << 7,  1u << 8,  1u << 9,  1u << 10,
-    1u << 11, 1u << 12, 1u << 13, 1u << 14, 1u << 15, 1u << 16, 1u << 17, 1u << 18, 1u << 19, 1u << 20, 1u << 21,
-    1u << 22, 1u << 23, 1u << 24, 1u << 25, 1u << 26, 1u << 27, 1u << 28, 1u << 29, 1u << 30, 1u << 31};
+    1u << 0,  1u << 1,  1u << 2,  1u << 3,  1u << 4,  1u << 5,  1u << 6,  1u << 7,
+    1u << 8,  1u << 9,  1u << 10, 1u << 11, 1u << 12, 1u << 13, 1u << 14, 1u << 15,
+    1u << 16, 1u << 17, 1u << 18, 1u << 19, 1u << 20, 1u << 21, 1u << 22, 1u << 23,
+    1u << 24, 1u << 25, 1u << 26, 1u << 27, 1u << 28, 1u << 29, 1u << 30, 1u << 31};
 
 // Calls `lane(i)` for all lanes. Rows are equal or disjoint and a lane touches only its own column, so no
 // lane depends on another: the compiler is told, because it cannot know.
@@ -121,7 +122,8 @@ template <class F, class... A>
       write_predicate(warp, slot[0], mask_of(value));
     else
       write_lanes<R>(warp, slot[0], value);
-  }(std::index_sequence_for<A...>{});
+  }
+  (std::index_sequence_for<A...>{});
 }
 
 template <class T>
@@ -132,7 +134,6 @@ template <class T>
 constexpr OperandKind destination_kind() {
   return std::is_same_v<T, bool> ? DstPred : sizeof(T) == 8 ? Dst64 : Dst32;
 }
-
 
 // A row whose handler applies `f` to sources of types A...; units, documentation and examples as OpRow says.
 template <class... A, class F>

@@ -12,15 +12,22 @@
 namespace glint::isa {
 
 // isa/ops/families.cpp, compiled once for each path.
-namespace baseline { RowList family_rows(int family); }
-namespace avx2 { RowList family_rows(int family); }
-namespace avx512 { RowList family_rows(int family); }
+namespace baseline {
+RowList family_rows(int family);
+}
+namespace avx2 {
+RowList family_rows(int family);
+}
+namespace avx512 {
+RowList family_rows(int family);
+}
 
 namespace {
 
 constexpr int kNumFamilies = 10;
 constexpr std::array<std::string_view, kNumFamilies> kFamilyNames = {
-    "move", "integer", "compare", "float", "convert", "predicate", "memory", "texture", "control", "ray tracing"};
+    "move",      "integer", "compare", "float",   "convert",
+    "predicate", "memory",  "texture", "control", "ray tracing"};
 constexpr std::array<std::string_view, kNumFamilies> kFamilyDocs = {
     "Copies, selections, and the packing of register pairs.",
     "Integer arithmetic, logic, shifts and bit fields.",
@@ -35,7 +42,8 @@ constexpr std::array<std::string_view, kNumFamilies> kFamilyDocs = {
 
 std::vector<OpRow> joined(Path path) {
   const auto rows_of = path == Path::Avx512 ? &avx512::family_rows
-                       : path == Path::Avx2 ? &avx2::family_rows : &baseline::family_rows;
+                       : path == Path::Avx2 ? &avx2::family_rows
+                                            : &baseline::family_rows;
   std::vector<OpRow> out;
   for (int f = 0; f < kNumFamilies; ++f) {
     const RowList list = rows_of(f);

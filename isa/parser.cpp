@@ -1,8 +1,6 @@
 // Parses the text of a program (isa/text.h). Newlines end directives, semicolons instructions.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-
-#include <cctype>
 #include <limits>
 #include <map>
 #include <optional>
@@ -10,111 +8,10 @@
 #include "base/diagnostics.h"
 #include "isa/op_row.h"
 #include "isa/text.h"
+#include "isa/tokens.h"
 
 namespace glint::isa {
 namespace {
-
-struct Token {
-  enum class Kind : uint8_t { Word, String, Punctuation, Newline, End } kind = Kind::End;
-  std::string text;
-  int line = 1, column = 1;
-};
-
-class Tokens {
- public:
-  Tokens(const std::string& text, const std::string& file) : text_(text), file_(file) { advance(); }
-
-  const Token& peek() const { return token_; }
-  Token take() {
-    Token taken = token_;
-    advance();
-    return taken;
-  }
-  void skip_newlines() {
-    while (token_.kind == Token::Kind::Newline) advance();
-  }
-  bool take_if(std::string_view punctuation) {
-    if (token_.kind != Token::Kind::Punctuation || token_.text != punctuation) return false;
-    advance();
-    return true;
-  }
-  void expect(std::string_view punctuation, std::string_view where) {
-    if (!take_if(punctuation)) fail(token_, fmt::format("'{}' {}", punctuation, where));
-  }
-  std::string take_word(std::string_view what) {
-    if (token_.kind != Token::Kind::Word) fail(token_, what);
-    return take().text;
-  }
-  [[noreturn]] void fail(const Token& at, std::string_view expected, const std::string& note = {}) const {
-    const std::string found = at.kind == Token::Kind::End       ? "the end of the file"
-                              : at.kind == Token::Kind::Newline ? "the end of the line"
-                                                                : "'" + at.text + "'";
-    throw UserError({file_, at.line, at.column}, fmt::format("found {}, expected {}", found, expected), note);
-  }
-
- private:
-  static bool is_word(char c) { return std::isalnum(uint8_t(c)) || c == '_' || c == '.' || c == '%' || c == '$'; }
-
-  char next() const { return at_ < text_.size() ? text_[at_] : '\0'; }
-  void step() {
-    if (text_[at_++] == '\n') {
-      ++line_;
-      column_ = 1;
-    } else {
-      ++column_;
-    }
-  }
-  void skip_blanks() {
-    while (at_ < text_.size()) {
-      if (next() == '/' && at_ + 1 < text_.size() && text_[at_ + 1] == '/')
-        while (at_ < text_.size() && next() != '\n') step();
-      else if (next() == ' ' || next() == '\t' || next() == '\r')
-        step();
-      else
-        return;
-    }
-  }
-  void advance() {
-    skip_blanks();
-    token_ = {Token::Kind::End, "", line_, column_};
-    if (at_ >= text_.size()) return;
-    const char c = next();
-    if (c == '\n') {
-      token_.kind = Token::Kind::Newline;
-      step();
-    } else if (c == '"') {
-      read_string();
-    } else if (is_word(c)) {
-      token_.kind = Token::Kind::Word;
-      for (; at_ < text_.size() && is_word(next()); step()) token_.text += next();
-    } else {
-      token_.kind = Token::Kind::Punctuation;
-      token_.text = c;
-      step();
-    }
-  }
-  void read_string() {
-    token_.kind = Token::Kind::String;
-    step();
-    for (; at_ < text_.size() && next() != '"' && next() != '\n'; step()) {
-      char c = next();
-      if (c == '\\') {
-        step();
-        c = next() == 'n' ? '\n' : next();
-      }
-      if (at_ >= text_.size()) break;
-      token_.text += c;
-    }
-    if (next() != '"') fail(token_, "a closing '\"'");
-    step();
-  }
-
-  const std::string& text_;
-  const std::string& file_;
-  size_t at_ = 0;
-  int line_ = 1, column_ = 1;
-  Token token_;
-};
 
 // The digits of `text` in `base` as a number, if that is all of it and it fits 64 bits.
 std::optional<uint64_t> digits(std::string_view text, unsigned base) {
@@ -134,7 +31,8 @@ std::optional<uint64_t> digits(std::string_view text, unsigned base) {
 // "17", "0x11" or "0f3F800000" (8 digits).
 std::optional<uint64_t> number(const std::string& text) {
   if (text.starts_with("0x")) return digits(std::string_view(text).substr(2), 16);
-  if (text.starts_with("0f")) return text.size() == 10 ? digits(std::string_view(text).substr(2), 16) : std::nullopt;
+  if (text.starts_with("0f"))
+    return text.size() == 10 ? digits(std::string_view(text).substr(2), 16) : std::nullopt;
   return digits(text, 10);
 }
 
@@ -150,7 +48,8 @@ class Parser {
 
   Program run() {
     program_.name = "";
-    for (tokens_.skip_newlines(); tokens_.peek().kind != Token::Kind::End; tokens_.skip_newlines()) statement();
+    for (tokens_.skip_newlines(); tokens_.peek().kind != Token::Kind::End; tokens_.skip_newlines())
+      statement();
     resolve_labels();
     program_.specials_used = specials_ ? *specials_ : specials_read_by(program_.code);
     return std::move(program_);
@@ -174,19 +73,33 @@ class Parser {
   void directive() {
     const Token name = tokens_.take();
     const std::string& d = name.text;
-    if (d == ".program") program_.name = string_value();
-    else if (d == ".stage") stage();
-    else if (d == ".registers") program_.num_registers = small("a number of registers", kMaxRegisters);
-    else if (d == ".local_bytes") program_.local_bytes = small("a number of bytes");
-    else if (d == ".payload_bytes") program_.payload_bytes = small("a number of bytes");
-    else if (d == ".attribute_bytes") program_.attribute_bytes = small("a number of bytes");
-    else if (d == ".local_size") for (uint32_t& n : program_.local_size) n = small("three sizes");
-    else if (d == ".specials") specials_ = unsigned_number("a mask of specials", ~uint64_t{0});
-    else if (d == ".const") program_.constants.push_back(small("the value of a row"));
-    else if (d == ".file") file();
-    else if (d == ".loc") location();
-    else tokens_.fail(name, "a directive", did_you_mean(d, {".program", ".stage", ".registers", ".local_bytes",
-                      ".payload_bytes", ".attribute_bytes", ".local_size", ".specials", ".const", ".file", ".loc"}));
+    if (d == ".program")
+      program_.name = string_value();
+    else if (d == ".stage")
+      stage();
+    else if (d == ".registers")
+      program_.num_registers = small("a number of registers", kMaxRegisters);
+    else if (d == ".local_bytes")
+      program_.local_bytes = small("a number of bytes");
+    else if (d == ".payload_bytes")
+      program_.payload_bytes = small("a number of bytes");
+    else if (d == ".attribute_bytes")
+      program_.attribute_bytes = small("a number of bytes");
+    else if (d == ".local_size")
+      for (uint32_t& n : program_.local_size) n = small("three sizes");
+    else if (d == ".specials")
+      specials_ = unsigned_number("a mask of specials", ~uint64_t{0});
+    else if (d == ".const")
+      program_.constants.push_back(small("the value of a row"));
+    else if (d == ".file")
+      file();
+    else if (d == ".loc")
+      location();
+    else
+      tokens_.fail(
+          name, "a directive",
+          did_you_mean(d, {".program", ".stage", ".registers", ".local_bytes", ".payload_bytes",
+                           ".attribute_bytes", ".local_size", ".specials", ".const", ".file", ".loc"}));
     if (tokens_.peek().kind != Token::Kind::Newline && tokens_.peek().kind != Token::Kind::End)
       tokens_.fail(tokens_.peek(), "the end of the line after " + d);
   }
@@ -211,8 +124,9 @@ class Parser {
   void stage() {
     const Token t = tokens_.peek();
     if (!find_stage(t.text, program_.stage))
-      tokens_.fail(t, "a stage", did_you_mean(t.text, {"ray_generation", "intersection", "any_hit", "closest_hit",
-                                                       "miss", "callable", "compute"}));
+      tokens_.fail(t, "a stage",
+                   did_you_mean(t.text, {"ray_generation", "intersection", "any_hit", "closest_hit", "miss",
+                                         "callable", "compute"}));
     tokens_.take();
   }
   void file() {
@@ -261,18 +175,35 @@ class Parser {
 
   void operand(Inst& inst, OperandKind kind, int slot) {
     switch (kind) {
-      case OperandKind::None: return;
-      case OperandKind::Label: return label();
+      case OperandKind::None:
+        return;
+      case OperandKind::Label:
+        return label();
       case OperandKind::DstPred:
-      case OperandKind::SrcPred: inst.operand[slot] = predicate(); return;
-      case OperandKind::Dst32: inst.operand[slot] = destination(false); return;
-      case OperandKind::Dst64: inst.operand[slot] = destination(true); return;
-      case OperandKind::Src32: inst.operand[slot] = source(false); return;
-      case OperandKind::Src64: inst.operand[slot] = source(true); return;
-      case OperandKind::Address32: return address(inst, slot, false);
-      case OperandKind::Address64: return address(inst, slot, true);
-      case OperandKind::DstVec2: case OperandKind::DstVec4:
-      case OperandKind::SrcVec2: case OperandKind::SrcVec4: return vector(inst, kind, slot);
+      case OperandKind::SrcPred:
+        inst.operand[slot] = predicate();
+        return;
+      case OperandKind::Dst32:
+        inst.operand[slot] = destination(false);
+        return;
+      case OperandKind::Dst64:
+        inst.operand[slot] = destination(true);
+        return;
+      case OperandKind::Src32:
+        inst.operand[slot] = source(false);
+        return;
+      case OperandKind::Src64:
+        inst.operand[slot] = source(true);
+        return;
+      case OperandKind::Address32:
+        return address(inst, slot, false);
+      case OperandKind::Address64:
+        return address(inst, slot, true);
+      case OperandKind::DstVec2:
+      case OperandKind::DstVec4:
+      case OperandKind::SrcVec2:
+      case OperandKind::SrcVec4:
+        return vector(inst, kind, slot);
     }
   }
   void label() {
@@ -314,9 +245,11 @@ class Parser {
     if (t.kind == Token::Kind::Word && t.text[0] == '%') {
       if (const auto slot = register_named(t, is_wide)) return tokens_.take(), *slot;
       const auto row = numbered(t.text, "%c");
-      if (row && *row + (is_wide ? 2 : 1) <= program_.constants.size()) return tokens_.take(), Slot(kConstantBank + *row);
+      if (row && *row + (is_wide ? 2 : 1) <= program_.constants.size())
+        return tokens_.take(), Slot(kConstantBank + *row);
       const Special special = find_special(t.text);
-      if (!is_wide && special != Special::Count) return tokens_.take(), Slot(kSpecialBank + unsigned(special));
+      if (!is_wide && special != Special::Count)
+        return tokens_.take(), Slot(kSpecialBank + unsigned(special));
     }
     return constant(signed_literal(is_wide), is_wide);
   }
@@ -347,7 +280,8 @@ class Parser {
       inst.operand[slot] = constant(0, is_wide);
       inst.imm = displacement(first, int64_t(value));
     } else {
-      inst.operand[slot] = is_number ? constant(value & (is_wide ? ~uint64_t{0} : 0xffff'ffffull), is_wide) : source(is_wide);
+      inst.operand[slot] =
+          is_number ? constant(value & (is_wide ? ~uint64_t{0} : 0xffff'ffffull), is_wide) : source(is_wide);
       const bool negate = tokens_.peek().text == "-";
       const Token at = tokens_.peek();
       if (tokens_.take_if("+") || tokens_.take_if("-")) {
@@ -384,6 +318,8 @@ class Parser {
 
 }  // namespace
 
-Program parse(const std::string& text, const std::string& file_name) { return Parser(text, file_name).run(); }
+Program parse(const std::string& text, const std::string& file_name) {
+  return Parser(text, file_name).run();
+}
 
 }  // namespace glint::isa

@@ -11,20 +11,62 @@
 namespace glint::isa {
 namespace {
 
-constexpr std::array<std::string_view, kNumSpecials> kSpecialNames = {
-    "%laneid", "%launch.x", "%launch.y", "%launch.z", "%launch.size.x", "%launch.size.y", "%launch.size.z",
-    "%clock", "%payload", "%attribute",
-    "%hit.t", "%hit.kind", "%hit.u", "%hit.v", "%hit.primitive", "%hit.geometry", "%hit.instance", "%hit.custom",
-    "%ray.flags", "%ray.tmin",
-    "%ray.origin.x", "%ray.origin.y", "%ray.origin.z", "%ray.direction.x", "%ray.direction.y", "%ray.direction.z",
-    "%object.origin.x", "%object.origin.y", "%object.origin.z",
-    "%object.direction.x", "%object.direction.y", "%object.direction.z",
-    "%object_to_world.0", "%object_to_world.1", "%object_to_world.2", "%object_to_world.3", "%object_to_world.4",
-    "%object_to_world.5", "%object_to_world.6", "%object_to_world.7", "%object_to_world.8", "%object_to_world.9",
-    "%object_to_world.10", "%object_to_world.11",
-    "%world_to_object.0", "%world_to_object.1", "%world_to_object.2", "%world_to_object.3", "%world_to_object.4",
-    "%world_to_object.5", "%world_to_object.6", "%world_to_object.7", "%world_to_object.8", "%world_to_object.9",
-    "%world_to_object.10", "%world_to_object.11"};
+constexpr std::array<std::string_view, kNumSpecials> kSpecialNames = {"%laneid",
+                                                                      "%launch.x",
+                                                                      "%launch.y",
+                                                                      "%launch.z",
+                                                                      "%launch.size.x",
+                                                                      "%launch.size.y",
+                                                                      "%launch.size.z",
+                                                                      "%clock",
+                                                                      "%payload",
+                                                                      "%attribute",
+                                                                      "%hit.t",
+                                                                      "%hit.kind",
+                                                                      "%hit.u",
+                                                                      "%hit.v",
+                                                                      "%hit.primitive",
+                                                                      "%hit.geometry",
+                                                                      "%hit.instance",
+                                                                      "%hit.custom",
+                                                                      "%ray.flags",
+                                                                      "%ray.tmin",
+                                                                      "%ray.origin.x",
+                                                                      "%ray.origin.y",
+                                                                      "%ray.origin.z",
+                                                                      "%ray.direction.x",
+                                                                      "%ray.direction.y",
+                                                                      "%ray.direction.z",
+                                                                      "%object.origin.x",
+                                                                      "%object.origin.y",
+                                                                      "%object.origin.z",
+                                                                      "%object.direction.x",
+                                                                      "%object.direction.y",
+                                                                      "%object.direction.z",
+                                                                      "%object_to_world.0",
+                                                                      "%object_to_world.1",
+                                                                      "%object_to_world.2",
+                                                                      "%object_to_world.3",
+                                                                      "%object_to_world.4",
+                                                                      "%object_to_world.5",
+                                                                      "%object_to_world.6",
+                                                                      "%object_to_world.7",
+                                                                      "%object_to_world.8",
+                                                                      "%object_to_world.9",
+                                                                      "%object_to_world.10",
+                                                                      "%object_to_world.11",
+                                                                      "%world_to_object.0",
+                                                                      "%world_to_object.1",
+                                                                      "%world_to_object.2",
+                                                                      "%world_to_object.3",
+                                                                      "%world_to_object.4",
+                                                                      "%world_to_object.5",
+                                                                      "%world_to_object.6",
+                                                                      "%world_to_object.7",
+                                                                      "%world_to_object.8",
+                                                                      "%world_to_object.9",
+                                                                      "%world_to_object.10",
+                                                                      "%world_to_object.11"};
 static_assert(!kSpecialNames.back().empty(), "every special has a name");
 
 constexpr std::string_view kStageNames[] = {"ray_generation", "intersection", "any_hit", "closest_hit",
@@ -37,19 +79,24 @@ bool same_inst(const Inst& a, const Inst& b) {
 }  // namespace
 
 bool Program::operator==(const Program& o) const {
-  return name == o.name && stage == o.stage && constants == o.constants && files == o.files && lines == o.lines &&
-         num_registers == o.num_registers && local_bytes == o.local_bytes && payload_bytes == o.payload_bytes &&
-         attribute_bytes == o.attribute_bytes && local_size == o.local_size && specials_used == o.specials_used &&
+  return name == o.name && stage == o.stage && constants == o.constants && files == o.files &&
+         lines == o.lines && num_registers == o.num_registers && local_bytes == o.local_bytes &&
+         payload_bytes == o.payload_bytes && attribute_bytes == o.attribute_bytes &&
+         local_size == o.local_size && specials_used == o.specials_used &&
          std::equal(code.begin(), code.end(), o.code.begin(), o.code.end(), same_inst);
 }
 
-std::string_view name_of(Special special) { return kSpecialNames[size_t(special)]; }
+std::string_view name_of(Special special) {
+  return kSpecialNames[size_t(special)];
+}
 
 Special find_special(std::string_view name) {
   return Special(std::find(kSpecialNames.begin(), kSpecialNames.end(), name) - kSpecialNames.begin());
 }
 
-std::string_view name_of(Stage stage) { return kStageNames[size_t(stage)]; }
+std::string_view name_of(Stage stage) {
+  return kStageNames[size_t(stage)];
+}
 
 bool find_stage(std::string_view name, Stage& out) {
   const auto at = std::find(std::begin(kStageNames), std::end(kStageNames), name);
@@ -66,7 +113,8 @@ uint64_t specials_read_by(const std::vector<Inst>& code) {
       const int end = slot + slots_of(kind);
       if (kind == OperandKind::DstPred || kind == OperandKind::SrcPred) slot = end;
       for (; slot < end; ++slot)
-        if (inst.operand[slot] & kSpecialBank) used |= uint64_t{1} << (inst.operand[slot] & kSlotIndexMask & 63);
+        if (inst.operand[slot] & kSpecialBank)
+          used |= uint64_t{1} << (inst.operand[slot] & kSlotIndexMask & 63);
     }
   }
   return used;

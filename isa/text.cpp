@@ -3,7 +3,6 @@
 #include "isa/text.h"
 
 #include <fmt/format.h>
-
 #include <map>
 #include <set>
 
@@ -39,11 +38,13 @@ class OperandPrinter {
   std::string source(Slot slot, bool is_wide, bool as_float) {
     const unsigned index = slot & kSlotIndexMask;
     if (slot & kSpecialBank)
-      return index < unsigned(kNumSpecials) ? std::string(name_of(Special(index))) : fmt::format("%special{}", index);
+      return index < unsigned(kNumSpecials) ? std::string(name_of(Special(index)))
+                                            : fmt::format("%special{}", index);
     if (!(slot & kConstantBank)) return fmt::format("%r{}{}", is_wide ? "d" : "", index);
     const size_t end = index + (is_wide ? 2 : 1);
     if (end > program_.constants.size()) return fmt::format("%c{}", index);
-    const uint64_t value = program_.constants[index] | (is_wide ? uint64_t{program_.constants[index + 1]} << 32 : 0);
+    const uint64_t value =
+        program_.constants[index] | (is_wide ? uint64_t{program_.constants[index + 1]} << 32 : 0);
     const size_t before = rows_.size();
     if (intern_constant(rows_, value, is_wide) == index) return literal(value, is_wide, as_float);
     rows_.resize(before);
@@ -99,7 +100,8 @@ class LabelNames {
 
 std::string vector_text(OperandPrinter& print, const Inst& inst, int slot, int count, bool as_float) {
   std::string out = "{";
-  for (int i = 0; i < count; ++i) out += (i ? ", " : "") + print.source(inst.operand[slot + i], false, as_float);
+  for (int i = 0; i < count; ++i)
+    out += (i ? ", " : "") + print.source(inst.operand[slot + i], false, as_float);
   return out + "}";
 }
 
@@ -107,20 +109,28 @@ std::string one_operand(OperandPrinter& print, const OpRow& row, const Inst& ins
                         const LabelNames* labels) {
   const Slot s = inst.operand[slot];
   switch (kind) {
-    case OperandKind::None: return "";
-    case OperandKind::Label: return labels ? labels->at(inst.imm) : fmt::format("@{}", inst.imm);
+    case OperandKind::None:
+      return "";
+    case OperandKind::Label:
+      return labels ? labels->at(inst.imm) : fmt::format("@{}", inst.imm);
     case OperandKind::DstPred:
-    case OperandKind::SrcPred: return fmt::format("%p{}", s);
-    case OperandKind::Address64: return print.address(s, inst.imm, true);
-    case OperandKind::Address32: return print.address(s, inst.imm, false);
+    case OperandKind::SrcPred:
+      return fmt::format("%p{}", s);
+    case OperandKind::Address64:
+      return print.address(s, inst.imm, true);
+    case OperandKind::Address32:
+      return print.address(s, inst.imm, false);
     case OperandKind::Dst64:
-    case OperandKind::Src64: return print.source(s, true, false);
+    case OperandKind::Src64:
+      return print.source(s, true, false);
     case OperandKind::Dst32:
-    case OperandKind::Src32: return print.source(s, false, is_float(row, slot));
+    case OperandKind::Src32:
+      return print.source(s, false, is_float(row, slot));
     case OperandKind::DstVec2:
     case OperandKind::SrcVec2:
     case OperandKind::DstVec4:
-    case OperandKind::SrcVec4: return vector_text(print, inst, slot, slots_of(kind), false);
+    case OperandKind::SrcVec4:
+      return vector_text(print, inst, slot, slots_of(kind), false);
   }
   return "";
 }
@@ -157,7 +167,8 @@ std::string quoted(const std::string& s) {
 }
 
 std::string header_text(const Program& p) {
-  std::string out = fmt::format(".program {}\n.stage {}\n.registers {}\n", quoted(p.name), name_of(p.stage), p.num_registers);
+  std::string out = fmt::format(".program {}\n.stage {}\n.registers {}\n", quoted(p.name), name_of(p.stage),
+                                p.num_registers);
   if (p.local_bytes) out += fmt::format(".local_bytes {}\n", p.local_bytes);
   if (p.payload_bytes) out += fmt::format(".payload_bytes {}\n", p.payload_bytes);
   if (p.attribute_bytes) out += fmt::format(".attribute_bytes {}\n", p.attribute_bytes);

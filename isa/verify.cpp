@@ -29,7 +29,8 @@ class Verifier {
     if (program_.lines.size() != program_.code.size())
       whole(fmt::format("{} source lines for {} instructions", program_.lines.size(), program_.code.size()));
     for (const auto& [index, name] : program_.labels)
-      if (index > program_.code.size()) whole(fmt::format("label '{}' stands past the end of the code", name));
+      if (index > program_.code.size())
+        whole(fmt::format("label '{}' stands past the end of the code", name));
   }
 
   void instruction(const Inst& inst) {
@@ -38,14 +39,16 @@ class Verifier {
     row_ = &op_table()[inst.op];
     if (inst.guard != kNoGuard && (inst.guard & ~kGuardNegate) >= kNumPredicates)
       error(fmt::format("guard %p{}, expected %p0 to %p{}", inst.guard & ~kGuardNegate, kNumPredicates - 1));
-    if (at_ < program_.lines.size() && program_.lines[at_].line && program_.lines[at_].file >= program_.files.size())
+    if (at_ < program_.lines.size() && program_.lines[at_].line &&
+        program_.lines[at_].file >= program_.files.size())
       error(fmt::format("source file {} is not declared", program_.lines[at_].file));
     int slot = 0;
     bool has_imm = false;
     operand_ = 0;
     for (const OperandKind kind : row_->operands.view()) {
       ++operand_;
-      has_imm |= kind == OperandKind::Label || kind == OperandKind::Address32 || kind == OperandKind::Address64;
+      has_imm |=
+          kind == OperandKind::Label || kind == OperandKind::Address32 || kind == OperandKind::Address64;
       if (kind == OperandKind::Label) target(inst);
       for (const int end = slot + slots_of(kind); slot < end; ++slot) one_slot(kind, inst.operand[slot]);
     }
@@ -57,7 +60,8 @@ class Verifier {
 
   void target(const Inst& inst) {
     if (inst.imm < 0 || size_t(inst.imm) >= program_.code.size())
-      return error(fmt::format("target {} lies outside the code (0 to {})", inst.imm, int64_t(program_.code.size()) - 1));
+      return error(fmt::format("target {} lies outside the code (0 to {})", inst.imm,
+                               int64_t(program_.code.size()) - 1));
     if (row_->effect != Effect::PushReconvergence) return;
     const uint16_t op = program_.code[inst.imm].op;
     if (op >= op_table().size() || op_table()[op].effect != Effect::Join)
@@ -67,7 +71,8 @@ class Verifier {
   void one_slot(OperandKind kind, Slot slot) {
     const unsigned index = slot & kSlotIndexMask;
     if (kind == OperandKind::DstPred || kind == OperandKind::SrcPred) {
-      if (slot >= kNumPredicates) error(fmt::format("predicate %p{}, expected %p0 to %p{}", slot, kNumPredicates - 1));
+      if (slot >= kNumPredicates)
+        error(fmt::format("predicate %p{}, expected %p0 to %p{}", slot, kNumPredicates - 1));
       return;
     }
     const bool is_wide =
@@ -84,15 +89,18 @@ class Verifier {
         if (end > program_.constants.size())
           error(fmt::format("constant row {}, and the program has {}", end - 1, program_.constants.size()));
         return;
-      case kSpecialBank: return special(kind, index, is_wide);
-      default: error(fmt::format("slot 0x{:x} names no bank", slot));
+      case kSpecialBank:
+        return special(kind, index, is_wide);
+      default:
+        error(fmt::format("slot 0x{:x} names no bank", slot));
     }
   }
 
   void special(OperandKind kind, unsigned index, bool is_wide) {
     if (is_destination(kind)) error("a special as destination");
     if (is_wide) error("a special as 64-bit operand");
-    if (index >= unsigned(kNumSpecials)) return error(fmt::format("special {}, and there are {}", index, kNumSpecials));
+    if (index >= unsigned(kNumSpecials))
+      return error(fmt::format("special {}, and there are {}", index, kNumSpecials));
     if (!(program_.specials_used >> index & 1))
       error(fmt::format("{} is read, and the program does not declare it", name_of(Special(index))));
   }
@@ -105,15 +113,16 @@ class Verifier {
     if (last.op >= op_table().size()) return;
     row_ = &op_table()[last.op];
     const Effect e = row_->effect;
-    const bool leaves = e == Effect::Branch || e == Effect::Exit || e == Effect::Return || e == Effect::Ignore ||
-                        e == Effect::Terminate;
+    const bool leaves = e == Effect::Branch || e == Effect::Exit || e == Effect::Return ||
+                        e == Effect::Ignore || e == Effect::Terminate;
     if (!leaves || last.guard != kNoGuard) error("the code can run off its end here");
   }
 
   void whole(const std::string& what) { diagnostics_.error({program_.name, 0, 0}, what); }
   void error(const std::string& what) {
     SourceLocation where{program_.name, 0, 0};
-    if (at_ < program_.lines.size() && program_.lines[at_].line && program_.lines[at_].file < program_.files.size())
+    if (at_ < program_.lines.size() && program_.lines[at_].line &&
+        program_.lines[at_].file < program_.files.size())
       where = {program_.files[program_.lines[at_].file], int(program_.lines[at_].line), 0};
     const std::string op = row_ ? fmt::format(" ({})", row_->name) : "";
     const std::string operand = operand_ ? fmt::format(", operand {}", operand_) : "";
@@ -129,6 +138,8 @@ class Verifier {
 
 }  // namespace
 
-void verify(const Program& program, Diagnostics& diagnostics) { Verifier(program, diagnostics).run(); }
+void verify(const Program& program, Diagnostics& diagnostics) {
+  Verifier(program, diagnostics).run();
+}
 
 }  // namespace glint::isa

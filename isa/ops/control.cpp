@@ -12,7 +12,8 @@ constexpr OpRow control(std::string_view name, Effect effect, Operands operands,
 
 constexpr OpRow kRows[] = {
     control("bra", Effect::Branch, {Label}, "Continues at the label; a guard may split the warp."),
-    control("ssy", Effect::PushReconvergence, {Label}, "Opens a region whose lanes meet at the join of the label."),
+    control("ssy", Effect::PushReconvergence, {Label},
+            "Opens a region whose lanes meet at the join of the label."),
     control("join", Effect::Join, {}, "Waits until every lane of the region has arrived or left it."),
     control("exit", Effect::Exit, {}, "Ends the lanes."),
     control("ret", Effect::Return, {}, "Returns from the shader; an any-hit shader accepts its candidate."),
@@ -20,6 +21,8 @@ constexpr OpRow kRows[] = {
 
 }  // namespace
 
-RowList control_rows() { return {kRows, std::size(kRows)}; }
+RowList control_rows() {
+  return {kRows, std::size(kRows)};
+}
 
 }  // namespace glint::isa::GLINT_ISA_PATH

@@ -6,11 +6,13 @@
 
 namespace glint::isa::GLINT_ISA_PATH {
 
-void run_nothing(Warp&, const Inst&) {}
+void run_nothing(Warp&, const Inst&) {
+}
 
 RowList family_rows(int family) {
-  constexpr RowList (*kFamilies[])() = {&move_rows,      &integer_rows, &compare_rows, &float_rows,   &convert_rows,
-                                        &predicate_rows, &memory_rows,  &texture_rows, &control_rows, &ray_tracing_rows};
+  constexpr RowList (*kFamilies[])() = {&move_rows,    &integer_rows,    &compare_rows, &float_rows,
+                                        &convert_rows, &predicate_rows,  &memory_rows,  &texture_rows,
+                                        &control_rows, &ray_tracing_rows};
   return kFamilies[family]();
 }
 

@@ -16,7 +16,9 @@ template <class Base, int kSlot>
   all_lanes([&](int i) { out[i] = Address(Base(base.at(i) + displacement)); });
 }
 
-constexpr bool is_wide(Space space) { return space == Space::Global; }
+constexpr bool is_wide(Space space) {
+  return space == Space::Global;
+}
 
 template <Space kSpace, int kSlot>
 constexpr Handler handler_of() {
@@ -27,9 +29,10 @@ constexpr Handler handler_of() {
 }
 
 template <Space kSpace>
-constexpr OpRow access_row(std::string_view name, Effect effect, Memory memory, Operands operands, Handler run,
-                           std::string_view doc) {
-  OpRow row = effect_op(name, Class::Mem, kSpace == Space::Const ? Unit::Const : Unit::Lsu, effect, operands, doc);
+constexpr OpRow access_row(std::string_view name, Effect effect, Memory memory, Operands operands,
+                           Handler run, std::string_view doc) {
+  OpRow row =
+      effect_op(name, Class::Mem, kSpace == Space::Const ? Unit::Const : Unit::Lsu, effect, operands, doc);
   row.memory = memory;
   row.memory.space = kSpace;
   row.run = run;
@@ -56,9 +59,11 @@ constexpr Memory parts(uint8_t bytes, uint8_t count = 1, bool sign_extend = fals
 constexpr OpRow kRows[] = {
     load<Space::Global, Dst32>("ld.global.b32", parts(4), "Loads 4 bytes of global memory."),
     load<Space::Global, Dst32>("ld.global.u8", parts(1), "Loads a byte of global memory, zero-extended."),
-    load<Space::Global, Dst32>("ld.global.s8", parts(1, 1, true), "Loads a byte of global memory, sign-extended."),
+    load<Space::Global, Dst32>("ld.global.s8", parts(1, 1, true),
+                               "Loads a byte of global memory, sign-extended."),
     load<Space::Global, Dst32>("ld.global.u16", parts(2), "Loads 2 bytes of global memory, zero-extended."),
-    load<Space::Global, Dst32>("ld.global.s16", parts(2, 1, true), "Loads 2 bytes of global memory, sign-extended."),
+    load<Space::Global, Dst32>("ld.global.s16", parts(2, 1, true),
+                               "Loads 2 bytes of global memory, sign-extended."),
     load<Space::Global, DstVec2>("ld.global.v2.b32", parts(4, 2), "Loads two words of global memory."),
     load<Space::Global, DstVec4>("ld.global.v4.b32", parts(4, 4), "Loads four words of global memory."),
     load<Space::Global, Dst64>("ld.global.b64", parts(8), "Loads 8 bytes of global memory."),
@@ -84,6 +89,8 @@ constexpr OpRow kRows[] = {
 
 }  // namespace
 
-RowList memory_rows() { return {kRows, std::size(kRows)}; }
+RowList memory_rows() {
+  return {kRows, std::size(kRows)};
+}
 
 }  // namespace glint::isa::GLINT_ISA_PATH

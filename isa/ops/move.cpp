@@ -34,22 +34,28 @@ constexpr OpRow unpack_row() {
 }
 
 constexpr OpRow kRows[] = {
-    unary<uint32_t>("mov.b32", Unit::Move, "Copies 32 bits.", [](uint32_t a) { return a; }, {{{7}, 7}, {{0x7f80'0001}, 0x7f80'0001}}),
+    unary<uint32_t>("mov.b32", Unit::Move, "Copies 32 bits.", [](uint32_t a) { return a; },
+                    {{{7}, 7}, {{0x7f80'0001}, 0x7f80'0001}}),
     unary<uint64_t>("mov.b64", Unit::Move, "Copies 64 bits.", [](uint64_t a) { return a; },
                     {{{7}, 7}, {{0x1122'3344'5566'7788}, 0x1122'3344'5566'7788}}),
-    value_op<uint32_t, uint32_t, bool>("selp.b32", Unit::Int, "The first source where the predicate is true, else the second.",
-                                       [](uint32_t a, uint32_t b, bool p) { return p ? a : b; }, {{{3, 4, 1}, 3}, {{3, 4, 0}, 4}}),
-    value_op<uint64_t, uint64_t, bool>("selp.b64", Unit::Int, "The first source where the predicate is true, else the second.",
+    value_op<uint32_t, uint32_t, bool>(
+        "selp.b32", Unit::Int, "The first source where the predicate is true, else the second.",
+        [](uint32_t a, uint32_t b, bool p) { return p ? a : b; }, {{{3, 4, 1}, 3}, {{3, 4, 0}, 4}}),
+    value_op<uint64_t, uint64_t, bool>("selp.b64", Unit::Int,
+                                       "The first source where the predicate is true, else the second.",
                                        [](uint64_t a, uint64_t b, bool p) { return p ? a : b; },
                                        {{{1ull << 40, 4, 1}, 1ull << 40}, {{1ull << 40, 4, 0}, 4}}),
-    value_op<uint32_t, uint32_t>("pack.b64", Unit::Move, "Joins a low and a high half to a pair.",
-                                 [](uint32_t low, uint32_t high) { return uint64_t(low) | uint64_t(high) << 32; },
-                                 {{{1, 2}, 0x2'0000'0001}, {{0xffff'ffff, 0}, 0xffff'ffff}}),
+    value_op<uint32_t, uint32_t>(
+        "pack.b64", Unit::Move, "Joins a low and a high half to a pair.",
+        [](uint32_t low, uint32_t high) { return uint64_t(low) | uint64_t(high) << 32; },
+        {{{1, 2}, 0x2'0000'0001}, {{0xffff'ffff, 0}, 0xffff'ffff}}),
     unpack_row(),
 };
 
 }  // namespace
 
-RowList move_rows() { return {kRows, std::size(kRows)}; }
+RowList move_rows() {
+  return {kRows, std::size(kRows)};
+}
 
 }  // namespace glint::isa::GLINT_ISA_PATH

@@ -16,25 +16,32 @@ constexpr OpRow call(std::string_view name, Effect effect, std::string_view doc)
 
 constexpr OpRow kRows[] = {
     ray("rt.trace", Effect::Trace,
-        {DstPred, Src64, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32,
-         Src32, Src32},
-        "Traces a ray: waiting lanes, structure, flags, mask, SBT offset, SBT stride, miss index, origin, tmin, "
+        {DstPred, Src64, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32,
+         Src32, Src32, Src32},
+        "Traces a ray: waiting lanes, structure, flags, mask, SBT offset, SBT stride, miss index, origin, "
+        "tmin, "
         "direction, tmax, payload, attributes."),
-    ray("rt.resume", Effect::Resume, {DstPred}, "Hands decided candidates back to the RT unit; tells who waits again."),
+    ray("rt.resume", Effect::Resume, {DstPred},
+        "Hands decided candidates back to the RT unit; tells who waits again."),
     ray("rt.report", Effect::Report, {DstPred, Src32, Src32},
         "Reports a hit (t, kind) of an intersection shader; tells which lanes need their any-hit shader."),
     ray("rt.accepted", Effect::Accepted, {DstPred}, "Tells which lanes' last reported hit was accepted."),
     ray("rt.ignore", Effect::Ignore, {}, "Rejects the candidate and ends the any-hit shader."),
-    ray("rt.terminate", Effect::Terminate, {}, "Accepts the candidate, ends the traversal and the any-hit shader."),
+    ray("rt.terminate", Effect::Terminate, {},
+        "Accepts the candidate, ends the traversal and the any-hit shader."),
     ray("rt.end", Effect::EndTrace, {}, "Closes the innermost rt.trace."),
     call("call.sbt.candidate", Effect::CallCandidate,
          "Calls the intersection or any-hit shader of each lane's candidate, split by shader."),
-    call("call.sbt.anyhit", Effect::CallAnyHit, "Calls the any-hit shader of each lane's reported hit, split by shader."),
-    call("call.sbt.hit", Effect::CallHit, "Calls the closest-hit or miss shader of each lane's ray, split by shader."),
+    call("call.sbt.anyhit", Effect::CallAnyHit,
+         "Calls the any-hit shader of each lane's reported hit, split by shader."),
+    call("call.sbt.hit", Effect::CallHit,
+         "Calls the closest-hit or miss shader of each lane's ray, split by shader."),
 };
 
 }  // namespace
 
-RowList ray_tracing_rows() { return {kRows, std::size(kRows)}; }
+RowList ray_tracing_rows() {
+  return {kRows, std::size(kRows)};
+}
 
 }  // namespace glint::isa::GLINT_ISA_PATH

@@ -22,7 +22,8 @@ template <int kSlot>
   });
 }
 
-constexpr OpRow texture(std::string_view name, Effect effect, Operands operands, Handler run, std::string_view doc) {
+constexpr OpRow texture(std::string_view name, Effect effect, Operands operands, Handler run,
+                        std::string_view doc) {
   OpRow row = effect_op(name, Class::Tex, Unit::Tex, effect, operands, doc);
   row.memory = {Space::Global, 4, 4, false};
   row.run = run;
@@ -40,6 +41,8 @@ constexpr OpRow kRows[] = {
 
 }  // namespace
 
-RowList texture_rows() { return {kRows, std::size(kRows)}; }
+RowList texture_rows() {
+  return {kRows, std::size(kRows)};
+}
 
 }  // namespace glint::isa::GLINT_ISA_PATH

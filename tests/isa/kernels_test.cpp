@@ -22,7 +22,8 @@ double error_ulps(float got, double exact) {
 
 // Largest error of `name` over `count` floats from `first` on, `step` bits apart, both signs if asked.
 template <class Exact>
-double max_error(const char* name, uint32_t first, uint32_t last, uint32_t step, bool both_signs, Exact exact) {
+double max_error(const char* name, uint32_t first, uint32_t last, uint32_t step, bool both_signs,
+                 Exact exact) {
   const OpRow& row = op_table()[op_index(name)];
   WarpFixture w;
   const Inst inst = spread(row, op_index(name));
@@ -42,7 +43,9 @@ double max_error(const char* name, uint32_t first, uint32_t last, uint32_t step,
   return worst;
 }
 
-uint32_t bits(float x) { return std::bit_cast<uint32_t>(x); }
+uint32_t bits(float x) {
+  return std::bit_cast<uint32_t>(x);
+}
 
 }  // namespace
 
@@ -68,7 +71,9 @@ TEST_CASE("logarithms are within 0.51 ulp, subnormals and the neighbourhood of 1
 }
 
 TEST_CASE("reciprocal square roots are within 0.51 ulp, reciprocals and roots are rounded correctly") {
-  CHECK(max_error("rsqrt.approx.f32", 1, 0x7f7f'ffff, 1499, false, [](double x) { return 1 / std::sqrt(x); }) < 0.51);
+  CHECK(max_error("rsqrt.approx.f32", 1, 0x7f7f'ffff, 1499, false,
+                  [](double x) { return 1 / std::sqrt(x); }) < 0.51);
   CHECK(max_error("sqrt.rn.f32", 1, 0x7f7f'ffff, 1499, false, [](double x) { return std::sqrt(x); }) <= 0.5);
-  CHECK(max_error("rcp.rn.f32", bits(0x1p-127f), 0x7f7f'ffff, 1499, true, [](double x) { return 1 / x; }) <= 0.5);
+  CHECK(max_error("rcp.rn.f32", bits(0x1p-127f), 0x7f7f'ffff, 1499, true, [](double x) { return 1 / x; }) <=
+        0.5);
 }

@@ -23,17 +23,21 @@ uint64_t next_random(uint64_t& state) {
 }
 
 // Bits that go wrong: zeros, ones, extremes of integers and floats, NaN, subnormals, shift counts.
-constexpr uint32_t kCorners[] = {0, 1, 2, 7, 31, 32, 33, 63, 64, 255, 0x7fff'ffff, 0x8000'0000, 0x8000'0001, 0xffff'ffff,
-                                 0xffff'fffe, 0x3f80'0000, 0xbf80'0000, 0x3f00'0000, 0xbfc0'0000, 0x7f80'0000, 0xff80'0000,
-                                 0x7fc0'0000, 0x7f80'0001, 0xffc0'1234, 0x0080'0000, 0x007f'ffff, 0x4f00'0000, 0x4f80'0000,
-                                 0xcf00'0000, 0x4b00'0001, 0x7f7f'ffff, 0x4049'0fdb};
+constexpr uint32_t kCorners[] = {
+    0,           1,           2,           7,           31,          32,          33,          63,
+    64,          255,         0x7fff'ffff, 0x8000'0000, 0x8000'0001, 0xffff'ffff, 0xffff'fffe, 0x3f80'0000,
+    0xbf80'0000, 0x3f00'0000, 0xbfc0'0000, 0x7f80'0000, 0xff80'0000, 0x7fc0'0000, 0x7f80'0001, 0xffc0'1234,
+    0x0080'0000, 0x007f'ffff, 0x4f00'0000, 0x4f80'0000, 0xcf00'0000, 0x4b00'0001, 0x7f7f'ffff, 0x4049'0fdb};
 
 uint32_t test_word(uint64_t& state) {
   const uint64_t r = next_random(state);
   switch (r >> 62) {
-    case 0: return kCorners[(r >> 32) % std::size(kCorners)];
-    case 1: return 0x3000'0000u + (uint32_t(r) & 0x9fff'ffffu);  // floats of moderate size
-    default: return uint32_t(r >> 8);
+    case 0:
+      return kCorners[(r >> 32) % std::size(kCorners)];
+    case 1:
+      return 0x3000'0000u + (uint32_t(r) & 0x9fff'ffffu);  // floats of moderate size
+    default:
+      return uint32_t(r >> 8);
   }
 }
 
@@ -87,7 +91,8 @@ TEST_CASE("the rows have the same names in the same order on every path") {
   CHECK(first == op_table().size());
 }
 
-TEST_CASE("each example holds on every path under full and sparse masks, and inactive lanes keep their values") {
+TEST_CASE(
+    "each example holds on every path under full and sparse masks, and inactive lanes keep their values") {
   for (const Path path : paths())
     for (const OpRow& row : op_table(path))
       for (const Example& example : row.examples.view())
@@ -98,7 +103,8 @@ TEST_CASE("each example holds on every path under full and sparse masks, and ina
           int slot = 0;
           for (const OperandKind kind : row.operands.view()) {
             if (!is_destination(kind)) {
-              for (int lane = 0; lane < kLanes; ++lane) w.set(kind, inst.operand[slot], lane, example.in[input]);
+              for (int lane = 0; lane < kLanes; ++lane)
+                w.set(kind, inst.operand[slot], lane, example.in[input]);
               ++input;
             }
             slot += slots_of(kind);
@@ -146,7 +152,8 @@ TEST_CASE("a masked run equals the full run on its lanes and changes nothing els
       const auto none = run_random(row, uint16_t(op), 77, 0);
       const auto some = run_random(row, uint16_t(op), 77, kSparse);
       int wrong = 0;
-      for (size_t i = 0; i < kNumPredicates; ++i) wrong += some[i] != ((full[i] & kSparse) | (none[i] & ~kSparse));
+      for (size_t i = 0; i < kNumPredicates; ++i)
+        wrong += some[i] != ((full[i] & kSparse) | (none[i] & ~kSparse));
       for (size_t i = kNumPredicates; i < some.size(); ++i)
         wrong += some[i] != (kSparse >> ((i - kNumPredicates) % kLanes) & 1 ? full : none)[i];
       CHECK(wrong == 0);
@@ -161,19 +168,22 @@ TEST_CASE("a destination may be any of its sources") {
       Inst apart = spread(row, uint16_t(op)), same = apart;
       for (int s = 1; s < row.operands.count; ++s)
         if (WarpFixture::is_wide(row.operands.kind[s]) == WarpFixture::is_wide(row.operands.kind[0]) &&
-            (row.operands.kind[s] == OperandKind::SrcPred) == (row.operands.kind[0] == OperandKind::DstPred)) {
+            (row.operands.kind[s] == OperandKind::SrcPred) ==
+                (row.operands.kind[0] == OperandKind::DstPred)) {
           same.operand[0] = apart.operand[s];
           WarpFixture a, b;
           uint64_t seed = 5 + op;
           for (int r = 0; r < WarpFixture::kRows; ++r)
             for (int lane = 0; lane < kLanes; ++lane) a.at(r, lane) = b.at(r, lane) = test_word(seed);
-          for (int p = 0; p < kNumPredicates; ++p) a.warp.predicate[p] = b.warp.predicate[p] = uint32_t(next_random(seed));
+          for (int p = 0; p < kNumPredicates; ++p)
+            a.warp.predicate[p] = b.warp.predicate[p] = uint32_t(next_random(seed));
           a.warp.exec = b.warp.exec = s % 2 ? kAllLanes : kSparse;
           row.run(a.warp, apart);
           row.run(b.warp, same);
           int wrong = 0;
           for_each_lane(a.warp.exec, [&](int lane) {
-            wrong += a.get(row.operands.kind[0], apart.operand[0], lane) != b.get(row.operands.kind[0], same.operand[0], lane);
+            wrong += a.get(row.operands.kind[0], apart.operand[0], lane) !=
+                     b.get(row.operands.kind[0], same.operand[0], lane);
           });
           INFO(name_of(path) << " " << row.name << " source " << s);
           CHECK(wrong == 0);
@@ -192,8 +202,10 @@ TEST_CASE("memory and texture ops form the addresses of the active lanes and tou
       int slot = 0, at = -1;
       bool is_wide = false;
       for (const OperandKind kind : row.operands.view()) {
-        if (at < 0 && (kind == OperandKind::Address64 || kind == OperandKind::Address32 || kind == OperandKind::Src32)) {
-          if (row.klass == Class::Tex || kind != OperandKind::Src32) at = slot, is_wide = kind == OperandKind::Address64;
+        if (at < 0 && (kind == OperandKind::Address64 || kind == OperandKind::Address32 ||
+                       kind == OperandKind::Src32)) {
+          if (row.klass == Class::Tex || kind != OperandKind::Src32)
+            at = slot, is_wide = kind == OperandKind::Address64;
         }
         slot += slots_of(kind);
       }

@@ -1,5 +1,5 @@
-// The text of programs: what is printed parses to the identical program, and mistakes are named at their place.
-// SPDX-License-Identifier: Apache-2.0
+// The text of programs: what is printed parses to the identical program, and mistakes are named at their
+// place. SPDX-License-Identifier: Apache-2.0
 #include "isa/text.h"
 
 #include "base/diagnostics.h"
@@ -46,11 +46,15 @@ Program program_of_all_rows() {
       int slot = 0;
       for (const OperandKind kind : row.operands.view()) {
         const bool is_wide = kind == OperandKind::Src64 || kind == OperandKind::Address64;
-        if (kind == OperandKind::Address32 || kind == OperandKind::Address64) inst.imm = int32_t(turn) * 4 - 400;
+        if (kind == OperandKind::Address32 || kind == OperandKind::Address64)
+          inst.imm = int32_t(turn) * 4 - 400;
         for (const int end = slot + slots_of(kind); slot < end; ++slot) {
-          if (kind == OperandKind::DstPred || kind == OperandKind::SrcPred) inst.operand[slot] = Slot(++turn % kNumPredicates);
-          else if (is_destination(kind)) inst.operand[slot] = Slot(2 * (++turn % 20));
-          else inst.operand[slot] = some_source(p, is_wide, turn);
+          if (kind == OperandKind::DstPred || kind == OperandKind::SrcPred)
+            inst.operand[slot] = Slot(++turn % kNumPredicates);
+          else if (is_destination(kind))
+            inst.operand[slot] = Slot(2 * (++turn % 20));
+          else
+            inst.operand[slot] = some_source(p, is_wide, turn);
         }
         if (kind == OperandKind::Label) inst.imm = int32_t(op_index("join"));  // of the first round
       }
@@ -75,7 +79,9 @@ std::string error_of(const std::string& text) {
   return "no error";
 }
 
-bool starts(const std::string& s, const std::string& prefix) { return s.rfind(prefix, 0) == 0; }
+bool starts(const std::string& s, const std::string& prefix) {
+  return s.rfind(prefix, 0) == 0;
+}
 
 }  // namespace
 
@@ -125,9 +131,12 @@ TEST_CASE("programs that differ in one field are not equal") {
 }
 
 TEST_CASE("literals keep their bits: decimal, negative, hexadecimal and float") {
-  const Program p = parse("add.u32 %r1, 7, -1;\nmul.rn.f32 %r1, 0f3F800000, 0x3f800000;\n"
-                          "add.u64 %rd2, -2, 0xffffffffffffffff;\nld.const.b32 %r1, [16];\n", "p");
-  CHECK(p.constants == std::vector<uint32_t>{7, 0xffff'ffff, 0x3f80'0000, 0xffff'fffe, 0xffff'ffff, 0xffff'ffff, 0xffff'ffff, 0});
+  const Program p = parse(
+      "add.u32 %r1, 7, -1;\nmul.rn.f32 %r1, 0f3F800000, 0x3f800000;\n"
+      "add.u64 %rd2, -2, 0xffffffffffffffff;\nld.const.b32 %r1, [16];\n",
+      "p");
+  CHECK(p.constants == std::vector<uint32_t>{7, 0xffff'ffff, 0x3f80'0000, 0xffff'fffe, 0xffff'ffff,
+                                             0xffff'ffff, 0xffff'ffff, 0});
   CHECK(p.code[1].operand[1] == p.code[1].operand[2]);
   CHECK(p.code[3].imm == 16);
   CHECK(to_text(p, p.code[0]) == "add.u32 %r1, 7, -1;");
@@ -145,25 +154,38 @@ TEST_CASE("every special has a name that leads back to it") {
 }
 
 TEST_CASE("the parser names the place of a mistake and what it expected") {
-  CHECK(starts(error_of("\n  add.u33 %r1, %r2, %r3;"), "bad.isa:2:3: error: found 'add.u33', expected an op"));
+  CHECK(
+      starts(error_of("\n  add.u33 %r1, %r2, %r3;"), "bad.isa:2:3: error: found 'add.u33', expected an op"));
   CHECK(error_of("add.u33 %r1, %r2, %r3;").find("did you mean 'add.u32'?") != std::string::npos);
-  CHECK(starts(error_of("add.u32 %r1, %r2;"), "bad.isa:1:17: error: found ';', expected ',' before operand 3 of add.u32"));
-  CHECK(starts(error_of("add.u32 %r1, %r2, %r3"), "bad.isa:1:22: error: found the end of the file, expected ';'"));
-  CHECK(starts(error_of("add.u32 5, %r2, %r3;"), "bad.isa:1:9: error: found '5', expected a register, %r0 to %r254"));
-  CHECK(starts(error_of("add.u32 %r255, %r2, %r3;"), "bad.isa:1:9: error: found '%r255', expected a register"));
-  CHECK(starts(error_of("add.u64 %rd3, %rd2, %rd4;"), "bad.isa:1:9: error: found '%rd3', expected an even register"));
-  CHECK(starts(error_of("add.u64 %rd2, %rd2, %launch.x;"), "bad.isa:1:21: error: found '%launch.x', expected a register pair"));
-  CHECK(starts(error_of("add.u32 %r1, %r2, 0x100000000;"), "bad.isa:1:19: error: found '0x100000000', expected a register, a special or a 32-bit"));
+  CHECK(starts(error_of("add.u32 %r1, %r2;"),
+               "bad.isa:1:17: error: found ';', expected ',' before operand 3 of add.u32"));
+  CHECK(starts(error_of("add.u32 %r1, %r2, %r3"),
+               "bad.isa:1:22: error: found the end of the file, expected ';'"));
+  CHECK(starts(error_of("add.u32 5, %r2, %r3;"),
+               "bad.isa:1:9: error: found '5', expected a register, %r0 to %r254"));
+  CHECK(
+      starts(error_of("add.u32 %r255, %r2, %r3;"), "bad.isa:1:9: error: found '%r255', expected a register"));
+  CHECK(starts(error_of("add.u64 %rd3, %rd2, %rd4;"),
+               "bad.isa:1:9: error: found '%rd3', expected an even register"));
+  CHECK(starts(error_of("add.u64 %rd2, %rd2, %launch.x;"),
+               "bad.isa:1:21: error: found '%launch.x', expected a register pair"));
+  CHECK(starts(error_of("add.u32 %r1, %r2, 0x100000000;"),
+               "bad.isa:1:19: error: found '0x100000000', expected a register, a special or a 32-bit"));
   CHECK(starts(error_of("@%p8 exit;"), "bad.isa:1:2: error: found '%p8', expected a predicate"));
-  CHECK(starts(error_of("L: exit;\nbra M;"), "bad.isa:2:5: error: found 'M', expected a label of this program"));
-  CHECK(starts(error_of("L: exit;\nL: exit;"), "bad.isa:2:1: error: found 'L', expected a label that does not stand twice"));
+  CHECK(starts(error_of("L: exit;\nbra M;"),
+               "bad.isa:2:5: error: found 'M', expected a label of this program"));
+  CHECK(starts(error_of("L: exit;\nL: exit;"),
+               "bad.isa:2:1: error: found 'L', expected a label that does not stand twice"));
   CHECK(starts(error_of(".stage compte"), "bad.isa:1:8: error: found 'compte', expected a stage"));
   CHECK(starts(error_of(".file 1 \"x\""), "bad.isa:1:7: error: found '1', expected file 0"));
-  CHECK(starts(error_of(".registers 300"), "bad.isa:1:12: error: found '300', expected a number of registers (0 to 255)"));
+  CHECK(starts(error_of(".registers 300"),
+               "bad.isa:1:12: error: found '300', expected a number of registers (0 to 255)"));
   CHECK(starts(error_of(".program x"), "bad.isa:1:10: error: found 'x', expected a name in quotes"));
   CHECK(starts(error_of(".program \"x"), "bad.isa:1:10: error: found 'x', expected a closing"));
-  CHECK(starts(error_of("ld.local.b32 %r1, [%r2 + 4;"), "bad.isa:1:27: error: found ';', expected ']' after the address"));
-  CHECK(starts(error_of("mov.b32 %r1, 0f3F8000;"), "bad.isa:1:14: error: found '0f3F8000', expected a register"));
+  CHECK(starts(error_of("ld.local.b32 %r1, [%r2 + 4;"),
+               "bad.isa:1:27: error: found ';', expected ']' after the address"));
+  CHECK(starts(error_of("mov.b32 %r1, 0f3F8000;"),
+               "bad.isa:1:14: error: found '0f3F8000', expected a register"));
 }
 
 TEST_CASE("the reference shows every op once, and an unknown op is met with the nearest name") {

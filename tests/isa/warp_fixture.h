@@ -14,7 +14,8 @@ class WarpFixture {
   WarpFixture() {
     warp.bank = {&storage_[0].lane[0], &storage_[kRows].lane[0], &storage_[2 * kRows].lane[0]};
     for (int row = 0; row < 3 * kRows; ++row)
-      for (int lane = 0; lane < kLanes; ++lane) storage_[row].lane[lane] = 0xdead'0000u + uint32_t(row * kLanes + lane);
+      for (int lane = 0; lane < kLanes; ++lane)
+        storage_[row].lane[lane] = 0xdead'0000u + uint32_t(row * kLanes + lane);
   }
   uint32_t& at(int row, int lane) { return warp.bank[0][row * kLanes + lane]; }
 
@@ -46,7 +47,9 @@ class WarpFixture {
   static constexpr int kRows = 32;
 
  private:
-  struct alignas(64) Lanes { uint32_t lane[kLanes]; };
+  struct alignas(64) Lanes {
+    uint32_t lane[kLanes];
+  };
   std::vector<Lanes> storage_ = std::vector<Lanes>(3 * kRows);
 };
 
@@ -57,12 +60,15 @@ inline Inst spread(const OpRow& row, uint16_t op) {
   int slot = 0, n = 0;
   for (const OperandKind kind : row.operands.view()) {
     const bool is_predicate = kind == OperandKind::SrcPred || kind == OperandKind::DstPred;
-    for (int i = 0; i < slots_of(kind); ++i) inst.operand[slot++] = Slot(is_predicate ? n % kNumPredicates : 2 * n + i);
+    for (int i = 0; i < slots_of(kind); ++i)
+      inst.operand[slot++] = Slot(is_predicate ? n % kNumPredicates : 2 * n + i);
     n += slots_of(kind) > 2 ? 2 : 1;
   }
   return inst;
 }
 
-inline bool is_value_op(const OpRow& row) { return row.effect == Effect::None; }
+inline bool is_value_op(const OpRow& row) {
+  return row.effect == Effect::None;
+}
 
 }  // namespace glint::isa

@@ -1,7 +1,5 @@
 // Bits of every op that PTX has, compared with those recorded on a GPU, where the recordings are at hand.
 // SPDX-License-Identifier: Apache-2.0
-#include <zstd.h>
-
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -10,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <zstd.h>
 
 #include "isa/paths.h"
 #include "tests/isa/warp_fixture.h"
@@ -50,7 +49,8 @@ TEST_CASE("every op that PTX shares gives the bits of a GPU, but approximations 
   }
   std::ifstream manifest_file(folder / "manifest.json");
   const nlohmann::json manifest = nlohmann::json::parse(manifest_file);
-  const std::string inputs = unpacked(folder / "inputs.bin.zst"), outputs = unpacked(folder / "outputs.bin.zst");
+  const std::string inputs = unpacked(folder / "inputs.bin.zst"),
+                    outputs = unpacked(folder / "outputs.bin.zst");
   std::set<std::string> compared;
   for (const nlohmann::json& form : manifest["ops"]) {
     const std::string name = form["op"];
@@ -69,7 +69,8 @@ TEST_CASE("every op that PTX shares gives the bits of a GPU, but approximations 
       w.warp.exec = kAllLanes;
       for (size_t i = 0; i < form["inputs"].size(); ++i)
         for (int lane = 0; lane < kLanes; ++lane)
-          w.set(row.operands.kind[i + 1], inst.operand[i + 1], lane, value_at(inputs, form["inputs"][i], base + size_t(lane)));
+          w.set(row.operands.kind[i + 1], inst.operand[i + 1], lane,
+                value_at(inputs, form["inputs"][i], base + size_t(lane)));
       row.run(w.warp, inst);
       for (int lane = 0; lane < kLanes; ++lane) {
         const auto in = [&](size_t i) { return value_at(inputs, form["inputs"][i], base + size_t(lane)); };
@@ -78,7 +79,8 @@ TEST_CASE("every op that PTX shares gives the bits of a GPU, but approximations 
         const uint64_t got = w.get(row.operands.kind[0], inst.operand[0], lane);
         if (got == expected || wrong++) continue;
         char text[128];
-        std::snprintf(text, sizeof text, "(%llx, %llx) gave %llx, recorded %llx", static_cast<unsigned long long>(in(0)),
+        std::snprintf(text, sizeof text, "(%llx, %llx) gave %llx, recorded %llx",
+                      static_cast<unsigned long long>(in(0)),
                       static_cast<unsigned long long>(form["inputs"].size() > 1 ? in(1) : 0),
                       static_cast<unsigned long long>(got), static_cast<unsigned long long>(expected));
         first = text;

@@ -40,20 +40,31 @@ std::string complaint(Change change) {
 
 }  // namespace
 
-TEST_CASE("a sound program is accepted") { CHECK(messages_of(parse(kSound, "sound")).empty()); }
+TEST_CASE("a sound program is accepted") {
+  CHECK(messages_of(parse(kSound, "sound")).empty());
+}
 
 TEST_CASE("operands out of range or of the wrong bank are named with their instruction and line") {
   using Catch::Contains;
   CHECK_THAT(complaint([](Program& p) { p.code[2].operand[0] = 8; }),
-             Contains("a.comp:3") && Contains("instruction 2 (add.u32), operand 1: register %r8, and the program has 8"));
-  CHECK_THAT(complaint([](Program& p) { p.code[3].operand[1] = 3; }), Contains("pair %rd3 starts at an odd register"));
-  CHECK_THAT(complaint([](Program& p) { p.code[2].operand[0] = kConstantBank; }), Contains("a constant as destination"));
-  CHECK_THAT(complaint([](Program& p) { p.code[2].operand[0] = kSpecialBank; }), Contains("a special as destination"));
-  CHECK_THAT(complaint([](Program& p) { p.code[3].operand[1] = kSpecialBank; }), Contains("a special as 64-bit operand"));
-  CHECK_THAT(complaint([](Program& p) { p.code[2].operand[2] = kConstantBank + 3; }), Contains("constant row 3, and the program has 3"));
-  CHECK_THAT(complaint([](Program& p) { p.code[3].operand[2] = kConstantBank + 2; }), Contains("constant row 3, and the program has 3"));
-  CHECK_THAT(complaint([](Program& p) { p.code[2].operand[1] = Slot(kSpecialBank + kNumSpecials); }), Contains("special 56, and there are 56"));
-  CHECK_THAT(complaint([](Program& p) { p.specials_used = 0; }), Contains("%laneid is read, and the program does not declare it"));
+             Contains("a.comp:3") &&
+                 Contains("instruction 2 (add.u32), operand 1: register %r8, and the program has 8"));
+  CHECK_THAT(complaint([](Program& p) { p.code[3].operand[1] = 3; }),
+             Contains("pair %rd3 starts at an odd register"));
+  CHECK_THAT(complaint([](Program& p) { p.code[2].operand[0] = kConstantBank; }),
+             Contains("a constant as destination"));
+  CHECK_THAT(complaint([](Program& p) { p.code[2].operand[0] = kSpecialBank; }),
+             Contains("a special as destination"));
+  CHECK_THAT(complaint([](Program& p) { p.code[3].operand[1] = kSpecialBank; }),
+             Contains("a special as 64-bit operand"));
+  CHECK_THAT(complaint([](Program& p) { p.code[2].operand[2] = kConstantBank + 3; }),
+             Contains("constant row 3, and the program has 3"));
+  CHECK_THAT(complaint([](Program& p) { p.code[3].operand[2] = kConstantBank + 2; }),
+             Contains("constant row 3, and the program has 3"));
+  CHECK_THAT(complaint([](Program& p) { p.code[2].operand[1] = Slot(kSpecialBank + kNumSpecials); }),
+             Contains("special 56, and there are 56"));
+  CHECK_THAT(complaint([](Program& p) { p.specials_used = 0; }),
+             Contains("%laneid is read, and the program does not declare it"));
   CHECK_THAT(complaint([](Program& p) { p.code[2].operand[1] = 0xc000; }), Contains("names no bank"));
   CHECK_THAT(complaint([](Program& p) { p.code[2].operand[5] = 1; }), Contains("operand slot 5 is set"));
   CHECK_THAT(complaint([](Program& p) { p.code[2].imm = 1; }), Contains("neither address nor label"));
@@ -69,18 +80,25 @@ TEST_CASE("operands out of range or of the wrong bank are named with their instr
 
 TEST_CASE("control flow that leaves the code or meets at no join is refused") {
   using Catch::Contains;
-  CHECK_THAT(complaint([](Program& p) { p.code[1].imm = 6; }), Contains("target 6 lies outside the code (0 to 5)"));
+  CHECK_THAT(complaint([](Program& p) { p.code[1].imm = 6; }),
+             Contains("target 6 lies outside the code (0 to 5)"));
   CHECK_THAT(complaint([](Program& p) { p.code[1].imm = -1; }), Contains("target -1 lies outside"));
-  CHECK_THAT(complaint([](Program& p) { p.code[0].imm = 3; }), Contains("instruction 3, where the lanes should meet, is not a join"));
-  CHECK_THAT(complaint([](Program& p) { p.code.pop_back(), p.lines.pop_back(); }), Contains("instruction 4 (join): the code can run off its end"));
-  CHECK_THAT(complaint([](Program& p) { p.code[5].guard = 0; }), Contains("instruction 5 (exit): the code can run off its end"));
+  CHECK_THAT(complaint([](Program& p) { p.code[0].imm = 3; }),
+             Contains("instruction 3, where the lanes should meet, is not a join"));
+  CHECK_THAT(complaint([](Program& p) { p.code.pop_back(), p.lines.pop_back(); }),
+             Contains("instruction 4 (join): the code can run off its end"));
+  CHECK_THAT(complaint([](Program& p) { p.code[5].guard = 0; }),
+             Contains("instruction 5 (exit): the code can run off its end"));
   CHECK_THAT(messages_of(Program{}).at(0), Contains("no instructions"));
 }
 
 TEST_CASE("headers that contradict the code are refused") {
   using Catch::Contains;
-  CHECK_THAT(complaint([](Program& p) { p.num_registers = 256; }), Contains("256 registers, expected 1 to 255"));
-  CHECK_THAT(complaint([](Program& p) { p.lines.push_back({}); }), Contains("7 source lines for 6 instructions"));
-  CHECK_THAT(complaint([](Program& p) { p.labels.emplace_back(7, "END"); }), Contains("label 'END' stands past the end"));
+  CHECK_THAT(complaint([](Program& p) { p.num_registers = 256; }),
+             Contains("256 registers, expected 1 to 255"));
+  CHECK_THAT(complaint([](Program& p) { p.lines.push_back({}); }),
+             Contains("7 source lines for 6 instructions"));
+  CHECK_THAT(complaint([](Program& p) { p.labels.emplace_back(7, "END"); }),
+             Contains("label 'END' stands past the end"));
   CHECK_THAT(complaint([](Program& p) { p.lines[2].file = 1; }), Contains("source file 1 is not declared"));
 }
