@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/build_tree.h"
 
+#if __has_include(<embree4/rtcore.h>)  // Ubuntu 24.04; building is the same in both
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 
 #include <limits>
 

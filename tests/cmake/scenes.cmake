@@ -1,5 +1,4 @@
 # Scenes, and the reference renderer that checks pictures of them.
-find_package(embree 3 REQUIRED)
 add_library(glint_reference STATIC reference/embree_intersector.cpp reference/reference.cpp reference/shapes.cpp)
 add_library(glint::reference ALIAS glint_reference)
 target_link_libraries(glint_reference PUBLIC glint::scenes PRIVATE embree glint_warnings)

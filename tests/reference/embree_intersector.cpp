@@ -1,20 +1,19 @@
 // Both intersectors on one Embree tree: geometry i is model i; spheres, and for the exact one triangles too, are
 // user geometry whose candidates go through tests/reference/shapes.cpp.
 // SPDX-License-Identifier: Apache-2.0
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cstring>
 #include <limits>
 
 #include "base/check.h"
 #include "tests/reference/intersector.h"
+#include "tests/support/embree.h"
 
 namespace glint::reference {
 namespace {
 
 struct Query {
-  RTCIntersectContext context;  // first: Embree hands this part to the callbacks
+  test::EmbreeContext context;  // first: Embree hands this part to the callbacks
   Ray ray;
   Hit best;
 };
@@ -43,7 +42,7 @@ class EmbreeIntersector final : public Intersector {
 
   Hit closest(const Ray& ray) override {
     Query query;
-    rtcInitIntersectContext(&query.context);
+    test::start(query.context);
     query.ray = ray;
     RTCRayHit rh{};
     rh.ray.org_x = ray.origin.x, rh.ray.org_y = ray.origin.y, rh.ray.org_z = ray.origin.z;
@@ -52,7 +51,7 @@ class EmbreeIntersector final : public Intersector {
     rh.ray.tfar = ray.t_max;
     rh.ray.mask = ~0u;
     rh.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(tree_, &query.context, &rh);
+    test::intersect(tree_, query.context, rh);
     if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
     // a user-geometry hit keeps its numbers in the query
     if (!query.best.missed() && query.best.model == rh.hit.geomID) return query.best;

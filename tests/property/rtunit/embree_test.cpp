@@ -1,10 +1,10 @@
 // Closest hits of random scenes agree with Embree's own intersector.
 // SPDX-License-Identifier: Apache-2.0
-#include <embree3/rtcore.h>
 
 #include "rtunit/validate.h"
 #include "tests/support/rt_scenes.h"
 #include "tests/support/catch.h"
+#include "tests/support/embree.h"
 
 namespace glint::rt::test {
 namespace {
@@ -60,9 +60,9 @@ class Oracle {
     out.ray = {ray.origin[0], ray.origin[1], ray.origin[2], ray.t_min, ray.direction[0], ray.direction[1], ray.direction[2], 0,
                ray.t_max, ~0u, 0, 0};
     out.hit.geomID = out.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(scene_, &context, &out);
+    glint::test::EmbreeContext context;
+    glint::test::start(context);
+    glint::test::intersect(scene_, context, out);
     return out;
   }
 
