@@ -134,6 +134,13 @@ class Converter {
     Instructions selected = select_moves(taken, other, s);
     block.code.resize(s.branch);
     block.code.erase(block.code.begin() + std::ptrdiff_t(s.ssy));
+    if (may_run_first(taken, other)) {
+      block.code.insert(block.code.end(), taken.begin(), taken.end());
+      taken.clear();
+    } else if (may_run_first(other, taken)) {
+      block.code.insert(block.code.end(), other.begin(), other.end());
+      other.clear();
+    }
     append(block.code, taken, s.condition, s.negate);
     append(block.code, other, s.condition, !s.negate);
     block.code.insert(block.code.end(), selected.begin(), selected.end());
@@ -157,6 +164,19 @@ class Converter {
     const isa::Effect effect = row_of(code.back()).effect;
     return effect == isa::Effect::Branch || effect == isa::Effect::Exit || effect == isa::Effect::Return ||
            effect == isa::Effect::Ignore || effect == isa::Effect::Terminate;
+  }
+
+  // True when all lanes may run `arm` before the lanes of `rest` run that one: it consists of moves to registers that
+  // `rest` writes too and does not read. Unguarded moves can be coalesced.
+  bool may_run_first(const Instructions& arm, const Instructions& rest) const {
+    for (const VirtualInst& inst : arm) {
+      if (!ops_.is_move(inst.op)) return false;
+      bool is_read = false;
+      for (const Instructions* code : {&arm, &rest})
+        for (const VirtualInst& reader : *code) for_each_use(reader, [&](VirtualRegister r) { is_read |= r == inst.operands[0].reg; });
+      if (is_read || !is_written(rest, inst.operands[0])) return false;
+    }
+    return true;
   }
 
   static void append(Instructions& code, Instructions& arm, VirtualRegister condition, bool negate) {
