@@ -47,7 +47,7 @@ FunctionalCounts run_functional(const core::World& world, uint64_t instruction_b
       if (executor.fault()) throw Error(Exit::Fault, executor.fault()->to_string());
       ClassCounts& by_class = counts.by_class[size_t(issued.row->klass)];
       ++by_class.instructions;
-      by_class.lanes += uint64_t(std::popcount(issued.lanes));
+      by_class.lanes += num_lanes(issued.lanes);
       finished = issued.finished;
       if (warp.waiting_for_rays) answer_rays(executor, warp, counts.rays);
       if (warp.instructions > instruction_budget) [[unlikely]]

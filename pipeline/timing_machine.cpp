@@ -51,7 +51,7 @@ Cycle TimingMachine::run(const std::function<void(uint64_t, uint64_t)>& progress
   const uint32_t num_warps = core::Executor(world_).num_warps();
   core::Dispatcher dispatcher(params_.core, num_warps, cores);
   const core::Fault* fault = nullptr;
-  engine_.run([&](Cycle now) {
+  const Cycle quiet = engine_.run([&](Cycle now) {
     for (const auto& core : cores_)
       if (!fault && core->fault()) fault = &*core->fault();
     if (fault) return EngineLoop::Next::Stop;
@@ -62,11 +62,12 @@ Cycle TimingMachine::run(const std::function<void(uint64_t, uint64_t)>& progress
   if (fault) throw Error(Exit::Fault, fault->to_string());
   Cycle end = 0;
   for (const auto& core : cores_) end = std::max(end, core->active_until());
-  for (auto& core : cores_) core->finish(end);
-  for (auto& unit : rt_units_) unit->tick(end);
-  memory_.finish(end);
+  for (auto& core : cores_) core->finish(quiet);
+  for (auto& unit : rt_units_) unit->finish(quiet);
+  memory_.finish(quiet);
   memory_.check_drained();
   root_.cycles += end;
+  root_.attributed += quiet;
   return end;
 }
 

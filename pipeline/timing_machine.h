@@ -24,6 +24,9 @@ class TimingMachine {
   // Runs the launch to its end; returns its cycles. Errors as render().
   Cycle run(const std::function<void(uint64_t done, uint64_t total)>& progress);
 
+  // What the cycles of every unit add up to after run().
+  Cycle attributed_cycles() const { return root_.attributed.value(); }
+
   // Sums over the cores for the caller's result.
   void collect(RenderResult& result) const;
 
@@ -37,7 +40,9 @@ class TimingMachine {
  private:
   struct Root : stats::Group {
     Root() : Group(nullptr, "gpu") {}
-    stats::Counter cycles{this, "cycles", "cycle", "From the launch until nothing was left to do."};
+    stats::Counter cycles{this, "cycles", "cycle", "From the launch until the last core was done: the launch's time."};
+    stats::Counter attributed{this, "attributed_cycles", "cycle",
+                              "Until the last write was in memory as well, in whole windows: what the cycles of every unit add up to."};
   };
 
   const GpuParams params_;

@@ -18,7 +18,7 @@ Scene build_ship(const LoadOptions& options) {
   } else {
     const std::string path = find_asset(options.assets, scene.name,
                                         {"assets/models/karimSchooner.obj", "models/karimSchooner.obj",
-                                         "SHIP/karimSchooner.obj"});
+                                         "SHIP/karimSchooner.obj", "karimSchooner.obj"});
     ship = load_obj(path, scene.materials);
     scene.form = "original";
     scene.note = "Complete: the original mesh from the assets folder.";
