@@ -8,6 +8,7 @@
 
 #include "base/check.h"
 #include "frontend/backend/liveness.h"
+#include "frontend/backend/spill.h"
 
 namespace glint::frontend {
 namespace {
@@ -83,7 +84,34 @@ void move_stack_pointer(std::vector<VirtualInst>& out, uint16_t op, uint32_t fra
 
 }  // namespace
 
+namespace {
+
+// Predicates that cross more calls than they have accesses become words for good.
+void demote_predicates(VirtualProgram& program, const Ops& ops) {
+  std::vector<float> gain(program.registers.size());  // estimated executed instructions
+  const std::vector<float> weights = block_weights(program);
+  for (const CallRegion& region : find_call_regions(program, find_liveness(program)))
+    region.live.for_each([&](VirtualRegister r) { gain[r] += 2 * weights[region.save.block]; });  // selp and setp
+  for (BlockId b = 0; b < program.blocks.size(); ++b)
+    for (const VirtualInst& inst : program.blocks[b].code) {
+      for_each_def(inst, [&](VirtualRegister r) { gain[r] -= weights[b]; });
+      for_each_use(inst, [&](VirtualRegister r) { gain[r] -= weights[b]; });
+    }
+  std::vector<bool> unspillable(program.registers.size());
+  SpillPlan plan{std::vector<VirtualRegister>(program.registers.size(), kNoRegister), &unspillable};
+  bool any = false;
+  for (VirtualRegister r = 0; r < plan.group.size(); ++r) {
+    if (program.registers[r] != RegisterClass::Predicate || gain[r] <= 0) continue;
+    plan.group[r] = r;
+    any = true;
+  }
+  if (any) spill(program, ops, plan);
+}
+
+}  // namespace
+
 void keep_predicates_across_calls(VirtualProgram& program, const Ops& ops) {
+  demote_predicates(program, ops);
   const std::vector<CallRegion> regions = find_call_regions(program, find_liveness(program));
   // What to insert before each SaveLive and after each RestoreLive, by block and index.
   std::map<std::pair<BlockId, size_t>, std::vector<VirtualInst>> before, after;

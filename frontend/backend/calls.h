@@ -6,7 +6,8 @@
 namespace glint::frontend {
 
 // Before allocation: predicates that are live across a call region become 32-bit values of 0 or 1 in front of it and
-// predicates again behind it, so that only registers need saving.
+// predicates again behind it, so that only registers need saving. Those that cross more calls than they have accesses
+// become such values everywhere.
 void keep_predicates_across_calls(VirtualProgram& program, const Ops& ops);
 
 // After allocation: replaces every SaveLive by stores of exactly the registers that are live across its region and
