@@ -23,7 +23,11 @@ std::string Fault::to_string() const {
   return fmt::format("{}: fault: {}\n  note: launch id ({}, {}, {})", place, what, launch_id[0], launch_id[1], launch_id[2]);
 }
 
-Executor::Executor(const World& world) : world_(world) {}
+Executor::Executor(const World& world)
+    : world_(world),
+      reads_clock_(std::any_of(world.image->shaders.begin(), world.image->shaders.end(), [](const Shader& shader) {
+        return (shader.specials_used >> int(isa::Special::Clock) & 1) != 0;
+      })) {}
 
 uint32_t Executor::num_warps() const {
   const uint64_t threads = uint64_t(world_.launch_size[0]) * world_.launch_size[1] * world_.launch_size[2];
@@ -75,8 +79,7 @@ Issued Executor::execute(WarpContext& warp, Cycle now) {
     exec &= inst.guard & isa::kGuardNegate ? ~guard : guard;
   }
   warp.regs.exec = issued.lanes = exec;
-  const uint64_t specials = world_.image->shaders[world_.image->shader_of[pc]].specials_used;
-  if (specials >> int(isa::Special::Clock) & 1) [[unlikely]]
+  if (reads_clock_) [[unlikely]]
     std::fill_n(warp.regs.bank[2] + size_t(isa::Special::Clock) * kLanes, kLanes, uint32_t(now));
 
   bool ok = true;

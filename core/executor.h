@@ -94,6 +94,7 @@ class Executor {
   bool fail(WarpContext& warp, int lane, std::string what);
 
   const World& world_;
+  const bool reads_clock_;  // any shader does: its row is filled before each instruction
   std::optional<Fault> fault_;
   std::array<std::array<Address, kLanes>, 4> texels_{};
 };

@@ -100,16 +100,17 @@ bool Executor::access_local(WarpContext& warp, const isa::Inst& inst, const isa:
       return fail(warp, lane, fmt::format("{} {} bytes at local address {:#x}: the stack of a lane has {} bytes",
                                           store ? "writes" : "reads", bytes, address, world_.local_bytes));
   }
+  const Address* const address = warp.regs.access.address.data();
   for (uint32_t word = 0; word < words; ++word) {
-    const isa::Slot slot = slot_of(inst, shape, store ? kStoreFirst : kLoadFirst, word);
-    const uint32_t* from = warp.regs.read(slot);
-    for_each_lane(warp.regs.exec, [&](int lane) {
-      uint32_t& cell = warp.local[(warp.regs.access.address[size_t(lane)] / 4 + word) * kLanes + size_t(lane)];
-      if (store)
-        cell = from[lane];
-      else
-        warp.regs.write(slot)[lane] = cell;
-    });
+    // Word `word` of a lane: its address counts bytes of one lane, rows hold kLanes words.
+    uint32_t* const stack = warp.local.data() + size_t(word) * kLanes;
+    if (store) {
+      const uint32_t* from = warp.regs.read(slot_of(inst, shape, kStoreFirst, word));
+      for_each_lane(warp.regs.exec, [&](int lane) { stack[address[lane] / 4 * kLanes + size_t(lane)] = from[lane]; });
+    } else {
+      uint32_t* to = warp.regs.write(slot_of(inst, shape, kLoadFirst, word));
+      for_each_lane(warp.regs.exec, [&](int lane) { to[lane] = stack[address[lane] / 4 * kLanes + size_t(lane)]; });
+    }
   }
   return true;
 }

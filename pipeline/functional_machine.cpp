@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "base/num_lanes.h"
 #include "rtunit/traversal.h"
 
 namespace glint::pipeline {

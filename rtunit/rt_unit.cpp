@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "base/num_lanes.h"
 
 namespace glint::rt {
 namespace {
@@ -275,7 +276,7 @@ bool RtUnit::choose_fetch(Cycle now) {
   for (size_t i = 0; i < slots_.size(); ++i) {
     const Slot& slot = slots_[i];
     const bool ready = slot.used && slot.wanting && slot.arrived < now;
-    views_[i] = {ready, uint32_t(std::popcount(slot.wanting)), slot.age, slot.arrived};
+    views_[i] = {ready, num_lanes(slot.wanting), slot.age, slot.arrived};
     any |= ready;
   }
   if (!any) return false;
@@ -294,7 +295,7 @@ bool RtUnit::choose_fetch(Cycle now) {
   slot.wanting &= ~fetch.lanes;
   ++num_fetches_;
   ++stats_.fetches;
-  stats_.merged_lanes += uint64_t(std::popcount(fetch.lanes)) - 1;
+  stats_.merged_lanes += num_lanes(fetch.lanes) - 1;
   return true;
 }
 
