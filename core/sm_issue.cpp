@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "base/num_lanes.h"
 #include "core/core_cell.h"
 
 namespace glint::core {
@@ -24,33 +25,35 @@ void CoreCell::run_scheduler(SchedulerState& scheduler, Cycle now) {
 
 // Warps that can issue now. When there are none: the reason, and until when it stays.
 uint64_t CoreCell::find_ready(SchedulerState& scheduler, Cycle now) {
-  uint64_t ready = 0;
   Cycle next = kNever;
   Stall reason = Stall::NoWarp;
-  scheduler.watches_rt = scheduler.watches_lsu = false;
-  scheduler.lsu_vacated = lsu_.num_vacated();
+  uint64_t free = 0;
+  // Without branches: which warps wait changes every cycle.
   for (uint64_t rest = scheduler.resident; rest; rest &= rest - 1) {
     const auto i = size_t(std::countr_zero(rest));
-    const Cycle pipe_free = scheduler.pipe_free[size_t(scheduler.pipe[i])];
-    if (scheduler.ready_at[i] > now) {
-      next = std::min(next, scheduler.ready_at[i]);
-      reason = std::min(reason, scheduler.wait[i]);
-    } else if (pipe_free > now) {
-      next = std::min(next, pipe_free);
-      reason = std::min(reason, Stall::MathThrottle);
-    } else if (scheduler.door[i] == Door::Lsu && !lsu_.can_take(scheduler.index)) {
-      scheduler.watches_lsu = true;
-      reason = std::min(reason, Stall::LsuThrottle);
-    } else if (scheduler.door[i] == Door::RtUnit && !rt_.can_accept()) {
-      scheduler.watches_rt = true;
-      reason = std::min(reason, Stall::RtFull);
-    } else {
-      ready |= uint64_t{1} << i;
-    }
+    const bool waits = scheduler.ready_at[i] > now;
+    const Cycle until = waits ? scheduler.ready_at[i] : scheduler.pipe_free[size_t(scheduler.pipe[i])];
+    const Stall why = waits ? scheduler.wait[i] : Stall::MathThrottle;
+    const bool blocked = until > now;
+    next = std::min(next, blocked ? until : kNever);
+    reason = std::min(reason, blocked ? why : Stall::NoWarp);
+    free |= uint64_t{!blocked} << i;
+  }
+  const uint64_t at_lsu = free & scheduler.needs_lsu, at_rt = free & scheduler.needs_rt;
+  scheduler.watches_lsu = at_lsu && !lsu_.can_take(scheduler.index);
+  scheduler.watches_rt = at_rt && !rt_.can_accept();
+  scheduler.lsu_vacated = lsu_.num_vacated();
+  if (scheduler.watches_lsu) {
+    free &= ~at_lsu;
+    reason = std::min(reason, Stall::LsuThrottle);
+  }
+  if (scheduler.watches_rt) {
+    free &= ~at_rt;
+    reason = std::min(reason, Stall::RtFull);
   }
   scheduler.reason = reason;
   scheduler.sleep_until = next;
-  return ready;
+  return free;
 }
 
 void CoreCell::issue(SchedulerState& scheduler, uint32_t local, Cycle now) {
@@ -97,7 +100,7 @@ void CoreCell::issue(SchedulerState& scheduler, uint32_t local, Cycle now) {
 }
 
 void CoreCell::count(const IssueRow& row, const Issued& issued) {
-  const auto lanes = uint64_t(std::popcount(issued.lanes));
+  const uint64_t lanes = num_lanes(issued.lanes);
   ++stats_.instructions;
   stats_.lane_instructions += lanes;
   stats_.lane_slots += uint64_t(kLanes);
@@ -258,9 +261,10 @@ void CoreCell::refresh(uint32_t slot) {
   scheduler.ready_at[local] = ready.at;
   scheduler.wait[local] = ready.wait;
   scheduler.pipe[local] = row.pipe;
-  scheduler.door[local] = row.finish == Finish::Memory || row.finish == Finish::CallRecord ? Door::Lsu
-                          : row.finish == Finish::Rays                                     ? Door::RtUnit
-                                                                                           : Door::None;
+  const uint64_t lsu = row.finish == Finish::Memory || row.finish == Finish::CallRecord;
+  const uint64_t rt = row.finish == Finish::Rays;
+  scheduler.needs_lsu = (scheduler.needs_lsu & ~(uint64_t{1} << local)) | lsu << local;
+  scheduler.needs_rt = (scheduler.needs_rt & ~(uint64_t{1} << local)) | rt << local;
   scheduler.wake();
 }
 

@@ -12,9 +12,6 @@
 
 namespace glint::core {
 
-// What the next instruction of a warp needs beside its operands and its pipe.
-enum class Door : uint8_t { None, Lsu, RtUnit };
-
 // Warps are numbered locally: warp slot w is warp w / schedulers of scheduler w mod schedulers.
 struct SchedulerState {
   uint32_t index = 0;
@@ -22,7 +19,7 @@ struct SchedulerState {
   std::array<Cycle, kMaxWarpsPerScheduler> ready_at{};      // operands of its next instruction; kNever: not known
   std::array<Stall, kMaxWarpsPerScheduler> wait{};          // what it waits for until then
   std::array<Pipe, kMaxWarpsPerScheduler> pipe{};           // of its next instruction
-  std::array<Door, kMaxWarpsPerScheduler> door{};
+  uint64_t needs_lsu = 0, needs_rt = 0;                     // its next instruction goes through that door
   std::array<uint64_t, kMaxWarpsPerScheduler> age{};        // launch number
   std::array<Cycle, kNumPipes> pipe_free{};
 
