@@ -10,7 +10,7 @@
 namespace glint::frontend {
 namespace {
 
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 std::string message_of(const std::string& path, const GlslOptions& options = {}) {
   try {

@@ -10,7 +10,7 @@
 namespace glint::frontend {
 namespace {
 
-using Catch::Matchers::Contains;
+using Catch::Contains;
 using lab::count;
 using lab::lowered;
 

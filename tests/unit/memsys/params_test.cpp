@@ -27,7 +27,7 @@ TEST_CASE("each impossible value is reported once with what was expected") {
   const auto one = [](const std::function<void(Params&)>& change, const std::string& expected) {
     const std::vector<std::string> messages = errors(change);
     REQUIRE(messages.size() == 1);
-    CHECK_THAT(messages[0], Catch::Matchers::Contains(expected));
+    CHECK_THAT(messages[0], Catch::Contains(expected));
   };
   one([](Params& p) { p.l1.mshr_entries = 0; }, "'l1.mshr_entries' is 0, expected at least 1");
   one([](Params& p) { p.l2.mshr_merges = 0; }, "'l2.mshr_merges' is 0, expected at least 1");
@@ -70,5 +70,5 @@ TEST_CASE("every parameter can be read from a configuration and unknown policies
   ConfigTable wrong_root = wrong.root(diagnostics);
   read_params(wrong_root, params);
   REQUIRE(diagnostics.messages().size() == 1);
-  CHECK_THAT(diagnostics.messages()[0], Catch::Matchers::Contains("did you mean \"frfcfs\""));
+  CHECK_THAT(diagnostics.messages()[0], Catch::Contains("did you mean \"frfcfs\""));
 }

@@ -119,14 +119,14 @@ TEST_CASE("input that cannot be built is refused with its index") {
   Geometry g = triangles(positions);
   g.indices = indices;
   mem::AddressSpace memory;
-  CHECK_THROWS_WITH(build_bottom(memory, "b", {{g}}), Catch::Matchers::Contains("triangle 0 names vertex 3"));
+  CHECK_THROWS_WITH(build_bottom(memory, "b", {{g}}), Catch::Contains("triangle 0 names vertex 3"));
   const StructureInfo bottom = build_bottom(memory, "b", {{triangles(positions)}});
   std::vector<Instance> instances(2);
   instances[1].transform = {1, 0, 0, 0, 2, 0, 0, 0, 0, 0, 1, 0};
-  CHECK_THROWS_WITH(build_top(memory, "t", instances, std::vector{bottom}), Catch::Matchers::Contains("instance 1 cannot be inverted"));
+  CHECK_THROWS_WITH(build_top(memory, "t", instances, std::vector{bottom}), Catch::Contains("instance 1 cannot be inverted"));
   instances[1] = {};
   instances[1].bottom = 1;
-  CHECK_THROWS_WITH(build_top(memory, "t", instances, std::vector{bottom}), Catch::Matchers::Contains("instance 1 names bottom level 1 of 1"));
+  CHECK_THROWS_WITH(build_top(memory, "t", instances, std::vector{bottom}), Catch::Contains("instance 1 names bottom level 1 of 1"));
 }
 
 // Must fail: each kind of damage turns the validator red.
