@@ -28,6 +28,7 @@ class Spiller {
     make_homes();
     for (VirtualBlock& block : program_.blocks) {
       out_.clear();
+      guard_ = {};
       for (VirtualInst& inst : block.code) rewrite(std::move(inst));
       block.code = out_;
     }
@@ -137,8 +138,22 @@ class Spiller {
     return false;
   }
 
+  // Instructions in a row with the same spilled guard share one reload. This is not thrift alone: a temporary that is
+  // written and read under one guard is dead above only as long as that guard has one name (LiveWalk).
+  void reload_guard(VirtualInst& inst) {
+    if (!home_of(inst.guard)) {
+      guard_ = {};
+      return;
+    }
+    if (const VirtualRegister group = plan_.group[inst.guard]; guard_.group != group) guard_ = {group, reload(inst.guard, inst)};
+    inst.guard = guard_.value;
+  }
+
   void rewrite(VirtualInst inst) {
-    if (rewrite_move(inst)) return;
+    if (rewrite_move(inst)) {
+      guard_ = {};
+      return;
+    }
     std::vector<std::pair<VirtualRegister, VirtualRegister>> loaded;  // spilled, its temporary
     const auto use = [&](VirtualRegister& r) {
       if (!home_of(r)) return;
@@ -151,7 +166,7 @@ class Spiller {
       loaded.emplace_back(r, value);
       r = value;
     };
-    if (inst.guard != kNoRegister) use(inst.guard);
+    reload_guard(inst);
     struct Defined {
       Home home;
       RegisterClass register_class;
@@ -166,6 +181,7 @@ class Spiller {
           use(operand.reg);
         } else if (const Home* home = home_of(operand.reg)) {
           const RegisterClass c = program_.registers[operand.reg];
+          if (plan_.group[operand.reg] == guard_.group) guard_ = {};
           operand.reg = temporary(c);
           defined.push_back({*home, c, operand.reg});
         }
@@ -179,6 +195,9 @@ class Spiller {
   SpillPlan& plan_;
   std::vector<Home> homes_;
   std::vector<VirtualInst> out_;
+  struct Guard {
+    VirtualRegister group = kNoRegister, value = kNoRegister;
+  } guard_;  // reloaded for the instruction before
 };
 
 }  // namespace
