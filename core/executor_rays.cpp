@@ -259,11 +259,18 @@ void Executor::fill_specials(WarpContext& warp, LaneMask lanes, const Shader& sh
       for (int k = 1; k < count; ++k) set(Special(int(first) + k), std::bit_cast<uint32_t>(from[k]));
     };
     set(Special::Payload, frame.payload[i]);
-    set(Special::Attribute, frame.attributes[i] + (seen.candidate_attributes != state.attribute_slot ? kAttributeBytes : 0));
+    const uint32_t attributes = frame.attributes[i] + (seen.candidate_attributes != state.attribute_slot ? kAttributeBytes : 0);
+    set(Special::Attribute, attributes);
     set(Special::HitT, std::bit_cast<uint32_t>(seen.t));
     set(Special::HitKind, seen.hit.kind);
     set(Special::HitU, std::bit_cast<uint32_t>(seen.hit.u));
     set(Special::HitV, std::bit_cast<uint32_t>(seen.hit.v));
+    // Model: the first two words of an intersection shader's attributes come where a triangle's weights come, so that a
+    // hit shader with a pair of floats serves both.
+    if (seen.hit.valid() && seen.hit.kind < rt::kHitKindFront) {
+      set(Special::HitU, warp.local[size_t(attributes / 4) * kLanes + i]);
+      set(Special::HitV, warp.local[size_t(attributes / 4 + 1) * kLanes + i]);
+    }
     set(Special::HitPrimitive, seen.hit.primitive);
     set(Special::HitGeometry, seen.hit.geometry);
     set(Special::HitInstance, seen.hit.instance);

@@ -78,6 +78,7 @@ VirtualProgram Lowering::run() {
   check_capabilities();
   index_definitions();
   note_interface();
+  choose_attribute_place();
   lower_control(*this);
   throw_if_unsupported();
   emitter_.finish();
@@ -147,10 +148,30 @@ void Lowering::prologue() {
   for (const auto& [id, variable] : module_.variables)
     if (variable.storage == spv::StorageClass::Private) initialise(variable);
   for (const auto& [id, variable] : local_variables_) initialise(variable);
-  if (stage() != isa::Stage::Intersection) return;
-  for (const auto& [id, variable] : module_.variables)
-    if (variable.storage == spv::StorageClass::HitAttributeKHR && pointer(id).place == Place::AttributePair)
-      unsupported("hit attribute of exactly two floats in an intersection shader", variable.line);
+}
+
+// An accepted report keeps its buffer of attributes, and the next one goes into the other: a shader that may
+// report more than once holds them in its frame and hands all of them over each time.
+void Lowering::choose_attribute_place() {
+  int reports = 0;
+  bool has_loop = false;
+  for (const Block& block : function_->blocks) {
+    has_loop |= block.merge == spv::Op::OpLoopMerge;
+    for (const Instruction& inst : block.code) reports += inst.op == spv::Op::OpReportIntersectionKHR;
+  }
+  attributes_in_frame_ = reports > 1 || (reports == 1 && has_loop);
+}
+
+void Lowering::hand_over_attributes() {
+  if (!attributes_in_frame_) return;
+  for (const auto& [id, variable] : module_.variables) {
+    if (variable.storage != spv::StorageClass::HitAttributeKHR) continue;
+    Pointer to = pointer(id);
+    const Operands parts = load(to);
+    to.base = Operand::of(isa::Special::Attribute);
+    to.displacement = 0;
+    store(to, parts);
+  }
 }
 
 void Lowering::instruction(const Instruction& inst) {
@@ -226,6 +247,8 @@ Operands Lowering::constant_parts(Id id) {
       }
       return parts;
     }
+    case spv::Op::OpSpecConstantOp:
+      return specialised_parts(constant);
     default:
       unsupported(name_of_opcode(uint32_t(constant.op)), constant.line);
       [[fallthrough]];
@@ -233,6 +256,21 @@ Operands Lowering::constant_parts(Id id) {
     case spv::Op::OpUndef:  // Choice: undefined values are 0
       return Operands(layout_.num_parts(constant.type), Operand::value(0));
   }
+}
+
+// The op as if it stood in the function: the emitter folds it, for all its operands are constants.
+Operands Lowering::specialised_parts(const Instruction& constant) {
+  Instruction inst = constant;
+  inst.op = spv::Op(constant.operands[0]);
+  inst.operands.erase(inst.operands.begin());
+  const LoweringRow* row = find_lowering_row(inst.op);
+  if (row) row->lower(*this, inst, *row);
+  const auto folded = values_.find(inst.result);
+  const auto is_known = [](const Operand& part) { return part.kind == Operand::Kind::Constant; };
+  if (folded != values_.end() && std::all_of(folded->second.begin(), folded->second.end(), is_known))
+    return Operands(folded->second);
+  unsupported(fmt::format("OpSpecConstantOp {}", name_of_opcode(uint32_t(inst.op))), constant.line);
+  return Operands(layout_.num_parts(constant.type), Operand::value(0));
 }
 
 const Instruction* Lowering::definition(Id id) const {

@@ -22,7 +22,7 @@ namespace glint::frontend {
 // The lowering without the backend: for tests and for `--emit virtual`. UnsupportedError as lower().
 VirtualProgram lower_to_virtual(const std::vector<uint32_t>& spirv, const std::string& name);
 
-// Where a pointer points. Attribute pairs: hit attributes of two floats, which triangles keep in %hit.u and
+// Where a pointer points. Attribute pairs: hit attributes of two floats, which hit shaders find in %hit.u and
 // %hit.v.
 enum class Place : uint8_t { Local, Global, Constant, Builtin, Resource, AttributePair, Nowhere };
 
@@ -89,6 +89,7 @@ class Lowering {
   void store(const Pointer& pointer, const Operands& parts);
   Operands load_builtin(spv::BuiltIn builtin, Id type);
   uint32_t local_offset(Id variable);  // bytes in the frame; allotted on first use
+  void hand_over_attributes();         // to the buffer that the next report reads
   uint32_t attribute_buffers();        // bytes in the frame of the two buffers of 64 bytes
   void note_store(Place place);        // loads of that place are not reused any more
 
@@ -108,7 +109,9 @@ class Lowering {
   void index_definitions();
   void check_capabilities();
   void note_interface();
+  void choose_attribute_place();
   Operands constant_parts(Id id);
+  Operands specialised_parts(const Instruction& constant);
   Pointer variable_pointer(const Variable& variable);
   Pointer buffer_pointer(const Variable& variable, Pointer pointer);
   void set_zero(const Instruction& inst);
@@ -126,6 +129,7 @@ class Lowering {
   std::map<Id, Variable> local_variables_;  // Function storage
   std::map<Id, uint32_t> frame_;            // variable to byte offset
   uint32_t attribute_buffers_ = 0xffff'ffff;
+  bool attributes_in_frame_ = false;        // of an intersection shader that may report more than once
   uint64_t local_version_ = 1, global_version_ = 1;  // of memory, for the reuse of loads
   std::map<std::tuple<uint16_t, uint32_t, std::string>, int> unsupported_;  // file, line, what: how often
   std::set<Id> reported_types_;

@@ -21,6 +21,22 @@ bool both_constant(const Operands& s) {
   return s[0].kind == Operand::Kind::Constant && s[1].kind == Operand::Kind::Constant;
 }
 
+// Those that tell signed from unsigned, and division where its result is defined.
+Folded fold_signed(std::string_view op, int32_t a, int32_t b) {
+  if (op == "shr.s32") return yes(uint32_t(a >> (uint32_t(b) > 31 ? 31 : b)));
+  if (op == "setp.lt.s32") return yes(a < b);
+  if (op == "setp.le.s32") return yes(a <= b);
+  if (op == "setp.gt.s32") return yes(a > b);
+  if (op == "setp.ge.s32") return yes(a >= b);
+  if (b == 0) return no();
+  if (op == "div.u32") return yes(uint32_t(a) / uint32_t(b));
+  if (op == "rem.u32") return yes(uint32_t(a) % uint32_t(b));
+  if (b == -1) return no();  // the lowest number has no negative
+  if (op == "div.s32") return yes(uint32_t(a / b));
+  if (op == "rem.s32") return yes(uint32_t(a % b));
+  return no();
+}
+
 // The integer ops of two 32-bit sources over constants.
 Folded fold_constants(std::string_view op, uint32_t a, uint32_t b) {
   if (op == "add.u32" || op == "add.s32") return yes(uint32_t(a + b));
@@ -37,7 +53,7 @@ Folded fold_constants(std::string_view op, uint32_t a, uint32_t b) {
   if (op == "setp.le.u32") return yes(a <= b);
   if (op == "setp.gt.u32") return yes(a > b);
   if (op == "setp.ge.u32") return yes(a >= b);
-  return no();
+  return fold_signed(op, int32_t(a), int32_t(b));
 }
 
 Folded fold_identity(std::string_view op, const Operand& a, const Operand& b) {

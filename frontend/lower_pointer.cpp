@@ -44,10 +44,10 @@ Pointer Lowering::variable_pointer(const Variable& variable) {
       p.base = Operand::of(isa::Special::Payload);
       return p;
     case Storage::HitAttributeKHR: {
-      const std::vector<Part>& parts = layout_.parts(p.type);
-      p.place =
-          parts == std::vector<Part>{Part::Float32, Part::Float32} ? Place::AttributePair : Place::Local;
-      p.base = Operand::of(isa::Special::Attribute);
+      const bool is_pair = layout_.parts(p.type) == std::vector<Part>{Part::Float32, Part::Float32};
+      p.place = is_pair && stage() != isa::Stage::Intersection ? Place::AttributePair : Place::Local;
+      p.base = attributes_in_frame_ ? Operand::stack_pointer() : Operand::of(isa::Special::Attribute);
+      if (attributes_in_frame_) p.displacement = local_offset(variable.id);
       return p;
     }
     case Storage::StorageBuffer:

@@ -65,6 +65,7 @@ void report(Lowering& l, const Instruction& inst, const LoweringRow&) {
   Emitter& e = l.emit();
   const Operand waits = Operand::of(l.program().new_register(RegisterClass::Predicate));
   const BlockId any_hit = e.new_block("report_any_hit"), decided = e.new_block("report_decided");
+  l.hand_over_attributes();
   e.effect("rt.report", {waits, l.scalar(inst.operands[0]), l.scalar(inst.operands[1])});
   e.push_reconvergence(decided);
   e.branch_if(waits, false, decided);

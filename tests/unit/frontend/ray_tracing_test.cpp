@@ -142,13 +142,6 @@ TEST_CASE("everything unsupported is listed at once, with op, file and line") {
     CHECK_THAT(message, Contains(expected));
 }
 
-TEST_CASE("an intersection shader with a pair of floats as attributes is refused, not miscompiled") {
-  CHECK_THROWS_AS(
-      lowered(".rint",
-              "hitAttributeEXT vec2 a;\nvoid main() { a = vec2(1); reportIntersectionEXT(0.5, 7u); }\n"),
-      UnsupportedError);
-}
-
 TEST_CASE("textures of an array have consecutive handles") {
   const VirtualProgram program = lowered(
       ".rmiss",

@@ -1,0 +1,1 @@
+#define BASE_FACTOR 6u

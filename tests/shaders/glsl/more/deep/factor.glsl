@@ -1,0 +1,2 @@
+#include "../common_factor.glsl"
+const uint kFactor = BASE_FACTOR + 1u;

@@ -1,0 +1,2 @@
+#include "deep/factor.glsl"
+uint scaled(uint x) { return x * kFactor; }

@@ -1,0 +1,7 @@
+struct Seen { vec3 n; uint count; uint kind; float t; uint any_hits; };
+#ifdef PAIR
+hitAttributeEXT vec2 pair;
+#else
+struct Attributes { vec3 n; uint count; };
+hitAttributeEXT Attributes attributes;
+#endif

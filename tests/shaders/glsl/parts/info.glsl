@@ -1,0 +1,12 @@
+// A payload with everything in it: nested structs, arrays, bools and matrices.
+struct Ids { uvec4 id; uint kind; bool front[2]; };
+struct Info {
+  bool hit;
+  Ids ids;
+  float bary[2];
+  mat4x3 to_world;
+  mat3 to_object;
+  vec3 object_origin, object_direction;
+  float t, tmin;
+  uint flags;
+};

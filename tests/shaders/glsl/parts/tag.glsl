@@ -1,0 +1,3 @@
+#extension GL_EXT_ray_tracing : require
+layout(location = 0) rayPayloadInEXT uint tag;
+void main() { tag = TAG; }

@@ -1,0 +1,3 @@
+#version 460
+#define TAG 1u
+#include "parts/tag.glsl"

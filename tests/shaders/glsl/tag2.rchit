@@ -1,0 +1,3 @@
+#version 460
+#define TAG 2u
+#include "parts/tag.glsl"

@@ -1,0 +1,71 @@
+// A small world built by hand for shaders: buffers, images, three instances and a binding table, on both machines.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+#include "frontend/compile.h"
+#include "pipeline/params.h"
+
+namespace glint::test {
+
+// Shaders by their files in tests/shaders/glsl; an empty name is a null shader.
+struct LabShaders {
+  std::string raygen;
+  std::vector<std::string> miss;
+  struct Group {
+    std::string closest, any, intersection;
+  };
+  std::vector<Group> hit;
+  frontend::GlslOptions glsl;
+};
+
+struct LabOptions {
+  uint32_t max_registers = 64;
+  bool schedule = true;
+  bool timing = false;
+};
+
+// The scene, seen from above along -z. Lanes (x, y) of a launch of kWidth x kHeight shoot at (x + 1/2, y + 1/2):
+//   x 0, 1  nothing
+//   x 2     instance 0 (custom index 100, record 0, moved by (2, 0, 0)): geometry 0, an opaque quad [0,1] x [0,6], z 0
+//   x 3     the same instance, geometry 1: the quad moved by one, not opaque
+//   x 4, 5  instance 1 (custom index 200, record 0): the same quads at (4, 0, 2), z scaled by 3
+//   x 6, 7  instance 2 (custom index 300, record 4): boxes of one unit, z in [-1, 1], primitive y; geometry 0 opaque, geometry 1 not
+// A quad's triangles: corners (0,0) (1,0) (1,6) and (0,0) (1,6) (0,6).
+class RayLab {
+ public:
+  static constexpr uint32_t kWidth = 8, kHeight = 6, kLanesUsed = kWidth * kHeight;
+  static constexpr uint32_t kImageWidth = 8, kImageHeight = 6;
+
+  // Descriptor set 0: binding 0 the top level, 1 the results (uint[]), 2 a storage image of kImageWidth x
+  // kImageHeight, 3 two textures of 2 x 2 texels; more buffers by binding in `buffers`, any set in `set1`.
+  std::map<uint32_t, std::vector<uint32_t>> buffers, set1;
+  std::vector<uint32_t> push_constants;
+  uint32_t words_per_lane = 8;
+  uint32_t max_trace_depth = 1;
+
+  explicit RayLab(LabShaders shaders) : shaders_(std::move(shaders)) {}
+
+  // Compiles, verifies and runs the launch; returns the results, words_per_lane a lane. The storage image and the
+  // buffers after the run are in `image` and `buffers_after`. Errors as pipeline::render().
+  std::vector<uint32_t> run(const LabOptions& options = {});
+  std::vector<float> image;
+  std::map<uint32_t, std::vector<uint32_t>> buffers_after;
+
+ private:
+  LabShaders shaders_;
+};
+
+// Compiles one file of tests/shaders/glsl and verifies the program.
+isa::Program compile_lab(const std::string& file, const frontend::GlslOptions& glsl = {}, const LabOptions& options = {});
+std::string lab_file(const std::string& file);
+
+// The machines and register limits that every check goes through.
+const std::vector<LabOptions>& all_lab_options();
+std::string to_string(const LabOptions& options);
+
+}  // namespace glint::test
