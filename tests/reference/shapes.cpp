@@ -1,5 +1,8 @@
 // The two shapes' tests in scalar float: the watertight triangle and the shader's sphere.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cfloat>
+
 #include "tests/reference/intersector.h"
 
 namespace glint::reference {
@@ -31,6 +34,27 @@ float edge_in_double(const Corner& p, const Corner& q) {
   return float(double(p.x) * double(q.y) - double(p.y) * double(q.x));
 }
 
+// x, y or z of the normal from whichever corner's cross product cancels less, fused as Embree's robust test has it.
+float steadier(float p1, float p2, float q1, float q2, float r1, float r2) {
+  const float first = p2 * q1, second = q2 * r1;
+  if (std::abs(first) < std::abs(second)) return std::fma(p1, q2, -first);
+  return std::fma(q1, r2, -second);
+}
+
+float fused_dot(const Vec& a, const Vec& b) { return std::fma(a.x, b.x, std::fma(a.y, b.y, a.z * b.z)); }
+
+// Where the triangle's plane crosses the ray; false when the plane is edge-on.
+bool meets_plane(const Ray& ray, const Vec& a, const Vec& b, const Vec& c, float& t) {
+  const Vec to_a = a - ray.origin, to_b = b - ray.origin, to_c = c - ray.origin;
+  const Vec ac = to_c - to_a, ba = to_a - to_b, cb = to_b - to_c;
+  const Vec normal{steadier(ac.y, ac.z, ba.y, ba.z, cb.y, cb.z), steadier(ac.z, ac.x, ba.z, ba.x, cb.z, cb.x),
+                   steadier(ac.x, ac.y, ba.x, ba.y, cb.x, cb.y)};
+  const float slope = 2.0f * fused_dot(normal, ray.direction);
+  if (!(std::abs(slope) >= FLT_MIN)) return false;
+  t = (1.0f / slope) * (2.0f * fused_dot(to_a, normal));
+  return true;
+}
+
 }  // namespace
 
 bool meets_triangle(const Ray& ray, const Vec& a, const Vec& b, const Vec& c, Hit& hit) {
@@ -51,11 +75,16 @@ bool meets_triangle(const Ray& ray, const Vec& a, const Vec& b, const Vec& c, Hi
   if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return false;
   const float determinant = u + v + w;
   if (determinant == 0) return false;
-  const float scaled_t = u * pa.z + v * pb.z + w * pc.z;
-  const float reciprocal = 1.0f / determinant;
-  hit.t = scaled_t * reciprocal;
-  hit.u = v * reciprocal;
-  hit.v = w * reciprocal;
+  // the plane's distance, unless it leaves the depths of the corners (slivers): then the weighted one
+  float t = (u * pa.z + v * pb.z + w * pc.z) / determinant;
+  if (t != t) return false;
+  const auto [low, high] = std::minmax({pa.z, pb.z, pc.z});
+  const float slack = std::max(std::abs(low), std::abs(high)) / 2097152.0f;
+  float plane_t = 0;
+  if (meets_plane(ray, a, b, c, plane_t) && plane_t >= low - slack && plane_t <= high + slack) t = plane_t;
+  hit.t = t;
+  hit.u = v / determinant;
+  hit.v = w / determinant;
   return true;
 }
 
