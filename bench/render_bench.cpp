@@ -11,7 +11,7 @@ namespace {
 // Times the run alone: compiling shaders and building structures is not part of it.
 void run_frame(benchmark::State& state, const char* scene, pipeline::Workload workload, bool timing) {
   pipeline::RenderJob job = test::small_job(scene, workload, 128, 2);
-  job.gpu.cores = 8;
+  job.gpu = test::preset("mobile");
   job.timing = timing;
   double instructions = 0, seconds = 0, nodes = 0, cycles = 0;
   for (auto _ : state) {
