@@ -96,7 +96,7 @@ void Lowering::choose_entry_point() {
   program_.stage = stage_of_model(entry.model, &known);
   if (!known)
     throw UnsupportedError(
-        fmt::format("{}: a shader stage of execution model {}", program_.name, uint32_t(entry.model)));
+        fmt::format("{}: a shader of execution model {}", program_.name, name_of_execution_model(uint32_t(entry.model))));
   program_.local_size = entry.local_size;
   function_ = module_.function(entry.function);
   if (!function_ || function_->blocks.empty())
@@ -106,7 +106,7 @@ void Lowering::choose_entry_point() {
 void Lowering::check_capabilities() {
   for (const auto& [capability, line] : module_.capabilities)
     if (!is_known_capability(capability))
-      unsupported(fmt::format("capability {}", uint32_t(capability)), line);
+      unsupported("capability " + name_of_capability(uint32_t(capability)), line);
 }
 
 void Lowering::index_definitions() {

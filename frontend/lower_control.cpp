@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "frontend/lower.h"
 #include "frontend/lower_cfg.h"
+#include "frontend/spirv.h"
 
 namespace glint::frontend {
 namespace {
@@ -163,7 +164,7 @@ void ControlFlow::finish_shader(spv::Op op) {
       break;
     default:
       lowering_.unsupported(op == spv::Op::OpReturnValue ? "a function that was not inlined"
-                                                         : fmt::format("terminator {}", uint32_t(op)));
+                                                         : name_of_opcode(uint32_t(op)));
       emit_.end(leave);
       break;
   }

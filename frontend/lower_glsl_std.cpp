@@ -5,6 +5,8 @@
 
 #include "frontend/lower.h"
 #include "frontend/lower_math.h"
+#include "frontend/lower_pack.h"
+#include "frontend/spirv.h"
 
 namespace glint::frontend {
 namespace {
@@ -210,6 +212,16 @@ constexpr Whole kWhole[] = {
     {GLSLstd450FaceForward, face_forward},
     {GLSLstd450Determinant, math::determinant},
     {GLSLstd450MatrixInverse, math::inverse},
+    {GLSLstd450PackUnorm4x8, pack::pack_unorm_4x8},
+    {GLSLstd450PackSnorm4x8, pack::pack_snorm_4x8},
+    {GLSLstd450PackUnorm2x16, pack::pack_unorm_2x16},
+    {GLSLstd450PackSnorm2x16, pack::pack_snorm_2x16},
+    {GLSLstd450PackHalf2x16, pack::pack_half_2x16},
+    {GLSLstd450UnpackUnorm4x8, pack::unpack_unorm_4x8},
+    {GLSLstd450UnpackSnorm4x8, pack::unpack_snorm_4x8},
+    {GLSLstd450UnpackUnorm2x16, pack::unpack_unorm_2x16},
+    {GLSLstd450UnpackSnorm2x16, pack::unpack_snorm_2x16},
+    {GLSLstd450UnpackHalf2x16, pack::unpack_half_2x16},
 };
 
 }  // namespace
@@ -222,7 +234,7 @@ void lower_glsl_std(Lowering& l, const Instruction& inst) {
       arguments.push_back(l.value(inst.operands[i]));
       const std::vector<Part>& parts = l.layout().parts(l.type_of(inst.operands[i]));
       if (!parts.empty() && class_of(parts[0]) == RegisterClass::B64)
-        l.unsupported(fmt::format("GLSL.std.450 function {} of 64 bits", function));
+        l.unsupported(fmt::format("{} of 64 bits", name_of_glsl_function(function)));
     }
   };
   for (const Componentwise& row : kComponentwise) {
@@ -241,7 +253,7 @@ void lower_glsl_std(Lowering& l, const Instruction& inst) {
     read_arguments();
     return l.set(inst.result, row.compute(l.emit(), arguments));
   }
-  l.unsupported(fmt::format("GLSL.std.450 function {}", function));
+  l.unsupported(name_of_glsl_function(function));
 }
 
 }  // namespace glint::frontend

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "frontend/lower.h"
+#include "frontend/spirv.h"
 
 namespace glint::frontend {
 
@@ -69,7 +70,7 @@ Pointer Lowering::variable_pointer(const Variable& variable) {
       return p;
     default:
       unsupported(
-          fmt::format("storage class {} of {}", uint32_t(variable.storage), module_.name_of(variable.id)),
+          fmt::format("storage class {} of {}", name_of_storage_class(uint32_t(variable.storage)), module_.name_of(variable.id)),
           variable.line);
       return p;
   }

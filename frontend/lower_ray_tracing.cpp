@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "frontend/lower.h"
+#include "frontend/spirv.h"
 
 namespace glint::frontend {
 namespace {
@@ -169,7 +170,7 @@ Operands Lowering::load_builtin(spv::BuiltIn builtin, Id type) {
     case spv::BuiltIn::RayGeometryIndexKHR:
       return {special(Special::HitGeometry)};
     default:
-      unsupported(fmt::format("built-in variable {}", uint32_t(builtin)));
+      unsupported("built-in variable " + name_of_builtin(uint32_t(builtin)));
       return Operands(layout_.num_parts(type), Operand::value(0));
   }
 }

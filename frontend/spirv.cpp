@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <spirv-tools/libspirv.hpp>
+#include <spirv/unified1/spirv.hpp11>
 
 #include "frontend/compile.h"
 
@@ -26,6 +27,65 @@ std::string name_of_opcode(uint32_t opcode) {
   const char* name = spvOpcodeString(opcode);
   if (name == nullptr || std::string_view(name) == "unknown") return fmt::format("OpUnknown({})", opcode);
   return fmt::format("Op{}", name);
+}
+
+namespace {
+
+// SPIRV-Tools tells names of enumerants only in text: so an instruction is disassembled, behind others that it
+// needs. Empty when its operands are not what the op wants.
+std::string text_of(spv::Op op, const std::vector<uint32_t>& operands, const std::vector<uint32_t>& before = {}) {
+  std::vector<uint32_t> words{spv::MagicNumber, 0x0001'0600, 0, 100, 0};  // header: version 1.6, ids below 100
+  words.insert(words.end(), before.begin(), before.end());
+  words.push_back(uint32_t(operands.size() + 1) << 16 | uint32_t(op));
+  words.insert(words.end(), operands.begin(), operands.end());
+  std::string text;
+  const spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_3);
+  return tools.Disassemble(words, &text, SPV_BINARY_TO_TEXT_OPTION_NO_HEADER) ? text : std::string();
+}
+
+// The word of `text` that follows `start`, or the number when there is none.
+std::string word_after(const std::string& text, std::string_view start, uint32_t number) {
+  const size_t at = text.find(start);
+  if (at == std::string::npos) return fmt::format("{}", number);
+  const size_t begin = at + start.size();
+  return text.substr(begin, text.find_first_of(" \n", begin) - begin);
+}
+
+// Older SPIRV-Tools print the names of the vendor's extension that the ray-tracing extension grew from.
+std::string with_khr(std::string name) {
+  if (name.ends_with("NV")) name.replace(name.size() - 2, 2, "KHR");
+  return name;
+}
+
+}  // namespace
+
+std::string name_of_capability(uint32_t capability) {
+  return word_after(text_of(spv::Op::OpCapability, {capability}), "OpCapability ", capability);
+}
+
+std::string name_of_storage_class(uint32_t storage) {
+  return with_khr(word_after(text_of(spv::Op::OpVariable, {1, 2, storage}), "OpVariable %1 ", storage));
+}
+
+std::string name_of_builtin(uint32_t builtin) {
+  const auto decoration = uint32_t(spv::Decoration::BuiltIn);
+  return with_khr(word_after(text_of(spv::Op::OpDecorate, {1, decoration, builtin}), "BuiltIn ", builtin));
+}
+
+std::string name_of_execution_model(uint32_t model) {
+  return with_khr(word_after(text_of(spv::Op::OpEntryPoint, {model, 1, 0}), "OpEntryPoint ", model));
+}
+
+std::string name_of_glsl_function(uint32_t function) {
+  const std::vector<uint32_t> import{6u << 16 | uint32_t(spv::Op::OpExtInstImport), 1, 0x4c53'4c47, 0x6474'732e,
+                                     0x3035'342e, 0};  // %1 = OpExtInstImport "GLSL.std.450"
+  std::string text;
+  std::vector<uint32_t> operands{2, 3, 1, function};
+  for (int arguments = 0; arguments < 4 && text.empty(); ++arguments) {
+    text = text_of(spv::Op::OpExtInst, operands, import);
+    operands.push_back(4);
+  }
+  return "GLSL.std.450 " + word_after(text, "OpExtInst %2 %1 ", function);
 }
 
 std::string disassemble_spirv(const std::vector<uint32_t>& words) {

@@ -14,4 +14,11 @@ std::string validate_spirv(const std::vector<uint32_t>& words);
 // "OpIAdd" for spv::Op::OpIAdd; "OpUnknown(n)" for opcodes that the installed SPIRV-Tools does not know.
 std::string name_of_opcode(uint32_t opcode);
 
+// SPIR-V's names of enumerants, as "RayQueryKHR"; the number where SPIRV-Tools does not know it.
+std::string name_of_capability(uint32_t capability);
+std::string name_of_storage_class(uint32_t storage);
+std::string name_of_builtin(uint32_t builtin);
+std::string name_of_execution_model(uint32_t model);
+std::string name_of_glsl_function(uint32_t function);  // "GLSL.std.450 Ldexp"
+
 }  // namespace glint::frontend

@@ -3,3 +3,42 @@
 #include "base/diagnostics.h"
 #include "tests/shaders/ray_lab.h"
 #include "tests/support/catch.h"
+
+namespace glint::test {
+namespace {
+
+using Catch::Matchers::Contains;
+
+template <class Kind>
+std::string message_of(const std::string& file) {
+  try {
+    compile_lab(file);
+  } catch (const Kind& error) {
+    return error.what();
+  }
+  return "not refused";
+}
+
+TEST_CASE("all that is unsupported in one shader comes in one message, by name, line and count") {
+  const std::string message = message_of<UnsupportedError>("refused.rgen");
+  const std::string file = lab_file("refused.rgen");
+  for (const char* expected : {"capability RayQueryKHR", "capability Float64", "storage class CallableDataKHR of data",
+                               ":18: OpAtomicIAdd (2 times)", ":19: OpRayQueryInitializeKHR", ":20: OpExecuteCallableKHR",
+                               ":21: OpTypeFloat 64", ":22: GLSL.std.450 Ldexp", ":23: images that are not 2D",
+                               ":24: OpImageQuerySize"}) {
+    INFO(expected);
+    CHECK_THAT(message, Contains(expected));
+  }
+  CHECK_THAT(message, Contains(file + ":18: ") && !Contains("function 53") && !Contains("capability 4"));
+}
+
+TEST_CASE("an unsupported op in an included function is listed under the included file's line") {
+  CHECK_THAT(message_of<UnsupportedError>("refused.rgen"), Contains("parts/refused.glsl:5: OpAtomicUMax"));
+}
+
+TEST_CASE("a mistake in a file that an included file includes is reported there") {
+  CHECK_THAT(message_of<UserError>("mistake.rchit"), Contains("glsl/parts/mistake.glsl:6: error: 'nothing'"));
+}
+
+}  // namespace
+}  // namespace glint::test

@@ -1,32 +1,12 @@
 // Shaders of every stage with rays: payloads, built-ins, recursion, reports, any-hit decisions, the binding table.
 // SPDX-License-Identifier: Apache-2.0
-#include <bit>
 #include <functional>
 
-#include "tests/shaders/ray_lab.h"
+#include "tests/shaders/lane_checks.h"
 #include "tests/support/catch.h"
 
 namespace glint::test {
 namespace {
-
-uint32_t bits(float value) { return std::bit_cast<uint32_t>(value); }
-using Row = std::vector<uint32_t>;
-
-void check_lanes(RayLab& lab, const std::function<Row(uint32_t x, uint32_t y)>& expected) {
-  for (const LabOptions& options : all_lab_options()) {
-    INFO(to_string(options));
-    const std::vector<uint32_t> got = lab.run(options);
-    for (uint32_t lane = 0; lane < RayLab::kLanesUsed; ++lane) {
-      const Row row = expected(lane % RayLab::kWidth, lane / RayLab::kWidth);
-      for (size_t i = 0; i < row.size(); ++i) {
-        const uint32_t word = got[lane * lab.words_per_lane + i];
-        INFO("x " << lane % RayLab::kWidth << " y " << lane / RayLab::kWidth << " word " << i << " as float "
-                  << std::bit_cast<float>(word) << ", expected " << std::bit_cast<float>(row[i]));
-        CHECK(word == row[i]);
-      }
-    }
-  }
-}
 
 bool misses(uint32_t x) { return x < 2 || x >= RayLab::kWidth; }
 bool is_box(uint32_t x) { return x >= 6; }
@@ -111,7 +91,7 @@ TEST_CASE("shadow rays with their own payload leave the first payload alone and 
     const float low = std::min(column(7), column(9)), high = std::max(column(7), column(9));
     return high >= 6 && low <= 8;
   };
-  check_lanes(lab, [&](uint32_t x, uint32_t y) {
+  check_pixels(lab, [&](uint32_t x, uint32_t y) {
     const float t = misses(x) ? -1 : is_box(x) ? 9 : x < 4 ? 10 : 8;
     uint32_t seen = 0;
     for (int i = 0; i < 4; ++i) {
@@ -144,7 +124,7 @@ TEST_CASE("a closest-hit shader that traces sees its own hit again afterwards, a
   RayLab lab({"recursion.rgen", {"recursion.rmiss"}, {{"recursion.rchit", "", ""}, {"recursion.rchit", "", ""}, {}, {},
                                                       {"recursion.rchit", "", "pair.rint"}, {"recursion.rchit", "", "pair.rint"}}, {}});
   lab.max_trace_depth = 4;
-  check_lanes(lab, [](uint32_t x, uint32_t y) {
+  check_pixels(lab, [](uint32_t x, uint32_t y) {
     const Path path = nested(x, y, 0, 3);
     return Row{bits(path.sum), path.trail, path.depth};
   });
@@ -154,17 +134,17 @@ TEST_CASE("a trace deeper than the pipeline allows is a fault that names the sha
   RayLab lab({"recursion.rgen", {"recursion.rmiss"}, {{"recursion.rchit", "", ""}, {"recursion.rchit", "", ""}, {}, {},
                                                       {"recursion.rchit", "", "pair.rint"}, {"recursion.rchit", "", "pair.rint"}}, {}});
   lab.max_trace_depth = 3;
-  CHECK_THROWS_WITH(lab.run(), Catch::Matchers::Contains("recursion.rchit:12"));
+  CHECK_THROWS_WITH(lab.run(), Catch::Matchers::Contains("recursion.rchit:14"));
 }
 
 TEST_CASE("hit and miss shaders that pass on their own payload share it with all depths") {
   const bool miss_traces = GENERATE(false, true);
   frontend::GlslOptions glsl;
   if (miss_traces) glsl.defines.push_back({"MISS_TRACES", "1"});
-  // Boxes only where the attribute is exact; quads answer with tag-like null shaders: they end the path.
+  // Boxes only where the attribute is exact; quads have null shaders: they end the path.
   RayLab lab({"recursion.rgen", {"recursion.rmiss"}, {{}, {}, {}, {}, {"own.rchit", "", "pair.rint"}, {"own.rchit", "", "pair.rint"}}, glsl});
   lab.max_trace_depth = 4;
-  check_lanes(lab, [&](uint32_t x, uint32_t y) {
+  check_pixels(lab, [&](uint32_t x, uint32_t y) {
     Path path{0, 3, 0};
     const std::function<void(uint32_t)> follow = [&](uint32_t column) {
       if (!misses(column) && !is_box(column)) return;
@@ -194,7 +174,7 @@ TEST_CASE("each report in a loop carries the attributes of its moment, and rejec
   RayLab lab({"reports.rgen", {"none.rmiss"}, {{}, {}, {}, {}, {"reports.rchit", "reports.rahit", "reports.rint"},
                                                {"reports.rchit", "reports.rahit", "reports.rint"}}, glsl});
   lab.words_per_lane = 12;
-  check_lanes(lab, [&](uint32_t x, uint32_t y) {
+  check_pixels(lab, [&](uint32_t x, uint32_t y) {
     if (!is_box(x)) return Row{0, 0, 0, 100, 0, 0, 0, 0, 0};
     const bool opaque = x == 6;
     const float n[3] = {float(x - 6) + 0.5f, float(y) + 0.5f, 10};
@@ -207,7 +187,7 @@ TEST_CASE("each report in a loop carries the attributes of its moment, and rejec
 
 TEST_CASE("any-hit shaders ignore, accept and end rays from nested branches, and their payload writes stay") {
   RayLab lab({"anyhit.rgen", {"anyhit.rmiss"}, {{}, {"anyhit.rchit", "anyhit.rahit", ""}}, {}});
-  check_lanes(lab, [](uint32_t x, uint32_t y) {
+  check_pixels(lab, [](uint32_t x, uint32_t y) {
     if (misses(x) || is_box(x)) return Row{0, 0, 7, 0};
     const uint32_t geometry = x & 1, hit = 50 + geometry;
     if (y % 2 == 0 && geometry == 0) return Row{0, 0, hit, 0};  // opaque
@@ -230,7 +210,7 @@ TEST_CASE("offset, stride and miss index pick the record of the binding table, l
   hit[5] = {"tag1.rchit", "", "pair.rint"};
   hit[6] = {"", "", "pair.rint"};
   RayLab lab({"table.rgen", {"table.rmiss", ""}, hit, {}});
-  check_lanes(lab, [](uint32_t x, uint32_t y) {
+  check_pixels(lab, [](uint32_t x, uint32_t y) {
     const uint32_t lane = y * 8 + x, tags[8] = {1, 2, 0, 3, 3, 1, 0, 0};
     if (misses(x)) return Row{lane % 2 ? 0u : 30u};
     const uint32_t record = (is_box(x) ? 4 : 0) + (x & 1) * (1 + (lane >> 1 & 1)) + (lane & 1);

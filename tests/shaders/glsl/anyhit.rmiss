@@ -1,3 +1,5 @@
+// Notes that nothing was hit.
+// SPDX-License-Identifier: Apache-2.0
 #version 460
 #include "common.glsl"
 layout(location = 0) rayPayloadInEXT uvec4 log;

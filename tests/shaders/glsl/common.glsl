@@ -1,4 +1,5 @@
 // What most of the laboratory's shaders share. The name is relative to this folder.
+// SPDX-License-Identifier: Apache-2.0
 #ifndef COMMON_GLSL
 #define COMMON_GLSL
 #extension GL_EXT_ray_tracing : require

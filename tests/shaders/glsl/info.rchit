@@ -1,3 +1,5 @@
+// Collects the built-ins of a hit.
+// SPDX-License-Identifier: Apache-2.0
 #version 460
 #include "common.glsl"
 #include "parts/info.glsl"

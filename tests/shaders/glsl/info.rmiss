@@ -1,3 +1,5 @@
+// Marks the payload of a ray that hit nothing.
+// SPDX-License-Identifier: Apache-2.0
 #version 460
 #include "common.glsl"
 #include "parts/info.glsl"

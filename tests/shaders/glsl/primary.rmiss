@@ -1,3 +1,5 @@
+// The primary ray met nothing.
+// SPDX-License-Identifier: Apache-2.0
 #version 460
 #include "common.glsl"
 layout(location = 0) rayPayloadInEXT struct { vec3 position; float t; } primary;

@@ -1,3 +1,5 @@
+// Traces on with a payload of its own.
+// SPDX-License-Identifier: Apache-2.0
 #version 460
 #include "common.glsl"
 #include "parts/path.glsl"

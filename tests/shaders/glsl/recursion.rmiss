@@ -1,3 +1,5 @@
+// Ends a path, or traces on with the payload that it was given.
+// SPDX-License-Identifier: Apache-2.0
 #version 460
 #include "common.glsl"
 #include "parts/path.glsl"

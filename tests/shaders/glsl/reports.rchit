@@ -1,3 +1,5 @@
+// Hands back the attributes of the hit.
+// SPDX-License-Identifier: Apache-2.0
 #version 460
 #include "common.glsl"
 #include "parts/attributes.glsl"

@@ -1,3 +1,5 @@
+// Stores where the primary ray hit.
+// SPDX-License-Identifier: Apache-2.0
 #version 460
 #include "common.glsl"
 struct Primary { vec3 position; float t; };

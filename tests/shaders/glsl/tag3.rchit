@@ -1,3 +1,5 @@
+// Tags the payload with 3.
+// SPDX-License-Identifier: Apache-2.0
 #version 460
 #define TAG 3u
 #include "parts/tag.glsl"
