@@ -7,6 +7,7 @@ namespace Catch {  // the names of 2.13
 using Matchers::Equals, Matchers::StartsWith;
 inline auto Contains(const std::string& text) { return Matchers::ContainsSubstring(text); }
 }  // namespace Catch
+using Catch::Approx;
 #else
 #include <catch2/catch.hpp>
 namespace Catch {

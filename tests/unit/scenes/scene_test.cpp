@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -14,6 +13,7 @@
 #include "scenes/mesh.h"
 #include "scenes/obj_loader.h"
 #include "tests/support/catch.h"
+#include "tests/support/scene_data.h"
 
 using namespace glint::scenes;
 
@@ -197,15 +197,10 @@ TEST_CASE("an OBJ file without a material library gets one grey") {
 }
 
 TEST_CASE("the original ship loads with 6,255 triangles and 11 materials from the unpacked archive") {
-  namespace fs = std::filesystem;
-  const fs::path archive = fs::path(GLINT_SOURCE_DIR) / ".." / "shared" / "data" / "scenes" / "SHIP.tar.zst";
-  if (!fs::exists(archive)) {
-    WARN("SKIPPED: SHIP.tar.zst is not there, so the original ship is not loaded");
-    return;
-  }
-  const Folder folder("glint_scene_test_ship");
-  REQUIRE(std::system(("tar --zstd -xf '" + archive.string() + "' -C '" + folder.path.string() + "'").c_str()) == 0);
-  const Scene scene = load_scene("SHIP", {folder.path.string()});
+  const glint::test::SceneData data("SHIP");
+  if (data.path.empty()) return;
+  const Scene scene = load_scene("SHIP", {data.path});
+  CHECK(load_scene("SHIP", {data.path + "/SHIP"}).hash() == scene.hash());  // the folder itself will do
   CHECK(scene.form == "original");
   CHECK(scene.triangles() == 6255);
   CHECK(scene.materials.size() == 11);
