@@ -221,6 +221,11 @@ void array_length(Lowering& l, const Instruction& inst, const LoweringRow&) {
                                                  Operand::value(stride)})});
 }
 
+// Model: stores are seen by later loads in program order, so a barrier only keeps values from being reused.
+void memory_barrier(Lowering& l, const Instruction&, const LoweringRow&) {
+  l.note_store(Place::Global);
+}
+
 using enum spv::Op;
 constexpr LoweringRow kRows[] = {
     {OpAccessChain, access_chain, ""},
@@ -229,6 +234,7 @@ constexpr LoweringRow kRows[] = {
     {OpStore, store, ""},
     {OpCopyMemory, copy_memory, ""},
     {OpArrayLength, array_length, ""},
+    {OpMemoryBarrier, memory_barrier, ""},
 };
 
 }  // namespace

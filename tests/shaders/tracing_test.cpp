@@ -218,5 +218,53 @@ TEST_CASE("offset, stride and miss index pick the record of the binding table, l
   });
 }
 
+struct Caller {
+  uint32_t traces = 0;
+  uint32_t shoot(uint32_t x) {
+    static constexpr uint32_t kTags[8] = {30, 30, 1, 2, 1, 2, 3, 1};
+    ++traces;
+    return kTags[x % 8];
+  }
+  uint32_t walk(uint32_t x) {
+    for (uint32_t i = 0; i < 4; ++i) {
+      const uint32_t t = shoot(x + i);
+      if (t == 3) return 100 + i;
+      if (t == 30) continue;
+      if (shoot(x + i + 3) == 30) break;
+    }
+    return x > 3 ? shoot(x) : 50;
+  }
+  uint32_t main(uint32_t x) {
+    uint32_t sum = 0;
+    for (uint32_t i = 0; i < 3; ++i) {
+      if ((shoot(x + i) == 30 && walk(x) > 99) || shoot(x) == 2) sum += 7;
+      const uint32_t label = shoot(x + 2 * i);
+      if (label == 1) sum += walk(x + i);
+      if (label == 1 || label == 2) {
+        sum += 1000;
+      } else {
+        if (i == 1) continue;
+        sum += 20000;
+      }
+      sum += sum > 21000 ? shoot(x + 1) : walk(x + 5);
+    }
+    return sum;
+  }
+};
+
+TEST_CASE("rays traced deep in functions and conditions come back to the lane that asked") {
+  std::vector<LabShaders::Group> hit(6);
+  hit[0] = {"tag1.rchit", "", ""};
+  hit[1] = {"tag2.rchit", "", ""};
+  hit[4] = {"tag3.rchit", "", "pair.rint"};
+  hit[5] = {"tag1.rchit", "", "pair.rint"};
+  RayLab lab({"calls.rgen", {"table.rmiss"}, hit, {}});
+  check_pixels(lab, [](uint32_t x, uint32_t) {
+    Caller caller;
+    const uint32_t sum = caller.main(x);
+    return Row{sum, caller.traces};
+  });
+}
+
 }  // namespace
 }  // namespace glint::test
