@@ -13,29 +13,6 @@
 namespace glint::frontend {
 namespace {
 
-isa::Stage stage_of_model(spv::ExecutionModel model, bool* known) {
-  *known = true;
-  switch (int(model)) {
-    case int(spv::ExecutionModel::RayGenerationKHR):
-      return isa::Stage::RayGeneration;
-    case int(spv::ExecutionModel::IntersectionKHR):
-      return isa::Stage::Intersection;
-    case int(spv::ExecutionModel::AnyHitKHR):
-      return isa::Stage::AnyHit;
-    case int(spv::ExecutionModel::ClosestHitKHR):
-      return isa::Stage::ClosestHit;
-    case int(spv::ExecutionModel::MissKHR):
-      return isa::Stage::Miss;
-    case int(spv::ExecutionModel::CallableKHR):
-      return isa::Stage::Callable;
-    case int(spv::ExecutionModel::GLCompute):
-      return isa::Stage::Compute;
-    default:
-      *known = false;
-      return isa::Stage::Compute;
-  }
-}
-
 // Capabilities that add nothing to lower, or only opcodes that are reported one by one where they stand.
 bool is_known_capability(spv::Capability capability) {
   switch (int(capability)) {
@@ -92,11 +69,11 @@ void Lowering::choose_entry_point() {
     throw UnsupportedError(fmt::format("{}: a module with {} entry points; one is supported", program_.name,
                                        module_.entry_points.size()));
   const EntryPoint& entry = module_.entry_points[0];
-  bool known = false;
-  program_.stage = stage_of_model(entry.model, &known);
-  if (!known)
+  const std::optional<isa::Stage> stage = stage_of(entry.model);
+  if (!stage)
     throw UnsupportedError(
         fmt::format("{}: a shader of execution model {}", program_.name, name_of_execution_model(uint32_t(entry.model))));
+  program_.stage = *stage;
   program_.local_size = entry.local_size;
   function_ = module_.function(entry.function);
   if (!function_ || function_->blocks.empty())

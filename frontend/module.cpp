@@ -335,6 +335,19 @@ Module Module::parse(const std::vector<uint32_t>& words, const std::string& name
   return Parser(words, name).run();
 }
 
+std::optional<isa::Stage> stage_of(spv::ExecutionModel model) {
+  switch (model) {
+    case spv::ExecutionModel::RayGenerationKHR: return isa::Stage::RayGeneration;
+    case spv::ExecutionModel::IntersectionKHR: return isa::Stage::Intersection;
+    case spv::ExecutionModel::AnyHitKHR: return isa::Stage::AnyHit;
+    case spv::ExecutionModel::ClosestHitKHR: return isa::Stage::ClosestHit;
+    case spv::ExecutionModel::MissKHR: return isa::Stage::Miss;
+    case spv::ExecutionModel::CallableKHR: return isa::Stage::Callable;
+    case spv::ExecutionModel::GLCompute: return isa::Stage::Compute;
+    default: return std::nullopt;
+  }
+}
+
 const Type& Module::type(Id id) const {
   const auto it = types.find(id);
   GLINT_CHECK(it != types.end(), "no type %{}", id);

@@ -98,6 +98,9 @@ struct EntryPoint {
   std::array<uint32_t, 3> local_size{1, 1, 1};
 };
 
+// The stage that an execution model means; empty for those Glint has no stage for.
+std::optional<isa::Stage> stage_of(spv::ExecutionModel model);
+
 struct Module {
   Id bound = 0;
   std::vector<std::pair<spv::Capability, isa::Line>> capabilities;

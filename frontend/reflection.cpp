@@ -42,33 +42,14 @@ Binding binding_of(const Module& module, const Variable& variable, const Decorat
   return binding;
 }
 
-isa::Stage stage_of(const Module& module, const std::string& name) {
-  if (module.entry_points.empty()) throw UserError({name, 0, 0}, "the module has no entry point");
-  switch (int(module.entry_points[0].model)) {
-    case int(spv::ExecutionModel::RayGenerationKHR):
-      return isa::Stage::RayGeneration;
-    case int(spv::ExecutionModel::IntersectionKHR):
-      return isa::Stage::Intersection;
-    case int(spv::ExecutionModel::AnyHitKHR):
-      return isa::Stage::AnyHit;
-    case int(spv::ExecutionModel::ClosestHitKHR):
-      return isa::Stage::ClosestHit;
-    case int(spv::ExecutionModel::MissKHR):
-      return isa::Stage::Miss;
-    case int(spv::ExecutionModel::CallableKHR):
-      return isa::Stage::Callable;
-    default:
-      return isa::Stage::Compute;
-  }
-}
-
 }  // namespace
 
 Reflection reflect(const std::vector<uint32_t>& spirv, const std::string& name) {
   const Module module = Module::parse(spirv, name);
   Layout layout(module);
   Reflection result;
-  result.stage = stage_of(module, name);
+  if (module.entry_points.empty()) throw UserError({name, 0, 0}, "the module has no entry point");
+  result.stage = stage_of(module.entry_points[0].model).value_or(isa::Stage::Compute);
   result.entry_point = module.entry_points[0].name;
   for (const auto& [id, variable] : module.variables) {
     const uint32_t bytes = layout.size(module.type(variable.type).element);
