@@ -171,6 +171,8 @@ bool Executor::call_targets(WarpContext& warp, Effect effect, std::array<uint32_
     const int lane = std::countr_zero(lanes);
     const size_t i = size_t(lane);
     rt::RayState& state = warp.frame().ray[i];
+    if (state.broken) [[unlikely]]
+      return fail(warp, lane, "traced a ray through an acceleration structure whose bytes lead outside memory: they were overwritten");
     const bool hit = effect != Effect::CallHit || state.committed.valid();
     uint32_t record = state.ray.miss_index, place = 1 + record;
     const HitGroup* group = nullptr;
