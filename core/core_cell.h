@@ -45,6 +45,7 @@ class CoreCell final : public Cell {
 
   // Launching, between windows only.
   uint32_t num_slots() const { return num_slots_; }
+  uint32_t num_resident() const { return num_resident_; }
   bool has_free_slot() const { return num_resident_ < num_slots_; }
   // Puts warp `warp_index` of the launch into the lowest free slot; its first instruction can issue at `ready`.
   void launch(Cycle now, uint32_t warp_index, Cycle ready);

@@ -14,10 +14,10 @@ namespace {
 
 class Checker {
  public:
-  explicit Checker(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
+  Checker(Diagnostics& diagnostics, const std::string& section) : diagnostics_(diagnostics), section_(section) {}
 
   void require(bool ok, const std::string& what, const std::string& note = {}) {
-    if (!ok) diagnostics_.error({}, what, note);
+    if (!ok) diagnostics_.error({}, with_section(what), note);
   }
   void at_least_one(const char* key, uint64_t value, const char* why) {
     require(value >= 1, fmt::format("'{}' is 0, expected at least 1", key), why);
@@ -35,7 +35,21 @@ class Checker {
   }
 
  private:
+  // Messages quote keys and nothing else: each gets its section in front.
+  std::string with_section(const std::string& what) const {
+    std::string out;
+    bool opens = true;
+    for (char c : what) {
+      out += c;
+      if (c != '\'') continue;
+      if (opens) out += section_;
+      opens = !opens;
+    }
+    return out;
+  }
+
   Diagnostics& diagnostics_;
+  const std::string section_;
 };
 
 void check_dram(const DramParams& d, uint32_t line, uint32_t interleave, Checker& c) {
@@ -58,8 +72,8 @@ void check_dram(const DramParams& d, uint32_t line, uint32_t interleave, Checker
 
 }  // namespace
 
-void check(const Params& p, Diagnostics& diagnostics) {
-  Checker c(diagnostics);
+void check(const Params& p, Diagnostics& diagnostics, const std::string& section) {
+  Checker c(diagnostics, section);
   c.require(std::has_single_bit(p.line) && p.line >= kSectorBytes && p.line <= 8 * kSectorBytes,
             fmt::format("'line' is {} bytes, expected a power of two from 32 to 256", p.line));
   c.require(std::has_single_bit(p.interleave) && p.interleave >= p.line,

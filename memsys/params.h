@@ -152,7 +152,8 @@ struct Params {
 };
 
 // Reports every impossible combination with what was expected. Call before building a MemorySystem.
-void check(const Params& params, Diagnostics& diagnostics);
+// `section` ("memory.") stands before each key in the messages.
+void check(const Params& params, Diagnostics& diagnostics, const std::string& section = {});
 
 // What the machine could do at best, to hold against a data sheet.
 struct Peak {

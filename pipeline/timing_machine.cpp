@@ -13,7 +13,7 @@ namespace {
 const GpuParams& checked(const GpuParams& params, const core::World& world) {
   Diagnostics diagnostics;
   core::check(params.core, world.image->num_registers, diagnostics);
-  mem::check(params.memory, diagnostics);
+  mem::check(params.memory, diagnostics, "memory.");
   diagnostics.throw_if_errors();
   return params;
 }
@@ -56,7 +56,11 @@ Cycle TimingMachine::run(const std::function<void(uint64_t, uint64_t)>& progress
       if (!fault && core->fault()) fault = &*core->fault();
     if (fault) return EngineLoop::Next::Stop;
     dispatcher.dispatch(now);
-    if (progress) progress(dispatcher.num_dispatched(), num_warps);
+    if (progress) {
+      uint64_t ended = dispatcher.num_dispatched();
+      for (const auto& core : cores_) ended -= core->num_resident();
+      progress(ended, num_warps);
+    }
     return dispatcher.done() ? EngineLoop::Next::NothingMore : EngineLoop::Next::Continue;
   });
   if (fault) throw Error(Exit::Fault, fault->to_string());

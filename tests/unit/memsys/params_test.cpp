@@ -21,6 +21,15 @@ std::vector<std::string> errors(const std::function<void(Params&)>& change) {
 
 }  // namespace
 
+TEST_CASE("errors name the section that the parameters stand in before every key") {
+  Params params;
+  params.dram.row_bytes = 1000;
+  Diagnostics diagnostics;
+  check(params, diagnostics, "memory.");
+  REQUIRE(diagnostics.messages().size() == 1);
+  CHECK_THAT(diagnostics.messages()[0], Catch::Contains("'memory.dram.row_bytes' is 1000, expected a multiple of 'memory.interleave'"));
+}
+
 TEST_CASE("the default memory system is possible") { CHECK(errors([](Params&) {}).empty()); }
 
 TEST_CASE("each impossible value is reported once with what was expected") {
