@@ -141,7 +141,8 @@ constexpr OpRow value_op(std::string_view name, Unit unit, std::string_view doc,
   using R = decltype(F{}(A{}...));
   OpRow row;
   row.name = name;
-  row.klass = unit == Unit::Sfu ? Class::Sfu : Class::Alu;
+  // Divisions and roots are sequences around the special-function unit: GPGPU-Sim's SFU_OP class, and so the paper's.
+  row.klass = unit == Unit::Sfu || unit == Unit::FpDiv || unit == Unit::IntDiv ? Class::Sfu : Class::Alu;
   row.unit = unit;
   row.operands = {destination_kind<R>(), source_kind<A>()...};
   row.run = &run_value<F, A...>;
