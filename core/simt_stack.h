@@ -8,6 +8,7 @@
 // several constructs need no special case.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
