@@ -89,7 +89,6 @@ class CoreCell final : public Cell {
   void retire(uint32_t slot);
   void free_slot(uint32_t slot);
   void refresh(uint32_t slot);
-  void fail_without_end(uint32_t slot, uint32_t pc);
 
   const Params params_;
   const World& world_;

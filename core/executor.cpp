@@ -23,6 +23,12 @@ std::string Fault::to_string() const {
   return fmt::format("{}: fault: {}\n  note: launch id ({}, {}, {})", place, what, launch_id[0], launch_id[1], launch_id[2]);
 }
 
+Fault no_end_in_sight(const World& world, const WarpContext& warp, uint32_t pc, uint64_t instruction_budget) {
+  const int lane = warp.simt.active ? std::countr_zero(warp.simt.active) : 0;
+  return {fmt::format("no end in sight: the warp has executed more than {} instructions", instruction_budget),
+          world.image->place_of(pc), launch_id(world, warp.warp_index, lane)};
+}
+
 Executor::Executor(const World& world)
     : world_(world),
       reads_clock_(std::any_of(world.image->shaders.begin(), world.image->shaders.end(), [](const Shader& shader) {

@@ -68,8 +68,6 @@ class Executor {
   const World& world() const { return world_; }
 
  private:
-  using Kind = SimtStack::Kind;
-
   // Each runs one family of effects and moves the pc; false after a fault (executor_memory.cpp and so on).
   bool run_memory(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
   bool run_image(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
@@ -98,6 +96,9 @@ class Executor {
   std::optional<Fault> fault_;
   std::array<std::array<Address, kLanes>, 4> texels_{};
 };
+
+// The fault of a warp that has run for longer than any real one, at the instruction `pc`.
+Fault no_end_in_sight(const World& world, const WarpContext& warp, uint32_t pc, uint64_t instruction_budget);
 
 // Launch coordinates of a lane of a warp: x runs fastest.
 std::array<uint32_t, 3> launch_id(const World& world, uint32_t warp_index, int lane);

@@ -105,7 +105,6 @@ bool Executor::trace(WarpContext& warp, const isa::Inst& inst) {
                                                           warp.depth + 1, world_.max_trace_depth));
   if (warp.frames.size() == warp.depth) warp.frames.push_back(std::make_unique<TraceFrame>());
   TraceFrame& frame = *warp.frames[warp.depth];
-  frame.lanes = exec;
   for (LaneMask lanes = exec; lanes; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
     rt::RayState& state = frame.ray[size_t(lane)];

@@ -42,13 +42,13 @@ void append(Image& image, const isa::Program& program, std::vector<uint32_t>& co
   shader.end = first + uint32_t(program.code.size());
   shader.local_bytes = program.local_bytes;
   shader.specials_used = program.specials_used;
-  shader.first_file = uint32_t(image.files.size());
+  const uint32_t first_file = uint32_t(image.files.size());
   for (size_t i = 0; i < program.code.size(); ++i) {
     const isa::OpRow& row = isa::op_table()[program.code[i].op];
     image.code.push_back(relocate(program.code[i], row, first, uint32_t(constants.size())));
     image.rows.push_back(&row);
     isa::Line line = i < program.lines.size() ? program.lines[i] : isa::Line{};
-    line.file = uint16_t(line.file + shader.first_file);
+    line.file = uint16_t(line.file + first_file);
     image.lines.push_back(line);
     image.shader_of.push_back(uint32_t(image.shaders.size()));
   }

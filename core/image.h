@@ -22,7 +22,6 @@ struct Shader {
   uint32_t entry = 0, end = 0;   // instruction indices [entry, end)
   uint32_t local_bytes = 0;
   uint64_t specials_used = 0;
-  uint32_t first_file = 0;       // added to isa::Line::file
 };
 
 // Code of all shaders, branch targets absolute, constants in one table of 32-lane rows.

@@ -1,7 +1,5 @@
 // A core from inside: choosing warps, issuing instructions and charging time for them.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 
@@ -91,7 +89,7 @@ void CoreCell::issue(SchedulerState& scheduler, uint32_t local, Cycle now) {
       break;
   }
   if (warp.instructions > params_.instruction_budget) {
-    fail_without_end(slot, issued.pc);
+    fault_ = no_end_in_sight(world_, warps_[slot], issued.pc, params_.instruction_budget);
   } else if (issued.finished) {
     retire(slot);
   } else {
@@ -266,11 +264,6 @@ void CoreCell::refresh(uint32_t slot) {
   scheduler.needs_lsu = (scheduler.needs_lsu & ~(uint64_t{1} << local)) | lsu << local;
   scheduler.needs_rt = (scheduler.needs_rt & ~(uint64_t{1} << local)) | rt << local;
   scheduler.wake();
-}
-
-void CoreCell::fail_without_end(uint32_t slot, uint32_t pc) {
-  fault_ = Fault{fmt::format("no end in sight: the warp has executed more than {} instructions", params_.instruction_budget),
-                 world_.image->place_of(pc), launch_id(world_, warps_[slot].warp_index, 0)};
 }
 
 }  // namespace glint::core

@@ -17,7 +17,6 @@ namespace glint::core {
 struct TraceFrame {
   std::array<rt::RayState, kLanes> ray;
   std::array<uint32_t, kLanes> payload{}, attributes{};  // local addresses
-  LaneMask lanes = 0;
 };
 
 // Model: the two attribute buffers are a fixed 64 bytes each (Vulkan's minimum for hit attributes is 32).

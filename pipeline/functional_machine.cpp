@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/functional_machine.h"
 
-#include <fmt/format.h>
-
 #include "base/num_lanes.h"
 #include "rtunit/traversal.h"
 
@@ -11,12 +9,6 @@ namespace glint::pipeline {
 
 using core::Executor;
 using core::WarpContext;
-
-core::Fault no_end_in_sight(const core::World& world, const WarpContext& warp, uint64_t instruction_budget) {
-  const int lane = warp.simt.active ? std::countr_zero(warp.simt.active) : 0;
-  return {fmt::format("no end in sight after {} instructions of one warp (core.instruction_budget)", instruction_budget),
-          world.image->place_of(warp.simt.pc), core::launch_id(world, warp.warp_index, lane)};
-}
 
 void answer_rays(Executor& executor, WarpContext& warp, RayCounts& counts) {
   core::TraceFrame& frame = warp.frame();
@@ -52,7 +44,7 @@ FunctionalCounts run_functional(const core::World& world, uint64_t instruction_b
       finished = issued.finished;
       if (warp.waiting_for_rays) answer_rays(executor, warp, counts.rays);
       if (warp.instructions > instruction_budget) [[unlikely]]
-        throw Error(Exit::Fault, no_end_in_sight(world, warp, instruction_budget).to_string());
+        throw Error(Exit::Fault, core::no_end_in_sight(world, warp, issued.pc, instruction_budget).to_string());
     }
     if (progress) progress(index + 1, num_warps);
   }

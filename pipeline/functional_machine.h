@@ -23,7 +23,4 @@ FunctionalCounts run_functional(const core::World& world, uint64_t instruction_b
 // Traverses the rays that `warp` waits for and answers them. Adds to `counts` what the traversal did.
 void answer_rays(core::Executor& executor, core::WarpContext& warp, RayCounts& counts);
 
-// The fault of a warp that has run for longer than any real one: where it is now.
-core::Fault no_end_in_sight(const core::World& world, const core::WarpContext& warp, uint64_t instruction_budget);
-
 }  // namespace glint::pipeline
