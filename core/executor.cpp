@@ -32,7 +32,7 @@ Fault no_end_in_sight(const World& world, const WarpContext& warp, uint32_t pc, 
 Executor::Executor(const World& world)
     : world_(world),
       reads_clock_(std::any_of(world.image->shaders.begin(), world.image->shaders.end(), [](const Shader& shader) {
-        return (shader.specials_used >> int(isa::Special::Clock) & 1) != 0;
+        return shader.specials_used[size_t(isa::Special::Clock)];
       })) {}
 
 uint32_t Executor::num_warps() const {
@@ -105,6 +105,10 @@ Issued Executor::execute(WarpContext& warp, Cycle now) {
     case Effect::Join:
     case Effect::Exit:
     case Effect::Return:
+    case Effect::BranchIndexed:
+    case Effect::Call:
+    case Effect::Barrier:
+    case Effect::Fence:
     case Effect::Ignore:
     case Effect::Terminate: ok = run_control(warp, inst, row); break;
     case Effect::CallCandidate:

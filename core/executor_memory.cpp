@@ -40,6 +40,8 @@ bool Executor::run_memory(WarpContext& warp, const isa::Inst& inst, const isa::O
     case isa::Space::Local: ok = access_local(warp, inst, row, store); break;
     case isa::Space::Const: ok = load_constant(warp, inst, row); break;
     case isa::Space::Shared:
+    case isa::Space::Param:
+    case isa::Space::Generic:
     case isa::Space::None: GLINT_PANIC("{}: no such space", row.name);
   }
   if (ok) ++warp.simt.pc;

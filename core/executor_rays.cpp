@@ -65,10 +65,6 @@ Seen seen_by(isa::Stage stage, const rt::RayState& state) {
   return {state.committed, state.committed.t, false};
 }
 
-constexpr uint64_t bits(Special first, Special last) {
-  return (~uint64_t{0} >> (63 - int(last))) & (~uint64_t{0} << int(first));
-}
-
 }  // namespace
 
 bool Executor::run_rays(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
@@ -245,10 +241,8 @@ void Executor::finish_shader(WarpContext& warp, Effect effect) {
 }
 
 void Executor::fill_specials(WarpContext& warp, LaneMask lanes, const Shader& shader) const {
-  const uint64_t used = shader.specials_used & bits(Special::Payload, Special::WorldToObject11);
-  if (!used || warp.depth == 0) return;
+  if (warp.depth == 0 || !shader.uses_ray) return;
   uint32_t* const bank = warp.regs.bank[2];
-  const bool matrices = used & bits(Special::ObjectOriginX, Special::WorldToObject11);
   const TraceFrame& frame = warp.frame();
   for_each_lane(lanes, [&](int lane) {
     const size_t i = size_t(lane);
@@ -280,7 +274,7 @@ void Executor::fill_specials(WarpContext& warp, LaneMask lanes, const Shader& sh
     set(Special::RayTmin, std::bit_cast<uint32_t>(state.ray.t_min));
     set_floats(Special::RayOriginX, state.ray.origin.data(), 3);
     set_floats(Special::RayDirectionX, state.ray.direction.data(), 3);
-    if (!matrices || !seen.hit.valid()) return;
+    if (!shader.uses_matrices || !seen.hit.valid()) return;
     const rt::InstanceLeaf& leaf = world_.memory->view<rt::InstanceLeaf>(seen.hit.instance_leaf, 1)[0];
     set_floats(Special::ObjectToWorld0, leaf.object_to_world.data(), 12);
     set_floats(Special::WorldToObject0, leaf.world_to_object.data(), 12);

@@ -41,7 +41,11 @@ void append(Image& image, const isa::Program& program, std::vector<uint32_t>& co
   shader.entry = first;
   shader.end = first + uint32_t(program.code.size());
   shader.local_bytes = program.local_bytes;
-  shader.specials_used = program.specials_used;
+  shader.specials_used = isa::specials_read_by(program.code);
+  for (int s = int(isa::Special::Payload); s < isa::kNumSpecials; ++s) {
+    shader.uses_ray |= shader.specials_used[size_t(s)];
+    shader.uses_matrices |= s >= int(isa::Special::ObjectOriginX) && shader.specials_used[size_t(s)];
+  }
   const uint32_t first_file = uint32_t(image.files.size());
   for (size_t i = 0; i < program.code.size(); ++i) {
     const isa::OpRow& row = isa::op_table()[program.code[i].op];

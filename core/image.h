@@ -9,6 +9,7 @@
 
 #include "isa/op_row.h"
 #include "isa/program.h"
+#include "isa/text.h"
 #include "memsys/address_space.h"
 
 namespace glint::core {
@@ -21,7 +22,8 @@ struct Shader {
   isa::Stage stage = isa::Stage::Compute;
   uint32_t entry = 0, end = 0;   // instruction indices [entry, end)
   uint32_t local_bytes = 0;
-  uint64_t specials_used = 0;
+  isa::SpecialSet specials_used;
+  bool uses_ray = false, uses_matrices = false;  // reads %payload to %world_to_object; %object.origin and on
 };
 
 // Code of all shaders, branch targets absolute, constants in one table of 32-lane rows.

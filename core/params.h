@@ -32,14 +32,16 @@ struct UnitParams {
 // Defaults: Accel-Sim's tested RTX 2060 (SM75) configuration unless noted; the divisions are Vulkan-Sim's PTX
 // table, because ours are single instructions too.
 struct Units {
-  UnitParams integer{4, 2}, int_div{145, 8}, fp32{4, 2}, fp_div{39, 4}, fp64{64, 64}, sfu{21, 8};
+  UnitParams integer{4, 2}, int_div{145, 8}, fp32{4, 2}, fp_div{39, 4}, fp64{64, 64}, fp64_div{330, 130}, fp16{4, 2}, sfu{21, 8};
   UnitParams move{4, 2}, predicate{4, 2};
   // Latency up to the L1's door: 12 + 20 of the L1 is the measured load-to-use 32 (RTX A6000, MICRO 2025, table 2).
   // Interval: one address-generation unit a scheduler, one instruction in 4 cycles (same paper, section 5.4).
   UnitParams lsu{12, 4};
   UnitParams constant{26, 2};     // constant-cache hit of a T4: 26 cycles (Jia et al. 2019, table 3.1)
   UnitParams tex{180, 4};         // 200 in all with the L1 hit in it
+  UnitParams shuffle{26, 4};      // shfl.bfly of an H200: 26 cycles, a warp in 4 a sub-core
   UnitParams branch{4, 2};
+  UnitParams barrier{13, 2};      // bar.sync of an H200: 12.75 cycles and 2 a warp
   UnitParams rt_unit{4, 4};       // handing over rays; charged on the way back
   static constexpr auto params() {
     return std::tuple{section(&Units::integer, "int", "Integer arithmetic and logic."),
@@ -47,19 +49,24 @@ struct Units {
                       section(&Units::fp32, "fp32", "Single precision."),
                       section(&Units::fp_div, "fp_div", "Division, on the special-function pipe."),
                       section(&Units::fp64, "fp64", "Double precision."),
+                      section(&Units::fp64_div, "fp64_div", "Double-precision division and roots."),
+                      section(&Units::fp16, "fp16", "Floats of 16 bits, on the single-precision pipe."),
                       section(&Units::sfu, "sfu", "Transcendentals and roots."),
                       section(&Units::move, "move", "Moves and selections, on the integer pipe."),
                       section(&Units::predicate, "predicate",
                           "Comparisons and predicate logic, on the integer pipe."),
+                      section(&Units::shuffle, "shuffle", "Shuffles, votes, matches and reductions across lanes."),
                       section(&Units::lsu, "lsu", "Address generation: latency up to the L1, interval a scheduler."),
                       section(&Units::constant, "const", "Constant loads."),
                       section(&Units::tex, "tex", "Texture and image unit: latency up to the L1, interval a core."),
                       section(&Units::branch, "branch", "Branches, calls, returns: the warp waits for the latency."),
+                      section(&Units::barrier, "barrier", "Barriers and fences: the warp waits for the latency at least."),
                       section(&Units::rt_unit, "rt_unit",
                           "Ray instructions; the latency follows the RT unit's answer.")};
   }
   std::array<UnitParams, size_t(isa::Unit::Count)> by_unit() const {  // in the order of isa::Unit
-    return {integer, int_div, fp32, fp_div, fp64, sfu, move, predicate, lsu, constant, tex, branch, rt_unit};
+    return {integer, int_div, fp32, fp_div, fp64, fp64_div, fp16, sfu, move, predicate,
+            shuffle, lsu, constant, tex, branch, barrier, rt_unit};
   }
 };
 

@@ -50,6 +50,10 @@ Finish finish_of(const isa::OpRow& row) {
     case Effect::Join:
     case Effect::Exit:
     case Effect::Return:
+    case Effect::BranchIndexed:
+    case Effect::Call:
+    case Effect::Barrier:
+    case Effect::Fence:
     case Effect::Ignore:
     case Effect::Terminate: return Finish::Control;
     // ssy only notes a place; the next instruction is the next one.
@@ -82,12 +86,16 @@ Pipe pipe_of(Unit unit) {
     case Unit::Int:
     case Unit::Move:
     case Unit::Predicate: return Pipe::Int;
+    case Unit::Fp16:
     case Unit::Fp32: return Pipe::Fp32;
+    case Unit::Fp64Div:
     case Unit::Fp64: return Pipe::Fp64;
+    case Unit::Shuffle:
     case Unit::Sfu:
     case Unit::IntDiv:
     case Unit::FpDiv: return Pipe::Sfu;
     case Unit::Const: return Pipe::Const;
+    case Unit::Barrier:
     case Unit::Branch: return Pipe::Branch;
     case Unit::RtUnit: return Pipe::RtUnit;
     case Unit::Lsu:

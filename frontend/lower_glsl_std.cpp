@@ -54,7 +54,7 @@ Operand fract(Emitter& e, const Scalars& x, std::string_view) {
   return e.sub(x[0], e.value("cvt.rmi.f32.f32", {x[0]}));
 }
 Operand tangent(Emitter& e, const Scalars& x, std::string_view) {
-  return e.div(e.value("sin.approx.f32", {x[0]}), e.value("cos.approx.f32", {x[0]}));
+  return e.div(e.value("sin.f32", {x[0]}), e.value("cos.f32", {x[0]}));
 }
 Operand sign_f32(Emitter& e, const Scalars& x, std::string_view) {
   const Operand negative = e.value("setp.lt.f32", {x[0], constant_f32(0)}),
@@ -114,8 +114,8 @@ constexpr Componentwise kComponentwise[] = {
     {GLSLstd450SSign, sign_s32, ""},
     {GLSLstd450Radians, radians, ""},
     {GLSLstd450Degrees, degrees, ""},
-    {GLSLstd450Sin, op, "sin.approx.f32"},
-    {GLSLstd450Cos, op, "cos.approx.f32"},
+    {GLSLstd450Sin, op, "sin.f32"},
+    {GLSLstd450Cos, op, "cos.f32"},
     {GLSLstd450Tan, tangent, ""},
     {GLSLstd450Asin, asine, ""},
     {GLSLstd450Acos, acosine, ""},
@@ -124,8 +124,8 @@ constexpr Componentwise kComponentwise[] = {
     {GLSLstd450Pow, power, ""},
     {GLSLstd450Exp, exponential, ""},
     {GLSLstd450Log, logarithm, ""},
-    {GLSLstd450Exp2, op, "ex2.approx.f32"},
-    {GLSLstd450Log2, op, "lg2.approx.f32"},
+    {GLSLstd450Exp2, op, "ex2.f32"},
+    {GLSLstd450Log2, op, "lg2.f32"},
     {GLSLstd450Sqrt, op, "sqrt.rn.f32"},
     {GLSLstd450InverseSqrt, inverse_sqrt, ""},
     {GLSLstd450FMin, op, "min.f32"},

@@ -100,15 +100,15 @@ Operand atan2(Emitter& e, Operand y, Operand x) {
 }
 
 Operand exp(Emitter& e, Operand x) {
-  return e.value("ex2.approx.f32", {e.mul(x, constant_f32(kLog2E))});
+  return e.value("ex2.f32", {e.mul(x, constant_f32(kLog2E))});
 }
 Operand log(Emitter& e, Operand x) {
-  return e.mul(e.value("lg2.approx.f32", {x}), constant_f32(kLn2));
+  return e.mul(e.value("lg2.f32", {x}), constant_f32(kLn2));
 }
 
 Operand pow(Emitter& e, Operand x, Operand y) {
   if (is_constant(y, 0)) return constant_f32(1);
-  const Operand power = e.value("ex2.approx.f32", {e.mul(y, e.value("lg2.approx.f32", {x}))});
+  const Operand power = e.value("ex2.f32", {e.mul(y, e.value("lg2.f32", {x}))});
   if (y.kind == Operand::Kind::Constant) return power;
   return e.select(e.value("setp.eq.f32", {y, constant_f32(0)}), constant_f32(1), power);  // 0 * lg2(0) is NaN
 }

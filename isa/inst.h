@@ -27,7 +27,13 @@ inline constexpr uint8_t kGuardNegate = 0x80;  // guard = predicate index | kGua
 // in closest-hit shaders, the ray in miss shaders (SPV_KHR_ray_tracing, built-in table).
 enum class Special : uint8_t {
   LaneId, LaunchX, LaunchY, LaunchZ, LaunchSizeX, LaunchSizeY, LaunchSizeZ,
-  Clock,                                  // core cycle when issued; 0 on the functional machine
+  // Blocks (PTX's CTAs, Vulkan's workgroups) of a compute launch.
+  TidX, TidY, TidZ, NtidX, NtidY, NtidZ, CtaidX, CtaidY, CtaidZ, NctaidX, NctaidY, NctaidZ,
+  WarpId, NwarpId, SmId, NsmId, GridId,   // warp slot and slots of the core; core and cores; 0
+  LanemaskEq, LanemaskLe, LanemaskLt, LanemaskGe, LanemaskGt,
+  TotalSmemSize, DynamicSmemSize,         // bytes of shared memory of the block
+  Clock, ClockHi,                         // core cycle when issued; 0 on the functional machine
+  GlobalTimerLo, GlobalTimerHi,           // nanoseconds since launch; 0 on the functional machine
   Payload,                                // local address of the incoming payload
   Attribute,                              // local address of the hit attributes
   HitT, HitKind, HitU, HitV,              // t; kind (0xfe front, 0xff back, user 0..127); barycentrics

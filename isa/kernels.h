@@ -74,15 +74,15 @@ inline constexpr double kRoundMagic = 6755399441055744.0;
   const float result = float(double_of(double_bits(chosen) ^ ((k & 2) << 62)));
   return x - x == 0.0f ? result : float_of(kCanonicalNan);  // infinities and NaN
 }
-[[gnu::always_inline]] inline float sin_approx(float x) {
+[[gnu::always_inline]] inline float exact_sin(float x) {
   return sin_quarter(x, 0);
 }
-[[gnu::always_inline]] inline float cos_approx(float x) {
+[[gnu::always_inline]] inline float exact_cos(float x) {
   return sin_quarter(x, 1);
 }
 
 // 2^x, with gradual underflow. Measured: at most 0.51 ulp. Clamped to 200: past overflow and underflow.
-[[gnu::always_inline]] inline float ex2_approx(float x) {
+[[gnu::always_inline]] inline float exact_ex2(float x) {
   const double high = x < 200.0f ? double(x) : 200.0;
   const double d = high > -200.0 ? high : -200.0;
   const double shifted = d + kRoundMagic;
@@ -101,7 +101,7 @@ inline constexpr double kRoundMagic = 6755399441055744.0;
 }
 
 // Base-2 logarithm. Measured: at most 0.51 ulp. A float subnormal is a normal double: no special case.
-[[gnu::always_inline]] inline float lg2_approx(float x) {
+[[gnu::always_inline]] inline float exact_lg2(float x) {
   const double d = double(x);
   // Split d = 2^e * m with m in [sqrt(1/2), sqrt(2)): biasing by sqrt(1/2)'s mantissa moves the cut there.
   const uint64_t biased = double_bits(d) - 0x3fe6'a09e'667f'3bcdull;
@@ -122,7 +122,7 @@ inline constexpr double kRoundMagic = 6755399441055744.0;
 }
 
 // 1 / sqrt(x): double arithmetic rounded once; measured 0.5 ulp. rsqrt(-0) = -inf, as PTX says.
-[[gnu::always_inline]] inline float rsqrt_approx(float x) {
+[[gnu::always_inline]] inline float exact_rsqrt(float x) {
   const float root = float(1.0 / __builtin_sqrt(double(x)));
   return canonical(root);
 }

@@ -34,7 +34,52 @@ template <class Lane>
   for (int i = 0; i < kLanes; ++i) lane(i);
 }
 
-// A source operand of type T: reads the bits of one lane. 64-bit operands are two rows, low half first.
+// Floats of 16 bits, and pairs of them: bits only, the arithmetic is in isa/half.h.
+struct Half {
+  uint16_t bits;
+};
+struct Bfloat {
+  uint16_t bits;
+};
+template <class T>
+struct Pair {
+  T low, high;
+};
+
+// Result of an op with two destinations, written `%r1|%p2`.
+template <class A, class B>
+struct Two {
+  A first;
+  B second;
+};
+
+// A name put together at compile time: joined<"add", ".rz", ".f32"> is the string_view "add.rz.f32".
+template <size_t kSize>
+struct Text {
+  char at[kSize]{};
+  constexpr Text(const char (&text)[kSize]) {  // NOLINT: implicit, so that literals are template arguments
+    for (size_t i = 0; i < kSize; ++i) at[i] = text[i];
+  }
+  static constexpr size_t kLength = kSize - 1;
+};
+template <Text... kParts>
+struct Joined {
+  static constexpr size_t kLength = (kParts.kLength + ... + 0);
+  static constexpr auto kText = [] {
+    std::array<char, kLength + 1> out{};
+    size_t n = 0;
+    const auto append = [&](const auto& part) {
+      for (size_t i = 0; i < part.kLength; ++i) out[n++] = part.at[i];
+    };
+    (append(kParts), ...);
+    return out;
+  }();
+};
+template <Text... kParts>
+inline constexpr std::string_view joined{Joined<kParts...>::kText.data(), Joined<kParts...>::kLength};
+
+// A source operand of type T: reads the bits of one lane. 64-bit operands are two rows, low half first; 16-bit ones
+// (integers, Half, Bfloat) are the low half of a row, whose upper half means nothing.
 template <class T>
 struct Source {
   const uint32_t* low;
@@ -43,7 +88,9 @@ struct Source {
       : low(warp.bank[slot >> kBankShift] + (slot & kSlotIndexMask) * kLanes), high(low + kLanes) {}
   [[gnu::always_inline]] T at(int i) const {
     if constexpr (sizeof(T) == 8)
-      return T(uint64_t(low[i]) | uint64_t(high[i]) << 32);
+      return __builtin_bit_cast(T, uint64_t(low[i]) | uint64_t(high[i]) << 32);
+    else if constexpr (sizeof(T) == 2)
+      return __builtin_bit_cast(T, uint16_t(low[i]));
     else
       return __builtin_bit_cast(T, low[i]);
   }
@@ -57,9 +104,15 @@ struct Source<bool> {
   [[gnu::always_inline]] bool at(int i) const { return (mask & kLaneBit[i]) != 0; }
 };
 
+// The bits of a result, as they fill a register (pair): 16-bit results leave the upper half 0.
 template <class T>
-[[gnu::always_inline]] inline uint32_t bits_of(T x) {
-  return __builtin_bit_cast(uint32_t, x);
+[[gnu::always_inline]] inline auto bits_of(T x) {
+  if constexpr (sizeof(T) == 8)
+    return __builtin_bit_cast(uint64_t, x);
+  else if constexpr (sizeof(T) == 2)
+    return uint32_t(__builtin_bit_cast(uint16_t, x));
+  else
+    return __builtin_bit_cast(uint32_t, x);
 }
 
 // Runs `value(i)` for all lanes and keeps it for those of `exec`; R says how wide a result row is.
@@ -71,14 +124,14 @@ template <class R, class Value>
     uint32_t* const high = low + kLanes;
     if (exec == kAllLanes) [[likely]] {
       all_lanes([&](int i) {
-        const uint64_t x = uint64_t(value(i));
+        const uint64_t x = bits_of(value(i));
         low[i] = uint32_t(x);
         high[i] = uint32_t(x >> 32);
       });
       return;
     }
     all_lanes([&](int i) {
-      const uint64_t x = uint64_t(value(i));
+      const uint64_t x = bits_of(value(i));
       const bool write = (exec & kLaneBit[i]) != 0;
       low[i] = write ? uint32_t(x) : low[i];
       high[i] = write ? uint32_t(x >> 32) : high[i];
@@ -109,6 +162,15 @@ template <class Test>
   return mask;
 }
 
+// Writes value(i) of each lane of `exec`: a bool to a predicate, 8 bytes to a register pair, less to a register.
+template <class R, class Value>
+[[gnu::always_inline]] inline void write_result(Warp& warp, Slot slot, Value&& value) {
+  if constexpr (std::is_same_v<R, bool>)
+    write_predicate(warp, slot, mask_of(value));
+  else
+    write_lanes<R>(warp, slot, value);
+}
+
 // Handler of a value op: applies F to the sources of types A... lane by lane. F's result type is the
 // destination: bool a predicate, 8 bytes a register pair, 4 bytes a register.
 template <class F, class... A>
@@ -117,13 +179,36 @@ template <class F, class... A>
     const Slot* const slot = &inst.operand.front();
     const std::tuple<Source<A>...> source{Source<A>(warp, slot[N + 1])...};
     const auto value = [&](int i) { return F{}(std::get<N>(source).at(i)...); };
-    using R = decltype(value(0));
-    if constexpr (std::is_same_v<R, bool>)
-      write_predicate(warp, slot[0], mask_of(value));
-    else
-      write_lanes<R>(warp, slot[0], value);
+    write_result<decltype(value(0))>(warp, slot[0], value);
   }
   (std::index_sequence_for<A...>{});
+}
+
+// The same of an F that gives Two<R, S>. The results go through memory of their own: either destination may be a
+// source.
+template <class F, class... A>
+[[gnu::flatten]] void run_two_values(Warp& warp, const Inst& inst) {
+  [&]<size_t... N>(std::index_sequence<N...>) {
+    const Slot* const slot = &inst.operand.front();
+    const std::tuple<Source<A>...> source{Source<A>(warp, slot[N + 2])...};
+    using R = decltype(F{}(A{}...));
+    R result[kLanes];
+    for (int i = 0; i < kLanes; ++i) result[i] = F{}(std::get<N>(source).at(i)...);
+    write_result<decltype(R::first)>(warp, slot[0], [&](int i) { return result[i].first; });
+    write_result<decltype(R::second)>(warp, slot[1], [&](int i) { return result[i].second; });
+  }
+  (std::index_sequence_for<A...>{});
+}
+
+template <class T>
+inline constexpr bool is_two = false;
+template <class A, class B>
+inline constexpr bool is_two<Two<A, B>> = true;
+
+// Instruction-mix class of a value op. Divisions and roots are sequences around the special-function unit:
+// GPGPU-Sim's SFU_OP class, and so the paper's.
+constexpr Class class_of(Unit unit) {
+  return unit == Unit::Sfu || unit == Unit::FpDiv || unit == Unit::IntDiv || unit == Unit::Fp64Div ? Class::Sfu : Class::Alu;
 }
 
 template <class T>
@@ -135,17 +220,22 @@ constexpr OperandKind destination_kind() {
   return std::is_same_v<T, bool> ? DstPred : sizeof(T) == 8 ? Dst64 : Dst32;
 }
 
-// A row whose handler applies `f` to sources of types A...; units, documentation and examples as OpRow says.
+// A row whose handler applies `f` to sources of types A...; units, documentation and examples as OpRow says. When `f`
+// gives Two<R, S>, the row has two destinations.
 template <class... A, class F>
 constexpr OpRow value_op(std::string_view name, Unit unit, std::string_view doc, F, Examples examples) {
   using R = decltype(F{}(A{}...));
   OpRow row;
   row.name = name;
-  // Divisions and roots are sequences around the special-function unit: GPGPU-Sim's SFU_OP class, and so the paper's.
-  row.klass = unit == Unit::Sfu || unit == Unit::FpDiv || unit == Unit::IntDiv ? Class::Sfu : Class::Alu;
+  row.klass = class_of(unit);
   row.unit = unit;
-  row.operands = {destination_kind<R>(), source_kind<A>()...};
-  row.run = &run_value<F, A...>;
+  if constexpr (is_two<R>) {
+    row.operands = {destination_kind<decltype(R::first)>(), destination_kind<decltype(R::second)>(), source_kind<A>()...};
+    row.run = &run_two_values<F, A...>;
+  } else {
+    row.operands = {destination_kind<R>(), source_kind<A>()...};
+    row.run = &run_value<F, A...>;
+  }
   row.doc = doc;
   row.examples = examples;
   return row;

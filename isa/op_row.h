@@ -21,10 +21,16 @@ constexpr std::string_view name_of(Class c) {
 
 // Execution unit: latency and initiation interval come from the configuration, `[core.units.<name>]`.
 // FpDiv and IntDiv are multi-pass sequences that the hardware runs on the named pipe.
-enum class Unit : uint8_t { Int, IntDiv, Fp32, FpDiv, Fp64, Sfu, Move, Predicate, Lsu, Const, Tex, Branch, RtUnit, Count };
+enum class Unit : uint8_t {
+  Int, IntDiv, Fp32, FpDiv, Fp64, Fp64Div, Fp16, Sfu, Move, Predicate,
+  Shuffle,   // lanes that read each other: shfl, vote, match, redux
+  Lsu, Const, Tex, Branch,
+  Barrier,   // bar.*, membar.*
+  RtUnit, Count
+};
 constexpr std::string_view name_of(Unit u) {
-  constexpr std::string_view kNames[] = {"int", "int_div", "fp32", "fp_div", "fp64", "sfu", "move", "predicate",
-                                         "lsu", "const", "tex", "branch", "rt_unit"};
+  constexpr std::string_view kNames[] = {"int", "int_div", "fp32", "fp_div", "fp64", "fp64_div", "fp16", "sfu", "move",
+                                         "predicate", "shuffle", "lsu", "const", "tex", "branch", "barrier", "rt_unit"};
   return kNames[size_t(u)];
 }
 
@@ -74,6 +80,8 @@ enum class Effect : uint8_t {
   Texture,                    // filtered fetch: access.address = texture handle, u, v = coordinates (float bits)
   SurfaceLoad, SurfaceStore,  // texel access: access.address = image handle, u, v = x, y (int32)
   Branch,                     // to Inst::imm for the lanes of exec
+  BranchIndexed,              // brx.idx: to Inst::imm + operand 0, where a table of branches stands
+  Call,                       // to the function at Inst::imm; `ret` comes back
   PushReconvergence,          // ssy: lanes will meet at Inst::imm
   Join,                       // lanes wait here for the others of the innermost ssy that names this place
   Exit,                       // lanes end
@@ -81,9 +89,13 @@ enum class Effect : uint8_t {
   CallCandidate, CallAnyHit, CallHit,  // call.sbt.*: indirect shader calls through the binding table
   Trace, Resume,              // rt.trace, rt.resume: give rays to the RT unit; answer: predicate slot 0
   Report, Accepted, Ignore, Terminate, EndTrace,  // rt.report, rt.accepted, rt.ignore, rt.terminate, rt.end
+  Barrier,                    // bar.*: warps of a block wait for each other
+  Fence,                      // membar, fence, bar.warp.sync: orders memory accesses of the warp
 };
 
-enum class Space : uint8_t { None, Global, Local, Shared, Const };
+// Generic: a 64-bit address whose window says which of global, shared and local it is in (core/generic_address.h).
+// Param: the parameters of a kernel; they lie in the constant bank at kPushConstantOffset (isa/program.h).
+enum class Space : uint8_t { None, Global, Local, Shared, Const, Param, Generic };
 
 // Static shape of a load or store: `count` parts of `bytes` bytes, consecutive in memory; a part of 8
 // bytes fills a register pair, parts of 1 and 2 bytes are zero- or sign-extended to 32 bits.
@@ -97,10 +109,16 @@ struct Memory {
 // Runs one instruction for the lanes of `warp.exec`; lanes outside keep their values.
 using Handler = void (*)(Warp& warp, const Inst& inst);
 
-// Inputs (raw bits, one entry a source operand, predicates 0 or 1) and the expected result bits.
+// What an atomic op makes of the old bits in memory and its one or two operands. Runs a lane at a time: lanes that
+// meet in one place take turns.
+using AtomicFunction = uint64_t (*)(uint64_t old, uint64_t b, uint64_t c);
+
+// Inputs (raw bits, one entry a source operand, predicates 0 or 1) and the expected result bits; `second` is that of
+// the second destination, where there is one.
 struct Example {
-  std::array<uint64_t, 4> in{};
+  std::array<uint64_t, 5> in{};
   uint64_t out = 0;
+  uint64_t second = 0;
 };
 struct Examples {
   std::array<Example, 8> at{};
@@ -119,6 +137,7 @@ struct OpRow {
   Operands operands;       // what verifier, parser, register allocator and scheduler need
   Effect effect = Effect::None;
   Memory memory;
+  AtomicFunction atomic = nullptr;  // of Effect::Atomic
   Handler run = nullptr;   // never null; ops that are all effect have an empty handler
   std::string_view doc;    // one sentence: docs/isa.md and `glint isa add.s32`
   Examples examples;       // documentation and test at once

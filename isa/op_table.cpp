@@ -13,51 +13,35 @@ namespace glint::isa {
 
 // isa/ops/families.cpp, compiled once for each path.
 namespace baseline {
-RowList family_rows(int family);
+std::span<const FamilyEntry> family_entries();
 }
 namespace avx2 {
-RowList family_rows(int family);
+std::span<const FamilyEntry> family_entries();
 }
 namespace avx512 {
-RowList family_rows(int family);
+std::span<const FamilyEntry> family_entries();
 }
 
 namespace {
 
-constexpr int kNumFamilies = 10;
-constexpr std::array<std::string_view, kNumFamilies> kFamilyNames = {
-    "move",      "integer", "compare", "float",   "convert",
-    "predicate", "memory",  "texture", "control", "ray tracing"};
-constexpr std::array<std::string_view, kNumFamilies> kFamilyDocs = {
-    "Copies, selections, and the packing of register pairs.",
-    "Integer arithmetic, logic, shifts and bit fields.",
-    "Integer comparisons; the result is a predicate.",
-    "Single precision, rounded to nearest even, subnormals kept; a NaN result is 0x7fffffff.",
-    "Conversions between integers and floats, and rounding to integers.",
-    "Operations on predicates.",
-    "Loads and stores; an address is a register (pair) and a displacement.",
-    "Filtered texture fetches and texel access.",
-    "Branches, regions whose lanes meet again, and ends.",
-    "Rays, and the calls of the shaders they find."};
-
 std::vector<OpRow> joined(Path path) {
-  const auto rows_of = path == Path::Avx512 ? &avx512::family_rows
-                       : path == Path::Avx2 ? &avx2::family_rows
-                                            : &baseline::family_rows;
+  const auto entries = path == Path::Avx512 ? avx512::family_entries()
+                       : path == Path::Avx2 ? avx2::family_entries()
+                                            : baseline::family_entries();
   std::vector<OpRow> out;
-  for (int f = 0; f < kNumFamilies; ++f) {
-    const RowList list = rows_of(f);
+  for (const FamilyEntry& entry : entries) {
+    const RowList list = entry.rows();
     out.insert(out.end(), list.rows, list.rows + list.count);
   }
   return out;
 }
 
-std::array<Family, kNumFamilies> make_families() {
-  std::array<Family, kNumFamilies> out;
+std::vector<Family> make_families() {
+  std::vector<Family> out;
   uint16_t first = 0;
-  for (int f = 0; f < kNumFamilies; ++f) {
-    const uint16_t count = uint16_t(baseline::family_rows(f).count);
-    out[f] = {kFamilyNames[f], kFamilyDocs[f], first, count};
+  for (const FamilyEntry& entry : baseline::family_entries()) {
+    const uint16_t count = uint16_t(entry.rows().count);
+    out.push_back({entry.name, entry.doc, first, count});
     first = uint16_t(first + count);
   }
   return out;
@@ -91,7 +75,7 @@ std::span<const OpRow> op_table() {
 }
 
 std::span<const Family> families() {
-  static const std::array<Family, kNumFamilies> all = make_families();
+  static const std::vector<Family> all = make_families();
   return all;
 }
 

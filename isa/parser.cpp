@@ -51,7 +51,6 @@ class Parser {
     for (tokens_.skip_newlines(); tokens_.peek().kind != Token::Kind::End; tokens_.skip_newlines())
       statement();
     resolve_labels();
-    program_.specials_used = specials_ ? *specials_ : specials_read_by(program_.code);
     return std::move(program_);
   }
 
@@ -87,8 +86,8 @@ class Parser {
       program_.attribute_bytes = small("a number of bytes");
     else if (d == ".local_size")
       for (uint32_t& n : program_.local_size) n = small("three sizes");
-    else if (d == ".specials")
-      specials_ = unsigned_number("a mask of specials", ~uint64_t{0});
+    else if (d == ".shared_bytes")
+      program_.shared_bytes = small("a number of bytes");
     else if (d == ".const")
       program_.constants.push_back(small("the value of a row"));
     else if (d == ".file")
@@ -99,7 +98,7 @@ class Parser {
       tokens_.fail(
           name, "a directive",
           did_you_mean(d, {".program", ".stage", ".registers", ".local_bytes", ".payload_bytes",
-                           ".attribute_bytes", ".local_size", ".specials", ".const", ".file", ".loc"}));
+                           ".attribute_bytes", ".local_size", ".shared_bytes", ".const", ".file", ".loc"}));
     if (tokens_.peek().kind != Token::Kind::Newline && tokens_.peek().kind != Token::Kind::End)
       tokens_.fail(tokens_.peek(), "the end of the line after " + d);
   }
@@ -311,7 +310,6 @@ class Parser {
   Tokens tokens_;
   Program program_;
   Line line_;
-  std::optional<uint64_t> specials_;
   std::map<std::string, uint32_t> label_at_;
   std::vector<std::pair<uint32_t, Token>> targets_;
 };

@@ -11,62 +11,22 @@
 namespace glint::isa {
 namespace {
 
-constexpr std::array<std::string_view, kNumSpecials> kSpecialNames = {"%laneid",
-                                                                      "%launch.x",
-                                                                      "%launch.y",
-                                                                      "%launch.z",
-                                                                      "%launch.size.x",
-                                                                      "%launch.size.y",
-                                                                      "%launch.size.z",
-                                                                      "%clock",
-                                                                      "%payload",
-                                                                      "%attribute",
-                                                                      "%hit.t",
-                                                                      "%hit.kind",
-                                                                      "%hit.u",
-                                                                      "%hit.v",
-                                                                      "%hit.primitive",
-                                                                      "%hit.geometry",
-                                                                      "%hit.instance",
-                                                                      "%hit.custom",
-                                                                      "%ray.flags",
-                                                                      "%ray.tmin",
-                                                                      "%ray.origin.x",
-                                                                      "%ray.origin.y",
-                                                                      "%ray.origin.z",
-                                                                      "%ray.direction.x",
-                                                                      "%ray.direction.y",
-                                                                      "%ray.direction.z",
-                                                                      "%object.origin.x",
-                                                                      "%object.origin.y",
-                                                                      "%object.origin.z",
-                                                                      "%object.direction.x",
-                                                                      "%object.direction.y",
-                                                                      "%object.direction.z",
-                                                                      "%object_to_world.0",
-                                                                      "%object_to_world.1",
-                                                                      "%object_to_world.2",
-                                                                      "%object_to_world.3",
-                                                                      "%object_to_world.4",
-                                                                      "%object_to_world.5",
-                                                                      "%object_to_world.6",
-                                                                      "%object_to_world.7",
-                                                                      "%object_to_world.8",
-                                                                      "%object_to_world.9",
-                                                                      "%object_to_world.10",
-                                                                      "%object_to_world.11",
-                                                                      "%world_to_object.0",
-                                                                      "%world_to_object.1",
-                                                                      "%world_to_object.2",
-                                                                      "%world_to_object.3",
-                                                                      "%world_to_object.4",
-                                                                      "%world_to_object.5",
-                                                                      "%world_to_object.6",
-                                                                      "%world_to_object.7",
-                                                                      "%world_to_object.8",
-                                                                      "%world_to_object.9",
-                                                                      "%world_to_object.10",
-                                                                      "%world_to_object.11"};
+constexpr std::array<std::string_view, kNumSpecials> kSpecialNames = {
+    "%laneid", "%launch.x", "%launch.y", "%launch.z", "%launch.size.x", "%launch.size.y", "%launch.size.z",
+    "%tid.x", "%tid.y", "%tid.z", "%ntid.x", "%ntid.y", "%ntid.z", "%ctaid.x", "%ctaid.y", "%ctaid.z",
+    "%nctaid.x", "%nctaid.y", "%nctaid.z", "%warpid", "%nwarpid", "%smid", "%nsmid", "%gridid", "%lanemask_eq",
+    "%lanemask_le", "%lanemask_lt", "%lanemask_ge", "%lanemask_gt", "%total_smem_size", "%dynamic_smem_size",
+    "%clock", "%clock_hi", "%globaltimer_lo", "%globaltimer_hi", "%payload", "%attribute", "%hit.t",
+    "%hit.kind", "%hit.u", "%hit.v", "%hit.primitive", "%hit.geometry", "%hit.instance", "%hit.custom",
+    "%ray.flags", "%ray.tmin", "%ray.origin.x", "%ray.origin.y", "%ray.origin.z", "%ray.direction.x",
+    "%ray.direction.y", "%ray.direction.z", "%object.origin.x", "%object.origin.y", "%object.origin.z",
+    "%object.direction.x", "%object.direction.y", "%object.direction.z", "%object_to_world.0",
+    "%object_to_world.1", "%object_to_world.2", "%object_to_world.3", "%object_to_world.4",
+    "%object_to_world.5", "%object_to_world.6", "%object_to_world.7", "%object_to_world.8",
+    "%object_to_world.9", "%object_to_world.10", "%object_to_world.11", "%world_to_object.0",
+    "%world_to_object.1", "%world_to_object.2", "%world_to_object.3", "%world_to_object.4",
+    "%world_to_object.5", "%world_to_object.6", "%world_to_object.7", "%world_to_object.8",
+    "%world_to_object.9", "%world_to_object.10", "%world_to_object.11"};
 static_assert(!kSpecialNames.back().empty(), "every special has a name");
 
 constexpr std::string_view kStageNames[] = {"ray_generation", "intersection", "any_hit", "closest_hit",
@@ -82,7 +42,7 @@ bool Program::operator==(const Program& o) const {
   return name == o.name && stage == o.stage && constants == o.constants && files == o.files &&
          lines == o.lines && num_registers == o.num_registers && local_bytes == o.local_bytes &&
          payload_bytes == o.payload_bytes && attribute_bytes == o.attribute_bytes &&
-         local_size == o.local_size && specials_used == o.specials_used &&
+         local_size == o.local_size && shared_bytes == o.shared_bytes &&
          std::equal(code.begin(), code.end(), o.code.begin(), o.code.end(), same_inst);
 }
 
@@ -105,8 +65,8 @@ bool find_stage(std::string_view name, Stage& out) {
   return true;
 }
 
-uint64_t specials_read_by(const std::vector<Inst>& code) {
-  uint64_t used = 0;
+SpecialSet specials_read_by(std::span<const Inst> code) {
+  SpecialSet used;
   for (const Inst& inst : code) {
     int slot = 0;
     for (const OperandKind kind : op_table()[inst.op].operands.view()) {

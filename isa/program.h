@@ -43,11 +43,10 @@ struct Program {
   uint32_t local_bytes = 0;           // stack frame: variables, payloads, spills, saved registers
   uint32_t payload_bytes = 0;         // of the payload it reads (hit, miss) or the largest it passes (caller)
   uint32_t attribute_bytes = 0;
-  std::array<uint32_t, 3> local_size{1, 1, 1};  // compute
-  uint64_t specials_used = 0;         // bit i: Special(i) is read (kNumSpecials <= 64)
+  std::array<uint32_t, 3> local_size{1, 1, 1};  // compute: threads of a block
+  uint32_t shared_bytes = 0;          // compute: shared memory of a block
 
   bool operator==(const Program&) const;  // code, constants, lines, header fields: "the identical program"
 };
-static_assert(kNumSpecials <= 64);
 
 }  // namespace glint::isa

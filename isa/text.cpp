@@ -174,7 +174,7 @@ std::string header_text(const Program& p) {
   if (p.attribute_bytes) out += fmt::format(".attribute_bytes {}\n", p.attribute_bytes);
   if (p.local_size != std::array<uint32_t, 3>{1, 1, 1})
     out += fmt::format(".local_size {} {} {}\n", p.local_size[0], p.local_size[1], p.local_size[2]);
-  if (p.specials_used != specials_read_by(p.code)) out += fmt::format(".specials 0x{:x}\n", p.specials_used);
+  if (p.shared_bytes) out += fmt::format(".shared_bytes {}\n", p.shared_bytes);
   for (size_t i = 0; i < p.files.size(); ++i) out += fmt::format(".file {} {}\n", i, quoted(p.files[i]));
   return out;
 }

@@ -1,6 +1,8 @@
 // The text of a program: PTX-like assembly that prints and parses to the identical Program.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <bitset>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -26,8 +28,10 @@ Special find_special(std::string_view name);
 std::string_view name_of(Stage stage);
 bool find_stage(std::string_view name, Stage& out);
 
+using SpecialSet = std::bitset<size_t(kNumSpecials)>;
+
 // Bit i is set where `code` reads Special(i).
-uint64_t specials_read_by(const std::vector<Inst>& code);
+SpecialSet specials_read_by(std::span<const Inst> code);
 
 // The row that holds a literal: the first with this value (64 bits: the first two neighbours), or appended.
 // Text and compiler use the same rule, so that text needs no constant table.

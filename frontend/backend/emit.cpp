@@ -89,7 +89,6 @@ class Encoder {
       case VirtualOperand::Kind::Constant:
         return kind == isa::OperandKind::Src64 ? constants_.pair(operand.constant) : constants_.word(uint32_t(operand.constant));
       case VirtualOperand::Kind::Special:
-        out_.specials_used |= uint64_t{1} << int(operand.special);
         return isa::Slot(isa::kSpecialBank + isa::Slot(operand.special));
       case VirtualOperand::Kind::StackPointer: return isa::kStackPointer;
       case VirtualOperand::Kind::None: break;

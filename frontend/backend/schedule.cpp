@@ -17,16 +17,20 @@ uint32_t latency_of(const VirtualInst& inst) {
   switch (row_of(inst).unit) {
     case isa::Unit::Int:
     case isa::Unit::Fp32:
+    case isa::Unit::Fp16:
     case isa::Unit::Move:
     case isa::Unit::Predicate: return 4;
     case isa::Unit::Sfu: return 16;
     case isa::Unit::IntDiv:
-    case isa::Unit::FpDiv: return 40;
+    case isa::Unit::FpDiv:
+    case isa::Unit::Fp64Div: return 40;
+    case isa::Unit::Shuffle: return 24;
     case isa::Unit::Fp64: return 16;
     case isa::Unit::Const: return 8;
     case isa::Unit::Lsu: return 28;
     case isa::Unit::Tex: return 80;
     case isa::Unit::Branch:
+    case isa::Unit::Barrier:
     case isa::Unit::RtUnit:
     case isa::Unit::Count: return 1;
   }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/ops/families.h"
 
+#include <span>
+
 #include "isa/op_makers.h"
 
 namespace glint::isa::GLINT_ISA_PATH {
@@ -9,11 +11,42 @@ namespace glint::isa::GLINT_ISA_PATH {
 void run_nothing(Warp&, const Inst&) {
 }
 
-RowList family_rows(int family) {
-  constexpr RowList (*kFamilies[])() = {&move_rows,    &integer_rows,    &compare_rows, &float_rows,
-                                        &convert_rows, &predicate_rows,  &memory_rows,  &texture_rows,
-                                        &control_rows, &ray_tracing_rows};
-  return kFamilies[family]();
+std::span<const FamilyEntry> family_entries() {
+  static constexpr FamilyEntry kFamilies[] = {
+      {"move", "Copies, selections, and the packing of register pairs.", &move_rows},
+      {"integer", "Integer arithmetic of 16, 32 and 64 bits, logic and shifts.", &integer_rows},
+      {"bits", "Bit fields, counts, permutations and three-input logic.", &bits_rows},
+      {"packed",
+       "Bytes and half words of a register at once: video ops, dot products, pairs of 16-bit integers.",
+       &packed_rows},
+      {"carry", "Arithmetic that hands a carry on, in a predicate.", &carry_rows},
+      {"compare",
+       "Comparisons of all types; the result is a predicate, or a value of set.",
+       &compare_rows},
+      {"float",
+       "Single precision. A NaN result is 0x7fffffff; subnormals are kept without .ftz.",
+       &float_rows},
+      {"double", "Double precision. NaNs keep their payload.", &double_rows},
+      {"half", "Floats of 16 bits, alone and in pairs. A NaN result is 0x7fff.", &half_rows},
+      {"approximate",
+       "Special functions as the hardware approximates them, and those of GLSL, nearly correctly rounded.",
+       &approximate_rows},
+      {"convert", "Conversions between integers and floats, and rounding to integers.", &convert_rows},
+      {"predicate", "Operations on predicates.", &predicate_rows},
+      {"memory",
+       "Loads and stores; an address is a register (pair) and a displacement.",
+       &memory_rows},
+      {"atomic", "Read-modify-write of memory; lanes take turns, the lowest first.", &atomic_rows},
+      {"warp", "Lanes that read each other: shuffles, votes, matches and reductions.", &warp_rows},
+      {"barrier",
+       "Waiting for the other warps of the block, and ordering memory accesses.",
+       &barrier_rows},
+      {"texture", "Filtered texture fetches and texel access.", &texture_rows},
+      {"control", "Branches, calls, regions whose lanes meet again, and ends.", &control_rows},
+      {"ray tracing", "Rays, and the calls of the shaders they find.", &ray_tracing_rows},
+      {"ray query", "Rays that a shader walks itself, candidate by candidate.", &ray_query_rows},
+  };
+  return kFamilies;
 }
 
 }  // namespace glint::isa::GLINT_ISA_PATH

@@ -7,13 +7,23 @@ namespace glint::isa::GLINT_ISA_PATH {
 
 RowList move_rows();
 RowList integer_rows();
+RowList bits_rows();
+RowList packed_rows();
+RowList carry_rows();
 RowList compare_rows();
 RowList float_rows();
+RowList double_rows();
+RowList half_rows();
+RowList approximate_rows();
 RowList convert_rows();
 RowList predicate_rows();
 RowList memory_rows();
+RowList atomic_rows();
+RowList warp_rows();
+RowList barrier_rows();
 RowList texture_rows();
 RowList control_rows();
 RowList ray_tracing_rows();
+RowList ray_query_rows();
 
 }  // namespace glint::isa::GLINT_ISA_PATH

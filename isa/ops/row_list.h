@@ -12,4 +12,11 @@ struct RowList {
   size_t count = 0;
 };
 
+// A chapter of the table: a title, a sentence, and the function that gives its rows.
+struct FamilyEntry {
+  std::string_view name;
+  std::string_view doc;
+  RowList (*rows)();
+};
+
 }  // namespace glint::isa

@@ -66,7 +66,7 @@ Program program_of_all_rows() {
   p.code.push_back(last);
   p.lines.push_back({1, 99});
   p.labels = {{0, "START"}, {3, "MIDDLE"}, {uint32_t(op_index("join")), "MEET"}};
-  p.specials_used = specials_read_by(p.code);
+  p.shared_bytes = 4096;
   return p;
 }
 
@@ -125,9 +125,9 @@ TEST_CASE("programs that differ in one field are not equal") {
   q.lines[9].line += 1;
   CHECK_FALSE(q == p);
   q = p;
-  q.specials_used ^= 1;
+  q.shared_bytes ^= 16;
   CHECK_FALSE(q == p);
-  CHECK(parse(to_text(q), "q") == q);  // a mask that the code does not imply is written
+  CHECK(parse(to_text(q), "q") == q);
 }
 
 TEST_CASE("literals keep their bits: decimal, negative, hexadecimal and float") {

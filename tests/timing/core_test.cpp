@@ -71,7 +71,7 @@ TEST_CASE("instructions on different pipes issue back to back") {
 
 TEST_CASE("a long latency is charged under its own reason") {
   Code code;
-  code.add("sin.approx.f32", {reg(1), reg(1)});
+  code.add("sin.f32", {reg(1), reg(1)});
   code.add("add.u32", {reg(2), reg(1), reg(1)});
   code.add("exit");
   OneCore core(code, quick_params(), {});
@@ -304,7 +304,7 @@ void add_mixture(Code& code, Address buffer, Address structure) {
   const int loop = code.here();
   code.add("ld.global.b32", {reg(4), reg(2)});
   code.add("st.local.b32", {reg(0), reg(4)}, 8);
-  code.add("sin.approx.f32", {reg(5), reg(4)});
+  code.add("sin.f32", {reg(5), reg(4)});
   code.add("ld.const.b32", {reg(9), reg(0)}, 64);
   code.add("ld.local.b32", {reg(6), reg(0)}, 8);
   code.add("add.u32", {reg(1), reg(1), code.constant(1)});

@@ -138,9 +138,9 @@ TEST_CASE("instructions know the file and line of an included function") {
   for (const VirtualBlock& block : program.blocks)
     for (const VirtualInst& inst : block.code) {
       const std::string_view op = isa::op_table()[inst.op].name;
-      if (op != "sin.approx.f32" && op != "st.global.b32") continue;
-      CHECK(program.files.at(inst.line.file) == (op == "sin.approx.f32" ? header : path));
-      CHECK(inst.line.line == (op == "sin.approx.f32" ? 4u : 5u));
+      if (op != "sin.f32" && op != "st.global.b32") continue;
+      CHECK(program.files.at(inst.line.file) == (op == "sin.f32" ? header : path));
+      CHECK(inst.line.line == (op == "sin.f32" ? 4u : 5u));
       ++found;
     }
   CHECK(found == 2);

@@ -1,0 +1,12 @@
+// Read-modify-write of memory.
+// SPDX-License-Identifier: Apache-2.0
+#include "isa/op_makers.h"
+#include "isa/ops/families.h"
+
+namespace glint::isa::GLINT_ISA_PATH {
+
+RowList atomic_rows() {
+  return {};
+}
+
+}  // namespace glint::isa::GLINT_ISA_PATH
