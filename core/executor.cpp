@@ -111,6 +111,8 @@ Issued Executor::execute(WarpContext& warp, Cycle now) {
     case Effect::Fence:
     case Effect::Ignore:
     case Effect::Terminate: ok = run_control(warp, inst, row); break;
+    case Effect::Query:
+    case Effect::QueryProceed: ok = run_query(warp, inst, row); break;
     case Effect::CallCandidate:
     case Effect::CallAnyHit:
     case Effect::CallHit:

@@ -53,8 +53,8 @@ class Executor {
   const isa::Inst& next(const WarpContext& warp) const { return world_.image->code[warp.simt.pc]; }
   const isa::OpRow& next_row(const WarpContext& warp) const { return *world_.image->rows[warp.simt.pc]; }
 
-  // Runs one instruction to its end, but rt.trace and rt.resume: those leave `warp.waiting_for_rays` set, the
-  // machine traverses warp.frame().ray[lane] for the lanes that are Traversing, then calls finish_rays.
+  // Runs one instruction to its end, but rt.trace, rt.resume and rq.proceed: those leave `warp.waiting_for_rays` set, the
+  // machine traverses warp.rays[lane] for the lanes that are Traversing, then calls finish_rays.
   Issued execute(WarpContext& warp, Cycle now);
   // Writes the answer predicate of the waiting rt.trace or rt.resume.
   void finish_rays(WarpContext& warp) const;
@@ -82,6 +82,10 @@ class Executor {
   bool access_surface(WarpContext& warp, const isa::Inst& inst, bool store);
   bool trace(WarpContext& warp, const isa::Inst& inst);
   bool report(WarpContext& warp, const isa::Inst& inst);
+  bool run_query(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
+  rt::RayState* find_query(WarpContext& warp, isa::Slot operand);
+  bool begin_queries(WarpContext& warp, const isa::Inst& inst, rt::RayState* states);
+  void decide_queries(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, rt::RayState* states);
   bool call(WarpContext& warp, isa::Effect effect);
   bool call_targets(WarpContext& warp, isa::Effect effect, std::array<uint32_t, kLanes>& target);
   const HitGroup* hit_group(const rt::Ray& ray, const rt::Hit& hit, uint32_t& record) const;

@@ -73,6 +73,7 @@ bool Executor::run_rays(WarpContext& warp, const isa::Inst& inst, const isa::OpR
     case Effect::Trace: return trace(warp, inst);
     case Effect::Resume:
       warp.waiting_for_rays = exec != 0;
+      warp.rays = warp.frame().ray.data();
       warp.ray_lanes = exec;
       warp.ray_answer = inst.operand[0];
       break;
@@ -113,6 +114,7 @@ bool Executor::trace(WarpContext& warp, const isa::Inst& inst) {
   }
   ++warp.depth;
   warp.waiting_for_rays = exec != 0;
+  warp.rays = frame.ray.data();
   warp.ray_lanes = exec;
   warp.ray_answer = inst.operand[0];
   ++warp.simt.pc;
@@ -122,7 +124,7 @@ bool Executor::trace(WarpContext& warp, const isa::Inst& inst) {
 void Executor::finish_rays(WarpContext& warp) const {
   LaneMask waiting = 0;
   for_each_lane(warp.ray_lanes, [&](int lane) {
-    const rt::RayState& state = warp.frame().ray[size_t(lane)];
+    const rt::RayState& state = warp.rays[lane];
     GLINT_DCHECK(state.status != RayStatus::Traversing, "lane {} was given back while traversing", lane);
     waiting |= LaneMask{needs_shader(state)} << lane;
   });

@@ -205,13 +205,12 @@ void CoreCell::start_rays(uint32_t slot, const IssueRow& row, const Issued& issu
   WarpContext& warp = warps_[slot];
   LaneMask travelling = 0;
   if (warp.waiting_for_rays) {
-    TraceFrame& frame = warp.frame();
     for_each_lane(issued.lanes, [&](int lane) {
-      if (frame.ray[size_t(lane)].status == rt::RayStatus::Traversing) travelling |= LaneMask{1} << lane;
+      if (warp.rays[lane].status == rt::RayStatus::Traversing) travelling |= LaneMask{1} << lane;
     });
   }
   if (travelling) {
-    rt_.submit(now, slot, travelling, warp.frame().ray.data());
+    rt_.submit(now, slot, travelling, warp.rays);
     front_[slot] = {kNever, Stall::RtWait};
     rays_issued_[slot] = now;
     rays_pc_[slot] = issued.pc;

@@ -42,6 +42,7 @@ Finish finish_of(const isa::OpRow& row) {
     case Effect::SurfaceLoad:
     case Effect::SurfaceStore: return Finish::Memory;
     case Effect::Trace:
+    case Effect::QueryProceed:
     case Effect::Resume: return Finish::Rays;
     case Effect::CallCandidate:
     case Effect::CallAnyHit:
@@ -59,6 +60,7 @@ Finish finish_of(const isa::OpRow& row) {
     // ssy only notes a place; the next instruction is the next one.
     case Effect::PushReconvergence:
     case Effect::None:
+    case Effect::Query:
     case Effect::Report:
     case Effect::Accepted:
     case Effect::EndTrace: return Finish::Fixed;

@@ -65,7 +65,7 @@ struct Text {
 template <Text... kParts>
 struct Joined {
   static constexpr size_t kLength = (kParts.kLength + ... + 0);
-  static constexpr auto kText = [] {
+  static constexpr std::array<char, kLength + 1> kText = [] {
     std::array<char, kLength + 1> out{};
     size_t n = 0;
     const auto append = [&](const auto& part) {
@@ -73,6 +73,12 @@ struct Joined {
     };
     (append(kParts), ...);
     return out;
+  }();
+  // The same as a template argument of further names.
+  static constexpr Text<kLength + 1> kAsText = [] {
+    char out[kLength + 1]{};
+    for (size_t i = 0; i < kLength; ++i) out[i] = kText[i];
+    return Text<kLength + 1>(out);
   }();
 };
 template <Text... kParts>

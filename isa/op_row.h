@@ -7,6 +7,7 @@
 #include <span>
 #include <string_view>
 
+#include "isa/image_access.h"
 #include "isa/inst.h"
 #include "isa/warp.h"
 
@@ -77,8 +78,10 @@ struct Operands {
 enum class Effect : uint8_t {
   None,
   Load, Store, Atomic,        // OpRow::memory says how; addresses in Warp::access
-  Texture,                    // filtered fetch: access.address = texture handle, u, v = coordinates (float bits)
-  SurfaceLoad, SurfaceStore,  // texel access: access.address = image handle, u, v = x, y (int32)
+  Texture,                    // OpRow::image says how; access.address = texture handle
+  SurfaceLoad, SurfaceStore,  // as Texture; access.address = image handle
+  SurfaceAtomic,              // read-modify-write of a texel by OpRow::atomic
+  ImageQuery,                 // what the image is like: no memory access
   Branch,                     // to Inst::imm for the lanes of exec
   BranchIndexed,              // brx.idx: to Inst::imm + operand 0, where a table of branches stands
   Call,                       // to the function at Inst::imm; `ret` comes back
@@ -89,6 +92,7 @@ enum class Effect : uint8_t {
   CallCandidate, CallAnyHit, CallHit,  // call.sbt.*: indirect shader calls through the binding table
   Trace, Resume,              // rt.trace, rt.resume: give rays to the RT unit; answer: predicate slot 0
   Report, Accepted, Ignore, Terminate, EndTrace,  // rt.report, rt.accepted, rt.ignore, rt.terminate, rt.end
+  Query, QueryProceed,        // rq.*: OpRow::detail says which; rq.proceed gives rays to the RT unit
   Barrier,                    // bar.*: warps of a block wait for each other
   Fence,                      // membar, fence, bar.warp.sync: orders memory accesses of the warp
 };
@@ -137,7 +141,9 @@ struct OpRow {
   Operands operands;       // what verifier, parser, register allocator and scheduler need
   Effect effect = Effect::None;
   Memory memory;
-  AtomicFunction atomic = nullptr;  // of Effect::Atomic
+  ImageAccess image;       // of texture and surface ops
+  AtomicFunction atomic = nullptr;  // of Effect::Atomic and SurfaceAtomic
+  uint16_t detail = 0;     // which of its family, where one effect serves many rows: isa/ray_query.h
   Handler run = nullptr;   // never null; ops that are all effect have an empty handler
   std::string_view doc;    // one sentence: docs/isa.md and `glint isa add.s32`
   Examples examples;       // documentation and test at once

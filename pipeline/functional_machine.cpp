@@ -11,9 +11,8 @@ using core::Executor;
 using core::WarpContext;
 
 void answer_rays(Executor& executor, WarpContext& warp, RayCounts& counts) {
-  core::TraceFrame& frame = warp.frame();
   for_each_lane(warp.ray_lanes, [&](int lane) {
-    rt::RayState& state = frame.ray[size_t(lane)];
+    rt::RayState& state = warp.rays[lane];
     const auto nodes = state.nodes_visited, boxes = state.box_tests, triangles = state.triangle_tests;
     if (nodes == 0) ++counts.rays;  // first hand-over: a ray, not a resumed one
     if (state.status == rt::RayStatus::Traversing) rt::run(state, *executor.world().memory);

@@ -1,12 +1,120 @@
-// Rays that a shader walks itself, candidate by candidate.
+// Rays that a shader walks itself, candidate by candidate (SPV_KHR_ray_query).
 // SPDX-License-Identifier: Apache-2.0
+#include "isa/ray_query.h"
+
 #include "isa/op_makers.h"
 #include "isa/ops/families.h"
 
 namespace glint::isa::GLINT_ISA_PATH {
+namespace {
+
+constexpr OpRow query(std::string_view name, Effect effect, Query detail, Operands operands, std::string_view doc) {
+  OpRow row = effect_op(name, Class::Rt, Unit::RtUnit, effect, operands, doc);
+  row.detail = detail_of(detail);
+  return row;
+}
+
+constexpr OpRow kSteps[] = {
+    query("rq.initialize", Effect::Query, Query::Initialize,
+          {Src32, Src64, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32},
+          "Starts a ray: query, structure, flags, mask, origin, tmin, direction, tmax."),
+    query("rq.proceed", Effect::QueryProceed, Query::Initialize, {DstPred, Src32},
+          "Gives the ray of a query to the RT unit, an undecided candidate being ignored; tells whether there is a new "
+          "candidate."),
+    query("rq.confirm", Effect::Query, Query::Confirm, {Src32}, "Commits the triangle that is the candidate."),
+    query("rq.generate", Effect::Query, Query::Generate, {Src32, Src32},
+          "Commits a hit at t (second operand) in the box that is the candidate, if t lies in the ray's interval."),
+    query("rq.terminate", Effect::Query, Query::Terminate, {Src32}, "Ends the traversal; what is committed stays."),
+};
+
+constexpr OpRow value(std::string_view name, Query field, int element, bool committed, std::string_view doc) {
+  OpRow row = effect_op(name, Class::Rt, Unit::RtUnit, Effect::Query, {Dst32, Src32}, doc);
+  row.detail = detail_of(field, committed, element);
+  return row;
+}
+
+constexpr OpRow kValues[] = {
+    value("rq.type.candidate", Query::Type, 0, false, "Kind of the candidate: 0 triangle, 1 box."),
+    value("rq.type.committed", Query::Type, 0, true, "Kind of the committed hit: 0 none, 1 triangle, 2 generated."),
+    value("rq.t.candidate", Query::T, 0, false, "Distance of the candidate triangle."),
+    value("rq.t.committed", Query::T, 0, true, "Distance of the committed hit; the ray's end when there is none."),
+    value("rq.aabb_opaque.candidate", Query::AabbOpaque, 0, false, "1 if the candidate box is opaque, else 0."),
+    value("rq.tmin", Query::Tmin, 0, false, "Begin of the ray's interval."),
+    value("rq.flags", Query::Flags, 0, false, "Flags of the ray."),
+    value("rq.origin.x", Query::Origin, 0, false, "Origin of the ray in world space."),
+    value("rq.origin.y", Query::Origin, 1, false, "Origin of the ray in world space."),
+    value("rq.origin.z", Query::Origin, 2, false, "Origin of the ray in world space."),
+    value("rq.direction.x", Query::Direction, 0, false, "Direction of the ray in world space."),
+    value("rq.direction.y", Query::Direction, 1, false, "Direction of the ray in world space."),
+    value("rq.direction.z", Query::Direction, 2, false, "Direction of the ray in world space."),
+};
+
+// Rows that exist for the candidate and for the committed hit.
+template <Text kName>
+constexpr std::array<OpRow, 2> of_both(Query field, int element, std::string_view doc) {
+  return {value(joined<"rq.", kName, ".candidate">, field, element, false, doc),
+          value(joined<"rq.", kName, ".committed">, field, element, true, doc)};
+}
+
+template <int kNumber>
+constexpr auto decimal() {
+  if constexpr (kNumber < 10) {
+    const char text[2] = {char('0' + kNumber), '\0'};
+    return Text<2>(text);
+  } else {
+    const char text[3] = {char('0' + kNumber / 10), char('0' + kNumber % 10), '\0'};
+    return Text<3>(text);
+  }
+}
+// The 12 elements of a row-major 3x4 matrix.
+template <Text kName>
+constexpr std::array<OpRow, 24> matrix_of_both(Query field, std::string_view doc) {
+  std::array<OpRow, 24> out;
+  const auto element = [&]<int kElement>(std::integral_constant<int, kElement>) {
+    const auto rows = of_both<Joined<kName, ".", decimal<kElement>()>::kAsText>(field, kElement, doc);
+    out[2 * kElement] = rows[0];
+    out[2 * kElement + 1] = rows[1];
+  };
+  [&]<int... kElement>(std::integer_sequence<int, kElement...>) {
+    (element(std::integral_constant<int, kElement>{}), ...);
+  }(std::make_integer_sequence<int, 12>{});
+  return out;
+}
+
+template <size_t... kSizes>
+constexpr auto concatenated(const std::array<OpRow, kSizes>&... lists) {
+  std::array<OpRow, (kSizes + ... + 0)> out;
+  size_t n = 0;
+  const auto append = [&](const auto& list) {
+    for (const OpRow& row : list) out[n++] = row;
+  };
+  (append(lists), ...);
+  return out;
+}
+
+constexpr auto kRows = concatenated(
+    std::to_array(kSteps), std::to_array(kValues),
+    of_both<"instance">(Query::Instance, 0, "Index of the instance."),
+    of_both<"custom">(Query::CustomIndex, 0, "Custom index of the instance."),
+    of_both<"sbt_offset">(Query::SbtOffset, 0, "Binding-table offset of the instance."),
+    of_both<"geometry">(Query::Geometry, 0, "Index of the geometry."),
+    of_both<"primitive">(Query::Primitive, 0, "Index of the triangle or box."),
+    of_both<"u">(Query::BarycentricU, 0, "Weight of the triangle's second vertex."),
+    of_both<"v">(Query::BarycentricV, 0, "Weight of the triangle's third vertex."),
+    of_both<"front_face">(Query::FrontFace, 0, "1 if the triangle faces the ray, else 0."),
+    of_both<"object.origin.x">(Query::ObjectOrigin, 0, "Origin of the ray in object space."),
+    of_both<"object.origin.y">(Query::ObjectOrigin, 1, "Origin of the ray in object space."),
+    of_both<"object.origin.z">(Query::ObjectOrigin, 2, "Origin of the ray in object space."),
+    of_both<"object.direction.x">(Query::ObjectDirection, 0, "Direction of the ray in object space."),
+    of_both<"object.direction.y">(Query::ObjectDirection, 1, "Direction of the ray in object space."),
+    of_both<"object.direction.z">(Query::ObjectDirection, 2, "Direction of the ray in object space."),
+    matrix_of_both<"object_to_world">(Query::ObjectToWorld, "Element of the instance's transform, row-major 3x4."),
+    matrix_of_both<"world_to_object">(Query::WorldToObject, "Element of the inverse transform, row-major 3x4."));
+
+}  // namespace
 
 RowList ray_query_rows() {
-  return {};
+  return {kRows.data(), kRows.size()};
 }
 
 }  // namespace glint::isa::GLINT_ISA_PATH
