@@ -1,12 +1,252 @@
 // Bit fields, counts, permutations and three-input logic.
 // SPDX-License-Identifier: Apache-2.0
-#include "isa/op_makers.h"
+#include "isa/integer_kernels.h"
 #include "isa/ops/families.h"
+#include "isa/ops/row_tables.h"
 
 namespace glint::isa::GLINT_ISA_PATH {
+namespace {
+
+template <class N>
+constexpr auto count_rows() {
+  using T = typename N::Type;
+  constexpr uint64_t kOnes = word(T(-1)), kWidth = kBits<T>, kHigh = word(T(T(1) << (kWidth - 1)));
+  return joined_rows(
+      unary<T>(joined<"popc", N::kName>, Unit::Sfu, "Number of ones.", [](T a) { return count_ones(a); },
+               {{{0}, 0}, {{kOnes}, kWidth}, {{kHigh | 1}, 2}}),
+      unary<T>(joined<"clz", N::kName>, Unit::Sfu, "Number of leading zeros, the width for 0.",
+               [](T a) { return uint32_t(kBits<T> - 1) - highest_one(a); },
+               {{{0}, kWidth}, {{1}, kWidth - 1}, {{kHigh}, 0}}),
+      unary<T>(joined<"brev", N::kName>, Unit::Sfu, "Reverses the order of the bits.", [](T a) { return reversed(a); },
+               {{{1}, kHigh}, {{kOnes}, kOnes}, {{0xf1}, 0x8full << (kWidth - 8)}}));
+}
+
+// Bits that differ from the sign; for unsigned types all ones.
+template <class T>
+inline Unsigned<T> significant(T a) {
+  if constexpr (std::is_signed_v<T>)
+    return Unsigned<T>(a ^ (a >> (kBits<T> - 1)));
+  else
+    return a;
+}
+template <class N>
+constexpr auto find_rows() {
+  using T = typename N::Type;
+  constexpr uint64_t kOnes = word(T(-1)), kTop = kBits<T> - 1, kNone = 0xffff'ffff;
+  constexpr bool kSigned = std::is_signed_v<T>;
+  return joined_rows(
+      unary<T>(joined<"bfind", N::kName>, Unit::Sfu,
+               kSigned ? "Position of the highest bit that differs from the sign, all ones if none does."
+                       : "Position of the highest one, all ones for 0.",
+               [](T a) { return highest_one(significant(a)); },
+               {{{0}, kNone}, {{1}, 0}, {{kOnes}, kSigned ? kNone : kTop}, {{0x40}, 6}}),
+      unary<T>(joined<"bfind.shiftamt", N::kName>, Unit::Sfu,
+               "Shift left that brings the bit which bfind finds to the top; all ones if there is none.",
+               [](T a) {
+                 const uint32_t at = highest_one(significant(a));
+                 return at > 63 ? at : uint32_t(kBits<T> - 1) - at;
+               },
+               {{{0}, kNone}, {{1}, kTop}, {{kOnes}, kSigned ? kNone : 0}, {{0x40}, kTop - 6}}));
+}
+
+template <class N>
+constexpr auto field_rows() {
+  using T = typename N::Type;
+  constexpr uint64_t kWidth = kBits<T>, kOnes = word(T(-1));
+  if constexpr (std::is_signed_v<T>)
+    return value_op<T, uint32_t, uint32_t>(
+        joined<"bfe", N::kName>, Unit::Int,
+        "Extracts a field (value, position, length) and extends its sign; past the top that is the top bit.",
+        [](T a, uint32_t p, uint32_t n) { return signed_field(a, p, n); },
+        {{{0x1234'8678, 8, 8}, word(T(-122))},
+         {{kOnes >> 1, kWidth - 4, 8}, 7},
+         {{kOnes ^ (kOnes >> 1), kWidth + 8, 4}, kOnes},
+         {{kOnes, 0, 0}, 0}});
+  else
+    return value_op<T, uint32_t, uint32_t>(
+        joined<"bfe", N::kName>, Unit::Int, "Extracts a field: value, position, length; zeros beyond.",
+        [](T a, uint32_t p, uint32_t n) { return field(a, p, n); },
+        {{{0x1234'5678, 8, 12}, 0x456},
+         {{kOnes, kWidth - 4, 8}, 0xf},
+         {{kOnes, 0, 0}, 0},
+         {{kOnes, kWidth + 8, 4}, 0}});
+}
+template <class N>
+constexpr auto insert_rows() {
+  using T = typename N::Type;
+  constexpr uint64_t kWidth = kBits<T>;
+  return value_op<T, T, uint32_t, uint32_t>(
+      joined<"bfi", N::kName>, Unit::Int, "Inserts a field: field, background, position, length.",
+      [](T a, T b, uint32_t p, uint32_t n) { return inserted(a, b, p, n); },
+      {{{0xab, 0x1111'1111, 8, 8}, 0x1111'ab11},
+       {{0xff, 0, kWidth - 4, 8}, word(T(T(0xf) << (kWidth - 4)))},
+       {{0xff, 5, 0, 0}, 5},
+       {{0xff, 5, kWidth, 4}, 5}});
+}
+
+// The funnel: b:a, b the high half. Counts of .wrap are modulo 32, those of .clamp at most 32.
+template <bool kClamp>
+inline uint32_t funnel_left(uint32_t a, uint32_t b, uint32_t n) {
+  const uint32_t shifted = (b << (n & 31)) | ((a >> 1) >> (31 - (n & 31)));
+  return kClamp && n > 31 ? a : shifted;
+}
+template <bool kClamp>
+inline uint32_t funnel_right(uint32_t a, uint32_t b, uint32_t n) {
+  const uint32_t shifted = ((b << 1) << (31 - (n & 31))) | (a >> (n & 31));
+  return kClamp && n > 31 ? b : shifted;
+}
+
+// Truth table of three inputs: bit 4a + 2b + c of it is the result. Chosen by c, then b, then a.
+inline uint32_t looked_up(uint32_t a, uint32_t b, uint32_t c, uint32_t table) {
+  const auto entry = [&](int i) { return 0u - ((table >> i) & 1); };
+  const auto choice = [](uint32_t by, uint32_t zero, uint32_t one) { return zero ^ (by & (zero ^ one)); };
+  const uint32_t low = choice(b, choice(c, entry(0), entry(1)), choice(c, entry(2), entry(3)));
+  const uint32_t high = choice(b, choice(c, entry(4), entry(5)), choice(c, entry(6), entry(7)));
+  return choice(a, low, high);
+}
+
+// Position of one number n (from 0) of x, counted from the low end; n below count_ones(x).
+inline uint32_t position_of_one(uint32_t x, uint32_t n) {
+  uint32_t at = 0;
+  for (const uint32_t width : {16u, 8u, 4u, 2u, 1u}) {
+    const uint32_t below = count_ones((x >> at) & ((1u << width) - 1));
+    const uint32_t step = n >= below ? ~0u : 0u;
+    at += width & step;
+    n -= below & step;
+  }
+  return at;
+}
+// PTX ISA, fns: the one number |offset| from bit `base` on, that bit included, up or (offset < 0) down.
+// A base above 31 finds nothing. As recorded: an offset of -2^31 gives 0.
+inline uint32_t found_one(uint32_t mask, uint32_t base, int32_t offset) {
+  const bool is_up = offset >= 0;
+  const uint32_t from = is_up ? base : 31 - base;  // downwards is upwards in the reversed word
+  const uint32_t beyond = (is_up ? mask : reversed(mask)) & (~0u << (from & 31));
+  const uint32_t rest = from > 31 ? 0u : offset == 0 ? beyond & (1u << (from & 31)) : beyond;
+  const uint32_t distance = is_up ? uint32_t(offset) : 0u - uint32_t(offset);
+  const uint32_t number = distance == 0 ? 0u : distance - 1;
+  const uint32_t at = position_of_one(rest, number);
+  const uint32_t found = number >= count_ones(rest) ? ~0u : is_up ? at : 31 - at;
+  return distance == 0x8000'0000u ? 0u : found;
+}
+
+template <bool kClamp>
+inline uint32_t made_mask(uint32_t position, uint32_t length) {
+  if constexpr (!kClamp) return low_ones<uint32_t>(length & 31) << (position & 31);
+  return shifted_left(low_ones<uint32_t>(length), position);
+}
+// Extends the lowest n bits; .wrap takes n modulo 32, .clamp at most 32.
+template <bool kClamp, class T>
+inline T extended(T a, uint32_t n) {
+  const uint32_t length = kClamp ? n : n & 31;
+  const uint32_t gap = length > 31 ? 0u : 32 - length;
+  return length == 0 ? T(0) : T(T(uint32_t(a) << (gap & 31)) >> (gap & 31));
+}
+template <Text kMode, bool kClamp>
+constexpr auto mode_rows() {
+  return joined_rows(
+      value_op<uint32_t, uint32_t, uint32_t>(
+          joined<"shf.l", kMode, ".b32">, Unit::Int,
+          kClamp ? "High word of a pair (low, high) shifted left, by at most 32."
+                 : "High word of a pair (low, high) shifted left, by a count modulo 32.",
+          [](uint32_t a, uint32_t b, uint32_t n) { return funnel_left<kClamp>(a, b, n); },
+          {{{0x8000'0000, 1, 1}, 3}, {{5, 7, 0}, 7}, {{5, 7, 32}, kClamp ? 5 : 7}}),
+      value_op<uint32_t, uint32_t, uint32_t>(
+          joined<"shf.r", kMode, ".b32">, Unit::Int,
+          kClamp ? "Low word of a pair (low, high) shifted right, by at most 32."
+                 : "Low word of a pair (low, high) shifted right, by a count modulo 32.",
+          [](uint32_t a, uint32_t b, uint32_t n) { return funnel_right<kClamp>(a, b, n); },
+          {{{6, 1, 1}, 0x8000'0003}, {{5, 7, 0}, 5}, {{5, 7, 32}, kClamp ? 7 : 5}}),
+      binary<uint32_t>(joined<"bmsk", kMode, ".b32">, Unit::Int,
+                       kClamp ? "Ones from a position on, so many; what lies beyond the word is lost."
+                              : "Ones from a position on, so many; position and length are taken modulo 32.",
+                       [](uint32_t a, uint32_t b) { return made_mask<kClamp>(a, b); },
+                       {{{4, 8}, 0xff0}, {{28, 8}, 0xf000'0000}, {{0, 32}, kClamp ? 0xffff'ffff : 0}}),
+      value_op<int32_t, uint32_t>(joined<"szext", kMode, ".s32">, Unit::Int,
+                                  "Extends the sign of the lowest bits, as many as the second source says.",
+                                  [](int32_t a, uint32_t n) { return extended<kClamp>(a, n); },
+                                  {{{0x1f8, 8}, 0xffff'fff8}, {{5, 0}, 0}, {{0x8000'0000, 32}, kClamp ? 0x8000'0000 : 0}}),
+      value_op<uint32_t, uint32_t>(joined<"szext", kMode, ".u32">, Unit::Int,
+                                   "Keeps the lowest bits, as many as the second source says.",
+                                   [](uint32_t a, uint32_t n) { return extended<kClamp>(a, n); },
+                                   {{{0x1f8, 8}, 0xf8}, {{5, 0}, 0}, {{0x8000'0000, 32}, kClamp ? 0x8000'0000 : 0}}));
+}
+
+// Byte number `at` (0 to 7) of a and b, b above.
+inline uint32_t byte_of(uint32_t a, uint32_t b, uint32_t at) {
+  return (((at & 4) != 0 ? b : a) >> ((at & 3) * 8)) & 0xff;
+}
+inline uint32_t permuted(uint32_t a, uint32_t b, uint32_t selector) {
+  uint32_t out = 0;
+  for (int i = 0; i < 4; ++i) {
+    const uint32_t pick = selector >> (4 * i);
+    const uint32_t byte = byte_of(a, b, pick & 7);
+    const uint32_t sign = (0u - (byte >> 7)) & 0xff;
+    out |= ((pick & 8) != 0 ? sign : byte) << (8 * i);
+  }
+  return out;
+}
+// The other modes take one number n and make four picks of it: PTX ISA, prmt.
+template <Text kMode, class Pick>
+constexpr OpRow permute_row(std::string_view doc, Pick, Examples examples) {
+  return ternary<uint32_t>(joined<"prmt.b32", kMode>, Unit::Int, doc,
+                           [](uint32_t a, uint32_t b, uint32_t n) {
+                             uint32_t out = 0;
+                             for (uint32_t i = 0; i < 4; ++i) out |= byte_of(a, b, Pick{}(n & 3, i)) << (8 * i);
+                             return out;
+                           },
+                           examples);
+}
+constexpr uint64_t kLow = 0x3322'1100, kHigh = 0x7766'5544;
+constexpr auto permute_rows() {
+  using U = uint32_t;
+  return joined_rows(
+      ternary<U>("prmt.b32", Unit::Int,
+                 "Four bytes of eight: a nibble of the third source picks each; its bit 3 asks for copies of the sign.",
+                 [](U a, U b, U selector) { return permuted(a, b, selector); },
+                 {{{kLow, kHigh, 0x3210}, kLow}, {{kLow, kHigh, 0x7654}, kHigh}, {{kLow, 0x80, 0xc400}, 0xff80'0000}}),
+      permute_row<".f4e">("Four bytes of eight, upwards from byte n of 0 to 3.", [](U n, U i) { return n + i; },
+                          {{{kLow, kHigh, 0}, kLow}, {{kLow, kHigh, 3}, 0x6655'4433}}),
+      permute_row<".b4e">("Four bytes of eight, downwards from byte n of 0 to 3, byte 7 below byte 0.",
+                          [](U n, U i) { return (n - i) & 7; },
+                          {{{kLow, kHigh, 3}, 0x0011'2233}, {{kLow, kHigh, 0}, 0x5566'7700}}),
+      permute_row<".rc8">("Byte n of the first source, four times.", [](U n, U) { return n; },
+                          {{{kLow, kHigh, 0}, 0}, {{kLow, kHigh, 2}, 0x2222'2222}}),
+      permute_row<".ecl">("Bytes of the first source, none below byte n: edge clamp left.",
+                          [](U n, U i) { return i > n ? i : n; },
+                          {{{kLow, kHigh, 0}, kLow}, {{kLow, kHigh, 2}, 0x3322'2222}}),
+      permute_row<".ecr">("Bytes of the first source, none above byte n: edge clamp right.",
+                          [](U n, U i) { return i < n ? i : n; },
+                          {{{kLow, kHigh, 0}, 0}, {{kLow, kHigh, 2}, 0x2222'1100}}),
+      permute_row<".rc16">("A half of the first source, twice: the upper one where n is odd.",
+                           [](U n, U i) { return (n & 1) * 2 + (i & 1); },
+                           {{{kLow, kHigh, 0}, 0x1100'1100}, {{kLow, kHigh, 1}, 0x3322'3322}}));
+}
+
+constexpr auto kRows = joined_rows(
+    rows_of_types<TypeB32, TypeB64>([]<class N>() { return count_rows<N>(); }),
+    rows_of_types<TypeS32, TypeU32, TypeS64, TypeU64>([]<class N>() { return find_rows<N>(); }),
+    rows_of_types<TypeS32, TypeU32, TypeS64, TypeU64>([]<class N>() { return field_rows<N>(); }),
+    rows_of_types<TypeB32, TypeB64>([]<class N>() { return insert_rows<N>(); }), mode_rows<".wrap", false>(),
+    mode_rows<".clamp", true>(),
+    value_op<uint32_t, uint32_t, uint32_t, uint32_t>(
+        "lop3.b32", Unit::Int, "Any logic of three words: bit 4a + 2b + c of the fourth source is the result's bit.",
+        [](uint32_t a, uint32_t b, uint32_t c, uint32_t table) { return looked_up(a, b, c, table); },
+        {{{0xf0, 0xcc, 0xaa, 0x80}, 0x80}, {{0xf0, 0xcc, 0xaa, 0x96}, 0x96}, {{0xf0, 0xcc, 0xaa, 0x3c}, 0x3c}}),
+    value_op<uint32_t, uint32_t, int32_t>(
+        "fns.b32", Unit::Sfu,
+        "Position of the n-th one from a bit on, upwards or (n < 0) downwards; n = 0 tests the bit; all ones if none is there.",
+        [](uint32_t mask, uint32_t base, int32_t offset) { return found_one(mask, base, offset); },
+        {{{0xaaaa'aaaa, 3, 1}, 3},
+         {{0xaaaa'aaaa, 3, 2}, 5},
+         {{0xaaaa'aaaa, 3, 0xffff'fffe}, 1},
+         {{0xaaaa'aaaa, 2, 0}, 0xffff'ffff}}),
+    permute_rows());
+
+}  // namespace
 
 RowList bits_rows() {
-  return {};
+  return {kRows.data(), kRows.size()};
 }
 
 }  // namespace glint::isa::GLINT_ISA_PATH
