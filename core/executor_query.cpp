@@ -18,10 +18,6 @@ using rt::RayStatus;
 // Operands of rq.initialize.
 enum InitializeOperand : size_t { kQuery, kStructure, kFlags, kMask, kOrigin, kTmin = 7, kDirection, kTmax = 11 };
 
-bool has_candidate(const RayState& state) {
-  return state.status == RayStatus::NeedsAnyHit || state.status == RayStatus::NeedsIntersection;
-}
-
 uint32_t bits(float x) { return std::bit_cast<uint32_t>(x); }
 
 // Element of a point or direction of the world in the space of a hit's instance.

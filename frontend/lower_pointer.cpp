@@ -22,11 +22,25 @@ Pointer Lowering::buffer_pointer(const Variable& variable, Pointer p) {
   return p;
 }
 
+namespace {
+
+bool is_ray_query(const Module& module, Id type) {
+  while (module.type(type).kind == Type::Kind::Array) type = module.type(type).element;
+  return module.type(type).kind == Type::Kind::RayQuery;
+}
+
+}  // namespace
+
 Pointer Lowering::variable_pointer(const Variable& variable) {
   using Storage = spv::StorageClass;
   Pointer p;
   p.type = module_.type(variable.type).element;
   p.variable = variable.id;
+  if (is_ray_query(module_, p.type)) {
+    p.place = Place::RayQuery;
+    p.base = Operand::value(ray_query(variable.id));
+    return p;
+  }
   const Decorations& d = decorations(variable.id);
   p.is_volatile = d.is_volatile || d.is_coherent;
   if (d.set.value_or(0) >= isa::kMaxSets || d.binding.value_or(0) >= isa::kBindingsPerSet)
@@ -141,7 +155,7 @@ void step_memory(Lowering& l, Pointer* p, Id index) {
     return;
   }
   if (type.kind == Type::Kind::Matrix && p->matrix.row_major) {
-    step_elements(l, p, index, 4);
+    step_elements(l, p, index, l.layout().size(l.module().type(type.element).element));
     p->component_stride = l.layout().element_stride(p->type, p->matrix);
   } else {
     const bool scattered = type.kind == Type::Kind::Vector && p->component_stride != 0;
@@ -168,6 +182,7 @@ void access_chain(Lowering& l, const Instruction& inst, const LoweringRow&) {
   for (size_t i = 1; i < inst.operands.size() && p.place != Place::Nowhere; ++i) {
     const Id index = inst.operands[i];
     switch (p.place) {
+      case Place::RayQuery:
       case Place::Resource:
         p.base = l.emit().value("add.u32", {p.base, l.scalar(index)});
         p.type = l.module().type(p.type).element;

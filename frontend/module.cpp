@@ -278,6 +278,9 @@ bool Parser::declare_type(const Instruction& inst) {
     case spv::Op::OpTypeAccelerationStructureKHR:
       type.kind = Kind::AccelerationStructure;
       break;
+    case spv::Op::OpTypeRayQueryKHR:
+      type.kind = Kind::RayQuery;
+      break;
     case spv::Op::OpTypeFunction:
       type.kind = Kind::Function;
       break;

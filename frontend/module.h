@@ -29,6 +29,7 @@ struct Type {
     Image,
     SampledImage,
     AccelerationStructure,
+    RayQuery,
     Function,
     Other
   } kind = Kind::Other;
