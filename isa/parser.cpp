@@ -6,35 +6,13 @@
 #include <optional>
 
 #include "base/diagnostics.h"
+#include "isa/literals.h"
 #include "isa/op_row.h"
 #include "isa/text.h"
 #include "isa/tokens.h"
 
 namespace glint::isa {
 namespace {
-
-// The digits of `text` in `base` as a number, if that is all of it and it fits 64 bits.
-std::optional<uint64_t> digits(std::string_view text, unsigned base) {
-  if (text.empty()) return {};
-  uint64_t value = 0;
-  for (const char c : text) {
-    const unsigned d = c >= '0' && c <= '9'   ? unsigned(c - '0')
-                       : c >= 'a' && c <= 'f' ? unsigned(c - 'a') + 10
-                       : c >= 'A' && c <= 'F' ? unsigned(c - 'A') + 10
-                                              : 99;
-    if (d >= base || value > (std::numeric_limits<uint64_t>::max() - d) / base) return {};
-    value = value * base + d;
-  }
-  return value;
-}
-
-// "17", "0x11" or "0f3F800000" (8 digits).
-std::optional<uint64_t> number(const std::string& text) {
-  if (text.starts_with("0x")) return digits(std::string_view(text).substr(2), 16);
-  if (text.starts_with("0f"))
-    return text.size() == 10 ? digits(std::string_view(text).substr(2), 16) : std::nullopt;
-  return digits(text, 10);
-}
 
 // "%rd4" with prefix "%rd" -> 4.
 std::optional<uint64_t> numbered(const std::string& text, std::string_view prefix) {
@@ -162,10 +140,14 @@ class Parser {
     inst.guard = guard;
     const OpRow& row = op_table()[inst.op];
     int slot = 0, position = 0;
+    bool after_destination = false;
     for (const OperandKind kind : row.operands.view()) {
-      if (position++) tokens_.expect(",", fmt::format("before operand {} of {}", position, row.name));
+      const bool is_second = after_destination && is_destination(kind);
+      if (position++) tokens_.expect(is_second ? "|" : ",", fmt::format("before operand {} of {}", position, row.name));
+      as_float_ = is_float(row, slot);
       operand(inst, kind, slot);
       slot += slots_of(kind);
+      after_destination = is_destination(kind);
     }
     tokens_.expect(";", fmt::format("after the {} operands of {}", row.operands.count, row.name));
     program_.code.push_back(inst);
@@ -219,10 +201,34 @@ class Parser {
     }
     tokens_.expect("}", fmt::format("after {} registers", count));
   }
+  // Notes for operands that are nearly right.
+  static std::string near_operand(const std::string& word) {
+    if (const auto index = numbered(word, "%r"); index && *index < uint64_t(kNumPredicates))
+      return fmt::format("did you mean '%p{}'?", *index);
+    return "";
+  }
+  static std::string near_register(const std::string& word, bool is_wide) {
+    if (const auto index = numbered(word, is_wide ? "%r" : "%rd"); index && *index < uint64_t(kMaxRegisters))
+      return is_wide && *index % 2 ? "a pair is named by its even low half"
+                                   : fmt::format("did you mean '%r{}{}'?", is_wide ? "d" : "", *index);
+    if (numbered(word, "%p")) return "a predicate becomes a number by selp.b32";
+    return "";
+  }
+  std::string near_source(const std::string& word, bool is_wide) const {
+    if (fraction(word, is_wide)) return "this operand is not a float: write its bits, as 0f3F800000";
+    if (numbered(word, "%c"))
+      return fmt::format("the program lists {} constant rows (.const)", program_.constants.size());
+    if (is_wide && find_special(word) != Special::Count) return "specials have 32 bits: copy it into a register first";
+    const std::string note = near_register(word, is_wide);
+    if (!note.empty() || is_wide || word[0] != '%') return note;
+    std::vector<std::string> names;
+    for (int i = 0; i < kNumSpecials; ++i) names.emplace_back(name_of(Special(i)));
+    return did_you_mean(word, names);
+  }
   Slot predicate() {
     const Token t = tokens_.peek();
     const auto index = numbered(t.text, "%p");
-    if (!index || *index >= uint64_t(kNumPredicates)) tokens_.fail(t, "a predicate, %p0 to %p7");
+    if (!index || *index >= uint64_t(kNumPredicates)) tokens_.fail(t, "a predicate, %p0 to %p7", near_operand(t.text));
     tokens_.take();
     return Slot(*index);
   }
@@ -235,7 +241,9 @@ class Parser {
   Slot destination(bool is_wide) {
     const Token t = tokens_.peek();
     const auto slot = register_named(t, is_wide);
-    if (!slot) tokens_.fail(t, is_wide ? "a register pair, %rd0 to %rd252" : "a register, %r0 to %r254");
+    if (!slot)
+      tokens_.fail(t, is_wide ? "a register pair, %rd0 to %rd252" : "a register, %r0 to %r254",
+                   near_register(t.text, is_wide));
     tokens_.take();
     return *slot;
   }
@@ -261,11 +269,17 @@ class Parser {
     const Token start = tokens_.peek();
     const bool negate = tokens_.take_if("-");
     const Token t = tokens_.peek();
-    const auto value = t.kind == Token::Kind::Word ? number(t.text) : std::nullopt;
+    const bool is_word = t.kind == Token::Kind::Word;
     const uint64_t max = is_wide ? ~uint64_t{0} : 0xffff'ffffull;
+    if (const auto bits = is_word && as_float_ ? fraction(t.text, is_wide) : std::nullopt) {
+      tokens_.take();
+      return negate ? *bits ^ (max / 2 + 1) : *bits;
+    }
+    const auto value = is_word ? number(t.text) : std::nullopt;
     if (!value || *value > (negate ? max / 2 + 1 : max))
-      tokens_.fail(negate && !value ? t : start, is_wide ? "a register pair or a 64-bit number"
-                                                         : "a register, a special or a 32-bit number");
+      tokens_.fail(negate && !value ? t : start,
+                   is_wide ? "a register pair or a 64-bit number" : "a register, a special or a 32-bit number",
+                   is_word ? near_source(t.text, is_wide) : "");
     tokens_.take();
     return negate ? (0 - *value) & max : *value;
   }
@@ -310,6 +324,7 @@ class Parser {
   Tokens tokens_;
   Program program_;
   Line line_;
+  bool as_float_ = false;  // the present operand: a fraction may stand there
   std::map<std::string, uint32_t> label_at_;
   std::vector<std::pair<uint32_t, Token>> targets_;
 };

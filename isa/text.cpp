@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "isa/literals.h"
 #include "isa/op_row.h"
 
 namespace glint::isa {
@@ -13,17 +14,8 @@ namespace {
 
 constexpr size_t kMaxDecimal = 65535;  // Choice: larger literals read better in hexadecimal
 
-// Whether a literal in slot `slot` of `row` is a float: from the op's last type, and by hand where an op
-// mixes types. Only a matter of reading: text of either form means the same bits.
-bool is_float(const OpRow& row, int slot) {
-  if (row.name == "rt.trace") return slot >= 7 && slot <= 14;  // origin, tmin, direction, tmax
-  if (row.name == "rt.report") return slot == 1;
-  if (row.effect == Effect::Texture) return slot >= 5;  // after four results and the handle
-  return row.name.ends_with(".f32");
-}
-
 std::string literal(uint64_t value, bool is_wide, bool as_float) {
-  if (as_float) return fmt::format("0f{:08X}", uint32_t(value));
+  if (as_float) return is_wide ? fmt::format("0d{:016X}", value) : fmt::format("0f{:08X}", uint32_t(value));
   const int64_t as_signed = is_wide ? int64_t(value) : int64_t(int32_t(uint32_t(value)));
   if (as_signed < 0 && as_signed >= -int64_t(kMaxDecimal)) return fmt::format("{}", as_signed);
   return value <= kMaxDecimal ? fmt::format("{}", value) : fmt::format("0x{:x}", value);
@@ -122,7 +114,7 @@ std::string one_operand(OperandPrinter& print, const OpRow& row, const Inst& ins
       return print.address(s, inst.imm, false);
     case OperandKind::Dst64:
     case OperandKind::Src64:
-      return print.source(s, true, false);
+      return print.source(s, true, is_float(row, slot));
     case OperandKind::Dst32:
     case OperandKind::Src32:
       return print.source(s, false, is_float(row, slot));
@@ -130,7 +122,7 @@ std::string one_operand(OperandPrinter& print, const OpRow& row, const Inst& ins
     case OperandKind::SrcVec2:
     case OperandKind::DstVec4:
     case OperandKind::SrcVec4:
-      return vector_text(print, inst, slot, slots_of(kind), false);
+      return vector_text(print, inst, slot, slots_of(kind), is_float(row, slot));
   }
   return "";
 }
@@ -142,12 +134,13 @@ std::string inst_text(OperandPrinter& print, const Inst& inst, const LabelNames*
     out = fmt::format("@{}%p{} ", inst.guard & kGuardNegate ? "!" : "", inst.guard & ~kGuardNegate & 0xff);
   out += row.name;
   int slot = 0;
-  std::string_view separator = " ";
+  bool is_first = true, after_destination = false;
   for (const OperandKind kind : row.operands.view()) {
-    out += separator;
+    out += is_first ? " " : after_destination && is_destination(kind) ? "|" : ", ";
     out += one_operand(print, row, inst, kind, slot, labels);
     slot += slots_of(kind);
-    separator = ", ";
+    is_first = false;
+    after_destination = is_destination(kind);
   }
   return out + ";";
 }

@@ -54,6 +54,12 @@ class Tokens {
     return std::isalnum(uint8_t(c)) || c == '_' || c == '.' || c == '%' || c == '$';
   }
 
+  // The '-' of "2e-3": after an 'e' of a word that is a decimal number so far.
+  bool is_exponent_sign() const {
+    const std::string& word = token_.text;
+    return (next() == '-' || next() == '+') && word.size() >= 2 && (word.back() == 'e' || word.back() == 'E') &&
+           word.find_first_not_of("0123456789.") == word.size() - 1;
+  }
   char next() const { return at_ < text_.size() ? text_[at_] : '\0'; }
   void step() {
     if (text_[at_++] == '\n') {
@@ -85,7 +91,7 @@ class Tokens {
       read_string();
     } else if (is_word(c)) {
       token_.kind = Token::Kind::Word;
-      for (; at_ < text_.size() && is_word(next()); step()) token_.text += next();
+      for (; at_ < text_.size() && (is_word(next()) || is_exponent_sign()); step()) token_.text += next();
     } else {
       token_.kind = Token::Kind::Punctuation;
       token_.text = c;

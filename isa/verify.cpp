@@ -4,8 +4,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <bitset>
+#include <cctype>
+#include <initializer_list>
+
 #include "isa/op_row.h"
 #include "isa/text.h"
+#include "isa/verify_flow.h"
 
 namespace glint::isa {
 namespace {
@@ -17,20 +23,35 @@ class Verifier {
   void run() {
     header();
     for (at_ = 0; at_ < program_.code.size(); ++at_) instruction(program_.code[at_]);
-    last_instruction();
+    if (program_.code.empty()) whole("no instructions");
+    if (!is_sound_) return;  // paths make sense only where every target and operand does
+    const Complaint complain = [this](size_t at, const std::string& what) {
+      at_ = at;
+      row_ = &op_table()[program_.code[at].op];
+      error(what);
+    };
+    if (verify_regions(program_, complain)) verify_values(program_, complain);
   }
 
  private:
   void header() {
     if (program_.num_registers < 1 || program_.num_registers > uint32_t(kMaxRegisters))
       whole(fmt::format("{} registers, expected 1 to {}", program_.num_registers, kMaxRegisters));
-    if (program_.constants.size() > size_t(kSlotIndexMask))
-      whole(fmt::format("{} constant rows, expected at most {}", program_.constants.size(), kSlotIndexMask));
+    if (program_.constants.size() >= size_t(kSlotIndexMask))
+      whole(fmt::format("{} constant rows, expected at most {}", program_.constants.size(), kSlotIndexMask - 1));
     if (program_.lines.size() != program_.code.size())
       whole(fmt::format("{} source lines for {} instructions", program_.lines.size(), program_.code.size()));
     for (const auto& [index, name] : program_.labels)
       if (index > program_.code.size())
         whole(fmt::format("label '{}' stands past the end of the code", name));
+      else if (!is_word(name))
+        whole(fmt::format("label '{}' is not a word of letters, digits, '_', '$' and '.'", name));
+  }
+
+  static bool is_word(const std::string& name) {
+    return !name.empty() && name[0] != '.' && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+      return std::isalnum(c) || c == '_' || c == '.' || c == '$' || c == '%';
+    });
   }
 
   void instruction(const Inst& inst) {
@@ -56,6 +77,88 @@ class Verifier {
     for (; slot < kMaxOperands; ++slot)
       if (inst.operand[slot]) error(fmt::format("operand slot {} is set, and the op does not have it", slot));
     if (!has_imm && inst.imm) error("an immediate, and the op has neither address nor label");
+    stage_of_op();
+    constant_address(inst);
+    destinations_differ(inst);
+    const Effect e = row_->effect;
+    const bool moves_all = e == Effect::PushReconvergence || e == Effect::Join || e == Effect::EndTrace;
+    if (moves_all && inst.guard != kNoGuard) error("a guard, and the op moves all lanes of the warp");
+  }
+
+  // Which stages an op means something in (docs/abi.md; Vulkan's execution models).
+  void stage_of_op() {
+    switch (row_->effect) {
+      case Effect::Trace:
+      case Effect::Resume:
+      case Effect::CallCandidate:
+      case Effect::CallHit:
+      case Effect::EndTrace:
+        return only({Stage::RayGeneration, Stage::ClosestHit, Stage::Miss});
+      case Effect::Report:
+      case Effect::Accepted:
+      case Effect::CallAnyHit:
+        return only({Stage::Intersection});
+      case Effect::Ignore:
+      case Effect::Terminate:
+        return only({Stage::AnyHit});
+      case Effect::Exit:
+        return only({Stage::RayGeneration, Stage::Compute});
+      case Effect::Barrier:
+        return only({Stage::Compute});
+      default:
+        if (row_->memory.space == Space::Shared) only({Stage::Compute});
+    }
+  }
+  void only(std::initializer_list<Stage> stages) {
+    if (std::find(stages.begin(), stages.end(), program_.stage) != stages.end()) return;
+    std::string names;
+    for (const Stage s : stages) names += fmt::format("{}{}", names.empty() ? "" : ", ", name_of(s));
+    error(fmt::format("stands in a shader of stage {}, and belongs in {}", name_of(program_.stage), names));
+  }
+
+  // A constant address is known now: it must lie in what the program says it has.
+  void constant_address(const Inst& inst) {
+    int slot = 0;
+    for (const OperandKind kind : row_->operands.view()) {
+      const Slot base = inst.operand[size_t(slot)];
+      const size_t index = base & kSlotIndexMask;
+      if (kind == OperandKind::Address32 && base >> kBankShift == kConstantBank >> kBankShift &&
+          index < program_.constants.size())
+        inside(int64_t(program_.constants[index]) + inst.imm);
+      slot += slots_of(kind);
+    }
+  }
+  void inside(int64_t first) {
+    const Space space = row_->memory.space;
+    const bool is_entry = program_.stage == Stage::RayGeneration || program_.stage == Stage::Compute;
+    const int64_t end = first + row_->memory.bytes * row_->memory.count;
+    const int64_t size = space == Space::Shared                ? int64_t(program_.shared_bytes)
+                         : space == Space::Local && is_entry  ? int64_t(program_.local_bytes)
+                         : space == Space::Const              ? int64_t(kConstantBankBytes)
+                         : space == Space::Param              ? int64_t(kConstantBankBytes - kPushConstantOffset)
+                                                              : INT64_MAX;
+    if (first < 0 || end > size) error(fmt::format("touches bytes {} to {}, and there are {}", first, end - 1, size));
+  }
+
+  // No register or predicate is written twice.
+  void destinations_differ(const Inst& inst) {
+    uint32_t predicates = 0;
+    std::bitset<size_t(kSlotIndexMask) + 2> registers;
+    int slot = 0;
+    for (const OperandKind kind : row_->operands.view()) {
+      for (const int end = slot + slots_of(kind); slot < end; ++slot) {
+        const Slot s = inst.operand[size_t(slot)];
+        if (!is_destination(kind) || s > kSlotIndexMask) continue;
+        const bool is_predicate = kind == OperandKind::DstPred;
+        const bool is_wide = kind == OperandKind::Dst64;
+        if (is_predicate ? predicates >> (s & 31) & 1 : registers[s] || (is_wide && registers[s + 1u]))
+          error(fmt::format("%{}{} is written twice", is_predicate ? 'p' : 'r', s));
+        if (is_predicate)
+          predicates |= 1u << (s & 31);
+        else
+          registers[s] = registers[s + (is_wide ? 1u : 0u)] = true;
+      }
+    }
   }
 
   void target(const Inst& inst) {
@@ -99,24 +202,27 @@ class Verifier {
   void special(OperandKind kind, unsigned index, bool is_wide) {
     if (is_destination(kind)) error("a special as destination");
     if (is_wide) error("a special as 64-bit operand");
-    if (index >= unsigned(kNumSpecials)) error(fmt::format("special {}, and there are {}", index, kNumSpecials));
+    if (index >= unsigned(kNumSpecials)) return error(fmt::format("special {}, and there are {}", index, kNumSpecials));
+    stage_of_special(Special(index));
   }
 
-  // Code runs off its end unless the last instruction ends or moves every lane.
-  void last_instruction() {
-    if (program_.code.empty()) return whole("no instructions");
-    at_ = program_.code.size() - 1;
-    const Inst& last = program_.code.back();
-    if (last.op >= op_table().size()) return;
-    row_ = &op_table()[last.op];
-    const Effect e = row_->effect;
-    const bool leaves = e == Effect::Branch || e == Effect::Exit || e == Effect::Return ||
-                        e == Effect::Ignore || e == Effect::Terminate;
-    if (!leaves || last.guard != kNoGuard) error("the code can run off its end here");
+  // SPV_KHR_ray_tracing's table of built-ins, and blocks, which only compute launches have.
+  void stage_of_special(Special s) {
+    using enum Stage;
+    if (s >= Special::TidX && s <= Special::NctaidZ) return only({Compute});
+    if (s < Special::Payload) return;
+    if (s == Special::Payload) return only({AnyHit, ClosestHit, Miss, Callable});
+    if (s == Special::HitT || (s >= Special::RayFlags && s <= Special::RayDirectionZ))
+      return only({Intersection, AnyHit, ClosestHit, Miss});
+    only({Intersection, AnyHit, ClosestHit});
   }
 
-  void whole(const std::string& what) { diagnostics_.error({program_.name, 0, 0}, what); }
+  void whole(const std::string& what) {
+    is_sound_ = false;
+    diagnostics_.error({program_.name, 0, 0}, what);
+  }
   void error(const std::string& what) {
+    is_sound_ = false;
     SourceLocation where{program_.name, 0, 0};
     if (at_ < program_.lines.size() && program_.lines[at_].line &&
         program_.lines[at_].file < program_.files.size())
@@ -130,6 +236,7 @@ class Verifier {
   Diagnostics& diagnostics_;
   const OpRow* row_ = nullptr;
   size_t at_ = 0;
+  bool is_sound_ = true;
   int operand_ = 0;  // counts from 1; 0: the instruction as a whole
 };
 

@@ -1,6 +1,8 @@
-// The text of programs: what is printed parses to the identical program, and mistakes are named at their
-// place. SPDX-License-Identifier: Apache-2.0
+// The text of programs: what is printed parses to the identical program, and mistakes are named at their place.
+// SPDX-License-Identifier: Apache-2.0
 #include "isa/text.h"
+
+#include <algorithm>
 
 #include "base/diagnostics.h"
 #include "isa/op_row.h"
@@ -70,6 +72,56 @@ Program program_of_all_rows() {
   return p;
 }
 
+Inst simple(std::string_view op, std::initializer_list<Slot> operands = {}, int32_t imm = 0) {
+  Inst inst;
+  inst.op = op_index(op);
+  inst.imm = imm;
+  std::copy(operands.begin(), operands.end(), inst.operand.begin());
+  return inst;
+}
+
+// All registers and predicates written, then `op` in surroundings where it makes sense, in a shader of `stage`.
+Program program_of_one_row(uint16_t op, Stage stage) {
+  Program p;
+  p.name = "one row";
+  p.stage = stage;
+  p.num_registers = 64;
+  p.local_bytes = 0;
+  p.constants = {0, 0};
+  for (Slot r = 1; r < 64; ++r) p.code.push_back(simple("mov.b32", {r, Slot(kSpecialBank)}));
+  for (Slot q = 0; q < kNumPredicates; ++q) p.code.push_back(simple("setp.eq.u32", {q, Slot(1 + q), 9}));
+  const OpRow& row = op_table()[op];
+  const Effect e = row.effect;
+  const bool in_trace = e == Effect::Resume || e == Effect::CallCandidate || e == Effect::CallHit || e == Effect::EndTrace;
+  if (in_trace) {
+    Inst trace = simple("rt.trace", {0, 2});
+    for (size_t i = 2; i < 17; ++i) trace.operand[i] = 4;
+    p.code.push_back(trace);
+  }
+  if (e == Effect::Join) p.code.push_back(simple("ssy", {}, int32_t(p.code.size()) + 1));
+  Inst inst;
+  inst.op = op;
+  int slot = 0;
+  Slot number = 0;
+  for (const OperandKind kind : row.operands.view()) {
+    if (kind == OperandKind::Label) inst.imm = int32_t(p.code.size()) + (e == Effect::Call ? 2 : 1);
+    const bool is_predicate = kind == OperandKind::DstPred || kind == OperandKind::SrcPred;
+    for (const int end = slot + slots_of(kind); slot < end; ++slot)
+      inst.operand[size_t(slot)] = is_predicate ? Slot(number++ % kNumPredicates) : Slot(2 + 2 * number++);
+  }
+  p.code.push_back(inst);
+  const bool is_entry = stage == Stage::RayGeneration || stage == Stage::Compute;
+  const Inst last = simple(is_entry ? "exit" : "ret");
+  const bool ends = e == Effect::Exit || e == Effect::Return || e == Effect::Ignore || e == Effect::Terminate || e == Effect::Trap;
+  if (e == Effect::PushReconvergence) p.code.push_back(simple("join"));
+  if (e == Effect::BranchIndexed) p.code.push_back(simple("bra", {}, int32_t(p.code.size()) + 1));
+  if (e == Effect::Trace || (in_trace && e != Effect::EndTrace)) p.code.push_back(simple("rt.end"));
+  if (!ends) p.code.push_back(last);
+  if (e == Effect::Call) p.code.push_back(simple("ret"));
+  p.lines.resize(p.code.size());
+  return p;
+}
+
 std::string error_of(const std::string& text) {
   try {
     parse(text, "bad.isa");
@@ -87,16 +139,57 @@ bool starts(const std::string& s, const std::string& prefix) {
 
 TEST_CASE("a program with every row prints and parses to the identical program") {
   const Program p = program_of_all_rows();
-  Diagnostics diagnostics;
-  verify(p, diagnostics);
-  INFO((diagnostics.messages().empty() ? "" : diagnostics.messages().front()));
-  CHECK(diagnostics.messages().empty());
   const std::string text = to_text(p);
   const Program q = parse(text, "all");
   CHECK(q == p);
   CHECK(q.labels == p.labels);
   CHECK(to_text(q) == text);
   CHECK(text.find("\n.const") == std::string::npos);  // literals alone rebuild the table
+}
+
+TEST_CASE("every row stands in a sound program of some stage, which survives its text") {
+  for (size_t op = 0; op < op_table().size(); ++op) {
+    INFO(op_table()[op].name);
+    std::string first_message = "no stage";
+    bool is_sound = false;
+    for (int stage = int(Stage::Compute); stage >= 0 && !is_sound; --stage) {
+      const Program p = program_of_one_row(uint16_t(op), Stage(stage));
+      Diagnostics diagnostics;
+      verify(p, diagnostics);
+      is_sound = diagnostics.messages().empty();
+      if (!is_sound) {
+        first_message = diagnostics.messages().front();
+        continue;
+      }
+      const std::string text = to_text(p);
+      const Program q = parse(text, "one row");
+      CHECK(to_text(q) == text);
+      CHECK(std::equal(p.code.begin(), p.code.end(), q.code.begin(), q.code.end(), [](const Inst& a, const Inst& b) {
+        return a.op == b.op && a.guard == b.guard && a.imm == b.imm && a.operand == b.operand;
+      }));
+    }
+    INFO(first_message);
+    CHECK(is_sound);
+  }
+}
+
+TEST_CASE("two destinations are written with a bar between them") {
+  Program p;
+  p.num_registers = 64;
+  for (size_t op = 0; op < op_table().size(); ++op) {
+    const OpRow& row = op_table()[op];
+    if (row.operands.count < 2 || !is_destination(row.operands.kind[1])) continue;
+    const Program one = program_of_one_row(uint16_t(op), Stage::Compute);
+    const auto at = std::find_if(one.code.begin(), one.code.end(), [&](const Inst& i) { return i.op == op; });
+    const std::string text = to_text(one, *at);
+    INFO(text);
+    const size_t bar = text.find('|');
+    CHECK(bar != std::string::npos);
+    std::string comma = text;
+    comma.replace(bar, 1, ", ");
+    CHECK(starts(error_of(".registers 64\n" + comma), "bad.isa:2:"));
+    CHECK(error_of(".registers 64\n" + comma).find("expected '|' before operand 2") != std::string::npos);
+  }
 }
 
 TEST_CASE("constant tables in any order, with duplicates and unused rows, survive the text") {
@@ -142,6 +235,44 @@ TEST_CASE("literals keep their bits: decimal, negative, hexadecimal and float") 
   CHECK(to_text(p, p.code[0]) == "add.u32 %r1, 7, -1;");
   CHECK(to_text(p, p.code[1]) == "mul.rn.f32 %r1, 0f3F800000, 0f3F800000;");
   CHECK(to_text(p, p.code[3]) == "ld.const.b32 %r1, [16];");
+}
+
+TEST_CASE("where an op takes a float, a fraction is the nearest float and 0d its bits") {
+  const Program p = parse(
+      "mul.rn.f32 %r1, 1.5, -0.1;\nmul.rn.f32 %r1, 2e-3, 1.0;\nmul.rn.f32 %r1, 5, 16777217.0;\n"
+      "setp.lt.f32 %p0, %r1, -0.0;\n",
+      "p");
+  CHECK(p.constants == std::vector<uint32_t>{0x3fc0'0000, 0xbdcc'cccd, 0x3b03'126f, 0x3f80'0000, 5, 0x4b80'0000,
+                                             0x8000'0000});
+  CHECK(parse(to_text(p), "p") == p);
+  CHECK(starts(error_of("add.u32 %r1, %r2, 1.5;"), "bad.isa:1:19: error: found '1.5', expected a register, a special or"));
+  CHECK(error_of("add.u32 %r1, %r2, 1.5;").find("this operand is not a float") != std::string::npos);
+  CHECK(starts(error_of("mul.rn.f32 %r1, 1.5x, 1.0;"), "bad.isa:1:17: error: found '1.5x'"));
+  CHECK(starts(error_of("mul.rn.f32 %r1, 1e99, 1.0;"), "bad.isa:1:17: error: found '1e99'"));
+  if (find_op("mul.rn.f64") < 0) return;
+  const Program q = parse("mul.rn.f64 %rd2, 1.5, 0d3FF0000000000000;\n", "q");
+  CHECK(q.constants == std::vector<uint32_t>{0, 0x3ff8'0000, 0, 0x3ff0'0000});
+  CHECK(to_text(q, q.code[0]) == "mul.rn.f64 %rd2, 0d3FF8000000000000, 0d3FF0000000000000;");
+}
+
+TEST_CASE("operands that are nearly right are met with a note") {
+  const auto note = [](const std::string& text) {
+    const std::string e = error_of(text);
+    const size_t at = e.find("note: ");
+    return at == std::string::npos ? "none: " + e : e.substr(at + 6);
+  };
+  CHECK(note("mov.b32 %r1, %launch.w;").find("did you mean '%launch.") == 0);
+  CHECK(note("mov.b32 %r1, %lanid;").find("did you mean '%laneid'?") == 0);
+  CHECK(note("add.u64 %r2, %rd2, %rd4;").find("did you mean '%rd2'?") == 0);
+  CHECK(note("add.u64 %rd2, %r3, %rd4;").find("a pair is named by its even low half") == 0);
+  CHECK(note("add.u32 %r2, %rd2, 1;").find("did you mean '%r2'?") == 0);
+  CHECK(note("add.u64 %rd2, %laneid, 1;").find("specials have 32 bits") == 0);
+  CHECK(note("add.u32 %r2, %p2, 1;").find("a predicate becomes a number by selp.b32") == 0);
+  CHECK(note("not.pred %p1, %r2;").find("did you mean '%p2'?") == 0);
+  CHECK(note("LOOP: bra LOP;").find("did you mean 'LOOP'?") == 0);
+  CHECK(note("mov.b32 %r1, %c3;").find("the program lists 0 constant rows") == 0);
+  CHECK(note(".stage comput").find("did you mean 'compute'?") == 0);
+  CHECK(note(".registers 4\n.locl_bytes 3").find("did you mean '.local_bytes'?") == 0);
 }
 
 TEST_CASE("every special has a name that leads back to it") {

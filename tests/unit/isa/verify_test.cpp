@@ -17,6 +17,8 @@ constexpr const char* kSound = R"(.program "sound"
 .registers 8
 .file 0 "a.comp"
 .loc 0 3
+    mov.b64 %rd2, 7;
+    setp.eq.u32 %p1, %laneid, 3;
     ssy M;
 @%p1 bra M;
     add.u32 %r1, %laneid, 5;
@@ -48,47 +50,47 @@ TEST_CASE("a sound program is accepted") {
 
 TEST_CASE("operands out of range or of the wrong bank are named with their instruction and line") {
   using Catch::Contains;
-  CHECK_THAT(complaint([](Program& p) { p.code[2].operand[0] = 8; }),
+  CHECK_THAT(complaint([](Program& p) { p.code[4].operand[0] = 8; }),
              Contains("a.comp:3") &&
-                 Contains("instruction 2 (add.u32), operand 1: register %r8, and the program has 8"));
-  CHECK_THAT(complaint([](Program& p) { p.code[3].operand[1] = 3; }),
+                 Contains("instruction 4 (add.u32), operand 1: register %r8, and the program has 8"));
+  CHECK_THAT(complaint([](Program& p) { p.code[5].operand[1] = 3; }),
              Contains("pair %rd3 starts at an odd register"));
-  CHECK_THAT(complaint([](Program& p) { p.code[2].operand[0] = kConstantBank; }),
+  CHECK_THAT(complaint([](Program& p) { p.code[4].operand[0] = kConstantBank; }),
              Contains("a constant as destination"));
-  CHECK_THAT(complaint([](Program& p) { p.code[2].operand[0] = kSpecialBank; }),
+  CHECK_THAT(complaint([](Program& p) { p.code[4].operand[0] = kSpecialBank; }),
              Contains("a special as destination"));
-  CHECK_THAT(complaint([](Program& p) { p.code[3].operand[1] = kSpecialBank; }),
+  CHECK_THAT(complaint([](Program& p) { p.code[5].operand[1] = kSpecialBank; }),
              Contains("a special as 64-bit operand"));
-  CHECK_THAT(complaint([](Program& p) { p.code[2].operand[2] = kConstantBank + 3; }),
-             Contains("constant row 3, and the program has 3"));
-  CHECK_THAT(complaint([](Program& p) { p.code[3].operand[2] = kConstantBank + 2; }),
-             Contains("constant row 3, and the program has 3"));
-  CHECK_THAT(complaint([](Program& p) { p.code[2].operand[1] = Slot(kSpecialBank + kNumSpecials); }),
+  CHECK_THAT(complaint([](Program& p) { p.code[4].operand[2] = kConstantBank + 6; }),
+             Contains("constant row 6, and the program has 6"));
+  CHECK_THAT(complaint([](Program& p) { p.code[5].operand[2] = kConstantBank + 5; }),
+             Contains("constant row 6, and the program has 6"));
+  CHECK_THAT(complaint([](Program& p) { p.code[4].operand[1] = Slot(kSpecialBank + kNumSpecials); }),
              Contains(fmt::format("special {0}, and there are {0}", kNumSpecials)));
-  CHECK_THAT(complaint([](Program& p) { p.code[2].operand[1] = 0xc000; }), Contains("names no bank"));
-  CHECK_THAT(complaint([](Program& p) { p.code[2].operand[5] = 1; }), Contains("operand slot 5 is set"));
-  CHECK_THAT(complaint([](Program& p) { p.code[2].imm = 1; }), Contains("neither address nor label"));
-  CHECK_THAT(complaint([](Program& p) { p.code[1].guard = 9; }), Contains("guard %p9"));
-  CHECK_THAT(complaint([](Program& p) { p.code[2].op = 9999; }), Contains("op 9999 is not in the table"));
+  CHECK_THAT(complaint([](Program& p) { p.code[4].operand[1] = 0xc000; }), Contains("names no bank"));
+  CHECK_THAT(complaint([](Program& p) { p.code[4].operand[5] = 1; }), Contains("operand slot 5 is set"));
+  CHECK_THAT(complaint([](Program& p) { p.code[4].imm = 1; }), Contains("neither address nor label"));
+  CHECK_THAT(complaint([](Program& p) { p.code[3].guard = 9; }), Contains("guard %p9"));
+  CHECK_THAT(complaint([](Program& p) { p.code[4].op = 9999; }), Contains("op 9999 is not in the table"));
   CHECK_THAT(complaint([](Program& p) {
-               p.code[2] = {};
-               p.code[2].op = op_index("not.pred");
-               p.code[2].operand = {8, 1};
+               p.code[4] = {};
+               p.code[4].op = op_index("not.pred");
+               p.code[4].operand = {8, 1};
              }),
              Contains("predicate %p8"));
 }
 
 TEST_CASE("control flow that leaves the code or meets at no join is refused") {
   using Catch::Contains;
-  CHECK_THAT(complaint([](Program& p) { p.code[1].imm = 6; }),
-             Contains("target 6 lies outside the code (0 to 5)"));
-  CHECK_THAT(complaint([](Program& p) { p.code[1].imm = -1; }), Contains("target -1 lies outside"));
-  CHECK_THAT(complaint([](Program& p) { p.code[0].imm = 3; }),
-             Contains("instruction 3, where the lanes should meet, is not a join"));
+  CHECK_THAT(complaint([](Program& p) { p.code[3].imm = 8; }),
+             Contains("target 8 lies outside the code (0 to 7)"));
+  CHECK_THAT(complaint([](Program& p) { p.code[3].imm = -1; }), Contains("target -1 lies outside"));
+  CHECK_THAT(complaint([](Program& p) { p.code[2].imm = 5; }),
+             Contains("instruction 5, where the lanes should meet, is not a join"));
   CHECK_THAT(complaint([](Program& p) { p.code.pop_back(), p.lines.pop_back(); }),
-             Contains("instruction 4 (join): the code can run off its end"));
-  CHECK_THAT(complaint([](Program& p) { p.code[5].guard = 0; }),
-             Contains("instruction 5 (exit): the code can run off its end"));
+             Contains("instruction 6 (join): the code can run off its end"));
+  CHECK_THAT(complaint([](Program& p) { p.code[7].guard = 1; }),
+             Contains("instruction 7 (exit): the code can run off its end"));
   CHECK_THAT(messages_of(Program{}).at(0), Contains("no instructions"));
 }
 
@@ -97,8 +99,8 @@ TEST_CASE("headers that contradict the code are refused") {
   CHECK_THAT(complaint([](Program& p) { p.num_registers = 256; }),
              Contains("256 registers, expected 1 to 255"));
   CHECK_THAT(complaint([](Program& p) { p.lines.push_back({}); }),
-             Contains("7 source lines for 6 instructions"));
-  CHECK_THAT(complaint([](Program& p) { p.labels.emplace_back(7, "END"); }),
+             Contains("9 source lines for 8 instructions"));
+  CHECK_THAT(complaint([](Program& p) { p.labels.emplace_back(9, "END"); }),
              Contains("label 'END' stands past the end"));
-  CHECK_THAT(complaint([](Program& p) { p.lines[2].file = 1; }), Contains("source file 1 is not declared"));
+  CHECK_THAT(complaint([](Program& p) { p.lines[4].file = 1; }), Contains("source file 1 is not declared"));
 }
