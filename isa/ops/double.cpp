@@ -1,12 +1,219 @@
-// Double-precision arithmetic: IEEE 754, NaNs keep their payload.
+// Double-precision arithmetic: IEEE 754 in all roundings; a NaN result is a source's, made quiet.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/op_makers.h"
 #include "isa/ops/families.h"
+#include "isa/ops/modifiers.h"
+#include "isa/rounding.h"
 
 namespace glint::isa::GLINT_ISA_PATH {
+namespace {
+
+constexpr uint64_t kSign = 1ull << 63, kInfinity = 0x7ff0'0000'0000'0000, kQuiet = 1ull << 51,
+                   kDefaultNan = 0xfff8'0000'0000'0000, kOne = 0x3ff0'0000'0000'0000,
+                   kTwo = 0x4000'0000'0000'0000, kThree = 0x4008'0000'0000'0000,
+                   kThird = 0x3fd5'5555'5555'5555, kTiny = 0x3c30'0000'0000'0000;  // 2^-60
+constexpr uint64_t kNan = 0x7ff8'0000'0000'0001, kSignaling = 0xfff0'0000'0000'0002;
+
+inline bool is_nan(double x) {
+  return x != x;
+}
+inline double quiet(double nan) {
+  return double_of(double_bits(nan) | kQuiet);
+}
+// The result, or where it is a NaN, the NaN source that wins, with sign and payload; without one
+// 0xfff8000000000000. Hosts differ in which one they hand on, so it is chosen here.
+template <class... Sources>
+inline double with_nan(double result, Sources... strongest_first) {
+  double out = is_nan(result) ? double_of(kDefaultNan) : result;
+  const double sources[] = {strongest_first...};
+  for (size_t i = sizeof...(Sources); i-- > 0;) out = is_nan(sources[i]) ? quiet(sources[i]) : out;
+  return out;
+}
+
+struct Add {
+  static constexpr Text kName = "add";
+  static constexpr Text kDoc = "Adds";
+  static constexpr Unit kUnit = Unit::Fp64;
+  double operator()(double a, double b) const { return with_nan(a + b, b, a); }
+  static constexpr Examples examples(Round round) {
+    const bool is_toward_zero = round == Round::Down || round == Round::Zero;
+    return {{{kOne, kTiny}, round == Round::Up ? kOne + 1 : kOne},
+            {{kOne, kTiny | kSign}, is_toward_zero ? kOne - 1 : kOne},
+            {{kOne, kOne | kSign}, round == Round::Down ? kSign : 0},
+            {{1, 1}, 2},
+            {{kInfinity, kInfinity | kSign}, kDefaultNan},
+            {{kNan, kSignaling}, kSignaling | kQuiet},
+            {{kNan, kOne}, kNan}};
+  }
+};
+struct Subtract {
+  static constexpr Text kName = "sub";
+  static constexpr Text kDoc = "Subtracts";
+  static constexpr Unit kUnit = Unit::Fp64;
+  double operator()(double a, double b) const { return with_nan(a - b, b, a); }
+  static constexpr Examples examples(Round round) {
+    const bool is_toward_zero = round == Round::Down || round == Round::Zero;
+    return {{{kOne, kTiny | kSign}, round == Round::Up ? kOne + 1 : kOne},
+            {{kOne, kTiny}, is_toward_zero ? kOne - 1 : kOne},
+            {{kOne, kOne}, round == Round::Down ? kSign : 0},
+            {{2, 1}, 1},
+            {{kInfinity, kInfinity}, kDefaultNan},
+            {{kOne, kSignaling}, kSignaling | kQuiet}};
+  }
+};
+struct Multiply {
+  static constexpr Text kName = "mul";
+  static constexpr Text kDoc = "Multiplies";
+  static constexpr Unit kUnit = Unit::Fp64;
+  double operator()(double a, double b) const { return with_nan(a * b, b, a); }
+  static constexpr Examples examples(Round round) {
+    return {{{kOne + 1, kOne + 1}, round == Round::Up ? kOne + 3 : kOne + 2},
+            {{kSign, kTwo}, kSign},
+            {{kSign, kInfinity}, kDefaultNan},
+            {{kNan, kSignaling}, kSignaling | kQuiet}};
+  }
+};
+struct MultiplyAdd {
+  static constexpr Text kDoc = "Multiplies and adds, rounding once";
+  static constexpr Unit kUnit = Unit::Fp64;
+  double operator()(double a, double b, double c) const { return with_nan(__builtin_fma(a, b, c), c, b, a); }
+  static constexpr Examples examples(Round round) {
+    return {{{kOne + 1, kOne + 1, (kOne + 2) | kSign}, 0x3970'0000'0000'0000},
+            {{kOne, kOne, kTiny}, round == Round::Up ? kOne + 1 : kOne},
+            {{kInfinity, 0, 0}, kDefaultNan},
+            {{kInfinity, 0, kNan}, kNan}};
+  }
+};
+struct Fma : MultiplyAdd {
+  static constexpr Text kName = "fma";
+};
+struct Mad : MultiplyAdd {  // PTX's other name of the same
+  static constexpr Text kName = "mad";
+};
+struct Divide {
+  static constexpr Text kName = "div";
+  static constexpr Text kDoc = "Divides";
+  static constexpr Unit kUnit = Unit::Fp64Div;
+  double operator()(double a, double b) const { return with_nan(a / b, a, b); }
+  static constexpr Examples examples(Round round) {
+    return {{{kOne, kThree}, round == Round::Up ? kThird + 1 : kThird},
+            {{kOne, kSign}, kInfinity | kSign},
+            {{0, 0}, kDefaultNan},
+            {{kNan, kSignaling}, kNan}};
+  }
+};
+struct Reciprocal {
+  static constexpr Text kName = "rcp";
+  static constexpr Text kDoc = "Reciprocal";
+  static constexpr Unit kUnit = Unit::Fp64Div;
+  double operator()(double a) const { return with_nan(1.0 / a, a); }
+  static constexpr Examples examples(Round round) {
+    return {{{kThree}, round == Round::Up ? kThird + 1 : kThird},
+            {{kSign}, kInfinity | kSign},
+            {{kSignaling}, kSignaling | kQuiet}};
+  }
+};
+struct SquareRoot {
+  static constexpr Text kName = "sqrt";
+  static constexpr Text kDoc = "Square root";
+  static constexpr Unit kUnit = Unit::Fp64Div;
+  double operator()(double a) const { return with_nan(__builtin_sqrt(a), a); }
+  static constexpr Examples examples(Round round) {
+    const bool is_up = round == Round::Nearest || round == Round::Up;
+    return {{{0x4010'0000'0000'0000}, kTwo},
+            {{kTwo}, is_up ? 0x3ff6'a09e'667f'3bcdu : 0x3ff6'a09e'667f'3bccu},
+            {{kSign}, kSign},
+            {{kOne | kSign}, kDefaultNan}};
+  }
+};
+
+// {.rn,.rz,.rm,.rp}
+template <class Op, class... A>
+constexpr auto rounded = generated<4>([](auto i) {
+  return rounded_op<kRounds[i], A...>(joined<Op::kName, round_name<kRounds[i]>, ".f64">, Op::kUnit,
+                                      joined<Op::kDoc, round_words<kRounds[i]>, ".">, Op{},
+                                      Op::examples(kRounds[i]));
+});
+
+// Signed integers in two's complement order like the doubles, -0 before +0.
+inline int64_t ordered(double x) {
+  const int64_t bits = int64_t(double_bits(x));
+  return bits ^ ((bits >> 63) & int64_t(~kSign));
+}
+template <bool kMax>
+inline double extreme(double a, double b) {
+  const bool is_first = kMax ? ordered(a) > ordered(b) : ordered(a) < ordered(b);
+  const double number = is_first ? a : b;
+  const double with_a = is_nan(a) ? b : number;
+  const double with_b = is_nan(a) ? quiet(b) : a;
+  return is_nan(b) ? with_b : with_a;
+}
+
+constexpr std::array kPlainRows = {
+    binary<double>("min.f64", Unit::Fp64,
+                   "The smaller; a NaN loses against a number, and -0 counts as less than +0.",
+                   [](double a, double b) { return extreme<false>(a, b); },
+                   {{{kNan, kOne}, kOne},
+                    {{kOne, kSignaling}, kOne},
+                    {{kNan, kSignaling}, kSignaling | kQuiet},
+                    {{0, kSign}, kSign},
+                    {{kSign, 0}, kSign},
+                    {{kOne, kTwo | kSign}, kTwo | kSign}}),
+    binary<double>("max.f64", Unit::Fp64,
+                   "The larger; a NaN loses against a number, and +0 counts as more than -0.",
+                   [](double a, double b) { return extreme<true>(a, b); },
+                   {{{kNan, kOne}, kOne},
+                    {{kOne, kSignaling}, kOne},
+                    {{kNan, kSignaling}, kSignaling | kQuiet},
+                    {{0, kSign}, 0},
+                    {{kSign, 0}, 0},
+                    {{kOne, kTwo | kSign}, kOne}}),
+    unary<uint64_t>(
+        "neg.f64", Unit::Fp64, "Negates; a NaN keeps its sign and becomes quiet.",
+        [](uint64_t a) { return (a & ~kSign) > kInfinity ? a | kQuiet : a ^ kSign; },
+        {{{kOne}, kOne | kSign}, {{0}, kSign}, {{kSignaling}, kSignaling | kQuiet}, {{kNan}, kNan}}),
+    unary<uint64_t>(
+        "abs.f64", Unit::Fp64, "Magnitude; a NaN keeps its sign and becomes quiet.",
+        [](uint64_t a) { return (a & ~kSign) > kInfinity ? a | kQuiet : a & ~kSign; },
+        {{{kOne | kSign}, kOne}, {{kSign}, 0}, {{kSignaling}, kSignaling | kQuiet}, {{kNan}, kNan}}),
+    binary<uint64_t>("copysign.f64", Unit::Int,
+                     "The second source with the sign of the first (the order of PTX).",
+                     [](uint64_t a, uint64_t b) { return (a & kSign) | (b & ~kSign); },
+                     {{{kOne, kSign}, 0}, {{kSign, kOne}, kOne | kSign}}),
+    unary<uint64_t>("testp.finite.f64", Unit::Fp64, "True for numbers that are not infinite.",
+                    [](uint64_t a) { return (a & ~kSign) < kInfinity; },
+                    {{{kInfinity - 1}, 1}, {{kInfinity}, 0}, {{kNan}, 0}, {{1}, 1}}),
+    unary<uint64_t>("testp.infinite.f64", Unit::Fp64, "True for the infinities.",
+                    [](uint64_t a) { return (a & ~kSign) == kInfinity; },
+                    {{{kInfinity - 1}, 0}, {{kInfinity | kSign}, 1}, {{kNan}, 0}}),
+    unary<uint64_t>("testp.number.f64", Unit::Fp64, "True for all but NaN.",
+                    [](uint64_t a) { return (a & ~kSign) <= kInfinity; },
+                    {{{kInfinity}, 1}, {{kSignaling}, 0}, {{kNan}, 0}, {{1}, 1}}),
+    unary<uint64_t>("testp.notanumber.f64", Unit::Fp64, "True for NaN.",
+                    [](uint64_t a) { return (a & ~kSign) > kInfinity; },
+                    {{{kInfinity}, 0}, {{kSignaling}, 1}, {{kNan}, 1}}),
+    unary<uint64_t>("testp.normal.f64", Unit::Fp64,
+                    "True for finite numbers that are not subnormal; zero is among them.",
+                    [](uint64_t a) {
+                      const uint64_t exponent = a & kInfinity;
+                      return exponent != kInfinity && (exponent != 0 || (a & ~kSign) == 0);
+                    },
+                    {{{0}, 1}, {{1}, 0}, {{kOne}, 1}, {{kInfinity}, 0}, {{kNan}, 0}}),
+    unary<uint64_t>("testp.subnormal.f64", Unit::Fp64,
+                    "True for numbers nearer to zero than 2^-1022, but not zero.",
+                    [](uint64_t a) { return (a & kInfinity) == 0 && (a & ~kSign) != 0; },
+                    {{{0}, 0}, {{1}, 1}, {{kSign | 1}, 1}, {{0x0010'0000'0000'0000}, 0}}),
+};
+
+constexpr auto kRows = rows_of(rounded<Add, double, double>, rounded<Subtract, double, double>,
+                               rounded<Multiply, double, double>, rounded<Fma, double, double, double>,
+                               rounded<Mad, double, double, double>, rounded<Divide, double, double>,
+                               rounded<Reciprocal, double>, rounded<SquareRoot, double>, kPlainRows);
+
+}  // namespace
 
 RowList double_rows() {
-  return {};
+  return {kRows.data(), kRows.size()};
 }
 
 }  // namespace glint::isa::GLINT_ISA_PATH

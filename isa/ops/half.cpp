@@ -1,12 +1,300 @@
-// Floats of 16 bits: f16, bf16, and pairs of them.
+// Floats of 16 bits, alone and in pairs: f16 and bf16 arithmetic, rounded once; min, max, signs.
 // SPDX-License-Identifier: Apache-2.0
+#include "isa/half.h"
+
 #include "isa/op_makers.h"
 #include "isa/ops/families.h"
+#include "isa/ops/modifiers.h"
 
 namespace glint::isa::GLINT_ISA_PATH {
+namespace {
+
+constexpr uint32_t kSign = 0x8000, kNan = kCanonicalNan16;
+
+// What the rows below need to know of a format.
+struct F16 {
+  using Type = Half;
+  static constexpr Text kName = ".f16";
+  static constexpr bool kHasFtz = true;
+  static constexpr uint32_t kInfinity = 0x7c00, kOne = 0x3c00, kTwo = 0x4000, kHalf = 0x3800;
+  static constexpr uint32_t kSmallest = 0x0400;  // normal
+  static constexpr uint32_t kHalfUlp = 0x1000;   // of 1
+  static constexpr uint32_t kTied = 0x3be0, kAboveTie = 0x3bc1;
+  static Half narrow(float x) { return to_half(x); }
+
+  // fma to odd: as if rounded toward zero, with the last bit set where that was not exact; so that rounding
+  // again, to fewer bits, rounds right (Boldo and Melquiond 2008, "Emulation of FMA and correctly rounded
+  // sums"). The product is exact in single precision, and Knuth's two-sum gives the error of the sum.
+  static float fma_to_odd(float a, float b, float c) {
+    const float product = a * b;
+    const float sum = product + c;
+    const float part = sum - product;
+    const float error = (product - (sum - part)) + (c - part);
+    return to_odd(sum, error);
+  }
+
+  static float to_odd(float sum, float error) {
+    const uint32_t bits = float_bits(sum);
+    const uint32_t toward = ((float_bits(error) ^ bits) >> 31) != 0 ? bits - 1 : bits + 1;
+    const bool is_off =
+        (bits & 1) == 0 && __builtin_fabsf(error) > 0;  // an error that is NaN: sum is not finite
+    return float_of(is_off ? toward : bits);
+  }
+};
+struct Bf16 {
+  using Type = Bfloat;
+  static constexpr Text kName = ".bf16";
+  static constexpr bool kHasFtz = false;  // .ftz and .sat
+  static constexpr uint32_t kInfinity = 0x7f80, kOne = 0x3f80, kTwo = 0x4000, kHalf = 0x3f00;
+  static constexpr uint32_t kSmallest = 0x0080;  // normal
+  static constexpr uint32_t kHalfUlp = 0x3b80;   // of 1
+  static constexpr uint32_t kTied = 0x3f28, kAboveTie = 0x3edd;
+  static Bfloat narrow(float x) { return to_bfloat(x); }
+
+  // As above, but the product may leave the range of single precision. So the larger of product and addend is
+  // taken from the sum first (Dekker's fast two-sum), the product within an fma, where it has any range.
+  static float fma_to_odd(float a, float b, float c) {
+    const float sum = __builtin_fmaf(a, b, c);
+    const float rest = __builtin_fmaf(a, b, -sum) + c;
+    const float other = __builtin_fmaf(a, b, c - sum);
+    const bool is_product_larger = __builtin_fabsf(a * b) >= __builtin_fabsf(c);
+    return F16::to_odd(sum, is_product_larger ? rest : other);
+  }
+};
+
+// A subnormal becomes a zero of its sign.
+template <class Format, bool kFtz, class T = typename Format::Type>
+inline T taken(T x) {
+  if constexpr (kFtz)
+    return {uint16_t((x.bits & Format::kInfinity) == 0 ? x.bits & kSign : x.bits)};
+  else
+    return x;
+}
+
+// Sums, differences and products: single precision has so many bits that rounding twice is rounding once
+// (Figueroa 1995, "When is double rounding innocuous?").
+struct Add {
+  static constexpr Text kName = "add";
+  static constexpr Text kDoc = "Adds";
+  static constexpr size_t kSources = 2;
+  template <class Format>
+  static float of(float a, float b) {
+    return a + b;
+  }
+  template <class Format>
+  static constexpr Examples examples(Mode m) {
+    return {{{Format::kOne, Format::kOne}, m.sat ? Format::kOne : Format::kTwo},
+            {{Format::kOne, Format::kHalfUlp}, Format::kOne},
+            {{Format::kOne | kSign, 0}, m.sat ? 0 : Format::kOne | kSign},
+            {{1, 1}, m.ftz ? 0u : 2u},
+            {{Format::kInfinity, Format::kInfinity | kSign}, m.sat ? 0 : kNan}};
+  }
+};
+struct Subtract {
+  static constexpr Text kName = "sub";
+  static constexpr Text kDoc = "Subtracts";
+  static constexpr size_t kSources = 2;
+  template <class Format>
+  static float of(float a, float b) {
+    return a - b;
+  }
+  template <class Format>
+  static constexpr Examples examples(Mode m) {
+    return {{{Format::kOne, Format::kOne | kSign}, m.sat ? Format::kOne : Format::kTwo},
+            {{Format::kOne, Format::kHalfUlp | kSign}, Format::kOne},
+            {{0, Format::kOne}, m.sat ? 0 : Format::kOne | kSign},
+            {{2, 1}, m.ftz ? 0u : 1u},
+            {{Format::kInfinity, Format::kInfinity}, m.sat ? 0 : kNan}};
+  }
+};
+struct Multiply {
+  static constexpr Text kName = "mul";
+  static constexpr Text kDoc = "Multiplies";
+  static constexpr size_t kSources = 2;
+  template <class Format>
+  static float of(float a, float b) {
+    return a * b;
+  }
+  template <class Format>
+  static constexpr Examples examples(Mode m) {
+    return {{{Format::kTwo, Format::kOne}, m.sat ? Format::kOne : Format::kTwo},
+            {{Format::kOne + 1, Format::kOne + 1}, m.sat ? Format::kOne : Format::kOne + 2},
+            {{Format::kSmallest, Format::kHalf}, m.ftz ? 0 : Format::kSmallest / 2},
+            {{kSign, Format::kOne}, m.sat ? 0 : kSign},
+            {{0, Format::kInfinity}, m.sat ? 0 : kNan}};
+  }
+};
+struct Fma {
+  static constexpr Text kName = "fma";
+  static constexpr Text kDoc = "Multiplies and adds, once";
+  static constexpr size_t kSources = 3;
+  template <class Format>
+  static float of(float a, float b, float c) {
+    return Format::fma_to_odd(a, b, c);
+  }
+  template <class Format>
+  static constexpr Examples examples(Mode m) {
+    const uint32_t below = m.sat || m.relu ? 0 : Format::kOne | kSign;
+    return {{{Format::kOne, Format::kOne, Format::kOne}, m.sat ? Format::kOne : Format::kTwo},
+            // The product is a tie, but the addend is not zero.
+            {{Format::kTied, Format::kTied, Format::kSmallest}, Format::kAboveTie},
+            {{Format::kTied, Format::kTied, Format::kSmallest | kSign}, Format::kAboveTie - 1},
+            {{Format::kOne | kSign, Format::kOne, 0}, below},
+            {{Format::kSmallest, Format::kHalf, 0}, m.ftz ? 0 : Format::kSmallest / 2},
+            {{Format::kInfinity, 0, 0}, m.sat ? 0 : kNan}};
+  }
+};
+
+// The work of a lane.
+template <class Format, class Op, bool kFtz, bool kSat, bool kRelu>
+struct Arithmetic {
+  template <class... T>
+  typename Format::Type operator()(T... a) const {
+    const float result = Op::template of<Format>(to_float(taken<Format, kFtz>(a))...);
+    const uint32_t bits = taken<Format, kFtz>(Format::narrow(result)).bits;
+    const uint32_t positive = (bits & kSign) != 0 ? 0 : bits;  // the NaN has no sign
+    if constexpr (kSat) {
+      const uint32_t clamped = positive > Format::kOne ? Format::kOne : positive;
+      return {uint16_t(positive == kNan ? 0 : clamped)};
+    }
+    return {uint16_t(kRelu ? positive : bits)};
+  }
+};
+
+// min and max. Without .NaN a number wins against a NaN. .xorsign.abs compares magnitudes, and the result's
+// sign is the product of the sources' signs, those of NaNs included.
+template <class Format, bool kMax, bool kFtz, bool kNanWins, bool kXorsign, class T = typename Format::Type>
+struct Extreme {
+  static int32_t ordered(uint32_t x) {  // as the floats are; -0 before +0
+    return (x & kSign) != 0 ? -int32_t(x & 0x7fff) - 1 : int32_t(x);
+  }
+  T operator()(T x, T y) const {
+    const uint32_t keep = kXorsign ? 0x7fff : 0xffff;
+    const uint32_t a = taken<Format, kFtz>(x).bits & keep, b = taken<Format, kFtz>(y).bits & keep;
+    const bool is_first = kMax ? ordered(a) > ordered(b) : ordered(a) < ordered(b);
+    const bool is_a_nan = (a & 0x7fff) > Format::kInfinity, is_b_nan = (b & 0x7fff) > Format::kInfinity;
+    const uint32_t number = is_first ? a : b;
+    const uint32_t one = is_a_nan ? b : number;
+    const uint32_t result = is_b_nan ? a : one;
+    const uint32_t sign = kXorsign ? (x.bits ^ y.bits) & kSign : 0;
+    const bool is_nan = kNanWins ? is_a_nan || is_b_nan : is_a_nan && is_b_nan;
+    return {uint16_t(is_nan ? kNan : result ^ sign)};
+  }
+};
+
+template <class Format, bool kAbs, bool kFtz, class T = typename Format::Type>
+struct Sign {
+  T operator()(T x) const {
+    const uint32_t bits = taken<Format, kFtz>(x).bits;
+    const uint32_t result = kAbs ? bits & 0x7fff : bits ^ kSign;
+    return {uint16_t((bits & 0x7fff) > Format::kInfinity ? kNan : result)};
+  }
+};
+
+// The same of both halves of a register.
+template <class F>
+struct Both {
+  template <class... P>
+  auto operator()(P... p) const {
+    return Pair<decltype(F{}(p.low...))>{F{}(p.low...), F{}(p.high...)};
+  }
+};
+constexpr Examples paired(const Examples& of_one) {
+  Examples out = of_one;
+  for (size_t i = 0; i < out.count; ++i) {
+    const Example& high = of_one.at[(i + 1) % out.count];
+    for (size_t k = 0; k < high.in.size(); ++k) out.at[i].in[k] |= high.in[k] << 16;
+    out.at[i].out |= high.out << 16;
+  }
+  return out;
+}
+
+// A row of `kSources` sources of the format, or of pairs of it.
+template <class Format, bool kPair, size_t kSources, class F>
+constexpr OpRow row(std::string_view name, std::string_view doc, F f, const Examples& examples) {
+  using T = std::conditional_t<kPair, Pair<typename Format::Type>, typename Format::Type>;
+  return [&]<size_t... I>(std::index_sequence<I...>) {
+    if constexpr (kPair)
+      return value_op<decltype((void(I), T{}))...>(name, Unit::Fp16, doc, Both<F>{}, paired(examples));
+    else
+      return value_op<decltype((void(I), T{}))...>(name, Unit::Fp16, doc, f, examples);
+  }
+  (std::make_index_sequence<kSources>{});
+}
+template <class Format, bool kPair>
+constexpr auto suffix = Joined<Format::kName, when<kPair, "x2">>::kAsText;
+template <bool kPair>
+constexpr auto pair_words = when<kPair, ", in each half of a register">;
+
+template <class Format, bool kPair, class Op, bool kFtz, bool kSat, bool kRelu>
+constexpr OpRow arithmetic_row() {
+  return row<Format, kPair, Op::kSources>(
+      joined<Op::kName, ".rn", when<kFtz, ".ftz">, when<kSat, ".sat">, when<kRelu, ".relu">,
+             suffix<Format, kPair>>,
+      joined<Op::kDoc, pair_words<kPair>, round_words<Round::Nearest>, when<kFtz, kFtzWords>,
+             when<kSat, kSatWords>, when<kRelu, kReluWords>, ".">,
+      Arithmetic<Format, Op, kFtz, kSat, kRelu>{},
+      Op::template examples<Format>({.ftz = kFtz, .sat = kSat, .relu = kRelu}));
+}
+template <class Format, bool kPair, class Op>
+constexpr auto two_source_rows = generated<Format::kHasFtz ? 4 : 1>([](auto i) {
+  return arithmetic_row<Format, kPair, Op, i / 2, i % 2, false>();
+});
+template <class Format, bool kPair>
+constexpr auto fma_rows = generated<Format::kHasFtz ? 6 : 2>([](auto i) {
+  return arithmetic_row < Format, kPair, Fma, i / 3, Format::kHasFtz && i % 3 == 1,
+         Format::kHasFtz ? i % 3 == 2 : i == 1 > ();
+});
+
+template <class Format, bool kPair, bool kMax, bool kFtz, bool kNanWins, bool kXorsign>
+constexpr OpRow extreme_row() {
+  constexpr uint32_t kOne = Format::kOne, kOther = kNanWins ? kNan : kOne, kSmall = kFtz ? 0 : 1;
+  constexpr uint32_t kZeros = kMax && !kXorsign ? 0 : kSign;
+  constexpr uint32_t kSigned = kXorsign || !kMax ? kSign | kSmall : kSmall;
+  return row<Format, kPair, 2>(
+      joined<when<kMax, "max">, when<!kMax, "min">, when<kFtz, ".ftz">, when<kNanWins, ".NaN">,
+             when<kXorsign, ".xorsign.abs">, suffix<Format, kPair>>,
+      joined<when<kMax, "The larger">, when<!kMax, "The smaller">,
+             when<kXorsign, " magnitude, with the product of the signs">, pair_words<kPair>,
+             "; -0 counts as less than +0, ", when<kNanWins, "and a NaN wins">,
+             when<!kNanWins, "and a NaN loses against a number">, when<kFtz, kFtzWords>, ".">,
+      Extreme<Format, kMax, kFtz, kNanWins, kXorsign>{},
+      {{{Format::kInfinity + 1, kOne}, kOther},
+       {{kOne, Format::kInfinity + 1}, kOther},
+       {{kNan, kNan | kSign}, kNan},
+       {{0, kSign}, kZeros},
+       {{1, kSign | 1}, kSigned},
+       {{kOne, Format::kTwo}, kMax ? Format::kTwo : kOne}});
+}
+template <class Format, bool kPair, bool kMax>
+constexpr auto extreme_rows = generated<Format::kHasFtz ? 8 : 4>([](auto i) {
+  return extreme_row<Format, kPair, kMax, i / 4, i / 2 % 2, i % 2>();
+});
+
+template <class Format, bool kPair, bool kAbs>
+constexpr auto sign_rows = generated<Format::kHasFtz ? 2 : 1>([](auto i) {
+  constexpr bool kFtz = i == 1;
+  constexpr uint32_t kOne = Format::kOne, kSmall = kFtz ? 0 : 1, kFlip = kAbs ? 0 : kSign;
+  return row<Format, kPair, 1>(
+      joined<when<kAbs, "abs">, when<!kAbs, "neg">, when<kFtz, ".ftz">, suffix<Format, kPair>>,
+      joined<when<kAbs, "Magnitude">, when<!kAbs, "Negates">, pair_words<kPair>, when<kFtz, kFtzWords>, ".">,
+      Sign<Format, kAbs, kFtz>{},
+      {{{kOne}, kOne | kFlip}, {{kSign | kOne}, kOne}, {{1}, kSmall | kFlip}, {{kNan | kSign}, kNan}});
+});
+
+template <class Format, bool kPair>
+constexpr auto format_rows = rows_of(two_source_rows<Format, kPair, Add>,
+                                     two_source_rows<Format, kPair, Subtract>,
+                                     two_source_rows<Format, kPair, Multiply>, fma_rows<Format, kPair>,
+                                     extreme_rows<Format, kPair, false>, extreme_rows<Format, kPair, true>,
+                                     sign_rows<Format, kPair, false>, sign_rows<Format, kPair, true>);
+constexpr auto kRows = rows_of(format_rows<F16, false>, format_rows<F16, true>, format_rows<Bf16, false>,
+                               format_rows<Bf16, true>);
+
+}  // namespace
 
 RowList half_rows() {
-  return {};
+  return {kRows.data(), kRows.size()};
 }
 
 }  // namespace glint::isa::GLINT_ISA_PATH

@@ -1,0 +1,76 @@
+// Modifiers of floating-point ops: their spelling and their words, and the rows of all their combinations.
+//
+// Included only by isa/ops/*.cpp (see op_makers.h).
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "isa/op_makers.h"
+#include "isa/rounding.h"
+
+namespace glint::isa::GLINT_ISA_PATH {
+
+// How one member of a family of ops rounds and what else it does; examples depend on it.
+struct Mode {
+  Round round = Round::Nearest;
+  bool ftz = false;
+  bool sat = false;
+  bool relu = false;
+};
+
+// The text where the modifier is on, and nothing where it is off.
+template <bool kOn, Text kText>
+inline constexpr auto when = kText;
+template <Text kText>
+inline constexpr auto when<false, kText> = Text("");
+
+template <Round kRound>
+inline constexpr auto round_name = Text(".rn");
+template <>
+inline constexpr auto round_name<Round::Zero> = Text(".rz");
+template <>
+inline constexpr auto round_name<Round::Down> = Text(".rm");
+template <>
+inline constexpr auto round_name<Round::Up> = Text(".rp");
+
+template <Round kRound>
+inline constexpr auto round_words = Text(", rounded to nearest even");
+template <>
+inline constexpr auto round_words<Round::Zero> = Text(", rounded toward zero");
+template <>
+inline constexpr auto round_words<Round::Down> = Text(", rounded down");
+template <>
+inline constexpr auto round_words<Round::Up> = Text(", rounded up");
+
+inline constexpr Text kFtzWords = "; subnormal sources and results become zero";
+inline constexpr Text kSatWords = "; clamped to [0, 1], NaN becomes 0";
+inline constexpr Text kReluWords = "; negative results become 0";
+
+// The order in which PTX lists the directions.
+inline constexpr Round kRounds[] = {Round::Nearest, Round::Zero, Round::Down, Round::Up};
+
+// Rows of several generated lists, one after the other.
+template <size_t... kSizes>
+constexpr auto rows_of(const std::array<OpRow, kSizes>&... lists) {
+  std::array<OpRow, (kSizes + ... + 0)> out{};
+  size_t n = 0;
+  const auto append = [&](const auto& list) {
+    std::copy(list.begin(), list.end(), out.begin() + n);
+    n += list.size();
+  };
+  (append(lists), ...);
+  return out;
+}
+
+// `kCount` rows: `row(i)` of each i, where i is a compile-time constant.
+template <size_t kCount, class Row>
+constexpr auto generated(Row row) {
+  return [&]<size_t... I>(std::index_sequence<I...>) {
+    return std::array<OpRow, kCount>{row(std::integral_constant<size_t, I>{})...};
+  }
+  (std::make_index_sequence<kCount>{});
+}
+
+}  // namespace glint::isa::GLINT_ISA_PATH
