@@ -7,13 +7,14 @@
 
 #include "base/types.h"
 #include "core/image.h"
+#include "core/texel_list.h"
 #include "core/warp_context.h"
 #include "isa/op_row.h"
 
 namespace glint::core {
 
-// The widest access: four texels, or four words of local memory, of 32 lanes, each in a line of its own.
-inline constexpr uint32_t kMaxLines = 4 * kLanes;
+// The widest access: all texels of 32 lanes, each in a line of its own.
+inline constexpr uint32_t kMaxLines = kMaxTexels * kLanes;
 
 struct LineSectors {
   Address line = 0;      // physical

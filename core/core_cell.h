@@ -83,6 +83,7 @@ class CoreCell final : public Cell {
   void count_access(const isa::OpRow& op);
   bool start_access(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now);
   void collect_lines(MemoryAccess& access, const Issued& issued);
+  void collect_texels(MemoryAccess& access, LaneMask lanes);
   void start_rays(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now);
   void complete(uint32_t access_id, Cycle now);
   void complete_rays(uint32_t slot, Cycle now);

@@ -1,124 +1,312 @@
-// Textures and storage images: filtered fetches and texel accesses on linear images in simulated memory.
+// Textures and storage images: what an image op does for the lanes of a warp, with every access checked.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include "base/check.h"
 #include "core/executor.h"
+#include "core/texture_address.h"
+#include "core/texture_filter.h"
 
 namespace glint::core {
 namespace {
 
-using Texel = std::array<float, 4>;
+using isa::ImageRequest;
+using isa::ImageShape;
 
-uint32_t texel_bytes(ImageView::Format format) { return format == ImageView::Format::Rgba8Unorm ? 4 : 16; }
-
-Address texel_address(const ImageView& image, uint32_t x, uint32_t y) {
-  return image.base + (uint64_t(y) * image.width + x) * texel_bytes(image.format);
-}
-
-Texel decode(const ImageView& image, const std::byte* from) {
-  Texel texel;
-  if (image.format == ImageView::Format::Rgba32Float) {
-    std::memcpy(texel.data(), from, 16);
-    return texel;
+// Slots of an op's operands, in the order that isa/image_access.h gives.
+struct Slots {
+  explicit Slots(const isa::OpRow& row) {
+    const isa::ImageAccess& op = row.image;
+    for (isa::OperandKind kind : row.operands.view())
+      if (isa::is_destination(kind)) results += size_t(isa::slots_of(kind));
+    layer = results + 1;
+    at = layer + isa::has_layers(op.shape);
+    level = at + size_t(isa::num_coordinates(op.shape));
+    offset = level;
+    if (op.lod == isa::ImageLod::Level) offset += 1;
+    if (op.lod == isa::ImageLod::Gradients) offset += 2 * size_t(isa::num_coordinates(op.shape));
+    reference = offset + op.has_offset;
+    data = level;
   }
-  // Vulkan, section "Conversion from Normalized Fixed-Point to Floating-Point".
-  for (size_t i = 0; i < 4; ++i) texel[i] = float(std::to_integer<uint8_t>(from[i])) / 255.0f;
-  return texel;
-}
-
-void encode(const ImageView& image, const Texel& texel, std::byte* to) {
-  if (image.format == ImageView::Format::Rgba32Float) {
-    std::memcpy(to, texel.data(), 16);
-    return;
-  }
-  for (size_t i = 0; i < 4; ++i)  // NaN becomes 0; round to nearest even
-    to[i] = std::byte(std::nearbyint(std::max(0.0f, std::min(1.0f, texel[i])) * 255.0f));
-}
-
-// One axis of a bilinear fetch with clamp to edge: the two texels and the weight of the second. Coordinates that
-// are not numbers count as 0 (Choice: Vulkan leaves them undefined).
-struct Axis {
-  uint32_t first, second;
-  float weight;
+  size_t results = 0, layer, at, level, offset, reference, data;
 };
-Axis filter_axis(float coordinate, uint32_t size) {
-  const float x = coordinate * float(size) - 0.5f;
-  if (!(x > 0.0f)) return {0, 0, 0.0f};
-  const float last = float(size - 1);
-  if (x >= last) return {size - 1, size - 1, 0.0f};
-  const float base = std::floor(x);
-  return {uint32_t(base), uint32_t(base) + 1, x - base};
+
+// The operands of one lane.
+class Lane {
+ public:
+  Lane(const isa::Warp& warp, const isa::Inst& inst, int lane) : warp_(warp), inst_(inst), lane_(lane) {}
+  uint32_t word(size_t slot) const { return warp_.read(inst_.operand[slot])[lane_]; }
+  int32_t integer(size_t slot) const { return int32_t(word(slot)); }
+  float number(size_t slot) const { return std::bit_cast<float>(word(slot)); }
+
+ private:
+  const isa::Warp& warp_;
+  const isa::Inst& inst_;
+  int lane_;
+};
+
+SampleRequest request_of(const isa::ImageAccess& op, const Slots& slots, const Lane& lane, const ImageView& image) {
+  SampleRequest request;
+  request.shape = op.shape;
+  const auto count = size_t(isa::num_coordinates(op.shape));
+  for (size_t i = 0; i < count; ++i) request.at[i] = lane.number(slots.at + i);
+  if (isa::has_layers(op.shape)) request.layer = lane.integer(slots.layer);
+  if (op.lod == isa::ImageLod::Level) request.lod = lane.number(slots.level);
+  if (op.lod == isa::ImageLod::Gradients) {
+    Gradient dx{}, dy{};
+    for (size_t i = 0; i < count; ++i) dx[i] = lane.number(slots.level + i), dy[i] = lane.number(slots.level + count + i);
+    const bool cube = isa::is_cube(op.shape);
+    if (cube) dx = cube_gradient(request.at, dx), dy = cube_gradient(request.at, dy);
+    request.lod = level_of_detail(image, cube ? 2 : int(count), dx, dy);
+  }
+  if (op.has_offset)
+    for (size_t i = 0; i < 3; ++i) request.offset[i] = int8_t(lane.word(slots.offset) >> (8 * i));
+  request.compare = op.has_compare;
+  if (op.has_compare) request.reference = lane.number(slots.reference);
+  return request;
+}
+
+// Whether an op of geometry `op` may work on the image. Surface ops see a cube as an array of its faces.
+bool fits(const isa::ImageAccess& op, ImageShape image) {
+  const auto is_texture = op.request == ImageRequest::Sample || op.request == ImageRequest::Gather;
+  const auto axes = [](ImageShape s) { return isa::is_cube(s) ? 2 : isa::num_coordinates(s); };
+  if ((op.shape == ImageShape::Buffer) != (image == ImageShape::Buffer)) return false;
+  if (isa::is_cube(op.shape)) return isa::is_cube(image);
+  return axes(op.shape) == axes(image) && !(is_texture && isa::is_cube(image));
+}
+
+std::string_view name_of(ImageShape shape) {
+  constexpr std::string_view kNames[] = {"buffer", "1d", "2d", "3d", "a1d", "a2d", "cube", "acube"};
+  return kNames[size_t(shape)];
+}
+
+uint32_t answer(const isa::ImageAccess& op, const ImageView& image, const Sampler& sampler, uint32_t level) {
+  switch (op.query) {
+    case isa::ImageQuery::Width: return image.extent(0, level);
+    case isa::ImageQuery::Height: return image.extent(1, level);
+    case isa::ImageQuery::Depth: return image.extent(2, level);
+    case isa::ImageQuery::ArraySize: return isa::is_cube(image.shape) ? image.layers / 6 : image.layers;
+    case isa::ImageQuery::NumMipmapLevels: return image.levels;
+    case isa::ImageQuery::NumSamples: return 1;
+    case isa::ImageQuery::NormalizedCoords: return sampler.unnormalized ? 0 : 1;
+    case isa::ImageQuery::ChannelDataType: return info_of(image.format).opencl_type;
+    case isa::ImageQuery::ChannelOrder: return info_of(image.format).opencl_order;
+  }
+  GLINT_PANIC("image query {}", int(op.query));
+}
+
+// A texel that an integer coordinate names: x, y, z, and layer, and how much there is of each. Byte accesses count x
+// in bytes.
+struct Place {
+  std::array<int64_t, 4> at{}, end{};
+  uint32_t level = 0;
+  bool is_inside() const {
+    for (size_t i = 0; i < 4; ++i)
+      if (at[i] < 0 || at[i] >= end[i]) return false;
+    return true;
+  }
+};
+Place place_of(const isa::ImageAccess& op, const Slots& slots, const Lane& lane, const ImageView& image, uint32_t bytes) {
+  Place place;
+  const bool has_level = op.lod == isa::ImageLod::Level;
+  const int64_t level = has_level ? lane.integer(slots.level) : 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    place.at[size_t(axis)] = axis < isa::num_coordinates(op.shape) ? lane.integer(slots.at + size_t(axis)) : 0;
+    place.end[size_t(axis)] = level < 0 || level >= image.levels ? 0 : image.extent(axis, uint32_t(level));
+  }
+  if (op.request == ImageRequest::Bytes) place.end[0] = place.end[0] * image.texel_bytes() - (bytes - 1);
+  place.at[3] = isa::has_layers(op.shape) ? lane.integer(slots.layer) : 0;
+  place.end[3] = image.layers;
+  place.level = uint32_t(level);
+  return place;
+}
+
+std::string outside(const Place& place, const ImageView& image) {
+  return fmt::format("({}, {}, {}) of layer {}, level {}, of image '{}', which is {}x{}x{} with {} layers, {} levels",
+                     place.at[0], place.at[1], place.at[2], place.at[3], int32_t(place.level), image.name, image.width,
+                     image.height, image.depth, image.layers, image.levels);
+}
+
+// Words that a surface op stores, or takes besides its place.
+size_t num_data(const isa::OpRow& row) {
+  size_t slots = 0;
+  for (isa::OperandKind kind : row.operands.view()) slots += size_t(isa::slots_of(kind));
+  return slots - Slots(row).data;
+}
+
+Words load_texel(const isa::OpRow& row, TexelFormat format, const std::byte* at) {
+  if (row.image.request == ImageRequest::Texel) return decode(format, at);
+  Words words{};
+  std::memcpy(words.data(), at, size_t(row.memory.bytes * row.memory.count));
+  return words;
+}
+
+void store_texel(const isa::OpRow& row, TexelFormat format, const Words& words, std::byte* at) {
+  if (row.image.request == ImageRequest::Texel) return encode(format, words, at);
+  std::memcpy(at, words.data(), size_t(row.memory.bytes * row.memory.count));
 }
 
 }  // namespace
 
+const ImageView* Executor::find_image(WarpContext& warp, const isa::OpRow& row, int lane) {
+  const uint64_t handle = warp.regs.access.address[size_t(lane)];
+  const uint64_t number = handle % (1u << isa::kHandleSamplerShift), sampler = handle >> isa::kHandleSamplerShift;
+  if (number >= world_.images.size() || sampler > world_.samplers.size()) [[unlikely]] {
+    fail(warp, lane, fmt::format("uses image {} with sampler {}: {} images and {} samplers are bound", number, sampler,
+                                 world_.images.size(), world_.samplers.size()));
+    return nullptr;
+  }
+  const ImageView& image = world_.images[number];
+  if (row.image.request != ImageRequest::Query && !fits(row.image, image.shape)) [[unlikely]] {
+    fail(warp, lane, fmt::format("uses image '{}', which is {}, as {}", image.name, name_of(image.shape), name_of(row.image.shape)));
+    return nullptr;
+  }
+  return &image;
+}
+
+const Sampler& Executor::find_sampler(const ImageView& image, Address handle) const {
+  const uint64_t sampler = handle >> isa::kHandleSamplerShift;
+  return sampler ? world_.samplers[sampler - 1] : image.sampler;
+}
+
 bool Executor::run_image(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
   row.run(warp.regs, inst);
-  const bool ok = row.effect == isa::Effect::Texture ? sample(warp, inst)
-                                                     : access_surface(warp, inst, row.effect == isa::Effect::SurfaceStore);
+  texels_.clear();
+  bool ok = false;
+  switch (row.image.request) {
+    case ImageRequest::Sample:
+    case ImageRequest::Gather:
+    case ImageRequest::Fetch: ok = texture(warp, inst, row); break;
+    case ImageRequest::Query: ok = query_image(warp, inst, row); break;
+    case ImageRequest::Texel:
+    case ImageRequest::Bytes: ok = surface(warp, inst, row); break;
+    case ImageRequest::None: GLINT_PANIC("{} is not an image op", row.name);
+  }
   if (ok) ++warp.simt.pc;
   return ok;
 }
 
-bool Executor::sample(WarpContext& warp, const isa::Inst& inst) {
+bool Executor::texture(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
+  const isa::ImageAccess& op = row.image;
+  const Slots slots(row);
+  std::array<Words, kLanes> result;  // written when no lane can fault any more
   for (LaneMask lanes = warp.regs.exec; lanes; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
-    const size_t i = size_t(lane);
-    const uint64_t handle = warp.regs.access.address[i];
-    if (handle >= world_.images.size()) [[unlikely]]
-      return fail(warp, lane, fmt::format("samples texture {}: only {} images are bound", handle, world_.images.size()));
-    const ImageView& image = world_.images[handle];
-    const Axis x = filter_axis(std::bit_cast<float>(warp.regs.access.u[i]), image.width);
-    const Axis y = filter_axis(std::bit_cast<float>(warp.regs.access.v[i]), image.height);
-    const std::array<Address, 4> at = {texel_address(image, x.first, y.first), texel_address(image, x.second, y.first),
-                                       texel_address(image, x.first, y.second), texel_address(image, x.second, y.second)};
-    std::array<Texel, 4> texel;
-    for (size_t k = 0; k < 4; ++k) {
-      const std::byte* from = world_.memory->find(at[k], texel_bytes(image.format));
-      if (!from) return fail(warp, lane, fmt::format("samples outside texture {} ({})", handle, image.name));
-      texel[k] = decode(image, from);
-      texels_[k][i] = at[k];
+    const ImageView* image = find_image(warp, row, lane);
+    if (!image) return false;
+    if (is_integer(info_of(image->format)) == op.is_float) [[unlikely]]
+      return fail(warp, lane, fmt::format("reads {} from image '{}', whose format is {}", op.is_float ? "floats" : "integers",
+                                          image->name, info_of(image->format).name));
+    TexelReader reader(*image, find_sampler(*image, warp.regs.access.address[size_t(lane)]), *world_.memory);
+    const Lane operands(warp.regs, inst, lane);
+    Words& out = result[size_t(lane)] = {};
+    if (op.request == ImageRequest::Fetch) {
+      const Place place = place_of(op, slots, operands, *image, 0);
+      if (place.is_inside())
+        out = reader.fetch({uint32_t(place.at[0]), uint32_t(place.at[1]), uint32_t(place.at[2]), uint32_t(place.at[3]), place.level});
+      else if (!world_.robust_images)
+        return fail(warp, lane, "reads texel " + outside(place, *image));
+    } else {
+      const SampleRequest request = request_of(op, slots, operands, *image);
+      out = op.request == ImageRequest::Gather ? reader.gather(request, op.component) : reader.sample(request);
     }
-    for (size_t c = 0; c < 4; ++c) {
-      const float top = texel[0][c] * (1.0f - x.weight) + texel[1][c] * x.weight;
-      const float bottom = texel[2][c] * (1.0f - x.weight) + texel[3][c] * x.weight;
-      warp.regs.write(inst.operand[c])[lane] = std::bit_cast<uint32_t>(top * (1.0f - y.weight) + bottom * y.weight);
-    }
+    if (!reader.error().empty()) [[unlikely]]
+      return fail(warp, lane, fmt::format("samples image '{}', which {}", image->name, reader.error()));
+    texels_.add(lane, reader.texels());
+  }
+  for (size_t c = 0; c < slots.results; ++c) {
+    uint32_t* const to = warp.regs.write(inst.operand[c]);
+    for_each_lane(warp.regs.exec, [&](int lane) { to[lane] = result[size_t(lane)][c]; });
   }
   return true;
 }
 
-bool Executor::access_surface(WarpContext& warp, const isa::Inst& inst, bool store) {
+bool Executor::query_image(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
+  const Slots slots(row);
+  std::array<uint32_t, kLanes> result;
   for (LaneMask lanes = warp.regs.exec; lanes; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
-    const size_t i = size_t(lane);
-    const uint64_t handle = warp.regs.access.address[i];
-    if (handle >= world_.images.size()) [[unlikely]]
-      return fail(warp, lane, fmt::format("accesses image {}: only {} images are bound", handle, world_.images.size()));
-    const ImageView& image = world_.images[handle];
-    const uint32_t x = warp.regs.access.u[i], y = warp.regs.access.v[i];
-    if (x >= image.width || y >= image.height) [[unlikely]]
-      return fail(warp, lane, fmt::format("{} texel ({}, {}) of image '{}', which is {}x{}", store ? "writes" : "reads",
-                                          int32_t(x), int32_t(y), image.name, image.width, image.height));
-    const Address at = texel_address(image, x, y);
-    warp.regs.access.address[i] = at;
-    std::byte* memory = world_.memory->find(at, texel_bytes(image.format));
-    if (!memory) return fail(warp, lane, fmt::format("image '{}' is smaller than its size says", image.name));
-    const size_t first = store ? 3 : 0;  // slots: sust handle, x, y, {4}; suld {4}, handle, x, y
-    if (store) {
-      Texel texel;
-      for (size_t c = 0; c < 4; ++c) texel[c] = std::bit_cast<float>(warp.regs.read(inst.operand[first + c])[lane]);
-      encode(image, texel, memory);
+    const ImageView* image = find_image(warp, row, lane);
+    if (!image) return false;
+    const uint32_t level = row.image.lod == isa::ImageLod::Level ? warp.regs.read(inst.operand[2])[lane] : 0;
+    const Sampler& sampler = find_sampler(*image, warp.regs.access.address[size_t(lane)]);
+    result[size_t(lane)] = answer(row.image, *image, sampler, level);
+  }
+  uint32_t* const to = warp.regs.write(inst.operand[0]);
+  for_each_lane(warp.regs.exec, [&](int lane) { to[lane] = result[size_t(lane)]; });
+  return true;
+}
+
+// Where a lane's surface op goes: null, with a fault or without one, when it goes nowhere.
+std::byte* Executor::find_texel(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, int lane) {
+  const isa::ImageAccess& op = row.image;
+  const ImageView* image = find_image(warp, row, lane);
+  if (!image) return nullptr;
+  const bool whole = op.request == ImageRequest::Texel;
+  const uint32_t bytes = whole ? image->texel_bytes() : uint32_t(row.memory.bytes * row.memory.count);
+  Place place = place_of(op, Slots(row), Lane(warp.regs, inst, lane), *image, bytes);
+  const auto refuse = [&](std::string what) -> std::byte* { return fail(warp, lane, std::move(what)), nullptr; };
+  if (!whole && place.at[0] % bytes != 0)
+    return refuse(fmt::format("accesses {} bytes at byte {} of a row of image '{}'", bytes, place.at[0], image->name));
+  if (row.atomic && whole && (info_of(image->format).bits != 32 || info_of(image->format).channels != 1))
+    return refuse(fmt::format("atomic on image '{}', whose format is {}", image->name, info_of(image->format).name));
+  if (!place.is_inside()) [[unlikely]] {
+    if (op.outside == isa::ImageOutside::Clamp && place.end[0] > 0) {
+      for (size_t i = 0; i < 4; ++i) place.at[i] = std::clamp<int64_t>(place.at[i], 0, place.end[i] - 1);
+      if (!whole) place.at[0] -= place.at[0] % bytes;
+    } else if (op.outside == isa::ImageOutside::Zero || world_.robust_images) {
+      return nullptr;
     } else {
-      const Texel texel = decode(image, memory);
-      for (size_t c = 0; c < 4; ++c) warp.regs.write(inst.operand[c])[lane] = std::bit_cast<uint32_t>(texel[c]);
+      const bool store = row.effect != isa::Effect::SurfaceLoad;
+      return refuse((store ? "writes texel " : "reads texel ") + outside(place, *image));
     }
   }
+  const uint32_t x = uint32_t(place.at[0]);
+  const Address at = image->address_of({whole ? x : 0, uint32_t(place.at[1]), uint32_t(place.at[2]), uint32_t(place.at[3])}) +
+                     (whole ? 0 : x);
+  std::byte* const memory = world_.memory->find(at, bytes);
+  if (!memory) return refuse(fmt::format("image '{}' is smaller in memory than its size says", image->name));
+  texels_.add(lane, {&at, 1});
+  return memory;
+}
+
+bool Executor::surface(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
+  const Slots slots(row);
+  const size_t end = slots.data + num_data(row);
+  std::array<std::byte*, kLanes> place{};
+  for (LaneMask lanes = warp.regs.exec; lanes; lanes &= lanes - 1) {
+    const int lane = std::countr_zero(lanes);
+    place[size_t(lane)] = find_texel(warp, inst, row, lane);
+    if (!place[size_t(lane)] && fault_) return false;
+  }
+  const auto format_of = [&](int lane) {
+    return world_.images[warp.regs.access.address[size_t(lane)] % (1u << isa::kHandleSamplerShift)].format;
+  };
+  // Lane by lane: atomics take turns; of stores to one texel the highest lane's stays. Choice: PTX leaves it open.
+  for_each_lane(warp.regs.exec, [&](int lane) {
+    const Lane operands(warp.regs, inst, lane);
+    std::byte* const at = place[size_t(lane)];
+    Words words{};
+    if (row.effect == isa::Effect::SurfaceStore) {
+      for (size_t c = slots.data; c < end; ++c) words[c - slots.data] = operands.word(c);
+      if (at) store_texel(row, format_of(lane), words, at);
+      return;
+    }
+    if (row.effect == isa::Effect::SurfaceAtomic) {
+      const uint32_t swap = slots.data + 1 < end ? operands.word(slots.data + 1) : 0;
+      if (at) {
+        std::memcpy(words.data(), at, 4);
+        const auto kept = uint32_t(row.atomic(words[0], operands.word(slots.data), swap));
+        std::memcpy(at, &kept, 4);
+      }
+    } else if (at) {
+      words = load_texel(row, format_of(lane), at);
+    }
+    for (size_t c = 0; c < slots.results; ++c) warp.regs.write(inst.operand[c])[lane] = words[c];
+  });
   return true;
 }
 

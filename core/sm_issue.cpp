@@ -10,6 +10,12 @@ namespace glint::core {
 
 using isa::Effect;
 
+namespace {
+bool is_surface(Effect effect) {
+  return effect == Effect::SurfaceLoad || effect == Effect::SurfaceStore || effect == Effect::SurfaceAtomic;
+}
+}  // namespace
+
 // Gives this cycle of the scheduler to an instruction or to a reason.
 void CoreCell::run_scheduler(SchedulerState& scheduler, Cycle now) {
   const uint64_t ready = find_ready(scheduler, now);
@@ -125,8 +131,8 @@ void CoreCell::count_access(const isa::OpRow& op) {
     ++(local ? stats_.local_stores : stats_.global_stores);
   } else if (op.effect == Effect::Texture) {
     ++stats_.texture_fetches;
-  } else if (op.effect == Effect::SurfaceLoad) {
-    ++stats_.surface_loads;
+  } else if (op.effect == Effect::SurfaceLoad || op.effect == Effect::SurfaceAtomic) {
+    ++stats_.surface_loads;  // Model: an atomic on an image costs what a load of it costs
   } else if (op.effect == Effect::SurfaceStore) {
     ++stats_.surface_stores;
   } else {
@@ -137,6 +143,9 @@ void CoreCell::count_access(const isa::OpRow& op) {
 // Hands the access to the load-store unit; false when no lane makes one.
 bool CoreCell::start_access(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now) {
   if (issued.lanes == 0) return false;
+  // Texels that are all border, or outside of their image, need no memory.
+  const bool is_image = issued.row->effect == Effect::Texture || is_surface(issued.row->effect);
+  if (is_image && executor_.texels().empty()) return false;
   MemoryAccess& access = lsu_.take(slot % params_.schedulers, now);
   access.slot = slot;
   access.pc = issued.pc;
@@ -162,14 +171,11 @@ void CoreCell::collect_lines(MemoryAccess& access, const Issued& issued) {
     access.traffic = mem::Traffic::ShaderLocal;
     coalesce_local(access.lines, local_, access.slot, addresses, issued.lanes, uint32_t(memory.bytes * memory.count));
   } else if (issued.row->effect == Effect::Texture) {
-    access.traffic = mem::Traffic::ShaderTexture;  // a texel is aligned to its size: one sector each
-    access.texture = true;
-    for (const auto& corner : executor_.texels())
-      for_each_lane(issued.lanes, [&](int lane) { access.lines.add(world_.memory->physical(corner[size_t(lane)]), 4); });
-  } else if (issued.row->effect == Effect::SurfaceLoad || issued.row->effect == Effect::SurfaceStore) {
+    access.traffic = mem::Traffic::ShaderTexture;
+    collect_texels(access, issued.lanes);
+  } else if (is_surface(issued.row->effect)) {
     access.traffic = mem::Traffic::ShaderSurface;
-    access.texture = true;
-    coalesce_global(access.lines, *world_.memory, addresses, issued.lanes, 4);
+    collect_texels(access, issued.lanes);
   } else if (issued.row->effect == Effect::CallCandidate || issued.row->effect == Effect::CallAnyHit ||
              issued.row->effect == Effect::CallHit) {
     access.traffic = mem::Traffic::ShaderBinding;
@@ -178,6 +184,15 @@ void CoreCell::collect_lines(MemoryAccess& access, const Issued& issued) {
     access.traffic = mem::Traffic::ShaderGlobal;
     coalesce_global(access.lines, *world_.memory, addresses, issued.lanes, uint32_t(memory.bytes * memory.count));
   }
+}
+
+void CoreCell::collect_texels(MemoryAccess& access, LaneMask lanes) {
+  access.texture = true;
+  for (const auto& row : executor_.texels().rows())
+    for_each_lane(lanes, [&](int lane) {
+      const Address texel = row[size_t(lane)];
+      if (texel != TexelList::kNone) access.lines.add(world_.memory->physical(texel), 4);
+    });
 }
 
 void CoreCell::complete(uint32_t access_id, Cycle now) {

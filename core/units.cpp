@@ -40,7 +40,8 @@ Finish finish_of(const isa::OpRow& row) {
     case Effect::Atomic: return row.memory.space == isa::Space::Const ? Finish::Fixed : Finish::Memory;
     case Effect::Texture:
     case Effect::SurfaceLoad:
-    case Effect::SurfaceStore: return Finish::Memory;
+    case Effect::SurfaceStore:
+    case Effect::SurfaceAtomic: return Finish::Memory;
     case Effect::Trace:
     case Effect::QueryProceed:
     case Effect::Resume: return Finish::Rays;
@@ -53,6 +54,7 @@ Finish finish_of(const isa::OpRow& row) {
     case Effect::Return:
     case Effect::BranchIndexed:
     case Effect::Call:
+    case Effect::Trap:
     case Effect::Barrier:
     case Effect::Fence:
     case Effect::Ignore:
@@ -60,6 +62,7 @@ Finish finish_of(const isa::OpRow& row) {
     // ssy only notes a place; the next instruction is the next one.
     case Effect::PushReconvergence:
     case Effect::None:
+    case Effect::ImageQuery:
     case Effect::Query:
     case Effect::Report:
     case Effect::Accepted:

@@ -21,7 +21,7 @@ void read(Lowering& l, const Instruction& inst, const LoweringRow&) {
   for (int i = 0; i < 4; ++i) texel.push_back(Operand::of(l.program().new_register(RegisterClass::B32)));
   Operands operands = texel;
   operands.insert(operands.end(), {handle, at[0], at[1]});
-  l.emit().effect("suld.2d.v4.b32", std::move(operands));
+  l.emit().effect("suld.p.2d.v4.b32.trap", std::move(operands));
   texel.resize(l.layout().num_parts(inst.type));
   l.set(inst.result, std::move(texel));
 }
@@ -31,7 +31,7 @@ void write(Lowering& l, const Instruction& inst, const LoweringRow&) {
   const Operands at = l.value(inst.operands[1]), texel = l.value(inst.operands[2]);
   Operands operands{l.scalar(inst.operands[0]), at[0], at[1]};
   for (size_t i = 0; i < 4; ++i) operands.push_back(i < texel.size() ? texel[i] : Operand::value(0));
-  l.emit().effect("sust.2d.v4.b32", std::move(operands));
+  l.emit().effect("sust.p.2d.v4.b32.trap", std::move(operands));
 }
 
 // Model: textures have one level, so the level of detail and gradients do not matter.
@@ -46,7 +46,7 @@ void sample(Lowering& l, const Instruction& inst, const LoweringRow&) {
   for (int i = 0; i < 4; ++i) texel.push_back(Operand::of(l.program().new_register(RegisterClass::B32)));
   Operands operands = texel;
   operands.insert(operands.end(), {l.scalar(inst.operands[0]), at[0], at[1]});
-  l.emit().effect("tex.2d.v4.f32", std::move(operands));
+  l.emit().effect("tex.2d.v4.f32.f32", std::move(operands));
   l.set(inst.result, std::move(texel));
 }
 

@@ -14,9 +14,7 @@ using Row = uint32_t[kLanes];  // one 32-bit register of all lanes, 64-byte alig
 // What a memory, texture or surface op asks of the world; filled by its handler for the lanes of `exec`.
 // Data moves between memory and the op's operand slots when the machine applies the access.
 struct Access {
-  alignas(64) std::array<Address, kLanes> address;  // bytes; local space: offset in the lane's own stack
-  alignas(64) std::array<uint32_t, kLanes> u;       // texture: bits of the float coordinate; surface: x
-  alignas(64) std::array<uint32_t, kLanes> v;       // texture: bits of the float coordinate; surface: y
+  alignas(64) std::array<Address, kLanes> address;  // bytes; local space: offset in the lane's own stack; image ops: the handle
 };
 
 struct Warp {

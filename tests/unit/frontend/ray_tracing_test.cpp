@@ -150,7 +150,7 @@ TEST_CASE("textures of an array have consecutive handles") {
   const VirtualInst& handle = only(program, "ld.const.b32");
   CHECK(handle.imm == 1024 + 2 * 16);
   CHECK(count(program, "add.u32") == 1);
-  CHECK(count(program, "tex.2d.v4.f32") == 1);
+  CHECK(count(program, "tex.2d.v4.f32.f32") == 1);
 }
 
 TEST_CASE("every shader of the project compiles to a program that the verifier accepts") {
