@@ -29,19 +29,24 @@ inline constexpr int kBits = int(sizeof(T)) * 8;
   return count_ones(uint32_t(x)) + count_ones(uint32_t(x >> 32));
 }
 
-// Position of the highest one, ~0 for 0: fill with ones below it, then count.
+inline constexpr double kTwo52 = 4503599627370496.0;
+inline constexpr uint64_t kTwo52Bits = 0x4330'0000'0000'0000;
+// Exact, below 2^52: the number is the mantissa of a double from 2^52 on. The host must round to nearest (or up, or to
+// zero: rounding down makes a -0 of 0).
+[[gnu::always_inline]] inline double small_double(uint64_t x) {
+  return double_of(kTwo52Bits | x) - kTwo52;
+}
+
+// Position of the highest one, ~0 for 0: the exponent of the number as a double.
 [[gnu::always_inline]] inline uint32_t highest_one(uint32_t x) {
-  x |= x >> 1;
-  x |= x >> 2;
-  x |= x >> 4;
-  x |= x >> 8;
-  x |= x >> 16;
-  return count_ones(x) - 1;
+  const uint32_t at = uint32_t(double_bits(small_double(x)) >> 52) - 1023;
+  return x == 0 ? ~0u : at;
 }
 [[gnu::always_inline]] inline uint32_t highest_one(uint64_t x) {
-  const uint32_t high = uint32_t(x >> 32);
-  const uint32_t found = highest_one(high != 0 ? high : uint32_t(x));
-  return high != 0 ? found + 32 : found;
+  const uint64_t high = x >> 32;
+  const uint64_t exponent = double_bits(small_double(high != 0 ? high : x)) >> 52;
+  const uint64_t at = exponent - (high != 0 ? 1023 - 32 : 1023);
+  return uint32_t(x == 0 ? ~0ull : at);
 }
 
 [[gnu::always_inline]] inline uint32_t reversed(uint32_t x) {
@@ -57,51 +62,52 @@ inline constexpr int kBits = int(sizeof(T)) * 8;
 
 // Shifts by any count: from the width on, 0 (or copies of the sign).
 template <class T>
-[[gnu::always_inline]] inline T shifted_left(T x, uint32_t n) {
-  return n >= uint32_t(kBits<T>) ? T(0) : T(Wrapping<T>(x) << (n & (kBits<T> - 1)));
+[[gnu::always_inline]] inline T shifted_left(T x, Wrapping<T> n) {
+  return n >= Wrapping<T>(kBits<T>) ? T(0) : T(Wrapping<T>(x) << (n & (kBits<T> - 1)));
 }
 template <class T>
-[[gnu::always_inline]] inline T shifted_right(T x, uint32_t n) {
+[[gnu::always_inline]] inline T shifted_right(T x, Wrapping<T> n) {
   if constexpr (std::is_signed_v<T>)
-    return T(x >> (n >= uint32_t(kBits<T>) ? kBits<T> - 1 : int(n)));
+    return T(x >> (n >= Wrapping<T>(kBits<T>) ? Wrapping<T>(kBits<T> - 1) : n));
   else
-    return n >= uint32_t(kBits<T>) ? T(0) : T(x >> (n & (kBits<T> - 1)));
+    return n >= Wrapping<T>(kBits<T>) ? T(0) : T(x >> (n & (kBits<T> - 1)));
 }
 
 // n ones at the low end; n of the width or more: all.
 template <class T>
-[[gnu::always_inline]] inline T low_ones(uint32_t n) {
+[[gnu::always_inline]] inline T low_ones(Wrapping<T> n) {
   return T(shifted_left<T>(1, n) - 1);
 }
 
 // Position or length of a field. PTX ISA, bfe and bfi: the low 8 bits. As recorded that holds for 32 bits, while the
 // 64-bit forms take the whole number; all from 64 on mean the same.
 template <class T>
-[[gnu::always_inline]] inline uint32_t field_count(uint32_t n) {
-  if constexpr (sizeof(T) == 8) return n > 255 ? 255 : n;
-  return n & 0xff;
+[[gnu::always_inline]] inline Wrapping<T> field_count(uint32_t n) {
+  const Wrapping<T> count = n;
+  if constexpr (sizeof(T) == 8) return count > 255 ? Wrapping<T>(255) : count;
+  return count & 0xff;
 }
+// Shifts the field to the top and back, so that its sign or zeros fill the rest. A signed field that reaches past the
+// last bit has that bit as its sign.
 template <class T>
 [[gnu::always_inline]] inline T field(T a, uint32_t position, uint32_t length) {
-  return T(shifted_right(a, field_count<T>(position)) & low_ones<T>(field_count<T>(length)));
-}
-// The sign of a field that reaches past the last bit is that bit.
-template <class T>
-[[gnu::always_inline]] inline T signed_field(T a, uint32_t position, uint32_t length) {
-  using U = Unsigned<T>;
-  constexpr uint32_t kLast = kBits<T> - 1;
-  const uint32_t p = field_count<T>(position), n = field_count<T>(length);
-  const uint32_t last = p + n - 1 > kLast ? kLast : p + n - 1;  // n = 0: no bit remains of it, below
-  const U sign = U(0) - ((U(a) >> (last & kLast)) & 1);
-  const U from_a = low_ones<U>(n) & shifted_right(U(~U(0)), p);
-  const U bits = (shifted_right(U(a), p) & from_a) | (sign & ~from_a);
-  return n == 0 ? T(0) : T(bits);
+  using W = Wrapping<T>;
+  constexpr W kWidth = kBits<T>, kLast = kWidth - 1;
+  const W p = field_count<T>(position), n = field_count<T>(length);
+  const W above = p + n < kWidth ? kWidth - (p + n) : W(0);  // bits above the field
+  const W back = above + p < kLast ? above + p : kLast;
+  const T bits = T(T(W(a) << (above & kLast)) >> back);
+  const bool is_empty = n == 0 || (std::is_unsigned_v<T> && p > kLast);
+  return is_empty ? T(0) : bits;
 }
 template <class T>
 [[gnu::always_inline]] inline T inserted(T a, T b, uint32_t position, uint32_t length) {
-  const uint32_t p = field_count<T>(position);
-  const T mask = shifted_left(low_ones<T>(field_count<T>(length)), p);
-  return T((b & ~mask) | (shifted_left(a, p) & mask));
+  using W = Wrapping<T>;
+  constexpr W kLast = kBits<T> - 1;
+  const W p = field_count<T>(position), end = p + field_count<T>(length);
+  const W from = p > kLast ? W(0) : W(~W(0)) << (p & kLast), to = end > kLast ? W(0) : W(~W(0)) << (end & kLast);
+  const W mask = from & ~to;
+  return T((W(b) & ~mask) | ((W(a) << (p & kLast)) & mask));
 }
 
 // High 64 bits of a product, from products of halves.
@@ -125,50 +131,47 @@ template <class T>
   }
 }
 
-// Quotient of b > 0. The rounded quotient of doubles never reaches the integer above the true one: that lies 1/b or
-// more away, the rounding error is below 2^-21 / b. The magic number leaves the integer in the low mantissa bits.
-[[gnu::always_inline]] inline uint32_t quotient_of(uint32_t a, uint32_t b) {
-  constexpr double kTwo52 = 4503599627370496.0;
-  const double x = double_of(0x4330'0000'0000'0000ull | a) - kTwo52;
-  const double y = double_of(0x4330'0000'0000'0000ull | b) - kTwo52;
-  const double q = x / y;
+template <class T>
+struct Division {
+  T quotient, remainder;
+};
+// Of b > 0. The rounded quotient of doubles never reaches the integer above the true one: that lies 1/b or more away,
+// the rounding error is below 2^-21 / b. The sum leaves the integer in the low mantissa bits.
+[[gnu::always_inline]] inline Division<uint32_t> divided(uint32_t a, uint32_t b) {
+  const double q = small_double(a) / small_double(b);
   const double n = q + kTwo52;
-  return uint32_t(double_bits(n)) - (n - kTwo52 > q ? 1u : 0u);
+  const uint32_t quotient = uint32_t(double_bits(n)) - (n - kTwo52 > q ? 1u : 0u);
+  return {quotient, a - quotient * b};
 }
 // 16 bits in single precision: the same argument with an error below 2^-8 / b.
-[[gnu::always_inline]] inline uint16_t quotient_of(uint16_t a, uint16_t b) {
-  return uint16_t(int32_t(float(int32_t(a)) / float(int32_t(b))));
+[[gnu::always_inline]] inline Division<uint16_t> divided(uint16_t a, uint16_t b) {
+  const uint32_t quotient = uint32_t(int32_t(float(int32_t(a)) / float(int32_t(b))));
+  return {uint16_t(quotient), uint16_t(a - quotient * b)};
 }
 // Two steps with a reciprocal that is a little too small, so that no step goes too far: the first leaves a quotient
 // below 2^17, the second one of 0 or 1.
-[[gnu::always_inline]] inline uint64_t quotient_of(uint64_t a, uint64_t b) {
-  constexpr double kTwo52 = 4503599627370496.0;
+[[gnu::always_inline]] inline Division<uint64_t> divided(uint64_t a, uint64_t b) {
   const double reciprocal = 1.0 / double(b) * (1.0 - 0x1p-49);
   const uint64_t first = uint64_t(double(a) * reciprocal);
   const uint64_t rest = a - first * b;
   const double q = double(rest) * reciprocal;
   const double n = q + kTwo52;
   const uint64_t second = (double_bits(n) & 0xf'ffffu) - (n - kTwo52 > q ? 1u : 0u);
-  return first + second + (rest - second * b >= b ? 1u : 0u);
+  const uint64_t last = rest - second * b;
+  return {first + second + (last >= b ? 1u : 0u), last >= b ? last - b : last};
 }
 
 // As recorded on hardware, since PTX leaves it open: a division by 0 gives all ones, as quotient and as remainder; of
 // the lowest number by -1 the quotient is that number and the remainder 0.
 template <class T>
-[[gnu::always_inline]] inline T quotient(T a, T b) {
+[[gnu::always_inline]] inline Division<T> division(T a, T b) {
   using U = Unsigned<T>;
-  const U sign = std::is_signed_v<T> && ((a < 0) != (b < 0)) ? U(~U(0)) : U(0);
-  const U x = a < 0 ? U(U(0) - U(a)) : U(a), y = b < 0 ? U(U(0) - U(b)) : U(b);
-  const U q = quotient_of(x, b == 0 ? U(1) : y);
-  return b == 0 ? T(~U(0)) : T(U((q ^ sign) - sign));
-}
-template <class T>
-[[gnu::always_inline]] inline T remainder_of(T a, T b) {
-  using U = Unsigned<T>;
-  const U x = a < 0 ? U(U(0) - U(a)) : U(a), y = b < 0 ? U(U(0) - U(b)) : U(b);
-  const U q = quotient_of(x, b == 0 ? U(1) : y);
-  const U r = U(Wrapping<T>(x) - Wrapping<T>(q) * Wrapping<T>(y));
-  return b == 0 ? T(~U(0)) : a < 0 ? T(U(U(0) - r)) : T(r);
+  const U sign_a = a < 0 ? U(~U(0)) : U(0), sign_b = b < 0 ? U(~U(0)) : U(0);
+  const U x = U((U(a) ^ sign_a) - sign_a), y = U((U(b) ^ sign_b) - sign_b);
+  const Division<U> d = divided(x, b == 0 ? U(1) : y);
+  const U sign = sign_a ^ sign_b;
+  const T q = T(U((d.quotient ^ sign) - sign)), r = T(U((d.remainder ^ sign_a) - sign_a));
+  return {b == 0 ? T(~U(0)) : q, b == 0 ? T(~U(0)) : r};
 }
 
 }  // namespace glint::isa::GLINT_ISA_PATH

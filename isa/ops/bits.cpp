@@ -57,7 +57,7 @@ constexpr auto field_rows() {
     return value_op<T, uint32_t, uint32_t>(
         joined<"bfe", N::kName>, Unit::Int,
         "Extracts a field (value, position, length) and extends its sign; past the top that is the top bit.",
-        [](T a, uint32_t p, uint32_t n) { return signed_field(a, p, n); },
+        [](T a, uint32_t p, uint32_t n) { return field(a, p, n); },
         {{{0x1234'8678, 8, 8}, word(T(-122))},
          {{kOnes >> 1, kWidth - 4, 8}, 7},
          {{kOnes ^ (kOnes >> 1), kWidth + 8, 4}, kOnes},

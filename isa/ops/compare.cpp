@@ -1,90 +1,54 @@
-// Integer comparisons.
+// Comparisons of integers.
 // SPDX-License-Identifier: Apache-2.0
-#include "isa/op_makers.h"
+#include "isa/ops/comparisons.h"
 #include "isa/ops/families.h"
 
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
-constexpr OpRow kRows[] = {
-    binary<uint32_t>("setp.eq.u32", Unit::Int, "True where a == b, unsigned.",
-                     [](uint32_t a, uint32_t b) { return a == b; },
-                     {{{1, 1}, 1}, {{1, 0xffff'ffff}, 0}, {{0xffff'ffff, 1}, 0}}),
-    binary<uint32_t>("setp.ne.u32", Unit::Int, "True where a != b, unsigned.",
-                     [](uint32_t a, uint32_t b) { return a != b; },
-                     {{{1, 1}, 0}, {{1, 0xffff'ffff}, 1}, {{0xffff'ffff, 1}, 1}}),
-    binary<uint32_t>("setp.lt.u32", Unit::Int, "True where a < b, unsigned.",
-                     [](uint32_t a, uint32_t b) { return a < b; },
-                     {{{1, 1}, 0}, {{1, 0xffff'ffff}, 1}, {{0xffff'ffff, 1}, 0}}),
-    binary<uint32_t>("setp.le.u32", Unit::Int, "True where a <= b, unsigned.",
-                     [](uint32_t a, uint32_t b) { return a <= b; },
-                     {{{1, 1}, 1}, {{1, 0xffff'ffff}, 1}, {{0xffff'ffff, 1}, 0}}),
-    binary<uint32_t>("setp.gt.u32", Unit::Int, "True where a > b, unsigned.",
-                     [](uint32_t a, uint32_t b) { return a > b; },
-                     {{{1, 1}, 0}, {{1, 0xffff'ffff}, 0}, {{0xffff'ffff, 1}, 1}}),
-    binary<uint32_t>("setp.ge.u32", Unit::Int, "True where a >= b, unsigned.",
-                     [](uint32_t a, uint32_t b) { return a >= b; },
-                     {{{1, 1}, 1}, {{1, 0xffff'ffff}, 0}, {{0xffff'ffff, 1}, 1}}),
-    binary<int32_t>("setp.eq.s32", Unit::Int, "True where a == b, signed.",
-                    [](int32_t a, int32_t b) { return a == b; },
-                    {{{1, 1}, 1}, {{1, 0xffff'ffff}, 0}, {{0xffff'ffff, 1}, 0}}),
-    binary<int32_t>("setp.ne.s32", Unit::Int, "True where a != b, signed.",
-                    [](int32_t a, int32_t b) { return a != b; },
-                    {{{1, 1}, 0}, {{1, 0xffff'ffff}, 1}, {{0xffff'ffff, 1}, 1}}),
-    binary<int32_t>("setp.lt.s32", Unit::Int, "True where a < b, signed.",
-                    [](int32_t a, int32_t b) { return a < b; },
-                    {{{1, 1}, 0}, {{1, 0xffff'ffff}, 0}, {{0xffff'ffff, 1}, 1}}),
-    binary<int32_t>("setp.le.s32", Unit::Int, "True where a <= b, signed.",
-                    [](int32_t a, int32_t b) { return a <= b; },
-                    {{{1, 1}, 1}, {{1, 0xffff'ffff}, 0}, {{0xffff'ffff, 1}, 1}}),
-    binary<int32_t>("setp.gt.s32", Unit::Int, "True where a > b, signed.",
-                    [](int32_t a, int32_t b) { return a > b; },
-                    {{{1, 1}, 0}, {{1, 0xffff'ffff}, 1}, {{0xffff'ffff, 1}, 0}}),
-    binary<int32_t>("setp.ge.s32", Unit::Int, "True where a >= b, signed.",
-                    [](int32_t a, int32_t b) { return a >= b; },
-                    {{{1, 1}, 1}, {{1, 0xffff'ffff}, 1}, {{0xffff'ffff, 1}, 0}}),
-    binary<uint64_t>("setp.eq.u64", Unit::Int, "True where a == b, unsigned.",
-                     [](uint64_t a, uint64_t b) { return a == b; },
-                     {{{1, 1}, 1}, {{1, ~0ull}, 0}, {{~0ull, 1}, 0}}),
-    binary<uint64_t>("setp.ne.u64", Unit::Int, "True where a != b, unsigned.",
-                     [](uint64_t a, uint64_t b) { return a != b; },
-                     {{{1, 1}, 0}, {{1, ~0ull}, 1}, {{~0ull, 1}, 1}}),
-    binary<uint64_t>("setp.lt.u64", Unit::Int, "True where a < b, unsigned.",
-                     [](uint64_t a, uint64_t b) { return a < b; },
-                     {{{1, 1}, 0}, {{1, ~0ull}, 1}, {{~0ull, 1}, 0}}),
-    binary<uint64_t>("setp.le.u64", Unit::Int, "True where a <= b, unsigned.",
-                     [](uint64_t a, uint64_t b) { return a <= b; },
-                     {{{1, 1}, 1}, {{1, ~0ull}, 1}, {{~0ull, 1}, 0}}),
-    binary<uint64_t>("setp.gt.u64", Unit::Int, "True where a > b, unsigned.",
-                     [](uint64_t a, uint64_t b) { return a > b; },
-                     {{{1, 1}, 0}, {{1, ~0ull}, 0}, {{~0ull, 1}, 1}}),
-    binary<uint64_t>("setp.ge.u64", Unit::Int, "True where a >= b, unsigned.",
-                     [](uint64_t a, uint64_t b) { return a >= b; },
-                     {{{1, 1}, 1}, {{1, ~0ull}, 0}, {{~0ull, 1}, 1}}),
-    binary<int64_t>("setp.eq.s64", Unit::Int, "True where a == b, signed.",
-                    [](int64_t a, int64_t b) { return a == b; },
-                    {{{1, 1}, 1}, {{1, ~0ull}, 0}, {{~0ull, 1}, 0}}),
-    binary<int64_t>("setp.ne.s64", Unit::Int, "True where a != b, signed.",
-                    [](int64_t a, int64_t b) { return a != b; },
-                    {{{1, 1}, 0}, {{1, ~0ull}, 1}, {{~0ull, 1}, 1}}),
-    binary<int64_t>("setp.lt.s64", Unit::Int, "True where a < b, signed.",
-                    [](int64_t a, int64_t b) { return a < b; },
-                    {{{1, 1}, 0}, {{1, ~0ull}, 0}, {{~0ull, 1}, 1}}),
-    binary<int64_t>("setp.le.s64", Unit::Int, "True where a <= b, signed.",
-                    [](int64_t a, int64_t b) { return a <= b; },
-                    {{{1, 1}, 1}, {{1, ~0ull}, 0}, {{~0ull, 1}, 1}}),
-    binary<int64_t>("setp.gt.s64", Unit::Int, "True where a > b, signed.",
-                    [](int64_t a, int64_t b) { return a > b; },
-                    {{{1, 1}, 0}, {{1, ~0ull}, 1}, {{~0ull, 1}, 0}}),
-    binary<int64_t>("setp.ge.s64", Unit::Int, "True where a >= b, signed.",
-                    [](int64_t a, int64_t b) { return a >= b; },
-                    {{{1, 1}, 1}, {{1, ~0ull}, 1}, {{~0ull, 1}, 0}}),
+template <class N>
+struct Integer : N {
+  using Type = typename N::Type;
+  static constexpr auto kFlush = Text("");
+  static constexpr Unit kUnit = Unit::Int;
+  // For the examples: two that stand the other way round when the wrong signedness is taken.
+  static constexpr uint64_t kOne = std::is_signed_v<Type> ? word(Type(-1)) : 1;
+  static constexpr uint64_t kTwo = std::is_signed_v<Type> ? 1 : word(Type(-1));
+  [[gnu::always_inline]] static Type value(Type x) { return x; }
 };
+
+template <class N>
+constexpr auto equality_rows() {
+  return joined_rows(relation_rows<Relation<".eq", IsEqual, 0, 1, 0>, Integer<N>>("True where a == b."),
+                     relation_rows<Relation<".ne", IsNotEqual, 1, 0, 1>, Integer<N>>("True where a != b."));
+}
+template <class N>
+constexpr auto order_rows() {
+  return joined_rows(equality_rows<N>(),
+                     relation_rows<Relation<".lt", IsLess, 1, 0, 0>, Integer<N>>("True where a < b."),
+                     relation_rows<Relation<".le", IsLessOrEqual, 1, 1, 0>, Integer<N>>("True where a <= b."),
+                     relation_rows<Relation<".gt", IsGreater, 0, 0, 1>, Integer<N>>("True where a > b."),
+                     relation_rows<Relation<".ge", IsGreaterOrEqual, 0, 1, 1>, Integer<N>>("True where a >= b."));
+}
+// PTX's other names of the unsigned relations: lower, lower or same, higher, higher or same.
+template <class N>
+constexpr auto unsigned_rows() {
+  return joined_rows(order_rows<N>(),
+                     relation_rows<Relation<".lo", IsLess, 1, 0, 0>, Integer<N>>("True where a < b."),
+                     relation_rows<Relation<".ls", IsLessOrEqual, 1, 1, 0>, Integer<N>>("True where a <= b."),
+                     relation_rows<Relation<".hi", IsGreater, 0, 0, 1>, Integer<N>>("True where a > b."),
+                     relation_rows<Relation<".hs", IsGreaterOrEqual, 0, 1, 1>, Integer<N>>("True where a >= b."));
+}
+
+constexpr auto kRows = joined_rows(
+    rows_of_types<TypeB16, TypeB32, TypeB64>([]<class N>() { return equality_rows<N>(); }),
+    rows_of_types<TypeS16, TypeS32, TypeS64>([]<class N>() { return order_rows<N>(); }),
+    rows_of_types<TypeU16, TypeU32, TypeU64>([]<class N>() { return unsigned_rows<N>(); }));
 
 }  // namespace
 
 RowList compare_rows() {
-  return {kRows, std::size(kRows)};
+  return {kRows.data(), kRows.size()};
 }
 
 }  // namespace glint::isa::GLINT_ISA_PATH

@@ -11,16 +11,11 @@ namespace {
 constexpr uint32_t kSign = 0x8000'0000, kInfinity = 0x7f80'0000, kOne = 0x3f80'0000, kTwo = 0x4000'0000,
                    kHalf = 0x3f00'0000, kNan = kCanonicalNan;
 
-// A subnormal becomes a zero of its sign.
-inline float flushed(float x) {
-  return (float_bits(x) & kInfinity) == 0 ? float_of(float_bits(x) & kSign) : x;
-}
+// A subnormal becomes a zero of its sign where .ftz says so.
 template <bool kFtz>
 inline float taken(float x) {
-  if constexpr (kFtz)
-    return flushed(x);
-  else
-    return x;
+  const bool is_flushed = kFtz && (float_bits(x) & kInfinity) == 0;
+  return is_flushed ? float_of(float_bits(x) & kSign) : x;
 }
 // NaN and -0 become +0.
 inline float saturated(float x) {
@@ -28,17 +23,15 @@ inline float saturated(float x) {
   return x > 0.0f ? below : 0.0f;
 }
 
-// The work of a lane: flushes sources and result, and saturates the result or makes its NaN the canonical
-// one.
-template <class Op, bool kFtz, bool kSat>
+// The work of a lane: saturates the result, or makes its NaN the canonical one.
+template <class Op, bool kSat>
 struct Arithmetic {
   template <class... A>
   float operator()(A... a) const {
-    const float result = taken<kFtz>(Op{}(taken<kFtz>(a)...));
     if constexpr (kSat)
-      return saturated(result);
+      return saturated(Op{}(a...));
     else
-      return canonical(result);
+      return canonical(Op{}(a...));
   }
 };
 
@@ -156,10 +149,10 @@ struct SquareRoot {
 
 template <class Op, Round kRound, bool kFtz, bool kSat, class... A>
 constexpr OpRow arithmetic_row() {
-  return rounded_op<kRound, A...>(
+  return flushed_op<kRound, kFtz, A...>(
       joined<Op::kName, round_name<kRound>, when<kFtz, ".ftz">, when<kSat, ".sat">, ".f32">, Op::kUnit,
       joined<Op::kDoc, round_words<kRound>, when<kFtz, kFtzWords>, when<kSat, kSatWords>, ".">,
-      Arithmetic<Op, kFtz, kSat>{}, Op::examples({.round = kRound, .ftz = kFtz, .sat = kSat}));
+      Arithmetic<Op, kSat>{}, Op::examples({.round = kRound, .ftz = kFtz, .sat = kSat}));
 }
 // {.rn,.rz,.rm,.rp}{.ftz}, and {.sat} where PTX has it.
 template <class Op, class... A>
@@ -218,18 +211,15 @@ constexpr OpRow extreme_row() {
 template <bool kMax>
 constexpr auto extremes = generated<8>([](auto i) { return extreme_row<kMax, i / 4, i / 2 % 2, i % 2>(); });
 
-constexpr auto negate = [](float a) { return -a; };
-constexpr auto magnitude = [](float a) { return float_of(float_bits(a) & ~kSign); };
-
 template <bool kFtz>
 constexpr std::array<OpRow, 2> sign_rows = {
     unary<float>(
         joined<"neg", when<kFtz, ".ftz">, ".f32">, Unit::Fp32, joined<"Negates", when<kFtz, kFtzWords>, ".">,
-        Arithmetic<decltype(negate), kFtz, false>{},
+        [](float a) { return canonical(-taken<kFtz>(a)); },
         {{{kOne}, kOne | kSign}, {{0}, kSign}, {{0xffc0'0000}, kNan}, {{1}, kSign | (kFtz ? 0 : 1)}}),
     unary<float>(joined<"abs", when<kFtz, ".ftz">, ".f32">, Unit::Fp32,
                  joined<"Magnitude", when<kFtz, kFtzWords>, ".">,
-                 Arithmetic<decltype(magnitude), kFtz, false>{},
+                 [](float a) { return canonical(float_of(float_bits(taken<kFtz>(a)) & ~kSign)); },
                  {{{kOne | kSign}, kOne}, {{kSign}, 0}, {{0xffc0'0000}, kNan}, {{kSign | 1}, kFtz ? 0 : 1}})};
 
 constexpr std::array kClassRows = {
@@ -262,98 +252,11 @@ constexpr std::array kClassRows = {
                     {{{0}, 0}, {{1}, 1}, {{kSign | 0x007f'ffff}, 1}, {{0x0080'0000}, 0}}),
 };
 
-constexpr std::array kCompareRows = {
-    binary<float>("setp.eq.f32", Unit::Fp32, "True where a == b; false with a NaN.",
-                  [](float a, float b) { return a == b; },
-                  {{{0x3f80'0000, 0x4000'0000}, 0},
-                   {{0x4000'0000, 0x3f80'0000}, 0},
-                   {{0, 0x8000'0000}, 1},
-                   {{0x7fc0'0000, 0x3f80'0000}, 0},
-                   {{0x7fc0'0000, 0x7fc0'0000}, 0}}),
-    binary<float>("setp.equ.f32", Unit::Fp32, "True where a == b or one is a NaN.",
-                  [](float a, float b) { return !(a < b || a > b); },
-                  {{{0x3f80'0000, 0x4000'0000}, 0},
-                   {{0x4000'0000, 0x3f80'0000}, 0},
-                   {{0, 0x8000'0000}, 1},
-                   {{0x7fc0'0000, 0x3f80'0000}, 1},
-                   {{0x7fc0'0000, 0x7fc0'0000}, 1}}),
-    binary<float>("setp.ne.f32", Unit::Fp32, "True where a != b; false with a NaN.",
-                  [](float a, float b) { return a < b || a > b; },
-                  {{{0x3f80'0000, 0x4000'0000}, 1},
-                   {{0x4000'0000, 0x3f80'0000}, 1},
-                   {{0, 0x8000'0000}, 0},
-                   {{0x7fc0'0000, 0x3f80'0000}, 0},
-                   {{0x7fc0'0000, 0x7fc0'0000}, 0}}),
-    binary<float>("setp.neu.f32", Unit::Fp32, "True where a != b or one is a NaN.",
-                  [](float a, float b) { return !(a == b); },
-                  {{{0x3f80'0000, 0x4000'0000}, 1},
-                   {{0x4000'0000, 0x3f80'0000}, 1},
-                   {{0, 0x8000'0000}, 0},
-                   {{0x7fc0'0000, 0x3f80'0000}, 1},
-                   {{0x7fc0'0000, 0x7fc0'0000}, 1}}),
-    binary<float>("setp.lt.f32", Unit::Fp32, "True where a < b; false with a NaN.",
-                  [](float a, float b) { return a < b; },
-                  {{{0x3f80'0000, 0x4000'0000}, 1},
-                   {{0x4000'0000, 0x3f80'0000}, 0},
-                   {{0, 0x8000'0000}, 0},
-                   {{0x7fc0'0000, 0x3f80'0000}, 0},
-                   {{0x7fc0'0000, 0x7fc0'0000}, 0}}),
-    binary<float>("setp.ltu.f32", Unit::Fp32, "True where a < b or one is a NaN.",
-                  [](float a, float b) { return !(a >= b); },
-                  {{{0x3f80'0000, 0x4000'0000}, 1},
-                   {{0x4000'0000, 0x3f80'0000}, 0},
-                   {{0, 0x8000'0000}, 0},
-                   {{0x7fc0'0000, 0x3f80'0000}, 1},
-                   {{0x7fc0'0000, 0x7fc0'0000}, 1}}),
-    binary<float>("setp.le.f32", Unit::Fp32, "True where a <= b; false with a NaN.",
-                  [](float a, float b) { return a <= b; },
-                  {{{0x3f80'0000, 0x4000'0000}, 1},
-                   {{0x4000'0000, 0x3f80'0000}, 0},
-                   {{0, 0x8000'0000}, 1},
-                   {{0x7fc0'0000, 0x3f80'0000}, 0},
-                   {{0x7fc0'0000, 0x7fc0'0000}, 0}}),
-    binary<float>("setp.leu.f32", Unit::Fp32, "True where a <= b or one is a NaN.",
-                  [](float a, float b) { return !(a > b); },
-                  {{{0x3f80'0000, 0x4000'0000}, 1},
-                   {{0x4000'0000, 0x3f80'0000}, 0},
-                   {{0, 0x8000'0000}, 1},
-                   {{0x7fc0'0000, 0x3f80'0000}, 1},
-                   {{0x7fc0'0000, 0x7fc0'0000}, 1}}),
-    binary<float>("setp.gt.f32", Unit::Fp32, "True where a > b; false with a NaN.",
-                  [](float a, float b) { return a > b; },
-                  {{{0x3f80'0000, 0x4000'0000}, 0},
-                   {{0x4000'0000, 0x3f80'0000}, 1},
-                   {{0, 0x8000'0000}, 0},
-                   {{0x7fc0'0000, 0x3f80'0000}, 0},
-                   {{0x7fc0'0000, 0x7fc0'0000}, 0}}),
-    binary<float>("setp.gtu.f32", Unit::Fp32, "True where a > b or one is a NaN.",
-                  [](float a, float b) { return !(a <= b); },
-                  {{{0x3f80'0000, 0x4000'0000}, 0},
-                   {{0x4000'0000, 0x3f80'0000}, 1},
-                   {{0, 0x8000'0000}, 0},
-                   {{0x7fc0'0000, 0x3f80'0000}, 1},
-                   {{0x7fc0'0000, 0x7fc0'0000}, 1}}),
-    binary<float>("setp.ge.f32", Unit::Fp32, "True where a >= b; false with a NaN.",
-                  [](float a, float b) { return a >= b; },
-                  {{{0x3f80'0000, 0x4000'0000}, 0},
-                   {{0x4000'0000, 0x3f80'0000}, 1},
-                   {{0, 0x8000'0000}, 1},
-                   {{0x7fc0'0000, 0x3f80'0000}, 0},
-                   {{0x7fc0'0000, 0x7fc0'0000}, 0}}),
-    binary<float>("setp.geu.f32", Unit::Fp32, "True where a >= b or one is a NaN.",
-                  [](float a, float b) { return !(a < b); },
-                  {{{0x3f80'0000, 0x4000'0000}, 0},
-                   {{0x4000'0000, 0x3f80'0000}, 1},
-                   {{0, 0x8000'0000}, 1},
-                   {{0x7fc0'0000, 0x3f80'0000}, 1},
-                   {{0x7fc0'0000, 0x7fc0'0000}, 1}}),
-};
-
 constexpr auto kRows = rows_of(
     saturable<Add, float, float>, saturable<Subtract, float, float>, saturable<Multiply, float, float>,
     saturable<Fma, float, float, float>, saturable<Mad, float, float, float>,
     unsaturable<Divide, float, float>, unsaturable<Reciprocal, float>, unsaturable<SquareRoot, float>,
-    extremes<false>, extremes<true>, sign_rows<false>, sign_rows<true>, kClassRows, kCompareRows);
+    extremes<false>, extremes<true>, sign_rows<false>, sign_rows<true>, kClassRows);
 
 }  // namespace
 

@@ -76,12 +76,12 @@ constexpr auto quotient_rows() {
       binary<T>(joined<"div", N::kName>, Unit::IntDiv,
                 std::is_signed_v<T> ? "Quotient, towards 0; a division by 0 gives all ones, of the lowest number by -1 that number."
                                     : "Quotient; a division by 0 gives all ones.",
-                [](T a, T b) { return quotient(a, b); },
+                [](T a, T b) { return division(a, b).quotient; },
                 {{{7, 2}, 3}, {{7, 0}, kOnes}, {{word(T(-7)), word(T(-7))}, 1}, {{kHigh, kOnes}, kHigh}}),
       binary<T>(joined<"rem", N::kName>, Unit::IntDiv,
                 std::is_signed_v<T> ? "Remainder with the sign of the dividend; a division by 0 gives all ones."
                                     : "Remainder; a division by 0 gives all ones.",
-                [](T a, T b) { return remainder_of(a, b); },
+                [](T a, T b) { return division(a, b).remainder; },
                 {{{7, 2}, 1}, {{7, 0}, kOnes}, {{word(T(-7)), word(T(-7))}, 0}, {{kHigh, kOnes}, 0}}));
 }
 
