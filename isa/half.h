@@ -11,7 +11,7 @@
 
 namespace glint::isa::GLINT_ISA_PATH {
 
-inline constexpr uint16_t kCanonicalNan16 = 0x7fff;  // of f16 and bf16: PTX's NaN results
+inline constexpr uint32_t kCanonicalNan16 = 0x7fff;  // of f16 and bf16: PTX's NaN results
 
 [[gnu::always_inline]] inline bool is_nan(Half x) {
   return (x.bits & 0x7fffu) > 0x7c00u;
@@ -20,18 +20,15 @@ inline constexpr uint16_t kCanonicalNan16 = 0x7fff;  // of f16 and bf16: PTX's N
   return (x.bits & 0x7fffu) > 0x7f80u;
 }
 
-// Exact. Infinities stay; a NaN keeps sign and payload (its bits moved up by 13) and is not quieted.
+// The f16 in the upper half of a word, exactly: a multiplication moves the exponent from bias 15 to 127 and
+// makes subnormals normal (with flush to zero, zeros). A NaN keeps sign and payload and is not quieted.
+[[gnu::always_inline]] inline float float_of_upper_half(uint32_t word) {
+  const float moved = float_of(uint32_t(int32_t(word) >> 3) & 0x8fff'e000u) * 0x1p112f;
+  return float_of(float_bits(moved) | ((word & 0x7c00'0000u) == 0x7c00'0000u ? 0x7f80'0000u : 0u));
+}
+
 [[gnu::always_inline]] inline float to_float(Half x) {
-  const uint32_t bits = x.bits;
-  const uint32_t shifted = (bits & 0x7fffu) << 13;
-  // The exponent moves from bias 15 to 127. Subnormals: 2^-14 more makes them normal floats, and is taken
-  // off again; rounding down that leaves a -0.
-  const uint32_t normal = shifted + 0x3800'0000u;
-  const uint32_t subnormal =
-      float_bits(float_of(shifted + 0x3880'0000u) - float_of(0x3880'0000u)) & 0x7fff'ffffu;
-  const uint32_t finite = shifted < 0x0080'0000u ? subnormal : normal;
-  const uint32_t magnitude = shifted >= 0x0f80'0000u ? shifted + 0x7000'0000u : finite;
-  return float_of(magnitude | (bits & 0x8000u) << 16);
+  return float_of_upper_half(uint32_t(x.bits) << 16);
 }
 // Exact; the bits of a bf16 are the upper half of a float's.
 [[gnu::always_inline]] inline float to_float(Bfloat x) {
@@ -40,7 +37,7 @@ inline constexpr uint16_t kCanonicalNan16 = 0x7fff;  // of f16 and bf16: PTX's N
 
 // Rounds to nearest even, once, subnormal results too; from 65520 on infinity; NaN gives 0x7fff. The host
 // must round to nearest meanwhile.
-[[gnu::always_inline]] inline Half to_half(float x) {
+[[gnu::always_inline]] inline uint32_t half_bits(float x) {
   const uint32_t magnitude = float_bits(x) & 0x7fff'ffffu;
   const uint32_t sign = (float_bits(x) >> 16) & 0x8000u;
   // Half an f16 step less one, and one more where the last bit is odd: ties go to even. A carry moves into
@@ -50,13 +47,30 @@ inline constexpr uint16_t kCanonicalNan16 = 0x7fff;  // of f16 and bf16: PTX's N
   const uint32_t subnormal = float_bits(float_of(magnitude) + 0.5f) - 0x3f00'0000u;
   const uint32_t finite = magnitude < 0x3880'0000u ? subnormal : normal;
   const uint32_t number = (magnitude >= 0x4780'0000u ? 0x7c00u : finite) | sign;
-  return {uint16_t(magnitude > 0x7f80'0000u ? kCanonicalNan16 : number)};
+  return magnitude > 0x7f80'0000u ? kCanonicalNan16 : number;
 }
-// The same; a bf16's exponents are a float's, so a carry makes infinity and subnormals need no care.
-[[gnu::always_inline]] inline Bfloat to_bfloat(float x) {
+// The same with subnormal results flushed: those below 2^-14 - 2^-26, which f16 with an unbounded exponent
+// would round to less than 2^-14.
+[[gnu::always_inline]] inline uint32_t flushed_half_bits(float x) {
+  const uint32_t magnitude = float_bits(x) & 0x7fff'ffffu;
+  const uint32_t sign = (float_bits(x) >> 16) & 0x8000u;
+  const uint32_t normal = (magnitude - 0x3800'0000u + 0x0fffu + ((magnitude >> 13) & 1u)) >> 13;
+  const uint32_t finite = magnitude < 0x387f'f000u ? 0u : normal;
+  const uint32_t number = (magnitude >= 0x4780'0000u ? 0x7c00u : finite) | sign;
+  return magnitude > 0x7f80'0000u ? kCanonicalNan16 : number;
+}
+// A bf16's exponents are a float's, so a carry makes infinity, and subnormals need no care.
+[[gnu::always_inline]] inline uint32_t bfloat_bits(float x) {
   const uint32_t bits = float_bits(x);
   const uint32_t rounded = (bits + 0x7fffu + ((bits >> 16) & 1u)) >> 16;
-  return {uint16_t((bits & 0x7fff'ffffu) > 0x7f80'0000u ? kCanonicalNan16 : rounded)};
+  return (bits & 0x7fff'ffffu) > 0x7f80'0000u ? kCanonicalNan16 : rounded;
+}
+
+[[gnu::always_inline]] inline Half to_half(float x) {
+  return {uint16_t(half_bits(x))};
+}
+[[gnu::always_inline]] inline Bfloat to_bfloat(float x) {
+  return {uint16_t(bfloat_bits(x))};
 }
 
 }  // namespace glint::isa::GLINT_ISA_PATH

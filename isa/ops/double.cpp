@@ -22,12 +22,15 @@ inline double quiet(double nan) {
 }
 // The result, or where it is a NaN, the NaN source that wins, with sign and payload; without one
 // 0xfff8000000000000. Hosts differ in which one they hand on, so it is chosen here.
-template <class... Sources>
-inline double with_nan(double result, Sources... strongest_first) {
-  double out = is_nan(result) ? double_of(kDefaultNan) : result;
-  const double sources[] = {strongest_first...};
-  for (size_t i = sizeof...(Sources); i-- > 0;) out = is_nan(sources[i]) ? quiet(sources[i]) : out;
-  return out;
+inline double with_nan(double result, double only) {
+  const double nan = is_nan(only) ? quiet(only) : double_of(kDefaultNan);
+  return is_nan(result) ? nan : result;
+}
+inline double with_nan(double result, double strong, double weak) {
+  return with_nan(result, is_nan(strong) ? strong : weak);
+}
+inline double with_nan(double result, double strongest, double strong, double weak) {
+  return with_nan(result, strongest, is_nan(strong) ? strong : weak);
 }
 
 struct Add {
@@ -76,12 +79,14 @@ struct Multiply {
 struct MultiplyAdd {
   static constexpr Text kDoc = "Multiplies and adds, rounding once";
   static constexpr Unit kUnit = Unit::Fp64;
-  double operator()(double a, double b, double c) const { return with_nan(__builtin_fma(a, b, c), c, b, a); }
+  double operator()(double a, double b, double c) const { return with_nan(__builtin_fma(a, b, c), b, c, a); }
   static constexpr Examples examples(Round round) {
     return {{{kOne + 1, kOne + 1, (kOne + 2) | kSign}, 0x3970'0000'0000'0000},
             {{kOne, kOne, kTiny}, round == Round::Up ? kOne + 1 : kOne},
             {{kInfinity, 0, 0}, kDefaultNan},
-            {{kInfinity, 0, kNan}, kNan}};
+            {{kInfinity, 0, kNan}, kNan},
+            {{kNan, kSignaling, kNan}, kSignaling | kQuiet},
+            {{kNan, 0, kSignaling}, kSignaling | kQuiet}};
   }
 };
 struct Fma : MultiplyAdd {

@@ -9,18 +9,26 @@
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
-constexpr uint32_t kSign = 0x8000, kNan = kCanonicalNan16;
+constexpr uint32_t kSign = 0x8000, kNan = kCanonicalNan16;  // as 16 bits
 
-// What the rows below need to know of a format.
+inline uint32_t all_ones_if_negative(uint32_t x) {
+  return uint32_t(int32_t(x) >> 31);
+}
+
+// What the rows below need to know of a format. Sources come in the upper half of a word, results leave in
+// the lower.
 struct F16 {
-  using Type = Half;
   static constexpr Text kName = ".f16";
   static constexpr bool kHasFtz = true;
   static constexpr uint32_t kInfinity = 0x7c00, kOne = 0x3c00, kTwo = 0x4000, kHalf = 0x3800;
   static constexpr uint32_t kSmallest = 0x0400;  // normal
   static constexpr uint32_t kHalfUlp = 0x1000;   // of 1
   static constexpr uint32_t kTied = 0x3be0, kAboveTie = 0x3bc1;
-  static Half narrow(float x) { return to_half(x); }
+  static float widen(uint32_t upper) { return float_of_upper_half(upper); }
+  template <bool kFtz>
+  static uint32_t narrow(float x) {
+    return kFtz ? flushed_half_bits(x) : half_bits(x);
+  }
 
   // fma to odd: as if rounded toward zero, with the last bit set where that was not exact; so that rounding
   // again, to fewer bits, rounds right (Boldo and Melquiond 2008, "Emulation of FMA and correctly rounded
@@ -42,14 +50,17 @@ struct F16 {
   }
 };
 struct Bf16 {
-  using Type = Bfloat;
   static constexpr Text kName = ".bf16";
   static constexpr bool kHasFtz = false;  // .ftz and .sat
   static constexpr uint32_t kInfinity = 0x7f80, kOne = 0x3f80, kTwo = 0x4000, kHalf = 0x3f00;
   static constexpr uint32_t kSmallest = 0x0080;  // normal
   static constexpr uint32_t kHalfUlp = 0x3b80;   // of 1
   static constexpr uint32_t kTied = 0x3f28, kAboveTie = 0x3edd;
-  static Bfloat narrow(float x) { return to_bfloat(x); }
+  static float widen(uint32_t upper) { return float_of(upper & 0xffff'0000u); }
+  template <bool>
+  static uint32_t narrow(float x) {
+    return bfloat_bits(x);
+  }
 
   // As above, but the product may leave the range of single precision. So the larger of product and addend is
   // taken from the sum first (Dekker's fast two-sum), the product within an fma, where it has any range.
@@ -61,15 +72,6 @@ struct Bf16 {
     return F16::to_odd(sum, is_product_larger ? rest : other);
   }
 };
-
-// A subnormal becomes a zero of its sign.
-template <class Format, bool kFtz, class T = typename Format::Type>
-inline T taken(T x) {
-  if constexpr (kFtz)
-    return {uint16_t((x.bits & Format::kInfinity) == 0 ? x.bits & kSign : x.bits)};
-  else
-    return x;
-}
 
 // Sums, differences and products: single precision has so many bits that rounding twice is rounding once
 // (Figueroa 1995, "When is double rounding innocuous?").
@@ -145,58 +147,78 @@ struct Fma {
   }
 };
 
-// The work of a lane.
+// The work of a lane; the host flushes subnormal sources of .ftz (they are subnormal floats before the
+// multiplication of float_of_upper_half).
 template <class Format, class Op, bool kFtz, bool kSat, bool kRelu>
 struct Arithmetic {
-  template <class... T>
-  typename Format::Type operator()(T... a) const {
-    const float result = Op::template of<Format>(to_float(taken<Format, kFtz>(a))...);
-    const uint32_t bits = taken<Format, kFtz>(Format::narrow(result)).bits;
-    const uint32_t positive = (bits & kSign) != 0 ? 0 : bits;  // the NaN has no sign
-    if constexpr (kSat) {
-      const uint32_t clamped = positive > Format::kOne ? Format::kOne : positive;
-      return {uint16_t(positive == kNan ? 0 : clamped)};
-    }
-    return {uint16_t(kRelu ? positive : bits)};
+  template <class... A>
+  uint32_t operator()(A... upper) const {
+    const float result = Op::template of<Format>(Format::widen(upper)...);
+    const uint32_t bits = Format::template narrow<kFtz>(result);
+    // Masks, not selections: those the compiler would turn into branches, and the loop would stay scalar.
+    const uint32_t positive = bits & ~all_ones_if_negative(bits << 16);  // the NaN has no sign
+    const uint32_t clamped = positive < Format::kOne ? positive : Format::kOne;
+    if constexpr (kSat) return clamped & all_ones_if_negative(positive - kNan);
+    return kRelu ? positive : bits;
   }
 };
+
+// A subnormal becomes a zero of its sign where .ftz says so. Upper half to upper half.
+template <class Format, bool kFtz>
+inline uint32_t taken(uint32_t upper) {
+  const uint32_t exponent = upper & Format::kInfinity << 16;
+  const uint32_t flushed = kFtz ? all_ones_if_negative(exponent - 1) : 0;  // exponent 0
+  return upper & (~flushed | kSign << 16) & 0xffff'0000u;
+}
+template <class Format>
+inline bool is_nan_upper(uint32_t upper) {
+  return (upper & 0x7fff'0000u) > Format::kInfinity << 16;
+}
+// Signed integers in two's complement order like the floats, -0 before +0.
+inline int32_t ordered(uint32_t upper) {
+  const int32_t bits = int32_t(upper);
+  return bits ^ ((bits >> 31) & 0x7fff'ffff);
+}
 
 // min and max. Without .NaN a number wins against a NaN. .xorsign.abs compares magnitudes, and the result's
 // sign is the product of the sources' signs, those of NaNs included.
-template <class Format, bool kMax, bool kFtz, bool kNanWins, bool kXorsign, class T = typename Format::Type>
+template <class Format, bool kMax, bool kFtz, bool kNanWins, bool kXorsign>
 struct Extreme {
-  static int32_t ordered(uint32_t x) {  // as the floats are; -0 before +0
-    return (x & kSign) != 0 ? -int32_t(x & 0x7fff) - 1 : int32_t(x);
-  }
-  T operator()(T x, T y) const {
-    const uint32_t keep = kXorsign ? 0x7fff : 0xffff;
-    const uint32_t a = taken<Format, kFtz>(x).bits & keep, b = taken<Format, kFtz>(y).bits & keep;
+  uint32_t operator()(uint32_t x, uint32_t y) const {
+    const uint32_t keep = kXorsign ? 0x7fff'0000u : 0xffff'0000u;
+    const uint32_t a = taken<Format, kFtz>(x) & keep, b = taken<Format, kFtz>(y) & keep;
     const bool is_first = kMax ? ordered(a) > ordered(b) : ordered(a) < ordered(b);
-    const bool is_a_nan = (a & 0x7fff) > Format::kInfinity, is_b_nan = (b & 0x7fff) > Format::kInfinity;
+    const bool is_a_nan = is_nan_upper<Format>(a), is_b_nan = is_nan_upper<Format>(b);
     const uint32_t number = is_first ? a : b;
-    const uint32_t one = is_a_nan ? b : number;
-    const uint32_t result = is_b_nan ? a : one;
-    const uint32_t sign = kXorsign ? (x.bits ^ y.bits) & kSign : 0;
-    const bool is_nan = kNanWins ? is_a_nan || is_b_nan : is_a_nan && is_b_nan;
-    return {uint16_t(is_nan ? kNan : result ^ sign)};
+    const uint32_t with_a = is_a_nan ? (kNanWins ? a : b) : number;
+    const uint32_t result = is_b_nan ? (kNanWins ? b : a) : with_a;
+    const uint32_t sign = kXorsign ? (x ^ y) & kSign << 16 : 0;
+    return is_nan_upper<Format>(result) ? kNan : (result ^ sign) >> 16;
   }
 };
 
-template <class Format, bool kAbs, bool kFtz, class T = typename Format::Type>
+template <class Format, bool kAbs, bool kFtz>
 struct Sign {
-  T operator()(T x) const {
-    const uint32_t bits = taken<Format, kFtz>(x).bits;
-    const uint32_t result = kAbs ? bits & 0x7fff : bits ^ kSign;
-    return {uint16_t((bits & 0x7fff) > Format::kInfinity ? kNan : result)};
+  uint32_t operator()(uint32_t x) const {
+    const uint32_t bits = taken<Format, kFtz>(x);
+    const uint32_t result = kAbs ? bits & 0x7fff'0000u : bits ^ kSign << 16;
+    return is_nan_upper<Format>(bits) ? kNan : result >> 16;
   }
 };
 
-// The same of both halves of a register.
+// A source is the lower half of a register, or both are, and so is the result.
+template <class F>
+struct Lower {
+  template <class... A>
+  uint32_t operator()(A... word) const {
+    return F{}(word << 16 ...);
+  }
+};
 template <class F>
 struct Both {
-  template <class... P>
-  auto operator()(P... p) const {
-    return Pair<decltype(F{}(p.low...))>{F{}(p.low...), F{}(p.high...)};
+  template <class... A>
+  uint32_t operator()(A... word) const {
+    return F{}(word << 16 ...) | F{}(word...) << 16;
   }
 };
 constexpr Examples paired(const Examples& of_one) {
@@ -210,14 +232,12 @@ constexpr Examples paired(const Examples& of_one) {
 }
 
 // A row of `kSources` sources of the format, or of pairs of it.
-template <class Format, bool kPair, size_t kSources, class F>
-constexpr OpRow row(std::string_view name, std::string_view doc, F f, const Examples& examples) {
-  using T = std::conditional_t<kPair, Pair<typename Format::Type>, typename Format::Type>;
+template <bool kPair, bool kFtz, size_t kSources, class F>
+constexpr OpRow row(std::string_view name, std::string_view doc, F, const Examples& examples) {
+  using Lane = std::conditional_t<kPair, Both<F>, Lower<F>>;
   return [&]<size_t... I>(std::index_sequence<I...>) {
-    if constexpr (kPair)
-      return value_op<decltype((void(I), T{}))...>(name, Unit::Fp16, doc, Both<F>{}, paired(examples));
-    else
-      return value_op<decltype((void(I), T{}))...>(name, Unit::Fp16, doc, f, examples);
+    return flushed_op<Round::Nearest, kFtz, decltype((void(I), uint32_t{}))...>(
+        name, Unit::Fp16, doc, Lane{}, kPair ? paired(examples) : examples);
   }
   (std::make_index_sequence<kSources>{});
 }
@@ -228,7 +248,7 @@ constexpr auto pair_words = when<kPair, ", in each half of a register">;
 
 template <class Format, bool kPair, class Op, bool kFtz, bool kSat, bool kRelu>
 constexpr OpRow arithmetic_row() {
-  return row<Format, kPair, Op::kSources>(
+  return row<kPair, kFtz, Op::kSources>(
       joined<Op::kName, ".rn", when<kFtz, ".ftz">, when<kSat, ".sat">, when<kRelu, ".relu">,
              suffix<Format, kPair>>,
       joined<Op::kDoc, pair_words<kPair>, round_words<Round::Nearest>, when<kFtz, kFtzWords>,
@@ -251,7 +271,7 @@ constexpr OpRow extreme_row() {
   constexpr uint32_t kOne = Format::kOne, kOther = kNanWins ? kNan : kOne, kSmall = kFtz ? 0 : 1;
   constexpr uint32_t kZeros = kMax && !kXorsign ? 0 : kSign;
   constexpr uint32_t kSigned = kXorsign || !kMax ? kSign | kSmall : kSmall;
-  return row<Format, kPair, 2>(
+  return row<kPair, false, 2>(
       joined<when<kMax, "max">, when<!kMax, "min">, when<kFtz, ".ftz">, when<kNanWins, ".NaN">,
              when<kXorsign, ".xorsign.abs">, suffix<Format, kPair>>,
       joined<when<kMax, "The larger">, when<!kMax, "The smaller">,
@@ -275,7 +295,7 @@ template <class Format, bool kPair, bool kAbs>
 constexpr auto sign_rows = generated<Format::kHasFtz ? 2 : 1>([](auto i) {
   constexpr bool kFtz = i == 1;
   constexpr uint32_t kOne = Format::kOne, kSmall = kFtz ? 0 : 1, kFlip = kAbs ? 0 : kSign;
-  return row<Format, kPair, 1>(
+  return row<kPair, false, 1>(
       joined<when<kAbs, "abs">, when<!kAbs, "neg">, when<kFtz, ".ftz">, suffix<Format, kPair>>,
       joined<when<kAbs, "Magnitude">, when<!kAbs, "Negates">, pair_words<kPair>, when<kFtz, kFtzWords>, ".">,
       Sign<Format, kAbs, kFtz>{},
