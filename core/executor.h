@@ -7,6 +7,7 @@
 
 #include "base/probe.h"
 #include "core/image.h"
+#include "core/texel_list.h"
 #include "core/warp_context.h"
 #include "isa/op_row.h"
 
@@ -28,9 +29,15 @@ struct Issued {
   LaneMask lanes = 0;      // that executed it (active and guard)
   LaneMask active = 0;     // that were running
   // Loads, stores, texture and surface ops: the addresses are in warp.regs.access until the next execute().
-  // Texture ops read the four texels of texels(); for surface ops address[lane] is the texel's. Shader calls:
+  // Texture and surface ops touched texels(). Shader calls:
   // address[lane] is the binding-table record of each lane that called, `lanes` those lanes.
   bool finished = false;   // the warp has ended
+};
+
+// Where a machine has put a warp, as its program may ask: %warpid, %nwarpid, %smid, %nsmid.
+struct Seat {
+  uint32_t slot = 0, slots = 1;  // of the core
+  uint32_t core = 0, cores = 1;
 };
 
 // One instruction that a warp has executed, for whoever listens: co-simulation, traces.
@@ -43,11 +50,21 @@ class Executor {
  public:
   Probe<Retired> retired;
 
-  explicit Executor(const World& world);
+  // `clock_mhz` turns cycles into the time that programs read; 0: they read 0.
+  explicit Executor(const World& world, double clock_mhz = 0.0);
 
-  // Puts warp `warp_index` of the launch into `warp`, at the entry of the ray generation (or compute) shader.
+  uint32_t num_blocks() const;
+  uint32_t warps_per_block() const;  // 1 in a launch without blocks
+  uint32_t num_warps() const { return num_blocks() * warps_per_block(); }
+
+  // Empties `block` for block `index` of the launch: zeroed shared memory, no warp has arrived anywhere. Blocks are
+  // numbered x fastest.
+  void start(Block& block, uint32_t index) const;
+  // Puts a warp of the block into `warp`, at the entry of the ray generation (or compute) shader. Neither may move
+  // until the warp has ended.
+  void start(WarpContext& warp, Block& block, uint32_t warp_in_block, const Seat& seat = {}) const;
+  // In a launch without blocks: puts warp `warp_index` into `warp`, as a block of its own.
   void start(WarpContext& warp, uint32_t warp_index) const;
-  uint32_t num_warps() const;
 
   // The instruction that execute() would run next.
   const isa::Inst& next(const WarpContext& warp) const { return world_.image->code[warp.simt.pc]; }
@@ -55,6 +72,8 @@ class Executor {
 
   // Runs one instruction to its end, but rt.trace, rt.resume and rq.proceed: those leave `warp.waiting_for_rays` set, the
   // machine traverses warp.rays[lane] for the lanes that are Traversing, then calls finish_rays.
+  // A bar.* that has to wait leaves `warp.waiting_at_barrier` set: the warp may be executed again when another warp of
+  // its block has come or ended, and cleared it.
   Issued execute(WarpContext& warp, Cycle now);
   // Writes the answer predicate of the waiting rt.trace or rt.resume.
   void finish_rays(WarpContext& warp) const;
@@ -62,8 +81,12 @@ class Executor {
   // Set when an execute() faulted; the warp is left as it was before the instruction.
   const std::optional<Fault>& fault() const { return fault_; }
 
-  // Four texel addresses (virtual) a lane of the last texture op; fewer distinct at borders.
-  const std::array<std::array<Address, kLanes>, 4>& texels() const { return texels_; }
+  // Of the last texture or surface op; empty when it needed no memory.
+  const TexelList& texels() const { return texels_; }
+
+  // Of the last load, store or atomic: the lanes whose access went to that space. Their Access::address is then an
+  // address of the space, of generic accesses too.
+  LaneMask lanes_in(isa::Space space) const { return lanes_in_[size_t(space)]; }
 
   const World& world() const { return world_; }
 
@@ -74,12 +97,28 @@ class Executor {
   bool run_rays(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
   bool run_control(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
 
-  bool load_global(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
-  bool store_global(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
-  bool access_local(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, bool store);
-  bool load_constant(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
-  bool sample(WarpContext& warp, const isa::Inst& inst);
-  bool access_surface(WarpContext& warp, const isa::Inst& inst, bool store);
+  bool run_barrier(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
+  bool branch(WarpContext& warp, uint32_t target);
+  bool branch_indexed(WarpContext& warp, const isa::Inst& inst);
+  bool call_function(WarpContext& warp, uint32_t target);
+  bool return_from(WarpContext& warp, isa::Effect effect);
+  bool end_warp(WarpContext& warp);
+  bool check_barrier(WarpContext& warp, uint32_t barrier, uint32_t threads);
+  void open_barrier(Block& block, uint32_t barrier);
+  bool fail_stuck(const Block& block);
+
+  bool access(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space, LaneMask lanes);
+  bool locate(WarpContext& warp, const isa::OpRow& row, isa::Space space, LaneMask lanes, std::array<std::byte*, kLanes>& at);
+  bool move_data(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space, LaneMask lanes);
+  bool modify(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space, LaneMask lanes);
+  bool access_local(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes);
+  bool load_constant(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space, LaneMask lanes);
+  bool texture(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
+  bool query_image(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
+  bool surface(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
+  const ImageView* find_image(WarpContext& warp, const isa::OpRow& row, int lane);
+  const Sampler& find_sampler(const ImageView& image, Address handle) const;
+  std::byte* find_texel(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, int lane);
   bool trace(WarpContext& warp, const isa::Inst& inst);
   bool report(WarpContext& warp, const isa::Inst& inst);
   bool run_query(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
@@ -93,18 +132,23 @@ class Executor {
   void leave(WarpContext& warp, LaneMask lanes);
   void resume_if_empty(WarpContext& warp);
   void fill_specials(WarpContext& warp, LaneMask lanes, const Shader& shader) const;
+  void fill_launch_specials(WarpContext& warp, const Seat& seat) const;
+  void fill_clock(WarpContext& warp, Cycle now) const;
   bool fail(WarpContext& warp, int lane, std::string what);
 
   const World& world_;
-  const bool reads_clock_;  // any shader does: its row is filled before each instruction
+  const bool reads_clock_;  // any shader does: its rows are filled before each instruction
+  const double clock_mhz_;
+  std::array<LaneMask, size_t(isa::Space::Generic) + 1> lanes_in_{};
   std::optional<Fault> fault_;
-  std::array<std::array<Address, kLanes>, 4> texels_{};
+  TexelList texels_;
 };
 
 // The fault of a warp that has run for longer than any real one, at the instruction `pc`.
 Fault no_end_in_sight(const World& world, const WarpContext& warp, uint32_t pc, uint64_t instruction_budget);
 
-// Launch coordinates of a lane of a warp: x runs fastest.
+// Launch coordinates of a lane of a warp: x runs fastest, in a launch with blocks within the block.
 std::array<uint32_t, 3> launch_id(const World& world, uint32_t warp_index, int lane);
+uint32_t warps_per_block(const World& world);
 
 }  // namespace glint::core

@@ -1,4 +1,4 @@
-// Loads and stores: moving data between a warp's registers and simulated memory, with every access checked.
+// Loads, stores and atomics: moving data between a warp's registers and simulated memory, with every access checked.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
@@ -6,12 +6,25 @@
 
 #include "base/check.h"
 #include "core/executor.h"
+#include "isa/generic_address.h"
 
 namespace glint::core {
+
+using isa::Effect;
+using isa::Space;
+
 namespace {
 
 // Slot of the first value operand: loads write from slot 0, stores read after the address.
 constexpr size_t kLoadFirst = 0, kStoreFirst = 1;
+
+std::string_view verb_of(Effect effect) {
+  return effect == Effect::Load ? "reads" : effect == Effect::Store ? "writes" : "changes";
+}
+std::string_view name_of(Space space) {
+  constexpr std::string_view kNames[] = {"", "global", "local", "shared", "constant", "parameter", "generic"};
+  return kNames[size_t(space)];
+}
 
 uint32_t narrow(const std::byte* from, const isa::Memory& shape) {
   uint32_t value = 0;
@@ -20,115 +33,202 @@ uint32_t narrow(const std::byte* from, const isa::Memory& shape) {
   return shape.bytes == 1 ? uint32_t(int32_t(int8_t(value))) : uint32_t(int32_t(int16_t(value)));
 }
 
-// Words of 32 bits that an access moves a lane; 0 for parts narrower than a word.
-uint32_t words_of(const isa::Memory& shape) { return shape.bytes * shape.count / 4u; }
+// Registers that an access fills or reads a lane: one a part, two for parts of 8 bytes.
+uint32_t rows_of(const isa::Memory& shape) { return shape.bytes == 8 ? 2u * shape.count : shape.count; }
+// Bytes of each in memory.
+uint32_t row_bytes(const isa::Memory& shape) { return shape.bytes == 8 ? 4u : shape.bytes; }
+// Register row of row `row`: a pair for 64-bit values, any registers for vectors.
+isa::Slot slot_of(const isa::Inst& inst, const isa::Memory& shape, size_t first, uint32_t row) {
+  return shape.bytes == 8 ? isa::Slot(inst.operand[first] + row) : inst.operand[first + row];
+}
 
-// Register row of word `word`: a pair for 64-bit values, any registers for vectors.
-isa::Slot slot_of(const isa::Inst& inst, const isa::Memory& shape, size_t first, uint32_t word) {
-  return shape.bytes == 8 ? isa::Slot(inst.operand[first + word / 2] + word % 2) : inst.operand[first + word];
+void load_rows(WarpContext& warp, const isa::Inst& inst, const isa::Memory& shape, LaneMask lanes,
+               const std::array<std::byte*, kLanes>& from) {
+  const uint32_t bytes = row_bytes(shape);
+  for (uint32_t row = 0; row < rows_of(shape); ++row) {
+    uint32_t* to = warp.regs.write(slot_of(inst, shape, kLoadFirst, row));
+    if (bytes == 4)
+      for_each_lane(lanes, [&](int lane) { std::memcpy(to + lane, from[size_t(lane)] + row * 4, 4); });
+    else
+      for_each_lane(lanes, [&](int lane) { to[lane] = narrow(from[size_t(lane)] + row * bytes, shape); });
+  }
+}
+
+// Lane by lane: where two lanes write one place, the higher lane's value stays. Choice: PTX leaves it open.
+void store_rows(const WarpContext& warp, const isa::Inst& inst, const isa::Memory& shape, LaneMask lanes,
+                const std::array<std::byte*, kLanes>& to) {
+  const uint32_t bytes = row_bytes(shape);
+  for_each_lane(lanes, [&](int lane) {
+    for (uint32_t row = 0; row < rows_of(shape); ++row)
+      std::memcpy(to[size_t(lane)] + row * bytes, warp.regs.read(slot_of(inst, shape, kStoreFirst, row)) + lane, bytes);
+  });
+}
+
+uint64_t read_operand(const isa::Warp& regs, isa::Slot slot, int lane, uint32_t bytes) {
+  const uint32_t* const low = regs.read(slot);
+  if (bytes == 8) return low[lane] | uint64_t(low[kLanes + lane]) << 32;
+  return bytes == 2 ? low[lane] & 0xffffu : low[lane];
 }
 
 }  // namespace
 
 bool Executor::run_memory(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
-  GLINT_CHECK(row.effect != isa::Effect::Atomic, "{}: atomics are not executed yet", row.name);
   row.run(warp.regs, inst);
-  const bool store = row.effect == isa::Effect::Store;
-  bool ok = false;
-  switch (row.memory.space) {
-    case isa::Space::Global: ok = store ? store_global(warp, inst, row) : load_global(warp, inst, row); break;
-    case isa::Space::Local: ok = access_local(warp, inst, row, store); break;
-    case isa::Space::Const: ok = load_constant(warp, inst, row); break;
-    case isa::Space::Shared:
-    case isa::Space::Param:
-    case isa::Space::Generic:
-    case isa::Space::None: GLINT_PANIC("{}: no such space", row.name);
+  lanes_in_.fill(0);
+  const LaneMask exec = warp.regs.exec;
+  bool ok = true;
+  if (row.memory.space != Space::Generic) {
+    lanes_in_[size_t(row.memory.space)] = exec;
+    ok = access(warp, inst, row, row.memory.space, exec);
+  } else {
+    auto& address = warp.regs.access.address;
+    for_each_lane(exec, [&](int lane) {
+      const Space space = isa::space_of(address[size_t(lane)]);
+      lanes_in_[size_t(space)] |= LaneMask{1} << lane;
+      address[size_t(lane)] -= isa::window_of(space);
+    });
+    for (const Space space : {Space::Global, Space::Shared, Space::Local, Space::Const})
+      ok = ok && access(warp, inst, row, space, lanes_in(space));
   }
   if (ok) ++warp.simt.pc;
   return ok;
 }
 
-bool Executor::load_global(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
-  const isa::Memory& shape = row.memory;
-  const uint32_t bytes = shape.bytes * shape.count, words = words_of(shape);
-  std::array<const std::byte*, kLanes> from;
-  for (LaneMask lanes = warp.regs.exec; lanes; lanes &= lanes - 1) {
+bool Executor::access(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, Space space, LaneMask lanes) {
+  if (lanes == 0) return true;
+  switch (space) {
+    case Space::Global:
+    case Space::Shared:
+      return row.effect == Effect::Atomic ? modify(warp, inst, row, space, lanes) : move_data(warp, inst, row, space, lanes);
+    case Space::Local:
+      if (row.effect != Effect::Atomic) return access_local(warp, inst, row, lanes);
+      return fail(warp, std::countr_zero(lanes), "an atomic on local memory, which no other thread can reach");
+    case Space::Const:
+    case Space::Param:
+      if (row.effect == Effect::Load) return load_constant(warp, inst, row, space, lanes);
+      return fail(warp, std::countr_zero(lanes), fmt::format("{} the constant bank, which can only be read", verb_of(row.effect)));
+    case Space::Generic:
+    case Space::None: break;
+  }
+  GLINT_PANIC("{}: no such space", row.name);
+}
+
+// Where the lanes' data lies. Accesses are aligned to their size, as PTX asks.
+bool Executor::locate(WarpContext& warp, const isa::OpRow& row, Space space, LaneMask lanes, std::array<std::byte*, kLanes>& at) {
+  const uint32_t bytes = row.memory.bytes * row.memory.count;
+  std::vector<std::byte>& shared = warp.block->shared;
+  for (; lanes; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
     const Address address = warp.regs.access.address[size_t(lane)];
-    const std::byte* at = world_.memory->find(address, bytes);
-    if (!at) [[unlikely]]
-      return fail(warp, lane, fmt::format("reads {} bytes at {:#x}: {}", bytes, address, world_.memory->explain(address, bytes)));
-    from[size_t(lane)] = at;
-  }
-  if (words == 0) {
-    uint32_t* to = warp.regs.write(inst.operand[kLoadFirst]);
-    for_each_lane(warp.regs.exec, [&](int lane) { to[lane] = narrow(from[size_t(lane)], shape); });
-    return true;
-  }
-  for (uint32_t word = 0; word < words; ++word) {
-    uint32_t* to = warp.regs.write(slot_of(inst, shape, kLoadFirst, word));
-    for_each_lane(warp.regs.exec, [&](int lane) { std::memcpy(to + lane, from[size_t(lane)] + word * 4, 4); });
+    std::byte* const place = space == Space::Global            ? world_.memory->find(address, bytes)
+                             : address + bytes <= shared.size() ? shared.data() + address
+                                                                : nullptr;
+    if (!place) [[unlikely]]
+      return fail(warp, lane,
+                  space == Space::Global
+                      ? fmt::format("{} {} bytes at {:#x}: {}", verb_of(row.effect), bytes, address, world_.memory->explain(address, bytes))
+                      : fmt::format("{} {} bytes at shared address {:#x}: the block has {} bytes", verb_of(row.effect), bytes,
+                                    address, shared.size()));
+    if (address & (bytes - 1)) [[unlikely]]
+      return fail(warp, lane, fmt::format("{} {} bytes at {} address {:#x}, which is no multiple of {}", verb_of(row.effect), bytes,
+                                          name_of(space), address, bytes));
+    at[size_t(lane)] = place;
   }
   return true;
 }
 
-bool Executor::store_global(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
-  const isa::Memory& shape = row.memory;
-  const uint32_t bytes = shape.bytes * shape.count, words = words_of(shape);
-  std::array<std::byte*, kLanes> to;
-  for (LaneMask lanes = warp.regs.exec; lanes; lanes &= lanes - 1) {
-    const int lane = std::countr_zero(lanes);
-    const Address address = warp.regs.access.address[size_t(lane)];
-    to[size_t(lane)] = world_.memory->find(address, bytes);
-    if (!to[size_t(lane)]) [[unlikely]]
-      return fail(warp, lane, fmt::format("writes {} bytes at {:#x}: {}", bytes, address, world_.memory->explain(address, bytes)));
-  }
-  // Lane by lane: where two lanes write one place, the higher lane's value stays. Choice: PTX leaves it open.
-  for_each_lane(warp.regs.exec, [&](int lane) {
-    if (words == 0) std::memcpy(to[size_t(lane)], warp.regs.read(inst.operand[kStoreFirst]) + lane, shape.bytes);
-    for (uint32_t word = 0; word < words; ++word)
-      std::memcpy(to[size_t(lane)] + word * 4, warp.regs.read(slot_of(inst, shape, kStoreFirst, word)) + lane, 4);
+bool Executor::move_data(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, Space space, LaneMask lanes) {
+  std::array<std::byte*, kLanes> at;
+  if (!locate(warp, row, space, lanes, at)) return false;
+  if (row.effect == Effect::Store)
+    store_rows(warp, inst, row.memory, lanes, at);
+  else
+    load_rows(warp, inst, row.memory, lanes, at);
+  return true;
+}
+
+// Lanes take turns, the lowest first. Choice: PTX leaves their order open.
+bool Executor::modify(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, Space space, LaneMask lanes) {
+  std::array<std::byte*, kLanes> at;
+  if (!locate(warp, row, space, lanes, at)) return false;
+  const uint32_t bytes = row.memory.bytes;
+  const bool returns = isa::is_destination(row.operands.kind[0]);
+  const size_t first = returns ? 2 : 1;
+  const bool has_second = row.operands.count > first + 1;
+  for_each_lane(lanes, [&](int lane) {
+    uint64_t old = 0;
+    std::memcpy(&old, at[size_t(lane)], bytes);
+    const uint64_t b = read_operand(warp.regs, inst.operand[first], lane, bytes);
+    const uint64_t c = has_second ? read_operand(warp.regs, inst.operand[first + 1], lane, bytes) : space == Space::Global;
+    const uint64_t value = row.atomic(old, b, c);
+    std::memcpy(at[size_t(lane)], &value, bytes);
+    if (!returns) return;
+    uint32_t* const to = warp.regs.write(inst.operand[0]);
+    to[lane] = uint32_t(old);
+    if (bytes == 8) to[kLanes + lane] = uint32_t(old >> 32);
   });
   return true;
 }
 
-bool Executor::access_local(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, bool store) {
+// Local memory lies word by word, all lanes of a word together: a vector may start at any word, as spills do.
+bool Executor::access_local(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes) {
   const isa::Memory& shape = row.memory;
-  const uint32_t words = words_of(shape), bytes = words * 4;
-  for (LaneMask lanes = warp.regs.exec; lanes; lanes &= lanes - 1) {
-    const int lane = std::countr_zero(lanes);
-    const Address address = warp.regs.access.address[size_t(lane)];
-    if (address % 4 != 0 || address + bytes > world_.local_bytes) [[unlikely]]
-      return fail(warp, lane, fmt::format("{} {} bytes at local address {:#x}: the stack of a lane has {} bytes",
-                                          store ? "writes" : "reads", bytes, address, world_.local_bytes));
-  }
+  const uint32_t bytes = shape.bytes * shape.count, part = row_bytes(shape);
   const Address* const address = warp.regs.access.address.data();
-  for (uint32_t word = 0; word < words; ++word) {
-    // Word `word` of a lane: its address counts bytes of one lane, rows hold kLanes words.
-    uint32_t* const stack = warp.local.data() + size_t(word) * kLanes;
-    if (store) {
-      const uint32_t* from = warp.regs.read(slot_of(inst, shape, kStoreFirst, word));
-      for_each_lane(warp.regs.exec, [&](int lane) { stack[address[lane] / 4 * kLanes + size_t(lane)] = from[lane]; });
+  for (LaneMask rest = lanes; rest; rest &= rest - 1) {
+    const int lane = std::countr_zero(rest);
+    if (address[lane] % part == 0 && address[lane] + bytes <= world_.local_bytes) [[likely]]
+      continue;
+    return fail(warp, lane, address[lane] % part != 0
+                                ? fmt::format("{} {} bytes at local address {:#x}, which is no multiple of {}", verb_of(row.effect),
+                                              bytes, address[lane], part)
+                                : fmt::format("{} {} bytes at local address {:#x}: the stack of a lane has {} bytes",
+                                              verb_of(row.effect), bytes, address[lane], world_.local_bytes));
+  }
+  const bool store = row.effect == Effect::Store;
+  uint32_t* const stack = warp.local.data();
+  for (uint32_t r = 0; r < rows_of(shape); ++r) {
+    const isa::Slot slot = slot_of(inst, shape, store ? kStoreFirst : kLoadFirst, r);
+    const auto word = [&](int lane) { return stack + (address[lane] + r * part) / 4 * kLanes + size_t(lane); };
+    const auto byte = [&](int lane) { return reinterpret_cast<std::byte*>(word(lane)) + (address[lane] + r * part) % 4; };
+    if (part == 4 && store) {
+      const uint32_t* from = warp.regs.read(slot);
+      for_each_lane(lanes, [&](int lane) { *word(lane) = from[lane]; });
+    } else if (part == 4) {
+      uint32_t* to = warp.regs.write(slot);
+      for_each_lane(lanes, [&](int lane) { to[lane] = *word(lane); });
+    } else if (store) {
+      const uint32_t* from = warp.regs.read(slot);
+      for_each_lane(lanes, [&](int lane) { std::memcpy(byte(lane), from + lane, part); });
     } else {
-      uint32_t* to = warp.regs.write(slot_of(inst, shape, kLoadFirst, word));
-      for_each_lane(warp.regs.exec, [&](int lane) { to[lane] = stack[address[lane] / 4 * kLanes + size_t(lane)]; });
+      uint32_t* to = warp.regs.write(slot);
+      for_each_lane(lanes, [&](int lane) { to[lane] = narrow(byte(lane), shape); });
     }
   }
   return true;
 }
 
-bool Executor::load_constant(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
+bool Executor::load_constant(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, Space space, LaneMask lanes) {
   const isa::Memory& shape = row.memory;
-  const uint32_t words = words_of(shape), bytes = words * 4;
-  for (LaneMask lanes = warp.regs.exec; lanes; lanes &= lanes - 1) {
+  const uint32_t bytes = shape.bytes * shape.count, part = row_bytes(shape);
+  const uint64_t offset = space == Space::Param ? isa::kPushConstantOffset : 0;
+  for (; lanes; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
-    const Address address = warp.regs.access.address[size_t(lane)];
+    const Address address = warp.regs.access.address[size_t(lane)] + offset;
     if (address + bytes > world_.constant_bank.size()) [[unlikely]]
-      return fail(warp, lane, fmt::format("reads {} bytes at constant address {:#x}: the bank has {} bytes", bytes, address,
-                                          world_.constant_bank.size()));
-    for (uint32_t word = 0; word < words; ++word)
-      std::memcpy(warp.regs.write(slot_of(inst, shape, kLoadFirst, word)) + lane,
-                  world_.constant_bank.data() + address + word * 4, 4);
+      return fail(warp, lane, fmt::format("reads {} bytes at {} address {:#x}: the bank has {} bytes", bytes, name_of(space),
+                                          address - offset, world_.constant_bank.size() - offset));
+    if (address & (bytes - 1)) [[unlikely]]
+      return fail(warp, lane, fmt::format("reads {} bytes at {} address {:#x}, which is no multiple of {}", bytes, name_of(space),
+                                          address - offset, bytes));
+    const std::byte* const from = world_.constant_bank.data() + address;
+    for (uint32_t r = 0; r < rows_of(shape); ++r) {
+      uint32_t* const to = warp.regs.write(slot_of(inst, shape, kLoadFirst, r)) + lane;
+      if (part == 4)
+        std::memcpy(to, from + r * 4, 4);
+      else
+        *to = narrow(from + r * part, shape);
+    }
   }
   return true;
 }

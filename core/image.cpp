@@ -82,6 +82,14 @@ Image link(const std::vector<isa::Program>& programs) {
   return image;
 }
 
+void set_blocks(World& world, std::array<uint32_t, 3> grid, std::array<uint32_t, 3> block, uint32_t static_bytes,
+                uint32_t dynamic_bytes) {
+  world.block_size = block;
+  for (size_t axis = 0; axis < 3; ++axis) world.launch_size[axis] = grid[axis] * block[axis];
+  world.shared_bytes = static_bytes + dynamic_bytes;
+  world.dynamic_shared_bytes = dynamic_bytes;
+}
+
 std::string Image::place_of(uint32_t pc) const {
   if (pc >= code.size()) return fmt::format("instruction {}", pc);
   const isa::Line& line = lines[pc];

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/image_view.h"
 #include "isa/op_row.h"
 #include "isa/program.h"
 #include "isa/text.h"
@@ -47,28 +48,31 @@ struct HitGroup {
   uint32_t closest_hit = kNoShader, any_hit = kNoShader, intersection = kNoShader;
 };
 
-// A sampled texture or storage image in simulated memory, linear rows.
-struct ImageView {
-  enum class Format : uint8_t { Rgba8Unorm, Rgba32Float } format = Format::Rgba32Float;
-  uint32_t width = 1, height = 1;
-  Address base = 0;
-  std::string name;
-};
-
 // Everything a launch gives to its warps. Read-only while warps run (memory contents apart).
 struct World {
   const Image* image = nullptr;
   mem::AddressSpace* memory = nullptr;
   std::vector<std::byte> constant_bank;    // kConstantBankBytes: descriptors and push constants (isa/program.h)
-  std::vector<ImageView> images;           // texture and image handles index this
+  std::vector<ImageView> images;           // texture and image handles index this (isa/image_access.h)
+  std::vector<Sampler> samplers;           // besides those of the images
+  bool robust_images = false;              // texels outside of an image are 0 and stores there dropped: not a fault
   uint32_t raygen = kNoShader;             // or the compute shader
   std::vector<uint32_t> miss;              // records of the binding table
   std::vector<HitGroup> hit;
   Address binding_table = 0;               // virtual address of the table's bytes: a call reads its 32 B record
-  std::array<uint32_t, 3> launch_size{1, 1, 1};
+  std::array<uint32_t, 3> launch_size{1, 1, 1};  // threads
+  // Threads of a block (at most kMaxBlockThreads); `launch_size` is then a multiple of it in each direction. Zeros: the
+  // launch has no blocks, and each warp of 32 consecutive threads is one of its own (ray generation).
+  std::array<uint32_t, 3> block_size{0, 0, 0};
+  uint32_t shared_bytes = 0;               // shared memory of a block
+  uint32_t dynamic_shared_bytes = 0;       // the part of it that the launch asked for, not the program
   bool nearest_first_hit = true;           // rt::RayState::end_at_first_hit is its opposite
   uint32_t local_bytes = 0;                // stack a lane
   uint32_t max_trace_depth = 1;            // nested rt.trace (Vulkan's recursion depth)
 };
+
+// A grid of blocks of threads: sets sizes and shared memory. `dynamic_bytes` come after the program's own.
+void set_blocks(World& world, std::array<uint32_t, 3> grid, std::array<uint32_t, 3> block, uint32_t static_bytes,
+                uint32_t dynamic_bytes = 0);
 
 }  // namespace glint::core

@@ -2,7 +2,7 @@
 //
 // Entries are of three kinds. Path: lanes that will run from `pc` later. Join: lanes that have arrived at
 // the reconvergence point `pc` (a `join` instruction) and wait for the rest. Call: lanes that have returned
-// from a shader call and wait for the rest; they resume at `pc`. When the running lanes are used up, the top
+// from a call and wait for the rest; they resume at `pc`. When the running lanes are used up, the top
 // entry is taken: a Path runs, a Join or Call whose lanes have all arrived resumes them.
 // Because lanes arrive at any enclosing Join, not only the innermost, break, continue and early exits out of
 // several constructs need no special case.
@@ -25,6 +25,7 @@ class SimtStack {
     LaneMask lanes;
     uint32_t depth = 0;   // Call: trace depth to return to
     uint32_t shader = 0;  // Call: the caller's shader
+    bool is_function = false;  // Call: of a function of the same shader, not of another shader
   };
 
   uint32_t pc = 0;
@@ -39,8 +40,8 @@ class SimtStack {
 
   void push_reconvergence(uint32_t join_pc) { entries_.push_back({Kind::Join, join_pc, 0}); }
   void push_path(uint32_t path_pc, LaneMask lanes) { entries_.push_back({Kind::Path, path_pc, lanes}); }
-  void push_call(uint32_t return_pc, LaneMask arrived, uint32_t depth, uint32_t shader) {
-    entries_.push_back({Kind::Call, return_pc, arrived, depth, shader});
+  void push_call(uint32_t return_pc, LaneMask arrived, uint32_t depth, uint32_t shader, bool is_function = false) {
+    entries_.push_back({Kind::Call, return_pc, arrived, depth, shader, is_function});
   }
 
   // Lanes reach the join at `join_pc`: they wait in its entry. The caller then leaves the running set.
@@ -55,14 +56,24 @@ class SimtStack {
     }
     return false;
   }
-  // Lanes return to the innermost call.
-  bool arrive_return(LaneMask lanes) {
+  // The innermost call, of a shader or of either kind; null when nobody called.
+  const Entry* innermost_call(bool of_shader) const {
     for (size_t i = entries_.size(); i-- > 0;)
-      if (entries_[i].kind == Kind::Call) {
-        entries_[i].lanes |= lanes;
-        return true;
-      }
-    return false;
+      if (entries_[i].kind == Kind::Call && !(of_shader && entries_[i].is_function)) return &entries_[i];
+    return nullptr;
+  }
+  // Lanes return to the innermost call, or to that of the shader, out of all functions. False when nobody called.
+  bool arrive_return(LaneMask lanes, bool of_shader = false) {
+    const Entry* call = innermost_call(of_shader);
+    if (!call) return false;
+    entries_[size_t(call - entries_.data())].lanes |= lanes;
+    return true;
+  }
+  // All lanes that have not ended, wherever they wait.
+  LaneMask live() const {
+    LaneMask lanes = active;
+    for (const Entry& entry : entries_) lanes |= entry.lanes;
+    return lanes;
   }
 
   // With no lanes running, takes entries until some run or the stack is empty. Returns the Call entry that

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/block.h"
 #include "core/image.h"
 #include "core/simt_stack.h"
 #include "isa/warp.h"
@@ -27,7 +28,9 @@ inline constexpr uint32_t kMaxRayQueries = 16;  // of a shader. Choice: Vulkan s
 struct WarpContext {
   isa::Warp regs;
   SimtStack simt;
-  uint32_t warp_index = 0;            // of the launch: warp w holds launch indices [32 w, 32 w + 32)
+  uint32_t warp_index = 0;            // of the launch; without blocks, warp w holds launch indices [32 w, 32 w + 32)
+  Block* block = nullptr;             // that it belongs to
+  uint32_t warp_in_block = 0;
   uint32_t depth = 0;                 // open rt.trace levels
   std::vector<std::unique_ptr<TraceFrame>> frames;  // allocated when first needed, then kept
   // Ray queries: kMaxRayQueries a level of rt.trace, allocated when first used.
@@ -38,6 +41,12 @@ struct WarpContext {
   LaneMask ray_lanes = 0;             // that it handed over
   rt::RayState* rays = nullptr;       // one a lane, in `frames` or `queries`
   isa::Slot ray_answer = 0;           // predicate it writes
+
+  bool waiting_at_barrier = false;    // executes nothing until another warp of the block has opened the barrier
+  uint32_t barrier = 0, barrier_pc = 0;  // then: which one, and the instruction that waits
+  LaneMask barrier_lanes = 0;
+
+  std::unique_ptr<Block> own_block;   // of a launch without blocks: a warp is one of its own
 
   // Rows of the specials bank, and of the register bank when the machine has not set one.
   std::unique_ptr<uint32_t[]> own_registers, own_specials;

@@ -88,7 +88,8 @@ enum class Effect : uint8_t {
   PushReconvergence,          // ssy: lanes will meet at Inst::imm
   Join,                       // lanes wait here for the others of the innermost ssy that names this place
   Exit,                       // lanes end
-  Return,                     // lanes return from a shader call
+  Return,                     // lanes return from a function or a shader call
+  Trap,                       // a fault
   CallCandidate, CallAnyHit, CallHit,  // call.sbt.*: indirect shader calls through the binding table
   Trace, Resume,              // rt.trace, rt.resume: give rays to the RT unit; answer: predicate slot 0
   Report, Accepted, Ignore, Terminate, EndTrace,  // rt.report, rt.accepted, rt.ignore, rt.terminate, rt.end
@@ -97,7 +98,7 @@ enum class Effect : uint8_t {
   Fence,                      // membar, fence, bar.warp.sync: orders memory accesses of the warp
 };
 
-// Generic: a 64-bit address whose window says which of global, shared and local it is in (core/generic_address.h).
+// Generic: a 64-bit address whose window says which of global, shared and local it is in (isa/generic_address.h).
 // Param: the parameters of a kernel; they lie in the constant bank at kPushConstantOffset (isa/program.h).
 enum class Space : uint8_t { None, Global, Local, Shared, Const, Param, Generic };
 
@@ -113,8 +114,8 @@ struct Memory {
 // Runs one instruction for the lanes of `warp.exec`; lanes outside keep their values.
 using Handler = void (*)(Warp& warp, const Inst& inst);
 
-// What an atomic op makes of the old bits in memory and its one or two operands. Runs a lane at a time: lanes that
-// meet in one place take turns.
+// What an atomic op makes of the old bits in memory and its operands `b` and `c`. An op without a second operand gets
+// in `c` whether the place is in global memory, whose adders differ. Runs a lane at a time: lanes that meet take turns.
 using AtomicFunction = uint64_t (*)(uint64_t old, uint64_t b, uint64_t c);
 
 // Inputs (raw bits, one entry a source operand, predicates 0 or 1) and the expected result bits; `second` is that of

@@ -74,7 +74,7 @@ SpecialSet specials_read_by(std::span<const Inst> code) {
       if (kind == OperandKind::DstPred || kind == OperandKind::SrcPred) slot = end;
       for (; slot < end; ++slot)
         if (inst.operand[slot] & kSpecialBank)
-          used |= uint64_t{1} << (inst.operand[slot] & kSlotIndexMask & 63);
+          used.set(inst.operand[slot] & kSlotIndexMask);
     }
   }
   return used;

@@ -1,4 +1,4 @@
-// Running a launch warp by warp.
+// Running a launch block by block, the warps of a block in turns.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/functional_machine.h"
 
@@ -23,18 +23,33 @@ void answer_rays(Executor& executor, WarpContext& warp, RayCounts& counts) {
   executor.finish_rays(warp);
 }
 
-FunctionalCounts run_functional(const core::World& world, uint64_t instruction_budget,
-                                const std::function<void(uint64_t, uint64_t)>& progress,
-                                const Probe<core::Retired>::Listener& listener) {
+namespace {
+
+// Choice: instructions that a warp runs before the next of its block, so that warps that wait for each other through
+// memory get on. Where nobody waits like that, results do not depend on it.
+constexpr uint64_t kQuantum = 10'000;
+
+class Runner {
+ public:
+  Runner(const core::World& world, uint64_t instruction_budget) : executor(world), world_(world), budget_(instruction_budget) {}
+
+  void run_block(uint32_t index) {
+    warps_.resize(executor.warps_per_block());
+    executor.start(block_, index);
+    for (uint32_t w = 0; w < warps_.size(); ++w) executor.start(warps_[w], block_, w);
+    // Round robin. A warp at a barrier waits for one that runs: the executor sees to it that there is one.
+    while (block_.live() != 0)
+      for (WarpContext& warp : warps_)
+        if (block_.live() >> warp.warp_in_block & 1) run_warp(warp);
+  }
+
+  Executor executor;
   FunctionalCounts counts;
-  Executor executor(world);
-  if (listener) executor.retired.listen(listener);
-  WarpContext warp;
-  const uint32_t num_warps = executor.num_warps();
-  for (uint32_t index = 0; index < num_warps; ++index) {
-    executor.start(warp, index);
-    bool finished = false;
-    while (!finished) {
+
+ private:
+  void run_warp(WarpContext& warp) {
+    const uint64_t end = warp.instructions + kQuantum;
+    for (bool finished = false; !finished && !warp.waiting_at_barrier && warp.instructions < end;) {
       const core::Issued issued = executor.execute(warp, 0);
       if (executor.fault()) throw Error(Exit::Fault, executor.fault()->to_string());
       ClassCounts& by_class = counts.by_class[size_t(issued.row->klass)];
@@ -42,12 +57,30 @@ FunctionalCounts run_functional(const core::World& world, uint64_t instruction_b
       by_class.lanes += num_lanes(issued.lanes);
       finished = issued.finished;
       if (warp.waiting_for_rays) answer_rays(executor, warp, counts.rays);
-      if (warp.instructions > instruction_budget) [[unlikely]]
-        throw Error(Exit::Fault, core::no_end_in_sight(world, warp, issued.pc, instruction_budget).to_string());
+      if (warp.instructions > budget_) [[unlikely]]
+        throw Error(Exit::Fault, core::no_end_in_sight(world_, warp, issued.pc, budget_).to_string());
     }
-    if (progress) progress(index + 1, num_warps);
   }
-  return counts;
+
+  const core::World& world_;
+  const uint64_t budget_;
+  core::Block block_;
+  std::vector<WarpContext> warps_;
+};
+
+}  // namespace
+
+FunctionalCounts run_functional(const core::World& world, uint64_t instruction_budget,
+                                const std::function<void(uint64_t, uint64_t)>& progress,
+                                const Probe<core::Retired>::Listener& listener) {
+  Runner runner(world, instruction_budget);
+  if (listener) runner.executor.retired.listen(listener);
+  const uint32_t num_blocks = runner.executor.num_blocks(), warps = runner.executor.warps_per_block();
+  for (uint32_t index = 0; index < num_blocks; ++index) {
+    runner.run_block(index);
+    if (progress) progress(uint64_t(index + 1) * warps, uint64_t(num_blocks) * warps);
+  }
+  return runner.counts;
 }
 
 }  // namespace glint::pipeline

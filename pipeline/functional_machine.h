@@ -1,4 +1,4 @@
-// The functional machine: warps one after the other, every effect at once. A picture and counts, no cycles.
+// The functional machine: block after block, the warps of a block in turns, every effect at once. A picture and counts, no cycles.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>

@@ -1,96 +1,196 @@
-// Loads and stores: their handlers form addresses, the machine moves the data.
+// Loads and stores: their handlers form addresses, the machine moves the data. Generic addresses.
 // SPDX-License-Identifier: Apache-2.0
+#include "isa/generic_address.h"
 #include "isa/op_makers.h"
+#include "isa/ops/addresses.h"
 #include "isa/ops/families.h"
+#include "isa/ops/word.h"
 
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
-// Writes the addresses of all lanes: those outside exec mean nothing to anybody. Operand kSlot is the base.
-// 64-bit bases wrap modulo 2^64, 32-bit bases modulo 2^32.
-template <class Base, int kSlot>
-[[gnu::flatten]] void form_addresses(Warp& warp, const Inst& inst) {
-  const Source<Base> base(warp, *(&inst.operand.front() + kSlot));
-  Address* const out = &warp.access.address.front();
-  const Base displacement = Base(int64_t(inst.imm));
-  all_lanes([&](int i) { out[i] = Address(Base(base.at(i) + displacement)); });
+// A shape of data: PTX's type and vector suffix, and the operand that holds it.
+struct Shape {
+  std::string_view suffix, what;
+  uint8_t bytes, count;
+  bool sign_extend;
+  OperandKind load;
+  OperandKind store;  // None: the type has loads only, its stores are those of the untyped bits
+};
+constexpr Shape kShapes[] = {
+    {"b8", "a byte, zero-extended,", 1, 1, false, Dst32, Src32},
+    {"u8", "a byte, zero-extended,", 1, 1, false, Dst32, None},
+    {"s8", "a byte, sign-extended,", 1, 1, true, Dst32, None},
+    {"b16", "2 bytes, zero-extended,", 2, 1, false, Dst32, Src32},
+    {"u16", "2 bytes, zero-extended,", 2, 1, false, Dst32, None},
+    {"s16", "2 bytes, sign-extended,", 2, 1, true, Dst32, None},
+    {"b32", "4 bytes", 4, 1, false, Dst32, Src32},
+    {"b64", "8 bytes", 8, 1, false, Dst64, Src64},
+    {"v2.b8", "two bytes, zero-extended,", 1, 2, false, DstVec2, SrcVec2},
+    {"v2.u8", "two bytes, zero-extended,", 1, 2, false, DstVec2, None},
+    {"v2.s8", "two bytes, sign-extended,", 1, 2, true, DstVec2, None},
+    {"v4.b8", "four bytes, zero-extended,", 1, 4, false, DstVec4, SrcVec4},
+    {"v4.u8", "four bytes, zero-extended,", 1, 4, false, DstVec4, None},
+    {"v4.s8", "four bytes, sign-extended,", 1, 4, true, DstVec4, None},
+    {"v2.b16", "two half words, zero-extended,", 2, 2, false, DstVec2, SrcVec2},
+    {"v2.u16", "two half words, zero-extended,", 2, 2, false, DstVec2, None},
+    {"v2.s16", "two half words, sign-extended,", 2, 2, true, DstVec2, None},
+    {"v4.b16", "four half words, zero-extended,", 2, 4, false, DstVec4, SrcVec4},
+    {"v4.u16", "four half words, zero-extended,", 2, 4, false, DstVec4, None},
+    {"v4.s16", "four half words, sign-extended,", 2, 4, true, DstVec4, None},
+    {"v2.b32", "two words", 4, 2, false, DstVec2, SrcVec2},
+    {"v4.b32", "four words", 4, 4, false, DstVec4, SrcVec4},
+    {"v2.b64", "two double words, each low half first,", 4, 4, false, DstVec4, SrcVec4},
+};
+
+struct Place {
+  Space space;
+  std::string_view suffix, what;
+  bool stores;
+};
+constexpr Place kPlaces[] = {
+    {Space::Global, ".global", "global memory", true},
+    {Space::Shared, ".shared", "the block's shared memory", true},
+    {Space::Local, ".local", "the lane's stack", true},
+    {Space::Const, ".const", "the constant bank", false},
+    {Space::Param, ".param", "the kernel's parameters", false},
+    {Space::Generic, "", "the space that a generic address is in", true},
+};
+
+constexpr Handler handler_of(bool is_wide, int slot) {
+  if (is_wide)
+    return slot == 0   ? &form_addresses<uint64_t, 0>
+           : slot == 1 ? &form_addresses<uint64_t, 1>
+           : slot == 2 ? &form_addresses<uint64_t, 2>
+                       : &form_addresses<uint64_t, 4>;
+  return slot == 0   ? &form_addresses<uint32_t, 0>
+         : slot == 1 ? &form_addresses<uint32_t, 1>
+         : slot == 2 ? &form_addresses<uint32_t, 2>
+                     : &form_addresses<uint32_t, 4>;
 }
 
-constexpr bool is_wide(Space space) {
-  return space == Space::Global;
+constexpr size_t kNumStores = [] {
+  size_t n = 0;
+  for (const Shape& shape : kShapes) n += shape.store != None;
+  return n;
+}();
+constexpr size_t kNumStorePlaces = [] {
+  size_t n = 0;
+  for (const Place& place : kPlaces) n += place.stores;
+  return n;
+}();
+constexpr size_t kNumAccesses = std::size(kPlaces) * std::size(kShapes) + kNumStorePlaces * kNumStores;
+
+// Calls `visit(place, shape, store)` for every access there is, in the order of the table.
+template <class Visit>
+constexpr void each_access(Visit&& visit) {
+  for (const Place& place : kPlaces) {
+    for (const Shape& shape : kShapes) visit(place, shape, false);
+    if (!place.stores) continue;
+    for (const Shape& shape : kShapes)
+      if (shape.store != None) visit(place, shape, true);
+  }
 }
 
-template <Space kSpace, int kSlot>
-constexpr Handler handler_of() {
-  if constexpr (is_wide(kSpace))
-    return &form_addresses<uint64_t, kSlot>;
-  else
-    return &form_addresses<uint32_t, kSlot>;
+constexpr auto kNames = [] {
+  std::array<Word, kNumAccesses> out{};
+  size_t n = 0;
+  each_access([&](const Place& place, const Shape& shape, bool store) {
+    out[n++] = Word{store ? "st" : "ld", place.suffix, ".", shape.suffix};
+  });
+  return out;
+}();
+// A store has no use for how a load would extend its parts.
+constexpr std::string_view bytes_of(const Shape& shape, bool store) {
+  return store ? shape.what.substr(0, shape.what.find(',')) : shape.what;
 }
+constexpr auto kSentences = [] {
+  std::array<Word, kNumAccesses> out{};
+  size_t n = 0;
+  each_access([&](const Place& place, const Shape& shape, bool store) {
+    out[n++] = Word{store ? "Stores " : "Loads ", bytes_of(shape, store), store ? " to " : " of ", place.what, "."};
+  });
+  return out;
+}();
 
-template <Space kSpace>
-constexpr OpRow access_row(std::string_view name, Effect effect, Memory memory, Operands operands,
-                           Handler run, std::string_view doc) {
-  OpRow row =
-      effect_op(name, Class::Mem, kSpace == Space::Const ? Unit::Const : Unit::Lsu, effect, operands, doc);
-  row.memory = memory;
-  row.memory.space = kSpace;
-  row.run = run;
+constexpr OpRow access_row(size_t n, const Place& place, const Shape& shape, bool store) {
+  const bool is_wide = place.space == Space::Global || place.space == Space::Generic;
+  const bool is_constant = place.space == Space::Const || place.space == Space::Param;
+  const OperandKind address = is_wide ? Address64 : Address32;
+  OpRow row = effect_op(kNames[n].view(), Class::Mem, is_constant ? Unit::Const : Unit::Lsu,
+                        store ? Effect::Store : Effect::Load,
+                        store ? Operands{address, shape.store} : Operands{shape.load, address}, kSentences[n].view());
+  row.memory = {place.space, shape.bytes, shape.count, shape.sign_extend};
+  row.run = handler_of(is_wide, store ? 0 : slots_of(shape.load));
   return row;
 }
 
-// `kind` holds the data (a destination of 1, 2 or 4 slots); the address follows it.
-template <Space kSpace, OperandKind kKind>
-constexpr OpRow load(std::string_view name, Memory memory, std::string_view doc) {
-  return access_row<kSpace>(name, Effect::Load, memory, {kKind, is_wide(kSpace) ? Address64 : Address32},
-                            handler_of<kSpace, slots_of(kKind)>(), doc);
+// Generic addresses from and to those of a space. Bits outside the window's 32 are not looked at.
+template <Space kSpace>
+constexpr OpRow to_generic(std::string_view name, std::string_view doc) {
+  constexpr uint64_t kWindow = window_of(kSpace);
+  return unary<uint64_t>(name, Unit::Int, doc, [](uint64_t a) { return a + kWindow; },
+                         {{{0}, kWindow}, {{0x1234}, kWindow + 0x1234}});
 }
-// The address stands first.
-template <Space kSpace, OperandKind kKind>
-constexpr OpRow store(std::string_view name, Memory memory, std::string_view doc) {
-  return access_row<kSpace>(name, Effect::Store, memory, {is_wide(kSpace) ? Address64 : Address32, kKind},
-                            handler_of<kSpace, 0>(), doc);
+template <Space kSpace>
+constexpr OpRow from_generic(std::string_view name, std::string_view doc) {
+  constexpr uint64_t kWindow = window_of(kSpace);
+  return unary<uint64_t>(name, Unit::Int, doc, [](uint64_t a) { return a - kWindow; },
+                         {{{kWindow}, 0}, {{kWindow + 0x1234}, 0x1234}});
+}
+// The question is branch-free: space_of() as a comparison of the upper halves.
+template <Space kSpace>
+constexpr OpRow is_space(std::string_view name, std::string_view doc) {
+  constexpr uint64_t kWindow = window_of(kSpace);
+  if constexpr (kSpace == Space::Global)
+    return value_op<uint64_t>(name, Unit::Predicate, doc,
+                              [](uint64_t a) {
+                                const uint64_t high = a >> 32;
+                                return (high < kConstWindow >> 32) | (high > kLocalWindow >> 32);
+                              },
+                              {{{0x1'0000'0000}, 1}, {{kSharedWindow + 4}, 0}, {{kConstWindow - 1}, 1}});
+  else
+    return value_op<uint64_t>(name, Unit::Predicate, doc,
+                              [](uint64_t a) {
+                                const bool in_window = a >> 32 == kWindow >> 32;
+                                return in_window & (uint32_t(a) >= uint32_t(kWindow));
+                              },
+                              {{{kWindow + 4}, 1}, {{0x1'0000'0000}, 0}, {{kLocalWindow + kWindowBytes}, 0}});
 }
 
-constexpr Memory parts(uint8_t bytes, uint8_t count = 1, bool sign_extend = false) {
-  return {Space::None, bytes, count, sign_extend};
-}
-
-constexpr OpRow kRows[] = {
-    load<Space::Global, Dst32>("ld.global.b32", parts(4), "Loads 4 bytes of global memory."),
-    load<Space::Global, Dst32>("ld.global.u8", parts(1), "Loads a byte of global memory, zero-extended."),
-    load<Space::Global, Dst32>("ld.global.s8", parts(1, 1, true),
-                               "Loads a byte of global memory, sign-extended."),
-    load<Space::Global, Dst32>("ld.global.u16", parts(2), "Loads 2 bytes of global memory, zero-extended."),
-    load<Space::Global, Dst32>("ld.global.s16", parts(2, 1, true),
-                               "Loads 2 bytes of global memory, sign-extended."),
-    load<Space::Global, DstVec2>("ld.global.v2.b32", parts(4, 2), "Loads two words of global memory."),
-    load<Space::Global, DstVec4>("ld.global.v4.b32", parts(4, 4), "Loads four words of global memory."),
-    load<Space::Global, Dst64>("ld.global.b64", parts(8), "Loads 8 bytes of global memory."),
-    store<Space::Global, Src32>("st.global.b32", parts(4), "Stores 4 bytes to global memory."),
-    store<Space::Global, Src32>("st.global.b8", parts(1), "Stores the low byte to global memory."),
-    store<Space::Global, Src32>("st.global.b16", parts(2), "Stores the low 2 bytes to global memory."),
-    store<Space::Global, SrcVec2>("st.global.v2.b32", parts(4, 2), "Stores two words to global memory."),
-    store<Space::Global, SrcVec4>("st.global.v4.b32", parts(4, 4), "Stores four words to global memory."),
-    store<Space::Global, Src64>("st.global.b64", parts(8), "Stores 8 bytes to global memory."),
-    load<Space::Local, Dst32>("ld.local.b32", parts(4), "Loads 4 bytes of the lane's stack."),
-    load<Space::Local, DstVec2>("ld.local.v2.b32", parts(4, 2), "Loads two words of the lane's stack."),
-    load<Space::Local, DstVec4>("ld.local.v4.b32", parts(4, 4), "Loads four words of the lane's stack."),
-    load<Space::Local, Dst64>("ld.local.b64", parts(8), "Loads 8 bytes of the lane's stack."),
-    store<Space::Local, Src32>("st.local.b32", parts(4), "Stores 4 bytes to the lane's stack."),
-    store<Space::Local, SrcVec2>("st.local.v2.b32", parts(4, 2), "Stores two words to the lane's stack."),
-    store<Space::Local, SrcVec4>("st.local.v4.b32", parts(4, 4), "Stores four words to the lane's stack."),
-    store<Space::Local, Src64>("st.local.b64", parts(8), "Stores 8 bytes to the lane's stack."),
-    load<Space::Const, Dst32>("ld.const.b32", parts(4), "Loads 4 bytes of the constant bank."),
-    load<Space::Const, DstVec2>("ld.const.v2.b32", parts(4, 2), "Loads two words of the constant bank."),
-    load<Space::Const, DstVec4>("ld.const.v4.b32", parts(4, 4), "Loads four words of the constant bank."),
-    load<Space::Const, Dst64>("ld.const.b64", parts(8), "Loads 8 bytes of the constant bank."),
+constexpr OpRow kAddressRows[] = {
+    to_generic<Space::Global>("cvta.global.u64", "Generic address of a global one."),
+    to_generic<Space::Shared>("cvta.shared.u64", "Generic address of a shared one."),
+    to_generic<Space::Local>("cvta.local.u64", "Generic address of a local one."),
+    to_generic<Space::Const>("cvta.const.u64", "Generic address of a place in the constant bank."),
+    to_generic<Space::Param>("cvta.param.u64", "Generic address of a kernel's parameter."),
+    from_generic<Space::Global>("cvta.to.global.u64", "Global address of a generic one that is in global memory."),
+    from_generic<Space::Shared>("cvta.to.shared.u64", "Shared address of a generic one that is in shared memory."),
+    from_generic<Space::Local>("cvta.to.local.u64", "Local address of a generic one that is in local memory."),
+    from_generic<Space::Const>("cvta.to.const.u64", "Constant-bank address of a generic one that is there."),
+    from_generic<Space::Param>("cvta.to.param.u64", "Parameter address of a generic one that is a parameter's."),
+    is_space<Space::Global>("isspacep.global", "Whether a generic address is in global memory."),
+    is_space<Space::Shared>("isspacep.shared", "Whether a generic address is in shared memory."),
+    is_space<Space::Local>("isspacep.local", "Whether a generic address is in local memory."),
+    is_space<Space::Const>("isspacep.const", "Whether a generic address is in the constant bank."),
+    is_space<Space::Param>("isspacep.param", "Whether a generic address is that of a kernel's parameter."),
 };
+
+constexpr auto kRows = [] {
+  std::array<OpRow, kNumAccesses + std::size(kAddressRows)> out{};
+  size_t n = 0;
+  each_access([&](const Place& place, const Shape& shape, bool store) {
+    out[n] = access_row(n, place, shape, store);
+    ++n;
+  });
+  for (const OpRow& row : kAddressRows) out[n++] = row;
+  return out;
+}();
 
 }  // namespace
 
 RowList memory_rows() {
-  return {kRows, std::size(kRows)};
+  return {kRows.data(), kRows.size()};
 }
 
 }  // namespace glint::isa::GLINT_ISA_PATH

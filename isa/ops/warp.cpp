@@ -1,12 +1,225 @@
 // Lanes that read each other: shuffles, votes, matches and reductions.
+//
+// Their last operand is the member mask. The lanes that take part with a lane are those of its mask that execute the
+// instruction with the same mask; Choice: a lane outside its own mask takes part with nobody and still gets a result
+// (PTX leaves it open).
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/op_makers.h"
 #include "isa/ops/families.h"
 
 namespace glint::isa::GLINT_ISA_PATH {
+namespace {
+
+// Calls `visit(group, members)` for each different mask in row `masks`: the executing lanes that gave it, and those of
+// them that it names. Mostly once.
+template <class Visit>
+[[gnu::always_inline]] inline void each_group(const Warp& warp, const Source<uint32_t>& masks, Visit&& visit) {
+  for (LaneMask rest = warp.exec; rest;) {
+    const uint32_t mask = masks.at(__builtin_ctz(rest));
+    const LaneMask group = mask_of([&](int i) { return masks.at(i) == mask; }) & rest;
+    visit(group, group & mask);
+    rest &= ~group;
+  }
+}
+
+// Writes one value to register or predicate for the lanes of `group`.
+[[gnu::always_inline]] inline void broadcast(Warp& warp, Slot slot, LaneMask group, uint32_t value) {
+  uint32_t* const row = warp.bank[0] + slot * kLanes;
+  all_lanes([&](int i) { row[i] = (group & kLaneBit[i]) != 0 ? value : row[i]; });
+}
+[[gnu::always_inline]] inline void set_predicate(Warp& warp, Slot slot, LaneMask group, bool value) {
+  LaneMask& out = *(&warp.predicate.front() + slot);
+  out = value ? out | group : out & ~group;
+}
+[[gnu::always_inline]] inline Slot slot_at(const Inst& inst, int n) {
+  return *(&inst.operand.front() + n);
+}
+
+// PTX's pseudocode: the lane to read, or, outside the segment, one's own.
+// Choice: a lane that does not execute is read as its register stands; PTX leaves it open.
+enum class Shuffle { Up, Down, Butterfly, Index };
+template <Shuffle kMode>
+[[gnu::flatten]] void shuffle(Warp& warp, const Inst& inst) {
+  const Source<uint32_t> a(warp, slot_at(inst, 2)), b(warp, slot_at(inst, 3)), c(warp, slot_at(inst, 4));
+  uint32_t from[kLanes], value[kLanes];
+  bool inside[kLanes];
+  for (int i = 0; i < kLanes; ++i) {
+    const int distance = int(b.at(i) & 31), clamp = int(c.at(i) & 31), segment = int(c.at(i) >> 8 & 31);
+    const int first = i & segment, last = first | (clamp & ~segment);
+    const int j = kMode == Shuffle::Up          ? i - distance
+                  : kMode == Shuffle::Down      ? i + distance
+                  : kMode == Shuffle::Butterfly ? i ^ distance
+                                                : first | (distance & ~segment);
+    inside[i] = kMode == Shuffle::Up ? j >= last : j <= last;
+    from[i] = uint32_t(inside[i] ? j : i) & 31;  // a clamp below the lane's segment may point past the warp: wraps
+  }
+  for (int i = 0; i < kLanes; ++i) value[i] = a.at(int(from[i]));
+  write_predicate(warp, slot_at(inst, 1), mask_of([&](int i) { return inside[i]; }));
+  write_lanes<uint32_t>(warp, slot_at(inst, 0), [&](int i) { return value[i]; });
+}
+
+enum class Vote { All, Any, Uniform };
+template <Vote kVote>
+[[gnu::flatten]] void vote(Warp& warp, const Inst& inst) {
+  const Source<bool> a(warp, slot_at(inst, 1));
+  const Source<uint32_t> masks(warp, slot_at(inst, 2));
+  const LaneMask votes = a.mask;
+  each_group(warp, masks, [&](LaneMask group, LaneMask members) {
+    const bool all = (votes & members) == members, any = (votes & members) != 0;
+    set_predicate(warp, slot_at(inst, 0), group, kVote == Vote::All ? all : kVote == Vote::Any ? any : all | !any);
+  });
+}
+[[gnu::flatten]] void ballot(Warp& warp, const Inst& inst) {
+  const Source<bool> a(warp, slot_at(inst, 1));
+  uint32_t result[kLanes]{};  // the destination may be the masks
+  const Source<uint32_t> masks(warp, slot_at(inst, 2));
+  each_group(warp, masks, [&](LaneMask group, LaneMask members) {
+    all_lanes([&](int i) { result[i] = (group & kLaneBit[i]) != 0 ? a.mask & members : result[i]; });
+  });
+  write_lanes<uint32_t>(warp, slot_at(inst, 0), [&](int i) { return result[i]; });
+}
+
+// For each lane the members with its value.
+template <class T>
+[[gnu::flatten]] void match_any(Warp& warp, const Inst& inst) {
+  const Source<T> a(warp, slot_at(inst, 1));
+  const Source<uint32_t> masks(warp, slot_at(inst, 2));
+  uint32_t result[kLanes]{};
+  each_group(warp, masks, [&](LaneMask group, LaneMask members) {
+    for (LaneMask rest = group; rest;) {
+      const T value = a.at(__builtin_ctz(rest));
+      const LaneMask same = mask_of([&](int i) { return a.at(i) == value; });
+      all_lanes([&](int i) { result[i] = (rest & same & kLaneBit[i]) != 0 ? same & members : result[i]; });
+      rest &= ~same;
+    }
+  });
+  write_lanes<uint32_t>(warp, slot_at(inst, 0), [&](int i) { return result[i]; });
+}
+// The members if all have one value, and whether they do; otherwise no lanes.
+template <class T>
+[[gnu::flatten]] void match_all(Warp& warp, const Inst& inst) {
+  const Source<T> a(warp, slot_at(inst, 2));
+  const Source<uint32_t> masks(warp, slot_at(inst, 3));
+  uint32_t result[kLanes]{};
+  LaneMask matched = 0;
+  each_group(warp, masks, [&](LaneMask group, LaneMask members) {
+    const T value = a.at(__builtin_ctz(members ? members : group));
+    const bool same = (mask_of([&](int i) { return a.at(i) == value; }) & members) == members;
+    all_lanes([&](int i) { result[i] = (group & kLaneBit[i]) != 0 && same ? members : result[i]; });
+    matched |= same ? group : 0;
+  });
+  write_lanes<uint32_t>(warp, slot_at(inst, 0), [&](int i) { return result[i]; });
+  write_predicate(warp, slot_at(inst, 1), matched);
+}
+
+// Combines the members' values; the neutral value stands for the others.
+template <class T, T kNeutral, class F>
+[[gnu::flatten]] void reduce(Warp& warp, const Inst& inst) {
+  const Source<T> a(warp, slot_at(inst, 1));
+  const Source<uint32_t> masks(warp, slot_at(inst, 2));
+  uint32_t result[kLanes]{};
+  each_group(warp, masks, [&](LaneMask group, LaneMask members) {
+    T sum = kNeutral;
+    for (int i = 0; i < kLanes; ++i) sum = F{}(sum, (members & kLaneBit[i]) != 0 ? a.at(i) : kNeutral);
+    all_lanes([&](int i) { result[i] = (group & kLaneBit[i]) != 0 ? uint32_t(sum) : result[i]; });
+  });
+  write_lanes<uint32_t>(warp, slot_at(inst, 0), [&](int i) { return result[i]; });
+}
+
+void active_mask(Warp& warp, const Inst& inst) {
+  broadcast(warp, slot_at(inst, 0), warp.exec, warp.exec);
+}
+// The lowest member, and whether it is oneself.
+[[gnu::flatten]] void elect(Warp& warp, const Inst& inst) {
+  const Source<uint32_t> masks(warp, slot_at(inst, 2));
+  uint32_t result[kLanes]{};
+  LaneMask leaders = 0;
+  each_group(warp, masks, [&](LaneMask group, LaneMask members) {
+    const uint32_t leader = members ? uint32_t(__builtin_ctz(members)) : 0;
+    leaders |= members & (0u - members);
+    all_lanes([&](int i) { result[i] = (group & kLaneBit[i]) != 0 ? leader : result[i]; });
+  });
+  write_lanes<uint32_t>(warp, slot_at(inst, 0), [&](int i) { return result[i]; });
+  write_predicate(warp, slot_at(inst, 1), leaders);
+}
+
+constexpr OpRow row(std::string_view name, Operands operands, Handler run, std::string_view doc, Examples examples) {
+  OpRow out = effect_op(name, Class::Alu, Unit::Shuffle, Effect::None, operands, doc);
+  out.run = run;
+  out.examples = examples;
+  return out;
+}
+constexpr OpRow shuffle_row(std::string_view name, Handler run, std::string_view doc) {
+  // All lanes hold one value: whoever is read, it comes.
+  return row(name, {Dst32, DstPred, Src32, Src32, Src32, Src32}, run, doc,
+             {{{7, 0, 31, ~0u}, 7, 1}, {{0x8000'0000, 0, 31, ~0u}, 0x8000'0000, 1}});
+}
+template <class T, T kNeutral, class F>
+constexpr OpRow reduction(std::string_view name, std::string_view doc, F, Examples examples) {
+  return row(name, {Dst32, Src32, Src32}, &reduce<T, kNeutral, F>, doc, examples);
+}
+constexpr Operands kVote{DstPred, SrcPred, Src32};
+
+constexpr OpRow kRows[] = {
+    row("shfl.sync.up.b32", {Dst32, DstPred, Src32, Src32, Src32, Src32}, &shuffle<Shuffle::Up>,
+        "Value of the lane b below, and whether it is in the segment that c describes.",
+        {{{7, 0, 0, ~0u}, 7, 1}, {{0x8000'0000, 0, 0, ~0u}, 0x8000'0000, 1}}),
+    shuffle_row("shfl.sync.down.b32", &shuffle<Shuffle::Down>,
+                "Value of the lane b above, and whether it is in the segment that c describes."),
+    shuffle_row("shfl.sync.bfly.b32", &shuffle<Shuffle::Butterfly>,
+                "Value of the lane whose number differs in the bits b, and whether it is in the segment."),
+    shuffle_row("shfl.sync.idx.b32", &shuffle<Shuffle::Index>,
+                "Value of lane b of the segment that c describes, and whether there is one."),
+    row("vote.sync.all.pred", kVote, &vote<Vote::All>, "Whether the predicate is true for all lanes of the mask.",
+        {{{1, ~0u}, 1}, {{0, ~0u}, 0}}),
+    row("vote.sync.any.pred", kVote, &vote<Vote::Any>, "Whether the predicate is true for any lane of the mask.",
+        {{{1, ~0u}, 1}, {{0, ~0u}, 0}}),
+    row("vote.sync.uni.pred", kVote, &vote<Vote::Uniform>, "Whether the predicate is the same for all lanes of the mask.",
+        {{{1, ~0u}, 1}, {{0, ~0u}, 1}}),
+    row("vote.sync.ballot.b32", {Dst32, SrcPred, Src32}, &ballot, "The lanes of the mask whose predicate is true.",
+        {{{1, 5}, 5}, {{0, 5}, 0}}),
+    row("match.any.sync.b32", {Dst32, Src32, Src32}, &match_any<uint32_t>, "The lanes of the mask with the same value.",
+        {{{9, 7}, 7}, {{0, 2}, 2}}),
+    row("match.any.sync.b64", {Dst32, Src64, Src32}, &match_any<uint64_t>, "The lanes of the mask with the same value.",
+        {{{9, 7}, 7}, {{0x1'0000'0000, 2}, 2}}),
+    row("match.all.sync.b32", {Dst32, DstPred, Src32, Src32}, &match_all<uint32_t>,
+        "The lanes of the mask and true if all have the same value; otherwise 0 and false.",
+        {{{9, 7}, 7, 1}, {{0, 2}, 2, 1}}),
+    row("match.all.sync.b64", {Dst32, DstPred, Src64, Src32}, &match_all<uint64_t>,
+        "The lanes of the mask and true if all have the same value; otherwise 0 and false.",
+        {{{9, 7}, 7, 1}, {{0x1'0000'0000, 2}, 2, 1}}),
+    reduction<uint32_t, 0>("redux.sync.add.u32", "Sum over the lanes of the mask.",
+                           [](uint32_t a, uint32_t b) { return a + b; }, {{{5, 3}, 10}, {{0x8000'0001, 7}, 0x8000'0003}}),
+    reduction<uint32_t, 0>("redux.sync.add.s32", "Sum over the lanes of the mask.",
+                           [](uint32_t a, uint32_t b) { return a + b; },
+                           {{{5, 3}, 10}, {{0xffff'ffff, 7}, 0xffff'fffd}}),
+    reduction<uint32_t, ~0u>("redux.sync.min.u32", "Minimum over the lanes of the mask.",
+                             [](uint32_t a, uint32_t b) { return a < b ? a : b; }, {{{5, 3}, 5}, {{0xffff'ffff, 7}, 0xffff'ffff}}),
+    reduction<int32_t, 0x7fff'ffff>("redux.sync.min.s32", "Signed minimum over the lanes of the mask.",
+                                    [](int32_t a, int32_t b) { return a < b ? a : b; },
+                                    {{{5, 3}, 5}, {{0xffff'ffff, 7}, 0xffff'ffff}}),
+    reduction<uint32_t, 0>("redux.sync.max.u32", "Maximum over the lanes of the mask.",
+                           [](uint32_t a, uint32_t b) { return a > b ? a : b; }, {{{5, 3}, 5}, {{0xffff'ffff, 7}, 0xffff'ffff}}),
+    reduction<int32_t, -0x7fff'ffff - 1>("redux.sync.max.s32", "Signed maximum over the lanes of the mask.",
+                                         [](int32_t a, int32_t b) { return a > b ? a : b; },
+                                         {{{5, 3}, 5}, {{0xffff'ffff, 7}, 0xffff'ffff}}),
+    reduction<uint32_t, ~0u>("redux.sync.and.b32", "Bitwise and over the lanes of the mask.",
+                             [](uint32_t a, uint32_t b) { return a & b; }, {{{5, 3}, 5}, {{0, 7}, 0}}),
+    reduction<uint32_t, 0>("redux.sync.or.b32", "Bitwise or over the lanes of the mask.",
+                           [](uint32_t a, uint32_t b) { return a | b; }, {{{5, 3}, 5}, {{0, 7}, 0}}),
+    reduction<uint32_t, 0>("redux.sync.xor.b32", "Bitwise exclusive or over the lanes of the mask.",
+                           [](uint32_t a, uint32_t b) { return a ^ b; }, {{{5, 3}, 0}, {{5, 7}, 5}}),
+    // Who runs is not among its operands: no example holds for every warp.
+    row("activemask.b32", {Dst32}, &active_mask, "The lanes that execute this instruction.", {}),
+    // The second result differs from lane to lane: true in the lane of the first.
+    row("elect.sync", {Dst32, DstPred, Src32}, &elect, "The lowest lane of the mask, and whether it is this one.",
+        {{{7}, 0}, {{6}, 1}}),
+};
+
+}  // namespace
 
 RowList warp_rows() {
-  return {};
+  return {kRows, std::size(kRows)};
 }
 
 }  // namespace glint::isa::GLINT_ISA_PATH

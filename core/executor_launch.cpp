@@ -1,0 +1,154 @@
+// Putting blocks and warps of a launch to their start: who they are, and what they read about it.
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "base/check.h"
+#include "core/executor.h"
+
+namespace glint::core {
+
+using isa::Special;
+
+namespace {
+
+uint64_t product(const std::array<uint32_t, 3>& size) { return uint64_t(size[0]) * size[1] * size[2]; }
+
+std::array<uint32_t, 3> coordinates(uint64_t index, const std::array<uint32_t, 3>& size) {
+  return {uint32_t(index % size[0]), uint32_t(index / size[0] % size[1]), uint32_t(index / size[0] / size[1])};
+}
+
+bool has_blocks(const World& world) { return world.block_size[0] != 0; }
+
+std::array<uint32_t, 3> grid_size(const World& world) {
+  std::array<uint32_t, 3> grid;
+  for (size_t axis = 0; axis < 3; ++axis) grid[axis] = world.launch_size[axis] / world.block_size[axis];
+  return grid;
+}
+
+// The first of the threads of a warp in its block, or in the launch when there are no blocks, and how many it has.
+struct Threads {
+  uint64_t first, count;
+};
+Threads threads_of(const World& world, uint32_t warp) {
+  const uint64_t all = product(has_blocks(world) ? world.block_size : world.launch_size);
+  const uint64_t first = uint64_t(warp) * kLanes;
+  return {first, std::min<uint64_t>(kLanes, all - first)};
+}
+
+}  // namespace
+
+uint32_t warps_per_block(const World& world) {
+  return has_blocks(world) ? uint32_t((product(world.block_size) + kLanes - 1) / kLanes) : 1;
+}
+
+std::array<uint32_t, 3> launch_id(const World& world, uint32_t warp_index, int lane) {
+  const uint32_t warps = warps_per_block(world);
+  const uint64_t thread = uint64_t(has_blocks(world) ? warp_index % warps : warp_index) * kLanes + uint64_t(lane);
+  if (!has_blocks(world)) return coordinates(thread, world.launch_size);
+  const std::array<uint32_t, 3> block = coordinates(warp_index / warps, grid_size(world));
+  std::array<uint32_t, 3> id = coordinates(thread, world.block_size);
+  for (size_t axis = 0; axis < 3; ++axis) id[axis] += block[axis] * world.block_size[axis];
+  return id;
+}
+
+Executor::Executor(const World& world, double clock_mhz)
+    : world_(world),
+      reads_clock_(std::any_of(world.image->shaders.begin(), world.image->shaders.end(), [](const Shader& shader) {
+        return shader.specials_used[size_t(Special::Clock)] || shader.specials_used[size_t(Special::ClockHi)] ||
+               shader.specials_used[size_t(Special::GlobalTimerLo)] || shader.specials_used[size_t(Special::GlobalTimerHi)];
+      })),
+      clock_mhz_(clock_mhz) {
+  GLINT_CHECK(warps_per_block() <= kMaxBlockWarps, "a block of {} threads: check() reports this", product(world.block_size));
+}
+
+uint32_t Executor::warps_per_block() const { return core::warps_per_block(world_); }
+
+uint32_t Executor::num_blocks() const {
+  if (has_blocks(world_)) return uint32_t(product(grid_size(world_)));
+  return uint32_t((product(world_.launch_size) + kLanes - 1) / kLanes);
+}
+
+void Executor::start(Block& block, uint32_t index) const {
+  const auto id = has_blocks(world_) ? coordinates(index, grid_size(world_)) : std::array<uint32_t, 3>{index, 0, 0};
+  block.start(index, id, warps_per_block(), world_.shared_bytes);
+}
+
+void Executor::start(WarpContext& warp, uint32_t warp_index) const {
+  GLINT_CHECK(!has_blocks(world_), "a warp of a block needs its block");
+  if (!warp.own_block) warp.own_block = std::make_unique<Block>();
+  start(*warp.own_block, warp_index);
+  start(warp, *warp.own_block, 0);
+}
+
+void Executor::start(WarpContext& warp, Block& block, uint32_t warp_in_block, const Seat& seat) const {
+  const Image& image = *world_.image;
+  const size_t registers = size_t(image.num_registers) * kLanes;
+  if (!warp.regs.bank[0]) {
+    warp.own_registers = std::make_unique<uint32_t[]>(registers);
+    warp.regs.bank[0] = warp.own_registers.get();
+  }
+  std::fill_n(warp.regs.bank[0], registers, 0u);
+  if (!warp.own_specials) warp.own_specials = std::make_unique<uint32_t[]>(size_t(isa::kNumSpecials) * kLanes);
+  warp.regs.bank[1] = image.constants.get();
+  warp.regs.bank[2] = warp.own_specials.get();
+  std::fill_n(warp.regs.bank[2], size_t(isa::kNumSpecials) * kLanes, 0u);
+  warp.regs.predicate.fill(0);
+  warp.local.assign(size_t((world_.local_bytes + 3) / 4) * kLanes, 0u);
+  warp.warp_index = block.index() * warps_per_block() + warp_in_block;
+  warp.block = &block;
+  warp.warp_in_block = warp_in_block;
+  block.warps[warp_in_block] = &warp;
+  warp.depth = 0;
+  warp.instructions = 0;
+  warp.waiting_for_rays = warp.waiting_at_barrier = false;
+
+  const uint64_t count = threads_of(world_, has_blocks(world_) ? warp_in_block : warp.warp_index).count;
+  warp.simt.start(image.shaders[world_.raygen].entry, count == kLanes ? kAllLanes : (LaneMask{1} << count) - 1);
+  fill_launch_specials(warp, seat);
+}
+
+void Executor::fill_launch_specials(WarpContext& warp, const Seat& seat) const {
+  const bool blocks = has_blocks(world_);
+  const std::array<uint32_t, 3> size = blocks ? world_.block_size : std::array<uint32_t, 3>{uint32_t(kLanes), 1, 1};
+  const std::array<uint32_t, 3> grid = blocks ? grid_size(world_) : std::array<uint32_t, 3>{num_blocks(), 1, 1};
+  const auto set = [&](Special s, size_t lane, uint32_t value) { warp.regs.bank[2][size_t(s) * kLanes + lane] = value; };
+  const auto axis_of = [](Special x, size_t axis) { return Special(size_t(x) + axis); };
+  for (size_t lane = 0; lane < size_t(kLanes); ++lane) {
+    const auto id = launch_id(world_, warp.warp_index, int(lane));
+    const auto thread = coordinates((blocks ? uint64_t(warp.warp_in_block) * kLanes : 0) + lane, size);
+    for (size_t axis = 0; axis < 3; ++axis) {
+      set(axis_of(Special::LaunchX, axis), lane, id[axis]);
+      set(axis_of(Special::LaunchSizeX, axis), lane, world_.launch_size[axis]);
+      set(axis_of(Special::TidX, axis), lane, thread[axis]);
+      set(axis_of(Special::NtidX, axis), lane, size[axis]);
+      set(axis_of(Special::CtaidX, axis), lane, warp.block->id()[axis]);
+      set(axis_of(Special::NctaidX, axis), lane, grid[axis]);
+    }
+    const LaneMask bit = LaneMask{1} << lane;
+    const std::pair<Special, uint32_t> values[] = {
+        {Special::LaneId, uint32_t(lane)},
+        {Special::WarpId, seat.slots > 1 ? seat.slot : warp.warp_in_block},
+        {Special::NwarpId, std::max(seat.slots, warps_per_block())},
+        {Special::SmId, seat.core},
+        {Special::NsmId, seat.cores},
+        {Special::LanemaskEq, bit},
+        {Special::LanemaskLe, bit | (bit - 1)},
+        {Special::LanemaskLt, bit - 1},
+        {Special::LanemaskGe, ~(bit - 1)},
+        {Special::LanemaskGt, ~(bit | (bit - 1))},
+        {Special::TotalSmemSize, world_.shared_bytes},
+        {Special::DynamicSmemSize, world_.dynamic_shared_bytes}};
+    for (const auto& [special, value] : values) set(special, lane, value);
+  }
+}
+
+void Executor::fill_clock(WarpContext& warp, Cycle now) const {
+  const auto set = [&](Special s, uint64_t value) { std::fill_n(warp.regs.bank[2] + size_t(s) * kLanes, kLanes, uint32_t(value)); };
+  const uint64_t nanoseconds = clock_mhz_ > 0.0 ? uint64_t(double(now) * 1000.0 / clock_mhz_) : 0;
+  set(Special::Clock, now);
+  set(Special::ClockHi, now >> 32);
+  set(Special::GlobalTimerLo, nanoseconds);
+  set(Special::GlobalTimerHi, nanoseconds >> 32);
+}
+
+}  // namespace glint::core
