@@ -37,27 +37,24 @@ inline constexpr uint32_t kCanonicalNan16 = 0x7fff;  // of f16 and bf16: PTX's N
 
 // Rounds to nearest even, once, subnormal results too; from 65520 on infinity; NaN gives 0x7fff. The host
 // must round to nearest meanwhile.
+//
+// 2^13 of the float's own power of two (2^-14 at least, where f16 becomes subnormal) is added and taken off:
+// the sum's steps are an f16's. What is left is an f16 in all but exponent bias; 65536 has the exponent of
+// infinity.
 [[gnu::always_inline]] inline uint32_t half_bits(float x) {
-  const uint32_t magnitude = float_bits(x) & 0x7fff'ffffu;
-  const uint32_t sign = (float_bits(x) >> 16) & 0x8000u;
-  // Half an f16 step less one, and one more where the last bit is odd: ties go to even. A carry moves into
-  // the exponent.
-  const uint32_t normal = (magnitude - 0x3800'0000u + 0x0fffu + ((magnitude >> 13) & 1u)) >> 13;
-  // Floats from 0.5 to 1 are 2^-24 apart, as subnormal f16 are: the addition rounds.
-  const uint32_t subnormal = float_bits(float_of(magnitude) + 0.5f) - 0x3f00'0000u;
-  const uint32_t finite = magnitude < 0x3880'0000u ? subnormal : normal;
-  const uint32_t number = (magnitude >= 0x4780'0000u ? 0x7c00u : finite) | sign;
-  return magnitude > 0x7f80'0000u ? kCanonicalNan16 : number;
+  const float magnitude = float_of(float_bits(x) & 0x7fff'ffffu);
+  const uint32_t power = float_bits(x) & 0x7f80'0000u;
+  const float step = float_of((power > 0x3880'0000u ? power : 0x3880'0000u) + (13u << 23));
+  const float rounded = (magnitude + step) - step;
+  const float finite = rounded < 65536.0f ? rounded : 65536.0f;
+  const uint32_t number = float_bits(finite * 0x1p-112f) >> 13 | (float_bits(x) >> 16 & 0x8000u);
+  return is_nan(x) ? kCanonicalNan16 : number;
 }
 // The same with subnormal results flushed: those below 2^-14 - 2^-26, which f16 with an unbounded exponent
 // would round to less than 2^-14.
 [[gnu::always_inline]] inline uint32_t flushed_half_bits(float x) {
   const uint32_t magnitude = float_bits(x) & 0x7fff'ffffu;
-  const uint32_t sign = (float_bits(x) >> 16) & 0x8000u;
-  const uint32_t normal = (magnitude - 0x3800'0000u + 0x0fffu + ((magnitude >> 13) & 1u)) >> 13;
-  const uint32_t finite = magnitude < 0x387f'f000u ? 0u : normal;
-  const uint32_t number = (magnitude >= 0x4780'0000u ? 0x7c00u : finite) | sign;
-  return magnitude > 0x7f80'0000u ? kCanonicalNan16 : number;
+  return half_bits(float_of(magnitude < 0x387f'f000u ? float_bits(x) & 0x8000'0000u : float_bits(x)));
 }
 // A bf16's exponents are a float's, so a carry makes infinity, and subnormals need no care.
 [[gnu::always_inline]] inline uint32_t bfloat_bits(float x) {

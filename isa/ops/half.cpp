@@ -41,12 +41,12 @@ struct F16 {
     return to_odd(sum, error);
   }
 
+  // One step toward zero where the error has the other sign, then the last bit: an odd sum stays as it is.
   static float to_odd(float sum, float error) {
     const uint32_t bits = float_bits(sum);
-    const uint32_t toward = ((float_bits(error) ^ bits) >> 31) != 0 ? bits - 1 : bits + 1;
-    const bool is_off =
-        (bits & 1) == 0 && __builtin_fabsf(error) > 0;  // an error that is NaN: sum is not finite
-    return float_of(is_off ? toward : bits);
+    const uint32_t odd = (bits + all_ones_if_negative(float_bits(error) ^ bits)) | 1;
+    const bool is_off = error < 0 || error > 0;  // a NaN error: the sum is not finite
+    return float_of(is_off ? odd : bits);
   }
 };
 struct Bf16 {
