@@ -19,7 +19,18 @@ bool is_known_capability(spv::Capability capability) {
     case int(spv::Capability::Shader):
     case int(spv::Capability::Matrix):
     case int(spv::Capability::Int64):
+    case int(spv::Capability::Int16):
+    case int(spv::Capability::Int8):
+    case int(spv::Capability::Float16):
+    case int(spv::Capability::Float64):
+    case int(spv::Capability::StorageBuffer16BitAccess):
+    case int(spv::Capability::UniformAndStorageBuffer16BitAccess):
+    case int(spv::Capability::StoragePushConstant16):
+    case int(spv::Capability::StorageBuffer8BitAccess):
+    case int(spv::Capability::UniformAndStorageBuffer8BitAccess):
+    case int(spv::Capability::StoragePushConstant8):
     case int(spv::Capability::RayTracingKHR):
+    case int(spv::Capability::RayQueryKHR):
     case int(spv::Capability::RayTraversalPrimitiveCullingKHR):
     case int(spv::Capability::ShaderClockKHR):
     case int(spv::Capability::RuntimeDescriptorArray):
@@ -212,7 +223,8 @@ Operands Lowering::constant_parts(Id id) {
     case spv::Op::OpSpecConstant: {
       uint64_t bits = constant.operands[0];
       if (constant.operands.size() > 1) bits |= uint64_t(constant.operands[1]) << 32;
-      layout_.parts(constant.type);  // notes widths that are not supported
+      // Literals of narrow signed types carry their sign beyond their width.
+      if (const uint32_t bytes = bytes_of(part_of(constant.type)); bytes < 4) bits &= (1u << 8 * bytes) - 1;
       return {Operand::value(bits)};
     }
     case spv::Op::OpConstantComposite:
@@ -250,6 +262,11 @@ Operands Lowering::specialised_parts(const Instruction& constant) {
   return Operands(layout_.num_parts(constant.type), Operand::value(0));
 }
 
+Part Lowering::part_of(Id type) {
+  const std::vector<Part>& parts = layout_.parts(type);
+  return parts.empty() ? Part::Uint32 : parts[0];
+}
+
 const Instruction* Lowering::definition(Id id) const {
   const auto it = definition_.find(id);
   return it == definition_.end() ? nullptr : it->second;
@@ -285,8 +302,8 @@ void Lowering::throw_if_unsupported() const {
 const LoweringRow* find_lowering_row(spv::Op op) {
   static const std::map<spv::Op, const LoweringRow*> kRows = [] {
     std::map<spv::Op, const LoweringRow*> rows;
-    for (const auto family : {arithmetic_rows(), comparison_rows(), composite_rows(), memory_rows(),
-                              image_rows(), ray_tracing_rows()})
+    for (const auto family : {arithmetic_rows(), conversion_rows(), comparison_rows(), composite_rows(), memory_rows(),
+                              image_rows(), ray_tracing_rows(), ray_query_rows()})
       for (const LoweringRow& row : family)
         GLINT_CHECK(rows.emplace(row.op, &row).second, "two rows for op {}", uint32_t(row.op));
     return rows;

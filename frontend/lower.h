@@ -24,12 +24,12 @@ VirtualProgram lower_to_virtual(const std::vector<uint32_t>& spirv, const std::s
 
 // Where a pointer points. Attribute pairs: hit attributes of two floats, which hit shaders find in %hit.u and
 // %hit.v.
-enum class Place : uint8_t { Local, Global, Constant, Builtin, Resource, AttributePair, Nowhere };
+enum class Place : uint8_t { Local, Global, Constant, Builtin, Resource, AttributePair, RayQuery, Nowhere };
 
 struct Pointer {
   Id type = 0;  // of the pointee
   Place place = Place::Nowhere;
-  Operand base = Operand::value(0);  // Local, Constant: 32-bit address; Global: 64-bit; Resource: array index
+  Operand base = Operand::value(0);  // Local, Constant: 32-bit address; Global: 64-bit; Resource, RayQuery: index
   int64_t displacement = 0;          // bytes; Builtin, AttributePair: parts
   uint32_t alignment = 16;           // bytes, of base
   uint32_t component_stride = 0;     // bytes; not 0 in a column of a row-major matrix
@@ -50,16 +50,18 @@ class Lowering;
 struct LoweringRow {
   spv::Op op;
   void (*lower)(Lowering&, const Instruction&, const LoweringRow&);
-  std::string_view name32;  // the ISA op for 32-bit parts, where the family uses one
+  std::string_view name32;  // the ISA op for 32-bit parts, where the family uses one; see lower_typed.h
   std::string_view name64 = {};
 };
 // One table a family; find_lowering_row() searches them all.
 std::span<const LoweringRow> arithmetic_rows();
+std::span<const LoweringRow> conversion_rows();
 std::span<const LoweringRow> comparison_rows();
 std::span<const LoweringRow> composite_rows();
 std::span<const LoweringRow> memory_rows();
 std::span<const LoweringRow> image_rows();
 std::span<const LoweringRow> ray_tracing_rows();
+std::span<const LoweringRow> ray_query_rows();
 const LoweringRow* find_lowering_row(spv::Op op);
 
 // The GLSL.std.450 instruction set: operands[0] is the import, operands[1] the function's number.
@@ -84,11 +86,15 @@ class Lowering {
   Id type_of(Id id) const { return type_of_id_.at(id); }
   const Instruction* definition(Id id) const;  // in the function; null for constants and variables
 
+  // The type of the first part; parts of one value are alike but in structs.
+  Part part_of(Id type);
+
   // --- Memory
   Operands load(const Pointer& pointer);
   void store(const Pointer& pointer, const Operands& parts);
   Operands load_builtin(spv::BuiltIn builtin, Id type);
   uint32_t local_offset(Id variable);  // bytes in the frame; allotted on first use
+  uint32_t ray_query(Id variable);     // the first query of a variable; numbers are given on first use
   void hand_over_attributes();         // to the buffer that the next report reads
   uint32_t attribute_buffers();        // bytes in the frame of the two buffers of 64 bytes
   void note_store(Place place);        // loads of that place are not reused any more
@@ -128,6 +134,8 @@ class Lowering {
   std::map<Id, const Instruction*> definition_;
   std::map<Id, Variable> local_variables_;  // Function storage
   std::map<Id, uint32_t> frame_;            // variable to byte offset
+  std::map<Id, uint32_t> ray_queries_;      // variable to its first query
+  uint32_t num_ray_queries_ = 0;
   uint32_t attribute_buffers_ = 0xffff'ffff;
   bool attributes_in_frame_ = false;        // of an intersection shader that may report more than once
   uint64_t local_version_ = 1, global_version_ = 1;  // of memory, for the reuse of loads

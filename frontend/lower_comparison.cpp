@@ -1,24 +1,24 @@
 // Comparisons and logic: results are predicates.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower.h"
+#include "frontend/lower_typed.h"
 
 namespace glint::frontend {
 namespace {
 
 void compare(Lowering& l, const Instruction& inst, const LoweringRow& row) {
-  const auto& parts = l.layout().parts(l.type_of(inst.operands[0]));
-  const bool wide = !parts.empty() && class_of(parts[0]) == RegisterClass::B64;
-  const std::string_view name = wide ? row.name64 : row.name32;
+  const Part part = l.part_of(l.type_of(inst.operands[0]));
   const Operands a = l.value(inst.operands[0]), b = l.value(inst.operands[1]);
   Operands result;
-  for (size_t i = 0; i < a.size(); ++i) result.push_back(l.emit().value(name, {a[i], b[i]}));
+  for (size_t i = 0; i < a.size(); ++i) result.push_back(typed(l.emit(), row.name32, part, {a[i], b[i]}));
   l.set(inst.result, std::move(result));
 }
 
 void test(Lowering& l, const Instruction& inst, const LoweringRow& row) {
+  const Part part = l.part_of(l.type_of(inst.operands[0]));
   Operands result;
   for (const Operand& a : Operands(l.value(inst.operands[0])))
-    result.push_back(l.emit().value(row.name32, {a}));
+    result.push_back(typed(l.emit(), row.name32, part, {a}));
   l.set(inst.result, std::move(result));
 }
 
@@ -66,16 +66,16 @@ void select(Lowering& l, const Instruction& inst, const LoweringRow&) {
 
 using enum spv::Op;
 constexpr LoweringRow kRows[] = {
-    {OpIEqual, compare, "setp.eq.u32", "setp.eq.u64"},
-    {OpINotEqual, compare, "setp.ne.u32", "setp.ne.u64"},
-    {OpULessThan, compare, "setp.lt.u32", "setp.lt.u64"},
-    {OpULessThanEqual, compare, "setp.le.u32", "setp.le.u64"},
-    {OpUGreaterThan, compare, "setp.gt.u32", "setp.gt.u64"},
-    {OpUGreaterThanEqual, compare, "setp.ge.u32", "setp.ge.u64"},
-    {OpSLessThan, compare, "setp.lt.s32", "setp.lt.s64"},
-    {OpSLessThanEqual, compare, "setp.le.s32", "setp.le.s64"},
-    {OpSGreaterThan, compare, "setp.gt.s32", "setp.gt.s64"},
-    {OpSGreaterThanEqual, compare, "setp.ge.s32", "setp.ge.s64"},
+    {OpIEqual, compare, "setp.eq.u32"},
+    {OpINotEqual, compare, "setp.ne.u32"},
+    {OpULessThan, compare, "setp.lt.u32"},
+    {OpULessThanEqual, compare, "setp.le.u32"},
+    {OpUGreaterThan, compare, "setp.gt.u32"},
+    {OpUGreaterThanEqual, compare, "setp.ge.u32"},
+    {OpSLessThan, compare, "setp.lt.s32"},
+    {OpSLessThanEqual, compare, "setp.le.s32"},
+    {OpSGreaterThan, compare, "setp.gt.s32"},
+    {OpSGreaterThanEqual, compare, "setp.ge.s32"},
     {OpFOrdEqual, compare, "setp.eq.f32"},
     {OpFOrdNotEqual, compare, "setp.ne.f32"},
     {OpFOrdLessThan, compare, "setp.lt.f32"},

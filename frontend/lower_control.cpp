@@ -203,13 +203,14 @@ bool ControlFlow::is_next(uint32_t from, uint32_t to) {
 void ControlFlow::choose(uint32_t b, const Instruction& last) {
   const uint32_t otherwise = cfg_.index_of(last.operands[1]);
   const Operand selector = lowering_.scalar(last.operands[0]);
-  if (lowering_.layout().parts(lowering_.type_of(last.operands[0]))[0] > Part::Uint32)
-    lowering_.unsupported("OpSwitch of 64 bits");
+  const uint32_t bytes = bytes_of(lowering_.layout().parts(lowering_.type_of(last.operands[0]))[0]);
+  if (bytes == 8) lowering_.unsupported("OpSwitch of 64 bits");
+  const uint32_t mask = bytes < 4 ? (1u << 8 * bytes) - 1 : 0xffff'ffff;  // literals carry their sign beyond their width
   std::vector<std::pair<uint32_t, Operand>> cases;  // target, predicate
   for (size_t i = 2; i + 1 < last.operands.size(); i += 2) {
     const uint32_t to = cfg_.index_of(last.operands[i + 1]);
     if (to == otherwise) continue;
-    const Operand hit = emit_.value("setp.eq.u32", {selector, Operand::value(last.operands[i])});
+    const Operand hit = emit_.value("setp.eq.u32", {selector, Operand::value(last.operands[i] & mask)});
     const auto same_target =
         std::find_if(cases.begin(), cases.end(), [&](const auto& c) { return c.first == to; });
     if (same_target == cases.end())

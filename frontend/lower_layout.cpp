@@ -11,9 +11,13 @@ using Kind = Type::Kind;
 Part Layout::scalar(Id id) {
   const Type& type = module_.type(id);
   if (type.kind == Kind::Bool) return Part::Bool;
+  if (type.kind == Kind::Int && type.width == 8) return type.is_signed ? Part::Int8 : Part::Uint8;
+  if (type.kind == Kind::Int && type.width == 16) return type.is_signed ? Part::Int16 : Part::Uint16;
   if (type.kind == Kind::Int && type.width == 32) return type.is_signed ? Part::Int32 : Part::Uint32;
   if (type.kind == Kind::Int && type.width == 64) return type.is_signed ? Part::Int64 : Part::Uint64;
+  if (type.kind == Kind::Float && type.width == 16) return Part::Float16;
   if (type.kind == Kind::Float && type.width == 32) return Part::Float32;
+  if (type.kind == Kind::Float && type.width == 64) return Part::Float64;
   if (type.kind == Kind::Image || type.kind == Kind::SampledImage) return Part::Uint32;  // its handle
   if (type.kind == Kind::AccelerationStructure) return Part::Uint64;                     // its address
   unsupported_.insert(id);
@@ -50,6 +54,7 @@ const std::vector<Part>& Layout::parts(Id id) {
     case Kind::Image:
     case Kind::SampledImage:
     case Kind::AccelerationStructure:
+    case Kind::RayQuery:
     case Kind::Other:
       result.push_back(scalar(id));
       break;
@@ -71,9 +76,9 @@ uint32_t Layout::first_part(Id id, uint32_t member) {
 }
 
 uint32_t Layout::alignment(Id id) {
-  for (Part part : parts(id))
-    if (class_of(part) == RegisterClass::B64) return 8;
-  return 4;
+  uint32_t largest = 1;
+  for (Part part : parts(id)) largest = std::max(largest, bytes_of(part));
+  return largest;
 }
 
 uint32_t Layout::member_offset(Id id, uint32_t member) {
@@ -120,7 +125,7 @@ uint32_t Layout::size(Id id, MatrixLayout matrix) {
     }
     default: {
       uint32_t bytes = 0;
-      for (Part part : parts(id)) bytes += class_of(part) == RegisterClass::B64 ? 8 : 4;
+      for (Part part : parts(id)) bytes += bytes_of(part);
       return bytes;
     }
   }
@@ -145,7 +150,7 @@ void Layout::append_leaves(Id id, MatrixLayout matrix, uint32_t component_stride
       const uint32_t stride = element_stride(id, matrix);
       for (uint32_t i = 0; i < type.count; ++i)
         if (matrix.row_major)
-          append_leaves(type.element, {}, stride, offset + 4 * i, to);  // columns of 32-bit floats
+          append_leaves(type.element, {}, stride, offset + size(module_.type(type.element).element) * i, to);
         else
           append_leaves(type.element, {}, 0, offset + stride * i, to);
       break;

@@ -10,12 +10,30 @@
 
 namespace glint::frontend {
 
-// One scalar of a value: a 32-bit register, an even/odd pair, or a predicate (32-bit 0 or 1 in memory).
-enum class Part : uint8_t { Bool, Int32, Uint32, Float32, Int64, Uint64 };
+// One scalar of a value: a 32-bit register, an even/odd pair, or a predicate (32-bit 0 or 1 in memory). Values of 8 and
+// 16 bits lie in the low bits of a register; the bits above are 0, whatever the sign.
+enum class Part : uint8_t {
+  Bool, Int32, Uint32, Float32, Int64, Uint64, Float64, Int8, Uint8, Int16, Uint16, Float16
+};
+
+// In memory, and of a register's bits that count.
+constexpr uint32_t bytes_of(Part part) {
+  switch (part) {
+    case Part::Int8: case Part::Uint8: return 1;
+    case Part::Int16: case Part::Uint16: case Part::Float16: return 2;
+    case Part::Bool: case Part::Int32: case Part::Uint32: case Part::Float32: return 4;
+    case Part::Int64: case Part::Uint64: case Part::Float64: return 8;
+  }
+  return 4;
+}
+
+constexpr bool is_float(Part part) {
+  return part == Part::Float16 || part == Part::Float32 || part == Part::Float64;
+}
 
 constexpr RegisterClass class_of(Part part) {
   if (part == Part::Bool) return RegisterClass::Predicate;
-  return part == Part::Int64 || part == Part::Uint64 ? RegisterClass::B64 : RegisterClass::B32;
+  return bytes_of(part) == 8 ? RegisterClass::B64 : RegisterClass::B32;
 }
 
 // Where the matrix of an access chain keeps its parts; comes from the member that holds the matrix.
@@ -30,8 +48,8 @@ struct Leaf {
 };
 
 // Buffers follow their decorations. Everything else (variables, payloads, hit attributes) has no decorated
-// layout. Choice: scalars packed in order, 64-bit ones aligned to 8 bytes, so that caller and callee of a
-// trace agree when their types do.
+// layout. Choice: scalars packed in order, each aligned to its size, so that caller and callee of a trace
+// agree when their types do.
 class Layout {
  public:
   explicit Layout(const Module& module) : module_(module) {}
@@ -48,7 +66,7 @@ class Layout {
   MatrixLayout member_matrix(Id type, uint32_t member, MatrixLayout outer) const;
   std::vector<Leaf> leaves(Id type, MatrixLayout matrix, uint32_t component_stride);
 
-  // Types met so far that no part can hold (16-bit floats, ...); they count as 32-bit words until reported.
+  // Types met so far that no part can hold (floats of 128 bits, ...); they count as 32-bit words until reported.
   const std::set<Id>& unsupported() const { return unsupported_; }
 
  private:

@@ -1,5 +1,5 @@
-// Elementary functions and small matrices. The coefficients are minimax fits made for this project by Remez
-// exchange; the comments give the largest error of the exact polynomial.
+// Inverse circular functions, exponentials and logarithms. The coefficients are minimax fits made for this project by
+// Remez exchange; the comments give the largest error of the exact polynomial.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower_math.h"
 
@@ -9,7 +9,9 @@ namespace glint::frontend::math {
 namespace {
 
 constexpr float kPi = 3.14159265358979f;
+constexpr float kPiRest = -8.74227800037e-8f;  // pi - kPi
 constexpr float kHalfPi = 1.57079632679490f;
+constexpr float kHalfPiRest = -4.37113900019e-8f;
 constexpr float kLog2E = 1.44269504088896f;
 constexpr float kLn2 = 0.693147180559945f;
 
@@ -57,24 +59,27 @@ Operand atan_of_unit(Emitter& e, Operand x) {
 
 }  // namespace
 
-Operand dot(Emitter& e, const Operands& a, const Operands& b) {
-  Operand sum = e.mul(a[0], b[0]);
-  for (size_t i = 1; i < a.size(); ++i) sum = e.add(sum, e.mul(a[i], b[i]));
+Operand dot(Arithmetic& a, const Operands& x, const Operands& y) {
+  Operand sum = a.mul(x[0], y[0]);
+  for (size_t i = 1; i < x.size(); ++i) sum = a.add(sum, a.mul(x[i], y[i]));
   return sum;
 }
 
+// pi/2 - r = kHalfPi - (r - kHalfPiRest), which rounds once more but keeps the constant's lost bits.
 Operand asin(Emitter& e, Operand x) {
   const Reduced r = reduced_asin(e, abs(e, x));
-  const Operand large = e.fma(r.value, constant_f32(-2), constant_f32(kHalfPi));
-  return with_sign(e, e.select(r.is_large, large, r.value), x);
+  const Operand twice = e.fma(r.value, constant_f32(2), constant_f32(-kHalfPiRest));
+  return with_sign(e, e.select(r.is_large, e.sub(constant_f32(kHalfPi), twice), r.value), x);
 }
 
 Operand acos(Emitter& e, Operand x) {
   const Reduced r = reduced_asin(e, abs(e, x));
   const Operand is_negative = e.value("setp.lt.f32", {x, constant_f32(0)});
   const Operand twice = e.add(r.value, r.value);
-  const Operand large = e.select(is_negative, e.sub(constant_f32(kPi), twice), twice);
-  const Operand small = e.sub(constant_f32(kHalfPi), with_sign(e, r.value, x));
+  const Operand from_pi = e.sub(constant_f32(kPi), e.add(twice, constant_f32(-kPiRest)));
+  const Operand large = e.select(is_negative, from_pi, twice);
+  const Operand small =
+      e.sub(constant_f32(kHalfPi), e.add(with_sign(e, r.value, x), constant_f32(-kHalfPiRest)));
   return e.select(r.is_large, large, small);
 }
 
@@ -82,9 +87,12 @@ Operand atan(Emitter& e, Operand x) {
   const Operand magnitude = abs(e, x);
   const Operand is_large = greater(e, magnitude, constant_f32(1));
   const Operand t = atan_of_unit(e, e.select(is_large, e.div(constant_f32(1), magnitude), magnitude));
-  return with_sign(e, e.select(is_large, e.sub(constant_f32(kHalfPi), t), t), x);
+  const Operand large = e.sub(constant_f32(kHalfPi), e.add(t, constant_f32(-kHalfPiRest)));
+  return with_sign(e, e.select(is_large, large, t), x);
 }
 
+// t = atan of the ratio of the smaller to the larger magnitude. By octants the result is t, pi/2 - t, pi/2 + t or
+// pi - t: a constant in two parts plus t or -t.
 Operand atan2(Emitter& e, Operand y, Operand x) {
   const Operand ax = abs(e, x), ay = abs(e, y);
   const Operand larger = e.value("max.f32", {ax, ay}), smaller = e.value("min.f32", {ax, ay});
@@ -94,9 +102,17 @@ Operand atan2(Emitter& e, Operand y, Operand x) {
       e.select(is_zero, constant_f32(0),
                e.select(e.value("setp.eq.f32", {ax, ay}), constant_f32(1), e.div(smaller, larger)));
   const Operand t = atan_of_unit(e, ratio);
-  const Operand right = e.select(greater(e, ay, ax), e.sub(constant_f32(kHalfPi), t), t);
   const Operand is_left = e.value("setp.lt.s32", {x, Operand::value(0)});  // the sign bit, also of -0
-  return with_sign(e, e.select(is_left, e.sub(constant_f32(kPi), right), right), y);
+  const Operand is_steep = greater(e, ay, ax);
+  const auto by_octant = [&](float steep, float left) {
+    return e.select(is_steep, constant_f32(steep), e.select(is_left, constant_f32(left), constant_f32(0)));
+  };
+  const Operand falls = e.value("xor.pred", {is_steep, is_left});
+  const Operand turned = e.select(falls, e.value("neg.f32", {t}), t);
+  const Operand sum =
+      e.add(by_octant(kHalfPi, kPi), e.add(turned, by_octant(kHalfPiRest, kPiRest)));
+  const Operand both = e.add(ax, ay);  // min and max drop one NaN
+  return e.select(e.value("testp.notanumber.f32", {both}), both, with_sign(e, sum, y));
 }
 
 Operand exp(Emitter& e, Operand x) {
@@ -111,54 +127,6 @@ Operand pow(Emitter& e, Operand x, Operand y) {
   const Operand power = e.value("ex2.f32", {e.mul(y, e.value("lg2.f32", {x}))});
   if (y.kind == Operand::Kind::Constant) return power;
   return e.select(e.value("setp.eq.f32", {y, constant_f32(0)}), constant_f32(1), power);  // 0 * lg2(0) is NaN
-}
-
-namespace {
-
-// The determinant of the rows and columns named; m is n x n by columns.
-Operand minor_of(Emitter& e, const Operands& m, size_t n, const std::vector<size_t>& rows,
-                 const std::vector<size_t>& columns) {
-  if (rows.size() == 1) return m[columns[0] * n + rows[0]];
-  Operand sum;
-  for (size_t c = 0; c < columns.size(); ++c) {
-    std::vector<size_t> rest = columns;
-    rest.erase(rest.begin() + long(c));
-    const Operand term =
-        e.mul(m[columns[c] * n + rows[0]], minor_of(e, m, n, {rows.begin() + 1, rows.end()}, rest));
-    sum = c == 0 ? term : c % 2 ? e.sub(sum, term) : e.add(sum, term);
-  }
-  return sum;
-}
-
-size_t order_of(const Operands& matrix) {
-  return matrix.size() == 4 ? 2 : matrix.size() == 9 ? 3 : 4;
-}
-
-std::vector<size_t> all_but(size_t n, size_t left_out) {
-  std::vector<size_t> result;
-  for (size_t i = 0; i < n; ++i)
-    if (i != left_out) result.push_back(i);
-  return result;
-}
-
-}  // namespace
-
-Operands determinant(Emitter& e, const std::vector<Operands>& arguments) {
-  const size_t n = order_of(arguments[0]);
-  return {minor_of(e, arguments[0], n, all_but(n, n), all_but(n, n))};
-}
-
-Operands inverse(Emitter& e, const std::vector<Operands>& arguments) {
-  const Operands& m = arguments[0];
-  const size_t n = order_of(m);
-  const Operand scale = e.div(constant_f32(1), determinant(e, arguments)[0]);
-  Operands result;
-  for (size_t column = 0; column < n; ++column)
-    for (size_t row = 0; row < n; ++row) {  // the transposed cofactor: of row `column`, column `row`
-      const Operand cofactor = e.mul(minor_of(e, m, n, all_but(n, column), all_but(n, row)), scale);
-      result.push_back((row + column) % 2 ? e.value("neg.f32", {cofactor}) : cofactor);
-    }
-  return result;
 }
 
 }  // namespace glint::frontend::math

@@ -21,11 +21,20 @@ int words_together(const std::vector<Leaf>& leaves, size_t first, int64_t displa
     const int64_t at = displacement + leaves[first].offset;
     bool fits = at % (4 * words) == 0;
     for (int i = 0; fits && i < words; ++i)
-      fits = class_of(leaves[first + i].part) != RegisterClass::B64 &&
-             leaves[first + i].offset == leaves[first].offset + 4 * i;
+      fits = bytes_of(leaves[first + i].part) == 4 && leaves[first + i].offset == leaves[first].offset + 4 * i;
     if (fits) return words;
   }
   return 1;
+}
+
+// The end of the op's name for `words` leaves like this one. Loads of narrow values fill the bits above with zeros.
+std::string_view shape_of(Part part, int words, bool is_load) {
+  switch (bytes_of(part)) {
+    case 1: return is_load ? "u8" : "b8";
+    case 2: return is_load ? "u16" : "b16";
+    case 8: return "b64";
+    default: return words == 4 ? "v4.b32" : words == 2 ? "v2.b32" : "b32";
+  }
 }
 
 // A displacement that the instruction's 32-bit field cannot hold goes into the base.
@@ -72,6 +81,9 @@ Operands load_resource(Lowering& l, const Pointer& p) {
 
 Operands Lowering::load(const Pointer& pointer) {
   switch (pointer.place) {
+    case Place::RayQuery:
+      unsupported("a ray query as a value");
+      [[fallthrough]];
     case Place::Nowhere:
       return Operands(layout_.num_parts(pointer.type), Operand::value(0));
     case Place::Builtin: {
@@ -96,9 +108,8 @@ Operands Lowering::load(const Pointer& pointer) {
                                                      : global_version_;
   Operands result;
   for (size_t i = 0; i < leaves.size();) {
-    const bool wide = class_of(leaves[i].part) == RegisterClass::B64;
-    const int words = wide ? 1 : words_together(leaves, i, p.displacement, p.alignment);
-    const std::string_view shape = wide ? "b64" : words == 4 ? "v4.b32" : words == 2 ? "v2.b32" : "b32";
+    const int words = words_together(leaves, i, p.displacement, p.alignment);
+    const std::string_view shape = shape_of(leaves[i].part, words, true);
     const Operands parts = emitter_.load(fmt::format("ld.{}.{}", space_of(p.place), shape), p.base,
                                          int32_t(p.displacement + leaves[i].offset), words, version);
     for (int w = 0; w < words; ++w) {
@@ -119,9 +130,8 @@ void Lowering::store(const Pointer& pointer, const Operands& parts) {
   const uint64_t version = p.place == Place::Local ? local_version_ : global_version_;
   const std::vector<Leaf> leaves = layout_.leaves(p.type, p.matrix, p.component_stride);
   for (size_t i = 0; i < leaves.size();) {
-    const bool wide = class_of(leaves[i].part) == RegisterClass::B64;
-    const int words = wide ? 1 : words_together(leaves, i, p.displacement, p.alignment);
-    const std::string_view shape = wide ? "b64" : words == 4 ? "v4.b32" : words == 2 ? "v2.b32" : "b32";
+    const int words = words_together(leaves, i, p.displacement, p.alignment);
+    const std::string_view shape = shape_of(leaves[i].part, words, false);
     Operands operands{p.base};
     for (int w = 0; w < words; ++w) {
       const Operand& part = parts.at(i + size_t(w));
@@ -130,7 +140,7 @@ void Lowering::store(const Pointer& pointer, const Operands& parts) {
                                  : part);
     }
     const int32_t at = int32_t(p.displacement + leaves[i].offset);
-    for (int w = 0; !wide && !p.is_volatile && w < words; ++w)
+    for (int w = 0; bytes_of(leaves[i].part) == 4 && !p.is_volatile && w < words; ++w)
       emitter_.remember(fmt::format("ld.{}.b32", space_of(p.place)), p.base, at + 4 * w, version,
                         operands[1 + w]);
     emitter_.effect(fmt::format("st.{}.{}", space_of(p.place), shape), std::move(operands), at);

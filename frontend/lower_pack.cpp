@@ -21,7 +21,9 @@ Operands pack_normalised(Emitter& e, const Operands& x, uint32_t width, bool is_
   Operands fields;
   for (const Operand& part : x) {
     const Operand low = constant_f32(is_signed ? -1.0f : 0.0f);
-    const Operand clamped = e.value("min.f32", {e.value("max.f32", {part, low}), constant_f32(1)});
+    // NaN becomes 1 where signed and 0 where not, as on hardware: min and max give their other operand.
+    const Operand clamped = is_signed ? e.value("max.f32", {e.value("min.f32", {part, constant_f32(1)}), low})
+                                      : e.value("min.f32", {e.value("max.f32", {part, low}), constant_f32(1)});
     const Operand rounded = e.value("cvt.rni.f32.f32", {e.mul(clamped, constant_f32(scale))});
     fields.push_back(e.value("and.b32", {e.value("cvt.rzi.s32.f32", {rounded}), word(mask)}));
   }

@@ -95,7 +95,7 @@ uint32_t packed(const std::vector<float>& v, uint32_t width, bool is_signed) {
   const uint32_t mask = (1u << width) - 1;
   uint32_t result = 0;
   for (uint32_t i = 0; i < v.size(); ++i) {
-    const float low = is_signed ? -1 : 0, x = std::isnan(v[i]) ? low : std::min(std::max(v[i], low), 1.0f);
+    const float low = is_signed ? -1 : 0, x = std::isnan(v[i]) ? low + (is_signed ? 2 : 0) : std::min(std::max(v[i], low), 1.0f);
     result |= (uint32_t(int32_t(std::nearbyint(x * float(is_signed ? mask >> 1 : mask)))) & mask) << (i * width);
   }
   return result;
