@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/reference.h"
 
+#include <algorithm>
+#include <cctype>
 #include <fmt/format.h>
 #include <string>
 #include <vector>
@@ -53,15 +55,76 @@ std::string example_text(const OpRow& row, const Example& example) {
   size_t i = 0;
   for (const OperandKind kind : row.operands.view())
     if (!is_destination(kind)) in += (in.empty() ? "" : ", ") + bits(example.in[i++]);
-  return fmt::format("({}) = {}", in, bits(example.out));
+  const bool has_two = row.operands.count > 1 && is_destination(row.operands.kind[1]);
+  return fmt::format("({}) = {}{}", in, bits(example.out), has_two ? "|" + bits(example.second) : "");
 }
 
-std::string examples_text(const OpRow& row, std::string_view separator) {
+std::string examples_text(const OpRow& row, std::string_view separator, size_t max) {
   std::string out;
-  for (const Example& example : row.examples.view()) {
+  for (const Example& example : row.examples.view().first(std::min<size_t>(max, row.examples.count))) {
     if (!out.empty()) out += separator;
     out += example_text(row, example);
   }
+  return out;
+}
+
+// Ops that PTX lacks or writes in another form, by the beginning of the name; a name that ends in a space is whole.
+struct Other {
+  std::string_view begin, ptx;
+};
+constexpr Other kOthers[] = {
+    {"rt.", ""},         {"rq.", ""},         {"call.sbt.", ""},  {"ssy ", ""},   {"join ", ""},
+    {"sin.f32 ", ""},    {"cos.f32 ", ""},    {"ex2.f32 ", ""},   {"lg2.f32 ", ""}, {"rsqrt.f32 ", ""},
+    {"suatom.", ""},     {"tex.compare", "`tex` with a depth operand"}, {"tld4.compare", "`tld4` with a depth operand"},
+    {"pack.b64 ", "`mov.b64 d, {a, b}`"},     {"unpack.b64 ", "`mov.b64 {d, e}, a`"},
+    {"call ", "`call`, without parameter lists"},
+    {"add.cc", "the carry in CC"}, {"addc", "the carry in CC"}, {"sub.cc", "the carry in CC"}, {"subc", "the carry in CC"},
+    {"mad.lo.cc", "the carry in CC"}, {"mad.hi.cc", "the carry in CC"}, {"madc", "the carry in CC"},
+};
+
+std::string title_of(const Family& family) {
+  std::string out(family.name);
+  out[0] = char(std::toupper(out[0]));
+  return out;
+}
+
+std::string time_text(const UnitTime& time) {
+  return fmt::format("{}/{}", time.latency, time.interval);
+}
+
+constexpr size_t kPageExamples = 2;  // an op has up to 8: `glint isa OP` shows all
+
+std::string page_row(const OpRow& row, std::span<const PresetTimes> presets) {
+  const std::string operands = operand_text(row), ptx = ptx_name(row);
+  std::string out = fmt::format("| `{}` | {} | {} | {} |", row.name, operands.empty() ? "" : "`" + operands + "`",
+                                name_of(row.klass), name_of(row.unit));
+  for (const PresetTimes& times : presets) out += fmt::format(" {} |", time_text(times.unit[size_t(row.unit)]));
+  return out + fmt::format(" {} | {} | {} |\n", ptx == row.name ? "same" : ptx.empty() ? "none" : ptx, row.doc,
+                           examples_text(row, "; ", kPageExamples));
+}
+
+std::vector<std::string> all_names() {
+  std::vector<std::string> names;
+  for (const OpRow& row : op_table()) names.emplace_back(row.name);
+  return names;
+}
+
+[[noreturn]] void unknown(std::string_view what, std::string_view name, const std::vector<std::string>& known) {
+  const std::string near = nearest(std::string(name), known);
+  throw UserError({}, fmt::format("no {} is named '{}'", what, name),
+                  near.empty() ? "" : "did you mean '" + near + "'?");
+}
+
+std::string one_op(const OpRow& row, std::span<const PresetTimes> presets) {
+  const std::string ptx = ptx_name(row);
+  std::string out = fmt::format("{} {}\n  {}\n  class {}, unit {}\n", row.name, operand_text(row), row.doc,
+                                name_of(row.klass), name_of(row.unit));
+  out += fmt::format("  PTX: {}\n", ptx == row.name ? "the same name" : ptx.empty() ? "no such op" : ptx);
+  for (const PresetTimes& times : presets) {
+    const UnitTime& t = times.unit[size_t(row.unit)];
+    out += fmt::format("  {}: latency {}, interval {} cycles\n", times.preset, t.latency, t.interval);
+  }
+  if (row.examples.count) out += fmt::format("  {}\n", examples_text(row, "\n  ", row.examples.count));
   return out;
 }
 
@@ -69,49 +132,93 @@ std::string examples_text(const OpRow& row, std::string_view separator) {
 
 std::string operand_text(const OpRow& row) {
   std::string out;
-  for (const OperandKind kind : row.operands.view())
-    out += fmt::format("{}{}", out.empty() ? "" : ", ", text_of(kind));
+  bool after_destination = false;
+  for (const OperandKind kind : row.operands.view()) {
+    out += fmt::format("{}{}", out.empty() ? "" : after_destination && is_destination(kind) ? "|" : ", ", text_of(kind));
+    after_destination = is_destination(kind);
+  }
   return out;
 }
 
-std::string reference_markdown() {
-  const std::span<const OpRow> table = op_table();
+std::string ptx_name(const OpRow& row) {
+  const std::string whole = std::string(row.name) + " ";
+  for (const Other& other : kOthers)
+    if (whole.starts_with(other.begin)) return std::string(other.ptx);
+  return std::string(row.name);
+}
+
+std::string page_name(std::string_view family) {
+  std::string out(family);
+  std::replace(out.begin(), out.end(), ' ', '_');
+  return out;
+}
+
+std::string reference_index(std::span<const PresetTimes> presets) {
   std::string out =
       "# Instruction set\n\n"
-      "Written from the op table (`isa/ops/`) by `glint isa`. A source `a` (32 bits) or `ad` (64 bits) is a "
-      "register, a\n"
-      "number or, if it has 32 bits, a special such as `%launch.x`; `%rd` is a pair of registers. Any "
-      "instruction may have\n"
-      "a guard, `@%p1` or `@!%p1`. The unit names the latency in the configuration: `[core.units.<unit>]`. "
-      "Examples give\n"
-      "bits: (sources) = result.\n";
+      "Written from the op table (`isa/ops/`) by `tools/update_golden.py`: do not edit. `glint isa OP` prints one op, and\n"
+      "`glint isa BEGINNING` all whose names begin so. A source `a` (32 bits) or `ad` (64 bits) is a register, a number or,\n"
+      "if it has 32 bits, a special such as `%launch.x`; `%rd` is a pair of registers; `%r|%p` are two destinations. Any\n"
+      "instruction may have a guard, `@%p1` or `@!%p1`. Examples give bits: (sources) = result, result|second result.\n"
+      "The column PTX says `same` where PTX's op of that name has this meaning, and what PTX has otherwise. The columns of\n"
+      "the presets give latency and interval of the op's unit in cycles, `[core.units.<unit>]` of the configuration: to a\n"
+      "dependent instruction, and to the next one on the pipe. All ops of a preset: `docs/instructions/<preset>.csv`.\n"
+      "\n| family | ops | |\n|---|---|---|\n";
+  for (const Family& family : families())
+    out += fmt::format("| [{}](isa/{}.md) | {} | {} |\n", family.name, page_name(family.name), family.count, family.doc);
+  out += "\n| unit |";
+  for (const PresetTimes& times : presets) out += fmt::format(" {} |", times.preset);
+  out += "\n|---|";
+  for (size_t i = 0; i < presets.size(); ++i) out += "---|";
+  for (size_t unit = 0; unit < size_t(Unit::Count); ++unit) {
+    out += fmt::format("\n| {} |", name_of(Unit(unit)));
+    for (const PresetTimes& times : presets) out += fmt::format(" {} |", time_text(times.unit[unit]));
+  }
+  return out + "\n";
+}
+
+std::string reference_page(std::string_view name, std::span<const PresetTimes> presets) {
+  std::vector<std::string> names;
   for (const Family& family : families()) {
-    out += fmt::format(
-        "\n## {}\n\n{}\n\n| op | operands | class | unit | meaning | examples |\n|---|---|---|---|---|---|\n",
-        family.name, family.doc);
-    for (const OpRow& row : table.subspan(family.first, family.count)) {
-      const std::string operands = operand_text(row);
-      out += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", row.name,
-                         operands.empty() ? "" : "`" + operands + "`", name_of(row.klass), name_of(row.unit),
-                         row.doc, examples_text(row, "; "));
-    }
+    names.push_back(page_name(family.name));
+    if (names.back() != name) continue;
+    std::string out = fmt::format("# {}\n\n{} How to read this page: [isa.md](../isa.md).\n\n| op | operands | class | unit |",
+                                  title_of(family), family.doc);
+    for (const PresetTimes& times : presets) out += fmt::format(" {} |", times.preset);
+    out += " PTX | meaning | examples |\n|---|---|---|---|";
+    for (size_t i = 0; i < presets.size(); ++i) out += "---|";
+    out += "---|---|---|\n";
+    for (const OpRow& row : op_table().subspan(family.first, family.count)) out += page_row(row, presets);
+    return out;
+  }
+  unknown("family", name, names);
+}
+
+std::string list_ops() {
+  std::string out;
+  for (const Family& family : families()) {
+    out += fmt::format("{}: {}\n", family.name, family.doc);
+    for (const OpRow& row : op_table().subspan(family.first, family.count))
+      out += fmt::format("  {} {}\n", row.name, operand_text(row));
   }
   return out;
 }
 
-std::string describe_op(std::string_view name) {
-  const int index = find_op(name);
-  if (index < 0) {
-    std::vector<std::string> names;
-    for (const OpRow& row : op_table()) names.emplace_back(row.name);
-    const std::string near = nearest(std::string(name), names);
-    throw UserError({}, fmt::format("no op is named '{}'", name),
-                    near.empty() ? "" : "did you mean '" + near + "'?");
+std::string describe_op(std::string_view name, std::span<const PresetTimes> presets) {
+  if (const int index = find_op(name); index >= 0) return one_op(op_table()[size_t(index)], presets);
+  std::string out;
+  for (const OpRow& row : op_table())
+    if (row.name.starts_with(name)) out += fmt::format("{} {}\n  {}\n", row.name, operand_text(row), row.doc);
+  if (out.empty() || name.empty()) unknown("op", name, all_names());
+  return out;
+}
+
+std::string instruction_table(const PresetTimes& times) {
+  std::string out = "op,unit,class,latency,interval\n";
+  for (const OpRow& row : op_table()) {
+    const UnitTime& t = times.unit[size_t(row.unit)];
+    out += fmt::format("{},{},{},{},{}\n", row.name, name_of(row.unit), name_of(row.klass), t.latency, t.interval);
   }
-  const OpRow& row = op_table()[size_t(index)];
-  std::string out = fmt::format("{} {}\n  {}\n  class {}, unit {}\n", row.name, operand_text(row), row.doc,
-                                name_of(row.klass), name_of(row.unit));
-  if (row.examples.count) out += fmt::format("  {}\n", examples_text(row, "\n  "));
   return out;
 }
 

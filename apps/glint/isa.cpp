@@ -3,26 +3,66 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "apps/glint/config.h"
 #include "apps/glint/resources.h"
 #include "apps/glint/session.h"
 #include "isa/op_row.h"
+#include "isa/paths.h"
 #include "isa/reference.h"
 
 namespace glint::app {
 namespace {
 
-Exit print_reference(const std::string& op) {
-  write_output("", op.empty() ? isa::reference_markdown() : isa::describe_op(op));
-  return Exit::Ok;
+struct Options {
+  std::string op, table, page;
+  bool index = false, pages = false;
+};
+
+isa::PresetTimes times_of(const Resources& resources, const std::string& preset) {
+  isa::PresetTimes out{preset, {}};
+  const auto units = read_config(resources, preset, {}).core.units.by_unit();
+  for (size_t i = 0; i < units.size(); ++i) out.unit[i] = {units[i].latency, units[i].interval};
+  return out;
+}
+
+std::vector<isa::PresetTimes> all_presets(const Resources& resources) {
+  std::vector<isa::PresetTimes> out;
+  for (const std::string& name : resources.config_names()) out.push_back(times_of(resources, name));
+  return out;
+}
+
+std::string text_of(const Resources& resources, const Options& options) {
+  if (!options.table.empty()) return isa::instruction_table(times_of(resources, options.table));
+  if (!options.page.empty()) return isa::reference_page(options.page, all_presets(resources));
+  if (options.index) return isa::reference_index(all_presets(resources));
+  if (!options.op.empty()) return isa::describe_op(options.op, all_presets(resources));
+  if (!options.pages) return isa::list_ops();
+  std::string names;
+  for (const isa::Family& family : isa::families()) names += isa::page_name(family.name) + "\n";
+  return names;
 }
 
 }  // namespace
 
 void add_isa(CLI::App& app, Session& session) {
-  auto op = std::make_shared<std::string>();
+  auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("isa", "Explain the instruction set, or one op");
-  command->add_option("OP", *op, "An op's full name: fma.rn.f32 (default: all, as docs/isa.md)");
-  command->callback([&session, op] { session.action = [op] { return print_reference(*op); }; });
+  CLI::Option* op = command->add_option("OP", options->op, "An op's full name, fma.rn.f32, or its beginning (default: all ops)");
+  CLI::Option* table = command->add_option("--table", options->table, "Unit, latency and interval of every op of a preset, as CSV");
+  CLI::Option* page = command->add_option("--page", options->page, "The page of a family, as docs/isa/FAMILY.md");
+  CLI::Option* index = command->add_flag("--index", options->index, "As docs/isa.md");
+  CLI::Option* pages = command->add_flag("--pages", options->pages, "The names of the families' pages");
+  table->type_name("PRESET");
+  page->type_name("FAMILY");
+  for (CLI::Option* option : {op, table, page, index, pages})
+    for (CLI::Option* other : {op, table, page, index, pages})
+      if (option != other) option->excludes(other);
+  command->callback([&session, options] {
+    session.action = [&session, options] {
+      write_output("", text_of(session.resources, *options));
+      return Exit::Ok;
+    };
+  });
 }
 
 }  // namespace glint::app

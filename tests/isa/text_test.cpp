@@ -6,6 +6,7 @@
 
 #include "base/diagnostics.h"
 #include "isa/op_row.h"
+#include "isa/paths.h"
 #include "isa/reference.h"
 #include "isa/verify.h"
 #include "tests/support/catch.h"
@@ -319,14 +320,29 @@ TEST_CASE("the parser names the place of a mistake and what it expected") {
                "bad.isa:1:14: error: found '0f3F8000', expected a register"));
 }
 
-TEST_CASE("the reference shows every op once, and an unknown op is met with the nearest name") {
-  const std::string all = reference_markdown();
-  for (const OpRow& row : op_table()) {
-    const std::string cell = "| `" + std::string(row.name) + "` |";
-    INFO(row.name);
-    REQUIRE(all.find(cell) != std::string::npos);
-    CHECK(all.find(cell, all.find(cell) + 1) == std::string::npos);
-    CHECK(describe_op(row.name).find(std::string(row.doc)) != std::string::npos);
+TEST_CASE("the reference shows every op once with its times, and an unknown op is met with the nearest name") {
+  PresetTimes times{"tiny", {}};
+  for (uint32_t unit = 0; unit < times.unit.size(); ++unit) times.unit[unit] = {100 + unit, 50 + unit};
+  const std::vector<PresetTimes> presets{times};
+  const std::string index = reference_index(presets), table = instruction_table(times);
+  for (const Family& family : families()) {
+    const std::string page = reference_page(page_name(family.name), presets);
+    CHECK(index.find("(isa/" + page_name(family.name) + ".md)") != std::string::npos);
+    for (const OpRow& row : op_table().subspan(family.first, family.count)) {
+      const std::string cell = "| `" + std::string(row.name) + "` |";
+      INFO(row.name);
+      const size_t at = page.find(cell);
+      REQUIRE(at != std::string::npos);
+      CHECK(page.find(cell, at + 1) == std::string::npos);
+      const std::string unit = std::to_string(100 + int(row.unit)), interval = std::to_string(50 + int(row.unit));
+      CHECK(page.substr(at, page.find('\n', at) - at).find("| " + unit + "/" + interval + " |") != std::string::npos);
+      CHECK(table.find("\n" + std::string(row.name) + "," + std::string(name_of(row.unit)) + ",") != std::string::npos);
+      const std::string alone = describe_op(row.name, presets);
+      CHECK(alone.find(std::string(row.doc)) != std::string::npos);
+      CHECK(alone.find("tiny: latency " + unit + ", interval " + interval) != std::string::npos);
+    }
   }
-  CHECK_THROWS_WITH(describe_op("shl.b33"), Catch::Contains("did you mean 'shl.b32'?"));
+  CHECK(describe_op("fma.rn", presets).find("fma.rn.f32 ") != std::string::npos);
+  CHECK_THROWS_WITH(describe_op("shl.b33", presets), Catch::Contains("did you mean 'shl.b32'?"));
+  CHECK_THROWS_WITH(reference_page("flaot", presets), Catch::Contains("did you mean 'float'?"));
 }

@@ -21,6 +21,7 @@ class RandomProgram {
  public:
   RandomProgram(uint32_t seed, const Shape& shape) : random_(seed), shape_(shape) {
     program_.name = "random";
+    program_.stage = isa::Stage::RayGeneration;
     program_.local_bytes = kVariables;
     open("entry");
     for (const isa::OpRow& row : isa::op_table())
@@ -40,6 +41,7 @@ class RandomProgram {
   uint32_t pick(size_t n) { return uint32_t(random_() % n); }
   static bool is_plain(const isa::OpRow& row) {
     if (row.effect != isa::Effect::None || row.operands.count == 0) return false;
+    if (row.unit == isa::Unit::Shuffle) return false;  // lanes that meet in other orders read other values
     for (isa::OperandKind kind : row.operands.view())
       if (kind >= isa::OperandKind::Address64 || kind == isa::OperandKind::None) return false;
     return isa::is_destination(row.operands.kind[0]);
@@ -146,9 +148,9 @@ class RandomProgram {
     std::vector<Operand> operands;
     for (isa::OperandKind kind : isa::op_table()[op].operands.view())
       for (int i = 0; i < isa::slots_of(kind); ++i) {
-        if (kind == isa::OperandKind::Dst64) operands.push_back(Operand::of(destination(RegisterClass::B64)));
-        else if (kind == isa::OperandKind::DstPred) operands.push_back(Operand::of(destination(RegisterClass::Predicate)));
-        else if (isa::is_destination(kind)) operands.push_back(Operand::of(vector_part(operands)));
+        if (kind == isa::OperandKind::Dst64) operands.push_back(Operand::of(another(RegisterClass::B64, operands)));
+        else if (kind == isa::OperandKind::DstPred) operands.push_back(Operand::of(another(RegisterClass::Predicate, operands)));
+        else if (isa::is_destination(kind)) operands.push_back(Operand::of(another(RegisterClass::B32, operands)));
         else operands.push_back(source(kind));
       }
     const bool defines_fresh = !fresh_.empty();
@@ -159,10 +161,10 @@ class RandomProgram {
     }
     publish_fresh();
   }
-  // No register twice in one destination vector.
-  VirtualRegister vector_part(const std::vector<Operand>& so_far) {
+  // No register twice among the destinations of one instruction.
+  VirtualRegister another(RegisterClass c, const std::vector<Operand>& so_far) {
     for (;;) {
-      const VirtualRegister r = destination(RegisterClass::B32);
+      const VirtualRegister r = destination(c);
       bool twice = false;
       for (const Operand& o : so_far) twice |= o.reg == r;
       if (!twice) return r;
@@ -183,7 +185,7 @@ class RandomProgram {
       for (int i = 0; i < isa::slots_of(kind); ++i) {
         if (kind == isa::OperandKind::Address32 || kind == isa::OperandKind::Address64) operands.push_back(base);
         else if (kind == isa::OperandKind::Dst64) operands.push_back(Operand::of(destination(RegisterClass::B64)));
-        else if (isa::is_destination(kind)) operands.push_back(Operand::of(vector_part(operands)));
+        else if (isa::is_destination(kind)) operands.push_back(Operand::of(another(RegisterClass::B32, operands)));
         else if (kind == isa::OperandKind::Src64) operands.push_back(source(kind));
         else operands.push_back(source(isa::OperandKind::Src32));
       }
@@ -263,9 +265,14 @@ class RandomProgram {
     program_.blocks[head].successors = {body, done};
   }
 
+  // A trace that never has to ask a shader.
   void call() {
+    std::vector<Operand> operands{Operand::of(program_.new_register(RegisterClass::Predicate)), Operand::of(any(RegisterClass::B64))};
+    for (int i = 0; i < 15; ++i) operands.push_back(Operand::value(pick(99)));
     marker(VirtualInst::Kind::SaveLive);
+    add("rt.trace", std::move(operands));
     add("call.sbt.hit", {});
+    add("rt.end", {});
     marker(VirtualInst::Kind::RestoreLive);
   }
 

@@ -165,10 +165,12 @@ class VirtualRun : public Machine {
     for (isa::OperandKind kind : row.operands.view())
       for (int i = 0; i < isa::slots_of(kind); ++i, ++slot) coded.operand[slot] = place(inst.operands[slot], slot, constants);
     perform(coded, LaneMask{1} << lane_);
-    if (inst.operands.empty()) return;
-    const VirtualOperand& first = inst.operands[0];  // predicates are only ever the first destination
-    if (first.kind == VirtualOperand::Kind::Register && program_.registers[first.reg] == RegisterClass::Predicate)
-      predicates_[first.reg] = (predicate(0) >> lane_) & 1;
+    slot = 0;
+    for (isa::OperandKind kind : row.operands.view()) {
+      if (kind == isa::OperandKind::DstPred)
+        predicates_[inst.operands[slot].reg] = (predicate(slot % isa::kNumPredicates) >> lane_) & 1;
+      slot += size_t(isa::slots_of(kind));
+    }
   }
 
   isa::Slot place(const VirtualOperand& o, size_t slot, size_t& constants) {
