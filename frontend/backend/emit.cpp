@@ -87,7 +87,8 @@ class Encoder {
         return isa::Slot(isa::kRegisterBank + slot);
       }
       case VirtualOperand::Kind::Constant:
-        return kind == isa::OperandKind::Src64 ? constants_.pair(operand.constant) : constants_.word(uint32_t(operand.constant));
+        return kind == isa::OperandKind::Src64 || kind == isa::OperandKind::Address64 ? constants_.pair(operand.constant)
+                                                                                      : constants_.word(uint32_t(operand.constant));
       case VirtualOperand::Kind::Special:
         return isa::Slot(isa::kSpecialBank + isa::Slot(operand.special));
       case VirtualOperand::Kind::StackPointer: return isa::kStackPointer;

@@ -62,7 +62,10 @@ MemoryUse memory_use(const VirtualInst& inst) {
 }
 
 bool must_stay_in_order(const MemoryUse& a, const MemoryUse& b) {
-  if (!a.any || !b.any || a.space != b.space || (!a.writes && !b.writes)) return false;
+  if (!a.any || !b.any || (!a.writes && !b.writes)) return false;
+  // A generic address may lie in any space.
+  const bool is_generic = a.space == isa::Space::Generic || b.space == isa::Space::Generic;
+  if (a.space != b.space && !is_generic) return false;
   if (a.in_frame && b.in_frame) return a.begin < b.end && b.begin < a.end;
   return true;
 }

@@ -1,93 +1,158 @@
-// Bits of every op that PTX has, compared with those recorded on a GPU, where the recordings are at hand.
+// Every PTX form that a GPU has recorded, compiled from its text and run on all SIMD paths: the same bits.
+//
+// GLINT_PTX_GOLDEN_DIR names the folder of the recordings, GLINT_GOLDEN_FORMS a part of the names of the forms to run:
+// then each prints a line.
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <cstdio>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <nlohmann/json.hpp>
+#include <cstdlib>
 #include <set>
-#include <string>
-#include <zstd.h>
 
-#include "isa/paths.h"
-#include "tests/isa/warp_fixture.h"
+#include "tests/isa/golden/recording.h"
 #include "tests/support/catch.h"
 
 using namespace glint;
-using namespace glint::isa;
+using namespace glint::golden;
 
 namespace {
 
-std::string unpacked(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  const std::string packed{std::istreambuf_iterator<char>(in), {}};
-  std::string out(ZSTD_getFrameContentSize(packed.data(), packed.size()), '\0');
-  REQUIRE(ZSTD_decompress(out.data(), out.size(), packed.data(), packed.size()) == out.size());
+// Forms that Glint does not have, and why.
+struct Missing {
+  const char* op;
+  const char* why;
+};
+constexpr std::array<Missing, 0> kMissing{};
+
+bool is_missing(const std::string& op) {
+  return std::any_of(kMissing.begin(), kMissing.end(), [&](const Missing& m) { return op == m.op; });
+}
+
+// Approximations may be off by 2 ulp, or, near zeros of the function, by an absolute error: the hardware's own largest
+// against the exact function (measured over all mantissas).
+bool is_approximate(const std::string& op) { return op.find(".approx") != std::string::npos || op.find("div.full") != std::string::npos; }
+double absolute_bound(const std::string& op) {
+  if (op.starts_with("sin.")) return 3.5e-7;
+  if (op.starts_with("cos.")) return 4.0e-7;
+  if (op.starts_with("lg2.")) return 2.2e-7;
+  if (op.starts_with("tanh.") && op.ends_with("f32")) return 8e-6;
+  return 0;
+}
+
+struct FloatFormat {
+  int bits, mantissa;
+};
+FloatFormat format_of(const std::string& type) {
+  if (type == "f64") return {64, 52};
+  if (type.starts_with("f16")) return {16, 10};
+  if (type.starts_with("bf16")) return {16, 7};
+  return {32, 23};
+}
+
+double as_double(uint64_t bits, FloatFormat f) {
+  const int exponents = f.bits - 1 - f.mantissa, bias = (1 << (exponents - 1)) - 1;
+  const uint64_t exponent = bits >> f.mantissa & ((1ull << exponents) - 1), fraction = bits & ((1ull << f.mantissa) - 1);
+  const double value = exponent ? std::ldexp(double(fraction | 1ull << f.mantissa), int(exponent) - bias - f.mantissa)
+                                : std::ldexp(double(fraction), 1 - bias - f.mantissa);
+  return bits >> (f.bits - 1) & 1 ? -value : value;
+}
+
+// Distance in units of the last place; huge between NaN and anything else.
+double ulps(uint64_t a, uint64_t b, FloatFormat f) {
+  const uint64_t sign = 1ull << (f.bits - 1), infinity = ((1ull << (f.bits - 1 - f.mantissa)) - 1) << f.mantissa;
+  if ((a & ~sign) > infinity || (b & ~sign) > infinity) return a == b ? 0 : 1e30;
+  const auto key = [&](uint64_t x) { return x & sign ? -double(x & ~sign) : double(x); };
+  return std::abs(key(a) - key(b));
+}
+
+// Worst difference of one value, x2 pairs half by half. True when it is within what the form may be off.
+bool is_near(const std::string& op, const std::string& type, uint64_t got, uint64_t expected, double& worst) {
+  const FloatFormat f = format_of(type);
+  bool near = true;
+  const bool pair = type.ends_with("x2");
+  for (int half = 0; half < (pair ? 2 : 1); ++half) {
+    const uint64_t mask = f.bits == 64 ? ~0ull : (1ull << f.bits) - 1;
+    const uint64_t a = got >> (16 * half) & mask, b = expected >> (16 * half) & mask;
+    const double off = ulps(a, b, f);
+    worst = std::max(worst, off);
+    near &= off <= 2 || (off < 1e29 && std::abs(as_double(a, f) - as_double(b, f)) <= absolute_bound(op));
+  }
+  return near;
+}
+
+enum class Verdict { Equal, Near, Differs, Missing };
+
+struct Comparison {
+  Verdict verdict = Verdict::Equal;
+  std::string line;  // what is to be said of it
+};
+
+std::string lane_text(const Recording& r, const Form& form, uint32_t lane) {
+  std::string text = "lane " + std::to_string(lane) + ": (";
+  char number[32];
+  for (size_t i = 0; i < form.inputs.size(); ++i) {
+    std::snprintf(number, sizeof number, "%s%llx", i ? ", " : "", static_cast<unsigned long long>(r.input(form, i, lane)));
+    text += number;
+  }
+  return text + ")";
+}
+
+Comparison compare(const Recording& r, const Form& form) {
+  const Outcome outcome = run(r, form);
+  if (!outcome.refused.empty()) return {Verdict::Missing, outcome.refused};
+  Comparison out;
+  double worst = 0;
+  uint32_t different = 0, wrong = 0;
+  for (size_t p = 0; p < outcome.paths.size(); ++p)
+    for (size_t i = 0; i < form.outputs.size(); ++i)
+      for (uint32_t lane = 0; lane < r.lanes; ++lane) {
+        const uint64_t got = outcome.outputs[p][i][lane], expected = r.output(form, i, lane);
+        if (got == expected) continue;
+        ++different;
+        const bool near = is_approximate(form.op) && is_near(form.op, form.outputs[i].type, got, expected, worst);
+        if (near || wrong++) continue;
+        char text[160];
+        std::snprintf(text, sizeof text, " D%zu: recorded %llx, got %llx (%s)", i, static_cast<unsigned long long>(expected),
+                      static_cast<unsigned long long>(got), std::string(isa::name_of(outcome.paths[p])).c_str());
+        out.line = lane_text(r, form, lane) + text;
+      }
+  out.verdict = wrong ? Verdict::Differs : different ? Verdict::Near : Verdict::Equal;
+  const double values = double(r.lanes) * double(form.outputs.size() * outcome.paths.size());
+  char text[96];
+  if (different && is_approximate(form.op)) std::snprintf(text, sizeof text, "  %.2f %% equal, at most %.6g ulp", 100 * (1 - different / values), worst);
+  else std::snprintf(text, sizeof text, "  %u of %.0f differ", different, values);
+  out.line += text;
   return out;
 }
 
-uint64_t value_at(const std::string& data, const nlohmann::json& operand, size_t lane) {
-  const size_t bytes = operand["bytes"];
-  uint64_t value = 0;
-  std::memcpy(&value, data.data() + size_t(operand["offset"]) + lane * bytes, bytes);
-  return operand["type"] == "pred" ? value != 0 : value;
-}
-
-// PTX leaves this remainder to the machine; ours is chosen (isa/ops/integer.cpp).
-bool is_ours_to_choose(std::string_view op, uint64_t second) {
-  return (op == "rem.s32" || op == "rem.u32") && second == 0;
+void compare_all(const Recording& r, const std::string& what) {
+  static constexpr const char* kWords[] = {"equal", "near", "DIFFERS", "no support"};
+  const char* const filter = std::getenv("GLINT_GOLDEN_FORMS");
+  uint32_t count[4] = {};
+  std::string unexpected;
+  for (const Form& form : r.forms) {
+    if (filter && form.op.find(filter) == std::string::npos) continue;
+    const Comparison c = compare(r, form);
+    ++count[size_t(c.verdict)];
+    if (filter || c.verdict != Verdict::Equal) std::printf("%-10s %-36s %s\n", kWords[size_t(c.verdict)], form.op.c_str(), c.line.c_str());
+    if (c.verdict == Verdict::Differs || (c.verdict == Verdict::Missing) != is_missing(form.op)) unexpected += "  " + form.op;
+  }
+  std::printf("%s: %u forms equal, %u within ulp, %u differ, %u not supported\n", what.c_str(), count[0], count[1], count[2], count[3]);
+  INFO("forms that should not differ or be missing:" << unexpected);
+  CHECK(unexpected.empty());
 }
 
 }  // namespace
 
-TEST_CASE("every op that PTX shares gives the bits of a GPU, but approximations and remainders of 0") {
-  const auto folder = std::filesystem::path(GLINT_SOURCE_DIR) / "../shared/data/ptx-golden";
+TEST_CASE("every form of the recordings gives the bits of a GPU on every path, approximations within 2 ulp") {
+  const char* const named = std::getenv("GLINT_PTX_GOLDEN_DIR");
+  const std::filesystem::path folder = named ? std::filesystem::path(named) : std::filesystem::path(GLINT_SOURCE_DIR) / "../shared/data/ptx-golden";
   if (!std::filesystem::exists(folder / "manifest.json")) {
-    WARN("SKIPPED: no recordings of a GPU beside the repository");
+    WARN("SKIPPED: no recordings of a GPU in " << folder.string());
     return;
   }
-  std::ifstream manifest_file(folder / "manifest.json");
-  const nlohmann::json manifest = nlohmann::json::parse(manifest_file);
-  const std::string inputs = unpacked(folder / "inputs.bin.zst"),
-                    outputs = unpacked(folder / "outputs.bin.zst");
-  std::set<std::string> compared;
-  for (const nlohmann::json& form : manifest["ops"]) {
-    const std::string name = form["op"];
-    const int op = find_op(name);
-    if (op < 0 || !is_value_op(op_table()[size_t(op)])) continue;
-    if (name.find(".approx.") != std::string::npos) continue;  // ours are more accurate (isa/kernels.h)
-    const OpRow& row = op_table()[size_t(op)];
-    if (form["inputs"].size() + 1 != row.operands.count || form["outputs"].size() != 1) continue;
-    compared.insert(name);
-    const Inst inst = spread(row, uint16_t(op));
-    size_t wrong = 0;
-    std::string first;
-    const size_t lanes = manifest["lanes"];
-    for (size_t base = 0; base < lanes; base += kLanes) {
-      WarpFixture w;
-      w.warp.exec = kAllLanes;
-      for (size_t i = 0; i < form["inputs"].size(); ++i)
-        for (int lane = 0; lane < kLanes; ++lane)
-          w.set(row.operands.kind[i + 1], inst.operand[i + 1], lane,
-                value_at(inputs, form["inputs"][i], base + size_t(lane)));
-      row.run(w.warp, inst);
-      for (int lane = 0; lane < kLanes; ++lane) {
-        const auto in = [&](size_t i) { return value_at(inputs, form["inputs"][i], base + size_t(lane)); };
-        if (is_ours_to_choose(name, form["inputs"].size() > 1 ? in(1) : 1)) continue;
-        const uint64_t expected = value_at(outputs, form["outputs"][0], base + size_t(lane));
-        const uint64_t got = w.get(row.operands.kind[0], inst.operand[0], lane);
-        if (got == expected || wrong++) continue;
-        char text[128];
-        std::snprintf(text, sizeof text, "(%llx, %llx) gave %llx, recorded %llx",
-                      static_cast<unsigned long long>(in(0)),
-                      static_cast<unsigned long long>(form["inputs"].size() > 1 ? in(1) : 0),
-                      static_cast<unsigned long long>(got), static_cast<unsigned long long>(expected));
-        first = text;
-      }
-    }
-    INFO(name << ": " << first);
-    CHECK(wrong == 0);
-  }
-  CHECK(compared.size() >= 80);  // the forms that both have: names match PTX's
+  compare_all(load_folder(folder), "recordings");
+}
+
+TEST_CASE("every form of the extract gives the bits of a GPU on every path, approximations within 2 ulp") {
+  compare_all(load_extract(std::filesystem::path(GLINT_SOURCE_DIR) / "tests/isa/golden/data"), "extract");
 }

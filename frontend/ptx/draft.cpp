@@ -1,0 +1,55 @@
+// From the graph to a list of blocks.
+// SPDX-License-Identifier: Apache-2.0
+#include "frontend/ptx/draft.h"
+
+namespace glint::frontend::ptx {
+namespace {
+
+VirtualInst jump(const char* op, const isa::Line& line, BlockId target = kNoBlock) {
+  VirtualInst inst;
+  inst.op = isa::op_index(op);
+  inst.line = line;
+  inst.target = target;
+  return inst;
+}
+
+bool is_plain_exit(const DraftBlock& block) { return block.code.empty() && block.end == DraftBlock::End::Exit; }
+
+// Ends of blocks become instructions. `after` is the block behind in layout.
+void append_end(VirtualBlock& out, const DraftBlock& block, const std::vector<DraftBlock>& all, BlockId after) {
+  if (block.end == DraftBlock::End::Branch) {
+    const bool leaves = is_plain_exit(all[block.taken]);
+    VirtualInst choice = jump(leaves ? "exit" : "bra", block.line, leaves ? kNoBlock : block.taken);
+    choice.guard = block.condition;
+    choice.guard_negate = block.negate;
+    out.code.push_back(std::move(choice));
+    if (!leaves) out.successors.push_back(block.taken);
+  }
+  if (block.end == DraftBlock::End::Exit || is_plain_exit(all[block.next])) {
+    out.code.push_back(jump("exit", block.line));
+    return;
+  }
+  out.successors.push_back(block.next);
+  if (block.next != after) out.code.push_back(jump("bra", block.line, block.next));
+}
+
+}  // namespace
+
+std::vector<VirtualBlock> lay_out(Draft draft) {
+  std::vector<BlockId> place(draft.blocks.size(), kNoBlock);
+  for (size_t i = 0; i < draft.layout.size(); ++i) place[draft.layout[i]] = BlockId(i);
+  std::vector<VirtualBlock> out(draft.layout.size());
+  for (size_t i = 0; i < draft.layout.size(); ++i) {
+    DraftBlock& block = draft.blocks[draft.layout[i]];
+    out[i].name = block.name;
+    out[i].code = std::move(block.code);
+    block.code.resize(out[i].code.empty() ? 0 : 1);  // whether there was any still matters
+    append_end(out[i], block, draft.blocks, i + 1 < draft.layout.size() ? draft.layout[i + 1] : kNoBlock);
+    for (VirtualInst& inst : out[i].code)
+      if (inst.target != kNoBlock) inst.target = place[inst.target];
+    for (BlockId& next : out[i].successors) next = place[next];
+  }
+  return out;
+}
+
+}  // namespace glint::frontend::ptx

@@ -1,0 +1,162 @@
+// Lowering of one kernel: from its text, with the functions it calls in place, to a graph of blocks.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "frontend/ptx/draft.h"
+#include "frontend/ptx/ptx.h"
+#include "frontend/ptx/row_names.h"
+#include "frontend/ptx/syntax.h"
+
+namespace glint::frontend::ptx {
+
+// What a name means.
+struct Symbol {
+  enum class Kind : uint8_t {
+    Register,   // reg; .v2 and .v4: elements
+    Variable,   // at `address` of its space
+    Parameter,  // of a function: elements are its 32-bit words
+    Label,      // block
+    Targets     // list of a brx.idx
+  } kind = Kind::Register;
+  Type type;
+  VirtualRegister reg = kNoRegister;
+  std::vector<VirtualRegister> elements;
+  VariableSpace space = VariableSpace::Global;
+  uint64_t address = 0;      // Global: place of its address in the constant bank, from kPushConstantOffset
+  BlockId block = kNoBlock;
+  const std::vector<std::string>* targets = nullptr;
+};
+
+struct Scope {
+  std::map<std::string, Symbol> names;
+  std::vector<const Declaration*> ranges;   // .reg .b32 %r<10>
+  bool is_function = false;                 // names outside are the module's
+};
+
+// Where an instruction's results go when the register is wider or narrower than the row's.
+struct LateMove {
+  uint16_t op;
+  VirtualOperand to, from;
+};
+
+class Lowering {
+ public:
+  Lowering(const Module& module, const Function& entry, Kernel& kernel, Diagnostics& errors, Diagnostics& unsupported);
+  // The program before register allocation. Mistakes are in the diagnostics.
+  VirtualProgram run();
+  uint64_t static_shared_bytes() const { return static_shared_; }
+
+ private:
+  // lowering.cpp: names, blocks, statements
+  void place_variables();
+  void collect_names(const std::vector<Statement>& statements, std::set<std::string>& used, std::set<const Function*>& seen);
+  void place_shared(const std::vector<const Declaration*>& declarations);
+  void place_parameters();
+  Symbol module_variable(const Declaration& d);
+  void statements(const std::vector<Statement>& list);
+  void predeclare_labels(const std::vector<Statement>& list);
+  void declare(const Declaration& d);
+  void lower(const Instruction& inst);
+  void zero_what_nobody_wrote(VirtualProgram& program);
+
+  const Symbol* find(const std::string& name);
+  Symbol* find_range(Scope& scope, const std::string& name);
+  BlockId new_block(const std::string& name);
+  void begin(BlockId block);
+  void end_goto(BlockId next);
+  void end_branch(VirtualRegister condition, bool negate, BlockId taken, BlockId next, bool uniform);
+  void end_exit();
+
+  SourceLocation where(Place place) const { return {module_.file, place.line, place.column}; }
+  void error(Place place, const std::string& what, const std::string& note = {}) { errors_.error(where(place), what, note); }
+  void no_support(Place place, const std::string& what) { unsupported_.error(where(place), what); }
+
+  // lowering_operands.cpp
+  VirtualRegister temporary(RegisterClass c) { return program_.new_register(c); }
+  // Appends under the guard of the instruction; compute() appends without one, for temporaries.
+  VirtualInst& emit(int op, std::vector<VirtualOperand> operands, int64_t imm = 0);
+  VirtualInst& compute(std::string_view op, std::vector<VirtualOperand> operands, int64_t imm = 0);
+  VirtualOperand compute32(std::string_view op, std::vector<VirtualOperand> sources);
+  VirtualOperand compute64(std::string_view op, std::vector<VirtualOperand> sources);
+  VirtualOperand compute_predicate(std::string_view op, std::vector<VirtualOperand> sources);
+  VirtualOperand source(const Operand& o, isa::OperandKind kind, const Type& type);
+  VirtualOperand name_source(const Operand& o, bool wide);
+  VirtualOperand special_source(const Operand& o, bool wide, bool& found);
+  VirtualOperand literal(const Operand& o, bool wide, const Type& type);
+  VirtualOperand predicate_source(const Operand& o);
+  VirtualOperand destination(const Operand& o, isa::OperandKind kind, const Type& type);
+  VirtualOperand widened(VirtualOperand narrow, bool with_sign);
+  VirtualOperand address_of(const Symbol& symbol, int64_t offset, bool wide);
+  VirtualOperand address(const Operand& o, bool wide, int64_t& imm);
+  VirtualRegister predicate_register(const std::string& name, Place place);
+  const Symbol* register_symbol(const Operand& o);
+  void finish_moves();
+
+  // lowering_instructions.cpp
+  bool lower_special(const Instruction& inst);
+  void lower_row(const Instruction& inst, int row, std::vector<const Operand*> operands);
+  void lower_generic(const Instruction& inst);
+  void lower_move(const Instruction& inst);
+  void lower_vector_move(const Instruction& inst);
+  void join_parts(const Instruction& inst, const Operand& to, const std::vector<Operand>& parts);
+  void split_parts(const Instruction& inst, const std::vector<Operand>& parts, const Operand& from);
+  void lower_setp(const Instruction& inst);
+  void lower_carry(const Instruction& inst);
+  void lower_address_conversion(const Instruction& inst);
+  void lower_barrier(const Instruction& inst);
+  void lower_fence(const Instruction& inst);
+  void lower_old_warp_op(const Instruction& inst);
+  void report_no_row(const Instruction& inst);
+
+  // lowering_memory.cpp
+  void lower_memory(const Instruction& inst);
+  void lower_atomic(const Instruction& inst, const MemoryForm& form);
+  void lower_access(const Instruction& inst, const MemoryForm& form);
+  void access_parts(const Instruction& inst, MemoryForm form, const std::vector<const Operand*>& parts, const Operand& at);
+  void access_pairs(const Instruction& inst, const MemoryForm& form, int row, const std::vector<const Operand*>& parts, const Operand& at);
+  void access_words(const Instruction& inst, const MemoryForm& form, const Symbol& words, int64_t offset,
+                    const std::vector<const Operand*>& parts);
+  void load_word_part(const MemoryForm& form, const Symbol& words, uint32_t at, const Operand& to);
+  void store_word_part(const MemoryForm& form, const Symbol& words, uint32_t at, const Operand& from);
+
+  // lowering_control.cpp
+  bool lower_control(const Instruction& inst);
+  void lower_branch(const Instruction& inst);
+  void lower_indexed_branch(const Instruction& inst);
+  void lower_return(const Instruction& inst, bool whole_kernel);
+  void lower_call(const Instruction& inst);
+  void inline_call(const Instruction& inst, const Function& callee, const std::vector<Operand>& results, const std::vector<Operand>& arguments);
+  Symbol bind_parameter(const Declaration& formal, const Operand* actual);
+  BlockId label(const std::string& name, Place place);
+
+  const Module& module_;
+  const Function& entry_;
+  Kernel& kernel_;
+  Diagnostics& errors_;
+  Diagnostics& unsupported_;
+  VirtualProgram program_;
+  Draft draft_;
+  BlockId block_ = kNoBlock;                           // that grows; kNoBlock: what follows is unreachable
+  std::vector<Scope> scopes_;
+  std::map<std::string, const Declaration*> module_variables_;
+  std::map<std::string, const Function*> functions_;
+  std::map<const Declaration*, uint64_t> shared_;      // offsets of static shared variables
+  std::map<std::string, Symbol> placed_;               // variables of the module that the kernel uses
+  uint32_t bank_bytes_ = 0;                            // used, from kPushConstantOffset
+  uint64_t static_shared_ = 0;
+  std::vector<std::pair<const Function*, BlockId>> calls_;  // open ones and where they return
+  VirtualRegister guard_ = kNoRegister;
+  bool guard_negate_ = false;
+  isa::Line line_;
+  std::vector<LateMove> late_;                         // after the instruction
+};
+
+// PTX registers of 8, 16 and 32 bits are one of ours, those of 64 a pair.
+RegisterClass class_of(const Type& type);
+
+}  // namespace glint::frontend::ptx

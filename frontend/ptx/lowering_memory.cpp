@@ -1,0 +1,135 @@
+// Loads, stores and atomics, and the parameters of functions, which are registers.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "frontend/ptx/lowering.h"
+
+namespace glint::frontend::ptx {
+
+using isa::OperandKind;
+
+void Lowering::lower_memory(const Instruction& inst) {
+  const auto form = memory_form(inst.words);
+  if (!form) return report_no_row(inst);
+  const int fence = isa::op_index("membar.gl");
+  if (form->releases) emit(fence, {});
+  form->op == "ld" || form->op == "st" ? lower_access(inst, *form) : lower_atomic(inst, *form);
+  if (form->acquires) emit(fence, {});
+}
+
+void Lowering::lower_atomic(const Instruction& inst, const MemoryForm& form) {
+  const int row = find_atomic_row(form);
+  if (row < 0 || form.vector != 1) return report_no_row(inst);
+  std::vector<const Operand*> operands;
+  for (const Operand& o : inst.operands) operands.push_back(&o);
+  const isa::OpRow& r = isa::op_table()[size_t(row)];
+  static const Operand kSink;
+  if (form.op == "red" && isa::is_destination(r.operands.kind[0])) operands.insert(operands.begin(), &kSink);
+  lower_row(inst, row, operands);
+}
+
+void Lowering::lower_access(const Instruction& inst, const MemoryForm& form) {
+  const bool load = form.op == "ld";
+  if (inst.operands.size() < 2) return error(inst.place, fmt::format("'{}' takes a value and an address", joined(inst.words)));
+  const Operand &value = inst.operands[load ? 0 : 1], &at = inst.operands[load ? 1 : 0];
+  std::vector<const Operand*> parts;
+  if (value.kind == Operand::Kind::Vector)
+    for (const Operand& part : value.parts) parts.push_back(&part);
+  else
+    parts.push_back(&value);
+  if (parts.size() != form.vector)
+    return error(value.place, fmt::format("'{}' moves {} values, here are {}", joined(inst.words), form.vector, parts.size()));
+  if (at.kind == Operand::Kind::Address && at.parts.size() == 1 && at.parts[0].kind == Operand::Kind::Name)
+    if (const Symbol* symbol = find(at.parts[0].name); symbol && symbol->kind == Symbol::Kind::Parameter)
+      return access_words(inst, form, *symbol, at.offset, parts);
+  access_parts(inst, form, parts, at);
+}
+
+void Lowering::access_parts(const Instruction& inst, MemoryForm form, const std::vector<const Operand*>& parts, const Operand& at) {
+  const int row = find_access_row(form, uint32_t(parts.size()));
+  if (row < 0) {
+    if (parts.size() == 1) return report_no_row(inst);
+    // Vectors without a row of their own go part by part.
+    const size_t half = parts.size() / 2;
+    Operand behind = at;
+    behind.offset += int64_t(half * form.type.bits / 8);
+    access_parts(inst, form, {parts.begin(), parts.begin() + std::ptrdiff_t(half)}, at);
+    return access_parts(inst, form, {parts.begin() + std::ptrdiff_t(half), parts.end()}, behind);
+  }
+  const isa::OpRow& r = isa::op_table()[size_t(row)];
+  if (form.type.bits == 64 && parts.size() > 1) return access_pairs(inst, form, row, parts, at);
+  const bool load = form.op == "ld";
+  const OperandKind address_kind = r.operands.kind[load ? 1 : 0];
+  const OperandKind value_kind = r.operands.kind[load ? 0 : 1];
+  const bool vector = isa::slots_of(value_kind) > 1;
+  int64_t imm = 0;
+  const VirtualOperand base = address(at, address_kind == OperandKind::Address64, imm);
+  std::vector<VirtualOperand> operands;
+  for (const Operand* part : parts)
+    operands.push_back(load ? destination(*part, vector ? OperandKind::Dst32 : value_kind, form.type)
+                            : source(*part, vector ? OperandKind::Src32 : value_kind, form.type));
+  operands.insert(load ? operands.end() : operands.begin(), base);
+  emit(row, std::move(operands), imm);
+  finish_moves();
+}
+
+// The rows of pairs take each as two registers, low half first.
+void Lowering::access_pairs(const Instruction&, const MemoryForm& form, int row, const std::vector<const Operand*>& parts, const Operand& at) {
+  const bool load = form.op == "ld";
+  const isa::OpRow& r = isa::op_table()[size_t(row)];
+  int64_t imm = 0;
+  const VirtualOperand base = address(at, r.operands.kind[load ? 1 : 0] == OperandKind::Address64, imm);
+  std::vector<VirtualOperand> words;
+  for (size_t i = 0; i < 2 * parts.size(); ++i) words.push_back(VirtualOperand::of(temporary(RegisterClass::B32)));
+  if (!load)
+    for (size_t i = 0; i < parts.size(); ++i)
+      compute("unpack.b64", {words[2 * i], words[2 * i + 1], source(*parts[i], OperandKind::Src64, form.type)});
+  std::vector<VirtualOperand> operands = words;
+  operands.insert(load ? operands.end() : operands.begin(), base);
+  emit(row, std::move(operands), imm);
+  if (load)
+    for (size_t i = 0; i < parts.size(); ++i)
+      emit(isa::op_index("pack.b64"), {destination(*parts[i], OperandKind::Dst64, form.type), words[2 * i], words[2 * i + 1]});
+  finish_moves();
+}
+
+void Lowering::access_words(const Instruction& inst, const MemoryForm& form, const Symbol& words, int64_t offset,
+                            const std::vector<const Operand*>& parts) {
+  const uint32_t bytes = form.type.bits / 8;
+  for (size_t i = 0; i < parts.size(); ++i) {
+    const int64_t at = offset + int64_t(i * bytes);
+    if (at < 0 || at % bytes != 0 || size_t(at) + bytes > words.elements.size() * 4 || bytes > 8)
+      return error(inst.place, fmt::format("{} bytes at {} lie outside the parameter", bytes, at));
+    if (form.op == "ld") load_word_part(form, words, uint32_t(at), *parts[i]);
+    else store_word_part(form, words, uint32_t(at), *parts[i]);
+  }
+}
+
+void Lowering::load_word_part(const MemoryForm& form, const Symbol& words, uint32_t at, const Operand& to) {
+  const VirtualOperand word = VirtualOperand::of(words.elements[at / 4]);
+  const uint32_t bits = form.type.bits;
+  if (bits == 64) {
+    emit(isa::op_index("pack.b64"), {destination(to, OperandKind::Dst64, form.type), word, VirtualOperand::of(words.elements[at / 4 + 1])});
+  } else if (bits == 32) {
+    emit(isa::op_index("mov.b32"), {destination(to, OperandKind::Dst32, form.type), word});
+  } else {
+    const char* op = form.type.kind == 's' ? "bfe.s32" : "bfe.u32";
+    emit(isa::op_index(op), {destination(to, OperandKind::Dst32, form.type), word, VirtualOperand::value(at % 4 * 8), VirtualOperand::value(bits)});
+  }
+  finish_moves();
+}
+
+void Lowering::store_word_part(const MemoryForm& form, const Symbol& words, uint32_t at, const Operand& from) {
+  const VirtualOperand word = VirtualOperand::of(words.elements[at / 4]);
+  const uint32_t bits = form.type.bits;
+  if (bits == 64) {
+    const VirtualOperand value = source(from, OperandKind::Src64, form.type);
+    emit(isa::op_index("unpack.b64"), {word, VirtualOperand::of(words.elements[at / 4 + 1]), value});
+    return;
+  }
+  const VirtualOperand value = source(from, OperandKind::Src32, form.type);
+  if (bits == 32) emit(isa::op_index("mov.b32"), {word, value});
+  else emit(isa::op_index("bfi.b32"), {word, value, word, VirtualOperand::value(at % 4 * 8), VirtualOperand::value(bits)});
+}
+
+}  // namespace glint::frontend::ptx

@@ -1,0 +1,256 @@
+// Operands: registers, literals, special registers, addresses, and the conversions between widths.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <bit>
+
+#include "frontend/ptx/lowering.h"
+#include "isa/text.h"
+
+namespace glint::frontend::ptx {
+
+using isa::OperandKind;
+
+namespace {
+
+bool is_wide(OperandKind kind) { return kind == OperandKind::Src64 || kind == OperandKind::Dst64 || kind == OperandKind::Address64; }
+
+}  // namespace
+
+VirtualInst& Lowering::emit(int op, std::vector<VirtualOperand> operands, int64_t imm) {
+  VirtualInst inst;
+  inst.op = uint16_t(op);
+  inst.operands = std::move(operands);
+  inst.imm = int32_t(imm);
+  inst.guard = guard_;
+  inst.guard_negate = guard_ != kNoRegister && guard_negate_;
+  inst.line = line_;
+  std::vector<VirtualInst>& code = draft_.blocks[block_].code;
+  code.push_back(std::move(inst));
+  return code.back();
+}
+
+VirtualInst& Lowering::compute(std::string_view op, std::vector<VirtualOperand> operands, int64_t imm) {
+  VirtualInst& inst = emit(isa::op_index(op), std::move(operands), imm);
+  inst.guard = kNoRegister;
+  inst.guard_negate = false;
+  return inst;
+}
+
+VirtualOperand Lowering::compute32(std::string_view op, std::vector<VirtualOperand> sources) {
+  const VirtualOperand to = VirtualOperand::of(temporary(RegisterClass::B32));
+  sources.insert(sources.begin(), to);
+  compute(op, std::move(sources));
+  return to;
+}
+
+VirtualOperand Lowering::compute64(std::string_view op, std::vector<VirtualOperand> sources) {
+  const VirtualOperand to = VirtualOperand::of(temporary(RegisterClass::B64));
+  sources.insert(sources.begin(), to);
+  compute(op, std::move(sources));
+  return to;
+}
+
+VirtualOperand Lowering::compute_predicate(std::string_view op, std::vector<VirtualOperand> sources) {
+  const VirtualOperand to = VirtualOperand::of(temporary(RegisterClass::Predicate));
+  sources.insert(sources.begin(), to);
+  compute(op, std::move(sources));
+  return to;
+}
+
+VirtualOperand Lowering::widened(VirtualOperand narrow, bool with_sign) {
+  if (narrow.kind == VirtualOperand::Kind::Constant)
+    return VirtualOperand::value(with_sign ? uint64_t(int64_t(int32_t(narrow.constant))) : uint64_t(uint32_t(narrow.constant)));
+  return compute64(with_sign ? "cvt.s64.s32" : "cvt.u64.u32", {narrow});
+}
+
+const Symbol* Lowering::register_symbol(const Operand& o) {
+  const Symbol* symbol = find(o.name);
+  if (!symbol) {
+    error(o.place, fmt::format("'{}' is not declared", o.name));
+  } else if (symbol->kind != Symbol::Kind::Register) {
+    error(o.place, fmt::format("'{}' is no register", o.name));
+    return nullptr;
+  }
+  return symbol;
+}
+
+VirtualRegister Lowering::predicate_register(const std::string& name, Place place) {
+  Operand o;
+  o.name = name;
+  o.place = place;
+  const Symbol* symbol = register_symbol(o);
+  if (!symbol) return temporary(RegisterClass::Predicate);
+  if (symbol->type.kind == 'p') return symbol->reg;
+  error(place, fmt::format("'{}' is no predicate", name));
+  return temporary(RegisterClass::Predicate);
+}
+
+VirtualOperand Lowering::predicate_source(const Operand& o) {
+  if (o.kind == Operand::Kind::Integer) {
+    const VirtualOperand zero = VirtualOperand::value(0);
+    return compute_predicate("setp.ne.u32", {VirtualOperand::value(o.value != 0), zero});
+  }
+  if (o.kind != Operand::Kind::Name) {
+    error(o.place, "expected a predicate");
+    return VirtualOperand::of(temporary(RegisterClass::Predicate));
+  }
+  const VirtualOperand p = VirtualOperand::of(predicate_register(o.name, o.place));
+  return o.negated ? compute_predicate("not.pred", {p}) : p;
+}
+
+// Bits of a number as the instruction's type reads them.
+VirtualOperand Lowering::literal(const Operand& o, bool wide, const Type& type) {
+  if (o.kind == Operand::Kind::Integer) return VirtualOperand::value(wide ? o.value : uint32_t(o.value));
+  if (type.bits == 16 && o.kind == Operand::Kind::Float64) no_support(o.place, "decimal constants of 16-bit floats: write their bits");
+  if (o.kind == Operand::Kind::Float32)
+    return VirtualOperand::value(wide ? std::bit_cast<uint64_t>(double(std::bit_cast<float>(uint32_t(o.value)))) : o.value);
+  return VirtualOperand::value(wide ? o.value : std::bit_cast<uint32_t>(float(std::bit_cast<double>(o.value))));
+}
+
+VirtualOperand Lowering::special_source(const Operand& o, bool wide, bool& found) {
+  using isa::Special;
+  found = true;
+  const std::string name = o.element.empty() ? o.name : o.name + "." + o.element;
+  const auto pair = [&](Special low, Special high) {
+    const VirtualOperand a = VirtualOperand::of(low), b = VirtualOperand::of(high);
+    return wide ? compute64("pack.b64", {a, b}) : a;
+  };
+  if (name == "%clock64" || (name == "%clock" && wide)) return pair(Special::Clock, Special::ClockHi);
+  if (name == "%globaltimer") return pair(Special::GlobalTimerLo, Special::GlobalTimerHi);
+  // Model: a cluster is one block.
+  if (name.starts_with("%cluster_ctaid.") || name == "%cluster_ctarank" || name == "%is_explicit_cluster") return VirtualOperand::value(0);
+  if (name.starts_with("%cluster_nctaid.") || name == "%cluster_nctarank") return VirtualOperand::value(1);
+  const Special special = isa::find_special(name);
+  found = special != Special::Count && special < Special::Payload;
+  if (!found) return VirtualOperand::value(0);
+  return wide ? widened(VirtualOperand::of(special), false) : VirtualOperand::of(special);
+}
+
+VirtualOperand Lowering::address_of(const Symbol& symbol, int64_t offset, bool wide) {
+  if (symbol.space != VariableSpace::Global) {
+    const uint64_t base = symbol.space == VariableSpace::Const ? isa::kPushConstantOffset : 0;
+    return VirtualOperand::value(base + symbol.address + uint64_t(offset));
+  }
+  const VirtualOperand to = VirtualOperand::of(temporary(RegisterClass::B64));
+  compute("ld.param.b64", {to, VirtualOperand::value(0)}, int64_t(symbol.address));
+  const VirtualOperand whole = offset ? compute64("add.u64", {to, VirtualOperand::value(uint64_t(offset))}) : to;
+  return wide ? whole : compute32("cvt.u32.u64", {whole});
+}
+
+VirtualOperand Lowering::name_source(const Operand& o, bool wide) {
+  const Symbol* symbol = find(o.name);
+  // `%tid.x` is no part of a scalar register %tid.
+  if (symbol && symbol->kind == Symbol::Kind::Register && symbol->elements.empty() && !o.element.empty()) symbol = nullptr;
+  if (!symbol) {
+    bool found = false;
+    const VirtualOperand special = special_source(o, wide, found);
+    if (found) return special;
+    if (functions_.contains(o.name)) {
+      no_support(o.place, fmt::format("the address of function '{}': calls must name their function", o.name));
+    } else {
+      error(o.place, fmt::format("'{}' is not declared", o.element.empty() ? o.name : o.name + "." + o.element));
+    }
+    return VirtualOperand::value(0);
+  }
+  if (symbol->kind == Symbol::Kind::Variable) return address_of(*symbol, o.offset, wide);
+  if (symbol->kind != Symbol::Kind::Register) {
+    error(o.place, fmt::format("'{}' is no operand of this instruction", o.name));
+    return VirtualOperand::value(0);
+  }
+  if (symbol->type.kind == 'p') {
+    error(o.place, fmt::format("'{}' is a predicate; the instruction takes a number", o.name));
+    return VirtualOperand::value(0);
+  }
+  VirtualRegister reg = symbol->reg;
+  if (!symbol->elements.empty()) {
+    const size_t n = std::string_view("xyzw").find(o.element.empty() ? "x" : o.element.substr(0, 1));
+    reg = symbol->elements[n < symbol->elements.size() ? n : 0];
+  }
+  const VirtualOperand value = VirtualOperand::of(reg);
+  const bool has_pair = class_of(symbol->type) == RegisterClass::B64;
+  if (has_pair == wide) return value;
+  return wide ? widened(value, symbol->type.kind == 's') : compute32("cvt.u32.u64", {value});
+}
+
+VirtualOperand Lowering::source(const Operand& o, OperandKind kind, const Type& type) {
+  if (kind == OperandKind::SrcPred) return predicate_source(o);
+  if (o.negated) error(o.place, "'!' stands before predicates only");
+  switch (o.kind) {
+    case Operand::Kind::Integer:
+    case Operand::Kind::Float32:
+    case Operand::Kind::Float64: return literal(o, is_wide(kind), type);
+    case Operand::Kind::Name: return name_source(o, is_wide(kind));
+    default: error(o.place, "expected a register or a number"); return VirtualOperand::value(0);
+  }
+}
+
+VirtualOperand Lowering::destination(const Operand& o, OperandKind kind, const Type& type) {
+  const RegisterClass wanted = kind == OperandKind::DstPred ? RegisterClass::Predicate
+                               : is_wide(kind)             ? RegisterClass::B64
+                                                           : RegisterClass::B32;
+  if (o.kind == Operand::Kind::Sink) return VirtualOperand::of(temporary(wanted));
+  if (o.kind != Operand::Kind::Name) {
+    error(o.place, "expected a register to write");
+    return VirtualOperand::of(temporary(wanted));
+  }
+  const Symbol* symbol = register_symbol(o);
+  if (!symbol) return VirtualOperand::of(temporary(wanted));
+  VirtualRegister reg = symbol->reg;
+  if (!symbol->elements.empty()) {
+    const size_t n = std::string_view("xyzw").find(o.element.empty() ? "x" : o.element.substr(0, 1));
+    reg = symbol->elements[n < symbol->elements.size() ? n : 0];
+  }
+  const RegisterClass has = class_of(symbol->type);
+  if (has == wanted) return VirtualOperand::of(reg);
+  const VirtualOperand value = VirtualOperand::of(temporary(wanted));
+  if (has == RegisterClass::Predicate || wanted == RegisterClass::Predicate) {
+    error(o.place, fmt::format("'{}' is {} predicate, the result is {}", o.name, has == RegisterClass::Predicate ? "a" : "no",
+                               wanted == RegisterClass::Predicate ? "one" : "a number"));
+    return value;
+  }
+  const char* op = has == RegisterClass::B32 ? "cvt.u32.u64" : type.kind == 's' ? "cvt.s64.s32" : "cvt.u64.u32";
+  late_.push_back({isa::op_index(op), VirtualOperand::of(reg), value});
+  return value;
+}
+
+void Lowering::finish_moves() {
+  for (const LateMove& move : late_) emit(move.op, {move.to, move.from});
+  late_.clear();
+}
+
+// The base of `[base + offset]`; the displacement goes to `imm`.
+VirtualOperand Lowering::address(const Operand& o, bool wide, int64_t& imm) {
+  if (o.kind != Operand::Kind::Address || o.parts.size() != 1) {
+    error(o.place, "expected an address such as [%rd1+4]");
+    return VirtualOperand::value(0);
+  }
+  const Operand& base = o.parts.front();
+  imm = o.offset;
+  const Symbol* symbol = base.kind == Operand::Kind::Name ? find(base.name) : nullptr;
+  VirtualOperand out;
+  if (symbol && symbol->kind == Symbol::Kind::Variable) {
+    out = address_of(*symbol, 0, wide);
+  } else if (base.kind == Operand::Kind::Name) {
+    out = name_source(base, wide);
+  } else {
+    out = literal(base, true, {'u', 64});
+  }
+  if (imm != int32_t(imm)) {
+    const VirtualOperand far = VirtualOperand::value(uint64_t(imm));
+    out = wide ? compute64("add.u64", {out, far}) : compute32("add.u32", {out, far});
+    imm = 0;
+  }
+  // The row adds the displacement, so constants are 0 and a displacement where one may be.
+  if (out.kind == VirtualOperand::Kind::Constant) {
+    const uint64_t whole = out.constant + uint64_t(imm);
+    if (!wide && whole == uint64_t(int32_t(whole))) {
+      imm = int64_t(whole);
+      return VirtualOperand::value(0);
+    }
+    return wide ? compute64("mov.b64", {out}) : compute32("mov.b32", {out});
+  }
+  return out;
+}
+
+}  // namespace glint::frontend::ptx

@@ -1,0 +1,100 @@
+// A PTX module as its text says it: declarations, functions, instructions. Nothing is resolved yet.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "frontend/ptx/tokens.h"
+
+namespace glint::frontend::ptx {
+
+// A fundamental type: b8..b128, u8..u64, s8..s64, f16, bf16, f16x2, bf16x2, f32, f64, pred and such.
+struct Type {
+  char kind = 'b';  // b, u, s, f; p for pred
+  uint32_t bits = 32;
+};
+// Nothing for words that are no type.
+std::optional<Type> type_of(const std::string& word);
+
+struct Operand {
+  enum class Kind : uint8_t {
+    Sink,      // _
+    Name,      // register, variable, label, function; element: the x of %tid.x; offset: of `name + 4`
+    Integer, Float32, Float64,  // value holds bits
+    Vector,    // {a, b}: parts
+    Address,   // [parts[0] + offset, more parts]
+    Pair,      // a|b: parts
+    List       // (a, b): parts, of a call
+  } kind = Kind::Sink;
+  std::string name, element;
+  bool negated = false;  // !name
+  uint64_t value = 0;
+  int64_t offset = 0;
+  std::vector<Operand> parts;
+  Place place;
+};
+
+struct Instruction {
+  std::vector<std::string> words;  // of the opcode: {"ld", "global", "f32"}
+  std::vector<Operand> operands;
+  std::string guard;               // name of a predicate, or empty
+  bool guard_negated = false;
+  Place place;
+};
+
+enum class VariableSpace : uint8_t { Register, Shared, Local, Const, Global, Param };
+
+struct Initializer {
+  uint64_t value = 0;   // bits of the element type
+  std::string symbol;   // or the address of that, plus value
+};
+
+struct Declaration {
+  VariableSpace space = VariableSpace::Register;
+  Type type;
+  uint32_t vector = 1;          // .v2, .v4
+  uint32_t align = 0;           // 0: natural
+  std::string name;
+  uint32_t range = 0;           // %r<10>: 10 registers named %r0 to %r9
+  std::vector<uint64_t> dimensions;
+  bool is_extern = false, has_open_dimension = false;
+  std::vector<Initializer> initial;
+  Place place;
+
+  uint64_t count() const;       // elements, of all dimensions
+  uint64_t bytes() const { return count() * vector * type.bits / 8; }
+  uint32_t alignment() const { return align ? align : vector * type.bits / 8; }
+};
+
+struct Statement {
+  enum class Kind : uint8_t { Label, Instruction, Declaration, Scope, Targets } kind = Kind::Instruction;
+  std::string label;                  // Label; Targets: name of the list
+  Instruction instruction;
+  Declaration declaration;
+  std::vector<Statement> body;        // Scope
+  std::vector<std::string> targets;   // Targets
+  Place place;
+};
+
+struct Function {
+  std::string name;
+  bool is_entry = false, has_body = false;
+  std::vector<Declaration> results, parameters;
+  std::vector<Statement> body;
+  std::optional<std::array<uint32_t, 3>> required_block, largest_block;  // .reqntid, .maxntid
+  Place place;
+};
+
+struct Module {
+  std::string file;
+  uint32_t address_size = 64;
+  std::vector<Declaration> variables;
+  std::vector<Function> functions;
+};
+
+// Reads a module. UserError says what stands where something else was expected.
+Module parse(std::string_view text, const std::string& file);
+
+}  // namespace glint::frontend::ptx

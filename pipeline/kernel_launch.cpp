@@ -1,0 +1,83 @@
+// Placing a kernel and its module's variables.
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/kernel_launch.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <map>
+
+#include "base/diagnostics.h"
+#include "core/block.h"
+#include "isa/generic_address.h"
+
+namespace glint::pipeline {
+
+KernelWorld::KernelWorld(frontend::Kernel kernel) : kernel_(std::move(kernel)) {
+  image = core::link({kernel_.program});
+  world.image = &image;
+  world.memory = &memory_;
+  world.raygen = 0;
+  world.local_bytes = kernel_.program.local_bytes;
+  world.constant_bank.resize(kernel_.constant_bank_bytes);
+  place_variables();
+}
+
+void KernelWorld::place_variables() {
+  std::map<std::string, uint64_t> address;  // generic: what pointers in memory hold
+  std::map<std::string, std::byte*> data;
+  for (const frontend::ModuleVariable& v : kernel_.variables) {
+    if (v.is_constant) {
+      address[v.name] = isa::window_of(isa::Space::Const) + v.offset;
+      data[v.name] = world.constant_bank.data() + v.offset;
+    } else {
+      const Address at = memory_.allocate(v.name, std::max<uint64_t>(v.bytes, 1));
+      address[v.name] = at;
+      data[v.name] = memory_.find(at, v.bytes);
+      std::memcpy(world.constant_bank.data() + v.offset, &at, sizeof at);
+    }
+    if (!v.initial.empty()) std::memcpy(data[v.name], v.initial.data(), v.initial.size());
+  }
+  for (const frontend::ModuleVariable& v : kernel_.variables)
+    for (const frontend::ModuleVariable::Pointer& pointer : v.pointers) {
+      const auto target = address.find(pointer.symbol);
+      if (target == address.end())
+        throw UnsupportedError(fmt::format("variable '{}' holds the address of '{}', which is no variable of the module in global or constant memory",
+                                           v.name, pointer.symbol));
+      const uint64_t value = target->second + pointer.addend;
+      std::memcpy(data[v.name] + pointer.at, &value, sizeof value);
+    }
+}
+
+void KernelWorld::set_grid(const KernelGrid& grid) {
+  const std::string& name = kernel_.program.name;
+  const auto size = [](const std::array<uint32_t, 3>& s) { return fmt::format("{} x {} x {}", s[0], s[1], s[2]); };
+  for (const auto& s : {grid.grid, grid.block})
+    for (uint32_t axis : s)
+      if (axis == 0) throw UserError(fmt::format("kernel '{}': a grid of {} blocks of {} threads is empty", name, size(grid.grid), size(grid.block)));
+  const uint64_t threads = uint64_t{grid.block[0]} * grid.block[1] * grid.block[2];
+  if (threads > core::kMaxBlockThreads)
+    throw UserError(fmt::format("kernel '{}': {} threads a block, at most {} can be", name, threads, core::kMaxBlockThreads));
+  if (kernel_.required_block && *kernel_.required_block != grid.block)
+    throw UserError(fmt::format("kernel '{}' asks for blocks of {} threads (.reqntid), not {}", name, size(*kernel_.required_block), size(grid.block)));
+  if (kernel_.largest_block) {
+    const auto& most = *kernel_.largest_block;
+    if (threads > uint64_t{most[0]} * most[1] * most[2])
+      throw UserError(fmt::format("kernel '{}' takes blocks of at most {} threads (.maxntid), not {}", name, size(most), size(grid.block)));
+  }
+  core::set_blocks(world, grid.grid, grid.block, kernel_.program.shared_bytes, grid.dynamic_shared_bytes);
+}
+
+void KernelWorld::set_arguments(const std::vector<std::vector<std::byte>>& arguments) {
+  const std::string& name = kernel_.program.name;
+  if (arguments.size() != kernel_.parameters.size())
+    throw UserError(fmt::format("kernel '{}' has {} parameters, {} arguments are given", name, kernel_.parameters.size(), arguments.size()));
+  for (size_t i = 0; i < arguments.size(); ++i) {
+    const frontend::KernelParameter& p = kernel_.parameters[i];
+    if (arguments[i].size() != p.bytes)
+      throw UserError(fmt::format("kernel '{}': parameter {} ('{}') has {} bytes, its argument {}", name, i, p.name, p.bytes, arguments[i].size()));
+    std::memcpy(world.constant_bank.data() + isa::kPushConstantOffset + p.offset, arguments[i].data(), p.bytes);
+  }
+}
+
+}  // namespace glint::pipeline

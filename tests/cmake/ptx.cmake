@@ -1,0 +1,10 @@
+find_package(nlohmann_json REQUIRED)
+find_path(GLINT_ZSTD_INCLUDE zstd.h)
+find_library(GLINT_ZSTD zstd)
+if(GLINT_ZSTD_INCLUDE AND GLINT_ZSTD)
+  glint_test(isa_golden FOLDER isa/golden LINKS glint::pipeline nlohmann_json::nlohmann_json ${GLINT_ZSTD}
+    SOURCES isa/golden/golden_test.cpp isa/golden/recording.cpp)
+  target_include_directories(test_isa_golden PRIVATE ${GLINT_ZSTD_INCLUDE})
+else()
+  message(STATUS "Test isa_golden is left out: libzstd-dev is not installed")
+endif()
