@@ -20,11 +20,17 @@ inline constexpr uint32_t kCanonicalNan16 = 0x7fff;  // of f16 and bf16: PTX's N
   return (x.bits & 0x7fffu) > 0x7f80u;
 }
 
-// The f16 in the upper half of a word, exactly: a multiplication moves the exponent from bias 15 to 127 and
-// makes subnormals normal (with flush to zero, zeros). A NaN keeps sign and payload and is not quieted.
+// The f16 in the upper half of a word, exactly; a NaN stays one. No step meets a subnormal float, which hosts
+// are slow at. The exponent is raised so far that infinities and NaNs are a float's, and multiplied back.
+// Subnormals thereby get a leading 1 that they do not have, which is taken off again; with kFtz they become
+// zeros.
+template <bool kFtz = false>
 [[gnu::always_inline]] inline float float_of_upper_half(uint32_t word) {
-  const float moved = float_of(uint32_t(int32_t(word) >> 3) & 0x8fff'e000u) * 0x1p112f;
-  return float_of(float_bits(moved) | ((word & 0x7c00'0000u) == 0x7c00'0000u ? 0x7f80'0000u : 0u));
+  const float raised = float_of((word >> 3 & 0x0fff'e000u) | 0x7000'0000u);
+  const uint32_t normal = float_bits(raised * 0x1p-112f);
+  const uint32_t subnormal = kFtz ? 0u : float_bits(raised * 0x1p-111f - 0x1p-14f);
+  const uint32_t magnitude = (word & 0x7c00'0000u) == 0 ? subnormal : normal;
+  return float_of((magnitude & 0x7fff'ffffu) | (word & 0x8000'0000u));
 }
 
 [[gnu::always_inline]] inline float to_float(Half x) {
@@ -36,25 +42,24 @@ inline constexpr uint32_t kCanonicalNan16 = 0x7fff;  // of f16 and bf16: PTX's N
 }
 
 // Rounds to nearest even, once, subnormal results too; from 65520 on infinity; NaN gives 0x7fff. The host
-// must round to nearest meanwhile.
+// must round to nearest meanwhile. With kFtz results below 2^-14 - 2^-26 become zeros of their sign: those
+// that f16 with an unbounded exponent would round to less than 2^-14.
 //
-// 2^13 of the float's own power of two (2^-14 at least, where f16 becomes subnormal) is added and taken off:
-// the sum's steps are an f16's. What is left is an f16 in all but exponent bias; 65536 has the exponent of
-// infinity.
+// Added to 2^13 times its own power of two (2^-14 at least, where f16 becomes subnormal), a float is rounded
+// to the steps of an f16: the low bits of the sum count them.
+template <bool kFtz = false>
 [[gnu::always_inline]] inline uint32_t half_bits(float x) {
-  const float magnitude = float_of(float_bits(x) & 0x7fff'ffffu);
-  const uint32_t power = float_bits(x) & 0x7f80'0000u;
-  const float step = float_of((power > 0x3880'0000u ? power : 0x3880'0000u) + (13u << 23));
-  const float rounded = (magnitude + step) - step;
-  const float finite = rounded < 65536.0f ? rounded : 65536.0f;
-  const uint32_t number = float_bits(finite * 0x1p-112f) >> 13 | (float_bits(x) >> 16 & 0x8000u);
-  return is_nan(x) ? kCanonicalNan16 : number;
-}
-// The same with subnormal results flushed: those below 2^-14 - 2^-26, which f16 with an unbounded exponent
-// would round to less than 2^-14.
-[[gnu::always_inline]] inline uint32_t flushed_half_bits(float x) {
-  const uint32_t magnitude = float_bits(x) & 0x7fff'ffffu;
-  return half_bits(float_of(magnitude < 0x387f'f000u ? float_bits(x) & 0x8000'0000u : float_bits(x)));
+  const uint32_t bits = float_bits(x) & 0x7fff'ffffu;
+  const uint32_t magnitude =
+      bits < 0x4780'0000u ? bits : 0x4780'0000u;  // 65536, whose exponent is infinity's
+  const uint32_t own = magnitude & 0x7f80'0000u;
+  const uint32_t power = own > 0x3880'0000u ? own : 0x3880'0000u;
+  const uint32_t step = power + (13u << 23);
+  const uint32_t steps = float_bits(float_of(magnitude) + float_of(step)) - step;
+  const uint32_t rounded = steps + ((power - 0x3880'0000u) >> 13);
+  const uint32_t kept = kFtz && bits < 0x387f'f000u ? 0u : rounded;
+  const uint32_t number = kept | (float_bits(x) >> 16 & 0x8000u);
+  return bits > 0x7f80'0000u ? kCanonicalNan16 : number;
 }
 // A bf16's exponents are a float's, so a carry makes infinity, and subnormals need no care.
 [[gnu::always_inline]] inline uint32_t bfloat_bits(float x) {

@@ -24,16 +24,19 @@ struct F16 {
   static constexpr uint32_t kSmallest = 0x0400;  // normal
   static constexpr uint32_t kHalfUlp = 0x1000;   // of 1
   static constexpr uint32_t kTied = 0x3be0, kAboveTie = 0x3bc1;
-  static float widen(uint32_t upper) { return float_of_upper_half(upper); }
   template <bool kFtz>
-  static uint32_t narrow(float x) {
-    return kFtz ? flushed_half_bits(x) : half_bits(x);
+  [[gnu::always_inline]] static float widen(uint32_t upper) {
+    return float_of_upper_half<kFtz>(upper);
+  }
+  template <bool kFtz>
+  [[gnu::always_inline]] static uint32_t narrow(float x) {
+    return half_bits<kFtz>(x);
   }
 
   // fma to odd: as if rounded toward zero, with the last bit set where that was not exact; so that rounding
   // again, to fewer bits, rounds right (Boldo and Melquiond 2008, "Emulation of FMA and correctly rounded
   // sums"). The product is exact in single precision, and Knuth's two-sum gives the error of the sum.
-  static float fma_to_odd(float a, float b, float c) {
+  [[gnu::always_inline]] static float fma_to_odd(float a, float b, float c) {
     const float product = a * b;
     const float sum = product + c;
     const float part = sum - product;
@@ -42,10 +45,10 @@ struct F16 {
   }
 
   // One step toward zero where the error has the other sign, then the last bit: an odd sum stays as it is.
-  static float to_odd(float sum, float error) {
+  [[gnu::always_inline]] static float to_odd(float sum, float error) {
     const uint32_t bits = float_bits(sum);
     const uint32_t odd = (bits + all_ones_if_negative(float_bits(error) ^ bits)) | 1;
-    const bool is_off = error < 0 || error > 0;  // a NaN error: the sum is not finite
+    const bool is_off = __builtin_fabsf(error) > 0;  // a NaN error: the sum is not finite
     return float_of(is_off ? odd : bits);
   }
 };
@@ -56,15 +59,18 @@ struct Bf16 {
   static constexpr uint32_t kSmallest = 0x0080;  // normal
   static constexpr uint32_t kHalfUlp = 0x3b80;   // of 1
   static constexpr uint32_t kTied = 0x3f28, kAboveTie = 0x3edd;
-  static float widen(uint32_t upper) { return float_of(upper & 0xffff'0000u); }
   template <bool>
-  static uint32_t narrow(float x) {
+  [[gnu::always_inline]] static float widen(uint32_t upper) {
+    return float_of(upper & 0xffff'0000u);
+  }
+  template <bool>
+  [[gnu::always_inline]] static uint32_t narrow(float x) {
     return bfloat_bits(x);
   }
 
   // As above, but the product may leave the range of single precision. So the larger of product and addend is
   // taken from the sum first (Dekker's fast two-sum), the product within an fma, where it has any range.
-  static float fma_to_odd(float a, float b, float c) {
+  [[gnu::always_inline]] static float fma_to_odd(float a, float b, float c) {
     const float sum = __builtin_fmaf(a, b, c);
     const float rest = __builtin_fmaf(a, b, -sum) + c;
     const float other = __builtin_fmaf(a, b, c - sum);
@@ -80,7 +86,7 @@ struct Add {
   static constexpr Text kDoc = "Adds";
   static constexpr size_t kSources = 2;
   template <class Format>
-  static float of(float a, float b) {
+  [[gnu::always_inline]] static float of(float a, float b) {
     return a + b;
   }
   template <class Format>
@@ -97,7 +103,7 @@ struct Subtract {
   static constexpr Text kDoc = "Subtracts";
   static constexpr size_t kSources = 2;
   template <class Format>
-  static float of(float a, float b) {
+  [[gnu::always_inline]] static float of(float a, float b) {
     return a - b;
   }
   template <class Format>
@@ -114,7 +120,7 @@ struct Multiply {
   static constexpr Text kDoc = "Multiplies";
   static constexpr size_t kSources = 2;
   template <class Format>
-  static float of(float a, float b) {
+  [[gnu::always_inline]] static float of(float a, float b) {
     return a * b;
   }
   template <class Format>
@@ -131,7 +137,7 @@ struct Fma {
   static constexpr Text kDoc = "Multiplies and adds, once";
   static constexpr size_t kSources = 3;
   template <class Format>
-  static float of(float a, float b, float c) {
+  [[gnu::always_inline]] static float of(float a, float b, float c) {
     return Format::fma_to_odd(a, b, c);
   }
   template <class Format>
@@ -147,19 +153,19 @@ struct Fma {
   }
 };
 
-// The work of a lane; the host flushes subnormal sources of .ftz (they are subnormal floats before the
-// multiplication of float_of_upper_half).
+// The work of a lane.
 template <class Format, class Op, bool kFtz, bool kSat, bool kRelu>
 struct Arithmetic {
   template <class... A>
-  uint32_t operator()(A... upper) const {
-    const float result = Op::template of<Format>(Format::widen(upper)...);
+  [[gnu::always_inline]] uint32_t operator()(A... upper) const {
+    const float result = Op::template of<Format>(Format::template widen<kFtz>(upper)...);
+    if constexpr (kSat) {
+      const float positive = result > 0.0f ? result : 0.0f;  // NaN and -0 become +0
+      return Format::template narrow<kFtz>(positive < 1.0f ? positive : 1.0f);
+    }
     const uint32_t bits = Format::template narrow<kFtz>(result);
-    // Masks, not selections: those the compiler would turn into branches, and the loop would stay scalar.
-    const uint32_t positive = bits & ~all_ones_if_negative(bits << 16);  // the NaN has no sign
-    const uint32_t clamped = positive < Format::kOne ? positive : Format::kOne;
-    if constexpr (kSat) return clamped & all_ones_if_negative(positive - kNan);
-    return kRelu ? positive : bits;
+    // A mask, not a selection: that the compiler would turn into a branch, and the loop would stay scalar.
+    return kRelu ? bits & ~all_ones_if_negative(bits << 16) : bits;  // the NaN has no sign
   }
 };
 
@@ -184,7 +190,7 @@ inline int32_t ordered(uint32_t upper) {
 // sign is the product of the sources' signs, those of NaNs included.
 template <class Format, bool kMax, bool kFtz, bool kNanWins, bool kXorsign>
 struct Extreme {
-  uint32_t operator()(uint32_t x, uint32_t y) const {
+  [[gnu::always_inline]] uint32_t operator()(uint32_t x, uint32_t y) const {
     const uint32_t keep = kXorsign ? 0x7fff'0000u : 0xffff'0000u;
     const uint32_t a = taken<Format, kFtz>(x) & keep, b = taken<Format, kFtz>(y) & keep;
     const bool is_first = kMax ? ordered(a) > ordered(b) : ordered(a) < ordered(b);
@@ -199,7 +205,7 @@ struct Extreme {
 
 template <class Format, bool kAbs, bool kFtz>
 struct Sign {
-  uint32_t operator()(uint32_t x) const {
+  [[gnu::always_inline]] uint32_t operator()(uint32_t x) const {
     const uint32_t bits = taken<Format, kFtz>(x);
     const uint32_t result = kAbs ? bits & 0x7fff'0000u : bits ^ kSign << 16;
     return is_nan_upper<Format>(bits) ? kNan : result >> 16;
@@ -210,14 +216,14 @@ struct Sign {
 template <class F>
 struct Lower {
   template <class... A>
-  uint32_t operator()(A... word) const {
+  [[gnu::always_inline]] uint32_t operator()(A... word) const {
     return F{}(word << 16 ...);
   }
 };
 template <class F>
 struct Both {
   template <class... A>
-  uint32_t operator()(A... word) const {
+  [[gnu::always_inline]] uint32_t operator()(A... word) const {
     return F{}(word << 16 ...) | F{}(word...) << 16;
   }
 };
@@ -232,12 +238,12 @@ constexpr Examples paired(const Examples& of_one) {
 }
 
 // A row of `kSources` sources of the format, or of pairs of it.
-template <bool kPair, bool kFtz, size_t kSources, class F>
+template <bool kPair, size_t kSources, class F>
 constexpr OpRow row(std::string_view name, std::string_view doc, F, const Examples& examples) {
   using Lane = std::conditional_t<kPair, Both<F>, Lower<F>>;
   return [&]<size_t... I>(std::index_sequence<I...>) {
-    return flushed_op<Round::Nearest, kFtz, decltype((void(I), uint32_t{}))...>(
-        name, Unit::Fp16, doc, Lane{}, kPair ? paired(examples) : examples);
+    return value_op<decltype((void(I), uint32_t{}))...>(name, Unit::Fp16, doc, Lane{},
+                                                        kPair ? paired(examples) : examples);
   }
   (std::make_index_sequence<kSources>{});
 }
@@ -248,7 +254,7 @@ constexpr auto pair_words = when<kPair, ", in each half of a register">;
 
 template <class Format, bool kPair, class Op, bool kFtz, bool kSat, bool kRelu>
 constexpr OpRow arithmetic_row() {
-  return row<kPair, kFtz, Op::kSources>(
+  return row<kPair, Op::kSources>(
       joined<Op::kName, ".rn", when<kFtz, ".ftz">, when<kSat, ".sat">, when<kRelu, ".relu">,
              suffix<Format, kPair>>,
       joined<Op::kDoc, pair_words<kPair>, round_words<Round::Nearest>, when<kFtz, kFtzWords>,
@@ -271,7 +277,7 @@ constexpr OpRow extreme_row() {
   constexpr uint32_t kOne = Format::kOne, kOther = kNanWins ? kNan : kOne, kSmall = kFtz ? 0 : 1;
   constexpr uint32_t kZeros = kMax && !kXorsign ? 0 : kSign;
   constexpr uint32_t kSigned = kXorsign || !kMax ? kSign | kSmall : kSmall;
-  return row<kPair, false, 2>(
+  return row<kPair, 2>(
       joined<when<kMax, "max">, when<!kMax, "min">, when<kFtz, ".ftz">, when<kNanWins, ".NaN">,
              when<kXorsign, ".xorsign.abs">, suffix<Format, kPair>>,
       joined<when<kMax, "The larger">, when<!kMax, "The smaller">,
@@ -295,7 +301,7 @@ template <class Format, bool kPair, bool kAbs>
 constexpr auto sign_rows = generated<Format::kHasFtz ? 2 : 1>([](auto i) {
   constexpr bool kFtz = i == 1;
   constexpr uint32_t kOne = Format::kOne, kSmall = kFtz ? 0 : 1, kFlip = kAbs ? 0 : kSign;
-  return row<kPair, false, 1>(
+  return row<kPair, 1>(
       joined<when<kAbs, "abs">, when<!kAbs, "neg">, when<kFtz, ".ftz">, suffix<Format, kPair>>,
       joined<when<kAbs, "Magnitude">, when<!kAbs, "Negates">, pair_words<kPair>, when<kFtz, kFtzWords>, ".">,
       Sign<Format, kAbs, kFtz>{},
