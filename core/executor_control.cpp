@@ -116,10 +116,9 @@ bool Executor::return_from(WarpContext& warp, Effect effect) {
   const LaneMask exec = warp.regs.exec;
   const bool leaves_shader = effect != Effect::Return;
   const SimtStack::Entry* const call = simt.innermost_call(leaves_shader);
-  if (!call && leaves_shader)
-    return fail(warp, exec ? std::countr_zero(exec) : 0, "returns from a shader that was not called");
-  if (exec && call && !call->is_function) finish_shader(warp, effect);
-  if (call) simt.arrive_return(exec, leaves_shader);
+  if (!call) return fail(warp, exec ? std::countr_zero(exec) : 0, "returns, and nobody has called");
+  if (exec && !call->is_function) finish_shader(warp, effect);
+  simt.arrive_return(exec, leaves_shader);
   leave(warp, exec);
   return true;
 }

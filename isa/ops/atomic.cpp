@@ -18,13 +18,15 @@ uint64_t add_f32(uint64_t old, uint64_t b, uint64_t is_global) {
   return float_bits(is_global ? flushed(canonical(flushed(x) + flushed(y))) : canonical(x + y));
 }
 
-// NaNs keep their payload, and become quiet: the first operand's if both are.
 bool is_nan64(uint64_t x) {
   return (x & 0x7fff'ffff'ffff'ffff) > 0x7ff0'0000'0000'0000;
 }
 constexpr uint64_t kQuiet = 0x0008'0000'0000'0000;
-uint64_t add_f64(uint64_t old, uint64_t b, uint64_t) {
-  if (is_nan64(old)) return old | kQuiet;
+// Recorded: NaNs keep their payload. Shared memory's make the result quiet, the old value's first; global memory's adder
+// passes them on as they are, the operand's first.
+uint64_t add_f64(uint64_t old, uint64_t b, uint64_t is_global) {
+  if (is_global && is_nan64(b)) return b;
+  if (is_nan64(old)) return is_global ? old : old | kQuiet;
   if (is_nan64(b)) return b | kQuiet;
   const uint64_t sum = double_bits(double_of(old) + double_of(b));
   return is_nan64(sum) ? 0xfff8'0000'0000'0000 : sum;

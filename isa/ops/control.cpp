@@ -20,7 +20,7 @@ constexpr OpRow kRows[] = {
     control("call", Effect::Call, {Label}, "Calls the function at the label; its ret comes back here."),
     control("exit", Effect::Exit, {}, "Ends the lanes."),
     control("ret", Effect::Return, {},
-            "Returns from the function or shader; an any-hit shader accepts its candidate. Ends lanes that nobody called."),
+            "Returns from the function or shader; an any-hit shader accepts its candidate."),
     control("trap", Effect::Trap, {}, "Stops the run with a fault."),
 };
 

@@ -144,14 +144,14 @@ constexpr OpRow is_space(std::string_view name, std::string_view doc) {
   constexpr uint64_t kWindow = window_of(kSpace);
   if constexpr (kSpace == Space::Global)
     return value_op<uint64_t>(name, Unit::Predicate, doc,
-                              [](uint64_t a) {
+                              [](uint64_t a) -> bool {
                                 const uint64_t high = a >> 32;
                                 return (high < kConstWindow >> 32) | (high > kLocalWindow >> 32);
                               },
                               {{{0x1'0000'0000}, 1}, {{kSharedWindow + 4}, 0}, {{kConstWindow - 1}, 1}});
   else
     return value_op<uint64_t>(name, Unit::Predicate, doc,
-                              [](uint64_t a) {
+                              [](uint64_t a) -> bool {
                                 const bool in_window = a >> 32 == kWindow >> 32;
                                 return in_window & (uint32_t(a) >= uint32_t(kWindow));
                               },
