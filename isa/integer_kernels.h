@@ -103,9 +103,10 @@ template <class T>
 template <class T>
 [[gnu::always_inline]] inline T inserted(T a, T b, uint32_t position, uint32_t length) {
   using W = Wrapping<T>;
-  constexpr W kLast = kBits<T> - 1;
+  constexpr W kWidth = kBits<T>, kLast = kWidth - 1;
   const W p = field_count<T>(position), end = p + field_count<T>(length);
-  const W from = p > kLast ? W(0) : W(~W(0)) << (p & kLast), to = end > kLast ? W(0) : W(~W(0)) << (end & kLast);
+  // Ones from a bit on; the factor, 0 or 1, leaves none past the last bit.
+  const W from = (~W(0) << (p & kLast)) * W(p < kWidth), to = (~W(0) << (end & kLast)) * W(end < kWidth);
   const W mask = from & ~to;
   return T((W(b) & ~mask) | ((W(a) << (p & kLast)) & mask));
 }

@@ -16,7 +16,7 @@ struct IsLessOrGreater {
   bool operator()(auto a, auto b) const { return bool((a < b) | (a > b)); }
 };
 struct IsOrdered {
-  bool operator()(auto a, auto b) const { return bool((a == a) & (b == b)); }
+  bool operator()(auto a, auto b) const { return bool((a <= b) | (a > b)); }
 };
 
 // What a float operand is: its type, its flush modifier, and the number that is compared.
@@ -42,14 +42,18 @@ struct HalfPrecision : Named<Half, ".f16"> {
   static constexpr auto kFlush = Text("");
   static constexpr Unit kUnit = Unit::Fp16;
   static constexpr uint64_t kOne = 0x3c00, kTwo = 0x4000, kNan = 0x7e00;
-  [[gnu::always_inline]] static float value(Half x) { return to_float(x); }
+  // A float that compares like it: the same bits further up, without a change of the exponent's bias.
+  [[gnu::always_inline]] static float value(Half x) {
+    const uint32_t shifted = (x.bits & 0x7fffu) << 13 | (x.bits & 0x8000u) << 16;
+    return float_of(is_nan(x) ? kCanonicalNan : shifted);
+  }
 };
 inline Half flushed(Half x) {
   return (x.bits & 0x7c00u) == 0 ? Half{0} : x;
 }
 struct FlushedHalf : HalfPrecision {
   static constexpr auto kFlush = Text(".ftz");
-  [[gnu::always_inline]] static float value(Half x) { return to_float(flushed(x)); }
+  [[gnu::always_inline]] static float value(Half x) { return HalfPrecision::value(flushed(x)); }
 };
 struct BrainFloat : Named<Bfloat, ".bf16"> {
   static constexpr auto kFlush = Text("");

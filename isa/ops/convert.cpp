@@ -1,108 +1,64 @@
-// Conversions between integers and floats, and rounding to integers.
+// Conversions between integers of 8 to 64 bits.
 // SPDX-License-Identifier: Apache-2.0
-#include "isa/op_makers.h"
+#include "isa/ops/conversion_types.h"
 #include "isa/ops/families.h"
 
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
-inline float with_sign_of(float magnitude, float x) {
-  return float_of((float_bits(magnitude) & 0x7fff'ffffu) | (float_bits(x) & 0x8000'0000u));
-}
-inline float round_down(float x) {
-  const float r = round_even(x);
-  return canonical(with_sign_of(r > x ? r - 1.0f : r, x));
-}
-inline float round_up(float x) {
-  const float r = round_even(x);
-  return canonical(with_sign_of(r < x ? r + 1.0f : r, x));
-}
-inline float round_to_zero(float x) {
-  const float magnitude = float_of(float_bits(x) & 0x7fff'ffffu);
-  const float r = round_even(magnitude);
-  return canonical(with_sign_of(r > magnitude ? r - 1.0f : r, x));
+template <class D, class S>
+inline constexpr bool kContains = std::is_signed_v<D> == std::is_signed_v<S> ? sizeof(D) >= sizeof(S)
+                                  : std::is_signed_v<D>                      ? sizeof(D) > sizeof(S)
+                                                                             : false;
+
+// The nearest value of D. Bounds that S cannot reach are left out: they would not fit its type.
+template <class D, class S>
+[[gnu::always_inline]] inline D clamped(S x) {
+  constexpr D kLow = std::is_signed_v<D> ? D(Unsigned<D>(1) << (kBits<D> - 1)) : D(0), kHigh = D(~kLow);
+  S inside = x;
+  if constexpr (std::is_signed_v<S> && (std::is_unsigned_v<D> || sizeof(D) < sizeof(S)))
+    inside = inside < S(kLow) ? S(kLow) : inside;
+  if constexpr (sizeof(D) < sizeof(S) || (sizeof(D) == sizeof(S) && std::is_unsigned_v<S>))
+    inside = inside > S(kHigh) ? S(kHigh) : inside;
+  return D(inside);
 }
 
-// The cast happens only to values in range: outside C++ leaves it undefined, and hosts differ.
-inline int32_t to_signed(float x) {
-  const bool in_range = x >= -2147483648.0f && x < 2147483648.0f;
-  const int32_t inside = int32_t(in_range ? x : 0.0f);
-  const int32_t clipped = x >= 2147483648.0f ? 0x7fff'ffff : inside;
-  return x < -2147483648.0f ? int32_t(0x8000'0000u) : clipped;
-}
-inline uint32_t to_unsigned(float x) {
-  const bool in_range = x >= 0.0f && x < 4294967296.0f;
-  const uint32_t inside = uint32_t(in_range ? x : 0.0f);
-  return x >= 4294967296.0f ? ~0u : inside;
+template <class D, class S>
+constexpr auto pair_rows() {
+  using To = typename D::Type;
+  using From = typename S::Type;
+  constexpr uint64_t kMinusOne = register_word<From>(From(-1));
+  constexpr bool kIsLong = sizeof(To) == 8 || sizeof(From) == 8;
+  constexpr std::string_view kDoc = sizeof(To) > sizeof(From) ? std::is_signed_v<From> ? "Widens with copies of the sign."
+                                                                                      : "Widens with zeros."
+                                    : sizeof(To) < sizeof(From) ? "Keeps the low bits."
+                                                                : "Keeps the bits.";
+  constexpr OpRow kPlain = value_op<Register<From>>(
+      joined<"cvt", D::kName, S::kName>, Unit::Int, kDoc,
+      [](Register<From> x) { return Register<To>(To(From(x))); },
+      {{{7}, 7}, {{kMinusOne}, register_word<To>(To(From(-1)))}, {{0x1'0000'0044 & register_word<From>(From(-1))}, 0x44 + (kIsLong && sizeof(To) == 8 && sizeof(From) == 8 ? 0x1'0000'0000 : 0)}});
+  if constexpr (kContains<To, From>) {
+    return joined_rows(kPlain);
+  } else {
+    constexpr uint64_t kClamped = std::is_signed_v<From> ? register_word<To>(std::is_signed_v<To> ? To(-1) : To(0))
+                                                         : register_word<To>(To(std::is_signed_v<To> ? Unsigned<To>(-1) >> 1 : To(-1)));
+    return joined_rows(kPlain, value_op<Register<From>>(
+                                   joined<"cvt.sat", D::kName, S::kName>, Unit::Int, "Clamps to the range of the result.",
+                                   [](Register<From> x) { return Register<To>(clamped<To>(From(x))); },
+                                   {{{7}, 7}, {{kMinusOne}, kClamped}, {{0}, 0}}));
+  }
 }
 
-constexpr OpRow kRows[] = {
-    value_op<uint32_t>("cvt.u64.u32", Unit::Int, "Widens with zeros.", [](uint32_t a) { return uint64_t(a); },
-                       {{{7}, 7}, {{0xffff'ffff}, 0xffff'ffff}}),
-    value_op<int32_t>("cvt.s64.s32", Unit::Int, "Widens with copies of the sign.",
-                      [](int32_t a) { return int64_t(a); }, {{{7}, 7}, {{0xffff'ffff}, ~0ull}}),
-    value_op<uint64_t>("cvt.u32.u64", Unit::Int, "Keeps the low half.",
-                       [](uint64_t a) { return uint32_t(a); }, {{{7}, 7}, {{0x1'0000'0002}, 2}}),
-    unary<float>("cvt.rni.f32.f32", Unit::Sfu, "Rounds to the nearest integer, ties to even.",
-                 [](float a) { return round_even(a); },
-                 {{{0x3f00'0000}, 0},
-                  {{0xbf00'0000}, 0x8000'0000},
-                  {{0x4020'0000}, 0x4000'0000},
-                  {{0x7f80'0001}, 0x7fff'ffff},
-                  {{0x8000'0001}, 0x8000'0000},
-                  {{0x4b00'0001}, 0x4b00'0001}}),
-    unary<float>("cvt.rmi.f32.f32", Unit::Sfu, "Rounds to the next integer below.",
-                 [](float a) { return round_down(a); },
-                 {{{0xbf00'0000}, 0xbf80'0000},
-                  {{0x3f00'0000}, 0},
-                  {{0x8000'0000}, 0x8000'0000},
-                  {{0x8000'0001}, 0xbf80'0000},
-                  {{0x7f80'0000}, 0x7f80'0000}}),
-    unary<float>("cvt.rpi.f32.f32", Unit::Sfu, "Rounds to the next integer above.",
-                 [](float a) { return round_up(a); },
-                 {{{0xbf00'0000}, 0x8000'0000},
-                  {{0x3f00'0000}, 0x3f80'0000},
-                  {{1}, 0x3f80'0000},
-                  {{0x7fc0'0000}, 0x7fff'ffff}}),
-    unary<float>("cvt.rzi.f32.f32", Unit::Sfu, "Rounds to the next integer towards 0.",
-                 [](float a) { return round_to_zero(a); },
-                 {{{0xbff0'0000}, 0xbf80'0000},
-                  {{0x3ff0'0000}, 0x3f80'0000},
-                  {{0xbf00'0000}, 0x8000'0000},
-                  {{0xff80'0000}, 0xff80'0000}}),
-    value_op<float>("cvt.rzi.s32.f32", Unit::Sfu, "Converts towards 0; saturates, NaN gives 0.",
-                    [](float a) { return to_signed(a); },
-                    {{{0xbfc0'0000}, 0xffff'ffff},
-                     {{0x7fc0'0000}, 0},
-                     {{0x7f80'0000}, 0x7fff'ffff},
-                     {{0xd015'02f9}, 0x8000'0000},
-                     {{0xcf00'0000}, 0x8000'0000},
-                     {{0x4f00'0000}, 0x7fff'ffff}}),
-    value_op<float>("cvt.rzi.u32.f32", Unit::Sfu, "Converts towards 0; saturates, NaN gives 0.",
-                    [](float a) { return to_unsigned(a); },
-                    {{{0xbf80'0000}, 0},
-                     {{0x7fc0'0000}, 0},
-                     {{0x5015'02f9}, 0xffff'ffff},
-                     {{0x4f7f'ffff}, 0xffff'ff00},
-                     {{0x4f80'0000}, 0xffff'ffff}}),
-    value_op<int32_t>("cvt.rn.f32.s32", Unit::Int, "Converts, rounding to nearest even.",
-                      [](int32_t a) { return float(a); },
-                      {{{1}, 0x3f80'0000},
-                       {{0x8000'0000}, 0xcf00'0000},
-                       {{0x0100'0001}, 0x4b80'0000},
-                       {{0x7fff'ffff}, 0x4f00'0000}}),
-    value_op<uint32_t>("cvt.rn.f32.u32", Unit::Int, "Converts, rounding to nearest even.",
-                       [](uint32_t a) { return float(a); },
-                       {{{1}, 0x3f80'0000},
-                        {{0x8000'0000}, 0x4f00'0000},
-                        {{0x0100'0003}, 0x4b80'0002},
-                        {{0xffff'ffff}, 0x4f80'0000}}),
-};
+template <class S>
+constexpr auto source_rows() {
+  return rows_of_types<TypeS8, TypeU8, TypeS16, TypeU16, TypeS32, TypeU32, TypeS64, TypeU64>([]<class D>() { return pair_rows<D, S>(); });
+}
+constexpr auto kRows = rows_of_types<TypeS8, TypeU8, TypeS16, TypeU16, TypeS32, TypeU32, TypeS64, TypeU64>([]<class S>() { return source_rows<S>(); });
 
 }  // namespace
 
 RowList convert_rows() {
-  return {kRows, std::size(kRows)};
+  return {kRows.data(), kRows.size()};
 }
 
 }  // namespace glint::isa::GLINT_ISA_PATH

@@ -1,0 +1,164 @@
+// Conversions between integers and floats, rounded once in any direction.
+//
+// Branch-free, so that loops over lanes become vectors; all in +, -, comparisons and bits, so that every path gives
+// the same. The host must round to nearest, but where a function says otherwise. Included only by isa/ops/*.cpp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "isa/half.h"
+#include "isa/integer_kernels.h"
+#include "isa/rounding.h"
+
+namespace glint::isa::GLINT_ISA_PATH {
+
+inline constexpr uint64_t kSign64 = 1ull << 63;
+
+// x rounded to an integer, |x| < 2^51; NaN stays NaN. A zero may lose its sign.
+template <Round kRound>
+[[gnu::always_inline]] inline double to_integral(double x) {
+  const double nearest = (x + kRoundMagic) - kRoundMagic;
+  if constexpr (kRound == Round::Nearest) return nearest;
+  const double below = nearest > x ? nearest - 1.0 : nearest;
+  const double above = nearest < x ? nearest + 1.0 : nearest;
+  if constexpr (kRound == Round::Down) return below;
+  if constexpr (kRound == Round::Up) return above;
+  return x < 0.0 ? above : below;
+}
+// The same of any double: from 2^52 on they are integers. Keeps the sign of zero; a NaN keeps its payload, quieted.
+template <Round kRound>
+[[gnu::always_inline]] inline double to_any_integral(double x) {
+  const double magnitude = double_of(double_bits(x) & ~kSign64);
+  const bool is_small = magnitude < kTwo52;
+  const double rounded = to_integral<kRound>(is_small ? x : 0.0);
+  const uint64_t kept = is_small ? (double_bits(rounded) & ~kSign64) | (double_bits(x) & kSign64) : double_bits(x);
+  const uint64_t quiet = magnitude != magnitude ? 0x0008'0000'0000'0000ull : 0;
+  return double_of(kept | quiet);
+}
+
+// What a NaN becomes, as recorded: 0 from 32 and 16 bits to at most 32 bits, else the sign bit of the result alone.
+template <class D, bool kFromDouble>
+inline constexpr D kFromNan = kFromDouble || sizeof(D) == 8 ? D(Unsigned<D>(1) << (kBits<D> - 1)) : D(0);
+
+// Rounded and clamped to D. The clamp comes first: its bounds are integers, so rounding stays within.
+template <class D, Round kRound, bool kFromDouble>
+[[gnu::always_inline]] inline D to_integer(double x) {
+  constexpr D kLow = std::is_signed_v<D> ? D(Unsigned<D>(1) << (kBits<D> - 1)) : D(0), kHigh = D(~kLow);
+  if constexpr (sizeof(D) < 8) {
+    const double above = x < double(kLow) ? double(kLow) : x;
+    const double inside = above > double(kHigh) ? double(kHigh) : above;
+    const uint64_t bits = double_bits(to_integral<kRound>(inside) + kRoundMagic);  // two's complement at the low end
+    return x != x ? kFromNan<D, kFromDouble> : D(bits);
+  } else {
+    constexpr double kLimit = std::is_signed_v<D> ? 0x1p63 : 0x1p64, kFloor = std::is_signed_v<D> ? -0x1p63 : 0.0;
+    const double whole = to_any_integral<kRound>(x);
+    const bool is_inside = whole >= kFloor && whole < kLimit;
+    const D inside = D(is_inside ? whole : 0.0);
+    const D clamped = whole >= kLimit ? kHigh : whole < kFloor ? kLow : inside;
+    return x != x ? kFromNan<D, kFromDouble> : clamped;
+  }
+}
+
+[[gnu::always_inline]] inline float flushed(float x) {
+  return (float_bits(x) & 0x7f80'0000u) == 0 ? float_of(float_bits(x) & 0x8000'0000u) : x;
+}
+// Clamped to [0, 1]; NaN and -0 give +0.
+[[gnu::always_inline]] inline float saturated(float x) {
+  const float positive = x > 0.0f ? x : 0.0f;
+  return positive < 1.0f ? positive : 1.0f;
+}
+[[gnu::always_inline]] inline double saturated(double x) {
+  const double positive = x > 0.0 ? x : 0.0;
+  return positive < 1.0 ? positive : 1.0;
+}
+
+// Sign and magnitude of an integer of up to 64 bits.
+template <class S>
+[[gnu::always_inline]] inline uint64_t magnitude_of(S x) {
+  const uint64_t wide = uint64_t(x);  // sign-extended
+  return std::is_signed_v<S> && x < 0 ? 0 - wide : wide;
+}
+template <class S>
+[[gnu::always_inline]] inline uint64_t sign_of(S x) {
+  return std::is_signed_v<S> && x < 0 ? kSign64 : 0;
+}
+
+// An integer with its low bits, if it is so large, gathered in one that says whether they were zero: exact as a double,
+// and rounding to less than 40 bits gives what the integer would give. `scale` makes up for the bits gone.
+struct Reduced {
+  double value;
+  float scale;
+};
+template <class S>
+[[gnu::always_inline]] inline Reduced reduced(S x) {
+  const uint64_t m = magnitude_of(x);
+  const bool is_large = sizeof(S) == 8 && m >= (1ull << 52);
+  const uint64_t kept = is_large ? (m >> 12) | uint64_t((m & 0xfff) != 0) : m;
+  // By bits: rounding down makes a -0 of 0, and the sign comes back here.
+  const uint64_t bits = (double_bits(small_double(kept)) & ~kSign64) | sign_of(x);
+  return {double_of(bits), is_large ? 4096.0f : 1.0f};
+}
+// In the host's rounding direction, whichever it is.
+template <class S>
+[[gnu::always_inline]] inline float rounded_float(S x) {
+  if constexpr (sizeof(S) <= 2) return float(int32_t(x));
+  const Reduced r = reduced(x);
+  return (x == 0 ? 0.0f : float(r.value)) * r.scale;
+}
+template <class S>
+[[gnu::always_inline]] inline double rounded_double(S x) {
+  if constexpr (sizeof(S) < 8) {
+    return x == 0 ? 0.0 : double_of(double_bits(small_double(magnitude_of(x))) | sign_of(x));
+  } else {
+    const uint64_t m = magnitude_of(x), sign = sign_of(x);
+    constexpr double kTwo84 = 0x1p84;  // its last mantissa bit counts 2^32
+    const double high = double_of(0x4530'0000'0000'0000ull | m >> 32) - kTwo84;
+    const double low = small_double(uint32_t(m));
+    const double sum = double_of(double_bits(high) ^ sign) + double_of(double_bits(low) ^ sign);
+    return x == 0 ? 0.0 : sum;
+  }
+}
+
+// A double rounded to odd: towards zero, and the last bit set where that was not exact. Rounding it again, to fewer
+// bits, gives what rounding the double would (Boldo and Melquiond 2008).
+[[gnu::always_inline]] inline float odd_float(double x) {
+  const float nearest = float(x);
+  const double back = double(nearest);
+  const double magnitude = double_of(double_bits(x) & ~kSign64), taken = double_of(double_bits(back) & ~kSign64);
+  const uint32_t toward_zero = float_bits(nearest) - (taken > magnitude ? 1u : 0u);
+  const bool is_off = taken > magnitude || taken < magnitude;
+  return float_of(toward_zero | (is_off ? 1u : 0u));
+}
+
+// Whether a directed rounding goes away from zero, as a bit.
+template <Round kRound>
+[[gnu::always_inline]] inline uint32_t goes_away(bool is_negative, bool is_inexact) {
+  if constexpr (kRound == Round::Zero) return 0;
+  return (is_negative == (kRound == Round::Down)) && is_inexact ? 1u : 0u;
+}
+// Rounded once; beyond the range infinity or the largest number, as the direction says; NaN gives 0x7fff.
+template <Round kRound>
+[[gnu::always_inline]] inline Half rounded_half(float x) {
+  if constexpr (kRound == Round::Nearest) return to_half(x);
+  const uint32_t bits = float_bits(x), magnitude = bits & 0x7fff'ffffu;
+  // Units of 2^-24 for subnormal results; a float below 2^-14 shifted by 14 or more.
+  const uint32_t exponent = magnitude >> 23, gap = 126 - exponent > 31 ? 31 : 126 - exponent;
+  const uint32_t mantissa = (magnitude & 0x007f'ffffu) | (exponent != 0 ? 0x0080'0000u : 0u);
+  const bool is_small = magnitude < 0x3880'0000u;
+  const uint32_t shift = is_small ? gap : 13;
+  const uint32_t whole = is_small ? mantissa : magnitude - 0x3800'0000u;
+  const uint32_t kept = whole >> shift;
+  const uint32_t away = goes_away<kRound>(x < 0.0f, (kept << shift) != whole);
+  const uint32_t finite = magnitude >= 0x4780'0000u ? 0x7bffu + goes_away<kRound>(x < 0.0f, true) : kept + away;
+  const uint32_t number = (magnitude == 0x7f80'0000u ? 0x7c00u : finite) | (bits >> 16 & 0x8000u);
+  return {uint16_t(magnitude > 0x7f80'0000u ? kCanonicalNan16 : number)};
+}
+template <Round kRound>
+[[gnu::always_inline]] inline Bfloat rounded_bfloat(float x) {
+  if constexpr (kRound == Round::Nearest) return to_bfloat(x);
+  const uint32_t bits = float_bits(x), magnitude = bits & 0x7fff'ffffu;
+  const uint32_t number = (bits >> 16) + goes_away<kRound>((bits >> 31) != 0, (bits & 0xffff) != 0);
+  return {uint16_t(magnitude > 0x7f80'0000u ? kCanonicalNan16 : number)};
+}
+
+}  // namespace glint::isa::GLINT_ISA_PATH

@@ -1,0 +1,76 @@
+// Conversions of integers to floats, rounded in any direction.
+// SPDX-License-Identifier: Apache-2.0
+#include "isa/ops/conversion_types.h"
+#include "isa/ops/families.h"
+
+namespace glint::isa::GLINT_ISA_PATH {
+namespace {
+
+// To f32 and f64 the host rounds, in a direction that the row sets; to 16 bits the work is done in integers.
+template <class To, class From, Round kRound, bool kSat>
+struct Convert {
+  To operator()(Register<From> source) const {
+    const From x = From(source);
+    if constexpr (std::is_same_v<To, float>)
+      return kSat ? saturated(rounded_float(x)) : rounded_float(x);
+    else if constexpr (std::is_same_v<To, double>)
+      return kSat ? saturated(rounded_double(x)) : rounded_double(x);
+    else
+      return short_float(x);
+  }
+  static To short_float(From x) {
+    if constexpr (std::is_same_v<To, Half>) {
+      // 2^17 is beyond the range of f16, and all larger numbers round as it does.
+      const uint64_t m = magnitude_of(x), limited = sizeof(From) > 2 && m > 0x2'0000 ? 0x2'0000 : m;
+      const float exact = float_of(float_bits(float(int32_t(limited))) | uint32_t(sign_of(x) >> 32));
+      return rounded_half<kRound>(kSat ? saturated(exact) : exact);
+    } else {
+      const Reduced r = reduced(x);
+      const float odd = odd_float(r.value) * r.scale;
+      return rounded_bfloat<kRound>(kSat ? saturated(odd) : odd);
+    }
+  }
+};
+
+// Whether every value of the integer is one of the float: no direction matters.
+template <class To, class From>
+inline constexpr bool kIsExact = (std::is_same_v<To, double> && sizeof(From) < 8) ||
+                                 (std::is_same_v<To, float> && sizeof(From) < 4) ||
+                                 (std::is_same_v<To, Half> && sizeof(From) < 2) || (std::is_same_v<To, Bfloat> && sizeof(From) < 2);
+
+template <class D, class S, Round kRound, bool kSat>
+constexpr OpRow row() {
+  using To = typename D::Type;
+  using From = typename S::Type;
+  constexpr bool kIsShort = sizeof(To) == 2;
+  constexpr Round kEffective = kIsExact<To, From> ? Round::Nearest : kRound;
+  constexpr uint64_t kMinusOne = register_word<From>(From(-1));
+  constexpr Examples kExamples{{{0}, 0}, {{1}, D::kOne}, {{std::is_signed_v<From> ? kMinusOne : 1}, std::is_signed_v<From> ? (kSat ? 0 : D::kMinusOne) : D::kOne}};
+  return rounded_op<kIsShort ? Round::Nearest : kEffective, Register<From>>(
+      joined<"cvt", round_name<kRound>, when<kSat, ".sat">, D::kName, S::kName>,
+      sizeof(To) == 8 || sizeof(From) == 8 ? Unit::Sfu : Unit::Int,
+      kSat ? "Converts an integer, rounded as the name says; clamped to [0, 1]." : "Converts an integer, rounded as the name says.",
+      Convert<To, From, kIsShort ? kEffective : Round::Nearest, kSat>{}, kExamples);
+}
+template <class D, class S>
+constexpr auto pair_rows() {
+  return rows_of_rounds([]<Round kRound>() { return joined_rows(row<D, S, kRound, false>(), row<D, S, kRound, true>()); });
+}
+template <class D>
+constexpr auto result_rows() {
+  return rows_of_types<TypeS8, TypeU8, TypeS16, TypeU16, TypeS32, TypeU32, TypeS64, TypeU64>([]<class S>() { return pair_rows<D, S>(); });
+}
+
+constexpr auto kToSingle = result_rows<TypeF32>();
+constexpr auto kToDouble = result_rows<TypeF64>();
+constexpr auto kToHalf = result_rows<TypeF16>();
+constexpr auto kToBfloat = result_rows<TypeBf16>();
+constexpr auto kRows = joined_rows(kToSingle, kToDouble, kToHalf, kToBfloat);
+
+}  // namespace
+
+RowList convert_from_integer_rows() {
+  return {kRows.data(), kRows.size()};
+}
+
+}  // namespace glint::isa::GLINT_ISA_PATH
