@@ -57,7 +57,10 @@ SampleRequest request_of(const isa::ImageAccess& op, const Slots& slots, const L
   if (op.lod == isa::ImageLod::Level) request.lod = lane.number(slots.level);
   if (op.lod == isa::ImageLod::Gradients) {
     Gradient dx{}, dy{};
-    for (size_t i = 0; i < count; ++i) dx[i] = lane.number(slots.level + i), dy[i] = lane.number(slots.level + count + i);
+    for (size_t i = 0; i < count; ++i) {
+      dx[i] = lane.number(slots.level + i);
+      dy[i] = lane.number(slots.level + count + i);
+    }
     const bool cube = isa::is_cube(op.shape);
     if (cube) dx = cube_gradient(request.at, dx), dy = cube_gradient(request.at, dy);
     request.lod = level_of_detail(image, cube ? 2 : int(count), dx, dy);
@@ -103,6 +106,7 @@ uint32_t answer(const isa::ImageAccess& op, const ImageView& image, const Sample
 struct Place {
   std::array<int64_t, 4> at{}, end{};
   uint32_t level = 0;
+  TexelIndex index() const { return {uint32_t(at[0]), uint32_t(at[1]), uint32_t(at[2]), uint32_t(at[3]), level}; }
   bool is_inside() const {
     for (size_t i = 0; i < 4; ++i)
       if (at[i] < 0 || at[i] >= end[i]) return false;
@@ -161,7 +165,8 @@ const ImageView* Executor::find_image(WarpContext& warp, const isa::OpRow& row, 
   }
   const ImageView& image = world_.images[number];
   if (row.image.request != ImageRequest::Query && !fits(row.image, image.shape)) [[unlikely]] {
-    fail(warp, lane, fmt::format("uses image '{}', which is {}, as {}", image.name, name_of(image.shape), name_of(row.image.shape)));
+    fail(warp, lane, fmt::format("uses image '{}', which is {}, as {}", image.name, name_of(image.shape),
+                                 name_of(row.image.shape)));
     return nullptr;
   }
   return &image;
@@ -198,22 +203,22 @@ bool Executor::texture(WarpContext& warp, const isa::Inst& inst, const isa::OpRo
     const ImageView* image = find_image(warp, row, lane);
     if (!image) return false;
     if (is_integer(info_of(image->format)) == op.is_float) [[unlikely]]
-      return fail(warp, lane, fmt::format("reads {} from image '{}', whose format is {}", op.is_float ? "floats" : "integers",
-                                          image->name, info_of(image->format).name));
+      return fail(warp, lane, fmt::format("reads {} from image '{}', whose format is {}",
+                                          op.is_float ? "floats" : "integers", image->name, info_of(image->format).name));
     TexelReader reader(*image, find_sampler(*image, warp.regs.access.address[size_t(lane)]), *world_.memory);
     const Lane operands(warp.regs, inst, lane);
     Words& out = result[size_t(lane)] = {};
     if (op.request == ImageRequest::Fetch) {
       const Place place = place_of(op, slots, operands, *image, 0);
       if (place.is_inside())
-        out = reader.fetch({uint32_t(place.at[0]), uint32_t(place.at[1]), uint32_t(place.at[2]), uint32_t(place.at[3]), place.level});
+        out = reader.fetch(place.index());
       else if (!world_.robust_images)
         return fail(warp, lane, "reads texel " + outside(place, *image));
     } else {
       const SampleRequest request = request_of(op, slots, operands, *image);
       out = op.request == ImageRequest::Gather ? reader.gather(request, op.component) : reader.sample(request);
     }
-    if (!reader.error().empty()) [[unlikely]]
+    if (reader.error()) [[unlikely]]
       return fail(warp, lane, fmt::format("samples image '{}', which {}", image->name, reader.error()));
     texels_.add(lane, reader.texels());
   }
@@ -264,9 +269,10 @@ std::byte* Executor::find_texel(WarpContext& warp, const isa::Inst& inst, const 
       return refuse((store ? "writes texel " : "reads texel ") + outside(place, *image));
     }
   }
-  const uint32_t x = uint32_t(place.at[0]);
-  const Address at = image->address_of({whole ? x : 0, uint32_t(place.at[1]), uint32_t(place.at[2]), uint32_t(place.at[3])}) +
-                     (whole ? 0 : x);
+  TexelIndex index = place.index();
+  const uint32_t skipped = whole ? 0 : index.x;  // bytes of the row
+  if (!whole) index.x = 0;
+  const Address at = image->address_of(index) + skipped;
   std::byte* const memory = world_.memory->find(at, bytes);
   if (!memory) return refuse(fmt::format("image '{}' is smaller in memory than its size says", image->name));
   texels_.add(lane, {&at, 1});

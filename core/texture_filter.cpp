@@ -41,6 +41,7 @@ struct Levels {
   float weight = 0.0f;
 };
 Levels levels_of(const ImageView& image, const Sampler& sampler, float lod) {
+  if (image.levels == 1) return {};
   const auto last = float(image.levels - 1);
   const float d = lod > 0.0f ? std::min(lod, last) : 0.0f;
   // Vulkan, "Image Level(s) Selection": the nearest level, the finer one from the middle.

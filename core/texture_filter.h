@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <string>
 
 #include "core/image_view.h"
 #include "core/texel_list.h"
@@ -36,7 +35,7 @@ class TexelReader {
   Words fetch(const TexelIndex& at);
 
   std::span<const Address> texels() const { return {texels_.data(), num_texels_}; }
-  const std::string& error() const { return error_; }
+  const char* error() const { return error_; }  // null: none
 
  private:
   // Two neighbours on an axis and the weight of the second.
@@ -64,7 +63,7 @@ class TexelReader {
   const mem::AddressSpace& memory_;
   std::array<Address, kMaxTexels> texels_;
   uint32_t num_texels_ = 0;
-  std::string error_;
+  const char* error_ = nullptr;
 };
 
 }  // namespace glint::core

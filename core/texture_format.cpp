@@ -194,6 +194,15 @@ uint16_t to_half(float value) {
 }
 
 Words decode(TexelFormat format, const std::byte* from) {
+  Words four;
+  if (format == F::Rgba32Float) {  // the two formats of most textures come first: they need no loop over bits
+    std::memcpy(four.data(), from, sizeof four);
+    return four;
+  }
+  if (format == F::Rgba8Unorm) {
+    for (size_t i = 0; i < 4; ++i) four[i] = bits_of(float(std::to_integer<int>(from[i])) / 255.0f);
+    return four;
+  }
   const FormatInfo& info = info_of(format);
   if (info.bits == 0) {
     uint32_t bits;
@@ -218,6 +227,10 @@ Words keep_channels(TexelFormat format, Words words) {
 }
 
 void encode(TexelFormat format, const Words& words, std::byte* to) {
+  if (format == F::Rgba32Float) {
+    std::memcpy(to, words.data(), sizeof words);
+    return;
+  }
   const FormatInfo& info = info_of(format);
   if (info.bits == 0) {
     const uint32_t bits = encode_packed(format, words);
