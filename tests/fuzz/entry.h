@@ -1,0 +1,24 @@
+// What the fuzzers do with one input; the replay test calls the same functions.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "isa/program.h"
+
+namespace glint::fuzz {
+
+// How far an input came.
+enum class Reached : uint8_t { Refused, Parsed, Verified, Ran };
+
+// Text: what parses survives its own text; what the verifier accepts runs without a crash, and without a fault of
+// control flow. Panics (base/check.h) when that does not hold.
+Reached assembly(const std::string& text);
+
+// Bytes that spell a program of the op table, often one that text cannot write.
+Reached program(std::span<const uint8_t> bytes);
+isa::Program program_of(std::span<const uint8_t> bytes);
+
+}  // namespace glint::fuzz
