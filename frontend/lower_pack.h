@@ -12,7 +12,7 @@ Operands pack_unorm_4x8(Emitter& e, const Arguments& x);
 Operands pack_snorm_4x8(Emitter& e, const Arguments& x);
 Operands pack_unorm_2x16(Emitter& e, const Arguments& x);
 Operands pack_snorm_2x16(Emitter& e, const Arguments& x);
-Operands pack_half_2x16(Emitter& e, const Arguments& x);  // to nearest, ties to even; NaN to a quiet NaN
+Operands pack_half_2x16(Emitter& e, const Arguments& x);  // to nearest, ties to even; NaN to 0x7fff
 Operands unpack_unorm_4x8(Emitter& e, const Arguments& x);
 Operands unpack_snorm_4x8(Emitter& e, const Arguments& x);
 Operands unpack_unorm_2x16(Emitter& e, const Arguments& x);

@@ -109,9 +109,9 @@ TEST_CASE("packing and unpacking of halves and normalised integers is exact, als
     const uint32_t w = pack_inputs()[lane];
     const float f = std::bit_cast<float>(w);
     Row row{nearest_half(f) | nearest_half(-f) << 16};
-    if (std::isnan(f)) row[0] = 0x7e00'7e00 | (w >> 16 & 0x8000);  // negating a NaN drops its sign
+    if (std::isnan(f)) row[0] = 0x7fff'7fff;
     for (uint32_t h : {w & 0xffff, w >> 16}) {
-      const uint32_t special = (h & 0x8000) << 16 | 0x7f80'0000 | (h & 0x3ff) << 13;
+      const uint32_t special = h & 0x3ff ? 0x7fff'ffff : (h & 0x8000) << 16 | 0x7f80'0000;
       row.push_back((h & 0x7c00) == 0x7c00 ? special : bits(float(half_value(h)) * 1.0f));
     }
     const std::vector<float> v{f, -f, f * 0.25f, float(lane) / 47.0f};
