@@ -100,9 +100,28 @@ void add_halves(Row& row, uint32_t w) {
   row.push_back(half_bits(h) | uint32_t(half_bits(k)) << 16);
 }
 
+void add_functions(Row& row, uint32_t w) {
+  const double d = double(int64_t(int32_t(w)) * 1000003) / 3.0, s = double(int16_t(w >> 16)) - 7 + 0.25;
+  const auto j8 = int8_t(w >> 8);
+  int exponent;
+  push64(row, std::frexp(d, &exponent));
+  row.push_back(uint32_t(exponent));
+  double whole;
+  push64(row, std::modf(s, &whole));
+  push64(row, whole);
+  push64(row, std::ldexp(s, j8 * 9));
+  push64(row, std::sqrt(s * s + 1 + 4));
+  push64(row, std::fma(d, 0.25, s * 0.75));
+  push64(row, -(1.0 * (1 / (s * 4 - 2 * 1))));
+  const double h = half_value(uint16_t(w & 0x7bff)), k = half_value(half_bits(j8 * 0.125));
+  row.push_back(half_bits(std::max(half_value(half_bits(std::ldexp(k, 3))), std::abs(h))));
+  row.push_back(half_bits(double(float(std::exp2(k)))));
+  row.push_back(uint32_t(int32_t(std::nearbyint(s))) + uint32_t(s >= d) + uint32_t((d > 0) - (d < 0) + 1) * 64);
+}
+
 TEST_CASE("numbers of 8, 16 and 64 bits, halves and doubles give the bits that C++ gives") {
   RayLab lab({"widths.rgen", {}, {}, {}});
-  lab.words_per_lane = 40;
+  lab.words_per_lane = 58;
   lab.buffers[10] = inputs();
   std::vector<Mixed> records;
   for (uint32_t lane = 0; lane < RayLab::kLanesUsed; ++lane) records.push_back(mixed(lane));
@@ -116,6 +135,7 @@ TEST_CASE("numbers of 8, 16 and 64 bits, halves and doubles give the bits that C
     row.push_back(uint32_t(m.a) ^ uint32_t(m.b) << 8 ^ uint32_t(m.c) << 4 ^ m.e);
     row.push_back(bits(float(half_value(m.d))));
     row.push_back(uint32_t(m.g) ^ uint32_t(m.f));
+    add_functions(row, w);
     return row;
   });
   for (Mixed& m : records) m = {int8_t(m.a + 1), uint8_t(m.b + 1), int16_t(m.c - 1), uint16_t(m.d ^ 0x8000), uint16_t(m.e - 1), m.f * 2, -m.g};
