@@ -15,8 +15,9 @@ RegisterClass class_of(const Type& type) {
   return type.kind == 'p' ? RegisterClass::Predicate : type.bits == 64 ? RegisterClass::B64 : RegisterClass::B32;
 }
 
-Lowering::Lowering(const Module& module, const Function& entry, Kernel& kernel, Diagnostics& errors, Diagnostics& unsupported)
-    : module_(module), entry_(entry), kernel_(kernel), errors_(errors), unsupported_(unsupported) {
+Lowering::Lowering(const Module& module, const Function& entry, const PtxOptions& options, Kernel& kernel, Diagnostics& errors,
+                   Diagnostics& unsupported)
+    : module_(module), entry_(entry), options_(options), kernel_(kernel), errors_(errors), unsupported_(unsupported) {
   for (const Declaration& d : module.variables) module_variables_[d.name] = &d;
   for (const Function& f : module.functions) functions_[f.name] = &f;
   program_.name = entry.name;
@@ -43,6 +44,7 @@ VirtualProgram Lowering::run() {
       if (std::find(draft_.layout.begin(), draft_.layout.end(), next) == draft_.layout.end())
         error(entry_.place, fmt::format("label '{}' is branched to but stands nowhere", draft_.blocks[next].name));
   if (errors_.has_errors()) return std::move(program_);
+  if (options_.contract) contract(draft_, free_, program_);
   add_reconvergence(draft_);
   program_.blocks = lay_out(std::move(draft_));
   zero_what_nobody_wrote(program_);

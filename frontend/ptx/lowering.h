@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "frontend/ptx/contraction.h"
 #include "frontend/ptx/draft.h"
 #include "frontend/ptx/ptx.h"
 #include "frontend/ptx/row_names.h"
@@ -46,7 +47,8 @@ struct LateMove {
 
 class Lowering {
  public:
-  Lowering(const Module& module, const Function& entry, Kernel& kernel, Diagnostics& errors, Diagnostics& unsupported);
+  Lowering(const Module& module, const Function& entry, const PtxOptions& options, Kernel& kernel, Diagnostics& errors,
+           Diagnostics& unsupported);
   // The program before register allocation. Mistakes are in the diagnostics.
   VirtualProgram run();
   uint64_t static_shared_bytes() const { return static_shared_; }
@@ -112,6 +114,7 @@ class Lowering {
   void lower_fence(const Instruction& inst);
   void lower_old_warp_op(const Instruction& inst);
   void report_no_row(const Instruction& inst);
+  void note_free_arithmetic(const Instruction& inst, const std::vector<VirtualOperand>& operands);
 
   // lowering_memory.cpp
   void lower_memory(const Instruction& inst);
@@ -136,6 +139,7 @@ class Lowering {
 
   const Module& module_;
   const Function& entry_;
+  const PtxOptions& options_;
   Kernel& kernel_;
   Diagnostics& errors_;
   Diagnostics& unsupported_;
@@ -154,6 +158,7 @@ class Lowering {
   bool guard_negate_ = false;
   isa::Line line_;
   std::vector<LateMove> late_;                         // after the instruction
+  FreeArithmetic free_;
 };
 
 // PTX registers of 8, 16 and 32 bits are one of ours, those of 64 a pair.

@@ -93,8 +93,19 @@ void Lowering::lower_row(const Instruction& inst, int row, std::vector<const Ope
       out.push_back(isa::is_destination(kind) ? destination(o, kind, result) : source(o, kind, input));
     }
   }
+  note_free_arithmetic(inst, out);
   emit(row, std::move(out), imm);
   finish_moves();
+}
+
+void Lowering::note_free_arithmetic(const Instruction& inst, const std::vector<VirtualOperand>& operands) {
+  const std::string& op = inst.words[0];
+  const bool ftz = inst.words.size() == 3 && inst.words[1] == "ftz";
+  const auto type = type_of(inst.words.back());
+  if ((op != "mul" && op != "add" && op != "sub") || (inst.words.size() != 2 && !ftz) || !type || type->kind != 'f') return;
+  if (guard_ != kNoRegister || operands.front().kind != VirtualOperand::Kind::Register) return;
+  const std::string suffix = (ftz ? ".ftz." : ".") + inst.words.back();
+  free_[operands.front().reg] = {op[0], suffix};
 }
 
 void Lowering::lower_generic(const Instruction& inst) {

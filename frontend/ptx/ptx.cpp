@@ -34,7 +34,7 @@ const ptx::Function& find_entry(const ptx::Module& module, const std::string& en
 
 }  // namespace
 
-Kernel compile_ptx(std::string_view text, const std::string& file, const std::string& entry, const BackendOptions& options) {
+Kernel compile_ptx(std::string_view text, const std::string& file, const std::string& entry, const PtxOptions& options) {
   const ptx::Module module = ptx::parse(text, file);
   if (module.address_size != 64) throw UnsupportedError(fmt::format("{}: error: addresses of {} bits: Glint has 64", file, module.address_size));
   const ptx::Function& function = find_entry(module, entry);
@@ -42,14 +42,14 @@ Kernel compile_ptx(std::string_view text, const std::string& file, const std::st
   kernel.required_block = function.required_block;
   kernel.largest_block = function.largest_block;
   Diagnostics errors, unsupported;
-  ptx::Lowering lowering(module, function, kernel, errors, unsupported);
+  ptx::Lowering lowering(module, function, options, kernel, errors, unsupported);
   VirtualProgram program = lowering.run();
   if (errors.has_errors()) {
     for (const std::string& message : unsupported.messages()) errors.error({}, message);
     errors.throw_if_errors();
   }
   if (unsupported.has_errors()) throw UnsupportedError(fmt::format("{}", fmt::join(unsupported.messages(), "\n")));
-  kernel.program = assemble(std::move(program), options);
+  kernel.program = assemble(std::move(program), options.backend);
   kernel.program.shared_bytes = uint32_t(lowering.static_shared_bytes());
   return kernel;
 }

@@ -43,11 +43,18 @@ struct Kernel {
   std::optional<std::array<uint32_t, 3>> required_block, largest_block;  // .reqntid, .maxntid
 };
 
+struct PtxOptions {
+  BackendOptions backend;
+  // mul, then add or sub, none with a rounding modifier, become fma where nothing else reads the product.
+  // Choice: PTX allows it ("may be optimized aggressively"), and NVIDIA's assembler does it unless told -fmad=false.
+  bool contract = true;
+};
+
 // Kernels of a module, in the order of the text.
 std::vector<std::string> kernel_names(std::string_view text, const std::string& file);
 
 // Compiles one kernel; functions that it calls become part of it. `entry` may be empty when there is one kernel only.
 // UserError or UnsupportedError list every mistake at once, with file, line and column.
-Kernel compile_ptx(std::string_view text, const std::string& file, const std::string& entry, const BackendOptions& options);
+Kernel compile_ptx(std::string_view text, const std::string& file, const std::string& entry, const PtxOptions& options);
 
 }  // namespace glint::frontend

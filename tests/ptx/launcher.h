@@ -1,0 +1,59 @@
+// Kernels from PTX text, run on either machine with buffers on the host's side: for tests.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+#include "pipeline/functional_machine.h"
+#include "pipeline/kernel_launch.h"
+#include "pipeline/timing_machine.h"
+
+namespace glint {
+
+// One kernel, its buffers and arguments in order.
+class Launcher {
+ public:
+  Launcher(const std::string& text, const std::string& file, const std::string& entry)
+      : world_(frontend::compile_ptx(text, file, entry, {})) {}
+
+  template <class T>
+  Launcher& buffer(const std::vector<T>& data) {
+    buffers_.push_back(world_.memory().allocate("argument " + std::to_string(arguments_.size()), data.size() * sizeof(T)));
+    world_.memory().write(buffers_.back(), data.data(), data.size() * sizeof(T));
+    return value(buffers_.back());
+  }
+  template <class T>
+  Launcher& value(T value) {
+    arguments_.push_back(pipeline::KernelWorld::argument(value));
+    return *this;
+  }
+
+  void run_functional(const pipeline::KernelGrid& grid) {
+    prepare(grid);
+    pipeline::run_functional(world_.world, 1'000'000'000, {});
+  }
+  Cycle run_timing(const pipeline::KernelGrid& grid, const pipeline::GpuParams& params) {
+    prepare(grid);
+    return pipeline::TimingMachine(params, world_.world, false).run({});
+  }
+
+  // What buffer `n`, counted among the buffers, holds.
+  template <class T>
+  std::vector<T> read(size_t n, size_t count) {
+    const auto view = world_.memory().view<T>(buffers_.at(n), count);
+    return {view.begin(), view.end()};
+  }
+  pipeline::KernelWorld& world() { return world_; }
+
+ private:
+  void prepare(const pipeline::KernelGrid& grid) {
+    world_.set_grid(grid);
+    world_.set_arguments(arguments_);
+  }
+
+  pipeline::KernelWorld world_;
+  std::vector<std::vector<std::byte>> arguments_;
+  std::vector<Address> buffers_;
+};
+
+}  // namespace glint
