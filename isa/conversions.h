@@ -40,15 +40,16 @@ template <Round kRound>
 template <class D, bool kFromDouble>
 inline constexpr D kFromNan = kFromDouble || sizeof(D) == 8 ? D(Unsigned<D>(1) << (kBits<D> - 1)) : D(0);
 
-// Rounded and clamped to D. The clamp comes first: its bounds are integers, so rounding stays within.
+// Rounded and clamped to D; up to 32 bits as the bits of a register, extended by the sign. The clamp comes first: its
+// bounds are integers, so rounding stays within.
 template <class D, Round kRound, bool kFromDouble>
-[[gnu::always_inline]] inline D to_integer(double x) {
+[[gnu::always_inline]] inline auto to_integer(double x) {
   constexpr D kLow = std::is_signed_v<D> ? D(Unsigned<D>(1) << (kBits<D> - 1)) : D(0), kHigh = D(~kLow);
   if constexpr (sizeof(D) < 8) {
     const double above = x < double(kLow) ? double(kLow) : x;
     const double inside = above > double(kHigh) ? double(kHigh) : above;
     const uint64_t bits = double_bits(to_integral<kRound>(inside) + kRoundMagic);  // two's complement at the low end
-    return x != x ? kFromNan<D, kFromDouble> : D(bits);
+    return uint32_t(x != x ? uint64_t(int64_t(kFromNan<D, kFromDouble>)) : bits);
   } else {
     constexpr double kLimit = std::is_signed_v<D> ? 0x1p63 : 0x1p64, kFloor = std::is_signed_v<D> ? -0x1p63 : 0.0;
     const double whole = to_any_integral<kRound>(x);

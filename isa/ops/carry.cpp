@@ -1,12 +1,91 @@
 // Arithmetic that hands a carry on: add.cc, addc, sub.cc, subc, mad.cc, madc.
+//
+// PTX has one hidden carry; here it is a predicate operand, the borrow of subtractions too.
 // SPDX-License-Identifier: Apache-2.0
-#include "isa/op_makers.h"
+#include "isa/integer_kernels.h"
 #include "isa/ops/families.h"
+#include "isa/ops/row_tables.h"
 
 namespace glint::isa::GLINT_ISA_PATH {
+namespace {
+
+// a + b + carry and its carry out: both numbers count as unsigned.
+template <class T>
+inline Two<T, bool> sum_with_carry(T a, T b, bool carry) {
+  using U = Unsigned<T>;
+  const U partial = U(a) + U(b);
+  const U sum = partial + U(carry);
+  return {T(sum), bool((partial < U(a)) | (sum < partial))};
+}
+template <class T>
+inline Two<T, bool> difference_with_borrow(T a, T b, bool borrow) {
+  using U = Unsigned<T>;
+  const U partial = U(a) - U(b);
+  const U difference = partial - U(borrow);
+  return {T(difference), bool((U(a) < U(b)) | (partial < U(borrow)))};
+}
+
+template <class N>
+constexpr auto sum_rows() {
+  using T = typename N::Type;
+  constexpr uint64_t kOnes = word(T(-1));
+  return joined_rows(
+      binary<T>(joined<"add.cc", N::kName>, Unit::Int, "Adds; the predicate is the carry out.",
+                [](T a, T b) { return sum_with_carry(a, b, false); }, {{{1, 2}, 3, 0}, {{kOnes, 1}, 0, 1}}),
+      value_op<T, T, bool>(joined<"addc", N::kName>, Unit::Int, "Adds two numbers and a carry.",
+                           [](T a, T b, bool c) { return sum_with_carry(a, b, c).first; },
+                           {{{1, 2, 0}, 3}, {{1, 2, 1}, 4}}),
+      value_op<T, T, bool>(joined<"addc.cc", N::kName>, Unit::Int,
+                           "Adds two numbers and a carry; the predicate is the carry out.",
+                           [](T a, T b, bool c) { return sum_with_carry(a, b, c); },
+                           {{{1, 2, 1}, 4, 0}, {{kOnes, kOnes, 1}, kOnes, 1}, {{kOnes, 0, 1}, 0, 1}}),
+      binary<T>(joined<"sub.cc", N::kName>, Unit::Int, "Subtracts; the predicate is the borrow.",
+                [](T a, T b) { return difference_with_borrow(a, b, false); }, {{{3, 2}, 1, 0}, {{0, 1}, kOnes, 1}}),
+      value_op<T, T, bool>(joined<"subc", N::kName>, Unit::Int, "Subtracts a number and a borrow.",
+                           [](T a, T b, bool c) { return difference_with_borrow(a, b, c).first; },
+                           {{{3, 2, 0}, 1}, {{3, 2, 1}, 0}}),
+      value_op<T, T, bool>(joined<"subc.cc", N::kName>, Unit::Int,
+                           "Subtracts a number and a borrow; the predicate is the borrow out.",
+                           [](T a, T b, bool c) { return difference_with_borrow(a, b, c); },
+                           {{{3, 2, 1}, 0, 0}, {{0, kOnes, 1}, 0, 1}, {{0, 0, 1}, kOnes, 1}}));
+}
+
+template <bool kHigh, class T>
+inline T half_product(T a, T b) {
+  return kHigh ? product_high(a, b) : T(Wrapping<T>(a) * Wrapping<T>(b));
+}
+template <class N, Text kHalf, bool kHigh>
+constexpr auto product_rows() {
+  using T = typename N::Type;
+  constexpr uint64_t kOnes = word(T(-1));
+  constexpr uint64_t kProduct = kHigh ? 0 : 15;  // of 3 and 5
+  return joined_rows(
+      ternary<T>(joined<"mad", kHalf, ".cc", N::kName>, Unit::Int,
+                 "Half of a product, plus the third source; the predicate is the carry out.",
+                 [](T a, T b, T c) { return sum_with_carry(half_product<kHigh>(a, b), c, false); },
+                 {{{3, 5, 1}, kProduct + 1, 0}, {{3, 5, kOnes}, kHigh ? kOnes : 14, !kHigh}}),
+      value_op<T, T, T, bool>(joined<"madc", kHalf, N::kName>, Unit::Int,
+                              "Half of a product, plus the third source and a carry.",
+                              [](T a, T b, T c, bool carry) {
+                                return sum_with_carry(half_product<kHigh>(a, b), c, carry).first;
+                              },
+                              {{{3, 5, 1, 0}, kProduct + 1}, {{3, 5, 1, 1}, kProduct + 2}}),
+      value_op<T, T, T, bool>(joined<"madc", kHalf, ".cc", N::kName>, Unit::Int,
+                              "Half of a product, plus the third source and a carry; the predicate is the carry out.",
+                              [](T a, T b, T c, bool carry) {
+                                return sum_with_carry(half_product<kHigh>(a, b), c, carry);
+                              },
+                              {{{3, 5, 1, 1}, kProduct + 2, 0}, {{3, 5, kOnes, 1}, kProduct, 1}}));
+}
+
+constexpr auto kRows = rows_of_types<TypeS32, TypeU32, TypeS64, TypeU64>([]<class N>() {
+  return joined_rows(sum_rows<N>(), product_rows<N, ".lo", false>(), product_rows<N, ".hi", true>());
+});
+
+}  // namespace
 
 RowList carry_rows() {
-  return {};
+  return {kRows.data(), kRows.size()};
 }
 
 }  // namespace glint::isa::GLINT_ISA_PATH

@@ -90,8 +90,8 @@ constexpr OpRow wider_row() {
       kSat ? "Widens a float; clamped to [0, 1], NaN becomes 0." : "Widens a float, exactly.",
       [](typename S::Type x) {
         constexpr bool kFlush = kFtz && std::is_same_v<S, TypeF32>;  // a 16-bit subnormal is a normal f32
-        const float source = kFlush ? flushed(S::value(x)) : S::value(x);
-        // f16 to f32 makes the NaN of single precision; bf16 and f64 keep the payload.
+        // As recorded: flushing makes the NaN of single precision, and so does f16 to f32; else the payload stays.
+        const float source = kFlush ? canonical(flushed(S::value(x))) : S::value(x);
         const To wide = To(std::is_same_v<S, TypeF16> && sizeof(To) == 4 ? canonical(source) : source);
         return kSat ? saturated(wide) : wide;
       },
@@ -155,7 +155,7 @@ constexpr OpRow narrow_row() {
       [](typename S::Type x) {
         const float exact = kFtz ? flushed(middle<S>(x)) : middle<S>(x);
         const float clamped = kSat ? saturated(exact) : exact;
-        const typename D::Type narrow = narrowed<D, S, kRound>(x, kRelu && clamped < 0.0f ? 0.0f : clamped);
+        const typename D::Type narrow = narrowed<D, S, kRound>(x, kRelu && clamped <= 0.0f ? 0.0f : clamped);
         if constexpr (kSat)
           return x != x ? typename D::Type{0} : narrow;
         else

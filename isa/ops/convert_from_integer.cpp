@@ -19,16 +19,24 @@ struct Convert {
       return short_float(x);
   }
   static To short_float(From x) {
-    if constexpr (std::is_same_v<To, Half>) {
+    if constexpr (sizeof(From) <= 2) {
+      return narrowed(float(int32_t(x)));
+    } else if constexpr (std::is_same_v<To, Half>) {
       // 2^17 is beyond the range of f16, and all larger numbers round as it does.
-      const uint64_t m = magnitude_of(x), limited = sizeof(From) > 2 && m > 0x2'0000 ? 0x2'0000 : m;
-      const float exact = float_of(float_bits(float(int32_t(limited))) | uint32_t(sign_of(x) >> 32));
-      return rounded_half<kRound>(kSat ? saturated(exact) : exact);
+      const Unsigned<From> m = Unsigned<From>(magnitude_of(x)), limited = m > 0x2'0000 ? Unsigned<From>(0x2'0000) : m;
+      const uint32_t exact = float_bits(float(int32_t(limited)));
+      return narrowed(float_of(x < 0 ? exact | 0x8000'0000u : exact));
     } else {
       const Reduced r = reduced(x);
-      const float odd = odd_float(r.value) * r.scale;
-      return rounded_bfloat<kRound>(kSat ? saturated(odd) : odd);
+      return narrowed(odd_float(r.value) * r.scale);
     }
+  }
+  static To narrowed(float x) {
+    const float kept = kSat ? saturated(x) : x;
+    if constexpr (std::is_same_v<To, Half>)
+      return rounded_half<kRound>(kept);
+    else
+      return rounded_bfloat<kRound>(kept);
   }
 };
 

@@ -38,6 +38,7 @@ std::span<const FamilyEntry> family_entries() {
       {"convert to integer", "Conversions of floats to integers: rounded, then clamped.", &convert_to_integer_rows},
       {"convert from integer", "Conversions of integers to floats.", &convert_from_integer_rows},
       {"convert floats", "Conversions between floats, and rounding to integers.", &convert_float_rows},
+      {"convert packed", "Conversions that pack results, and the formats of tensor cores.", &convert_packed_rows},
       {"predicate", "Operations on predicates.", &predicate_rows},
       {"memory",
        "Loads and stores; an address is a register (pair) and a displacement.",
@@ -52,6 +53,7 @@ std::span<const FamilyEntry> family_entries() {
       {"control", "Branches, calls, regions whose lanes meet again, and ends.", &control_rows},
       {"ray tracing", "Rays, and the calls of the shaders they find.", &ray_tracing_rows},
       {"ray query", "Rays that a shader walks itself, candidate by candidate.", &ray_query_rows},
+      {"hit object", "What a ray found, kept until its shader is executed.", &hit_object_rows},
   };
   return kFamilies;
 }

@@ -20,6 +20,7 @@ RowList convert_rows();
 RowList convert_to_integer_rows();
 RowList convert_from_integer_rows();
 RowList convert_float_rows();
+RowList convert_packed_rows();
 RowList predicate_rows();
 RowList memory_rows();
 RowList atomic_rows();
@@ -30,5 +31,6 @@ RowList surface_rows();
 RowList control_rows();
 RowList ray_tracing_rows();
 RowList ray_query_rows();
+RowList hit_object_rows();
 
 }  // namespace glint::isa::GLINT_ISA_PATH

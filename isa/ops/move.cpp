@@ -1,61 +1,124 @@
-// Ops that copy: moves, selections, and the packing of register pairs.
+// Ops that copy: moves, selections, and the packing of registers.
 // SPDX-License-Identifier: Apache-2.0
-#include "isa/op_makers.h"
+#include "isa/integer_kernels.h"
 #include "isa/ops/families.h"
+#include "isa/ops/row_tables.h"
 
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
-// unpack.b64: operands low, high (any two registers), pair.
-[[gnu::flatten]] void run_unpack(Warp& warp, const Inst& inst) {
-  const Slot* const slot = &inst.operand.front();
-  const Source<uint64_t> source(warp, slot[2]);
-  uint32_t* const low = warp.bank[0] + slot[0] * kLanes;
-  uint32_t* const high = warp.bank[0] + slot[1] * kLanes;
-  const LaneMask exec = warp.exec;
-  all_lanes([&](int i) {
-    const uint64_t x = source.at(i);
-    const bool write = (exec & kLaneBit[i]) != 0;
-    const uint32_t old_low = low[i], old_high = high[i];
-    low[i] = write ? uint32_t(x) : old_low;
-    high[i] = write ? uint32_t(x >> 32) : old_high;
-  });
+template <class N>
+constexpr auto copy_rows() {
+  using T = typename N::Type;
+  return joined_rows(
+      unary<T>(joined<"mov", N::kName>, Unit::Move, "Copies the bits.", [](T a) { return a; },
+               {{{7}, 7}, {{word(T(-2))}, word(T(-2))}}),
+      value_op<T, T, bool>(joined<"selp", N::kName>, Unit::Int,
+                           "The first source where the predicate is true, else the second.",
+                           [](T a, T b, bool p) { return p ? a : b; }, {{{3, 4, 1}, 3}, {{3, 4, 0}, 4}}));
 }
 
-constexpr OpRow unpack_row() {
+// slct: the sign of the third source chooses. Bits are copied, whatever their type.
+template <class N>
+constexpr auto select_rows() {
+  using T = typename N::Type;
+  return joined_rows(
+      value_op<T, T, int32_t>(joined<"slct", N::kName, ".s32">, Unit::Int,
+                              "The first source where the third is 0 or more, else the second.",
+                              [](T a, T b, int32_t c) { return c >= 0 ? a : b; },
+                              {{{3, 4, 0}, 3}, {{3, 4, 0xffff'ffff}, 4}}),
+      value_op<T, T, float>(joined<"slct", N::kName, ".f32">, Unit::Fp32,
+                            "The first source where the third is 0 or more; -0 is, NaN is not.",
+                            [](T a, T b, float c) { return c >= 0.0f ? a : b; },
+                            {{{3, 4, 0x8000'0000}, 3}, {{3, 4, 0x8000'0001}, 4}, {{3, 4, 0x7fc0'0000}, 4}}),
+      value_op<T, T, float>(joined<"slct.ftz", N::kName, ".f32">, Unit::Fp32,
+                            "The first source where the third is 0 or more; subnormals are, NaN is not.",
+                            [](T a, T b, float c) { return c > -0x1p-126f ? a : b; },
+                            {{{3, 4, 0x8000'0001}, 3}, {{3, 4, 0x8080'0000}, 4}, {{3, 4, 0x7fc0'0000}, 4}}));
+}
+
+// The parts of a register (pair), low first: `kParts` registers, each with a part at its low end.
+template <class T, int kParts>
+[[gnu::flatten]] void run_unpack(Warp& warp, const Inst& inst) {
+  constexpr int kPartBits = kBits<T> / kParts;
+  const Slot* const slot = &inst.operand.front();
+  const Source<T> source(warp, slot[kParts]);
+  uint32_t* part[kParts];
+  for (int p = 0; p < kParts; ++p) part[p] = warp.bank[0] + slot[p] * kLanes;
+  const LaneMask exec = warp.exec;
+  all_lanes([&](int i) {
+    const T x = source.at(i);
+    const bool write = (exec & kLaneBit[i]) != 0;
+    uint32_t out[kParts];  // all parts are read before one is written: the source may be among them
+    for (int p = 0; p < kParts; ++p) {
+      const uint32_t bits = uint32_t(x >> (p * kPartBits)) & uint32_t((1ull << kPartBits) - 1);
+      out[p] = write ? bits : part[p][i];
+    }
+    for (int p = 0; p < kParts; ++p) part[p][i] = out[p];
+  });
+}
+template <class T, int kParts>
+constexpr OpRow unpack_row(std::string_view name, std::string_view doc, Examples examples) {
   OpRow row;
-  row.name = "unpack.b64";
+  row.name = name;
   row.unit = Unit::Move;
-  row.operands = {DstVec2, Src64};
-  row.run = &run_unpack;
-  row.doc = "Splits a pair into its low and high half; the example's result is (high, low).";
-  row.examples = {{{0x1122'3344'5566'7788}, 0x1122'3344'5566'7788}, {{~0ull}, ~0ull}};
+  row.operands = {kParts == 2 ? DstVec2 : DstVec4, source_kind<T>()};
+  row.run = &run_unpack<T, kParts>;
+  row.doc = doc;
+  row.examples = examples;
   return row;
 }
 
-constexpr OpRow kRows[] = {
-    unary<uint32_t>("mov.b32", Unit::Move, "Copies 32 bits.", [](uint32_t a) { return a; },
-                    {{{7}, 7}, {{0x7f80'0001}, 0x7f80'0001}}),
-    unary<uint64_t>("mov.b64", Unit::Move, "Copies 64 bits.", [](uint64_t a) { return a; },
-                    {{{7}, 7}, {{0x1122'3344'5566'7788}, 0x1122'3344'5566'7788}}),
-    value_op<uint32_t, uint32_t, bool>(
-        "selp.b32", Unit::Int, "The first source where the predicate is true, else the second.",
-        [](uint32_t a, uint32_t b, bool p) { return p ? a : b; }, {{{3, 4, 1}, 3}, {{3, 4, 0}, 4}}),
-    value_op<uint64_t, uint64_t, bool>("selp.b64", Unit::Int,
-                                       "The first source where the predicate is true, else the second.",
-                                       [](uint64_t a, uint64_t b, bool p) { return p ? a : b; },
-                                       {{{1ull << 40, 4, 1}, 1ull << 40}, {{1ull << 40, 4, 0}, 4}}),
+constexpr auto kPackRows = joined_rows(
     value_op<uint32_t, uint32_t>(
         "pack.b64", Unit::Move, "Joins a low and a high half to a pair.",
         [](uint32_t low, uint32_t high) { return uint64_t(low) | uint64_t(high) << 32; },
         {{{1, 2}, 0x2'0000'0001}, {{0xffff'ffff, 0}, 0xffff'ffff}}),
-    unpack_row(),
-};
+    value_op<uint16_t, uint16_t>(
+        "pack.b32", Unit::Move, "Joins two 16-bit values, low first.",
+        [](uint16_t low, uint16_t high) { return uint32_t(low) | uint32_t(high) << 16; },
+        {{{1, 2}, 0x2'0001}, {{0xffff, 0}, 0xffff}}),
+    value_op<uint32_t, uint32_t>(
+        "pack.b16.b8", Unit::Move, "Joins two bytes to a 16-bit value, low first.",
+        [](uint32_t low, uint32_t high) { return uint16_t((low & 0xff) | (high & 0xff) << 8); },
+        {{{1, 2}, 0x201}, {{0x1ff, 0}, 0xff}}),
+    value_op<uint32_t, uint32_t, uint32_t, uint32_t>(
+        "pack.b32.b8", Unit::Move, "Joins four bytes, lowest first.",
+        [](uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
+          return (a & 0xff) | (b & 0xff) << 8 | (c & 0xff) << 16 | d << 24;
+        },
+        {{{1, 2, 3, 4}, 0x0403'0201}, {{0x1ff, 0, 0, 0x1ff}, 0xff00'00ff}}),
+    value_op<uint16_t, uint16_t, uint16_t, uint16_t>(
+        "pack.b64.b16", Unit::Move, "Joins four 16-bit values to a pair, lowest first.",
+        [](uint16_t a, uint16_t b, uint16_t c, uint16_t d) {
+          return uint64_t(a) | uint64_t(b) << 16 | uint64_t(c) << 32 | uint64_t(d) << 48;
+        },
+        {{{1, 2, 3, 4}, 0x4'0003'0002'0001}, {{0xffff, 0, 0, 0xffff}, 0xffff'0000'0000'ffff}}));
+
+// The examples of two parts write the result as (high, low); those of four show the lowest part alone.
+constexpr auto kUnpackRows = joined_rows(
+    unpack_row<uint64_t, 2>("unpack.b64", "Splits a pair into its low and high half; the example's result is (high, low).",
+                            {{{0x1122'3344'5566'7788}, 0x1122'3344'5566'7788}, {{~0ull}, ~0ull}}),
+    unpack_row<uint32_t, 2>("unpack.b32", "Splits a register into its low and high 16 bits; the example's result is (high, low).",
+                            {{{0x1122'3344}, 0x1122'0000'3344}, {{0xffff'ffff}, 0xffff'0000'ffff}}),
+    unpack_row<uint16_t, 2>("unpack.b16.b8", "Splits 16 bits into bytes; the example's result is (high, low).",
+                            {{{0x1122}, 0x11'0000'0022}, {{0xffff}, 0xff'0000'00ff}}),
+    unpack_row<uint32_t, 4>("unpack.b32.b8", "Splits a register into four bytes, lowest first; the example's result is the first.",
+                            {{{0x1122'3344}, 0x44}, {{0xff}, 0xff}}),
+    unpack_row<uint64_t, 4>("unpack.b64.b16",
+                            "Splits a pair into four 16-bit values, lowest first; the example's result is the first.",
+                            {{{0x1122'3344'5566'7788}, 0x7788}, {{0xffff}, 0xffff}}));
+
+constexpr auto kRows = joined_rows(
+    rows_of_types<TypeB16, TypeB32, TypeB64>([]<class N>() { return copy_rows<N>(); }),
+    rows_of_types<TypeB16, TypeB32, TypeB64, TypeU16, TypeU32, TypeU64, TypeS16, TypeS32, TypeS64,
+                  Named<uint32_t, ".f32">, Named<uint64_t, ".f64">>([]<class N>() { return select_rows<N>(); }),
+    kPackRows, kUnpackRows);
 
 }  // namespace
 
 RowList move_rows() {
-  return {kRows, std::size(kRows)};
+  return {kRows.data(), kRows.size()};
 }
 
 }  // namespace glint::isa::GLINT_ISA_PATH

@@ -6,17 +6,44 @@
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
+// A predicate is a mask already: whole masks are worked on, not lanes.
+template <class F, size_t... N>
+void run_masks(Warp& warp, const Inst& inst, std::index_sequence<N...>) {
+  const LaneMask* const predicate = &warp.predicate.front();
+  const Slot* const slot = &inst.operand.front();
+  write_predicate(warp, slot[0], F{}(predicate[slot[N + 1]]...));
+}
+template <class F, size_t kSources>
+void run_mask_op(Warp& warp, const Inst& inst) {
+  run_masks<F>(warp, inst, std::make_index_sequence<kSources>{});
+}
+
+template <size_t kSources, class F>
+constexpr OpRow mask_op(std::string_view name, std::string_view doc, F, Examples examples) {
+  OpRow row;
+  row.name = name;
+  row.unit = Unit::Predicate;
+  row.operands = kSources == 1   ? Operands{DstPred, SrcPred}
+                 : kSources == 2 ? Operands{DstPred, SrcPred, SrcPred}
+                                 : Operands{DstPred, SrcPred, SrcPred, SrcPred};
+  row.run = &run_mask_op<F, kSources>;
+  row.doc = doc;
+  row.examples = examples;
+  return row;
+}
+
 constexpr OpRow kRows[] = {
-    unary<bool>("mov.pred", Unit::Predicate, "Copies a predicate.", [](bool a) { return a; },
-                {{{0}, 0}, {{1}, 1}}),
-    unary<bool>("not.pred", Unit::Predicate, "Inverts a predicate.", [](bool a) { return !a; },
-                {{{0}, 1}, {{1}, 0}}),
-    binary<bool>("and.pred", Unit::Predicate, "True where both are.",
-                 [](bool a, bool b) { return bool(a & b); }, {{{0, 1}, 0}, {{1, 0}, 0}, {{1, 1}, 1}}),
-    binary<bool>("or.pred", Unit::Predicate, "True where one or both are.",
-                 [](bool a, bool b) { return bool(a | b); }, {{{0, 0}, 0}, {{1, 0}, 1}, {{1, 1}, 1}}),
-    binary<bool>("xor.pred", Unit::Predicate, "True where exactly one is.",
-                 [](bool a, bool b) { return a != b; }, {{{0, 1}, 1}, {{1, 0}, 1}, {{1, 1}, 0}}),
+    mask_op<1>("mov.pred", "Copies a predicate.", [](LaneMask a) { return a; }, {{{0}, 0}, {{1}, 1}}),
+    mask_op<1>("not.pred", "Inverts a predicate.", [](LaneMask a) { return ~a; }, {{{0}, 1}, {{1}, 0}}),
+    mask_op<2>("and.pred", "True where both are.", [](LaneMask a, LaneMask b) { return a & b; },
+               {{{0, 1}, 0}, {{1, 0}, 0}, {{1, 1}, 1}}),
+    mask_op<2>("or.pred", "True where one or both are.", [](LaneMask a, LaneMask b) { return a | b; },
+               {{{0, 0}, 0}, {{1, 0}, 1}, {{1, 1}, 1}}),
+    mask_op<2>("xor.pred", "True where exactly one is.", [](LaneMask a, LaneMask b) { return a ^ b; },
+               {{{0, 1}, 1}, {{1, 0}, 1}, {{1, 1}, 0}}),
+    mask_op<3>("selp.pred", "The first source where the third is true, else the second.",
+               [](LaneMask a, LaneMask b, LaneMask p) { return (a & p) | (b & ~p); },
+               {{{1, 0, 1}, 1}, {{1, 0, 0}, 0}, {{0, 1, 0}, 1}}),
 };
 
 }  // namespace
