@@ -60,11 +60,13 @@ Issued Executor::execute(WarpContext& warp, Cycle now) {
     case Effect::Ignore:
     case Effect::Terminate: ok = run_control(warp, inst, row); break;
     case Effect::Barrier: ok = run_barrier(warp, inst, row); break;
+    case Effect::HitObject: ok = run_hit_object(warp, inst, row); break;
     case Effect::Query:
     case Effect::QueryProceed: ok = run_query(warp, inst, row); break;
     case Effect::CallCandidate:
     case Effect::CallAnyHit:
     case Effect::CallHit:
+    case Effect::CallCallable:
     case Effect::Trace:
     case Effect::Resume:
     case Effect::Report:

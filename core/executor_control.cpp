@@ -103,7 +103,7 @@ bool Executor::call_function(WarpContext& warp, uint32_t target) {
   const uint32_t back = simt.pc + 1;
   if (exec == 0) return simt.pc = back, true;
   if (simt.depth() >= kMaxNesting) return fail(warp, std::countr_zero(exec), "calls are nested without end");
-  simt.push_call(back, simt.active & ~exec, warp.depth, world_.image->shader_of[simt.pc], true);
+  simt.push_call(back, simt.active & ~exec, warp.depth, world_.image->shader_of[simt.pc], warp.callables, true);
   simt.active = exec;
   simt.pc = target;
   return true;
@@ -133,6 +133,7 @@ void Executor::resume_if_empty(WarpContext& warp) {
   SimtStack::Entry call{};
   if (warp.simt.active != 0 || !warp.simt.resume_next(&call)) return;
   warp.depth = call.depth;
+  warp.callables = call.callables;
   if (warp.simt.active == 0) return;
   fill_specials(warp, warp.simt.active, world_.image->shaders[call.shader]);
 }

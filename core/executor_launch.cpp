@@ -98,13 +98,14 @@ void Executor::start(WarpContext& warp, Block& block, uint32_t warp_in_block, co
   warp.block = &block;
   warp.warp_in_block = warp_in_block;
   block.warps[warp_in_block] = &warp;
-  warp.depth = 0;
+  warp.depth = warp.callables = 0;
   warp.instructions = 0;
   warp.waiting_for_rays = warp.waiting_at_barrier = false;
 
   const uint64_t count = threads_of(world_, has_blocks(world_) ? warp_in_block : warp.warp_index).count;
   warp.simt.start(image.shaders[world_.raygen].entry, count == kLanes ? kAllLanes : (LaneMask{1} << count) - 1);
   fill_launch_specials(warp, seat);
+  fill_specials(warp, warp.simt.active, image.shaders[world_.raygen]);
 }
 
 void Executor::fill_launch_specials(WarpContext& warp, const Seat& seat) const {

@@ -2,12 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstring>
-
 #include "base/check.h"
 #include "core/executor.h"
-#include "rtunit/structure.h"
+#include "isa/hit_object.h"
 #include "rtunit/traversal.h"
 
 namespace glint::core {
@@ -17,8 +14,6 @@ using isa::Special;
 using rt::RayStatus;
 
 namespace {
-
-constexpr uint32_t kRecordBytes = 32;  // handle of a binding-table record: the published drivers' shaderGroupHandleSize
 
 // A rt.trace's operands after the answer predicate and the structure.
 enum TraceOperand : size_t { kFlags = 2, kMask, kSbtOffset, kSbtStride, kMiss, kOrigin, kTmin = 10, kDirection = 11, kTmax = 14, kPayload, kAttributes };
@@ -46,31 +41,13 @@ bool needs_shader(const rt::RayState& state) {
   return state.status == RayStatus::NeedsIntersection || state.status == RayStatus::NeedsAnyHit;
 }
 
-// What the shaders of one stage see of a ray.
-struct Seen {
-  const rt::Hit& hit;
-  float t;
-  bool candidate_attributes;
-};
-Seen seen_by(isa::Stage stage, const rt::RayState& state) {
-  switch (stage) {
-    case isa::Stage::AnyHit: return {state.candidate, state.candidate.t, true};
-    case isa::Stage::Intersection: return {state.candidate, state.committed.t, true};
-    case isa::Stage::Miss: return {state.committed, state.ray.t_max, false};
-    case isa::Stage::ClosestHit:
-    case isa::Stage::RayGeneration:
-    case isa::Stage::Callable:
-    case isa::Stage::Compute: break;
-  }
-  return {state.committed, state.committed.t, false};
-}
-
 }  // namespace
 
 bool Executor::run_rays(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
   const LaneMask exec = warp.regs.exec;
   switch (row.effect) {
-    case Effect::Trace: return trace(warp, inst);
+    case Effect::Trace:
+      return isa::TraceKind(row.detail) == isa::TraceKind::Ray ? trace(warp, inst) : begin_hit_object(warp, inst);
     case Effect::Resume:
       warp.waiting_for_rays = exec != 0;
       warp.rays = warp.frame().ray.data();
@@ -89,30 +66,42 @@ bool Executor::run_rays(WarpContext& warp, const isa::Inst& inst, const isa::OpR
       --warp.depth;
       fill_specials(warp, warp.simt.active, world_.image->shaders[world_.image->shader_of[warp.simt.pc]]);
       break;
+    case Effect::CallCallable: return call_callable(warp, inst);
     default: return call(warp, row.effect);
   }
   ++warp.simt.pc;
   return true;
 }
 
-bool Executor::trace(WarpContext& warp, const isa::Inst& inst) {
-  const LaneMask exec = warp.regs.exec;
+// Opens a level with the payloads and attributes of its lanes; no ray travels yet.
+bool Executor::open_trace(WarpContext& warp, const isa::Inst& inst, size_t payload_operand) {
   if (warp.depth == world_.max_trace_depth)
-    return fail(warp, std::countr_zero(exec), fmt::format("traces a ray at depth {}: the pipeline allows {} nested traces",
-                                                          warp.depth + 1, world_.max_trace_depth));
+    return fail(warp, std::countr_zero(warp.regs.exec), fmt::format("traces a ray at depth {}: the pipeline allows {} nested traces",
+                                                                    warp.depth + 1, world_.max_trace_depth));
   if (warp.frames.size() == warp.depth) warp.frames.push_back(std::make_unique<TraceFrame>());
   TraceFrame& frame = *warp.frames[warp.depth];
+  for_each_lane(warp.regs.exec, [&](int lane) {
+    frame.payload[size_t(lane)] = warp.regs.read(inst.operand[payload_operand])[lane];
+    frame.attributes[size_t(lane)] = warp.regs.read(inst.operand[payload_operand + 1])[lane];
+  });
+  ++warp.depth;
+  return true;
+}
+
+bool Executor::trace(WarpContext& warp, const isa::Inst& inst) {
+  const LaneMask exec = warp.regs.exec;
+  if (!open_trace(warp, inst, kPayload)) return false;
+  TraceFrame& frame = warp.frame();
   for (LaneMask lanes = exec; lanes; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
     rt::RayState& state = frame.ray[size_t(lane)];
     set_ray(warp.regs, inst, size_t(lane), state.ray);
-    frame.payload[size_t(lane)] = warp.regs.read(inst.operand[kPayload])[lane];
-    frame.attributes[size_t(lane)] = warp.regs.read(inst.operand[kAttributes])[lane];
     state.end_at_first_hit = !world_.nearest_first_hit;
-    if (!rt::begin(state, *world_.memory))
+    if (!rt::begin(state, *world_.memory)) {
+      --warp.depth;
       return fail(warp, lane, fmt::format("traces a ray into {:#x}, which is not a top-level acceleration structure", state.ray.structure));
+    }
   }
-  ++warp.depth;
   warp.waiting_for_rays = exec != 0;
   warp.rays = frame.ray.data();
   warp.ray_lanes = exec;
@@ -156,9 +145,13 @@ bool Executor::report(WarpContext& warp, const isa::Inst& inst) {
   return true;
 }
 
+// Vulkan, "Hit Shader Binding Table Indexing".
+uint32_t Executor::hit_record(const rt::Ray& ray, const rt::Hit& hit) const {
+  return world_.table.hit.number(hit.sbt_record + hit.geometry * ray.sbt_stride + ray.sbt_offset);
+}
+
 const HitGroup* Executor::hit_group(const rt::Ray& ray, const rt::Hit& hit, uint32_t& record) const {
-  // Vulkan, "Hit Shader Binding Table Indexing".
-  record = hit.sbt_record + hit.geometry * ray.sbt_stride + ray.sbt_offset;
+  record = hit_record(ray, hit);
   return record < world_.hit.size() ? &world_.hit[record] : nullptr;
 }
 
@@ -170,17 +163,18 @@ bool Executor::call_targets(WarpContext& warp, Effect effect, std::array<uint32_
     rt::RayState& state = warp.frame().ray[i];
     if (state.broken) [[unlikely]]
       return fail(warp, lane, "traced a ray through an acceleration structure whose bytes lead outside memory: they were overwritten");
-    const bool hit = effect != Effect::CallHit || state.committed.valid();
-    uint32_t record = state.ray.miss_index, place = 1 + record;
-    const HitGroup* group = nullptr;
-    if (hit) {
-      group = hit_group(state.ray, effect == Effect::CallHit ? state.committed : state.candidate, record);
-      place = 1 + uint32_t(world_.miss.size()) + record;
+    if (state.status == RayStatus::Idle) {  // an empty hit object
+      target[i] = kNoShader;
+      continue;
     }
+    const bool hit = effect != Effect::CallHit || state.committed.valid();
+    uint32_t record = world_.table.miss.number(state.ray.miss_index);
+    const HitGroup* group = nullptr;
+    if (hit) group = hit_group(state.ray, effect == Effect::CallHit ? state.committed : state.candidate, record);
     if (hit ? !group : record >= world_.miss.size())
       return fail(warp, lane, fmt::format("needs {} record {}: the binding table has {}", hit ? "hit" : "miss", record,
                                           hit ? world_.hit.size() : world_.miss.size()));
-    warp.regs.access.address[i] = world_.binding_table + Address(place) * kRecordBytes;
+    warp.regs.access.address[i] = (hit ? world_.table.hit : world_.table.miss).address(record);
     if (!hit) {
       target[i] = world_.miss[record];
     } else if (effect == Effect::CallHit) {
@@ -197,16 +191,45 @@ bool Executor::call_targets(WarpContext& warp, Effect effect, std::array<uint32_
 }
 
 bool Executor::call(WarpContext& warp, Effect effect) {
-  SimtStack& simt = warp.simt;
   std::array<uint32_t, kLanes> target;
   if (!call_targets(warp, effect, target)) return false;
   LaneMask callers = 0;
   for_each_lane(warp.regs.exec, [&](int lane) { callers |= LaneMask{target[size_t(lane)] != kNoShader} << lane; });
+  call_by_shader(warp, target, callers, false);
+  return true;
+}
+
+bool Executor::call_callable(WarpContext& warp, const isa::Inst& inst) {
+  if (warp.callables == world_.max_callable_depth)
+    return fail(warp, std::countr_zero(warp.regs.exec), fmt::format("calls a callable shader at depth {}: the pipeline allows {}",
+                                                                    warp.callables + 1, world_.max_callable_depth));
+  if (warp.callable_frames.size() == warp.callables) warp.callable_frames.push_back(std::make_unique<CallableFrame>());
+  CallableFrame& frame = *warp.callable_frames[warp.callables];
+  std::array<uint32_t, kLanes> target;
+  LaneMask callers = 0;
+  for (LaneMask lanes = warp.regs.exec; lanes; lanes &= lanes - 1) {
+    const int lane = std::countr_zero(lanes);
+    const size_t i = size_t(lane);
+    const uint32_t record = world_.table.callable.number(warp.regs.read(inst.operand[0])[lane]);
+    if (record >= world_.callable.size())
+      return fail(warp, lane, fmt::format("needs callable record {}: the binding table has {}", record, world_.callable.size()));
+    target[i] = world_.callable[record];
+    frame.data[i] = warp.regs.read(inst.operand[1])[lane];
+    frame.record[i] = warp.regs.access.address[i] = world_.table.callable.address(record);
+    callers |= LaneMask{target[i] != kNoShader} << lane;
+  }
+  call_by_shader(warp, target, callers, true);
+  return true;
+}
+
+// Runs the shader of each calling lane, one path a distinct shader, in the order of the lowest lane that calls it.
+void Executor::call_by_shader(WarpContext& warp, const std::array<uint32_t, kLanes>& target, LaneMask callers, bool is_callable) {
+  SimtStack& simt = warp.simt;
   const uint32_t caller = world_.image->shader_of[simt.pc];
   ++simt.pc;
-  if (!callers) return true;
-  simt.push_call(simt.pc, simt.active & ~callers, warp.depth, caller);
-  // One path a distinct shader, in the order of the lowest lane that calls it.
+  if (!callers) return;
+  simt.push_call(simt.pc, simt.active & ~callers, warp.depth, caller, warp.callables);
+  if (is_callable) ++warp.callables;
   bool first = true;
   while (callers) {
     const uint32_t shader = target[size_t(std::countr_zero(callers))];
@@ -223,7 +246,6 @@ bool Executor::call(WarpContext& warp, Effect effect) {
       simt.push_path(callee.entry, same);
     }
   }
-  return true;
 }
 
 void Executor::finish_shader(WarpContext& warp, Effect effect) {
@@ -239,54 +261,6 @@ void Executor::finish_shader(WarpContext& warp, Effect effect) {
       rt::accept_candidate(state);
     else if (stage == isa::Stage::Intersection)
       rt::finish_intersection(state);
-  });
-}
-
-void Executor::fill_specials(WarpContext& warp, LaneMask lanes, const Shader& shader) const {
-  if (warp.depth == 0 || !shader.uses_ray) return;
-  uint32_t* const bank = warp.regs.bank[2];
-  const TraceFrame& frame = warp.frame();
-  for_each_lane(lanes, [&](int lane) {
-    const size_t i = size_t(lane);
-    const rt::RayState& state = frame.ray[i];
-    const Seen seen = seen_by(shader.stage, state);
-    auto set = [&](Special s, uint32_t value) { bank[size_t(s) * kLanes + i] = value; };
-    auto set_floats = [&](Special first, const float* from, int count) {
-      std::memcpy(&bank[size_t(first) * kLanes + i], from, 4);
-      for (int k = 1; k < count; ++k) set(Special(int(first) + k), std::bit_cast<uint32_t>(from[k]));
-    };
-    set(Special::Payload, frame.payload[i]);
-    const uint32_t attributes = frame.attributes[i] + (seen.candidate_attributes != state.attribute_slot ? kAttributeBytes : 0);
-    set(Special::Attribute, attributes);
-    set(Special::HitT, std::bit_cast<uint32_t>(seen.t));
-    set(Special::HitKind, seen.hit.kind);
-    set(Special::HitU, std::bit_cast<uint32_t>(seen.hit.u));
-    set(Special::HitV, std::bit_cast<uint32_t>(seen.hit.v));
-    // Model: the first two words of an intersection shader's attributes come where a triangle's weights come, so that a
-    // hit shader with a pair of floats serves both.
-    if (seen.hit.valid() && seen.hit.kind < rt::kHitKindFront) {
-      set(Special::HitU, warp.local[size_t(attributes / 4) * kLanes + i]);
-      set(Special::HitV, warp.local[size_t(attributes / 4 + 1) * kLanes + i]);
-    }
-    set(Special::HitPrimitive, seen.hit.primitive);
-    set(Special::HitGeometry, seen.hit.geometry);
-    set(Special::HitInstance, seen.hit.instance);
-    set(Special::HitCustomIndex, seen.hit.custom_index);
-    set(Special::RayFlags, state.ray.flags);
-    set(Special::RayTmin, std::bit_cast<uint32_t>(state.ray.t_min));
-    set_floats(Special::RayOriginX, state.ray.origin.data(), 3);
-    set_floats(Special::RayDirectionX, state.ray.direction.data(), 3);
-    if (!shader.uses_matrices || !seen.hit.valid()) return;
-    const rt::InstanceLeaf& leaf = world_.memory->view<rt::InstanceLeaf>(seen.hit.instance_leaf, 1)[0];
-    set_floats(Special::ObjectToWorld0, leaf.object_to_world.data(), 12);
-    set_floats(Special::WorldToObject0, leaf.world_to_object.data(), 12);
-    const auto& m = leaf.world_to_object;
-    const auto &o = state.ray.origin, &d = state.ray.direction;
-    for (size_t r = 0; r < 3; ++r) {
-      const float* row = m.data() + 4 * r;
-      set(Special(size_t(Special::ObjectOriginX) + r), std::bit_cast<uint32_t>(row[0] * o[0] + row[1] * o[1] + row[2] * o[2] + row[3]));
-      set(Special(size_t(Special::ObjectDirectionX) + r), std::bit_cast<uint32_t>(row[0] * d[0] + row[1] * d[1] + row[2] * d[2]));
-    }
   });
 }
 

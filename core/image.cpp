@@ -90,6 +90,18 @@ void set_blocks(World& world, std::array<uint32_t, 3> grid, std::array<uint32_t,
   world.dynamic_shared_bytes = dynamic_bytes;
 }
 
+uint64_t plain_table_bytes(const World& world) {
+  return (1 + world.miss.size() + world.hit.size() + world.callable.size()) * uint64_t(kHandleBytes);
+}
+
+void place_plain_table(World& world, Address base) {
+  const auto after = [](Address first, size_t records) { return first + records * kHandleBytes; };
+  world.table.raygen = base;
+  world.table.miss = {after(base, 1), kHandleBytes};
+  world.table.hit = {after(world.table.miss.base, world.miss.size()), kHandleBytes};
+  world.table.callable = {after(world.table.hit.base, world.hit.size()), kHandleBytes};
+}
+
 std::string Image::place_of(uint32_t pc) const {
   if (pc >= code.size()) return fmt::format("instruction {}", pc);
   const isa::Line& line = lines[pc];

@@ -24,7 +24,7 @@ struct Shader {
   uint32_t entry = 0, end = 0;   // instruction indices [entry, end)
   uint32_t local_bytes = 0;
   isa::SpecialSet specials_used;
-  bool uses_ray = false, uses_matrices = false;  // reads %payload to %world_to_object; %object.origin and on
+  bool uses_ray = false, uses_matrices = false;  // reads %payload or what follows; %object.origin or what follows
 };
 
 // Code of all shaders, branch targets absolute, constants in one table of 32-lane rows.
@@ -48,6 +48,23 @@ struct HitGroup {
   uint32_t closest_hit = kNoShader, any_hit = kNoShader, intersection = kNoShader;
 };
 
+inline constexpr uint32_t kHandleBytes = 32;  // of a group, at the start of a record: the published drivers' shaderGroupHandleSize
+
+// Records of one kind in the shader binding table (VkStridedDeviceAddressRegionKHR). Stride 0: every index means the
+// first record.
+struct RecordRegion {
+  Address base = 0;
+  uint32_t stride = kHandleBytes;
+  uint32_t number(uint32_t index) const { return stride ? index : 0; }
+  Address address(uint32_t index) const { return base + Address(index) * stride; }
+};
+
+// Where the records lie; their data follow the handle. What they call is in World.
+struct BindingTable {
+  Address raygen = 0;
+  RecordRegion miss, hit, callable;
+};
+
 // Everything a launch gives to its warps. Read-only while warps run (memory contents apart).
 struct World {
   const Image* image = nullptr;
@@ -57,9 +74,10 @@ struct World {
   std::vector<Sampler> samplers;           // besides those of the images
   bool robust_images = false;              // texels outside of an image are 0 and stores there dropped: not a fault
   uint32_t raygen = kNoShader;             // or the compute shader
-  std::vector<uint32_t> miss;              // records of the binding table
+  std::vector<uint32_t> miss;              // what each record of the binding table calls, or kNoShader
   std::vector<HitGroup> hit;
-  Address binding_table = 0;               // virtual address of the table's bytes: a call reads its 32 B record
+  std::vector<uint32_t> callable;
+  BindingTable table;
   std::array<uint32_t, 3> launch_size{1, 1, 1};  // threads
   // Threads of a block (at most kMaxBlockThreads); `launch_size` is then a multiple of it in each direction. Zeros: the
   // launch has no blocks, and each warp of 32 consecutive threads is one of its own (ray generation).
@@ -69,7 +87,12 @@ struct World {
   bool nearest_first_hit = true;           // rt::RayState::end_at_first_hit is its opposite
   uint32_t local_bytes = 0;                // stack a lane
   uint32_t max_trace_depth = 1;            // nested rt.trace (Vulkan's recursion depth)
+  uint32_t max_callable_depth = 31;        // nested executeCallableEXT. Choice: Vulkan only limits the stack's bytes
 };
+
+// Bytes of a table of records without data, and putting it at `base`: ray generation, miss, hit, callable.
+uint64_t plain_table_bytes(const World& world);
+void place_plain_table(World& world, Address base);
 
 // A grid of blocks of threads: sets sizes and shared memory. `dynamic_bytes` come after the program's own.
 void set_blocks(World& world, std::array<uint32_t, 3> grid, std::array<uint32_t, 3> block, uint32_t static_bytes,

@@ -25,6 +25,7 @@ class SimtStack {
     LaneMask lanes;
     uint32_t depth = 0;   // Call: trace depth to return to
     uint32_t shader = 0;  // Call: the caller's shader
+    uint32_t callables = 0;    // Call: callable depth to return to
     bool is_function = false;  // Call: of a function of the same shader, not of another shader
   };
 
@@ -40,8 +41,9 @@ class SimtStack {
 
   void push_reconvergence(uint32_t join_pc) { entries_.push_back({Kind::Join, join_pc, 0}); }
   void push_path(uint32_t path_pc, LaneMask lanes) { entries_.push_back({Kind::Path, path_pc, lanes}); }
-  void push_call(uint32_t return_pc, LaneMask arrived, uint32_t depth, uint32_t shader, bool is_function = false) {
-    entries_.push_back({Kind::Call, return_pc, arrived, depth, shader, is_function});
+  void push_call(uint32_t return_pc, LaneMask arrived, uint32_t depth, uint32_t shader, uint32_t callables = 0,
+                 bool is_function = false) {
+    entries_.push_back({Kind::Call, return_pc, arrived, depth, shader, callables, is_function});
   }
 
   // Lanes reach the join at `join_pc`: they wait in its entry. The caller then leaves the running set.

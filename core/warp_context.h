@@ -20,10 +20,27 @@ struct TraceFrame {
   std::array<uint32_t, kLanes> payload{}, attributes{};  // local addresses
 };
 
+// The callables of one nesting level of call.sbt.callable.
+struct CallableFrame {
+  std::array<uint32_t, kLanes> data{};   // local addresses
+  std::array<Address, kLanes> record{};  // of the binding table
+};
+
 // Model: the two attribute buffers are a fixed 64 bytes each (Vulkan's minimum for hit attributes is 32).
 inline constexpr uint32_t kAttributeBytes = 64;
 
 inline constexpr uint32_t kMaxRayQueries = 16;  // of a shader. Choice: Vulkan sets no limit
+
+// What a ray found, as a shader keeps it (SPV_NV_shader_invocation_reorder).
+struct HitObject {
+  enum class Type : uint8_t { Empty, Hit, Miss } type = Type::Empty;
+  rt::Ray ray;
+  rt::Hit hit;
+  uint32_t record = 0;  // of the hit or miss region
+  std::array<uint32_t, kAttributeBytes / 4> attributes{};
+};
+
+inline constexpr uint32_t kMaxHitObjects = 16;  // of a shader. Choice: the extension sets no limit
 
 struct WarpContext {
   isa::Warp regs;
@@ -32,6 +49,10 @@ struct WarpContext {
   Block* block = nullptr;             // that it belongs to
   uint32_t warp_in_block = 0;
   uint32_t depth = 0;                 // open rt.trace levels
+  uint32_t callables = 0;             // open call.sbt.callable levels
+  std::vector<std::unique_ptr<CallableFrame>> callable_frames;  // as `frames`
+  // kMaxHitObjects a level of rt.trace, allocated when first used.
+  std::vector<std::unique_ptr<std::array<HitObject, kLanes>>> hit_objects;
   std::vector<std::unique_ptr<TraceFrame>> frames;  // allocated when first needed, then kept
   // Ray queries: kMaxRayQueries a level of rt.trace, allocated when first used.
   std::vector<std::unique_ptr<std::array<rt::RayState, kLanes>>> queries;

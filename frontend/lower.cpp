@@ -32,6 +32,10 @@ bool is_known_capability(spv::Capability capability) {
     case int(spv::Capability::RayTracingKHR):
     case int(spv::Capability::RayQueryKHR):
     case int(spv::Capability::RayTraversalPrimitiveCullingKHR):
+    case int(spv::Capability::RayCullMaskKHR):
+    case int(spv::Capability::RayTracingNV):
+    case int(spv::Capability::RayTracingMotionBlurNV):
+    case int(spv::Capability::ShaderInvocationReorderNV):
     case int(spv::Capability::ShaderClockKHR):
     case int(spv::Capability::RuntimeDescriptorArray):
     case int(spv::Capability::ShaderNonUniform):
@@ -116,7 +120,8 @@ void Lowering::note_interface() {
   uint32_t incoming = 0, outgoing = 0;
   for (const auto& [id, variable] : module_.variables) {
     const Id type = module_.type(variable.type).element;
-    if (variable.storage == spv::StorageClass::IncomingRayPayloadKHR)
+    if (variable.storage == spv::StorageClass::IncomingRayPayloadKHR ||
+        variable.storage == spv::StorageClass::IncomingCallableDataKHR)
       incoming = std::max(incoming, layout_.size(type));
     if (variable.storage == spv::StorageClass::RayPayloadKHR)
       outgoing = std::max(outgoing, layout_.size(type));
@@ -303,7 +308,7 @@ const LoweringRow* find_lowering_row(spv::Op op) {
   static const std::map<spv::Op, const LoweringRow*> kRows = [] {
     std::map<spv::Op, const LoweringRow*> rows;
     for (const auto family : {arithmetic_rows(), conversion_rows(), comparison_rows(), composite_rows(), memory_rows(),
-                              image_rows(), ray_tracing_rows(), ray_query_rows()})
+                              image_rows(), ray_tracing_rows(), ray_query_rows(), hit_object_rows()})
       for (const LoweringRow& row : family)
         GLINT_CHECK(rows.emplace(row.op, &row).second, "two rows for op {}", uint32_t(row.op));
     return rows;

@@ -5,6 +5,7 @@
 // and given the value 0, so that one run finds all of it; lower_to_virtual() then throws.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <functional>
 #include <map>
 #include <set>
 #include <span>
@@ -62,6 +63,7 @@ std::span<const LoweringRow> memory_rows();
 std::span<const LoweringRow> image_rows();
 std::span<const LoweringRow> ray_tracing_rows();
 std::span<const LoweringRow> ray_query_rows();
+std::span<const LoweringRow> hit_object_rows();
 const LoweringRow* find_lowering_row(spv::Op op);
 
 // The GLSL.std.450 instruction set: operands[0] is the import, operands[1] the function's number.
@@ -94,7 +96,7 @@ class Lowering {
   void store(const Pointer& pointer, const Operands& parts);
   Operands load_builtin(spv::BuiltIn builtin, Id type);
   uint32_t local_offset(Id variable);  // bytes in the frame; allotted on first use
-  uint32_t ray_query(Id variable);     // the first query of a variable; numbers are given on first use
+  uint32_t ray_query(Id variable);     // the first query or hit object of a variable; numbers are given on first use
   void hand_over_attributes();         // to the buffer that the next report reads
   uint32_t attribute_buffers();        // bytes in the frame of the two buffers of 64 bytes
   void note_store(Place place);        // loads of that place are not reused any more
@@ -142,6 +144,16 @@ class Lowering {
   std::map<std::tuple<uint16_t, uint32_t, std::string>, int> unsupported_;  // file, line, what: how often
   std::set<Id> reported_types_;
 };
+
+// A trace (docs/abi.md, Calls and rays). Arguments: structure, flags, mask, offset, stride, miss index, origin, t min,
+// direction, t max. `finish` is emitted when the rays have found what they find.
+void lower_trace(Lowering& lowering, std::span<const uint32_t> arguments, const Pointer& payload,
+                 const std::function<void()>& finish);
+// The lane's local address that a pointer means, in a register.
+Operand local_address(Lowering& lowering, const Pointer& pointer);
+Operand attribute_buffers_address(Lowering& lowering);
+// After shaders have run: nothing that was read from memory or computed before is used again.
+void forget_after_call(Lowering& lowering);
 
 // Lowers all reachable blocks of the entry function: phis, structured control flow, terminators.
 void lower_control(Lowering& lowering);

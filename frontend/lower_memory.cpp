@@ -157,6 +157,9 @@ uint32_t Lowering::local_offset(Id variable) {
   constexpr uint32_t kAlign = 16;  // so that vectors of four words can be moved at once
   const uint32_t at = (program_.local_bytes + kAlign - 1) / kAlign * kAlign;
   program_.local_bytes = at + layout_.size(module_.type(type_of(variable)).element);
+  const auto global = module_.variables.find(variable);
+  if (global != module_.variables.end() && global->second.storage == spv::StorageClass::HitObjectAttributeNV)
+    program_.local_bytes = at + 64;  // ho.attributes stores them all (docs/abi.md)
   return frame_[variable] = at;
 }
 

@@ -24,9 +24,10 @@ Pointer Lowering::buffer_pointer(const Variable& variable, Pointer p) {
 
 namespace {
 
-bool is_ray_query(const Module& module, Id type) {
+// Objects that lie in the machine, not in memory: numbers mean them.
+bool is_numbered(const Module& module, Id type) {
   while (module.type(type).kind == Type::Kind::Array) type = module.type(type).element;
-  return module.type(type).kind == Type::Kind::RayQuery;
+  return module.type(type).kind == Type::Kind::RayQuery || module.type(type).op == spv::Op::OpTypeHitObjectNV;
 }
 
 }  // namespace
@@ -36,7 +37,7 @@ Pointer Lowering::variable_pointer(const Variable& variable) {
   Pointer p;
   p.type = module_.type(variable.type).element;
   p.variable = variable.id;
-  if (is_ray_query(module_, p.type)) {
+  if (is_numbered(module_, p.type)) {
     p.place = Place::RayQuery;
     p.base = Operand::value(ray_query(variable.id));
     return p;
@@ -50,13 +51,21 @@ Pointer Lowering::variable_pointer(const Variable& variable) {
     case Storage::Function:
     case Storage::Private:
     case Storage::RayPayloadKHR:
+    case Storage::CallableDataKHR:
+    case Storage::HitObjectAttributeNV:
       p.place = Place::Local;
       p.base = Operand::stack_pointer();
       p.displacement = local_offset(variable.id);
       return p;
     case Storage::IncomingRayPayloadKHR:
+    case Storage::IncomingCallableDataKHR:
       p.place = Place::Local;
       p.base = Operand::of(isa::Special::Payload);
+      return p;
+    case Storage::ShaderRecordBufferKHR:
+      p.place = Place::Global;
+      p.base = emitter_.value("pack.b64", {Operand::of(isa::Special::Record), Operand::of(isa::Special::RecordHi)});
+      p.is_constant = true;  // Vulkan: shaders only read it
       return p;
     case Storage::HitAttributeKHR: {
       const bool is_pair = layout_.parts(p.type) == std::vector<Part>{Part::Float32, Part::Float32};

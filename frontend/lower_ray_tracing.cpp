@@ -14,52 +14,62 @@ Operand special(Special first, uint32_t offset = 0) {
   return Operand::of(Special(uint32_t(first) + offset));
 }
 
-// The lane's local address that a pointer means. In a register: SaveLive moves the stack pointer.
-Operand local_address(Lowering& l, const Pointer& p) {
-  if (p.place != Place::Local) {
-    l.unsupported("a payload that is not in local memory");
-    return Operand::value(0);
-  }
-  return l.emit().in_register(l.emit().value("add.u32", {p.base, Operand::value(uint32_t(p.displacement))}),
-                              RegisterClass::B32);
+void trace(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  lower_trace(l, std::span(inst.operands).first(10), l.pointer(inst.operands[10]),
+              [&] { l.emit().effect("call.sbt.hit", {}); });
 }
 
-// docs/abi.md, Calls and rays.
-void trace(Lowering& l, const Instruction& inst, const LoweringRow&) {
+// Model: nothing moves, so the time of a ray changes nothing.
+void trace_motion(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  lower_trace(l, std::span(inst.operands).first(10), l.pointer(inst.operands[11]),
+              [&] { l.emit().effect("call.sbt.hit", {}); });
+}
+
+// SPV_NV_ray_tracing names payloads and callable data by the constant of their location.
+Pointer at_location(Lowering& l, Id constant, std::initializer_list<spv::StorageClass> storages) {
+  const auto location = l.module().constant_u32(constant);
+  for (const auto& [id, variable] : l.module().variables)
+    for (const spv::StorageClass storage : storages)
+      if (location && variable.storage == storage && l.decorations(id).location == location) return l.pointer(id);
+  l.unsupported("a payload or callable data whose location no variable has");
+  return {};
+}
+
+void trace_nv(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  const Pointer payload = at_location(l, inst.operands[10], {spv::StorageClass::RayPayloadKHR, spv::StorageClass::IncomingRayPayloadKHR});
+  if (payload.place != Place::Local) return;
+  lower_trace(l, std::span(inst.operands).first(10), payload, [&] { l.emit().effect("call.sbt.hit", {}); });
+}
+
+void call_callable(Lowering& l, const Operand& index, const Pointer& data) {
   Emitter& e = l.emit();
-  const auto& args = inst.operands;
-  Operands operands{Operand::of(l.program().new_register(RegisterClass::Predicate))};
-  const Operand waits = operands[0];
-  for (size_t i = 0; i < 10;
-       ++i) {  // structure, flags, mask, offset, stride, miss, origin, t min, direction, t max
-    const Operands parts = l.value(args[i]);
-    operands.insert(operands.end(), parts.begin(), parts.end());
-  }
-  operands.push_back(local_address(l, l.pointer(args[10])));
-  Pointer attributes;
-  attributes.place = Place::Local;
-  attributes.base = Operand::stack_pointer();
-  attributes.displacement = l.attribute_buffers();
-  operands.push_back(local_address(l, attributes));
-  const BlockId loop = e.new_block("trace_loop"), candidates = e.new_block("trace_candidates"),
-                done = e.new_block("trace_done");
+  const Operand address = local_address(l, data);
   e.marker(VirtualInst::Kind::SaveLive);
-  e.effect("rt.trace", std::move(operands));
-  e.push_reconvergence(done);
-  e.place(loop);
-  e.branch_if(waits, false, done);
-  e.place(candidates);
-  e.effect("call.sbt.candidate", {});
-  e.effect("rt.resume", {waits});
-  e.branch(loop);
-  e.place(done);
-  e.effect("join", {});
-  e.effect("call.sbt.hit", {});
-  e.effect("rt.end", {});
+  e.effect("call.sbt.callable", {index, address});
   e.marker(VirtualInst::Kind::RestoreLive);
-  l.note_store(Place::Local);
-  l.note_store(Place::Global);
-  e.forget();  // what is computed again need not be saved
+  forget_after_call(l);
+}
+
+void execute_callable(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  call_callable(l, l.scalar(inst.operands[0]), l.pointer(inst.operands[1]));
+}
+void execute_callable_nv(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  const Pointer data = at_location(l, inst.operands[1], {spv::StorageClass::CallableDataKHR, spv::StorageClass::IncomingCallableDataKHR});
+  if (data.place == Place::Local) call_callable(l, l.scalar(inst.operands[0]), data);
+}
+
+// In SPV_NV_ray_tracing these are no terminators: code follows that no lane runs. A guard that always holds keeps it
+// well formed.
+void end_any_hit(Lowering& l, const Instruction&, const LoweringRow& row) {
+  const Operand always = l.emit().fresh("setp.ne.u32", {Operand::of(Special::LaneId), Operand::value(0xffff'ffff)});
+  VirtualInst& end = l.emit().effect(row.name32, {});
+  end.guard = always.reg;
+}
+
+// From the address in 64 bits or in two words.
+void structure_from_address(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  const Operands parts = l.value(inst.operands[0]);
+  l.set(inst.result, {parts.size() == 2 ? l.emit().value("pack.b64", parts) : parts.at(0)});
 }
 
 void report(Lowering& l, const Instruction& inst, const LoweringRow&) {
@@ -76,9 +86,7 @@ void report(Lowering& l, const Instruction& inst, const LoweringRow&) {
   e.marker(VirtualInst::Kind::RestoreLive);
   e.place(decided);
   e.effect("join", {});
-  l.note_store(Place::Local);
-  l.note_store(Place::Global);
-  e.forget();
+  forget_after_call(l);
   l.set(inst.result, {e.fresh("rt.accepted", {})});
 }
 
@@ -121,11 +129,71 @@ Operands compute_builtin(Lowering& l, spv::BuiltIn builtin) {
 using enum spv::Op;
 constexpr LoweringRow kRows[] = {
     {OpTraceRayKHR, trace, ""},
+    {OpTraceRayMotionNV, trace_motion, ""},
+    {OpTraceNV, trace_nv, ""},
+    {OpExecuteCallableKHR, execute_callable, ""},
+    {OpExecuteCallableNV, execute_callable_nv, ""},
+    {OpIgnoreIntersectionNV, end_any_hit, "rt.ignore"},
+    {OpTerminateRayNV, end_any_hit, "rt.terminate"},
+    {OpConvertUToAccelerationStructureKHR, structure_from_address, ""},
     {OpReportIntersectionKHR, report, ""},
     {OpReadClockKHR, read_clock, ""},
 };
 
 }  // namespace
+
+// In a register: SaveLive moves the stack pointer.
+Operand local_address(Lowering& l, const Pointer& p) {
+  if (p.place != Place::Local) {
+    l.unsupported("a payload that is not in local memory");
+    return Operand::value(0);
+  }
+  return l.emit().in_register(l.emit().value("add.u32", {p.base, Operand::value(uint32_t(p.displacement))}),
+                              RegisterClass::B32);
+}
+
+Operand attribute_buffers_address(Lowering& l) {
+  Pointer attributes;
+  attributes.place = Place::Local;
+  attributes.base = Operand::stack_pointer();
+  attributes.displacement = l.attribute_buffers();
+  return local_address(l, attributes);
+}
+
+void forget_after_call(Lowering& l) {
+  l.note_store(Place::Local);
+  l.note_store(Place::Global);
+  l.emit().forget();  // what is computed again need not be saved
+}
+
+void lower_trace(Lowering& l, std::span<const uint32_t> arguments, const Pointer& payload, const std::function<void()>& finish) {
+  Emitter& e = l.emit();
+  Operands operands{Operand::of(l.program().new_register(RegisterClass::Predicate))};
+  const Operand waits = operands[0];
+  for (const Id argument : arguments) {
+    const Operands parts = l.value(argument);
+    operands.insert(operands.end(), parts.begin(), parts.end());
+  }
+  operands.push_back(local_address(l, payload));
+  operands.push_back(attribute_buffers_address(l));
+  const BlockId loop = e.new_block("trace_loop"), candidates = e.new_block("trace_candidates"),
+                done = e.new_block("trace_done");
+  e.marker(VirtualInst::Kind::SaveLive);
+  e.effect("rt.trace", std::move(operands));
+  e.push_reconvergence(done);
+  e.place(loop);
+  e.branch_if(waits, false, done);
+  e.place(candidates);
+  e.effect("call.sbt.candidate", {});
+  e.effect("rt.resume", {waits});
+  e.branch(loop);
+  e.place(done);
+  e.effect("join", {});
+  finish();
+  e.effect("rt.end", {});
+  e.marker(VirtualInst::Kind::RestoreLive);
+  forget_after_call(l);
+}
 
 Operands Lowering::load_builtin(spv::BuiltIn builtin, Id type) {
   switch (builtin) {
@@ -159,6 +227,8 @@ Operands Lowering::load_builtin(spv::BuiltIn builtin, Id type) {
       return {special(Special::HitT)};
     case spv::BuiltIn::IncomingRayFlagsKHR:
       return {special(Special::RayFlags)};
+    case spv::BuiltIn::CullMaskKHR:
+      return {special(Special::RayCullMask)};
     case spv::BuiltIn::HitKindKHR:
       return {special(Special::HitKind)};
     case spv::BuiltIn::PrimitiveId:

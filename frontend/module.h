@@ -86,7 +86,7 @@ struct Variable {
 };
 
 struct Decorations {
-  std::optional<uint32_t> set, binding;
+  std::optional<uint32_t> set, binding, location;
   std::optional<spv::BuiltIn> builtin;
   bool is_volatile = false;
   bool is_coherent = false;

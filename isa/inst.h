@@ -34,11 +34,12 @@ enum class Special : uint8_t {
   TotalSmemSize, DynamicSmemSize,         // bytes of shared memory of the block
   Clock, ClockHi,                         // core cycle when issued; 0 on the functional machine
   GlobalTimerLo, GlobalTimerHi,           // nanoseconds since launch; 0 on the functional machine
-  Payload,                                // local address of the incoming payload
+  Payload,                                // local address of the incoming payload or callable data
   Attribute,                              // local address of the hit attributes
+  Record, RecordHi,                       // address of the data in the shader's record of the binding table, both halves
   HitT, HitKind, HitU, HitV,              // t; kind (0xfe front, 0xff back, user 0..127); barycentrics
   HitPrimitive, HitGeometry, HitInstance, HitCustomIndex,
-  RayFlags, RayTmin,
+  RayFlags, RayTmin, RayCullMask,
   RayOriginX, RayOriginY, RayOriginZ, RayDirectionX, RayDirectionY, RayDirectionZ,  // world space
   ObjectOriginX, ObjectOriginY, ObjectOriginZ, ObjectDirectionX, ObjectDirectionY, ObjectDirectionZ,
   ObjectToWorld0, ObjectToWorld1, ObjectToWorld2, ObjectToWorld3, ObjectToWorld4, ObjectToWorld5,

@@ -90,13 +90,19 @@ enum class Effect : uint8_t {
   Exit,                       // lanes end
   Return,                     // lanes return from a function or a shader call
   Trap,                       // a fault
-  CallCandidate, CallAnyHit, CallHit,  // call.sbt.*: indirect shader calls through the binding table
+  CallCandidate, CallAnyHit, CallHit, CallCallable,  // call.sbt.*: indirect shader calls through the binding table
   Trace, Resume,              // rt.trace, rt.resume: give rays to the RT unit; answer: predicate slot 0
   Report, Accepted, Ignore, Terminate, EndTrace,  // rt.report, rt.accepted, rt.ignore, rt.terminate, rt.end
   Query, QueryProceed,        // rq.*: OpRow::detail says which; rq.proceed gives rays to the RT unit
+  HitObject,                  // ho.*: OpRow::detail says which (isa/hit_object.h)
   Barrier,                    // bar.*: warps of a block wait for each other
   Fence,                      // membar, fence, bar.warp.sync: orders memory accesses of the warp
 };
+
+// Runs other shaders, which use all registers and predicates but %r0 (docs/abi.md).
+constexpr bool is_shader_call(Effect e) {
+  return e == Effect::CallCandidate || e == Effect::CallAnyHit || e == Effect::CallHit || e == Effect::CallCallable;
+}
 
 // Generic: a 64-bit address whose window says which of global, shared and local it is in (isa/generic_address.h).
 // Param: the parameters of a kernel; they lie in the constant bank at kPushConstantOffset (isa/program.h).

@@ -93,7 +93,10 @@ class Verifier {
       case Effect::CallCandidate:
       case Effect::CallHit:
       case Effect::EndTrace:
+      case Effect::HitObject:
         return only({Stage::RayGeneration, Stage::ClosestHit, Stage::Miss});
+      case Effect::CallCallable:
+        return only({Stage::RayGeneration, Stage::ClosestHit, Stage::Miss, Stage::Callable});
       case Effect::Report:
       case Effect::Accepted:
       case Effect::CallAnyHit:

@@ -165,7 +165,7 @@ class ValueFlow {
     const Inst& i = inst(at);
     const OpRow& row = op_table()[i.op];
     if (reports_) check(state, i, row, at);
-    if (row.effect == Effect::CallCandidate || row.effect == Effect::CallAnyHit || row.effect == Effect::CallHit) {
+    if (is_shader_call(row.effect)) {
       const uint8_t pointer = state.fact[kStackPointer];
       state.fact.fill(Unwritten);  // the shaders that are called use all registers and predicates (docs/abi.md)
       state.fact[kStackPointer] = pointer;
@@ -212,8 +212,7 @@ class ValueFlow {
     const Effect e = row.effect;
     if ((e == Effect::Return || e == Effect::Ignore || e == Effect::Terminate) && state.stack != 0)
       complain_(at, fmt::format("%r0 is {} bytes from its value at entry, where the shader returns", state.stack));
-    if ((e == Effect::CallCandidate || e == Effect::CallAnyHit || e == Effect::CallHit) &&
-        state.stack < int64_t(program_.local_bytes))
+    if (is_shader_call(e) && state.stack < int64_t(program_.local_bytes))
       complain_(at, fmt::format("%r0 is {} bytes above its value at entry, and the frame that a called shader must leave "
                                 "alone has {}", state.stack, program_.local_bytes));
     if (row.memory.space == Space::Local) frame(state, i, row, at);

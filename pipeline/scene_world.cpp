@@ -19,7 +19,6 @@ using scenes::Model;
 enum Binding : uint32_t { kTopLevel, kAccumulationImage, kPictureImage, kFrame, kVertices, kIndices, kMaterials, kOffsets, kTextures, kSpheres };
 
 constexpr uint32_t kSphereRecord = 1;  // hit record of procedural models; triangles have 0
-constexpr uint32_t kRecordBytes = 32;
 
 rt::Bounds sphere_bounds(const Model& model) {
   rt::Bounds box;
@@ -86,7 +85,7 @@ void SceneWorld::link_shaders(const RenderJob& job) {
   world.miss = {shaders.miss};
   world.hit = {shaders.triangle, shaders.sphere};
   world.local_bytes = stack_bytes(image_);
-  world.binding_table = memory_.allocate("shader binding table", (1 + world.miss.size() + world.hit.size()) * kRecordBytes);
+  core::place_plain_table(world, memory_.allocate("shader binding table", core::plain_table_bytes(world)));
 }
 
 Address SceneWorld::upload(const std::string& name, const void* data, uint64_t bytes) {

@@ -90,9 +90,7 @@ inline bool is_movable(const VirtualInst& inst) {
 
 inline bool is_call(const VirtualInst& inst) {
   if (!is_real(inst)) return false;
-  const isa::Effect effect = row_of(inst).effect;
-  return effect == isa::Effect::CallCandidate || effect == isa::Effect::CallAnyHit ||
-         effect == isa::Effect::CallHit;
+  return isa::is_shader_call(row_of(inst).effect);
 }
 
 inline VirtualInst make_inst(uint16_t op, std::vector<VirtualOperand> operands, const isa::Line& line,

@@ -10,8 +10,8 @@ constexpr OpRow ray(std::string_view name, Effect effect, Operands operands, std
   return effect_op(name, Class::Rt, Unit::RtUnit, effect, operands, doc);
 }
 // Indirect calls are the branch unit's work.
-constexpr OpRow call(std::string_view name, Effect effect, std::string_view doc) {
-  return effect_op(name, Class::Ctrl, Unit::Branch, effect, {}, doc);
+constexpr OpRow call(std::string_view name, Effect effect, std::string_view doc, Operands operands = {}) {
+  return effect_op(name, Class::Ctrl, Unit::Branch, effect, operands, doc);
 }
 
 constexpr OpRow kRows[] = {
@@ -36,6 +36,9 @@ constexpr OpRow kRows[] = {
          "Calls the any-hit shader of each lane's reported hit, split by shader."),
     call("call.sbt.hit", Effect::CallHit,
          "Calls the closest-hit or miss shader of each lane's ray, split by shader."),
+    call("call.sbt.callable", Effect::CallCallable,
+         "Calls each lane's callable shader, split by shader: index of its record, local address of its data.",
+         {Src32, Src32}),
 };
 
 }  // namespace

@@ -112,7 +112,9 @@ std::string run(const isa::Program& program, uint64_t max_instructions) {
   const auto only = [&](isa::Stage stage) { return program.stage == stage ? 1u : core::kNoShader; };
   world.miss = {only(isa::Stage::Miss)};
   world.hit = {{only(isa::Stage::ClosestHit), only(isa::Stage::AnyHit), only(isa::Stage::Intersection)}};
-  world.binding_table = scene.binding_table;
+  world.callable = {only(isa::Stage::Callable)};
+  world.max_callable_depth = kMaxTraceDepth;
+  core::place_plain_table(world, scene.binding_table);
   world.launch_size = {kLaunchWidth, 1, 1};
   world.local_bytes = (kDriverBytes + kMaxTraceDepth * (program.local_bytes + 16) + 15) / 16 * 16;
   world.max_trace_depth = kMaxTraceDepth;

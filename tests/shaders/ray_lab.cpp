@@ -138,7 +138,7 @@ std::vector<uint32_t> RayLab::run(const LabOptions& options) {
   const core::Image linked = core::link(pipeline.programs);
   world.image = &linked;
   world.local_bytes = stack_bytes(pipeline.programs, max_trace_depth);
-  world.binding_table = memory.allocate("binding table", (1 + world.miss.size() + world.hit.size()) * kRecordBytes);
+  core::place_plain_table(world, memory.allocate("binding table", core::plain_table_bytes(world)));
 
   const rt::StructureInfo top = scene(memory);
   bind(world, 0, 0, top.address, top.bytes);

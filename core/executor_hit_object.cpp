@@ -1,0 +1,235 @@
+// Hit objects: ho.*, what a ray found or a shader made up, kept until its shader is executed.
+// SPDX-License-Identifier: Apache-2.0
+#include "isa/hit_object.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+
+#include "core/executor.h"
+#include "rtunit/node_format.h"
+#include "rtunit/structure.h"
+
+namespace glint::core {
+namespace {
+
+using isa::HitObjectOp;
+using isa::HitObjectValue;
+
+// Operands of ho.miss, and of ho.hit up to the SBT stride; origin, tmin, direction and tmax follow.
+enum MissOperand : size_t { kMissIndex = 1, kMissRay };
+enum HitOperand : size_t { kStructure = 1, kInstance, kPrimitive, kGeometry, kKind, kOffset, kStride };
+constexpr size_t kRayWords = 8;
+
+uint32_t bits(float x) { return std::bit_cast<uint32_t>(x); }
+uint32_t read(const WarpContext& warp, const isa::Inst& inst, size_t operand, int lane) {
+  return warp.regs.read(inst.operand[operand])[lane];
+}
+
+rt::Ray ray_of(const WarpContext& warp, const isa::Inst& inst, size_t first, int lane) {
+  const auto word = [&](size_t i) { return std::bit_cast<float>(read(warp, inst, first + i, lane)); };
+  rt::Ray ray;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    ray.origin[axis] = word(axis);
+    ray.direction[axis] = word(4 + axis);
+  }
+  ray.t_min = word(3);
+  ray.t_max = word(7);
+  return ray;
+}
+
+// The 16 words of attributes of a lane; outside of local memory 0, and stores are dropped.
+void load_attributes(const WarpContext& warp, uint32_t address, int lane, HitObject& object) {
+  for (size_t w = 0; w < object.attributes.size(); ++w) {
+    const size_t at = (address / 4 + w) * kLanes + size_t(lane);
+    object.attributes[w] = at < warp.local.size() ? warp.local[at] : 0;
+  }
+}
+void store_attributes(WarpContext& warp, uint32_t address, int lane, const HitObject& object) {
+  for (size_t w = 0; w < object.attributes.size(); ++w) {
+    const size_t at = (address / 4 + w) * kLanes + size_t(lane);
+    if (at < warp.local.size()) warp.local[at] = object.attributes[w];
+  }
+}
+
+// Address of the leaf of an instance below the node at `block`; 0 when there is none.
+Address find_instance(const mem::AddressSpace& memory, const rt::NodeFormat& format, Address structure, uint32_t block,
+                      uint32_t instance) {
+  std::vector<rt::DecodedChild> children(format.width());
+  const auto* node = memory.find(structure + Address(block) * rt::kBlockBytes, rt::kBlockBytes);
+  if (!node) return 0;
+  const uint32_t count = format.decode(node, children);
+  for (uint32_t i = 0; i < count; ++i) {
+    const uint32_t at = rt::block_of(children[i].node);
+    if (rt::kind_of(children[i].node) == rt::NodeKind::Internal) {
+      if (const Address found = find_instance(memory, format, structure, at, instance)) return found;
+    } else if (const auto* leaf = memory.find(structure + Address(at) * rt::kBlockBytes, sizeof(rt::InstanceLeaf))) {
+      rt::InstanceLeaf read;
+      std::memcpy(&read, leaf, sizeof read);
+      if (read.instance == instance) return structure + Address(at) * rt::kBlockBytes;
+    }
+  }
+  return 0;
+}
+
+// 0 for what is not a top-level structure, too.
+Address find_instance(const mem::AddressSpace& memory, Address structure, uint32_t instance) {
+  rt::StructureHeader header;
+  const auto* bytes = memory.find(structure, sizeof header);
+  if (!bytes) return 0;
+  std::memcpy(&header, bytes, sizeof header);
+  if (header.magic != rt::StructureHeader::kMagic || header.level != 1 || header.format >= uint8_t(rt::FormatId::Count)) return 0;
+  return find_instance(memory, *rt::make_format(rt::FormatId(header.format)), structure, rt::kRootBlock, instance);
+}
+
+}  // namespace
+
+HitObject* Executor::find_hit_object(WarpContext& warp, isa::Slot operand, uint32_t level) {
+  const uint32_t* index = warp.regs.read(operand);
+  const int first = std::countr_zero(warp.regs.exec);
+  bool same = true;
+  for_each_lane(warp.regs.exec, [&](int lane) { same &= index[lane] == index[first]; });
+  if (!same) return fail(warp, first, "the lanes of a warp use different hit objects at once"), nullptr;
+  if (index[first] >= kMaxHitObjects)
+    return fail(warp, first, fmt::format("uses hit object {}: a shader has at most {}", index[first], kMaxHitObjects)), nullptr;
+  // Each nesting level has objects of its own: a hit shader's do not disturb its caller's.
+  const size_t place = size_t(level) * kMaxHitObjects + index[first];
+  if (warp.hit_objects.size() <= place) warp.hit_objects.resize(place + 1);
+  if (!warp.hit_objects[place]) warp.hit_objects[place] = std::make_unique<std::array<HitObject, kLanes>>();
+  return warp.hit_objects[place]->data();
+}
+
+bool Executor::run_hit_object(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
+  const auto op = HitObjectOp(row.detail);
+  LaneMask lanes = warp.regs.exec;
+  if (lanes && op == HitObjectOp::Record && warp.depth == 0)
+    return fail(warp, std::countr_zero(lanes), "keeps the hit of a trace, and none is open");
+  const uint32_t level = warp.depth - (op == HitObjectOp::Record ? 1 : 0);
+  HitObject* const objects = lanes ? find_hit_object(warp, inst.operand[op == HitObjectOp::Value ? 1 : 0], level) : nullptr;
+  if (lanes && !objects) return false;
+  for (; lanes; lanes &= lanes - 1) {
+    const int lane = std::countr_zero(lanes);
+    HitObject& object = objects[lane];
+    switch (op) {
+      case HitObjectOp::Record: {
+        const rt::RayState& state = warp.frame().ray[size_t(lane)];
+        const bool hit = state.committed.valid();
+        object = {hit ? HitObject::Type::Hit : HitObject::Type::Miss, state.ray, state.committed,
+                  hit ? hit_record(state.ray, state.committed) : state.ray.miss_index, {}};
+        if (state.committed.kind >= rt::kHitKindFront)
+          object.attributes = {bits(state.committed.u), bits(state.committed.v)};
+        else
+          load_attributes(warp, warp.frame().attributes[size_t(lane)] + (state.attribute_slot ? kAttributeBytes : 0), lane, object);
+        break;
+      }
+      case HitObjectOp::Empty: object = {}; break;
+      case HitObjectOp::Miss:
+        object = {HitObject::Type::Miss, ray_of(warp, inst, kMissRay, lane), {}, read(warp, inst, kMissIndex, lane) & 0xffff, {}};
+        break;
+      case HitObjectOp::Hit:
+      case HitObjectOp::HitAtRecord:
+        if (!make_hit(warp, inst, op == HitObjectOp::Hit, lane, object)) return false;
+        break;
+      case HitObjectOp::Value:
+        warp.regs.write(inst.operand[0])[lane] = hit_object_value(object, read(warp, inst, 2, lane));
+        break;
+      case HitObjectOp::Attributes: store_attributes(warp, read(warp, inst, 1, lane), lane, object); break;
+    }
+  }
+  ++warp.simt.pc;
+  return true;
+}
+
+bool Executor::make_hit(WarpContext& warp, const isa::Inst& inst, bool has_stride, int lane, HitObject& object) {
+  const auto value = [&](size_t operand) { return read(warp, inst, operand, lane); };
+  const Address structure = value(kStructure) | Address(warp.regs.read(isa::Slot(inst.operand[kStructure] + 1))[lane]) << 32;
+  const Address at = find_instance(*world_.memory, structure, value(kInstance));
+  if (at == 0)
+    return fail(warp, lane, fmt::format("makes a hit object of instance {}, which {:#x} does not hold", value(kInstance), structure));
+  const rt::InstanceLeaf& leaf = world_.memory->view<rt::InstanceLeaf>(at, 1)[0];
+  const size_t ray = kOffset + (has_stride ? 2 : 1);
+  object = {HitObject::Type::Hit, ray_of(warp, inst, ray, lane), {}, 0, {}};
+  object.ray.structure = structure;
+  load_attributes(warp, value(ray + kRayWords), lane, object);
+  rt::Hit& hit = object.hit;
+  hit.t = object.ray.t_max;
+  hit.kind = value(kKind);
+  hit.u = std::bit_cast<float>(object.attributes[0]);
+  hit.v = std::bit_cast<float>(object.attributes[1]);
+  hit.instance = leaf.instance;
+  hit.geometry = value(kGeometry);
+  hit.primitive = value(kPrimitive);
+  hit.custom_index = leaf.custom_index_and_mask & 0xff'ffff;
+  hit.sbt_record = leaf.sbt_offset_and_flags & 0xff'ffff;
+  hit.instance_leaf = at;
+  object.ray.sbt_offset = value(kOffset) & 15;
+  object.ray.sbt_stride = has_stride ? value(kStride) & 15 : 0;
+  object.record = has_stride ? hit_record(object.ray, hit) : world_.table.hit.number(value(kOffset));
+  return true;
+}
+
+// Choice: values that a miss or an empty object does not have are 0.
+uint32_t Executor::hit_object_value(const HitObject& object, uint32_t value) const {
+  using V = HitObjectValue;
+  const bool hit = object.type == HitObject::Type::Hit, empty = object.type == HitObject::Type::Empty;
+  const rt::Ray& ray = object.ray;
+  if (value == uint32_t(V::Type)) return uint32_t(object.type);
+  if (empty || value >= uint32_t(V::Count)) return 0;
+  const auto within = [&](V first, uint32_t count) { return value >= uint32_t(first) && value - uint32_t(first) < count; };
+  const auto element = [&](V first) { return size_t(value - uint32_t(first)); };
+  if (within(V::Origin, 3)) return bits(ray.origin[element(V::Origin)]);
+  if (within(V::Direction, 3)) return bits(ray.direction[element(V::Direction)]);
+  if (value == uint32_t(V::Tmin)) return bits(ray.t_min);
+  if (value == uint32_t(V::Tmax)) return bits(hit ? object.hit.t : ray.t_max);
+  if (value == uint32_t(V::RecordIndex)) return object.record;
+  if (within(V::RecordAddress, 2)) {
+    const Address data = (hit ? world_.table.hit : world_.table.miss).address(object.record) + kHandleBytes;
+    return uint32_t(data >> 32 * element(V::RecordAddress));
+  }
+  if (!hit) return 0;
+  const rt::InstanceLeaf& leaf = world_.memory->view<rt::InstanceLeaf>(object.hit.instance_leaf, 1)[0];
+  const auto in_object = [&](const std::array<float, 3>& x, size_t row, bool point) {
+    const float* m = leaf.world_to_object.data() + 4 * row;
+    const float rotated = m[0] * x[0] + m[1] * x[1] + m[2] * x[2];
+    return bits(point ? rotated + m[3] : rotated);
+  };
+  if (within(V::ObjectOrigin, 3)) return in_object(ray.origin, element(V::ObjectOrigin), true);
+  if (within(V::ObjectDirection, 3)) return in_object(ray.direction, element(V::ObjectDirection), false);
+  if (within(V::ObjectToWorld, 12)) return bits(leaf.object_to_world[element(V::ObjectToWorld)]);
+  if (within(V::WorldToObject, 12)) return bits(leaf.world_to_object[element(V::WorldToObject)]);
+  switch (V(value)) {
+    case V::Kind: return object.hit.kind;
+    case V::Primitive: return object.hit.primitive;
+    case V::Geometry: return object.hit.geometry;
+    case V::Instance: return object.hit.instance;
+    default: return object.hit.custom_index;
+  }
+}
+
+// Opens a trace whose rays have already found what the objects hold.
+bool Executor::begin_hit_object(WarpContext& warp, const isa::Inst& inst) {
+  LaneMask lanes = warp.regs.exec;
+  HitObject* const objects = lanes ? find_hit_object(warp, inst.operand[0], warp.depth) : nullptr;
+  if (lanes && !objects) return false;
+  if (!open_trace(warp, inst, 1)) return false;
+  for (; lanes; lanes &= lanes - 1) {
+    const int lane = std::countr_zero(lanes);
+    const HitObject& object = objects[lane];
+    rt::RayState& state = warp.frame().ray[size_t(lane)];
+    state.ray = object.ray;
+    state.ray.sbt_offset = state.ray.sbt_stride = 0;  // the record is known
+    state.ray.miss_index = object.record;
+    state.committed = object.hit;
+    state.committed.sbt_record = object.record;
+    state.candidate = {};
+    state.attribute_slot = state.broken = false;
+    state.status = object.type == HitObject::Type::Empty ? rt::RayStatus::Idle : rt::RayStatus::Done;
+    if (object.type == HitObject::Type::Hit && object.hit.kind < rt::kHitKindFront)
+      store_attributes(warp, warp.frame().attributes[size_t(lane)], lane, object);
+  }
+  warp.waiting_for_rays = false;
+  ++warp.simt.pc;
+  return true;
+}
+
+}  // namespace glint::core

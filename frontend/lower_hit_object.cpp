@@ -1,0 +1,140 @@
+// Hit objects (SPV_NV_shader_invocation_reorder): traces whose hit is kept, made-up hits, their values, their shaders.
+// SPDX-License-Identifier: Apache-2.0
+#include "frontend/lower.h"
+#include "isa/hit_object.h"
+
+namespace glint::frontend {
+namespace {
+
+using isa::HitObjectValue;
+
+// The number of an object among those of the shader.
+Operand object(Lowering& l, Id id) {
+  const Pointer p = l.pointer(id);
+  if (p.place != Place::RayQuery) l.unsupported("a hit object that is not a variable");
+  return p.base;
+}
+
+void append(Lowering& l, Operands& to, std::span<const uint32_t> values) {
+  for (const Id id : values) {
+    const Operands& parts = l.value(id);
+    to.insert(to.end(), parts.begin(), parts.end());
+  }
+}
+
+// Operands: object, the ten arguments of a trace, payload. Model: nothing moves, so a time before the payload does not count.
+void trace(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  const Operand which = object(l, inst.operands[0]);
+  lower_trace(l, std::span(inst.operands).subspan(1, 10), l.pointer(inst.operands.back()),
+              [&] { l.emit().effect("ho.record", {which}); });
+}
+
+// Operands: object, structure, instance, primitive, geometry, kind, record (or offset and stride), origin, t min,
+// direction, t max, a time that does not count, attributes.
+void record_hit(Lowering& l, const Instruction& inst, const LoweringRow& row) {
+  const size_t count = row.name32 == "ho.hit" ? 11 : 10;
+  Operands operands{object(l, inst.operands[0])};
+  append(l, operands, std::span(inst.operands).subspan(1, count));
+  operands.push_back(local_address(l, l.pointer(inst.operands.back())));
+  l.emit().effect(row.name32, std::move(operands));
+}
+
+void record_miss(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  Operands operands{object(l, inst.operands[0])};
+  append(l, operands, std::span(inst.operands).subspan(1, 5));
+  l.emit().effect("ho.miss", std::move(operands));
+}
+
+void record_empty(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  l.emit().effect("ho.empty", {object(l, inst.operands[0])});
+}
+
+void execute(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  Emitter& e = l.emit();
+  const Operand which = object(l, inst.operands[0]), payload = local_address(l, l.pointer(inst.operands[1]));
+  const Operand attributes = attribute_buffers_address(l);
+  e.marker(VirtualInst::Kind::SaveLive);
+  e.effect("ho.execute", {which, payload, attributes});
+  e.effect("call.sbt.hit", {});
+  e.effect("rt.end", {});
+  e.marker(VirtualInst::Kind::RestoreLive);
+  forget_after_call(l);
+}
+
+Operand value(Lowering& l, const Instruction& inst, HitObjectValue field, uint32_t element = 0) {
+  return l.emit().fresh("ho.value", {object(l, inst.operands[0]), Operand::value(uint32_t(field) + element)});
+}
+
+template <HitObjectValue kField>
+void get(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  Operands parts;
+  for (uint32_t i = 0; i < l.layout().num_parts(inst.type); ++i) parts.push_back(value(l, inst, kField, i));
+  l.set(inst.result, std::move(parts));
+}
+
+// Four columns of three rows; the values are row by row.
+template <HitObjectValue kField>
+void get_matrix(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  Operands parts;
+  for (uint32_t column = 0; column < 4; ++column)
+    for (uint32_t row = 0; row < 3; ++row) parts.push_back(value(l, inst, kField, 4 * row + column));
+  l.set(inst.result, std::move(parts));
+}
+
+template <uint32_t kType>
+void is_of_type(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  l.set(inst.result, {l.emit().value("setp.eq.u32", {value(l, inst, HitObjectValue::Type), Operand::value(kType)})});
+}
+
+void get_attributes(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  const Operand address = local_address(l, l.pointer(inst.operands[1]));
+  l.emit().effect("ho.attributes", {object(l, inst.operands[0]), address});
+  l.note_store(Place::Local);
+}
+
+// Model: lanes keep their warps. A program cannot see more than that its hit shaders run less together.
+void reorder(Lowering&, const Instruction&, const LoweringRow&) {
+}
+
+using enum spv::Op;
+constexpr LoweringRow kRows[] = {
+    {OpHitObjectTraceRayNV, trace, ""},
+    {OpHitObjectTraceRayMotionNV, trace, ""},
+    {OpHitObjectRecordHitNV, record_hit, "ho.hit"},
+    {OpHitObjectRecordHitMotionNV, record_hit, "ho.hit"},
+    {OpHitObjectRecordHitWithIndexNV, record_hit, "ho.hit.record"},
+    {OpHitObjectRecordHitWithIndexMotionNV, record_hit, "ho.hit.record"},
+    {OpHitObjectRecordMissNV, record_miss, ""},
+    {OpHitObjectRecordMissMotionNV, record_miss, ""},
+    {OpHitObjectRecordEmptyNV, record_empty, ""},
+    {OpHitObjectExecuteShaderNV, execute, ""},
+    {OpHitObjectGetAttributesNV, get_attributes, ""},
+    {OpHitObjectIsEmptyNV, is_of_type<0>, ""},
+    {OpHitObjectIsHitNV, is_of_type<1>, ""},
+    {OpHitObjectIsMissNV, is_of_type<2>, ""},
+    {OpHitObjectGetHitKindNV, get<HitObjectValue::Kind>, ""},
+    {OpHitObjectGetPrimitiveIndexNV, get<HitObjectValue::Primitive>, ""},
+    {OpHitObjectGetGeometryIndexNV, get<HitObjectValue::Geometry>, ""},
+    {OpHitObjectGetInstanceIdNV, get<HitObjectValue::Instance>, ""},
+    {OpHitObjectGetInstanceCustomIndexNV, get<HitObjectValue::CustomIndex>, ""},
+    {OpHitObjectGetShaderBindingTableRecordIndexNV, get<HitObjectValue::RecordIndex>, ""},
+    {OpHitObjectGetShaderRecordBufferHandleNV, get<HitObjectValue::RecordAddress>, ""},
+    {OpHitObjectGetRayTMinNV, get<HitObjectValue::Tmin>, ""},
+    {OpHitObjectGetRayTMaxNV, get<HitObjectValue::Tmax>, ""},
+    {OpHitObjectGetWorldRayOriginNV, get<HitObjectValue::Origin>, ""},
+    {OpHitObjectGetWorldRayDirectionNV, get<HitObjectValue::Direction>, ""},
+    {OpHitObjectGetObjectRayOriginNV, get<HitObjectValue::ObjectOrigin>, ""},
+    {OpHitObjectGetObjectRayDirectionNV, get<HitObjectValue::ObjectDirection>, ""},
+    {OpHitObjectGetObjectToWorldNV, get_matrix<HitObjectValue::ObjectToWorld>, ""},
+    {OpHitObjectGetWorldToObjectNV, get_matrix<HitObjectValue::WorldToObject>, ""},
+    {OpReorderThreadWithHitObjectNV, reorder, ""},
+    {OpReorderThreadWithHintNV, reorder, ""},
+};
+
+}  // namespace
+
+std::span<const LoweringRow> hit_object_rows() {
+  return kRows;
+}
+
+}  // namespace glint::frontend

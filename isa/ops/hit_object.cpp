@@ -1,0 +1,52 @@
+// Hit objects: what a ray found, kept by the shader until it has the hit's shader executed.
+// SPDX-License-Identifier: Apache-2.0
+#include "isa/hit_object.h"
+
+#include "isa/op_makers.h"
+#include "isa/ops/families.h"
+
+namespace glint::isa::GLINT_ISA_PATH {
+namespace {
+
+constexpr OpRow object(std::string_view name, HitObjectOp detail, Operands operands, std::string_view doc) {
+  OpRow row = effect_op(name, Class::Rt, Unit::RtUnit, Effect::HitObject, operands, doc);
+  row.detail = uint16_t(detail);
+  return row;
+}
+
+constexpr OpRow execute() {
+  OpRow row = effect_op("ho.execute", Class::Rt, Unit::RtUnit, Effect::Trace, {Src32, Src32, Src32},
+                        "Opens a trace that has found what an object holds: object, payload, attributes; call.sbt.hit and "
+                        "rt.end follow.");
+  row.detail = uint16_t(TraceKind::HitObject);
+  return row;
+}
+
+constexpr OpRow kRows[] = {
+    object("ho.record", HitObjectOp::Record, {Src32}, "Keeps what the innermost trace has found in an object."),
+    object("ho.empty", HitObjectOp::Empty, {Src32}, "Makes an object empty."),
+    object("ho.miss", HitObjectOp::Miss, {Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32},
+           "Makes an object a miss: object, miss index, origin, tmin, direction, tmax."),
+    object("ho.hit", HitObjectOp::Hit,
+           {Src32, Src64, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32,
+            Src32, Src32},
+           "Makes an object a hit: object, structure, instance, primitive, geometry, kind, SBT offset, SBT stride, origin, "
+           "tmin, direction, tmax, local address of the attributes."),
+    object("ho.hit.record", HitObjectOp::HitAtRecord,
+           {Src32, Src64, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32,
+            Src32},
+           "As ho.hit, with the index of the hit record instead of SBT offset and stride."),
+    execute(),
+    object("ho.value", HitObjectOp::Value, {Dst32, Src32, Src32},
+           "A value of an object: object, number of the value (isa/hit_object.h)."),
+    object("ho.attributes", HitObjectOp::Attributes, {Src32, Src32},
+           "Stores the 64 bytes of an object's attributes: object, local address."),
+};
+
+}  // namespace
+
+RowList hit_object_rows() {
+  return {kRows, std::size(kRows)};
+}
+
+}  // namespace glint::isa::GLINT_ISA_PATH
