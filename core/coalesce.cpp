@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/coalesce.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "base/check.h"
@@ -57,6 +58,25 @@ void coalesce_local(LineList& out, const LocalLayout& layout, uint32_t warp_slot
       out.add(layout.base + ((uint64_t{warp_slot} * layout.words + word) * kLanes + uint64_t(lane)) * 4, 4);
     });
   }
+}
+
+uint32_t shared_passes(const isa::Access& access, LaneMask lanes, uint32_t bytes, bool is_atomic) {
+  constexpr size_t kBanks = 32;
+  constexpr size_t kMost = 4 * size_t(kLanes);  // words of a warp's widest access
+  std::array<std::array<uint32_t, kMost>, kBanks> words;
+  std::array<uint32_t, kBanks> count{};
+  uint32_t passes = 1;
+  for_each_lane(lanes, [&](int lane) {
+    for (uint32_t byte = 0; byte < bytes; byte += 4) {
+      const auto word = uint32_t((access.address[size_t(lane)] + byte) / 4);
+      const size_t bank = word % kBanks;
+      const auto known = words[bank].begin() + count[bank];
+      if (!is_atomic && std::find(words[bank].begin(), known, word) != known) continue;
+      words[bank][count[bank]++] = word;
+      passes = std::max(passes, count[bank]);
+    }
+  });
+  return passes;
 }
 
 }  // namespace glint::core

@@ -53,4 +53,8 @@ void coalesce_global(LineList& out, const mem::AddressSpace& memory, const isa::
 void coalesce_local(LineList& out, const LocalLayout& layout, uint32_t warp_slot, const isa::Access& access,
                     LaneMask lanes, uint32_t bytes);
 
+// Times that shared memory has to be read or written for a warp's access: the largest number of different words in one
+// bank (32 banks of 4 bytes; lanes that want one word share it), of atomics the largest number of lanes.
+uint32_t shared_passes(const isa::Access& access, LaneMask lanes, uint32_t bytes, bool is_atomic);
+
 }  // namespace glint::core

@@ -19,19 +19,27 @@ CoreCell::CoreCell(const Params& params, const Context& context)
       num_slots_(occupancy(params, context.world.image->num_registers)),
       local_{context.local_physical, context.world.local_bytes / 4},
       table_(*context.world.image, params),
-      executor_(context.world),
+      executor_(context.world, context.clock_mhz),
       lsu_(params, context.l1),
       schedulers_(params.schedulers),
       warps_(num_slots_),
       scoreboards_(num_slots_),
       front_(num_slots_),
       outstanding_(num_slots_),
+      fence_(num_slots_),
+      home_(num_slots_),
+      warps_per_block_(executor_.warps_per_block()),
+      seat_{0, num_slots_, context.index, context.cores},
       rays_issued_(num_slots_),
       rays_pc_(num_slots_),
       stats_(context.parent, context.name),
       op_counts_(isa::op_table().size()),
       op_lanes_(isa::op_table().size()) {
   GLINT_CHECK(num_slots_ > 0, "no warp fits: check() reports this");
+  const bool counts_blocks = world_.block_size[0] != 0;
+  const uint32_t places = counts_blocks ? std::min(params.blocks, num_slots_ / warps_per_block_) : num_slots_;
+  GLINT_CHECK(places > 0, "no block fits: check_block() reports this");
+  for (uint32_t i = 0; i < places; ++i) residents_.push_back(std::make_unique<Resident>());
   const uint32_t warps_each = (num_slots_ + params.schedulers - 1) / params.schedulers;
   for (uint32_t s = 0; s < params.schedulers; ++s) {
     schedulers_[s].index = s;
@@ -46,16 +54,33 @@ uint64_t CoreCell::local_bytes(const Params& params, const World& world) {
   return layout.bytes_per_warp() * occupancy(params, world.image->num_registers);
 }
 
-void CoreCell::launch(Cycle now, uint32_t warp_index, Cycle ready) {
-  GLINT_CHECK(has_free_slot(), "no free warp slot");
+bool CoreCell::has_room() const {
+  return num_resident_ + warps_per_block_ <= num_slots_ && num_blocks_ < residents_.size() &&
+         uint64_t{num_blocks_ + 1} * world_.shared_bytes <= params_.shared_bytes;
+}
+
+void CoreCell::launch(Cycle now, uint32_t block_index, Cycle ready) {
+  GLINT_CHECK(has_room(), "no room for a block");
   if (num_resident_ == 0)
     for (SchedulerState& scheduler : schedulers_) scheduler.reason = Stall::NoWarp;
   account_until(now);
+  Resident& home = **std::find_if(residents_.begin(), residents_.end(), [](const auto& r) { return r->warps == 0; });
+  executor_.start(home.block, block_index);
+  home.warps = warps_per_block_;
+  ++num_blocks_;
+  ++stats_.blocks;
+  for (uint32_t w = 0; w < warps_per_block_; ++w) launch_warp(home, w, ready);
+}
+
+void CoreCell::launch_warp(Resident& home, uint32_t warp_in_block, Cycle ready) {
   uint32_t slot = 0;
   while (scheduler_of(slot).resident >> (slot / params_.schedulers) & 1) ++slot;
   SchedulerState& scheduler = scheduler_of(slot);
   const uint32_t local = slot / params_.schedulers;
-  executor_.start(warps_[slot], warp_index);
+  seat_.slot = slot;
+  executor_.start(warps_[slot], home.block, warp_in_block, seat_);
+  home_[slot] = &home;
+  fence_[slot] = 0;
   scoreboards_[slot].reset();
   front_[slot] = {ready, Stall::Dispatch};
   scheduler.resident |= uint64_t{1} << local;

@@ -35,6 +35,8 @@ class CoreCell final : public Cell {
     stats::Group* parent = nullptr;
     std::string name = "core";     // of its statistics: "core[3]"
     bool no_skip = false;          // steps every cycle: slow, for checking
+    uint32_t index = 0, cores = 1;
+    double clock_mhz = 0.0;        // 0: programs read no time
   };
   // Program and parameters must have passed check().
   CoreCell(const Params& params, const Context& context);
@@ -46,9 +48,11 @@ class CoreCell final : public Cell {
   // Launching, between windows only.
   uint32_t num_slots() const { return num_slots_; }
   uint32_t num_resident() const { return num_resident_; }
-  bool has_free_slot() const { return num_resident_ < num_slots_; }
-  // Puts warp `warp_index` of the launch into the lowest free slot; its first instruction can issue at `ready`.
-  void launch(Cycle now, uint32_t warp_index, Cycle ready);
+  // Room for a whole block: warp slots, shared memory, and a block's place.
+  // Model: a warp's slot and registers are free when the warp has ended; hardware keeps them until the block has.
+  bool has_room() const;
+  // Puts block `block_index` of the launch into the lowest free slots; its first instructions can issue at `ready`.
+  void launch(Cycle now, uint32_t block_index, Cycle ready);
 
   // Cell.
   void advance(Cycle from, Cycle until) override;
@@ -73,6 +77,13 @@ class CoreCell final : public Cell {
   const std::vector<uint64_t>& op_lanes() const { return op_lanes_; }
 
  private:
+  // A block that is here: until all of its warps' accesses have ended.
+  struct Resident {
+    Block block;
+    uint32_t warps = 0;  // of it that hold a slot; 0: the place is free
+  };
+
+  void launch_warp(Resident& home, uint32_t warp_in_block, Cycle ready);
   void step(Cycle now);
   void account_until(Cycle now);
   SchedulerState& scheduler_of(uint32_t slot) { return schedulers_[slot % params_.schedulers]; }
@@ -84,6 +95,10 @@ class CoreCell final : public Cell {
   bool start_access(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now);
   void collect_lines(MemoryAccess& access, const Issued& issued);
   void collect_texels(MemoryAccess& access, LaneMask lanes);
+  void come_to_barrier(uint32_t slot, Cycle now, Cycle latency);
+  void pass_barrier(const Block& block, Cycle at);
+  void start_fence(uint32_t slot, const IssueRow& row, Cycle now);
+  void collect_memory(MemoryAccess& access, const Issued& issued);
   void start_rays(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now);
   void complete(uint32_t access_id, Cycle now);
   void complete_rays(uint32_t slot, Cycle now);
@@ -106,6 +121,13 @@ class CoreCell final : public Cell {
   std::vector<Scoreboard> scoreboards_;
   std::vector<Scoreboard::Ready> front_;   // a slot: before this the warp issues nothing, whatever the registers
   std::vector<uint32_t> outstanding_;      // a slot: accesses in flight
+  std::vector<Cycle> fence_;               // a slot: latency of the fence that waits for them; 0: none
+  std::vector<Resident*> home_;            // a slot: the block of its warp
+  std::vector<std::unique_ptr<Resident>> residents_;
+  const uint32_t warps_per_block_;
+  Seat seat_;                              // of the warp launched last
+  uint32_t num_blocks_ = 0;                // resident
+  Cycle barrier_free_ = 0;                 // of the core's barrier unit
   std::vector<Cycle> rays_issued_;         // a slot: when its rays were handed over
   std::vector<uint32_t> rays_pc_;
   uint32_t num_resident_ = 0;

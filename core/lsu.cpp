@@ -10,7 +10,7 @@
 namespace glint::core {
 
 Lsu::Lsu(const Params& params, mem::L1Port& l1)
-    : l1_(l1), params_(params.lsu), lsu_unit_(params.units.lsu), tex_unit_(params.units.tex),
+    : l1_(l1), params_(params.lsu), shared_(params.shared), lsu_unit_(params.units.lsu), tex_unit_(params.units.tex),
       num_queues_(params.schedulers), queue_capacity_(params.lsu.queue),
       accesses_(params.lsu.accesses, MemoryAccess(l1.line_bytes())) {
   for (Pipe& pipe : pipes_) pipe.id.resize(accesses_.size());
@@ -26,7 +26,8 @@ MemoryAccess& Lsu::take(uint32_t scheduler, Cycle now) {
   queue.id[(queue.head + queue.count++) % kMaxQueue] = id;
   MemoryAccess& access = accesses_[id];
   access.lines.clear();
-  access.num_sent = access.num_answers = 0;
+  access.num_sent = access.num_answers = access.passes = 0;
+  access.atomic = false;
   access.issued = now;
   return access;
 }
@@ -55,7 +56,7 @@ void Lsu::accept(Cycle now) {
     if (queue.count == 0 || now < queue.free_at) continue;
     const uint32_t id = queue.id[queue.head];
     MemoryAccess& access = accesses_[id];
-    Pipe& pipe = pipes_[access.texture];
+    Pipe& pipe = pipes_[pipe_of(access)];
     if (access.issued >= now || now < pipe.free_at) continue;
     queue.head = (queue.head + 1) % kMaxQueue;
     --queue.count;
@@ -64,6 +65,12 @@ void Lsu::accept(Cycle now) {
     // The cycle between issue and here is the first of the latency, so that an unloaded unit adds just that.
     access.ready = now - 1 + (access.texture ? tex_unit_ : lsu_unit_).latency;
     if (access.texture) pipe.free_at = now + tex_unit_.interval;
+    if (access.passes > 0) {
+      const Cycle more = shared_cycles(access) - 1;
+      if (&pipe == &pipes_[kShared]) access.ready = now - 1 + (access.atomic ? shared_.atomic_latency : shared_.latency);
+      access.ready += more;
+      pipe.free_at = now + 1 + more;
+    }
     pipe.id[(pipe.head + pipe.count++) % pipe.id.size()] = id;
     accept_at_ = now + params_.accept_interval;
     next_queue_ = (q + 1) % num_queues_;
@@ -71,8 +78,23 @@ void Lsu::accept(Cycle now) {
   }
 }
 
+Cycle Lsu::shared_cycles(const MemoryAccess& access) const {
+  return access.atomic ? 1 + (access.passes - 1) * Cycle{shared_.atomic_pass} : access.passes;
+}
+
+void Lsu::pop(Pipe& pipe) {
+  pipe.head = uint32_t((pipe.head + 1) % pipe.id.size());
+  --pipe.count;
+}
+
+void Lsu::finish_shared(Cycle now) {
+  Pipe& pipe = pipes_[kShared];
+  for (; pipe.count > 0 && accesses_[pipe.front()].ready <= now; pop(pipe)) completed_.push_back(pipe.front());
+}
+
 // One line a cycle; the pipe not served last goes first.
 void Lsu::send(Cycle now) {
+  finish_shared(now);
   if (now < port_free_) return;
   for (uint32_t i = 0; i < 2; ++i) {
     const uint32_t p = (next_pipe_ + i) % 2;
@@ -92,8 +114,7 @@ bool Lsu::send_line(Cycle now, Pipe& pipe) {
   const auto sectors = uint32_t(std::popcount(line.sectors));
   port_free_ = now + (sectors + params_.sectors_per_cycle - 1) / params_.sectors_per_cycle;
   if (++access.num_sent == lines.size()) {
-    pipe.head = uint32_t((pipe.head + 1) % pipe.id.size());
-    --pipe.count;
+    pop(pipe);
     if (access.write) completed_.push_back(id);
   }
   return true;
@@ -102,12 +123,12 @@ bool Lsu::send_line(Cycle now, Pipe& pipe) {
 Cycle Lsu::next_event(Cycle now) const {
   Cycle next = kNever;
   for (const Pipe& pipe : pipes_)
-    if (pipe.count > 0) next = std::min(next, std::max(accesses_[pipe.front()].ready, port_free_));
+    if (pipe.count > 0) next = std::min(next, std::max(accesses_[pipe.front()].ready, &pipe == &pipes_[kShared] ? 0 : port_free_));
   for (uint32_t q = 0; q < num_queues_; ++q) {
     const Queue& queue = queues_[q];
     if (queue.count == 0) continue;
     const MemoryAccess& access = accesses_[queue.id[queue.head]];
-    next = std::min(next, std::max({queue.free_at, access.issued + 1, accept_at_, pipes_[access.texture].free_at}));
+    next = std::min(next, std::max({queue.free_at, access.issued + 1, accept_at_, pipes_[pipe_of(access)].free_at}));
   }
   return next == kNever ? kNever : std::max(next, now + 1);
 }

@@ -22,6 +22,8 @@ struct MemoryAccess {
   mem::Traffic traffic = mem::Traffic::ShaderGlobal;
   bool write = false;
   bool texture = false;       // through the texture unit
+  bool atomic = false;        // one that shared memory does, if it is there
+  uint32_t passes = 0;        // of shared memory; an access may go there and to lines (generic addresses)
   LineList lines;
 
  private:
@@ -30,7 +32,9 @@ struct MemoryAccess {
   Cycle ready = 0;            // in the pipe: when its first line can go to the L1
 };
 
-// Queue of each scheduler -> (accept_interval) -> load-store or texture pipe -> one line a cycle -> L1.
+// Queue of each scheduler -> (accept_interval) -> load-store or texture pipe -> one line a cycle -> L1,
+//                                              or -> shared memory, one pass a cycle.
+// Model: shared memory and L1 do not disturb each other, where hardware has one array for both.
 // Model: one queue for both pipes, in order; the texture unit shares the L1's door with loads and stores.
 class Lsu {
  public:
@@ -73,13 +77,19 @@ class Lsu {
   void accept(Cycle now);
   void send(Cycle now);
   bool send_line(Cycle now, Pipe& pipe);
+  void finish_shared(Cycle now);
+  void pop(Pipe& pipe);
+  static size_t pipe_of(const MemoryAccess& access) { return access.lines.lines().empty() ? kShared : access.texture; }
+  Cycle shared_cycles(const MemoryAccess& access) const;
 
   mem::L1Port& l1_;
   const LsuParams params_;
+  const SharedParams shared_;
   const UnitParams lsu_unit_, tex_unit_;
   const uint32_t num_queues_, queue_capacity_;
   std::array<Queue, kMaxSchedulers> queues_{};
-  std::array<Pipe, 2> pipes_;  // load-store, texture
+  static constexpr size_t kShared = 2;
+  std::array<Pipe, 3> pipes_;  // load-store, texture, shared memory
   uint32_t next_queue_ = 0, next_pipe_ = 0;
   Cycle accept_at_ = 0, port_free_ = 0;
   uint64_t num_vacated_ = 0;

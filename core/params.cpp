@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "core/block.h"
+
 namespace glint::core {
 namespace {
 
@@ -25,6 +27,18 @@ void check(const Params& params, uint32_t num_registers, Diagnostics& diagnostic
   diagnostics.error({}, fmt::format("a warp of this pipeline needs {} registers ({} a lane), a core has {}",
                                     registers_per_warp(num_registers), num_registers, params.registers),
                     fmt::format("set core.registers to {} or more", registers_per_warp(num_registers)));
+}
+
+void check_block(const Params& params, uint32_t num_registers, uint64_t threads, uint32_t shared_bytes, Diagnostics& diagnostics) {
+  if (threads > kMaxBlockThreads)
+    diagnostics.error({}, fmt::format("a block of {} threads, expected at most {}", threads, kMaxBlockThreads));
+  const uint64_t warps = (threads + kLanes - 1) / kLanes, fit = occupancy(params, num_registers);
+  if (fit > 0 && warps > fit)
+    diagnostics.error({}, fmt::format("a block has {} warps, and {} fit into a core", warps, fit),
+                      "core.warps and core.registers limit them");
+  if (shared_bytes > params.shared_bytes)
+    diagnostics.error({}, fmt::format("a block needs {} bytes of shared memory, a core has {}", shared_bytes, params.shared_bytes),
+                      fmt::format("set core.shared_bytes to {} or more", shared_bytes));
 }
 
 }  // namespace glint::core

@@ -89,13 +89,42 @@ struct LsuParams {
   }
 };
 
+// Defaults: microbenchmarks of an H200. Model: conflicts add a pass each; there, n lanes in a bank take n cycles of the
+// unit and 2n - 5 more of latency.
+struct SharedParams {
+  uint32_t latency = 23;         // dependent loads
+  uint32_t atomic_latency = 76;  // dependent atom.shared.add.u32; 126 when 32 lanes meet in a word
+  uint32_t atomic_pass = 2;
+  static constexpr auto params() {
+    return std::tuple{
+        param(&SharedParams::latency, "latency", "cycle", "A load without bank conflicts, issue to dependent issue.", 1, 1000),
+        param(&SharedParams::atomic_latency, "atomic_latency", "cycle", "The same of an atomic.", 1, 1000),
+        param(&SharedParams::atomic_pass, "atomic_pass", "cycle", "Each further turn of lanes that meet in a bank, for an atomic.", 1, 100)};
+  }
+};
+
+// Defaults: an H200, without stores before. Model: no acknowledgement travels: a fence waits until the warp's accesses
+// have been answered or taken by the L1, whose queue keeps their order, and then for this time.
+struct FenceParams {
+  uint32_t block = 36, gpu = 289, system = 1055;
+  static constexpr auto params() {
+    return std::tuple{param(&FenceParams::block, "block", "cycle", "membar.cta, after the warp's last access.", 1, 60000),
+                      param(&FenceParams::gpu, "gpu", "cycle", "membar.gl, after the warp's last access.", 1, 60000),
+                      param(&FenceParams::system, "system", "cycle", "membar.sys, after the warp's last access.", 1, 60000)};
+  }
+};
+
 struct Params {
   uint32_t warps = 32;
   uint32_t schedulers = 4;
   uint32_t registers = 32768;
+  uint32_t blocks = 16;            // Turing and GA10x (CUDA programming guide, compute capability 7.5 and 8.6)
+  uint32_t shared_bytes = 65536;   // Turing: up to 64 KiB of the 96 KiB that it shares with the L1
   PolicyChoice<IssueScheduler> issue{"gto"};
   Units units;
   LsuParams lsu;
+  SharedParams shared;
+  FenceParams fence;
   uint32_t launch_latency = 5000;  // Vulkan-Sim, -gpgpu_kernel_launch_latency
   uint32_t warp_launch_latency = 0;
   uint64_t instruction_budget = 100'000'000;
@@ -105,9 +134,13 @@ struct Params {
         param(&Params::schedulers, "schedulers", "scheduler",
             "Schedulers of a core; warp slot w belongs to scheduler w mod this.", 1, kMaxSchedulers),
         param(&Params::registers, "registers", "register", "32-bit registers of a core.", 256, 1 << 20),
+        param(&Params::blocks, "blocks", "block", "Resident blocks of a core; launches without blocks do not count.", 1, kMaxWarps),
+        param(&Params::shared_bytes, "shared_bytes", "byte", "Shared memory of a core.", 0, 1 << 20),
         policy(&Params::issue, "issue", "Which ready warp a scheduler issues from."),
         section(&Params::units, "units", "Latency and initiation interval of the execution units."),
         section(&Params::lsu, "lsu", "Load-store unit."),
+        section(&Params::shared, "shared", "Shared memory: 32 banks of 4 bytes."),
+        section(&Params::fence, "fence", "Memory fences."),
         param(&Params::launch_latency, "launch_latency", "cycle",
             "From the launch to the first instruction.", 0, 1'000'000),
         param(&Params::warp_launch_latency, "warp_launch_latency", "cycle",
@@ -120,7 +153,8 @@ struct Params {
 // Warps that fit when each lane holds `num_registers` registers; 0 when not even one does.
 uint32_t occupancy(const Params& params, uint32_t num_registers);
 
-// Reports a program that cannot run on such a core.
+// Reports a program that cannot run on such a core, or a block that does not fit.
 void check(const Params& params, uint32_t num_registers, Diagnostics& diagnostics);
+void check_block(const Params& params, uint32_t num_registers, uint64_t threads, uint32_t shared_bytes, Diagnostics& diagnostics);
 
 }  // namespace glint::core

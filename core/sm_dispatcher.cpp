@@ -1,4 +1,4 @@
-// Hands the warps of a launch to the cores.
+// Hands the blocks of a launch to the cores.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/sm_dispatcher.h"
 
@@ -6,10 +6,10 @@
 
 namespace glint::core {
 
-Dispatcher::Dispatcher(const Params& params, uint32_t num_warps, std::vector<CoreCell*> cores)
+Dispatcher::Dispatcher(const Params& params, uint32_t num_blocks, std::vector<CoreCell*> cores)
     : launch_latency_(params.launch_latency),
       warp_launch_latency_(params.warp_launch_latency),
-      num_warps_(num_warps),
+      num_blocks_(num_blocks),
       cores_(std::move(cores)) {}
 
 void Dispatcher::dispatch(Cycle now) {
@@ -17,7 +17,7 @@ void Dispatcher::dispatch(Cycle now) {
   for (bool any = true; any && !done();) {
     any = false;
     for (CoreCell* core : cores_) {
-      if (done() || !core->has_free_slot()) continue;
+      if (done() || !core->has_room()) continue;
       core->launch(now, next_++, ready);
       any = true;
     }

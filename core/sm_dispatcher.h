@@ -1,4 +1,4 @@
-// Hands the warps of a launch to the cores: in launch order, to whichever core has a free slot.
+// Hands the blocks of a launch to the cores: in launch order, to whichever core has room.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -10,20 +10,20 @@
 
 namespace glint::core {
 
-// Acts between windows only, one warp a core in turn, cores in their fixed order: so the assignment is a function of the
-// model and not of how cells are run. A slot that becomes free in a window is filled at the window's end.
+// Acts between windows only, one block a core in turn, cores in their fixed order: so the assignment is a function of the
+// model and not of how cells are run. Room that becomes free in a window is filled at the window's end.
 // Model: hardware would fill it some cycles earlier or later; windows are shorter than a memory access.
 class Dispatcher {
  public:
-  Dispatcher(const Params& params, uint32_t num_warps, std::vector<CoreCell*> cores);
-  // Fills free slots at `now`, the start of a window.
+  Dispatcher(const Params& params, uint32_t num_blocks, std::vector<CoreCell*> cores);
+  // Fills the cores at `now`, the start of a window.
   void dispatch(Cycle now);
-  bool done() const { return next_ == num_warps_; }
-  uint32_t num_dispatched() const { return next_; }
+  bool done() const { return next_ == num_blocks_; }
+  uint32_t num_dispatched() const { return next_; }  // blocks
 
  private:
   const Cycle launch_latency_, warp_launch_latency_;
-  const uint32_t num_warps_;
+  const uint32_t num_blocks_;
   std::vector<CoreCell*> cores_;
   uint32_t next_ = 0;
 };

@@ -93,7 +93,17 @@ void CoreCell::issue(SchedulerState& scheduler, uint32_t local, Cycle now) {
     case Finish::Rays:
       start_rays(slot, row, issued, now);
       break;
+    case Finish::Barrier:
+      come_to_barrier(slot, now, row.latency);
+      stats_.latency.add(row.klass, row.latency);
+      break;
+    case Finish::Fence:
+      start_fence(slot, row, now);
+      stats_.latency.add(row.klass, row.latency);
+      break;
   }
+  // The end of a warp may complete a barrier for the others.
+  if (issued.finished) pass_barrier(*warp.block, now + params_.units.barrier.latency);
   if (warp.instructions > params_.instruction_budget) {
     fault_ = no_end_in_sight(world_, warps_[slot], issued.pc, params_.instruction_budget);
   } else if (issued.finished) {
@@ -101,6 +111,33 @@ void CoreCell::issue(SchedulerState& scheduler, uint32_t local, Cycle now) {
   } else {
     refresh(slot);
   }
+}
+
+// The core's barrier unit takes one warp after another; those that wait go on a latency after the last.
+void CoreCell::come_to_barrier(uint32_t slot, Cycle now, Cycle latency) {
+  ++stats_.barriers;
+  barrier_free_ = std::max(barrier_free_, now) + params_.units.barrier.interval;
+  front_[slot] = {barrier_free_ + latency, Stall::Barrier};
+  if (warps_[slot].waiting_at_barrier) front_[slot].at = kNever;
+  pass_barrier(*warps_[slot].block, barrier_free_ + latency);
+}
+
+// Warps of the block whose barrier has opened can issue from `at` on.
+void CoreCell::pass_barrier(const Block& block, Cycle at) {
+  for (uint32_t w = 0; w < block.num_warps(); ++w) {
+    if (!(block.live() >> w & 1) || block.warps[w]->waiting_at_barrier) continue;
+    const auto slot = uint32_t(block.warps[w] - warps_.data());
+    if (front_[slot].at != kNever || front_[slot].wait != Stall::Barrier) continue;
+    front_[slot].at = at;
+    refresh(slot);
+  }
+}
+
+void CoreCell::start_fence(uint32_t slot, const IssueRow& row, Cycle now) {
+  ++stats_.fences;
+  const bool waits = outstanding_[slot] > 0;
+  fence_[slot] = waits ? row.latency : 0;
+  front_[slot] = {waits ? kNever : now + row.latency, Stall::Fence};
 }
 
 void CoreCell::count(const IssueRow& row, const Issued& issued) {
@@ -123,12 +160,14 @@ void CoreCell::count(const IssueRow& row, const Issued& issued) {
 }
 
 void CoreCell::count_access(const isa::OpRow& op) {
-  const bool local = op.memory.space == isa::Space::Local;
-  // Every other effect makes no access.
-  if (op.effect == Effect::Load || op.effect == Effect::Atomic) {
-    ++(local ? stats_.local_loads : stats_.global_loads);
+  // Generic accesses count where most of them go; every other effect makes no access.
+  const bool local = op.memory.space == isa::Space::Local, shared = op.memory.space == isa::Space::Shared;
+  if (op.effect == Effect::Atomic) {
+    ++(shared ? stats_.shared_atomics : stats_.global_atomics);
+  } else if (op.effect == Effect::Load) {
+    ++(shared ? stats_.shared_loads : local ? stats_.local_loads : stats_.global_loads);
   } else if (op.effect == Effect::Store) {
-    ++(local ? stats_.local_stores : stats_.global_stores);
+    ++(shared ? stats_.shared_stores : local ? stats_.local_stores : stats_.global_stores);
   } else if (op.effect == Effect::Texture) {
     ++stats_.texture_fetches;
   } else if (op.effect == Effect::SurfaceLoad || op.effect == Effect::SurfaceAtomic) {
@@ -151,12 +190,16 @@ bool CoreCell::start_access(uint32_t slot, const IssueRow& row, const Issued& is
   access.pc = issued.pc;
   access.write = issued.row->effect == Effect::Store || issued.row->effect == Effect::SurfaceStore;
   collect_lines(access, issued);
+  // red: nobody waits for an answer.
+  access.write |= issued.row->effect == Effect::Atomic && row.num_defs == 0;
   ++outstanding_[slot];
   if (row.finish == Finish::CallRecord)
     front_[slot] = {kNever, Stall::Call};
   else
     scoreboards_[slot].set(table_.defs(row), {kNever, row.wait});
   count_access(*issued.row);
+  stats_.shared_passes += access.passes;
+  if (access.lines.lines().empty()) return true;
   ++stats_.accesses;
   stats_.lines += access.lines.lines().size();
   stats_.sectors += access.lines.num_sectors();
@@ -164,26 +207,36 @@ bool CoreCell::start_access(uint32_t slot, const IssueRow& row, const Issued& is
 }
 
 void CoreCell::collect_lines(MemoryAccess& access, const Issued& issued) {
-  const isa::Memory& memory = issued.row->memory;
   const isa::Access& addresses = warps_[access.slot].regs.access;
   access.texture = false;
-  if (memory.space == isa::Space::Local) {
-    access.traffic = mem::Traffic::ShaderLocal;
-    coalesce_local(access.lines, local_, access.slot, addresses, issued.lanes, uint32_t(memory.bytes * memory.count));
-  } else if (issued.row->effect == Effect::Texture) {
+  if (issued.row->effect == Effect::Texture) {
     access.traffic = mem::Traffic::ShaderTexture;
     collect_texels(access, issued.lanes);
   } else if (is_surface(issued.row->effect)) {
     access.traffic = mem::Traffic::ShaderSurface;
     collect_texels(access, issued.lanes);
-  } else if (issued.row->effect == Effect::CallCandidate || issued.row->effect == Effect::CallAnyHit ||
-             issued.row->effect == Effect::CallHit) {
+  } else if (isa::is_shader_call(issued.row->effect)) {
     access.traffic = mem::Traffic::ShaderBinding;
     coalesce_global(access.lines, *world_.memory, addresses, issued.lanes, mem::kSectorBytes);
   } else {
-    access.traffic = mem::Traffic::ShaderGlobal;
-    coalesce_global(access.lines, *world_.memory, addresses, issued.lanes, uint32_t(memory.bytes * memory.count));
+    collect_memory(access, issued);
   }
+}
+
+// Loads, stores and atomics. Model: lanes of a generic access that are in local memory travel as global traffic, and
+// those in the constant bank take no time of their own.
+void CoreCell::collect_memory(MemoryAccess& access, const Issued& issued) {
+  using isa::Space;
+  const isa::Access& addresses = warps_[access.slot].regs.access;
+  const auto bytes = uint32_t(issued.row->memory.bytes * issued.row->memory.count);
+  const bool is_atomic = issued.row->effect == Effect::Atomic;
+  access.traffic = is_atomic                                        ? mem::Traffic::ShaderAtomic
+                   : issued.row->memory.space == Space::Local ? mem::Traffic::ShaderLocal
+                                                              : mem::Traffic::ShaderGlobal;
+  access.atomic = is_atomic;
+  if (const LaneMask lanes = executor_.lanes_in(Space::Shared)) access.passes = shared_passes(addresses, lanes, bytes, is_atomic);
+  coalesce_local(access.lines, local_, access.slot, addresses, executor_.lanes_in(Space::Local), bytes);
+  coalesce_global(access.lines, *world_.memory, addresses, executor_.lanes_in(Space::Global), bytes);
 }
 
 void CoreCell::collect_texels(MemoryAccess& access, LaneMask lanes) {
@@ -209,6 +262,10 @@ void CoreCell::complete(uint32_t access_id, Cycle now) {
   lsu_.release(access_id);
   --outstanding_[slot];
   ++progress_;
+  if (fence_[slot] != 0 && outstanding_[slot] == 0) {
+    front_[slot].at = now + fence_[slot];
+    fence_[slot] = 0;
+  }
   if (!warps_[slot].simt.finished())
     refresh(slot);
   else if (outstanding_[slot] == 0)
@@ -262,6 +319,7 @@ void CoreCell::free_slot(uint32_t slot) {
   scheduler.resident &= ~(uint64_t{1} << (slot / params_.schedulers));
   scheduler.wake();
   --num_resident_;
+  if (--home_[slot]->warps == 0) --num_blocks_;
 }
 
 // Looks up when the warp's next instruction has its operands, after anything about that changed.

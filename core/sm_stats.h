@@ -26,6 +26,7 @@ struct CoreStats : stats::Group {
   CoreStats(Group* parent, std::string name) : Group(parent, std::move(name)) {}
 
   stats::Counter cycles{this, "cycles", "cycle", "Cycles from the launch to the end of the run."};
+  stats::Counter blocks{this, "blocks", "block", "Blocks launched on this core."};
   stats::Counter warps{this, "warps", "warp", "Warps launched on this core."};
   stats::Counter instructions{this, "instructions", "instruction", "Warp instructions issued."};
   stats::Counter lane_instructions{this, "lane_instructions", "instruction", "Lanes that executed them, summed."};
@@ -49,6 +50,13 @@ struct CoreStats : stats::Group {
   stats::Counter global_stores{this, "global_stores", "instruction", "Stores to global memory."};
   stats::Counter local_loads{this, "local_loads", "instruction", "Loads from local memory."};
   stats::Counter local_stores{this, "local_stores", "instruction", "Stores to local memory."};
+  stats::Counter shared_loads{this, "shared_loads", "instruction", "Loads from shared memory."};
+  stats::Counter shared_stores{this, "shared_stores", "instruction", "Stores to shared memory."};
+  stats::Counter shared_atomics{this, "shared_atomics", "instruction", "Atomics on shared memory."};
+  stats::Counter shared_passes{this, "shared_passes", "pass", "Passes of shared memory for them: 1 each without bank conflicts."};
+  stats::Counter global_atomics{this, "global_atomics", "instruction", "Atomics on global memory."};
+  stats::Counter barriers{this, "barriers", "instruction", "Times a warp came to a barrier of its block."};
+  stats::Counter fences{this, "fences", "instruction", "Memory fences."};
   stats::Counter constant_loads{this, "constant_loads", "instruction", "Loads from the constant bank."};
   stats::Counter texture_fetches{this, "texture_fetches", "instruction", "Filtered texture fetches."};
   stats::Counter surface_loads{this, "surface_loads", "instruction", "Loads from images."};

@@ -20,9 +20,12 @@ enum class Stall : uint8_t {
   Const,            // result of a constant load
   Branch,           // target of a branch not yet known
   LocalMemory,      // load from local memory
+  SharedMemory,     // load from shared memory, or atomic on it
   Texture,          // texture or image load
   LongScoreboard,   // load from global memory, whichever level answers
   Call,             // record of the shader binding table
+  Barrier,          // other warps of the block have not come
+  Fence,            // earlier accesses of the warp are not yet seen by those it asks for
   RtWait,           // the warp is in the RT unit
   Dispatch,         // the warp is being launched
   Drain,            // the warp has ended, its last accesses have not
@@ -33,7 +36,7 @@ enum class Stall : uint8_t {
 constexpr std::string_view name_of(Stall s) {
   constexpr std::string_view kNames[] = {
       "issued", "math_pipe_throttle", "lsu_throttle", "rt_full", "raw_fixed", "raw_sfu", "const", "branch",
-      "local_memory", "texture", "long_scoreboard", "call", "rt_wait", "dispatch", "drain", "no_warp"};
+      "local_memory", "shared_memory", "texture", "long_scoreboard", "call", "barrier", "membar", "rt_wait", "dispatch", "drain", "no_warp"};
   static_assert(std::size(kNames) == size_t(Stall::Count));
   return kNames[size_t(s)];
 }

@@ -3,6 +3,7 @@
 #include "core/units.h"
 
 #include "base/check.h"
+#include "isa/barrier.h"
 
 namespace glint::core {
 namespace {
@@ -37,7 +38,8 @@ Finish finish_of(const isa::OpRow& row) {
   switch (row.effect) {
     case Effect::Load:
     case Effect::Store:
-    case Effect::Atomic: return row.memory.space == isa::Space::Const ? Finish::Fixed : Finish::Memory;
+    case Effect::Atomic:
+      return row.memory.space == isa::Space::Const || row.memory.space == isa::Space::Param ? Finish::Fixed : Finish::Memory;
     case Effect::Texture:
     case Effect::SurfaceLoad:
     case Effect::SurfaceStore:
@@ -47,6 +49,7 @@ Finish finish_of(const isa::OpRow& row) {
     case Effect::Resume: return Finish::Rays;
     case Effect::CallCandidate:
     case Effect::CallAnyHit:
+    case Effect::CallCallable:
     case Effect::CallHit: return Finish::CallRecord;
     case Effect::Branch:
     case Effect::Join:
@@ -55,29 +58,40 @@ Finish finish_of(const isa::OpRow& row) {
     case Effect::BranchIndexed:
     case Effect::Call:
     case Effect::Trap:
-    case Effect::Barrier:
-    case Effect::Fence:
     case Effect::Ignore:
     case Effect::Terminate: return Finish::Control;
+    case Effect::Barrier: return Finish::Barrier;
+    // Lanes of a warp see each other's accesses in order anyway.
+    case Effect::Fence: return isa::FenceScope(row.detail) == isa::FenceScope::Warp ? Finish::Control : Finish::Fence;
     // ssy only notes a place; the next instruction is the next one.
     case Effect::PushReconvergence:
     case Effect::None:
     case Effect::ImageQuery:
     case Effect::Query:
     case Effect::Report:
+    case Effect::HitObject:
     case Effect::Accepted:
     case Effect::EndTrace: return Finish::Fixed;
   }
   GLINT_PANIC("effect {} of '{}'", int(row.effect), row.name);
 }
 
+uint16_t fence_latency(const isa::OpRow& row, const FenceParams& params) {
+  const auto scope = isa::FenceScope(row.detail);
+  return uint16_t(scope == isa::FenceScope::Block ? params.block : scope == isa::FenceScope::Gpu ? params.gpu : params.system);
+}
+
 Stall wait_of(const isa::OpRow& row, Finish finish) {
   if (finish == Finish::Memory) {
     if (row.effect == Effect::Load || row.effect == Effect::Atomic)
-      return row.memory.space == isa::Space::Local ? Stall::LocalMemory : Stall::LongScoreboard;
+      return row.memory.space == isa::Space::Local    ? Stall::LocalMemory
+             : row.memory.space == isa::Space::Shared ? Stall::SharedMemory
+                                                      : Stall::LongScoreboard;
     return Stall::Texture;  // stores have no dependents
   }
   if (finish == Finish::Rays) return Stall::RtWait;
+  if (finish == Finish::Barrier) return Stall::Barrier;
+  if (finish == Finish::Fence) return Stall::Fence;
   if (finish == Finish::Control) return Stall::Branch;
   if (finish == Finish::CallRecord) return Stall::Call;
   if (row.unit == Unit::Const) return Stall::Const;
@@ -132,7 +146,7 @@ IssueTable::IssueTable(const Image& image, const Params& params) {
     row.stage = image.shaders[image.shader_of[pc]].stage;
     row.wait = wait_of(op, row.finish);
     row.is_conditional = op.effect == Effect::Branch && inst.guard != isa::kNoGuard;
-    row.latency = uint16_t(unit.latency);
+    row.latency = row.finish == Finish::Fence ? fence_latency(op, params.fence) : uint16_t(unit.latency);
     row.interval = uint16_t(unit.interval);
     rows_.push_back(row);
   }

@@ -26,6 +26,8 @@ enum class Finish : uint8_t {
   Rays,        // when the RT unit has answered
   Control,     // fixed, and the warp does not issue before
   CallRecord,  // as Control, and then when the record of the binding table has been read
+  Barrier,     // when the other warps have come; of bar.arrive, as Control
+  Fence,       // when the warp's earlier accesses are done, and then `latency` cycles
 };
 
 struct IssueRow {

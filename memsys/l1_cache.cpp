@@ -42,9 +42,10 @@ bool L1Cache::access(Cycle now, Client client, const Request& request) {
   const uint64_t bank = uint64_t{1} << (params_.banks == 1 ? 0 : request.line / line_bytes_ % params_.banks);
   if (busy_banks_ & bank) return refuse(Refusal::Bank);
   const bool local = params_.local_write_back && request.traffic == Traffic::ShaderLocal;
-  const bool taken = !request.write ? read(now, client, request)
-                     : local        ? write_local(now, request)
-                                    : write_through(now, request);
+  const bool taken = request.traffic == Traffic::ShaderAtomic ? pass_atomic(now, client, request)
+                     : !request.write                         ? read(now, client, request)
+                     : local                                  ? write_local(now, request)
+                                                              : write_through(now, request);
   if (!taken) return false;
   ++accesses_;
   busy_banks_ |= bank;
@@ -91,6 +92,25 @@ bool L1Cache::write_through(Cycle now, const Request& request) {
   return true;
 }
 
+// Counted as a miss: nothing of it is looked up here.
+bool L1Cache::pass_atomic(Cycle now, Client client, const Request& request) {
+  if (queue_full()) return refuse(Refusal::QueueFull);
+  const uint32_t slot = tags_.find(request.line);
+  if (slot != kNone) tags_.drop(slot, request.sectors);
+  queue_packet(now + params_.miss_latency, request.line, request.sectors, request.write, request.traffic, request.token, client);
+  if (request.write) {
+    stats_.writes.add(request.traffic);
+    return true;
+  }
+  ++order_;
+  ++reads_accepted_;
+  sectors_requested_ += num_sectors(request.sectors);
+  stats_.reads.add(request.traffic);
+  stats_.misses.add(request.traffic);
+  stats_.sectors_fetched.add(request.traffic, num_sectors(request.sectors));
+  return true;
+}
+
 // Write-back with write-validate: whole sectors are written, so nothing needs to be fetched.
 bool L1Cache::write_local(Cycle now, const Request& request) {
   const uint32_t slot = tags_.find(request.line);
@@ -110,9 +130,10 @@ bool L1Cache::write_local(Cycle now, const Request& request) {
   return true;
 }
 
-void L1Cache::queue_packet(Cycle ready, Address line, uint8_t sectors, bool write, Traffic traffic) {
+void L1Cache::queue_packet(Cycle ready, Address line, uint8_t sectors, bool write, Traffic traffic, Token token,
+                           Client client) {
   // A write-back of a fill is ready at once and may not overtake; the queue is in order, so it waits for those before it.
-  miss_queue_.push({ready, {line, core_, sectors, write, traffic}});
+  miss_queue_.push({ready, {line, core_, sectors, write, traffic, token, client, order_}});
 }
 
 void L1Cache::evict(Cycle now, const TagArray::Line& victim) {
@@ -173,18 +194,10 @@ void L1Cache::send_front(Cycle now) {
   miss_queue_.pop();
 }
 
-// Writes the oldest reply into the cache; false when its dirty victim finds no place in the miss queue.
+// Takes the oldest reply; false when it needs a place in the cache and its dirty victim finds none in the miss queue.
 bool L1Cache::fill(Cycle now) {
   const Reply reply = replies_->front();
-  uint32_t slot = tags_.find(reply.line);
-  if (slot == kNone) {
-    const TagArray::Line& victim = tags_.victim(reply.line);
-    if (victim.dirty && queue_full()) return false;
-    evict(now, victim);
-  }
-  TagArray::Line& line = slot == kNone ? tags_.insert(reply.line) : tags_.line(slot);
-  line.valid |= reply.sectors;
-
+  if (!reply.is_atomic && !place(now, reply)) return false;
   const uint32_t bytes = bytes_of(reply);
   ++stats_.fills;
   stats_.reply_bytes += bytes;
@@ -193,6 +206,26 @@ bool L1Cache::fill(Cycle now) {
   reply_port_.occupy_until(reply_port_.received_at(replies_->arrival(), partition_reply_port_.cycles(bytes), bytes));
   replies_->pop();
   fill_not_before_ = now + 1;
+  if (reply.is_atomic)
+    answers_[size_t(reply.client)].fills.push({now, reply.order, reply.token});
+  else
+    answer_waiters(now, reply);
+  return true;
+}
+
+bool L1Cache::place(Cycle now, const Reply& reply) {
+  const uint32_t slot = tags_.find(reply.line);
+  if (slot == kNone) {
+    const TagArray::Line& victim = tags_.victim(reply.line);
+    if (victim.dirty && queue_full()) return false;
+    evict(now, victim);
+  }
+  TagArray::Line& line = slot == kNone ? tags_.insert(reply.line) : tags_.line(slot);
+  line.valid |= reply.sectors;
+  return true;
+}
+
+void L1Cache::answer_waiters(Cycle now, const Reply& reply) {
   mshr_.arrive(mshr_.find(reply.line), reply.sectors, [&](Waiter& waiter) {
     waiter.missing &= uint8_t(~reply.sectors);
     if (waiter.missing) return false;
@@ -200,7 +233,6 @@ bool L1Cache::fill(Cycle now) {
     stats_.miss_latency.add(now - waiter.accepted);
     return true;
   });
-  return true;
 }
 
 Cycle L1Cache::next_event(Cycle now) const {

@@ -30,6 +30,7 @@ struct L1Stats : CacheStats {
 
 // An accepted miss or write becomes one packet in the bounded miss queue and leaves over the core's request port. Lines
 // are allocated when data arrives (streaming): only MSHRs and the miss queue limit the misses in flight.
+// Atomics go past the cache to the L2, which executes them; what the cache holds of their sectors is dropped.
 // Model: a write covers whole sectors; a write to a line on its way does not disturb it.
 // Model: a read that waits for a sector already on its way is ready when the sector is, even within the hit latency.
 // Model: local memory that is dirty at the end of a run is not written back: its thread is gone.
@@ -80,13 +81,17 @@ class L1Cache final : public L1Port {
   bool read(Cycle now, Client client, const Request& request);
   bool write_through(Cycle now, const Request& request);
   bool write_local(Cycle now, const Request& request);
+  bool pass_atomic(Cycle now, Client client, const Request& request);
   bool queue_full() const { return miss_queue_.size() >= params_.miss_queue; }
-  void queue_packet(Cycle ready, Address line, uint8_t sectors, bool write, Traffic traffic);
+  void queue_packet(Cycle ready, Address line, uint8_t sectors, bool write, Traffic traffic, Token token = 0,
+                    Client client = Client::Lsu);
   void evict(Cycle now, const TagArray::Line& victim);
   Cycle next_departure() const;
   Cycle next_fill() const;
   void send_front(Cycle now);
   bool fill(Cycle now);
+  bool place(Cycle now, const Reply& reply);
+  void answer_waiters(Cycle now, const Reply& reply);
 
   const L1Params params_;
   const uint32_t line_bytes_;

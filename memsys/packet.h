@@ -5,6 +5,7 @@
 #include <bit>
 
 #include "base/types.h"
+#include "memsys/l1_port.h"
 #include "memsys/request.h"
 
 namespace glint::mem {
@@ -16,19 +17,30 @@ struct Packet {
   uint8_t sectors = 0;
   bool write = false;
   Traffic traffic = Traffic::ShaderGlobal;
+  Token token = 0;      // of an atomic, for its reply; its client and order of acceptance too
+  Client client = Client::Lsu;
+  uint64_t order = 0;
 };
 
 // From a partition to an L1: sectors of a line. A packet may be answered by several replies, sector by sector.
 struct Reply {
   Address line = 0;
   uint8_t sectors = 0;
+  bool is_atomic = false;  // the old values for one access: nothing that a cache keeps
+  Token token = 0;
+  Client client = Client::Lsu;
+  uint64_t order = 0;
 };
 
 // Address and control beside the data: with one 32-byte sector this makes GPGPU-Sim's 40-byte flit.
 inline constexpr uint32_t kHeaderBytes = 8;
 
 constexpr uint32_t num_sectors(uint8_t mask) { return uint32_t(std::popcount(mask)); }
-constexpr uint32_t bytes_of(const Packet& p) { return kHeaderBytes + (p.write ? num_sectors(p.sectors) * kSectorBytes : 0); }
+constexpr bool is_atomic(const Packet& p) { return p.traffic == Traffic::ShaderAtomic; }
+// Writes and atomics carry data. Model: a sector's worth a sector, as many lanes as it may serve.
+constexpr uint32_t bytes_of(const Packet& p) {
+  return kHeaderBytes + (p.write || is_atomic(p) ? num_sectors(p.sectors) * kSectorBytes : 0);
+}
 constexpr uint32_t bytes_of(const Reply& r) { return kHeaderBytes + num_sectors(r.sectors) * kSectorBytes; }
 
 // One side of a crossbar port. A packet occupies it for a whole number of cycles.

@@ -66,6 +66,7 @@ struct L2Params {
   uint32_t mshr_entries = 192;       // Vulkan-Sim: A:192:4
   uint32_t mshr_merges = 4;
   uint32_t dram_queue = 64;          // Vulkan-Sim: dram_partition_queues
+  uint32_t atomic_interval = 2;      // Choice: unpublished; an H200 does 1.4 G lane atomics a second on one word
 
   static constexpr auto params() {
     return std::tuple{
@@ -75,7 +76,8 @@ struct L2Params {
         param(&L2Params::sectors_per_cycle, "sectors_per_cycle", "sector/cycle", "Sectors read or written a cycle.", 0, 64),
         param(&L2Params::mshr_entries, "mshr_entries", "line", "Lines that can be on the way.", 0, 1 << 16),
         param(&L2Params::mshr_merges, "mshr_merges", "request", "Reads that can wait for one line, the first included.", 0, 1 << 12),
-        param(&L2Params::dram_queue, "dram_queue", "request", "Sector reads and writes between the slice and the DRAM scheduler.", 0, 1 << 16)};
+        param(&L2Params::dram_queue, "dram_queue", "request", "Sector reads and writes between the slice and the DRAM scheduler.", 0, 1 << 16),
+        param(&L2Params::atomic_interval, "atomic_interval", "cycle", "Cycles of the slice for each sector of an atomic.", 1, 1000)};
   }
 };
 

@@ -101,9 +101,15 @@ void Partition::fill(Cycle now, Address line, uint8_t sectors) {
   TagArray::Line& filled = slot == kNone ? tags_.insert(line) : tags_.line(slot);
   filled.valid |= sectors;
   mshr_.arrive(mshr_.find(line), sectors, [&](Waiter& waiter) {
+    const Packet& packet = waiter.packet;
     const uint8_t served = uint8_t(waiter.missing & sectors);
-    if (served) send_reply(now, waiter.core, {line, served});
     waiter.missing &= uint8_t(~sectors);
+    if (!is_atomic(packet)) {
+      if (served) send_reply(now, packet.core, {line, served});
+    } else if (waiter.missing == 0) {
+      filled.dirty |= packet.sectors & filled.valid;
+      if (!packet.write) send_reply(now, packet.core, {line, packet.sectors, true, packet.token, packet.client, packet.order});
+    }
     return waiter.missing == 0;
   });
 }
@@ -112,16 +118,23 @@ void Partition::serve(Cycle now) {
   blocked_ = PartitionCycle::Count;
   if (head_received() > now) return;
   const Packet packet = requests_->front();
-  if (!(packet.write ? write(now, packet) : read(now, packet))) return;
+  if (!(packet.write && !is_atomic(packet) ? write(now, packet) : read(now, packet))) return;
   const uint32_t bytes = bytes_of(packet);
   request_port_.occupy_until(request_port_.received_at(requests_->arrival(), core_request_port_.cycles(bytes), bytes));
   stats_.request_bytes += bytes;
   stats_.request_wait += now - requests_->arrival();
   ++packets_received_;
-  busy_until_ = now + (num_sectors(packet.sectors) + params_.sectors_per_cycle - 1) / params_.sectors_per_cycle;
+  busy_until_ = now + service_cycles(packet);
   requests_->pop();
 }
 
+Cycle Partition::service_cycles(const Packet& packet) const {
+  const Cycle sectors = num_sectors(packet.sectors);
+  if (is_atomic(packet)) return sectors * params_.atomic_interval;
+  return (sectors + params_.sectors_per_cycle - 1) / params_.sectors_per_cycle;
+}
+
+// Reads, and atomics, which need what they change.
 bool Partition::read(Cycle now, const Packet& packet) {
   const uint32_t slot = tags_.find(packet.line);
   const uint8_t missing = slot == kNone ? packet.sectors : uint8_t(packet.sectors & ~tags_.line(slot).valid);
@@ -136,17 +149,27 @@ bool Partition::read(Cycle now, const Packet& packet) {
     }
     if (entry == kNone) entry = mshr_.allocate(packet.line);
     mshr_.expect(entry, fetched);
-    mshr_.add(entry, {packet.core, missing});
+    mshr_.add(entry, {packet, missing});
     if (fetched) queue_for_dram(now + params_.latency + dram_latency_, packet.line, fetched, false);
   }
   if (slot != kNone) tags_.touch(slot);
-  if (const uint8_t present = uint8_t(packet.sectors & ~missing)) {
-    const Cycle last = (num_sectors(packet.sectors) + params_.sectors_per_cycle - 1) / params_.sectors_per_cycle - 1;
-    hit_replies_.push({now + last + params_.latency, {packet.line, present}, packet.core});
-  }
-  sectors_requested_ += num_sectors(packet.sectors);
+  answer_present(now, packet, missing);
+  if (!packet.write) sectors_requested_ += num_sectors(packet.sectors);
   stats_.count_read(packet.traffic, missing, fetched, packet.line, seen_);
   return true;
+}
+
+// Replies for what is here. An atomic waits for all of its sectors, and is done in one piece.
+// Model: the atomics of one line follow each other at the slice's pace, whether they wait for DRAM or not.
+void Partition::answer_present(Cycle now, const Packet& packet, uint8_t missing) {
+  const Cycle ready = now + service_cycles(packet) - 1 + params_.latency;
+  if (!is_atomic(packet)) {
+    if (const uint8_t present = uint8_t(packet.sectors & ~missing)) hit_replies_.push({ready, {packet.line, present}, packet.core});
+    return;
+  }
+  if (missing) return;
+  tags_.line(tags_.find(packet.line)).dirty |= packet.sectors;
+  if (!packet.write) hit_replies_.push({ready, {packet.line, packet.sectors, true, packet.token, packet.client, packet.order}, packet.core});
 }
 
 bool Partition::write(Cycle now, const Packet& packet) {

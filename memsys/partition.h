@@ -63,7 +63,7 @@ class Partition final : public Cell {
  private:
   static constexpr uint32_t kNone = TagArray::kNone;
   struct Waiter {
-    uint16_t core = 0;
+    Packet packet;
     uint8_t missing = 0;
   };
   struct HitReply {
@@ -86,6 +86,8 @@ class Partition final : public Cell {
   void serve(Cycle now);
   bool read(Cycle now, const Packet& packet);
   bool write(Cycle now, const Packet& packet);
+  void answer_present(Cycle now, const Packet& packet, uint8_t missing);
+  Cycle service_cycles(const Packet& packet) const;
   void queue_for_dram(Cycle ready, Address line, uint8_t sectors, bool write);
   void evict(Cycle now, const TagArray::Line& victim);
   void send_reply(Cycle now, uint16_t core, const Reply& reply);

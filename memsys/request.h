@@ -11,13 +11,14 @@ namespace glint::mem {
 // Why the traffic exists; every hit, miss and byte is counted under it. memsys knows nothing else of it.
 enum class Traffic : uint8_t {
   ShaderGlobal, ShaderLocal, ShaderTexture, ShaderSurface, ShaderBinding,
+  ShaderAtomic,  // read-modify-write at the L2
   RtNode, RtInstance, RtTriangle, RtProcedural,
   Count
 };
 constexpr std::string_view name_of(Traffic t) {
   constexpr std::string_view kNames[] = {"shader_global",  "shader_local", "shader_texture", "shader_surface",
-                                         "shader_binding", "rt_node",      "rt_instance",    "rt_triangle",
-                                         "rt_procedural"};
+                                         "shader_binding", "shader_atomic", "rt_node",       "rt_instance",
+                                         "rt_triangle",    "rt_procedural"};
   return kNames[size_t(t)];
 }
 constexpr bool is_rt(Traffic t) { return t >= Traffic::RtNode; }
@@ -32,6 +33,8 @@ struct Request {
   bool write = false;
   Traffic traffic = Traffic::ShaderGlobal;
   Token token = 0;          // reads: comes back once when all sectors are there. Writes: not answered.
+  // Traffic::ShaderAtomic: a "read" whose token comes back when the L2 has changed the sectors, or a "write" likewise
+  // without an answer.
 };
 
 }  // namespace glint::mem

@@ -55,6 +55,14 @@ class TagArray {
     return line;
   }
 
+  // The sectors are there no more; the line neither when none is left.
+  void drop(uint32_t slot, uint8_t sectors) {
+    Line& line = lines_[slot];
+    line.valid &= uint8_t(~sectors);
+    line.dirty &= uint8_t(~sectors);
+    if (!line.valid) index_.erase(line.address);
+  }
+
   void touch(uint32_t slot) {  // now the most recently used of its set
     Line& line = lines_[slot];
     if (line.newer == kNone) return;

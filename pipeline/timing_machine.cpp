@@ -13,6 +13,8 @@ namespace {
 const GpuParams& checked(const GpuParams& params, const core::World& world) {
   Diagnostics diagnostics;
   core::check(params.core, world.image->num_registers, diagnostics);
+  const auto& block = world.block_size;
+  core::check_block(params.core, world.image->num_registers, uint64_t(block[0]) * block[1] * block[2], world.shared_bytes, diagnostics);
   mem::check(params.memory, diagnostics, "memory.");
   diagnostics.throw_if_errors();
   return params;
@@ -38,7 +40,7 @@ TimingMachine::TimingMachine(const GpuParams& params, const core::World& world, 
     rt_units_.push_back(std::make_unique<rt::RtUnit>(params_.rt, rt));
     const Address local = allocate_physical(world, name + " local memory", core::CoreCell::local_bytes(params_.core, world));
     cores_.push_back(std::make_unique<core::CoreCell>(
-        params_.core, core::CoreCell::Context{world, memory_.l1(i), *rt_units_.back(), local, &root_, name, no_skip}));
+        params_.core, core::CoreCell::Context{world, memory_.l1(i), *rt_units_.back(), local, &root_, name, no_skip, i, params_.cores, params_.clock_mhz}));
     engine_.add(*cores_.back());
   }
   for (Cell* cell : memory_.cells()) engine_.add(*cell);
@@ -48,8 +50,9 @@ TimingMachine::TimingMachine(const GpuParams& params, const core::World& world, 
 Cycle TimingMachine::run(const std::function<void(uint64_t, uint64_t)>& progress) {
   std::vector<core::CoreCell*> cores;
   for (auto& core : cores_) cores.push_back(core.get());
-  const uint32_t num_warps = core::Executor(world_).num_warps();
-  core::Dispatcher dispatcher(params_.core, num_warps, cores);
+  const core::Executor executor(world_);
+  const uint32_t num_warps = executor.num_warps();
+  core::Dispatcher dispatcher(params_.core, executor.num_blocks(), cores);
   const core::Fault* fault = nullptr;
   const Cycle quiet = engine_.run([&](Cycle now) {
     for (const auto& core : cores_)
@@ -57,7 +60,7 @@ Cycle TimingMachine::run(const std::function<void(uint64_t, uint64_t)>& progress
     if (fault) return EngineLoop::Next::Stop;
     dispatcher.dispatch(now);
     if (progress) {
-      uint64_t ended = dispatcher.num_dispatched();
+      uint64_t ended = uint64_t{dispatcher.num_dispatched()} * executor.warps_per_block();
       for (const auto& core : cores_) ended -= core->num_resident();
       progress(ended, num_warps);
     }

@@ -49,7 +49,7 @@ struct CoreTraffic {
       if (!pending) {
         const Address line = (random() % 4 ? random() % 48 : random() % 4096) * 128;
         const bool write = random() % 4 == 0;
-        pending = Request{line, uint8_t(1 + random() % 15), write, Traffic(random() % 9), next};
+        pending = Request{line, uint8_t(1 + random() % 15), write, Traffic(random() % uint32_t(Traffic::Count)), next};
       }
       if (!l1.access(now, Client(next % 2), *pending)) continue;
       if (pending->write) ++writes;

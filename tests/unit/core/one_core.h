@@ -104,6 +104,8 @@ struct OneCore {
     uint32_t accesses_per_cycle = ~0u;
     size_t rt_capacity = 4;
     Cycle window = 32;
+    uint32_t block_threads = 0;  // 0: no blocks
+    uint32_t shared_bytes = 0;
   };
 
   OneCore(Code& code, const Params& params, Options options)
@@ -117,13 +119,16 @@ struct OneCore {
     world.constant_bank.resize(isa::kConstantBankBytes);
     world.launch_size = {options.num_warps * uint32_t(kLanes), 1, 1};
     world.local_bytes = options.local_bytes;
+    if (options.block_threads)
+      set_blocks(world, {options.num_warps * uint32_t(kLanes) / options.block_threads, 1, 1}, {options.block_threads, 1, 1},
+                 options.shared_bytes);
   }
   // Runs to the end; returns the cycle after the core's last activity.
   Cycle run() {
     cell = std::make_unique<CoreCell>(params_, CoreCell::Context{world, l1, rays, kLocalBase, &root, "core", options_.no_skip});
     EngineLoop engine({options_.window, options_.no_skip, 100'000});
     engine.add(*cell);
-    Dispatcher dispatcher(params_, options_.num_warps, {cell.get()});
+    Dispatcher dispatcher(params_, Executor(world).num_blocks(), {cell.get()});
     engine.run([&](Cycle now) {
       if (cell->fault()) return EngineLoop::Next::Stop;
       dispatcher.dispatch(now);
