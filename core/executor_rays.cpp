@@ -45,6 +45,9 @@ bool needs_shader(const rt::RayState& state) {
 
 bool Executor::run_rays(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
   const LaneMask exec = warp.regs.exec;
+  const bool opens = row.effect == Effect::Trace || row.effect == Effect::CallCallable;
+  if (!opens && warp.depth == 0) [[unlikely]]
+    return fail(warp, std::countr_zero(warp.simt.active), fmt::format("runs {} outside a trace", row.name));
   switch (row.effect) {
     case Effect::Trace:
       return isa::TraceKind(row.detail) == isa::TraceKind::Ray ? trace(warp, inst) : begin_hit_object(warp, inst);

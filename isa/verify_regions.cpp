@@ -128,6 +128,9 @@ class RegionWalk {
     }
     if ((e == Effect::Resume || e == Effect::CallCandidate || e == Effect::CallHit) && !stacks_.in_trace(before))
       return error(at, "no rt.trace is open on a path to here");
+    const bool parts = e == Effect::BranchIndexed || (e == Effect::Branch && inst(at).guard != kNoGuard);
+    if (parts && stacks_.top(before) == Stacks::kTrace)
+      error(at, "lanes may part inside a trace, and no region is open in which they would meet before its end");
     if (e == Effect::Return) returns(at, before);
     const bool is_call = e == Effect::Call;
     const std::vector<uint32_t> next = successors(program_, at);

@@ -103,6 +103,12 @@ TEST_CASE("ops of a trace stand inside it") {
              Contains("comes to the join at 4 outside its region"));
 }
 
+TEST_CASE("lanes that part inside a trace meet before its end") {
+  const std::string part = "@%p0 bra A; rt.end; exit; A: rt.end; exit;";
+  CHECK_THAT(verdict(kTrace + part, kRaygen), Contains("instruction 1 (bra): lanes may part inside a trace"));
+  CHECK(verdict(std::string(kTrace) + "ssy A; @%p0 bra A; mov.b32 %r1, 1; A: join; rt.end; exit;", kRaygen) == "");
+}
+
 TEST_CASE("ops and specials stand in shaders of their stages") {
   CHECK_THAT(verdict("rt.ignore;", ".stage closest_hit"), Contains("stage closest_hit, and belongs in any_hit"));
   CHECK_THAT(verdict("rt.report %p0, 0f3F800000, 1; exit;", kRaygen), Contains("belongs in intersection"));
