@@ -22,6 +22,7 @@ bool is_nan64(uint64_t x) {
   return (x & 0x7fff'ffff'ffff'ffff) > 0x7ff0'0000'0000'0000;
 }
 constexpr uint64_t kQuiet = 0x0008'0000'0000'0000;
+
 // Recorded: NaNs keep their payload. Shared memory's make the result quiet, the old value's first; global memory's adder
 // passes them on as they are, the operand's first.
 uint64_t add_f64(uint64_t old, uint64_t b, uint64_t is_global) {

@@ -16,7 +16,7 @@ template <class Visit>
 [[gnu::always_inline]] inline void each_group(const Warp& warp, const Source<uint32_t>& masks, Visit&& visit) {
   for (LaneMask rest = warp.exec; rest;) {
     const uint32_t mask = masks.at(__builtin_ctz(rest));
-    const LaneMask group = mask_of([&](int i) { return masks.at(i) == mask; }) & rest;
+    const LaneMask group = mask_of([&](int i) { return masks.low[i] == mask; }) & rest;
     visit(group, group & mask);
     rest &= ~group;
   }
@@ -41,20 +41,24 @@ enum class Shuffle { Up, Down, Butterfly, Index };
 template <Shuffle kMode>
 [[gnu::flatten]] void shuffle(Warp& warp, const Inst& inst) {
   const Source<uint32_t> a(warp, slot_at(inst, 2)), b(warp, slot_at(inst, 3)), c(warp, slot_at(inst, 4));
-  uint32_t from[kLanes], value[kLanes];
-  bool inside[kLanes];
-  for (int i = 0; i < kLanes; ++i) {
+  struct Source32 {
+    uint32_t lane, inside;  // 1 when the lane read is in the segment
+  };
+  const auto source = [&](int i) -> Source32 {
     const int distance = int(b.at(i) & 31), clamp = int(c.at(i) & 31), segment = int(c.at(i) >> 8 & 31);
     const int first = i & segment, last = first | (clamp & ~segment);
     const int j = kMode == Shuffle::Up          ? i - distance
                   : kMode == Shuffle::Down      ? i + distance
                   : kMode == Shuffle::Butterfly ? i ^ distance
                                                 : first | (distance & ~segment);
-    inside[i] = kMode == Shuffle::Up ? j >= last : j <= last;
-    from[i] = uint32_t(inside[i] ? j : i) & 31;  // a clamp below the lane's segment may point past the warp: wraps
-  }
-  for (int i = 0; i < kLanes; ++i) value[i] = a.at(int(from[i]));
-  write_predicate(warp, slot_at(inst, 1), mask_of([&](int i) { return inside[i]; }));
+    const bool inside = kMode == Shuffle::Up ? j >= last : j <= last;
+    return {uint32_t(inside ? j : i) & 31, inside};  // a clamp below the lane's segment may point past the warp: wraps
+  };
+  alignas(64) uint32_t from[kLanes], value[kLanes];
+  all_lanes([&](int i) { from[i] = source(i).lane; });
+  const LaneMask inside = mask_of([&](int i) { return source(i).inside != 0; });
+  all_lanes([&](int i) { value[i] = a.low[from[i]]; });
+  write_predicate(warp, slot_at(inst, 1), inside);
   write_lanes<uint32_t>(warp, slot_at(inst, 0), [&](int i) { return value[i]; });
 }
 
@@ -79,19 +83,27 @@ template <Vote kVote>
   write_lanes<uint32_t>(warp, slot_at(inst, 0), [&](int i) { return result[i]; });
 }
 
+// Sets `bit` in the words of `same` whose lanes hold (low, high). Not inlined into its loop, where it would not become
+// vector code.
+[[gnu::noinline]] void mark_equal(uint32_t* __restrict same, const uint32_t* __restrict lows, const uint32_t* __restrict highs,
+                                  uint32_t low, uint32_t high, uint32_t bit) {
+  all_lanes([&](int i) { same[i] |= ((lows[i] ^ low) | (highs[i] ^ high)) == 0 ? bit : 0; });
+}
+
 // For each lane the members with its value.
 template <class T>
-[[gnu::flatten]] void match_any(Warp& warp, const Inst& inst) {
+void match_any(Warp& warp, const Inst& inst) {
   const Source<T> a(warp, slot_at(inst, 1));
   const Source<uint32_t> masks(warp, slot_at(inst, 2));
   uint32_t result[kLanes]{};
+  // Member by member, all lanes at once: no sums across a vector.
   each_group(warp, masks, [&](LaneMask group, LaneMask members) {
-    for (LaneMask rest = group; rest;) {
-      const T value = a.at(__builtin_ctz(rest));
-      const LaneMask same = mask_of([&](int i) { return a.at(i) == value; });
-      all_lanes([&](int i) { result[i] = (rest & same & kLaneBit[i]) != 0 ? same & members : result[i]; });
-      rest &= ~same;
+    alignas(64) uint32_t same[kLanes]{};
+    for (LaneMask rest = members; rest; rest &= rest - 1) {
+      const int k = __builtin_ctz(rest);
+      mark_equal(same, a.low, sizeof(T) == 8 ? a.high : a.low, a.low[k], sizeof(T) == 8 ? a.high[k] : a.low[k], 1u << k);
     }
+    all_lanes([&](int i) { result[i] = (group & kLaneBit[i]) != 0 ? same[i] : result[i]; });
   });
   write_lanes<uint32_t>(warp, slot_at(inst, 0), [&](int i) { return result[i]; });
 }

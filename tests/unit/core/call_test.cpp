@@ -1,5 +1,6 @@
 // Calls, recursion and indexed branches, with lanes that go different ways.
 // SPDX-License-Identifier: Apache-2.0
+#include "core/executor.h"
 #include "tests/support/catch.h"
 #include "tests/unit/core/text_launch.h"
 
@@ -124,6 +125,41 @@ MEET:
                     {});
 
   CHECK(launch.fault().find("entry 2 of a table") != std::string::npos);
+}
+
+TEST_CASE("a function that an any-hit shader calls decides nothing about its candidate; the shader's own return does") {
+  std::vector<isa::Program> programs;
+  programs.push_back(isa::parse(".program \"caller\"\n.stage ray_generation\n.registers 8\n\n    nop_place: exit;\n    exit;\n", "caller"));
+  programs.push_back(isa::parse(".program \"hit\"\n.stage any_hit\n.registers 8\n\n    call F;\n    ret;\nF:\n    ret;\n", "hit"));
+  const Image image = link(programs);
+  mem::AddressSpace memory;
+  World world;
+  world.image = &image;
+  world.memory = &memory;
+  world.raygen = 0;
+  world.constant_bank.resize(isa::kConstantBankBytes);
+  world.launch_size = {32, 1, 1};
+  Executor executor(world);
+  WarpContext warp;
+  executor.start(warp, 0);
+  warp.frames.push_back(std::make_unique<TraceFrame>());
+  warp.depth = 1;
+  rt::RayState& state = warp.frame().ray[0];
+  state.status = rt::RayStatus::NeedsAnyHit;
+  state.candidate.t = 1.0f;
+  // As call.sbt.candidate leaves it: the caller waits at its second instruction, lane 0 runs the any-hit shader.
+  warp.simt.push_call(1, kAllLanes & ~1u, 1, 0);
+  warp.simt.active = 1;
+  warp.simt.pc = image.shaders[1].entry;
+
+  executor.execute(warp, 0);  // call
+  executor.execute(warp, 0);  // the function's ret
+  CHECK(state.status == rt::RayStatus::NeedsAnyHit);
+  CHECK(warp.simt.pc == image.shaders[1].entry + 1);
+  executor.execute(warp, 0);  // the shader's ret
+  CHECK(state.status != rt::RayStatus::NeedsAnyHit);
+  CHECK(warp.simt.active == kAllLanes);
+  CHECK(warp.simt.pc == 1);
 }
 
 }  // namespace glint::core
