@@ -1,8 +1,8 @@
 // Conversions between integers and floats, rounded once in any direction.
 //
-// Branch-free, so that loops over lanes become vectors; all in +, -, comparisons and bits, so that every path gives
-// the same. The host must round to nearest, but where a function says otherwise. Included only by isa/ops/*.cpp.
-// SPDX-License-Identifier: Apache-2.0
+// Branch-free, so that loops over lanes become vectors; all in +, -, comparisons and bits, so that every path
+// gives the same. The host must round to nearest, but where a function says otherwise. Included only by
+// isa/ops/*.cpp. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 
@@ -25,33 +25,38 @@ template <Round kRound>
   if constexpr (kRound == Round::Up) return above;
   return x < 0.0 ? above : below;
 }
-// The same of any double: from 2^52 on they are integers. Keeps the sign of zero; a NaN keeps its payload, quieted.
+// The same of any double: from 2^52 on they are integers. Keeps the sign of zero; a NaN keeps its payload,
+// quieted.
 template <Round kRound>
 [[gnu::always_inline]] inline double to_any_integral(double x) {
   const double magnitude = double_of(double_bits(x) & ~kSign64);
   const bool is_small = magnitude < kTwo52;
   const double rounded = to_integral<kRound>(is_small ? x : 0.0);
-  const uint64_t kept = is_small ? (double_bits(rounded) & ~kSign64) | (double_bits(x) & kSign64) : double_bits(x);
+  const uint64_t kept =
+      is_small ? (double_bits(rounded) & ~kSign64) | (double_bits(x) & kSign64) : double_bits(x);
   const uint64_t quiet = magnitude != magnitude ? 0x0008'0000'0000'0000ull : 0;
   return double_of(kept | quiet);
 }
 
-// What a NaN becomes, as recorded: 0 from 32 and 16 bits to at most 32 bits, else the sign bit of the result alone.
+// What a NaN becomes, as recorded: 0 from 32 and 16 bits to at most 32 bits, else the sign bit of the result
+// alone.
 template <class D, bool kFromDouble>
 inline constexpr D kFromNan = kFromDouble || sizeof(D) == 8 ? D(Unsigned<D>(1) << (kBits<D> - 1)) : D(0);
 
-// Rounded and clamped to D; up to 32 bits as the bits of a register, extended by the sign. The clamp comes first: its
-// bounds are integers, so rounding stays within.
+// Rounded and clamped to D; up to 32 bits as the bits of a register, extended by the sign. The clamp comes
+// first: its bounds are integers, so rounding stays within.
 template <class D, Round kRound, bool kFromDouble>
 [[gnu::always_inline]] inline auto to_integer(double x) {
   constexpr D kLow = std::is_signed_v<D> ? D(Unsigned<D>(1) << (kBits<D> - 1)) : D(0), kHigh = D(~kLow);
   if constexpr (sizeof(D) < 8) {
     const double above = x < double(kLow) ? double(kLow) : x;
     const double inside = above > double(kHigh) ? double(kHigh) : above;
-    const uint64_t bits = double_bits(to_integral<kRound>(inside) + kRoundMagic);  // two's complement at the low end
+    const uint64_t bits =
+        double_bits(to_integral<kRound>(inside) + kRoundMagic);  // two's complement at the low end
     return uint32_t(x != x ? uint64_t(int64_t(kFromNan<D, kFromDouble>)) : bits);
   } else {
-    constexpr double kLimit = std::is_signed_v<D> ? 0x1p63 : 0x1p64, kFloor = std::is_signed_v<D> ? -0x1p63 : 0.0;
+    constexpr double kLimit = std::is_signed_v<D> ? 0x1p63 : 0x1p64,
+                     kFloor = std::is_signed_v<D> ? -0x1p63 : 0.0;
     const double whole = to_any_integral<kRound>(x);
     const bool is_inside = whole >= kFloor && whole < kLimit;
     const D inside = D(is_inside ? whole : 0.0);
@@ -84,8 +89,9 @@ template <class S>
   return std::is_signed_v<S> && x < 0 ? kSign64 : 0;
 }
 
-// An integer with its low bits, if it is so large, gathered in one that says whether they were zero: exact as a double,
-// and rounding to less than 40 bits gives what the integer would give. `scale` makes up for the bits gone.
+// An integer with its low bits, if it is so large, gathered in one that says whether they were zero: exact as
+// a double, and rounding to less than 40 bits gives what the integer would give. `scale` makes up for the
+// bits gone.
 struct Reduced {
   double value;
   float scale;
@@ -108,7 +114,9 @@ template <class S>
 }
 template <class S>
 [[gnu::always_inline]] inline double rounded_double(S x) {
-  if constexpr (sizeof(S) < 8) {
+  if constexpr (sizeof(S) <= 2 || std::is_same_v<S, int32_t>) {
+    return double(int32_t(x));
+  } else if constexpr (sizeof(S) < 8) {
     return x == 0 ? 0.0 : double_of(double_bits(small_double(magnitude_of(x))) | sign_of(x));
   } else {
     const uint64_t m = magnitude_of(x), sign = sign_of(x);
@@ -120,28 +128,29 @@ template <class S>
   }
 }
 
-// A double rounded to odd: towards zero, and the last bit set where that was not exact. Rounding it again, to fewer
-// bits, gives what rounding the double would (Boldo and Melquiond 2008).
+// A double rounded to odd: towards zero, and the last bit set where that was not exact. Rounding it again, to
+// fewer bits, gives what rounding the double would (Boldo and Melquiond 2008).
 [[gnu::always_inline]] inline float odd_float(double x) {
   const float nearest = float(x);
   const double back = double(nearest);
-  const double magnitude = double_of(double_bits(x) & ~kSign64), taken = double_of(double_bits(back) & ~kSign64);
+  const double magnitude = double_of(double_bits(x) & ~kSign64),
+               taken = double_of(double_bits(back) & ~kSign64);
   const uint32_t toward_zero = float_bits(nearest) - (taken > magnitude ? 1u : 0u);
   const bool is_off = taken > magnitude || taken < magnitude;
   return float_of(toward_zero | (is_off ? 1u : 0u));
 }
 
-// Whether a directed rounding goes away from zero, as a bit.
+// 1 where a directed rounding of an inexact number goes away from zero. `sign` and `is_inexact` are 0 or 1.
 template <Round kRound>
-[[gnu::always_inline]] inline uint32_t goes_away(bool is_negative, bool is_inexact) {
+[[gnu::always_inline]] inline uint32_t goes_away(uint32_t sign, uint32_t is_inexact) {
   if constexpr (kRound == Round::Zero) return 0;
-  return (is_negative == (kRound == Round::Down)) && is_inexact ? 1u : 0u;
+  return (kRound == Round::Down ? sign : sign ^ 1) & is_inexact;
 }
 // Rounded once; beyond the range infinity or the largest number, as the direction says; NaN gives 0x7fff.
 template <Round kRound>
 [[gnu::always_inline]] inline Half rounded_half(float x) {
   if constexpr (kRound == Round::Nearest) return to_half(x);
-  const uint32_t bits = float_bits(x), magnitude = bits & 0x7fff'ffffu;
+  const uint32_t bits = float_bits(x), magnitude = bits & 0x7fff'ffffu, sign = bits >> 31;
   // Units of 2^-24 for subnormal results; a float below 2^-14 shifted by 14 or more.
   const uint32_t exponent = magnitude >> 23, gap = 126 - exponent > 31 ? 31 : 126 - exponent;
   const uint32_t mantissa = (magnitude & 0x007f'ffffu) | (exponent != 0 ? 0x0080'0000u : 0u);
@@ -149,16 +158,16 @@ template <Round kRound>
   const uint32_t shift = is_small ? gap : 13;
   const uint32_t whole = is_small ? mantissa : magnitude - 0x3800'0000u;
   const uint32_t kept = whole >> shift;
-  const uint32_t away = goes_away<kRound>(x < 0.0f, (kept << shift) != whole);
-  const uint32_t finite = magnitude >= 0x4780'0000u ? 0x7bffu + goes_away<kRound>(x < 0.0f, true) : kept + away;
-  const uint32_t number = (magnitude == 0x7f80'0000u ? 0x7c00u : finite) | (bits >> 16 & 0x8000u);
+  const uint32_t away = goes_away<kRound>(sign, (kept << shift) != whole ? 1u : 0u);
+  const uint32_t finite = magnitude >= 0x4780'0000u ? 0x7bffu + goes_away<kRound>(sign, 1) : kept + away;
+  const uint32_t number = (magnitude == 0x7f80'0000u ? 0x7c00u : finite) | sign << 15;
   return {uint16_t(magnitude > 0x7f80'0000u ? kCanonicalNan16 : number)};
 }
 template <Round kRound>
 [[gnu::always_inline]] inline Bfloat rounded_bfloat(float x) {
   if constexpr (kRound == Round::Nearest) return to_bfloat(x);
   const uint32_t bits = float_bits(x), magnitude = bits & 0x7fff'ffffu;
-  const uint32_t number = (bits >> 16) + goes_away<kRound>((bits >> 31) != 0, (bits & 0xffff) != 0);
+  const uint32_t number = (bits >> 16) + goes_away<kRound>(bits >> 31, (bits & 0xffff) != 0 ? 1u : 0u);
   return {uint16_t(magnitude > 0x7f80'0000u ? kCanonicalNan16 : number)};
 }
 

@@ -18,21 +18,23 @@ using Unsigned = std::make_unsigned_t<T>;
 template <class T>
 inline constexpr int kBits = int(sizeof(T)) * 8;
 
-// Sums of neighbouring fields of 1, 2, 4 bits, then all bytes by a product: no branch, no table.
-[[gnu::always_inline]] inline uint32_t count_ones(uint32_t x) {
-  x -= (x >> 1) & 0x5555'5555u;
-  x = (x & 0x3333'3333u) + ((x >> 2) & 0x3333'3333u);
-  x = (x + (x >> 4)) & 0x0f0f'0f0fu;
-  return (x * 0x0101'0101u) >> 24;
-}
-[[gnu::always_inline]] inline uint32_t count_ones(uint64_t x) {
-  return count_ones(uint32_t(x)) + count_ones(uint32_t(x >> 32));
+// Sums of neighbouring fields of 1, 2, 4 ... bits. Not the product that adds all bytes at once: compilers
+// take that for a population count, of which most machines have no vector form.
+template <class T>
+[[gnu::always_inline]] inline uint32_t count_ones(T x) {
+  x -= (x >> 1) & T(0x5555'5555'5555'5555ull);
+  x = (x & T(0x3333'3333'3333'3333ull)) + ((x >> 2) & T(0x3333'3333'3333'3333ull));
+  x = (x + (x >> 4)) & T(0x0f0f'0f0f'0f0f'0f0full);
+  x += x >> 8;
+  x += x >> 16;
+  if constexpr (sizeof(T) == 8) x += x >> 32;
+  return uint32_t(x & 0xff);
 }
 
 inline constexpr double kTwo52 = 4503599627370496.0;
 inline constexpr uint64_t kTwo52Bits = 0x4330'0000'0000'0000;
-// Exact, below 2^52: the number is the mantissa of a double from 2^52 on. The host must round to nearest (or up, or to
-// zero: rounding down makes a -0 of 0).
+// Exact, below 2^52: the number is the mantissa of a double from 2^52 on. The host must round to nearest (or
+// up, or to zero: rounding down makes a -0 of 0).
 [[gnu::always_inline]] inline double small_double(uint64_t x) {
   return double_of(kTwo52Bits | x) - kTwo52;
 }
@@ -79,16 +81,16 @@ template <class T>
   return T(shifted_left<T>(1, n) - 1);
 }
 
-// Position or length of a field. PTX ISA, bfe and bfi: the low 8 bits. As recorded that holds for 32 bits, while the
-// 64-bit forms take the whole number; all from 64 on mean the same.
+// Position or length of a field. PTX ISA, bfe and bfi: the low 8 bits. As recorded that holds for 32 bits,
+// while the 64-bit forms take the whole number; all from 64 on mean the same.
 template <class T>
 [[gnu::always_inline]] inline Wrapping<T> field_count(uint32_t n) {
   const Wrapping<T> count = n;
   if constexpr (sizeof(T) == 8) return count > 255 ? Wrapping<T>(255) : count;
   return count & 0xff;
 }
-// Shifts the field to the top and back, so that its sign or zeros fill the rest. A signed field that reaches past the
-// last bit has that bit as its sign.
+// Shifts the field to the top and back, so that its sign or zeros fill the rest. A signed field that reaches
+// past the last bit has that bit as its sign.
 template <class T>
 [[gnu::always_inline]] inline T field(T a, uint32_t position, uint32_t length) {
   using W = Wrapping<T>;
@@ -100,15 +102,19 @@ template <class T>
   const bool is_empty = n == 0 || (std::is_unsigned_v<T> && p > kLast);
   return is_empty ? T(0) : bits;
 }
+// x without its lowest n bits.
+template <class T>
+[[gnu::always_inline]] inline T without_low(T x, Wrapping<T> n) {
+  constexpr Wrapping<T> kLast = kBits<T> - 1;
+  const Wrapping<T> at = n < kLast ? n : kLast;
+  return n > kLast ? T(0) : T(T(x >> at) << at);
+}
+// No masks of ones: compilers make no vectors of a constant shifted by 64-bit counts.
 template <class T>
 [[gnu::always_inline]] inline T inserted(T a, T b, uint32_t position, uint32_t length) {
-  using W = Wrapping<T>;
-  constexpr W kWidth = kBits<T>, kLast = kWidth - 1;
-  const W p = field_count<T>(position), end = p + field_count<T>(length);
-  // Ones from a bit on; the factor, 0 or 1, leaves none past the last bit.
-  const W from = (~W(0) << (p & kLast)) * W(p < kWidth), to = (~W(0) << (end & kLast)) * W(end < kWidth);
-  const W mask = from & ~to;
-  return T((W(b) & ~mask) | ((W(a) << (p & kLast)) & mask));
+  const Wrapping<T> p = field_count<T>(position), end = p + field_count<T>(length);
+  const T moved = shifted_left(a, p);
+  return T(without_low(b, end) | (b ^ without_low(b, p)) | (moved ^ without_low(moved, end)));
 }
 
 // High 64 bits of a product, from products of halves.
@@ -136,8 +142,8 @@ template <class T>
 struct Division {
   T quotient, remainder;
 };
-// Of b > 0. The rounded quotient of doubles never reaches the integer above the true one: that lies 1/b or more away,
-// the rounding error is below 2^-21 / b. The sum leaves the integer in the low mantissa bits.
+// Of b > 0. The rounded quotient of doubles never reaches the integer above the true one: that lies 1/b or
+// more away, the rounding error is below 2^-21 / b. The sum leaves the integer in the low mantissa bits.
 [[gnu::always_inline]] inline Division<uint32_t> divided(uint32_t a, uint32_t b) {
   const double q = small_double(a) / small_double(b);
   const double n = q + kTwo52;
@@ -149,8 +155,8 @@ struct Division {
   const uint32_t quotient = uint32_t(int32_t(float(int32_t(a)) / float(int32_t(b))));
   return {uint16_t(quotient), uint16_t(a - quotient * b)};
 }
-// Two steps with a reciprocal that is a little too small, so that no step goes too far: the first leaves a quotient
-// below 2^17, the second one of 0 or 1.
+// Two steps with a reciprocal that is a little too small, so that no step goes too far: the first leaves a
+// quotient below 2^17, the second one of 0 or 1.
 [[gnu::always_inline]] inline Division<uint64_t> divided(uint64_t a, uint64_t b) {
   const double reciprocal = 1.0 / double(b) * (1.0 - 0x1p-49);
   const uint64_t first = uint64_t(double(a) * reciprocal);
@@ -162,8 +168,8 @@ struct Division {
   return {first + second + (last >= b ? 1u : 0u), last >= b ? last - b : last};
 }
 
-// As recorded on hardware, since PTX leaves it open: a division by 0 gives all ones, as quotient and as remainder; of
-// the lowest number by -1 the quotient is that number and the remainder 0.
+// As recorded on hardware, since PTX leaves it open: a division by 0 gives all ones, as quotient and as
+// remainder; of the lowest number by -1 the quotient is that number and the remainder 0.
 template <class T>
 [[gnu::always_inline]] inline Division<T> division(T a, T b) {
   using U = Unsigned<T>;

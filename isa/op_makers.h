@@ -190,18 +190,26 @@ template <class F, class... A>
   (std::index_sequence_for<A...>{});
 }
 
-// The same of an F that gives Two<R, S>. The results go through memory of their own: either destination may be a
-// source.
+// The same of an F that gives Two<R, S>. Either destination may be a source, so nothing is written before all is known:
+// a predicate is a mask until then, other results go through memory of their own.
 template <class F, class... A>
 [[gnu::flatten]] void run_two_values(Warp& warp, const Inst& inst) {
   [&]<size_t... N>(std::index_sequence<N...>) {
     const Slot* const slot = &inst.operand.front();
     const std::tuple<Source<A>...> source{Source<A>(warp, slot[N + 2])...};
-    using R = decltype(F{}(A{}...));
-    R result[kLanes];
-    for (int i = 0; i < kLanes; ++i) result[i] = F{}(std::get<N>(source).at(i)...);
-    write_result<decltype(R::first)>(warp, slot[0], [&](int i) { return result[i].first; });
-    write_result<decltype(R::second)>(warp, slot[1], [&](int i) { return result[i].second; });
+    const auto value = [&](int i) { return F{}(std::get<N>(source).at(i)...); };
+    using R = decltype(value(0));
+    if constexpr (std::is_same_v<decltype(R::second), bool>) {
+      LaneMask second = 0;  // as mask_of, without a condition: carries come from predicates as well
+      for (int i = 0; i < kLanes; ++i) second |= kLaneBit[i] & (LaneMask{0} - LaneMask(value(i).second));
+      write_result<decltype(R::first)>(warp, slot[0], [&](int i) { return value(i).first; });
+      write_predicate(warp, slot[1], second);
+    } else {
+      R result[kLanes];
+      for (int i = 0; i < kLanes; ++i) result[i] = value(i);
+      write_result<decltype(R::first)>(warp, slot[0], [&](int i) { return result[i].first; });
+      write_result<decltype(R::second)>(warp, slot[1], [&](int i) { return result[i].second; });
+    }
   }
   (std::index_sequence_for<A...>{});
 }

@@ -17,7 +17,8 @@ constexpr auto count_rows() {
       unary<T>(joined<"clz", N::kName>, Unit::Sfu, "Number of leading zeros, the width for 0.",
                [](T a) { return uint32_t(kBits<T> - 1) - highest_one(a); },
                {{{0}, kWidth}, {{1}, kWidth - 1}, {{kHigh}, 0}}),
-      unary<T>(joined<"brev", N::kName>, Unit::Sfu, "Reverses the order of the bits.", [](T a) { return reversed(a); },
+      unary<T>(joined<"brev", N::kName>, Unit::Sfu, "Reverses the order of the bits.",
+               [](T a) { return reversed(a); },
                {{{1}, kHigh}, {{kOnes}, kOnes}, {{0xf1}, 0x8full << (kWidth - 8)}}));
 }
 
@@ -63,13 +64,13 @@ constexpr auto field_rows() {
          {{kOnes ^ (kOnes >> 1), kWidth + 8, 4}, kOnes},
          {{kOnes, 0, 0}, 0}});
   else
-    return value_op<T, uint32_t, uint32_t>(
-        joined<"bfe", N::kName>, Unit::Int, "Extracts a field: value, position, length; zeros beyond.",
-        [](T a, uint32_t p, uint32_t n) { return field(a, p, n); },
-        {{{0x1234'5678, 8, 12}, 0x456},
-         {{kOnes, kWidth - 4, 8}, 0xf},
-         {{kOnes, 0, 0}, 0},
-         {{kOnes, kWidth + 8, 4}, 0}});
+    return value_op<T, uint32_t, uint32_t>(joined<"bfe", N::kName>, Unit::Int,
+                                           "Extracts a field: value, position, length; zeros beyond.",
+                                           [](T a, uint32_t p, uint32_t n) { return field(a, p, n); },
+                                           {{{0x1234'5678, 8, 12}, 0x456},
+                                            {{kOnes, kWidth - 4, 8}, 0xf},
+                                            {{kOnes, 0, 0}, 0},
+                                            {{kOnes, kWidth + 8, 4}, 0}});
 }
 template <class N>
 constexpr auto insert_rows() {
@@ -108,12 +109,17 @@ inline uint32_t looked_up(uint32_t a, uint32_t b, uint32_t c, uint32_t table) {
 // Position of one number n (from 0) of x, counted from the low end; n below count_ones(x).
 inline uint32_t position_of_one(uint32_t x, uint32_t n) {
   uint32_t at = 0;
-  for (const uint32_t width : {16u, 8u, 4u, 2u, 1u}) {
+  const auto halve = [&](uint32_t width) {
     const uint32_t below = count_ones((x >> at) & ((1u << width) - 1));
     const uint32_t step = n >= below ? ~0u : 0u;
     at += width & step;
     n -= below & step;
-  }
+  };
+  halve(16);
+  halve(8);
+  halve(4);
+  halve(2);
+  halve(1);
   return at;
 }
 // PTX ISA, fns: the one number |offset| from bit `base` on, that bit included, up or (offset < 0) down.
@@ -121,12 +127,14 @@ inline uint32_t position_of_one(uint32_t x, uint32_t n) {
 inline uint32_t found_one(uint32_t mask, uint32_t base, int32_t offset) {
   const bool is_up = offset >= 0;
   const uint32_t from = is_up ? base : 31 - base;  // downwards is upwards in the reversed word
-  const uint32_t beyond = (is_up ? mask : reversed(mask)) & (~0u << (from & 31));
-  const uint32_t rest = from > 31 ? 0u : offset == 0 ? beyond & (1u << (from & 31)) : beyond;
+  const uint32_t bit = 1u << (from & 31);
+  const uint32_t wanted = offset == 0 ? bit : 0u - bit;  // that bit, or all from it on
+  const uint32_t rest = (is_up ? mask : reversed(mask)) & wanted & (from > 31 ? 0u : ~0u);
   const uint32_t distance = is_up ? uint32_t(offset) : 0u - uint32_t(offset);
-  const uint32_t number = distance == 0 ? 0u : distance - 1;
+  const uint32_t number = distance - (distance == 0 ? 0u : 1u);
   const uint32_t at = position_of_one(rest, number);
-  const uint32_t found = number >= count_ones(rest) ? ~0u : is_up ? at : 31 - at;
+  const uint32_t right_way = is_up ? at : 31 - at;
+  const uint32_t found = right_way | (number >= count_ones(rest) ? ~0u : 0u);
   return distance == 0x8000'0000u ? 0u : found;
 }
 
@@ -162,14 +170,16 @@ constexpr auto mode_rows() {
                               : "Ones from a position on, so many; position and length are taken modulo 32.",
                        [](uint32_t a, uint32_t b) { return made_mask<kClamp>(a, b); },
                        {{{4, 8}, 0xff0}, {{28, 8}, 0xf000'0000}, {{0, 32}, kClamp ? 0xffff'ffff : 0}}),
-      value_op<int32_t, uint32_t>(joined<"szext", kMode, ".s32">, Unit::Int,
-                                  "Extends the sign of the lowest bits, as many as the second source says.",
-                                  [](int32_t a, uint32_t n) { return extended<kClamp>(a, n); },
-                                  {{{0x1f8, 8}, 0xffff'fff8}, {{5, 0}, 0}, {{0x8000'0000, 32}, kClamp ? 0x8000'0000 : 0}}),
-      value_op<uint32_t, uint32_t>(joined<"szext", kMode, ".u32">, Unit::Int,
-                                   "Keeps the lowest bits, as many as the second source says.",
-                                   [](uint32_t a, uint32_t n) { return extended<kClamp>(a, n); },
-                                   {{{0x1f8, 8}, 0xf8}, {{5, 0}, 0}, {{0x8000'0000, 32}, kClamp ? 0x8000'0000 : 0}}));
+      value_op<int32_t, uint32_t>(
+          joined<"szext", kMode, ".s32">, Unit::Int,
+          "Extends the sign of the lowest bits, as many as the second source says.",
+          [](int32_t a, uint32_t n) { return extended<kClamp>(a, n); },
+          {{{0x1f8, 8}, 0xffff'fff8}, {{5, 0}, 0}, {{0x8000'0000, 32}, kClamp ? 0x8000'0000 : 0}}),
+      value_op<uint32_t, uint32_t>(
+          joined<"szext", kMode, ".u32">, Unit::Int,
+          "Keeps the lowest bits, as many as the second source says.",
+          [](uint32_t a, uint32_t n) { return extended<kClamp>(a, n); },
+          {{{0x1f8, 8}, 0xf8}, {{5, 0}, 0}, {{0x8000'0000, 32}, kClamp ? 0x8000'0000 : 0}}));
 }
 
 // Byte number `at` (0 to 7) of a and b, b above.
@@ -189,23 +199,28 @@ inline uint32_t permuted(uint32_t a, uint32_t b, uint32_t selector) {
 // The other modes take one number n and make four picks of it: PTX ISA, prmt.
 template <Text kMode, class Pick>
 constexpr OpRow permute_row(std::string_view doc, Pick, Examples examples) {
-  return ternary<uint32_t>(joined<"prmt.b32", kMode>, Unit::Int, doc,
-                           [](uint32_t a, uint32_t b, uint32_t n) {
-                             uint32_t out = 0;
-                             for (uint32_t i = 0; i < 4; ++i) out |= byte_of(a, b, Pick{}(n & 3, i)) << (8 * i);
-                             return out;
-                           },
-                           examples);
+  return ternary<uint32_t>(
+      joined<"prmt.b32", kMode>, Unit::Int, doc,
+      [](uint32_t a, uint32_t b, uint32_t n) {
+        uint32_t out = 0;
+        for (uint32_t i = 0; i < 4; ++i) out |= byte_of(a, b, Pick{}(n & 3, i)) << (8 * i);
+        return out;
+      },
+      examples);
 }
 constexpr uint64_t kLow = 0x3322'1100, kHigh = 0x7766'5544;
 constexpr auto permute_rows() {
   using U = uint32_t;
   return joined_rows(
       ternary<U>("prmt.b32", Unit::Int,
-                 "Four bytes of eight: a nibble of the third source picks each; its bit 3 asks for copies of the sign.",
+                 "Four bytes of eight: a nibble of the third source picks each; its bit 3 asks for copies of "
+                 "the sign.",
                  [](U a, U b, U selector) { return permuted(a, b, selector); },
-                 {{{kLow, kHigh, 0x3210}, kLow}, {{kLow, kHigh, 0x7654}, kHigh}, {{kLow, 0x80, 0xc400}, 0xff80'0000}}),
-      permute_row<".f4e">("Four bytes of eight, upwards from byte n of 0 to 3.", [](U n, U i) { return n + i; },
+                 {{{kLow, kHigh, 0x3210}, kLow},
+                  {{kLow, kHigh, 0x7654}, kHigh},
+                  {{kLow, 0x80, 0xc400}, 0xff80'0000}}),
+      permute_row<".f4e">("Four bytes of eight, upwards from byte n of 0 to 3.",
+                          [](U n, U i) { return n + i; },
                           {{{kLow, kHigh, 0}, kLow}, {{kLow, kHigh, 3}, 0x6655'4433}}),
       permute_row<".b4e">("Four bytes of eight, downwards from byte n of 0 to 3, byte 7 below byte 0.",
                           [](U n, U i) { return (n - i) & 7; },
@@ -230,12 +245,16 @@ constexpr auto kRows = joined_rows(
     rows_of_types<TypeB32, TypeB64>([]<class N>() { return insert_rows<N>(); }), mode_rows<".wrap", false>(),
     mode_rows<".clamp", true>(),
     value_op<uint32_t, uint32_t, uint32_t, uint32_t>(
-        "lop3.b32", Unit::Int, "Any logic of three words: bit 4a + 2b + c of the fourth source is the result's bit.",
+        "lop3.b32", Unit::Int,
+        "Any logic of three words: bit 4a + 2b + c of the fourth source is the result's bit.",
         [](uint32_t a, uint32_t b, uint32_t c, uint32_t table) { return looked_up(a, b, c, table); },
-        {{{0xf0, 0xcc, 0xaa, 0x80}, 0x80}, {{0xf0, 0xcc, 0xaa, 0x96}, 0x96}, {{0xf0, 0xcc, 0xaa, 0x3c}, 0x3c}}),
+        {{{0xf0, 0xcc, 0xaa, 0x80}, 0x80},
+         {{0xf0, 0xcc, 0xaa, 0x96}, 0x96},
+         {{0xf0, 0xcc, 0xaa, 0x3c}, 0x3c}}),
     value_op<uint32_t, uint32_t, int32_t>(
         "fns.b32", Unit::Sfu,
-        "Position of the n-th one from a bit on, upwards or (n < 0) downwards; n = 0 tests the bit; all ones if none is there.",
+        "Position of the n-th one from a bit on, upwards or (n < 0) downwards; n = 0 tests the bit; all ones "
+        "if none is there.",
         [](uint32_t mask, uint32_t base, int32_t offset) { return found_one(mask, base, offset); },
         {{{0xaaaa'aaaa, 3, 1}, 3},
          {{0xaaaa'aaaa, 3, 2}, 5},

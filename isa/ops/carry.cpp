@@ -9,20 +9,21 @@
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
-// a + b + carry and its carry out: both numbers count as unsigned.
+// a + b + carry and its carry out: both numbers count as unsigned. The carry out of the top bit is that of a
+// full adder, which compilers make better vectors of than of comparisons.
 template <class T>
 inline Two<T, bool> sum_with_carry(T a, T b, bool carry) {
   using U = Unsigned<T>;
-  const U partial = U(a) + U(b);
-  const U sum = partial + U(carry);
-  return {T(sum), bool((partial < U(a)) | (sum < partial))};
+  const U x = U(a), y = U(b), sum = x + y + U(carry);
+  const U out = (x & y) | ((x | y) & ~sum);
+  return {T(sum), std::make_signed_t<U>(out) < 0};
 }
 template <class T>
 inline Two<T, bool> difference_with_borrow(T a, T b, bool borrow) {
   using U = Unsigned<T>;
-  const U partial = U(a) - U(b);
-  const U difference = partial - U(borrow);
-  return {T(difference), bool((U(a) < U(b)) | (partial < U(borrow)))};
+  const U x = U(a), y = U(b), difference = x - y - U(borrow);
+  const U out = (~x & y) | ((~x | y) & difference);
+  return {T(difference), std::make_signed_t<U>(out) < 0};
 }
 
 template <class N>
@@ -40,7 +41,8 @@ constexpr auto sum_rows() {
                            [](T a, T b, bool c) { return sum_with_carry(a, b, c); },
                            {{{1, 2, 1}, 4, 0}, {{kOnes, kOnes, 1}, kOnes, 1}, {{kOnes, 0, 1}, 0, 1}}),
       binary<T>(joined<"sub.cc", N::kName>, Unit::Int, "Subtracts; the predicate is the borrow.",
-                [](T a, T b) { return difference_with_borrow(a, b, false); }, {{{3, 2}, 1, 0}, {{0, 1}, kOnes, 1}}),
+                [](T a, T b) { return difference_with_borrow(a, b, false); },
+                {{{3, 2}, 1, 0}, {{0, 1}, kOnes, 1}}),
       value_op<T, T, bool>(joined<"subc", N::kName>, Unit::Int, "Subtracts a number and a borrow.",
                            [](T a, T b, bool c) { return difference_with_borrow(a, b, c).first; },
                            {{{3, 2, 0}, 1}, {{3, 2, 1}, 0}}),
@@ -64,18 +66,15 @@ constexpr auto product_rows() {
                  "Half of a product, plus the third source; the predicate is the carry out.",
                  [](T a, T b, T c) { return sum_with_carry(half_product<kHigh>(a, b), c, false); },
                  {{{3, 5, 1}, kProduct + 1, 0}, {{3, 5, kOnes}, kHigh ? kOnes : 14, !kHigh}}),
-      value_op<T, T, T, bool>(joined<"madc", kHalf, N::kName>, Unit::Int,
-                              "Half of a product, plus the third source and a carry.",
-                              [](T a, T b, T c, bool carry) {
-                                return sum_with_carry(half_product<kHigh>(a, b), c, carry).first;
-                              },
-                              {{{3, 5, 1, 0}, kProduct + 1}, {{3, 5, 1, 1}, kProduct + 2}}),
-      value_op<T, T, T, bool>(joined<"madc", kHalf, ".cc", N::kName>, Unit::Int,
-                              "Half of a product, plus the third source and a carry; the predicate is the carry out.",
-                              [](T a, T b, T c, bool carry) {
-                                return sum_with_carry(half_product<kHigh>(a, b), c, carry);
-                              },
-                              {{{3, 5, 1, 1}, kProduct + 2, 0}, {{3, 5, kOnes, 1}, kProduct, 1}}));
+      value_op<T, T, T, bool>(
+          joined<"madc", kHalf, N::kName>, Unit::Int, "Half of a product, plus the third source and a carry.",
+          [](T a, T b, T c, bool carry) { return sum_with_carry(half_product<kHigh>(a, b), c, carry).first; },
+          {{{3, 5, 1, 0}, kProduct + 1}, {{3, 5, 1, 1}, kProduct + 2}}),
+      value_op<T, T, T, bool>(
+          joined<"madc", kHalf, ".cc", N::kName>, Unit::Int,
+          "Half of a product, plus the third source and a carry; the predicate is the carry out.",
+          [](T a, T b, T c, bool carry) { return sum_with_carry(half_product<kHigh>(a, b), c, carry); },
+          {{{3, 5, 1, 1}, kProduct + 2, 0}, {{3, 5, kOnes, 1}, kProduct, 1}}));
 }
 
 constexpr auto kRows = rows_of_types<TypeS32, TypeU32, TypeS64, TypeU64>([]<class N>() {

@@ -24,26 +24,26 @@ constexpr auto equality_rows() {
 }
 template <class N>
 constexpr auto order_rows() {
-  return joined_rows(equality_rows<N>(),
-                     relation_rows<Relation<".lt", IsLess, 1, 0, 0>, Integer<N>>("True where a < b."),
-                     relation_rows<Relation<".le", IsLessOrEqual, 1, 1, 0>, Integer<N>>("True where a <= b."),
-                     relation_rows<Relation<".gt", IsGreater, 0, 0, 1>, Integer<N>>("True where a > b."),
-                     relation_rows<Relation<".ge", IsGreaterOrEqual, 0, 1, 1>, Integer<N>>("True where a >= b."));
+  return joined_rows(
+      equality_rows<N>(), relation_rows<Relation<".lt", IsLess, 1, 0, 0>, Integer<N>>("True where a < b."),
+      relation_rows<Relation<".le", IsLessOrEqual, 1, 1, 0>, Integer<N>>("True where a <= b."),
+      relation_rows<Relation<".gt", IsGreater, 0, 0, 1>, Integer<N>>("True where a > b."),
+      relation_rows<Relation<".ge", IsGreaterOrEqual, 0, 1, 1>, Integer<N>>("True where a >= b."));
 }
 // PTX's other names of the unsigned relations: lower, lower or same, higher, higher or same.
 template <class N>
 constexpr auto unsigned_rows() {
-  return joined_rows(order_rows<N>(),
-                     relation_rows<Relation<".lo", IsLess, 1, 0, 0>, Integer<N>>("True where a < b."),
-                     relation_rows<Relation<".ls", IsLessOrEqual, 1, 1, 0>, Integer<N>>("True where a <= b."),
-                     relation_rows<Relation<".hi", IsGreater, 0, 0, 1>, Integer<N>>("True where a > b."),
-                     relation_rows<Relation<".hs", IsGreaterOrEqual, 0, 1, 1>, Integer<N>>("True where a >= b."));
+  return joined_rows(
+      order_rows<N>(), relation_rows<Relation<".lo", IsLess, 1, 0, 0>, Integer<N>>("True where a < b."),
+      relation_rows<Relation<".ls", IsLessOrEqual, 1, 1, 0>, Integer<N>>("True where a <= b."),
+      relation_rows<Relation<".hi", IsGreater, 0, 0, 1>, Integer<N>>("True where a > b."),
+      relation_rows<Relation<".hs", IsGreaterOrEqual, 0, 1, 1>, Integer<N>>("True where a >= b."));
 }
 
-constexpr auto kRows = joined_rows(
-    rows_of_types<TypeB16, TypeB32, TypeB64>([]<class N>() { return equality_rows<N>(); }),
-    rows_of_types<TypeS16, TypeS32, TypeS64>([]<class N>() { return order_rows<N>(); }),
-    rows_of_types<TypeU16, TypeU32, TypeU64>([]<class N>() { return unsigned_rows<N>(); }));
+constexpr auto kRows =
+    joined_rows(rows_of_types<TypeB16, TypeB32, TypeB64>([]<class N>() { return equality_rows<N>(); }),
+                rows_of_types<TypeS16, TypeS32, TypeS64>([]<class N>() { return order_rows<N>(); }),
+                rows_of_types<TypeU16, TypeU32, TypeU64>([]<class N>() { return unsigned_rows<N>(); }));
 
 }  // namespace
 

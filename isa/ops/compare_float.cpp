@@ -35,7 +35,8 @@ struct FlushedSingle : SinglePrecision {
 struct DoublePrecision : Named<double, ".f64"> {
   static constexpr auto kFlush = Text("");
   static constexpr Unit kUnit = Unit::Fp64;
-  static constexpr uint64_t kOne = 0x3ff0'0000'0000'0000, kTwo = 0x4000'0000'0000'0000, kNan = 0x7ff8'0000'0000'0000;
+  static constexpr uint64_t kOne = 0x3ff0'0000'0000'0000, kTwo = 0x4000'0000'0000'0000,
+                            kNan = 0x7ff8'0000'0000'0000;
   [[gnu::always_inline]] static double value(double x) { return x; }
 };
 struct HalfPrecision : Named<Half, ".f16"> {
@@ -67,17 +68,26 @@ template <class Make>
 constexpr auto for_relations(Make make) {
   return joined_rows(
       make.template operator()<Relation<".eq", IsEqual, 0, 1, 0>>("True where a == b; false with a NaN."),
-      make.template operator()<Relation<".ne", IsLessOrGreater, 1, 0, 1>>("True where a != b; false with a NaN."),
+      make.template operator()<Relation<".ne", IsLessOrGreater, 1, 0, 1>>(
+          "True where a != b; false with a NaN."),
       make.template operator()<Relation<".lt", IsLess, 1, 0, 0>>("True where a < b; false with a NaN."),
-      make.template operator()<Relation<".le", IsLessOrEqual, 1, 1, 0>>("True where a <= b; false with a NaN."),
+      make.template operator()<Relation<".le", IsLessOrEqual, 1, 1, 0>>(
+          "True where a <= b; false with a NaN."),
       make.template operator()<Relation<".gt", IsGreater, 0, 0, 1>>("True where a > b; false with a NaN."),
-      make.template operator()<Relation<".ge", IsGreaterOrEqual, 0, 1, 1>>("True where a >= b; false with a NaN."),
-      make.template operator()<Relation<".equ", Not<IsLessOrGreater>, 0, 1, 0, 1>>("True where a == b or one is a NaN."),
-      make.template operator()<Relation<".neu", IsNotEqual, 1, 0, 1, 1>>("True where a != b or one is a NaN."),
-      make.template operator()<Relation<".ltu", Not<IsGreaterOrEqual>, 1, 0, 0, 1>>("True where a < b or one is a NaN."),
-      make.template operator()<Relation<".leu", Not<IsGreater>, 1, 1, 0, 1>>("True where a <= b or one is a NaN."),
-      make.template operator()<Relation<".gtu", Not<IsLessOrEqual>, 0, 0, 1, 1>>("True where a > b or one is a NaN."),
-      make.template operator()<Relation<".geu", Not<IsLess>, 0, 1, 1, 1>>("True where a >= b or one is a NaN."),
+      make.template operator()<Relation<".ge", IsGreaterOrEqual, 0, 1, 1>>(
+          "True where a >= b; false with a NaN."),
+      make.template operator()<Relation<".equ", Not<IsLessOrGreater>, 0, 1, 0, 1>>(
+          "True where a == b or one is a NaN."),
+      make.template operator()<Relation<".neu", IsNotEqual, 1, 0, 1, 1>>(
+          "True where a != b or one is a NaN."),
+      make.template operator()<Relation<".ltu", Not<IsGreaterOrEqual>, 1, 0, 0, 1>>(
+          "True where a < b or one is a NaN."),
+      make.template operator()<Relation<".leu", Not<IsGreater>, 1, 1, 0, 1>>(
+          "True where a <= b or one is a NaN."),
+      make.template operator()<Relation<".gtu", Not<IsLessOrEqual>, 0, 0, 1, 1>>(
+          "True where a > b or one is a NaN."),
+      make.template operator()<Relation<".geu", Not<IsLess>, 0, 1, 1, 1>>(
+          "True where a >= b or one is a NaN."),
       make.template operator()<Relation<".num", IsOrdered, 1, 1, 1, 0>>("True where neither is a NaN."),
       make.template operator()<Relation<".nan", Not<IsOrdered>, 0, 0, 0, 1>>("True where one is a NaN."));
 }
@@ -145,15 +155,17 @@ constexpr auto pair_rows() {
   constexpr Truth kTruth = R::kTruth;
   constexpr uint64_t kSet = (kTruth.less ? kYes : 0u) | (kTruth.equal ? kYes << 16 : 0u);
   return joined_rows(
-      comparison_row(joined<"setp", R::kName, N::kFlush, N::kName, "x2">, Unit::Fp16, {DstPred, DstPred, Src32, Src32},
-                     &run_pair<R, N>, "Two predicates: of the low and of the high halves.",
+      comparison_row(joined<"setp", R::kName, N::kFlush, N::kName, "x2">, Unit::Fp16,
+                     {DstPred, DstPred, Src32, Src32}, &run_pair<R, N>,
+                     "Two predicates: of the low and of the high halves.",
                      {{{kOnes<N>, kTwoOne<N>}, kTruth.less, kTruth.equal},
                       {{kTwoOne<N>, kOnes<N>}, kTruth.greater, kTruth.equal}}),
       combined_pair_row<R, N, And>(), combined_pair_row<R, N, Or>(), combined_pair_row<R, N, Xor>(),
-      comparison_row(joined<"set", R::kName, N::kFlush, N::kName, "x2", N::kName, "x2">,
-                     Unit::Fp16, {Dst32, Src32, Src32}, &run_pair_set<R, N, kYes>,
-                     "Two floats, of the low and of the high halves: 1 for true, 0 for false.",
-                     {{{kOnes<N>, kTwoOne<N>}, kSet}, {{kOnes<N>, kOnes<N>}, kTruth.equal ? kYes * 0x1'0001u : 0}}));
+      comparison_row(
+          joined<"set", R::kName, N::kFlush, N::kName, "x2", N::kName, "x2">, Unit::Fp16,
+          {Dst32, Src32, Src32}, &run_pair_set<R, N, kYes>,
+          "Two floats, of the low and of the high halves: 1 for true, 0 for false.",
+          {{{kOnes<N>, kTwoOne<N>}, kSet}, {{kOnes<N>, kOnes<N>}, kTruth.equal ? kYes * 0x1'0001u : 0}}));
 }
 // A result of 16 bits: all ones, or 1 as a float of the source's type.
 template <class R, class N, uint32_t kYes>

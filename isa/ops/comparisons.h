@@ -1,7 +1,8 @@
-// What comparison rows are made of: the relations, and handlers for setp and set that share one loop over the lanes.
+// What comparison rows are made of: the relations, and handlers for setp and set that share one loop over the
+// lanes.
 //
-// Included only by isa/ops/*.cpp. Everything lies in an unnamed namespace: the handlers are those of one file.
-// SPDX-License-Identifier: Apache-2.0
+// Included only by isa/ops/*.cpp. Everything lies in an unnamed namespace: the handlers are those of one
+// file. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "isa/ops/row_tables.h"
 
@@ -43,8 +44,8 @@ struct IsGreaterOrEqual {
   bool operator()(auto a, auto b) const { return a >= b; }
 };
 
-// The mask of the lanes where the relation holds between two sources. N::Type is what a lane holds, N::value what of
-// it is compared.
+// The mask of the lanes where the relation holds between two sources. N::Type is what a lane holds, N::value
+// what of it is compared.
 template <class R, class N>
 [[gnu::flatten, gnu::noinline]] LaneMask compared(const Warp& warp, Slot a, Slot b) {
   const Source<typename N::Type> x(warp, a), y(warp, b);
@@ -92,8 +93,8 @@ void run_set(Warp& warp, const Inst& inst) {
   write_choice(warp, slot[0], compared<R, N>(warp, slot[1], slot[2]), kYes);
 }
 
-constexpr OpRow comparison_row(std::string_view name, Unit unit, Operands operands, Handler run, std::string_view doc,
-                               Examples examples) {
+constexpr OpRow comparison_row(std::string_view name, Unit unit, Operands operands, Handler run,
+                               std::string_view doc, Examples examples) {
   OpRow row;
   row.name = name;
   row.unit = unit;
@@ -109,9 +110,10 @@ template <class R, class N>
 constexpr OpRow setp_row(std::string_view doc) {
   constexpr OperandKind kKind = source_kind<typename N::Type>();
   constexpr Truth kTruth = R::kTruth;
-  return comparison_row(joined<"setp", R::kName, N::kFlush, N::kName>, N::kUnit, {DstPred, kKind, kKind}, &run_setp<R, N>,
-                        doc,
-                        {{{N::kOne, N::kOne}, kTruth.equal}, {{N::kOne, N::kTwo}, kTruth.less},
+  return comparison_row(joined<"setp", R::kName, N::kFlush, N::kName>, N::kUnit, {DstPred, kKind, kKind},
+                        &run_setp<R, N>, doc,
+                        {{{N::kOne, N::kOne}, kTruth.equal},
+                         {{N::kOne, N::kTwo}, kTruth.less},
                          {{N::kTwo, N::kOne}, kTruth.greater}});
 }
 template <class R, class N, class Op>
@@ -131,9 +133,10 @@ template <class R, class N, Text kType, uint32_t kYes>
 constexpr OpRow set_row() {
   constexpr OperandKind kKind = source_kind<typename N::Type>();
   constexpr Truth kTruth = R::kTruth;
-  return comparison_row(joined<"set", R::kName, N::kFlush, kType, N::kName>, N::kUnit, {Dst32, kKind, kKind},
-                        &run_set<R, N, kYes>, "As setp, but a value: 0 for false, and for true all ones or the float 1.",
-                        {{{N::kOne, N::kOne}, kTruth.equal ? kYes : 0}, {{N::kOne, N::kTwo}, kTruth.less ? kYes : 0}});
+  return comparison_row(
+      joined<"set", R::kName, N::kFlush, kType, N::kName>, N::kUnit, {Dst32, kKind, kKind},
+      &run_set<R, N, kYes>, "As setp, but a value: 0 for false, and for true all ones or the float 1.",
+      {{{N::kOne, N::kOne}, kTruth.equal ? kYes : 0}, {{N::kOne, N::kTwo}, kTruth.less ? kYes : 0}});
 }
 
 // setp plain and combined, and set, of one relation and type.

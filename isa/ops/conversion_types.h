@@ -10,9 +10,11 @@ namespace glint::isa::GLINT_ISA_PATH {
 using TypeS8 = Named<int8_t, ".s8">;
 using TypeU8 = Named<uint8_t, ".u8">;
 
-// How T lies in a register: bytes fill one of 32 bits, extended by their sign or zeros; sources count by their low byte.
+// How T lies in a register: bytes fill one of 32 bits, extended by their sign or zeros; sources count by
+// their low byte.
 template <class T>
-using Register = std::conditional_t<sizeof(T) == 1, std::conditional_t<std::is_signed_v<T>, int32_t, uint32_t>, T>;
+using Register =
+    std::conditional_t<sizeof(T) == 1, std::conditional_t<std::is_signed_v<T>, int32_t, uint32_t>, T>;
 template <class T>
 constexpr uint64_t register_word(T x) {
   return word(Register<T>(x));
@@ -37,8 +39,8 @@ constexpr auto rows_of_rounds(Make make) {
 
 // A float type as conversions see it: its name, and its exact value as a float or double.
 struct TypeF32 : Named<float, ".f32"> {
-  static constexpr uint64_t kOne = 0x3f80'0000, kMinusOne = 0xbf80'0000, kTwoAndHalf = 0x4020'0000, kNan = 0x7fc0'0000,
-                            kInfinity = 0x7f80'0000;
+  static constexpr uint64_t kOne = 0x3f80'0000, kMinusOne = 0xbf80'0000, kTwoAndHalf = 0x4020'0000,
+                            kNan = 0x7fc0'0000, kInfinity = 0x7f80'0000;
   [[gnu::always_inline]] static float value(float x) { return x; }
 };
 struct TypeF64 : Named<double, ".f64"> {
@@ -48,11 +50,13 @@ struct TypeF64 : Named<double, ".f64"> {
   [[gnu::always_inline]] static double value(double x) { return x; }
 };
 struct TypeF16 : Named<Half, ".f16"> {
-  static constexpr uint64_t kOne = 0x3c00, kMinusOne = 0xbc00, kTwoAndHalf = 0x4100, kNan = 0x7e00, kInfinity = 0x7c00;
+  static constexpr uint64_t kOne = 0x3c00, kMinusOne = 0xbc00, kTwoAndHalf = 0x4100, kNan = 0x7e00,
+                            kInfinity = 0x7c00;
   [[gnu::always_inline]] static float value(Half x) { return to_float(x); }
 };
 struct TypeBf16 : Named<Bfloat, ".bf16"> {
-  static constexpr uint64_t kOne = 0x3f80, kMinusOne = 0xbf80, kTwoAndHalf = 0x4020, kNan = 0x7fc0, kInfinity = 0x7f80;
+  static constexpr uint64_t kOne = 0x3f80, kMinusOne = 0xbf80, kTwoAndHalf = 0x4020, kNan = 0x7fc0,
+                            kInfinity = 0x7f80;
   [[gnu::always_inline]] static float value(Bfloat x) { return to_float(x); }
 };
 

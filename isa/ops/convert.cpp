@@ -29,31 +29,39 @@ constexpr auto pair_rows() {
   using From = typename S::Type;
   constexpr uint64_t kMinusOne = register_word<From>(From(-1));
   constexpr bool kIsLong = sizeof(To) == 8 || sizeof(From) == 8;
-  constexpr std::string_view kDoc = sizeof(To) > sizeof(From) ? std::is_signed_v<From> ? "Widens with copies of the sign."
-                                                                                      : "Widens with zeros."
-                                    : sizeof(To) < sizeof(From) ? "Keeps the low bits."
-                                                                : "Keeps the bits.";
+  constexpr std::string_view kDoc =
+      sizeof(To) > sizeof(From)
+          ? std::is_signed_v<From> ? "Widens with copies of the sign." : "Widens with zeros."
+      : sizeof(To) < sizeof(From) ? "Keeps the low bits."
+                                  : "Keeps the bits.";
   constexpr OpRow kPlain = value_op<Register<From>>(
       joined<"cvt", D::kName, S::kName>, Unit::Int, kDoc,
       [](Register<From> x) { return Register<To>(To(From(x))); },
-      {{{7}, 7}, {{kMinusOne}, register_word<To>(To(From(-1)))}, {{0x1'0000'0044 & register_word<From>(From(-1))}, 0x44 + (kIsLong && sizeof(To) == 8 && sizeof(From) == 8 ? 0x1'0000'0000 : 0)}});
+      {{{7}, 7},
+       {{kMinusOne}, register_word<To>(To(From(-1)))},
+       {{0x1'0000'0044 & register_word<From>(From(-1))},
+        0x44 + (kIsLong && sizeof(To) == 8 && sizeof(From) == 8 ? 0x1'0000'0000 : 0)}});
   if constexpr (kContains<To, From>) {
     return joined_rows(kPlain);
   } else {
-    constexpr uint64_t kClamped = std::is_signed_v<From> ? register_word<To>(std::is_signed_v<To> ? To(-1) : To(0))
-                                                         : register_word<To>(To(std::is_signed_v<To> ? Unsigned<To>(-1) >> 1 : To(-1)));
-    return joined_rows(kPlain, value_op<Register<From>>(
-                                   joined<"cvt.sat", D::kName, S::kName>, Unit::Int, "Clamps to the range of the result.",
-                                   [](Register<From> x) { return Register<To>(clamped<To>(From(x))); },
-                                   {{{7}, 7}, {{kMinusOne}, kClamped}, {{0}, 0}}));
+    constexpr uint64_t kClamped =
+        std::is_signed_v<From> ? register_word<To>(std::is_signed_v<To> ? To(-1) : To(0))
+                               : register_word<To>(To(std::is_signed_v<To> ? Unsigned<To>(-1) >> 1 : To(-1)));
+    return joined_rows(
+        kPlain, value_op<Register<From>>(joined<"cvt.sat", D::kName, S::kName>, Unit::Int,
+                                         "Clamps to the range of the result.",
+                                         [](Register<From> x) { return Register<To>(clamped<To>(From(x))); },
+                                         {{{7}, 7}, {{kMinusOne}, kClamped}, {{0}, 0}}));
   }
 }
 
 template <class S>
 constexpr auto source_rows() {
-  return rows_of_types<TypeS8, TypeU8, TypeS16, TypeU16, TypeS32, TypeU32, TypeS64, TypeU64>([]<class D>() { return pair_rows<D, S>(); });
+  return rows_of_types<TypeS8, TypeU8, TypeS16, TypeU16, TypeS32, TypeU32, TypeS64, TypeU64>(
+      []<class D>() { return pair_rows<D, S>(); });
 }
-constexpr auto kRows = rows_of_types<TypeS8, TypeU8, TypeS16, TypeU16, TypeS32, TypeU32, TypeS64, TypeU64>([]<class S>() { return source_rows<S>(); });
+constexpr auto kRows = rows_of_types<TypeS8, TypeU8, TypeS16, TypeU16, TypeS32, TypeU32, TypeS64, TypeU64>(
+    []<class S>() { return source_rows<S>(); });
 
 }  // namespace
 

@@ -29,7 +29,8 @@ inline constexpr uint64_t kMinusHalf = kRound == Round::Down ? 0xbf80'0000 : 0x8
 template <Round kRound, bool kFtz, bool kSat>
 constexpr OpRow whole_single_row() {
   return unary<float>(
-      joined<"cvt", integer_round_name<kRound>, when<kFtz, ".ftz">, when<kSat, ".sat">, ".f32.f32">, Unit::Sfu,
+      joined<"cvt", integer_round_name<kRound>, when<kFtz, ".ftz">, when<kSat, ".sat">, ".f32.f32">,
+      Unit::Sfu,
       kSat ? "Rounds to an integer that stays a float; clamped to [0, 1], NaN becomes 0."
            : "Rounds to an integer that stays a float.",
       [](float x) {
@@ -44,37 +45,46 @@ constexpr OpRow whole_single_row() {
 }
 template <Round kRound, bool kSat>
 constexpr auto whole_other_rows() {
-  return joined_rows(
-      unary<double>(joined<"cvt", integer_round_name<kRound>, when<kSat, ".sat">, ".f64.f64">, Unit::Sfu,
-                    "Rounds to an integer that stays a float.",
-                    [](double x) {
-                      const double whole = to_any_integral<kRound>(x);
-                      return kSat ? saturated(whole) : whole;
-                    },
-                    {{{TypeF64::kOne}, TypeF64::kOne},
-                     {{TypeF64::kTwoAndHalf}, kSat ? TypeF64::kOne : kRound == Round::Up ? 0x4008ull << 48 : 0x4000ull << 48},
-                     {{TypeF64::kMinusOne}, kSat ? 0 : TypeF64::kMinusOne}}),
-      unary<Half>(joined<"cvt", integer_round_name<kRound>, when<kSat, ".sat">, ".f16.f16">, Unit::Sfu,
-                  "Rounds to an integer that stays a float.",
-                  [](Half x) {
-                    const float whole = rounded_whole<kRound>(to_float(x));
-                    return to_half(kSat ? saturated(whole) : whole);
-                  },
-                  {{{TypeF16::kOne}, TypeF16::kOne},
-                   {{TypeF16::kTwoAndHalf}, kSat ? TypeF16::kOne : kRound == Round::Up ? 0x4200 : 0x4000},
-                   {{TypeF16::kMinusOne}, kSat ? 0 : TypeF16::kMinusOne}}));
+  return joined_rows(unary<double>(joined<"cvt", integer_round_name<kRound>, when<kSat, ".sat">, ".f64.f64">,
+                                   Unit::Sfu, "Rounds to an integer that stays a float.",
+                                   [](double x) {
+                                     const double whole = to_any_integral<kRound>(x);
+                                     return kSat ? saturated(whole) : whole;
+                                   },
+                                   {{{TypeF64::kOne}, TypeF64::kOne},
+                                    {{TypeF64::kTwoAndHalf},
+                                     kSat                  ? TypeF64::kOne
+                                     : kRound == Round::Up ? 0x4008ull << 48
+                                                           : 0x4000ull << 48},
+                                    {{TypeF64::kMinusOne}, kSat ? 0 : TypeF64::kMinusOne}}),
+                     unary<Half>(joined<"cvt", integer_round_name<kRound>, when<kSat, ".sat">, ".f16.f16">,
+                                 Unit::Sfu, "Rounds to an integer that stays a float.",
+                                 [](Half x) {
+                                   const float whole = rounded_whole<kRound>(to_float(x));
+                                   return to_half(kSat ? saturated(whole) : whole);
+                                 },
+                                 {{{TypeF16::kOne}, TypeF16::kOne},
+                                  {{TypeF16::kTwoAndHalf},
+                                   kSat                  ? TypeF16::kOne
+                                   : kRound == Round::Up ? 0x4200
+                                                         : 0x4000},
+                                  {{TypeF16::kMinusOne}, kSat ? 0 : TypeF16::kMinusOne}}));
 }
 
 // The same width without rounding: flushed, clamped.
 constexpr auto same_rows() {
   return joined_rows(
-      unary<float>("cvt.sat.f32.f32", Unit::Int, "Clamps to [0, 1]; NaN becomes 0.", [](float x) { return saturated(x); },
+      unary<float>("cvt.sat.f32.f32", Unit::Int, "Clamps to [0, 1]; NaN becomes 0.",
+                   [](float x) { return saturated(x); },
                    {{{0x4000'0000}, 0x3f80'0000}, {{1}, 1}, {{0x7fc0'0000}, 0}, {{0xbf80'0000}, 0}}),
-      unary<float>("cvt.ftz.f32.f32", Unit::Int, "Makes subnormals zero.", [](float x) { return canonical(flushed(x)); },
-                   {{{0x4000'0000}, 0x4000'0000}, {{0x8000'0001}, 0x8000'0000}, {{0x7f80'0001}, 0x7fff'ffff}}),
+      unary<float>(
+          "cvt.ftz.f32.f32", Unit::Int, "Makes subnormals zero.",
+          [](float x) { return canonical(flushed(x)); },
+          {{{0x4000'0000}, 0x4000'0000}, {{0x8000'0001}, 0x8000'0000}, {{0x7f80'0001}, 0x7fff'ffff}}),
       unary<float>("cvt.ftz.sat.f32.f32", Unit::Int, "Clamps to [0, 1]; subnormals and NaN become 0.",
                    [](float x) { return saturated(flushed(x)); }, {{{0x4000'0000}, 0x3f80'0000}, {{1}, 0}}),
-      unary<double>("cvt.sat.f64.f64", Unit::Sfu, "Clamps to [0, 1]; NaN becomes 0.", [](double x) { return saturated(x); },
+      unary<double>("cvt.sat.f64.f64", Unit::Sfu, "Clamps to [0, 1]; NaN becomes 0.",
+                    [](double x) { return saturated(x); },
                     {{{TypeF64::kTwoAndHalf}, TypeF64::kOne}, {{TypeF64::kNan}, 0}}),
       unary<Half>("cvt.sat.f16.f16", Unit::Int, "Clamps to [0, 1]; NaN becomes 0.",
                   [](Half x) { return to_half(saturated(to_float(x))); },
@@ -86,16 +96,20 @@ template <class D, class S, bool kFtz, bool kSat>
 constexpr OpRow wider_row() {
   using To = typename D::Type;
   return value_op<typename S::Type>(
-      joined<"cvt", when<kFtz, ".ftz">, when<kSat, ".sat">, D::kName, S::kName>, sizeof(To) == 8 ? Unit::Sfu : Unit::Int,
+      joined<"cvt", when<kFtz, ".ftz">, when<kSat, ".sat">, D::kName, S::kName>,
+      sizeof(To) == 8 ? Unit::Sfu : Unit::Int,
       kSat ? "Widens a float; clamped to [0, 1], NaN becomes 0." : "Widens a float, exactly.",
       [](typename S::Type x) {
         constexpr bool kFlush = kFtz && std::is_same_v<S, TypeF32>;  // a 16-bit subnormal is a normal f32
-        // As recorded: flushing makes the NaN of single precision, and so does f16 to f32; else the payload stays.
+        // As recorded: flushing makes the NaN of single precision, and so does f16 to f32; else the payload
+        // stays.
         const float source = kFlush ? canonical(flushed(S::value(x))) : S::value(x);
         const To wide = To(std::is_same_v<S, TypeF16> && sizeof(To) == 4 ? canonical(source) : source);
         return kSat ? saturated(wide) : wide;
       },
-      {{{S::kOne}, D::kOne}, {{S::kTwoAndHalf}, kSat ? D::kOne : D::kTwoAndHalf}, {{S::kMinusOne}, kSat ? 0 : D::kMinusOne}});
+      {{{S::kOne}, D::kOne},
+       {{S::kTwoAndHalf}, kSat ? D::kOne : D::kTwoAndHalf},
+       {{S::kMinusOne}, kSat ? 0 : D::kMinusOne}});
 }
 template <class D, class S>
 constexpr auto wider_rows() {
@@ -111,7 +125,8 @@ template <Round kRound, bool kFtz, bool kSat>
 constexpr OpRow single_row() {
   return rounded_op<kRound, double>(
       joined<"cvt", round_name<kRound>, when<kFtz, ".ftz">, when<kSat, ".sat">, ".f32.f64">, Unit::Sfu,
-      kSat ? "Narrows a float; clamped to [0, 1], NaN becomes 0." : "Narrows a float; a NaN keeps what fits of its payload.",
+      kSat ? "Narrows a float; clamped to [0, 1], NaN becomes 0."
+           : "Narrows a float; a NaN keeps what fits of its payload.",
       [](double x) {
         const float narrow = float(x);
         const float kept = kFtz ? flushed(narrow) : narrow;
@@ -119,7 +134,8 @@ constexpr OpRow single_row() {
       },
       {{{TypeF64::kOne}, TypeF32::kOne},
        {{TypeF64::kTwoAndHalf}, kSat ? TypeF32::kOne : TypeF32::kTwoAndHalf},
-       {{0x3fb9'9999'9999'999a}, kRound == Round::Zero || kRound == Round::Down ? 0x3dcc'cccc : 0x3dcc'cccd},  // 0.1
+       {{0x3fb9'9999'9999'999a},
+        kRound == Round::Zero || kRound == Round::Down ? 0x3dcc'cccc : 0x3dcc'cccd},  // 0.1
        {{0x7ff4'dead'beef'1234}, kSat ? 0 : 0x7fe6'f56d}});
 }
 
@@ -147,7 +163,8 @@ inline typename D::Type narrowed(typename S::Type source, float x) {
 template <class D, class S, Round kRound, bool kFtz, bool kSat, bool kRelu>
 constexpr OpRow narrow_row() {
   return value_op<typename S::Type>(
-      joined<"cvt", round_name<kRound>, when<kFtz, ".ftz">, when<kSat, ".sat">, when<kRelu, ".relu">, D::kName, S::kName>,
+      joined<"cvt", round_name<kRound>, when<kFtz, ".ftz">, when<kSat, ".sat">, when<kRelu, ".relu">,
+             D::kName, S::kName>,
       Unit::Int,
       kSat    ? "Narrows a float, rounded as the name says; clamped to [0, 1], NaN becomes 0."
       : kRelu ? "Narrows a float, rounded as the name says; negative numbers become 0."
@@ -167,11 +184,13 @@ constexpr OpRow narrow_row() {
 }
 template <class D, class S>
 constexpr auto rounded_rows() {
-  return rows_of_rounds([]<Round kRound>() { return joined_rows(narrow_row<D, S, kRound, false, false, false>()); });
+  return rows_of_rounds(
+      []<Round kRound>() { return joined_rows(narrow_row<D, S, kRound, false, false, false>()); });
 }
 template <class D, class S, bool kFtz>
 constexpr auto saturating_rows() {
-  return rows_of_rounds([]<Round kRound>() { return joined_rows(narrow_row<D, S, kRound, kFtz, true, false>()); });
+  return rows_of_rounds(
+      []<Round kRound>() { return joined_rows(narrow_row<D, S, kRound, kFtz, true, false>()); });
 }
 template <class D>
 constexpr auto relu_rows() {
@@ -188,14 +207,17 @@ constexpr auto kSingleRows = rows_of_rounds([]<Round kRound>() {
   return joined_rows(single_row<kRound, false, false>(), single_row<kRound, false, true>(),
                      single_row<kRound, true, false>(), single_row<kRound, true, true>());
 });
-constexpr auto kNarrowRows = joined_rows(
-    rounded_rows<TypeF16, TypeF32>(), saturating_rows<TypeF16, TypeF32, false>(),
-    rows_of_rounds([]<Round kRound>() { return joined_rows(narrow_row<TypeF16, TypeF32, kRound, true, false, false>()); }),
-    saturating_rows<TypeF16, TypeF32, true>(), rounded_rows<TypeF16, TypeF64>(), saturating_rows<TypeF16, TypeF64, false>(),
-    rounded_rows<TypeBf16, TypeF32>(), rounded_rows<TypeBf16, TypeF64>(), relu_rows<TypeF16>(), relu_rows<TypeBf16>());
-constexpr auto kWiderRows =
-    joined_rows(wider_flushing_rows<TypeF64, TypeF32>(), wider_flushing_rows<TypeF32, TypeF16>(),
-                wider_rows<TypeF64, TypeF16>(), wider_rows<TypeF32, TypeBf16>(), wider_rows<TypeF64, TypeBf16>());
+constexpr auto kNarrowRows =
+    joined_rows(rounded_rows<TypeF16, TypeF32>(), saturating_rows<TypeF16, TypeF32, false>(),
+                rows_of_rounds([]<Round kRound>() {
+                  return joined_rows(narrow_row<TypeF16, TypeF32, kRound, true, false, false>());
+                }),
+                saturating_rows<TypeF16, TypeF32, true>(), rounded_rows<TypeF16, TypeF64>(),
+                saturating_rows<TypeF16, TypeF64, false>(), rounded_rows<TypeBf16, TypeF32>(),
+                rounded_rows<TypeBf16, TypeF64>(), relu_rows<TypeF16>(), relu_rows<TypeBf16>());
+constexpr auto kWiderRows = joined_rows(
+    wider_flushing_rows<TypeF64, TypeF32>(), wider_flushing_rows<TypeF32, TypeF16>(),
+    wider_rows<TypeF64, TypeF16>(), wider_rows<TypeF32, TypeBf16>(), wider_rows<TypeF64, TypeBf16>());
 constexpr auto kRows = joined_rows(kWholeRows, same_rows(), kWiderRows, kSingleRows, kNarrowRows);
 
 }  // namespace

@@ -23,7 +23,8 @@ struct Convert {
       return narrowed(float(int32_t(x)));
     } else if constexpr (std::is_same_v<To, Half>) {
       // 2^17 is beyond the range of f16, and all larger numbers round as it does.
-      const Unsigned<From> m = Unsigned<From>(magnitude_of(x)), limited = m > 0x2'0000 ? Unsigned<From>(0x2'0000) : m;
+      const Unsigned<From> m = Unsigned<From>(magnitude_of(x)),
+                           limited = m > 0x2'0000 ? Unsigned<From>(0x2'0000) : m;
       const uint32_t exact = float_bits(float(int32_t(limited)));
       return narrowed(float_of(x < 0 ? exact | 0x8000'0000u : exact));
     } else {
@@ -44,7 +45,8 @@ struct Convert {
 template <class To, class From>
 inline constexpr bool kIsExact = (std::is_same_v<To, double> && sizeof(From) < 8) ||
                                  (std::is_same_v<To, float> && sizeof(From) < 4) ||
-                                 (std::is_same_v<To, Half> && sizeof(From) < 2) || (std::is_same_v<To, Bfloat> && sizeof(From) < 2);
+                                 (std::is_same_v<To, Half> && sizeof(From) < 2) ||
+                                 (std::is_same_v<To, Bfloat> && sizeof(From) < 2);
 
 template <class D, class S, Round kRound, bool kSat>
 constexpr OpRow row() {
@@ -53,20 +55,27 @@ constexpr OpRow row() {
   constexpr bool kIsShort = sizeof(To) == 2;
   constexpr Round kEffective = kIsExact<To, From> ? Round::Nearest : kRound;
   constexpr uint64_t kMinusOne = register_word<From>(From(-1));
-  constexpr Examples kExamples{{{0}, 0}, {{1}, D::kOne}, {{std::is_signed_v<From> ? kMinusOne : 1}, std::is_signed_v<From> ? (kSat ? 0 : D::kMinusOne) : D::kOne}};
-  return rounded_op<kIsShort ? Round::Nearest : kEffective, Register<From>>(
-      joined<"cvt", round_name<kRound>, when<kSat, ".sat">, D::kName, S::kName>,
-      sizeof(To) == 8 || sizeof(From) == 8 ? Unit::Sfu : Unit::Int,
-      kSat ? "Converts an integer, rounded as the name says; clamped to [0, 1]." : "Converts an integer, rounded as the name says.",
-      Convert<To, From, kIsShort ? kEffective : Round::Nearest, kSat>{}, kExamples);
+  constexpr Examples kExamples{{{0}, 0},
+                               {{1}, D::kOne},
+                               {{std::is_signed_v<From> ? kMinusOne : 1},
+                                std::is_signed_v<From> ? (kSat ? 0 : D::kMinusOne) : D::kOne}};
+  return rounded_op < kIsShort ? Round::Nearest : kEffective,
+         Register < From >> (joined<"cvt", round_name<kRound>, when<kSat, ".sat">, D::kName, S::kName>,
+                             sizeof(To) == 8 || sizeof(From) == 8 ? Unit::Sfu : Unit::Int,
+                             kSat ? "Converts an integer, rounded as the name says; clamped to [0, 1]."
+                                  : "Converts an integer, rounded as the name says.",
+                             Convert < To, From, kIsShort ? kEffective : Round::Nearest, kSat > {},
+                             kExamples);
 }
 template <class D, class S>
 constexpr auto pair_rows() {
-  return rows_of_rounds([]<Round kRound>() { return joined_rows(row<D, S, kRound, false>(), row<D, S, kRound, true>()); });
+  return rows_of_rounds(
+      []<Round kRound>() { return joined_rows(row<D, S, kRound, false>(), row<D, S, kRound, true>()); });
 }
 template <class D>
 constexpr auto result_rows() {
-  return rows_of_types<TypeS8, TypeU8, TypeS16, TypeU16, TypeS32, TypeU32, TypeS64, TypeU64>([]<class S>() { return pair_rows<D, S>(); });
+  return rows_of_types<TypeS8, TypeU8, TypeS16, TypeU16, TypeS32, TypeU32, TypeS64, TypeU64>(
+      []<class S>() { return pair_rows<D, S>(); });
 }
 
 constexpr auto kToSingle = result_rows<TypeF32>();

@@ -45,7 +45,8 @@ inline uint32_t tf32_away(float x) {
   return ((bits & 0x7f80'0000u) == 0x7f80'0000u ? bits : bits + 0x1000u) & kTf32Mask;
 }
 
-// Floats of a byte: sign, kExponentBits, the rest mantissa. kLargest is that of numbers, kNan what a NaN becomes.
+// Floats of a byte: sign, kExponentBits, the rest mantissa. kLargest is that of numbers, kNan what a NaN
+// becomes.
 struct E4m3 {
   static constexpr auto kName = Text(".e4m3x2");
   static constexpr int kMantissaBits = 3, kBias = 7;
@@ -67,7 +68,8 @@ inline uint32_t byte_float(float x) {
   const uint32_t bits = float_bits(x), magnitude = bits & 0x7fff'ffffu;
   const float m = float_of(magnitude), limited = m < F::kLargestValue ? m : F::kLargestValue;
   const uint32_t l = float_bits(limited);
-  const uint32_t normal = ((l + (1u << (kDrop - 1)) - 1 + ((l >> kDrop) & 1)) >> kDrop) - ((127u - F::kBias) << F::kMantissaBits);
+  const uint32_t normal =
+      ((l + (1u << (kDrop - 1)) - 1 + ((l >> kDrop) & 1)) >> kDrop) - ((127u - F::kBias) << F::kMantissaBits);
   // Floats from 2^e on are as far apart as subnormals of the format: the addition rounds.
   constexpr uint32_t kShifter = uint32_t(127 + 1 - F::kBias - F::kMantissaBits + 23) << 23;
   const uint32_t subnormal = float_bits(limited + float_of(kShifter)) - kShifter;
@@ -94,23 +96,27 @@ template <class F, bool kRelu>
 constexpr auto byte_rows() {
   constexpr uint64_t kLow = kRelu ? 0 : F::kMinusTwo;
   return joined_rows(
-      value_op<float, float>(joined<"cvt.rn.satfinite", when<kRelu, ".relu">, F::kName, ".f32">, Unit::Int,
-                             "Narrows two floats to bytes, the first to the upper one; the largest number is the limit.",
-                             [](float a, float b) {
-                               return uint16_t(byte_float<F>(relu<kRelu>(a)) << 8 | byte_float<F>(relu<kRelu>(b)));
-                             },
-                             {{{0x3f80'0000, 0xc000'0000}, F::kOne << 8 | kLow},
-                              {{0x7fc0'0000, 0x7f80'0000}, F::kNan << 8 | F::kLargest}}),
+      value_op<float, float>(
+          joined<"cvt.rn.satfinite", when<kRelu, ".relu">, F::kName, ".f32">, Unit::Int,
+          "Narrows two floats to bytes, the first to the upper one; the largest number is the limit.",
+          [](float a, float b) {
+            return uint16_t(byte_float<F>(relu<kRelu>(a)) << 8 | byte_float<F>(relu<kRelu>(b)));
+          },
+          {{{0x3f80'0000, 0xc000'0000}, F::kOne << 8 | kLow},
+           {{0x7fc0'0000, 0x7f80'0000}, F::kNan << 8 | F::kLargest}}),
       unary<uint32_t>(joined<"cvt.rn.satfinite", when<kRelu, ".relu">, F::kName, ".f16x2">, Unit::Int,
                       "Narrows a pair to bytes; the largest number is the limit.",
                       [](uint32_t x) {
-                        const float high = relu<kRelu>(to_float(Half{uint16_t(x >> 16)})), low = relu<kRelu>(to_float(Half{uint16_t(x)}));
+                        const float high = relu<kRelu>(to_float(Half{uint16_t(x >> 16)})),
+                                    low = relu<kRelu>(to_float(Half{uint16_t(x)}));
                         return uint16_t(byte_float<F>(high) << 8 | byte_float<F>(low));
                       },
                       {{{0x3c00'c000}, F::kOne << 8 | kLow}, {{0x7e00'7c00}, F::kNan << 8 | F::kLargest}}),
-      unary<uint16_t>(joined<"cvt.rn", when<kRelu, ".relu">, ".f16x2", F::kName>, Unit::Int, "Widens two bytes to a pair, exactly.",
+      unary<uint16_t>(joined<"cvt.rn", when<kRelu, ".relu">, ".f16x2", F::kName>, Unit::Int,
+                      "Widens two bytes to a pair, exactly.",
                       [](uint16_t x) {
-                        return relu_half<kRelu>(half_of_byte<F>(x >> 8)) << 16 | relu_half<kRelu>(half_of_byte<F>(x));
+                        return relu_half<kRelu>(half_of_byte<F>(x >> 8)) << 16 |
+                               relu_half<kRelu>(half_of_byte<F>(x));
                       },
                       {{{F::kOne << 8 | F::kMinusTwo}, kRelu ? 0x3c00'0000 : 0x3c00'c000}, {{0}, 0}}));
 }
@@ -118,7 +124,8 @@ constexpr auto byte_rows() {
 // Integers clamped to kSize bits and put side by side, the first source above the second.
 template <int kSize, bool kSigned>
 inline uint32_t clamped_bits(int32_t x) {
-  constexpr int32_t kLow = kSigned ? -(1 << (kSize - 1)) : 0, kHigh = kSigned ? (1 << (kSize - 1)) - 1 : (1 << kSize) - 1;
+  constexpr int32_t kLow = kSigned ? -(1 << (kSize - 1)) : 0,
+                    kHigh = kSigned ? (1 << (kSize - 1)) - 1 : (1 << kSize) - 1;
   const int32_t above = x < kLow ? kLow : x;
   return uint32_t(above > kHigh ? kHigh : above) & ((1u << kSize) - 1);
 }
@@ -135,7 +142,8 @@ constexpr OpRow pack_row() {
   else
     return value_op<int32_t, int32_t, uint32_t>(
         joined<"cvt.pack.sat", kName, ".s32.b32">, Unit::Int,
-        "Clamps two integers to a few bits and shifts them in at the low end of the third source, the second lowest.",
+        "Clamps two integers to a few bits and shifts them in at the low end of the third source, the second "
+        "lowest.",
         [](int32_t a, int32_t b, uint32_t c) {
           return c << 2 * kSize | clamped_bits<kSize, kSigned>(a) << kSize | clamped_bits<kSize, kSigned>(b);
         },
@@ -148,8 +156,9 @@ constexpr auto kRows = joined_rows(
                  [](float x) { return tf32_away(x); },
                  {{{0x3f80'0001}, 0x3f80'0000}, {{0x3f80'1000}, 0x3f80'2000}, {{0x7f7f'ffff}, 0x7f80'0000}}),
     byte_rows<E4m3, false>(), byte_rows<E4m3, true>(), byte_rows<E5m2, false>(), byte_rows<E5m2, true>(),
-    pack_row<16, true, ".s16">(), pack_row<16, false, ".u16">(), pack_row<8, true, ".s8">(), pack_row<8, false, ".u8">(),
-    pack_row<4, true, ".s4">(), pack_row<4, false, ".u4">(), pack_row<2, true, ".s2">(), pack_row<2, false, ".u2">());
+    pack_row<16, true, ".s16">(), pack_row<16, false, ".u16">(), pack_row<8, true, ".s8">(),
+    pack_row<8, false, ".u8">(), pack_row<4, true, ".s4">(), pack_row<4, false, ".u4">(),
+    pack_row<2, true, ".s2">(), pack_row<2, false, ".u2">());
 
 }  // namespace
 

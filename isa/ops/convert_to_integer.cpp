@@ -26,8 +26,9 @@ constexpr OpRow row() {
   constexpr bool kFlush = kFtz && (kRound == Round::Down || kRound == Round::Up);
   constexpr To kHigh = To(std::is_signed_v<To> ? Unsigned<To>(-1) >> 1 : Unsigned<To>(-1));
   return value_op<typename S::Type>(
-      joined<"cvt", integer_round_name<kRound>, when<kFtz, ".ftz">, when<kSat, ".sat">, D::kName, S::kName>, Unit::Sfu,
-      "Rounds to an integer and clamps it to the range of the result.", Convert<To, S, kRound, kFlush>{},
+      joined<"cvt", integer_round_name<kRound>, when<kFtz, ".ftz">, when<kSat, ".sat">, D::kName, S::kName>,
+      Unit::Sfu, "Rounds to an integer and clamps it to the range of the result.",
+      Convert<To, S, kRound, kFlush>{},
       {{{S::kOne}, 1},
        {{S::kMinusOne}, register_word<To>(std::is_signed_v<To> ? To(-1) : To(0))},
        {{S::kTwoAndHalf}, kRound == Round::Up ? 3 : 2},
@@ -47,7 +48,8 @@ constexpr auto pair_rows() {
 }
 template <class S>
 constexpr auto source_rows() {
-  return rows_of_types<TypeS8, TypeU8, TypeS16, TypeU16, TypeS32, TypeU32, TypeS64, TypeU64>([]<class D>() { return pair_rows<D, S>(); });
+  return rows_of_types<TypeS8, TypeU8, TypeS16, TypeU16, TypeS32, TypeU32, TypeS64, TypeU64>(
+      []<class D>() { return pair_rows<D, S>(); });
 }
 
 constexpr auto kFromSingle = source_rows<TypeF32>();

@@ -9,13 +9,10 @@ namespace {
 
 template <class T>
 inline constexpr T kLowest = T(std::is_signed_v<T> ? Unsigned<T>(1) << (kBits<T> - 1) : 0);
-template <class T>
-inline constexpr T kHighest = T(~kLowest<T>);
 // Twice as wide as T.
 template <class T>
 using Wide = std::conditional_t<std::is_signed_v<T>, std::conditional_t<sizeof(T) == 2, int32_t, int64_t>,
                                 std::conditional_t<sizeof(T) == 2, uint32_t, uint64_t>>;
-constexpr uint64_t kAllOnes = ~0ull;
 
 struct Add {
   template <class T>
@@ -60,9 +57,12 @@ constexpr auto sum_rows() {
       binary<T>(joined<"mul.lo", N::kName>, Unit::Int, "Low half of the product.", MulLow{},
                 {{{3, 5}, 15}, {{kOnes, kOnes}, 1}}),
       binary<T>(joined<"mul.hi", N::kName>, Unit::Int, "High half of the product.", MulHigh{},
-                {{{3, 5}, 0}, {{kOnes, kOnes}, std::is_signed_v<T> ? 0 : kOnes - 1}, {{kHigh, 2}, kHigh == word(kLowest<T>) ? kOnes : 1}}),
+                {{{3, 5}, 0},
+                 {{kOnes, kOnes}, std::is_signed_v<T> ? 0 : kOnes - 1},
+                 {{kHigh, 2}, kHigh == word(kLowest<T>) ? kOnes : 1}}),
       ternary<T>(joined<"mad.lo", N::kName>, Unit::Int, "Low half of the product, plus the third source.",
-                 [](T a, T b, T c) { return Add{}(MulLow{}(a, b), c); }, {{{3, 5, 1}, 16}, {{kHigh, 2, 7}, 7}}),
+                 [](T a, T b, T c) { return Add{}(MulLow{}(a, b), c); },
+                 {{{3, 5, 1}, 16}, {{kHigh, 2, 7}, 7}}),
       ternary<T>(joined<"mad.hi", N::kName>, Unit::Int, "High half of the product, plus the third source.",
                  [](T a, T b, T c) { return Add{}(product_high(a, b), c); },
                  {{{3, 5, 1}, 1}, {{kHigh, 4, 5}, std::is_signed_v<T> ? 3 : 7}}));
@@ -73,14 +73,17 @@ constexpr auto quotient_rows() {
   using T = typename N::Type;
   constexpr uint64_t kOnes = word(T(-1)), kHigh = word(kLowest<T>);
   return joined_rows(
-      binary<T>(joined<"div", N::kName>, Unit::IntDiv,
-                std::is_signed_v<T> ? "Quotient, towards 0; a division by 0 gives all ones, of the lowest number by -1 that number."
-                                    : "Quotient; a division by 0 gives all ones.",
-                [](T a, T b) { return division(a, b).quotient; },
-                {{{7, 2}, 3}, {{7, 0}, kOnes}, {{word(T(-7)), word(T(-7))}, 1}, {{kHigh, kOnes}, kHigh}}),
+      binary<T>(
+          joined<"div", N::kName>, Unit::IntDiv,
+          std::is_signed_v<T>
+              ? "Quotient, towards 0; a division by 0 gives all ones, of the lowest number by -1 that number."
+              : "Quotient; a division by 0 gives all ones.",
+          [](T a, T b) { return division(a, b).quotient; },
+          {{{7, 2}, 3}, {{7, 0}, kOnes}, {{word(T(-7)), word(T(-7))}, 1}, {{kHigh, kOnes}, kHigh}}),
       binary<T>(joined<"rem", N::kName>, Unit::IntDiv,
-                std::is_signed_v<T> ? "Remainder with the sign of the dividend; a division by 0 gives all ones."
-                                    : "Remainder; a division by 0 gives all ones.",
+                std::is_signed_v<T>
+                    ? "Remainder with the sign of the dividend; a division by 0 gives all ones."
+                    : "Remainder; a division by 0 gives all ones.",
                 [](T a, T b) { return division(a, b).remainder; },
                 {{{7, 2}, 1}, {{7, 0}, kOnes}, {{word(T(-7)), word(T(-7))}, 0}, {{kHigh, kOnes}, 0}}));
 }
@@ -103,11 +106,12 @@ template <class N>
 constexpr auto sign_rows() {
   using T = typename N::Type;
   constexpr uint64_t kHigh = word(kLowest<T>);
-  return joined_rows(unary<T>(joined<"abs", N::kName>, Unit::Int, "Magnitude; that of the lowest number is itself.",
-                              [](T a) { return a < 0 ? Sub{}(T(0), a) : a; },
-                              {{{word(T(-1))}, 1}, {{5}, 5}, {{kHigh}, kHigh}}),
-                     unary<T>(joined<"neg", N::kName>, Unit::Int, "Negates; the lowest number stays.",
-                              [](T a) { return Sub{}(T(0), a); }, {{{1}, word(T(-1))}, {{kHigh}, kHigh}}));
+  return joined_rows(
+      unary<T>(joined<"abs", N::kName>, Unit::Int, "Magnitude; that of the lowest number is itself.",
+               [](T a) { return a < 0 ? Sub{}(T(0), a) : a; },
+               {{{word(T(-1))}, 1}, {{5}, 5}, {{kHigh}, kHigh}}),
+      unary<T>(joined<"neg", N::kName>, Unit::Int, "Negates; the lowest number stays.",
+               [](T a) { return Sub{}(T(0), a); }, {{{1}, word(T(-1))}, {{kHigh}, kHigh}}));
 }
 
 template <class N>
@@ -154,20 +158,24 @@ constexpr auto mul24_rows() {
 
 constexpr auto saturating_rows() {
   return joined_rows(
-      binary<int32_t>("add.sat.s32", Unit::Int, "Adds; clamped to the range of s32.",
-                      [](int32_t a, int32_t b) { return clamped(int64_t(a) + b); },
-                      {{{1, 2}, 3}, {{0x7fff'ffff, 1}, 0x7fff'ffff}, {{0x8000'0000, 0xffff'ffff}, 0x8000'0000}}),
-      binary<int32_t>("sub.sat.s32", Unit::Int, "Subtracts; clamped to the range of s32.",
-                      [](int32_t a, int32_t b) { return clamped(int64_t(a) - b); },
-                      {{{3, 2}, 1}, {{0x7fff'ffff, 0xffff'ffff}, 0x7fff'ffff}, {{0x8000'0000, 1}, 0x8000'0000}}),
-      ternary<int32_t>("mad.hi.sat.s32", Unit::Int,
-                       "High half of the product, plus the third source; clamped to the range of s32.",
-                       [](int32_t a, int32_t b, int32_t c) { return clamped(int64_t(product_high(a, b)) + c); },
-                       {{{3, 5, 1}, 1}, {{0x8000'0000, 0x8000'0000, 0x7fff'ffff}, 0x7fff'ffff}}),
-      ternary<int32_t>("mad24.hi.sat.s32", Unit::Int,
-                       "Bits 16 to 47 of the product of the low 24 bits, plus the third source; clamped to s32.",
-                       [](int32_t a, int32_t b, int32_t c) { return clamped(int64_t(product24_high(a, b)) + c); },
-                       {{{0x1'0000, 5, 1}, 6}, {{0x7f'0000, 0x7f'0000, 0x7fff'ffff}, 0x7fff'ffff}}),
+      binary<int32_t>(
+          "add.sat.s32", Unit::Int, "Adds; clamped to the range of s32.",
+          [](int32_t a, int32_t b) { return clamped(int64_t(a) + b); },
+          {{{1, 2}, 3}, {{0x7fff'ffff, 1}, 0x7fff'ffff}, {{0x8000'0000, 0xffff'ffff}, 0x8000'0000}}),
+      binary<int32_t>(
+          "sub.sat.s32", Unit::Int, "Subtracts; clamped to the range of s32.",
+          [](int32_t a, int32_t b) { return clamped(int64_t(a) - b); },
+          {{{3, 2}, 1}, {{0x7fff'ffff, 0xffff'ffff}, 0x7fff'ffff}, {{0x8000'0000, 1}, 0x8000'0000}}),
+      ternary<int32_t>(
+          "mad.hi.sat.s32", Unit::Int,
+          "High half of the product, plus the third source; clamped to the range of s32.",
+          [](int32_t a, int32_t b, int32_t c) { return clamped(int64_t(product_high(a, b)) + c); },
+          {{{3, 5, 1}, 1}, {{0x8000'0000, 0x8000'0000, 0x7fff'ffff}, 0x7fff'ffff}}),
+      ternary<int32_t>(
+          "mad24.hi.sat.s32", Unit::Int,
+          "Bits 16 to 47 of the product of the low 24 bits, plus the third source; clamped to s32.",
+          [](int32_t a, int32_t b, int32_t c) { return clamped(int64_t(product24_high(a, b)) + c); },
+          {{{0x1'0000, 5, 1}, 6}, {{0x7f'0000, 0x7f'0000, 0x7fff'ffff}, 0x7fff'ffff}}),
       binary<int32_t>("min.relu.s32", Unit::Int, "The smaller, but at least 0.",
                       [](int32_t a, int32_t b) {
                         const int32_t smaller = a < b ? a : b;
@@ -191,13 +199,14 @@ constexpr auto logic_rows() {
                 {{{0xff00, 0x0ff0}, 0x0f00}, {{kOnes, 0x8000}, 0x8000}}),
       binary<T>(joined<"or", N::kName>, Unit::Int, "Bitwise or.", [](T a, T b) { return T(a | b); },
                 {{{0xff00, 0x0ff0}, 0xfff0}, {{0, 0x8000}, 0x8000}}),
-      binary<T>(joined<"xor", N::kName>, Unit::Int, "Bitwise exclusive or.", [](T a, T b) { return T(a ^ b); },
-                {{{0xff00, 0x0ff0}, 0xf0f0}, {{kOnes, kOnes}, 0}}),
+      binary<T>(joined<"xor", N::kName>, Unit::Int, "Bitwise exclusive or.",
+                [](T a, T b) { return T(a ^ b); }, {{{0xff00, 0x0ff0}, 0xf0f0}, {{kOnes, kOnes}, 0}}),
       unary<T>(joined<"not", N::kName>, Unit::Int, "Bitwise complement.", [](T a) { return T(~a); },
                {{{0}, kOnes}, {{kOnes}, 0}}),
-      unary<T>(joined<"cnot", N::kName>, Unit::Int, "1 for 0, and 0 for all else.", [](T a) { return T(a == 0); },
-               {{{0}, 1}, {{1}, 0}, {{kOnes}, 0}}),
-      value_op<T, uint32_t>(joined<"shl", N::kName>, Unit::Int, "Shifts left; a count of the width or more gives 0.",
+      unary<T>(joined<"cnot", N::kName>, Unit::Int, "1 for 0, and 0 for all else.",
+               [](T a) { return T(a == 0); }, {{{0}, 1}, {{1}, 0}, {{kOnes}, 0}}),
+      value_op<T, uint32_t>(joined<"shl", N::kName>, Unit::Int,
+                            "Shifts left; a count of the width or more gives 0.",
                             [](T a, uint32_t n) { return shifted_left(a, n); },
                             {{{3, 2}, 12}, {{kOnes, kBits<T>}, 0}, {{kOnes, 0xffff'ffff}, 0}}));
 }
@@ -207,10 +216,13 @@ constexpr auto shift_rows() {
   constexpr uint64_t kOnes = word(T(-1));
   return joined_rows(value_op<T, uint32_t>(
       joined<"shr", N::kName>, Unit::Int,
-      std::is_signed_v<T> ? "Shifts right, copies of the sign enter; a count of the width or more gives the sign."
-                          : "Shifts right, zeros enter; a count of the width or more gives 0.",
+      std::is_signed_v<T>
+          ? "Shifts right, copies of the sign enter; a count of the width or more gives the sign."
+          : "Shifts right, zeros enter; a count of the width or more gives 0.",
       [](T a, uint32_t n) { return shifted_right(a, n); },
-      {{{13, 2}, 3}, {{kOnes, kBits<T>}, std::is_signed_v<T> ? kOnes : 0}, {{kOnes, 0xffff'ffff}, std::is_signed_v<T> ? kOnes : 0}}));
+      {{{13, 2}, 3},
+       {{kOnes, kBits<T>}, std::is_signed_v<T> ? kOnes : 0},
+       {{kOnes, 0xffff'ffff}, std::is_signed_v<T> ? kOnes : 0}}));
 }
 
 template <class N>
@@ -219,13 +231,15 @@ constexpr auto arithmetic_rows() {
 }
 
 constexpr auto kRows = joined_rows(
-    rows_of_types<TypeS16, TypeU16, TypeS32, TypeU32, TypeS64, TypeU64>([]<class N>() { return arithmetic_rows<N>(); }),
+    rows_of_types<TypeS16, TypeU16, TypeS32, TypeU32, TypeS64, TypeU64>(
+        []<class N>() { return arithmetic_rows<N>(); }),
     rows_of_types<TypeS16, TypeS32, TypeS64>([]<class N>() { return sign_rows<N>(); }),
     rows_of_types<TypeS16, TypeU16, TypeS32, TypeU32>([]<class N>() { return wide_rows<N>(); }),
     rows_of_types<TypeS32, TypeU32>([]<class N>() { return mul24_rows<N>(); }), saturating_rows(),
     rows_of_types<TypeB16, TypeB32, TypeB64>([]<class N>() { return logic_rows<N>(); }),
     // shr.b* is the unsigned one under another name: PTX has both.
-    rows_of_types<TypeS16, TypeU16, TypeS32, TypeU32, TypeS64, TypeU64, TypeB16, TypeB32, TypeB64>([]<class N>() { return shift_rows<N>(); }));
+    rows_of_types<TypeS16, TypeU16, TypeS32, TypeU32, TypeS64, TypeU64, TypeB16, TypeB32, TypeB64>(
+        []<class N>() { return shift_rows<N>(); }));
 
 }  // namespace
 

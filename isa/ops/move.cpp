@@ -69,51 +69,58 @@ constexpr OpRow unpack_row(std::string_view name, std::string_view doc, Examples
   return row;
 }
 
-constexpr auto kPackRows = joined_rows(
-    value_op<uint32_t, uint32_t>(
-        "pack.b64", Unit::Move, "Joins a low and a high half to a pair.",
-        [](uint32_t low, uint32_t high) { return uint64_t(low) | uint64_t(high) << 32; },
-        {{{1, 2}, 0x2'0000'0001}, {{0xffff'ffff, 0}, 0xffff'ffff}}),
-    value_op<uint16_t, uint16_t>(
-        "pack.b32", Unit::Move, "Joins two 16-bit values, low first.",
-        [](uint16_t low, uint16_t high) { return uint32_t(low) | uint32_t(high) << 16; },
-        {{{1, 2}, 0x2'0001}, {{0xffff, 0}, 0xffff}}),
-    value_op<uint32_t, uint32_t>(
-        "pack.b16.b8", Unit::Move, "Joins two bytes to a 16-bit value, low first.",
-        [](uint32_t low, uint32_t high) { return uint16_t((low & 0xff) | (high & 0xff) << 8); },
-        {{{1, 2}, 0x201}, {{0x1ff, 0}, 0xff}}),
-    value_op<uint32_t, uint32_t, uint32_t, uint32_t>(
-        "pack.b32.b8", Unit::Move, "Joins four bytes, lowest first.",
-        [](uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
-          return (a & 0xff) | (b & 0xff) << 8 | (c & 0xff) << 16 | d << 24;
-        },
-        {{{1, 2, 3, 4}, 0x0403'0201}, {{0x1ff, 0, 0, 0x1ff}, 0xff00'00ff}}),
-    value_op<uint16_t, uint16_t, uint16_t, uint16_t>(
-        "pack.b64.b16", Unit::Move, "Joins four 16-bit values to a pair, lowest first.",
-        [](uint16_t a, uint16_t b, uint16_t c, uint16_t d) {
-          return uint64_t(a) | uint64_t(b) << 16 | uint64_t(c) << 32 | uint64_t(d) << 48;
-        },
-        {{{1, 2, 3, 4}, 0x4'0003'0002'0001}, {{0xffff, 0, 0, 0xffff}, 0xffff'0000'0000'ffff}}));
+constexpr auto kPackRows =
+    joined_rows(value_op<uint32_t, uint32_t>(
+                    "pack.b64", Unit::Move, "Joins a low and a high half to a pair.",
+                    [](uint32_t low, uint32_t high) { return uint64_t(low) | uint64_t(high) << 32; },
+                    {{{1, 2}, 0x2'0000'0001}, {{0xffff'ffff, 0}, 0xffff'ffff}}),
+                value_op<uint16_t, uint16_t>(
+                    "pack.b32", Unit::Move, "Joins two 16-bit values, low first.",
+                    [](uint16_t low, uint16_t high) { return uint32_t(low) | uint32_t(high) << 16; },
+                    {{{1, 2}, 0x2'0001}, {{0xffff, 0}, 0xffff}}),
+                value_op<uint32_t, uint32_t>(
+                    "pack.b16.b8", Unit::Move, "Joins two bytes to a 16-bit value, low first.",
+                    [](uint32_t low, uint32_t high) { return uint16_t((low & 0xff) | (high & 0xff) << 8); },
+                    {{{1, 2}, 0x201}, {{0x1ff, 0}, 0xff}}),
+                value_op<uint32_t, uint32_t, uint32_t, uint32_t>(
+                    "pack.b32.b8", Unit::Move, "Joins four bytes, lowest first.",
+                    [](uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
+                      return (a & 0xff) | (b & 0xff) << 8 | (c & 0xff) << 16 | d << 24;
+                    },
+                    {{{1, 2, 3, 4}, 0x0403'0201}, {{0x1ff, 0, 0, 0x1ff}, 0xff00'00ff}}),
+                value_op<uint16_t, uint16_t, uint16_t, uint16_t>(
+                    "pack.b64.b16", Unit::Move, "Joins four 16-bit values to a pair, lowest first.",
+                    [](uint16_t a, uint16_t b, uint16_t c, uint16_t d) {
+                      return uint64_t(a) | uint64_t(b) << 16 | uint64_t(c) << 32 | uint64_t(d) << 48;
+                    },
+                    {{{1, 2, 3, 4}, 0x4'0003'0002'0001}, {{0xffff, 0, 0, 0xffff}, 0xffff'0000'0000'ffff}}));
 
 // The examples of two parts write the result as (high, low); those of four show the lowest part alone.
 constexpr auto kUnpackRows = joined_rows(
-    unpack_row<uint64_t, 2>("unpack.b64", "Splits a pair into its low and high half; the example's result is (high, low).",
+    unpack_row<uint64_t, 2>("unpack.b64",
+                            "Splits a pair into its low and high half; the example's result is (high, low).",
                             {{{0x1122'3344'5566'7788}, 0x1122'3344'5566'7788}, {{~0ull}, ~0ull}}),
-    unpack_row<uint32_t, 2>("unpack.b32", "Splits a register into its low and high 16 bits; the example's result is (high, low).",
-                            {{{0x1122'3344}, 0x1122'0000'3344}, {{0xffff'ffff}, 0xffff'0000'ffff}}),
-    unpack_row<uint16_t, 2>("unpack.b16.b8", "Splits 16 bits into bytes; the example's result is (high, low).",
+    unpack_row<uint32_t, 2>(
+        "unpack.b32", "Splits a register into its low and high 16 bits; the example's result is (high, low).",
+        {{{0x1122'3344}, 0x1122'0000'3344}, {{0xffff'ffff}, 0xffff'0000'ffff}}),
+    unpack_row<uint16_t, 2>("unpack.b16.b8",
+                            "Splits 16 bits into bytes; the example's result is (high, low).",
                             {{{0x1122}, 0x11'0000'0022}, {{0xffff}, 0xff'0000'00ff}}),
-    unpack_row<uint32_t, 4>("unpack.b32.b8", "Splits a register into four bytes, lowest first; the example's result is the first.",
-                            {{{0x1122'3344}, 0x44}, {{0xff}, 0xff}}),
-    unpack_row<uint64_t, 4>("unpack.b64.b16",
-                            "Splits a pair into four 16-bit values, lowest first; the example's result is the first.",
-                            {{{0x1122'3344'5566'7788}, 0x7788}, {{0xffff}, 0xffff}}));
+    unpack_row<uint32_t, 4>(
+        "unpack.b32.b8",
+        "Splits a register into four bytes, lowest first; the example's result is the first.",
+        {{{0x1122'3344}, 0x44}, {{0xff}, 0xff}}),
+    unpack_row<uint64_t, 4>(
+        "unpack.b64.b16",
+        "Splits a pair into four 16-bit values, lowest first; the example's result is the first.",
+        {{{0x1122'3344'5566'7788}, 0x7788}, {{0xffff}, 0xffff}}));
 
-constexpr auto kRows = joined_rows(
-    rows_of_types<TypeB16, TypeB32, TypeB64>([]<class N>() { return copy_rows<N>(); }),
-    rows_of_types<TypeB16, TypeB32, TypeB64, TypeU16, TypeU32, TypeU64, TypeS16, TypeS32, TypeS64,
-                  Named<uint32_t, ".f32">, Named<uint64_t, ".f64">>([]<class N>() { return select_rows<N>(); }),
-    kPackRows, kUnpackRows);
+constexpr auto kRows =
+    joined_rows(rows_of_types<TypeB16, TypeB32, TypeB64>([]<class N>() { return copy_rows<N>(); }),
+                rows_of_types<TypeB16, TypeB32, TypeB64, TypeU16, TypeU32, TypeU64, TypeS16, TypeS32, TypeS64,
+                              Named<uint32_t, ".f32">, Named<uint64_t, ".f64">>(
+                    []<class N>() { return select_rows<N>(); }),
+                kPackRows, kUnpackRows);
 
 }  // namespace
 

@@ -31,17 +31,20 @@ template <Text kTypes, bool kSignedA, bool kSignedB>
 constexpr auto dot_rows() {
   constexpr uint64_t kA = kSignedA ? 0xffff'ffff : 255, kB = kSignedB ? 0xffff'ffff : 255;  // a byte of ones
   return joined_rows(
-      ternary<uint32_t>(joined<"dp4a", kTypes>, Unit::Int, "Products of the four bytes, summed, plus the third source.",
+      ternary<uint32_t>(joined<"dp4a", kTypes>, Unit::Int,
+                        "Products of the four bytes, summed, plus the third source.",
                         [](uint32_t a, uint32_t b, uint32_t c) { return dot4<kSignedA, kSignedB>(a, b, c); },
                         {{{0x0403'0201, 0x0101'0101, 5}, 15}, {{0xff, 1, 0}, kA}, {{1, 0xff, 0}, kB}}),
-      ternary<uint32_t>(joined<"dp2a.lo", kTypes>, Unit::Int,
-                        "Products of two 16-bit numbers and the low two bytes of the second, summed, plus the third.",
-                        [](uint32_t a, uint32_t b, uint32_t c) { return dot2<kSignedA, kSignedB, false>(a, b, c); },
-                        {{{0x0002'0001, 0x0707'0403, 5}, 16}, {{1, 0xff, 0}, kB}}),
-      ternary<uint32_t>(joined<"dp2a.hi", kTypes>, Unit::Int,
-                        "Products of two 16-bit numbers and the high two bytes of the second, summed, plus the third.",
-                        [](uint32_t a, uint32_t b, uint32_t c) { return dot2<kSignedA, kSignedB, true>(a, b, c); },
-                        {{{0x0002'0001, 0x0403'0707, 5}, 16}, {{1, 0xff'0000, 0}, kB}}));
+      ternary<uint32_t>(
+          joined<"dp2a.lo", kTypes>, Unit::Int,
+          "Products of two 16-bit numbers and the low two bytes of the second, summed, plus the third.",
+          [](uint32_t a, uint32_t b, uint32_t c) { return dot2<kSignedA, kSignedB, false>(a, b, c); },
+          {{{0x0002'0001, 0x0707'0403, 5}, 16}, {{1, 0xff, 0}, kB}}),
+      ternary<uint32_t>(
+          joined<"dp2a.hi", kTypes>, Unit::Int,
+          "Products of two 16-bit numbers and the high two bytes of the second, summed, plus the third.",
+          [](uint32_t a, uint32_t b, uint32_t c) { return dot2<kSignedA, kSignedB, true>(a, b, c); },
+          {{{0x0002'0001, 0x0403'0707, 5}, 16}, {{1, 0xff'0000, 0}, kB}}));
 }
 
 template <bool kSigned, class F>
@@ -65,26 +68,29 @@ struct AtLeastZero {
 };
 template <Text kOp, Text kType, bool kSigned, class F>
 constexpr OpRow halves_row(std::string_view doc, Examples examples) {
-  return binary<uint32_t>(joined<kOp, kType>, Unit::Int, doc,
-                          [](uint32_t a, uint32_t b) { return each_half<kSigned>(a, b, F{}); }, examples);
+  return binary<uint32_t>(
+      joined<kOp, kType>, Unit::Int, doc,
+      [](uint32_t a, uint32_t b) { return each_half<kSigned>(a, b, F{}); }, examples);
 }
 constexpr auto kHalvesRows = joined_rows(
     halves_row<"add", ".s16x2", true, Sum>("Adds both halves, each modulo 2^16.",
                                            {{{0x1'0002, 0x3'0004}, 0x4'0006}, {{0xffff, 1}, 0}}),
     halves_row<"add", ".u16x2", false, Sum>("Adds both halves, each modulo 2^16.",
                                             {{{0x1'0002, 0x3'0004}, 0x4'0006}, {{0xffff, 1}, 0}}),
-    halves_row<"min", ".s16x2", true, Smaller>("The smaller of both halves.",
-                                               {{{0x1'0002, 0x3'0001}, 0x1'0001}, {{0xffff'0001, 1}, 0xffff'0001}}),
+    halves_row<"min", ".s16x2", true, Smaller>(
+        "The smaller of both halves.", {{{0x1'0002, 0x3'0001}, 0x1'0001}, {{0xffff'0001, 1}, 0xffff'0001}}),
     halves_row<"min", ".u16x2", false, Smaller>("The smaller of both halves.",
                                                 {{{0x1'0002, 0x3'0001}, 0x1'0001}, {{0xffff'0001, 1}, 1}}),
     halves_row<"max", ".s16x2", true, Larger>("The larger of both halves.",
                                               {{{0x1'0002, 0x3'0001}, 0x3'0002}, {{0xffff'0001, 1}, 1}}),
-    halves_row<"max", ".u16x2", false, Larger>("The larger of both halves.",
-                                               {{{0x1'0002, 0x3'0001}, 0x3'0002}, {{0xffff'0001, 1}, 0xffff'0001}}),
-    halves_row<"min.relu", ".s16x2", true, AtLeastZero<Smaller>>("The smaller of both halves, but at least 0.",
-                                                                 {{{0x1'0002, 0x3'0001}, 0x1'0001}, {{0xffff'0001, 1}, 1}}),
-    halves_row<"max.relu", ".s16x2", true, AtLeastZero<Larger>>("The larger of both halves, but at least 0.",
-                                                                {{{0x1'0002, 0x3'0001}, 0x3'0002}, {{0xffff'fffe, 0xffff'ffff}, 0}}));
+    halves_row<"max", ".u16x2", false, Larger>(
+        "The larger of both halves.", {{{0x1'0002, 0x3'0001}, 0x3'0002}, {{0xffff'0001, 1}, 0xffff'0001}}),
+    halves_row<"min.relu", ".s16x2", true, AtLeastZero<Smaller>>(
+        "The smaller of both halves, but at least 0.",
+        {{{0x1'0002, 0x3'0001}, 0x1'0001}, {{0xffff'0001, 1}, 1}}),
+    halves_row<"max.relu", ".s16x2", true, AtLeastZero<Larger>>(
+        "The larger of both halves, but at least 0.",
+        {{{0x1'0002, 0x3'0001}, 0x3'0002}, {{0xffff'fffe, 0xffff'ffff}, 0}}));
 
 // The video ops. They compute without limit and then keep the low bits, or (.sat) clamp to the result's type.
 struct VideoAdd {
@@ -145,7 +151,8 @@ template <bool kSigned, class W>
   return above > high ? high : above;
 }
 constexpr std::string_view kVideoDoc =
-    "As the name says, on numbers of the sources' types; .sat clamps to the type of the result, else the low bits stay.";
+    "As the name says, on numbers of the sources' types; .sat clamps to the type of the result, else the low "
+    "bits stay.";
 
 // The work of a row, apart from its name: without .sat the type of the result makes no difference.
 template <class Op, class A, class B, bool kSat, bool kSignedResult>
@@ -160,8 +167,9 @@ template <class Op, class D, class A, class B, bool kSat>
 constexpr OpRow scalar_row() {
   using From = typename A::Type;
   using Other = typename B::Type;
-  return value_op<From, Other>(joined<Op::kName, D::kName, A::kName, B::kName, when<kSat, ".sat">>, Unit::Int, kVideoDoc,
-                               ScalarWork<Op, From, Other, kSat, kSat && std::is_signed_v<typename D::Type>>{},
+  return value_op<From, Other>(joined<Op::kName, D::kName, A::kName, B::kName, when<kSat, ".sat">>, Unit::Int,
+                               kVideoDoc, ScalarWork < Op, From, Other, kSat,
+                               kSat && std::is_signed_v < typename D::Type >> {},
                                {{{5, 3}, Op::kOfFiveThree}, {{0, 0}, 0}});
 }
 template <class Op>
@@ -175,8 +183,8 @@ constexpr auto scalar_rows() {
   });
 }
 
-// Two half words or four bytes; the third source gives the parts that a mask leaves out (here none), or with .add what
-// the sum of all results is added to.
+// Two half words or four bytes; the third source gives the parts that a mask leaves out (here none), or with
+// .add what the sum of all results is added to.
 enum class Video { Plain, Saturating, Accumulating };
 template <class Op, int kPartBits, bool kSigned, Video kKind, bool kSignedResult>
 struct PartsWork {
@@ -199,12 +207,16 @@ template <class Op, Text kParts, int kPartBits, class D, class A, Video kKind>
 constexpr OpRow parts_row() {
   constexpr bool kSigned = std::is_signed_v<typename A::Type>;
   constexpr uint64_t kEach = Op::kOfFiveThree, kPair = kEach << 16 | kEach;
-  constexpr uint64_t kWord = kPartBits == 16 ? kPair : kPair << 8 | kPair, kScale = kPartBits == 16 ? 0x1'0001 : 0x101'0101;
+  constexpr uint64_t kWord = kPartBits == 16 ? kPair : kPair << 8 | kPair,
+                     kScale = kPartBits == 16 ? 0x1'0001 : 0x101'0101;
   constexpr bool kAdds = kKind == Video::Accumulating;
   return ternary<uint32_t>(
-      joined<Op::kName, kParts, D::kName, A::kName, A::kName, when<kKind == Video::Saturating, ".sat">, when<kAdds, ".add">>,
-      Unit::Int, kAdds ? "Sums what the op gives for each part of the sources, plus the third source." : kVideoDoc,
-      PartsWork<Op, kPartBits, kSigned, kKind, kKind == Video::Saturating && std::is_signed_v<typename D::Type>>{},
+      joined<Op::kName, kParts, D::kName, A::kName, A::kName, when<kKind == Video::Saturating, ".sat">,
+             when<kAdds, ".add">>,
+      Unit::Int,
+      kAdds ? "Sums what the op gives for each part of the sources, plus the third source." : kVideoDoc,
+      PartsWork < Op, kPartBits, kSigned, kKind,
+      kKind == Video::Saturating && std::is_signed_v < typename D::Type >> {},
       {{{5 * kScale, 3 * kScale, 7}, kAdds ? 32 / kPartBits * kEach + 7 : kWord}, {{0, 0, 0}, 0}});
 }
 template <class Op, Text kParts, int kPartBits>
@@ -219,9 +231,10 @@ constexpr auto parts_rows() {
 }
 
 constexpr auto kRows = joined_rows(
-    dot_rows<".s32.s32", true, true>(), dot_rows<".s32.u32", true, false>(), dot_rows<".u32.s32", false, true>(),
-    dot_rows<".u32.u32", false, false>(), kHalvesRows,
-    rows_of_types<VideoAdd, VideoSubtract, VideoDistance, VideoMin, VideoMax>([]<class Op>() { return scalar_rows<Op>(); }),
+    dot_rows<".s32.s32", true, true>(), dot_rows<".s32.u32", true, false>(),
+    dot_rows<".u32.s32", false, true>(), dot_rows<".u32.u32", false, false>(), kHalvesRows,
+    rows_of_types<VideoAdd, VideoSubtract, VideoDistance, VideoMin, VideoMax>(
+        []<class Op>() { return scalar_rows<Op>(); }),
     rows_of_types<VideoAdd, VideoSubtract, VideoDistance, VideoMin, VideoMax, VideoAverage>(
         []<class Op>() { return joined_rows(parts_rows<Op, "2", 16>(), parts_rows<Op, "4", 8>()); }));
 
