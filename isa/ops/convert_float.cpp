@@ -44,31 +44,30 @@ constexpr OpRow whole_single_row() {
        {{0x7f80'0001}, kSat ? 0 : kCanonicalNan}});
 }
 template <Round kRound, bool kSat>
-constexpr auto whole_other_rows() {
-  return joined_rows(unary<double>(joined<"cvt", integer_round_name<kRound>, when<kSat, ".sat">, ".f64.f64">,
-                                   Unit::Sfu, "Rounds to an integer that stays a float.",
-                                   [](double x) {
-                                     const double whole = to_any_integral<kRound>(x);
-                                     return kSat ? saturated(whole) : whole;
-                                   },
-                                   {{{TypeF64::kOne}, TypeF64::kOne},
-                                    {{TypeF64::kTwoAndHalf},
-                                     kSat                  ? TypeF64::kOne
-                                     : kRound == Round::Up ? 0x4008ull << 48
-                                                           : 0x4000ull << 48},
-                                    {{TypeF64::kMinusOne}, kSat ? 0 : TypeF64::kMinusOne}}),
-                     unary<Half>(joined<"cvt", integer_round_name<kRound>, when<kSat, ".sat">, ".f16.f16">,
-                                 Unit::Sfu, "Rounds to an integer that stays a float.",
-                                 [](Half x) {
-                                   const float whole = rounded_whole<kRound>(to_float(x));
-                                   return to_half(kSat ? saturated(whole) : whole);
-                                 },
-                                 {{{TypeF16::kOne}, TypeF16::kOne},
-                                  {{TypeF16::kTwoAndHalf},
-                                   kSat                  ? TypeF16::kOne
-                                   : kRound == Round::Up ? 0x4200
-                                                         : 0x4000},
-                                  {{TypeF16::kMinusOne}, kSat ? 0 : TypeF16::kMinusOne}}));
+constexpr OpRow whole_double_row() {
+  constexpr uint64_t kRounded = kRound == Round::Up ? 0x4008ull << 48 : 0x4000ull << 48;  // of 2.5
+  return unary<double>(joined<"cvt", integer_round_name<kRound>, when<kSat, ".sat">, ".f64.f64">, Unit::Sfu,
+                       "Rounds to an integer that stays a float.",
+                       [](double x) {
+                         const double whole = to_any_integral<kRound>(x);
+                         return kSat ? saturated(whole) : whole;
+                       },
+                       {{{TypeF64::kOne}, TypeF64::kOne},
+                        {{TypeF64::kTwoAndHalf}, kSat ? TypeF64::kOne : kRounded},
+                        {{TypeF64::kMinusOne}, kSat ? 0 : TypeF64::kMinusOne}});
+}
+template <Round kRound, bool kSat>
+constexpr OpRow whole_half_row() {
+  constexpr uint64_t kRounded = kRound == Round::Up ? 0x4200 : 0x4000;  // of 2.5
+  return unary<Half>(joined<"cvt", integer_round_name<kRound>, when<kSat, ".sat">, ".f16.f16">, Unit::Sfu,
+                     "Rounds to an integer that stays a float.",
+                     [](Half x) {
+                       const float whole = rounded_whole<kRound>(to_float(x));
+                       return to_half(kSat ? saturated(whole) : whole);
+                     },
+                     {{{TypeF16::kOne}, TypeF16::kOne},
+                      {{TypeF16::kTwoAndHalf}, kSat ? TypeF16::kOne : kRounded},
+                      {{TypeF16::kMinusOne}, kSat ? 0 : TypeF16::kMinusOne}});
 }
 
 // The same width without rounding: flushed, clamped.
@@ -201,7 +200,8 @@ constexpr auto relu_rows() {
 constexpr auto kWholeRows = rows_of_rounds([]<Round kRound>() {
   return joined_rows(whole_single_row<kRound, false, false>(), whole_single_row<kRound, false, true>(),
                      whole_single_row<kRound, true, false>(), whole_single_row<kRound, true, true>(),
-                     whole_other_rows<kRound, false>(), whole_other_rows<kRound, true>());
+                     whole_double_row<kRound, false>(), whole_double_row<kRound, true>(),
+                     whole_half_row<kRound, false>(), whole_half_row<kRound, true>());
 });
 constexpr auto kSingleRows = rows_of_rounds([]<Round kRound>() {
   return joined_rows(single_row<kRound, false, false>(), single_row<kRound, false, true>(),
