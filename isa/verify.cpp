@@ -215,6 +215,8 @@ class Verifier {
     if (s >= Special::TidX && s <= Special::NctaidZ) return only({Compute});
     if (s < Special::Payload) return;
     if (s == Special::Payload) return only({AnyHit, ClosestHit, Miss, Callable});
+    if (s == Special::Record || s == Special::RecordHi)
+      return only({RayGeneration, Intersection, AnyHit, ClosestHit, Miss, Callable});
     if (s == Special::HitT || (s >= Special::RayFlags && s <= Special::RayDirectionZ))
       return only({Intersection, AnyHit, ClosestHit, Miss});
     only({Intersection, AnyHit, ClosestHit});
