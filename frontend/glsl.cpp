@@ -1,5 +1,6 @@
 // GLSL to SPIR-V 1.6 through glslang in process: includes, defines, debug lines, messages with file and line.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
@@ -26,6 +27,21 @@ std::optional<std::string> read_text(const fs::path& path) {
   return std::string(std::istreambuf_iterator<char>(file), {});
 }
 
+// Blanks out the #version lines of an included file: glslang wants the directive at the start of the main file.
+// Choice: shaders whose first line includes the file that has it compile, as with tools that paste includes first; those
+// without a #version of their own are of version 460 anyway.
+void blank_version(std::string& text) {
+  for (size_t line = 0; line < text.size();) {
+    const size_t end = std::min(text.find('\n', line), text.size());
+    size_t at = text.find_first_not_of(" \t", line);
+    if (at < end && text[at] == '#') {
+      at = text.find_first_not_of(" \t", at + 1);
+      if (at < end && text.compare(at, 7, "version") == 0) std::fill(text.begin() + long(line), text.begin() + long(end), ' ');
+    }
+    line = end + 1;
+  }
+}
+
 // Looks next to the including file first, then in the include directories in order.
 class Includer final : public glslang::TShader::Includer {
  public:
@@ -46,6 +62,7 @@ class Includer final : public glslang::TShader::Includer {
   IncludeResult* load(const fs::path& path) {
     std::optional<std::string> text = read_text(path);
     if (!text) return nullptr;
+    blank_version(*text);
     texts_.push_back(std::make_unique<std::string>(std::move(*text)));
     return new IncludeResult(path.lexically_normal().string(), texts_.back()->data(), texts_.back()->size(),
                              nullptr);
