@@ -4,12 +4,15 @@
 
 #include <fmt/format.h>
 
-#include <cstring>
+#include <chrono>
 #include <map>
 
 #include "base/diagnostics.h"
 #include "core/block.h"
 #include "isa/generic_address.h"
+#include "pipeline/functional_machine.h"
+#include "pipeline/run_stats.h"
+#include "pipeline/timing_machine.h"
 
 namespace glint::pipeline {
 
@@ -54,16 +57,16 @@ void KernelWorld::set_grid(const KernelGrid& grid) {
   const auto size = [](const std::array<uint32_t, 3>& s) { return fmt::format("{} x {} x {}", s[0], s[1], s[2]); };
   for (const auto& s : {grid.grid, grid.block})
     for (uint32_t axis : s)
-      if (axis == 0) throw UserError(fmt::format("kernel '{}': a grid of {} blocks of {} threads is empty", name, size(grid.grid), size(grid.block)));
+      if (axis == 0) throw UserError({}, fmt::format("kernel '{}': a grid of {} blocks of {} threads is empty", name, size(grid.grid), size(grid.block)));
   const uint64_t threads = uint64_t{grid.block[0]} * grid.block[1] * grid.block[2];
   if (threads > core::kMaxBlockThreads)
-    throw UserError(fmt::format("kernel '{}': {} threads a block, at most {} can be", name, threads, core::kMaxBlockThreads));
+    throw UserError({}, fmt::format("kernel '{}': {} threads a block, at most {} can be", name, threads, core::kMaxBlockThreads));
   if (kernel_.required_block && *kernel_.required_block != grid.block)
-    throw UserError(fmt::format("kernel '{}' asks for blocks of {} threads (.reqntid), not {}", name, size(*kernel_.required_block), size(grid.block)));
+    throw UserError({}, fmt::format("kernel '{}' asks for blocks of {} threads (.reqntid), not {}", name, size(*kernel_.required_block), size(grid.block)));
   if (kernel_.largest_block) {
     const auto& most = *kernel_.largest_block;
     if (threads > uint64_t{most[0]} * most[1] * most[2])
-      throw UserError(fmt::format("kernel '{}' takes blocks of at most {} threads (.maxntid), not {}", name, size(most), size(grid.block)));
+      throw UserError({}, fmt::format("kernel '{}' takes blocks of at most {} threads (.maxntid), not {}", name, size(most), size(grid.block)));
   }
   core::set_blocks(world, grid.grid, grid.block, kernel_.program.shared_bytes, grid.dynamic_shared_bytes);
 }
@@ -71,13 +74,36 @@ void KernelWorld::set_grid(const KernelGrid& grid) {
 void KernelWorld::set_arguments(const std::vector<std::vector<std::byte>>& arguments) {
   const std::string& name = kernel_.program.name;
   if (arguments.size() != kernel_.parameters.size())
-    throw UserError(fmt::format("kernel '{}' has {} parameters, {} arguments are given", name, kernel_.parameters.size(), arguments.size()));
+    throw UserError({}, fmt::format("kernel '{}' has {} parameters, {} arguments are given", name, kernel_.parameters.size(), arguments.size()));
   for (size_t i = 0; i < arguments.size(); ++i) {
     const frontend::KernelParameter& p = kernel_.parameters[i];
     if (arguments[i].size() != p.bytes)
-      throw UserError(fmt::format("kernel '{}': parameter {} ('{}') has {} bytes, its argument {}", name, i, p.name, p.bytes, arguments[i].size()));
+      throw UserError({}, fmt::format("kernel '{}': parameter {} ('{}') has {} bytes, its argument {}", name, i, p.name, p.bytes, arguments[i].size()));
     std::memcpy(world.constant_bank.data() + isa::kPushConstantOffset + p.offset, arguments[i].data(), p.bytes);
   }
+}
+
+RenderResult run_kernel(KernelWorld& kernel, const GpuParams& gpu, bool timing, bool no_skip,
+                        const std::function<void(uint64_t, uint64_t)>& progress) {
+  RenderResult result;
+  const auto begin = std::chrono::steady_clock::now();
+  if (timing) {
+    auto machine = std::make_unique<TimingMachine>(gpu, kernel.world, no_skip);
+    result.cycles = machine->run(progress);
+    machine->collect(result);
+    result.stats = std::make_unique<RunStats>(std::move(machine));
+  } else {
+    const FunctionalCounts counts = run_functional(kernel.world, gpu.core.instruction_budget, progress);
+    std::copy(counts.by_class.begin(), counts.by_class.end(), result.by_class);
+    result.rays = counts.rays;
+    result.stats = std::make_unique<RunStats>(counts);
+  }
+  result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  for (const ClassCounts& counts : result.by_class) {
+    result.warp_instructions += counts.instructions;
+    result.lane_instructions += counts.lanes;
+  }
+  return result;
 }
 
 }  // namespace glint::pipeline

@@ -3,10 +3,13 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <cstring>
+#include <functional>
 #include <vector>
 
 #include "core/image.h"
 #include "frontend/ptx/ptx.h"
+#include "pipeline/render.h"
 
 namespace glint::pipeline {
 
@@ -46,5 +49,9 @@ class KernelWorld {
   frontend::Kernel kernel_;
   mem::AddressSpace memory_;
 };
+
+// Runs a kernel whose grid and arguments are set: counts, statistics and time; no picture. Errors as render().
+RenderResult run_kernel(KernelWorld& kernel, const GpuParams& gpu, bool timing, bool no_skip,
+                        const std::function<void(uint64_t done, uint64_t total)>& progress);
 
 }  // namespace glint::pipeline

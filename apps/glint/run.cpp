@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "apps/glint/config.h"
+#include "apps/glint/run_ptx.h"
 #include "apps/glint/run_summary.h"
 #include "apps/glint/session.h"
 #include "apps/glint/workloads.h"
@@ -23,7 +24,7 @@ namespace {
 
 struct Options {
   std::string scene, shader = "pt", config = "mobile", size = "128x128", mode = "timing", assets, out,
-                     shader_dir;
+                     shader_dir, launch;
   std::vector<std::string> settings;
   scenes::RenderParams frame;
   uint64_t max_instructions = 0;
@@ -118,6 +119,9 @@ pipeline::RenderResult render(const Session& session, pipeline::RenderJob& job,
 }
 
 Exit run(const Session& session, const Options& options) {
+  if (names_kernel(options.scene))
+    return run_ptx(session, {options.scene, options.launch, options.config, options.mode, options.out, options.settings,
+                             options.max_instructions, options.json, options.no_skip});
   pipeline::RenderJob job = make_job(session, options);
   const report::RunDirectory directory(
       options.out.empty() ? fmt::format("out/{}_{}-{}", job.scene.name, options.shader, options.mode)
@@ -162,8 +166,9 @@ void add_frame_options(CLI::App& command, Options& options) {
 
 void add_run(CLI::App& app, Session& session) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("run", "Render a scene on the simulated GPU");
-  command->add_option("SCENE", options->scene, "Scene; 'glint list scenes' names them")->required();
+  CLI::App* command = app.add_subcommand("run", "Render a scene, or launch a PTX kernel, on the simulated GPU");
+  command->add_option("SCENE", options->scene, "Scene; 'glint list scenes' names them. Or a kernel: FILE.ptx, or its launch FILE.toml")->required();
+  command->add_option("--launch", options->launch, "Launch file of a kernel: grid, block, arguments")->type_name("FILE");
   command->add_option("--shader", options->shader, "pt, sh or ao; 'glint list shaders' explains")
       ->capture_default_str();
   command

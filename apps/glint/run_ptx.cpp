@@ -1,0 +1,164 @@
+// Launching a kernel and telling what its buffers hold afterwards.
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/glint/run_ptx.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "apps/glint/config.h"
+#include "apps/glint/launch_file.h"
+#include "apps/glint/run_summary.h"
+#include "pipeline/kernel_launch.h"
+#include "report/config_file.h"
+#include "report/progress.h"
+#include "report/run_directory.h"
+#include "report/stat_writer.h"
+
+namespace glint::app {
+namespace {
+
+std::string read_text(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw UserError({}, fmt::format("cannot read '{}'", path));
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// A kernel in memory with the addresses of its buffers, one an argument; 0 for numbers.
+struct Launched {
+  explicit Launched(frontend::Kernel kernel) : world(std::move(kernel)) {}
+  pipeline::KernelWorld world;
+  std::vector<Address> buffers;
+};
+
+void set_arguments(Launched& launched, const LaunchFile& launch, const std::string& launch_path) {
+  const std::vector<frontend::KernelParameter>& parameters = launched.world.kernel().parameters;
+  if (parameters.size() != launch.arguments.size())
+    throw UserError({launch_path, 0, 0}, fmt::format("kernel '{}' has {} parameters, the file gives {} arguments",
+                                                     launched.world.kernel().program.name, parameters.size(), launch.arguments.size()));
+  std::vector<std::vector<std::byte>> values;
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    const LaunchArgument& argument = launch.arguments[i];
+    launched.buffers.push_back(0);
+    values.push_back(argument.bytes);
+    if (argument.is_buffer) {
+      const Address at = launched.world.memory().allocate(argument.name, std::max<size_t>(argument.bytes.size(), 1));
+      launched.world.memory().write(at, argument.bytes.data(), argument.bytes.size());
+      launched.buffers.back() = at;
+      values.back() = pipeline::KernelWorld::argument(at);
+    }
+    if (values.back().size() != parameters[i].bytes)
+      throw UserError(argument.where, fmt::format("parameter '{}' has {} bytes, this argument {}", parameters[i].name, parameters[i].bytes,
+                                                  values.back().size()));
+  }
+  launched.world.set_arguments(values);
+}
+
+// Lines on the buffers that the launch file asks for; those to save go to the run directory.
+std::vector<std::string> keep_buffers(Launched& launched, const LaunchFile& launch, const report::RunDirectory& directory) {
+  std::vector<std::string> lines;
+  for (size_t i = 0; i < launch.arguments.size(); ++i) {
+    const LaunchArgument& argument = launch.arguments[i];
+    if (!argument.is_buffer || (!argument.save && argument.show == 0)) continue;
+    const size_t bytes = argument.bytes.size();
+    const std::byte* data = launched.world.memory().find(launched.buffers[i], bytes);
+    const std::string raw(reinterpret_cast<const char*>(data), bytes);
+    std::string line = fmt::format("{:<10} {} bytes, fnv1a {:016x}", argument.name, bytes, report::fnv1a(raw));
+    if (argument.save) {
+      directory.write(argument.name + ".bin", raw);
+      line += ", " + directory.path_of(argument.name + ".bin");
+    }
+    if (argument.show > 0) line += "\n             " + first_values(argument.type, data, bytes, argument.show);
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+report::RunInfo describe_run(const Session& session, const KernelOptions& options, const pipeline::GpuParams& gpu, const std::string& kernel,
+                             const std::string& text) {
+  report::RunInfo info;
+  info.command = session.arguments;
+  info.version = GLINT_VERSION;
+  info.git = GLINT_GIT;
+  info.compiler = __VERSION__;
+  info.scene = kernel;
+  info.scene_form = "kernel";
+  info.scene_hash = report::fnv1a(text);
+  info.shader = kernel;
+  info.config = options.config;
+  info.config_hash = report::fnv1a(report::config_key_values(describe_params(gpu)));
+  info.mode = options.mode;
+  info.started = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
+  return info;
+}
+
+// An error still leaves a run directory that says what happened.
+pipeline::RenderResult run_recorded(const Session& session, const KernelOptions& options, const pipeline::GpuParams& gpu, Launched& launched,
+                                    const report::RunDirectory& directory, report::RunInfo& info) {
+  report::Progress progress(session.on_terminal ? stdout : nullptr, "running", session.terminal);
+  const auto finish = [&](Exit exit, const std::string& message, double seconds) {
+    info.wall_seconds = seconds;
+    info.exit = int(exit);
+    info.message = message;
+    directory.write_run(info);
+  };
+  try {
+    pipeline::RenderResult result = pipeline::run_kernel(launched.world, gpu, options.mode == "timing", options.no_skip,
+                                                         [&](uint64_t done, uint64_t total) { progress.update(done, total); });
+    finish(Exit::Ok, "", result.wall_seconds);
+    return result;
+  } catch (const Error& error) {
+    finish(error.exit(), error.what(), 0);
+    throw;
+  }
+}
+
+}  // namespace
+
+bool names_kernel(const std::string& what) { return what.ends_with(".ptx") || what.ends_with(".toml"); }
+
+Exit run_ptx(const Session& session, const KernelOptions& options) {
+  const bool is_ptx = options.what.ends_with(".ptx");
+  if (is_ptx && options.launch.empty())
+    throw UserError({}, fmt::format("'{}' needs a launch file: --launch FILE.toml gives grid, block and arguments", options.what));
+  const std::string launch_path = is_ptx ? options.launch : options.what;
+  LaunchFile launch = read_launch(launch_path);
+  if (is_ptx) launch.kernel = options.what;
+  pipeline::RenderJob job;
+  job.gpu = read_config(session.resources, options.config, options.settings);
+  if (options.max_instructions > 0) job.gpu.core.instruction_budget = options.max_instructions;
+
+  const std::string text = read_text(launch.kernel);
+  const frontend::PtxOptions compiler{{job.gpu.compiler.max_registers, job.gpu.compiler.schedule}, launch.contract};
+  Launched launched(frontend::compile_ptx(text, launch.kernel, launch.entry, compiler));
+  const std::string name = launched.world.kernel().program.name;
+  launched.world.set_grid(launch.grid);
+  set_arguments(launched, launch, launch_path);
+
+  const auto& [gx, gy, gz] = launch.grid.grid;
+  const auto& [bx, by, bz] = launch.grid.block;
+  const std::string title = fmt::format("{}  {} x {} x {} blocks of {} x {} x {} threads, {} on {}", name, gx, gy, gz, bx, by, bz, options.mode, options.config);
+  const report::RunDirectory directory(options.out.empty() ? fmt::format("out/{}-{}", name, options.mode) : options.out);
+  report::RunInfo info = describe_run(session, options, job.gpu, name, text);
+  directory.write_config(describe_params(job.gpu), "Resolved configuration of: " + title);
+  const pipeline::RenderResult result = run_recorded(session, options, job.gpu, launched, directory, info);
+  directory.write_stats(result.statistics());
+  const std::vector<std::string> buffers = keep_buffers(launched, launch, directory);
+
+  if (options.json) {
+    write_output("", Registry<report::StatWriter>::instance().entry("json").make_default({})->write(result.statistics()));
+    return Exit::Ok;
+  }
+  report::Summary summary = summarise(job, result);
+  summary.title = title;
+  summary.files = buffers;
+  summary.files.push_back("statistics " + directory.path_of("stats.txt"));
+  write_output("", report::format_summary(summary, session.terminal));
+  return Exit::Ok;
+}
+
+}  // namespace glint::app

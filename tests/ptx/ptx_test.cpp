@@ -1,0 +1,266 @@
+// The PTX front end by small kernels: what they compute, and how mistakes are told.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "tests/ptx/launcher.h"
+#include "tests/support/catch.h"
+
+using namespace glint;
+
+namespace {
+
+const std::string kHead = ".version 7.0\n.target sm_70\n.address_size 64\n";
+
+// A kernel `k` of one warp that stores %out of each thread, a word, to its parameter.
+std::string storing(const std::string& body, const std::string& before = "") {
+  return kHead + before +
+         ".visible .entry k(.param .u64 to)\n{\n.reg .b32 %out, %lane, %r<40>; .reg .b64 %at, %rd<20>; .reg .pred %p<20>; .reg .f32 %f<9>;\n"
+         "mov.u32 %lane, %tid.x; mov.u32 %out, 0;\n" + body +
+         "\nld.param.u64 %at, [to]; mad.wide.u32 %at, %lane, 4, %at; st.global.u32 [%at], %out; ret;\n}\n";
+}
+
+std::vector<uint32_t> outputs(const std::string& text, const pipeline::KernelGrid& grid = {{1, 1, 1}, {32, 1, 1}, 0}) {
+  Launcher k(text, "test.ptx", "k");
+  const uint32_t threads = grid.block[0] * grid.block[1] * grid.block[2];
+  k.buffer(std::vector<uint32_t>(threads));
+  k.run_functional(grid);
+  return k.read<uint32_t>(0, threads);
+}
+
+std::string message_of(const std::string& text) {
+  try {
+    frontend::compile_ptx(text, "test.ptx", "", {});
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+std::vector<uint32_t> expected(uint32_t (*of_lane)(uint32_t)) {
+  std::vector<uint32_t> out;
+  for (uint32_t lane = 0; lane < 32; ++lane) out.push_back(of_lane(lane));
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("lanes that part meet again where their paths must meet") {
+  // Half of the lanes take each side; inside, some take a further branch. Behind it a vote sees all.
+  const std::string body = R"(
+    setp.lt.u32 %p1, %lane, 16;
+    @%p1 bra LOW;
+    setp.lt.u32 %p2, %lane, 24;
+    @%p2 bra MIDDLE;
+    mov.u32 %r1, 3;
+    bra INNER;
+  MIDDLE: mov.u32 %r1, 2;
+  INNER: activemask.b32 %r2;
+    bra ALL;
+  LOW: mov.u32 %r1, 1;
+    mov.u32 %r2, 7;
+  ALL: activemask.b32 %r3;
+    mad.lo.u32 %out, %r1, 100, %r2;
+    setp.ne.u32 %p3, %r3, -1;
+    @%p3 mov.u32 %out, 9;)";
+  CHECK(outputs(storing(body)) == expected([](uint32_t lane) {
+          return lane < 16 ? 107u : (lane < 24 ? 200u : 300u) + 0xffff0000u;
+        }));
+}
+
+TEST_CASE("a loop with several exits and an early end gathers the lanes that are left") {
+  const std::string body = R"(
+    mov.u32 %r1, 0;
+  LOOP: add.u32 %r1, %r1, 1;
+    setp.eq.u32 %p1, %r1, %lane;
+    @%p1 bra FOUND;
+    setp.gt.u32 %p2, %r1, 40;
+    @%p2 bra NOWHERE;
+    setp.eq.u32 %p3, %lane, 5;
+    @%p3 exit;
+    bra LOOP;
+  NOWHERE: mov.u32 %r1, 77;
+  FOUND: activemask.b32 %r2;
+    add.u32 %out, %r1, 1000;
+    setp.ne.u32 %p4, %r2, 0xffffffdf;
+    @%p4 mov.u32 %out, 9;)";
+  CHECK(outputs(storing(body)) == expected([](uint32_t lane) { return lane == 5 ? 0u : lane == 0 ? 1077u : lane + 1000; }));
+}
+
+TEST_CASE("functions take and give words, bytes and structs, and become part of each caller") {
+  const std::string functions = R"(
+  .func (.param .b32 r) twice(.param .b32 v)
+  { .reg .b32 %a; ld.param.u32 %a, [v]; shl.b32 %a, %a, 1; st.param.b32 [r], %a; ret; }
+  .func (.param .align 8 .b8 r[16]) pick(.param .align 4 .b8 s[8], .param .b32 n)
+  { .reg .b32 %a, %b, %n; .reg .b64 %w; .reg .pred %p; .reg .b16 %h;
+    ld.param.u32 %a, [s]; ld.param.s16 %h, [s+4]; cvt.s32.s16 %b, %h; ld.param.u32 %n, [n];
+    setp.gt.u32 %p, %n, 20;
+    @%p bra BIG;
+    cvt.s64.s32 %w, %b; st.param.b64 [r], %w; st.param.b32 [r+8], %a; ret;
+  BIG: { .param .b32 x; .param .b32 y; st.param.b32 [x], %a; call.uni (y), twice, (x); ld.param.b32 %a, [y]; }
+    mov.u64 %w, 5; st.param.b64 [r], %w; st.param.b32 [r+8], %a; ret; })";
+  const std::string body = R"(
+    { .param .align 4 .b8 s[8]; .param .b32 n; .param .align 8 .b8 r[16];
+      st.param.b32 [s], 300; st.param.b16 [s+4], 0xfffe; st.param.b32 [n], %lane;
+      call (r), pick, (s, n);
+      ld.param.b64 %rd1, [r]; ld.param.b32 %r1, [r+8]; }
+    cvt.u32.u64 %r2, %rd1; add.u32 %out, %r1, %r2;)";
+  CHECK(outputs(storing(body, functions)) == expected([](uint32_t lane) { return lane > 20 ? 605u : 298u; }));
+}
+
+TEST_CASE("an indexed branch goes to the label of each lane's index") {
+  const std::string body = R"(
+    rem.u32 %r1, %lane, 3;
+    brx.idx %r1, TABLE;
+    TABLE: .branchtargets A, B, C;
+  A: mov.u32 %out, 10; bra END;
+  B: mov.u32 %out, 11; bra END;
+  C: mov.u32 %out, 12;
+  END: activemask.b32 %r2; setp.ne.u32 %p1, %r2, -1; @%p1 mov.u32 %out, 9;)";
+  CHECK(outputs(storing(body)) == expected([](uint32_t lane) { return 10 + lane % 3; }));
+}
+
+TEST_CASE("variables of the module lie in their spaces with their values and pointers") {
+  const std::string variables = R"(
+    .global .align 4 .u32 table[4] = {10, 20, 30, 40};
+    .global .u64 where = table+8;
+    .const .align 4 .u32 steps[2] = {5, 7};
+    .extern .shared .align 16 .b8 dynamic[];
+    .shared .align 4 .u32 fixed[32];)";
+  const std::string body = R"(
+    ld.global.u64 %rd1, [where];
+    ld.u32 %r1, [%rd1];
+    ld.const.u32 %r2, [steps+4];
+    mov.u64 %rd2, table; ld.global.u32 %r3, [%rd2+12];
+    mov.u32 %r4, dynamic; mad.lo.u32 %r4, %lane, 4, %r4; st.shared.u32 [%r4], %lane;
+    mov.u32 %r5, fixed; mad.lo.u32 %r5, %lane, 4, %r5; st.shared.u32 [%r5], 1000;
+    bar.sync 0;
+    ld.shared.u32 %r6, [%r4]; ld.shared.u32 %r7, [%r5];
+    add.u32 %out, %r1, %r2; add.u32 %out, %out, %r3; add.u32 %out, %out, %r6; add.u32 %out, %out, %r7;)";
+  CHECK(outputs(storing(body, variables), {{1, 1, 1}, {32, 1, 1}, 128}) == expected([](uint32_t lane) { return 1077 + lane; }));
+}
+
+TEST_CASE("local memory, vectors, literals and predicates mean what PTX says") {
+  const std::string body = R"(
+    .local .align 16 .b8 depot[32];
+    .reg .v4 .b32 %v; .reg .b16 %h<5>;
+    mov.u64 %rd1, depot; cvta.local.u64 %rd2, %rd1;
+    st.local.v4.u32 [%rd1], {%lane, 0x10, 020, 0b11};
+    ld.v4.u32 {%r1, %r2, %r3, %r4}, [%rd2];
+    mov.b32 {%h1, %h2}, 0x00050004; mov.b32 %r5, {%h2, %h1};
+    mov.f32 %f1, 1.5; fma.rn.f32 %f1, %f1, 0f40000000, -1.0; cvt.rzi.u32.f32 %r6, %f1;
+    setp.lt.and.u32 %p1|%p2, %lane, 4, !%p9;
+    add.u32 %out, %r1, %r2; add.u32 %out, %out, %r3; add.u32 %out, %out, %r4; add.u32 %out, %out, %r5; add.u32 %out, %out, %r6;
+    @%p1 add.u32 %out, %out, 1000; @%p2 add.u32 %out, %out, 2000;)";
+  CHECK(outputs(storing(body)) == expected([](uint32_t lane) { return lane + 16 + 16 + 3 + 0x40005 + 2 + (lane < 4 ? 1000 : 2000); }));
+}
+
+TEST_CASE("mistakes are told with file, line and column, all at once") {
+  const std::string two = message_of(storing("add.u33 %r1, %r2, %r3;\nfrobnicate.b32 %r1, %r2;"));
+  CHECK(two.find("test.ptx:8:1: error: no op 'add.u33'; did you mean 'add.u32'?") != std::string::npos);
+  CHECK(two.find("test.ptx:9:1: error: no op 'frobnicate.b32'") != std::string::npos);
+  CHECK(message_of(storing("add.u32 %r1, %nothing, 1;")).find("test.ptx:8:14: error: '%nothing' is not declared") != std::string::npos);
+  CHECK(message_of(storing("bra NOWHERE;")).find("test.ptx:8:5: error: there is no label 'NOWHERE' here") != std::string::npos);
+  CHECK(message_of(storing("add.u32 %r1, %r2;")).find("takes 3 operands, not 2") != std::string::npos);
+  CHECK(message_of(storing("add.u32 %r1 %r2;")).find("test.ptx:8:13: error: expected ',', found '%r2'") != std::string::npos);
+  CHECK(message_of(storing("@%r1 bra X; X:")).find("'%r1' is no predicate") != std::string::npos);
+  CHECK(message_of(storing("call f;", ".func f() { call f; ret; }\n")).find("'f' calls itself") != std::string::npos);
+  CHECK(message_of(storing("call printf;", ".extern .func printf();\n")).find("has no body") != std::string::npos);
+  CHECK(message_of(kHead).find("the module has no kernel") != std::string::npos);
+}
+
+namespace {
+
+// xorshift64*: the same graphs on every machine.
+struct Random {
+  uint64_t state;
+  uint32_t below(uint32_t n) {
+    state ^= state >> 12;
+    state ^= state << 25;
+    state ^= state >> 27;
+    return uint32_t((state * 0x2545'f491'4f6c'dd1dull) >> 33) % n;
+  }
+};
+
+// A graph of blocks, any of which may lead to any others: block b adds its number to a hash, then ends the lane, goes
+// on, or branches by a bit of the hash. A budget of steps ends every walk.
+struct Maze {
+  struct Block {
+    uint32_t kind = 0, bit = 0, taken = 0, next = 0;  // kind 0: end
+  };
+  std::vector<Block> blocks;
+
+  explicit Maze(uint64_t seed) {
+    Random random{seed * 0x9e37'79b9'7f4a'7c15ull + 1};
+    const uint32_t count = 2 + random.below(10);
+    for (uint32_t b = 0; b < count; ++b) {
+      const uint32_t kind = random.below(8);
+      blocks.push_back({kind == 0 ? 0u : kind < 3 ? 1u : 2u, random.below(12), random.below(count), random.below(count)});
+    }
+    blocks.back().kind = 0;
+  }
+  uint32_t walk(uint32_t lane) const {
+    uint32_t hash = lane * 2654435761u, steps = 0, at = 0;
+    while (true) {
+      hash = (hash ^ (at + 1)) * 16777619u;
+      if (++steps > 60 || blocks[at].kind == 0) return hash;
+      const bool taken = blocks[at].kind == 2 && (hash >> (8 + blocks[at].bit) & 1);
+      at = taken ? blocks[at].taken : blocks[at].next;
+    }
+  }
+  std::string text() const {
+    std::string out = "mul.lo.u32 %out, %lane, 2654435761; mov.u32 %r1, 0;\n";
+    for (size_t b = 0; b < blocks.size(); ++b) {
+      out += fmt::format("B{}: xor.b32 %out, %out, {}; mul.lo.u32 %out, %out, 16777619; add.u32 %r1, %r1, 1;\n"
+                         "setp.gt.u32 %p1, %r1, 60; @%p1 bra END;\n", b, b + 1);
+      if (blocks[b].kind == 0) out += "bra END;\n";
+      if (blocks[b].kind == 2)
+        out += fmt::format("shr.u32 %r2, %out, {}; and.b32 %r2, %r2, 1; setp.ne.u32 %p2, %r2, 0; @%p2 bra B{};\n", 8 + blocks[b].bit, blocks[b].taken);
+      if (blocks[b].kind != 0) out += fmt::format("bra B{};\n", blocks[b].next);
+    }
+    return out + "END: activemask.b32 %r3; setp.ne.u32 %p3, %r3, -1; @%p3 mov.u32 %out, 0;\n";
+  }
+};
+
+}  // namespace
+
+TEST_CASE("in any graph of branches each lane walks its own way, and all meet at the end") {
+  for (uint64_t seed = 1; seed <= 300; ++seed) {
+    const Maze maze(seed);
+    INFO("seed " << seed << "\n" << maze.text());
+    const std::vector<uint32_t> got = outputs(storing(maze.text()));
+    std::vector<uint32_t> walked;
+    for (uint32_t lane = 0; lane < 32; ++lane) walked.push_back(maze.walk(lane));
+    REQUIRE(got == walked);
+  }
+}
+
+TEST_CASE("the example kernels give the same on both machines, and what they should") {
+  const auto read = [](const std::string& name) {
+    std::ifstream in(std::string(GLINT_SOURCE_DIR) + "/shaders/kernels/" + name);
+    return std::string{std::istreambuf_iterator<char>(in), {}};
+  };
+  pipeline::GpuParams params;
+  params.cores = 2;
+  for (const bool timing : {false, true}) {
+    std::vector<uint32_t> numbers(1024);
+    for (uint32_t i = 0; i < 1024; ++i) numbers[i] = i;
+    Launcher sums(read("block_sums.ptx"), "block_sums.ptx", "block_sums");
+    sums.buffer(numbers).buffer(std::vector<uint32_t>(4));
+    const pipeline::KernelGrid grid{{4, 1, 1}, {256, 1, 1}, 0};
+    if (timing) CHECK(sums.run_timing(grid, params) > 0);
+    else sums.run_functional(grid);
+    CHECK(sums.read<uint32_t>(1, 4) == std::vector<uint32_t>{32640, 98176, 163712, 229248});
+
+    Launcher saxpy(read("saxpy.ptx"), "saxpy.ptx", "saxpy");
+    std::vector<float> x(1000), y(1000, 1.0f), z(1000);
+    for (size_t i = 0; i < 1000; ++i) x[i] = float(i), z[i] = 2.0f * float(i) + 1.0f;
+    saxpy.buffer(x).buffer(y).value(2.0f).value(1000u);
+    const pipeline::KernelGrid lines{{8, 1, 1}, {128, 1, 1}, 0};
+    if (timing) CHECK(saxpy.run_timing(lines, params) > 0);
+    else saxpy.run_functional(lines);
+    CHECK(saxpy.read<float>(1, 1000) == z);
+  }
+}
