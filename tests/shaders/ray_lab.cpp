@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <span>
 
 #include "isa/verify.h"
+#include "pipeline/binding_table.h"
 #include "pipeline/functional_machine.h"
 #include "pipeline/timing_machine.h"
 #include "rtunit/build.h"
@@ -16,7 +18,6 @@
 namespace glint::test {
 namespace {
 
-constexpr uint32_t kRecordBytes = 32;
 constexpr uint64_t kBudget = 2'000'000;  // instructions a warp: far more than any shader here needs
 
 void bind(core::World& world, uint32_t set, uint32_t binding, uint64_t address_or_handle, uint64_t bytes_or_count) {
@@ -67,21 +68,16 @@ rt::StructureInfo scene(mem::AddressSpace& memory) {
   return rt::build_top(memory, "top", std::vector<rt::Instance>{first, second, third}, bottoms);
 }
 
-// The deepest chain of frames: the ray generation shader, then at each depth a hit or miss shader, or an
-// any-hit shader below an intersection shader.
-uint32_t stack_bytes(const std::vector<isa::Program>& programs, uint32_t depth) {
-  uint32_t largest[size_t(isa::Stage::Compute) + 1] = {};
-  for (const isa::Program& program : programs) {
-    uint32_t& bytes = largest[size_t(program.stage)];
-    bytes = std::max(bytes, program.local_bytes);
-  }
-  const auto of = [&](isa::Stage stage) { return largest[size_t(stage)]; };
-  const uint32_t called =
-      std::max({of(isa::Stage::ClosestHit), of(isa::Stage::Miss), of(isa::Stage::Intersection) + of(isa::Stage::AnyHit)});
-  return (of(isa::Stage::RayGeneration) + of(isa::Stage::Compute) + depth * called + 15) / 16 * 16;
+std::vector<std::byte> as_bytes(const std::vector<uint32_t>& words) {
+  const auto bytes = std::as_bytes(std::span(words));
+  return {bytes.begin(), bytes.end()};
+}
+void add(pipeline::TableRegion& region, uint32_t group, const std::vector<std::vector<uint32_t>>& data) {
+  const size_t i = region.records.size();
+  region.records.push_back({group, i < data.size() ? as_bytes(data[i]) : std::vector<std::byte>{}});
 }
 
-struct Pipeline {
+struct Shaders {
   std::vector<isa::Program> programs;
   std::map<std::string, uint32_t> index;
 
@@ -92,6 +88,24 @@ struct Pipeline {
     return it->second;
   }
 };
+
+pipeline::TableInput make_table(const RayLab& lab, const LabShaders& files, Shaders& shaders, const LabOptions& options) {
+  pipeline::TableInput table;
+  const auto general = [&](const std::string& file) {
+    if (file.empty()) return pipeline::kNoGroup;
+    table.groups.push_back({shaders.shader(file, files, options), {}});
+    return uint32_t(table.groups.size() - 1);
+  };
+  table.raygen = {general(files.raygen), as_bytes(lab.raygen_data)};
+  for (const std::string& file : files.miss) add(table.miss, general(file), lab.miss_data);
+  for (const std::string& file : files.callable) add(table.callable, general(file), lab.callable_data);
+  for (const LabShaders::Group& group : files.hit) {
+    table.groups.push_back({core::kNoShader, {shaders.shader(group.closest, files, options), shaders.shader(group.any, files, options),
+                                              shaders.shader(group.intersection, files, options)}});
+    add(table.hit, uint32_t(table.groups.size() - 1), lab.hit_data);
+  }
+  return table;
+}
 
 void add_images(core::World& world, mem::AddressSpace& memory) {
   using Format = core::ImageView::Format;
@@ -123,25 +137,25 @@ isa::Program compile_lab(const std::string& file, const frontend::GlslOptions& g
 }
 
 std::vector<uint32_t> RayLab::run(const LabOptions& options) {
-  Pipeline pipeline;
+  Shaders shaders;
   core::World world;
   mem::AddressSpace memory;
   world.memory = &memory;
   world.constant_bank.resize(isa::kConstantBankBytes);
   world.launch_size = {kWidth, kHeight, 1};
   world.max_trace_depth = max_trace_depth;
-  world.raygen = pipeline.shader(shaders_.raygen, shaders_, options);
-  for (const std::string& file : shaders_.miss) world.miss.push_back(pipeline.shader(file, shaders_, options));
-  for (const LabShaders::Group& group : shaders_.hit)
-    world.hit.push_back({pipeline.shader(group.closest, shaders_, options), pipeline.shader(group.any, shaders_, options),
-                         pipeline.shader(group.intersection, shaders_, options)});
-  const core::Image linked = core::link(pipeline.programs);
+  const pipeline::TableInput table = make_table(*this, shaders_, shaders, options);
+  const core::Image linked = core::link(shaders.programs);
   world.image = &linked;
-  world.local_bytes = stack_bytes(pipeline.programs, max_trace_depth);
-  core::place_plain_table(world, memory.allocate("binding table", core::plain_table_bytes(world)));
+  pipeline::build_binding_table(world, memory, table);
+  world.max_callable_depth = max_callable_depth;
+  world.local_bytes = pipeline::stack_bytes(linked, max_trace_depth, max_callable_depth);
 
   const rt::StructureInfo top = scene(memory);
   bind(world, 0, 0, top.address, top.bytes);
+  const Address structure_words = memory.allocate("the top level's address", 8);
+  memory.write(structure_words, &top.address, 8);
+  bind(world, 0, 30, structure_words, 8);
   const uint64_t result_bytes = uint64_t(kLanesUsed) * words_per_lane * 4;
   const Address results = memory.allocate("results", result_bytes);
   bind(world, 0, 1, results, result_bytes);

@@ -21,6 +21,7 @@ struct LabShaders {
   };
   std::vector<Group> hit;
   frontend::GlslOptions glsl;
+  std::vector<std::string> callable = {};
 };
 
 struct LabOptions {
@@ -46,7 +47,10 @@ class RayLab {
   std::map<uint32_t, std::vector<uint32_t>> buffers, set1;
   std::vector<uint32_t> push_constants;
   uint32_t words_per_lane = 8;
-  uint32_t max_trace_depth = 1;
+  uint32_t max_trace_depth = 1, max_callable_depth = 31;
+  // Words of the records' data, by record; those left out have none. Binding 30 holds the top level's address.
+  std::vector<uint32_t> raygen_data;
+  std::vector<std::vector<uint32_t>> miss_data, hit_data, callable_data;
 
   explicit RayLab(LabShaders shaders) : shaders_(std::move(shaders)) {}
 
