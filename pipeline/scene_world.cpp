@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "base/check.h"
+#include "pipeline/binding_table.h"
 
 namespace glint::pipeline {
 namespace {
@@ -27,20 +28,6 @@ rt::Bounds sphere_bounds(const Model& model) {
     box.high[axis] = model.center[axis] + model.radius;
   }
   return box;
-}
-
-// Frames of the ray generation shader and of the deepest chain it can call: hit or candidate shader, any-hit
-// below an intersection shader.
-uint32_t stack_bytes(const core::Image& image) {
-  uint32_t largest[size_t(isa::Stage::Compute) + 1] = {};
-  for (const core::Shader& shader : image.shaders) {
-    uint32_t& bytes = largest[size_t(shader.stage)];
-    bytes = std::max(bytes, shader.local_bytes);
-  }
-  auto of = [&](isa::Stage stage) { return largest[size_t(stage)]; };
-  const uint32_t called = std::max({of(isa::Stage::ClosestHit), of(isa::Stage::Miss),
-                                    of(isa::Stage::Intersection) + of(isa::Stage::AnyHit)});
-  return (of(isa::Stage::RayGeneration) + called + 15) / 16 * 16;
 }
 
 }  // namespace
@@ -84,7 +71,7 @@ void SceneWorld::link_shaders(const RenderJob& job) {
   world.raygen = shaders.raygen;
   world.miss = {shaders.miss};
   world.hit = {shaders.triangle, shaders.sphere};
-  world.local_bytes = stack_bytes(image_);
+  world.local_bytes = stack_bytes(image_, world.max_trace_depth, 0);
   core::place_plain_table(world, memory_.allocate("shader binding table", core::plain_table_bytes(world)));
 }
 
