@@ -235,7 +235,7 @@ void Lowering::lower_setp(const Instruction& inst) {
 
 // The condition code of PTX is a predicate that the row names: after the result, and behind the sources.
 void Lowering::lower_carry(const Instruction& inst) {
-  int row = find_row(inst.words);
+  const int row = find_row(inst.words);
   if (row < 0) return report_no_row(inst);
   if (!placed_.contains(kCarry)) {
     Symbol symbol;
@@ -244,12 +244,15 @@ void Lowering::lower_carry(const Instruction& inst) {
     placed_[kCarry] = symbol;
   }
   const Operand carry = name_operand(kCarry, inst.place);
-  std::vector<const Operand*> operands = flattened(inst.operands);
   const isa::OpRow& r = isa::op_table()[size_t(row)];
-  if (operands.empty()) return error(inst.place, fmt::format("'{}' takes operands", joined(inst.words)));
-  if (num_destinations(r) == 2) operands.insert(operands.begin() + 1, &carry);
-  if (r.operands.kind[r.operands.count - 1u] == OperandKind::SrcPred) operands.push_back(&carry);
-  lower_row(inst, row, operands);
+  if (inst.operands.empty()) return error(inst.place, fmt::format("'{}' takes operands", joined(inst.words)));
+  Instruction whole = inst;
+  if (num_destinations(r) == 2) {
+    whole.operands[0].kind = Operand::Kind::Pair;
+    whole.operands[0].parts = {inst.operands[0], carry};
+  }
+  if (r.operands.kind[r.operands.count - 1u] == OperandKind::SrcPred) whole.operands.push_back(carry);
+  lower_row(whole, row, flattened(whole.operands));
 }
 
 void Lowering::lower_address_conversion(const Instruction& inst) {

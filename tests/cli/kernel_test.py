@@ -1,0 +1,54 @@
+# `glint run` of PTX kernels: results on both machines, and what is said of mistakes. Runs the real binary.
+# SPDX-License-Identifier: Apache-2.0
+"""usage: kernel_test.py GLINT SOURCE_DIR"""
+import struct
+import sys
+import unittest
+
+from cli_test import ROOT, GlintTest
+
+KERNELS = ROOT / "shaders/kernels"
+
+
+class Kernels(GlintTest):
+    def test_the_examples_give_the_same_buffers_on_both_machines(self):
+        for mode in ("functional", "timing"):
+            done = self.glint("run", KERNELS / "saxpy.toml", "--mode", mode, "--out", mode)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("1 3 5 7 9 11 13 15", done.stdout)
+            values = struct.unpack("<1000f", (self.folder / mode / "y.bin").read_bytes())
+            self.assertEqual(values, tuple(2.0 * i + 1 for i in range(1000)))
+        done = self.glint("run", KERNELS / "block_sums.ptx", "--launch", KERNELS / "block_sums.toml", "--out", "sums")
+        self.assertIn("32640 98176 163712 229248", done.stdout)
+
+    def test_a_kernel_without_a_launch_file_is_refused(self):
+        self.expect(2, ["needs a launch file"], "run", KERNELS / "saxpy.ptx")
+
+    def test_mistakes_of_a_launch_file_are_told_with_their_lines_all_at_once(self):
+        self.write("bad.toml", 'kernel = "k.ptx"\ngird = 4\n[[argument]]\nu33 = 1\n[[argument]]\nbuffer = "b"\ninit = "iota"\n')
+        self.expect(2, ["bad.toml:2:1: error: 'gird' is no key", "did you mean 'grid'?", "bad.toml:4:1: error: 'u33'",
+                        "needs 'count'"], "run", "bad.toml")
+
+    def test_an_unknown_op_exits_with_3_and_names_its_place(self):
+        text = (KERNELS / "saxpy.ptx").read_text().replace("fma.rn.f32", "fna.rn.f32")
+        self.write("saxpy.ptx", text)
+        line = text[: text.index("fna.rn")].count("\n") + 1
+        self.expect(3, [f"saxpy.ptx:{line}:", "no op 'fna.rn.f32'; did you mean 'fma.rn.f32'?"],
+                    "run", "saxpy.ptx", "--launch", KERNELS / "saxpy.toml")
+
+    def test_a_wrong_argument_is_refused_at_its_line(self):
+        text = (KERNELS / "saxpy.toml").read_text().replace("u32 = 1000", "u64 = 1000")
+        self.write("saxpy.ptx", (KERNELS / "saxpy.ptx").read_text())
+        self.write("saxpy.toml", text)
+        line = text[: text.index("[[argument]]\nu64")].count("\n") + 1
+        self.expect(2, [f"saxpy.toml:{line}:", "parameter 'n' has 4 bytes, this argument 8"], "run", "saxpy.toml")
+
+    def test_an_access_out_of_bounds_ends_with_4_and_names_file_and_line_in_both_modes(self):
+        self.write("saxpy.ptx", (KERNELS / "saxpy.ptx").read_text())
+        self.write("saxpy.toml", (KERNELS / "saxpy.toml").read_text().replace("u32 = 1000", "u32 = 1001"))
+        for mode in ("functional", "timing"):
+            self.expect(4, ["saxpy.ptx:", "past the end of 'x'"], "run", "saxpy.toml", "--mode", mode)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
