@@ -17,26 +17,51 @@ using Storage = spv::StorageClass;
 BindingKind kind_of(const Type& type, Storage storage) {
   switch (type.kind) {
     case Type::Kind::Struct:
-      return storage == Storage::Uniform ? BindingKind::UniformBuffer : BindingKind::StorageBuffer;
+      return storage == Storage::Uniform && !type.is_buffer_block ? BindingKind::UniformBuffer : BindingKind::StorageBuffer;
     case Type::Kind::SampledImage:
       return BindingKind::SampledImage;
+    case Type::Kind::Sampler:
+      return BindingKind::Sampler;
     case Type::Kind::AccelerationStructure:
       return BindingKind::AccelerationStructure;
     case Type::Kind::Image:
-      return type.is_storage_image ? BindingKind::StorageImage : BindingKind::Other;
+      return type.is_storage_image ? BindingKind::StorageImage : BindingKind::SampledImage;
     default:
       return BindingKind::Other;
   }
 }
 
+isa::ImageShape shape_of(const Type& image) {
+  using isa::ImageShape;
+  switch (image.dim) {
+    case spv::Dim::Dim1D: return image.is_arrayed ? ImageShape::A1d : ImageShape::D1;
+    case spv::Dim::Dim3D: return ImageShape::D3;
+    case spv::Dim::Cube: return image.is_arrayed ? ImageShape::Acube : ImageShape::Cube;
+    case spv::Dim::Buffer: return ImageShape::Buffer;
+    default: return image.is_arrayed ? ImageShape::A2d : ImageShape::D2;
+  }
+}
+
+void reflect_image(const Module& module, Id type, Binding& binding) {
+  const Type* image = &module.type(type);
+  if (image->kind == Type::Kind::SampledImage) image = &module.type(image->element);
+  if (image->kind != Type::Kind::Image) return;
+  binding.shape = shape_of(*image);
+  const Type& texel = module.type(image->element);
+  binding.texel = texel.kind == Type::Kind::Float ? "f32" : texel.is_signed ? "s32" : "u32";
+}
+
 Binding binding_of(const Module& module, const Variable& variable, const Decorations& d) {
-  Binding binding{d.set.value_or(0), d.binding.value_or(0), BindingKind::Other, "", 1};
+  Binding binding;
+  binding.set = d.set.value_or(0), binding.binding = d.binding.value_or(0);
   Id type = module.type(variable.type).element;
   if (module.type(type).kind == Type::Kind::Array || module.type(type).kind == Type::Kind::RuntimeArray) {
-    binding.count = module.type(type).count;  // 0 for a runtime array
+    binding.count = module.type(type).kind == Type::Kind::Array ? module.type(type).count : 0;
     type = module.type(type).element;
   }
   binding.kind = kind_of(module.type(type), variable.storage);
+  if (module.type(type).kind == Type::Kind::Struct) binding.block = block_type(module, type);
+  reflect_image(module, type, binding);
   const auto name = module.names.find(variable.id);
   binding.name = name != module.names.end() && !name->second.empty() ? name->second : module.type(type).name;
   return binding;
@@ -51,6 +76,7 @@ Reflection reflect(const std::vector<uint32_t>& spirv, const std::string& name) 
   if (module.entry_points.empty()) throw UserError({name, 0, 0}, "the module has no entry point");
   result.stage = stage_of(module.entry_points[0].model).value_or(isa::Stage::Compute);
   result.entry_point = module.entry_points[0].name;
+  result.local_size = module.entry_points[0].local_size;
   for (const auto& [id, variable] : module.variables) {
     const uint32_t bytes = layout.size(module.type(variable.type).element);
     switch (variable.storage) {
@@ -65,6 +91,10 @@ Reflection reflect(const std::vector<uint32_t>& spirv, const std::string& name) 
         break;
       case Storage::PushConstant:
         result.push_constant_bytes = bytes;
+        result.push_constants = block_type(module, module.type(variable.type).element);
+        break;
+      case Storage::ShaderRecordBufferKHR:
+        result.shader_record = block_type(module, module.type(variable.type).element);
         break;
       default: {
         const auto d = module.decorations.find(id);

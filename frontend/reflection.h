@@ -1,10 +1,13 @@
-// What a shader asks of its pipeline: bindings, payload and hit-attribute sizes.
+// What a shader asks of its pipeline: bindings with their layouts, payload and hit-attribute sizes.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "frontend/block_type.h"
+#include "isa/image_access.h"
 #include "isa/program.h"
 
 namespace glint::frontend {
@@ -13,8 +16,9 @@ enum class BindingKind : uint8_t {
   UniformBuffer,
   StorageBuffer,
   StorageImage,
-  SampledImage,
+  SampledImage,  // with its sampler; a separate one and a texel buffer too
   AccelerationStructure,
+  Sampler,
   Other
 };
 
@@ -23,17 +27,24 @@ struct Binding {
   BindingKind kind = BindingKind::Other;
   std::string name;    // the variable's, or its block's
   uint32_t count = 1;  // array length; 0 = runtime array
-  bool operator==(const Binding&) const = default;
+  BlockType block{};   // of buffers
+  isa::ImageShape shape = isa::ImageShape::D2;  // of images
+  std::string texel{}; // of images: "f32", "u32", "s32"
+  bool operator==(const Binding& o) const {  // layouts aside
+    return set == o.set && binding == o.binding && kind == o.kind && name == o.name && count == o.count;
+  }
 };
 
 struct Reflection {
   isa::Stage stage = isa::Stage::Compute;
   std::string entry_point;
   std::vector<Binding> bindings;  // sorted by set, binding
+  std::array<uint32_t, 3> local_size{1, 1, 1};
   uint32_t push_constant_bytes = 0;
   uint32_t incoming_payload_bytes = 0;  // scalar-packed, bool as 4 bytes
   uint32_t largest_payload_bytes = 0;   // of the payloads that the shader declares for its own traces
   uint32_t attribute_bytes = 0;
+  BlockType push_constants, shader_record;  // without members: there is none
 };
 
 // Reflects one module, before or after simplification (before: names and unused bindings are still there).

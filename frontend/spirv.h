@@ -11,6 +11,9 @@ namespace glint::frontend {
 // one a line. Known false alarms are left out (see the .cpp).
 std::string validate_spirv(const std::vector<uint32_t>& words);
 
+// SPIR-V text to words. UserError with the text's line and column.
+std::vector<uint32_t> assemble_spirv(const std::string& text, const std::string& name);
+
 // "OpIAdd" for spv::Op::OpIAdd; "OpUnknown(n)" for opcodes that the installed SPIRV-Tools does not know.
 std::string name_of_opcode(uint32_t opcode);
 

@@ -1,0 +1,155 @@
+// Checks of a description against reflection.
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/description/check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "isa/text.h"
+
+#include "isa/text.h"
+
+namespace glint::pipeline {
+namespace {
+
+using frontend::BindingKind;
+
+struct Given {
+  const char* kind;  // table's name in the file
+  const Slot* slot;
+  std::string name;
+  SourceLocation where;
+};
+
+std::vector<Given> all_given(const PipelineDescription& d) {
+  std::vector<Given> out;
+  for (const auto& b : d.buffers) out.push_back({"buffer", &b.slot, b.name, b.where});
+  for (const auto& i : d.images) out.push_back({"image", &i.slot, i.name, i.where});
+  for (const auto& s : d.samplers) out.push_back({"sampler", &s.slot, s.name, s.where});
+  for (const auto& t : d.top_levels) out.push_back({"top_level", &t.slot, t.name, t.where});
+  return out;
+}
+
+std::string table_for(BindingKind kind) {
+  switch (kind) {
+    case BindingKind::UniformBuffer: case BindingKind::StorageBuffer: return "buffer";
+    case BindingKind::StorageImage: case BindingKind::SampledImage: return "image";
+    case BindingKind::AccelerationStructure: return "top_level";
+    case BindingKind::Sampler: return "sampler";
+    default: return "";
+  }
+}
+
+std::string declared(const BindingUse& use) {
+  return fmt::format("the shader declares the {} '{}' at {}", name_of(use.binding.kind), use.binding.name,
+                     use.module->where_declared(use.binding).to_string());
+}
+
+class Check {
+ public:
+  Check(const PipelineDescription& d, const Modules& modules, std::vector<std::string>& warnings)
+      : d_(d), modules_(modules), given_(all_given(d)), warnings_(warnings) {}
+
+  void run() {
+    for (const auto& [place, use] : modules_.bindings()) check_binding(place.first, place.second, use);
+    for (const Given& g : given_)
+      if (g.slot->is_bound() && !modules_.bindings().count({g.slot->set.value_or(0), *g.slot->binding}))
+        warnings_.push_back(fmt::format("{}: note: no shader has set {} binding {}: '{}' is bound for nobody", g.where.to_string(),
+                                        g.slot->set.value_or(0), *g.slot->binding, g.name));
+    check_stage(d_.compute, isa::Stage::Compute, d_.compute_where, "[compute]");
+    if (d_.raygen) check_record(*d_.raygen, isa::Stage::RayGeneration, "[raygen]");
+    for (const auto& record : d_.miss.records) check_record(record, isa::Stage::Miss, "a miss record");
+    for (const auto& record : d_.callable.records) check_record(record, isa::Stage::Callable, "a callable record");
+    for (const auto& record : d_.hit.records) check_hit(record);
+    for (const auto& group : d_.groups) check_hit_group(group);
+    errors_.throw_if_errors();
+  }
+
+ private:
+  void check_binding(uint32_t set, uint32_t binding, const BindingUse& use) {
+    std::vector<const Given*> here;
+    for (const Given& g : given_)
+      if (g.slot->is_bound() && g.slot->set.value_or(0) == set && *g.slot->binding == binding) here.push_back(&g);
+    const std::string table = table_for(use.binding.kind);
+    if (here.empty()) {
+      if (!use.is_used) return;  // declared and never read
+      errors_.error({d_.path, 0, 0}, fmt::format("nothing is bound to set {} binding {}", set, binding),
+                    fmt::format("{}: add [[{}]] with set = {}, binding = {}", declared(use), table, set, binding));
+      return;
+    }
+    std::set<uint32_t> elements;
+    for (const Given* g : here) {
+      if (g->kind != table)
+        errors_.error(g->where, fmt::format("set {} binding {}: '{}' is a [[{}]], the shader wants a [[{}]]", set, binding, g->name, g->kind, table), declared(use));
+      if (!elements.insert(g->slot->element).second)
+        errors_.error(g->where, fmt::format("set {} binding {} element {} is bound twice", set, binding, g->slot->element),
+                      use.binding.count == 1 ? "" : "elements of an array of descriptors: element = 0, 1, ...");
+      if (use.binding.count && g->slot->element >= use.binding.count)
+        errors_.error(g->where, fmt::format("element {} of set {} binding {}: the shader's array has {}", g->slot->element, set, binding, use.binding.count), declared(use));
+    }
+    const uint32_t wanted = std::max(use.binding.count, *elements.rbegin() + 1);
+    if (elements.size() < wanted && use.is_used) {
+      uint32_t first = 0;
+      while (elements.count(first)) ++first;
+      errors_.error(here[0]->where, fmt::format("set {} binding {} has {} elements, element {} is missing", set, binding, wanted, first), declared(use));
+    }
+  }
+
+  void check_stage(const std::string& name, isa::Stage stage, const SourceLocation& where, const std::string& what) {
+    if (name.empty()) return;
+    const ShaderModule& module = modules_.find(name);
+    if (module.reflection.stage != stage)
+      errors_.error(where, fmt::format("{} wants a shader of stage {}: '{}' is of stage {}", what, isa::name_of(stage), module.path,
+                                       isa::name_of(module.reflection.stage)));
+  }
+
+  const GroupDescription* group_of(const RecordDescription& record) {
+    if (record.group.empty()) return &record.inlined;
+    std::vector<std::string> names;
+    for (const GroupDescription& group : d_.groups) {
+      if (group.name == record.group) return &group;
+      names.push_back(group.name);
+    }
+    const std::string near = nearest(record.group, names);
+    errors_.error(record.where, fmt::format("there is no group '{}'", record.group), near.empty() ? "" : fmt::format("did you mean '{}'?", near));
+    return nullptr;
+  }
+
+  void check_record(const RecordDescription& record, isa::Stage stage, const std::string& what) {
+    const GroupDescription* group = group_of(record);
+    if (!group) return;
+    check_stage(group->general, stage, record.where, what);
+    if (group->general.empty() && stage == isa::Stage::RayGeneration) errors_.error(record.where, "[raygen] needs 'shader'");
+  }
+
+  void check_hit(const RecordDescription& record) {
+    const GroupDescription* group = group_of(record);
+    if (group && record.group.empty()) check_hit_group(*group);
+  }
+
+  void check_hit_group(const GroupDescription& group) {
+    check_stage(group.closest_hit, isa::Stage::ClosestHit, group.where, "'closest_hit'");
+    check_stage(group.any_hit, isa::Stage::AnyHit, group.where, "'any_hit'");
+    check_stage(group.intersection, isa::Stage::Intersection, group.where, "'intersection'");
+  }
+
+  const PipelineDescription& d_;
+  const Modules& modules_;
+  const std::vector<Given> given_;
+  std::vector<std::string>& warnings_;
+  Diagnostics errors_;
+};
+
+}  // namespace
+
+void check_pipeline(const PipelineDescription& description, const Modules& modules, std::vector<std::string>& warnings) {
+  Check(description, modules, warnings).run();
+}
+
+void check_bytes(const BindingUse& use, uint64_t bytes, const std::string& name, const SourceLocation& where, Diagnostics& errors) {
+  if (bytes < use.binding.block.bytes)
+    errors.error(where, fmt::format("buffer '{}' has {} bytes, the shader's block needs {}", name, bytes, use.binding.block.bytes), declared(use));
+}
+
+}  // namespace glint::pipeline

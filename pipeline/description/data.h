@@ -1,0 +1,39 @@
+// Bytes from a description: typed numbers, members by the shader's layout, generators and files.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "frontend/block_type.h"
+#include "pipeline/description/description.h"
+
+namespace glint::pipeline {
+
+// "u8" ... "f64"; also GLSL's "float", "int", "uint", "double".
+const std::vector<std::string>& number_types();
+uint32_t bytes_of_number(const std::string& type);
+
+// Addresses of buffers by name, for pointers in data: 64-bit numbers that are written as a buffer's name. 0: unknown.
+using AddressOf = std::function<uint64_t(const std::string& buffer)>;
+
+// Puts a number at `at`; false when the value is none of that type.
+bool put_number(const std::string& type, const Value& value, const AddressOf& address, std::byte* at);
+
+// The bytes of a source. `block` is the layout by which members are named; null: there is none.
+// Mistakes go to `errors`.
+std::vector<std::byte> bytes_of(const DataSource& source, const frontend::BlockType* block, const AddressOf& address, Diagnostics& errors);
+
+// xorshift64*: the same numbers on every machine.
+class RandomNumbers {
+ public:
+  explicit RandomNumbers(uint64_t seed) : state_(seed * 0x9e37'79b9'7f4a'7c15ull + 1) {}
+  uint64_t next_bits();    // 53 of them
+  double next_unit() { return double(next_bits()) * 0x1p-53; }
+
+ private:
+  uint64_t state_;
+};
+
+}  // namespace glint::pipeline

@@ -1,0 +1,163 @@
+// A pipeline with everything a Vulkan host would set up for one launch, as a file describes it: nothing is loaded yet.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/image_view.h"
+#include "frontend/compile.h"
+#include "pipeline/description/value.h"
+#include "rtunit/build.h"
+
+namespace glint::pipeline {
+
+struct ShaderFile {
+  std::string name;  // what records call it: its file as written, unless named
+  std::string path;
+  std::string entry;  // entry point of a SPIR-V module; empty: the only one
+  frontend::GlslOptions glsl;
+  SourceLocation where;
+};
+
+// Bytes of a buffer, of a record or of push constants.
+struct DataSource {
+  SourceLocation where;
+  Value data;               // numbers of `type`, {TYPE = numbers} or a list of such, or members by name; none: `init`
+  std::string type = "u32";
+  std::string init = "zero";  // zero, value, iota, random, file, mesh
+  double value = 0, low = 0, high = 1;
+  uint64_t seed = 1;
+  std::string file, attribute;    // attribute of a mesh: positions, normals, coordinates, indices
+  std::optional<uint64_t> bytes;  // without: what the data have
+};
+
+// Where a resource is bound; not at all if it is only reached by address or name.
+struct Slot {
+  std::optional<uint32_t> set, binding;
+  uint32_t element = 0;  // of an array of descriptors
+  bool is_bound() const { return binding.has_value(); }
+};
+
+struct Save {
+  std::string file;  // .png .pfm .npy .csv .raw, in the run directory
+  SourceLocation where;
+};
+
+struct BufferDescription {
+  std::string name;
+  Slot slot;
+  DataSource data;
+  std::vector<Save> saves;
+  uint32_t show = 0;  // first values for the summary
+  SourceLocation where;
+};
+
+struct SamplerDescription {
+  std::string name;
+  Slot slot;
+  core::Sampler sampler;
+  SourceLocation where;
+};
+
+struct ImageDescription {
+  std::string name;
+  Slot slot;
+  std::vector<std::string> files;  // one a layer
+  std::optional<core::TexelFormat> format;
+  std::array<uint32_t, 3> size{0, 0, 0};  // zeros: the file's, or the launch's
+  uint32_t layers = 1;
+  bool mipmaps = false;
+  std::string init = "zero";  // zero, value, checker, random
+  std::array<double, 4> value{0, 0, 0, 0};
+  uint64_t seed = 1;
+  core::Sampler sampler;
+  std::vector<Save> saves;
+  SourceLocation where;
+};
+
+struct GeometryDescription {
+  std::string mesh;  // OBJ or glTF
+  std::vector<float> vertices;
+  std::vector<uint32_t> indices;
+  std::vector<rt::Bounds> aabbs;
+  std::array<float, 12> transform = rt::kIdentity;
+  bool opaque = true, no_duplicate_any_hit = false;
+  SourceLocation where;
+};
+
+struct BottomLevelDescription {
+  std::string name;
+  std::vector<GeometryDescription> geometries;
+  SourceLocation where;
+};
+
+struct InstanceDescription {
+  std::string bottom_level;
+  rt::Instance instance;
+  SourceLocation where;
+};
+
+struct TopLevelDescription {
+  std::string name;
+  Slot slot;
+  std::vector<InstanceDescription> instances;
+  SourceLocation where;
+};
+
+// A record of the binding table: shaders by name, or a named group; nothing at all calls nothing.
+struct GroupDescription {
+  std::string name;
+  std::string general, closest_hit, any_hit, intersection;
+  SourceLocation where;
+};
+struct RecordDescription {
+  std::string group;        // of [[group]]
+  GroupDescription inlined; // used without `group`
+  DataSource data;
+  SourceLocation where;
+};
+struct RegionDescription {
+  std::vector<RecordDescription> records;
+  std::optional<uint32_t> stride;
+};
+
+struct MachineDescription {
+  std::string mode, config;  // empty: not said
+  std::vector<std::string> settings;
+  uint64_t max_instructions = 0;
+};
+
+struct PipelineDescription {
+  std::string path;  // of the file
+  std::string name;  // for the run directory and messages
+  std::vector<ShaderFile> shaders;
+  std::vector<GroupDescription> groups;
+  std::optional<RecordDescription> raygen;
+  std::string compute;  // shader; a pipeline has this or raygen
+  SourceLocation compute_where;
+  RegionDescription miss, hit, callable;
+  std::vector<BufferDescription> buffers;
+  std::vector<ImageDescription> images;
+  std::vector<SamplerDescription> samplers;
+  std::vector<BottomLevelDescription> bottom_levels;
+  std::vector<TopLevelDescription> top_levels;
+  DataSource push_constants;
+  Value specialization;  // a table of constants by name or number
+  std::array<uint32_t, 3> launch{0, 0, 0};  // rays, or blocks of a compute shader; zeros: not said
+  std::optional<uint32_t> max_trace_depth, max_callable_depth;
+  MachineDescription machine;
+};
+
+// Format: docs/pipelines.md. UserError lists every mistake with file, line and column.
+PipelineDescription read_pipeline(const std::string& path);
+// The same of a text whose relative paths start at `path`'s folder.
+PipelineDescription parse_pipeline(const std::string& text, const std::string& path);
+
+// "rgba8_unorm", or GLSL's "rgba8", "rgba32f", "r32ui".
+std::optional<core::TexelFormat> format_named(const std::string& name);
+std::vector<std::string> format_names();
+
+}  // namespace glint::pipeline

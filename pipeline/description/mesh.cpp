@@ -1,0 +1,44 @@
+// Loading of meshes.
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/description/mesh.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <filesystem>
+
+#include "scenes/obj_loader.h"
+
+namespace glint::pipeline {
+
+scenes::Model load_mesh(const std::string& path, const SourceLocation& where) {
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(path, failed)) throw UserError(where, fmt::format("cannot read '{}'", path));
+  const std::string ending = std::filesystem::path(path).extension().string();
+  if (ending != ".obj") throw UserError(where, fmt::format("'{}' is no OBJ file: no other kind of mesh is read yet", path));
+  std::vector<scenes::Material> materials;
+  return scenes::load_obj(path, materials);
+}
+
+std::vector<std::byte> mesh_attribute(const DataSource& source, Diagnostics& errors) {
+  std::vector<std::byte> out;
+  const auto append = [&](const auto& value) {
+    out.resize(out.size() + sizeof value);
+    std::memcpy(out.data() + out.size() - sizeof value, &value, sizeof value);
+  };
+  try {
+    const scenes::Model model = load_mesh(source.file, source.where);
+    if (source.attribute == "indices")
+      for (uint32_t index : model.indices) append(index);
+    else
+      for (const scenes::Vertex& v : model.vertices)
+        if (source.attribute == "normals") append(v.normal);
+        else if (source.attribute == "coordinates") append(v.texture_coordinate);
+        else append(v.position);
+  } catch (const UserError& error) {
+    errors.error(source.where, error.what());
+  }
+  return out;
+}
+
+}  // namespace glint::pipeline

@@ -1,0 +1,179 @@
+// Reading PNG and HDR files and encoding texels.
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/description/pictures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <memory>
+
+#include "pipeline/description/data.h"
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wall"
+#pragma GCC diagnostic ignored "-Wextra"
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#endif
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#include <stb_image.h>
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+
+namespace glint::pipeline {
+namespace {
+
+using core::TexelFormat;
+using isa::ImageShape;
+using Texel = std::array<double, 4>;  // floats, or integers where the format has them
+
+struct Layer {
+  uint32_t width = 0, height = 0;
+  bool is_float = false;
+  std::vector<Texel> texels;
+};
+
+// 8-bit files as values of 0..1, unless the format keeps integers.
+Layer load(const std::string& path, bool as_integers, const SourceLocation& where) {
+  Layer out;
+  int width = 0, height = 0, channels = 0;
+  const auto fail = [&] { return UserError(where, fmt::format("cannot read the image '{}': {}", path, stbi_failure_reason() ? stbi_failure_reason() : "unknown kind")); };
+  out.is_float = stbi_is_hdr(path.c_str()) != 0;
+  const auto take = [&](const auto* data, double scale) {
+    out.width = uint32_t(width), out.height = uint32_t(height);
+    out.texels.resize(size_t(width) * size_t(height));
+    for (size_t i = 0; i < out.texels.size(); ++i)
+      for (size_t c = 0; c < 4; ++c) out.texels[i][c] = double(data[i * 4 + c]) * scale;
+  };
+  if (out.is_float) {
+    const std::unique_ptr<float, void (*)(void*)> data(stbi_loadf(path.c_str(), &width, &height, &channels, 4), stbi_image_free);
+    if (!data) throw fail();
+    take(data.get(), 1.0);
+  } else {
+    const std::unique_ptr<stbi_uc, void (*)(void*)> data(stbi_load(path.c_str(), &width, &height, &channels, 4), stbi_image_free);
+    if (!data) throw fail();
+    take(data.get(), as_integers ? 1.0 : 1.0 / 255);
+  }
+  return out;
+}
+
+// sRGB files hold encoded values; the format's encode() takes linear ones (IEC 61966-2-1).
+double to_linear(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
+
+Texel made_up(const ImageDescription& image, uint32_t x, uint32_t y, uint32_t z, RandomNumbers& random) {
+  if (image.init == "value") return image.value;
+  if (image.init == "random") return {random.next_unit(), random.next_unit(), random.next_unit(), 1};
+  if (image.init == "checker") {
+    const double v = (x / 8 + y / 8 + z / 8) % 2 ? 0.25 : 1;
+    return {v, v, v, 1};
+  }
+  return {0, 0, 0, 0};
+}
+
+core::Words words_of(const Texel& texel, const core::FormatInfo& info) {
+  core::Words out{};
+  for (size_t c = 0; c < 4; ++c)
+    out[c] = core::is_integer(info) ? uint32_t(int64_t(texel[c])) : std::bit_cast<uint32_t>(float(texel[c]));
+  return out;
+}
+
+// The mean of the texels above, two in each direction that halves.
+std::vector<Texel> halved(const std::vector<Texel>& above, const core::ImageView& view, uint32_t level) {
+  const uint32_t w = view.extent(0, level), h = view.extent(1, level), d = view.extent(2, level);
+  const uint32_t aw = view.extent(0, level - 1), ah = view.extent(1, level - 1), ad = view.extent(2, level - 1);
+  std::vector<Texel> out;
+  for (uint32_t layer = 0; layer < view.layers; ++layer)
+    for (uint32_t z = 0; z < d; ++z)
+      for (uint32_t y = 0; y < h; ++y)
+        for (uint32_t x = 0; x < w; ++x) {
+          Texel sum{};
+          for (uint32_t corner = 0; corner < 8; ++corner) {
+            const uint32_t sx = std::min(2 * x + (corner & 1), aw - 1), sy = std::min(2 * y + (corner >> 1 & 1), ah - 1), sz = std::min(2 * z + (corner >> 2), ad - 1);
+            for (size_t c = 0; c < 4; ++c) sum[c] += above[((size_t{layer} * ad + sz) * ah + sy) * aw + sx][c] / 8;
+          }
+          out.push_back(sum);
+        }
+  return out;
+}
+
+void check_format(const ImageDescription& image, const core::FormatInfo& info, const std::string& texel) {
+  const std::string found = info.numeric == core::Numeric::Uint ? "u32" : info.numeric == core::Numeric::Sint ? "s32" : "f32";
+  if (!texel.empty() && found != texel)
+    throw UserError(image.where, fmt::format("image '{}' has the format {}, whose texels are {}; the shader's are {}", image.name, info.name, found, texel));
+}
+
+void check_shape(const ImageDescription& image, const core::ImageView& view) {
+  const bool is_flat = view.depth == 1, is_line = view.height == 1 && is_flat;
+  const char* wrong = nullptr;
+  if (view.shape != ImageShape::D3 && !is_flat) wrong = "is not 3D: its depth must be 1";
+  if ((view.shape == ImageShape::D1 || view.shape == ImageShape::A1d || view.shape == ImageShape::Buffer) && !is_line) wrong = "is 1D: its height must be 1";
+  if (isa::is_cube(view.shape) && (view.width != view.height || view.layers % 6)) wrong = "is a cube: as wide as high, and six layers";
+  if (!isa::has_layers(view.shape) && !isa::is_cube(view.shape) && view.layers != 1) wrong = "is no array: it has one layer";
+  if (wrong) throw UserError(image.where, fmt::format("image '{}' is {} x {} x {} with {} layers; the shader's {}", image.name, view.width, view.height, view.depth, view.layers, wrong));
+}
+
+}  // namespace
+
+Picture make_picture(const ImageDescription& image, ImageShape shape, const std::string& texel, std::array<uint32_t, 3> fallback) {
+  Picture out;
+  core::ImageView& view = out.view;
+  const TexelFormat plain = texel == "u32" ? TexelFormat::Rgba32Uint : texel == "s32" ? TexelFormat::Rgba32Sint : TexelFormat::Rgba32Float;
+  const bool is_hdr = !image.files.empty() && stbi_is_hdr(image.files[0].c_str()) != 0;
+  view.format = image.format.value_or(!image.files.empty() && !is_hdr && texel != "u32" && texel != "s32" ? TexelFormat::Rgba8Unorm : plain);
+  const core::FormatInfo& info = core::info_of(view.format);
+  check_format(image, info, texel);
+  view.name = image.name, view.shape = shape, view.sampler = image.sampler, view.layers = image.layers;
+  if (isa::is_cube(shape) && image.files.empty() && image.layers == 1) view.layers = 6;
+
+  std::vector<Texel> level;
+  for (const std::string& file : image.files) {
+    Layer layer = load(file, core::is_integer(info), image.where);
+    if (!level.empty() && (layer.width != view.width || layer.height != view.height))
+      throw UserError(image.where, fmt::format("'{}' is {} x {}, the files before it {} x {}", file, layer.width, layer.height, view.width, view.height));
+    view.width = layer.width, view.height = layer.height;
+    if (info.numeric == core::Numeric::Srgb && !layer.is_float)
+      for (Texel& t : layer.texels)
+        for (size_t c = 0; c < 3; ++c) t[c] = to_linear(t[c]);
+    level.insert(level.end(), layer.texels.begin(), layer.texels.end());
+  }
+  if (image.files.empty()) {
+    const std::array<uint32_t, 3> size = image.size[0] ? image.size : fallback;
+    view.width = size[0];
+    view.height = isa::num_coordinates(shape) > 1 || image.size[0] ? size[1] : 1;
+    view.depth = shape == ImageShape::D3 || image.size[0] ? size[2] : 1;
+    RandomNumbers random(image.seed);
+    for (uint32_t layer = 0; layer < view.layers; ++layer)
+      for (uint32_t z = 0; z < view.depth; ++z)
+        for (uint32_t y = 0; y < view.height; ++y)
+          for (uint32_t x = 0; x < view.width; ++x) level.push_back(made_up(image, x, y, z, random));
+  } else if (image.size[0] && (image.size[0] != view.width || image.size[1] != view.height)) {
+    throw UserError(image.where, fmt::format("image '{}': its file is {} x {}, 'size' says {} x {}", image.name, view.width, view.height, image.size[0], image.size[1]));
+  }
+  check_shape(image, view);
+  if (image.mipmaps) view.levels = uint32_t(std::bit_width(std::max({view.width, view.height, view.depth})));
+  out.texels.resize(view.bytes());
+  std::byte* to = out.texels.data();
+  for (uint32_t l = 0; l < view.levels; ++l) {
+    if (l) level = halved(level, view, l);
+    for (const Texel& t : level) core::encode(view.format, words_of(t, info), to), to += info.bytes;
+  }
+  return out;
+}
+
+std::vector<float> texels_as_floats(const core::ImageView& view, const std::byte* data) {
+  const core::FormatInfo& info = core::info_of(view.format);
+  std::vector<float> out;
+  const size_t count = size_t{view.width} * view.height * view.depth * view.layers;
+  for (size_t i = 0; i < count; ++i)
+    for (uint32_t word : core::decode(view.format, data + i * info.bytes))
+      out.push_back(info.numeric == core::Numeric::Uint ? float(word) : info.numeric == core::Numeric::Sint ? float(int32_t(word)) : std::bit_cast<float>(word));
+  return out;
+}
+
+}  // namespace glint::pipeline

@@ -1,0 +1,65 @@
+// A TOML file as a tree of values that know where they stand, and typed reading of its tables.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/diagnostics.h"
+
+namespace glint::pipeline {
+
+struct Value {
+  enum class Kind : uint8_t { None, Bool, Integer, Real, Text, List, Table } kind = Kind::None;
+  bool flag = false;
+  int64_t whole = 0;
+  double real = 0;  // of integers too
+  std::string text;
+  std::vector<Value> list;
+  std::vector<std::pair<std::string, Value>> table;  // by line
+  SourceLocation where;                              // of the key, or of the value in a list
+
+  explicit operator bool() const { return kind != Kind::None; }
+  bool is_number() const { return kind == Kind::Integer || kind == Kind::Real; }
+  const Value* find(const std::string& key) const;
+};
+
+// UserError with line and column when it cannot be read or is no TOML.
+Value read_toml(const std::string& path);
+Value parse_toml(const std::string& text, const std::string& name);
+
+// One table being read. Each call marks its key as known; finish() reports the others with the nearest known one.
+// Wrong types are reported at once, and the fallback stands in.
+class TableReader {
+ public:
+  // `what` names the table in messages: "a buffer".
+  TableReader(const Value& table, std::string what, Diagnostics& errors);
+
+  const Value* take(const std::string& key);  // null when absent
+  std::string text(const std::string& key, const std::string& fallback = {});
+  std::string required_text(const std::string& key);
+  std::string name(const std::string& key, const std::string& fallback, const std::vector<std::string>& names);
+  int64_t integer(const std::string& key, int64_t fallback, int64_t least, int64_t most);
+  std::optional<int64_t> optional_integer(const std::string& key, int64_t least, int64_t most);
+  double number(const std::string& key, double fallback);
+  bool flag(const std::string& key, bool fallback);
+  std::vector<std::string> texts(const std::string& key);            // a string or a list of them
+  std::vector<double> numbers(const std::string& key);               // a number or a list, lists in lists flattened
+  std::vector<uint32_t> sizes(const std::string& key, size_t most);  // one number, or up to `most`, each at least 1
+  std::vector<const Value*> tables(const std::string& key);          // [[key]] or [key]
+  void finish();
+  const SourceLocation& where() const { return table_.where; }
+
+ private:
+  void wrong(const Value& value, const std::string& key, const std::string& expected);
+
+  const Value& table_;
+  const std::string what_;
+  Diagnostics& errors_;
+  std::set<std::string> known_;
+};
+
+}  // namespace glint::pipeline

@@ -1,0 +1,66 @@
+// A described pipeline in simulated memory: shaders linked, resources uploaded, records and constants in place.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "pipeline/binding_table.h"
+#include "pipeline/description/check.h"
+#include "pipeline/render.h"
+
+namespace glint::pipeline {
+
+// Memory and world of one launch. Not movable: `world` points into it.
+class PipelineWorld {
+ public:
+  // UserError lists what is wrong with the description; UnsupportedError what a shader uses and Glint lacks.
+  PipelineWorld(const PipelineDescription& description, const GpuParams& gpu);
+  PipelineWorld(const PipelineWorld&) = delete;
+  PipelineWorld& operator=(const PipelineWorld&) = delete;
+
+  core::World world;
+  StructureCounts structures;
+  std::vector<std::string> warnings;
+  const Modules& modules() const { return modules_; }
+  const PipelineDescription& description() const { return description_; }
+  mem::AddressSpace& memory() { return memory_; }
+
+  // What a buffer or an image holds; by its number in the description.
+  std::span<const std::byte> buffer(size_t index) const;
+  const core::ImageView& image(size_t index) const { return world.images[image_handle_[index]]; }
+
+ private:
+  void link();
+  void set_launch();
+  void upload_buffers();
+  void upload_images();
+  void add_samplers();
+  void build_structures(const GpuParams& gpu);
+  void fill_records();
+  void set_push_constants();
+  void bind(const Slot& slot, uint64_t address_or_handle, uint64_t bytes_or_count);
+  void bind_table(const Slot& slot, uint32_t element, uint64_t address, uint64_t bytes);
+  const BindingUse* use_of(const Slot& slot) const;
+  std::vector<size_t> in_order(const std::vector<const Slot*>& slots) const;
+  TableRecord record(const RecordDescription& description, TableInput& input, bool is_hit);
+  uint32_t group_index(const GroupDescription& group, TableInput& input, bool is_hit);
+  uint64_t address_of(const std::string& buffer) const;
+
+  const PipelineDescription description_;
+  const Modules modules_;
+  mem::AddressSpace memory_;
+  core::Image image_;
+  std::vector<Address> buffer_address_;
+  std::vector<uint64_t> buffer_bytes_;
+  std::vector<size_t> image_handle_;
+  std::map<std::pair<uint32_t, uint32_t>, Address> tables_;  // of arrays of buffers and structures
+  Diagnostics errors_;
+};
+
+// Runs it: counts, statistics and time; no picture. Errors as render().
+RenderResult run_pipeline(PipelineWorld& pipeline, const GpuParams& gpu, bool timing, bool no_skip,
+                          const std::function<void(uint64_t done, uint64_t total)>& progress);
+
+}  // namespace glint::pipeline
