@@ -14,10 +14,9 @@ namespace glint::isa::GLINT_ISA_PATH {
 
 inline constexpr uint64_t kSign64 = 1ull << 63;
 
-// x rounded to an integer, |x| < 2^51; NaN stays NaN. A zero may lose its sign.
+// The integer of a direction, from the nearest to x. A zero may lose its sign.
 template <Round kRound>
-[[gnu::always_inline]] inline double to_integral(double x) {
-  const double nearest = (x + kRoundMagic) - kRoundMagic;
+[[gnu::always_inline]] inline double directed(double nearest, double x) {
   if constexpr (kRound == Round::Nearest) return nearest;
   const double below = nearest > x ? nearest - 1.0 : nearest;
   const double above = nearest < x ? nearest + 1.0 : nearest;
@@ -25,13 +24,19 @@ template <Round kRound>
   if constexpr (kRound == Round::Up) return above;
   return x < 0.0 ? above : below;
 }
+// x rounded to an integer, |x| < 2^51; NaN stays NaN.
+template <Round kRound>
+[[gnu::always_inline]] inline double to_integral(double x) {
+  return directed<kRound>((x + kRoundMagic) - kRoundMagic, x);
+}
 // The same of any double: from 2^52 on they are integers. Keeps the sign of zero; a NaN keeps its payload,
 // quieted.
 template <Round kRound>
 [[gnu::always_inline]] inline double to_any_integral(double x) {
   const double magnitude = double_of(double_bits(x) & ~kSign64);
   const bool is_small = magnitude < kTwo52;
-  const double rounded = to_integral<kRound>(is_small ? x : 0.0);
+  const uint64_t nearest = double_bits((magnitude + kTwo52) - kTwo52) | (double_bits(x) & kSign64);
+  const double rounded = directed<kRound>(double_of(nearest), x);
   const uint64_t kept =
       is_small ? (double_bits(rounded) & ~kSign64) | (double_bits(x) & kSign64) : double_bits(x);
   const uint64_t quiet = magnitude != magnitude ? 0x0008'0000'0000'0000ull : 0;

@@ -148,10 +148,14 @@ inline float middle(typename S::Type x) {
 }
 template <class D, class S, Round kRound>
 inline typename D::Type narrowed(typename S::Type source, float x) {
-  if constexpr (std::is_same_v<D, TypeBf16>) {
+  // As recorded: from double a NaN keeps sign and payload, quieted.
+  if constexpr (std::is_same_v<D, TypeBf16> && std::is_same_v<S, TypeF64>) {
+    const uint64_t bits = double_bits(source);
+    const uint32_t nan = uint32_t(bits >> 48 & 0x8000) | 0x7fc0 | uint32_t(bits >> 45 & 0x7f);
+    return source != source ? Bfloat{uint16_t(nan)} : rounded_bfloat<kRound>(x);
+  } else if constexpr (std::is_same_v<D, TypeBf16>) {
     return rounded_bfloat<kRound>(x);
   } else if constexpr (std::is_same_v<S, TypeF64>) {
-    // As recorded: from double a NaN keeps sign and payload, quieted.
     const uint64_t bits = double_bits(source);
     const uint32_t nan = uint32_t(bits >> 48 & 0x8000) | 0x7e00 | uint32_t(bits >> 42 & 0x3ff);
     return source != source ? Half{uint16_t(nan)} : rounded_half<kRound>(x);
@@ -169,8 +173,8 @@ constexpr OpRow narrow_row() {
       : kRelu ? "Narrows a float, rounded as the name says; negative numbers become 0."
               : "Narrows a float, rounded as the name says.",
       [](typename S::Type x) {
-        const float exact = kFtz ? flushed(middle<S>(x)) : middle<S>(x);
-        const float clamped = kSat ? saturated(exact) : exact;
+        // As recorded: .ftz changes nothing, a subnormal still rounds up or down to the least f16.
+        const float clamped = kSat ? saturated(middle<S>(x)) : middle<S>(x);
         const typename D::Type narrow = narrowed<D, S, kRound>(x, kRelu && clamped <= 0.0f ? 0.0f : clamped);
         if constexpr (kSat)
           return x != x ? typename D::Type{0} : narrow;
