@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "base/check.h"
 
@@ -42,6 +43,25 @@ std::vector<uint64_t> load_key(std::string_view op, const Operand& base, int32_t
   std::vector<uint64_t> key{isa::op_index(op), uint64_t(uint32_t(displacement)), version};
   append_key(&key, base);
   return key;
+}
+
+// Conditions that turned out constant leave blocks that nothing branches to, and constructs whose end no lane reaches:
+// there no lanes meet.
+void drop_unreachable(VirtualProgram& program, std::vector<BlockId>& layout) {
+  std::vector<uint8_t> reached(program.blocks.size(), 0);
+  std::vector<BlockId> work{layout.front()};
+  reached[layout.front()] = 1;
+  while (!work.empty()) {
+    const BlockId from = work.back();
+    work.pop_back();
+    for (BlockId to : program.blocks[from].successors)
+      if (!std::exchange(reached[to], 1)) work.push_back(to);
+  }
+  std::erase_if(layout, [&](BlockId block) { return !reached[block]; });
+  for (BlockId block : layout)
+    std::erase_if(program.blocks[block].code, [&](const VirtualInst& inst) {
+      return inst.kind == VirtualInst::Kind::Real && inst.op == isa::op_index("ssy") && !reached[inst.target];
+    });
 }
 
 }  // namespace
@@ -229,6 +249,7 @@ Operand Emitter::select_bool(Operand predicate, Operand a, Operand b) {
 }
 
 void Emitter::finish() {
+  drop_unreachable(program_, layout_);
   std::vector<BlockId> place_of(program_.blocks.size(), kNoBlock);
   for (size_t i = 0; i < layout_.size(); ++i) place_of[layout_[i]] = BlockId(i);
   std::vector<VirtualBlock> blocks;
