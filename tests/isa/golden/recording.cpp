@@ -32,6 +32,12 @@ std::string unpacked(const std::filesystem::path& path) {
   return out;
 }
 
+// Of a file or of its compressed form, whichever is there.
+std::string contents(const std::filesystem::path& path) {
+  const std::filesystem::path packed = path.string() + ".zst";
+  return std::filesystem::exists(packed) ? unpacked(packed) : read_file(path);
+}
+
 uint32_t bytes_of(const std::string& type) {
   if (type == "pred") return 1;
   if (type.ends_with("x2")) return 4;
@@ -56,8 +62,8 @@ Recording load_folder(const std::filesystem::path& folder) {
   const nlohmann::json manifest = nlohmann::json::parse(read_file(folder / "manifest.json"));
   Recording out;
   out.lanes = manifest["lanes"];
-  out.inputs = unpacked(folder / "inputs.bin.zst");
-  out.outputs = unpacked(folder / "outputs.bin.zst");
+  out.inputs = contents(folder / "inputs.bin");
+  out.outputs = contents(folder / "outputs.bin");
   for (const nlohmann::json& op : manifest["ops"])
     out.forms.push_back({op["op"], op["ptx"], arrays_of(op["inputs"]), arrays_of(op["outputs"])});
   return out;

@@ -33,7 +33,7 @@ struct Recording {
   static uint64_t value(const std::string& data, const Array& array, uint32_t lane);
 };
 
-// A folder with manifest.json, inputs.bin.zst and outputs.bin.zst.
+// A folder with manifest.json and, plain or as .zst, inputs.bin and outputs.bin.
 Recording load_folder(const std::filesystem::path& folder);
 // The extract that tools/make_golden_extract.py has made: forms.txt, lanes.bin.
 Recording load_extract(const std::filesystem::path& folder);
