@@ -124,6 +124,7 @@ class Executor {
   bool call_callable(WarpContext& warp, const isa::Inst& inst);
   void call_by_shader(WarpContext& warp, const std::array<uint32_t, kLanes>& target, LaneMask callers, bool is_callable);
   bool run_hit_object(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
+  bool run_time(WarpContext& warp, const isa::Inst& inst, bool set);
   HitObject* find_hit_object(WarpContext& warp, isa::Slot operand, uint32_t level);
   bool make_hit(WarpContext& warp, const isa::Inst& inst, bool has_stride, int lane, HitObject& object);
   bool open_trace(WarpContext& warp, const isa::Inst& inst, size_t payload_operand);

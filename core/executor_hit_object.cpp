@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cstring>
+#include <utility>
 
 #include "core/executor.h"
 #include "rtunit/node_format.h"
@@ -102,6 +103,7 @@ HitObject* Executor::find_hit_object(WarpContext& warp, isa::Slot operand, uint3
 bool Executor::run_hit_object(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
   const auto op = HitObjectOp(row.detail);
   LaneMask lanes = warp.regs.exec;
+  if (op == HitObjectOp::SetTime || op == HitObjectOp::GetTime) return run_time(warp, inst, op == HitObjectOp::SetTime);
   if (lanes && op == HitObjectOp::Record && warp.depth == 0)
     return fail(warp, std::countr_zero(lanes), "keeps the hit of a trace, and none is open");
   const uint32_t level = warp.depth - (op == HitObjectOp::Record ? 1 : 0);
@@ -115,7 +117,7 @@ bool Executor::run_hit_object(WarpContext& warp, const isa::Inst& inst, const is
         const rt::RayState& state = warp.frame().ray[size_t(lane)];
         const bool hit = state.committed.valid();
         object = {hit ? HitObject::Type::Hit : HitObject::Type::Miss, state.ray, state.committed,
-                  hit ? hit_record(state.ray, state.committed) : state.ray.miss_index, {}};
+                  hit ? hit_record(state.ray, state.committed) : state.ray.miss_index, {}, warp.frame().time[size_t(lane)]};
         if (state.committed.kind >= rt::kHitKindFront)
           object.attributes = {bits(state.committed.u), bits(state.committed.v)};
         else
@@ -124,7 +126,8 @@ bool Executor::run_hit_object(WarpContext& warp, const isa::Inst& inst, const is
       }
       case HitObjectOp::Empty: object = {}; break;
       case HitObjectOp::Miss:
-        object = {HitObject::Type::Miss, ray_of(warp, inst, kMissRay, lane), {}, read(warp, inst, kMissIndex, lane) & 0xffff, {}};
+        object = {HitObject::Type::Miss, ray_of(warp, inst, kMissRay, lane), {}, read(warp, inst, kMissIndex, lane) & 0xffff, {},
+                  std::exchange(warp.next_time[size_t(lane)], 0)};
         break;
       case HitObjectOp::Hit:
       case HitObjectOp::HitAtRecord:
@@ -133,8 +136,23 @@ bool Executor::run_hit_object(WarpContext& warp, const isa::Inst& inst, const is
       case HitObjectOp::Value:
         warp.regs.write(inst.operand[0])[lane] = hit_object_value(object, read(warp, inst, 2, lane));
         break;
+      case HitObjectOp::SetTime:
+      case HitObjectOp::GetTime: break;  // above
       case HitObjectOp::Attributes: store_attributes(warp, read(warp, inst, 1, lane), lane, object); break;
     }
+  }
+  ++warp.simt.pc;
+  return true;
+}
+
+// Outside of any trace the time is 0: only a program that lies about its stage reads it there.
+bool Executor::run_time(WarpContext& warp, const isa::Inst& inst, bool set) {
+  if (set) {
+    const uint32_t* const from = warp.regs.read(inst.operand[0]);
+    for_each_lane(warp.regs.exec, [&](int lane) { warp.next_time[size_t(lane)] = from[lane]; });
+  } else {
+    uint32_t* const to = warp.regs.write(inst.operand[0]);
+    for_each_lane(warp.regs.exec, [&](int lane) { to[lane] = warp.depth == 0 ? 0 : warp.frame().time[size_t(lane)]; });
   }
   ++warp.simt.pc;
   return true;
@@ -148,7 +166,7 @@ bool Executor::make_hit(WarpContext& warp, const isa::Inst& inst, bool has_strid
     return fail(warp, lane, fmt::format("makes a hit object of instance {}, which {:#x} does not hold", value(kInstance), structure));
   const rt::InstanceLeaf& leaf = world_.memory->view<rt::InstanceLeaf>(at, 1)[0];
   const size_t ray = kOffset + (has_stride ? 2 : 1);
-  object = {HitObject::Type::Hit, ray_of(warp, inst, ray, lane), {}, 0, {}};
+  object = {HitObject::Type::Hit, ray_of(warp, inst, ray, lane), {}, 0, {}, std::exchange(warp.next_time[size_t(lane)], 0)};
   object.ray.structure = structure;
   load_attributes(warp, value(ray + kRayWords), lane, object);
   rt::Hit& hit = object.hit;
@@ -182,6 +200,7 @@ uint32_t Executor::hit_object_value(const HitObject& object, uint32_t value) con
   if (value == uint32_t(V::Tmin)) return bits(ray.t_min);
   if (value == uint32_t(V::Tmax)) return bits(hit ? object.hit.t : ray.t_max);
   if (value == uint32_t(V::RecordIndex)) return object.record;
+  if (value == uint32_t(V::Time)) return object.time;
   if (within(V::RecordAddress, 2)) {
     const Address data = (hit ? world_.table.hit : world_.table.miss).address(object.record) + kHandleBytes;
     return uint32_t(data >> 32 * element(V::RecordAddress));
@@ -216,6 +235,7 @@ bool Executor::begin_hit_object(WarpContext& warp, const isa::Inst& inst) {
     const int lane = std::countr_zero(lanes);
     const HitObject& object = objects[lane];
     rt::RayState& state = warp.frame().ray[size_t(lane)];
+    warp.frame().time[size_t(lane)] = object.time;
     state.ray = object.ray;
     state.ray.sbt_offset = state.ray.sbt_stride = 0;  // the record is known
     state.ray.miss_index = object.record;

@@ -99,6 +99,7 @@ void Executor::start(WarpContext& warp, Block& block, uint32_t warp_in_block, co
   warp.warp_in_block = warp_in_block;
   block.warps[warp_in_block] = &warp;
   warp.depth = warp.callables = 0;
+  warp.next_time.fill(0);
   warp.instructions = 0;
   warp.waiting_for_rays = warp.waiting_at_barrier = false;
 

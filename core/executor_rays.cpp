@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "base/check.h"
 #include "core/executor.h"
 #include "isa/hit_object.h"
@@ -86,6 +88,7 @@ bool Executor::open_trace(WarpContext& warp, const isa::Inst& inst, size_t paylo
   for_each_lane(warp.regs.exec, [&](int lane) {
     frame.payload[size_t(lane)] = warp.regs.read(inst.operand[payload_operand])[lane];
     frame.attributes[size_t(lane)] = warp.regs.read(inst.operand[payload_operand + 1])[lane];
+    frame.time[size_t(lane)] = std::exchange(warp.next_time[size_t(lane)], 0);
   });
   ++warp.depth;
   return true;

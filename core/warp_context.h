@@ -18,6 +18,7 @@ namespace glint::core {
 struct TraceFrame {
   std::array<rt::RayState, kLanes> ray;
   std::array<uint32_t, kLanes> payload{}, attributes{};  // local addresses
+  std::array<uint32_t, kLanes> time{};                   // bits of a float
 };
 
 // The callables of one nesting level of call.sbt.callable.
@@ -38,6 +39,7 @@ struct HitObject {
   rt::Hit hit;
   uint32_t record = 0;  // of the hit or miss region
   std::array<uint32_t, kAttributeBytes / 4> attributes{};
+  uint32_t time = 0;    // bits of a float
 };
 
 inline constexpr uint32_t kMaxHitObjects = 16;  // of a shader. Choice: the extension sets no limit
@@ -53,6 +55,7 @@ struct WarpContext {
   std::vector<std::unique_ptr<CallableFrame>> callable_frames;  // as `frames`
   // kMaxHitObjects a level of rt.trace, allocated when first used.
   std::vector<std::unique_ptr<std::array<HitObject, kLanes>>> hit_objects;
+  std::array<uint32_t, kLanes> next_time{};  // of the next ray. Model: nothing moves; shaders read it back
   std::vector<std::unique_ptr<TraceFrame>> frames;  // allocated when first needed, then kept
   // Ray queries: kMaxRayQueries a level of rt.trace, allocated when first used.
   std::vector<std::unique_ptr<std::array<rt::RayState, kLanes>>> queries;

@@ -22,26 +22,34 @@ void append(Lowering& l, Operands& to, std::span<const uint32_t> values) {
   }
 }
 
-// Operands: object, the ten arguments of a trace, payload. Model: nothing moves, so a time before the payload does not count.
+// The time that comes before the last operand of motion's forms.
+void set_time(Lowering& l, const Instruction& inst, size_t operand) {
+  l.emit().effect("rt.time.set", {l.scalar(inst.operands[operand])});
+}
+
+// Operands: object, the ten arguments of a trace, time (in motion's form), payload.
 void trace(Lowering& l, const Instruction& inst, const LoweringRow&) {
   const Operand which = object(l, inst.operands[0]);
+  if (inst.op == spv::Op::OpHitObjectTraceRayMotionNV) set_time(l, inst, 11);
   lower_trace(l, std::span(inst.operands).subspan(1, 10), l.pointer(inst.operands.back()),
               [&] { l.emit().effect("ho.record", {which}); });
 }
 
 // Operands: object, structure, instance, primitive, geometry, kind, record (or offset and stride), origin, t min,
-// direction, t max, a time that does not count, attributes.
+// direction, t max, time (in motion's forms), attributes.
 void record_hit(Lowering& l, const Instruction& inst, const LoweringRow& row) {
   const size_t count = row.name32 == "ho.hit" ? 11 : 10;
   Operands operands{object(l, inst.operands[0])};
   append(l, operands, std::span(inst.operands).subspan(1, count));
   operands.push_back(local_address(l, l.pointer(inst.operands.back())));
+  if (inst.operands.size() == count + 3) set_time(l, inst, count + 1);
   l.emit().effect(row.name32, std::move(operands));
 }
 
 void record_miss(Lowering& l, const Instruction& inst, const LoweringRow&) {
   Operands operands{object(l, inst.operands[0])};
   append(l, operands, std::span(inst.operands).subspan(1, 5));
+  if (inst.op == spv::Op::OpHitObjectRecordMissMotionNV) set_time(l, inst, 6);
   l.emit().effect("ho.miss", std::move(operands));
 }
 
@@ -121,6 +129,7 @@ constexpr LoweringRow kRows[] = {
     {OpHitObjectGetShaderRecordBufferHandleNV, get<HitObjectValue::RecordAddress>, ""},
     {OpHitObjectGetRayTMinNV, get<HitObjectValue::Tmin>, ""},
     {OpHitObjectGetRayTMaxNV, get<HitObjectValue::Tmax>, ""},
+    {OpHitObjectGetCurrentTimeNV, get<HitObjectValue::Time>, ""},
     {OpHitObjectGetWorldRayOriginNV, get<HitObjectValue::Origin>, ""},
     {OpHitObjectGetWorldRayDirectionNV, get<HitObjectValue::Direction>, ""},
     {OpHitObjectGetObjectRayOriginNV, get<HitObjectValue::ObjectOrigin>, ""},

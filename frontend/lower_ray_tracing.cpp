@@ -19,8 +19,9 @@ void trace(Lowering& l, const Instruction& inst, const LoweringRow&) {
               [&] { l.emit().effect("call.sbt.hit", {}); });
 }
 
-// Model: nothing moves, so the time of a ray changes nothing.
+// Model: nothing moves: the time of a ray is what shaders read back, and no more.
 void trace_motion(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  l.emit().effect("rt.time.set", {l.scalar(inst.operands[10])});
   lower_trace(l, std::span(inst.operands).first(10), l.pointer(inst.operands[11]),
               [&] { l.emit().effect("call.sbt.hit", {}); });
 }
@@ -36,8 +37,9 @@ Pointer at_location(Lowering& l, Id constant, std::initializer_list<spv::Storage
 }
 
 void trace_nv(Lowering& l, const Instruction& inst, const LoweringRow&) {
-  const Pointer payload = at_location(l, inst.operands[10], {spv::StorageClass::RayPayloadKHR, spv::StorageClass::IncomingRayPayloadKHR});
+  const Pointer payload = at_location(l, inst.operands.back(), {spv::StorageClass::RayPayloadKHR, spv::StorageClass::IncomingRayPayloadKHR});
   if (payload.place != Place::Local) return;
+  if (inst.op == spv::Op::OpTraceMotionNV) l.emit().effect("rt.time.set", {l.scalar(inst.operands[10])});
   lower_trace(l, std::span(inst.operands).first(10), payload, [&] { l.emit().effect("call.sbt.hit", {}); });
 }
 
@@ -113,24 +115,12 @@ Operands matrix(Special first) {
   return parts;
 }
 
-// Compute built-ins follow from the launch id, which is the global invocation id.
-Operands compute_builtin(Lowering& l, spv::BuiltIn builtin) {
-  Operands parts;
-  for (uint32_t i = 0; i < 3; ++i) {
-    const Operand size = Operand::value(l.program().local_size[i]);
-    const bool counts_groups = builtin == spv::BuiltIn::NumWorkgroups;
-    const Operand of = special(counts_groups ? Special::LaunchSizeX : Special::LaunchX, i);
-    parts.push_back(
-        l.emit().value(builtin == spv::BuiltIn::LocalInvocationId ? "rem.u32" : "div.u32", {of, size}));
-  }
-  return parts;
-}
-
 using enum spv::Op;
 constexpr LoweringRow kRows[] = {
     {OpTraceRayKHR, trace, ""},
     {OpTraceRayMotionNV, trace_motion, ""},
     {OpTraceNV, trace_nv, ""},
+    {OpTraceMotionNV, trace_nv, ""},
     {OpExecuteCallableKHR, execute_callable, ""},
     {OpExecuteCallableNV, execute_callable_nv, ""},
     {OpIgnoreIntersectionNV, end_any_hit, "rt.ignore"},
@@ -196,16 +186,12 @@ void lower_trace(Lowering& l, std::span<const uint32_t> arguments, const Pointer
 }
 
 Operands Lowering::load_builtin(spv::BuiltIn builtin, Id type) {
+  if (const std::optional<Operands> parts = load_compute_builtin(builtin)) return *parts;
   switch (builtin) {
     case spv::BuiltIn::LaunchIdKHR:
-    case spv::BuiltIn::GlobalInvocationId:
       return vector(Special::LaunchX, 3);
     case spv::BuiltIn::LaunchSizeKHR:
       return vector(Special::LaunchSizeX, 3);
-    case spv::BuiltIn::NumWorkgroups:
-    case spv::BuiltIn::WorkgroupId:
-    case spv::BuiltIn::LocalInvocationId:
-      return compute_builtin(*this, builtin);
     case spv::BuiltIn::WorldRayOriginKHR:
       return vector(Special::RayOriginX, 3);
     case spv::BuiltIn::WorldRayDirectionKHR:
@@ -229,6 +215,8 @@ Operands Lowering::load_builtin(spv::BuiltIn builtin, Id type) {
       return {special(Special::RayFlags)};
     case spv::BuiltIn::CullMaskKHR:
       return {special(Special::RayCullMask)};
+    case spv::BuiltIn::CurrentRayTimeNV:
+      return {emitter_.fresh("rt.time.get", {})};
     case spv::BuiltIn::HitKindKHR:
       return {special(Special::HitKind)};
     case spv::BuiltIn::PrimitiveId:

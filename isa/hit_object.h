@@ -6,7 +6,7 @@
 namespace glint::isa {
 
 // OpRow::detail of a row of the family.
-enum class HitObjectOp : uint16_t { Record, Empty, Miss, Hit, HitAtRecord, Value, Attributes };
+enum class HitObjectOp : uint16_t { Record, Empty, Miss, Hit, HitAtRecord, Value, Attributes, SetTime, GetTime };
 
 // SPV_NV_shader_invocation_reorder's getters: ho.value's last operand.
 enum class HitObjectValue : uint32_t {
@@ -19,7 +19,8 @@ enum class HitObjectValue : uint32_t {
   ObjectDirection = ObjectOrigin + 3,
   ObjectToWorld = ObjectDirection + 3,  // row-major 3x4: 12 of these
   WorldToObject = ObjectToWorld + 12,
-  Count = WorldToObject + 12
+  Time = WorldToObject + 12,
+  Count
 };
 
 // OpRow::detail of a row with Effect::Trace.

@@ -9,6 +9,7 @@
 #include <cctype>
 #include <initializer_list>
 
+#include "isa/hit_object.h"
 #include "isa/op_row.h"
 #include "isa/text.h"
 #include "isa/verify_flow.h"
@@ -93,7 +94,10 @@ class Verifier {
       case Effect::CallCandidate:
       case Effect::CallHit:
       case Effect::EndTrace:
+        return only({Stage::RayGeneration, Stage::ClosestHit, Stage::Miss});
       case Effect::HitObject:
+        if (HitObjectOp(row_->detail) == HitObjectOp::GetTime)
+          return only({Stage::Intersection, Stage::AnyHit, Stage::ClosestHit, Stage::Miss});
         return only({Stage::RayGeneration, Stage::ClosestHit, Stage::Miss});
       case Effect::CallCallable:
         return only({Stage::RayGeneration, Stage::ClosestHit, Stage::Miss, Stage::Callable});

@@ -41,6 +41,8 @@ constexpr OpRow kRows[] = {
            "A value of an object: object, number of the value (isa/hit_object.h)."),
     object("ho.attributes", HitObjectOp::Attributes, {Src32, Src32},
            "Stores the 64 bytes of an object's attributes: object, local address."),
+    object("rt.time.set", HitObjectOp::SetTime, {Src32}, "Gives the next ray or made-up hit its time, which is 0 otherwise."),
+    object("rt.time.get", HitObjectOp::GetTime, {Dst32}, "The time of the innermost trace's ray."),
 };
 
 }  // namespace

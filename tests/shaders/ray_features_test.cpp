@@ -112,6 +112,15 @@ TEST_CASE("the vendor's extension traces by the payload's location, and its any-
   });
 }
 
+TEST_CASE("a ray's time reaches its shaders, and rays without one have time 0") {
+  RayLab lab({"rt/motion.rgen", {"rt/motion.rmiss"},
+              {{"rt/motion.rchit", "", ""}, {"rt/motion.rchit", "", ""}, {}, {}, {"rt/motion.rchit", "", "pair.rint"}, {"rt/motion.rchit", "", "pair.rint"}}, {}});
+  check_pixels(lab, [](uint32_t x, uint32_t y) {
+    const float t = misses(x) ? 100.0f : is_box(x) ? 9.0f : x < 4 ? 10.0f : 8.0f;
+    return Row{bits(float(y * 8 + x) * 0.25f), bits(t), 0};
+  });
+}
+
 TEST_CASE("hit objects keep traced and made-up hits until their shaders are executed") {
   RayLab lab({"rt/object.rgen", {"rt/object.rmiss", "rt/object.rmiss"},
               {{"rt/object.rchit", "", ""}, {"rt/object.rchit", "", ""}, {}, {},
