@@ -4,6 +4,8 @@
 
 #include <filesystem>
 
+#include "frontend/specialize.h"
+
 namespace glint::frontend {
 
 std::optional<isa::Stage> stage_of_file(const std::string& path) {
@@ -20,7 +22,9 @@ std::optional<isa::Stage> stage_of_file(const std::string& path) {
 
 isa::Program compile_file(const std::string& path, const GlslOptions& glsl, const BackendOptions& options,
                           Diagnostics& warnings) {
-  return lower(simplify(glsl_to_spirv(path, glsl), path, warnings), path, options);
+  std::vector<uint32_t> spirv = is_spirv_file(path) ? read_spirv(path) : glsl_to_spirv(path, glsl);
+  if (!glsl.specialization.empty()) spirv = specialize(std::move(spirv), glsl.specialization);
+  return lower(simplify(std::move(spirv), path, warnings), path, options, glsl.entry_point);
 }
 
 }  // namespace glint::frontend

@@ -1,6 +1,7 @@
 // GLSL or SPIR-V in, isa::Program out: the frontend's public door.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,6 +15,8 @@ namespace glint::frontend {
 struct GlslOptions {
   std::vector<std::string> include_dirs;                      // -I
   std::vector<std::pair<std::string, std::string>> defines;   // -D NAME=VALUE
+  std::string entry_point;                                    // of a module with several; empty: the only one
+  std::map<uint32_t, uint64_t> specialization;                // bits of specialisation constants, by constant_id
 };
 
 struct BackendOptions {
@@ -28,6 +31,10 @@ std::optional<isa::Stage> stage_of_file(const std::string& path);
 // UserError carries glslang's messages with file and line.
 std::vector<uint32_t> glsl_to_spirv(const std::string& path, const GlslOptions& options);
 
+// A module in SPIR-V's binary form (.spv) or text (.spvasm), validated. UserError with the file.
+std::vector<uint32_t> read_spirv(const std::string& path);
+bool is_spirv_file(const std::string& path);
+
 // Pass list R1 (reference: docs/frontend.md): inline all, scalarise, SSA; validated before and after.
 // When the optimiser fails, `warnings` hears of it and the module comes back as it was.
 std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& name, Diagnostics& warnings);
@@ -36,9 +43,10 @@ std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& n
 std::string disassemble_spirv(const std::vector<uint32_t>& words);
 
 // Lowers one simplified module to a program. UnsupportedError lists everything unsupported at once: op, file, line.
-isa::Program lower(const std::vector<uint32_t>& spirv, const std::string& name, const BackendOptions& options);
+isa::Program lower(const std::vector<uint32_t>& spirv, const std::string& name, const BackendOptions& options,
+                   const std::string& entry_point = {});
 
-// All of the above for one file.
+// All of the above for one file: GLSL, or SPIR-V by its ending.
 isa::Program compile_file(const std::string& path, const GlslOptions& glsl, const BackendOptions& options,
                           Diagnostics& warnings);
 

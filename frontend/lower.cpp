@@ -8,59 +8,12 @@
 #include "base/check.h"
 #include "base/diagnostics.h"
 #include "frontend/compile.h"
+#include "frontend/lower_typed.h"
 #include "frontend/spirv.h"
 
 namespace glint::frontend {
-namespace {
-
-// Capabilities that add nothing to lower, or only opcodes that are reported one by one where they stand.
-bool is_known_capability(spv::Capability capability) {
-  switch (int(capability)) {
-    case int(spv::Capability::Shader):
-    case int(spv::Capability::Matrix):
-    case int(spv::Capability::Int64):
-    case int(spv::Capability::Int16):
-    case int(spv::Capability::Int8):
-    case int(spv::Capability::Float16):
-    case int(spv::Capability::Float64):
-    case int(spv::Capability::StorageBuffer16BitAccess):
-    case int(spv::Capability::UniformAndStorageBuffer16BitAccess):
-    case int(spv::Capability::StoragePushConstant16):
-    case int(spv::Capability::StorageBuffer8BitAccess):
-    case int(spv::Capability::UniformAndStorageBuffer8BitAccess):
-    case int(spv::Capability::StoragePushConstant8):
-    case int(spv::Capability::RayTracingKHR):
-    case int(spv::Capability::RayQueryKHR):
-    case int(spv::Capability::RayTraversalPrimitiveCullingKHR):
-    case int(spv::Capability::RayCullMaskKHR):
-    case int(spv::Capability::RayTracingNV):
-    case int(spv::Capability::RayTracingMotionBlurNV):
-    case int(spv::Capability::ShaderInvocationReorderNV):
-    case int(spv::Capability::ShaderClockKHR):
-    case int(spv::Capability::RuntimeDescriptorArray):
-    case int(spv::Capability::ShaderNonUniform):
-    case int(spv::Capability::SampledImageArrayNonUniformIndexing):
-    case int(spv::Capability::StorageImageArrayNonUniformIndexing):
-    case int(spv::Capability::SampledImageArrayDynamicIndexing):
-    case int(spv::Capability::StorageImageArrayDynamicIndexing):
-    case int(spv::Capability::StorageBufferArrayDynamicIndexing):
-    case int(spv::Capability::UniformBufferArrayDynamicIndexing):
-    case int(spv::Capability::StorageImageReadWithoutFormat):
-    case int(spv::Capability::StorageImageWriteWithoutFormat):
-    case int(spv::Capability::StorageImageExtendedFormats):
-    case int(spv::Capability::ImageQuery):  // its opcodes are reported where they stand
-    case int(spv::Capability::VulkanMemoryModel):
-    case int(spv::Capability::VulkanMemoryModelDeviceScope):
-      return true;
-    default:
-      return false;
-  }
-}
-
-}  // namespace
-
-Lowering::Lowering(const Module& module, const std::string& name)
-    : module_(module), layout_(module), emitter_(program_) {
+Lowering::Lowering(const Module& module, const std::string& name, const EntryPoint& entry)
+    : module_(module), entry_(entry), layout_(module), emitter_(program_) {
   program_.name = name;
   program_.files = module.files;
 }
@@ -80,19 +33,21 @@ VirtualProgram Lowering::run() {
 }
 
 void Lowering::choose_entry_point() {
-  if (module_.entry_points.size() != 1)
-    throw UnsupportedError(fmt::format("{}: a module with {} entry points; one is supported", program_.name,
-                                       module_.entry_points.size()));
-  const EntryPoint& entry = module_.entry_points[0];
-  const std::optional<isa::Stage> stage = stage_of(entry.model);
+  const std::optional<isa::Stage> stage = stage_of(entry_.model);
   if (!stage)
     throw UnsupportedError(
-        fmt::format("{}: a shader of execution model {}", program_.name, name_of_execution_model(uint32_t(entry.model))));
+        fmt::format("{}: a shader of execution model {}", program_.name, name_of_execution_model(uint32_t(entry_.model))));
   program_.stage = *stage;
-  program_.local_size = entry.local_size;
-  function_ = module_.function(entry.function);
+  program_.local_size = entry_.local_size;
+  function_ = module_.function(entry_.function);
   if (!function_ || function_->blocks.empty())
     throw UserError({program_.name, 0, 0}, "the entry point has no function body");
+}
+
+// Before SPIR-V 1.4 interfaces list inputs and outputs only: then every variable may belong to the entry point.
+bool Lowering::is_in_interface(Id variable) const {
+  constexpr uint32_t kVersion14 = 0x10400;
+  return module_.version < kVersion14 || entry_.interface.count(variable) != 0;
 }
 
 void Lowering::check_capabilities() {
@@ -119,6 +74,7 @@ void Lowering::index_definitions() {
 void Lowering::note_interface() {
   uint32_t incoming = 0, outgoing = 0;
   for (const auto& [id, variable] : module_.variables) {
+    if (!is_in_interface(id)) continue;
     const Id type = module_.type(variable.type).element;
     if (variable.storage == spv::StorageClass::IncomingRayPayloadKHR ||
         variable.storage == spv::StorageClass::IncomingCallableDataKHR)
@@ -139,7 +95,7 @@ void Lowering::prologue() {
     if (variable.initializer != 0) store(variable_pointer(variable), value(variable.initializer));
   };
   for (const auto& [id, variable] : module_.variables)
-    if (variable.storage == spv::StorageClass::Private) initialise(variable);
+    if (variable.storage == spv::StorageClass::Private && is_in_interface(id)) initialise(variable);
   for (const auto& [id, variable] : local_variables_) initialise(variable);
 }
 
@@ -209,10 +165,29 @@ void Lowering::set(Id id, Operands parts) {
 const Operands& Lowering::value(Id id) {
   if (const auto it = values_.find(id); it != values_.end()) return it->second;
   if (module_.constants.count(id)) return values_[id] = constant_parts(id);
+  if (const std::optional<Operand> address = address_of(id)) return values_[id] = {*address};
   unsupported(fmt::format("{} as a value", module_.name_of(id)));  // a pointer where a value is wanted
   const auto type = type_of_id_.find(id);
   const uint32_t parts = type == type_of_id_.end() ? 1 : layout_.num_parts(type->second);
   return values_[id] = Operands(std::max(parts, 1u), Operand::value(0));
+}
+
+// Of a pointer that is wanted as a value. Not kept: see pointer().
+std::optional<Operand> Lowering::address_of(Id id) {
+  const bool is_variable = module_.variables.count(id) != 0;
+  if (!is_variable && !pointers_.count(id)) return std::nullopt;
+  const Pointer p = pointer(id);
+  if (p.place == Place::Global) return emitter_.value("add.u64", {p.base, Operand::value(uint64_t(p.displacement))});
+  if (p.place == Place::Shared) return emitter_.value("add.u32", {p.base, Operand::value(uint32_t(p.displacement))});
+  return std::nullopt;
+}
+
+Operand Lowering::word(Id id) {
+  const Part part = part_of(type_of(id));
+  const Operand x = scalar(id);
+  if (bytes_of(part) == 8)
+    return x.kind == Operand::Kind::Constant ? Operand::value(uint32_t(x.constant)) : emitter_.value("cvt.u32.u64", {x});
+  return widened(emitter_, part, x, part == Part::Int8 || part == Part::Int16);
 }
 
 Operands Lowering::constant_parts(Id id) {
@@ -308,7 +283,8 @@ const LoweringRow* find_lowering_row(spv::Op op) {
   static const std::map<spv::Op, const LoweringRow*> kRows = [] {
     std::map<spv::Op, const LoweringRow*> rows;
     for (const auto family : {arithmetic_rows(), conversion_rows(), comparison_rows(), composite_rows(), memory_rows(),
-                              image_rows(), ray_tracing_rows(), ray_query_rows(), hit_object_rows()})
+                              address_rows(), image_rows(), sample_rows(), atomic_rows(), subgroup_rows(), dot_rows(),
+                              ray_tracing_rows(), ray_query_rows(), hit_object_rows()})
       for (const LoweringRow& row : family)
         GLINT_CHECK(rows.emplace(row.op, &row).second, "two rows for op {}", uint32_t(row.op));
     return rows;
@@ -317,14 +293,15 @@ const LoweringRow* find_lowering_row(spv::Op op) {
   return it == kRows.end() ? nullptr : it->second;
 }
 
-VirtualProgram lower_to_virtual(const std::vector<uint32_t>& spirv, const std::string& name) {
+VirtualProgram lower_to_virtual(const std::vector<uint32_t>& spirv, const std::string& name,
+                                const std::string& entry_point) {
   const Module module = Module::parse(spirv, name);
-  return Lowering(module, name).run();
+  return Lowering(module, name, module.entry_point(entry_point, name)).run();
 }
 
 isa::Program lower(const std::vector<uint32_t>& spirv, const std::string& name,
-                   const BackendOptions& options) {
-  return assemble(lower_to_virtual(spirv, name), options);
+                   const BackendOptions& options, const std::string& entry_point) {
+  return assemble(lower_to_virtual(spirv, name, entry_point), options);
 }
 
 }  // namespace glint::frontend

@@ -21,24 +21,32 @@
 namespace glint::frontend {
 
 // The lowering without the backend: for tests and for `--emit virtual`. UnsupportedError as lower().
-VirtualProgram lower_to_virtual(const std::vector<uint32_t>& spirv, const std::string& name);
+VirtualProgram lower_to_virtual(const std::vector<uint32_t>& spirv, const std::string& name,
+                                const std::string& entry_point = {});
 
 // Where a pointer points. Attribute pairs: hit attributes of two floats, which hit shaders find in %hit.u and
-// %hit.v.
-enum class Place : uint8_t { Local, Global, Constant, Builtin, Resource, AttributePair, RayQuery, Nowhere };
+// %hit.v. Resource: a descriptor, of a buffer only while an index into an array of them is missing. Texel: of a storage
+// image, for atomics.
+enum class Place : uint8_t {
+  Local, Global, Shared, Constant, Builtin, Resource, AttributePair, RayQuery, Texel, Nowhere
+};
 
 struct Pointer {
   Id type = 0;  // of the pointee
   Place place = Place::Nowhere;
-  Operand base = Operand::value(0);  // Local, Constant: 32-bit address; Global: 64-bit; Resource, RayQuery: index
+  Operand base = Operand::value(0);  // Local, Shared, Constant: 32-bit address; Global: 64-bit; Resource, RayQuery: index
   int64_t displacement = 0;          // bytes; Builtin, AttributePair: parts
   uint32_t alignment = 16;           // bytes, of base
+  uint32_t known_alignment = 0;      // bytes, of base and displacement together; 0 unless an instruction tells it
   uint32_t component_stride = 0;     // bytes; not 0 in a column of a row-major matrix
   MatrixLayout matrix;
   Id variable = 0;                         // the root
   bool is_constant = false;                // memory that no shader writes
   bool is_volatile = false;                // two loads may differ
   Operand part_index = Operand::value(0);  // Builtin, AttributePair: dynamic part index
+  Operand entry;                           // Global, of an array of buffers: the address of its descriptor
+  Operands texel;                          // Texel: handle, then the layer of arrays and coordinates
+  std::string_view shape;                  // Texel: the geometry as image ops name it
 };
 
 inline Pointer nowhere(Id pointee) {
@@ -60,7 +68,12 @@ std::span<const LoweringRow> conversion_rows();
 std::span<const LoweringRow> comparison_rows();
 std::span<const LoweringRow> composite_rows();
 std::span<const LoweringRow> memory_rows();
+std::span<const LoweringRow> address_rows();
 std::span<const LoweringRow> image_rows();
+std::span<const LoweringRow> sample_rows();
+std::span<const LoweringRow> atomic_rows();
+std::span<const LoweringRow> subgroup_rows();
+std::span<const LoweringRow> dot_rows();
 std::span<const LoweringRow> ray_tracing_rows();
 std::span<const LoweringRow> ray_query_rows();
 std::span<const LoweringRow> hit_object_rows();
@@ -71,7 +84,7 @@ void lower_glsl_std(Lowering& lowering, const Instruction& inst);
 
 class Lowering {
  public:
-  Lowering(const Module& module, const std::string& name);
+  Lowering(const Module& module, const std::string& name, const EntryPoint& entry);
   VirtualProgram run();
 
   // --- Control: called block by block by lower_control()
@@ -82,6 +95,7 @@ class Lowering {
   // --- Values
   const Operands& value(Id id);  // constants appear on first use
   Operand scalar(Id id) { return value(id).at(0); }
+  Operand word(Id id);  // an integer as 32 bits: 64 are cut, narrow signed ones extended
   void set(Id id, Operands parts);
   Pointer pointer(Id id);
   void set_pointer(Id id, Pointer pointer) { pointers_[id] = pointer; }
@@ -95,6 +109,9 @@ class Lowering {
   Operands load(const Pointer& pointer);
   void store(const Pointer& pointer, const Operands& parts);
   Operands load_builtin(spv::BuiltIn builtin, Id type);
+  std::optional<Operand> address_of(Id pointer);  // none: not a pointer that is a value
+  std::optional<Operands> load_compute_builtin(spv::BuiltIn builtin);  // none: not a built-in of compute or subgroups
+  Pointer buffer_element(Pointer pointer);  // from the index of a buffer in an array to the buffer
   uint32_t local_offset(Id variable);  // bytes in the frame; allotted on first use
   uint32_t ray_query(Id variable);     // the first query or hit object of a variable; numbers are given on first use
   void hand_over_attributes();         // to the buffer that the next report reads
@@ -113,6 +130,7 @@ class Lowering {
   const Decorations& decorations(Id id) const;
 
  private:
+  bool is_in_interface(Id variable) const;
   void choose_entry_point();
   void index_definitions();
   void check_capabilities();
@@ -122,10 +140,13 @@ class Lowering {
   Operands specialised_parts(const Instruction& constant);
   Pointer variable_pointer(const Variable& variable);
   Pointer buffer_pointer(const Variable& variable, Pointer pointer);
+  Pointer pointer_from_value(Id id);
+  uint32_t shared_offset(Id variable);
   void set_zero(const Instruction& inst);
   void throw_if_unsupported() const;
 
   const Module& module_;
+  const EntryPoint& entry_;
   Layout layout_;
   VirtualProgram program_;
   Emitter emitter_;
@@ -136,11 +157,13 @@ class Lowering {
   std::map<Id, const Instruction*> definition_;
   std::map<Id, Variable> local_variables_;  // Function storage
   std::map<Id, uint32_t> frame_;            // variable to byte offset
+  std::map<Id, uint32_t> shared_;           // the same for shared memory
   std::map<Id, uint32_t> ray_queries_;      // variable to its first query
   uint32_t num_ray_queries_ = 0;
   uint32_t attribute_buffers_ = 0xffff'ffff;
   bool attributes_in_frame_ = false;        // of an intersection shader that may report more than once
-  uint64_t local_version_ = 1, global_version_ = 1;  // of memory, for the reuse of loads
+  uint64_t local_version_ = 1, global_version_ = 1, shared_version_ = 1;  // of memory, for the reuse of loads
+  uint64_t& version_of(Place place);
   std::map<std::tuple<uint16_t, uint32_t, std::string>, int> unsupported_;  // file, line, what: how often
   std::set<Id> reported_types_;
 };
@@ -157,6 +180,12 @@ void forget_after_call(Lowering& lowering);
 
 // Lowers all reachable blocks of the entry function: phis, structured control flow, terminators.
 void lower_control(Lowering& lowering);
+
+// Capabilities that add nothing to lower, or only opcodes that are reported one by one where they stand.
+bool is_known_capability(spv::Capability capability);
+
+// A displacement that the 32-bit field of an instruction cannot hold goes into the base.
+Pointer in_reach(Lowering& lowering, Pointer pointer);
 
 // Removes instructions whose results nobody reads and that do nothing else.
 void remove_dead_code(VirtualProgram* program);

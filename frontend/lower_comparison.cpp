@@ -42,7 +42,8 @@ void reduce(Lowering& l, const Instruction& inst, const LoweringRow& row) {
 
 // The condition is one bool, or one a component.
 void select(Lowering& l, const Instruction& inst, const LoweringRow&) {
-  if (l.module().type(inst.type).kind == Type::Kind::Pointer) return l.unsupported("OpSelect of pointers");
+  if (l.module().type(inst.type).kind == Type::Kind::Pointer && !l.layout().is_address(inst.type))
+    return l.unsupported("OpSelect of pointers");
   const Operands condition = l.value(inst.operands[0]), a = l.value(inst.operands[1]),
                  b = l.value(inst.operands[2]);
   const std::vector<Part> parts = l.layout().parts(inst.type);

@@ -45,6 +45,10 @@ class ControlFlow {
   void make_parts(uint32_t b);
   void declare_phis(uint32_t b);
   void lower_block(uint32_t b);
+  // Pointers that are no values.
+  bool is_place(Id type) const {
+    return lowering_.module().type(type).kind == Type::Kind::Pointer && !lowering_.layout().is_address(type);
+  }
   void terminator(uint32_t b);
   void conditional(uint32_t b, const Instruction& last);
   void choose(uint32_t b, const Instruction& last);
@@ -85,7 +89,7 @@ void ControlFlow::make_parts(uint32_t b) {
 void ControlFlow::declare_phis(uint32_t b) {
   for (const Instruction& inst : cfg_.block(b).code) {
     if (inst.op != spv::Op::OpPhi) break;
-    if (lowering_.module().type(inst.type).kind == Type::Kind::Pointer) {
+    if (is_place(inst.type)) {
       lowering_.unsupported("OpPhi of pointers", inst.line);
       lowering_.set_pointer(inst.result, nowhere(lowering_.module().type(inst.type).element));
       continue;
@@ -204,13 +208,14 @@ void ControlFlow::choose(uint32_t b, const Instruction& last) {
   const uint32_t otherwise = cfg_.index_of(last.operands[1]);
   const Operand selector = lowering_.scalar(last.operands[0]);
   const uint32_t bytes = bytes_of(lowering_.layout().parts(lowering_.type_of(last.operands[0]))[0]);
-  if (bytes == 8) lowering_.unsupported("OpSwitch of 64 bits");
-  const uint32_t mask = bytes < 4 ? (1u << 8 * bytes) - 1 : 0xffff'ffff;  // literals carry their sign beyond their width
+  const uint64_t mask = bytes < 8 ? (uint64_t{1} << 8 * bytes) - 1 : ~uint64_t{0};  // literals carry their sign beyond their width
   std::vector<std::pair<uint32_t, Operand>> cases;  // target, predicate
-  for (size_t i = 2; i + 1 < last.operands.size(); i += 2) {
-    const uint32_t to = cfg_.index_of(last.operands[i + 1]);
+  const uint32_t words = last.literal_words;
+  for (size_t i = 2; i + words < last.operands.size(); i += 1 + words) {
+    const uint32_t to = cfg_.index_of(last.operands[i + words]);
     if (to == otherwise) continue;
-    const Operand hit = emit_.value("setp.eq.u32", {selector, Operand::value(last.operands[i] & mask)});
+    const uint64_t literal = last.operands[i] | (words == 2 ? uint64_t{last.operands[i + 1]} << 32 : 0);
+    const Operand hit = emit_.value(bytes == 8 ? "setp.eq.u64" : "setp.eq.u32", {selector, Operand::value(literal & mask)});
     const auto same_target =
         std::find_if(cases.begin(), cases.end(), [&](const auto& c) { return c.first == to; });
     if (same_target == cases.end())
@@ -241,7 +246,7 @@ std::vector<Copy> ControlFlow::copies(uint32_t from, uint32_t to) {
   std::vector<Copy> result;
   for (const Instruction& phi : cfg_.block(to).code) {
     if (phi.op != spv::Op::OpPhi) break;
-    if (lowering_.module().type(phi.type).kind == Type::Kind::Pointer) continue;
+    if (is_place(phi.type)) continue;
     for (size_t i = 0; i + 1 < phi.operands.size(); i += 2) {
       if (phi.operands[i + 1] != cfg_.block(from).label) continue;
       const Operands from_parts = lowering_.value(phi.operands[i]);

@@ -105,7 +105,6 @@ Operands parts_of(Emitter& e, Part part, const Operands& words, size_t count) {
 }
 
 void bitcast(Lowering& l, const Instruction& inst, const LoweringRow&) {
-  if (l.module().type(inst.type).kind == Type::Kind::Pointer) return l.unsupported("OpBitcast of pointers");
   const Operands from = l.value(inst.operands[0]);
   const Part part = l.part_of(l.type_of(inst.operands[0])), to = l.part_of(inst.type);
   if (bytes_of(part) == bytes_of(to)) return l.set(inst.result, from);
@@ -123,6 +122,8 @@ constexpr LoweringRow kRows[] = {
     {OpUConvert, change_width, ""},
     {OpSConvert, change_width, ""},
     {OpBitcast, bitcast, ""},
+    {OpConvertUToPtr, bitcast, ""},
+    {OpConvertPtrToU, bitcast, ""},
 };
 
 }  // namespace

@@ -1,60 +1,180 @@
-// Images: reads and writes of storage images, and sampling at the base level.
+// Images by texels: reads and writes of storage images, fetches, queries, handles.
 // SPDX-License-Identifier: Apache-2.0
-#include "frontend/lower.h"
+#include "frontend/lower_image.h"
+
+#include <fmt/format.h>
 
 namespace glint::frontend {
-namespace {
 
-bool is_plain_2d(Lowering& l, Id type_id) {
-  const Type* type = &l.module().type(type_id);
-  if (type->kind == Type::Kind::SampledImage) type = &l.module().type(type->element);
-  if (type->kind == Type::Kind::Image && type->dim == spv::Dim::Dim2D && type->count == 0) return true;
-  l.unsupported("images that are not 2D");
-  return false;
+const Type& image_type(Lowering& l, Id id) {
+  const Type& type = l.module().type(id);
+  return type.kind == Type::Kind::SampledImage ? l.module().type(type.element) : type;
 }
 
-void read(Lowering& l, const Instruction& inst, const LoweringRow&) {
-  if (!is_plain_2d(l, l.type_of(inst.operands[0]))) return;
-  const Operand handle = l.scalar(inst.operands[0]);
-  const Operands at = l.value(inst.operands[1]);
+std::optional<Geometry> geometry_of(Lowering& l, Id id, bool single_texels) {
+  const Type& type = image_type(l, id);
+  const bool layers = type.is_arrayed;
+  // Model: images have one sample a texel, which every sample number means.
+  switch (type.dim) {
+    case spv::Dim::Dim1D: return Geometry{layers ? "a1d" : "1d", 1, layers};
+    case spv::Dim::Dim2D: return Geometry{layers ? "a2d" : "2d", 2, layers};
+    case spv::Dim::Dim3D: return Geometry{"3d", 3, false};
+    case spv::Dim::Buffer: return Geometry{"buffer", 1, false};
+    case spv::Dim::Cube:
+      if (single_texels) return Geometry{"a2d", 2, true};
+      return Geometry{layers ? "acube" : "cube", 3, layers};
+    default: break;
+  }
+  l.unsupported(fmt::format("images of dimension {}", type.dim == spv::Dim::SubpassData ? "SubpassData" : "Rect"));
+  return std::nullopt;
+}
+
+std::string_view texel_suffix(Lowering& l, Id id) {
+  switch (l.part_of(image_type(l, id).element)) {
+    case Part::Float32: return "f32";
+    case Part::Int32: return "s32";
+    case Part::Uint32: return "u32";
+    default: break;
+  }
+  l.unsupported("images of other than 32-bit texel types");
+  return {};
+}
+
+Operands integer_place(Emitter&, const Geometry& geometry, const Operand& handle, const Operands& at) {
+  Operands place{handle};
+  if (geometry.has_layers) place.push_back(at.at(geometry.coordinates));
+  place.insert(place.end(), at.begin(), at.begin() + geometry.coordinates);
+  return place;
+}
+
+ImageOperands image_operands(const Instruction& inst, size_t at) {
+  using Mask = spv::ImageOperandsMask;
+  ImageOperands result;
+  if (inst.operands.size() <= at) return result;
+  const uint32_t mask = inst.operands[at++];
+  const auto has = [&](Mask bit) { return (mask & uint32_t(bit)) != 0; };
+  if (has(Mask::Bias)) ++at;  // of implicit levels, of which there are none outside of fragment shaders
+  if (has(Mask::Lod)) result.lod = inst.operands.at(at++);
+  if (has(Mask::Grad)) {
+    result.gradients = {inst.operands.at(at), inst.operands.at(at + 1)};
+    at += 2;
+  }
+  if (has(Mask::ConstOffset)) result.offset = inst.operands.at(at++);
+  if (has(Mask::Offset)) result.offset = inst.operands.at(at++);
+  if (has(Mask::ConstOffsets)) result.offsets = inst.operands.at(at++);
+  return result;  // the others are samples, which are all alike, and the memory model's
+}
+
+Operands four_words(Lowering& l, const std::string& name, const Operands& sources) {
+  if (isa::find_op(name) < 0) {
+    l.unsupported("no op " + name);
+    return Operands(4, Operand::value(0));
+  }
   Operands texel;
   for (int i = 0; i < 4; ++i) texel.push_back(Operand::of(l.program().new_register(RegisterClass::B32)));
   Operands operands = texel;
-  operands.insert(operands.end(), {handle, at[0], at[1]});
-  l.emit().effect("suld.p.2d.v4.b32.trap", std::move(operands));
+  operands.insert(operands.end(), sources.begin(), sources.end());
+  l.emit().effect(name, std::move(operands));
+  return texel;
+}
+
+namespace {
+
+void read(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  const Id type = l.type_of(inst.operands[0]);
+  const auto geometry = geometry_of(l, type, true);
+  if (!geometry || texel_suffix(l, type).empty()) return;
+  const Operands place = integer_place(l.emit(), *geometry, l.scalar(inst.operands[0]), l.value(inst.operands[1]));
+  Operands texel = four_words(l, fmt::format("suld.p.{}.v4.b32.trap", geometry->name), place);
   texel.resize(l.layout().num_parts(inst.type));
   l.set(inst.result, std::move(texel));
 }
 
 void write(Lowering& l, const Instruction& inst, const LoweringRow&) {
-  if (!is_plain_2d(l, l.type_of(inst.operands[0]))) return;
-  const Operands at = l.value(inst.operands[1]), texel = l.value(inst.operands[2]);
-  Operands operands{l.scalar(inst.operands[0]), at[0], at[1]};
+  const Id type = l.type_of(inst.operands[0]);
+  const auto geometry = geometry_of(l, type, true);
+  if (!geometry || texel_suffix(l, type).empty()) return;
+  Operands operands = integer_place(l.emit(), *geometry, l.scalar(inst.operands[0]), l.value(inst.operands[1]));
+  const Operands texel = l.value(inst.operands[2]);
   for (size_t i = 0; i < 4; ++i) operands.push_back(i < texel.size() ? texel[i] : Operand::value(0));
-  l.emit().effect("sust.p.2d.v4.b32.trap", std::move(operands));
+  l.emit().effect(fmt::format("sust.p.{}.v4.b32.trap", geometry->name), std::move(operands));
+  l.note_store(Place::Global);  // Choice: images and buffers may share memory
 }
 
-// Model: textures have one level, so the level of detail and gradients do not matter.
-void sample(Lowering& l, const Instruction& inst, const LoweringRow&) {
-  if (!is_plain_2d(l, l.type_of(inst.operands[0]))) return;
-  const uint32_t extras = inst.operands.size() > 2 ? inst.operands[2] : 0;
-  const uint32_t known = uint32_t(spv::ImageOperandsMask::Lod) | uint32_t(spv::ImageOperandsMask::Grad);
-  if (extras & ~known) l.unsupported("image operands " + std::to_string(extras));
-  if (l.layout().parts(inst.type)[0] != Part::Float32) l.unsupported("sampling of integer images");
-  const Operands at = l.value(inst.operands[1]);
-  Operands texel;
-  for (int i = 0; i < 4; ++i) texel.push_back(Operand::of(l.program().new_register(RegisterClass::B32)));
-  Operands operands = texel;
-  operands.insert(operands.end(), {l.scalar(inst.operands[0]), at[0], at[1]});
-  l.emit().effect("tex.2d.v4.f32.f32", std::move(operands));
-  l.set(inst.result, std::move(texel));
+void fetch(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  const Id type = l.type_of(inst.operands[0]);
+  const auto geometry = geometry_of(l, type, true);
+  const std::string_view suffix = texel_suffix(l, type);
+  if (!geometry || suffix.empty()) return;
+  const ImageOperands extra = image_operands(inst, 2);
+  Operands at = l.value(inst.operands[1]);
+  if (extra.offset) {
+    const Operands offset = l.value(*extra.offset);
+    for (size_t i = 0; i < offset.size(); ++i) at[i] = l.emit().value("add.s32", {at[i], offset[i]});
+  }
+  Operands sources = integer_place(l.emit(), *geometry, l.scalar(inst.operands[0]), at);
+  const bool has_level = extra.lod && !is_constant(l.scalar(*extra.lod), 0);
+  if (has_level) sources.push_back(l.scalar(*extra.lod));
+  l.set(inst.result,
+        four_words(l, fmt::format("tex{}.{}.v4.{}.s32", has_level ? ".level" : "", geometry->name, suffix), sources));
+}
+
+// Extents of a level or of the image, then the number of layers.
+void query_size(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  const Type& type = image_type(l, l.type_of(inst.operands[0]));
+  const auto geometry = geometry_of(l, l.type_of(inst.operands[0]), false);
+  if (!geometry) return;
+  const std::string_view family = type.is_storage_image ? "suq" : "txq";
+  const bool has_level = inst.op == spv::Op::OpImageQuerySizeLod;
+  Operands sources{l.scalar(inst.operands[0])};
+  if (has_level) sources.push_back(l.scalar(inst.operands[1]));
+  const uint32_t axes = type.dim == spv::Dim::Cube ? 2 : geometry->coordinates;
+  constexpr std::string_view kAxes[] = {"width", "height", "depth"};
+  Operands result;
+  for (uint32_t axis = 0; axis < axes; ++axis)
+    result.push_back(
+        l.emit().fresh(fmt::format("{}.{}{}.b32", family, has_level ? "level." : "", kAxes[axis]), sources));
+  if (geometry->has_layers) result.push_back(l.emit().fresh(fmt::format("{}.array_size.b32", family), {sources[0]}));
+  l.set(inst.result, std::move(result));
+}
+
+void query(Lowering& l, const Instruction& inst, const LoweringRow& row) {
+  l.set(inst.result, {l.emit().fresh(row.name32, {l.scalar(inst.operands[0])})});
+}
+
+// The image's part of the handle, and both parts together (isa/image_access.h).
+void image_of(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  constexpr uint32_t kImagePart = (1u << isa::kHandleSamplerShift) - 1;
+  l.set(inst.result, {l.emit().value("and.b32", {l.scalar(inst.operands[0]), Operand::value(kImagePart)})});
+}
+void combine(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  l.set(inst.result, {l.emit().value("or.b32", {l.scalar(inst.operands[0]), l.scalar(inst.operands[1])})});
+}
+
+void texel_pointer(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  const Pointer image = l.pointer(inst.operands[0]);
+  Pointer p = nowhere(l.module().type(inst.type).element);
+  const auto geometry = geometry_of(l, image.type, true);
+  if (geometry && !texel_suffix(l, image.type).empty()) {
+    p.place = Place::Texel;
+    p.shape = geometry->name;
+    p.texel = integer_place(l.emit(), *geometry, l.load(image)[0], l.value(inst.operands[1]));
+  }
+  l.set_pointer(inst.result, p);
 }
 
 using enum spv::Op;
 constexpr LoweringRow kRows[] = {
     {OpImageRead, read, ""},
     {OpImageWrite, write, ""},
-    {OpImageSampleExplicitLod, sample, ""},
+    {OpImageFetch, fetch, ""},
+    {OpImageQuerySize, query_size, ""},
+    {OpImageQuerySizeLod, query_size, ""},
+    {OpImageQueryLevels, query, "txq.num_mipmap_levels.b32"},
+    {OpImageQuerySamples, query, "txq.num_samples.b32"},
+    {OpImage, image_of, ""},
+    {OpSampledImage, combine, ""},
+    {OpImageTexelPointer, texel_pointer, ""},
 };
 
 }  // namespace

@@ -20,8 +20,18 @@ Part Layout::scalar(Id id) {
   if (type.kind == Kind::Float && type.width == 64) return Part::Float64;
   if (type.kind == Kind::Image || type.kind == Kind::SampledImage) return Part::Uint32;  // its handle
   if (type.kind == Kind::AccelerationStructure) return Part::Uint64;                     // its address
+  if (type.kind == Kind::Sampler) return Part::Uint32;                                   // its part of a handle
+  if (type.kind == Kind::Pointer && is_address(id))
+    return type.storage == spv::StorageClass::Workgroup ? Part::Uint32 : Part::Uint64;
   unsupported_.insert(id);
   return Part::Uint32;
+}
+
+bool Layout::is_address(Id id) const {
+  const Type& type = module_.type(id);
+  if (type.kind != Kind::Pointer) return false;
+  return type.storage == spv::StorageClass::PhysicalStorageBuffer || type.storage == spv::StorageClass::StorageBuffer ||
+         type.storage == spv::StorageClass::Workgroup;
 }
 
 const std::vector<Part>& Layout::parts(Id id) {
@@ -46,12 +56,15 @@ const std::vector<Part>& Layout::parts(Id id) {
       }
       break;
     case Kind::RuntimeArray:
+      break;  // never a value; a block's last member is reached by address only
     case Kind::Pointer:
-      break;  // never values; a block's last member is reached by address only
+      if (is_address(id)) result.push_back(scalar(id));
+      break;
     case Kind::Bool:
     case Kind::Int:
     case Kind::Float:
     case Kind::Image:
+    case Kind::Sampler:
     case Kind::SampledImage:
     case Kind::AccelerationStructure:
     case Kind::RayQuery:

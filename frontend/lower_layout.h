@@ -66,6 +66,9 @@ class Layout {
   MatrixLayout member_matrix(Id type, uint32_t member, MatrixLayout outer) const;
   std::vector<Leaf> leaves(Id type, MatrixLayout matrix, uint32_t component_stride);
 
+  // Pointers that are values: to buffers, 64 bits, and to shared memory, 32. Other pointers are places only.
+  bool is_address(Id type) const;
+
   // Types met so far that no part can hold (floats of 128 bits, ...); they count as 32-bit words until reported.
   const std::set<Id>& unsupported() const { return unsupported_; }
 

@@ -10,12 +10,18 @@ namespace glint::frontend {
 namespace {
 
 std::string_view space_of(Place place) {
-  return place == Place::Local ? "local" : place == Place::Constant ? "const" : "global";
+  switch (place) {
+    case Place::Local: return "local";
+    case Place::Shared: return "shared";
+    case Place::Constant: return "const";
+    default: return "global";
+  }
 }
 
-// Consecutive 32-bit leaves from `first` that one access of 4, 2 or 1 words can move. `address` is what is
-// known of the first leaf's address: a multiple of the base's alignment plus this displacement.
-int words_together(const std::vector<Leaf>& leaves, size_t first, int64_t displacement, uint32_t alignment) {
+// Consecutive 32-bit leaves from `first` that one access of 4, 2 or 1 words can move.
+int words_together(const std::vector<Leaf>& leaves, size_t first, const Pointer& p) {
+  const uint32_t alignment = std::max(p.alignment, p.known_alignment);
+  const int64_t displacement = p.known_alignment > p.alignment ? 0 : p.displacement;
   for (int words : {4, 2}) {
     if (first + words > leaves.size() || alignment < 4u * words) continue;
     const int64_t at = displacement + leaves[first].offset;
@@ -37,19 +43,6 @@ std::string_view shape_of(Part part, int words, bool is_load) {
   }
 }
 
-// A displacement that the instruction's 32-bit field cannot hold goes into the base.
-Pointer in_reach(Lowering& l, Pointer p) {
-  constexpr int64_t kReach = int64_t(1) << 30;
-  if (p.displacement > -kReach && p.displacement < kReach) return p;
-  if (p.place == Place::Global)
-    p.base = l.emit().value("add.u64", {p.base, Operand::value(uint64_t(p.displacement))});
-  else
-    p.base = l.emit().value("add.u32", {p.base, Operand::value(uint32_t(p.displacement))});
-  p.displacement = 0;
-  p.alignment = 4;
-  return p;
-}
-
 Operands slice(Lowering& l, const Pointer& p, const Operands& parts) {
   const uint32_t count = l.layout().num_parts(p.type);
   Operands result;
@@ -64,20 +57,44 @@ Operands slice(Lowering& l, const Pointer& p, const Operands& parts) {
   return result;
 }
 
+// docs/abi.md: arrays of buffers and of acceleration structures have their descriptors in a table in global memory.
+Operand descriptor_in_table(Lowering& l, const Operand& table, const Operand& index) {
+  return l.emit().value("mad.wide.u32", {index, Operand::value(isa::kDescriptorBytes), table});
+}
+
 Operands load_resource(Lowering& l, const Pointer& p) {
   const Decorations& d = l.decorations(p.variable);
   const int32_t at =
       int32_t(d.set.value_or(0) * isa::kSetBytes + d.binding.value_or(0) * isa::kDescriptorBytes);
-  if (l.module().type(p.type).kind == Type::Kind::AccelerationStructure) {
-    if (!is_constant(p.base, 0)) l.unsupported("arrays of acceleration structures");
-    return l.emit().load("ld.const.b64", Operand::value(0), at, 1, 1);
+  const Type::Kind kind = l.module().type(p.type).kind;
+  const Id declared = l.module().type(l.module().variables.at(p.variable).type).element;
+  if (kind == Type::Kind::AccelerationStructure) {
+    const Operand found = l.emit().load("ld.const.b64", Operand::value(0), at, 1, 1)[0];
+    if (declared == p.type) return {found};
+    return l.emit().load("ld.global.b64", descriptor_in_table(l, found, p.base), 0, 1, 1);
   }
   // The images of an array have consecutive handles.
   const Operand first = l.emit().load("ld.const.b32", Operand::value(0), at, 1, 1)[0];
-  return {l.emit().value("add.u32", {first, p.base})};
+  const Operand number = l.emit().value("add.u32", {first, p.base});
+  if (kind != Type::Kind::Sampler) return {number};
+  const Operand field = l.emit().value("add.u32", {number, Operand::value(1)});
+  return {l.emit().value("shl.b32", {field, Operand::value(uint32_t(isa::kHandleSamplerShift))})};
 }
 
 }  // namespace
+
+Pointer in_reach(Lowering& l, Pointer p) {
+  constexpr int64_t kReach = int64_t(1) << 30;
+  if (p.displacement > -kReach && p.displacement < kReach) return p;
+  if (p.place == Place::Global)
+    p.base = l.emit().value("add.u64", {p.base, Operand::value(uint64_t(p.displacement))});
+  else
+    p.base = l.emit().value("add.u32", {p.base, Operand::value(uint32_t(p.displacement))});
+  p.displacement = 0;
+  p.alignment = 4;
+  p.known_alignment = 0;
+  return p;
+}
 
 Operands Lowering::load(const Pointer& pointer) {
   switch (pointer.place) {
@@ -95,20 +112,21 @@ Operands Lowering::load(const Pointer& pointer) {
       return slice(*this, pointer, {Operand::of(isa::Special::HitU), Operand::of(isa::Special::HitV)});
     case Place::Resource:
       return load_resource(*this, pointer);
+    case Place::Texel:
+      unsupported("a texel's pointer used by other than atomics");
+      return Operands(layout_.num_parts(pointer.type), Operand::value(0));
     case Place::Local:
     case Place::Global:
+    case Place::Shared:
     case Place::Constant:
       break;
   }
   const Pointer p = in_reach(*this, pointer);
   const std::vector<Leaf> leaves = layout_.leaves(p.type, p.matrix, p.component_stride);
-  const uint64_t version = p.is_volatile             ? 0
-                           : p.is_constant           ? 1
-                           : p.place == Place::Local ? local_version_
-                                                     : global_version_;
+  const uint64_t version = p.is_volatile ? 0 : p.is_constant ? 1 : version_of(p.place);
   Operands result;
   for (size_t i = 0; i < leaves.size();) {
-    const int words = words_together(leaves, i, p.displacement, p.alignment);
+    const int words = words_together(leaves, i, p);
     const std::string_view shape = shape_of(leaves[i].part, words, true);
     const Operands parts = emitter_.load(fmt::format("ld.{}.{}", space_of(p.place), shape), p.base,
                                          int32_t(p.displacement + leaves[i].offset), words, version);
@@ -123,14 +141,14 @@ Operands Lowering::load(const Pointer& pointer) {
 
 void Lowering::store(const Pointer& pointer, const Operands& parts) {
   if (pointer.place == Place::Nowhere) return;
-  if (pointer.place != Place::Local && pointer.place != Place::Global)
+  if (pointer.place != Place::Local && pointer.place != Place::Global && pointer.place != Place::Shared)
     return unsupported("OpStore to this kind of variable");
   const Pointer p = in_reach(*this, pointer);
   note_store(p.place);
-  const uint64_t version = p.place == Place::Local ? local_version_ : global_version_;
+  const uint64_t version = version_of(p.place);
   const std::vector<Leaf> leaves = layout_.leaves(p.type, p.matrix, p.component_stride);
   for (size_t i = 0; i < leaves.size();) {
-    const int words = words_together(leaves, i, p.displacement, p.alignment);
+    const int words = words_together(leaves, i, p);
     const std::string_view shape = shape_of(leaves[i].part, words, false);
     Operands operands{p.base};
     for (int w = 0; w < words; ++w) {
@@ -148,8 +166,33 @@ void Lowering::store(const Pointer& pointer, const Operands& parts) {
   }
 }
 
+uint64_t& Lowering::version_of(Place place) {
+  return place == Place::Local ? local_version_ : place == Place::Shared ? shared_version_ : global_version_;
+}
+
 void Lowering::note_store(Place place) {
-  ++(place == Place::Local ? local_version_ : global_version_);
+  ++version_of(place);
+}
+
+Pointer Lowering::buffer_element(Pointer p) {
+  const Decorations& d = decorations(p.variable);
+  const uint32_t at = d.set.value_or(0) * isa::kSetBytes + d.binding.value_or(0) * isa::kDescriptorBytes;
+  const Operand table = emitter_.load("ld.const.b64", Operand::value(0), int32_t(at), 1, 1)[0];
+  p.entry = descriptor_in_table(*this, table, p.base);
+  p.base = emitter_.load("ld.global.b64", p.entry, 0, 1, 1)[0];
+  p.place = Place::Global;
+  return p;
+}
+
+uint32_t Lowering::shared_offset(Id variable) {
+  if (const auto it = shared_.find(variable); it != shared_.end()) return it->second;
+  const Id type = module_.type(type_of(variable)).element;
+  // SPV_KHR_workgroup_memory_explicit_layout: all blocks begin at the same place.
+  const bool is_block = module_.type(type).is_block;
+  constexpr uint32_t kAlign = 16;
+  const uint32_t at = is_block ? 0 : (program_.shared_bytes + kAlign - 1) / kAlign * kAlign;
+  program_.shared_bytes = std::max(program_.shared_bytes, at + layout_.size(type));
+  return shared_[variable] = at;
 }
 
 uint32_t Lowering::local_offset(Id variable) {

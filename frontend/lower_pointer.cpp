@@ -11,14 +11,19 @@ namespace glint::frontend {
 
 Pointer Lowering::buffer_pointer(const Variable& variable, Pointer p) {
   const Decorations& d = decorations(variable.id);
-  if (module_.type(p.type).kind != Type::Kind::Struct) unsupported("arrays of buffers", variable.line);
   const uint32_t descriptor =
       d.set.value_or(0) * isa::kSetBytes + d.binding.value_or(0) * isa::kDescriptorBytes;
-  p.place = Place::Global;
-  p.base = emitter_.load("ld.const.b64", Operand::value(0), int32_t(descriptor), 1, 1)[0];
   p.alignment =
       16;  // Choice: buffers are bound at multiples of 16 bytes (Vulkan minStorageBufferOffsetAlignment)
-  p.is_constant = variable.storage == spv::StorageClass::Uniform;
+  const Type* block = &module_.type(p.type);
+  while (block->kind == Type::Kind::Array || block->kind == Type::Kind::RuntimeArray) block = &module_.type(block->element);
+  p.is_constant = variable.storage == spv::StorageClass::Uniform && !block->is_buffer_block;
+  if (block != &module_.type(p.type)) {
+    p.place = Place::Resource;
+    return p;
+  }
+  p.place = Place::Global;
+  p.base = emitter_.load("ld.const.b64", Operand::value(0), int32_t(descriptor), 1, 1)[0];
   return p;
 }
 
@@ -77,6 +82,10 @@ Pointer Lowering::variable_pointer(const Variable& variable) {
     case Storage::StorageBuffer:
     case Storage::Uniform:
       return buffer_pointer(variable, p);
+    case Storage::Workgroup:
+      p.place = Place::Shared;
+      p.displacement = shared_offset(variable.id);
+      return p;
     case Storage::PushConstant:
       p.place = Place::Constant;
       p.displacement = isa::kPushConstantOffset;
@@ -107,8 +116,20 @@ Pointer Lowering::pointer(Id id) {
     return variable_pointer(it->second);
   if (const auto it = local_variables_.find(id); it != local_variables_.end())
     return variable_pointer(it->second);
+  if (const auto type = type_of_id_.find(id); type != type_of_id_.end() && layout_.is_address(type->second))
+    return pointer_from_value(id);
   unsupported(fmt::format("{} as a pointer", module_.name_of(id)));
   return {};
+}
+
+Pointer Lowering::pointer_from_value(Id id) {
+  const Type& type = module_.type(type_of(id));
+  Pointer p;
+  p.type = type.element;
+  p.place = type.storage == spv::StorageClass::Workgroup ? Place::Shared : Place::Global;
+  p.base = scalar(id);
+  p.alignment = 4;  // what every access has that says nothing: wider parts have ops of their own
+  return p;
 }
 
 namespace {
@@ -135,9 +156,7 @@ SplitIndex split_index(Lowering& l, Id id) {
       break;
     id = def->operands[right ? 0 : 1];
   }
-  split.rest = l.scalar(id);
-  if (l.emit().class_of(split.rest) == RegisterClass::B64)
-    split.rest = l.emit().value("cvt.u32.u64", {split.rest});
+  split.rest = l.word(id);
   if (split.rest.kind == Operand::Kind::Constant) {
     split.addend += int32_t(split.rest.constant);
     split.rest = Operand::value(0);
@@ -160,6 +179,7 @@ void step_memory(Lowering& l, Pointer* p, Id index) {
     const uint32_t member = l.module().constant_u32(index).value_or(0);
     p->displacement += l.layout().member_offset(p->type, member);
     p->matrix = l.layout().member_matrix(p->type, member, p->matrix);
+    p->is_volatile |= type.members[member].is_volatile;
     p->type = type.members[member].type;
     return;
   }
@@ -186,15 +206,30 @@ void step_parts(Lowering& l, Pointer* p, Id index) {
   p->type = l.layout().member_type(p->type, constant.value_or(0));
 }
 
-void access_chain(Lowering& l, const Instruction& inst, const LoweringRow&) {
-  Pointer p = l.pointer(inst.operands[0]);
-  for (size_t i = 1; i < inst.operands.size() && p.place != Place::Nowhere; ++i) {
+uint32_t flat_count(const Module& module, Id type) {
+  uint32_t count = 1;
+  for (const Type* t = &module.type(type); t->kind == Type::Kind::Array; t = &module.type(t->element)) count *= t->count;
+  return count;
+}
+
+// An element of an array of descriptors or of ray queries, which count through all dimensions.
+void step_number(Lowering& l, Pointer* p, Id index) {
+  const Id element = l.module().type(p->type).element;
+  const Operand stride = Operand::value(flat_count(l.module(), element));
+  p->base = l.emit().value("add.u32", {p->base, l.emit().value("mul.lo.u32", {l.word(index), stride})});
+  p->type = element;
+  const Type& type = l.module().type(element);
+  if (p->place == Place::Resource && type.kind == Type::Kind::Struct) *p = l.buffer_element(*p);
+}
+
+// Follows the indices from operand `first` on.
+void walk_chain(Lowering& l, const Instruction& inst, Pointer p, size_t first) {
+  for (size_t i = first; i < inst.operands.size() && p.place != Place::Nowhere; ++i) {
     const Id index = inst.operands[i];
     switch (p.place) {
       case Place::RayQuery:
       case Place::Resource:
-        p.base = l.emit().value("add.u32", {p.base, l.scalar(index)});
-        p.type = l.module().type(p.type).element;
+        step_number(l, &p, index);
         break;
       case Place::Builtin:
       case Place::AttributePair:
@@ -202,7 +237,9 @@ void access_chain(Lowering& l, const Instruction& inst, const LoweringRow&) {
         break;
       case Place::Local:
       case Place::Global:
+      case Place::Shared:
       case Place::Constant:
+      case Place::Texel:
       case Place::Nowhere:
         step_memory(l, &p, index);
         break;
@@ -212,19 +249,37 @@ void access_chain(Lowering& l, const Instruction& inst, const LoweringRow&) {
   l.set_pointer(inst.result, p);
 }
 
-bool is_volatile(const Instruction& inst, size_t operand) {
-  return inst.operands.size() > operand &&
-         (inst.operands[operand] & uint32_t(spv::MemoryAccessMask::Volatile)) != 0;
+void access_chain(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  walk_chain(l, inst, l.pointer(inst.operands[0]), 1);
+}
+
+// The pointer's own element first: pointers to arrays' elements.
+void pointer_access_chain(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  Pointer p = l.pointer(inst.operands[0]);
+  const Type& type = l.module().type(l.type_of(inst.operands[0]));
+  if (p.place != Place::Global && p.place != Place::Shared) return l.unsupported("OpPtrAccessChain of this pointer");
+  step_elements(l, &p, inst.operands[1], type.array_stride != 0 ? type.array_stride : l.layout().size(type.element));
+  walk_chain(l, inst, p, 2);
+}
+
+// What memory operands from `operand` on say: that a value must not be kept from an earlier access, and the alignment.
+Pointer accessed(Lowering& l, const Instruction& inst, Id pointer, size_t operand) {
+  Pointer p = l.pointer(pointer);
+  if (inst.operands.size() <= operand) return p;
+  using Mask = spv::MemoryAccessMask;
+  const uint32_t mask = inst.operands[operand];
+  p.is_volatile |= (mask & (uint32_t(Mask::Volatile) | uint32_t(Mask::MakePointerVisible))) != 0;
+  if ((mask & uint32_t(Mask::Aligned)) != 0 && inst.operands.size() > operand + 1 && p.component_stride == 0)
+    p.known_alignment = inst.operands[operand + 1];
+  return p;
 }
 
 void load(Lowering& l, const Instruction& inst, const LoweringRow&) {
-  Pointer p = l.pointer(inst.operands[0]);
-  p.is_volatile |= is_volatile(inst, 1);
-  l.set(inst.result, l.load(p));
+  l.set(inst.result, l.load(accessed(l, inst, inst.operands[0], 1)));
 }
 
 void store(Lowering& l, const Instruction& inst, const LoweringRow&) {
-  l.store(l.pointer(inst.operands[0]), Operands(l.value(inst.operands[1])));
+  l.store(accessed(l, inst, inst.operands[0], 2), Operands(l.value(inst.operands[1])));
 }
 
 void copy_memory(Lowering& l, const Instruction& inst, const LoweringRow&) {
@@ -237,7 +292,10 @@ void array_length(Lowering& l, const Instruction& inst, const LoweringRow&) {
   const Decorations& d = l.decorations(p.variable);
   if (p.place != Place::Global || !d.binding) return l.unsupported("OpArrayLength of this pointer");
   const uint32_t descriptor = d.set.value_or(0) * isa::kSetBytes + *d.binding * isa::kDescriptorBytes;
-  const Operand bytes = l.emit().load("ld.const.b32", Operand::value(0), int32_t(descriptor + 8), 1, 1)[0];
+  const bool in_table = p.entry.kind != Operand::Kind::None;
+  const Operand bytes = in_table
+                            ? l.emit().load("ld.global.b32", p.entry, 8, 1, 1)[0]
+                            : l.emit().load("ld.const.b32", Operand::value(0), int32_t(descriptor + 8), 1, 1)[0];
   const uint32_t offset = l.layout().member_offset(p.type, inst.operands[1]);
   const uint32_t stride =
       l.layout().element_stride(l.module().type(p.type).members.at(inst.operands[1]).type, {});
@@ -245,20 +303,16 @@ void array_length(Lowering& l, const Instruction& inst, const LoweringRow&) {
                                                  Operand::value(stride)})});
 }
 
-// Model: stores are seen by later loads in program order, so a barrier only keeps values from being reused.
-void memory_barrier(Lowering& l, const Instruction&, const LoweringRow&) {
-  l.note_store(Place::Global);
-}
-
 using enum spv::Op;
 constexpr LoweringRow kRows[] = {
     {OpAccessChain, access_chain, ""},
     {OpInBoundsAccessChain, access_chain, ""},
+    {OpPtrAccessChain, pointer_access_chain, ""},
+    {OpInBoundsPtrAccessChain, pointer_access_chain, ""},
     {OpLoad, load, ""},
     {OpStore, store, ""},
     {OpCopyMemory, copy_memory, ""},
     {OpArrayLength, array_length, ""},
-    {OpMemoryBarrier, memory_barrier, ""},
 };
 
 }  // namespace

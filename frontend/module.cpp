@@ -35,6 +35,7 @@ class Parser {
 
   Module run() {
     if (words_.size() < kHeaderWords || words_[0] != spv::MagicNumber) malformed("no SPIR-V header");
+    module_.version = words_[1];
     module_.bound = words_[3];
     for (size_t i = kHeaderWords; i < words_.size();) {
       const size_t length = words_[i] >> 16;
@@ -44,6 +45,7 @@ class Parser {
       i += length;
     }
     for (const auto& [mode, operands] : size_ids_) apply_local_size_id(mode, operands);
+    apply_workgroup_size();
     return std::move(module_);
   }
 
@@ -56,8 +58,11 @@ class Parser {
   void debug(spv::Op op, std::span<const uint32_t> args);
   void mode(const Instruction& inst);
   void apply_local_size_id(Id function, const std::vector<uint32_t>& ids);
+  void apply_workgroup_size();
+  uint32_t width_of(Id value) const;
   void decorate(std::span<const uint32_t> args);
   void decorate_member(std::span<const uint32_t> args);
+  void enter(const std::vector<uint32_t>& args);
   void declare(const Instruction& inst);
   bool declare_type(const Instruction& inst);
   void in_function(Instruction inst);
@@ -70,6 +75,7 @@ class Parser {
   isa::Line line_;
   std::map<Id, std::string> strings_;
   std::map<std::string, uint16_t> file_index_;
+  std::map<Id, Id> type_of_;
   std::vector<std::pair<Id, std::vector<uint32_t>>> size_ids_;
 };
 
@@ -83,6 +89,7 @@ void Parser::instruction(std::span<const uint32_t> words) {
   if (has_type) inst.type = words[at++];
   if (has_result) inst.result = words[at++];
   if (inst.result >= module_.bound) malformed("a result id is not below the bound");
+  if (has_type && has_result) type_of_[inst.result] = inst.type;
   inst.operands.assign(words.begin() + long(at), words.end());
   switch (inst.op) {
     case spv::Op::OpString:
@@ -143,6 +150,23 @@ void Parser::apply_local_size_id(Id function, const std::vector<uint32_t>& ids) 
         entry.local_size[i] = module_.constant_u32(ids[i]).value_or(1);
 }
 
+// The constant decorated WorkgroupSize overrides the execution mode (SPIR-V specification 3.6, LocalSize).
+void Parser::apply_workgroup_size() {
+  for (const auto& [id, d] : module_.decorations) {
+    const auto size = module_.constants.find(id);
+    if (d.builtin != spv::BuiltIn::WorkgroupSize || size == module_.constants.end()) continue;
+    for (EntryPoint& entry : module_.entry_points)
+      if (entry.model == spv::ExecutionModel::GLCompute) apply_local_size_id(entry.function, size->second.operands);
+  }
+}
+
+uint32_t Parser::width_of(Id value) const {
+  const auto type = type_of_.find(value);
+  if (type == type_of_.end()) return 32;
+  const auto found = module_.types.find(type->second);
+  return found == module_.types.end() ? 32 : found->second.width;
+}
+
 void Parser::decorate(std::span<const uint32_t> args) {
   Decorations& d = module_.decorations[args[0]];
   switch (spv::Decoration(args[1])) {
@@ -170,6 +194,7 @@ void Parser::decorate(std::span<const uint32_t> args) {
     case spv::Decoration::Block:
     case spv::Decoration::BufferBlock:
       module_.types[args[0]].is_block = true;
+      module_.types[args[0]].is_buffer_block |= spv::Decoration(args[1]) == spv::Decoration::BufferBlock;
       break;
     default:
       break;  // the others change nothing here: RelaxedPrecision, NoContraction (never contracted), ...
@@ -190,12 +215,23 @@ void Parser::decorate_member(std::span<const uint32_t> args) {
     case spv::Decoration::RowMajor:
       member.row_major = true;
       break;
+    case spv::Decoration::Volatile:
+    case spv::Decoration::Coherent:
+      member.is_volatile = true;
+      break;
     case spv::Decoration::BuiltIn:
       member.builtin = spv::BuiltIn(args[3]);
       break;
     default:
       break;
   }
+}
+
+void Parser::enter(const std::vector<uint32_t>& args) {
+  size_t words = 0;
+  EntryPoint entry{spv::ExecutionModel(args[0]), args[1], string_at(std::span(args).subspan(2), &words), {1, 1, 1}, {}};
+  entry.interface.insert(args.begin() + 2 + long(words), args.end());
+  module_.entry_points.push_back(std::move(entry));
 }
 
 void Parser::declare(const Instruction& inst) {
@@ -208,8 +244,7 @@ void Parser::declare(const Instruction& inst) {
       module_.imports[inst.result] = string_at(args);
       return;
     case spv::Op::OpEntryPoint:
-      module_.entry_points.push_back(
-          {spv::ExecutionModel(args[0]), args[1], string_at(std::span(args).subspan(2)), {1, 1, 1}});
+      enter(args);
       return;
     case spv::Op::OpExecutionMode:
     case spv::Op::OpExecutionModeId:
@@ -273,7 +308,10 @@ bool Parser::declare_type(const Instruction& inst) {
     case spv::Op::OpTypeImage:
       type.kind = Kind::Image, type.element = args[0], type.dim = spv::Dim(args[1]),
       type.is_storage_image = args[5] == 2;
-      type.count = args[3];  // arrayed
+      type.is_arrayed = args[3] != 0, type.is_multisampled = args[4] != 0;
+      break;
+    case spv::Op::OpTypeSampler:
+      type.kind = Kind::Sampler;
       break;
     case spv::Op::OpTypeSampledImage:
       type.kind = Kind::SampledImage, type.element = args[0];
@@ -294,7 +332,6 @@ bool Parser::declare_type(const Instruction& inst) {
   return true;
 }
 
-// Also finds switches over 64-bit values, whose literals take two words: glslang makes none.
 void Parser::check_labels() const {
   std::set<Id> labels;
   for (const Block& block : function_->blocks) labels.insert(block.label);
@@ -332,6 +369,7 @@ void Parser::in_function(Instruction inst) {
     if (inst.op == spv::Op::OpLoopMerge) block.continue_block = inst.operands[1];
     return;
   }
+  if (inst.op == spv::Op::OpSwitch && width_of(inst.operands.at(0)) == 64) inst.literal_words = 2;
   block.code.push_back(std::move(inst));
 }
 
@@ -339,65 +377,6 @@ void Parser::in_function(Instruction inst) {
 
 Module Module::parse(const std::vector<uint32_t>& words, const std::string& name) {
   return Parser(words, name).run();
-}
-
-std::optional<isa::Stage> stage_of(spv::ExecutionModel model) {
-  switch (model) {
-    case spv::ExecutionModel::RayGenerationKHR: return isa::Stage::RayGeneration;
-    case spv::ExecutionModel::IntersectionKHR: return isa::Stage::Intersection;
-    case spv::ExecutionModel::AnyHitKHR: return isa::Stage::AnyHit;
-    case spv::ExecutionModel::ClosestHitKHR: return isa::Stage::ClosestHit;
-    case spv::ExecutionModel::MissKHR: return isa::Stage::Miss;
-    case spv::ExecutionModel::CallableKHR: return isa::Stage::Callable;
-    case spv::ExecutionModel::GLCompute: return isa::Stage::Compute;
-    default: return std::nullopt;
-  }
-}
-
-const Type& Module::type(Id id) const {
-  const auto it = types.find(id);
-  GLINT_CHECK(it != types.end(), "no type %{}", id);
-  return it->second;
-}
-
-std::optional<uint32_t> Module::constant_u32(Id id) const {
-  const auto it = constants.find(id);
-  if (it == constants.end()) return std::nullopt;
-  if (it->second.op == spv::Op::OpConstantNull) return 0;
-  if ((it->second.op != spv::Op::OpConstant && it->second.op != spv::Op::OpSpecConstant) ||
-      it->second.operands.size() != 1 || type(it->second.type).kind != Type::Kind::Int)
-    return std::nullopt;
-  return it->second.operands[0];
-}
-
-std::string Module::name_of(Id id) const {
-  const auto it = names.find(id);
-  return it == names.end() || it->second.empty() ? fmt::format("%{}", id) : it->second;
-}
-
-const Function* Module::function(Id id) const {
-  for (const Function& f : functions)
-    if (f.id == id) return &f;
-  return nullptr;
-}
-
-std::vector<Id> Block::successors() const {
-  if (code.empty()) return {};
-  const Instruction& last = terminator();
-  switch (last.op) {
-    case spv::Op::OpBranch:
-      return {last.operands[0]};
-    case spv::Op::OpBranchConditional:
-      return {last.operands[1], last.operands[2]};
-    case spv::Op::OpSwitch: {
-      std::vector<Id> to{last.operands[1]};
-      for (size_t i = 3; i < last.operands.size(); i += 2)
-        to.push_back(last.operands[i]);  // 32-bit selectors
-      return to;
-    }
-    default:
-      return {};
-  }
 }
 
 }  // namespace glint::frontend

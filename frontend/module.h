@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <spirv/unified1/spirv.hpp11>
 #include <string>
 #include <vector>
@@ -27,6 +28,7 @@ struct Type {
     Struct,
     Pointer,
     Image,
+    Sampler,
     SampledImage,
     AccelerationStructure,
     RayQuery,
@@ -40,13 +42,15 @@ struct Type {
   uint32_t array_stride = 0;    // bytes; 0 = not decorated
   spv::StorageClass storage{};  // Pointer
   spv::Dim dim{};               // Image
-  bool is_storage_image = false;
-  bool is_block = false;  // Struct: decorated Block or BufferBlock
+  bool is_storage_image = false, is_arrayed = false, is_multisampled = false;  // Image
+  bool is_block = false;         // Struct: decorated Block or BufferBlock
+  bool is_buffer_block = false;  // Struct: decorated BufferBlock, a storage buffer of storage class Uniform
   struct Member {
     Id type = 0;
     std::optional<uint32_t> offset;  // bytes
     uint32_t matrix_stride = 0;      // bytes
     bool row_major = false;
+    bool is_volatile = false;  // or coherent
     std::optional<spv::BuiltIn> builtin;
     std::string name;
   };
@@ -59,6 +63,7 @@ struct Instruction {
   spv::Op op{};
   Id type = 0, result = 0;
   std::vector<uint32_t> operands;  // the words after type and result
+  uint32_t literal_words = 1;      // OpSwitch: words of a literal, by the width of the selector
   isa::Line line;
 };
 
@@ -97,6 +102,7 @@ struct EntryPoint {
   Id function = 0;
   std::string name;
   std::array<uint32_t, 3> local_size{1, 1, 1};
+  std::set<Id> interface;  // since SPIR-V 1.4 every variable at module level that it uses
 };
 
 // The stage that an execution model means; empty for those Glint has no stage for.
@@ -104,6 +110,7 @@ std::optional<isa::Stage> stage_of(spv::ExecutionModel model);
 
 struct Module {
   Id bound = 0;
+  uint32_t version = 0;  // 0x10600 is 1.6
   std::vector<std::pair<spv::Capability, isa::Line>> capabilities;
   std::map<Id, Type> types;
   std::map<Id, Instruction> constants;  // OpConstant*, OpSpecConstant* (unfrozen), OpUndef at module level
@@ -122,6 +129,8 @@ struct Module {
   std::optional<uint32_t> constant_u32(Id id) const;  // of a 32-bit integer constant
   std::string name_of(Id id) const;                   // debug name, or "%id"
   const Function* function(Id id) const;
+  // The entry point of that name; an empty name means the only one. UserError with the names there are.
+  const EntryPoint& entry_point(const std::string& wanted, const std::string& file) const;
 };
 
 }  // namespace glint::frontend

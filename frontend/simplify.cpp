@@ -46,6 +46,15 @@ const std::vector<std::string>& pass_list() {
   return kPasses;
 }
 
+// When R1 makes a module that is not valid: functions inlined and nothing else.
+const std::vector<std::string>& inlining_only() {
+  static const std::vector<std::string> kPasses = {
+      "--strip-nonsemantic",     "--freeze-spec-const",           "--fold-spec-const-op-composite",
+      "--wrap-opkill",           "--merge-return",                "--inline-entry-points-exhaustive",
+      "--eliminate-dead-functions"};
+  return kPasses;
+}
+
 constexpr size_t kHeaderWords = 5;  // SPIR-V specification, 2.3 Physical Layout
 
 // Many passes skip a whole module that declares an extension they do not list, and say nothing. The
@@ -70,37 +79,40 @@ std::vector<uint32_t> with_extensions(std::vector<uint32_t> words, const std::ve
   return words;
 }
 
+// The module after `passes`; empty, and `messages` says why, when they fail or what they make is not valid.
+std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes,
+                                std::string* messages) {
+  std::vector<uint32_t> extensions, output;
+  const std::vector<uint32_t> input = without_extensions(spirv, &extensions);
+  spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_3);
+  optimizer.SetMessageConsumer(
+      [&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {
+        if (level <= SPV_MSG_ERROR) *messages += fmt::format("{}\n", text);
+      });
+  if (!optimizer.RegisterPassesFromFlags(passes))
+    throw Error(Exit::Failure, "SPIRV-Tools lacks a pass of R1: " + *messages);
+  spvtools::OptimizerOptions options;
+  options.set_run_validator(false);  // done here, with the extensions in place
+  if (!optimizer.Run(input.data(), input.size(), &output, options)) return {};
+  output = with_extensions(std::move(output), extensions);
+  const std::string after = validate_spirv(output);
+  *messages += after;
+  return after.empty() ? output : std::vector<uint32_t>{};
+}
+
 }  // namespace
 
 std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& name, Diagnostics& warnings) {
   const std::string before =
       spirv.size() < kHeaderWords ? "too short to hold a header\n" : validate_spirv(spirv);
   if (!before.empty()) throw UserError({name, 0, 0}, "invalid SPIR-V\n" + before);
-
-  std::vector<uint32_t> extensions;
-  const std::vector<uint32_t> input = without_extensions(spirv, &extensions);
   std::string messages;
-  spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_3);
-  optimizer.SetMessageConsumer(
-      [&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {
-        if (level <= SPV_MSG_ERROR) messages += fmt::format("{}\n", text);
-      });
-  if (!optimizer.RegisterPassesFromFlags(pass_list()))
-    throw Error(Exit::Failure, "SPIRV-Tools lacks a pass of R1: " + messages);
-  spvtools::OptimizerOptions options;
-  options.set_run_validator(false);  // done here, with the extensions in place
-  std::vector<uint32_t> output;
-  if (!optimizer.Run(input.data(), input.size(), &output, options)) {
-    warnings.warning({name, 0, 0}, "the SPIR-V optimiser failed, going on with the module as it was: " + messages);
-    return spirv;
+  for (const auto* passes : {&pass_list(), &inlining_only()}) {
+    std::vector<uint32_t> output = optimised(spirv, *passes, &messages);
+    if (!output.empty()) return output;
   }
-  output = with_extensions(std::move(output), extensions);
-  const std::string after = validate_spirv(output);
-  if (!after.empty()) {
-    warnings.warning({name, 0, 0}, "the optimised SPIR-V is invalid, going on with the module as it was: " + after);
-    return spirv;
-  }
-  return output;
+  warnings.warning({name, 0, 0}, "the SPIR-V optimiser failed, going on with the module as it was: " + messages);
+  return spirv;
 }
 
 }  // namespace glint::frontend

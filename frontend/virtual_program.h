@@ -62,6 +62,7 @@ struct VirtualProgram {
   uint32_t local_bytes = 0;             // variables and payloads; spills and saves are placed after them
   uint32_t payload_bytes = 0, attribute_bytes = 0;
   std::array<uint32_t, 3> local_size{1, 1, 1};
+  uint32_t shared_bytes = 0;            // of a block
 
   VirtualRegister new_register(RegisterClass c) {
     registers.push_back(c);

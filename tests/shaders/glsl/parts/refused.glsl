@@ -1,6 +1,7 @@
 // A function that the frontend does not support.
 // SPDX-License-Identifier: Apache-2.0
 
-uint highest(uint x) {
-  return atomicMax(counter.n, x);
+float fetched(ivec2 at) {
+  vec4 texel; const int code = sparseTexelFetchARB(flat_image, at, 0, texel);
+  return texel.x + float(code);
 }

@@ -1,0 +1,160 @@
+// Atomic reads, writes and changes of memory and of texels; barriers.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "frontend/lower.h"
+#include "frontend/lower_typed.h"
+
+namespace glint::frontend {
+namespace {
+
+// "add.u32" by the width of the type; the ISA adds halves as .noftz.f16.
+std::string op_suffix(std::string_view name32, Part part) {
+  if (part == Part::Float16) return name32 == "add.f32" ? "add.noftz.f16" : with_bits(name32, 16);
+  return bytes_of(part) == 8 ? with_bits(name32, 64) : std::string(name32);
+}
+
+// The old value. Where the ISA has no such op, it is noted.
+Operand change(Lowering& l, const Pointer& pointer, Part part, std::string_view name32, const Operands& operands) {
+  Emitter& e = l.emit();
+  const std::string suffix = op_suffix(name32, part);
+  const bool is_texel = pointer.place == Place::Texel;
+  std::string name;
+  if (is_texel) {
+    const size_t dot = suffix.find('.');
+    name = fmt::format("suatom.p{}.{}{}.trap", "." + suffix.substr(0, dot), pointer.shape, suffix.substr(dot));
+  } else if (pointer.place == Place::Global || pointer.place == Place::Shared) {
+    name = fmt::format("atom.{}.{}", pointer.place == Place::Global ? "global" : "shared", suffix);
+  } else {
+    if (pointer.place != Place::Nowhere) l.unsupported("an atomic on memory of one lane");
+    return Operand::value(0);
+  }
+  if (isa::find_op(name) < 0 || bytes_of(part) == 1) {
+    l.unsupported(fmt::format("no op {} ({} bits)", name, 8 * bytes_of(part)));
+    return Operand::value(0);
+  }
+  const Pointer p = is_texel ? pointer : in_reach(l, pointer);
+  const Operand old = Operand::of(l.program().new_register(class_of(part)));
+  Operands all{old};
+  if (is_texel)
+    all.insert(all.end(), p.texel.begin(), p.texel.end());
+  else
+    all.push_back(p.base);
+  all.insert(all.end(), operands.begin(), operands.end());
+  e.effect(name, std::move(all), is_texel ? 0 : int32_t(p.displacement));
+  l.note_store(is_texel ? Place::Global : p.place);
+  return old;
+}
+
+// Operands: pointer, scope, semantics, value.
+void read_modify_write(Lowering& l, const Instruction& inst, const LoweringRow& row) {
+  const Part part = l.part_of(inst.type);
+  l.set(inst.result, {change(l, l.pointer(inst.operands[0]), part, row.name32, {l.scalar(inst.operands[3])})});
+}
+
+void subtract(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  const Part part = l.part_of(inst.type);
+  const Operand less = typed(l.emit(), "neg.s32", part, {l.scalar(inst.operands[3])});
+  l.set(inst.result, {change(l, l.pointer(inst.operands[0]), part, "add.u32", {less})});
+}
+
+void step(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  const Part part = l.part_of(inst.type);
+  const Operand by = Operand::value(inst.op == spv::Op::OpAtomicIIncrement ? 1 : bytes_of(part) == 8 ? ~uint64_t{0} : 0xffff'ffff);
+  l.set(inst.result, {change(l, l.pointer(inst.operands[0]), part, "add.u32", {by})});
+}
+
+// Operands: pointer, scope, semantics if equal, semantics if not, value, comparator.
+void compare_exchange(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  const Operands operands{l.scalar(inst.operands[5]), l.scalar(inst.operands[4])};
+  l.set(inst.result, {change(l, l.pointer(inst.operands[0]), l.part_of(inst.type), "cas.b32", operands)});
+}
+
+// Model: plain loads and stores of up to 64 bits are atomic.
+void atomic_load(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  Pointer p = l.pointer(inst.operands[0]);
+  if (p.place == Place::Texel)
+    return l.set(inst.result, {change(l, p, Part::Uint32, "or.b32", {Operand::value(0)})});
+  p.is_volatile = true;
+  l.set(inst.result, l.load(p));
+}
+
+void atomic_store(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  Pointer p = l.pointer(inst.operands[0]);
+  const Operand value = l.scalar(inst.operands[3]);
+  if (p.place == Place::Texel) {
+    change(l, p, Part::Uint32, "exch.b32", {value});
+    return;
+  }
+  p.is_volatile = true;
+  l.store(p, {value});
+}
+
+// Values of memory that other threads may have changed are not used again.
+void forget_memory(Lowering& l) {
+  l.note_store(Place::Global);
+  l.note_store(Place::Shared);
+}
+
+void fence(Lowering& l, spv::Scope scope) {
+  switch (scope) {
+    case spv::Scope::CrossDevice: l.emit().effect("membar.sys", {}); break;
+    case spv::Scope::Device:
+    case spv::Scope::QueueFamily:
+    case spv::Scope::ShaderCallKHR: l.emit().effect("membar.gl", {}); break;
+    case spv::Scope::Workgroup: l.emit().effect("membar.cta", {}); break;
+    default: break;  // Model: lanes of a warp see each other's stores in program order
+  }
+  forget_memory(l);
+}
+
+void memory_barrier(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  fence(l, spv::Scope(l.module().constant_u32(inst.operands[0]).value_or(uint32_t(spv::Scope::Device))));
+}
+
+// Operands: scope of execution, scope of memory, semantics. A barrier of the block also orders what the block sees.
+void control_barrier(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  const auto execution = spv::Scope(l.module().constant_u32(inst.operands[0]).value_or(uint32_t(spv::Scope::Workgroup)));
+  const auto memory = spv::Scope(l.module().constant_u32(inst.operands[1]).value_or(uint32_t(spv::Scope::Workgroup)));
+  if (memory == spv::Scope::Device || memory == spv::Scope::QueueFamily || memory == spv::Scope::CrossDevice)
+    fence(l, memory);
+  if (execution == spv::Scope::Workgroup)
+    l.emit().effect("bar.sync", {Operand::value(0), Operand::value(0)});
+  else if (execution == spv::Scope::Subgroup)
+    l.emit().effect("bar.warp.sync", {Operand::value(0xffff'ffff)});
+  else
+    l.unsupported("OpControlBarrier beyond the workgroup");
+  forget_memory(l);
+}
+
+using enum spv::Op;
+constexpr LoweringRow kRows[] = {
+    {OpAtomicLoad, atomic_load, ""},
+    {OpAtomicStore, atomic_store, ""},
+    {OpAtomicExchange, read_modify_write, "exch.b32"},
+    {OpAtomicCompareExchange, compare_exchange, ""},
+    {OpAtomicIIncrement, step, ""},
+    {OpAtomicIDecrement, step, ""},
+    {OpAtomicIAdd, read_modify_write, "add.u32"},
+    {OpAtomicISub, subtract, ""},
+    {OpAtomicSMin, read_modify_write, "min.s32"},
+    {OpAtomicUMin, read_modify_write, "min.u32"},
+    {OpAtomicSMax, read_modify_write, "max.s32"},
+    {OpAtomicUMax, read_modify_write, "max.u32"},
+    {OpAtomicAnd, read_modify_write, "and.b32"},
+    {OpAtomicOr, read_modify_write, "or.b32"},
+    {OpAtomicXor, read_modify_write, "xor.b32"},
+    {OpAtomicFAddEXT, read_modify_write, "add.f32"},
+    {OpAtomicFMinEXT, read_modify_write, "min.f32"},
+    {OpAtomicFMaxEXT, read_modify_write, "max.f32"},
+    {OpMemoryBarrier, memory_barrier, ""},
+    {OpControlBarrier, control_barrier, ""},
+};
+
+}  // namespace
+
+std::span<const LoweringRow> atomic_rows() {
+  return kRows;
+}
+
+}  // namespace glint::frontend

@@ -1,0 +1,137 @@
+// Filtered reads of images: samples with levels, gradients, offsets and references, and gathers.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "frontend/lower_image.h"
+
+namespace glint::frontend {
+namespace {
+
+using enum spv::Op;
+
+bool has_reference(spv::Op op) {
+  return op == OpImageSampleDrefExplicitLod || op == OpImageSampleDrefImplicitLod || op == OpImageSampleProjDrefExplicitLod ||
+         op == OpImageSampleProjDrefImplicitLod || op == OpImageDrefGather;
+}
+bool is_projective(spv::Op op) {
+  return op == OpImageSampleProjExplicitLod || op == OpImageSampleProjImplicitLod || op == OpImageSampleProjDrefExplicitLod ||
+         op == OpImageSampleProjDrefImplicitLod;
+}
+
+// Handle, layer as an integer (Vulkan: rounded to nearest even), coordinates.
+Operands float_place(Emitter& e, const Geometry& geometry, const Operand& handle, const Operands& at) {
+  Operands place{handle};
+  if (geometry.has_layers) place.push_back(e.value("cvt.rni.s32.f32", {at.at(geometry.coordinates)}));
+  place.insert(place.end(), at.begin(), at.begin() + geometry.coordinates);
+  return place;
+}
+
+// Offsets in texels, a byte each.
+Operand packed_offset(Emitter& e, const Operands& offset) {
+  Operand word = Operand::value(0);
+  for (size_t i = 0; i < offset.size() && i < 3; ++i) {
+    const Operand byte = e.value("and.b32", {offset[i], Operand::value(0xff)});
+    word = e.value("or.b32", {word, e.value("shl.b32", {byte, Operand::value(8 * i)})});
+  }
+  return word;
+}
+
+struct Sample {
+  Geometry geometry;
+  std::string_view suffix;
+  Operands place;
+  std::optional<Operand> reference;
+  ImageOperands extra;
+};
+
+// What samples and gathers share: combined image, coordinates, reference where there is one.
+std::optional<Sample> sample_of(Lowering& l, const Instruction& inst, size_t num_fixed) {
+  Emitter& e = l.emit();
+  const Id type = l.type_of(inst.operands[0]);
+  const auto geometry = geometry_of(l, type, false);
+  const std::string_view suffix = texel_suffix(l, type);
+  if (!geometry || suffix.empty()) return std::nullopt;
+  Sample s{*geometry, suffix, {}, std::nullopt, image_operands(inst, num_fixed)};
+  Operands at = l.value(inst.operands[1]);
+  if (has_reference(inst.op)) s.reference = l.scalar(inst.operands[2]);
+  if (is_projective(inst.op)) {
+    const Operand last = at.at(geometry->coordinates);
+    for (uint32_t i = 0; i < geometry->coordinates; ++i) at[i] = e.div(at[i], last);
+    if (s.reference) s.reference = e.div(*s.reference, last);
+  }
+  s.place = float_place(e, *geometry, l.scalar(inst.operands[0]), at);
+  return s;
+}
+
+// Model: without gradients between lanes an implicit level is level 0, as GLSL has it outside of fragment shaders.
+void sample(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  const bool compares = has_reference(inst.op);
+  const auto s = sample_of(l, inst, compares ? 3 : 2);
+  if (!s) return;
+  Operands sources = s->place;
+  std::string name = "tex";
+  if (s->extra.lod && !is_constant(l.scalar(*s->extra.lod), 0)) {
+    name += ".level";
+    sources.push_back(l.scalar(*s->extra.lod));
+  } else if (s->extra.gradients) {
+    name += ".grad";
+    for (const Id gradient : {s->extra.gradients->first, s->extra.gradients->second}) {
+      const Operands parts = l.value(gradient);
+      sources.insert(sources.end(), parts.begin(), parts.end());
+    }
+  }
+  if (compares) name += ".compare";
+  if (s->extra.offset) {
+    name += ".offset";
+    sources.push_back(packed_offset(l.emit(), l.value(*s->extra.offset)));
+  }
+  if (compares) sources.push_back(*s->reference);
+  name += fmt::format(".{}{}.{}.f32", s->geometry.name, compares ? "" : ".v4", s->suffix);
+  if (!compares) return l.set(inst.result, four_words(l, name, sources));
+  if (isa::find_op(name) < 0) return l.unsupported("no op " + name);
+  l.set(inst.result, {l.emit().fresh(name, sources)});
+}
+
+Operands gather_at(Lowering& l, const Sample& s, uint32_t component, const std::optional<Operand>& offset) {
+  Operands sources = s.place;
+  if (offset) sources.push_back(*offset);
+  if (s.reference) sources.push_back(*s.reference);
+  const std::string name = fmt::format("tld4{}{}.{}.{}.v4.{}.f32", s.reference ? ".compare" : "", offset ? ".offset" : "",
+                                       "rgba"[component], s.geometry.name, s.suffix);
+  return four_words(l, name, sources);
+}
+
+// Four texels, or with four offsets the texel (i0, j0) of each: the last of its four.
+void gather(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  const auto s = sample_of(l, inst, 3);
+  if (!s) return;
+  const auto component = has_reference(inst.op) ? std::optional<uint32_t>(0) : l.module().constant_u32(inst.operands[2]);
+  if (!component || *component > 3) return l.unsupported("a gather of a component that is no constant");
+  if (!s->extra.offsets) {
+    std::optional<Operand> offset;
+    if (s->extra.offset) offset = packed_offset(l.emit(), l.value(*s->extra.offset));
+    return l.set(inst.result, gather_at(l, *s, *component, offset));
+  }
+  const Operands all = l.value(*s->extra.offsets);
+  Operands result;
+  for (size_t i = 0; i < 4; ++i)
+    result.push_back(
+        gather_at(l, *s, *component, packed_offset(l.emit(), {all.at(2 * i), all.at(2 * i + 1)}))[3]);
+  l.set(inst.result, std::move(result));
+}
+
+constexpr LoweringRow kRows[] = {
+    {OpImageSampleExplicitLod, sample, ""},     {OpImageSampleImplicitLod, sample, ""},
+    {OpImageSampleDrefExplicitLod, sample, ""}, {OpImageSampleDrefImplicitLod, sample, ""},
+    {OpImageSampleProjExplicitLod, sample, ""}, {OpImageSampleProjImplicitLod, sample, ""},
+    {OpImageSampleProjDrefExplicitLod, sample, ""}, {OpImageSampleProjDrefImplicitLod, sample, ""},
+    {OpImageGather, gather, ""},                {OpImageDrefGather, gather, ""},
+};
+
+}  // namespace
+
+std::span<const LoweringRow> sample_rows() {
+  return kRows;
+}
+
+}  // namespace glint::frontend

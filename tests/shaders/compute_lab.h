@@ -1,0 +1,47 @@
+// Compute shaders over buffers, tables of buffers, images and samplers, in real blocks, on both machines.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+#include "tests/shaders/ray_lab.h"
+
+namespace glint::test {
+
+struct LabImage {
+  core::ImageView view;          // its base is set when it runs
+  std::vector<uint32_t> texels;  // as they lie in memory
+};
+
+using Words = std::vector<uint32_t>;
+
+// Descriptor set 0, by binding. What a run leaves in the buffers and images is in them afterwards.
+class ComputeLab {
+ public:
+  std::map<uint32_t, Words> buffers;
+  std::map<uint32_t, std::vector<Words>> buffer_arrays;
+  std::map<uint32_t, std::vector<LabImage>> images;
+  std::map<uint32_t, std::vector<core::Sampler>> samplers;
+  std::vector<uint32_t> addressed;  // bindings of `buffers` whose addresses are the push constants
+  // A buffer of `count` nodes of `bytes` bytes, each of which begins with the address of the next; the last with 0.
+  struct Chain {
+    uint32_t binding = 0, bytes = 0, count = 0;
+  } linked;
+  std::array<uint32_t, 3> grid{1, 1, 1};
+  frontend::GlslOptions glsl;
+
+  explicit ComputeLab(std::string file) : file_(std::move(file)) {}
+  void run(const LabOptions& options = {});
+
+ private:
+  std::string file_;
+};
+
+// Machines and register limits for compute shaders; fewer than for rays, as a whole world is cheap to check at once.
+const std::vector<LabOptions>& compute_lab_options();
+
+}  // namespace glint::test
