@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "apps/glint/config.h"
+#include "apps/glint/run_pipeline.h"
 #include "apps/glint/run_ptx.h"
 #include "apps/glint/run_summary.h"
 #include "apps/glint/session.h"
@@ -29,6 +30,7 @@ struct Options {
   scenes::RenderParams frame;
   uint64_t max_instructions = 0;
   bool json = false, no_skip = false;
+  bool config_given = false, mode_given = false;  // not left at their defaults
 };
 
 constexpr uint32_t kMaxSide = 16384;  // pixels; beyond it images exceed what a PNG encoder here takes
@@ -119,6 +121,9 @@ pipeline::RenderResult render(const Session& session, pipeline::RenderJob& job,
 }
 
 Exit run(const Session& session, const Options& options) {
+  if (names_pipeline(options.scene))
+    return run_pipeline(session, {options.scene, options.config_given ? options.config : "", options.mode_given ? options.mode : "", options.out,
+                                  options.settings, options.max_instructions, options.json, options.no_skip});
   if (names_kernel(options.scene))
     return run_ptx(session, {options.scene, options.launch, options.config, options.mode, options.out, options.settings,
                              options.max_instructions, options.json, options.no_skip});
@@ -166,8 +171,8 @@ void add_frame_options(CLI::App& command, Options& options) {
 
 void add_run(CLI::App& app, Session& session) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("run", "Render a scene, or launch a PTX kernel, on the simulated GPU");
-  command->add_option("SCENE", options->scene, "Scene; 'glint list scenes' names them. Or a kernel: FILE.ptx, or its launch FILE.toml")->required();
+  CLI::App* command = app.add_subcommand("run", "Render a scene, or launch a pipeline or a PTX kernel, on the simulated GPU");
+  command->add_option("SCENE", options->scene, "Scene; 'glint list scenes' names them. Or a pipeline: FILE.toml, or one shader file. Or a kernel: FILE.ptx, or its launch FILE.toml")->required();
   command->add_option("--launch", options->launch, "Launch file of a kernel: grid, block, arguments")->type_name("FILE");
   command->add_option("--shader", options->shader, "pt, sh or ao; 'glint list shaders' explains")
       ->capture_default_str();
@@ -193,7 +198,11 @@ void add_run(CLI::App& app, Session& session) {
   command->add_flag("--no-skip", options->no_skip, "Step every cycle: slow, same result, for checking");
   add_frame_options(*command, *options);
   command->callback(
-      [&session, options] { session.action = [&session, options] { return run(session, *options); }; });
+      [&session, options, command] {
+        options->config_given = command->count("--config") > 0;
+        options->mode_given = command->count("--mode") > 0;
+        session.action = [&session, options] { return run(session, *options); };
+      });
 }
 
 }  // namespace glint::app

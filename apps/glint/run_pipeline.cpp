@@ -1,0 +1,163 @@
+// Running a described pipeline: shaders from anywhere, resources from the file, pictures and arrays kept.
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/glint/run_pipeline.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "apps/glint/config.h"
+#include "apps/glint/outputs.h"
+#include "apps/glint/run_summary.h"
+#include "pipeline/description/defaults.h"
+#include "pipeline/pipeline_world.h"
+#include "report/config_file.h"
+#include "report/progress.h"
+#include "report/run_directory.h"
+#include "report/stat_writer.h"
+
+namespace glint::app {
+namespace {
+
+bool is_shader(const std::string& what) { return frontend::stage_of_file(what).has_value() || what.ends_with(".spv") || what.ends_with(".spvasm"); }
+
+pipeline::PipelineDescription read_description(const PipelineOptions& options) {
+  if (!is_shader(options.what)) return pipeline::read_pipeline(options.what);
+  const std::vector<std::string> shaders = pipeline::with_companions(options.what);
+  const std::filesystem::path path(options.what);
+  const std::string name = (path.parent_path() / ("defaults of " + path.filename().string())).string();
+  pipeline::PipelineDescription out = pipeline::parse_pipeline(pipeline::default_description(shaders, path.parent_path().string()), name);
+  out.name = path.filename().string();
+  return out;
+}
+
+void check_saves(const pipeline::PipelineDescription& d) {
+  Diagnostics errors;
+  const auto check = [&](const std::vector<pipeline::Save>& saves, bool is_image) {
+    for (const pipeline::Save& save : saves)
+      if (const std::string wrong = wrong_with_output(save.file, is_image); !wrong.empty())
+        errors.error(save.where, fmt::format("cannot save to '{}'", save.file), wrong);
+  };
+  for (const auto& buffer : d.buffers) check(buffer.saves, false);
+  for (const auto& image : d.images) check(image.saves, true);
+  errors.throw_if_errors();
+}
+
+// Writes what the file asks for; returns lines for the summary.
+std::vector<std::string> keep(pipeline::PipelineWorld& world, const report::RunDirectory& directory) {
+  std::vector<std::string> lines;
+  const pipeline::PipelineDescription& d = world.description();
+  for (size_t i = 0; i < d.images.size(); ++i)
+    for (const pipeline::Save& save : d.images[i].saves) {
+      const core::ImageView& view = world.image(i);
+      const uint64_t bytes = view.bytes_before_level(1);
+      directory.write(save.file, image_file(save.file, view, {world.memory().find(view.base, bytes), size_t(bytes)}));
+      lines.push_back(fmt::format("{:<10} {}", d.images[i].name, directory.path_of(save.file)));
+    }
+  for (size_t i = 0; i < d.buffers.size(); ++i) {
+    const pipeline::BufferDescription& b = d.buffers[i];
+    for (const pipeline::Save& save : b.saves) {
+      directory.write(save.file, buffer_file(save.file, b.data.type, world.buffer(i)));
+      lines.push_back(fmt::format("{:<10} {}", b.name, directory.path_of(save.file)));
+    }
+    if (b.show > 0) lines.push_back(fmt::format("{:<10} {}", b.name, first_numbers(b.data.type, world.buffer(i), b.show)));
+  }
+  return lines;
+}
+
+report::RunInfo describe_run(const Session& session, const pipeline::PipelineWorld& world, const pipeline::GpuParams& gpu, const std::string& config,
+                             const std::string& mode) {
+  report::RunInfo info;
+  info.command = session.arguments;
+  info.version = GLINT_VERSION;
+  info.git = GLINT_GIT;
+  info.compiler = __VERSION__;
+  info.scene = world.description().name;
+  info.scene_form = "pipeline";
+  std::string everything;  // what the launch begins with
+  for (const auto& allocation : const_cast<pipeline::PipelineWorld&>(world).memory().allocations())
+    if (allocation.data) everything.append(reinterpret_cast<const char*>(allocation.data), size_t(allocation.bytes));
+  info.scene_hash = report::fnv1a(everything);
+  for (const pipeline::ShaderModule& module : world.modules().all()) info.shader += (info.shader.empty() ? "" : " ") + module.name;
+  info.config = config;
+  info.config_hash = report::fnv1a(report::config_key_values(describe_params(gpu)));
+  info.mode = mode;
+  info.width = world.world.launch_size[0];
+  info.height = world.world.launch_size[1];
+  info.started = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
+  return info;
+}
+
+// An error still leaves a run directory that says what happened.
+pipeline::RenderResult run_recorded(const Session& session, pipeline::PipelineWorld& world, const pipeline::RenderJob& job,
+                                    const report::RunDirectory& directory, report::RunInfo& info) {
+  report::Progress progress(session.on_terminal ? stdout : nullptr, "running", session.terminal);
+  const auto finish = [&](Exit exit, const std::string& message, double seconds) {
+    info.wall_seconds = seconds;
+    info.exit = int(exit);
+    info.message = message;
+    directory.write_run(info);
+  };
+  try {
+    pipeline::RenderResult result = pipeline::run_pipeline(world, job.gpu, job.timing, job.no_skip,
+                                                           [&](uint64_t done, uint64_t total) { progress.update(done, total); });
+    finish(Exit::Ok, "", result.wall_seconds);
+    return result;
+  } catch (const Error& error) {
+    finish(error.exit(), error.what(), 0);
+    throw;
+  }
+}
+
+}  // namespace
+
+bool names_pipeline(const std::string& what) {
+  if (is_shader(what)) return true;
+  if (!what.ends_with(".toml")) return false;
+  return pipeline::read_toml(what).find("kernel") == nullptr;  // a kernel's launch file names it
+}
+
+Exit run_pipeline(const Session& session, const PipelineOptions& options) {
+  const pipeline::PipelineDescription description = read_description(options);
+  check_saves(description);
+  const pipeline::MachineDescription& machine = description.machine;
+  const auto first = [](const std::string& a, const std::string& b, const char* c) { return !a.empty() ? a : !b.empty() ? b : std::string(c); };
+  const std::string mode = first(options.mode, machine.mode, "timing"), config = first(options.config, machine.config, "mobile");
+  std::vector<std::string> settings = machine.settings;
+  settings.insert(settings.end(), options.settings.begin(), options.settings.end());
+
+  pipeline::RenderJob job;
+  job.gpu = read_config(session.resources, config, settings);
+  const uint64_t budget = options.max_instructions ? options.max_instructions : machine.max_instructions;
+  if (budget) job.gpu.core.instruction_budget = budget;
+  job.timing = mode == "timing";
+  job.no_skip = options.no_skip;
+  pipeline::PipelineWorld world(description, job.gpu);
+  for (const std::string& warning : world.warnings) fmt::print(stderr, "{}\n", warning);
+
+  const auto& [x, y, z] = world.world.launch_size;
+  const std::string title = fmt::format("{}  {} x {} x {} {}, {} on {}", description.name, x, y, z, description.compute.empty() ? "rays" : "threads", mode, config);
+  const report::RunDirectory directory(options.out.empty() ? fmt::format("out/{}-{}", description.name, mode) : options.out);
+  report::RunInfo info = describe_run(session, world, job.gpu, config, mode);
+  directory.write_config(describe_params(job.gpu), "Resolved configuration of: " + title);
+  const pipeline::RenderResult result = run_recorded(session, world, job, directory, info);
+  directory.write_stats(result.statistics());
+  const std::vector<std::string> kept = keep(world, directory);
+
+  if (options.json) {
+    write_output("", Registry<report::StatWriter>::instance().entry("json").make_default({})->write(result.statistics()));
+    return Exit::Ok;
+  }
+  report::Summary summary = summarise(job, result);
+  summary.title = title;
+  summary.files = kept;
+  summary.files.push_back("statistics " + directory.path_of("stats.txt"));
+  write_output("", report::format_summary(summary, session.terminal));
+  return Exit::Ok;
+}
+
+}  // namespace glint::app

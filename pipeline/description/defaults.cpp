@@ -1,0 +1,311 @@
+// Writing the obvious description: resources by what the shaders declare, records in the order of the files.
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/description/defaults.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <filesystem>
+
+#include "pipeline/description/modules.h"
+
+namespace glint::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using frontend::BindingKind;
+using frontend::BlockType;
+
+// Choices of the defaults: the picture's size, and how many elements run-time arrays have.
+constexpr uint32_t kSide = 256, kElements = 65536;
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (char c : text) out += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+  return out + "\"";
+}
+
+std::string zeros(const BlockType& type) {
+  const auto list = [](size_t count, const std::string& each) {
+    std::string out = "[";
+    for (size_t i = 0; i < count; ++i) out += (i ? ", " : "") + each;
+    return out + "]";
+  };
+  if (type.kind == BlockType::Kind::Array) return list(std::min(type.count, 64u), zeros(type.element[0]));
+  if (type.kind == BlockType::Kind::Struct) {
+    std::string out = "{ ";
+    for (const auto& member : type.members) out += fmt::format("{}{} = {}", out.size() > 2 ? ", " : "", member.name, zeros(member.type));
+    return out + " }";
+  }
+  const std::string zero = type.number[0] == 'f' ? "0.0" : "0";
+  return type.offsets.size() == 1 ? zero : list(type.offsets.size(), zero);
+}
+
+// The number that all of a block is made of, or u32.
+std::string number_of(const BlockType& type) {
+  if (type.kind == BlockType::Kind::Numbers) return type.number;
+  if (type.kind == BlockType::Kind::Array) return number_of(type.element[0]);
+  std::string found;
+  for (const auto& member : type.members) {
+    const std::string each = number_of(member.type);
+    if (!found.empty() && each != found) return "u32";
+    found = each;
+  }
+  return found.empty() ? "u32" : found;
+}
+
+uint32_t default_bytes(const BlockType& block) {
+  uint32_t bytes = block.bytes;
+  if (!block.members.empty()) {
+    const auto& last = block.members.back();
+    if (last.type.kind == BlockType::Kind::Array && last.type.count == 0) bytes = last.offset + kElements * std::max(1u, last.type.stride);
+  }
+  return (bytes + 15) / 16 * 16;
+}
+
+const char* kScene = R"(
+# A floor and a pyramid, as seen from (0, 1, 4) towards the origin. Replace by file = "mesh.obj" if you like.
+[[bottom_level]]
+name = "triangles"
+[[bottom_level.geometry]]
+vertices = [[-3, -0.5, -3], [3, -0.5, -3], [3, -0.5, 3], [-3, -0.5, 3],
+            [-0.7, -0.5, -0.7], [0.7, -0.5, -0.7], [0.7, -0.5, 0.7], [-0.7, -0.5, 0.7], [0, 0.8, 0]]
+indices = [[0, 1, 2], [0, 2, 3], [4, 8, 5], [5, 8, 6], [6, 8, 7], [7, 8, 4]]
+opaque = {}
+)";
+const char* kBoxes = R"(
+# Boxes for the intersection shader; its hit group stands at record {}.
+[[bottom_level]]
+name = "boxes"
+[[bottom_level.geometry]]
+aabbs = [[-0.5, -0.5, -0.5, 0.5, 0.5, 0.5]]
+opaque = {}
+)";
+
+class Writer {
+ public:
+  Writer(const Modules& modules, const std::string& folder) : modules_(modules), folder_(folder) {}
+
+  std::string run() {
+    out_ = "# Written by `glint init`; docs/pipelines.md explains every key. Paths start at this file's folder.\n";
+    write_stages();
+    write_launch();
+    write_push_constants();
+    write_specialization();
+    for (const auto& [place, use] : modules_.bindings()) write_binding(use);
+    if (has_structures_) write_structures();
+    return out_;
+  }
+
+ private:
+  template <class... T>
+  void line(fmt::format_string<T...> text, T&&... values) {
+    out_ += fmt::format(text, std::forward<T>(values)...) + "\n";
+  }
+
+  std::string path_of(const ShaderModule& m) const {
+    std::error_code failed;
+    const fs::path relative = fs::proximate(m.path, folder_.empty() ? "." : folder_, failed);
+    return failed || relative.empty() ? m.path : relative.string();
+  }
+
+  void write_record_data(const std::vector<const ShaderModule*>& shaders) {
+    for (const ShaderModule* m : shaders)
+      if (m && !m->reflection.shader_record.members.empty()) {
+        for (const std::string& member : frontend::describe_members(m->reflection.shader_record)) line("# {}", member);
+        line("data = {}", zeros(m->reflection.shader_record));
+        return;
+      }
+  }
+
+  void write_stages() {
+    struct Hit {
+      const ShaderModule *closest = nullptr, *any = nullptr, *intersection = nullptr;
+    };
+    std::vector<std::pair<std::string, Hit>> hits;
+    const auto hit = [&](const ShaderModule& m) -> Hit& {
+      const std::string stem = fs::path(m.path).stem().string();
+      for (auto& [name, found] : hits)
+        if (name == stem) return found;
+      return hits.emplace_back(stem, Hit{}).second;
+    };
+    std::vector<const ShaderModule*> starts;
+    for (const ShaderModule& m : modules_.all()) {
+      switch (m.reflection.stage) {
+        case isa::Stage::RayGeneration: case isa::Stage::Compute: starts.push_back(&m); break;
+        case isa::Stage::ClosestHit: hit(m).closest = &m; break;
+        case isa::Stage::AnyHit: hit(m).any = &m; break;
+        case isa::Stage::Intersection: hit(m).intersection = &m; break;
+        default: break;
+      }
+    }
+    if (starts.size() != 1)
+      throw UserError({}, fmt::format("{} ray generation or compute shaders among the files, expected one", starts.size()));
+    start_ = starts[0];
+    const bool is_compute = start_->reflection.stage == isa::Stage::Compute;
+    line("\n[{}]\nshader = {}", is_compute ? "compute" : "raygen", quoted(path_of(*start_)));
+    if (is_compute) return;
+    write_record_data({start_});
+    write_region("miss", isa::Stage::Miss);
+    for (const auto& [name, h] : hits) {
+      line("\n[[hit]]  # record {}", num_hits_);
+      for (const auto& [key, m] : {std::pair{"closest_hit", h.closest}, {"any_hit", h.any}, {"intersection", h.intersection}})
+        if (m) line("{} = {}", key, quoted(path_of(*m)));
+      write_record_data({h.closest, h.any, h.intersection});
+      if (h.intersection && box_record_ < 0) box_record_ = num_hits_;
+      if (!h.intersection && triangle_record_ < 0) triangle_record_ = num_hits_;
+      has_any_hit_ |= h.any != nullptr;
+      ++num_hits_;
+    }
+    write_region("callable", isa::Stage::Callable);
+  }
+
+  void write_region(const char* key, isa::Stage stage) {
+    int count = 0;
+    for (const ShaderModule& m : modules_.all()) {
+      if (m.reflection.stage != stage) continue;
+      line("\n[[{}]]  # record {}\nshader = {}", key, count++, quoted(path_of(m)));
+      write_record_data({&m});
+    }
+  }
+
+  void write_launch() {
+    if (start_->reflection.stage != isa::Stage::Compute) {
+      line("\n[launch]\nsize = [{}, {}]  # rays in x and y", kSide, kSide);
+      return;
+    }
+    const auto& size = start_->reflection.local_size;
+    threads_ = size[1] * size[2] == 1 && !writes_picture() ? std::array<uint32_t, 2>{kElements, 1} : std::array<uint32_t, 2>{kSide, kSide};
+    line("\n[launch]\n# Blocks of {} x {} x {} threads.\ngroups = [{}, {}]", size[0], size[1], size[2], (threads_[0] + size[0] - 1) / size[0], (threads_[1] + size[1] - 1) / size[1]);
+  }
+
+  bool writes_picture() const {
+    for (const auto& [place, use] : modules_.bindings())
+      if (use.binding.kind == BindingKind::StorageImage && isa::num_coordinates(use.binding.shape) > 1) return true;
+    return false;
+  }
+
+  void write_push_constants() {
+    for (const ShaderModule& m : modules_.all()) {
+      const BlockType& block = m.reflection.push_constants;
+      if (block.members.empty()) continue;
+      line("\n[push_constants]");
+      for (const auto& member : block.members) line("{} = {}", member.name, zeros(member.type));
+      return;
+    }
+  }
+
+  void write_specialization() {
+    bool first = true;
+    for (const ShaderModule& m : modules_.all())
+      for (const frontend::SpecConstant& c : m.constants) {
+        if (first) line("\n# Specialisation constants and their defaults.\n[specialization]");
+        first = false;
+        std::string value = fmt::format("{}", int64_t(c.number[0] == 's' ? int64_t(int32_t(c.value)) : int64_t(c.value)));
+        if (c.number == "bool") value = c.value ? "true" : "false";
+        if (c.number == "f32") value = fmt::format("{}", std::bit_cast<float>(uint32_t(c.value)));
+        line("# {} = {}  # constant_id {}, {}", c.name.empty() ? fmt::format("{}", c.id) : c.name, value, c.id, c.number);
+      }
+  }
+
+  void write_slot(const char* table, const frontend::Binding& b, const std::string& name, uint32_t element) {
+    line("\n[[{}]]\nname = {}\nset = {}\nbinding = {}", table, quoted(element ? fmt::format("{}{}", name, element) : name), b.set, b.binding);
+    if (b.count != 1) line("element = {}  # of {}", element, b.count ? fmt::format("{}", b.count) : std::string("as many as you like"));
+  }
+
+  void write_binding(const BindingUse& use) {
+    const frontend::Binding& b = use.binding;
+    const std::string name = b.name.empty() ? fmt::format("binding_{}_{}", b.set, b.binding) : b.name;
+    for (uint32_t element = 0; element < std::max(1u, b.count); ++element) switch (b.kind) {
+        case BindingKind::UniformBuffer:
+        case BindingKind::StorageBuffer: write_buffer(b, name, element); break;
+        case BindingKind::StorageImage:
+          write_slot("image", b, name, element);
+          line("size = [{}]", size_text(b, kSide, kSide));
+          line("save = {}", quoted(fmt::format("{}{}.png", name, element ? fmt::format("{}", element) : "")));
+          break;
+        case BindingKind::SampledImage:
+          write_slot("image", b, name, element);
+          line("init = \"checker\"  # or file = \"picture.png\"\nsize = [{}]", size_text(b, 64, 64));
+          if (b.texel == "f32") line("format = \"rgba8_unorm\"");
+          line("filter = \"linear\"\nwrap = \"repeat\"");
+          break;
+        case BindingKind::Sampler:
+          write_slot("sampler", b, name, element);
+          line("filter = \"linear\"\nwrap = \"repeat\"");
+          break;
+        case BindingKind::AccelerationStructure:
+          write_slot("top_level", b, name, element);
+          has_structures_ = true;
+          write_instances();
+          break;
+        case BindingKind::Other: break;
+      }
+  }
+
+  static std::string size_text(const frontend::Binding& b, uint32_t w, uint32_t h) {
+    const int axes = isa::num_coordinates(b.shape);
+    if (axes == 1) return fmt::format("{}", w);
+    return axes == 3 && !isa::is_cube(b.shape) ? fmt::format("{}, {}, {}", w, h, 16) : fmt::format("{}, {}", w, h);
+  }
+
+  void write_buffer(const frontend::Binding& b, const std::string& name, uint32_t element) {
+    write_slot("buffer", b, name, element);
+    for (const std::string& member : frontend::describe_members(b.block)) line("# {}", member);
+    if (b.kind == BindingKind::UniformBuffer) {
+      line("data = {}", zeros(b.block));
+      return;
+    }
+    const std::string number = number_of(b.block);
+    line("type = {}\nbytes = {}\ninit = \"zero\"  # value, iota, random; or data = [...], or file = \"...\"", quoted(number), default_bytes(b.block));
+    line("show = 8");
+    line("save = {}", quoted(fmt::format("{}{}.npy", name, element ? fmt::format("{}", element) : "")));
+  }
+
+  void write_instances() {
+    const bool only_boxes = box_record_ >= 0 && triangle_record_ < 0;
+    if (!only_boxes) {
+      line("[[top_level.instance]]\nbottom_level = \"triangles\"\n# also: translate, rotate, scale or transform; custom_index, mask, flags");
+      if (triangle_record_ > 0) line("sbt_offset = {}", triangle_record_);
+    }
+    if (box_record_ < 0) return;
+    line("[[top_level.instance]]\nbottom_level = \"boxes\"");
+    if (!only_boxes) line("translate = [1.5, 0, 0]");
+    if (box_record_ > 0) line("sbt_offset = {}", box_record_);
+  }
+
+  void write_structures() {
+    if (box_record_ < 0 || triangle_record_ >= 0) out_ += fmt::format(fmt::runtime(kScene), !has_any_hit_);
+    if (box_record_ >= 0) out_ += fmt::format(fmt::runtime(kBoxes), box_record_, !has_any_hit_);
+  }
+
+  const Modules& modules_;
+  const std::string folder_;
+  std::string out_;
+  const ShaderModule* start_ = nullptr;
+  std::array<uint32_t, 2> threads_{};
+  int num_hits_ = 0, box_record_ = -1, triangle_record_ = -1;
+  bool has_any_hit_ = false, has_structures_ = false;
+};
+
+}  // namespace
+
+std::string default_description(const std::vector<std::string>& shaders, const std::string& folder) {
+  PipelineDescription description;
+  for (const std::string& shader : shaders) description.shaders.push_back({shader, shader, "", {}, {}});
+  const Modules modules(description, {}, true);
+  return Writer(modules, folder).run();
+}
+
+std::vector<std::string> with_companions(const std::string& shader) {
+  std::vector<std::string> out{shader};
+  if (fs::path(shader).extension() != ".rgen") return out;
+  for (const char* ending : {".rmiss", ".rchit", ".rahit", ".rint", ".rcall"}) {
+    const fs::path beside = fs::path(shader).replace_extension(ending);
+    std::error_code failed;
+    if (fs::is_regular_file(beside, failed)) out.push_back(beside.string());
+  }
+  return out;
+}
+
+}  // namespace glint::pipeline
