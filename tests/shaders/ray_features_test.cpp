@@ -112,6 +112,14 @@ TEST_CASE("the vendor's extension traces by the payload's location, and its any-
   });
 }
 
+TEST_CASE("lanes choose a structure of an array, and a null structure is a miss") {
+  RayLab lab({"rt/arrays.rgen", {"table.rmiss"}, {{"tag1.rchit", "", ""}, {}, {}, {}, {"tag2.rchit", "", "pair.rint"}}, {}});
+  check_pixels(lab, [](uint32_t x, uint32_t) {
+    const uint32_t tag = misses(x) ? 30 : is_box(x) ? 2 : 1;
+    return Row{x & 1 ? tag : 30, tag};
+  });
+}
+
 TEST_CASE("a ray's time reaches its shaders, and rays without one have time 0") {
   RayLab lab({"rt/motion.rgen", {"rt/motion.rmiss"},
               {{"rt/motion.rchit", "", ""}, {"rt/motion.rchit", "", ""}, {}, {}, {"rt/motion.rchit", "", "pair.rint"}, {"rt/motion.rchit", "", "pair.rint"}}, {}});

@@ -156,6 +156,10 @@ std::vector<uint32_t> RayLab::run(const LabOptions& options) {
   const Address structure_words = memory.allocate("the top level's address", 8);
   memory.write(structure_words, &top.address, 8);
   bind(world, 0, 30, structure_words, 8);
+  const uint64_t structures[4] = {0, 0, top.address, top.bytes};  // descriptors of a null structure and of the top level
+  const Address array = memory.allocate("structures", sizeof structures);
+  memory.write(array, structures, sizeof structures);
+  bind(world, 0, 31, array, 2);
   const uint64_t result_bytes = uint64_t(kLanesUsed) * words_per_lane * 4;
   const Address results = memory.allocate("results", result_bytes);
   bind(world, 0, 1, results, result_bytes);

@@ -48,7 +48,8 @@ class RayLab {
   std::vector<uint32_t> push_constants;
   uint32_t words_per_lane = 8;
   uint32_t max_trace_depth = 1, max_callable_depth = 31;
-  // Words of the records' data, by record; those left out have none. Binding 30 holds the top level's address.
+  // Words of the records' data, by record; those left out have none. Binding 30 holds the top level's
+  // address, binding 31 an array of a null structure and the top level.
   std::vector<uint32_t> raygen_data;
   std::vector<std::vector<uint32_t>> miss_data, hit_data, callable_data;
 
