@@ -7,8 +7,32 @@
 #include "isa/op_makers.h"
 #include "isa/ops/families.h"
 
+#if defined(__AVX2__)
+#include <immintrin.h>
+#endif
+
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
+
+// The lanes of a row that hold a value. By intrinsics: compilers sum the bits up instead of moving the mask.
+[[gnu::always_inline]] inline LaneMask lanes_equal(const uint32_t* row, uint32_t value) {
+#if defined(__AVX512F__)
+  const __m512i wanted = _mm512_set1_epi32(int(value));
+  const uint32_t low = _mm512_cmpeq_epi32_mask(_mm512_load_si512(row), wanted);
+  const uint32_t high = _mm512_cmpeq_epi32_mask(_mm512_load_si512(row + 16), wanted);
+  return low | high << 16;
+#elif defined(__AVX2__)
+  const __m256i wanted = _mm256_set1_epi32(int(value));
+  LaneMask mask = 0;
+  for (int i = 0; i < kLanes; i += 8) {
+    const __m256i same = _mm256_cmpeq_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(row + i)), wanted);
+    mask |= uint32_t(_mm256_movemask_ps(_mm256_castsi256_ps(same))) << i;
+  }
+  return mask;
+#else
+  return mask_of([&](int i) { return row[i] == value; });
+#endif
+}
 
 // Calls `visit(group, members)` for each different mask in row `masks`: the executing lanes that gave it, and those of
 // them that it names. Mostly once.
@@ -16,7 +40,7 @@ template <class Visit>
 [[gnu::always_inline]] inline void each_group(const Warp& warp, const Source<uint32_t>& masks, Visit&& visit) {
   for (LaneMask rest = warp.exec; rest;) {
     const uint32_t mask = masks.at(__builtin_ctz(rest));
-    const LaneMask group = mask_of([&](int i) { return masks.low[i] == mask; }) & rest;
+    const LaneMask group = lanes_equal(masks.low, mask) & rest;
     visit(group, group & mask);
     rest &= ~group;
   }
@@ -83,27 +107,18 @@ template <Vote kVote>
   write_lanes<uint32_t>(warp, slot_at(inst, 0), [&](int i) { return result[i]; });
 }
 
-// Sets `bit` in the words of `same` whose lanes hold (low, high). Not inlined into its loop, where it would not become
-// vector code.
-[[gnu::noinline]] void mark_equal(uint32_t* __restrict same, const uint32_t* __restrict lows, const uint32_t* __restrict highs,
-                                  uint32_t low, uint32_t high, uint32_t bit) {
-  all_lanes([&](int i) { same[i] |= ((lows[i] ^ low) | (highs[i] ^ high)) == 0 ? bit : 0; });
-}
-
 // For each lane the members with its value.
 template <class T>
-void match_any(Warp& warp, const Inst& inst) {
+[[gnu::flatten]] void match_any(Warp& warp, const Inst& inst) {
   const Source<T> a(warp, slot_at(inst, 1));
   const Source<uint32_t> masks(warp, slot_at(inst, 2));
   uint32_t result[kLanes]{};
-  // Member by member, all lanes at once: no sums across a vector.
   each_group(warp, masks, [&](LaneMask group, LaneMask members) {
-    alignas(64) uint32_t same[kLanes]{};
-    for (LaneMask rest = members; rest; rest &= rest - 1) {
+    for (LaneMask rest = group; rest; rest &= rest - 1) {
       const int k = __builtin_ctz(rest);
-      mark_equal(same, a.low, sizeof(T) == 8 ? a.high : a.low, a.low[k], sizeof(T) == 8 ? a.high[k] : a.low[k], 1u << k);
+      result[k] = lanes_equal(a.low, a.low[k]) & members;
+      if constexpr (sizeof(T) == 8) result[k] &= lanes_equal(a.high, a.high[k]);
     }
-    all_lanes([&](int i) { result[i] = (group & kLaneBit[i]) != 0 ? same[i] : result[i]; });
   });
   write_lanes<uint32_t>(warp, slot_at(inst, 0), [&](int i) { return result[i]; });
 }
@@ -116,7 +131,9 @@ template <class T>
   LaneMask matched = 0;
   each_group(warp, masks, [&](LaneMask group, LaneMask members) {
     const T value = a.at(__builtin_ctz(members ? members : group));
-    const bool same = (mask_of([&](int i) { return a.at(i) == value; }) & members) == members;
+    LaneMask equal = lanes_equal(a.low, uint32_t(value));
+    if constexpr (sizeof(T) == 8) equal &= lanes_equal(a.high, uint32_t(value >> 32));
+    const bool same = (equal & members) == members;
     all_lanes([&](int i) { result[i] = (group & kLaneBit[i]) != 0 && same ? members : result[i]; });
     matched |= same ? group : 0;
   });
