@@ -26,38 +26,13 @@ void trace_motion(Lowering& l, const Instruction& inst, const LoweringRow&) {
               [&] { l.emit().effect("call.sbt.hit", {}); });
 }
 
-// SPV_NV_ray_tracing names payloads and callable data by the constant of their location.
-Pointer at_location(Lowering& l, Id constant, std::initializer_list<spv::StorageClass> storages) {
-  const auto location = l.module().constant_u32(constant);
-  for (const auto& [id, variable] : l.module().variables)
-    for (const spv::StorageClass storage : storages)
-      if (location && variable.storage == storage && l.decorations(id).location == location) return l.pointer(id);
-  l.unsupported("a payload or callable data whose location no variable has");
-  return {};
-}
-
-void trace_nv(Lowering& l, const Instruction& inst, const LoweringRow&) {
-  const Pointer payload = at_location(l, inst.operands.back(), {spv::StorageClass::RayPayloadKHR, spv::StorageClass::IncomingRayPayloadKHR});
-  if (payload.place != Place::Local) return;
-  if (inst.op == spv::Op::OpTraceMotionNV) l.emit().effect("rt.time.set", {l.scalar(inst.operands[10])});
-  lower_trace(l, std::span(inst.operands).first(10), payload, [&] { l.emit().effect("call.sbt.hit", {}); });
-}
-
-void call_callable(Lowering& l, const Operand& index, const Pointer& data) {
+void execute_callable(Lowering& l, const Instruction& inst, const LoweringRow&) {
   Emitter& e = l.emit();
-  const Operand address = local_address(l, data);
+  const Operand index = l.scalar(inst.operands[0]), data = local_address(l, l.pointer(inst.operands[1]));
   e.marker(VirtualInst::Kind::SaveLive);
-  e.effect("call.sbt.callable", {index, address});
+  e.effect("call.sbt.callable", {index, data});
   e.marker(VirtualInst::Kind::RestoreLive);
   forget_after_call(l);
-}
-
-void execute_callable(Lowering& l, const Instruction& inst, const LoweringRow&) {
-  call_callable(l, l.scalar(inst.operands[0]), l.pointer(inst.operands[1]));
-}
-void execute_callable_nv(Lowering& l, const Instruction& inst, const LoweringRow&) {
-  const Pointer data = at_location(l, inst.operands[1], {spv::StorageClass::CallableDataKHR, spv::StorageClass::IncomingCallableDataKHR});
-  if (data.place == Place::Local) call_callable(l, l.scalar(inst.operands[0]), data);
 }
 
 // In SPV_NV_ray_tracing these are no terminators: code follows that no lane runs. A guard that always holds keeps it
@@ -119,10 +94,7 @@ using enum spv::Op;
 constexpr LoweringRow kRows[] = {
     {OpTraceRayKHR, trace, ""},
     {OpTraceRayMotionNV, trace_motion, ""},
-    {OpTraceNV, trace_nv, ""},
-    {OpTraceMotionNV, trace_nv, ""},
     {OpExecuteCallableKHR, execute_callable, ""},
-    {OpExecuteCallableNV, execute_callable_nv, ""},
     {OpIgnoreIntersectionNV, end_any_hit, "rt.ignore"},
     {OpTerminateRayNV, end_any_hit, "rt.terminate"},
     {OpConvertUToAccelerationStructureKHR, structure_from_address, ""},

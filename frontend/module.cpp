@@ -176,9 +176,6 @@ void Parser::decorate(std::span<const uint32_t> args) {
     case spv::Decoration::Binding:
       d.binding = args[2];
       break;
-    case spv::Decoration::Location:
-      d.location = args[2];
-      break;
     case spv::Decoration::BuiltIn:
       d.builtin = spv::BuiltIn(args[2]);
       break;

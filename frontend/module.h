@@ -91,7 +91,7 @@ struct Variable {
 };
 
 struct Decorations {
-  std::optional<uint32_t> set, binding, location;
+  std::optional<uint32_t> set, binding;
   std::optional<spv::BuiltIn> builtin;
   bool is_volatile = false;
   bool is_coherent = false;

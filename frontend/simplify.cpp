@@ -1,12 +1,15 @@
 // Pass list R1 of SPIRV-Tools: everything inlined, scalarised and in SSA form, nothing numerically changed.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <fmt/format.h>
 #include <spirv-tools/optimizer.hpp>
 #include <spirv/unified1/spirv.hpp11>
 
 #include "frontend/compile.h"
 #include "frontend/spirv.h"
+#include "frontend/vendor_ray_tracing.h"
 
 namespace glint::frontend {
 namespace {
@@ -79,6 +82,15 @@ std::vector<uint32_t> with_extensions(std::vector<uint32_t> words, const std::ve
   return words;
 }
 
+bool imports_debug_printf(const std::vector<uint32_t>& words) {
+  constexpr std::string_view kName = "NonSemantic.DebugPrintf";
+  for (size_t i = kHeaderWords; i < words.size(); i += words[i] >> 16)
+    if (spv::Op(words[i] & 0xffff) == spv::Op::OpExtInstImport &&
+        std::memcmp(&words[i + 2], kName.data(), std::min(kName.size(), size_t(words[i] >> 16) * 4 - 8)) == 0)
+      return true;
+  return false;
+}
+
 // The module after `passes`; empty, and `messages` says why, when they fail or what they make is not valid.
 std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes,
                                 std::string* messages) {
@@ -106,6 +118,8 @@ std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& n
   const std::string before =
       spirv.size() < kHeaderWords ? "too short to hold a header\n" : validate_spirv(spirv);
   if (!before.empty()) throw UserError({name, 0, 0}, "invalid SPIR-V\n" + before);
+  spirv = with_standard_traces(spirv);
+  if (imports_debug_printf(spirv)) warnings.warning({name, 0, 0}, "debugPrintfEXT prints nothing");
   std::string messages;
   for (const auto* passes : {&pass_list(), &inlining_only()}) {
     std::vector<uint32_t> output = optimised(spirv, *passes, &messages);
