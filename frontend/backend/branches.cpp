@@ -154,6 +154,8 @@ class BranchCleaner {
         return c.inst.op == ops_.ssy && first_code(c.target) == b;
       });
       if (ssy == from.end()) continue;
+      // A region opened behind it, which the edge leaves, would stay open without the join.
+      if (std::any_of(ssy + 1, from.end(), [&](const Coded& c) { return c.inst.op == ops_.ssy; })) continue;
       code_[b].erase(code_[b].begin());
       from.erase(ssy);
       return true;  // the edges have changed

@@ -118,11 +118,12 @@ bool float_binary(spv::Op op, T a, T b, uint64_t* r) {
   }
 }
 
-// Truncated, saturated to 32 or 64 bits, NaN 0; then cut.
+// Truncated, saturated to 32 or 64 bits; then cut. Choice, as hardware's: a NaN gives 0 from 32 bits to 32, else the
+// highest bit alone.
 template <class T>
 uint64_t to_integer(T x, bool is_signed, uint32_t width) {
-  if (std::isnan(x)) return 0;
   const uint32_t bits = width > 32 ? 64 : 32;
+  if (std::isnan(x)) return sizeof(T) == 4 && bits == 32 ? 0 : 1ull << (bits - 1);
   const T low = is_signed ? -std::ldexp(T(1), int(bits) - 1) : T(0), end = std::ldexp(T(1), int(bits) - int(is_signed));
   if (is_signed) {
     if (x < low) return cut(1ull << (bits - 1), width);

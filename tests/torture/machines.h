@@ -35,7 +35,7 @@ std::string difference(Trial& trial, const ScalarLaunch& expected, const Way& wa
 // The whole comparison, on every way given; the first difference.
 struct Verdict {
   std::string problem;   // empty: all agree
-  bool too_long = false; // the interpreter gave up: nothing was compared
+  bool skipped = false;  // it runs too long, or the validator refuses it: nothing was compared
   uint64_t steps = 0;
 };
 Verdict judge(Trial& trial, const std::vector<Way>& ways);
