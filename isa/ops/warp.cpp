@@ -18,14 +18,14 @@ namespace {
 [[gnu::always_inline]] inline LaneMask lanes_equal(const uint32_t* row, uint32_t value) {
 #if defined(__AVX512F__)
   const __m512i wanted = _mm512_set1_epi32(int(value));
-  const uint32_t low = _mm512_cmpeq_epi32_mask(_mm512_load_si512(row), wanted);
-  const uint32_t high = _mm512_cmpeq_epi32_mask(_mm512_load_si512(row + 16), wanted);
+  const uint32_t low = _mm512_cmpeq_epi32_mask(_mm512_loadu_si512(row), wanted);
+  const uint32_t high = _mm512_cmpeq_epi32_mask(_mm512_loadu_si512(row + 16), wanted);
   return low | high << 16;
 #elif defined(__AVX2__)
   const __m256i wanted = _mm256_set1_epi32(int(value));
   LaneMask mask = 0;
   for (int i = 0; i < kLanes; i += 8) {
-    const __m256i same = _mm256_cmpeq_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(row + i)), wanted);
+    const __m256i same = _mm256_cmpeq_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(row + i)), wanted);
     mask |= uint32_t(_mm256_movemask_ps(_mm256_castsi256_ps(same))) << i;
   }
   return mask;
