@@ -25,7 +25,7 @@ class PipelineWorld {
   std::vector<std::string> warnings;
   const Modules& modules() const { return modules_; }
   const PipelineDescription& description() const { return description_; }
-  mem::AddressSpace& memory() { return memory_; }
+  const mem::AddressSpace& memory() const { return memory_; }
 
   // What a buffer or an image holds; by its number in the description.
   std::span<const std::byte> buffer(size_t index) const;

@@ -79,7 +79,7 @@ report::RunInfo describe_run(const Session& session, const pipeline::PipelineWor
   info.scene = world.description().name;
   info.scene_form = "pipeline";
   std::string everything;  // what the launch begins with
-  for (const auto& allocation : const_cast<pipeline::PipelineWorld&>(world).memory().allocations())
+  for (const auto& allocation : world.memory().allocations())
     if (allocation.data) everything.append(reinterpret_cast<const char*>(allocation.data), size_t(allocation.bytes));
   info.scene_hash = report::fnv1a(everything);
   for (const pipeline::ShaderModule& module : world.modules().all()) info.shader += (info.shader.empty() ? "" : " ") + module.name;

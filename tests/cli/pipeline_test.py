@@ -1,0 +1,291 @@
+# `glint run FILE.toml`, `glint run SHADER` and `glint init`: examples, defaults, inputs, outputs, and every kind of mistake.
+# SPDX-License-Identifier: Apache-2.0
+"""usage: pipeline_test.py GLINT SOURCE_DIR [SUITE...]"""
+import json
+import pathlib
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+import zlib
+
+GLINT, ROOT = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+PICTURES = ["mandelbrot", "hello_triangle", "spheres", "cutout", "materials", "ambient_occlusion"]
+
+
+def png(path):
+    """Width, height and the bytes of an 8-bit RGB image (PNG specification: chunks and filters)."""
+    data, at, packed, width, height = path.read_bytes(), 8, b"", 0, 0
+    while at < len(data):
+        length, kind = struct.unpack(">I4s", data[at:at + 8])
+        body = data[at + 8:at + 8 + length]
+        at += 12 + length
+        if kind == b"IHDR":
+            width, height = struct.unpack(">II", body[:8])
+        if kind == b"IDAT":
+            packed += body
+    raw, stride, out, above = zlib.decompress(packed), width * 3, b"", bytes(width * 3)
+    for y in range(height):
+        method, row = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
+        for i in range(stride):
+            a, b, c = (row[i - 3] if i >= 3 else 0), above[i], (above[i - 3] if i >= 3 else 0)
+            pa, pb, pc = abs(b - c), abs(a - c), abs(a + b - 2 * c)
+            nearest = a if pa <= pb and pa <= pc else b if pb <= pc else c
+            row[i] = (row[i] + [0, a, b, (a + b) // 2, nearest][method]) & 255
+        out, above = out + bytes(row), bytes(row)
+    return width, height, out
+
+
+def npy(path):
+    """Header text and bytes of a NumPy file."""
+    data = path.read_bytes()
+    assert data[:8] == b"\x93NUMPY\x01\x00", data[:8]
+    length = struct.unpack("<H", data[8:10])[0]
+    assert (10 + length) % 64 == 0
+    return data[10:10 + length].decode(), data[10 + length:]
+
+
+class PipelineTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def glint(self, *arguments):
+        return subprocess.run([GLINT, *map(str, arguments)], capture_output=True, text=True, cwd=self.folder, timeout=300)
+
+    def expect(self, code, parts, *arguments):
+        done = self.glint(*arguments)
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        for part in parts:
+            self.assertIn(part, done.stderr)
+        return done
+
+    def run_file(self, what, *arguments):
+        done = self.glint("run", what, "--mode", "functional", "--out", "out", *arguments)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return done
+
+    def write(self, name, text):
+        (self.folder / name).write_text(text)
+        return name
+
+    def copy(self, example):
+        shutil.copytree(ROOT / "examples" / example, self.folder, dirs_exist_ok=True)
+
+    def edit(self, *changes):
+        """The example's file with texts replaced; each must be there."""
+        text = (self.folder / "pipeline.toml").read_text()
+        for old, new in changes:
+            self.assertIn(old, text)
+            text = text.replace(old, new, 1)
+        return self.write("edited.toml", text)
+
+
+class Examples(PipelineTest):
+    def test_every_example_gives_the_picture_of_the_docs_on_both_machines(self):
+        for name in PICTURES:
+            for mode in ("functional", "timing"):
+                with self.subTest(example=name, mode=mode):
+                    done = self.glint("run", ROOT / "examples" / name / "pipeline.toml", "--mode", mode, "--out", name)
+                    self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+                    self.assertEqual(png(self.folder / name / "picture.png"), png(ROOT / f"docs/images/example_{name}.png"))
+
+    def test_the_reduction_sums_blocks_of_256(self):
+        sums = [sum(range(256 * i, 256 * i + 256)) for i in range(16)]
+        for mode in ("functional", "timing"):
+            done = self.glint("run", ROOT / "examples/reduction/pipeline.toml", "--mode", mode, "--out", "out")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual((self.folder / "out/sums.csv").read_text().split(), ["value", *map(str, sums)])
+        header, data = npy(self.folder / "out/sums.npy")
+        self.assertIn("'descr': '<u4'", header)
+        self.assertIn("'shape': (16,)", header)
+        self.assertEqual(list(struct.unpack("<16I", data)), sums)
+
+    def test_every_example_has_its_page_and_its_test(self):
+        names = {p.name for p in (ROOT / "examples").iterdir() if p.is_dir()}
+        self.assertEqual(names, {*PICTURES, "reduction"})
+        page = (ROOT / "docs/pipelines.md").read_text()
+        for name in names:
+            self.assertIn(f"examples/{name}", page)
+
+    def test_a_run_leaves_a_complete_directory(self):
+        self.run_file(ROOT / "examples/mandelbrot/pipeline.toml")
+        for name in ("config.toml", "run.json", "stats.txt", "stats.json", "stats.csv", "picture.png", "picture.npy"):
+            self.assertTrue((self.folder / "out" / name).is_file(), name)
+        run = json.loads((self.folder / "out/run.json").read_text())
+        self.assertEqual(run["exit"], 0)
+        self.assertIn("(128, 128, 4)", npy(self.folder / "out/picture.npy")[0])
+
+
+ADD = """#version 460
+layout(local_size_x = 4) in;
+layout(constant_id = 3) const int FACTOR = 1;
+layout(set = 1, binding = 2, std140) uniform Settings { vec4 a; float b[3]; } settings;
+layout(set = 0, binding = 0) buffer Out { float result[]; };
+void main() { result[gl_GlobalInvocationID.x] = FACTOR * (settings.a.x + settings.b[gl_GlobalInvocationID.x % 3]); }
+"""
+ADD_FILE = """[compute]
+shader = "SHADER"
+[launch]
+groups = 1
+[[buffer]]
+set = 1
+binding = 2
+data = { a = [10, 0, 0, 0], b = [1, 2, 3] }
+[[buffer]]
+binding = 0
+type = "f32"
+count = 4
+save = "out.csv"
+"""
+
+
+class Inputs(PipelineTest):
+    def result(self):
+        return [float(v) for v in (self.folder / "out/out.csv").read_text().split()[1:]]
+
+    def test_members_go_where_the_shaders_layout_wants_them(self):
+        self.write("add.comp", ADD)
+        self.run_file(self.write("p.toml", ADD_FILE.replace("SHADER", "add.comp")))
+        self.assertEqual(self.result(), [11, 12, 13, 11])
+
+    def test_a_specialisation_constant_is_set_by_name_and_by_number(self):
+        self.write("add.comp", ADD)
+        for key in ("FACTOR", "3"):
+            self.run_file(self.write("p.toml", ADD_FILE.replace("SHADER", "add.comp") + f"[specialization]\n{key} = -2\n"))
+            self.assertEqual(self.result(), [-22, -24, -26, -22])
+
+    def test_text_and_binary_spirv_run_like_their_source(self):
+        self.write("add.comp", ADD)
+        done = self.glint("compile", "add.comp", "--emit", "spirv")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.write("add.spvasm", done.stdout)
+        self.run_file(self.write("p.toml", ADD_FILE.replace("SHADER", "add.spvasm")))
+        self.assertEqual(self.result(), [11, 12, 13, 11])
+        if shutil.which("spirv-as"):
+            subprocess.run(["spirv-as", "add.spvasm", "-o", "add.spv"], cwd=self.folder, check=True)
+            self.run_file(self.write("p.toml", ADD_FILE.replace("SHADER", "add.spv")))
+            self.assertEqual(self.result(), [11, 12, 13, 11])
+        else:
+            print("skipped: spirv-as is not installed")
+
+    def test_generators_fill_buffers(self):
+        copy = "#version 460\nlayout(local_size_x = 4) in;\nlayout(binding = 0) buffer A { uint a[]; };\nlayout(binding = 1) buffer B { uint b[]; };\n" \
+               "void main() { b[gl_GlobalInvocationID.x] = a[gl_GlobalInvocationID.x]; }\n"
+        self.write("copy.comp", copy)
+        (self.folder / "numbers.bin").write_bytes(struct.pack("<4I", 9, 8, 7, 6))
+        seen = []
+        for fill, expected in (('init = "iota"\ncount = 4', [0, 1, 2, 3]), ("value = 7\ncount = 4", [7] * 4), ("count = 4", [0] * 4),
+                               ("data = [1, 2, 3, 4]", [1, 2, 3, 4]), ('file = "numbers.bin"', [9, 8, 7, 6]),
+                               ('init = "random"\nlow = 5\nhigh = 6\ncount = 4\nseed = 3', None)):
+            self.run_file(self.write("p.toml", f"[compute]\nshader = 'copy.comp'\n[launch]\ngroups = 1\n[[buffer]]\nbinding = 0\n{fill}\n"
+                                               "[[buffer]]\nbinding = 1\ncount = 4\nsave = 'out.csv'\n"))
+            seen = self.result()
+            if expected is not None:
+                self.assertEqual(seen, expected)
+        self.assertTrue(set(seen) <= {5, 6}, seen)
+
+    def test_a_png_becomes_a_texture(self):
+        look = "#version 460\nlayout(local_size_x = 8, local_size_y = 8) in;\nlayout(binding = 0) uniform sampler2D t;\n" \
+               "layout(binding = 1, rgba32f) uniform image2D o;\nvoid main() { ivec2 p = ivec2(gl_GlobalInvocationID.xy);\n" \
+               "imageStore(o, p, textureLod(t, (vec2(p) + 0.5) / 128.0, 0.0)); }\n"
+        self.write("look.comp", look)
+        picture = ROOT / "docs/images/example_hello_triangle.png"
+        self.run_file(self.write("p.toml", f"[compute]\nshader = 'look.comp'\n[launch]\ngroups = [16, 16]\n[[image]]\nbinding = 0\nfile = '{picture}'\n"
+                                           "filter = 'nearest'\n[[image]]\nbinding = 1\nsave = 'copy.png'\n"))
+        self.assertEqual(png(self.folder / "out/copy.png"), png(picture))
+
+
+class Defaults(PipelineTest):
+    def test_a_shader_alone_runs_with_defaults(self):
+        self.write("add.comp", ADD)
+        self.run_file("add.comp")
+        self.run_file(ROOT / "examples/reduction/reduction.comp")
+        self.run_file(ROOT / "examples/hello_triangle/hello.rgen")
+        width, height, pixels = png(self.folder / "out/picture.png")
+        self.assertEqual((width, height), (256, 256))
+        self.assertGreater(len(set(pixels)), 50)  # the pyramid's faces mix colours
+
+    def test_init_writes_a_file_that_runs_as_it_is(self):
+        for name in (*PICTURES, "reduction"):
+            with self.subTest(example=name):
+                shaders = [p for p in sorted((ROOT / "examples" / name).iterdir()) if p.suffix not in (".toml", ".obj")]
+                done = self.glint("init", f"{name}.toml", *shaders)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.run_file(f"{name}.toml")
+
+    def test_init_does_not_write_over_a_file(self):
+        self.write("there.toml", "x")
+        self.expect(2, ["there already", "--force"], "init", "there.toml", ROOT / "examples/reduction/reduction.comp")
+
+    def test_init_wants_one_shader_to_start_with(self):
+        self.expect(2, ["0 ray generation or compute shaders"], "init", "x.toml", ROOT / "examples/hello_triangle/hello.rmiss")
+
+
+class Mistakes(PipelineTest):
+    def setUp(self):
+        super().setUp()
+        self.copy("hello_triangle")
+
+    def refuse(self, parts, *changes):
+        self.expect(2, parts, "run", self.edit(*changes), "--mode", "functional", "--out", "out")
+
+    def test_a_missing_binding_names_the_shaders_line(self):
+        self.refuse(["nothing is bound to set 0 binding 1", "'picture' at hello.rgen:6"], ("binding = 1\n", "binding = 5\n"))
+
+    def test_a_binding_of_the_wrong_kind_names_both_places(self):
+        self.refuse(["edited.toml:25", "'picture' is a [[buffer]], the shader wants a [[image]]", "hello.rgen:6"],
+                    ("[[image]]", "[[buffer]]"), ('save = "picture.png"', "count = 4"))
+
+    def test_an_unknown_key_is_refused_at_its_line_with_the_nearest(self):
+        self.refuse(["edited.toml:29:1: error: 'sav' is no key of an image", "did you mean 'save'?"], ("save =", "sav ="))
+
+    def test_an_unknown_bottom_level_is_refused_with_the_nearest(self):
+        self.refuse(["there is no bottom level 'triangel'", "did you mean 'triangle'?"], ('bottom_level = "triangle"', 'bottom_level = "triangel"'))
+
+    def test_a_shader_of_another_stage_is_refused(self):
+        self.refuse(["'closest_hit' wants a shader of stage closest_hit", "hello.rmiss"], ("hello.rchit", "hello.rmiss"))
+
+    def test_a_missing_shader_is_refused_at_its_line(self):
+        self.refuse(["edited.toml:", "cannot read the shader 'nowhere.rchit'"], ("hello.rchit", "nowhere.rchit"))
+
+    def test_an_index_without_a_vertex_is_refused(self):
+        self.refuse(["index 3: there are 3 vertices"], ("[0.0, 0.8, 0.0]]", "[0.0, 0.8, 0.0]]\nindices = [0, 1, 3]"))
+
+    def test_an_unknown_kind_of_output_is_refused(self):
+        self.refuse(["cannot save to 'picture.gif'"], ("picture.png", "picture.gif"))
+
+    def test_every_mistake_is_reported_at_once(self):
+        self.refuse(["'sav'", "'triangel'"], ("save =", "sav ="), ('bottom_level = "triangle"', 'bottom_level = "triangel"'))
+
+    def test_a_buffer_below_the_static_layout_names_both_places(self):
+        self.write("add.comp", ADD)
+        text = ADD_FILE.replace("SHADER", "add.comp").replace("data = { a = [10, 0, 0, 0], b = [1, 2, 3] }", "data = [1, 2]")
+        self.expect(2, ["p.toml:5", "has 8 bytes, the shader's block needs 64", "add.comp:4"], "run", self.write("p.toml", text))
+
+    def test_an_unknown_member_is_refused_with_the_nearest(self):
+        self.write("add.comp", ADD.replace("vec4 a;", "vec4 amount;").replace("settings.a", "settings.amount"))
+        text = ADD_FILE.replace("SHADER", "add.comp").replace("{ a =", "{ amonut =")
+        self.expect(2, ["no member 'amonut'", "did you mean 'amount'?"], "run", self.write("p.toml", text))
+
+    def test_missing_push_constants_are_refused(self):
+        self.copy("mandelbrot")
+        self.refuse(["[push_constants] is missing", "mandelbrot.comp:6"], ("[push_constants]\ncentre = [-0.6, 0.0]\nwidth = 2.6\n", ""))
+
+    def test_an_unknown_specialisation_constant_is_refused(self):
+        self.copy("mandelbrot")
+        self.refuse(["no shader has a specialisation constant 'MUST'"], ("MOST =", "MUST ="))
+
+    def test_a_record_without_its_data_is_refused(self):
+        self.copy("materials")
+        self.refuse(["the record's data have 0 bytes, the shader's record 16", "materials.rchit:5"], ("data = { tint = [1.0, 0.4, 0.3], painter = 0 }\n", ""))
+
+    def test_integers_in_a_float_image_are_refused(self):
+        self.refuse(["format r32_uint, whose texels are u32; the shader's are f32"], ('save =', 'format = "r32ui"\nsave ='))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
