@@ -1,7 +1,7 @@
 # Random programs against a scalar interpreter of SPIR-V. The machines are compiled in: the rest of the pipeline is not needed.
 if(TARGET glint::core AND TARGET glint::rtunit AND TARGET glint::frontend)
   add_library(glint_torture STATIC torture/interpreter.cpp torture/interpreter_glsl.cpp torture/interpreter_ops.cpp torture/interpreter_run.cpp
-    torture/expressions.cpp torture/generator.cpp torture/machines.cpp torture/tree_glsl.cpp torture/tree_spirv.cpp
+    torture/expressions.cpp torture/function_writer.cpp torture/generator.cpp torture/machines.cpp torture/tree_glsl.cpp torture/tree_spirv.cpp
     ${PROJECT_SOURCE_DIR}/pipeline/engine_loop.cpp ${PROJECT_SOURCE_DIR}/pipeline/functional_machine.cpp ${PROJECT_SOURCE_DIR}/pipeline/timing_machine.cpp)
   target_link_libraries(glint_torture PUBLIC glint::core glint::rtunit glint::memsys glint::scenes glint::frontend PRIVATE glint_warnings)
   target_include_directories(glint_torture PUBLIC ${PROJECT_SOURCE_DIR})

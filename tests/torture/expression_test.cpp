@@ -33,7 +33,7 @@ std::string name_difference(const ExpressionProgram& program, const std::vector<
 }
 
 TEST_CASE("Random expressions over all exact ops give the interpreter's bits in every lane") {
-  const uint64_t first = setting("GLINT_TORTURE_SEED", 1), count = setting("GLINT_TORTURE_COUNT", 150), most_failures = setting("GLINT_TORTURE_FAILURES", 1);
+  const uint64_t first = setting("GLINT_TORTURE_SEED", 1), count = setting("GLINT_TORTURE_COUNT", 120), most_failures = setting("GLINT_TORTURE_FAILURES", 1);
   static const std::vector<Way> kWays = {{64, true, false, true}, {64, true, false, false}, {16, true, false, true}, {255, false, false, false}, {64, true, true, true}};
   uint64_t failures = 0;
   for (uint64_t seed = first; seed < first + count && failures < most_failures; ++seed) {

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 
@@ -12,6 +13,7 @@
 #include "isa/verify.h"
 #include "pipeline/functional_machine.h"
 #include "pipeline/timing_machine.h"
+#include "tests/torture/tree.h"
 
 namespace glint::test::torture {
 namespace {
@@ -103,6 +105,8 @@ Verdict judge(Trial& trial, const std::vector<Way>& ways) {
     if (!verdict.skipped) verdict.problem = error.what();
     return verdict;
   }
+  const auto& results = expected.buffers.at(kResultBinding);
+  verdict.lanes_differ = std::any_of(results.begin(), results.end(), [&](uint32_t x) { return x != results[0]; });
   for (const Way& way : ways) {
     verdict.problem = difference(trial, expected, way);
     if (verdict.problem.empty()) continue;

@@ -36,7 +36,8 @@ std::string difference(Trial& trial, const ScalarLaunch& expected, const Way& wa
 struct Verdict {
   std::string problem;   // empty: all agree
   bool skipped = false;  // it runs too long, or the validator refuses it: nothing was compared
-  uint64_t steps = 0;
+  uint64_t steps = 0;      // of the longest lane
+  bool lanes_differ = false;  // in their results
 };
 Verdict judge(Trial& trial, const std::vector<Way>& ways);
 

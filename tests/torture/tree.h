@@ -68,7 +68,7 @@ struct Stmt {
 };
 
 struct FunctionTree {
-  std::vector<Sort> variables;  // word 0 is the hash; words 1 and 2 start as the arguments
+  std::vector<Sort> variables;  // word 0 is the hash; words 1 and 2 start as the arguments, or the lane and an input
   std::vector<uint8_t> in_memory;
   std::vector<Stmt> body;
 };

@@ -77,12 +77,14 @@ class Writer {
     line(program_.is_compute ? "const uint lane = gl_GlobalInvocationID.x;" : "const uint lane = gl_LaunchIDEXT.x;");
     line("uint elements[4] = uint[4](lane, 1u, 2u, 3u);");
     for (size_t v = 0; v < tree.variables.size(); ++v) switch (tree.variables[v]) {
-        case Sort::Word: line(fmt::format("uint v{} = {};", v, v == 1 && !is_entry_ ? "x" : v == 2 && !is_entry_ ? "y" : fmt::format("{}u", v))); break;
+        case Sort::Word:
+          line(fmt::format("uint v{} = {};", v, v == 1 ? (is_entry_ ? "lane" : "x") : v == 2 ? (is_entry_ ? "inputs[lane & 63u]" : "y") : fmt::format("{}u", v)));
+          break;
         case Sort::Bool: line(fmt::format("bool v{} = false;", v)); break;
         case Sort::Float: line(fmt::format("float v{} = {}.0;", v, v)); break;
       }
     list(tree.body);
-    line(is_entry_ ? "results[lane] = v0;" : "return v0;");
+    line(is_entry_ ? "results[lane] = v0 ^ (v3 * 31u + v4);" : "return v0 ^ (v3 * 31u + v4);");
     --indent_;
     line("}");
   }
