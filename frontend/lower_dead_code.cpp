@@ -28,6 +28,17 @@ size_t num_destinations(const VirtualInst& inst) {
   return slots;  // destinations come first in every row
 }
 
+// An atomic whose old value nobody reads is a reduction, which hardware sends without waiting for an answer.
+void drop_result(VirtualInst* inst) {
+  const isa::OpRow& row = isa::op_table()[inst->op];
+  constexpr std::string_view kAtomic = "atom.";
+  if (row.effect != isa::Effect::Atomic || !row.name.starts_with(kAtomic)) return;
+  const int reduction = isa::find_op("red." + std::string(row.name.substr(kAtomic.size())));
+  if (reduction < 0) return;
+  inst->op = uint16_t(reduction);
+  inst->operands.erase(inst->operands.begin());
+}
+
 }  // namespace
 
 void remove_dead_code(VirtualProgram* program) {
@@ -48,7 +59,7 @@ void remove_dead_code(VirtualProgram* program) {
   for (const VirtualBlock& block : program->blocks)
     for (const VirtualInst& inst : block.code) {
       if (has_effect(inst)) {
-        need_sources(inst, 0);
+        need_sources(inst, num_destinations(inst));
         continue;
       }
       for (size_t i = 0; i < num_destinations(inst); ++i) definitions[inst.operands[i].reg].push_back(&inst);
@@ -64,6 +75,10 @@ void remove_dead_code(VirtualProgram* program) {
       if (needed[inst.operands[i].reg]) return false;
     return true;
   };
+  for (VirtualBlock& block : program->blocks)
+    for (VirtualInst& inst : block.code)
+      if (inst.kind == VirtualInst::Kind::Real && num_destinations(inst) == 1 && !needed[inst.operands[0].reg])
+        drop_result(&inst);
   for (VirtualBlock& block : program->blocks)
     block.code.erase(std::remove_if(block.code.begin(), block.code.end(), is_dead), block.code.end());
 }
