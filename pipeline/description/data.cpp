@@ -122,7 +122,7 @@ std::vector<std::byte> inline_bytes(const DataSource& source, const BlockType* b
     for (const auto& [type, numbers] : table.table) append_typed(numbers, type, address, out, errors);
   };
   const auto is_chunk = [](const Value& v) {
-    return v.kind == Value::Kind::Table && !v.table.empty() && std::all_of(v.table.begin(), v.table.end(), [](const auto& e) { return is_type(e.first); });
+    return v.kind == Value::Kind::Table && !v.table.empty() && std::all_of(v.table.begin(), v.table.end(), [](const auto& e) { return is_type(e.key); });
   };
   const Value& data = source.data;
   if (data.kind == Value::Kind::List && !data.list.empty() && std::all_of(data.list.begin(), data.list.end(), is_chunk)) {

@@ -25,10 +25,10 @@ Value value_of(const toml::node& node, const std::string& file) {
     for (const auto& [key, child] : *table) {
       Value value = value_of(child, file);
       value.where = place(file, key.source());
-      out.table.emplace_back(std::string(key.str()), std::move(value));
+      out.table.push_back({std::string(key.str()), std::move(value)});
     }
     std::stable_sort(out.table.begin(), out.table.end(), [](const auto& a, const auto& b) {
-      return std::pair(a.second.where.line, a.second.where.column) < std::pair(b.second.where.line, b.second.where.column);
+      return std::pair(a.value.where.line, a.value.where.column) < std::pair(b.value.where.line, b.value.where.column);
     });
   } else if (const auto* list = node.as_array()) {
     out.kind = Value::Kind::List;

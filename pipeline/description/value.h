@@ -5,12 +5,13 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "base/diagnostics.h"
 
 namespace glint::pipeline {
+
+struct Entry;  // a key and its value
 
 struct Value {
   enum class Kind : uint8_t { None, Bool, Integer, Real, Text, List, Table } kind = Kind::None;
@@ -19,12 +20,17 @@ struct Value {
   double real = 0;  // of integers too
   std::string text;
   std::vector<Value> list;
-  std::vector<std::pair<std::string, Value>> table;  // by line
+  std::vector<Entry> table;  // by line
   SourceLocation where;                              // of the key, or of the value in a list
 
   explicit operator bool() const { return kind != Kind::None; }
   bool is_number() const { return kind == Kind::Integer || kind == Kind::Real; }
-  const Value* find(const std::string& key) const;
+  const Value* find(const std::string& key) const;  // null when absent
+};
+
+struct Entry {
+  std::string key;
+  Value value;
 };
 
 // UserError with line and column when it cannot be read or is no TOML.
