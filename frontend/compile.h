@@ -15,8 +15,8 @@ namespace glint::frontend {
 struct GlslOptions {
   std::vector<std::string> include_dirs;                      // -I
   std::vector<std::pair<std::string, std::string>> defines;   // -D NAME=VALUE
-  std::string entry_point;                                    // of a module with several; empty: the only one
-  std::map<uint32_t, uint64_t> specialization;                // bits of specialisation constants, by constant_id
+  std::string entry_point = {};                              // of a module with several; empty: the only one
+  std::map<uint32_t, uint64_t> specialization = {};             // bits of specialisation constants, by constant_id
 };
 
 struct BackendOptions {
@@ -30,6 +30,8 @@ std::optional<isa::Stage> stage_of_file(const std::string& path);
 // Runs glslang in process. Returns SPIR-V 1.6 words with OpLine debug info, validated.
 // UserError carries glslang's messages with file and line.
 std::vector<uint32_t> glsl_to_spirv(const std::string& path, const GlslOptions& options);
+// The same of a text that lies in no file of its own; `path` is for messages and for what it includes.
+std::vector<uint32_t> glsl_text_to_spirv(const std::string& text, const std::string& path, isa::Stage stage, const GlslOptions& options);
 
 // A module in SPIR-V's binary form (.spv) or text (.spvasm), validated. UserError with the file.
 std::vector<uint32_t> read_spirv(const std::string& path);

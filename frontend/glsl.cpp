@@ -157,12 +157,15 @@ std::vector<uint32_t> glsl_to_spirv(const std::string& path, const GlslOptions& 
                     "name the file .rgen, .rint, .rahit, .rchit, .rmiss, .rcall or .comp");
   const std::optional<std::string> source = read_text(path);
   if (!source) throw UserError({path, 0, 0}, "cannot read the shader");
+  return glsl_text_to_spirv(*source, path, *stage, options);
+}
 
+std::vector<uint32_t> glsl_text_to_spirv(const std::string& source, const std::string& path, isa::Stage stage, const GlslOptions& options) {
   static const Process process;  // thread-safe since C++11
-  const EShLanguage language = language_of(*stage);
+  const EShLanguage language = language_of(stage);
   glslang::TShader shader(language);
-  const char* text = source->c_str();
-  const int length = int(source->size());
+  const char* text = source.c_str();
+  const int length = int(source.size());
   const char* name = path.c_str();
   shader.setStringsWithLengthsAndNames(&text, &length, &name, 1);
   const std::string before = preamble(options);

@@ -1,0 +1,117 @@
+// Compiling shaders of scripts: GLSL, SPIR-V as text, as hexadecimal words and as a file.
+// SPDX-License-Identifier: Apache-2.0
+#include "amber/compile.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "frontend/compile.h"
+#include "frontend/specialize.h"
+#include "frontend/spirv.h"
+
+namespace glint::amber {
+namespace {
+
+// SPIR-V's version in the form of a module's second word, of a target environment as the SPIR-V tools name it. Script
+// without one means spv1.0.
+uint32_t version_of(const Shader& shader) {
+  const std::map<std::string, uint32_t> versions{
+      {"", 0x1'0000},          {"spv1.0", 0x1'0000},        {"spv1.1", 0x1'0100},    {"spv1.2", 0x1'0200},    {"spv1.3", 0x1'0300},
+      {"spv1.4", 0x1'0400},    {"spv1.5", 0x1'0500},        {"spv1.6", 0x1'0600},    {"vulkan1.0", 0x1'0000}, {"vulkan1.1", 0x1'0300},
+      {"vulkan1.1spv1.4", 0x1'0400}, {"vulkan1.2", 0x1'0500}, {"vulkan1.3", 0x1'0600}};
+  const auto found = versions.find(shader.target_env);
+  if (found == versions.end())
+    throw UnsupportedError(fmt::format("{}: unsupported: target environment '{}' of shader '{}'", shader.path, shader.target_env, shader.name));
+  return found->second;
+}
+
+std::vector<uint32_t> from_hex(const Shader& shader) {
+  std::vector<uint32_t> words;
+  std::string text = shader.text;
+  std::replace(text.begin(), text.end(), ',', ' ');
+  const char* blank = " \t\r\n";
+  for (size_t at = text.find_first_not_of(blank); at != std::string::npos; at = text.find_first_not_of(blank, at)) {
+    const size_t end = std::min(text.find_first_of(blank, at), text.size());
+    const std::string word = text.substr(at, end - at);
+    char* rest = nullptr;
+    const uint64_t value = std::strtoull(word.c_str(), &rest, 16);
+    if (*rest || value > 0xffff'ffff) throw UserError({shader.path, 0, 0}, fmt::format("shader '{}': '{}' is no word of 32 bits", shader.name, word));
+    words.push_back(uint32_t(value));
+    at = end;
+  }
+  return words;
+}
+
+void add_attachments(const Script& script, const Pipeline& pipeline, std::vector<Attachment>& out) {
+  const auto is_new = [&](const std::string& name) {
+    return std::none_of(out.begin(), out.end(), [&](const Attachment& a) { return a.shader == name; });
+  };
+  for (const Attachment& each : pipeline.shaders)
+    if (is_new(each.shader)) out.push_back(each);
+  for (const auto& [group, shaders] : pipeline.groups)
+    for (const std::string& name : shaders) {
+      if (!is_new(name)) continue;
+      Attachment attachment;
+      attachment.shader = name, attachment.stage = script.shaders.at(name).stage;
+      if (!attachment.stage) throw UserError(pipeline.where, fmt::format("'{}' is a multi shader: ATTACH must give its TYPE", name));
+      out.push_back(attachment);
+    }
+  for (const std::string& library : pipeline.libraries) add_attachments(script, script.pipelines.at(library), out);
+}
+
+}  // namespace
+
+std::vector<uint32_t> spirv_of(const Shader& shader, isa::Stage stage) {
+  std::vector<uint32_t> words;
+  switch (shader.language) {
+    case Language::Glsl: return frontend::glsl_text_to_spirv(shader.text, shader.path, stage, {});
+    case Language::SpirvHex: return from_hex(shader);
+    case Language::SpirvBinary:
+      if (shader.text.size() % 4) throw UserError({shader.path, 0, 0}, "not a SPIR-V module: it does not consist of words");
+      words.resize(shader.text.size() / 4);
+      std::memcpy(words.data(), shader.text.data(), shader.text.size());
+      return words;
+    case Language::SpirvText: break;
+  }
+  const uint32_t version = version_of(shader);
+  words = frontend::assemble_spirv(shader.text, shader.path);
+  words.at(1) = version;
+  return words;
+}
+
+CompiledShader compile(const Script& script, const Attachment& attachment, const pipeline::CompilerParams& compiler) {
+  const Shader& shader = script.shaders.at(attachment.shader);
+  std::vector<uint32_t> words = spirv_of(shader, *attachment.stage);
+  const std::string title = shader.name;
+  const std::string invalid = words.size() < 5 ? "too short to hold a header" : frontend::validate_spirv(words);
+  if (!invalid.empty()) throw UserError({shader.path, 0, 0}, fmt::format("shader '{}' is invalid SPIR-V\n{}", title, invalid));
+  words = frontend::specialize(std::move(words), attachment.constants);
+  CompiledShader out;
+  Diagnostics notes;
+  out.name = shader.name;
+  out.reflection = frontend::reflect(words, title);
+  const std::vector<uint32_t> simple = frontend::simplify(std::move(words), title, notes);
+  out.program = frontend::lower(simple, title, frontend::BackendOptions{compiler.max_registers, compiler.schedule}, attachment.entry);
+  if (out.program.stage != *attachment.stage)
+    throw UserError({shader.path, 0, 0}, fmt::format("entry point '{}' of shader '{}' is of another stage", attachment.entry, title));
+  return out;
+}
+
+std::vector<CompiledShader> compile(const Script& script, const Pipeline& pipeline, const pipeline::CompilerParams& compiler) {
+  std::vector<Attachment> attachments;
+  add_attachments(script, pipeline, attachments);
+  std::vector<CompiledShader> out;
+  for (const Attachment& each : attachments) out.push_back(compile(script, each, compiler));
+  return out;
+}
+
+std::vector<std::pair<std::string, std::vector<std::string>>> all_groups(const Script& script, const Pipeline& pipeline) {
+  auto out = pipeline.groups;
+  for (const std::string& library : pipeline.libraries)
+    for (const auto& group : all_groups(script, script.pipelines.at(library))) out.push_back(group);
+  return out;
+}
+
+}  // namespace glint::amber

@@ -1,0 +1,30 @@
+// From a script's shader to a program.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <vector>
+
+#include "amber/script.h"
+#include "frontend/reflection.h"
+#include "pipeline/params.h"
+
+namespace glint::amber {
+
+struct CompiledShader {
+  std::string name;
+  isa::Program program;
+  frontend::Reflection reflection;
+};
+
+// SPIR-V words, not yet validated. UserError when the text is wrong.
+std::vector<uint32_t> spirv_of(const Shader& shader, isa::Stage stage);
+
+// UserError and UnsupportedError as frontend::lower().
+CompiledShader compile(const Script& script, const Attachment& attachment, const pipeline::CompilerParams& compiler);
+
+// Every shader of a pipeline and of the libraries that it uses.
+std::vector<CompiledShader> compile(const Script& script, const Pipeline& pipeline, const pipeline::CompilerParams& compiler);
+
+// Groups of a pipeline and of its libraries, by name.
+std::vector<std::pair<std::string, std::vector<std::string>>> all_groups(const Script& script, const Pipeline& pipeline);
+
+}  // namespace glint::amber

@@ -1,0 +1,264 @@
+// Uploading what a pipeline binds, running it, reading it back.
+// SPDX-License-Identifier: Apache-2.0
+#include "amber/launch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+
+#include "core/block.h"
+#include "pipeline/binding_table.h"
+#include "pipeline/functional_machine.h"
+#include "pipeline/timing_machine.h"
+
+namespace glint::amber {
+namespace {
+
+// Choice: scripts cannot say how deep callables nest; Vulkan leaves it to the stack's size.
+constexpr uint32_t kCallableDepth = 8;
+
+class Launch {
+ public:
+  Launch(Script& script, const Command& command, const std::vector<CompiledShader>& shaders)
+      : script_(script), command_(command), pipeline_(script.pipelines.at(command.pipeline)), shaders_(shaders) {
+    world_.memory = &memory_;
+    world_.constant_bank.resize(isa::kConstantBankBytes);
+    world_.robust_images = script.features.count("robustBufferAccess") != 0;
+    std::vector<isa::Program> programs;
+    for (const CompiledShader& shader : shaders) programs.push_back(shader.program);
+    image_ = core::link(programs);
+    world_.image = &image_;
+    for (const Binding& binding : pipeline_.bindings) bind(binding);
+    if (pipeline_.is_ray_tracing) set_ray_tracing();
+    else set_compute();
+  }
+
+  uint64_t run(const LaunchOptions& options) {
+    world_.nearest_first_hit = options.gpu.rt.nearest_first_hit;
+    uint64_t cycles = 0;
+    if (options.timing) cycles = std::make_unique<pipeline::TimingMachine>(options.gpu, world_, options.no_skip)->run({});
+    else pipeline::run_functional(world_, options.gpu.core.instruction_budget, {});
+    for (const auto& [name, address] : addresses_) {
+      std::vector<std::byte>& bytes = script_.buffers.at(name).bytes;
+      std::memcpy(bytes.data(), memory_.find(address, bytes.size()), bytes.size());
+    }
+    return cycles;
+  }
+
+ private:
+  void set_compute();
+  void set_ray_tracing();
+  void bind(const Binding& binding);
+  void bind_buffers(const Binding& binding);
+  void bind_images(const Binding& binding);
+  void bind_samplers(const Binding& binding);
+  void bind_structures(const Binding& binding);
+  void set_push_constants(const Binding& binding);
+  void write_descriptor(const Binding& binding, uint64_t first, uint64_t second);
+  void write_descriptors(const Binding& binding, const std::vector<std::array<uint64_t, 2>>& all);
+  const frontend::Binding* reflected(const Binding& binding) const;
+  core::ImageView view_of(const Binding& binding, const Buffer& buffer, size_t element);
+  Address upload(const Buffer& buffer);
+  Address build(const std::string& top_level);
+  rt::StructureInfo build_bottom(const std::string& name);
+  pipeline::TableRecord record(const std::string& group, pipeline::TableInput& input);
+  std::vector<pipeline::TableRecord> records(const std::string& table, pipeline::TableInput& input);
+
+  Script& script_;
+  const Command& command_;
+  const Pipeline& pipeline_;
+  const std::vector<CompiledShader>& shaders_;
+  mem::AddressSpace memory_;
+  core::Image image_;
+  core::World world_;
+  std::map<std::string, Address> addresses_;   // of buffers
+  std::map<std::string, Address> structures_;  // of top levels
+};
+
+void Launch::set_compute() {
+  if (shaders_.empty()) throw UserError(pipeline_.where, fmt::format("pipeline '{}' has no shader", pipeline_.name));
+  const isa::Program& program = shaders_[0].program;
+  const auto& size = program.local_size;
+  if (uint64_t{size[0]} * size[1] * size[2] > core::kMaxBlockThreads)
+    throw UserError(pipeline_.where, fmt::format("blocks of {} x {} x {} threads: at most {} can be", size[0], size[1], size[2], core::kMaxBlockThreads));
+  world_.raygen = 0;
+  world_.local_bytes = pipeline::stack_bytes(image_, 1, 0);
+  core::set_blocks(world_, command_.size, size, program.shared_bytes);
+}
+
+pipeline::TableRecord Launch::record(const std::string& group, pipeline::TableInput& input) {
+  for (const auto& [name, shaders] : all_groups(script_, pipeline_)) {
+    if (name != group) continue;
+    pipeline::ShaderGroup made;
+    for (const std::string& shader : shaders) {
+      const auto found = std::find_if(shaders_.begin(), shaders_.end(), [&](const CompiledShader& s) { return s.name == shader; });
+      const auto index = uint32_t(found - shaders_.begin());
+      const isa::Stage stage = found->program.stage;
+      (stage == isa::Stage::ClosestHit ? made.hit.closest_hit : stage == isa::Stage::AnyHit ? made.hit.any_hit
+       : stage == isa::Stage::Intersection ? made.hit.intersection : made.general) = index;
+    }
+    input.groups.push_back(made);
+    return {uint32_t(input.groups.size() - 1), {}};
+  }
+  throw UserError(pipeline_.where, fmt::format("pipeline '{}' has no shader group '{}'", pipeline_.name, group));
+}
+
+std::vector<pipeline::TableRecord> Launch::records(const std::string& table, pipeline::TableInput& input) {
+  std::vector<pipeline::TableRecord> out;
+  if (!table.empty())
+    for (const std::string& group : pipeline_.tables.at(table)) out.push_back(record(group, input));
+  return out;
+}
+
+void Launch::set_ray_tracing() {
+  world_.launch_size = command_.size;
+  pipeline::TableInput input;
+  const std::vector<pipeline::TableRecord> raygen = records(command_.raygen, input);
+  if (raygen.empty()) throw UserError(command_.where, "the RAYGEN table is empty");
+  input.raygen = raygen[0];
+  input.miss.records = records(command_.miss, input);
+  input.hit.records = records(command_.hit, input);
+  input.callable.records = records(command_.callable, input);
+  world_.max_trace_depth = pipeline_.max_trace_depth;
+  world_.max_callable_depth = input.callable.records.empty() ? 0 : kCallableDepth;
+  world_.local_bytes = pipeline::stack_bytes(image_, world_.max_trace_depth, world_.max_callable_depth);
+  pipeline::build_binding_table(world_, memory_, input);
+}
+
+void Launch::bind(const Binding& binding) {
+  switch (binding.kind) {
+    case BindKind::Uniform:
+    case BindKind::Storage: return bind_buffers(binding);
+    case BindKind::Sampler: return bind_samplers(binding);
+    case BindKind::Structure: return bind_structures(binding);
+    case BindKind::PushConstants: return set_push_constants(binding);
+    default: return bind_images(binding);
+  }
+}
+
+const frontend::Binding* Launch::reflected(const Binding& binding) const {
+  const frontend::Binding* out = nullptr;
+  for (const CompiledShader& shader : shaders_)
+    for (const frontend::Binding& each : shader.reflection.bindings)
+      if (each.set == binding.set && each.binding == binding.binding && (!out || each.count > out->count)) out = &each;
+  return out;
+}
+
+void Launch::write_descriptor(const Binding& binding, uint64_t first, uint64_t second) {
+  const uint64_t descriptor[2] = {first, second};
+  std::memcpy(world_.constant_bank.data() + binding.set * isa::kSetBytes + binding.binding * isa::kDescriptorBytes, descriptor, sizeof descriptor);
+}
+
+// docs/abi.md: arrays of buffers and of structures have their descriptors in a table in global memory.
+void Launch::write_descriptors(const Binding& binding, const std::vector<std::array<uint64_t, 2>>& all) {
+  const frontend::Binding* use = reflected(binding);
+  if (!use || use->count == 1) return write_descriptor(binding, all[0][0], all[0][1]);
+  const uint64_t count = std::max<uint64_t>(use->count, all.size());
+  const Address table = memory_.allocate(fmt::format("descriptors of set {} binding {}", binding.set, binding.binding), count * isa::kDescriptorBytes);
+  memory_.write(table, all.data(), all.size() * isa::kDescriptorBytes);
+  write_descriptor(binding, table, count);
+}
+
+Address Launch::upload(const Buffer& buffer) {
+  const auto [it, is_new] = addresses_.try_emplace(buffer.name, 0);
+  if (is_new) {
+    it->second = memory_.allocate(buffer.name, std::max<uint64_t>(buffer.bytes.size(), 4));
+    memory_.write(it->second, buffer.bytes.data(), buffer.bytes.size());
+  }
+  return it->second;
+}
+
+void Launch::bind_buffers(const Binding& binding) {
+  std::vector<std::array<uint64_t, 2>> all;
+  for (size_t i = 0; i < binding.names.size(); ++i) {
+    const Buffer& buffer = script_.buffers.at(binding.names[i]);
+    const uint64_t offset = i < binding.offsets.size() ? binding.offsets[i] : 0;
+    if (offset >= buffer.bytes.size()) throw UserError(binding.where, fmt::format("the offset {} is past the end of buffer '{}' ({} bytes)", offset, buffer.name, buffer.bytes.size()));
+    const uint64_t rest = buffer.bytes.size() - offset;
+    all.push_back({upload(buffer) + offset, i < binding.ranges.size() ? std::min(rest, binding.ranges[i]) : rest});
+  }
+  write_descriptors(binding, all);
+}
+
+core::ImageView Launch::view_of(const Binding& binding, const Buffer& buffer, size_t element) {
+  const bool is_texels = binding.kind == BindKind::UniformTexels || binding.kind == BindKind::StorageTexels;
+  if (!buffer.type.format) throw UnsupportedError(fmt::format("{}: unsupported: images of {}", binding.where.to_string(), buffer.type.name));
+  if (buffer.layout.stride != core::info_of(*buffer.type.format).bytes) throw UnsupportedError(fmt::format("{}: unsupported: texels with gaps", binding.where.to_string()));
+  core::ImageView view;
+  view.name = buffer.name, view.format = *buffer.type.format;
+  view.width = buffer.size[0] && !is_texels ? buffer.size[0] : uint32_t(buffer.elements);
+  view.height = is_texels ? 1 : std::max(1u, buffer.size[1]), view.depth = is_texels ? 1 : std::max(1u, buffer.size[2]);
+  view.levels = is_texels ? 1 : buffer.levels;
+  const uint32_t dimensions = buffer.dimensions ? buffer.dimensions : 2;
+  const frontend::Binding* use = reflected(binding);
+  view.shape = use ? use->shape : is_texels ? isa::ImageShape::Buffer : dimensions == 1 ? isa::ImageShape::D1 : dimensions == 2 ? isa::ImageShape::D2 : isa::ImageShape::D3;
+  view.base = upload(buffer) + (element < binding.offsets.size() ? binding.offsets[element] : 0);
+  if (binding.base_level >= view.levels) throw UserError(binding.where, fmt::format("'{}' has {} levels", buffer.name, view.levels));
+  const core::ImageView whole = view;
+  view.base += whole.bytes_before_level(binding.base_level);
+  view.width = whole.extent(0, binding.base_level), view.height = whole.extent(1, binding.base_level), view.depth = whole.extent(2, binding.base_level);
+  view.levels -= binding.base_level;
+  if (element < binding.samplers.size()) view.sampler = script_.samplers.at(binding.samplers[element]);
+  return view;
+}
+
+// Images of an array have consecutive numbers.
+void Launch::bind_images(const Binding& binding) {
+  write_descriptor(binding, world_.images.size(), binding.names.size());
+  for (size_t i = 0; i < binding.names.size(); ++i) world_.images.push_back(view_of(binding, script_.buffers.at(binding.names[i]), i));
+}
+
+void Launch::bind_samplers(const Binding& binding) {
+  write_descriptor(binding, world_.samplers.size(), binding.names.size());
+  for (const std::string& name : binding.names) world_.samplers.push_back(script_.samplers.at(name));
+}
+
+rt::StructureInfo Launch::build_bottom(const std::string& name) {
+  rt::BottomLevel level;
+  for (const BottomLevel::Geometry& g : script_.bottom_levels.at(name).geometries) {
+    rt::Geometry geometry;
+    geometry.positions = std::as_bytes(std::span(g.vertices)), geometry.aabbs = g.boxes;
+    geometry.opaque = g.opaque, geometry.no_duplicate_any_hit = g.no_duplicate_any_hit;
+    level.geometries.push_back(geometry);
+  }
+  return rt::build_bottom(memory_, "bottom level " + name, level);
+}
+
+Address Launch::build(const std::string& top_level) {
+  const auto [it, is_new] = structures_.try_emplace(top_level, 0);
+  if (!is_new) return it->second;
+  std::vector<rt::StructureInfo> bottoms;
+  std::map<std::string, uint32_t> index_of;
+  std::vector<rt::Instance> instances;
+  for (const auto& [name, description] : script_.top_levels.at(top_level).instances) {
+    const auto [known, is_first] = index_of.try_emplace(name, uint32_t(bottoms.size()));
+    if (is_first) bottoms.push_back(build_bottom(name));
+    instances.push_back(description);
+    instances.back().bottom = known->second;
+  }
+  return it->second = rt::build_top(memory_, "top level " + top_level, instances, bottoms).address;
+}
+
+void Launch::bind_structures(const Binding& binding) {
+  std::vector<std::array<uint64_t, 2>> all;
+  for (const std::string& name : binding.names) all.push_back({build(name), 0});
+  write_descriptors(binding, all);
+}
+
+void Launch::set_push_constants(const Binding& binding) {
+  const Buffer& buffer = script_.buffers.at(binding.names[0]);
+  const uint64_t room = isa::kConstantBankBytes - isa::kPushConstantOffset;
+  if (buffer.bytes.size() > room) throw UserError(binding.where, fmt::format("{} bytes of push constants: there is room for {}", buffer.bytes.size(), room));
+  std::memcpy(world_.constant_bank.data() + isa::kPushConstantOffset, buffer.bytes.data(), buffer.bytes.size());
+}
+
+}  // namespace
+
+uint64_t launch(Script& script, const Command& command, const std::vector<CompiledShader>& shaders, const LaunchOptions& options) {
+  if (command.size[0] == 0 || command.size[1] == 0 || command.size[2] == 0) return 0;  // Vulkan: does nothing
+  return Launch(script, command, shaders).run(options);
+}
+
+}  // namespace glint::amber

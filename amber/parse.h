@@ -1,0 +1,55 @@
+// The steps of reading a script, one a family of commands.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <fmt/format.h>
+
+#include "amber/script.h"
+#include "amber/tokens.h"
+
+namespace glint::amber {
+
+struct Parsing {
+  Tokens tokens;
+  Script& script;
+
+  [[noreturn]] void wrong(const std::string& what) { throw UserError(tokens.here(), what); }
+  [[noreturn]] void unsupported(const std::string& what) {
+    throw UnsupportedError(fmt::format("{}: unsupported: {}", tokens.here().to_string(), what));
+  }
+  std::string beside(const std::string& file) const;  // relative paths start at the script's folder
+  std::string read_file(const std::string& file);     // a virtual one first
+
+  // What is declared by that name; UserError when there is none.
+  template <class T>
+  T& find(std::map<std::string, T>& in, const std::string& name, const char* kind) {
+    const auto found = in.find(name);
+    if (found == in.end()) wrong(fmt::format("there is no {} '{}'", kind, name));
+    return found->second;
+  }
+  template <class T>
+  T& declare(std::map<std::string, T>& in, const std::string& name, const char* kind) {
+    const auto [it, is_new] = in.try_emplace(name);
+    if (!is_new) wrong(fmt::format("there is a {} '{}' already", kind, name));
+    return it->second;
+  }
+};
+
+isa::Stage stage_named(Parsing& p, const std::string& name);
+
+// parse_shader.cpp
+void parse_shader(Parsing& p);
+void parse_virtual_file(Parsing& p);
+void parse_device(Parsing& p, const std::string& command);
+// parse_buffer.cpp
+void parse_struct(Parsing& p);
+void parse_buffer(Parsing& p, bool is_image);
+void parse_sampler(Parsing& p);
+// parse_structure.cpp
+void parse_structure(Parsing& p);
+// parse_pipeline.cpp
+void parse_pipeline(Parsing& p);
+void parse_derived_pipeline(Parsing& p);
+// parse_command.cpp: false when `name` is none of these
+bool parse_command(Parsing& p, const std::string& name, std::vector<Command>& to);
+
+}  // namespace glint::amber

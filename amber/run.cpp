@@ -1,0 +1,99 @@
+// The commands of a script, one after the other, up to the first that fails.
+// SPDX-License-Identifier: Apache-2.0
+#include "amber/run.h"
+
+#include <fmt/format.h>
+
+#include "amber/expect.h"
+
+namespace glint::amber {
+namespace {
+
+class Runner {
+ public:
+  Runner(Script& script, const LaunchOptions& options, Outcome& outcome) : script_(script), options_(options), outcome_(outcome) {}
+
+  // False: an expectation does not hold.
+  bool run(const std::vector<Command>& commands) {
+    for (const Command& command : commands)
+      if (!run(command)) return false;
+    return true;
+  }
+
+ private:
+  bool run(const Command& command) {
+    switch (command.kind) {
+      case Command::Kind::Run: return launch_pipeline(command), true;
+      case Command::Kind::Copy: return copy(command), true;
+      case Command::Kind::Repeat:
+        for (uint32_t i = 0; i < command.count; ++i)
+          if (!run(command.body)) return false;
+        return true;
+      case Command::Kind::Expect: break;
+    }
+    ++outcome_.expectations;
+    const std::string difference = check(script_, command);
+    if (difference.empty()) return true;
+    outcome_.verdict = Verdict::Failed, outcome_.exit = Exit::Failure;
+    outcome_.message = fmt::format("{}: failed: {}", command.where.to_string(), difference);
+    return false;
+  }
+
+  void launch_pipeline(const Command& command) {
+    auto found = compiled_.find(command.pipeline);
+    if (found == compiled_.end())
+      found = compiled_.emplace(command.pipeline, compile(script_, script_.pipelines.at(command.pipeline), options_.gpu.compiler)).first;
+    try {
+      outcome_.cycles += launch(script_, command, found->second, options_);
+    } catch (const Error& error) {
+      if (error.exit() != Exit::Fault) throw;
+      throw Error(Exit::Fault, fmt::format("{}: {}", command.where.to_string(), error.what()));
+    }
+    ++outcome_.launches;
+  }
+
+  void copy(const Command& command) {
+    const Buffer& from = script_.buffers.at(command.from);
+    Buffer& to = script_.buffers.at(command.to);
+    to.bytes = from.bytes, to.elements = from.elements;
+  }
+
+  Script& script_;
+  const LaunchOptions& options_;
+  Outcome& outcome_;
+  std::map<std::string, std::vector<CompiledShader>> compiled_;  // by pipeline
+};
+
+void note(Outcome& outcome, const Error& error) {
+  outcome.verdict = error.exit() == Exit::Unsupported ? Verdict::Unsupported : Verdict::Failed;
+  outcome.exit = error.exit();
+  outcome.message = error.what();
+}
+
+}  // namespace
+
+Outcome run_script(Script script, const LaunchOptions& options) {
+  Outcome outcome;
+  try {
+    Runner(script, options, outcome).run(script.commands);
+  } catch (const Error& error) {
+    note(outcome, error);
+    // Reads and writes outside of buffers end a launch here; a script may rely on the feature that drops them.
+    if (error.exit() == Exit::Fault && script.features.count("robustBufferAccess"))
+      outcome.verdict = Verdict::Unsupported, outcome.exit = Exit::Unsupported,
+      outcome.message = fmt::format("{}: unsupported: robustBufferAccess\n{}", script.path, error.what());
+  }
+  return outcome;
+}
+
+Outcome run_script(const std::string& path, const LaunchOptions& options) {
+  try {
+    return run_script(read_script(path), options);
+  } catch (const Error& error) {
+    Outcome outcome;
+    note(outcome, error);
+    return outcome;
+  }
+}
+
+}  // namespace glint::amber

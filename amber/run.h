@@ -1,0 +1,24 @@
+// Runs a script and says whether it passed.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "amber/launch.h"
+
+namespace glint::amber {
+
+enum class Verdict : uint8_t { Passed, Failed, Unsupported };
+
+struct Outcome {
+  Verdict verdict = Verdict::Passed;
+  Exit exit = Exit::Ok;    // Failure: an expectation does not hold; else the kind of error
+  std::string message;     // with file and line; empty when passed
+  uint64_t cycles = 0;     // of all launches, of the timing machine
+  uint32_t launches = 0, expectations = 0;
+};
+
+// Throws nothing for what is wrong with the script.
+Outcome run_script(const std::string& path, const LaunchOptions& options);
+Outcome run_script(Script script, const LaunchOptions& options);
+
+}  // namespace glint::amber

@@ -1,0 +1,127 @@
+// An Amber script as read: shaders, buffers, pipelines and the commands on them. Nothing is compiled yet.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "amber/type.h"
+#include "base/diagnostics.h"
+#include "core/image_view.h"
+#include "isa/program.h"
+#include "rtunit/build.h"
+
+namespace glint::amber {
+
+enum class Language : uint8_t { Glsl, SpirvText, SpirvHex, SpirvBinary };
+
+struct Shader {
+  std::string name;
+  std::optional<isa::Stage> stage;  // none: several, each ATTACH says which
+  Language language = Language::Glsl;
+  std::string text;                 // with empty lines before it, so that its lines are the script's
+  std::string target_env;           // empty: spv1.0 for SPIR-V
+  std::string path;                 // of the file that the lines count in
+};
+
+struct Buffer {
+  std::string name;
+  Type type;
+  Layout layout;
+  bool is_image = false;
+  uint32_t dimensions = 0;          // of an image
+  std::array<uint32_t, 3> size{0, 0, 0};  // texels; of buffers with WIDTH too
+  uint32_t levels = 1;
+  uint64_t elements = 0;
+  std::vector<std::byte> bytes;
+  SourceLocation where;
+};
+
+struct BottomLevel {
+  struct Geometry {
+    std::vector<float> vertices;
+    std::vector<rt::Bounds> boxes;
+    bool opaque = false, no_duplicate_any_hit = false;
+  };
+  std::vector<Geometry> geometries;
+};
+struct TopLevel {
+  std::vector<std::pair<std::string, rt::Instance>> instances;  // with its bottom level
+};
+
+struct Attachment {
+  std::string shader;
+  std::string entry = "main";
+  std::optional<isa::Stage> stage;
+  std::map<uint32_t, uint64_t> constants;  // bits by constant_id
+};
+
+enum class BindKind : uint8_t {
+  Uniform, Storage, UniformTexels, StorageTexels, StorageImage, SampledImage, CombinedImage, Sampler, Structure, PushConstants
+};
+
+struct Binding {
+  BindKind kind = BindKind::Storage;
+  std::vector<std::string> names, samplers;  // more than one: an array of descriptors
+  uint32_t set = 0, binding = 0, base_level = 0;
+  std::vector<uint64_t> offsets, ranges;     // bytes, one a name or none
+  SourceLocation where;
+};
+
+struct Pipeline {
+  std::string name;
+  bool is_ray_tracing = false;
+  std::vector<Attachment> shaders;           // one of a compute pipeline
+  std::vector<std::pair<std::string, std::vector<std::string>>> groups;
+  std::map<std::string, std::vector<std::string>> tables;  // of groups
+  std::vector<std::string> libraries;
+  std::vector<Binding> bindings;
+  uint32_t max_trace_depth = 1;
+  SourceLocation where;
+};
+
+enum class Comparator : uint8_t { Eq, Ne, Lt, Le, Gt, Ge, Rgb, Rgba, Buffer, Rmse, Histogram };
+
+struct Expectation {
+  std::string buffer, other;
+  Comparator comparator = Comparator::Eq;
+  uint32_t x = 0, y = 0, width = 0, height = 0;   // x: bytes, but of pixels in pixels
+  std::vector<std::pair<double, bool>> tolerances;  // with whether it counts percent
+  std::vector<std::string> values;
+};
+
+struct Command {
+  enum class Kind : uint8_t { Run, Expect, Copy, Repeat } kind = Kind::Run;
+  SourceLocation where;
+  std::string pipeline;                        // Run
+  std::array<uint32_t, 3> size{1, 1, 1};
+  std::string raygen, miss, hit, callable;     // tables
+  Expectation expect;
+  std::string from, to;                        // Copy
+  uint32_t count = 1;                          // Repeat
+  std::vector<Command> body;
+};
+
+struct Script {
+  std::string path;
+  std::set<std::string> features;
+  std::map<std::string, std::string> virtual_files;
+  std::map<std::string, Type> structs;
+  std::map<std::string, Shader> shaders;
+  std::map<std::string, Buffer> buffers;
+  std::map<std::string, core::Sampler> samplers;
+  std::map<std::string, BottomLevel> bottom_levels;
+  std::map<std::string, TopLevel> top_levels;
+  std::map<std::string, Pipeline> pipelines;
+  std::vector<Command> commands;
+};
+
+// Language: docs/amber.md. UserError with file and line where the script is wrong; UnsupportedError with file, line and
+// the name of what Glint lacks.
+Script parse_script(const std::string& text, const std::string& path);
+Script read_script(const std::string& path);
+
+}  // namespace glint::amber

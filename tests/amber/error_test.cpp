@@ -1,0 +1,108 @@
+// Scripts that are wrong, and scripts that ask for what Glint lacks: each is told with its line.
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/catch.h"
+
+#include "tests/amber/support.h"
+
+namespace glint::amber {
+namespace {
+
+const std::string kShader =
+    "SHADER compute s GLSL\n#version 450\nlayout(binding = 0) buffer B { uint v[]; };\nvoid main() { v[9] = 1; }\nEND\n"
+    "BUFFER b DATA_TYPE uint32 DATA 1 2 END\n";
+const std::string kPipeline = kShader + "PIPELINE compute p\n ATTACH s\n BIND BUFFER b AS storage DESCRIPTOR_SET 0 BINDING 0\nEND\n";
+
+void check_all(const std::vector<std::pair<std::string, std::string>>& scripts, Verdict verdict, Exit exit) {
+  for (const auto& [script, message] : scripts) {
+    const Outcome outcome = outcome_of(script);
+    INFO(script << "\n-> " << outcome.message);
+    CHECK(outcome.verdict == verdict);
+    CHECK(outcome.exit == exit);
+    CHECK(contains(outcome.message, message));
+    CHECK(outcome.message.rfind("t.amber", 0) == 0);
+  }
+}
+
+TEST_CASE("a script that is wrong fails as bad input at the line of the mistake", "[amber]") {
+  check_all({{"BUFFER b\n", "t.amber:2: error: 'b' has no DATA_TYPE"},
+             {"\nBUFFER b DATA_TYPE int31 SIZE 1 FILL 0\n", "t.amber:3: error: there is no data type 'int31'"},
+             {"BUFFER b DATA_TYPE int32 DATA 1 x END\n", "value 1 of buffer 'b' is 'x'"},
+             {"BUFFER b DATA_TYPE int32 DATA 1 2\n", "END is missing"},
+             {"BUFFER b DATA_TYPE int32 SIZE 4294967295 FILL 0\n", "has more than"},
+             {"BUFFER b DATA_TYPE int32 SIZE 1 SERIES_FROM 1\n", "INC_BY is missing"},
+             {"BUFFER b DATA_TYPE int32 SIZE 1 FILL 0\nBUFFER b DATA_TYPE int32 SIZE 1 FILL 0\n", "t.amber:3: error: there is a buffer 'b' already"},
+             {"SHADER compute s GLSL\nvoid main() {}\n", "t.amber:2: error: END is missing"},
+             {"SHADER toast s GLSL\nEND\n", "there is no shader type 'toast'"},
+             {"SHADER compute s BASIC\nEND\n", "there is no shader format 'BASIC'"},
+             {"STRUCT s\nEND\n", "struct 's' has no members"},
+             {"STRUCT s\n int32 a PADDING 3\nEND\n", "there is no attribute 'PADDING' of members"},
+             {"IMAGE i DATA_TYPE float WIDTH 2 HEIGHT 2 FILL 0\n", "has no DIM_1D"},
+             {"SAMPLER s MAG_FILTER cubic\n", "there is no filter 'cubic'"},
+             {"PIPELINE compute p\n ATTACH s\nEND\n", "t.amber:3: error: there is no shader 's'"},
+             {kShader + "PIPELINE compute p\n BIND BUFFER c AS storage DESCRIPTOR_SET 0 BINDING 0\nEND\n", "there is no buffer 'c'"},
+             {kShader + "PIPELINE compute p\n BIND BUFFER b AS storage DESCRIPTOR_SET 99 BINDING 0\nEND\n", "the set is '99'"},
+             {kShader + "PIPELINE compute p\n ATTACH s\n", "END is missing"},
+             {kShader + "PIPELINE ray_tracing p\n ATTACH s\nEND\n", "no shader for this kind of pipeline"},
+             {kShader + "DERIVE_PIPELINE q FROM p\nEND\n", "there is no pipeline 'p'"},
+             {kPipeline + "RUN p 1 1\n", "t.amber:12: error: the size is missing"},
+             {kPipeline + "RUN p 1 1 1 1\n", "'1' does not belong here"},
+             {kPipeline + "RUN q 1 1 1\n", "there is no pipeline 'q'"},
+             {kShader + "EXPECT b IDX 0\n", "a comparison is missing"},
+             {kShader + "EXPECT b IDX 0 EQ\n", "the values are missing"},
+             {kShader + "EXPECT b IDX 8 EQ 1\n", "byte 8 is past the end of buffer 'b' (8 bytes)"},
+             {kShader + "EXPECT b IDX 0 0 SIZE 1 1 EQ_RGB 1 2 3\n", "'b' has no width"},
+             {kShader + "COPY b TO b\n", "copied to itself"},
+             {kShader + "REPEAT 2\nCOPY b TO c\n", "there is no buffer 'c'"},
+             {"ACCELERATION_STRUCTURE BOTTOM_LEVEL a\n GEOMETRY TRIANGLES\n 0 0 0 1 0 0\n END\nEND\n", "6 coordinates"},
+             {"ACCELERATION_STRUCTURE TOP_LEVEL a\n BOTTOM_LEVEL_INSTANCE b\n END\nEND\n", "there is no bottom level 'b'"}},
+            Verdict::Failed, Exit::UserInput);
+}
+
+TEST_CASE("a script that asks for what there is not is unsupported, by name and line", "[amber]") {
+  check_all({{"PIPELINE graphics p\nEND\n", "t.amber:2: unsupported: graphics pipelines"},
+             {"SHADER vertex v PASSTHROUGH\n", "unsupported: graphics: vertex shaders"},
+             {"SHADER compute c OPENCL-C\nEND\n", "unsupported: shaders in OPENCL-C"},
+             {"SHADER compute c HLSL\nEND\n", "unsupported: shaders in HLSL"},
+             {"DEVICE_FEATURE teleportation\n", "unsupported: DEVICE_FEATURE teleportation"},
+             {"DEVICE_EXTENSION VK_XX_none\n", "unsupported: DEVICE_EXTENSION VK_XX_none"},
+             {"DEVICE_PROPERTY FloatControlsProperties.shaderRoundingModeRTZFloat32\n", "unsupported: DEVICE_PROPERTY"},
+             {"BUFFER b FORMAT D32_SFLOAT SIZE 1 FILL 0\n", "unsupported: format D32_SFLOAT"},
+             {"IMAGE i FORMAT R64_UINT DIM_2D WIDTH 1 HEIGHT 1 FILL 0\n", "unsupported: images of R64_UINT"},
+             {"IMAGE i FORMAT R8_UINT DIM_2D WIDTH 1 HEIGHT 1 SAMPLES 4 FILL 0\n", "unsupported: images of several samples"},
+             {kShader + "PIPELINE compute p\n SUBGROUP s\n  REQUIRED_SIZE 16\n END\nEND\n", "unsupported: SUBGROUP REQUIRED_SIZE 16"},
+             {kShader + "PIPELINE compute p\n BIND BUFFER b KERNEL ARG_NAME x\nEND\n", "unsupported: OpenCL"},
+             {kShader + "PIPELINE compute p\n SET KERNEL ARG_NAME x AS int32 3\nEND\n", "unsupported: OpenCL"},
+             {kPipeline + "RUN p DRAW_RECT POS 0 0 SIZE 1 1\n", "unsupported: graphics: DRAW_RECT"},
+             {"CLEAR p\n", "unsupported: graphics: CLEAR"},
+             {"SHADER compute s SPIRV-ASM TARGET_ENV spv9\nEND\nPIPELINE compute p\n ATTACH s\nEND\nRUN p 1 1 1\n", "unsupported: target environment 'spv9'"},
+             {"DANCE\n", "unsupported: command DANCE"}},
+            Verdict::Unsupported, Exit::Unsupported);
+}
+
+TEST_CASE("messages on GLSL count the lines of the script", "[amber]") {
+  const Outcome outcome = outcome_of("SHADER compute s GLSL\n#version 450\nvoid main() { oops(); }\nEND\nPIPELINE compute p\n ATTACH s\nEND\nRUN p 1 1 1\n");
+  CHECK(outcome.exit == Exit::UserInput);
+  CHECK(contains(outcome.message, "t.amber:4"));
+}
+
+TEST_CASE("messages on SPIR-V count the lines of the script", "[amber]") {
+  const Outcome outcome = outcome_of("SHADER compute s SPIRV-ASM\nOpCapability Shader\nOpNonsense\nEND\nPIPELINE compute p\n ATTACH s\nEND\nRUN p 1 1 1\n");
+  CHECK(outcome.exit == Exit::UserInput);
+  CHECK(contains(outcome.message, "t.amber:4"));
+}
+
+TEST_CASE("a store outside of a buffer fails with the lines of RUN and of the shader", "[amber]") {
+  const Outcome outcome = outcome_of(kPipeline + "RUN p 1 1 1\n");
+  CHECK(outcome.exit == Exit::Fault);
+  CHECK(contains(outcome.message, "t.amber:12"));
+  CHECK(contains(outcome.message, "t.amber:5"));
+}
+
+TEST_CASE("a fault under robustBufferAccess is what Glint lacks", "[amber]") {
+  const Outcome outcome = outcome_of("DEVICE_FEATURE robustBufferAccess\n" + kPipeline + "RUN p 1 1 1\n");
+  CHECK(outcome.exit == Exit::Unsupported);
+  CHECK(contains(outcome.message, "robustBufferAccess"));
+}
+
+}  // namespace
+}  // namespace glint::amber

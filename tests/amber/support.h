@@ -1,0 +1,25 @@
+// Scripts as texts and their outcomes.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "amber/run.h"
+
+namespace glint::amber {
+
+inline Outcome outcome_of(const std::string& body, bool timing = false) {
+  LaunchOptions options;
+  options.timing = timing;
+  Outcome out;
+  try {
+    out = run_script(parse_script("#!amber\n" + body, "t.amber"), options);
+  } catch (const Error& error) {
+    out.verdict = error.exit() == Exit::Unsupported ? Verdict::Unsupported : Verdict::Failed;
+    out.exit = error.exit(), out.message = error.what();
+  }
+  return out;
+}
+
+inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+}  // namespace glint::amber

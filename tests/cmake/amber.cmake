@@ -1,0 +1,3 @@
+if(TARGET glint::amber)
+  glint_test(amber LINKS glint::amber)
+endif()
