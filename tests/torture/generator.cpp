@@ -20,6 +20,7 @@ struct Place {
   bool in_loop = false, switch_is_nearer = false, in_continue = false;
   bool may_leave = false, may_fall = false;  // directly in a branch of an `if`, in a case with a next one
   bool is_uniform = false;                   // all lanes of the group come here together
+  bool loop_is_uniform = false;              // exchanges in the loop: no lane may leave it alone
 };
 
 class Generator {
@@ -166,9 +167,10 @@ Stmt Generator::simple() {
 std::vector<Kind> Generator::exits(const Place& place, bool bare) {
   std::vector<Kind> all;
   if (place.in_continue || place.is_uniform) return all;
-  if (place.in_loop || place.switch_is_nearer) all.push_back(Kind::Break);
-  if (place.in_loop) all.push_back(Kind::Continue);
-  if (place.in_loop && place.switch_is_nearer && spirv_) all.push_back(Kind::LoopBreak);
+  const bool may_leave_loop = place.in_loop && !place.loop_is_uniform;
+  if (may_leave_loop || place.switch_is_nearer) all.push_back(Kind::Break);
+  if (may_leave_loop) all.push_back(Kind::Continue);
+  if (may_leave_loop && place.switch_is_nearer && spirv_) all.push_back(Kind::LoopBreak);
   if (!bare && !(is_entry_ && exchanges_)) all.push_back(Kind::Return);
   if (bare && place.may_leave) all.push_back(Kind::Leave);
   if (bare && place.may_fall) all.push_back(Kind::NextCase);
@@ -221,7 +223,7 @@ Stmt Generator::loop(Place place) {
   ++place.depth;
   place.in_loop = true;
   place.switch_is_nearer = place.may_leave = place.may_fall = false;
-  place.is_uniform = stays_uniform;
+  place.is_uniform = place.loop_is_uniform = stays_uniform;
   const bool was_continue = place.in_continue;
   if (s.style == Style::Single) {
     s.bodies = {{simple(), simple()}, {}};
