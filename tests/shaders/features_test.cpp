@@ -1,0 +1,28 @@
+// Shaders that use much at once: they compile and verify with few registers and with many.
+// SPDX-License-Identifier: Apache-2.0
+#include "isa/verify.h"
+#include "tests/shaders/ray_lab.h"
+#include "tests/support/catch.h"
+
+namespace glint::test {
+namespace {
+
+TEST_CASE("shaders that use many features at once compile to programs that verify") {
+  const std::string file = GENERATE(as<std::string>{}, "halves.comp", "mixed.comp", "addresses.rgen", "ballots.comp",
+                                    "blocks.comp", "small_groups.comp", "nested.comp");
+  for (const uint32_t registers : {24u, 64u}) {
+    INFO(file << " with " << registers << " registers");
+    CHECK(compile_lab("features/" + file, {}, {registers, true, false}).code.size() > 8);
+  }
+}
+
+TEST_CASE("printing is left out with a warning, and does not keep the rest from being simplified") {
+  Diagnostics warnings;
+  const isa::Program program = frontend::compile_file(lab_file("features/printing.comp"), {}, {}, warnings);
+  REQUIRE(warnings.messages().size() == 1);
+  CHECK_THAT(warnings.messages().front(), Catch::Matchers::Contains("debugPrintfEXT prints nothing"));
+  CHECK(program.local_bytes == 0);
+}
+
+}  // namespace
+}  // namespace glint::test
