@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "pipeline/description/gltf.h"
 #include "scenes/obj_loader.h"
 
 namespace glint::pipeline {
@@ -15,7 +16,11 @@ scenes::Model load_mesh(const std::string& path, const SourceLocation& where) {
   std::error_code failed;
   if (!std::filesystem::is_regular_file(path, failed)) throw UserError(where, fmt::format("cannot read '{}'", path));
   const std::string ending = std::filesystem::path(path).extension().string();
-  if (ending != ".obj") throw UserError(where, fmt::format("'{}' is no OBJ file: no other kind of mesh is read yet", path));
+#ifdef GLINT_GLTF
+  if (ending == ".gltf" || ending == ".glb") return load_gltf(path, where);
+#endif
+  if (ending != ".obj")
+    throw UserError(where, fmt::format("'{}' is no mesh that is read here", path), "OBJ, and glTF where libtinygltf-dev was there when Glint was built");
   std::vector<scenes::Material> materials;
   return scenes::load_obj(path, materials);
 }
