@@ -98,8 +98,10 @@ class Compile(GlintTest):
         self.expect(2, ["bad.txt"], "compile", self.write("bad.txt", "void main() {}"))
 
     def test_an_unsupported_feature_exits_with_3_and_names_the_line(self):
-        body = "void main() {\n  double d = double(o.x[0]);\n  o.x[1] = uint(sqrt(d));\n}"
-        self.expect(3, ["double.comp"], "compile", self.write("double.comp", self.SHADER % body))
+        body = ("layout(set = 0, binding = 1) uniform sampler2D image;\nvoid main() {\n  vec4 texel;\n"
+                "  o.x[0] = sparseTextureLodARB(image, vec2(0.5), 0.0, texel);\n}")
+        sparse = (self.SHADER % body).replace("460\n", "460\n#extension GL_ARB_sparse_texture2 : require\n")
+        self.expect(3, ["sparse.comp:8"], "compile", self.write("sparse.comp", sparse))
 
     def test_a_good_shader_compiles_to_text_that_asm_reads_and_prints_again_unchanged(self):
         name = self.write("good.comp", self.SHADER % "void main() { o.x[gl_GlobalInvocationID.x] = 7u * gl_GlobalInvocationID.x; }")
