@@ -49,14 +49,14 @@ const Function* Module::function(Id id) const {
 }
 
 const EntryPoint& Module::entry_point(const std::string& wanted, const std::string& file) const {
-  std::string names;
+  std::string known;
   for (const EntryPoint& entry : entry_points) {
     if (entry.name == wanted || (wanted.empty() && entry_points.size() == 1)) return entry;
-    names += (names.empty() ? "" : ", ") + entry.name;
+    known += (known.empty() ? "" : ", ") + entry.name;
   }
   if (entry_points.empty()) throw UserError({file, 0, 0}, "the module has no entry point");
-  throw UserError({file, 0, 0}, wanted.empty() ? "the module has several entry points: " + names
-                                               : "the module has no entry point '" + wanted + "': it has " + names,
+  throw UserError({file, 0, 0}, wanted.empty() ? "the module has several entry points: " + known
+                                               : "the module has no entry point '" + wanted + "': it has " + known,
                   "choose one by its name");
 }
 
