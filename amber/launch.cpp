@@ -64,6 +64,7 @@ class Launch {
   Address build(const std::string& top_level);
   rt::StructureInfo build_bottom(const std::string& name);
   pipeline::TableRecord record(const std::string& group, pipeline::TableInput& input);
+  pipeline::TableRegion region(const std::string& table, pipeline::TableInput& input);
   std::vector<pipeline::TableRecord> records(const std::string& table, pipeline::TableInput& input);
 
   Script& script_;
@@ -112,17 +113,25 @@ std::vector<pipeline::TableRecord> Launch::records(const std::string& table, pip
   return out;
 }
 
+// Without a table every index calls nothing (Vulkan: a region at address 0).
+pipeline::TableRegion Launch::region(const std::string& table, pipeline::TableInput& input) {
+  pipeline::TableRegion out;
+  out.records = records(table, input);
+  if (out.records.empty()) out.records.resize(1), out.stride = 0;
+  return out;
+}
+
 void Launch::set_ray_tracing() {
   world_.launch_size = command_.size;
   pipeline::TableInput input;
   const std::vector<pipeline::TableRecord> raygen = records(command_.raygen, input);
   if (raygen.empty()) throw UserError(command_.where, "the RAYGEN table is empty");
   input.raygen = raygen[0];
-  input.miss.records = records(command_.miss, input);
-  input.hit.records = records(command_.hit, input);
-  input.callable.records = records(command_.callable, input);
+  input.miss = region(command_.miss, input);
+  input.hit = region(command_.hit, input);
+  input.callable = region(command_.callable, input);
   world_.max_trace_depth = pipeline_.max_trace_depth;
-  world_.max_callable_depth = input.callable.records.empty() ? 0 : kCallableDepth;
+  world_.max_callable_depth = kCallableDepth;
   world_.local_bytes = pipeline::stack_bytes(image_, world_.max_trace_depth, world_.max_callable_depth);
   pipeline::build_binding_table(world_, memory_, input);
 }

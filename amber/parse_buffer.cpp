@@ -137,6 +137,7 @@ void make(Parsing& p, Buffer& buffer, const Contents& contents) {
   else if (buffer.size[0]) buffer.elements = texels_of(buffer, 0);
   else if (!raw.empty()) buffer.elements = raw.size() / buffer.layout.stride;
   else buffer.elements = (contents.values.size() + each - 1) / each * (contents.kind == "DATA" || contents.kind == "FILE");
+  if (buffer.elements == 0 && contents.kind.empty() && buffer.type.is_packed) p.unsupported("graphics: buffers as large as a framebuffer");
   if (buffer.elements == 0) p.wrong(fmt::format("'{}' has no size", buffer.name));
   uint64_t texels = buffer.elements;
   for (uint32_t level = 1; level < buffer.levels; ++level) texels += texels_of(buffer, level);

@@ -32,7 +32,10 @@ const std::set<std::string>& known_features() {
       "BufferDeviceAddressFeatures.bufferDeviceAddress", "ZeroInitializeWorkgroupMemoryFeatures.shaderZeroInitializeWorkgroupMemory",
       "ShaderSubgroupUniformControlFlowFeatures.shaderSubgroupUniformControlFlow", "SubgroupUniformControlFlow.shaderSubgroupUniformControlFlow",
       "ShaderIntegerDotProductFeatures.shaderIntegerDotProduct", "WorkgroupMemoryExplicitLayoutFeatures.workgroupMemoryExplicitLayout",
-      "VulkanMemoryModelFeatures.vulkanMemoryModel", "VulkanMemoryModelFeatures.vulkanMemoryModelDeviceScope"};
+      "VulkanMemoryModelFeatures.vulkanMemoryModel", "VulkanMemoryModelFeatures.vulkanMemoryModelDeviceScope",
+      "ShaderAtomicInt64Features.shaderBufferInt64Atomics", "ShaderAtomicInt64Features.shaderSharedInt64Atomics", "ShaderClockFeatures.shaderSubgroupClock",
+      "ShaderAtomicFloatFeatures.shaderBufferFloat32Atomics", "ShaderAtomicFloatFeatures.shaderBufferFloat32AtomicAdd", "ShaderExpectAssumeFeatures.shaderExpectAssume",
+      "VariablePointers.variablePointers", "VariablePointers.variablePointersStorageBuffer"};
   return names;
 }
 
@@ -49,7 +52,9 @@ const std::set<std::string>& known_extensions() {
       "VK_KHR_workgroup_memory_explicit_layout", "VK_KHR_maintenance1", "VK_KHR_maintenance2", "VK_KHR_maintenance3", "VK_KHR_maintenance4",
       "VK_KHR_maintenance5", "VK_EXT_shader_subgroup_ballot", "VK_EXT_shader_subgroup_vote", "VK_KHR_shader_expect_assume", "VK_KHR_shader_relaxed_extended_instruction",
       "VK_GOOGLE_decorate_string", "VK_GOOGLE_hlsl_functionality1", "VK_KHR_dedicated_allocation", "VK_KHR_get_memory_requirements2",
-      "VK_KHR_bind_memory2", "VK_KHR_external_memory_capabilities", "VK_KHR_external_memory"};
+      "VK_KHR_bind_memory2", "VK_KHR_external_memory_capabilities", "VK_KHR_external_memory", "VK_KHR_shader_clock", "VK_EXT_shader_atomic_float",
+      "VK_EXT_shader_atomic_float2", "VK_KHR_shader_atomic_int64", "VK_KHR_shader_draw_parameters", "VK_KHR_device_group", "VK_EXT_robustness2",
+      "VK_KHR_copy_commands2", "VK_KHR_synchronization2", "VK_NV_shader_subgroup_partitioned", "VK_NV_shader_sm_builtins", "VK_EXT_debug_utils"};
   return names;
 }
 

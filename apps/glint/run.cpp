@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "apps/glint/config.h"
+#include "apps/glint/run_amber.h"
 #include "apps/glint/run_pipeline.h"
 #include "apps/glint/run_ptx.h"
 #include "apps/glint/run_summary.h"
@@ -26,7 +27,7 @@ namespace {
 struct Options {
   std::string scene, shader = "pt", config = "mobile", size = "128x128", mode = "timing", assets, out,
                      shader_dir, launch;
-  std::vector<std::string> settings;
+  std::vector<std::string> settings, more;
   scenes::RenderParams frame;
   uint64_t max_instructions = 0;
   bool json = false, no_skip = false;
@@ -120,7 +121,15 @@ pipeline::RenderResult render(const Session& session, pipeline::RenderJob& job,
   }
 }
 
+Exit run_scripts(const Session& session, const Options& options) {
+  AmberOptions amber{{options.scene}, options.config, options.settings, options.max_instructions, options.mode_given && options.mode == "timing", options.no_skip};
+  amber.scripts.insert(amber.scripts.end(), options.more.begin(), options.more.end());
+  return run_amber(session, amber);
+}
+
 Exit run(const Session& session, const Options& options) {
+  if (names_script(options.scene)) return run_scripts(session, options);
+  if (!options.more.empty()) throw UserError({}, fmt::format("'{}' is one too many", options.more[0]), "only Amber scripts run several at a time");
   if (names_pipeline(options.scene))
     return run_pipeline(session, {options.scene, options.config_given ? options.config : "", options.mode_given ? options.mode : "", options.out,
                                   options.settings, options.max_instructions, options.json, options.no_skip});
@@ -172,7 +181,8 @@ void add_frame_options(CLI::App& command, Options& options) {
 void add_run(CLI::App& app, Session& session) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("run", "Render a scene, or launch a pipeline or a PTX kernel, on the simulated GPU");
-  command->add_option("SCENE", options->scene, "Scene; 'glint list scenes' names them. Or a pipeline: FILE.toml, or one shader file. Or a kernel: FILE.ptx, or its launch FILE.toml")->required();
+  command->add_option("SCENE", options->scene, "Scene; 'glint list scenes' names them. Or a pipeline: FILE.toml, or one shader file. Or a kernel: FILE.ptx, or its launch FILE.toml. Or an Amber script: FILE.amber")->required();
+  command->add_option("MORE", options->more, "More Amber scripts, after a first one: FILE.amber");
   command->add_option("--launch", options->launch, "Launch file of a kernel: grid, block, arguments")->type_name("FILE");
   command->add_option("--shader", options->shader, "pt, sh or ao; 'glint list shaders' explains")
       ->capture_default_str();

@@ -73,6 +73,7 @@ TEST_CASE("a script that asks for what there is not is unsupported, by name and 
              {kShader + "PIPELINE compute p\n BIND BUFFER b KERNEL ARG_NAME x\nEND\n", "unsupported: OpenCL"},
              {kShader + "PIPELINE compute p\n SET KERNEL ARG_NAME x AS int32 3\nEND\n", "unsupported: OpenCL"},
              {kPipeline + "RUN p DRAW_RECT POS 0 0 SIZE 1 1\n", "unsupported: graphics: DRAW_RECT"},
+             {"BUFFER b FORMAT R8G8B8A8_UNORM\n", "unsupported: graphics: buffers as large as a framebuffer"},
              {"CLEAR p\n", "unsupported: graphics: CLEAR"},
              {"SHADER compute s SPIRV-ASM TARGET_ENV spv9\nEND\nPIPELINE compute p\n ATTACH s\nEND\nRUN p 1 1 1\n", "unsupported: target environment 'spv9'"},
              {"DANCE\n", "unsupported: command DANCE"}},

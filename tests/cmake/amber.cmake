@@ -1,3 +1,7 @@
 if(TARGET glint::amber)
   glint_test(amber LINKS glint::amber)
 endif()
+if(TARGET glint)
+  find_package(Python3 REQUIRED COMPONENTS Interpreter)
+  add_test(NAME amber_cli COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/amber/cli_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR})
+endif()

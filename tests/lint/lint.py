@@ -6,7 +6,7 @@ import re
 import subprocess
 import sys
 
-SOURCE_FOLDERS = ["base", "isa", "frontend", "memsys", "rtunit", "core", "scenes", "pipeline", "report", "apps", "bench"]
+SOURCE_FOLDERS = ["base", "isa", "frontend", "memsys", "rtunit", "core", "scenes", "pipeline", "amber", "report", "apps", "bench"]
 LIBRARIES = [folder for folder in SOURCE_FOLDERS if folder not in ("apps", "bench")]
 MAX_FILE_LINES, MAX_FUNCTION_LINES = 450, 90  # the aim is 400 and 60; what lies between is reported, not failed
 # Functions that may be longer, each with the reason.

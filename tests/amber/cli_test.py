@@ -1,0 +1,61 @@
+# `glint run` with Amber scripts: exit codes and the line that counts.
+# SPDX-License-Identifier: Apache-2.0
+"""usage: cli_test.py GLINT SOURCE_DIR"""
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+GLINT, ROOT = sys.argv[1], pathlib.Path(sys.argv[2])
+BUFFER = "#!amber\nBUFFER b DATA_TYPE int32 DATA 1 2 END\n"
+GOOD, BAD = BUFFER + "EXPECT b IDX 4 EQ 2\n", BUFFER + "EXPECT b IDX 4 EQ 3\n"
+GRAPHICS = "#!amber\nPIPELINE graphics p\nEND\n"
+
+
+class Amber(unittest.TestCase):
+    def run_scripts(self, *texts, arguments=()):
+        with tempfile.TemporaryDirectory() as folder:
+            names = []
+            for i, text in enumerate(texts):
+                names.append(f"{i}.amber")
+                (pathlib.Path(folder) / names[-1]).write_text(text)
+            return subprocess.run([GLINT, "run", *names, *arguments], capture_output=True, text=True, cwd=folder, timeout=300)
+
+    def check(self, done, code, out, err=""):
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        self.assertEqual(done.stdout, out + "\n")
+        self.assertIn(err, done.stderr)
+
+    def test_a_script_that_passes_exits_with_0_and_says_nothing_else(self):
+        done = self.run_scripts(GOOD)
+        self.check(done, 0, "1 passed, 0 failed, 0 unsupported")
+        self.assertEqual(done.stderr, "")
+
+    def test_an_expectation_that_fails_exits_with_1_and_names_the_line(self):
+        self.check(self.run_scripts(BAD), 1, "0 passed, 1 failed, 0 unsupported", "0.amber:3: failed: buffer 'b' at byte 4 (value 0): expected == 3, found 2")
+
+    def test_an_unsupported_script_exits_with_3(self):
+        self.check(self.run_scripts(GRAPHICS), 3, "0 passed, 0 failed, 1 unsupported", "0.amber:2: unsupported: graphics pipelines")
+
+    def test_a_script_that_is_wrong_exits_with_2(self):
+        self.check(self.run_scripts("no script"), 2, "0 passed, 1 failed, 0 unsupported", "0.amber:1: error:")
+
+    def test_several_scripts_all_run_and_are_counted(self):
+        done = self.run_scripts(GRAPHICS, BAD, GOOD, GOOD)
+        self.check(done, 1, "2 passed, 1 failed, 1 unsupported", "1.amber:3")
+        self.check(self.run_scripts(GOOD, GRAPHICS), 3, "1 passed, 0 failed, 1 unsupported")
+
+    def test_the_timing_machine_tells_cycles(self):
+        done = subprocess.run([GLINT, "run", str(ROOT / "tests/amber/scripts/shared.amber"), "--mode", "timing"], capture_output=True, text=True, timeout=300)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"shared.amber: [1-9][0-9]+ cycles")
+
+    def test_other_files_beside_scripts_are_refused(self):
+        done = self.run_scripts(GOOD, arguments=["WKND"])
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("'WKND' is no Amber script", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
