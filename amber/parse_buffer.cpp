@@ -139,6 +139,7 @@ void make(Parsing& p, Buffer& buffer, const Contents& contents) {
   else buffer.elements = (contents.values.size() + each - 1) / each * (contents.kind == "DATA" || contents.kind == "FILE");
   if (buffer.elements == 0 && contents.kind.empty() && buffer.type.is_packed) p.unsupported("graphics: buffers as large as a framebuffer");
   if (buffer.elements == 0) p.wrong(fmt::format("'{}' has no size", buffer.name));
+  if (buffer.size[0] && buffer.elements < texels_of(buffer, 0)) p.wrong(fmt::format("'{}' has {} texels and SIZE {}", buffer.name, texels_of(buffer, 0), buffer.elements));
   uint64_t texels = buffer.elements;
   for (uint32_t level = 1; level < buffer.levels; ++level) texels += texels_of(buffer, level);
   if (texels > kMostBytes / buffer.layout.stride) p.wrong(fmt::format("'{}' has more than {} bytes", buffer.name, kMostBytes));
@@ -199,10 +200,13 @@ void parse_buffer(Parsing& p, bool is_image) {
   buffer.name = p.tokens.word("the buffer's name");
   while (p.tokens.peek().is_word() && contents.kind != "DATA") parse_attribute(p, p.tokens.next().text, buffer, contents, std140);
   if (buffer.type.name.empty()) p.wrong(fmt::format("'{}' has no DATA_TYPE", buffer.name));
+  buffer.layout = lay_out(buffer.type, std140);
+  for (const Slot& slot : buffer.layout.slots)
+    if (uint64_t{slot.offset} + bytes_of(slot.scalar) > buffer.layout.stride) p.wrong(fmt::format("the members of '{}' are past its {} bytes", buffer.type.name, buffer.layout.stride));
+  if (buffer.layout.slots.size() > kMostNumbers) p.wrong(fmt::format("'{}' has more than {} numbers", buffer.type.name, kMostNumbers));
   if (is_image && !buffer.dimensions) p.wrong(fmt::format("image '{}' has no DIM_1D, DIM_2D or DIM_3D", buffer.name));
   if (is_image && !buffer.type.format) p.unsupported("images of " + buffer.type.name);
   for (uint32_t i = 0; i < 3 && buffer.size[0]; ++i) buffer.size[i] = std::max(1u, buffer.size[i]);
-  buffer.layout = lay_out(buffer.type, std140);
   make(p, buffer, contents);
   p.declare(p.script.buffers, buffer.name, "buffer") = std::move(buffer);
 }

@@ -55,7 +55,7 @@ class Runner {
   void copy(const Command& command) {
     const Buffer& from = script_.buffers.at(command.from);
     Buffer& to = script_.buffers.at(command.to);
-    to.bytes = from.bytes, to.elements = from.elements;
+    to.bytes = from.bytes, to.elements = from.elements, to.size = from.size, to.levels = from.levels;
   }
 
   Script& script_;

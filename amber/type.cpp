@@ -91,6 +91,7 @@ class LayoutMaker {
     return t.columns > 1 ? t.columns * matrix_stride.value_or(alignment(t)) : column;
   }
   void add(const Type& t, uint32_t at, std::optional<uint32_t> matrix_stride = {}) {
+    if (out.slots.size() > kMostNumbers) return;
     if (t.is_struct()) {
       walk(t, [&](const Member& m, uint32_t offset) { add(*m.type, at + offset, m.matrix_stride); });
       return;
@@ -114,9 +115,10 @@ class LayoutMaker {
     uint32_t end = 0;
     for (const Member& m : t.members) {
       const uint32_t begin = m.offset.value_or(round_up(end, m.count ? aggregate(alignment(*m.type)) : alignment(*m.type)));
-      for (uint32_t i = 0; i < m.count.value_or(1); ++i) call(m, begin + (m.count ? i * array_stride(m) : 0));
+      const uint32_t stride = m.count ? array_stride(m) : 0;
+      for (uint32_t i = 0; i < m.count.value_or(1); ++i) call(m, begin + i * stride);
       const bool is_padded = !m.count && std140_ && m.type->is_struct();
-      end = begin + (m.count ? *m.count * array_stride(m) : size(*m.type, m.matrix_stride));
+      end = begin + (m.count ? *m.count * stride : size(*m.type, m.matrix_stride));
       if (is_padded) end = round_up(end, 16);
     }
     return end;

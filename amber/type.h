@@ -48,7 +48,8 @@ struct Layout {
   uint32_t stride = 0;  // bytes from element to element
   std::vector<Slot> slots;
 };
-// GLSL's std430 layout, or std140.
+// GLSL's std430 layout, or std140. Stops after kMostNumbers slots.
+inline constexpr size_t kMostNumbers = size_t{1} << 20;  // of a struct: more are a mistake
 Layout lay_out(const Type& type, bool std140);
 
 // A number as a script writes it: decimal, 0x..., nan, inf. False: it is none of that kind.
