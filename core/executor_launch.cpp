@@ -84,11 +84,11 @@ void Executor::start(WarpContext& warp, Block& block, uint32_t warp_in_block, co
   const Image& image = *world_.image;
   const size_t registers = size_t(image.num_registers) * kLanes;
   if (!warp.regs.bank[0]) {
-    warp.own_registers = std::make_unique<uint32_t[]>(registers);
+    warp.own_registers = allocate_rows(image.num_registers);
     warp.regs.bank[0] = warp.own_registers.get();
   }
   std::fill_n(warp.regs.bank[0], registers, 0u);
-  if (!warp.own_specials) warp.own_specials = std::make_unique<uint32_t[]>(size_t(isa::kNumSpecials) * kLanes);
+  if (!warp.own_specials) warp.own_specials = allocate_rows(size_t(isa::kNumSpecials));
   warp.regs.bank[1] = image.constants.get();
   warp.regs.bank[2] = warp.own_specials.get();
   std::fill_n(warp.regs.bank[2], size_t(isa::kNumSpecials) * kLanes, 0u);

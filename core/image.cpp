@@ -73,10 +73,8 @@ Image link(const std::vector<isa::Program>& programs) {
     const bool branch = image.rows[i]->effect == isa::Effect::Branch;
     image.target_is_join.push_back(branch && image.rows[size_t(image.code[i].imm)]->effect == isa::Effect::Join);
   }
-  const size_t rows = std::max<size_t>(1, constants.size());
-  auto* table = static_cast<uint32_t*>(std::aligned_alloc(64, rows * sizeof(isa::Row)));
-  image.constants = {table, std::free};
-  std::memset(table, 0, rows * sizeof(isa::Row));
+  image.constants = allocate_rows(constants.size());
+  uint32_t* const table = image.constants.get();
   for (size_t i = 0; i < constants.size(); ++i)
     for (int lane = 0; lane < kLanes; ++lane) table[i * kLanes + size_t(lane)] = constants[i];
   return image;

@@ -1,8 +1,10 @@
 // All shaders of a pipeline linked into one code image, and the world they run in: what a warp executes against.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstdlib>
 #include <memory>
 #include <string>
 #include <vector>
@@ -27,6 +29,15 @@ struct Shader {
   bool uses_ray = false, uses_matrices = false;  // reads %payload or what follows; %object.origin or what follows
 };
 
+// Rows of 32 lanes, aligned to cache lines: what the handlers' vector loads want. Uninitialised.
+struct FreeRows {
+  void operator()(uint32_t* rows) const { std::free(rows); }
+};
+using Rows = std::unique_ptr<uint32_t[], FreeRows>;
+inline Rows allocate_rows(size_t count) {
+  return Rows(static_cast<uint32_t*>(std::aligned_alloc(64, std::max<size_t>(count, 1) * sizeof(isa::Row))));
+}
+
 // Code of all shaders, branch targets absolute, constants in one table of 32-lane rows.
 struct Image {
   std::vector<isa::Inst> code;
@@ -36,7 +47,7 @@ struct Image {
   std::vector<std::string> files;
   std::vector<uint32_t> shader_of;         // one an instruction
   std::vector<Shader> shaders;
-  std::unique_ptr<uint32_t[], void (*)(void*)> constants{nullptr, nullptr};  // rows of kLanes, 64-byte aligned
+  Rows constants;
   uint32_t num_registers = 1;              // highest of all shaders
 
   std::string place_of(uint32_t pc) const; // "shader.rchit:12 (instruction 87: fma.rn.f32)"

@@ -73,7 +73,7 @@ struct WarpContext {
   std::unique_ptr<Block> own_block;   // of a launch without blocks: a warp is one of its own
 
   // Rows of the specials bank, and of the register bank when the machine has not set one.
-  std::unique_ptr<uint32_t[]> own_registers, own_specials;
+  Rows own_registers, own_specials;
 
   TraceFrame& frame() { return *frames[depth - 1]; }
 };
