@@ -15,28 +15,27 @@ enum class Round : uint8_t { Nearest = 0, Down = 1, Up = 2, Zero = 3 };
 // zeros of their sign (MXCSR's DAZ and FTZ; a result counts as subnormal by its size once rounded with an
 // unbounded exponent, as PTX's .ftz has it). The host's arithmetic does it in hardware, all lanes at once;
 // the fences keep the compiler, which knows nothing of it, from moving loads and stores (and so what lies
-// between) across.
+// between) across. Every thread that runs Glint has MXCSR's state of process start, so it is set, not saved: reading
+// it takes longer than the arithmetic.
 template <Round kRound, bool kFtz = false>
 class RoundingScope {
  public:
   [[gnu::always_inline]] RoundingScope() {
     if constexpr (kIsDefault) return;
-    saved_ = _mm_getcsr();
-    _mm_setcsr((saved_ & ~0x6000u) | uint32_t(kRound) << 13 | (kFtz ? 0x8040u : 0));
+    _mm_setcsr(kProcessStart | uint32_t(kRound) << 13 | (kFtz ? 0x8040u : 0));
     asm volatile("" ::: "memory");
   }
   [[gnu::always_inline]] ~RoundingScope() {
     if constexpr (kIsDefault) return;
     asm volatile("" ::: "memory");
-    _mm_setcsr(saved_);
+    _mm_setcsr(kProcessStart);
   }
   RoundingScope(const RoundingScope&) = delete;
   RoundingScope& operator=(const RoundingScope&) = delete;
 
  private:
   static constexpr bool kIsDefault = kRound == Round::Nearest && !kFtz;
-
-  uint32_t saved_ = 0;
+  static constexpr uint32_t kProcessStart = 0x1f80;  // nearest, nothing flushed, no traps (System V ABI, 3.4.1)
 };
 
 template <Round kRound, bool kFtz, class F, class... A>
