@@ -43,23 +43,24 @@ struct HalfPrecision : Named<Half, ".f16"> {
   static constexpr auto kFlush = Text("");
   static constexpr Unit kUnit = Unit::Fp16;
   static constexpr uint64_t kOne = 0x3c00, kTwo = 0x4000, kNan = 0x7e00;
-  // A float that compares like it: the same bits further up, without a change of the exponent's bias.
-  [[gnu::always_inline]] static float value(Half x) {
-    const uint32_t shifted = (x.bits & 0x7fffu) << 13 | (x.bits & 0x8000u) << 16;
-    return float_of(is_nan(x) ? kCanonicalNan : shifted);
+  // A float that compares like the half whose bits are the upper ones of a word: that word, but for a NaN.
+  [[gnu::always_inline]] static float upper_value(uint32_t word) {
+    return float_of((word & 0x7fff'0000u) > 0x7c00'0000u ? kCanonicalNan : word);
   }
+  [[gnu::always_inline]] static float value(Half x) { return upper_value(uint32_t(x.bits) << 16); }
 };
-inline Half flushed(Half x) {
-  return (x.bits & 0x7c00u) == 0 ? Half{0} : x;
-}
 struct FlushedHalf : HalfPrecision {
   static constexpr auto kFlush = Text(".ftz");
-  [[gnu::always_inline]] static float value(Half x) { return HalfPrecision::value(flushed(x)); }
+  [[gnu::always_inline]] static float upper_value(uint32_t word) {
+    return HalfPrecision::upper_value((word & 0x7c00'0000u) == 0 ? 0u : word);
+  }
+  [[gnu::always_inline]] static float value(Half x) { return upper_value(uint32_t(x.bits) << 16); }
 };
 struct BrainFloat : Named<Bfloat, ".bf16"> {
   static constexpr auto kFlush = Text("");
   static constexpr Unit kUnit = Unit::Fp16;
   static constexpr uint64_t kOne = 0x3f80, kTwo = 0x4000, kNan = 0x7fc0;
+  [[gnu::always_inline]] static float upper_value(uint32_t word) { return float_of(word); }
   [[gnu::always_inline]] static float value(Bfloat x) { return to_float(x); }
 };
 
@@ -108,7 +109,7 @@ template <class N, int kShift>
 struct HalfOfPair {
   using Type = uint32_t;
   [[gnu::always_inline]] static float value(uint32_t x) {
-    return N::value(typename N::Type{uint16_t(x >> kShift)});
+    return N::upper_value(kShift == 0 ? x << 16 : x & 0xffff'0000u);
   }
 };
 template <class R, class N>
