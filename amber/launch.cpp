@@ -6,12 +6,10 @@
 
 #include <algorithm>
 #include <cstring>
-#include <memory>
 
 #include "core/block.h"
 #include "pipeline/binding_table.h"
-#include "pipeline/functional_machine.h"
-#include "pipeline/timing_machine.h"
+#include "pipeline/render.h"
 
 namespace glint::amber {
 namespace {
@@ -37,9 +35,7 @@ class Launch {
 
   uint64_t run(const LaunchOptions& options) {
     world_.nearest_first_hit = options.gpu.rt.nearest_first_hit;
-    uint64_t cycles = 0;
-    if (options.timing) cycles = std::make_unique<pipeline::TimingMachine>(options.gpu, world_, options.no_skip)->run({});
-    else pipeline::run_functional(world_, options.gpu.core.instruction_budget, {});
+    const uint64_t cycles = pipeline::run_world(world_, options.gpu, options.timing, options.no_skip, {}).cycles;
     for (const auto& [name, address] : addresses_) {
       std::vector<std::byte>& bytes = script_.buffers.at(name).bytes;
       std::memcpy(bytes.data(), memory_.find(address, bytes.size()), bytes.size());

@@ -4,15 +4,11 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <map>
 
 #include "base/diagnostics.h"
 #include "core/block.h"
 #include "isa/generic_address.h"
-#include "pipeline/functional_machine.h"
-#include "pipeline/run_stats.h"
-#include "pipeline/timing_machine.h"
 
 namespace glint::pipeline {
 
@@ -81,29 +77,6 @@ void KernelWorld::set_arguments(const std::vector<std::vector<std::byte>>& argum
       throw UserError({}, fmt::format("kernel '{}': parameter {} ('{}') has {} bytes, its argument {}", name, i, p.name, p.bytes, arguments[i].size()));
     std::memcpy(world.constant_bank.data() + isa::kPushConstantOffset + p.offset, arguments[i].data(), p.bytes);
   }
-}
-
-RenderResult run_kernel(KernelWorld& kernel, const GpuParams& gpu, bool timing, bool no_skip,
-                        const std::function<void(uint64_t, uint64_t)>& progress) {
-  RenderResult result;
-  const auto begin = std::chrono::steady_clock::now();
-  if (timing) {
-    auto machine = std::make_unique<TimingMachine>(gpu, kernel.world, no_skip);
-    result.cycles = machine->run(progress);
-    machine->collect(result);
-    result.stats = std::make_unique<RunStats>(std::move(machine));
-  } else {
-    const FunctionalCounts counts = run_functional(kernel.world, gpu.core.instruction_budget, progress);
-    std::copy(counts.by_class.begin(), counts.by_class.end(), result.by_class);
-    result.rays = counts.rays;
-    result.stats = std::make_unique<RunStats>(counts);
-  }
-  result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  for (const ClassCounts& counts : result.by_class) {
-    result.warp_instructions += counts.instructions;
-    result.lane_instructions += counts.lanes;
-  }
-  return result;
 }
 
 }  // namespace glint::pipeline

@@ -50,8 +50,4 @@ class KernelWorld {
   mem::AddressSpace memory_;
 };
 
-// Runs a kernel whose grid and arguments are set: counts, statistics and time; no picture. Errors as render().
-RenderResult run_kernel(KernelWorld& kernel, const GpuParams& gpu, bool timing, bool no_skip,
-                        const std::function<void(uint64_t done, uint64_t total)>& progress);
-
 }  // namespace glint::pipeline

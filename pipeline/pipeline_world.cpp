@@ -5,16 +5,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstring>
 
 #include "core/block.h"
 #include "pipeline/description/data.h"
 #include "pipeline/description/mesh.h"
 #include "pipeline/description/pictures.h"
-#include "pipeline/functional_machine.h"
-#include "pipeline/run_stats.h"
-#include "pipeline/timing_machine.h"
 
 namespace glint::pipeline {
 namespace {
@@ -293,24 +289,7 @@ std::span<const std::byte> PipelineWorld::buffer(size_t index) const {
 
 RenderResult run_pipeline(PipelineWorld& pipeline, const GpuParams& gpu, bool timing, bool no_skip,
                           const std::function<void(uint64_t, uint64_t)>& progress) {
-  RenderResult result;
-  const auto begin = std::chrono::steady_clock::now();
-  if (timing) {
-    auto machine = std::make_unique<TimingMachine>(gpu, pipeline.world, no_skip);
-    result.cycles = machine->run(progress);
-    machine->collect(result);
-    result.stats = std::make_unique<RunStats>(std::move(machine));
-  } else {
-    const FunctionalCounts counts = run_functional(pipeline.world, gpu.core.instruction_budget, progress);
-    std::copy(counts.by_class.begin(), counts.by_class.end(), result.by_class);
-    result.rays = counts.rays;
-    result.stats = std::make_unique<RunStats>(counts);
-  }
-  result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  for (const ClassCounts& counts : result.by_class) {
-    result.warp_instructions += counts.instructions;
-    result.lane_instructions += counts.lanes;
-  }
+  RenderResult result = run_world(pipeline.world, gpu, timing, no_skip, progress);
   result.structures = pipeline.structures;
   result.warnings = pipeline.warnings;
   return result;

@@ -10,43 +10,38 @@
 #include "pipeline/timing_machine.h"
 
 namespace glint::pipeline {
-namespace {
-
-void run_on_functional_machine(const RenderJob& job, SceneWorld& scene, RenderResult& result) {
-  const FunctionalCounts counts = run_functional(scene.world, job.gpu.core.instruction_budget, job.progress);
-  std::copy(counts.by_class.begin(), counts.by_class.end(), result.by_class);
-  result.rays = counts.rays;
-  result.stats = std::make_unique<RunStats>(counts);
-}
-
-void run_on_timing_machine(const RenderJob& job, SceneWorld& scene, RenderResult& result) {
-  auto machine = std::make_unique<TimingMachine>(job.gpu, scene.world, job.no_skip);
-  result.cycles = machine->run(job.progress);
-  machine->collect(result);
-  result.stats = std::make_unique<RunStats>(std::move(machine));
-}
-
-}  // namespace
-
 RenderResult::RenderResult() = default;
 RenderResult::~RenderResult() = default;
 RenderResult::RenderResult(RenderResult&&) noexcept = default;
 RenderResult& RenderResult::operator=(RenderResult&&) noexcept = default;
 const stats::Group& RenderResult::statistics() const { return stats->root(); }
 
-RenderResult render(const RenderJob& job) {
-  SceneWorld scene(job);
+RenderResult run_world(const core::World& world, const GpuParams& gpu, bool timing, bool no_skip,
+                       const std::function<void(uint64_t, uint64_t)>& progress) {
   RenderResult result;
   const auto begin = std::chrono::steady_clock::now();
-  if (job.timing)
-    run_on_timing_machine(job, scene, result);
-  else
-    run_on_functional_machine(job, scene, result);
+  if (timing) {
+    auto machine = std::make_unique<TimingMachine>(gpu, world, no_skip);
+    result.cycles = machine->run(progress);
+    machine->collect(result);
+    result.stats = std::make_unique<RunStats>(std::move(machine));
+  } else {
+    const FunctionalCounts counts = run_functional(world, gpu.core.instruction_budget, progress);
+    std::copy(counts.by_class.begin(), counts.by_class.end(), result.by_class);
+    result.rays = counts.rays;
+    result.stats = std::make_unique<RunStats>(counts);
+  }
   result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   for (const ClassCounts& counts : result.by_class) {
     result.warp_instructions += counts.instructions;
     result.lane_instructions += counts.lanes;
   }
+  return result;
+}
+
+RenderResult render(const RenderJob& job) {
+  SceneWorld scene(job);
+  RenderResult result = run_world(scene.world, job.gpu, job.timing, job.no_skip, job.progress);
   result.width = job.frame.width;
   result.height = job.frame.height;
   result.structures = scene.structures;

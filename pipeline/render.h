@@ -71,6 +71,11 @@ struct RenderResult {
   const stats::Group& statistics() const;  // root of the tree
 };
 
+// Runs the launch of a world on either machine; everything of the result but pictures, structures and warnings.
+// `no_skip` steps every cycle. `progress` hears how many of the launch's warps have ended. Errors as render().
+RenderResult run_world(const core::World& world, const GpuParams& gpu, bool timing, bool no_skip,
+                       const std::function<void(uint64_t done, uint64_t total)>& progress);
+
 // UserError, UnsupportedError: before anything runs. Error(Exit::Fault): the shaders did something wrong, with
 // place and launch id. Error(Exit::Stuck): the machine makes no progress.
 RenderResult render(const RenderJob& job);

@@ -1,25 +1,20 @@
 // `glint run SCENE`: renders one frame on the simulated GPU, leaves a run directory, prints the summary.
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
-#include <chrono>
-#include <filesystem>
 #include <cstdio>
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <memory>
 
 #include "apps/glint/config.h"
+#include "apps/glint/recorded_run.h"
 #include "apps/glint/run_amber.h"
 #include "apps/glint/run_pipeline.h"
 #include "apps/glint/run_ptx.h"
-#include "apps/glint/run_summary.h"
 #include "apps/glint/session.h"
 #include "apps/glint/workloads.h"
 #include "pipeline/render.h"
 #include "report/config_file.h"
-#include "report/progress.h"
 #include "report/run_directory.h"
-#include "report/stat_writer.h"
 
 namespace glint::app {
 namespace {
@@ -50,11 +45,6 @@ void parse_size(const std::string& text, scenes::RenderParams& frame) {
                     "for example --size 128x128");
 }
 
-std::string now_utc() {
-  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
-                     fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
-}
-
 pipeline::RenderJob make_job(const Session& session, const Options& options) {
   const WorkloadInfo& workload = find_workload(options.shader);
   pipeline::RenderJob job;
@@ -77,48 +67,17 @@ std::string title_of(const pipeline::RenderJob& job, const Options& options) {
 }
 
 report::RunInfo describe_run(const Session& session, const Options& options, const pipeline::RenderJob& job) {
-  report::RunInfo info;
-  info.command = session.arguments;
-  info.version = GLINT_VERSION;
-  info.git = GLINT_GIT;
-  info.compiler = __VERSION__;
+  report::RunInfo info = new_run_info(session, job.gpu, options.config, options.mode);
   info.scene = job.scene.name;
   info.scene_form = job.scene.form;
   info.scene_note = job.scene.note;
   info.scene_hash = job.scene.hash();
   info.shader = options.shader;
-  info.config = options.config;
-  info.config_hash = report::fnv1a(report::config_key_values(describe_params(job.gpu)));
-  info.mode = options.mode;
   info.width = job.frame.width;
   info.height = job.frame.height;
   info.samples = job.frame.samples;
   info.seed = job.frame.seed;
-  info.started = now_utc();
   return info;
-}
-
-// An error still leaves a run directory that says what happened.
-pipeline::RenderResult render(const Session& session, pipeline::RenderJob& job,
-                              const report::RunDirectory& directory, report::RunInfo& info) {
-  report::Progress progress(session.on_terminal ? stdout : nullptr, "rendering", session.terminal);
-  job.progress = [&](uint64_t done, uint64_t total) { progress.update(done, total); };
-  const auto start = std::chrono::steady_clock::now();
-  const auto finish = [&](Exit exit, const std::string& message) {
-    info.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    info.exit = int(exit);
-    info.message = message;
-    directory.write_run(info);
-  };
-  try {
-    pipeline::RenderResult result = pipeline::render(job);
-    finish(Exit::Ok, "");
-    for (const std::string& warning : result.warnings) fmt::print(stderr, "{}\n", warning);
-    return result;
-  } catch (const Error& error) {
-    finish(error.exit(), error.what());
-    throw;
-  }
 }
 
 Exit run_scripts(const Session& session, const Options& options) {
@@ -142,20 +101,15 @@ Exit run(const Session& session, const Options& options) {
                           : options.out);
   report::RunInfo info = describe_run(session, options, job);
   directory.write_config(describe_params(job.gpu), "Resolved configuration of: " + title_of(job, options));
-  const pipeline::RenderResult result = render(session, job, directory, info);
+  const pipeline::RenderResult result = run_recorded(session, "rendering", directory, info, [&](const ShowProgress& progress) {
+    job.progress = progress;
+    return pipeline::render(job);
+  });
+  for (const std::string& warning : result.warnings) fmt::print(stderr, "{}\n", warning);
   directory.write_image({result.width, result.height, result.rgba});
   directory.write_stats(result.statistics());
-
-  if (options.json) {
-    write_output("", Registry<report::StatWriter>::instance().entry("json").make_default({})->write(
-                         result.statistics()));
-    return Exit::Ok;
-  }
-  report::Summary summary = summarise(job, result);
-  summary.title = title_of(job, options);
-  summary.files = {"picture    " + directory.path_of("image.png"),
-                   "statistics " + directory.path_of("stats.txt")};
-  write_output("", report::format_summary(summary, session.terminal));
+  print_result(session, options.json, job, result, title_of(job, options),
+               {"picture    " + directory.path_of("image.png"), "statistics " + directory.path_of("stats.txt")});
   return Exit::Ok;
 }
 

@@ -2,23 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/run_pipeline.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 
 #include "apps/glint/config.h"
 #include "apps/glint/outputs.h"
-#include "apps/glint/run_summary.h"
+#include "apps/glint/recorded_run.h"
 #include "pipeline/description/defaults.h"
 #include "pipeline/pipeline_world.h"
 #include "report/config_file.h"
-#include "report/progress.h"
 #include "report/run_directory.h"
-#include "report/stat_writer.h"
 
 namespace glint::app {
 namespace {
@@ -71,11 +67,7 @@ std::vector<std::string> keep(pipeline::PipelineWorld& world, const report::RunD
 
 report::RunInfo describe_run(const Session& session, const pipeline::PipelineWorld& world, const pipeline::GpuParams& gpu, const std::string& config,
                              const std::string& mode) {
-  report::RunInfo info;
-  info.command = session.arguments;
-  info.version = GLINT_VERSION;
-  info.git = GLINT_GIT;
-  info.compiler = __VERSION__;
+  report::RunInfo info = new_run_info(session, gpu, config, mode);
   info.scene = world.description().name;
   info.scene_form = "pipeline";
   std::string everything;  // what the launch begins with
@@ -83,34 +75,9 @@ report::RunInfo describe_run(const Session& session, const pipeline::PipelineWor
     if (allocation.data) everything.append(reinterpret_cast<const char*>(allocation.data), size_t(allocation.bytes));
   info.scene_hash = report::fnv1a(everything);
   for (const pipeline::ShaderModule& module : world.modules().all()) info.shader += (info.shader.empty() ? "" : " ") + module.name;
-  info.config = config;
-  info.config_hash = report::fnv1a(report::config_key_values(describe_params(gpu)));
-  info.mode = mode;
   info.width = world.world.launch_size[0];
   info.height = world.world.launch_size[1];
-  info.started = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
   return info;
-}
-
-// An error still leaves a run directory that says what happened.
-pipeline::RenderResult run_recorded(const Session& session, pipeline::PipelineWorld& world, const pipeline::RenderJob& job,
-                                    const report::RunDirectory& directory, report::RunInfo& info) {
-  report::Progress progress(session.on_terminal ? stdout : nullptr, "running", session.terminal);
-  const auto finish = [&](Exit exit, const std::string& message, double seconds) {
-    info.wall_seconds = seconds;
-    info.exit = int(exit);
-    info.message = message;
-    directory.write_run(info);
-  };
-  try {
-    pipeline::RenderResult result = pipeline::run_pipeline(world, job.gpu, job.timing, job.no_skip,
-                                                           [&](uint64_t done, uint64_t total) { progress.update(done, total); });
-    finish(Exit::Ok, "", result.wall_seconds);
-    return result;
-  } catch (const Error& error) {
-    finish(error.exit(), error.what(), 0);
-    throw;
-  }
 }
 
 }  // namespace
@@ -144,19 +111,13 @@ Exit run_pipeline(const Session& session, const PipelineOptions& options) {
   const report::RunDirectory directory(options.out.empty() ? fmt::format("out/{}-{}", description.name, mode) : options.out);
   report::RunInfo info = describe_run(session, world, job.gpu, config, mode);
   directory.write_config(describe_params(job.gpu), "Resolved configuration of: " + title);
-  const pipeline::RenderResult result = run_recorded(session, world, job, directory, info);
+  const pipeline::RenderResult result = run_recorded(session, "running", directory, info, [&](const ShowProgress& progress) {
+    return pipeline::run_pipeline(world, job.gpu, job.timing, job.no_skip, progress);
+  });
   directory.write_stats(result.statistics());
-  const std::vector<std::string> kept = keep(world, directory);
-
-  if (options.json) {
-    write_output("", Registry<report::StatWriter>::instance().entry("json").make_default({})->write(result.statistics()));
-    return Exit::Ok;
-  }
-  report::Summary summary = summarise(job, result);
-  summary.title = title;
-  summary.files = kept;
-  summary.files.push_back("statistics " + directory.path_of("stats.txt"));
-  write_output("", report::format_summary(summary, session.terminal));
+  std::vector<std::string> files = keep(world, directory);
+  files.push_back("statistics " + directory.path_of("stats.txt"));
+  print_result(session, options.json, job, result, title, std::move(files));
   return Exit::Ok;
 }
 

@@ -2,22 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/run_ptx.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 
 #include "apps/glint/config.h"
 #include "apps/glint/launch_file.h"
-#include "apps/glint/run_summary.h"
+#include "apps/glint/recorded_run.h"
 #include "pipeline/kernel_launch.h"
 #include "report/config_file.h"
-#include "report/progress.h"
 #include "report/run_directory.h"
-#include "report/stat_writer.h"
 
 namespace glint::app {
 namespace {
@@ -80,41 +76,12 @@ std::vector<std::string> keep_buffers(Launched& launched, const LaunchFile& laun
 
 report::RunInfo describe_run(const Session& session, const KernelOptions& options, const pipeline::GpuParams& gpu, const std::string& kernel,
                              const std::string& text) {
-  report::RunInfo info;
-  info.command = session.arguments;
-  info.version = GLINT_VERSION;
-  info.git = GLINT_GIT;
-  info.compiler = __VERSION__;
+  report::RunInfo info = new_run_info(session, gpu, options.config, options.mode);
   info.scene = kernel;
   info.scene_form = "kernel";
   info.scene_hash = report::fnv1a(text);
   info.shader = kernel;
-  info.config = options.config;
-  info.config_hash = report::fnv1a(report::config_key_values(describe_params(gpu)));
-  info.mode = options.mode;
-  info.started = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
   return info;
-}
-
-// An error still leaves a run directory that says what happened.
-pipeline::RenderResult run_recorded(const Session& session, const KernelOptions& options, const pipeline::GpuParams& gpu, Launched& launched,
-                                    const report::RunDirectory& directory, report::RunInfo& info) {
-  report::Progress progress(session.on_terminal ? stdout : nullptr, "running", session.terminal);
-  const auto finish = [&](Exit exit, const std::string& message, double seconds) {
-    info.wall_seconds = seconds;
-    info.exit = int(exit);
-    info.message = message;
-    directory.write_run(info);
-  };
-  try {
-    pipeline::RenderResult result = pipeline::run_kernel(launched.world, gpu, options.mode == "timing", options.no_skip,
-                                                         [&](uint64_t done, uint64_t total) { progress.update(done, total); });
-    finish(Exit::Ok, "", result.wall_seconds);
-    return result;
-  } catch (const Error& error) {
-    finish(error.exit(), error.what(), 0);
-    throw;
-  }
 }
 
 }  // namespace
@@ -145,19 +112,13 @@ Exit run_ptx(const Session& session, const KernelOptions& options) {
   const report::RunDirectory directory(options.out.empty() ? fmt::format("out/{}-{}", name, options.mode) : options.out);
   report::RunInfo info = describe_run(session, options, job.gpu, name, text);
   directory.write_config(describe_params(job.gpu), "Resolved configuration of: " + title);
-  const pipeline::RenderResult result = run_recorded(session, options, job.gpu, launched, directory, info);
+  const pipeline::RenderResult result = run_recorded(session, "running", directory, info, [&](const ShowProgress& progress) {
+    return pipeline::run_world(launched.world.world, job.gpu, options.mode == "timing", options.no_skip, progress);
+  });
   directory.write_stats(result.statistics());
-  const std::vector<std::string> buffers = keep_buffers(launched, launch, directory);
-
-  if (options.json) {
-    write_output("", Registry<report::StatWriter>::instance().entry("json").make_default({})->write(result.statistics()));
-    return Exit::Ok;
-  }
-  report::Summary summary = summarise(job, result);
-  summary.title = title;
-  summary.files = buffers;
-  summary.files.push_back("statistics " + directory.path_of("stats.txt"));
-  write_output("", report::format_summary(summary, session.terminal));
+  std::vector<std::string> files = keep_buffers(launched, launch, directory);
+  files.push_back("statistics " + directory.path_of("stats.txt"));
+  print_result(session, options.json, job, result, title, std::move(files));
   return Exit::Ok;
 }
 

@@ -1,9 +1,8 @@
-# Random programs against a scalar interpreter of SPIR-V. The machines are compiled in: the rest of the pipeline is not needed.
-if(TARGET glint::core AND TARGET glint::rtunit AND TARGET glint::frontend)
+# Random programs against a scalar interpreter of SPIR-V.
+if(TARGET glint::pipeline AND TARGET glint::frontend)
   add_library(glint_torture STATIC torture/interpreter.cpp torture/interpreter_glsl.cpp torture/interpreter_ops.cpp torture/interpreter_run.cpp
-    torture/expressions.cpp torture/function_writer.cpp torture/generator.cpp torture/machines.cpp torture/tree_glsl.cpp torture/tree_spirv.cpp
-    ${PROJECT_SOURCE_DIR}/pipeline/engine_loop.cpp ${PROJECT_SOURCE_DIR}/pipeline/functional_machine.cpp ${PROJECT_SOURCE_DIR}/pipeline/timing_machine.cpp)
-  target_link_libraries(glint_torture PUBLIC glint::core glint::rtunit glint::memsys glint::scenes glint::frontend PRIVATE glint_warnings)
+    torture/expressions.cpp torture/function_writer.cpp torture/generator.cpp torture/machines.cpp torture/tree_glsl.cpp torture/tree_spirv.cpp)
+  target_link_libraries(glint_torture PUBLIC glint::pipeline PRIVATE glint_warnings)
   target_include_directories(glint_torture PUBLIC ${PROJECT_SOURCE_DIR})
   set_source_files_properties(torture/interpreter.cpp PROPERTIES COMPILE_DEFINITIONS SPV_ENABLE_UTILITY_CODE)
   glint_test(torture LINKS glint_torture)

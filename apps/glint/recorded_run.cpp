@@ -1,0 +1,64 @@
+// Records and prints runs.
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/glint/recorded_run.h"
+
+#include <fmt/chrono.h>
+
+#include <chrono>
+#include <cstdio>
+
+#include "apps/glint/config.h"
+#include "apps/glint/run_summary.h"
+#include "report/config_file.h"
+#include "report/progress.h"
+#include "report/stat_writer.h"
+
+namespace glint::app {
+
+report::RunInfo new_run_info(const Session& session, const pipeline::GpuParams& gpu, const std::string& config, const std::string& mode) {
+  report::RunInfo info;
+  info.command = session.arguments;
+  info.version = GLINT_VERSION;
+  info.git = GLINT_GIT;
+  info.compiler = __VERSION__;
+  info.config = config;
+  info.config_hash = report::fnv1a(report::config_key_values(describe_params(gpu)));
+  info.mode = mode;
+  info.started = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
+                             fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
+  return info;
+}
+
+pipeline::RenderResult run_recorded(const Session& session, const std::string& what, const report::RunDirectory& directory,
+                                    report::RunInfo& info, const std::function<pipeline::RenderResult(const ShowProgress&)>& run) {
+  report::Progress progress(session.on_terminal ? stdout : nullptr, what, session.terminal);
+  const auto start = std::chrono::steady_clock::now();
+  const auto finish = [&](Exit exit, const std::string& message) {
+    info.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    info.exit = int(exit);
+    info.message = message;
+    directory.write_run(info);
+  };
+  try {
+    pipeline::RenderResult result = run([&](uint64_t done, uint64_t total) { progress.update(done, total); });
+    finish(Exit::Ok, "");
+    return result;
+  } catch (const Error& error) {
+    finish(error.exit(), error.what());
+    throw;
+  }
+}
+
+void print_result(const Session& session, bool json, const pipeline::RenderJob& job, const pipeline::RenderResult& result,
+                  const std::string& title, std::vector<std::string> files) {
+  if (json) {
+    write_output("", Registry<report::StatWriter>::instance().entry("json").make_default({})->write(result.statistics()));
+    return;
+  }
+  report::Summary summary = summarise(job, result);
+  summary.title = title;
+  summary.files = std::move(files);
+  write_output("", report::format_summary(summary, session.terminal));
+}
+
+}  // namespace glint::app
