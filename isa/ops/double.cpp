@@ -210,10 +210,10 @@ constexpr std::array kPlainRows = {
                     {{{0}, 0}, {{1}, 1}, {{kSign | 1}, 1}, {{0x0010'0000'0000'0000}, 0}}),
 };
 
-constexpr auto kRows = rows_of(rounded<Add, double, double>, rounded<Subtract, double, double>,
-                               rounded<Multiply, double, double>, rounded<Fma, double, double, double>,
-                               rounded<Mad, double, double, double>, rounded<Divide, double, double>,
-                               rounded<Reciprocal, double>, rounded<SquareRoot, double>, kPlainRows);
+constexpr auto kRows = joined_rows(rounded<Add, double, double>, rounded<Subtract, double, double>,
+                                   rounded<Multiply, double, double>, rounded<Fma, double, double, double>,
+                                   rounded<Mad, double, double, double>, rounded<Divide, double, double>,
+                                   rounded<Reciprocal, double>, rounded<SquareRoot, double>, kPlainRows);
 
 }  // namespace
 

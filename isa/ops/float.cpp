@@ -252,7 +252,7 @@ constexpr std::array kClassRows = {
                     {{{0}, 0}, {{1}, 1}, {{kSign | 0x007f'ffff}, 1}, {{0x0080'0000}, 0}}),
 };
 
-constexpr auto kRows = rows_of(
+constexpr auto kRows = joined_rows(
     saturable<Add, float, float>, saturable<Subtract, float, float>, saturable<Multiply, float, float>,
     saturable<Fma, float, float, float>, saturable<Mad, float, float, float>,
     unsaturable<Divide, float, float>, unsaturable<Reciprocal, float>, unsaturable<SquareRoot, float>,

@@ -309,13 +309,13 @@ constexpr auto sign_rows = generated<Format::kHasFtz ? 2 : 1>([](auto i) {
 });
 
 template <class Format, bool kPair>
-constexpr auto format_rows = rows_of(two_source_rows<Format, kPair, Add>,
-                                     two_source_rows<Format, kPair, Subtract>,
-                                     two_source_rows<Format, kPair, Multiply>, fma_rows<Format, kPair>,
-                                     extreme_rows<Format, kPair, false>, extreme_rows<Format, kPair, true>,
-                                     sign_rows<Format, kPair, false>, sign_rows<Format, kPair, true>);
-constexpr auto kRows = rows_of(format_rows<F16, false>, format_rows<F16, true>, format_rows<Bf16, false>,
-                               format_rows<Bf16, true>);
+constexpr auto format_rows = joined_rows(two_source_rows<Format, kPair, Add>,
+                                         two_source_rows<Format, kPair, Subtract>,
+                                         two_source_rows<Format, kPair, Multiply>, fma_rows<Format, kPair>,
+                                         extreme_rows<Format, kPair, false>, extreme_rows<Format, kPair, true>,
+                                         sign_rows<Format, kPair, false>, sign_rows<Format, kPair, true>);
+constexpr auto kRows = joined_rows(format_rows<F16, false>, format_rows<F16, true>, format_rows<Bf16, false>,
+                                   format_rows<Bf16, true>);
 
 }  // namespace
 

@@ -1,9 +1,7 @@
 // Parts of the rows of texture and surface ops: names of geometries, operands, the handler.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
-
-#include "isa/op_makers.h"
+#include "isa/ops/row_tables.h"
 
 namespace glint::isa::GLINT_ISA_PATH {
 
@@ -57,17 +55,6 @@ constexpr OpRow image_op(std::string_view name, Effect effect, const ImageAccess
   row.image = image;
   row.run = handler_of(operands);
   return row;
-}
-
-template <size_t... kCounts>
-constexpr auto concatenated(const std::array<OpRow, kCounts>&... parts) {
-  std::array<OpRow, (kCounts + ...)> out{};
-  size_t n = 0;
-  const auto append = [&](const auto& part) {
-    for (const OpRow& row : part) out[n++] = row;
-  };
-  (append(parts), ...);
-  return out;
 }
 
 }  // namespace glint::isa::GLINT_ISA_PATH

@@ -3,11 +3,10 @@
 // Included only by isa/ops/*.cpp (see op_makers.h).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <algorithm>
 #include <array>
 #include <utility>
 
-#include "isa/op_makers.h"
+#include "isa/ops/row_tables.h"
 #include "isa/rounding.h"
 
 namespace glint::isa::GLINT_ISA_PATH {
@@ -50,19 +49,6 @@ inline constexpr Text kReluWords = "; negative results become 0";
 
 // The order in which PTX lists the directions.
 inline constexpr Round kRounds[] = {Round::Nearest, Round::Zero, Round::Down, Round::Up};
-
-// Rows of several generated lists, one after the other.
-template <size_t... kSizes>
-constexpr auto rows_of(const std::array<OpRow, kSizes>&... lists) {
-  std::array<OpRow, (kSizes + ... + 0)> out{};
-  size_t n = 0;
-  const auto append = [&](const auto& list) {
-    std::copy(list.begin(), list.end(), out.begin() + n);
-    n += list.size();
-  };
-  (append(lists), ...);
-  return out;
-}
 
 // `kCount` rows: `row(i)` of each i, where i is a compile-time constant.
 template <size_t kCount, class Row>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/ray_query.h"
 
-#include "isa/op_makers.h"
 #include "isa/ops/families.h"
+#include "isa/ops/row_tables.h"
 
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
@@ -14,7 +14,7 @@ constexpr OpRow query(std::string_view name, Effect effect, Query detail, Operan
   return row;
 }
 
-constexpr OpRow kSteps[] = {
+constexpr auto kSteps = joined_rows(
     query("rq.initialize", Effect::Query, Query::Initialize,
           {Src32, Src64, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32},
           "Starts a ray: query, structure, flags, mask, origin, tmin, direction, tmax."),
@@ -24,8 +24,7 @@ constexpr OpRow kSteps[] = {
     query("rq.confirm", Effect::Query, Query::Confirm, {Src32}, "Commits the triangle that is the candidate."),
     query("rq.generate", Effect::Query, Query::Generate, {Src32, Src32},
           "Commits a hit at t (second operand) in the box that is the candidate, if t lies in the ray's interval."),
-    query("rq.terminate", Effect::Query, Query::Terminate, {Src32}, "Ends the traversal; what is committed stays."),
-};
+    query("rq.terminate", Effect::Query, Query::Terminate, {Src32}, "Ends the traversal; what is committed stays."));
 
 constexpr OpRow value(std::string_view name, Query field, int element, bool committed, std::string_view doc) {
   OpRow row = effect_op(name, Class::Rt, Unit::RtUnit, Effect::Query, {Dst32, Src32}, doc);
@@ -33,7 +32,7 @@ constexpr OpRow value(std::string_view name, Query field, int element, bool comm
   return row;
 }
 
-constexpr OpRow kValues[] = {
+constexpr auto kValues = joined_rows(
     value("rq.type.candidate", Query::Type, 0, false, "Kind of the candidate: 0 triangle, 1 box."),
     value("rq.type.committed", Query::Type, 0, true, "Kind of the committed hit: 0 none, 1 triangle, 2 generated."),
     value("rq.t.candidate", Query::T, 0, false, "Distance of the candidate triangle."),
@@ -46,8 +45,7 @@ constexpr OpRow kValues[] = {
     value("rq.origin.z", Query::Origin, 2, false, "Origin of the ray in world space."),
     value("rq.direction.x", Query::Direction, 0, false, "Direction of the ray in world space."),
     value("rq.direction.y", Query::Direction, 1, false, "Direction of the ray in world space."),
-    value("rq.direction.z", Query::Direction, 2, false, "Direction of the ray in world space."),
-};
+    value("rq.direction.z", Query::Direction, 2, false, "Direction of the ray in world space."));
 
 // Rows that exist for the candidate and for the committed hit.
 template <Text kName>
@@ -81,19 +79,8 @@ constexpr std::array<OpRow, 24> matrix_of_both(Query field, std::string_view doc
   return out;
 }
 
-template <size_t... kSizes>
-constexpr auto concatenated(const std::array<OpRow, kSizes>&... lists) {
-  std::array<OpRow, (kSizes + ... + 0)> out;
-  size_t n = 0;
-  const auto append = [&](const auto& list) {
-    for (const OpRow& row : list) out[n++] = row;
-  };
-  (append(lists), ...);
-  return out;
-}
-
-constexpr auto kRows = concatenated(
-    std::to_array(kSteps), std::to_array(kValues),
+constexpr auto kRows = joined_rows(
+    kSteps, kValues,
     of_both<"instance">(Query::Instance, 0, "Index of the instance."),
     of_both<"custom">(Query::CustomIndex, 0, "Custom index of the instance."),
     of_both<"sbt_offset">(Query::SbtOffset, 0, "Binding-table offset of the instance."),

@@ -68,9 +68,9 @@ constexpr std::array<OpRow, 2> byte_rows() {
 
 template <ImageOutside kOutside, ImageShape... kShapes>
 constexpr auto accesses_of() {
-  return concatenated(texel_rows<kOutside, kShapes>()..., byte_rows<kOutside, kShapes, Width::B8>()...,
-                      byte_rows<kOutside, kShapes, Width::B16>()..., byte_rows<kOutside, kShapes, Width::B32>()...,
-                      byte_rows<kOutside, kShapes, Width::V2>()..., byte_rows<kOutside, kShapes, Width::V4>()...);
+  return joined_rows(texel_rows<kOutside, kShapes>()..., byte_rows<kOutside, kShapes, Width::B8>()...,
+                     byte_rows<kOutside, kShapes, Width::B16>()..., byte_rows<kOutside, kShapes, Width::B32>()...,
+                     byte_rows<kOutside, kShapes, Width::V2>()..., byte_rows<kOutside, kShapes, Width::V4>()...);
 }
 
 enum class Rmw { AddU32, AddS32, AddF32, MinU32, MinS32, MaxU32, MaxS32, And, Or, Xor, Exch, Cas };
@@ -142,7 +142,7 @@ constexpr std::array<OpRow, sizeof...(kRmw)> atomics_of() {
 }
 template <ImageShape... kShapes>
 constexpr auto atomics() {
-  return concatenated(atomics_of<kShapes, Rmw::AddU32, Rmw::AddS32, Rmw::AddF32, Rmw::MinU32, Rmw::MinS32, Rmw::MaxU32,
+  return joined_rows(atomics_of<kShapes, Rmw::AddU32, Rmw::AddS32, Rmw::AddF32, Rmw::MinU32, Rmw::MinS32, Rmw::MaxU32,
                                  Rmw::MaxS32, Rmw::And, Rmw::Or, Rmw::Xor, Rmw::Exch, Rmw::Cas>()...);
 }
 
@@ -164,7 +164,7 @@ constexpr std::array<OpRow, sizeof...(kRmw)> reductions_of() {
 }
 template <ImageOutside kOutside, ImageShape... kShapes>
 constexpr auto reductions() {
-  return concatenated(reductions_of<kOutside, kShapes, Rmw::AddU32, Rmw::AddS32, Rmw::MinU32, Rmw::MinS32, Rmw::MaxU32,
+  return joined_rows(reductions_of<kOutside, kShapes, Rmw::AddU32, Rmw::AddS32, Rmw::MinU32, Rmw::MinS32, Rmw::MaxU32,
                                     Rmw::MaxS32, Rmw::And, Rmw::Or>()...);
 }
 
@@ -182,7 +182,7 @@ constexpr std::array kQueries = {
     query("suq.channel_order.b32", ImageQuery::ChannelOrder, "OpenCL's number of the channels' order."),
 };
 
-constexpr auto kRows = concatenated(
+constexpr auto kRows = joined_rows(
     accesses_of<ImageOutside::Trap, D1, D2, D3, A1d, A2d>(), accesses_of<ImageOutside::Clamp, D1, D2, D3, A1d, A2d>(),
     accesses_of<ImageOutside::Zero, D1, D2, D3, A1d, A2d>(), texel_rows<ImageOutside::Trap, Buffer>(),
     atomics<Buffer, D1, D2, D3, A1d, A2d>(), reductions<ImageOutside::Trap, D1, D2, D3>(),

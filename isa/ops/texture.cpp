@@ -95,12 +95,12 @@ constexpr std::array<OpRow, sizeof...(kShapes)> samples_of() {
 }
 template <ImageLod kLod>
 constexpr auto sample_rows() {
-  return concatenated(samples_of<kLod, false, Data::F32, D1, D2, D3, A1d, A2d, Cube, Acube>(),
-                      samples_of<kLod, false, Data::S32, D1, D2, D3, A1d, A2d, Cube, Acube>(),
-                      samples_of<kLod, false, Data::U32, D1, D2, D3, A1d, A2d, Cube, Acube>(),
-                      samples_of<kLod, true, Data::F32, D1, D2, D3, A1d, A2d>(),
-                      samples_of<kLod, true, Data::S32, D1, D2, D3, A1d, A2d>(),
-                      samples_of<kLod, true, Data::U32, D1, D2, D3, A1d, A2d>());
+  return joined_rows(samples_of<kLod, false, Data::F32, D1, D2, D3, A1d, A2d, Cube, Acube>(),
+                     samples_of<kLod, false, Data::S32, D1, D2, D3, A1d, A2d, Cube, Acube>(),
+                     samples_of<kLod, false, Data::U32, D1, D2, D3, A1d, A2d, Cube, Acube>(),
+                     samples_of<kLod, true, Data::F32, D1, D2, D3, A1d, A2d>(),
+                     samples_of<kLod, true, Data::S32, D1, D2, D3, A1d, A2d>(),
+                     samples_of<kLod, true, Data::U32, D1, D2, D3, A1d, A2d>());
 }
 
 template <ImageLod kLod, bool kOffset, ImageShape... kShapes>
@@ -109,8 +109,8 @@ constexpr std::array<OpRow, sizeof...(kShapes)> comparisons_of() {
 }
 template <ImageLod kLod>
 constexpr auto comparison_rows() {
-  return concatenated(comparisons_of<kLod, false, D1, D2, A1d, A2d, Cube, Acube>(),
-                      comparisons_of<kLod, true, D1, D2, A1d, A2d>());
+  return joined_rows(comparisons_of<kLod, false, D1, D2, A1d, A2d, Cube, Acube>(),
+                     comparisons_of<kLod, true, D1, D2, A1d, A2d>());
 }
 
 template <ImageLod kLod, ImageShape... kShapes>
@@ -125,8 +125,8 @@ constexpr std::array<OpRow, sizeof...(kShapes)> gathers_of() {
 }
 template <Data kData, uint8_t... kComponents>
 constexpr auto gather_rows() {
-  return concatenated(gathers_of<false, false, kData, kComponents, D2, A2d, Cube, Acube>()...,
-                      gathers_of<false, true, kData, kComponents, D2, A2d>()...);
+  return joined_rows(gathers_of<false, false, kData, kComponents, D2, A2d, Cube, Acube>()...,
+                     gathers_of<false, true, kData, kComponents, D2, A2d>()...);
 }
 
 constexpr OpRow query(std::string_view name, ImageQuery what, std::string_view doc, ImageLod lod = ImageLod::Zero) {
@@ -153,7 +153,7 @@ constexpr std::array kQueries = {
     query("txq.channel_order.b32", ImageQuery::ChannelOrder, "OpenCL's number of the channels' order."),
 };
 
-constexpr auto kRows = concatenated(
+constexpr auto kRows = joined_rows(
     sample_rows<ImageLod::Zero>(), sample_rows<ImageLod::Level>(), sample_rows<ImageLod::Gradients>(),
     comparison_rows<ImageLod::Zero>(), comparison_rows<ImageLod::Level>(), comparison_rows<ImageLod::Gradients>(),
     fetches_of<ImageLod::Zero, Buffer, D1, D2, D3, A1d, A2d>(), fetches_of<ImageLod::Level, D1, D2, D3, A1d, A2d>(),
