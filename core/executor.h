@@ -4,6 +4,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "base/probe.h"
 #include "core/image.h"
@@ -121,17 +122,26 @@ class Executor {
   std::byte* find_texel(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, int lane);
   bool trace(WarpContext& warp, const isa::Inst& inst);
   bool report(WarpContext& warp, const isa::Inst& inst);
+  // The objects, one a lane, that the executing lanes name alike; null after a fault. `what`: in its message.
+  template <class Object>
+  Object* find_numbered(WarpContext& warp, Numbered<Object>& objects, isa::Slot operand, uint32_t level, std::string_view what) {
+    const std::optional<uint32_t> number = shared_number(warp, operand, what);
+    if (!number) return nullptr;
+    const size_t place = size_t(level) * kMaxNumbered + *number;
+    if (objects.size() <= place) objects.resize(place + 1);
+    if (!objects[place]) objects[place] = std::make_unique<std::array<Object, kLanes>>();
+    return objects[place]->data();
+  }
+  std::optional<uint32_t> shared_number(WarpContext& warp, isa::Slot operand, std::string_view what);
   bool call_callable(WarpContext& warp, const isa::Inst& inst);
   void call_by_shader(WarpContext& warp, const std::array<uint32_t, kLanes>& target, LaneMask callers, bool is_callable);
   bool run_hit_object(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
   bool run_time(WarpContext& warp, const isa::Inst& inst, bool set);
-  HitObject* find_hit_object(WarpContext& warp, isa::Slot operand, uint32_t level);
   bool make_hit(WarpContext& warp, const isa::Inst& inst, bool has_stride, int lane, HitObject& object);
   bool open_trace(WarpContext& warp, const isa::Inst& inst, size_t payload_operand);
   bool begin_hit_object(WarpContext& warp, const isa::Inst& inst);
   uint32_t hit_object_value(const HitObject& object, uint32_t value) const;
   bool run_query(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
-  rt::RayState* find_query(WarpContext& warp, isa::Slot operand);
   bool begin_queries(WarpContext& warp, const isa::Inst& inst, rt::RayState* states);
   void decide_queries(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, rt::RayState* states);
   bool call(WarpContext& warp, isa::Effect effect);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/executor.h"
+#include "core/ray_values.h"
 #include "rtunit/node_format.h"
 #include "rtunit/structure.h"
 
@@ -20,22 +21,10 @@ using isa::HitObjectValue;
 // Operands of ho.miss, and of ho.hit up to the SBT stride; origin, tmin, direction and tmax follow.
 enum MissOperand : size_t { kMissIndex = 1, kMissRay };
 enum HitOperand : size_t { kStructure = 1, kInstance, kPrimitive, kGeometry, kKind, kOffset, kStride };
-constexpr size_t kRayWords = 8;
-
-uint32_t bits(float x) { return std::bit_cast<uint32_t>(x); }
-uint32_t read(const WarpContext& warp, const isa::Inst& inst, size_t operand, int lane) {
-  return warp.regs.read(inst.operand[operand])[lane];
-}
 
 rt::Ray ray_of(const WarpContext& warp, const isa::Inst& inst, size_t first, int lane) {
-  const auto word = [&](size_t i) { return std::bit_cast<float>(read(warp, inst, first + i, lane)); };
   rt::Ray ray;
-  for (size_t axis = 0; axis < 3; ++axis) {
-    ray.origin[axis] = word(axis);
-    ray.direction[axis] = word(4 + axis);
-  }
-  ray.t_min = word(3);
-  ray.t_max = word(7);
+  read_ray(warp.regs, inst, first, lane, ray);
   return ray;
 }
 
@@ -85,19 +74,15 @@ Address find_instance(const mem::AddressSpace& memory, Address structure, uint32
 
 }  // namespace
 
-HitObject* Executor::find_hit_object(WarpContext& warp, isa::Slot operand, uint32_t level) {
-  const uint32_t* index = warp.regs.read(operand);
+std::optional<uint32_t> Executor::shared_number(WarpContext& warp, isa::Slot operand, std::string_view what) {
+  const uint32_t* number = warp.regs.read(operand);
   const int first = std::countr_zero(warp.regs.exec);
   bool same = true;
-  for_each_lane(warp.regs.exec, [&](int lane) { same &= index[lane] == index[first]; });
-  if (!same) return fail(warp, first, "the lanes of a warp use different hit objects at once"), nullptr;
-  if (index[first] >= kMaxHitObjects)
-    return fail(warp, first, fmt::format("uses hit object {}: a shader has at most {}", index[first], kMaxHitObjects)), nullptr;
-  // Each nesting level has objects of its own: a hit shader's do not disturb its caller's.
-  const size_t place = size_t(level) * kMaxHitObjects + index[first];
-  if (warp.hit_objects.size() <= place) warp.hit_objects.resize(place + 1);
-  if (!warp.hit_objects[place]) warp.hit_objects[place] = std::make_unique<std::array<HitObject, kLanes>>();
-  return warp.hit_objects[place]->data();
+  for_each_lane(warp.regs.exec, [&](int lane) { same &= number[lane] == number[first]; });
+  if (same && number[first] < kMaxNumbered) return number[first];
+  fail(warp, first, same ? fmt::format("uses {} {}: a shader has at most {}", what, number[first], kMaxNumbered)
+                         : fmt::format("the lanes of a warp use more than one {} at once", what));
+  return std::nullopt;
 }
 
 bool Executor::run_hit_object(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
@@ -107,7 +92,8 @@ bool Executor::run_hit_object(WarpContext& warp, const isa::Inst& inst, const is
   if (lanes && op == HitObjectOp::Record && warp.depth == 0)
     return fail(warp, std::countr_zero(lanes), "keeps the hit of a trace, and none is open");
   const uint32_t level = warp.depth - (op == HitObjectOp::Record ? 1 : 0);
-  HitObject* const objects = lanes ? find_hit_object(warp, inst.operand[op == HitObjectOp::Value ? 1 : 0], level) : nullptr;
+  const isa::Slot number = inst.operand[op == HitObjectOp::Value ? 1 : 0];
+  HitObject* const objects = lanes ? find_numbered(warp, warp.hit_objects, number, level, "hit object") : nullptr;
   if (lanes && !objects) return false;
   for (; lanes; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
@@ -119,14 +105,14 @@ bool Executor::run_hit_object(WarpContext& warp, const isa::Inst& inst, const is
         object = {hit ? HitObject::Type::Hit : HitObject::Type::Miss, state.ray, state.committed,
                   hit ? hit_record(state.ray, state.committed) : state.ray.miss_index, {}, warp.frame().time[size_t(lane)]};
         if (state.committed.kind >= rt::kHitKindFront)
-          object.attributes = {bits(state.committed.u), bits(state.committed.v)};
+          object.attributes = {as_bits(state.committed.u), as_bits(state.committed.v)};
         else
           load_attributes(warp, warp.frame().attributes[size_t(lane)] + (state.attribute_slot ? kAttributeBytes : 0), lane, object);
         break;
       }
       case HitObjectOp::Empty: object = {}; break;
       case HitObjectOp::Miss:
-        object = {HitObject::Type::Miss, ray_of(warp, inst, kMissRay, lane), {}, read(warp, inst, kMissIndex, lane) & 0xffff, {},
+        object = {HitObject::Type::Miss, ray_of(warp, inst, kMissRay, lane), {}, read_word(warp.regs, inst, kMissIndex, lane) & 0xffff, {},
                   std::exchange(warp.next_time[size_t(lane)], 0)};
         break;
       case HitObjectOp::Hit:
@@ -134,11 +120,11 @@ bool Executor::run_hit_object(WarpContext& warp, const isa::Inst& inst, const is
         if (!make_hit(warp, inst, op == HitObjectOp::Hit, lane, object)) return false;
         break;
       case HitObjectOp::Value:
-        warp.regs.write(inst.operand[0])[lane] = hit_object_value(object, read(warp, inst, 2, lane));
+        warp.regs.write(inst.operand[0])[lane] = hit_object_value(object, read_word(warp.regs, inst, 2, lane));
         break;
       case HitObjectOp::SetTime:
       case HitObjectOp::GetTime: break;  // above
-      case HitObjectOp::Attributes: store_attributes(warp, read(warp, inst, 1, lane), lane, object); break;
+      case HitObjectOp::Attributes: store_attributes(warp, read_word(warp.regs, inst, 1, lane), lane, object); break;
     }
   }
   ++warp.simt.pc;
@@ -159,8 +145,8 @@ bool Executor::run_time(WarpContext& warp, const isa::Inst& inst, bool set) {
 }
 
 bool Executor::make_hit(WarpContext& warp, const isa::Inst& inst, bool has_stride, int lane, HitObject& object) {
-  const auto value = [&](size_t operand) { return read(warp, inst, operand, lane); };
-  const Address structure = value(kStructure) | Address(warp.regs.read(isa::Slot(inst.operand[kStructure] + 1))[lane]) << 32;
+  const auto value = [&](size_t operand) { return read_word(warp.regs, inst, operand, lane); };
+  const Address structure = read_address(warp.regs, inst, kStructure, lane);
   const Address at = find_instance(*world_.memory, structure, value(kInstance));
   if (at == 0)
     return fail(warp, lane, fmt::format("makes a hit object of instance {}, which {:#x} does not hold", value(kInstance), structure));
@@ -168,12 +154,12 @@ bool Executor::make_hit(WarpContext& warp, const isa::Inst& inst, bool has_strid
   const size_t ray = kOffset + (has_stride ? 2 : 1);
   object = {HitObject::Type::Hit, ray_of(warp, inst, ray, lane), {}, 0, {}, std::exchange(warp.next_time[size_t(lane)], 0)};
   object.ray.structure = structure;
-  load_attributes(warp, value(ray + kRayWords), lane, object);
+  load_attributes(warp, value(ray + kRayOperands), lane, object);
   rt::Hit& hit = object.hit;
   hit.t = object.ray.t_max;
   hit.kind = value(kKind);
-  hit.u = std::bit_cast<float>(object.attributes[0]);
-  hit.v = std::bit_cast<float>(object.attributes[1]);
+  hit.u = as_float(object.attributes[0]);
+  hit.v = as_float(object.attributes[1]);
   hit.instance = leaf.instance;
   hit.geometry = value(kGeometry);
   hit.primitive = value(kPrimitive);
@@ -195,10 +181,10 @@ uint32_t Executor::hit_object_value(const HitObject& object, uint32_t value) con
   if (empty || value >= uint32_t(V::Count)) return 0;
   const auto within = [&](V first, uint32_t count) { return value >= uint32_t(first) && value - uint32_t(first) < count; };
   const auto element = [&](V first) { return size_t(value - uint32_t(first)); };
-  if (within(V::Origin, 3)) return bits(ray.origin[element(V::Origin)]);
-  if (within(V::Direction, 3)) return bits(ray.direction[element(V::Direction)]);
-  if (value == uint32_t(V::Tmin)) return bits(ray.t_min);
-  if (value == uint32_t(V::Tmax)) return bits(hit ? object.hit.t : ray.t_max);
+  if (within(V::Origin, 3)) return as_bits(ray.origin[element(V::Origin)]);
+  if (within(V::Direction, 3)) return as_bits(ray.direction[element(V::Direction)]);
+  if (value == uint32_t(V::Tmin)) return as_bits(ray.t_min);
+  if (value == uint32_t(V::Tmax)) return as_bits(hit ? object.hit.t : ray.t_max);
   if (value == uint32_t(V::RecordIndex)) return object.record;
   if (value == uint32_t(V::Time)) return object.time;
   if (within(V::RecordAddress, 2)) {
@@ -207,15 +193,10 @@ uint32_t Executor::hit_object_value(const HitObject& object, uint32_t value) con
   }
   if (!hit) return 0;
   const rt::InstanceLeaf& leaf = world_.memory->view<rt::InstanceLeaf>(object.hit.instance_leaf, 1)[0];
-  const auto in_object = [&](const std::array<float, 3>& x, size_t row, bool point) {
-    const float* m = leaf.world_to_object.data() + 4 * row;
-    const float rotated = m[0] * x[0] + m[1] * x[1] + m[2] * x[2];
-    return bits(point ? rotated + m[3] : rotated);
-  };
-  if (within(V::ObjectOrigin, 3)) return in_object(ray.origin, element(V::ObjectOrigin), true);
-  if (within(V::ObjectDirection, 3)) return in_object(ray.direction, element(V::ObjectDirection), false);
-  if (within(V::ObjectToWorld, 12)) return bits(leaf.object_to_world[element(V::ObjectToWorld)]);
-  if (within(V::WorldToObject, 12)) return bits(leaf.world_to_object[element(V::WorldToObject)]);
+  if (within(V::ObjectOrigin, 3)) return as_bits(object_point(leaf, ray.origin, element(V::ObjectOrigin)));
+  if (within(V::ObjectDirection, 3)) return as_bits(object_direction(leaf, ray.direction, element(V::ObjectDirection)));
+  if (within(V::ObjectToWorld, 12)) return as_bits(leaf.object_to_world[element(V::ObjectToWorld)]);
+  if (within(V::WorldToObject, 12)) return as_bits(leaf.world_to_object[element(V::WorldToObject)]);
   switch (V(value)) {
     case V::Kind: return object.hit.kind;
     case V::Primitive: return object.hit.primitive;
@@ -228,7 +209,7 @@ uint32_t Executor::hit_object_value(const HitObject& object, uint32_t value) con
 // Opens a trace whose rays have already found what the objects hold.
 bool Executor::begin_hit_object(WarpContext& warp, const isa::Inst& inst) {
   LaneMask lanes = warp.regs.exec;
-  HitObject* const objects = lanes ? find_hit_object(warp, inst.operand[0], warp.depth) : nullptr;
+  HitObject* const objects = lanes ? find_numbered(warp, warp.hit_objects, inst.operand[0], warp.depth, "hit object") : nullptr;
   if (lanes && !objects) return false;
   if (!open_trace(warp, inst, 1)) return false;
   for (; lanes; lanes &= lanes - 1) {

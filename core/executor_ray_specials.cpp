@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "core/executor.h"
+#include "core/ray_values.h"
 #include "rtunit/structure.h"
 
 namespace glint::core {
@@ -51,11 +52,9 @@ uint32_t local_word(const WarpContext& warp, uint32_t address, size_t lane) {
 void set_matrices(WarpContext& warp, size_t lane, const rt::InstanceLeaf& leaf, const rt::Ray& ray) {
   set_floats(warp, lane, Special::ObjectToWorld0, leaf.object_to_world.data(), 12);
   set_floats(warp, lane, Special::WorldToObject0, leaf.world_to_object.data(), 12);
-  const auto &o = ray.origin, &d = ray.direction;
-  for (size_t r = 0; r < 3; ++r) {
-    const float* row = leaf.world_to_object.data() + 4 * r;
-    set_float(warp, lane, Special(size_t(Special::ObjectOriginX) + r), row[0] * o[0] + row[1] * o[1] + row[2] * o[2] + row[3]);
-    set_float(warp, lane, Special(size_t(Special::ObjectDirectionX) + r), row[0] * d[0] + row[1] * d[1] + row[2] * d[2]);
+  for (size_t axis = 0; axis < 3; ++axis) {
+    set_float(warp, lane, Special(size_t(Special::ObjectOriginX) + axis), object_point(leaf, ray.origin, axis));
+    set_float(warp, lane, Special(size_t(Special::ObjectDirectionX) + axis), object_direction(leaf, ray.direction, axis));
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "core/executor.h"
+#include "core/ray_values.h"
 #include "isa/hit_object.h"
 #include "rtunit/traversal.h"
 
@@ -18,25 +19,17 @@ using rt::RayStatus;
 namespace {
 
 // A rt.trace's operands after the answer predicate and the structure.
-enum TraceOperand : size_t { kFlags = 2, kMask, kSbtOffset, kSbtStride, kMiss, kOrigin, kTmin = 10, kDirection = 11, kTmax = 14, kPayload, kAttributes };
+enum TraceOperand : size_t { kFlags = 2, kMask, kSbtOffset, kSbtStride, kMiss, kRay, kPayload = kRay + kRayOperands };
 
-float as_float(uint32_t bits) { return std::bit_cast<float>(bits); }
-
-void set_ray(const isa::Warp& regs, const isa::Inst& inst, size_t lane, rt::Ray& ray) {
-  auto value = [&](size_t operand) { return regs.read(inst.operand[operand])[lane]; };
-  const uint32_t* high = regs.read(isa::Slot(inst.operand[1] + 1));
-  ray.structure = value(1) | Address(high[lane]) << 32;
+void set_ray(const isa::Warp& regs, const isa::Inst& inst, int lane, rt::Ray& ray) {
+  const auto value = [&](size_t operand) { return read_word(regs, inst, operand, lane); };
+  ray.structure = read_address(regs, inst, 1, lane);
   ray.flags = value(kFlags);
   ray.cull_mask = value(kMask) & 0xff;
   ray.sbt_offset = value(kSbtOffset) & 15;  // SPV_KHR_ray_tracing: only the 4 low bits count
   ray.sbt_stride = value(kSbtStride) & 15;
   ray.miss_index = value(kMiss) & 0xffff;   // and 16 here
-  for (size_t axis = 0; axis < 3; ++axis) {
-    ray.origin[axis] = as_float(value(kOrigin + axis));
-    ray.direction[axis] = as_float(value(kDirection + axis));
-  }
-  ray.t_min = as_float(value(kTmin));
-  ray.t_max = as_float(value(kTmax));
+  read_ray(regs, inst, kRay, lane, ray);
 }
 
 bool needs_shader(const rt::RayState& state) {
@@ -101,11 +94,11 @@ bool Executor::trace(WarpContext& warp, const isa::Inst& inst) {
   for (LaneMask lanes = exec; lanes; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
     rt::RayState& state = frame.ray[size_t(lane)];
-    set_ray(warp.regs, inst, size_t(lane), state.ray);
+    set_ray(warp.regs, inst, lane, state.ray);
     state.end_at_first_hit = !world_.nearest_first_hit;
     if (!rt::begin(state, *world_.memory)) {
       --warp.depth;
-      return fail(warp, lane, fmt::format("traces a ray into {:#x}, which is not a top-level acceleration structure", state.ray.structure));
+      return false;
     }
   }
   warp.waiting_for_rays = exec != 0;
@@ -221,7 +214,7 @@ bool Executor::call_callable(WarpContext& warp, const isa::Inst& inst) {
       return fail(warp, lane, fmt::format("needs callable record {}: the binding table has {}", record, world_.callable.size()));
     target[i] = world_.callable[record];
     frame.data[i] = warp.regs.read(inst.operand[1])[lane];
-    frame.record[i] = warp.regs.access.address[i] = world_.table.callable.address(record);
+    frame.record[i] = warp.regs.access.address[i] = world_.table.callable.address(is_inside ? record : 0);
     callers |= LaneMask{target[i] != kNoShader} << lane;
   }
   call_by_shader(warp, target, callers, true);

@@ -30,7 +30,11 @@ struct CallableFrame {
 // Model: the two attribute buffers are a fixed 64 bytes each (Vulkan's minimum for hit attributes is 32).
 inline constexpr uint32_t kAttributeBytes = 64;
 
-inline constexpr uint32_t kMaxRayQueries = 16;  // of a shader. Choice: Vulkan sets no limit
+// Ray queries and hit objects are named by number. Each level of rt.trace has its own: a hit shader's do not disturb its
+// caller's. Made when first used.
+template <class Object>
+using Numbered = std::vector<std::unique_ptr<std::array<Object, kLanes>>>;
+inline constexpr uint32_t kMaxNumbered = 16;  // of a kind and level. Choice: neither Vulkan nor the extension sets a limit
 
 // What a ray found, as a shader keeps it (SPV_NV_shader_invocation_reorder).
 struct HitObject {
@@ -42,8 +46,6 @@ struct HitObject {
   uint32_t time = 0;    // bits of a float
 };
 
-inline constexpr uint32_t kMaxHitObjects = 16;  // of a shader. Choice: the extension sets no limit
-
 struct WarpContext {
   isa::Warp regs;
   SimtStack simt;
@@ -53,12 +55,10 @@ struct WarpContext {
   uint32_t depth = 0;                 // open rt.trace levels
   uint32_t callables = 0;             // open call.sbt.callable levels
   std::vector<std::unique_ptr<CallableFrame>> callable_frames;  // as `frames`
-  // kMaxHitObjects a level of rt.trace, allocated when first used.
-  std::vector<std::unique_ptr<std::array<HitObject, kLanes>>> hit_objects;
+  Numbered<HitObject> hit_objects;
   std::array<uint32_t, kLanes> next_time{};  // of the next ray. Model: nothing moves; shaders read it back
   std::vector<std::unique_ptr<TraceFrame>> frames;  // allocated when first needed, then kept
-  // Ray queries: kMaxRayQueries a level of rt.trace, allocated when first used.
-  std::vector<std::unique_ptr<std::array<rt::RayState, kLanes>>> queries;
+  Numbered<rt::RayState> queries;
   std::vector<uint32_t> local;        // [word][lane]
   uint64_t instructions = 0;          // retired since start, for the instruction budget
   bool waiting_for_rays = false;      // an rt.trace or rt.resume has not been finished
