@@ -98,7 +98,7 @@ bool Executor::trace(WarpContext& warp, const isa::Inst& inst) {
     state.end_at_first_hit = !world_.nearest_first_hit;
     if (!rt::begin(state, *world_.memory)) {
       --warp.depth;
-      return false;
+      return fail(warp, lane, fmt::format("traces a ray into {:#x}, which is not a top-level acceleration structure", state.ray.structure));
     }
   }
   warp.waiting_for_rays = exec != 0;
@@ -214,7 +214,7 @@ bool Executor::call_callable(WarpContext& warp, const isa::Inst& inst) {
       return fail(warp, lane, fmt::format("needs callable record {}: the binding table has {}", record, world_.callable.size()));
     target[i] = world_.callable[record];
     frame.data[i] = warp.regs.read(inst.operand[1])[lane];
-    frame.record[i] = warp.regs.access.address[i] = world_.table.callable.address(is_inside ? record : 0);
+    frame.record[i] = warp.regs.access.address[i] = world_.table.callable.address(record);
     callers |= LaneMask{target[i] != kNoShader} << lane;
   }
   call_by_shader(warp, target, callers, true);
