@@ -71,6 +71,8 @@ Finish finish_of(const isa::OpRow& row) {
     case Effect::Report:
     case Effect::HitObject:
     case Effect::Accepted:
+    case Effect::Print:
+    case Effect::PrintPart:
     case Effect::EndTrace: return Finish::Fixed;
   }
   GLINT_PANIC("effect {} of '{}'", int(row.effect), row.name);

@@ -96,6 +96,7 @@ enum class Effect : uint8_t {
   Query, QueryProceed,        // rq.*: OpRow::detail says which; rq.proceed gives rays to the RT unit
   HitObject,                  // ho.*: OpRow::detail says which (isa/hit_object.h)
   Barrier,                    // bar.*: warps of a block wait for each other
+  Print, PrintPart,           // print, print.part: a message of Program::messages with the words of its conversions
   Fence,                      // membar, fence, bar.warp.sync: orders memory accesses of the warp
 };
 

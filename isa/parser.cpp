@@ -70,13 +70,15 @@ class Parser {
       program_.constants.push_back(small("the value of a row"));
     else if (d == ".file")
       file();
+    else if (d == ".message")
+      message();
     else if (d == ".loc")
       location();
     else
       tokens_.fail(
           name, "a directive",
           did_you_mean(d, {".program", ".stage", ".registers", ".local_bytes", ".payload_bytes",
-                           ".attribute_bytes", ".local_size", ".shared_bytes", ".const", ".file", ".loc"}));
+                           ".attribute_bytes", ".local_size", ".shared_bytes", ".const", ".file", ".message", ".loc"}));
     if (tokens_.peek().kind != Token::Kind::Newline && tokens_.peek().kind != Token::Kind::End)
       tokens_.fail(tokens_.peek(), "the end of the line after " + d);
   }
@@ -111,6 +113,12 @@ class Parser {
     if (small("the index of a file") != program_.files.size())
       tokens_.fail(at, fmt::format("file {}: files are numbered from 0 in order", program_.files.size()));
     program_.files.push_back(string_value());
+  }
+  void message() {
+    const Token at = tokens_.peek();
+    if (small("the index of a message") != program_.messages.size())
+      tokens_.fail(at, fmt::format("message {}: messages are numbered from 0 in order", program_.messages.size()));
+    program_.messages.push_back(string_value());
   }
   void location() {
     line_.file = uint16_t(small("the index of a file", 0xffff));

@@ -45,6 +45,7 @@ struct Program {
   uint32_t attribute_bytes = 0;
   std::array<uint32_t, 3> local_size{1, 1, 1};  // compute: threads of a block
   uint32_t shared_bytes = 0;          // compute: shared memory of a block
+  std::vector<std::string> messages;  // formats of print and print.part (isa/message.h)
 
   bool operator==(const Program&) const;  // code, constants, lines, header fields: "the identical program"
 };

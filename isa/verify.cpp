@@ -10,6 +10,7 @@
 #include <initializer_list>
 
 #include "isa/hit_object.h"
+#include "isa/message.h"
 #include "isa/op_row.h"
 #include "isa/text.h"
 #include "isa/verify_flow.h"
@@ -42,6 +43,9 @@ class Verifier {
       whole(fmt::format("{} constant rows, expected at most {}", program_.constants.size(), kSlotIndexMask - 1));
     if (program_.lines.size() != program_.code.size())
       whole(fmt::format("{} source lines for {} instructions", program_.lines.size(), program_.code.size()));
+    for (const std::string& text : program_.messages)
+      if (const ParsedMessage parsed = parse_message(text); !parsed.error.empty())
+        whole(fmt::format("message '{}': {}", text, parsed.error));
     for (const auto& [index, name] : program_.labels)
       if (index > program_.code.size())
         whole(fmt::format("label '{}' stands past the end of the code", name));
@@ -79,6 +83,7 @@ class Verifier {
       if (inst.operand[slot]) error(fmt::format("operand slot {} is set, and the op does not have it", slot));
     if (!has_imm && inst.imm) error("an immediate, and the op has neither address nor label");
     stage_of_op();
+    message(inst);
     constant_address(inst);
     destinations_differ(inst);
     const Effect e = row_->effect;
@@ -145,6 +150,16 @@ class Verifier {
                          : space == Space::Param              ? int64_t(kConstantBankBytes - kPushConstantOffset)
                                                               : INT64_MAX;
     if (first < 0 || end > size) error(fmt::format("touches bytes {} to {}, and there are {}", first, end - 1, size));
+  }
+
+  // The message that a print names must be known now.
+  void message(const Inst& inst) {
+    if (row_->effect != Effect::Print && row_->effect != Effect::PrintPart) return;
+    const size_t row = inst.operand[0] & kSlotIndexMask;
+    if (inst.operand[0] >> kBankShift != kConstantBank >> kBankShift || row >= program_.constants.size())
+      return error("the number of the message is no constant");
+    if (program_.constants[row] >= program_.messages.size())
+      error(fmt::format("message {}, and the program has {}", program_.constants[row], program_.messages.size()));
   }
 
   // No register or predicate is written twice.

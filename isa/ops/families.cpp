@@ -54,6 +54,7 @@ std::span<const FamilyEntry> family_entries() {
       {"ray tracing", "Rays, and the calls of the shaders they find.", &ray_tracing_rows},
       {"ray query", "Rays that a shader walks itself, candidate by candidate.", &ray_query_rows},
       {"hit object", "What a ray found, kept until its shader is executed.", &hit_object_rows},
+      {"print", "Text for whoever debugs the shader.", &print_rows},
   };
   return kFamilies;
 }

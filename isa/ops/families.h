@@ -32,5 +32,6 @@ RowList control_rows();
 RowList ray_tracing_rows();
 RowList ray_query_rows();
 RowList hit_object_rows();
+RowList print_rows();
 
 }  // namespace glint::isa::GLINT_ISA_PATH

@@ -110,6 +110,10 @@ Program program_of_one_row(uint16_t op, Stage stage) {
     for (const int end = slot + slots_of(kind); slot < end; ++slot)
       inst.operand[size_t(slot)] = is_predicate ? Slot(number++ % kNumPredicates) : Slot(2 + 2 * number++);
   }
+  if (e == Effect::Print || e == Effect::PrintPart) {  // the message's number is a constant
+    p.messages = {"%d \"%x\"\n"};
+    inst.operand[0] = kConstantBank;
+  }
   p.code.push_back(inst);
   const bool is_entry = stage == Stage::RayGeneration || stage == Stage::Compute;
   const Inst last = simple(is_entry ? "exit" : "ret");
