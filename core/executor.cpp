@@ -2,23 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/executor.h"
 
-#include <fmt/format.h>
-
 #include <bit>
 
 namespace glint::core {
 
 using isa::Effect;
-
-std::string Fault::to_string() const {
-  return fmt::format("{}: fault: {}\n  note: launch id ({}, {}, {})", place, what, launch_id[0], launch_id[1], launch_id[2]);
-}
-
-Fault no_end_in_sight(const World& world, const WarpContext& warp, uint32_t pc, uint64_t instruction_budget) {
-  const int lane = warp.simt.active ? std::countr_zero(warp.simt.active) : 0;
-  return {fmt::format("no end in sight: the warp has executed more than {} instructions", instruction_budget),
-          world.image->place_of(pc), launch_id(world, warp.warp_index, lane)};
-}
 
 Issued Executor::execute(WarpContext& warp, Cycle now) {
   const uint32_t pc = warp.simt.pc;
@@ -59,6 +47,8 @@ Issued Executor::execute(WarpContext& warp, Cycle now) {
     case Effect::Fence:
     case Effect::Ignore:
     case Effect::Terminate: ok = run_control(warp, inst, row); break;
+    case Effect::Print:
+    case Effect::PrintPart: ok = run_print(warp, inst, row); break;
     case Effect::Barrier: ok = run_barrier(warp, inst, row); break;
     case Effect::HitObject: ok = run_hit_object(warp, inst, row); break;
     case Effect::Query:
@@ -84,11 +74,6 @@ Issued Executor::execute(WarpContext& warp, Cycle now) {
     retired.fire([&] { return Retired{warp, issued}; });
   }
   return issued;
-}
-
-bool Executor::fail(WarpContext& warp, int lane, std::string what) {
-  fault_ = Fault{std::move(what), world_.image->place_of(warp.simt.pc), launch_id(world_, warp.warp_index, lane)};
-  return false;
 }
 
 }  // namespace glint::core

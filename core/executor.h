@@ -7,20 +7,14 @@
 #include <string_view>
 
 #include "base/probe.h"
+#include "core/fault.h"
 #include "core/image.h"
 #include "core/texel_list.h"
 #include "core/warp_context.h"
 #include "isa/op_row.h"
+#include "rtunit/any_hit_mode.h"
 
 namespace glint::core {
-
-// A mistake of the simulated program. The warp stops at once; the machine reports it.
-struct Fault {
-  std::string what;       // "reads 4 bytes 16 bytes past the end of 'binding 4 (Vertices)'"
-  std::string place;      // shader, GLSL file and line, instruction
-  std::array<uint32_t, 3> launch_id{};
-  std::string to_string() const;
-};
 
 // What one executed instruction did, for the timing machine: everything a unit needs to charge for it.
 struct Issued {
@@ -33,6 +27,12 @@ struct Issued {
   // Texture and surface ops touched texels(). Shader calls:
   // address[lane] is the binding-table record of each lane that called, `lanes` those lanes.
   bool finished = false;   // the warp has ended
+};
+
+// What intersection and any-hit shaders had to do.
+struct CandidateCounts {
+  uint64_t calls = 0, lanes = 0;                       // of such shaders: one a warp and shader
+  uint64_t gathered = 0, dropped = 0, overflows = 0;   // of ended traces (rtunit/candidate_table.h)
 };
 
 // Where a machine has put a warp, as its program may ask: %warpid, %nwarpid, %smid, %nsmid.
@@ -81,12 +81,16 @@ class Executor {
 
   // Set when an execute() faulted; the warp is left as it was before the instruction.
   const std::optional<Fault>& fault() const { return fault_; }
+  // What went wrong and was let pass, because World::on_fault says so.
+  const FaultLog& passed() const { return passed_; }
+
+  const CandidateCounts& candidates() const { return candidates_; }
 
   // Of the last texture or surface op; empty when it needed no memory.
   const TexelList& texels() const { return texels_; }
 
   // Of the last load, store or atomic: the lanes whose access went to that space. Their Access::address is then an
-  // address of the space, of generic accesses too.
+  // address of the space, of generic accesses too. Without lanes whose access was let pass and went nowhere.
   LaneMask lanes_in(isa::Space space) const { return lanes_in_[size_t(space)]; }
 
   const World& world() const { return world_; }
@@ -98,6 +102,7 @@ class Executor {
   bool run_rays(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
   bool run_control(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
 
+  bool run_print(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
   bool run_barrier(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
   bool branch(WarpContext& warp, uint32_t target);
   bool branch_indexed(WarpContext& warp, const isa::Inst& inst);
@@ -109,10 +114,12 @@ class Executor {
   bool fail_stuck(const Block& block);
 
   bool access(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space, LaneMask lanes);
-  bool locate(WarpContext& warp, const isa::OpRow& row, isa::Space space, LaneMask lanes, std::array<std::byte*, kLanes>& at);
+  bool locate(WarpContext& warp, const isa::OpRow& row, isa::Space space, LaneMask& lanes, std::array<std::byte*, kLanes>& at);
   bool move_data(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space, LaneMask lanes);
   bool modify(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space, LaneMask lanes);
   bool access_local(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes);
+  bool refuse(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space, LaneMask lanes, const std::string& why);
+  bool check_local(WarpContext& warp, const isa::OpRow& row, LaneMask& lanes);
   bool load_constant(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space, LaneMask lanes);
   bool texture(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
   bool query_image(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
@@ -122,6 +129,9 @@ class Executor {
   std::byte* find_texel(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, int lane);
   bool trace(WarpContext& warp, const isa::Inst& inst);
   bool report(WarpContext& warp, const isa::Inst& inst);
+  bool call_callable(WarpContext& warp, const isa::Inst& inst);
+  // Number of shaders called.
+  uint32_t call_by_shader(WarpContext& warp, const std::array<uint32_t, kLanes>& target, LaneMask callers, bool is_callable);
   // The objects, one a lane, that the executing lanes name alike; null after a fault. `what`: in its message.
   template <class Object>
   Object* find_numbered(WarpContext& warp, Numbered<Object>& objects, isa::Slot operand, uint32_t level, std::string_view what) {
@@ -133,8 +143,6 @@ class Executor {
     return objects[place]->data();
   }
   std::optional<uint32_t> shared_number(WarpContext& warp, isa::Slot operand, std::string_view what);
-  bool call_callable(WarpContext& warp, const isa::Inst& inst);
-  void call_by_shader(WarpContext& warp, const std::array<uint32_t, kLanes>& target, LaneMask callers, bool is_callable);
   bool run_hit_object(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
   bool run_time(WarpContext& warp, const isa::Inst& inst, bool set);
   bool make_hit(WarpContext& warp, const isa::Inst& inst, bool has_stride, int lane, HitObject& object);
@@ -145,6 +153,9 @@ class Executor {
   bool begin_queries(WarpContext& warp, const isa::Inst& inst, rt::RayState* states);
   void decide_queries(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, rt::RayState* states);
   bool call(WarpContext& warp, isa::Effect effect);
+  rt::CandidateTable* table_of(TraceFrame& frame, int lane) const;
+  void present_candidates(WarpContext& warp, LaneMask gathered) const;
+  void count_candidates(WarpContext& warp);
   bool call_targets(WarpContext& warp, isa::Effect effect, std::array<uint32_t, kLanes>& target);
   uint32_t hit_record(const rt::Ray& ray, const rt::Hit& hit) const;
   const HitGroup* hit_group(const rt::Ray& ray, const rt::Hit& hit, uint32_t& record) const;
@@ -156,12 +167,23 @@ class Executor {
   void fill_launch_specials(WarpContext& warp, const Seat& seat) const;
   void fill_clock(WarpContext& warp, Cycle now) const;
   bool fail(WarpContext& warp, int lane, std::string what);
+  // False: a fault, as fail(). True: noted, and the lane goes on without effect.
+  bool let_pass(WarpContext& warp, int lane, FaultKind kind, const std::function<std::string()>& what);
+  // Of a record outside of its region, which then calls nothing; of what is no structure, which then is missed.
+  bool let_pass_record(WarpContext& warp, int lane, std::string_view region, uint32_t record, size_t records, const std::string& how = {});
+  bool let_pass_hit_record(WarpContext& warp, int lane, const rt::Ray& ray, const rt::Hit& hit);
+  void call_nothing(WarpContext& warp, int lane, rt::RayState& state, isa::Effect effect);
+  bool let_pass_structure(WarpContext& warp, int lane, std::string_view verb, Address structure);
+  bool let_pass_broken(WarpContext& warp, int lane, rt::RayState& state);
 
   const World& world_;
   const bool reads_clock_;  // any shader does: its rows are filled before each instruction
   const double clock_mhz_;
+  const uint32_t table_rows_;  // of the any-hit mode
+  CandidateCounts candidates_;
   std::array<LaneMask, size_t(isa::Space::Generic) + 1> lanes_in_{};
   std::optional<Fault> fault_;
+  FaultLog passed_;
   TexelList texels_;
 };
 

@@ -42,6 +42,7 @@ void append(Image& image, const isa::Program& program, std::vector<uint32_t>& co
   shader.end = first + uint32_t(program.code.size());
   shader.local_bytes = program.local_bytes;
   shader.specials_used = isa::specials_read_by(program.code);
+  for (const std::string& message : program.messages) shader.messages.push_back(isa::parse_message(message));
   for (int s = int(isa::Special::Payload); s < isa::kNumSpecials; ++s) {
     shader.uses_ray |= shader.specials_used[size_t(s)];
     shader.uses_matrices |= s >= int(isa::Special::ObjectOriginX) && shader.specials_used[size_t(s)];

@@ -9,11 +9,15 @@
 #include <string>
 #include <vector>
 
+#include "core/fault.h"
 #include "core/image_view.h"
+#include "core/print_log.h"
+#include "isa/message.h"
 #include "isa/op_row.h"
 #include "isa/program.h"
 #include "isa/text.h"
 #include "memsys/address_space.h"
+#include "rtunit/any_hit_mode.h"
 
 namespace glint::core {
 
@@ -26,6 +30,7 @@ struct Shader {
   uint32_t entry = 0, end = 0;   // instruction indices [entry, end)
   uint32_t local_bytes = 0;
   isa::SpecialSet specials_used;
+  std::vector<isa::ParsedMessage> messages;  // of print and print.part, by number
   bool uses_ray = false, uses_matrices = false;  // reads %payload or what follows; %object.origin or what follows
 };
 
@@ -80,10 +85,13 @@ struct BindingTable {
 struct World {
   const Image* image = nullptr;
   mem::AddressSpace* memory = nullptr;
+  PrintLog* prints = nullptr;              // where print and print.part go; null: nowhere
   std::vector<std::byte> constant_bank;    // kConstantBankBytes: descriptors and push constants (isa/program.h)
   std::vector<ImageView> images;           // texture and image handles index this (isa/image_access.h)
   std::vector<Sampler> samplers;           // besides those of the images
-  bool robust_images = false;              // texels outside of an image are 0 and stores there dropped: not a fault
+  // Vulkan's robustBufferAccess: accesses outside of buffers and images read 0 and write nothing, and are no faults.
+  bool robust_images = false, robust_buffers = false;
+  OnFault on_fault = OnFault::Stop;
   uint32_t raygen = kNoShader;             // or the compute shader
   std::vector<uint32_t> miss;              // what each record of the binding table calls, or kNoShader
   std::vector<HitGroup> hit;
@@ -95,6 +103,7 @@ struct World {
   std::array<uint32_t, 3> block_size{0, 0, 0};
   uint32_t shared_bytes = 0;               // shared memory of a block
   uint32_t dynamic_shared_bytes = 0;       // the part of it that the launch asked for, not the program
+  std::shared_ptr<const rt::AnyHitMode> any_hit;  // null: immediate
   bool nearest_first_hit = true;           // rt::RayState::end_at_first_hit is its opposite
   uint32_t local_bytes = 0;                // stack a lane
   uint32_t max_trace_depth = 1;            // nested rt.trace (Vulkan's recursion depth)

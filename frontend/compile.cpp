@@ -4,9 +4,36 @@
 
 #include <filesystem>
 
+#include "frontend/cache.h"
+#include "frontend/program_bytes.h"
 #include "frontend/specialize.h"
 
 namespace glint::frontend {
+namespace {
+
+std::string key_of(const std::vector<uint32_t>& spirv, const std::string& name, const std::string& entry_point, const BackendOptions& options) {
+  ByteWriter key;
+  key.put(std::string("program"));
+  key.put(name);
+  key.put(entry_point);
+  key.put(options.max_registers);
+  key.put(options.schedule);
+  key.put(options.contract);
+  key.put(spirv);
+  return key.take();
+}
+
+std::optional<CompiledModule> find(ShaderCache& cache, const std::string& key) {
+  const std::optional<std::string> bytes = cache.find(key);
+  if (!bytes) return std::nullopt;
+  ByteReader in(*bytes);
+  CompiledModule out;
+  in.get(out.simplified);
+  out.program = get_program(in);
+  return in.is_good() ? std::optional(std::move(out)) : std::nullopt;
+}
+
+}  // namespace
 
 std::optional<isa::Stage> stage_of_file(const std::string& path) {
   const std::string ending = std::filesystem::path(path).extension().string();
@@ -20,11 +47,32 @@ std::optional<isa::Stage> stage_of_file(const std::string& path) {
   return std::nullopt;
 }
 
+CompiledModule compile_module(const std::vector<uint32_t>& spirv, const std::string& name, const std::string& entry_point,
+                              const BackendOptions& options, Diagnostics& warnings, ShaderCache* cache) {
+  const std::string key = cache ? key_of(spirv, name, entry_point, options) : std::string();
+  if (cache)
+    if (std::optional<CompiledModule> found = find(*cache, key)) return std::move(*found);
+  CompiledModule out;
+  const size_t warnings_before = warnings.messages().size();
+  out.simplified = simplify(spirv, name, warnings);
+  out.program = lower(out.simplified, name, options, entry_point);
+  if (cache && warnings.messages().size() == warnings_before) {  // what warns is compiled again, and warns again
+    ByteWriter bytes;
+    bytes.put(out.simplified);
+    put_program(bytes, out.program);
+    cache->store(key, bytes.take());
+  }
+  return out;
+}
+
+std::vector<uint32_t> spirv_of_file(const std::string& path, const GlslOptions& glsl) {
+  std::vector<uint32_t> spirv = is_spirv_file(path) ? read_spirv(path) : glsl_to_spirv(path, glsl);
+  return glsl.specialization.empty() ? spirv : specialize(std::move(spirv), glsl.specialization);
+}
+
 isa::Program compile_file(const std::string& path, const GlslOptions& glsl, const BackendOptions& options,
                           Diagnostics& warnings) {
-  std::vector<uint32_t> spirv = is_spirv_file(path) ? read_spirv(path) : glsl_to_spirv(path, glsl);
-  if (!glsl.specialization.empty()) spirv = specialize(std::move(spirv), glsl.specialization);
-  return lower(simplify(std::move(spirv), path, warnings), path, options, glsl.entry_point);
+  return compile_module(spirv_of_file(path, glsl), path, glsl.entry_point, options, warnings, glsl.cache).program;
 }
 
 }  // namespace glint::frontend

@@ -12,16 +12,20 @@
 
 namespace glint::frontend {
 
+class ShaderCache;
+
 struct GlslOptions {
   std::vector<std::string> include_dirs;                      // -I
   std::vector<std::pair<std::string, std::string>> defines;   // -D NAME=VALUE
   std::string entry_point = {};                              // of a module with several; empty: the only one
   std::map<uint32_t, uint64_t> specialization = {};             // bits of specialisation constants, by constant_id
+  ShaderCache* cache = nullptr;                              // none: everything is compiled anew
 };
 
 struct BackendOptions {
   uint32_t max_registers = 64;  // 32-bit registers a thread; fewer spill to local memory
   bool schedule = true;         // latency-aware list scheduling
+  bool contract = false;        // a * b + c becomes one fma where GLSL does not say `precise`
 };
 
 // Stage from the file's ending: .rgen .rint .rahit .rchit .rmiss .rcall .comp; empty when unknown.
@@ -48,7 +52,17 @@ std::string disassemble_spirv(const std::vector<uint32_t>& words);
 isa::Program lower(const std::vector<uint32_t>& spirv, const std::string& name, const BackendOptions& options,
                    const std::string& entry_point = {});
 
-// All of the above for one file: GLSL, or SPIR-V by its ending.
+// simplify and lower, through `cache` if there is one.
+struct CompiledModule {
+  std::vector<uint32_t> simplified;
+  isa::Program program;
+};
+CompiledModule compile_module(const std::vector<uint32_t>& spirv, const std::string& name, const std::string& entry_point,
+                              const BackendOptions& options, Diagnostics& warnings, ShaderCache* cache);
+
+// SPIR-V of a file: GLSL, .spv or .spvasm by its ending; specialised.
+std::vector<uint32_t> spirv_of_file(const std::string& path, const GlslOptions& glsl);
+// All of the above for one file.
 isa::Program compile_file(const std::string& path, const GlslOptions& glsl, const BackendOptions& options,
                           Diagnostics& warnings);
 

@@ -11,7 +11,9 @@
 #include <memory>
 #include <sstream>
 
+#include "frontend/cache.h"
 #include "frontend/compile.h"
+#include "frontend/program_bytes.h"
 #include "frontend/spirv.h"
 
 namespace glint::frontend {
@@ -42,6 +44,16 @@ void blank_version(std::string& text) {
   }
 }
 
+// A file that was looked for, and what was there.
+struct Lookup {
+  std::string path;
+  bool is_there = false;
+  uint64_t hash = 0;
+};
+Lookup look_up(const std::string& path, const std::optional<std::string>& text) {
+  return {path, text.has_value(), text ? content_hash(*text) : 0};
+}
+
 // Looks next to the including file first, then in the include directories in order.
 class Includer final : public glslang::TShader::Includer {
  public:
@@ -57,10 +69,13 @@ class Includer final : public glslang::TShader::Includer {
   }
   void releaseInclude(IncludeResult* result) override { delete result; }
 
+  const std::vector<Lookup>& lookups() const { return lookups_; }
+
  private:
   // The texts live as long as the includer: glslang names them in messages after it has released them.
   IncludeResult* load(const fs::path& path) {
     std::optional<std::string> text = read_text(path);
+    lookups_.push_back(look_up(path.string(), text));
     if (!text) return nullptr;
     blank_version(*text);
     texts_.push_back(std::make_unique<std::string>(std::move(*text)));
@@ -70,7 +85,47 @@ class Includer final : public glslang::TShader::Includer {
 
   const std::vector<std::string>& dirs_;
   std::vector<std::unique_ptr<std::string>> texts_;
+  std::vector<Lookup> lookups_;
 };
+
+std::string key_of(const std::string& source, const std::string& path, isa::Stage stage, const GlslOptions& options) {
+  ByteWriter key;
+  key.put(std::string("glsl"));
+  key.put(path);
+  key.put(stage);
+  key.put(options.include_dirs);
+  for (const auto& [name, value] : options.defines) key.put(name), key.put(value);
+  key.put(source);
+  return key.take();
+}
+
+// The module that the source gave before, if everything that it included, or looked for in vain, is as it was.
+std::optional<std::vector<uint32_t>> find(ShaderCache& cache, const std::string& key) {
+  const std::optional<std::string> bytes = cache.find(key);
+  if (!bytes) return std::nullopt;
+  ByteReader in(*bytes);
+  for (uint64_t left = in.take<uint64_t>(); left > 0; --left) {
+    const auto path = in.take<std::string>();
+    const auto is_there = in.take<uint8_t>() != 0;
+    const auto hash = in.take<uint64_t>();
+    const Lookup now = look_up(path, read_text(path));
+    if (path.empty() || now.is_there != is_there || now.hash != hash) return std::nullopt;
+  }
+  auto words = in.take<std::vector<uint32_t>>();
+  return in.is_good() ? std::optional(std::move(words)) : std::nullopt;
+}
+
+void store(ShaderCache& cache, const std::string& key, const std::vector<Lookup>& lookups, const std::vector<uint32_t>& words) {
+  ByteWriter out;
+  out.put(uint64_t(lookups.size()));
+  for (const Lookup& each : lookups) {
+    out.put(each.path);
+    out.put(uint8_t(each.is_there));
+    out.put(each.hash);
+  }
+  out.put(words);
+  cache.store(key, out.take());
+}
 
 // glslang keeps tables for the life of the process; the first compile makes them, exit frees them.
 struct Process {
@@ -161,6 +216,9 @@ std::vector<uint32_t> glsl_to_spirv(const std::string& path, const GlslOptions& 
 }
 
 std::vector<uint32_t> glsl_text_to_spirv(const std::string& source, const std::string& path, isa::Stage stage, const GlslOptions& options) {
+  const std::string key = options.cache ? key_of(source, path, stage, options) : std::string();
+  if (options.cache)
+    if (std::optional<std::vector<uint32_t>> found = find(*options.cache, key)) return std::move(*found);
   static const Process process;  // thread-safe since C++11
   const EShLanguage language = language_of(stage);
   glslang::TShader shader(language);
@@ -180,7 +238,9 @@ std::vector<uint32_t> glsl_text_to_spirv(const std::string& source, const std::s
   Includer includer(options.include_dirs);
   if (!shader.parse(GetDefaultResources(), kDefaultGlslVersion, ENoProfile, false, false, messages, includer))
     throw UserError(in_our_form(shader.getInfoLog()));
-  return generate(shader, language, messages, path);
+  std::vector<uint32_t> words = generate(shader, language, messages, path);
+  if (options.cache) store(*options.cache, key, includer.lookups(), words);
+  return words;
 }
 
 }  // namespace glint::frontend

@@ -8,12 +8,13 @@
 #include "base/check.h"
 #include "base/diagnostics.h"
 #include "frontend/compile.h"
+#include "frontend/debug_print.h"
 #include "frontend/lower_typed.h"
 #include "frontend/spirv.h"
 
 namespace glint::frontend {
-Lowering::Lowering(const Module& module, const std::string& name, const EntryPoint& entry)
-    : module_(module), entry_(entry), layout_(module), emitter_(program_) {
+Lowering::Lowering(const Module& module, const std::string& name, const EntryPoint& entry, bool contract)
+    : module_(module), entry_(entry), contract_(contract), layout_(module), emitter_(program_) {
   program_.name = name;
   program_.files = module.files;
 }
@@ -27,6 +28,7 @@ VirtualProgram Lowering::run() {
   lower_control(*this);
   throw_if_unsupported();
   emitter_.finish();
+  if (contract_) contract(&program_, emitter_.free_results());
   remove_dead_code(&program_);
   program_.local_bytes = (program_.local_bytes + 15) / 16 * 16;
   return std::move(program_);
@@ -54,6 +56,10 @@ void Lowering::check_capabilities() {
   for (const auto& [capability, line] : module_.capabilities)
     if (!is_known_capability(capability))
       unsupported("capability " + name_of_capability(uint32_t(capability)), line);
+  // What is made of types that nothing is known of cannot be looked at further.
+  constexpr auto kCooperativeMatrixKHR = spv::Op(4456);  // newer than the packaged headers
+  for (const auto& [id, type] : module_.types)
+    if (type.op == spv::Op::OpTypeCooperativeMatrixNV || type.op == kCooperativeMatrixKHR) throw_if_unsupported();
 }
 
 void Lowering::index_definitions() {
@@ -90,7 +96,10 @@ void Lowering::note_interface() {
     unsupported(fmt::format("hit attributes of {} bytes", program_.attribute_bytes));
 }
 
+// Operations on constants that do not fold (of 64 bits, of floats) are computed here, before all that uses them.
 void Lowering::prologue() {
+  for (const auto& [id, constant] : module_.constants)
+    if (constant.op == spv::Op::OpSpecConstantOp) value(id);
   const auto initialise = [&](const Variable& variable) {
     if (variable.initializer != 0) store(variable_pointer(variable), value(variable.initializer));
   };
@@ -126,11 +135,16 @@ void Lowering::hand_over_attributes() {
 void Lowering::instruction(const Instruction& inst) {
   emitter_.set_line(inst.line);
   if (inst.op == spv::Op::OpVariable) return;
+  // What functions are made of stays as it is: their errors were bounded with each rounding in its place.
+  emitter_.set_free(contract_ && inst.op != spv::Op::OpExtInst && !decorations(inst.result).no_contraction);
   if (inst.op == spv::Op::OpExtInst) {
     const auto import = module_.imports.find(inst.operands[0]);
     if (import != module_.imports.end() && import->second == "GLSL.std.450")
       lower_glsl_std(*this, inst);
-    else if (import == module_.imports.end() || import->second.rfind("NonSemantic.", 0) != 0)
+    else if (import != module_.imports.end() && import->second == kDebugPrintSet)
+      lower_print(*this, inst);
+    else if (import == module_.imports.end() ||
+             (import->second.rfind("NonSemantic.", 0) != 0 && !lower_vendor_set(*this, import->second, inst)))
       unsupported("OpExtInst of an unknown set");
   } else if (const LoweringRow* row = find_lowering_row(inst.op)) {
     row->lower(*this, inst, *row);
@@ -227,17 +241,14 @@ Operands Lowering::constant_parts(Id id) {
   }
 }
 
-// The op as if it stood in the function: the emitter folds it, for all its operands are constants.
+// The op as if it stood in the function: the emitter folds most, for all their operands are constants.
 Operands Lowering::specialised_parts(const Instruction& constant) {
   Instruction inst = constant;
   inst.op = spv::Op(constant.operands[0]);
   inst.operands.erase(inst.operands.begin());
   const LoweringRow* row = find_lowering_row(inst.op);
   if (row) row->lower(*this, inst, *row);
-  const auto folded = values_.find(inst.result);
-  const auto is_known = [](const Operand& part) { return part.kind == Operand::Kind::Constant; };
-  if (folded != values_.end() && std::all_of(folded->second.begin(), folded->second.end(), is_known))
-    return Operands(folded->second);
+  if (const auto done = values_.find(inst.result); done != values_.end()) return Operands(done->second);
   unsupported(fmt::format("OpSpecConstantOp {}", name_of_opcode(uint32_t(inst.op))), constant.line);
   return Operands(layout_.num_parts(constant.type), Operand::value(0));
 }
@@ -283,7 +294,7 @@ const LoweringRow* find_lowering_row(spv::Op op) {
   static const std::map<spv::Op, const LoweringRow*> kRows = [] {
     std::map<spv::Op, const LoweringRow*> rows;
     for (const auto family : {arithmetic_rows(), conversion_rows(), comparison_rows(), composite_rows(), memory_rows(),
-                              address_rows(), image_rows(), sample_rows(), atomic_rows(), subgroup_rows(), dot_rows(),
+                              address_rows(), image_rows(), sample_rows(), atomic_rows(), subgroup_rows(), dot_rows(), derivative_rows(),
                               ray_tracing_rows(), ray_query_rows(), hit_object_rows()})
       for (const LoweringRow& row : family)
         GLINT_CHECK(rows.emplace(row.op, &row).second, "two rows for op {}", uint32_t(row.op));
@@ -294,14 +305,14 @@ const LoweringRow* find_lowering_row(spv::Op op) {
 }
 
 VirtualProgram lower_to_virtual(const std::vector<uint32_t>& spirv, const std::string& name,
-                                const std::string& entry_point) {
+                                const std::string& entry_point, bool contract) {
   const Module module = Module::parse(spirv, name);
-  return Lowering(module, name, module.entry_point(entry_point, name)).run();
+  return Lowering(module, name, module.entry_point(entry_point, name), contract).run();
 }
 
 isa::Program lower(const std::vector<uint32_t>& spirv, const std::string& name,
                    const BackendOptions& options, const std::string& entry_point) {
-  return assemble(lower_to_virtual(spirv, name, entry_point), options);
+  return assemble(lower_to_virtual(spirv, name, entry_point, options.contract), options);
 }
 
 }  // namespace glint::frontend

@@ -22,7 +22,7 @@ namespace glint::frontend {
 
 // The lowering without the backend: for tests and for `--emit virtual`. UnsupportedError as lower().
 VirtualProgram lower_to_virtual(const std::vector<uint32_t>& spirv, const std::string& name,
-                                const std::string& entry_point = {});
+                                const std::string& entry_point = {}, bool contract = false);
 
 // Where a pointer points. Attribute pairs: hit attributes of two floats, which hit shaders find in %hit.u and
 // %hit.v. Resource: a descriptor, of a buffer only while an index into an array of them is missing. Texel: of a storage
@@ -74,6 +74,7 @@ std::span<const LoweringRow> sample_rows();
 std::span<const LoweringRow> atomic_rows();
 std::span<const LoweringRow> subgroup_rows();
 std::span<const LoweringRow> dot_rows();
+std::span<const LoweringRow> derivative_rows();
 std::span<const LoweringRow> ray_tracing_rows();
 std::span<const LoweringRow> ray_query_rows();
 std::span<const LoweringRow> hit_object_rows();
@@ -81,10 +82,15 @@ const LoweringRow* find_lowering_row(spv::Op op);
 
 // The GLSL.std.450 instruction set: operands[0] is the import, operands[1] the function's number.
 void lower_glsl_std(Lowering& lowering, const Instruction& inst);
+// Of a vendor's set; false where it is not known.
+bool lower_vendor_set(Lowering& lowering, const std::string& set, const Instruction& inst);
+// NonSemantic.DebugPrintf: operands[2] is the format. UserError when it does not fit its arguments.
+void lower_print(Lowering& lowering, const Instruction& inst);
 
 class Lowering {
  public:
-  Lowering(const Module& module, const std::string& name, const EntryPoint& entry);
+  // `contract`: products and sums may become one op (lower_contract.cpp).
+  Lowering(const Module& module, const std::string& name, const EntryPoint& entry, bool contract = false);
   VirtualProgram run();
 
   // --- Control: called block by block by lower_control()
@@ -147,6 +153,7 @@ class Lowering {
 
   const Module& module_;
   const EntryPoint& entry_;
+  const bool contract_;
   Layout layout_;
   VirtualProgram program_;
   Emitter emitter_;
@@ -186,6 +193,9 @@ bool is_known_capability(spv::Capability capability);
 
 // A displacement that the 32-bit field of an instruction cannot hold goes into the base.
 Pointer in_reach(Lowering& lowering, Pointer pointer);
+
+// Fuses sums with products that nothing else reads; both of `free`, the registers of products and sums that may fuse.
+void contract(VirtualProgram* program, const std::set<VirtualRegister>& free);
 
 // Removes instructions whose results nobody reads and that do nothing else.
 void remove_dead_code(VirtualProgram* program);

@@ -142,8 +142,12 @@ Operand Emitter::value(std::string_view op, Operands sources) {
   }
   std::vector<uint64_t> key{isa::op_index(op)};
   for (const Operand& source : sources) append_key(&key, source);
-  if (const auto it = known_.find(key); it != known_.end()) return it->second[0];
+  if (const auto it = known_.find(key); it != known_.end()) {
+    if (!free_) free_results_.erase(it->second[0].reg);
+    return it->second[0];
+  }
   const Operand result = fresh(op, sources);
+  if (free_) free_results_.insert(result.reg);
   if (op == "not.pred") negation_of_[result.reg] = sources[0].reg;
   known_[key] = {result};
   return result;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -80,6 +81,10 @@ class Emitter {
   RegisterClass class_of(const Operand& operand, RegisterClass of_constant = RegisterClass::B32) const;
   Operand select_bool(Operand predicate, Operand a, Operand b);
 
+  // From now on results of arithmetic may, or may not, be fused with what uses them.
+  void set_free(bool free) { free_ = free; }
+  const std::set<VirtualRegister>& free_results() const { return free_results_; }
+
   const Known& known() const { return known_; }
   void set_known(Known known) { known_ = std::move(known); }
   void forget() { known_.clear(); }
@@ -94,6 +99,8 @@ class Emitter {
   bool open_ = false;
   isa::Line line_;
   Known known_;
+  bool free_ = false;
+  std::set<VirtualRegister> free_results_;
   std::map<VirtualRegister, VirtualRegister> negation_of_;  // results of not.pred and their sources
 };
 

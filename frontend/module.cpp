@@ -73,7 +73,6 @@ class Parser {
   Module module_;
   Function* function_ = nullptr;
   isa::Line line_;
-  std::map<Id, std::string> strings_;
   std::map<std::string, uint16_t> file_index_;
   std::map<Id, Id> type_of_;
   std::vector<std::pair<Id, std::vector<uint32_t>>> size_ids_;
@@ -93,7 +92,7 @@ void Parser::instruction(std::span<const uint32_t> words) {
   inst.operands.assign(words.begin() + long(at), words.end());
   switch (inst.op) {
     case spv::Op::OpString:
-      strings_[inst.result] = string_at(words.subspan(at));
+      module_.strings[inst.result] = string_at(words.subspan(at));
       return;
     case spv::Op::OpLine:
     case spv::Op::OpName:
@@ -124,7 +123,7 @@ void Parser::debug(spv::Op op, std::span<const uint32_t> args) {
     if (members.size() <= args[1]) members.resize(args[1] + 1);
     members[args[1]].name = string_at(args.subspan(2));
   } else {  // OpLine
-    const std::string file = strings_[args[0]];
+    const std::string file = module_.strings[args[0]];
     auto [it, is_new] = file_index_.try_emplace(file, uint16_t(module_.files.size()));
     if (is_new) module_.files.push_back(file);
     // The line holds until the next OpLine, also in following blocks: glslang writes it only when it changes.
@@ -181,6 +180,9 @@ void Parser::decorate(std::span<const uint32_t> args) {
       break;
     case spv::Decoration::Volatile:
       d.is_volatile = true;
+      break;
+    case spv::Decoration::NoContraction:
+      d.no_contraction = true;
       break;
     case spv::Decoration::Coherent:
       d.is_coherent = true;

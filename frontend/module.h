@@ -95,6 +95,7 @@ struct Decorations {
   std::optional<spv::BuiltIn> builtin;
   bool is_volatile = false;
   bool is_coherent = false;
+  bool no_contraction = false;  // of a result: GLSL's `precise`
 };
 
 struct EntryPoint {
@@ -118,6 +119,7 @@ struct Module {
   std::map<Id, Decorations> decorations;
   std::map<Id, std::string> names;
   std::map<Id, std::string> imports;  // OpExtInstImport
+  std::map<Id, std::string> strings;  // OpString: names of files, formats of prints
   std::vector<EntryPoint> entry_points;
   std::vector<Function> functions;
   std::vector<std::string> files;  // isa::Line::file indexes it

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstdio>
-#include <cstring>
 #include <fmt/format.h>
 #include <spirv-tools/optimizer.hpp>
 #include <spirv/unified1/spirv.hpp11>
 
 #include "frontend/compile.h"
+#include "frontend/debug_print.h"
 #include "frontend/spirv.h"
 #include "frontend/vendor_ray_tracing.h"
 
@@ -19,12 +19,24 @@ namespace {
 // cos with the host's libm (ccp) or remove divergence that hardware has (if-conversion).
 const std::vector<std::string>& pass_list() {
   static const std::vector<std::string> kPasses = {
-      "--strip-nonsemantic",  // imports such as NonSemantic.DebugPrintf make later passes skip the module
+      "--strip-nonsemantic",  // imports of such sets make later passes skip the module
       "--freeze-spec-const",
       "--fold-spec-const-op-composite",
       "--wrap-opkill",
       "--eliminate-dead-branches",
       "--merge-return",
+      // Each function on its own first: what is in SSA form before it is copied into its callers costs little there.
+      "--eliminate-dead-functions",
+      "--eliminate-local-single-block",
+      "--eliminate-local-single-store",
+      "--scalar-replacement=100",
+      "--convert-local-access-chains",
+      "--eliminate-local-single-block",
+      "--eliminate-local-single-store",
+      "--ssa-rewrite",
+      "--eliminate-dead-code-aggressive",
+      "--cfg-cleanup",
+      "--merge-blocks",
       "--inline-entry-points-exhaustive",
       "--eliminate-dead-functions",
       "--eliminate-dead-code-aggressive",
@@ -74,6 +86,12 @@ std::vector<uint32_t> without_extensions(const std::vector<uint32_t>& words, std
   return kept;
 }
 
+// The optimiser leaves calls of functions marked so, and nothing here calls.
+void allow_inlining(std::vector<uint32_t>& words) {
+  for (size_t i = kHeaderWords; i < words.size(); i += words[i] >> 16)
+    if (spv::Op(words[i] & 0xffff) == spv::Op::OpFunction) words[i + 3] &= ~uint32_t(spv::FunctionControlMask::DontInline);
+}
+
 // Puts the extension declarations back where the logical layout wants them: after the capabilities.
 std::vector<uint32_t> with_extensions(std::vector<uint32_t> words, const std::vector<uint32_t>& extensions) {
   size_t at = kHeaderWords;
@@ -82,20 +100,12 @@ std::vector<uint32_t> with_extensions(std::vector<uint32_t> words, const std::ve
   return words;
 }
 
-bool imports_debug_printf(const std::vector<uint32_t>& words) {
-  constexpr std::string_view kName = "NonSemantic.DebugPrintf";
-  for (size_t i = kHeaderWords; i < words.size(); i += words[i] >> 16)
-    if (spv::Op(words[i] & 0xffff) == spv::Op::OpExtInstImport &&
-        std::memcmp(&words[i + 2], kName.data(), std::min(kName.size(), size_t(words[i] >> 16) * 4 - 8)) == 0)
-      return true;
-  return false;
-}
-
 // The module after `passes`; empty, and `messages` says why, when they fail or what they make is not valid.
 std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes,
                                 std::string* messages) {
   std::vector<uint32_t> extensions, output;
-  const std::vector<uint32_t> input = without_extensions(spirv, &extensions);
+  std::vector<uint32_t> input = without_extensions(with_known_prints(spirv), &extensions);
+  allow_inlining(input);
   spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_3);
   optimizer.SetMessageConsumer(
       [&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {
@@ -106,7 +116,7 @@ std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, const std::v
   spvtools::OptimizerOptions options;
   options.set_run_validator(false);  // done here, with the extensions in place
   if (!optimizer.Run(input.data(), input.size(), &output, options)) return {};
-  output = with_extensions(std::move(output), extensions);
+  output = with_debug_prints(with_extensions(std::move(output), extensions));
   const std::string after = validate_spirv(output);
   *messages += after;
   return after.empty() ? output : std::vector<uint32_t>{};
@@ -119,7 +129,6 @@ std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& n
       spirv.size() < kHeaderWords ? "too short to hold a header\n" : validate_spirv(spirv);
   if (!before.empty()) throw UserError({name, 0, 0}, "invalid SPIR-V\n" + before);
   spirv = with_standard_traces(spirv);
-  if (imports_debug_printf(spirv)) warnings.warning({name, 0, 0}, "debugPrintfEXT prints nothing");
   std::string messages;
   for (const auto* passes : {&pass_list(), &inlining_only()}) {
     std::vector<uint32_t> output = optimised(spirv, *passes, &messages);

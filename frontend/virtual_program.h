@@ -63,6 +63,7 @@ struct VirtualProgram {
   uint32_t payload_bytes = 0, attribute_bytes = 0;
   std::array<uint32_t, 3> local_size{1, 1, 1};
   uint32_t shared_bytes = 0;            // of a block
+  std::vector<std::string> messages;    // formats of print and print.part
 
   VirtualRegister new_register(RegisterClass c) {
     registers.push_back(c);

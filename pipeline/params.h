@@ -7,6 +7,7 @@
 #include "base/params.h"
 #include "core/params.h"
 #include "memsys/params.h"
+#include "rtunit/build.h"
 #include "rtunit/params.h"
 
 namespace glint::pipeline {
@@ -15,10 +16,12 @@ namespace glint::pipeline {
 struct CompilerParams {
   uint32_t max_registers = 64;
   bool schedule = true;
+  bool contract = false;
   static constexpr auto params() {
     return std::tuple{
         param(&CompilerParams::max_registers, "max_registers", "register", "32-bit registers a thread; more spill to local memory.", 8, 255),
-        flag(&CompilerParams::schedule, "schedule", "Reorders instructions within a block to hide latency.")};
+        flag(&CompilerParams::schedule, "schedule", "Reorders instructions within a block to hide latency."),
+        flag(&CompilerParams::contract, "contract", "GLSL's a * b + c becomes one fma, as drivers do, but where it is `precise`.")};
   }
 };
 
@@ -28,6 +31,7 @@ struct GpuParams {
   core::Params core;
   mem::Params memory;
   rt::Params rt;
+  rt::BuildOptions bvh;
   CompilerParams compiler;
   static constexpr auto params() {
     return std::tuple{param(&GpuParams::cores, "cores", "core", "Cores (streaming multiprocessors), each with its L1 and RT unit.", 1, 256),
@@ -35,6 +39,7 @@ struct GpuParams {
                       section(&GpuParams::core, "core", "Each core."),
                       section(&GpuParams::memory, "memory", "Caches, network and DRAM."),
                       section(&GpuParams::rt, "rt", "Each core's ray-tracing unit."),
+                      section(&GpuParams::bvh, "bvh", "How acceleration structures are built."),
                       section(&GpuParams::compiler, "compiler", "Code generation.")};
   }
 };

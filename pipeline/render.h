@@ -28,8 +28,10 @@ struct RenderJob {
   bool no_skip = false;             // steps every cycle: slow, for checking
   std::string shader_dir;           // folder with raygen.rgen, miss.rmiss, triangle.rchit and so on
   frontend::GlslOptions glsl;
+  core::PrintLog* prints = nullptr;  // what the shaders print
   // Told now and then how many of the launch's warps have ended.
   std::function<void(uint64_t done, uint64_t total)> progress;
+  core::OnFault on_fault = core::OnFault::Stop;
 };
 
 // Counted by either machine.
@@ -65,6 +67,7 @@ struct RenderResult {
   ClassCounts by_class[size_t(isa::Class::Count)];
   RayCounts rays;
   StructureCounts structures;
+  core::FaultLog faults;              // that World::on_fault let pass
   std::vector<std::string> warnings;  // of compiling the shaders
   double wall_seconds = 0;          // of the run alone, without compiling and building
   std::unique_ptr<RunStats> stats;

@@ -36,7 +36,7 @@ WorkloadShaders compile_workload(const RenderJob& job) {
   WorkloadShaders out;
   frontend::GlslOptions glsl = job.glsl;
   if (job.scene.alpha_test) glsl.defines.emplace_back("GLINT_ALPHA_TEST", "1");
-  const frontend::BackendOptions backend{job.gpu.compiler.max_registers, job.gpu.compiler.schedule};
+  const frontend::BackendOptions backend{job.gpu.compiler.max_registers, job.gpu.compiler.schedule, job.gpu.compiler.contract};
   auto compile = [&](const char* file) {
     out.programs.push_back(frontend::compile_file(job.shader_dir + "/" + file, glsl, backend, out.warnings));
     return uint32_t(out.programs.size() - 1);
@@ -52,8 +52,10 @@ WorkloadShaders compile_workload(const RenderJob& job) {
 
 SceneWorld::SceneWorld(const RenderJob& job) {
   world.memory = &memory_;
+  world.prints = job.prints;
   world.constant_bank.resize(isa::kConstantBankBytes);
   world.nearest_first_hit = job.gpu.rt.nearest_first_hit;
+  world.any_hit = job.gpu.rt.any_hit.make({});
   world.launch_size = {job.frame.width, job.frame.height, 1};
   link_shaders(job);
   upload_geometry(job.scene);
@@ -150,7 +152,7 @@ void SceneWorld::build_structures(const RenderJob& job) {
       structures.triangles += model.indices.size() / 3;
     }
     level.geometries.push_back(geometry);
-    bottoms.push_back(rt::build_bottom(memory_, "bottom level " + model.name, level));
+    bottoms.push_back(rt::build_bottom(memory_, "bottom level " + model.name, level, job.gpu.bvh));
     rt::Instance instance;
     instance.bottom = instance.custom_index = uint32_t(bottoms.size() - 1);
     instance.sbt_offset = model.is_procedural() ? kSphereRecord : 0;
@@ -159,7 +161,7 @@ void SceneWorld::build_structures(const RenderJob& job) {
     structures.bytes += bottoms.back().bytes;
     structures.bottom_depth = std::max(structures.bottom_depth, bottoms.back().depth);
   }
-  const rt::StructureInfo top = rt::build_top(memory_, "top level", instances, bottoms);
+  const rt::StructureInfo top = rt::build_top(memory_, "top level", instances, bottoms, job.gpu.bvh);
   structures.bytes += top.bytes;
   structures.top_depth = top.depth;
   structures.bottom_levels = bottoms.size();

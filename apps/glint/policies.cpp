@@ -6,6 +6,7 @@
 #include "core/issue_scheduler.h"
 #include "memsys/dram_scheduler.h"
 #include "report/stat_writer.h"
+#include "rtunit/any_hit_mode.h"
 #include "rtunit/node_format.h"
 #include "rtunit/ray_scheduler.h"
 
@@ -24,8 +25,9 @@ std::vector<PolicyInfo> all_policies() {
   std::vector<PolicyInfo> out;
   add<core::IssueScheduler>(out, "core.issue", "core/schedulers");
   add<mem::DramScheduler>(out, "memory.dram.scheduler", "memsys/dram_schedulers");
+  add<rt::AnyHitMode>(out, "rt.any_hit", "rtunit/any_hit");
   add<rt::RayScheduler>(out, "rt.scheduler", "rtunit/schedulers");
-  add<rt::NodeFormat>(out, "(node format)", "rtunit/formats");
+  add<rt::NodeFormat>(out, "bvh.format", "rtunit/formats");
   add<report::StatWriter>(out, "(statistics file)", "report/formats");
   return out;
 }

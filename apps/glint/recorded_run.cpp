@@ -30,17 +30,23 @@ report::RunInfo new_run_info(const Session& session, const pipeline::GpuParams& 
 }
 
 pipeline::RenderResult run_recorded(const Session& session, const std::string& what, const report::RunDirectory& directory,
-                                    report::RunInfo& info, const std::function<pipeline::RenderResult(const ShowProgress&)>& run) {
+                                    report::RunInfo& info, const std::function<pipeline::RenderResult(const ShowProgress&)>& run, core::PrintLog* prints) {
   report::Progress progress(session.on_terminal ? stdout : nullptr, what, session.terminal);
   const auto start = std::chrono::steady_clock::now();
   const auto finish = [&](Exit exit, const std::string& message) {
     info.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     info.exit = int(exit);
     info.message = message;
+    if (const std::string printed = prints ? prints->take() : ""; !printed.empty()) {
+      fmt::print(stderr, "{}", printed);
+      directory.write("printf.txt", printed);
+    }
     directory.write_run(info);
   };
   try {
     pipeline::RenderResult result = run([&](uint64_t done, uint64_t total) { progress.update(done, total); });
+    for (const core::FaultLog::Entry& fault : result.faults.in_order())
+      info.faults.push_back({std::string(core::name_of(fault.kind)), fault.first.place, fault.first.what, fault.first.launch_id, fault.count});
     finish(Exit::Ok, "");
     return result;
   } catch (const Error& error) {
@@ -51,6 +57,7 @@ pipeline::RenderResult run_recorded(const Session& session, const std::string& w
 
 void print_result(const Session& session, bool json, const pipeline::RenderJob& job, const pipeline::RenderResult& result,
                   const std::string& title, std::vector<std::string> files) {
+  if (!result.faults.empty()) fmt::print(stderr, "{}\n", result.faults.to_string());
   if (json) {
     write_output("", Registry<report::StatWriter>::instance().entry("json").make_default({})->write(result.statistics()));
     return;

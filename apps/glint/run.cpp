@@ -26,6 +26,9 @@ struct Options {
   scenes::RenderParams frame;
   uint64_t max_instructions = 0;
   bool json = false, no_skip = false;
+  ShaderOptions shaders;
+  uint64_t print_limit = 1000;
+  core::OnFault on_fault = core::OnFault::Stop;
   bool config_given = false, mode_given = false;  // not left at their defaults
 };
 
@@ -55,6 +58,7 @@ pipeline::RenderJob make_job(const Session& session, const Options& options) {
   parse_size(options.size, job.frame);
   job.timing = options.mode == "timing";
   job.no_skip = options.no_skip;
+  job.on_fault = options.on_fault;
   job.shader_dir = options.shader_dir.empty() ? session.resources.shader_dir(std::string(workload.folder))
                                               : options.shader_dir;
   job.scene = scenes::load_scene(options.scene, {options.assets});
@@ -81,7 +85,7 @@ report::RunInfo describe_run(const Session& session, const Options& options, con
 }
 
 Exit run_scripts(const Session& session, const Options& options) {
-  AmberOptions amber{{options.scene}, options.config, options.settings, options.max_instructions, options.mode_given && options.mode == "timing", options.no_skip};
+  AmberOptions amber{{options.scene}, options.config, options.settings, options.max_instructions, options.mode_given && options.mode == "timing", options.no_skip, options.on_fault};
   amber.scripts.insert(amber.scripts.end(), options.more.begin(), options.more.end());
   return run_amber(session, amber);
 }
@@ -91,20 +95,25 @@ Exit run(const Session& session, const Options& options) {
   if (!options.more.empty()) throw UserError({}, fmt::format("'{}' is one too many", options.more[0]), "only Amber scripts run several at a time");
   if (names_pipeline(options.scene))
     return run_pipeline(session, {options.scene, options.config_given ? options.config : "", options.mode_given ? options.mode : "", options.out,
-                                  options.settings, options.max_instructions, options.json, options.no_skip});
+                                  options.settings, options.max_instructions, options.json, options.no_skip, options.shaders, options.print_limit, options.on_fault});
   if (names_kernel(options.scene))
     return run_ptx(session, {options.scene, options.launch, options.config, options.mode, options.out, options.settings,
-                             options.max_instructions, options.json, options.no_skip});
+                             options.max_instructions, options.json, options.no_skip, options.on_fault});
+  const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(options.shaders);
+  core::PrintLog prints(options.print_limit);
   pipeline::RenderJob job = make_job(session, options);
+  job.glsl = glsl_options(options.shaders, cache.get());
+  job.prints = &prints;
   const report::RunDirectory directory(
       options.out.empty() ? fmt::format("out/{}_{}-{}", job.scene.name, options.shader, options.mode)
                           : options.out);
   report::RunInfo info = describe_run(session, options, job);
+  info.on_fault = core::name_of(options.on_fault);
   directory.write_config(describe_params(job.gpu), "Resolved configuration of: " + title_of(job, options));
   const pipeline::RenderResult result = run_recorded(session, "rendering", directory, info, [&](const ShowProgress& progress) {
     job.progress = progress;
     return pipeline::render(job);
-  });
+  }, &prints);
   for (const std::string& warning : result.warnings) fmt::print(stderr, "{}\n", warning);
   directory.write_image({result.width, result.height, result.rgba});
   directory.write_stats(result.statistics());
@@ -158,13 +167,21 @@ void add_run(CLI::App& app, Session& session) {
       ->add_option("--max-instructions", options->max_instructions,
                    "Instructions after which a warp is held to have no end")
       ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--on-fault", options->on_fault,
+                   "stop: the first fault ends the run; warn: wrong loads give 0, wrong stores do nothing, and each is listed (docs/errors.md)")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, core::OnFault>{{"stop", core::OnFault::Stop}, {"warn", core::OnFault::Warn}}))
+      ->type_name("stop|warn");
   command->add_flag("--json", options->json, "Print the statistics as JSON instead of the summary");
   command->add_flag("--no-skip", options->no_skip, "Step every cycle: slow, same result, for checking");
+  command->add_option("--printf-limit", options->print_limit, "Messages of debugPrintfEXT to show, the first by launch id")->capture_default_str();
+  add_shader_options(*command, options->shaders);
   add_frame_options(*command, *options);
   command->callback(
       [&session, options, command] {
         options->config_given = command->count("--config") > 0;
         options->mode_given = command->count("--mode") > 0;
+        if (options->shaders.contract) options->settings.push_back("compiler.contract=true");
         session.action = [&session, options] { return run(session, *options); };
       });
 }

@@ -19,13 +19,14 @@ Exit run_amber(const Session& session, const AmberOptions& options) {
   amber::LaunchOptions launch;
   launch.gpu = read_config(session.resources, options.config, options.settings);
   if (options.max_instructions > 0) launch.gpu.core.instruction_budget = options.max_instructions;
-  launch.timing = options.timing, launch.no_skip = options.no_skip;
+  launch.timing = options.timing, launch.no_skip = options.no_skip, launch.on_fault = options.on_fault;
 
   uint32_t counts[3] = {};
   Exit exit = Exit::Ok;
   for (const std::string& path : options.scripts) {
     const amber::Outcome outcome = amber::run_script(path, launch);
     ++counts[size_t(outcome.verdict)];
+    for (const std::string& faults : outcome.faults) fmt::print(stderr, "{}\n", faults);
     if (outcome.verdict != amber::Verdict::Passed) fmt::print(stderr, "{}\n", outcome.message);
     if (options.scripts.size() == 1) exit = outcome.exit;
     if (options.timing && outcome.verdict == amber::Verdict::Passed) fmt::print("{}: {} cycles\n", path, outcome.cycles);

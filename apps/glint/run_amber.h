@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apps/glint/session.h"
+#include "core/fault.h"
 
 namespace glint::app {
 
@@ -14,6 +15,7 @@ struct AmberOptions {
   std::vector<std::string> settings;
   uint64_t max_instructions = 0;
   bool timing = false, no_skip = false;
+  core::OnFault on_fault = core::OnFault::Stop;
 };
 
 bool names_script(const std::string& what);  // a path that ends in .amber

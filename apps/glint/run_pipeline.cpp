@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -21,14 +22,27 @@ namespace {
 
 bool is_shader(const std::string& what) { return frontend::stage_of_file(what).has_value() || what.ends_with(".spv") || what.ends_with(".spvasm"); }
 
-pipeline::PipelineDescription read_description(const PipelineOptions& options) {
-  if (!is_shader(options.what)) return pipeline::read_pipeline(options.what);
+// What the command line says comes after what the file says.
+pipeline::PipelineDescription with_options(pipeline::PipelineDescription description, const frontend::GlslOptions& glsl) {
+  for (pipeline::ShaderFile& shader : description.shaders) {
+    auto& dirs = shader.glsl.include_dirs;
+    dirs.insert(dirs.end(), glsl.include_dirs.begin(), glsl.include_dirs.end());
+    auto& defines = shader.glsl.defines;
+    std::erase_if(defines, [&](const auto& d) { return std::any_of(glsl.defines.begin(), glsl.defines.end(), [&](const auto& o) { return o.first == d.first; }); });
+    defines.insert(defines.end(), glsl.defines.begin(), glsl.defines.end());
+    shader.glsl.cache = glsl.cache;
+  }
+  return description;
+}
+
+pipeline::PipelineDescription read_description(const PipelineOptions& options, const frontend::GlslOptions& glsl) {
+  if (!is_shader(options.what)) return with_options(pipeline::read_pipeline(options.what), glsl);
   const std::vector<std::string> shaders = pipeline::with_companions(options.what);
   const std::filesystem::path path(options.what);
   const std::string name = (path.parent_path() / ("defaults of " + path.filename().string())).string();
-  pipeline::PipelineDescription out = pipeline::parse_pipeline(pipeline::default_description(shaders, path.parent_path().string()), name);
+  pipeline::PipelineDescription out = pipeline::parse_pipeline(pipeline::default_description(shaders, path.parent_path().string(), glsl), name);
   out.name = path.filename().string();
-  return out;
+  return with_options(std::move(out), glsl);
 }
 
 void check_saves(const pipeline::PipelineDescription& d) {
@@ -89,7 +103,8 @@ bool names_pipeline(const std::string& what) {
 }
 
 Exit run_pipeline(const Session& session, const PipelineOptions& options) {
-  const pipeline::PipelineDescription description = read_description(options);
+  const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(options.shaders);
+  const pipeline::PipelineDescription description = read_description(options, glsl_options(options.shaders, cache.get()));
   check_saves(description);
   const pipeline::MachineDescription& machine = description.machine;
   const auto first = [](const std::string& a, const std::string& b, const char* c) { return !a.empty() ? a : !b.empty() ? b : std::string(c); };
@@ -104,16 +119,20 @@ Exit run_pipeline(const Session& session, const PipelineOptions& options) {
   job.timing = mode == "timing";
   job.no_skip = options.no_skip;
   pipeline::PipelineWorld world(description, job.gpu);
+  core::PrintLog prints(options.print_limit);
+  world.world.prints = &prints;
+  world.world.on_fault = options.on_fault;
   for (const std::string& warning : world.warnings) fmt::print(stderr, "{}\n", warning);
 
   const auto& [x, y, z] = world.world.launch_size;
   const std::string title = fmt::format("{}  {} x {} x {} {}, {} on {}", description.name, x, y, z, description.compute.empty() ? "rays" : "threads", mode, config);
   const report::RunDirectory directory(options.out.empty() ? fmt::format("out/{}-{}", description.name, mode) : options.out);
   report::RunInfo info = describe_run(session, world, job.gpu, config, mode);
+  info.on_fault = core::name_of(options.on_fault);
   directory.write_config(describe_params(job.gpu), "Resolved configuration of: " + title);
   const pipeline::RenderResult result = run_recorded(session, "running", directory, info, [&](const ShowProgress& progress) {
     return pipeline::run_pipeline(world, job.gpu, job.timing, job.no_skip, progress);
-  });
+  }, &prints);
   directory.write_stats(result.statistics());
   std::vector<std::string> files = keep(world, directory);
   files.push_back("statistics " + directory.path_of("stats.txt"));

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "apps/glint/session.h"
+#include "apps/glint/shader_options.h"
+#include "core/fault.h"
 
 namespace glint::app {
 
@@ -14,6 +16,9 @@ struct PipelineOptions {
   std::vector<std::string> settings;
   uint64_t max_instructions = 0;
   bool json = false, no_skip = false;
+  ShaderOptions shaders;
+  uint64_t print_limit = 0;
+  core::OnFault on_fault = core::OnFault::Stop;
 };
 
 // A shader file, or a TOML file that is no launch of a kernel.

@@ -105,12 +105,14 @@ Exit run_ptx(const Session& session, const KernelOptions& options) {
   const std::string name = launched.world.kernel().program.name;
   launched.world.set_grid(launch.grid);
   set_arguments(launched, launch, launch_path);
+  launched.world.world.on_fault = options.on_fault;
 
   const auto& [gx, gy, gz] = launch.grid.grid;
   const auto& [bx, by, bz] = launch.grid.block;
   const std::string title = fmt::format("{}  {} x {} x {} blocks of {} x {} x {} threads, {} on {}", name, gx, gy, gz, bx, by, bz, options.mode, options.config);
   const report::RunDirectory directory(options.out.empty() ? fmt::format("out/{}-{}", name, options.mode) : options.out);
   report::RunInfo info = describe_run(session, options, job.gpu, name, text);
+  info.on_fault = core::name_of(options.on_fault);
   directory.write_config(describe_params(job.gpu), "Resolved configuration of: " + title);
   const pipeline::RenderResult result = run_recorded(session, "running", directory, info, [&](const ShowProgress& progress) {
     return pipeline::run_world(launched.world.world, job.gpu, options.mode == "timing", options.no_skip, progress);

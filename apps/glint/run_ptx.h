@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apps/glint/session.h"
+#include "core/fault.h"
 
 namespace glint::app {
 
@@ -15,6 +16,7 @@ struct KernelOptions {
   std::vector<std::string> settings;
   uint64_t max_instructions = 0;
   bool json = false, no_skip = false;
+  core::OnFault on_fault = core::OnFault::Stop;
 };
 
 // Whether `glint run` means a kernel, not a scene: a path that ends in .ptx or .toml.

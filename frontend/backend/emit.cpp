@@ -147,6 +147,7 @@ isa::Program emit(const VirtualProgram& program, const Allocation& allocation, c
   out.attribute_bytes = program.attribute_bytes;
   out.local_size = program.local_size;
   out.shared_bytes = program.shared_bytes;
+  out.messages = program.messages;
   Code code = Encoder(program, allocation, ops, out).run();
   clean_branches(code, ops);
   lay_out(program, code, out);

@@ -290,9 +290,9 @@ class Writer {
 
 }  // namespace
 
-std::string default_description(const std::vector<std::string>& shaders, const std::string& folder) {
+std::string default_description(const std::vector<std::string>& shaders, const std::string& folder, const frontend::GlslOptions& glsl) {
   PipelineDescription description;
-  for (const std::string& shader : shaders) description.shaders.push_back({shader, shader, "", {}, {}});
+  for (const std::string& shader : shaders) description.shaders.push_back({shader, shader, "", glsl, {}});
   const Modules modules(description, {}, true);
   return Writer(modules, folder).run();
 }

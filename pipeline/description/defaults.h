@@ -5,11 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "frontend/compile.h"
+
 namespace glint::pipeline {
 
 // A commented TOML text that runs as it is; paths in it start at `folder`. UserError when the shaders make no pipeline:
 // no ray generation or compute shader, or several.
-std::string default_description(const std::vector<std::string>& shaders, const std::string& folder);
+std::string default_description(const std::vector<std::string>& shaders, const std::string& folder, const frontend::GlslOptions& glsl = {});
 
 // A ray generation shader with the shaders beside it that have its name and another stage's ending.
 std::vector<std::string> with_companions(const std::string& shader);

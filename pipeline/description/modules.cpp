@@ -108,10 +108,14 @@ void Modules::compile(const ShaderFile& file, const PipelineDescription& descrip
   errors.throw_if_errors();
   words = frontend::specialize(std::move(words), values);
   module.reflection = frontend::reflect(words, file.path);
-  const std::vector<uint32_t> simple = frontend::simplify(words, file.path, notes);
-  simplified_.push_back(frontend::reflect(simple, file.path));
+  frontend::CompiledModule compiled;
+  if (only_reflect)
+    compiled.simplified = frontend::simplify(words, file.path, notes);
+  else
+    compiled = frontend::compile_module(words, file.path, file.entry, {compiler.max_registers, compiler.schedule, compiler.contract}, notes, file.glsl.cache);
+  simplified_.push_back(frontend::reflect(compiled.simplified, file.path));
   module.reflection.local_size = simplified_.back().local_size;
-  if (!only_reflect) module.program = frontend::lower(simple, file.path, frontend::BackendOptions{compiler.max_registers, compiler.schedule});
+  module.program = std::move(compiled.program);
   warnings.insert(warnings.end(), notes.messages().begin(), notes.messages().end());
   modules_.push_back(std::move(module));
 }
