@@ -19,8 +19,8 @@ constexpr uint32_t kCallableDepth = 8;
 
 class Launch {
  public:
-  Launch(Script& script, const Command& command, const std::vector<CompiledShader>& shaders)
-      : script_(script), command_(command), pipeline_(script.pipelines.at(command.pipeline)), shaders_(shaders) {
+  Launch(Script& script, const Command& command, const std::vector<CompiledShader>& shaders, const rt::BuildOptions& bvh)
+      : script_(script), command_(command), pipeline_(script.pipelines.at(command.pipeline)), shaders_(shaders), bvh_(bvh) {
     world_.memory = &memory_;
     world_.constant_bank.resize(isa::kConstantBankBytes);
     world_.robust_images = script.features.count("robustBufferAccess") != 0;
@@ -67,6 +67,7 @@ class Launch {
   const Command& command_;
   const Pipeline& pipeline_;
   const std::vector<CompiledShader>& shaders_;
+  const rt::BuildOptions& bvh_;
   mem::AddressSpace memory_;
   core::Image image_;
   core::World world_;
@@ -228,7 +229,7 @@ rt::StructureInfo Launch::build_bottom(const std::string& name) {
     geometry.opaque = g.opaque, geometry.no_duplicate_any_hit = g.no_duplicate_any_hit;
     level.geometries.push_back(geometry);
   }
-  return rt::build_bottom(memory_, "bottom level " + name, level);
+  return rt::build_bottom(memory_, "bottom level " + name, level, bvh_);
 }
 
 Address Launch::build(const std::string& top_level) {
@@ -243,7 +244,7 @@ Address Launch::build(const std::string& top_level) {
     instances.push_back(description);
     instances.back().bottom = known->second;
   }
-  return it->second = rt::build_top(memory_, "top level " + top_level, instances, bottoms).address;
+  return it->second = rt::build_top(memory_, "top level " + top_level, instances, bottoms, bvh_).address;
 }
 
 void Launch::bind_structures(const Binding& binding) {
@@ -263,7 +264,7 @@ void Launch::set_push_constants(const Binding& binding) {
 
 uint64_t launch(Script& script, const Command& command, const std::vector<CompiledShader>& shaders, const LaunchOptions& options) {
   if (command.size[0] == 0 || command.size[1] == 0 || command.size[2] == 0) return 0;  // Vulkan: does nothing
-  return Launch(script, command, shaders).run(options);
+  return Launch(script, command, shaders, options.gpu.bvh).run(options);
 }
 
 }  // namespace glint::amber

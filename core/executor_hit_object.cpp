@@ -46,7 +46,7 @@ void store_attributes(WarpContext& warp, uint32_t address, int lane, const HitOb
 Address find_instance(const mem::AddressSpace& memory, const rt::NodeFormat& format, Address structure, uint32_t block,
                       uint32_t instance) {
   std::vector<rt::DecodedChild> children(format.width());
-  const auto* node = memory.find(structure + Address(block) * rt::kBlockBytes, rt::kBlockBytes);
+  const auto* node = memory.find(structure + Address(block) * rt::kBlockBytes, format.node_bytes());
   if (!node) return 0;
   const uint32_t count = format.decode(node, children);
   for (uint32_t i = 0; i < count; ++i) {

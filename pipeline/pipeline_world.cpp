@@ -174,7 +174,7 @@ void PipelineWorld::add_samplers() {
   }
 }
 
-void PipelineWorld::build_structures(const GpuParams&) {
+void PipelineWorld::build_structures(const GpuParams& gpu) {
   std::vector<rt::StructureInfo> bottoms;
   for (const BottomLevelDescription& description : description_.bottom_levels) {
     rt::BottomLevel level;
@@ -198,7 +198,7 @@ void PipelineWorld::build_structures(const GpuParams&) {
       structures.triangles += geometry.indices.empty() ? geometry.positions.size() / geometry.stride / 3 : geometry.indices.size() / 3;
       level.geometries.push_back(geometry);
     }
-    bottoms.push_back(rt::build_bottom(memory_, "bottom level " + description.name, level));
+    bottoms.push_back(rt::build_bottom(memory_, "bottom level " + description.name, level, gpu.bvh));
     structures.bytes += bottoms.back().bytes;
     structures.bottom_depth = std::max(structures.bottom_depth, bottoms.back().depth);
   }
@@ -211,7 +211,7 @@ void PipelineWorld::build_structures(const GpuParams&) {
         if (description_.bottom_levels[i].name == d.bottom_level) instance.bottom = uint32_t(i);
       instances.push_back(instance);
     }
-    const rt::StructureInfo top = rt::build_top(memory_, title(description.name, description.slot), instances, bottoms);
+    const rt::StructureInfo top = rt::build_top(memory_, title(description.name, description.slot), instances, bottoms, gpu.bvh);
     structures.bytes += top.bytes;
     structures.instances += instances.size();
     structures.top_depth = std::max(structures.top_depth, top.depth);

@@ -173,7 +173,7 @@ void measure(const BuildTree& tree, const Leaves& leaves, StructureInfo& info) {
 
 StructureInfo write(mem::AddressSpace& memory, const std::string& name, uint8_t level, Leaves& leaves,
                     const BuildOptions& options) {
-  const std::unique_ptr<NodeFormat> format = make_format(options.format);
+  const std::unique_ptr<NodeFormat> format = options.format.make({});
   BuildTree tree;
   build_tree(leaves.items, format->width(), tree);
   StructureInfo info;
@@ -186,6 +186,8 @@ StructureInfo write(mem::AddressSpace& memory, const std::string& name, uint8_t 
   tree.leaf_bytes = std::move(leaves.bytes);
   std::vector<std::byte> bytes = format->encode(tree);
   info.bytes = bytes.size();
+  info.format = format->id();
+  if (info.bytes > kMostBytes) throw UserError(fmt::format("'{}': {} bytes; a structure has at most {}", name, info.bytes, kMostBytes));
   StructureHeader header;
   header.format = uint8_t(format->id());
   header.level = level;
@@ -266,12 +268,15 @@ StructureInfo build_bottom(mem::AddressSpace& memory, const std::string& name, c
 
 StructureInfo build_top(mem::AddressSpace& memory, const std::string& name, std::span<const Instance> instances,
                         std::span<const StructureInfo> bottoms, const BuildOptions& options) {
+  const FormatId format = options.format.make({})->id();
   Leaves leaves;
   for (size_t i = 0; i < instances.size(); ++i) {
     const Instance& instance = instances[i];
     if (instance.bottom >= bottoms.size())
       throw UserError(fmt::format("instance {} names bottom level {} of {}", i, instance.bottom, bottoms.size()));
     const StructureInfo& bottom = bottoms[instance.bottom];
+    if (bottom.format != format)
+      throw UserError(fmt::format("'{}': bottom level {} has another node format", name, instance.bottom));
     if (bottom.primitives == 0) continue;
     const auto to_object = inverse(instance.transform);
     const Bounds bounds = world_bounds(instance.transform, bottom.bounds);

@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "base/registry.h"
 #include "memsys/address_space.h"
-#include "rtunit/structure.h"
+#include "rtunit/node_format.h"
 
 namespace glint::rt {
 
@@ -39,15 +40,22 @@ struct Instance {
   uint32_t bottom = 0;                     // index of its bottom level
 };
 
+// The keys of [bvh] in a configuration.
 struct BuildOptions {
-  std::string format = "bvh6";
-  bool pair_triangles = true;  // two neighbouring triangles of a geometry in one leaf where that costs no area
+  PolicyChoice<NodeFormat> format{"bvh6"};  // Vulkan-Sim 2.0
+  bool pair_triangles = true;
+  static constexpr auto params() {
+    return std::tuple{policy(&BuildOptions::format, "format", "How internal nodes are written, and how many children they have."),
+                      flag(&BuildOptions::pair_triangles, "pair_triangles",
+                           "Two neighbouring triangles of a geometry share a leaf where that costs no area.")};
+  }
 };
 
 struct StructureInfo {
   Address address = 0;        // virtual, of the header: what descriptors and rays hold
   Bounds bounds{};
   uint64_t bytes = 0;
+  FormatId format = FormatId::Bvh6;
   uint32_t nodes = 0;         // internal
   uint32_t leaves = 0;
   uint32_t depth = 0;         // internal nodes from root to deepest leaf
@@ -59,8 +67,8 @@ struct StructureInfo {
 StructureInfo build_bottom(mem::AddressSpace& memory, const std::string& name, const BottomLevel& input,
                            const BuildOptions& options = {});
 
-// UserError when a transform cannot be inverted, an index is out of range or the trees are too deep for the
-// ray stack. Instances of empty bottom levels are inactive and keep their index.
+// UserError when a transform cannot be inverted, an index is out of range, a bottom level has another node format or
+// the trees are too deep for the ray stack. Instances of empty bottom levels are inactive and keep their index.
 StructureInfo build_top(mem::AddressSpace& memory, const std::string& name, std::span<const Instance> instances,
                         std::span<const StructureInfo> bottoms, const BuildOptions& options = {});
 

@@ -1,7 +1,7 @@
 // How internal nodes are written: the interface between the builder and a node format.
 //
 // A format is one file pair in rtunit/formats/: `<name>.cpp` encodes and is registered here; `<name>.h` holds a struct
-// with kWidth and the static test() that traversal is compiled for (traversal.cpp lists it by FormatId).
+// with kWidth, kNodeBytes and the static test() that traversal is compiled for (traversal.cpp lists it by FormatId).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -36,6 +36,7 @@ struct DecodedChild {
 // Contract (tests/contract/rt_node_format_test.cpp):
 //  - encode() returns the whole structure from the header on, root at block kRootBlock, header left zero.
 //  - every decoded box contains the box that was encoded; children keep their order.
+//  - leaves lie at multiples of kBlockBytes, as BuildTree has them.
 //  - the same tree gives the same bytes.
 class NodeFormat {
  public:
@@ -43,6 +44,7 @@ class NodeFormat {
   virtual ~NodeFormat() = default;
   virtual FormatId id() const = 0;
   virtual uint32_t width() const = 0;  // most children of a node, at least 2
+  virtual uint32_t node_bytes() const = 0;  // of an internal node: what a ray fetches; a multiple of kBlockBytes
   virtual std::vector<std::byte> encode(const BuildTree& tree) const = 0;
   // Children of the internal node whose bytes start at `node`; returns how many were written to `out` (>= width() long).
   virtual uint32_t decode(const std::byte* node, std::span<DecodedChild> out) const = 0;

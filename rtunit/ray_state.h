@@ -49,6 +49,7 @@ struct RayState {
   int16_t stack_size = 0, bottom_stack_base = -1;  // entries below bottom_stack_base belong to the top level
   int16_t stack_peak = 0;
   uint8_t format = 0;                    // FormatId of the structure
+  uint8_t node_bytes = 0;                // of its internal nodes
 
   // Counted by the traversal, for probes and statistics.
   uint32_t nodes_visited = 0, box_tests = 0, triangle_tests = 0, leaves_visited = 0, instances_visited = 0;

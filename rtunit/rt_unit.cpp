@@ -55,7 +55,6 @@ void RtUnit::submit(Cycle now, uint32_t warp_slot, LaneMask mask, RayState* stat
   ++num_resident_;
   num_rays_ += uint32_t(std::popcount(mask));
   ++stats_.warps;
-  step_ = step_function(FormatId(states[std::countr_zero(mask)].format));
   for_each_lane(mask, [&](int lane) {
     GLINT_DCHECK(states[lane].status == RayStatus::Traversing, "lane {} has no ray to traverse", lane);
     if (states[lane].nodes_visited == 0) ++stats_.rays;
@@ -242,7 +241,7 @@ void RtUnit::visit(const Test& test, Cycle now) {
   RayState& state = slot.states[test.lane];
   node_visited_.fire([&] { return NodeVisited{now, slot.warp, test.lane, node}; });
   const uint32_t boxes = state.box_tests, triangles = state.triangle_tests;
-  step_(state, memory_.find(node.address, node.bytes));
+  step(state, memory_.find(node.address, node.bytes));
   stats_.box_tests += state.box_tests - boxes;
   stats_.triangle_tests += state.triangle_tests - triangles;
   ++stats_.nodes;
@@ -299,24 +298,25 @@ bool RtUnit::choose_fetch(Cycle now) {
   return true;
 }
 
-// The next sectors of the node being sent: no more than a request holds, and of one line.
+// The next sectors of the node being sent: no more than a request holds, and of one line. A node that begins within a
+// sector takes the whole of it.
 bool RtUnit::send_node(Cycle now) {
   NodeFetch& fetch = fetches_[sending_];
   const Address at = memory_.physical(fetch.node.address + fetch.sent);
   const Address offset = at & (l1_.line_bytes() - 1);
-  const uint32_t bytes = uint32_t(std::min<Address>(
-      {fetch.node.bytes - fetch.sent, params_.request_bytes / mem::kSectorBytes * mem::kSectorBytes, l1_.line_bytes() - offset}));
-  const uint32_t count = bytes / mem::kSectorBytes;
+  const Address first = offset / mem::kSectorBytes, room = params_.request_bytes / mem::kSectorBytes;
+  const Address end = std::min<Address>({offset + fetch.node.bytes - fetch.sent, (first + room) * mem::kSectorBytes, l1_.line_bytes()});
+  const uint32_t count = uint32_t((end + mem::kSectorBytes - 1) / mem::kSectorBytes - first);
   mem::Request request;
   request.line = at - offset;
-  request.sectors = uint8_t(((1u << count) - 1) << (offset / mem::kSectorBytes));
+  request.sectors = uint8_t(((1u << count) - 1) << first);
   request.traffic = traffic_of(fetch.node.kind);
   request.token = sending_;
   if (!l1_.access(now, mem::Client::RtUnit, request)) return false;
   ++stats_.requests;
   stats_.sectors += count;
   ++fetch.unanswered;
-  fetch.sent += bytes;
+  fetch.sent += uint32_t(end - offset);
   if (fetch.sent == fetch.node.bytes) sending_ = kNone;
   return true;
 }

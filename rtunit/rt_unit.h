@@ -114,7 +114,6 @@ class RtUnit final : public RtPort {
   RtStats stats_;
   Probe<NodeVisited> node_visited_;
   std::unique_ptr<RayScheduler> scheduler_;
-  StepFunction step_ = nullptr;  // of the structure's format; chosen at submit
 
   std::vector<Slot> slots_;
   std::vector<WarpView> views_;

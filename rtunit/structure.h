@@ -8,24 +8,27 @@
 
 namespace glint::rt {
 
-// Everything in a structure lies at multiples of a block from its header; block 0 is the header itself and
-// block 1 the root, always an internal node.
-inline constexpr uint32_t kBlockBytes = 64;
-inline constexpr uint32_t kRootBlock = 1;
+// Everything in a structure lies at multiples of a block from its header; block 0 is the header itself, behind it
+// lies the root, always an internal node.
+inline constexpr uint32_t kBlockBytes = 16;
+inline constexpr uint32_t kRootBlock = 4;
+inline constexpr uint32_t kLeafBytes = 64;  // of leaves but instances
 
 // TriangleSecond: the second triangle of a leaf whose first one waited for an any-hit shader; stacks only.
 enum class NodeKind : uint8_t { Internal, Instance, Triangle, Procedural, TriangleSecond };
 
-// Block number and kind in 32 bits: 2^29 blocks = 32 GiB a structure.
+// Block number and kind in 32 bits: 2^29 blocks = 8 GiB a structure.
 using NodeRef = uint32_t;
 inline constexpr int kKindBits = 3;
 constexpr NodeRef node_ref(uint32_t block, NodeKind kind) { return block << kKindBits | uint32_t(kind); }
 constexpr uint32_t block_of(NodeRef ref) { return ref >> kKindBits; }
 constexpr NodeKind kind_of(NodeRef ref) { return NodeKind(ref & ((1u << kKindBits) - 1)); }
-constexpr uint32_t blocks_of(NodeKind kind) { return kind == NodeKind::Instance ? 2 : 1; }
+constexpr uint64_t kMostBytes = (uint64_t{1} << (32 - kKindBits)) * kBlockBytes;
+constexpr uint32_t leaf_bytes(NodeKind kind) { return kind == NodeKind::Instance ? 2 * kLeafBytes : kLeafBytes; }
 
-// The node formats that traversal is compiled for (rtunit/formats/).
-enum class FormatId : uint8_t { Bvh6, Count };
+// The node formats that traversal is compiled for (rtunit/formats/). A header names one; a bottom level's is that of
+// the top level above it.
+enum class FormatId : uint8_t { Bvh6, Bvh2, Bvh4, Bvh8, Count };
 
 struct Bounds {
   std::array<float, 3> low{}, high{};
@@ -42,7 +45,7 @@ struct StructureHeader {
   uint64_t bytes = 0;
   uint64_t reserved[2]{};
 };
-static_assert(sizeof(StructureHeader) == kBlockBytes);
+static_assert(sizeof(StructureHeader) == kRootBlock * kBlockBytes);
 
 // One or two triangles of one geometry. The second shares an edge: its corners are picked from the four vertices.
 struct TriangleLeaf {
@@ -54,7 +57,7 @@ struct TriangleLeaf {
   uint8_t second = 0;  // 2 bits a corner: which vertex
   uint8_t pad = 0;
 };
-static_assert(sizeof(TriangleLeaf) == kBlockBytes);
+static_assert(sizeof(TriangleLeaf) == kLeafBytes);
 
 // One AABB, in full precision: an intersection shader runs only for rays that enter it.
 struct ProceduralLeaf {
@@ -63,7 +66,7 @@ struct ProceduralLeaf {
   uint32_t opaque = 0;
   uint32_t pad[7]{};
 };
-static_assert(sizeof(ProceduralLeaf) == kBlockBytes);
+static_assert(sizeof(ProceduralLeaf) == kLeafBytes);
 
 // An instance. Transforms are row-major 3x4. What traversal needs comes first; shaders read the rest.
 struct InstanceLeaf {
@@ -75,7 +78,7 @@ struct InstanceLeaf {
   uint32_t instance = 0;                   // index in the build input (gl_InstanceID)
   uint32_t pad[3]{};
 };
-static_assert(sizeof(InstanceLeaf) == 2 * kBlockBytes);
+static_assert(sizeof(InstanceLeaf) == leaf_bytes(NodeKind::Instance));
 
 // VkGeometryInstanceFlagBitsKHR.
 namespace instance_flag {

@@ -6,7 +6,10 @@
 #include <tuple>
 
 #include "base/check.h"
+#include "rtunit/formats/bvh2.h"
+#include "rtunit/formats/bvh4.h"
 #include "rtunit/formats/bvh6.h"
+#include "rtunit/formats/bvh8.h"
 #include "rtunit/triangle_test.h"
 
 namespace glint::rt {
@@ -202,6 +205,19 @@ void run_as(RayState& s, const mem::AddressSpace& memory) {
   }
 }
 
+struct FormatCode {
+  void (*step)(RayState&, const std::byte*);
+  void (*run)(RayState&, const mem::AddressSpace&);
+  uint32_t node_bytes;
+};
+template <class Format>
+constexpr FormatCode code_for() {
+  static_assert(Format::kNodeBytes < 256 && Format::kNodeBytes % kBlockBytes == 0);  // RayState keeps it in a byte
+  return {step_as<Format>, run_as<Format>, Format::kNodeBytes};
+}
+// In the order of FormatId.
+constexpr std::array<FormatCode, size_t(FormatId::Count)> kFormats{code_for<Bvh6>(), code_for<Bvh2>(), code_for<Bvh4>(), code_for<Bvh8>()};
+
 // The accepted candidate becomes the hit; the ray goes on, or ends when it asked for any hit.
 void commit(RayState& s, bool end) {
   s.committed = s.candidate;
@@ -245,6 +261,7 @@ bool begin(RayState& s, const mem::AddressSpace& memory) {
                     s.ray.t_min <= s.ray.t_max;
   if (!sane) return true;
   s.format = header.format;
+  s.node_bytes = uint8_t(kFormats[header.format].node_bytes);
   s.base = s.ray.structure;
   enter_space(s.space, s.ray.origin, s.ray.direction);
   s.status = RayStatus::Traversing;
@@ -252,28 +269,14 @@ bool begin(RayState& s, const mem::AddressSpace& memory) {
   return true;
 }
 
-StepFunction step_function(FormatId format) {
-  switch (format) {
-    case FormatId::Bvh6: return step_as<Bvh6>;
-    case FormatId::Count: break;
-  }
-  GLINT_PANIC("no such node format: {}", int(format));
-}
-
-void step(RayState& s, const std::byte* bytes) { step_function(FormatId(s.format))(s, bytes); }
+void step(RayState& s, const std::byte* bytes) { kFormats[s.format].step(s, bytes); }
 
 void break_off(RayState& s) {
   s.broken = true;
   finish(s);
 }
 
-void run(RayState& s, const mem::AddressSpace& memory) {
-  switch (FormatId(s.format)) {
-    case FormatId::Bvh6: return run_as<Bvh6>(s, memory);
-    case FormatId::Count: break;
-  }
-  GLINT_PANIC("no such node format: {}", int(s.format));
-}
+void run(RayState& s, const mem::AddressSpace& memory) { kFormats[s.format].run(s, memory); }
 
 void accept_candidate(RayState& s) { commit(s, false); }
 void terminate_candidate(RayState& s) { commit(s, true); }

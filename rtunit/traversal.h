@@ -23,12 +23,11 @@ struct Fetch {
 inline Fetch next_fetch(const RayState& state) {
   const NodeRef ref = state.stack[size_t(state.stack_size) - 1].node;
   const NodeKind kind = kind_of(ref);
-  return {state.base + Address(block_of(ref)) * kBlockBytes, blocks_of(kind) * kBlockBytes, kind};
+  const uint32_t bytes = kind == NodeKind::Internal ? state.node_bytes : leaf_bytes(kind);
+  return {state.base + Address(block_of(ref)) * kBlockBytes, bytes, kind};
 }
 
 // Visits the node of next_fetch(). Afterwards the ray is Traversing, Done or needs a shader.
-using StepFunction = void (*)(RayState& state, const std::byte* bytes);
-StepFunction step_function(FormatId format);
 void step(RayState& state, const std::byte* bytes);
 
 // Ends a ray whose next node lies outside memory: Done, `broken`.

@@ -48,6 +48,8 @@ class Validation {
       return {};
     }
     const Frame outer = frame_;
+    if (outer.format && outer.format->id() != format->id())
+      error("{:#x}: node format {} below another", address, header.format);
     frame_ = {address, header.bytes, format.get()};
     std::set<Key> primitives;
     primitives.swap(primitives_);
@@ -93,15 +95,13 @@ class Validation {
 
   Measured internal(uint32_t block, uint32_t depth) {
     Measured out;
-    std::array<std::byte, kBlockBytes> node;  // formats with larger nodes read on from here in their own test
-    const std::byte* bytes = memory_.find(frame_.base + Address(block) * kBlockBytes, kBlockBytes);
+    const std::byte* bytes = memory_.find(frame_.base + Address(block) * kBlockBytes, frame_.format->node_bytes());
     if (!bytes || depth > kStackEntries) {
       error("{:#x}: block {} at depth {} is outside or deeper than any stack", frame_.base, block, depth);
       return out;
     }
-    std::memcpy(node.data(), bytes, node.size());
     std::array<DecodedChild, kMaxWidth> children;
-    const uint32_t count = frame_.format->decode(node.data(), children);
+    const uint32_t count = frame_.format->decode(bytes, children);
     for (uint32_t i = 0; i < count; ++i) {
       const Measured below = child(children[i].node, depth);
       if (!contains(children[i].bounds, below.bounds))

@@ -1,5 +1,8 @@
-// Every registered node format keeps the promises of rtunit/node_format.h, and rays see the same through it.
+// Every registered node format keeps the promises of rtunit/node_format.h.
 // SPDX-License-Identifier: Apache-2.0
+#include <map>
+
+#include "base/diagnostics.h"
 #include "base/registry.h"
 #include "rtunit/node_format.h"
 #include "rtunit/validate.h"
@@ -9,46 +12,135 @@
 namespace glint::rt::test {
 namespace {
 
+BuildOptions options_of(const std::string& format, bool pair = true) { return {format.c_str(), pair}; }
+
 TEST_CASE("every node format encodes sound structures, the same every time") {
   Random random{6};
   const Positions positions = soup(random, 3000, 10, 1);
   for (const std::string& name : Registry<NodeFormat>::names()) {
     CAPTURE(name);
     mem::AddressSpace a, b;
-    const StructureInfo first = single(a, triangles(positions), {name}), second = single(b, triangles(positions), {name});
+    const StructureInfo first = single(a, triangles(positions), options_of(name)), second = single(b, triangles(positions), options_of(name));
     CHECK(validate(a, first.address).empty());
     REQUIRE(first.bytes == second.bytes);
     CHECK(std::memcmp(a.find(first.address, first.bytes), b.find(second.address, second.bytes), first.bytes) == 0);
     const auto format = make_format(name);
     CHECK(format->width() >= 2);
+    CHECK(format->node_bytes() % kBlockBytes == 0);
     REQUIRE(make_format(format->id()) != nullptr);
     CHECK(make_format(format->id())->width() == format->width());
   }
 }
 
-TEST_CASE("in every node format a ray finds what testing every triangle finds") {
-  Random random{7};
-  const Positions positions = soup(random, 300, 10, 3);
+TEST_CASE("a structure's header names its node format, and every format has a name") {
+  for (uint8_t id = 0; id < uint8_t(FormatId::Count); ++id) REQUIRE(make_format(FormatId(id)) != nullptr);
+  CHECK(Registry<NodeFormat>::names().size() == size_t(FormatId::Count));
+  Random random{6};
+  const Positions positions = soup(random, 10, 10, 1);
   for (const std::string& name : Registry<NodeFormat>::names()) {
-    mem::AddressSpace memory, alone;
-    const StructureInfo top = single(memory, triangles(positions), {name});
-    std::vector<StructureInfo> singles;
-    for (size_t i = 0; i < positions.size(); i += 3)
-      singles.push_back(single(alone, triangles({positions.begin() + long(i), positions.begin() + long(i) + 3}), {name}));
-    for (int i = 0; i < 300; ++i) {
-      const auto origin = random.point(12), direction = random.point(1);
-      RayState state = ray_of(top.address, origin, direction);
-      REQUIRE(begin(state, memory));
-      run(state, memory);
-      float nearest = INFINITY;
-      for (const StructureInfo& one : singles) {
-        RayState other = ray_of(one.address, origin, direction);
-        REQUIRE(begin(other, alone));
-        run(other, alone);
-        nearest = std::fmin(nearest, other.committed.t);
+    mem::AddressSpace memory;
+    const StructureInfo top = single(memory, triangles(positions), options_of(name));
+    CHECK(make_format(name)->id() == top.format);
+    CHECK(FormatId(memory.view<StructureHeader>(top.address, 1)[0].format) == top.format);
+  }
+}
+
+TEST_CASE("a bottom level of another node format is refused") {
+  Random random{6};
+  const Positions positions = soup(random, 10, 10, 1);
+  mem::AddressSpace memory;
+  const StructureInfo bottom = build_bottom(memory, "b", {{triangles(positions)}}, {"bvh2"});
+  CHECK_THROWS_WITH(build_top(memory, "t", std::vector<Instance>(1), std::vector{bottom}, {"bvh6"}), Catch::Contains("another node format"));
+}
+
+// Width and bytes as published; the number of nodes between a full tree's and a binary one's.
+TEST_CASE("nodes have the published sizes, and a structure is its header, nodes and leaves") {
+  const std::map<std::string, std::pair<uint32_t, uint32_t>> known{{"bvh2", {2, 64}}, {"bvh4", {4, 128}}, {"bvh6", {6, 64}}, {"bvh8", {8, 80}}};
+  Random random{1};
+  const Positions positions = soup(random, 1000, 10, 1);
+  uint32_t last_depth = 1000;
+  for (const auto& [name, size] : known) {
+    CAPTURE(name);
+    const auto format = make_format(name);
+    CHECK(format->width() == size.first);
+    CHECK(format->node_bytes() == size.second);
+    mem::AddressSpace memory;
+    const StructureInfo info = build_bottom(memory, "b", {{triangles(positions)}}, options_of(name, false));
+    CHECK(info.leaves == 1000);
+    CHECK(info.nodes >= 999 / (size.first - 1));
+    if (name == "bvh2") CHECK(info.nodes == 999);
+    else CHECK(info.nodes < 999 / 2);
+    const uint64_t nodes_end = 64 + uint64_t(size.second) * info.nodes;
+    CHECK(info.bytes == (nodes_end + 63) / 64 * 64 + 64 * 1000);
+    CHECK(info.depth < last_depth);  // wider trees are shallower
+    last_depth = info.depth;
+  }
+}
+
+// Of any size: Random::point itself multiplies by 2^24.
+std::array<float, 3> scaled_point(Random& random, float size) {
+  auto p = random.point(1);
+  for (float& x : p) x *= size;
+  return p;
+}
+
+// Any width of up to the format's, any size and place.
+TEST_CASE("boxes as decoded contain what they were made of") {
+  for (const std::string& name : Registry<NodeFormat>::names()) {
+    CAPTURE(name);
+    Random random{4};
+    const auto format = make_format(name);
+    for (int round = 0; round < 2000; ++round) {
+      BuildTree tree;
+      tree.nodes.resize(1);
+      tree.leaf_bytes.resize(kLeafBytes * format->width());
+      const float size = std::pow(10.f, random.uniform(-36, 36)), place = size * std::pow(10.f, random.uniform(-2, 6));
+      const auto center = scaled_point(random, std::fmin(place, 1e37f));
+      tree.nodes[0].num_children = 1 + random.below(format->width());
+      for (uint32_t i = 0; i < tree.nodes[0].num_children; ++i) {
+        BuildTree::Node leaf;
+        leaf.kind = NodeKind::Triangle;
+        leaf.leaf_block = i * kLeafBytes / kBlockBytes;
+        const auto a = scaled_point(random, size), b = scaled_point(random, size);
+        for (size_t k = 0; k < 3; ++k) {
+          leaf.bounds.low[k] = center[k] + std::fmin(a[k], b[k]);
+          leaf.bounds.high[k] = random.below(8) ? center[k] + std::fmax(a[k], b[k]) : leaf.bounds.low[k];
+        }
+        tree.nodes.push_back(leaf);
+        tree.children.push_back(i + 1);
       }
-      REQUIRE(state.committed.t == nearest);
+      const auto bytes = format->encode(tree);
+      std::vector<DecodedChild> decoded(format->width());
+      const uint32_t count = format->decode(&bytes[kRootBlock * kBlockBytes], decoded);
+      REQUIRE(count == tree.nodes[0].num_children);
+      for (uint32_t i = 0; i < count; ++i)
+        for (size_t k = 0; k < 3; ++k) {
+          REQUIRE(decoded[i].bounds.low[k] <= tree.nodes[i + 1].bounds.low[k]);
+          REQUIRE(decoded[i].bounds.high[k] >= tree.nodes[i + 1].bounds.high[k]);
+        }
     }
+  }
+}
+
+// Must fail: in every format a box that shrinks and a child that is lost are seen.
+TEST_CASE("the validator finds damage in every node format") {
+  Random random{3};
+  const Positions positions = soup(random, 100, 10, 1);
+  for (const std::string& name : Registry<NodeFormat>::names()) {
+    CAPTURE(name);
+    mem::AddressSpace memory;
+    const StructureInfo info = build_bottom(memory, "b", {{triangles(positions)}}, options_of(name, false));
+    const auto view = memory.view<std::byte>(info.address, info.bytes);
+    const uint32_t node_bytes = make_format(name)->node_bytes();
+    uint32_t found = 0;
+    for (size_t at = 64; at < 64 + node_bytes; ++at) {
+      const std::byte before = view[at];
+      view[at] = before ^ std::byte{0x48};
+      found += !validate(memory, info.address).empty();
+      view[at] = before;
+    }
+    CHECK(validate(memory, info.address).empty());
+    CHECK(found > node_bytes / 4);  // of the bytes changed one by one; low bits of planes and padding may go unseen
   }
 }
 

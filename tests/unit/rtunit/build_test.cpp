@@ -151,39 +151,5 @@ TEST_CASE("the validator finds damage") {
   CHECK(damaged(64 + 19, std::byte{1}));               // five children lost
 }
 
-TEST_CASE("quantised boxes contain what they were made of, at any size and place") {
-  Random random{4};
-  const auto format = make_format("bvh6");
-  for (int round = 0; round < 2000; ++round) {
-    BuildTree tree;
-    tree.nodes.resize(1);
-    tree.leaf_bytes.resize(kBlockBytes * 6);
-    const float size = std::pow(10.f, random.uniform(-20, 20)), place = size * std::pow(10.f, random.uniform(-2, 6));
-    const auto center = random.point(place);
-    tree.nodes[0].num_children = 1 + random.below(6);
-    for (uint32_t i = 0; i < tree.nodes[0].num_children; ++i) {
-      BuildTree::Node leaf;
-      leaf.kind = NodeKind::Triangle;
-      leaf.leaf_block = i;
-      const auto a = random.point(size), b = random.point(size);
-      for (size_t k = 0; k < 3; ++k) {
-        leaf.bounds.low[k] = center[k] + std::fmin(a[k], b[k]);
-        leaf.bounds.high[k] = random.below(8) ? center[k] + std::fmax(a[k], b[k]) : leaf.bounds.low[k];
-      }
-      tree.nodes.push_back(leaf);
-      tree.children.push_back(i + 1);
-    }
-    const auto bytes = format->encode(tree);
-    std::array<DecodedChild, 6> decoded;
-    const uint32_t count = format->decode(&bytes[kBlockBytes], decoded);
-    REQUIRE(count == tree.nodes[0].num_children);
-    for (uint32_t i = 0; i < count; ++i)
-      for (size_t k = 0; k < 3; ++k) {
-        REQUIRE(decoded[i].bounds.low[k] <= tree.nodes[i + 1].bounds.low[k]);
-        REQUIRE(decoded[i].bounds.high[k] >= tree.nodes[i + 1].bounds.high[k]);
-      }
-  }
-}
-
 }  // namespace
 }  // namespace glint::rt::test

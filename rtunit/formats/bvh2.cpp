@@ -1,0 +1,29 @@
+// Node format `bvh2`, registration.
+// SPDX-License-Identifier: Apache-2.0
+#include "rtunit/formats/bvh2.h"
+
+#include "base/registry.h"
+
+namespace glint::rt {
+namespace {
+
+class Bvh2Format final : public NodeFormat {
+ public:
+  static constexpr std::string_view kName = "bvh2";
+  static constexpr std::string_view kDoc = "64 B nodes of two children, planes in single precision.";
+  struct Params {
+    static constexpr auto params() { return std::tuple{}; }
+  };
+  Bvh2Format(Params, Context) {}
+
+  FormatId id() const override { return FormatId::Bvh2; }
+  uint32_t width() const override { return Bvh2::kWidth; }
+  uint32_t node_bytes() const override { return Bvh2::kNodeBytes; }
+  std::vector<std::byte> encode(const BuildTree& tree) const override { return Bvh2::encode(tree); }
+  uint32_t decode(const std::byte* node, std::span<DecodedChild> out) const override { return Bvh2::decode(node, out); }
+};
+
+const Register<NodeFormat, Bvh2Format> registered;
+
+}  // namespace
+}  // namespace glint::rt

@@ -1,0 +1,29 @@
+// Node format `bvh4`, registration.
+// SPDX-License-Identifier: Apache-2.0
+#include "rtunit/formats/bvh4.h"
+
+#include "base/registry.h"
+
+namespace glint::rt {
+namespace {
+
+class Bvh4Format final : public NodeFormat {
+ public:
+  static constexpr std::string_view kName = "bvh4";
+  static constexpr std::string_view kDoc = "128 B nodes of four children, planes in single precision.";
+  struct Params {
+    static constexpr auto params() { return std::tuple{}; }
+  };
+  Bvh4Format(Params, Context) {}
+
+  FormatId id() const override { return FormatId::Bvh4; }
+  uint32_t width() const override { return Bvh4::kWidth; }
+  uint32_t node_bytes() const override { return Bvh4::kNodeBytes; }
+  std::vector<std::byte> encode(const BuildTree& tree) const override { return Bvh4::encode(tree); }
+  uint32_t decode(const std::byte* node, std::span<DecodedChild> out) const override { return Bvh4::decode(node, out); }
+};
+
+const Register<NodeFormat, Bvh4Format> registered;
+
+}  // namespace
+}  // namespace glint::rt

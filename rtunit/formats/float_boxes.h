@@ -1,0 +1,85 @@
+// Nodes with boxes in single precision and a reference a child: what the formats without quantisation share.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+
+#include "rtunit/box_test.h"
+#include "rtunit/formats/layout.h"
+
+namespace glint::rt {
+
+template <int kChildren>
+struct FloatBoxes {
+  static constexpr int kWidth = kChildren;
+  static constexpr NodeRef kNone = 0;  // block 0 is the header
+
+  struct Node {
+    float low[3][kWidth]{}, high[3][kWidth]{};
+    NodeRef child[kWidth]{};  // the used ones first
+    uint32_t pad[kWidth == 2 ? 2 : 4]{};
+  };
+  static constexpr uint32_t kNodeBytes = sizeof(Node);
+
+  // Children that the ray enters in [t_min, t_max], in index order. Returns how many; counts the tests.
+  static int test(const std::byte* bytes, const RaySpace& space, float t_min, float t_max, float* t_enter,
+                  NodeRef* child, uint32_t& box_tests) {
+    Node node;
+    std::memcpy(&node, bytes, sizeof node);
+    float t_near[kWidth], t_far[kWidth];
+    for (int i = 0; i < kWidth; ++i) t_near[i] = -__builtin_inff(), t_far[i] = __builtin_inff();
+    for (int a = 0; a < 3; ++a) {
+      const bool backward = std::signbit(space.inverse_direction[a]);
+      const float* near_plane = backward ? node.high[a] : node.low[a];
+      const float* far_plane = backward ? node.low[a] : node.high[a];
+      for (int i = 0; i < kWidth; ++i)
+        clip_slab(near_plane[i], far_plane[i], space.origin[a], space.inverse_direction[a], t_near[i], t_far[i]);
+    }
+    int hits = 0;
+    for (int i = 0; i < kWidth && node.child[i] != kNone; ++i) {
+      ++box_tests;
+      float enter = widen_near(t_near[i]), leave = widen_far(t_far[i]);
+      enter = enter > t_min ? enter : t_min;
+      leave = leave < t_max ? leave : t_max;
+      if (!(enter <= leave)) continue;
+      t_enter[hits] = enter;
+      child[hits++] = node.child[i];
+    }
+    return hits;
+  }
+
+  static std::vector<std::byte> encode(const BuildTree& tree) {
+    const Layout layout = mixed_layout(tree, kNodeBytes);
+    std::vector<std::byte> out = bytes_with_leaves(tree, layout);
+    for (size_t n = 0; n < tree.nodes.size(); ++n) {
+      if (tree.nodes[n].kind != NodeKind::Internal) continue;
+      Node node;
+      int i = 0;
+      for (uint32_t index : children_of(tree, tree.nodes[n])) {
+        const BuildTree::Node& child = tree.nodes[index];
+        node.child[i] = node_ref(layout.block[index], child.kind);
+        for (size_t a = 0; a < 3; ++a) node.low[a][i] = child.bounds.low[a], node.high[a][i] = child.bounds.high[a];
+        ++i;
+      }
+      std::memcpy(&out[size_t(layout.block[n]) * kBlockBytes], &node, sizeof node);
+    }
+    return out;
+  }
+
+  static uint32_t decode(const std::byte* bytes, std::span<DecodedChild> out) {
+    Node node;
+    std::memcpy(&node, bytes, sizeof node);
+    uint32_t count = 0;
+    for (; count < kWidth && node.child[count] != kNone; ++count) {
+      out[count].node = node.child[count];
+      for (size_t a = 0; a < 3; ++a) {
+        out[count].bounds.low[a] = node.low[a][count];
+        out[count].bounds.high[a] = node.high[a][count];
+      }
+    }
+    return count;
+  }
+};
+
+}  // namespace glint::rt

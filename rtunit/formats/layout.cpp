@@ -1,0 +1,79 @@
+// Depth-first packing of nodes and leaves.
+// SPDX-License-Identifier: Apache-2.0
+#include "rtunit/formats/layout.h"
+
+#include <cstring>
+
+namespace glint::rt {
+namespace {
+
+// Calls place(child) for every child of every internal node: siblings together, the first child's subtree next.
+template <class Place>
+void depth_first(const BuildTree& tree, Place place) {
+  std::vector<uint32_t> stack{0}, inner;
+  while (!stack.empty()) {
+    const BuildTree::Node& node = tree.nodes[stack.back()];
+    stack.pop_back();
+    inner.clear();
+    for (uint32_t child : children_of(tree, node)) {
+      place(child);
+      if (tree.nodes[child].kind == NodeKind::Internal) inner.push_back(child);
+    }
+    stack.insert(stack.end(), inner.rbegin(), inner.rend());
+  }
+}
+
+constexpr uint32_t blocks(uint64_t bytes) { return uint32_t(bytes / kBlockBytes); }
+
+}  // namespace
+
+Layout mixed_layout(const BuildTree& tree, uint32_t node_bytes) {
+  Layout out{std::vector<uint32_t>(tree.nodes.size()), sizeof(StructureHeader) + node_bytes};
+  out.block[0] = kRootBlock;
+  depth_first(tree, [&](uint32_t child) {
+    const NodeKind kind = tree.nodes[child].kind;
+    out.block[child] = blocks(out.bytes);
+    out.bytes += kind == NodeKind::Internal ? node_bytes : leaf_bytes(kind);
+  });
+  return out;
+}
+
+Layout split_layout(const BuildTree& tree, uint32_t node_bytes) {
+  Layout out{std::vector<uint32_t>(tree.nodes.size()), 0};
+  out.block[0] = kRootBlock;
+  uint64_t nodes = sizeof(StructureHeader) + node_bytes, leaves = 0;
+  depth_first(tree, [&](uint32_t child) {
+    const NodeKind kind = tree.nodes[child].kind;
+    uint64_t& end = kind == NodeKind::Internal ? nodes : leaves;
+    out.block[child] = blocks(end);
+    end += kind == NodeKind::Internal ? node_bytes : leaf_bytes(kind);
+  });
+  const uint64_t first_leaf = (nodes + kLeafBytes - 1) / kLeafBytes * kLeafBytes;
+  for (size_t n = 0; n < tree.nodes.size(); ++n)
+    if (tree.nodes[n].kind != NodeKind::Internal) out.block[n] += blocks(first_leaf);
+  out.bytes = first_leaf + leaves;
+  return out;
+}
+
+std::vector<std::byte> bytes_with_leaves(const BuildTree& tree, const Layout& layout) {
+  std::vector<std::byte> out(layout.bytes);
+  for (size_t n = 0; n < tree.nodes.size(); ++n) {
+    const BuildTree::Node& node = tree.nodes[n];
+    if (node.kind == NodeKind::Internal) continue;
+    std::memcpy(&out[size_t(layout.block[n]) * kBlockBytes], &tree.leaf_bytes[size_t(node.leaf_block) * kBlockBytes],
+                leaf_bytes(node.kind));
+  }
+  return out;
+}
+
+std::span<const uint32_t> children_of(const BuildTree& tree, const BuildTree::Node& node) {
+  return std::span(tree.children).subspan(node.first_child, node.num_children);
+}
+
+std::vector<Bounds> bounds_of_children(const BuildTree& tree, const BuildTree::Node& node) {
+  std::vector<Bounds> out;
+  for (uint32_t child : children_of(tree, node)) out.push_back(tree.nodes[child].bounds);
+  return out;
+}
+
+}  // namespace glint::rt

@@ -1,0 +1,169 @@
+// Scenes of everything that a structure can hold, and the hit of a ray found by testing all of it, without boxes around it.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstring>
+#include <deque>
+#include <tuple>
+
+#include "rtunit/box_test.h"
+#include "rtunit/node_format.h"
+#include "rtunit/triangle_test.h"
+#include "tests/support/rt_launch.h"
+
+namespace glint::rt::test {
+
+// Geometries of a bottom level; the vectors keep what the geometries point to.
+struct BottomScene {
+  BottomScene() = default;
+  BottomScene(BottomScene&&) = default;
+  BottomScene(const BottomScene&) = delete;  // the geometries would point into the other
+  std::deque<Positions> positions;
+  std::deque<std::vector<Bounds>> boxes;
+  BottomLevel level;
+  void add_triangles(Positions p, bool opaque) {
+    positions.push_back(std::move(p));
+    level.geometries.push_back(triangles(positions.back(), opaque));
+  }
+  void add_boxes(std::vector<Bounds> b, bool opaque) {
+    boxes.push_back(std::move(b));
+    Geometry g;
+    g.aabbs = boxes.back();
+    g.opaque = opaque;
+    level.geometries.push_back(g);
+  }
+};
+struct Scene {
+  Scene() = default;
+  Scene(Scene&&) = default;
+  Scene(const Scene&) = delete;
+  std::deque<BottomScene> bottoms;
+  std::vector<Instance> instances;
+};
+
+// A scene in memory, in one node format.
+struct BuiltScene {
+  mem::AddressSpace memory;
+  std::vector<StructureInfo> bottoms;
+  StructureInfo top;
+  BuiltScene(const Scene& scene, const std::string& format) {
+    BuildOptions options;
+    options.format.name = format;
+    for (const BottomScene& b : scene.bottoms) bottoms.push_back(build_bottom(memory, "bottom", b.level, options));
+    top = build_top(memory, "top", scene.instances, bottoms, options);
+  }
+};
+
+// Every leaf of a structure, by the format's own decoding.
+template <class Visit>
+void for_each_leaf(const mem::AddressSpace& memory, const NodeFormat& format, Address structure, uint32_t block, Visit visit) {
+  std::vector<DecodedChild> children(format.width());
+  const uint32_t count = format.decode(memory.find(structure + Address(block) * kBlockBytes, format.node_bytes()), children);
+  for (uint32_t i = 0; i < count; ++i) {
+    const NodeRef ref = children[i].node;
+    if (kind_of(ref) == NodeKind::Internal) for_each_leaf(memory, format, structure, block_of(ref), visit);
+    else visit(kind_of(ref), memory.find(structure + Address(block_of(ref)) * kBlockBytes, leaf_bytes(kind_of(ref))));
+  }
+}
+
+// Candidates of one ray, tested one by one. Written from Vulkan's rules anew; only the arithmetic of a transform, of a
+// box's entry and of a triangle is the unit's, whose bits are compared.
+class BruteForce {
+ public:
+  BruteForce(const Scene& scene, const BuiltScene& built) : scene_(scene) {
+    for_each_leaf(built.memory, *make_format(built.top.format), built.top.address, kRootBlock, [&](NodeKind, const std::byte* bytes) {
+      InstanceLeaf leaf;
+      std::memcpy(&leaf, bytes, sizeof leaf);
+      leaves_.push_back(leaf);
+    });
+  }
+  size_t num_instances() const { return leaves_.size(); }
+
+  // All hits that shaders and rules accept, nearest first; of equals the lowest instance, geometry, primitive.
+  std::vector<Hit> hits(const Ray& ray) const {
+    std::vector<Hit> out;
+    for (const InstanceLeaf& leaf : leaves_) {
+      if ((leaf.custom_index_and_mask >> 24 & ray.cull_mask & 0xff) == 0) continue;
+      RaySpace space;
+      enter(space, ray, leaf.world_to_object);
+      const BottomScene& bottom = scene_.bottoms[scene_.instances[leaf.instance].bottom];
+      for (uint32_t g = 0; g < bottom.level.geometries.size(); ++g) test(ray, leaf, space, bottom.level.geometries[g], g, out);
+    }
+    std::sort(out.begin(), out.end(), [](const Hit& a, const Hit& b) {
+      return std::tuple(a.t, a.instance, a.geometry, a.primitive) < std::tuple(b.t, b.instance, b.geometry, b.primitive);
+    });
+    return out;
+  }
+
+ private:
+  static void enter(RaySpace& space, const Ray& ray, const std::array<float, 12>& m) {
+    std::array<float, 3> o, d;
+    for (size_t r = 0; r < 3; ++r) {
+      o[r] = ((m[4 * r] * ray.origin[0] + m[4 * r + 1] * ray.origin[1]) + m[4 * r + 2] * ray.origin[2]) + m[4 * r + 3];
+      d[r] = (m[4 * r] * ray.direction[0] + m[4 * r + 1] * ray.direction[1]) + m[4 * r + 2] * ray.direction[2];
+    }
+    enter_space(space, o, d);
+  }
+
+  static void test(const Ray& ray, const InstanceLeaf& leaf, const RaySpace& space, const Geometry& geometry, uint32_t g,
+                   std::vector<Hit>& out) {
+    const uint32_t flags = leaf.sbt_offset_and_flags >> 24;
+    bool opaque = geometry.opaque;
+    if (flags & instance_flag::kForceOpaque) opaque = true;
+    if (flags & instance_flag::kForceNoOpaque) opaque = false;
+    if (ray.flags & ray_flag::kOpaque) opaque = true;
+    if (ray.flags & ray_flag::kNoOpaque) opaque = false;
+    if (ray.flags & (opaque ? ray_flag::kCullOpaque : ray_flag::kCullNoOpaque)) return;
+    Hit hit;
+    hit.instance = leaf.instance;
+    hit.geometry = g;
+    if (!geometry.aabbs.empty()) {
+      if (ray.flags & ray_flag::kSkipAabbs) return;
+      for (hit.primitive = 0; hit.primitive < geometry.aabbs.size(); ++hit.primitive)
+        test_box(ray, space, geometry.aabbs[hit.primitive], opaque, hit, out);
+    } else if (!(ray.flags & ray_flag::kSkipTriangles)) {
+      const uint32_t count = uint32_t(geometry.positions.size() / 36);
+      for (hit.primitive = 0; hit.primitive < count; ++hit.primitive) test_triangle(ray, flags, space, geometry, opaque, hit, out);
+    }
+  }
+
+  static void test_triangle(const Ray& ray, uint32_t instance_flags, const RaySpace& space, const Geometry& geometry, bool opaque,
+                            Hit hit, std::vector<Hit>& out) {
+    std::array<std::array<float, 3>, 3> p;
+    std::memcpy(&p, &geometry.positions[size_t(hit.primitive) * 36], 36);
+    for (const auto& corner : p)
+      for (float x : corner)
+        if (!std::isfinite(x)) return;
+    TriangleHit found;
+    if (!intersect_triangle(space, p[0], p[1], p[2], found)) return;
+    const bool front = found.front != ((instance_flags & instance_flag::kFlipFacing) != 0);
+    const bool culled = ray.flags & (front ? ray_flag::kCullFrontFacing : ray_flag::kCullBackFacing);
+    if (culled && !(instance_flags & instance_flag::kFacingCullDisable)) return;
+    if (!(found.t > ray.t_min && found.t < ray.t_max)) return;
+    if (!opaque && hit.primitive % 3 == 0) return;  // resolve()'s any-hit shader
+    hit.t = found.t, hit.u = found.u, hit.v = found.v;
+    hit.kind = front ? kHitKindFront : kHitKindBack;
+    out.push_back(hit);
+  }
+
+  static void test_box(const Ray& ray, const RaySpace& space, const Bounds& box, bool opaque, Hit hit, std::vector<Hit>& out) {
+    if (!std::isfinite(box.low[0])) return;
+    float t_near = -INFINITY, t_far = INFINITY;
+    for (size_t a = 0; a < 3; ++a) {
+      const bool backward = std::signbit(space.inverse_direction[a]);
+      clip_slab(backward ? box.high[a] : box.low[a], backward ? box.low[a] : box.high[a], space.origin[a],
+                space.inverse_direction[a], t_near, t_far);
+    }
+    const float enter = std::fmax(widen_near(t_near), ray.t_min), leave = std::fmin(widen_far(t_far), ray.t_max);
+    if (!(enter <= leave)) return;
+    hit.t = enter + 0.01f * float(hit.primitive % 5);  // resolve()'s intersection shader
+    hit.kind = hit.primitive & 0x7f;
+    if (!(hit.t <= ray.t_max)) return;
+    if (!opaque && hit.primitive % 3 == 0) return;
+    out.push_back(hit);
+  }
+
+  const Scene& scene_;
+  std::vector<InstanceLeaf> leaves_;
+};
+
+}  // namespace glint::rt::test
