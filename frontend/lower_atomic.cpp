@@ -14,25 +14,20 @@ std::string op_suffix(std::string_view name32, Part part) {
   return bytes_of(part) == 8 ? with_bits(name32, 64) : std::string(name32);
 }
 
-// The old value. Where the ISA has no such op, it is noted.
-Operand change(Lowering& l, const Pointer& pointer, Part part, std::string_view name32, const Operands& operands) {
-  Emitter& e = l.emit();
-  const std::string suffix = op_suffix(name32, part);
+// The ISA's op on that place, which it may lack; empty for memory of one lane.
+std::string op_name(const Pointer& pointer, const std::string& suffix) {
+  const size_t dot = suffix.find('.');
+  switch (pointer.place) {
+    case Place::Texel: return fmt::format("suatom.p.{}.{}{}.trap", suffix.substr(0, dot), pointer.shape, suffix.substr(dot));
+    case Place::Global: return "atom.global." + suffix;
+    case Place::Shared: return "atom.shared." + suffix;
+    default: return {};
+  }
+}
+
+// The old value.
+Operand atomic_op(Lowering& l, const std::string& name, const Pointer& pointer, Part part, const Operands& operands) {
   const bool is_texel = pointer.place == Place::Texel;
-  std::string name;
-  if (is_texel) {
-    const size_t dot = suffix.find('.');
-    name = fmt::format("suatom.p{}.{}{}.trap", "." + suffix.substr(0, dot), pointer.shape, suffix.substr(dot));
-  } else if (pointer.place == Place::Global || pointer.place == Place::Shared) {
-    name = fmt::format("atom.{}.{}", pointer.place == Place::Global ? "global" : "shared", suffix);
-  } else {
-    if (pointer.place != Place::Nowhere) l.unsupported("an atomic on memory of one lane");
-    return Operand::value(0);
-  }
-  if (isa::find_op(name) < 0 || bytes_of(part) == 1) {
-    l.unsupported(fmt::format("no op {} ({} bits)", name, 8 * bytes_of(part)));
-    return Operand::value(0);
-  }
   const Pointer p = is_texel ? pointer : in_reach(l, pointer);
   const Operand old = Operand::of(l.program().new_register(class_of(part)));
   Operands all{old};
@@ -41,9 +36,50 @@ Operand change(Lowering& l, const Pointer& pointer, Part part, std::string_view 
   else
     all.push_back(p.base);
   all.insert(all.end(), operands.begin(), operands.end());
-  e.effect(name, std::move(all), is_texel ? 0 : int32_t(p.displacement));
+  l.emit().effect(name, std::move(all), is_texel ? 0 : int32_t(p.displacement));
   l.note_store(is_texel ? Place::Global : p.place);
   return old;
+}
+
+// What an op that the ISA lacks leaves, of the old value and the operand.
+Operand combined(Lowering& l, std::string_view name32, Part part, const Operand& old, const Operand& x) {
+  if (name32 == "exch.b32") return x;
+  return typed(l.emit(), name32 == "add.f32" ? "add.rn.f32" : name32, part, {old, x});
+}
+
+// As a loop: compare and swap until nobody came in between.
+Operand change_by_loop(Lowering& l, const std::string& compare, const Pointer& pointer, Part part, std::string_view name32,
+                       const Operand& x) {
+  Emitter& e = l.emit();
+  const Operand old = Operand::of(l.program().new_register(class_of(part)));
+  const BlockId again = e.new_block("atomic_again"), retry = e.new_block("atomic_retry"), done = e.new_block("atomic_done");
+  // Putting 0 where 0 stands reads and changes nothing.
+  e.copy(old.reg, class_of(part), atomic_op(l, compare, pointer, part, {Operand::value(0), Operand::value(0)}));
+  e.push_reconvergence(done);
+  e.place(again);
+  const Operand found = atomic_op(l, compare, pointer, part, {old, combined(l, name32, part, old, x)});
+  const Operand is_done = e.fresh(bytes_of(part) == 8 ? "setp.eq.u64" : "setp.eq.u32", {found, old});
+  e.branch_if(is_done, true, done);
+  e.place(retry);
+  e.copy(old.reg, class_of(part), found);
+  e.branch(again);
+  e.place(done);
+  e.effect("join", {});
+  return old;
+}
+
+// The old value. Where the ISA has neither such an op nor a comparing one, it is noted.
+Operand change(Lowering& l, const Pointer& pointer, Part part, std::string_view name32, const Operands& operands) {
+  const std::string name = op_name(pointer, op_suffix(name32, part));
+  if (name.empty()) {
+    if (pointer.place != Place::Nowhere) l.unsupported("an atomic on memory of one lane");
+    return Operand::value(0);
+  }
+  if (isa::find_op(name) >= 0 && bytes_of(part) != 1) return atomic_op(l, name, pointer, part, operands);
+  const std::string compare = op_name(pointer, with_bits("cas.b32", 8 * bytes_of(part)));
+  if (isa::find_op(compare) >= 0 && operands.size() == 1) return change_by_loop(l, compare, pointer, part, name32, operands[0]);
+  l.unsupported(fmt::format("no op {} ({} bits)", name, 8 * bytes_of(part)));
+  return Operand::value(0);
 }
 
 // Operands: pointer, scope, semantics, value.

@@ -30,7 +30,8 @@ constexpr spv::Capability kKnown[] = {
     VulkanMemoryModelDeviceScope, Int64Atomics, AtomicFloat16AddEXT, AtomicFloat32AddEXT, AtomicFloat64AddEXT,
     AtomicFloat16MinMaxEXT, AtomicFloat32MinMaxEXT, AtomicFloat64MinMaxEXT, DotProduct, DotProductInputAll,
     DotProductInput4x8Bit, DotProductInput4x8BitPacked, ExpectAssumeKHR, DenormPreserve, SignedZeroInfNanPreserve,
-    RoundingModeRTE, BitInstructions};
+    RoundingModeRTE, BitInstructions, Groups, DerivativeControl,
+    ComputeDerivativeGroupQuadsNV, ComputeDerivativeGroupLinearNV};
 
 }  // namespace
 

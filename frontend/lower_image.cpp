@@ -53,7 +53,7 @@ ImageOperands image_operands(const Instruction& inst, size_t at) {
   if (inst.operands.size() <= at) return result;
   const uint32_t mask = inst.operands[at++];
   const auto has = [&](Mask bit) { return (mask & uint32_t(bit)) != 0; };
-  if (has(Mask::Bias)) ++at;  // of implicit levels, of which there are none outside of fragment shaders
+  if (has(Mask::Bias)) result.bias = inst.operands.at(at++);
   if (has(Mask::Lod)) result.lod = inst.operands.at(at++);
   if (has(Mask::Grad)) {
     result.gradients = {inst.operands.at(at), inst.operands.at(at + 1)};

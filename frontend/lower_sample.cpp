@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include "frontend/lower_derivative.h"
 #include "frontend/lower_image.h"
 
 namespace glint::frontend {
@@ -15,6 +16,11 @@ bool has_reference(spv::Op op) {
 }
 bool is_projective(spv::Op op) {
   return op == OpImageSampleProjExplicitLod || op == OpImageSampleProjImplicitLod || op == OpImageSampleProjDrefExplicitLod ||
+         op == OpImageSampleProjDrefImplicitLod;
+}
+
+bool is_implicit(spv::Op op) {
+  return op == OpImageSampleImplicitLod || op == OpImageSampleDrefImplicitLod || op == OpImageSampleProjImplicitLod ||
          op == OpImageSampleProjDrefImplicitLod;
 }
 
@@ -63,7 +69,8 @@ std::optional<Sample> sample_of(Lowering& l, const Instruction& inst, size_t num
   return s;
 }
 
-// Model: without gradients between lanes an implicit level is level 0, as GLSL has it outside of fragment shaders.
+// An implicit level is that of the gradients between lanes, where a module puts them into quads (a bias scales them), and
+// else level 0, as GLSL has it outside of fragment shaders.
 void sample(Lowering& l, const Instruction& inst, const LoweringRow&) {
   const bool compares = has_reference(inst.op);
   const auto s = sample_of(l, inst, compares ? 3 : 2);
@@ -79,6 +86,12 @@ void sample(Lowering& l, const Instruction& inst, const LoweringRow&) {
       const Operands parts = l.value(gradient);
       sources.insert(sources.end(), parts.begin(), parts.end());
     }
+  } else if (is_implicit(inst.op) && has_derivatives(l)) {
+    name += ".grad";
+    const Operands at(s->place.end() - s->geometry.coordinates, s->place.end());
+    const Operand bias = s->extra.bias ? l.emit().value("ex2.f32", {l.scalar(*s->extra.bias)}) : constant_f32(1);
+    const Operands parts = gradients(l, at, bias);
+    sources.insert(sources.end(), parts.begin(), parts.end());
   }
   if (compares) name += ".compare";
   if (s->extra.offset) {

@@ -165,6 +165,28 @@ void arithmetic(Lowering& l, const Instruction& inst, const LoweringRow& row) {
   each_part(l, inst, 2, [&](Part part, const Operand& x) { return scan::combine(l, inst.op, row.name32, part, x, lanes); });
 }
 
+// Older names of the same, of SPV_AMD_shader_ballot.
+struct Older {
+  spv::Op op, standard;
+};
+constexpr Older kOlder[] = {
+    {OpGroupIAdd, OpGroupNonUniformIAdd}, {OpGroupFAdd, OpGroupNonUniformFAdd},
+    {OpGroupSMin, OpGroupNonUniformSMin}, {OpGroupUMin, OpGroupNonUniformUMin}, {OpGroupFMin, OpGroupNonUniformFMin},
+    {OpGroupSMax, OpGroupNonUniformSMax}, {OpGroupUMax, OpGroupNonUniformUMax}, {OpGroupFMax, OpGroupNonUniformFMax},
+    {OpGroupIAddNonUniformAMD, OpGroupNonUniformIAdd}, {OpGroupFAddNonUniformAMD, OpGroupNonUniformFAdd},
+    {OpGroupSMinNonUniformAMD, OpGroupNonUniformSMin}, {OpGroupUMinNonUniformAMD, OpGroupNonUniformUMin},
+    {OpGroupFMinNonUniformAMD, OpGroupNonUniformFMin}, {OpGroupSMaxNonUniformAMD, OpGroupNonUniformSMax},
+    {OpGroupUMaxNonUniformAMD, OpGroupNonUniformUMax}, {OpGroupFMaxNonUniformAMD, OpGroupNonUniformFMax},
+};
+
+void older(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  Instruction same = inst;
+  for (const Older& row : kOlder)
+    if (row.op == inst.op) same.op = row.standard;
+  const LoweringRow& row = *find_lowering_row(same.op);
+  row.lower(l, same, row);
+}
+
 constexpr LoweringRow kRows[] = {
     {OpGroupNonUniformElect, elect, ""},
     {OpGroupNonUniformAll, vote, "vote.sync.all.pred"},
@@ -208,6 +230,22 @@ constexpr LoweringRow kRows[] = {
     {OpGroupNonUniformLogicalAnd, arithmetic, ""},
     {OpGroupNonUniformLogicalOr, arithmetic, ""},
     {OpGroupNonUniformLogicalXor, arithmetic, ""},
+    {OpGroupIAdd, older, ""},
+    {OpGroupFAdd, older, ""},
+    {OpGroupSMin, older, ""},
+    {OpGroupUMin, older, ""},
+    {OpGroupFMin, older, ""},
+    {OpGroupSMax, older, ""},
+    {OpGroupUMax, older, ""},
+    {OpGroupFMax, older, ""},
+    {OpGroupIAddNonUniformAMD, older, ""},
+    {OpGroupFAddNonUniformAMD, older, ""},
+    {OpGroupSMinNonUniformAMD, older, ""},
+    {OpGroupUMinNonUniformAMD, older, ""},
+    {OpGroupFMinNonUniformAMD, older, ""},
+    {OpGroupSMaxNonUniformAMD, older, ""},
+    {OpGroupUMaxNonUniformAMD, older, ""},
+    {OpGroupFMaxNonUniformAMD, older, ""},
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 // What is asked of a parsed module: types, constants, names, entry points, successors of blocks.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <fmt/format.h>
 
 #include "base/check.h"
@@ -54,6 +55,10 @@ const EntryPoint& Module::entry_point(const std::string& wanted, const std::stri
     if (entry.name == wanted || (wanted.empty() && entry_points.size() == 1)) return entry;
     known += (known.empty() ? "" : ", ") + entry.name;
   }
+  // Choice: of several, the one that GLSL would have.
+  const auto is_main = [](const EntryPoint& entry) { return entry.name == "main"; };
+  if (wanted.empty() && std::count_if(entry_points.begin(), entry_points.end(), is_main) == 1)
+    return *std::find_if(entry_points.begin(), entry_points.end(), is_main);
   if (entry_points.empty()) throw UserError({file, 0, 0}, "the module has no entry point");
   throw UserError({file, 0, 0}, wanted.empty() ? "the module has several entry points: " + known
                                                : "the module has no entry point '" + wanted + "': it has " + known,
