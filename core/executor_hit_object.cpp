@@ -100,7 +100,9 @@ bool Executor::run_hit_object(WarpContext& warp, const isa::Inst& inst, const is
     HitObject& object = objects[lane];
     switch (op) {
       case HitObjectOp::Record: {
-        const rt::RayState& state = warp.frame().ray[size_t(lane)];
+        rt::RayState& state = warp.frame().ray[size_t(lane)];
+        if (state.broken && !let_pass_broken(warp, lane, state)) [[unlikely]]
+          return false;
         const bool hit = state.committed.valid();
         object = {hit ? HitObject::Type::Hit : HitObject::Type::Miss, state.ray, state.committed,
                   hit ? hit_record(state.ray, state.committed) : state.ray.miss_index, {}, warp.frame().time[size_t(lane)]};
@@ -148,8 +150,13 @@ bool Executor::make_hit(WarpContext& warp, const isa::Inst& inst, bool has_strid
   const auto value = [&](size_t operand) { return read_word(warp.regs, inst, operand, lane); };
   const Address structure = read_address(warp.regs, inst, kStructure, lane);
   const Address at = find_instance(*world_.memory, structure, value(kInstance));
-  if (at == 0)
-    return fail(warp, lane, fmt::format("makes a hit object of instance {}, which {:#x} does not hold", value(kInstance), structure));
+  if (at == 0) {
+    object = {};
+    return let_pass(warp, lane, FaultKind::Structure, [&] {
+      return fmt::format("makes a hit object of instance {}, which {:#x} does not hold: {}", value(kInstance), structure,
+                         whereabouts(*world_.memory, structure, 1));
+    });
+  }
   const rt::InstanceLeaf& leaf = world_.memory->view<rt::InstanceLeaf>(at, 1)[0];
   const size_t ray = kOffset + (has_stride ? 2 : 1);
   object = {HitObject::Type::Hit, ray_of(warp, inst, ray, lane), {}, 0, {}, std::exchange(warp.next_time[size_t(lane)], 0)};
@@ -223,6 +230,7 @@ bool Executor::begin_hit_object(WarpContext& warp, const isa::Inst& inst) {
     state.committed = object.hit;
     state.committed.sbt_record = object.record;
     state.candidate = {};
+    state.table = nullptr;
     state.attribute_slot = state.broken = false;
     state.status = object.type == HitObject::Type::Empty ? rt::RayStatus::Idle : rt::RayStatus::Done;
     if (object.type == HitObject::Type::Hit && object.hit.kind < rt::kHitKindFront)

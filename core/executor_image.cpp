@@ -155,18 +155,22 @@ void store_texel(const isa::OpRow& row, TexelFormat format, const Words& words, 
 
 }  // namespace
 
+// Null: nothing is there, let pass (`fault()` is then not set) or not.
 const ImageView* Executor::find_image(WarpContext& warp, const isa::OpRow& row, int lane) {
   const uint64_t handle = warp.regs.access.address[size_t(lane)];
   const uint64_t number = handle % (1u << isa::kHandleSamplerShift), sampler = handle >> isa::kHandleSamplerShift;
   if (number >= world_.images.size() || sampler > world_.samplers.size()) [[unlikely]] {
-    fail(warp, lane, fmt::format("uses image {} with sampler {}: {} images and {} samplers are bound", number, sampler,
-                                 world_.images.size(), world_.samplers.size()));
+    let_pass(warp, lane, FaultKind::Image, [&] {
+      return fmt::format("uses image {} with sampler {}: {} images and {} samplers are bound", number, sampler, world_.images.size(),
+                         world_.samplers.size());
+    });
     return nullptr;
   }
   const ImageView& image = world_.images[number];
   if (row.image.request != ImageRequest::Query && !fits(row.image, image.shape)) [[unlikely]] {
-    fail(warp, lane, fmt::format("uses image '{}', which is {}, as {}", image.name, name_of(image.shape),
-                                 name_of(row.image.shape)));
+    let_pass(warp, lane, FaultKind::Image, [&] {
+      return fmt::format("uses image '{}', which is {}, as {}", image.name, name_of(image.shape), name_of(row.image.shape));
+    });
     return nullptr;
   }
   return &image;
@@ -198,28 +202,38 @@ bool Executor::texture(WarpContext& warp, const isa::Inst& inst, const isa::OpRo
   const isa::ImageAccess& op = row.image;
   const Slots slots(row);
   std::array<Words, kLanes> result;  // written when no lane can fault any more
+  const auto pass = [&](int lane, const auto& what) { return let_pass(warp, lane, FaultKind::Image, what); };
   for (LaneMask lanes = warp.regs.exec; lanes; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
+    Words& out = result[size_t(lane)] = {};
     const ImageView* image = find_image(warp, row, lane);
-    if (!image) return false;
-    if (is_integer(info_of(image->format)) == op.is_float) [[unlikely]]
-      return fail(warp, lane, fmt::format("reads {} from image '{}', whose format is {}",
-                                          op.is_float ? "floats" : "integers", image->name, info_of(image->format).name));
+    if (!image && fault_) return false;
+    if (!image) continue;
+    if (is_integer(info_of(image->format)) == op.is_float) [[unlikely]] {
+      if (!pass(lane, [&] {
+            return fmt::format("reads {} from image '{}', whose format is {}", op.is_float ? "floats" : "integers", image->name,
+                               info_of(image->format).name);
+          }))
+        return false;
+      continue;
+    }
     TexelReader reader(*image, find_sampler(*image, warp.regs.access.address[size_t(lane)]), *world_.memory);
     const Lane operands(warp.regs, inst, lane);
-    Words& out = result[size_t(lane)] = {};
     if (op.request == ImageRequest::Fetch) {
       const Place place = place_of(op, slots, operands, *image, 0);
       if (place.is_inside())
         out = reader.fetch(place.index());
-      else if (!world_.robust_images)
-        return fail(warp, lane, "reads texel " + outside(place, *image));
+      else if (!world_.robust_images && !pass(lane, [&] { return "reads texel " + outside(place, *image); }))
+        return false;
     } else {
       const SampleRequest request = request_of(op, slots, operands, *image);
       out = op.request == ImageRequest::Gather ? reader.gather(request, op.component) : reader.sample(request);
     }
-    if (reader.error()) [[unlikely]]
-      return fail(warp, lane, fmt::format("samples image '{}', which {}", image->name, reader.error()));
+    if (reader.error()) [[unlikely]] {
+      if (!pass(lane, [&] { return fmt::format("samples image '{}', which {}", image->name, reader.error()); })) return false;
+      out = {};
+      continue;
+    }
     texels_.add(lane, reader.texels());
   }
   for (size_t c = 0; c < slots.results; ++c) {
@@ -234,8 +248,10 @@ bool Executor::query_image(WarpContext& warp, const isa::Inst& inst, const isa::
   std::array<uint32_t, kLanes> result;
   for (LaneMask lanes = warp.regs.exec; lanes; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
+    result[size_t(lane)] = 0;
     const ImageView* image = find_image(warp, row, lane);
-    if (!image) return false;
+    if (!image && fault_) return false;
+    if (!image) continue;
     const uint32_t level = row.image.lod == isa::ImageLod::Level ? warp.regs.read(inst.operand[2])[lane] : 0;
     const Sampler& sampler = find_sampler(*image, warp.regs.access.address[size_t(lane)]);
     result[size_t(lane)] = answer(row.image, *image, sampler, level);
@@ -245,7 +261,7 @@ bool Executor::query_image(WarpContext& warp, const isa::Inst& inst, const isa::
   return true;
 }
 
-// Where a lane's surface op goes: null, with a fault or without one, when it goes nowhere.
+// Where a lane's surface op goes: null, with a fault or without one, when it goes nowhere. It then loads 0.
 std::byte* Executor::find_texel(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, int lane) {
   const isa::ImageAccess& op = row.image;
   const ImageView* image = find_image(warp, row, lane);
@@ -253,11 +269,11 @@ std::byte* Executor::find_texel(WarpContext& warp, const isa::Inst& inst, const 
   const bool whole = op.request == ImageRequest::Texel;
   const uint32_t bytes = whole ? image->texel_bytes() : uint32_t(row.memory.bytes * row.memory.count);
   Place place = place_of(op, Slots(row), Lane(warp.regs, inst, lane), *image, bytes);
-  const auto refuse = [&](std::string what) -> std::byte* { return fail(warp, lane, std::move(what)), nullptr; };
+  const auto refuse = [&](const auto& what) -> std::byte* { return let_pass(warp, lane, FaultKind::Image, what), nullptr; };
   if (!whole && place.at[0] % bytes != 0)
-    return refuse(fmt::format("accesses {} bytes at byte {} of a row of image '{}'", bytes, place.at[0], image->name));
+    return refuse([&] { return fmt::format("accesses {} bytes at byte {} of a row of image '{}'", bytes, place.at[0], image->name); });
   if (row.atomic && whole && (info_of(image->format).bits != 32 || info_of(image->format).channels != 1))
-    return refuse(fmt::format("atomic on image '{}', whose format is {}", image->name, info_of(image->format).name));
+    return refuse([&] { return fmt::format("atomic on image '{}', whose format is {}", image->name, info_of(image->format).name); });
   if (!place.is_inside()) [[unlikely]] {
     if (op.outside == isa::ImageOutside::Clamp && place.end[0] > 0) {
       for (size_t i = 0; i < 4; ++i) place.at[i] = std::clamp<int64_t>(place.at[i], 0, place.end[i] - 1);
@@ -266,7 +282,7 @@ std::byte* Executor::find_texel(WarpContext& warp, const isa::Inst& inst, const 
       return nullptr;
     } else {
       const bool store = row.effect != isa::Effect::SurfaceLoad;
-      return refuse((store ? "writes texel " : "reads texel ") + outside(place, *image));
+      return refuse([&] { return (store ? "writes texel " : "reads texel ") + outside(place, *image); });
     }
   }
   TexelIndex index = place.index();
@@ -274,7 +290,7 @@ std::byte* Executor::find_texel(WarpContext& warp, const isa::Inst& inst, const 
   if (!whole) index.x = 0;
   const Address at = image->address_of(index) + skipped;
   std::byte* const memory = world_.memory->find(at, bytes);
-  if (!memory) return refuse(fmt::format("image '{}' is smaller in memory than its size says", image->name));
+  if (!memory) return refuse([&] { return fmt::format("image '{}' is smaller in memory than its size says", image->name); });
   texels_.add(lane, {&at, 1});
   return memory;
 }

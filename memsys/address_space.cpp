@@ -35,15 +35,22 @@ Address AddressSpace::allocate(std::string name, uint64_t bytes) {
   // special case for ranges that cross a multiple of 4 GiB.
   for (uint64_t i = 0; i < slots_of(bytes); ++i)
     allocations_.push_back({name, bytes - i * kSlot, next_physical_ + i * kSlot, data + i * kSlot});
-  next_physical_ += (bytes + kPhysicalAlignment - 1) / kPhysicalAlignment * kPhysicalAlignment;
+  reserve(bytes);
   return address;
+}
+
+Address AddressSpace::reserve(uint64_t bytes) {
+  const Address first = next_physical_;
+  next_physical_ += (bytes + kPhysicalAlignment - 1) / kPhysicalAlignment * kPhysicalAlignment;
+  return first;
 }
 
 std::string AddressSpace::explain(Address address, uint64_t bytes) const {
   const uint64_t index = address >> kShift;
   const uint64_t offset = address & (kSlot - 1);
-  if (index == 0) return fmt::format("{} bytes at {:#x}: a null pointer plus {} bytes", bytes, address, offset);
-  if (index < allocations_.size()) {
+  if (index == 0 && offset < kSlot / 2)
+    return fmt::format("a null pointer plus {} bytes: nothing is bound there, or the address was never set", offset);
+  if (index > 0 && index < allocations_.size()) {
     const Allocation& a = allocations_[index];
     if (offset + bytes <= a.bytes) return fmt::format("{} bytes inside '{}'", bytes, a.name);
     if (offset < a.bytes)
@@ -57,7 +64,7 @@ std::string AddressSpace::explain(Address address, uint64_t bytes) const {
   if (index + 1 < allocations_.size())
     return fmt::format("{} bytes before the start of '{}' ({} bytes)", kSlot - offset, allocations_[index + 1].name,
                        allocations_[index + 1].bytes);
-  return fmt::format("{} bytes at {:#x}: no allocation is near", bytes, address);
+  return "no allocation is near";
 }
 
 }  // namespace glint::mem

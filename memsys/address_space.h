@@ -34,6 +34,8 @@ class AddressSpace {
 
   // Zero-filled; 64-byte aligned on the host. A size past 4 GiB takes several consecutive numbers.
   Address allocate(std::string name, uint64_t bytes);
+  // Physical bytes that the machine keeps for itself: no program can address them. Returns the first.
+  Address reserve(uint64_t bytes);
 
   // Host pointer to [address, address + bytes), or null when any of it is outside an allocation.
   std::byte* find(Address address, uint64_t bytes) const {
@@ -53,7 +55,7 @@ class AddressSpace {
   }
   void write(Address address, const void* from, uint64_t bytes) { std::memcpy(find(address, bytes), from, bytes); }
 
-  // "16 bytes past the end of 'binding 4 (Vertices)' (1200 bytes)": names the nearest allocation.
+  // Of an access that find() refuses: "16 bytes past the end of 'binding 4 (Vertices)' (1200 bytes)": names the nearest allocation.
   std::string explain(Address address, uint64_t bytes) const;
   uint64_t bytes_allocated() const { return next_physical_; }
   const std::vector<Allocation>& allocations() const { return allocations_; }

@@ -51,14 +51,14 @@ class Runner {
     const uint64_t end = warp.instructions + kQuantum;
     for (bool finished = false; !finished && !warp.waiting_at_barrier && warp.instructions < end;) {
       const core::Issued issued = executor.execute(warp, 0);
-      if (executor.fault()) throw Error(Exit::Fault, executor.fault()->to_string());
+      if (executor.fault()) throw Error(Exit::Fault, executor.passed().with(*executor.fault()));
       ClassCounts& by_class = counts.by_class[size_t(issued.row->klass)];
       ++by_class.instructions;
       by_class.lanes += num_lanes(issued.lanes);
       finished = issued.finished;
       if (warp.waiting_for_rays) answer_rays(executor, warp, counts.rays);
       if (warp.instructions > budget_) [[unlikely]]
-        throw Error(Exit::Fault, core::no_end_in_sight(world_, warp, issued.pc, budget_).to_string());
+        throw Error(Exit::Fault, executor.passed().with(core::no_end_in_sight(world_, warp, issued.pc, budget_)));
     }
   }
 
@@ -80,6 +80,7 @@ FunctionalCounts run_functional(const core::World& world, uint64_t instruction_b
     runner.run_block(index);
     if (progress) progress(uint64_t(index + 1) * warps, uint64_t(num_blocks) * warps);
   }
+  runner.counts.faults = runner.executor.passed();
   return runner.counts;
 }
 

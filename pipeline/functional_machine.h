@@ -12,6 +12,7 @@ namespace glint::pipeline {
 struct FunctionalCounts {
   std::array<ClassCounts, size_t(isa::Class::Count)> by_class{};
   RayCounts rays;
+  core::FaultLog faults;  // that were let pass
 };
 
 // Error(Exit::Fault) when a warp does something wrong or executes more than `instruction_budget` instructions.

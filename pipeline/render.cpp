@@ -24,11 +24,13 @@ RenderResult run_world(const core::World& world, const GpuParams& gpu, bool timi
     auto machine = std::make_unique<TimingMachine>(gpu, world, no_skip);
     result.cycles = machine->run(progress);
     machine->collect(result);
+    result.faults = machine->passed();
     result.stats = std::make_unique<RunStats>(std::move(machine));
   } else {
     const FunctionalCounts counts = run_functional(world, gpu.core.instruction_budget, progress);
     std::copy(counts.by_class.begin(), counts.by_class.end(), result.by_class);
     result.rays = counts.rays;
+    result.faults = counts.faults;
     result.stats = std::make_unique<RunStats>(counts);
   }
   result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -41,6 +43,7 @@ RenderResult run_world(const core::World& world, const GpuParams& gpu, bool timi
 
 RenderResult render(const RenderJob& job) {
   SceneWorld scene(job);
+  scene.world.on_fault = job.on_fault;
   RenderResult result = run_world(scene.world, job.gpu, job.timing, job.no_skip, job.progress);
   result.width = job.frame.width;
   result.height = job.frame.height;

@@ -72,6 +72,10 @@ void RunDirectory::write_run(const RunInfo& info) const {
   json["seed"] = info.seed;
   json["started"] = info.started;
   json["wall_seconds"] = info.wall_seconds;
+  json["on_fault"] = info.on_fault;
+  if (!info.faults.empty()) json["faults"] = nlohmann::ordered_json::array();
+  for (const FaultInfo& fault : info.faults)
+    json["faults"].push_back({{"kind", fault.kind}, {"place", fault.place}, {"what", fault.what}, {"launch_id", fault.launch_id}, {"count", fault.count}});
   json["exit"] = info.exit;
   if (!info.message.empty()) json["message"] = info.message;
   using ErrorHandler = nlohmann::ordered_json::error_handler_t;

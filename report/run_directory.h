@@ -1,6 +1,8 @@
 // The folder that a run leaves behind: complete, self-describing, each file written whole or not at all.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +13,13 @@
 
 namespace glint::report {
 
+// A mistake of the shaders that `--on-fault warn` let pass.
+struct FaultInfo {
+  std::string kind, place, what;
+  std::array<uint32_t, 3> launch_id{};  // of the first
+  uint64_t count = 0;
+};
+
 // What run.json says besides schema and paths. The only file of a run that holds wall-clock times.
 struct RunInfo {
   std::vector<std::string> command;  // argv
@@ -20,6 +29,8 @@ struct RunInfo {
   uint32_t width = 0, height = 0, samples = 0;
   std::string started;  // ISO 8601, UTC
   double wall_seconds = 0;
+  std::string on_fault = "stop";
+  std::vector<FaultInfo> faults;
   int exit = 0;
   std::string message;  // of the error, when exit is not 0
 };

@@ -28,6 +28,7 @@ struct Options {
   bool json = false, no_skip = false;
   ShaderOptions shaders;
   uint64_t print_limit = 1000;
+  std::string on_fault_name = "stop";
   core::OnFault on_fault = core::OnFault::Stop;
   bool config_given = false, mode_given = false;  // not left at their defaults
 };
@@ -85,7 +86,7 @@ report::RunInfo describe_run(const Session& session, const Options& options, con
 }
 
 Exit run_scripts(const Session& session, const Options& options) {
-  AmberOptions amber{{options.scene}, options.config, options.settings, options.max_instructions, options.mode_given && options.mode == "timing", options.no_skip, options.on_fault};
+  AmberOptions amber{{options.scene}, options.config, options.settings, options.max_instructions, options.mode_given && options.mode == "timing", options.no_skip, options.on_fault, options.shaders, options.print_limit};
   amber.scripts.insert(amber.scripts.end(), options.more.begin(), options.more.end());
   return run_amber(session, amber);
 }
@@ -168,10 +169,10 @@ void add_run(CLI::App& app, Session& session) {
                    "Instructions after which a warp is held to have no end")
       ->check(CLI::PositiveNumber);
   command
-      ->add_option("--on-fault", options->on_fault,
+      ->add_option("--on-fault", options->on_fault_name,
                    "stop: the first fault ends the run; warn: wrong loads give 0, wrong stores do nothing, and each is listed (docs/errors.md)")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, core::OnFault>{{"stop", core::OnFault::Stop}, {"warn", core::OnFault::Warn}}))
-      ->type_name("stop|warn");
+      ->check(CLI::IsMember({"stop", "warn"}))
+      ->capture_default_str();
   command->add_flag("--json", options->json, "Print the statistics as JSON instead of the summary");
   command->add_flag("--no-skip", options->no_skip, "Step every cycle: slow, same result, for checking");
   command->add_option("--printf-limit", options->print_limit, "Messages of debugPrintfEXT to show, the first by launch id")->capture_default_str();
@@ -181,6 +182,7 @@ void add_run(CLI::App& app, Session& session) {
       [&session, options, command] {
         options->config_given = command->count("--config") > 0;
         options->mode_given = command->count("--mode") > 0;
+        options->on_fault = options->on_fault_name == "warn" ? core::OnFault::Warn : core::OnFault::Stop;
         if (options->shaders.contract) options->settings.push_back("compiler.contract=true");
         session.action = [&session, options] { return run(session, *options); };
       });

@@ -189,6 +189,17 @@ void main() {
 """
 
 
+WRONG_COMPUTE = """#version 460
+layout(local_size_x = 64) in;
+layout(set = 0, binding = 0) buffer Out { uint result[]; } outcome;
+layout(set = 0, binding = 1) buffer In { uint few[4]; } data;
+void main() {
+  const uint read = data.few[gl_GlobalInvocationID.x + 100000u];
+  outcome.result[gl_GlobalInvocationID.x + (read == 0u ? 100000u : 0u)] = 1u;
+}
+"""
+
+
 class Faults(GlintTest):
     def test_an_endless_loop_ends_with_4_and_names_the_shader_in_both_modes(self):
         folder = self.shaders_with("raygen.rgen", ENDLESS)
@@ -203,6 +214,37 @@ class Faults(GlintTest):
         for mode in ("functional", "timing"):
             with self.subTest(mode=mode):
                 self.expect(4, ["raygen.rgen:5"], "run", "WKND", *SMALL, "--mode", mode, "--shader-dir", folder)
+
+    def test_on_fault_warn_goes_on_lists_each_fault_once_and_counts_it_alike_in_both_modes(self):
+        self.write("wrong.comp", WRONG_COMPUTE)
+        told, pictures = [], []
+        for mode in ("functional", "timing"):
+            with self.subTest(mode=mode):
+                self.expect(4, ["wrong.comp:7 (instruction ", "past the end of", "launch id ("], "run", "wrong.comp", "--mode", mode, "--out", "stop")
+                self.assertEqual(json.loads((self.folder / "stop/run.json").read_text())["on_fault"], "stop")
+                done = self.expect(0, ["wrong.comp:6 (instruction ", "wrong.comp:7 (instruction ", "(0, 0, 0), the first of 65536 times",
+                                       "faults let pass: 131072, at 2 places"], "run", "wrong.comp", "--mode", mode, "--on-fault", "warn", "--out", mode)
+                told.append(done.stderr)
+                run = json.loads((self.folder / mode / "run.json").read_text())
+                self.assertEqual((run["exit"], run["on_fault"]), (0, "warn"))
+                self.assertEqual([(f["kind"], f["launch_id"], f["count"]) for f in run["faults"]], [("out_of_bounds", [0, 0, 0], 65536)] * 2)
+                self.assertIn("wrong.comp:6", run["faults"][0]["place"])
+                stats = json.loads((self.folder / mode / "stats.json").read_text())
+                self.assertEqual(stats["gpu"]["faults"]["value"]["out_of_bounds"], 131072)
+                pictures.append((self.folder / mode / "outcome.npy").read_bytes())
+        self.assertEqual(told[0], told[1])
+        self.assertEqual(pictures[0], pictures[1])
+
+    def test_on_fault_warn_serves_scenes_and_kernels_and_refuses_other_words(self):
+        folder = self.shaders_with("raygen.rgen", OUT_OF_BOUNDS)
+        for mode in ("functional", "timing"):
+            self.expect(0, ["raygen.rgen:5", "faults let pass: "], "run", "WKND", *SMALL, "--mode", mode, "--on-fault", "warn", "--shader-dir", folder)
+        kernels = ROOT / "shaders/kernels"
+        shutil.copy(kernels / "saxpy.ptx", self.folder)
+        self.write("saxpy.toml", (kernels / "saxpy.toml").read_text().replace("u32 = 1000", "u32 = 1001"))
+        self.expect(0, ["saxpy.ptx:", "past the end of 'x'", "past the end of 'y'", "launch id (1000, 0, 0)", "faults let pass: 3, at 3 places"],
+                    "run", "saxpy.toml", "--on-fault", "warn")
+        self.expect(2, ["--on-fault"], "run", "WKND", "--on-fault", "ignore")
 
     def test_a_broken_shader_of_a_workload_ends_with_2(self):
         folder = self.shaders_with("raygen.rgen", "#version 460\nvoid main() { x = 1; }\n")

@@ -254,7 +254,7 @@ TEST_CASE("a trap is a fault") {
 TEST_CASE("shared memory ends where the block's ends") {
   TextLaunch launch("    mov.b32 %r6, 64;\n    ld.shared.b32 %r4, [%r6];\n    exit;\n", {.shared_bytes = 64});
 
-  CHECK(contains(launch.fault(), "reads 4 bytes at shared address 0x40: the block has 64 bytes"));
+  CHECK(contains(launch.fault(), "reads 4 bytes at shared address 0x40: 0 bytes past the end of the block's shared memory (64 bytes)"));
 }
 
 }  // namespace glint::core

@@ -46,12 +46,22 @@ TEST_CASE("physical addresses pack allocations at 256 byte steps") {
   CHECK(space.bytes_allocated() == 768);
 }
 
+TEST_CASE("what the machine reserves takes physical room and no addresses") {
+  AddressSpace space;
+  const Address a = space.allocate("a", 4);
+  CHECK(space.reserve(300) == 256);
+  const Address b = space.allocate("b", 4);
+  CHECK(b - a == Address{1} << AddressSpace::kShift);
+  CHECK(space.physical(b) == 768);
+}
+
 TEST_CASE("a fault message names the nearest allocation and the distance to it") {
   AddressSpace space;
   const Address a = space.allocate("binding 4 (Vertices)", 1200), b = space.allocate("image", 16);
   CHECK(space.explain(a + 1216, 4) == "16 bytes past the end of 'binding 4 (Vertices)' (1200 bytes)");
   CHECK(space.explain(b - 4, 4) == "4 bytes before the start of 'image' (16 bytes)");
+  CHECK(space.explain(a - 8, 4) == "8 bytes before the start of 'binding 4 (Vertices)' (1200 bytes)");
   CHECK(space.explain(a + 1198, 4) == "4 bytes across the end of 'binding 4 (Vertices)' (1200 bytes), 2 of them past it");
-  CHECK(space.explain(8, 4) == "4 bytes at 0x8: a null pointer plus 8 bytes");
-  CHECK(space.explain(Address{77} << 32, 4) == "4 bytes at 0x4d00000000: no allocation is near");
+  CHECK(space.explain(8, 4) == "a null pointer plus 8 bytes: nothing is bound there, or the address was never set");
+  CHECK(space.explain(Address{77} << 32, 4) == "no allocation is near");
 }

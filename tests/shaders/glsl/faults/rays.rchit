@@ -1,0 +1,6 @@
+// Says that it ran.
+// SPDX-License-Identifier: Apache-2.0
+#version 460
+#extension GL_EXT_ray_tracing : require
+layout(location = 0) rayPayloadInEXT uint tag;
+void main() { tag = 40u; }
