@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "core/block.h"
+#include "isa/descriptors.h"
 #include "pipeline/description/data.h"
 #include "pipeline/description/mesh.h"
 #include "pipeline/description/pictures.h"
@@ -84,7 +85,9 @@ void PipelineWorld::bind(const Slot& slot, uint64_t address_or_handle, uint64_t 
   if (!slot.is_bound()) return;
   const uint64_t descriptor[2] = {address_or_handle, bytes_or_count};
   static_assert(sizeof(descriptor) == isa::kDescriptorBytes);
-  std::memcpy(world.constant_bank.data() + slot.set.value_or(0) * isa::kSetBytes + *slot.binding * isa::kDescriptorBytes, descriptor, sizeof(descriptor));
+  const size_t at = isa::descriptor_offset(slot.set.value_or(0), *slot.binding);
+  world.constant_bank.resize(std::max(world.constant_bank.size(), at + sizeof(descriptor)));
+  std::memcpy(world.constant_bank.data() + at, descriptor, sizeof(descriptor));
 }
 
 // docs/abi.md: arrays of buffers and of acceleration structures have their descriptors in a table in global memory.
