@@ -15,6 +15,7 @@ ControlGraph::ControlGraph(const Function& function)
       depth_(function.blocks.size(), 0) {
   for (uint32_t b = 0; b < num_blocks(); ++b) index_[block(b).label] = b;
   find_dominators();
+  find_ends();
 }
 
 std::vector<uint32_t> ControlGraph::reverse_postorder() const {
@@ -96,16 +97,16 @@ std::optional<uint32_t> ControlGraph::continue_of(uint32_t b) const {
   return is_reachable(target) && target != b ? std::optional(target) : std::nullopt;
 }
 
-std::vector<Construct> ControlGraph::constructs_ending_at(uint32_t b) const {
-  std::vector<Construct> result;
+void ControlGraph::find_ends() {
+  ends_.resize(num_blocks());
   for (uint32_t header : reachable_) {
-    if (merge_of(header) == b) result.push_back({header, false});
-    if (continue_of(header) == b) result.push_back({header, true});
+    if (const auto merge = merge_of(header)) ends_[*merge].push_back({header, false});
+    if (const auto target = continue_of(header)) ends_[*target].push_back({header, true});
   }
-  std::stable_sort(result.begin(), result.end(), [&](const Construct& x, const Construct& y) {
-    return depth_[x.header] > depth_[y.header];
-  });
-  return result;
+  for (std::vector<Construct>& ends : ends_)
+    std::stable_sort(ends.begin(), ends.end(), [&](const Construct& x, const Construct& y) {
+      return depth_[x.header] > depth_[y.header];
+    });
 }
 
 bool ControlGraph::contains(const Construct& construct, uint32_t b) const {

@@ -36,13 +36,14 @@ class ControlGraph {
   std::optional<uint32_t> merge_of(uint32_t b) const;
   std::optional<uint32_t> continue_of(uint32_t b) const;
   // Innermost first.
-  std::vector<Construct> constructs_ending_at(uint32_t b) const;
+  const std::vector<Construct>& constructs_ending_at(uint32_t b) const { return ends_[b]; }
   // Does b lie in the construct, before its end?
   bool contains(const Construct& construct, uint32_t b) const;
 
  private:
   std::vector<uint32_t> reverse_postorder() const;
   void find_dominators();
+  void find_ends();
 
   const Function& function_;
   std::map<Id, uint32_t> index_;
@@ -50,6 +51,7 @@ class ControlGraph {
   std::vector<uint32_t> reachable_;
   std::vector<uint32_t> dominator_;  // immediate
   std::vector<uint32_t> depth_;      // in the dominator tree, entry 1; 0 = unreachable
+  std::vector<std::vector<Construct>> ends_;  // constructs that end at each block
 };
 
 // The join of the construct with that header.

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "frontend/lower.h"
+#include "isa/descriptors.h"
 
 namespace glint::frontend {
 namespace {
@@ -64,8 +65,7 @@ Operand descriptor_in_table(Lowering& l, const Operand& table, const Operand& in
 
 Operands load_resource(Lowering& l, const Pointer& p) {
   const Decorations& d = l.decorations(p.variable);
-  const int32_t at =
-      int32_t(d.set.value_or(0) * isa::kSetBytes + d.binding.value_or(0) * isa::kDescriptorBytes);
+  const int32_t at = int32_t(isa::descriptor_offset(d.set.value_or(0), d.binding.value_or(0)));
   const Type::Kind kind = l.module().type(p.type).kind;
   const Id declared = l.module().type(l.module().variables.at(p.variable).type).element;
   if (kind == Type::Kind::AccelerationStructure) {
@@ -176,7 +176,7 @@ void Lowering::note_store(Place place) {
 
 Pointer Lowering::buffer_element(Pointer p) {
   const Decorations& d = decorations(p.variable);
-  const uint32_t at = d.set.value_or(0) * isa::kSetBytes + d.binding.value_or(0) * isa::kDescriptorBytes;
+  const uint32_t at = isa::descriptor_offset(d.set.value_or(0), d.binding.value_or(0));
   const Operand table = emitter_.load("ld.const.b64", Operand::value(0), int32_t(at), 1, 1)[0];
   p.entry = descriptor_in_table(*this, table, p.base);
   p.base = emitter_.load("ld.global.b64", p.entry, 0, 1, 1)[0];

@@ -6,13 +6,13 @@
 
 #include "frontend/lower.h"
 #include "frontend/spirv.h"
+#include "isa/descriptors.h"
 
 namespace glint::frontend {
 
 Pointer Lowering::buffer_pointer(const Variable& variable, Pointer p) {
   const Decorations& d = decorations(variable.id);
-  const uint32_t descriptor =
-      d.set.value_or(0) * isa::kSetBytes + d.binding.value_or(0) * isa::kDescriptorBytes;
+  const uint32_t descriptor = isa::descriptor_offset(d.set.value_or(0), d.binding.value_or(0));
   p.alignment =
       16;  // Choice: buffers are bound at multiples of 16 bytes (Vulkan minStorageBufferOffsetAlignment)
   const Type* block = &module_.type(p.type);
@@ -49,7 +49,7 @@ Pointer Lowering::variable_pointer(const Variable& variable) {
   }
   const Decorations& d = decorations(variable.id);
   p.is_volatile = d.is_volatile || d.is_coherent;
-  if (d.set.value_or(0) >= isa::kMaxSets || d.binding.value_or(0) >= isa::kBindingsPerSet)
+  if (d.set.value_or(0) >= isa::kMaxSets || d.binding.value_or(0) >= isa::kMaxBindings)
     unsupported(fmt::format("descriptor set {} binding {}", d.set.value_or(0), d.binding.value_or(0)),
                 variable.line);
   switch (variable.storage) {
@@ -291,7 +291,7 @@ void array_length(Lowering& l, const Instruction& inst, const LoweringRow&) {
   const Pointer p = l.pointer(inst.operands[0]);
   const Decorations& d = l.decorations(p.variable);
   if (p.place != Place::Global || !d.binding) return l.unsupported("OpArrayLength of this pointer");
-  const uint32_t descriptor = d.set.value_or(0) * isa::kSetBytes + *d.binding * isa::kDescriptorBytes;
+  const uint32_t descriptor = isa::descriptor_offset(d.set.value_or(0), *d.binding);
   const bool in_table = p.entry.kind != Operand::Kind::None;
   const Operand bytes = in_table
                             ? l.emit().load("ld.global.b32", p.entry, 8, 1, 1)[0]

@@ -7,12 +7,13 @@
 #include <optional>
 #include <spirv/unified1/spirv.hpp11>
 #include <string_view>
+#include <utility>
 
 namespace glint::frontend {
 namespace {
 
 using Storage = spv::StorageClass;
-constexpr size_t kHeaderWords = 5;  // SPIR-V specification, 2.3 Physical Layout
+constexpr size_t kHeaderWords = 5, kBoundWord = 3;  // SPIR-V specification, 2.3 Physical Layout
 
 class Rewriter {
  public:
@@ -21,11 +22,18 @@ class Rewriter {
   std::vector<uint32_t> run() {
     read_declarations();
     if (!is_vendor_) return words_;
+    add_missing_variables();
     std::vector<uint32_t> out(words_.begin(), words_.begin() + kHeaderWords);
+    out[kBoundWord] = bound_;
     for_each([&](spv::Op op, size_t at, size_t length) {
+      if (op == spv::Op::OpFunction) declare(out);
       const size_t begin = out.size();
       out.insert(out.end(), words_.begin() + long(at), words_.begin() + long(at + length));
       const bool calls = op == spv::Op::OpExecuteCallableNV;
+      if (op == spv::Op::OpEntryPoint) {
+        for (const Missing& m : missing_) out.push_back(m.variable);
+        out[begin] += uint32_t(missing_.size()) << 16;
+      }
       if (op == spv::Op::OpCapability && words_[at + 1] == uint32_t(spv::Capability::RayTracingNV))
         append(out, spv::Op::OpCapability, {uint32_t(spv::Capability::RayTracingKHR)});
       if (op == spv::Op::OpExtension && !has_extension_) {
@@ -33,9 +41,7 @@ class Rewriter {
         has_extension_ = true;
       }
       if (!calls && op != spv::Op::OpTraceNV && op != spv::Op::OpTraceMotionNV) return;
-      const std::optional<uint32_t> variable =
-          calls ? find(out.back(), {Storage::CallableDataKHR, Storage::IncomingCallableDataKHR})
-                : find(out.back(), {Storage::RayPayloadKHR, Storage::IncomingRayPayloadKHR});
+      const std::optional<uint32_t> variable = find(out.back(), calls);
       if (!variable) return;  // reported when it is lowered
       out.back() = *variable;
       const spv::Op standard = calls                         ? spv::Op::OpExecuteCallableKHR
@@ -69,18 +75,52 @@ class Rewriter {
     });
   }
 
-  // The variable of the first of `storages` that has one at the location.
-  std::optional<uint32_t> find(uint32_t constant, std::initializer_list<Storage> storages) const {
+  // The variable of a location: one of the shader's own, else the incoming one.
+  std::optional<uint32_t> find(uint32_t constant, bool calls) const {
     const auto wanted = constant_.find(constant);
     if (wanted == constant_.end()) return std::nullopt;
-    for (const Storage storage : storages)
+    for (const Missing& m : missing_)
+      if (m.location == wanted->second && m.calls == calls) return m.variable;
+    for (const Storage storage : {calls ? Storage::CallableDataKHR : Storage::RayPayloadKHR,
+                                  calls ? Storage::IncomingCallableDataKHR : Storage::IncomingRayPayloadKHR})
       for (const auto& [variable, location] : location_)
         if (const auto it = storage_.find(variable); location == wanted->second && it != storage_.end() && it->second == storage)
           return variable;
     return std::nullopt;
   }
 
+  // Choice: a trace or call that names a location without a variable hands over a structure without members.
+  struct Missing {
+    uint32_t location;
+    bool calls;
+    uint32_t structure, pointer, variable;
+  };
+  void add_missing_variables() {
+    bound_ = words_[kBoundWord];
+    for_each([&](spv::Op op, size_t at, size_t length) {
+      const bool calls = op == spv::Op::OpExecuteCallableNV;
+      if (!calls && op != spv::Op::OpTraceNV && op != spv::Op::OpTraceMotionNV) return;
+      const auto location = constant_.find(words_[at + length - 1]);
+      if (location == constant_.end() || find(location->first, calls)) return;
+      missing_.push_back({location->second, calls, bound_, bound_ + 1, bound_ + 2});
+      bound_ += 3;
+    });
+  }
+  // Before the first function: types and variables end there.
+  void declare(std::vector<uint32_t>& out) {
+    if (std::exchange(are_declared_, true)) return;
+    for (const Missing& m : missing_) {
+      const auto storage = uint32_t(m.calls ? Storage::CallableDataKHR : Storage::RayPayloadKHR);
+      append(out, spv::Op::OpTypeStruct, {m.structure});
+      append(out, spv::Op::OpTypePointer, {m.pointer, storage, m.structure});
+      append(out, spv::Op::OpVariable, {m.pointer, m.variable, storage});
+    }
+  }
+
   const std::vector<uint32_t>& words_;
+  uint32_t bound_ = 0;
+  std::vector<Missing> missing_;
+  bool are_declared_ = false;
   bool is_vendor_ = false, has_extension_ = false;
   std::map<uint32_t, uint32_t> location_, constant_;
   std::map<uint32_t, Storage> storage_;

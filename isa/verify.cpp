@@ -9,6 +9,7 @@
 #include <cctype>
 #include <initializer_list>
 
+#include "isa/descriptors.h"
 #include "isa/hit_object.h"
 #include "isa/message.h"
 #include "isa/op_row.h"
@@ -146,7 +147,7 @@ class Verifier {
     const int64_t end = first + row_->memory.bytes * row_->memory.count;
     const int64_t size = space == Space::Shared                ? int64_t(program_.shared_bytes)
                          : space == Space::Local && is_entry  ? int64_t(program_.local_bytes)
-                         : space == Space::Const              ? int64_t(kConstantBankBytes)
+                         : space == Space::Const              ? int64_t(kLargestBankBytes)
                          : space == Space::Param              ? int64_t(kConstantBankBytes - kPushConstantOffset)
                                                               : INT64_MAX;
     if (first < 0 || end > size) error(fmt::format("touches bytes {} to {}, and there are {}", first, end - 1, size));

@@ -144,6 +144,7 @@ class BranchCleaner {
 
   bool drop_lone_joins() {
     const std::vector<Edges> edges = count_edges();
+    bool changed = false;
     size_t before = code_.size();  // the block that precedes in layout
     for (size_t b = first_code(0); b < code_.size(); before = b, b = first_code(b + 1)) {
       if (code_[b].front().inst.op != ops_.join || edges[b].ssys != 1) continue;
@@ -158,9 +159,10 @@ class BranchCleaner {
       if (std::any_of(ssy + 1, from.end(), [&](const Coded& c) { return c.inst.op == ops_.ssy; })) continue;
       code_[b].erase(code_[b].begin());
       from.erase(ssy);
-      return true;  // the edges have changed
+      changed = true;
+      if (from.empty() || code_[b].empty()) break;  // its edges lead elsewhere now
     }
-    return false;
+    return changed;
   }
 
   // `bra H` at the end of a loop, where H is a few plain instructions and `@p bra out`, falling into the body: a copy of

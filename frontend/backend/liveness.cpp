@@ -68,11 +68,15 @@ Liveness find_liveness(const VirtualProgram& program) {
   Liveness out;
   out.in.assign(blocks, RegisterSet(program.registers.size()));
   out.out = out.in;
+  std::vector<bool> walked(blocks);
   for (bool changed = true; changed;) {
     changed = false;
     for (size_t b = blocks; b-- > 0;) {
       const VirtualBlock& block = program.blocks[b];
-      for (BlockId next : block.successors) out.out[b].unite(out.in[next]);
+      bool grew = false;
+      for (BlockId next : block.successors) grew |= out.out[b].unite(out.in[next]);
+      if (walked[b] && !grew) continue;
+      walked[b] = true;
       LiveWalk walk(out.out[b]);
       for (size_t i = block.code.size(); i-- > 0;) walk.step(block.code[i]);
       changed |= out.in[b].unite(walk.live());

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "isa/program.h"
+#include "isa/descriptors.h"
 #include "pipeline/description/data.h"
 #include "pipeline/description/read.h"
 
@@ -105,7 +105,7 @@ SamplerDescription read_sampler(Reading& r, const Value& value) {
 Slot read_slot(TableReader& t) {
   Slot slot;
   if (const auto set = t.optional_integer("set", 0, isa::kMaxSets - 1)) slot.set = uint32_t(*set);
-  if (const auto binding = t.optional_integer("binding", 0, isa::kBindingsPerSet - 1)) slot.binding = uint32_t(*binding);
+  if (const auto binding = t.optional_integer("binding", 0, isa::kMaxBindings - 1)) slot.binding = uint32_t(*binding);
   slot.element = uint32_t(t.integer("element", 0, 0, 1 << 20));
   if (slot.binding && !slot.set) slot.set = 0;
   return slot;
