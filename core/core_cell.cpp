@@ -18,6 +18,7 @@ CoreCell::CoreCell(const Params& params, const Context& context)
       no_skip_(context.no_skip),
       num_slots_(occupancy(params, context.world.image->num_registers)),
       local_{context.local_physical, context.world.local_bytes / 4},
+      tables_(table_layout(context.world, context.tables)),
       table_(*context.world.image, params),
       executor_(context.world, context.clock_mhz),
       lsu_(params, context.l1),
@@ -52,6 +53,14 @@ CoreCell::~CoreCell() = default;
 uint64_t CoreCell::local_bytes(const Params& params, const World& world) {
   const LocalLayout layout{0, world.local_bytes / 4};
   return layout.bytes_per_warp() * occupancy(params, world.image->num_registers);
+}
+
+rt::TableLayout CoreCell::table_layout(const World& world, Address base) {
+  return {base, world.any_hit ? world.any_hit->table_rows() : 0};
+}
+
+uint64_t CoreCell::table_bytes(const Params& params, const World& world) {
+  return table_layout(world, 0).bytes_per_warp() * occupancy(params, world.image->num_registers);
 }
 
 bool CoreCell::has_room() const {
@@ -145,6 +154,12 @@ void CoreCell::finish(Cycle end) {
   if (num_resident_ == 0)
     for (SchedulerState& scheduler : schedulers_) scheduler.reason = Stall::NoWarp;
   account_until(end);
+  const CandidateCounts& counts = executor_.candidates();
+  stats_.candidate_calls += counts.calls;
+  stats_.candidate_lanes += counts.lanes;
+  stats_.candidates_gathered += counts.gathered;
+  stats_.candidates_dropped += counts.dropped;
+  stats_.table_overflows += counts.overflows;
 }
 
 std::string CoreCell::describe_stall() const {

@@ -37,6 +37,7 @@ class CoreCell final : public Cell {
     bool no_skip = false;          // steps every cycle: slow, for checking
     uint32_t index = 0, cores = 1;
     double clock_mhz = 0.0;        // 0: programs read no time
+    Address tables = 0;            // physical, of table_bytes() bytes: the candidates of its rays
   };
   // Program and parameters must have passed check().
   CoreCell(const Params& params, const Context& context);
@@ -44,6 +45,9 @@ class CoreCell final : public Cell {
 
   // Simulated memory that a core's lanes need for their stacks, in bytes.
   static uint64_t local_bytes(const Params& params, const World& world);
+  // And for candidates, in the deferred any-hit mode.
+  static rt::TableLayout table_layout(const World& world, Address base);
+  static uint64_t table_bytes(const Params& params, const World& world);
 
   // Launching, between windows only.
   uint32_t num_slots() const { return num_slots_; }
@@ -65,6 +69,8 @@ class CoreCell final : public Cell {
 
   // The first fault of a warp here; the cell does nothing from then on.
   const std::optional<Fault>& fault() const { return fault_; }
+  // What went wrong here and was let pass.
+  const FaultLog& passed() const { return executor_.passed(); }
   // Cycle after the last one in which anything happened here.
   Cycle active_until() const { return accounted_; }
   // Gives the cycles up to `end` to their reasons: once, at the end of the run. `end` >= active_until().
@@ -95,6 +101,7 @@ class CoreCell final : public Cell {
   bool start_access(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now);
   void collect_lines(MemoryAccess& access, const Issued& issued);
   void collect_texels(MemoryAccess& access, LaneMask lanes);
+  void collect_candidates(MemoryAccess& access, LaneMask lanes);
   void come_to_barrier(uint32_t slot, Cycle now, Cycle latency);
   void pass_barrier(const Block& block, Cycle at);
   void start_fence(uint32_t slot, const IssueRow& row, Cycle now);
@@ -113,6 +120,7 @@ class CoreCell final : public Cell {
   const bool no_skip_;
   const uint32_t num_slots_;
   const LocalLayout local_;
+  const rt::TableLayout tables_;
   IssueTable table_;
   Executor executor_;
   Lsu lsu_;

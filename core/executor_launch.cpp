@@ -57,7 +57,8 @@ Executor::Executor(const World& world, double clock_mhz)
         return shader.specials_used[size_t(Special::Clock)] || shader.specials_used[size_t(Special::ClockHi)] ||
                shader.specials_used[size_t(Special::GlobalTimerLo)] || shader.specials_used[size_t(Special::GlobalTimerHi)];
       })),
-      clock_mhz_(clock_mhz) {
+      clock_mhz_(clock_mhz),
+      table_rows_(world.any_hit ? world.any_hit->table_rows() : 0) {
   GLINT_CHECK(warps_per_block() <= kMaxBlockWarps, "a block of {} threads: check() reports this", product(world.block_size));
 }
 

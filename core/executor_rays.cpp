@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "base/num_lanes.h"
 #include "core/executor.h"
 #include "core/ray_values.h"
 #include "isa/hit_object.h"
@@ -33,7 +34,7 @@ void set_ray(const isa::Warp& regs, const isa::Inst& inst, int lane, rt::Ray& ra
 }
 
 bool needs_shader(const rt::RayState& state) {
-  return state.status == RayStatus::NeedsIntersection || state.status == RayStatus::NeedsAnyHit;
+  return state.status == RayStatus::NeedsIntersection || state.status == RayStatus::NeedsAnyHit || state.status == RayStatus::Gathered;
 }
 
 }  // namespace
@@ -61,6 +62,7 @@ bool Executor::run_rays(WarpContext& warp, const isa::Inst& inst, const isa::OpR
       break;
     }
     case Effect::EndTrace:
+      count_candidates(warp);
       --warp.depth;
       fill_specials(warp, warp.simt.active, world_.image->shaders[world_.image->shader_of[warp.simt.pc]]);
       break;
@@ -96,9 +98,10 @@ bool Executor::trace(WarpContext& warp, const isa::Inst& inst) {
     rt::RayState& state = frame.ray[size_t(lane)];
     set_ray(warp.regs, inst, lane, state.ray);
     state.end_at_first_hit = !world_.nearest_first_hit;
-    if (!rt::begin(state, *world_.memory)) {
+    state.table = table_of(frame, lane);
+    if (!rt::begin(state, *world_.memory) && !let_pass_structure(warp, lane, "traces a ray into", state.ray.structure)) [[unlikely]] {
       --warp.depth;
-      return fail(warp, lane, fmt::format("traces a ray into {:#x}, which is not a top-level acceleration structure", state.ray.structure));
+      return false;
     }
   }
   warp.waiting_for_rays = exec != 0;
@@ -110,12 +113,14 @@ bool Executor::trace(WarpContext& warp, const isa::Inst& inst) {
 }
 
 void Executor::finish_rays(WarpContext& warp) const {
-  LaneMask waiting = 0;
+  LaneMask waiting = 0, gathered = 0;
   for_each_lane(warp.ray_lanes, [&](int lane) {
     const rt::RayState& state = warp.rays[lane];
     GLINT_DCHECK(state.status != RayStatus::Traversing, "lane {} was given back while traversing", lane);
     waiting |= LaneMask{needs_shader(state)} << lane;
+    gathered |= LaneMask{state.status == RayStatus::Gathered} << lane;
   });
+  if (gathered) present_candidates(warp, gathered);
   LaneMask& predicate = warp.regs.predicate[warp.ray_answer];
   predicate = (predicate & ~warp.ray_lanes) | waiting;
   warp.waiting_for_rays = false;
@@ -131,8 +136,9 @@ bool Executor::report(WarpContext& warp, const isa::Inst& inst) {
     if (rt::report(state, t, warp.regs.read(inst.operand[2])[lane]) != rt::Report::NeedsAnyHit) continue;
     uint32_t record = 0;
     const HitGroup* group = hit_group(state.ray, state.candidate, record);
-    if (!group) return fail(warp, lane, fmt::format("needs hit record {}: the binding table has {}", record, world_.hit.size()));
-    if (group->any_hit == kNoShader)
+    if (!group && !let_pass_hit_record(warp, lane, state.ray, state.candidate)) [[unlikely]]
+      return false;
+    if (!group || group->any_hit == kNoShader)
       rt::accept_candidate(state);
     else
       undecided |= LaneMask{1} << lane;
@@ -160,19 +166,29 @@ bool Executor::call_targets(WarpContext& warp, Effect effect, std::array<uint32_
     const int lane = std::countr_zero(lanes);
     const size_t i = size_t(lane);
     rt::RayState& state = warp.frame().ray[i];
-    if (state.broken) [[unlikely]]
-      return fail(warp, lane, "traced a ray through an acceleration structure whose bytes lead outside memory: they were overwritten");
+    if (state.broken && !let_pass_broken(warp, lane, state)) [[unlikely]]
+      return false;
     if (state.status == RayStatus::Idle) {  // an empty hit object
       target[i] = kNoShader;
+      continue;
+    }
+    if (state.status == RayStatus::Gathered && effect != Effect::CallHit) {  // runs nothing this time, reads no record
+      target[i] = kNoShader;
+      warp.regs.exec &= ~(LaneMask{1} << lane);
       continue;
     }
     const bool hit = effect != Effect::CallHit || state.committed.valid();
     uint32_t record = world_.table.miss.number(state.ray.miss_index);
     const HitGroup* group = nullptr;
     if (hit) group = hit_group(state.ray, effect == Effect::CallHit ? state.committed : state.candidate, record);
-    if (hit ? !group : record >= world_.miss.size())
-      return fail(warp, lane, fmt::format("needs {} record {}: the binding table has {}", hit ? "hit" : "miss", record,
-                                          hit ? world_.hit.size() : world_.miss.size()));
+    if (hit ? !group : record >= world_.miss.size()) [[unlikely]] {
+      const bool passes = hit ? let_pass_hit_record(warp, lane, state.ray, effect == Effect::CallHit ? state.committed : state.candidate)
+                              : let_pass_record(warp, lane, "miss", record, world_.miss.size());
+      if (!passes) return false;
+      call_nothing(warp, lane, state, effect);
+      target[i] = kNoShader;
+      continue;
+    }
     warp.regs.access.address[i] = (hit ? world_.table.hit : world_.table.miss).address(record);
     if (!hit) {
       target[i] = world_.miss[record];
@@ -194,7 +210,11 @@ bool Executor::call(WarpContext& warp, Effect effect) {
   if (!call_targets(warp, effect, target)) return false;
   LaneMask callers = 0;
   for_each_lane(warp.regs.exec, [&](int lane) { callers |= LaneMask{target[size_t(lane)] != kNoShader} << lane; });
-  call_by_shader(warp, target, callers, false);
+  const uint32_t calls = call_by_shader(warp, target, callers, false);
+  if (effect != Effect::CallHit) {
+    candidates_.calls += calls;
+    candidates_.lanes += num_lanes(callers);
+  }
   return true;
 }
 
@@ -210,11 +230,12 @@ bool Executor::call_callable(WarpContext& warp, const isa::Inst& inst) {
     const int lane = std::countr_zero(lanes);
     const size_t i = size_t(lane);
     const uint32_t record = world_.table.callable.number(warp.regs.read(inst.operand[0])[lane]);
-    if (record >= world_.callable.size())
-      return fail(warp, lane, fmt::format("needs callable record {}: the binding table has {}", record, world_.callable.size()));
-    target[i] = world_.callable[record];
+    const bool is_inside = record < world_.callable.size();
+    if (!is_inside && !let_pass_record(warp, lane, "callable", record, world_.callable.size())) [[unlikely]]
+      return false;
+    target[i] = is_inside ? world_.callable[record] : kNoShader;
     frame.data[i] = warp.regs.read(inst.operand[1])[lane];
-    frame.record[i] = warp.regs.access.address[i] = world_.table.callable.address(record);
+    frame.record[i] = warp.regs.access.address[i] = world_.table.callable.address(is_inside ? record : 0);
     callers |= LaneMask{target[i] != kNoShader} << lane;
   }
   call_by_shader(warp, target, callers, true);
@@ -222,14 +243,14 @@ bool Executor::call_callable(WarpContext& warp, const isa::Inst& inst) {
 }
 
 // Runs the shader of each calling lane, one path a distinct shader, in the order of the lowest lane that calls it.
-void Executor::call_by_shader(WarpContext& warp, const std::array<uint32_t, kLanes>& target, LaneMask callers, bool is_callable) {
+uint32_t Executor::call_by_shader(WarpContext& warp, const std::array<uint32_t, kLanes>& target, LaneMask callers, bool is_callable) {
   SimtStack& simt = warp.simt;
   const uint32_t caller = world_.image->shader_of[simt.pc];
   ++simt.pc;
-  if (!callers) return;
+  if (!callers) return 0;
   simt.push_call(simt.pc, simt.active & ~callers, warp.depth, caller, warp.callables);
   if (is_callable) ++warp.callables;
-  bool first = true;
+  uint32_t calls = 0;
   while (callers) {
     const uint32_t shader = target[size_t(std::countr_zero(callers))];
     LaneMask same = 0;
@@ -237,14 +258,14 @@ void Executor::call_by_shader(WarpContext& warp, const std::array<uint32_t, kLan
     callers &= ~same;
     const Shader& callee = world_.image->shaders[shader];
     fill_specials(warp, same, callee);
-    if (first) {
+    if (calls++ == 0) {
       simt.pc = callee.entry;
       simt.active = same;
-      first = false;
     } else {
       simt.push_path(callee.entry, same);
     }
   }
+  return calls;
 }
 
 void Executor::finish_shader(WarpContext& warp, Effect effect) {

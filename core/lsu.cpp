@@ -26,7 +26,7 @@ MemoryAccess& Lsu::take(uint32_t scheduler, Cycle now) {
   queue.id[(queue.head + queue.count++) % kMaxQueue] = id;
   MemoryAccess& access = accesses_[id];
   access.lines.clear();
-  access.num_sent = access.num_answers = access.passes = 0;
+  access.num_sent = access.num_answers = access.passes = access.num_table_lines = 0;
   access.atomic = false;
   access.issued = now;
   return access;
@@ -110,7 +110,8 @@ bool Lsu::send_line(Cycle now, Pipe& pipe) {
   MemoryAccess& access = accesses_[id];
   const auto lines = access.lines.lines();
   const LineSectors& line = lines[access.num_sent];
-  if (!l1_.access(now, mem::Client::Lsu, {line.line, line.sectors, access.write, access.traffic, id})) return false;
+  const mem::Traffic traffic = access.num_sent < access.num_table_lines ? mem::Traffic::RtTable : access.traffic;
+  if (!l1_.access(now, mem::Client::Lsu, {line.line, line.sectors, access.write, traffic, id})) return false;
   const auto sectors = uint32_t(std::popcount(line.sectors));
   port_free_ = now + (sectors + params_.sectors_per_cycle - 1) / params_.sectors_per_cycle;
   if (++access.num_sent == lines.size()) {

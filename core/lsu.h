@@ -25,6 +25,7 @@ struct MemoryAccess {
   bool atomic = false;        // one that shared memory does, if it is there
   uint32_t passes = 0;        // of shared memory; an access may go there and to lines (generic addresses)
   LineList lines;
+  uint32_t num_table_lines = 0;  // the first of them: candidates that the called shaders see
 
  private:
   friend class Lsu;

@@ -217,10 +217,23 @@ void CoreCell::collect_lines(MemoryAccess& access, const Issued& issued) {
     collect_texels(access, issued.lanes);
   } else if (isa::is_shader_call(issued.row->effect)) {
     access.traffic = mem::Traffic::ShaderBinding;
+    if (issued.row->effect == Effect::CallCandidate) collect_candidates(access, issued.lanes);
     coalesce_global(access.lines, *world_.memory, addresses, issued.lanes, mem::kSectorBytes);
   } else {
     collect_memory(access, issued);
   }
+}
+
+// The entries of the candidates whose shaders are called.
+// Model: one read for all of a warp's lanes, with their records of the binding table; what the shaders then read of a
+// candidate is in registers. Tables of nested traces share their place: an outer one is empty by then.
+void CoreCell::collect_candidates(MemoryAccess& access, LaneMask lanes) {
+  if (tables_.rows == 0) return;
+  const TraceFrame& frame = warps_[access.slot].frame();
+  for_each_lane(lanes, [&](int lane) {
+    access.lines.add(tables_.entry(access.slot, frame.ray[size_t(lane)].candidate_row, lane), rt::kTableEntryBytes);
+  });
+  access.num_table_lines = uint32_t(access.lines.lines().size());
 }
 
 // Loads, stores and atomics. Model: lanes of a generic access that are in local memory travel as global traffic, and

@@ -75,6 +75,13 @@ struct CoreStats : stats::Group {
       "Conditional branches that split their warp."};
   stats::Counter rt_warps{this, "rt_warps", "warp", "Times a warp was handed to the RT unit."};
   stats::Counter rt_lanes{this, "rt_lanes", "ray", "Rays in those warps."};
+  stats::Counter candidate_calls{this, "candidate_calls", "call", "Calls of intersection and any-hit shaders, one a warp and shader."};
+  stats::Counter candidate_lanes{this, "candidate_lanes", "lane", "Lanes that made them."};
+  stats::Ratio lanes_per_candidate_call{this, "lanes_per_candidate_call", "lane/call", candidate_lanes, candidate_calls,
+      "Mean lanes that run such a shader together."};
+  stats::Counter candidates_gathered{this, "candidates_gathered", "candidate", "Candidates put into tables (deferred any-hit)."};
+  stats::Counter candidates_dropped{this, "candidates_dropped", "candidate", "Of them, those whose shader never ran: the ray ended nearer."};
+  stats::Counter table_overflows{this, "table_overflows", "ray", "Times a ray stopped because its table was full."};
 
   // In the order of isa::Stage.
   StageStats raygen{this, "raygen"}, intersection{this, "intersection"}, any_hit{this, "any_hit"},

@@ -19,6 +19,7 @@ struct TraceFrame {
   std::array<rt::RayState, kLanes> ray;
   std::array<uint32_t, kLanes> payload{}, attributes{};  // local addresses
   std::array<uint32_t, kLanes> time{};                   // bits of a float
+  std::vector<rt::CandidateTable> tables;                // one a lane, if the any-hit mode has tables
 };
 
 // The callables of one nesting level of call.sbt.callable.

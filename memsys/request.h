@@ -13,12 +13,13 @@ enum class Traffic : uint8_t {
   ShaderGlobal, ShaderLocal, ShaderTexture, ShaderSurface, ShaderBinding,
   ShaderAtomic,  // read-modify-write at the L2
   RtNode, RtInstance, RtTriangle, RtProcedural,
+  RtTable,       // candidates that wait for their shaders
   Count
 };
 constexpr std::string_view name_of(Traffic t) {
   constexpr std::string_view kNames[] = {"shader_global",  "shader_local", "shader_texture", "shader_surface",
                                          "shader_binding", "shader_atomic", "rt_node",       "rt_instance",
-                                         "rt_triangle",    "rt_procedural"};
+                                         "rt_triangle",    "rt_procedural", "rt_table"};
   return kNames[size_t(t)];
 }
 constexpr bool is_rt(Traffic t) { return t >= Traffic::RtNode; }

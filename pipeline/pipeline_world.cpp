@@ -38,6 +38,7 @@ PipelineWorld::PipelineWorld(const PipelineDescription& description, const GpuPa
   world.memory = &memory_;
   world.constant_bank.resize(isa::kConstantBankBytes);
   world.nearest_first_hit = gpu.rt.nearest_first_hit;
+  world.any_hit = gpu.rt.any_hit.make({});
   link();
   set_launch();
   upload_buffers();

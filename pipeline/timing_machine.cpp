@@ -20,10 +20,6 @@ const GpuParams& checked(const GpuParams& params, const core::World& world) {
   return params;
 }
 
-Address allocate_physical(const core::World& world, const std::string& name, uint64_t bytes) {
-  return world.memory->physical(world.memory->allocate(name, bytes));
-}
-
 }  // namespace
 
 TimingMachine::TimingMachine(const GpuParams& params, const core::World& world, bool no_skip)
@@ -36,11 +32,13 @@ TimingMachine::TimingMachine(const GpuParams& params, const core::World& world, 
     rt_groups_.push_back(std::make_unique<stats::Group>(&root_, fmt::format("rt_unit[{}]", i)));
     rt::RtUnit::Context rt{*world.memory, memory_.l1(i), rt_groups_.back().get(), 0};
     if (params_.rt.result_store)
-      rt.results = allocate_physical(world, name + " ray results", uint64_t(params_.rt.warps) * kLanes * mem::kSectorBytes);
+      rt.results = world.memory->reserve(uint64_t(params_.rt.warps) * kLanes * mem::kSectorBytes);
+    if (const uint64_t bytes = core::CoreCell::table_bytes(params_.core, world))
+      rt.tables = core::CoreCell::table_layout(world, world.memory->reserve(bytes));
     rt_units_.push_back(std::make_unique<rt::RtUnit>(params_.rt, rt));
-    const Address local = allocate_physical(world, name + " local memory", core::CoreCell::local_bytes(params_.core, world));
+    const Address local = world.memory->reserve(core::CoreCell::local_bytes(params_.core, world));
     cores_.push_back(std::make_unique<core::CoreCell>(
-        params_.core, core::CoreCell::Context{world, memory_.l1(i), *rt_units_.back(), local, &root_, name, no_skip, i, params_.cores, params_.clock_mhz}));
+        params_.core, core::CoreCell::Context{world, memory_.l1(i), *rt_units_.back(), local, &root_, name, no_skip, i, params_.cores, params_.clock_mhz, rt.tables.base}));
     engine_.add(*cores_.back());
   }
   for (Cell* cell : memory_.cells()) engine_.add(*cell);
@@ -66,7 +64,7 @@ Cycle TimingMachine::run(const std::function<void(uint64_t, uint64_t)>& progress
     }
     return dispatcher.done() ? EngineLoop::Next::NothingMore : EngineLoop::Next::Continue;
   });
-  if (fault) throw Error(Exit::Fault, fault->to_string());
+  if (fault) throw Error(Exit::Fault, passed().with(*fault));
   Cycle end = 0;
   for (const auto& core : cores_) end = std::max(end, core->active_until());
   for (auto& core : cores_) core->finish(quiet);
@@ -75,7 +73,15 @@ Cycle TimingMachine::run(const std::function<void(uint64_t, uint64_t)>& progress
   memory_.check_drained();
   root_.cycles += end;
   root_.attributed += quiet;
+  const core::FaultLog faults = passed();
+  for (size_t kind = 0; kind < size_t(core::FaultKind::Count); ++kind) root_.faults.add(core::FaultKind(kind), faults.count(core::FaultKind(kind)));
   return end;
+}
+
+core::FaultLog TimingMachine::passed() const {
+  core::FaultLog all;
+  for (const auto& core : cores_) all.add(core->passed());
+  return all;
 }
 
 void TimingMachine::collect(RenderResult& result) const {

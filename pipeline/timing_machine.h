@@ -27,6 +27,9 @@ class TimingMachine {
   // What the cycles of every unit add up to after run().
   Cycle attributed_cycles() const { return root_.attributed.value(); }
 
+  // Of all cores: what went wrong and was let pass.
+  core::FaultLog passed() const;
+
   // Sums over the cores for the caller's result.
   void collect(RenderResult& result) const;
 
@@ -43,6 +46,7 @@ class TimingMachine {
     stats::Counter cycles{this, "cycles", "cycle", "From the launch until the last core was done: the launch's time."};
     stats::Counter attributed{this, "attributed_cycles", "cycle",
                               "Until the last write was in memory as well, in whole windows: what the cycles of every unit add up to."};
+    stats::Breakdown<core::FaultKind> faults{this, "faults", "fault", core::kFaultsDoc};
   };
 
   const GpuParams params_;

@@ -5,6 +5,7 @@
 
 #include "base/params.h"
 #include "base/registry.h"
+#include "rtunit/any_hit_mode.h"
 #include "rtunit/ray_scheduler.h"
 
 namespace glint::rt {
@@ -35,6 +36,7 @@ struct Params {
   PipelineParams box{13, 1, 1}, triangle{37, 2, 1};
   PipelineParams transform{8, 1, 1};  // latency: Vulkan-Sim, instance leaf
   PolicyChoice<RayScheduler> scheduler{"oldest_first"};
+  PolicyChoice<AnyHitMode> any_hit{"immediate"};
   static constexpr auto params() {
     return std::tuple{
         param(&Params::warps, "warps", "warp", "Warps in the unit's buffer.", 1, 64),
@@ -47,7 +49,8 @@ struct Params {
         section(&Params::box, "box", "Tests of internal nodes and of AABBs; one test a node."),
         section(&Params::triangle, "triangle", "Ray-triangle tests; one test a triangle."),
         section(&Params::transform, "transform", "Transforms of rays to object space; one test an instance."),
-        policy(&Params::scheduler, "scheduler", "Which resident warp sends a node request.")};
+        policy(&Params::scheduler, "scheduler", "Which resident warp sends a node request."),
+        policy(&Params::any_hit, "any_hit", "When intersection and any-hit shaders run: at each candidate, or over a table after the traversal.")};
   }
 };
 

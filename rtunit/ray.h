@@ -46,6 +46,7 @@ enum class RayStatus : uint8_t {
   Traversing,
   NeedsIntersection,  // an AABB was entered: the intersection shader of `candidate` must run
   NeedsAnyHit,        // a non-opaque candidate: its any-hit shader must run
+  Gathered,           // has candidates in its table and runs no shader: the any-hit mode presents one
   Done,               // `committed` is final (or no hit)
 };
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "rtunit/candidate_table.h"
 #include "rtunit/ray.h"
 
 namespace glint::rt {
@@ -39,6 +40,8 @@ struct RayState {
   bool attribute_slot = false;           // which of the two attribute buffers holds the committed attributes
   bool report_accepted = false;          // result of the last rt.report
   bool terminated = false;               // rt.terminate or terminate-on-first-hit: finish after this shader
+  CandidateTable* table = nullptr;       // where candidates are gathered; null: the ray stops at each. Set before begin()
+  uint8_t candidate_row = 0;             // of the table, that the candidate came from
   bool broken = false;                   // the structure's bytes led outside memory: the ray ended without meaning
 
   RaySpace space;                        // the world, or the object space of `instance_leaf`

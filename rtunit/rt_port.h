@@ -13,7 +13,7 @@ namespace glint::rt {
 
 // Contract (tests/contract/rt_port_test.cpp):
 //  - submit() is called only when can_accept(); the unit then works on `states[lane]` for the lanes of `mask`,
-//    all of which are Traversing, until each is Done or needs a shader; the storage stays the caller's and is
+//    all of which are Traversing, until each is Done, needs a shader or has Gathered candidates; the storage stays the caller's and is
 //    not touched by it meanwhile.
 //  - exactly one completion comes back for each submit, at a later cycle.
 //  - a warp that needs shaders is given back whole; the core runs them, resolves the candidates

@@ -33,7 +33,7 @@ struct RtStats : stats::Group {
   stats::Counter rays{this, "rays", "ray", "Rays accepted for the first time."};
   stats::Counter resumed{this, "resumed_rays", "ray", "Rays accepted again after an intersection or any-hit shader."};
   stats::Counter finished{this, "finished_rays", "ray", "Rays whose traversal ended in the unit."};
-  stats::Counter suspended{this, "suspended_rays", "ray", "Times a ray was given back to run a shader."};
+  stats::Counter suspended{this, "suspended_rays", "ray", "Times a ray was given back to run a shader before its traversal had ended."};
 
   stats::Counter internal_nodes{this, "internal_nodes", "node", "Internal nodes visited."};
   stats::Counter instance_leaves{this, "instance_leaves", "node", "Instance leaves visited."};
@@ -50,6 +50,8 @@ struct RtStats : stats::Group {
   stats::Counter sectors{this, "sectors", "sector", "32 B sectors asked for."};
   stats::Counter refusals{this, "refusals", "request", "Times the L1 refused a request."};
   stats::Counter result_writes{this, "result_writes", "request", "Write requests for results."};
+  stats::Counter table_writes{this, "table_writes", "request", "Write requests for candidates of the deferred any-hit mode."};
+  stats::Counter table_entries{this, "table_entries", "candidate", "Candidates that they wrote."};
 
   stats::Counter unit_cycles{this, "unit_cycles", "cycle", "Cycles accounted."};
   stats::Counter warp_cycles{this, "warp_cycles", "warp*cycle", "Sum over cycles of resident warps."};

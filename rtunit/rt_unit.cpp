@@ -28,6 +28,7 @@ RtUnit::RtUnit(const Params& params, const Context& context)
       memory_(context.memory),
       l1_(context.l1),
       results_(context.results),
+      tables_(context.tables),
       stats_(context.stats),
       scheduler_(params.scheduler.make({&stats_})),
       slots_(params.warps),
@@ -38,6 +39,7 @@ RtUnit::RtUnit(const Params& params, const Context& context)
              Pipeline{params.transform, mem::Ring<Test>(fetches_.size()), mem::Ring<Running>(fetches_.size())}},
       finished_(params.warps),
       writing_(params.warps),
+      gathering_(params.warps),
       completions_(params.warps) {
   for (size_t i = fetches_.size(); i-- > 0;) free_fetches_.push_back(uint32_t(i));
 }
@@ -48,7 +50,7 @@ void RtUnit::submit(Cycle now, uint32_t warp_slot, LaneMask mask, RayState* stat
   free->used = true;
   free->warp = warp_slot;
   free->mask = mask;
-  free->wanting = free->stopped = free->unwritten = 0;
+  free->wanting = free->stopped = free->unwritten = free->rows = 0;
   free->states = states;
   free->age = next_age_++;
   free->arrived = now;
@@ -90,7 +92,7 @@ Cycle RtUnit::next_event(Cycle now) const {
 }
 
 bool RtUnit::wants_to_send() const {
-  if (sending_ != kNone || !writing_.empty()) return true;
+  if (sending_ != kNone || !writing_.empty() || !gathering_.empty()) return true;
   for (const Slot& slot : slots_)
     if (slot.wanting) return true;
   return false;
@@ -170,7 +172,8 @@ void RtUnit::place(uint32_t slot_index, int lane, Cycle now) {
 void RtUnit::stop(Slot& slot, uint32_t slot_index, int lane, Cycle now) {
   const RayState& state = slot.states[lane];
   stats_.ray_latency.add(now - slot.arrived);
-  if (state.status == RayStatus::Done) {
+  const bool has_ended = state.status == RayStatus::Done || (state.status == RayStatus::Gathered && state.stack_size == 0);
+  if (has_ended) {
     ++stats_.finished;
     stats_.ray_nodes.add(state.nodes_visited);
     stats_.most_nodes = std::max(stats_.most_nodes, state.nodes_visited);
@@ -180,7 +183,13 @@ void RtUnit::stop(Slot& slot, uint32_t slot_index, int lane, Cycle now) {
   }
   --num_rays_;
   slot.stopped |= LaneMask{1} << lane;
-  if (slot.stopped != slot.mask) return;
+  leave(slot_index);
+}
+
+// Lets a warp go whose lanes have all stopped and whose table is in memory.
+void RtUnit::leave(uint32_t slot_index) {
+  Slot& slot = slots_[slot_index];
+  if (slot.stopped != slot.mask || slot.rows != 0) return;
   if (params_.result_store) {
     slot.unwritten = slot.mask;
     writing_.push(slot_index);
@@ -244,6 +253,7 @@ void RtUnit::visit(const Test& test, Cycle now) {
   step(state, memory_.find(node.address, node.bytes));
   stats_.box_tests += state.box_tests - boxes;
   stats_.triangle_tests += state.triangle_tests - triangles;
+  if (state.table) collect_entries(test.slot, test.lane);
   ++stats_.nodes;
   switch (node.kind) {
     case NodeKind::Internal: ++stats_.internal_nodes; break;
@@ -258,15 +268,19 @@ void RtUnit::visit(const Test& test, Cycle now) {
 Stall RtUnit::send_requests(Cycle now) {
   bool sent = false;
   for (uint32_t i = 0; i < params_.requests_per_cycle; ++i) {
-    const bool result = sending_ == kNone && !writing_.empty();
-    if (!result && sending_ == kNone && !choose_fetch(now)) break;
-    if (!(result ? send_result(now) : send_node(now))) {
+    if (sending_ == kNone && writing_.empty() && gathering_.empty() && !choose_fetch(now)) break;
+    if (!send_next(now)) {
       ++stats_.refusals;
       return sent ? Stall::NodeRequest : Stall::L1Refused;
     }
     sent = true;
   }
   return sent ? Stall::NodeRequest : waiting_reason();
+}
+
+bool RtUnit::send_next(Cycle now) {
+  if (sending_ != kNone) return send_node(now);
+  return writing_.empty() ? send_entries(now) : send_result(now);
 }
 
 // Takes the node of the lowest wanting lane of the warp that the policy picks, for all lanes that want it.
@@ -339,6 +353,49 @@ bool RtUnit::send_result(Cycle now) {
   if (slot.unwritten == 0) {
     writing_.pop();
     finished_.push(index);
+  }
+  return true;
+}
+
+// What a visit has put into the lane's table goes to memory.
+void RtUnit::collect_entries(uint32_t slot_index, int lane) {
+  Slot& slot = slots_[slot_index];
+  CandidateTable& table = *slot.states[lane].table;
+  const uint32_t added = tables_.rows ? table.unwritten & table.used : 0;
+  table.unwritten = 0;
+  if (!added) return;
+  if (!slot.rows) gathering_.push(slot_index);
+  for (uint32_t rest = added; rest; rest &= rest - 1) {
+    const auto row = size_t(std::countr_zero(rest));
+    if (!(slot.rows >> row & 1)) slot.entries[row] = 0;
+    slot.entries[row] |= LaneMask{1} << lane;
+  }
+  slot.rows |= added;
+}
+
+// Lanes that have filled the same row share a request, if their entries lie in one line and are not yet sent.
+bool RtUnit::send_entries(Cycle now) {
+  const uint32_t index = gathering_.front();
+  Slot& slot = slots_[index];
+  const auto row = uint32_t(std::countr_zero(slot.rows));
+  LaneMask& lanes = slot.entries[row];
+  const uint32_t lanes_a_line = l1_.line_bytes() / kTableEntryBytes;
+  const uint32_t first = uint32_t(std::countr_zero(lanes)) / lanes_a_line * lanes_a_line;
+  const LaneMask in_line = lanes >> first & ((LaneMask{1} << lanes_a_line) - 1);
+  mem::Request request;
+  request.line = tables_.entry(slot.warp, row, int(first));
+  request.sectors = uint8_t(in_line);
+  request.write = true;
+  request.traffic = mem::Traffic::RtTable;
+  if (!l1_.access(now, mem::Client::RtUnit, request)) return false;
+  ++stats_.table_writes;
+  stats_.table_entries += num_lanes(in_line);
+  lanes &= ~(in_line << first);
+  if (lanes) return true;
+  slot.rows &= ~(1u << row);
+  if (slot.rows == 0) {
+    gathering_.pop();
+    leave(index);
   }
   return true;
 }

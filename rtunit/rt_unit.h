@@ -33,6 +33,7 @@ class RtUnit final : public RtPort {
     mem::L1Port& l1;
     stats::Group* stats = nullptr;
     Address results = 0;  // physical, line-aligned: 32 B x 32 lanes x warps, used with result_store only
+    TableLayout tables{};  // line-aligned; where rays that gather candidates have theirs written
   };
   RtUnit(const Params& params, const Context& context);
 
@@ -61,6 +62,8 @@ class RtUnit final : public RtPort {
     uint64_t age = 0;
     Cycle arrived = 0;
     std::array<Fetch, kLanes> node;
+    uint32_t rows = 0;                            // of the candidate table with entries to write
+    std::array<LaneMask, kMaxTableRows> entries;  // of a row in `rows`: the lanes
   };
   // A node on its way for some lanes of one slot. Its index is the token of its requests.
   struct NodeFetch {
@@ -105,12 +108,17 @@ class RtUnit final : public RtPort {
   bool choose_fetch(Cycle now);
   bool send_node(Cycle now);
   bool send_result(Cycle now);
+  bool send_entries(Cycle now);
+  bool send_next(Cycle now);
+  void collect_entries(uint32_t slot_index, int lane);
+  void leave(uint32_t slot_index);
   bool wants_to_send() const;
 
   const Params params_;
   const mem::AddressSpace& memory_;
   mem::L1Port& l1_;
   const Address results_;
+  const TableLayout tables_;
   RtStats stats_;
   Probe<NodeVisited> node_visited_;
   std::unique_ptr<RayScheduler> scheduler_;
@@ -122,6 +130,7 @@ class RtUnit final : public RtPort {
   std::array<Pipeline, kNumPipes> pipes_;
   mem::Ring<uint32_t> finished_;        // slots whose lanes have all stopped and whose results are written
   mem::Ring<uint32_t> writing_;         // slots with results to write
+  mem::Ring<uint32_t> gathering_;       // slots with table entries to write
   mem::Ring<uint32_t> completions_;     // warps given back
   uint32_t sending_ = kNone;            // fetch whose requests have not all been taken
   uint32_t num_resident_ = 0, num_rays_ = 0, num_fetches_ = 0;

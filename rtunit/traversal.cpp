@@ -21,6 +21,48 @@ bool ends_at_first_hit(const RayState& s) { return s.end_at_first_hit && has(s, 
 void finish(RayState& s) {
   s.status = RayStatus::Done;
   s.stack_size = 0;
+  if (s.table) s.table->drop(s.table->used);
+}
+
+// Choice: at equal t the lowest (instance, geometry, primitive) wins, so results do not depend on the order of visits.
+bool wins(const RayState& s, float t, uint32_t instance, uint32_t geometry, uint32_t primitive) {
+  if (t != s.committed.t) return t < s.committed.t;
+  return s.committed.valid() && std::tuple(instance, geometry, primitive) <
+                                    std::tuple(s.committed.instance, s.committed.geometry, s.committed.primitive);
+}
+
+// Takes out of the table what cannot become the hit any more: the ray has become shorter since it was gathered.
+void drop_beaten(RayState& s) {
+  for (uint32_t rest = s.table->used; rest; rest &= rest - 1) {
+    const auto row = uint32_t(std::countr_zero(rest));
+    const Candidate& c = s.table->row[row];
+    const bool stays = c.is_procedural ? c.hit.t <= s.committed.t
+                                       : wins(s, c.hit.t, c.hit.instance, c.hit.geometry, c.hit.primitive);
+    if (!stays) s.table->drop(1u << row);
+  }
+}
+
+// There is nothing left to visit.
+void end_traversal(RayState& s) {
+  if (s.table && s.table->used) {
+    drop_beaten(s);
+    if (s.table->used) {
+      s.status = RayStatus::Gathered;
+      return;
+    }
+  }
+  finish(s);
+}
+
+// Whether the ray goes on past the candidate that it has just met.
+bool passes(RayState& s, RayStatus needed) {
+  if (!s.table) {
+    s.status = needed;
+    return false;
+  }
+  s.table->add({s.candidate, s.candidate_procedural, s.candidate_opaque});
+  if (s.table->is_full()) drop_beaten(s);
+  return !s.table->is_full();
 }
 
 // Drops entries that cannot matter any more and leaves a finished bottom level, so that the top entry is the next node.
@@ -33,7 +75,7 @@ void settle(RayState& s) {
       s.instance_leaf = 0;
       enter_space(s.space, s.ray.origin, s.ray.direction);
     }
-    if (s.stack_size == 0) return finish(s);
+    if (s.stack_size == 0) return end_traversal(s);
     if (s.stack[size_t(s.stack_size) - 1].t_enter <= s.committed.t) return;
     --s.stack_size;
   }
@@ -102,13 +144,6 @@ bool is_opaque(const RayState& s, bool geometry_opaque) {
 }
 bool culled_by_opacity(const RayState& s, bool opaque) { return has(s, opaque ? ray_flag::kCullOpaque : ray_flag::kCullNoOpaque); }
 
-// Choice: at equal t the lowest (instance, geometry, primitive) wins, so results do not depend on the order of visits.
-bool wins(const RayState& s, float t, uint32_t geometry, uint32_t primitive) {
-  if (t != s.committed.t) return t < s.committed.t;
-  return s.committed.valid() && std::tuple(s.instance, geometry, primitive) <
-                                    std::tuple(s.committed.instance, s.committed.geometry, s.committed.primitive);
-}
-
 Hit candidate_of(const RayState& s, uint32_t geometry, uint32_t primitive) {
   Hit hit;
   hit.instance = s.instance;
@@ -140,7 +175,7 @@ void visit_triangles(RayState& s, const std::byte* bytes, const StackEntry& entr
     if (!intersect_triangle(s.space, leaf.vertex[a], leaf.vertex[b], leaf.vertex[c], found)) continue;
     const bool front = found.front != ((s.instance_flags & instance_flag::kFlipFacing) != 0);
     if (culled_by_facing(s, front)) continue;
-    if (!(found.t > s.ray.t_min) || !wins(s, found.t, leaf.geometry, leaf.primitive[i])) continue;
+    if (!(found.t > s.ray.t_min) || !wins(s, found.t, s.instance, leaf.geometry, leaf.primitive[i])) continue;
     s.candidate = candidate_of(s, leaf.geometry, leaf.primitive[i]);
     s.candidate.t = found.t;
     s.candidate.u = found.u;
@@ -148,7 +183,7 @@ void visit_triangles(RayState& s, const std::byte* bytes, const StackEntry& entr
     s.candidate.kind = front ? kHitKindFront : kHitKindBack;
     if (!opaque) {
       s.candidate_procedural = false;
-      s.status = RayStatus::NeedsAnyHit;
+      if (passes(s, RayStatus::NeedsAnyHit)) continue;
       if (i == 0 && leaf.count > 1) push(s, node_ref(block_of(entry.node), NodeKind::TriangleSecond), entry.t_enter);
       return;
     }
@@ -176,7 +211,7 @@ void visit_procedural(RayState& s, const std::byte* bytes) {
   s.candidate.t = enter;
   s.candidate_procedural = true;
   s.candidate_opaque = opaque;
-  s.status = RayStatus::NeedsIntersection;
+  passes(s, RayStatus::NeedsIntersection);
 }
 
 template <class Format>
@@ -191,7 +226,12 @@ void step_as(RayState& s, const std::byte* bytes) {
     case NodeKind::Procedural: visit_procedural(s, bytes); break;
     default: return break_off(s);
   }
-  if (s.status == RayStatus::Traversing) settle(s);
+  if (s.status != RayStatus::Traversing) return;
+  settle(s);
+  if (s.table && s.status == RayStatus::Traversing && s.table->is_full()) [[unlikely]] {
+    s.status = RayStatus::Gathered;
+    ++s.table->overflows;
+  }
 }
 
 template <class Format>
@@ -218,6 +258,19 @@ constexpr FormatCode code_for() {
 // In the order of FormatId.
 constexpr std::array<FormatCode, size_t(FormatId::Count)> kFormats{code_for<Bvh6>(), code_for<Bvh2>(), code_for<Bvh4>(), code_for<Bvh8>()};
 
+// A candidate has been decided: the next of the table, or the next node.
+void go_on(RayState& s) {
+  if (s.table && s.table->used) {
+    drop_beaten(s);
+    if (s.table->used) {
+      s.status = RayStatus::Gathered;
+      return;
+    }
+  }
+  s.status = RayStatus::Traversing;
+  settle(s);
+}
+
 // The accepted candidate becomes the hit; the ray goes on, or ends when it asked for any hit.
 void commit(RayState& s, bool end) {
   s.committed = s.candidate;
@@ -230,9 +283,12 @@ void commit(RayState& s, bool end) {
   } else if (end) {
     finish(s);
   } else {
-    s.status = RayStatus::Traversing;
-    settle(s);
+    go_on(s);
   }
+}
+
+bool is_same_primitive(const Hit& a, const Hit& b) {
+  return a.instance == b.instance && a.geometry == b.geometry && a.primitive == b.primitive;
 }
 
 bool is_finite(const std::array<float, 3>& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
@@ -250,6 +306,7 @@ bool begin(RayState& s, const mem::AddressSpace& memory) {
   s.stack_size = s.stack_peak = 0;
   s.bottom_stack_base = -1;
   s.nodes_visited = s.box_tests = s.triangle_tests = s.leaves_visited = s.instances_visited = 0;
+  if (s.table) s.table->clear();
   s.status = RayStatus::Done;
   if (s.ray.structure == 0) return true;
   const auto* bytes = memory.find(s.ray.structure, sizeof(StructureHeader));
@@ -278,6 +335,16 @@ void break_off(RayState& s) {
 
 void run(RayState& s, const mem::AddressSpace& memory) { kFormats[s.format].run(s, memory); }
 
+void present(RayState& s, uint32_t row) {
+  const Candidate& next = s.table->row[row];
+  s.candidate = next.hit;
+  s.candidate_procedural = next.is_procedural;
+  s.candidate_opaque = next.is_opaque;
+  s.candidate_row = uint8_t(row);
+  s.status = next.is_procedural ? RayStatus::NeedsIntersection : RayStatus::NeedsAnyHit;
+  s.table->used &= ~(1u << row);
+}
+
 void accept_candidate(RayState& s) { commit(s, false); }
 void terminate_candidate(RayState& s) { commit(s, true); }
 
@@ -287,15 +354,16 @@ void ignore_candidate(RayState& s) {
     s.status = RayStatus::NeedsIntersection;
     return;
   }
-  s.status = RayStatus::Traversing;
-  settle(s);
+  go_on(s);
 }
 
 Report report(RayState& s, float t, uint32_t kind) {
   s.report_accepted = false;
   // inclusive at both ends for shaders' own hits (Vulkan: "Ray Intersection Candidate Determination")
   const bool at_end_of_ray = !s.committed.valid() && t == s.committed.t;
-  if (s.terminated || !(t >= s.ray.t_min) || !(at_end_of_ray || wins(s, t, s.candidate.geometry, s.candidate.primitive)))
+  // The first accepted report ends the intersection shader, though a nearer primitive may still be looked for.
+  const bool is_over = s.terminated || (has(s, ray_flag::kTerminateOnFirstHit) && is_same_primitive(s.committed, s.candidate));
+  if (is_over || !(t >= s.ray.t_min) || !(at_end_of_ray || wins(s, t, s.candidate.instance, s.candidate.geometry, s.candidate.primitive)))
     return Report::Rejected;
   s.candidate.t = t;
   s.candidate.kind = kind;
@@ -309,8 +377,7 @@ Report report(RayState& s, float t, uint32_t kind) {
 
 void finish_intersection(RayState& s) {
   if (s.terminated) return finish(s);
-  s.status = RayStatus::Traversing;
-  settle(s);
+  go_on(s);
 }
 
 }  // namespace glint::rt

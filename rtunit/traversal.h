@@ -27,14 +27,18 @@ inline Fetch next_fetch(const RayState& state) {
   return {state.base + Address(block_of(ref)) * kBlockBytes, bytes, kind};
 }
 
-// Visits the node of next_fetch(). Afterwards the ray is Traversing, Done or needs a shader.
+// Visits the node of next_fetch(). Afterwards the ray is Traversing, Done, Gathered or needs a shader.
 void step(RayState& state, const std::byte* bytes);
 
 // Ends a ray whose next node lies outside memory: Done, `broken`.
 void break_off(RayState& state);
 
-// Steps until the ray is Done or needs a shader.
+// Steps until the ray is Done, needs a shader or has gathered candidates and can go no further without shaders: the
+// traversal has ended, or (Choice) the table is full, and the ray traverses on when all of it has been decided.
 void run(RayState& state, const mem::AddressSpace& memory);
+
+// Takes a candidate of a Gathered ray out of its table: its shader is next.
+void present(RayState& state, uint32_t row);
 
 // Answers of shaders. NeedsAnyHit ends with one of the first three; NeedsIntersection with any number of
 // report() (each that answers NeedsAnyHit followed by one of the three), then finish_intersection().

@@ -34,10 +34,11 @@ scenes::Scene quad_scene(bool with_quad) {
   return scene;
 }
 
-pipeline::RenderResult picture(bool with_quad, bool timing) {
+pipeline::RenderResult picture(bool with_quad, bool timing, const char* any_hit = "immediate") {
   pipeline::RenderJob job = test::small_job("CORNELL", pipeline::Workload::PathTracing, kSize, 1);
   job.scene = quad_scene(with_quad);
   job.timing = timing;
+  job.gpu.rt.any_hit.name = any_hit;
   return pipeline::render(job);
 }
 
@@ -64,4 +65,10 @@ TEST_CASE("rays pass a texture's transparent texels and meet its opaque ones") {
 
 TEST_CASE("a picture that needs textures and any-hit shaders is the same from both machines") {
   CHECK(picture(true, false).rgba == picture(true, true).rgba);
+}
+
+TEST_CASE("a picture with any-hit shaders is the same when they run after the traversal, on both machines") {
+  const std::vector<float> immediate = picture(true, false).rgba;
+  CHECK(picture(true, false, "deferred").rgba == immediate);
+  CHECK(picture(true, true, "deferred").rgba == immediate);
 }

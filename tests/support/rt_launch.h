@@ -12,8 +12,8 @@ namespace glint::rt::test {
 
 using WarpRays = std::array<RayState, kLanes>;
 
-// What a core does with rays that need a shader, in these tests: a fixed rule of the candidate's primitive.
-inline void resolve(RayState& state) {
+// What a core does with a ray that needs a shader, in these tests: a fixed rule of the candidate's primitive.
+inline void decide(RayState& state) {
   while (state.status == RayStatus::NeedsAnyHit || state.status == RayStatus::NeedsIntersection) {
     if (state.status == RayStatus::NeedsAnyHit) {
       state.candidate.primitive % 3 ? accept_candidate(state) : ignore_candidate(state);
@@ -23,6 +23,15 @@ inline void resolve(RayState& state) {
     if (report(state, t, state.candidate.primitive & 0x7f) == Report::NeedsAnyHit)
       state.candidate.primitive % 3 ? accept_candidate(state) : ignore_candidate(state);
     finish_intersection(state);
+  }
+}
+
+// Until it goes on; tables from the first row on.
+inline void resolve(RayState& state) {
+  decide(state);
+  while (state.status == RayStatus::Gathered) {
+    present(state, uint32_t(std::countr_zero(state.table->used)));
+    decide(state);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <map>
 
+#include "base/registry.h"
 #include "frontend/compile.h"
 #include "isa/verify.h"
 #include "pipeline/functional_machine.h"
@@ -154,8 +155,9 @@ const std::vector<RecordData>& hit_records() {
   return kRecords;
 }
 
-std::vector<Record> run_mode(const Recording& r, const Mode& mode, bool timing) {
+std::vector<Record> run_mode(const Recording& r, const Mode& mode, const std::string& any_hit, bool timing) {
   Host host(r);
+  host.world.any_hit = Registry<rt::AnyHitMode>::instance().entry(any_hit).make_default({});
   host.table.raygen = {host.general("rec.rgen"), {}};
   host.table.miss.records = {{host.general("rec.rmiss"), {}}, {host.general("rec2.rmiss"), {}}};
   const uint32_t triangles = host.hit_group("rec_tri.rchit", "tri.rahit", "");

@@ -19,7 +19,7 @@ struct RecordData {  // struct SbtData of shaders/common.glsl
 const std::vector<RecordData>& hit_records();
 
 // Compiles the set's shaders, as they are, and runs a mode; one record a ray.
-std::vector<Record> run_mode(const Recording& recording, const Mode& mode, bool timing = false);
+std::vector<Record> run_mode(const Recording& recording, const Mode& mode, const std::string& any_hit, bool timing = false);
 
 // The picture, RGBA, `size` x `size`. The records' data may be given.
 std::vector<float> run_image(const Recording& recording, uint32_t size, const std::vector<RecordData>& records = hit_records());

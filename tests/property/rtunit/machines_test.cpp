@@ -65,6 +65,103 @@ void check_same(const RayState& a, const RayState& b) {
   REQUIRE(a.triangle_tests == b.triangle_tests);
 }
 
+// Gives the rays of a warp tables and starts them again. Their hit may not depend on which is found first.
+struct Tables {
+  std::vector<std::array<CandidateTable, kLanes>> of_warp;
+  Tables(std::vector<WarpRays>& warps, uint32_t rows, const mem::AddressSpace& memory) : of_warp(warps.size()) {
+    for (size_t w = 0; w < warps.size(); ++w)
+      for (size_t lane = 0; lane < kLanes; ++lane) {
+        of_warp[w][lane].row.resize(rows);
+        warps[w][lane].table = &of_warp[w][lane];
+        warps[w][lane].end_at_first_hit = false;
+        REQUIRE(begin(warps[w][lane], memory));
+      }
+  }
+};
+
+void check_same_hit(const RayState& a, const RayState& b) {
+  REQUIRE(a.status == b.status);
+  REQUIRE(std::memcmp(&a.committed.t, &b.committed.t, 12) == 0);  // t, u, v
+  REQUIRE(a.committed.kind == b.committed.kind);
+  REQUIRE(std::tuple(a.committed.instance, a.committed.geometry, a.committed.primitive) ==
+          std::tuple(b.committed.instance, b.committed.geometry, b.committed.primitive));
+}
+
+TEST_CASE("rays that gather candidates find the hit of rays that stop at each, whatever the table's size and the order") {
+  for (uint64_t seed = 0; seed < 6; ++seed) {
+    Zoo zoo(seed);
+    const uint32_t rows = std::array{1u, 2u, 3u, 5u, 8u, 32u}[seed];
+    std::vector<WarpRays> stopping = zoo.rays(20), gathering = stopping;
+    const Tables tables(gathering, rows, zoo.memory);
+    Random random{seed};
+    uint32_t overflows = 0, dropped = 0, gathered = 0;
+    for (size_t w = 0; w < stopping.size(); ++w)
+      for (size_t lane = 0; lane < kLanes; ++lane) {
+        RayState &a = stopping[w][lane], &b = gathering[w][lane];
+        a.end_at_first_hit = false;
+        REQUIRE(begin(a, zoo.memory));
+        run_to_end(a, zoo.memory);
+        uint32_t decided = 0;
+        while (b.status != RayStatus::Done) {
+          run(b, zoo.memory);
+          if (b.status != RayStatus::Gathered) continue;
+          uint32_t used = b.table->used;
+          for (uint32_t skip = random.below(uint32_t(std::popcount(used))); skip; --skip) used &= used - 1;
+          present(b, uint32_t(std::countr_zero(used)));
+          ++decided;
+          decide(b);
+        }
+        check_same_hit(a, b);
+        REQUIRE(b.table->used == 0);
+        REQUIRE(b.table->gathered == decided + b.table->dropped);
+        overflows += b.table->overflows;
+        dropped += b.table->dropped;
+        gathered += b.table->gathered;
+      }
+    INFO(rows << " rows");
+    CHECK(gathered > 200);
+    CHECK((dropped > 0) == (rows > 1));  // what is alone in the table is decided next
+    CHECK((overflows > 0) == (rows < 32));
+  }
+}
+
+TEST_CASE("the timed unit gathers what run gathers, writes it to memory once, and skips no event") {
+  for (uint64_t seed = 0; seed < 4; ++seed) {
+    Zoo zoo(seed);
+    const uint32_t rows = 2 + uint32_t(seed);
+    std::vector<WarpRays> functional = zoo.rays(5), timed = functional, skipped = functional;
+    const Tables of_functional(functional, rows, zoo.memory), of_timed(timed, rows, zoo.memory), of_skipped(skipped, rows, zoo.memory);
+    Params params;
+    params.warps = 1 + uint32_t(seed % 3);
+    params.result_store = seed % 2;
+    constexpr Address kResults = Address{1} << 30, kTables = Address{1} << 31;
+    mem::FixedLatencyMemory l1_all(20, 1), l1_some(20, 1);
+    RtUnit all(params, {zoo.memory, l1_all, nullptr, kResults, {kTables, rows}});
+    RtUnit some(params, {zoo.memory, l1_some, nullptr, kResults, {kTables, rows}});
+    const Launch a = launch(all, l1_all, timed, true), b = launch(some, l1_some, skipped, false);
+    CHECK(a.completion == b.completion);
+    CHECK(all.stats().cycles.parts() == some.stats().cycles.parts());
+    uint64_t gathered = 0, dropped = 0, written = 0;
+    for (size_t w = 0; w < timed.size(); ++w)
+      for (size_t lane = 0; lane < kLanes; ++lane) {
+        run_to_end(functional[w][lane], zoo.memory);
+        check_same(functional[w][lane], timed[w][lane]);
+        gathered += timed[w][lane].table->gathered;
+        dropped += timed[w][lane].table->dropped;
+      }
+    for (const mem::Request& request : l1_all.log()) {
+      if (request.traffic != mem::Traffic::RtTable) continue;
+      CHECK(request.write);
+      CHECK(request.line >= kTables);
+      written += uint64_t(std::popcount(request.sectors));
+    }
+    CHECK(written == all.stats().table_entries.value());
+    CHECK(gathered > 20);
+    CHECK(written <= gathered);            // what a full table drops at once is not written
+    CHECK(written >= gathered - dropped);  // what a shader looked at was
+  }
+}
+
 TEST_CASE("run and steps give the same bits") {
   Zoo zoo(1);
   uint32_t hits = 0, asked = 0;

@@ -1,0 +1,97 @@
+// Mode `deferred`: traversal runs on and gathers candidates in a table; then shaders run over it, one shader at a time.
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <tuple>
+
+#include "base/num_lanes.h"
+#include "base/registry.h"
+#include "rtunit/any_hit_mode.h"
+#include "rtunit/traversal.h"
+
+namespace glint::rt {
+namespace {
+
+// The lanes of a warp that have candidates for one shader, and of each its nearest.
+struct Group {
+  uint32_t shader = AnyHitMode::kNoShader;
+  LaneMask lanes = 0;
+  std::array<uint8_t, kLanes> row{};
+};
+
+// Nearest first: what it may commit makes the most others drop. Of equals the one that would win (traversal.cpp).
+bool comes_before(const Hit& a, const Hit& b) {
+  return std::tie(a.t, a.instance, a.geometry, a.primitive) < std::tie(b.t, b.instance, b.geometry, b.primitive);
+}
+
+// Candidates of more shaders than this at once wait for a later round.
+constexpr size_t kMaxGroups = 64;
+struct Groups {
+  std::array<Group, kMaxGroups> group;
+  size_t count = 0;
+
+  void add(const RayState& ray, int lane, uint32_t row, uint32_t shader) {
+    size_t at = 0;
+    while (at < count && group[at].shader != shader) ++at;
+    if (at == kMaxGroups) return;
+    if (at == count) group[count++] = {shader, 0, {}};
+    Group& g = group[at];
+    uint8_t& best = g.row[size_t(lane)];
+    const bool is_first = !(g.lanes >> lane & 1);
+    if (is_first || comes_before(ray.table->row[row].hit, ray.table->row[best].hit)) best = uint8_t(row);
+    g.lanes |= LaneMask{1} << lane;
+  }
+};
+
+// The shader that the most lanes can run together. Vulkan-Sim's function-call coalescing makes as many calls: for each
+// shader as many as the lane with the most candidates for it has.
+bool is_better(const Group& a, const Group& b) {
+  if ((a.shader == AnyHitMode::kNoShader) != (b.shader == AnyHitMode::kNoShader)) return b.shader == AnyHitMode::kNoShader;
+  if (num_lanes(a.lanes) != num_lanes(b.lanes)) return num_lanes(a.lanes) > num_lanes(b.lanes);
+  return a.shader < b.shader;
+}
+
+class Deferred final : public AnyHitMode {
+ public:
+  static constexpr std::string_view kName = "deferred";
+  static constexpr std::string_view kDoc = "Rays gather candidates in tables; shaders run over them after the traversal.";
+  struct Params {
+    uint32_t table_entries = 8;  // Choice: Vulkan-Sim has 1,000 and stops the run when a table is full
+    static constexpr auto params() {
+      return std::tuple{param(&Params::table_entries, "table_entries", "candidate",
+                              "Candidates of a ray that its table holds; when it is full, their shaders run first.", 1, kMaxTableRows)};
+    }
+  };
+  Deferred(Params params, Context) : params_(params) {}
+
+  uint32_t table_rows() const override { return params_.table_entries; }
+
+  // Model: which shader and what distance each entry has is known without reading the table.
+  void present(RayState* rays, LaneMask lanes, const ShaderOf& shader_of) const override {
+    Groups groups;
+    for_each_lane(lanes, [&](int lane) {
+      const CandidateTable& table = *rays[lane].table;
+      for (uint32_t rest = table.used; rest; rest &= rest - 1) {
+        const auto row = uint32_t(std::countr_zero(rest));
+        groups.add(rays[lane], lane, row, shader_of(lane, table.row[row]));
+      }
+    });
+    const Group* best = &groups.group[0];
+    for (size_t i = 1; i < groups.count; ++i)
+      if (is_better(groups.group[i], *best)) best = &groups.group[i];
+    for_each_lane(best->lanes, [&](int lane) { rt::present(rays[lane], best->row[size_t(lane)]); });
+    // Candidates without a shader run beside the chosen one at no cost.
+    for (size_t i = 0; i < groups.count; ++i) {
+      const Group& group = groups.group[i];
+      if (group.shader != kNoShader || &group == best) continue;
+      for_each_lane(group.lanes & ~best->lanes, [&](int lane) { rt::present(rays[lane], group.row[size_t(lane)]); });
+    }
+  }
+
+ private:
+  const Params params_;
+};
+
+const Register<AnyHitMode, Deferred> registered;
+
+}  // namespace
+}  // namespace glint::rt

@@ -1,0 +1,58 @@
+// The candidates that a ray has met and no shader has decided: its column of a warp's table in deferred any-hit mode.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "rtunit/ray.h"
+
+namespace glint::rt {
+
+// A non-opaque triangle that was hit, or a procedural primitive whose box was entered at `hit.t`.
+struct Candidate {
+  Hit hit;
+  bool is_procedural = false;
+  bool is_opaque = false;  // procedural: its hits need no any-hit shader
+};
+
+inline constexpr uint32_t kMaxTableRows = 32;  // bits of a mask
+// Choice: an entry is a sector of eight words: t, two weights, kind and flags, instance leaf, geometry, primitive, record.
+inline constexpr uint32_t kTableEntryBytes = 32;
+
+// Where entries lie in memory: row r of lane l of warp slot w at base + ((w * rows + r) * 32 + l) * 32, so that lanes
+// that fill the same row share lines.
+struct TableLayout {
+  Address base = 0;   // physical, of this core
+  uint32_t rows = 0;  // 0: no tables
+  uint64_t bytes_per_warp() const { return uint64_t{rows} * kLanes * kTableEntryBytes; }
+  Address entry(uint32_t warp_slot, uint32_t row, int lane) const {
+    return base + ((uint64_t{warp_slot} * rows + row) * kLanes + uint64_t(lane)) * kTableEntryBytes;
+  }
+};
+
+struct CandidateTable {
+  std::vector<Candidate> row;  // sized by who owns the table; an entry stays in its row
+  uint32_t used = 0;           // bit r: row r holds a candidate
+  uint32_t unwritten = 0;      // bit r: the RT unit has not sent it to memory yet
+  // Counted since clear().
+  uint32_t gathered = 0;       // candidates put in
+  uint32_t dropped = 0;        // taken out undecided, because the ray had ended before them
+  uint32_t overflows = 0;      // times the traversal stopped because the table was full
+
+  void clear() { used = unwritten = gathered = dropped = overflows = 0; }
+  bool is_full() const { return uint32_t(std::popcount(used)) == row.size(); }
+  void add(const Candidate& candidate) {
+    const auto free = uint32_t(std::countr_one(used));
+    row[free] = candidate;
+    used |= 1u << free;
+    unwritten |= 1u << free;
+    ++gathered;
+  }
+  void drop(uint32_t rows) {
+    dropped += uint32_t(std::popcount(used & rows));
+    used &= ~rows;
+  }
+};
+
+}  // namespace glint::rt
