@@ -14,8 +14,8 @@
 namespace glint::amber {
 namespace {
 
-// SPIR-V's version in the form of a module's second word, of a target environment as the SPIR-V tools name it. Script
-// without one means spv1.0.
+// SPIR-V's version in the form of a module's second word, of a target environment as the SPIR-V tools name it. A shader
+// without one begins at spv1.0.
 uint32_t version_of(const Shader& shader) {
   const std::map<std::string, uint32_t> versions{
       {"", 0x1'0000},          {"spv1.0", 0x1'0000},        {"spv1.1", 0x1'0100},    {"spv1.2", 0x1'0200},    {"spv1.3", 0x1'0300},
@@ -61,12 +61,31 @@ void add_attachments(const Script& script, const Pipeline& pipeline, std::vector
   for (const std::string& library : pipeline.libraries) add_attachments(script, script.pipelines.at(library), out);
 }
 
+// Choice: text that is invalid in the version of its TARGET_ENV but valid in a later one is of that version. Scripts
+// leave out TARGET_ENV and ask for VK_KHR_spirv_1_4, or use what a device's Vulkan brings along.
+std::string why_invalid(std::vector<uint32_t>& words) {
+  const std::string first = frontend::validate_spirv(words);
+  if (first.empty()) return first;
+  const uint32_t stated = words[1];
+  for (const uint32_t later : {0x1'0300, 0x1'0400, 0x1'0500, 0x1'0600}) {
+    if (later <= stated) continue;
+    words[1] = later;
+    if (frontend::validate_spirv(words).empty()) return {};
+  }
+  words[1] = stated;
+  return first;
+}
+
 }  // namespace
 
-std::vector<uint32_t> spirv_of(const Shader& shader, isa::Stage stage) {
+std::vector<uint32_t> spirv_of(const Shader& shader, isa::Stage stage, frontend::ShaderCache* cache) {
   std::vector<uint32_t> words;
   switch (shader.language) {
-    case Language::Glsl: return frontend::glsl_text_to_spirv(shader.text, shader.path, stage, {});
+    case Language::Glsl: {
+      frontend::GlslOptions options;
+      options.cache = cache;
+      return frontend::glsl_text_to_spirv(shader.text, shader.path, stage, options);
+    }
     case Language::SpirvHex: return from_hex(shader);
     case Language::SpirvBinary:
       if (shader.text.size() % 4) throw UserError({shader.path, 0, 0}, "not a SPIR-V module: it does not consist of words");
@@ -81,29 +100,28 @@ std::vector<uint32_t> spirv_of(const Shader& shader, isa::Stage stage) {
   return words;
 }
 
-CompiledShader compile(const Script& script, const Attachment& attachment, const pipeline::CompilerParams& compiler) {
+CompiledShader compile(const Script& script, const Attachment& attachment, const pipeline::CompilerParams& compiler, frontend::ShaderCache* cache) {
   const Shader& shader = script.shaders.at(attachment.shader);
-  std::vector<uint32_t> words = spirv_of(shader, *attachment.stage);
+  std::vector<uint32_t> words = spirv_of(shader, *attachment.stage, cache);
   const std::string title = shader.name;
-  const std::string invalid = words.size() < 5 ? "too short to hold a header" : frontend::validate_spirv(words);
+  const std::string invalid = words.size() < 5 ? "too short to hold a header" : why_invalid(words);
   if (!invalid.empty()) throw UserError({shader.path, 0, 0}, fmt::format("shader '{}' is invalid SPIR-V\n{}", title, invalid));
   words = frontend::specialize(std::move(words), attachment.constants);
   CompiledShader out;
   Diagnostics notes;
   out.name = shader.name;
   out.reflection = frontend::reflect(words, title);
-  const std::vector<uint32_t> simple = frontend::simplify(std::move(words), title, notes);
-  out.program = frontend::lower(simple, title, frontend::BackendOptions{compiler.max_registers, compiler.schedule}, attachment.entry);
+  out.program = frontend::compile_module(words, title, attachment.entry, {compiler.max_registers, compiler.schedule, compiler.contract}, notes, cache).program;
   if (out.program.stage != *attachment.stage)
     throw UserError({shader.path, 0, 0}, fmt::format("entry point '{}' of shader '{}' is of another stage", attachment.entry, title));
   return out;
 }
 
-std::vector<CompiledShader> compile(const Script& script, const Pipeline& pipeline, const pipeline::CompilerParams& compiler) {
+std::vector<CompiledShader> compile(const Script& script, const Pipeline& pipeline, const pipeline::CompilerParams& compiler, frontend::ShaderCache* cache) {
   std::vector<Attachment> attachments;
   add_attachments(script, pipeline, attachments);
   std::vector<CompiledShader> out;
-  for (const Attachment& each : attachments) out.push_back(compile(script, each, compiler));
+  for (const Attachment& each : attachments) out.push_back(compile(script, each, compiler, cache));
   return out;
 }
 

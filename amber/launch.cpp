@@ -23,7 +23,7 @@ class Launch {
       : script_(script), command_(command), pipeline_(script.pipelines.at(command.pipeline)), shaders_(shaders), bvh_(bvh) {
     world_.memory = &memory_;
     world_.constant_bank.resize(isa::kConstantBankBytes);
-    world_.robust_images = script.features.count("robustBufferAccess") != 0;
+    world_.robust_images = world_.robust_buffers = script.features.count("robustBufferAccess") != 0;
     std::vector<isa::Program> programs;
     for (const CompiledShader& shader : shaders) programs.push_back(shader.program);
     image_ = core::link(programs);
@@ -33,14 +33,17 @@ class Launch {
     else set_compute();
   }
 
-  uint64_t run(const LaunchOptions& options) {
+  Launched run(const LaunchOptions& options) {
+    world_.on_fault = options.on_fault;
+    world_.prints = options.prints;
     world_.nearest_first_hit = options.gpu.rt.nearest_first_hit;
-    const uint64_t cycles = pipeline::run_world(world_, options.gpu, options.timing, options.no_skip, {}).cycles;
+    world_.any_hit = options.gpu.rt.any_hit.make({});
+    const pipeline::RenderResult result = pipeline::run_world(world_, options.gpu, options.timing, options.no_skip, {});
     for (const auto& [name, address] : addresses_) {
       std::vector<std::byte>& bytes = script_.buffers.at(name).bytes;
       std::memcpy(bytes.data(), memory_.find(address, bytes.size()), bytes.size());
     }
-    return cycles;
+    return {result.cycles, result.faults};
   }
 
  private:
@@ -262,8 +265,8 @@ void Launch::set_push_constants(const Binding& binding) {
 
 }  // namespace
 
-uint64_t launch(Script& script, const Command& command, const std::vector<CompiledShader>& shaders, const LaunchOptions& options) {
-  if (command.size[0] == 0 || command.size[1] == 0 || command.size[2] == 0) return 0;  // Vulkan: does nothing
+Launched launch(Script& script, const Command& command, const std::vector<CompiledShader>& shaders, const LaunchOptions& options) {
+  if (command.size[0] == 0 || command.size[1] == 0 || command.size[2] == 0) return {};  // Vulkan: does nothing
   return Launch(script, command, shaders, options.gpu.bvh).run(options);
 }
 

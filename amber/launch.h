@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "amber/compile.h"
+#include "core/fault.h"
+#include "core/print_log.h"
 
 namespace glint::amber {
 
@@ -9,10 +11,17 @@ struct LaunchOptions {
   pipeline::GpuParams gpu;
   bool timing = false;   // cycle by cycle; else every effect at once
   bool no_skip = false;  // of the timing machine
+  core::OnFault on_fault = core::OnFault::Stop;
+  core::PrintLog* prints = nullptr;         // null: what shaders print is left out
+  frontend::ShaderCache* cache = nullptr;   // null: shaders are compiled anew
 };
 
-// Runs `command` with shaders of its pipeline and leaves the buffers of `script` as they are afterwards. Returns the
-// cycles, 0 without timing. Errors as pipeline::render().
-uint64_t launch(Script& script, const Command& command, const std::vector<CompiledShader>& shaders, const LaunchOptions& options);
+// Runs `command` with shaders of its pipeline and leaves the buffers of `script` as they are afterwards. Errors
+// as pipeline::render().
+struct Launched {
+  uint64_t cycles = 0;    // 0 without timing
+  core::FaultLog faults;  // that were let pass
+};
+Launched launch(Script& script, const Command& command, const std::vector<CompiledShader>& shaders, const LaunchOptions& options);
 
 }  // namespace glint::amber

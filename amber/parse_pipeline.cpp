@@ -175,6 +175,13 @@ bool parse_ray_tracing_line(Parsing& p, const std::string& name, Pipeline& pipel
   return true;
 }
 
+// Passes of the optimizer change nothing but one, which puts limits to the places that a shader accesses.
+void parse_optimization(Parsing& p, Pipeline& pipeline) {
+  int unused = 0;
+  p.find(p.script.shaders, p.tokens.word("the shader"), "shader");
+  if (p.tokens.raw_until_end(unused).find("graphics-robust-access") != std::string::npos) pipeline.is_robust = true;
+}
+
 void parse_body(Parsing& p, Pipeline& pipeline) {
   Token token = p.tokens.next_after_line_ends();
   for (; token.is_word() && token.text != "END"; token = p.tokens.next_after_line_ends()) {
@@ -183,7 +190,8 @@ void parse_body(Parsing& p, Pipeline& pipeline) {
     if (name == "ATTACH") parse_attach(p, pipeline);
     else if (name == "BIND") parse_bind(p, pipeline);
     else if (name == "SUBGROUP") parse_subgroup(p);
-    else if (name == "SHADER_OPTIMIZATION" || name == "COMPILE_OPTIONS") p.tokens.word("the shader"), p.tokens.raw_until_end(unused);
+    else if (name == "COMPILE_OPTIONS") p.tokens.word("the shader"), p.tokens.raw_until_end(unused);
+    else if (name == "SHADER_OPTIMIZATION") parse_optimization(p, pipeline);
     else if (name == "FRAMEBUFFER_SIZE") p.tokens.number("the width"), p.tokens.number("the height");
     else if (name == "SET") p.unsupported("OpenCL: SET KERNEL");
     else if (!pipeline.is_ray_tracing || !parse_ray_tracing_line(p, name, pipeline)) p.unsupported("in a pipeline: " + name);
@@ -199,8 +207,8 @@ void parse_pipeline(Parsing& p) {
   pipeline.where = p.tokens.here();
   const std::string kind = p.tokens.word("the pipeline's kind");
   if (kind == "graphics") p.unsupported("graphics pipelines");
-  if (kind != "compute" && kind != "ray_tracing") p.unsupported("pipelines of kind " + kind);
-  pipeline.is_ray_tracing = kind == "ray_tracing";
+  if (kind != "compute" && kind != "raytracing") p.unsupported("pipelines of kind " + kind);
+  pipeline.is_ray_tracing = kind == "raytracing";
   pipeline.name = p.tokens.word("the pipeline's name");
   p.tokens.end_line();
   parse_body(p, pipeline);

@@ -74,6 +74,7 @@ struct Binding {
 struct Pipeline {
   std::string name;
   bool is_ray_tracing = false;
+  bool is_robust = false;                    // accesses outside of buffers and images are no faults
   std::vector<Attachment> shaders;           // one of a compute pipeline
   std::vector<std::pair<std::string, std::vector<std::string>>> groups;
   std::map<std::string, std::vector<std::string>> tables;  // of groups

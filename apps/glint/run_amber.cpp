@@ -20,12 +20,16 @@ Exit run_amber(const Session& session, const AmberOptions& options) {
   launch.gpu = read_config(session.resources, options.config, options.settings);
   if (options.max_instructions > 0) launch.gpu.core.instruction_budget = options.max_instructions;
   launch.timing = options.timing, launch.no_skip = options.no_skip, launch.on_fault = options.on_fault;
+  const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(options.shaders);
+  core::PrintLog prints(options.print_limit);
+  launch.cache = cache.get(), launch.prints = &prints;
 
   uint32_t counts[3] = {};
   Exit exit = Exit::Ok;
   for (const std::string& path : options.scripts) {
     const amber::Outcome outcome = amber::run_script(path, launch);
     ++counts[size_t(outcome.verdict)];
+    fmt::print(stderr, "{}", outcome.printed);
     for (const std::string& faults : outcome.faults) fmt::print(stderr, "{}\n", faults);
     if (outcome.verdict != amber::Verdict::Passed) fmt::print(stderr, "{}\n", outcome.message);
     if (options.scripts.size() == 1) exit = outcome.exit;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apps/glint/session.h"
+#include "apps/glint/shader_options.h"
 #include "core/fault.h"
 
 namespace glint::app {
@@ -16,6 +17,8 @@ struct AmberOptions {
   uint64_t max_instructions = 0;
   bool timing = false, no_skip = false;
   core::OnFault on_fault = core::OnFault::Stop;
+  ShaderOptions shaders;  // their folders and macros mean nothing to a script
+  uint64_t print_limit = 0;  // of each launch
 };
 
 bool names_script(const std::string& what);  // a path that ends in .amber

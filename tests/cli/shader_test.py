@@ -117,6 +117,27 @@ class Printing(ShaderTest):
         self.assertIn("before\n", done.stderr.decode())
         self.assertEqual((self.folder / "out/printf.txt").read_text(), "before\n")
 
+    def test_scripts_print_launch_by_launch(self):
+        self.write("two.amber", """#!amber
+SHADER compute printer GLSL
+#version 460
+#extension GL_EXT_debug_printf : require
+layout(local_size_x = 2) in;
+layout(set = 0, binding = 0) buffer W { uint w[]; };
+void main() { w[gl_GlobalInvocationID.x] += 1; debugPrintfEXT("thread %u has %u", gl_GlobalInvocationID.x, w[gl_GlobalInvocationID.x]); }
+END
+BUFFER words DATA_TYPE uint32 SIZE 2 FILL 0
+PIPELINE compute p
+  ATTACH printer
+  BIND BUFFER words AS storage DESCRIPTOR_SET 0 BINDING 0
+END
+RUN p 1 1 1
+RUN p 1 1 1
+EXPECT words IDX 0 EQ 2 2
+""")
+        done = self.glint("run", "two.amber")
+        self.assertEqual(done.stderr.decode(), "thread 0 has 1\nthread 1 has 1\nthread 0 has 2\nthread 1 has 2\n")
+
     def test_a_wrong_format_is_an_error_with_its_line(self):
         self.write("bad.comp", COMPUTE.replace('"line %u"', '"line %f"'))
         done = self.glint("run", "bad.comp", "-Iinclude", "-DSCALE=1", "-DLINES=0", code=2)
