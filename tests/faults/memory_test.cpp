@@ -62,17 +62,17 @@ TEST_CASE("an index past an array in shared memory names the block's shared memo
 }
 
 TEST_CASE("a misaligned address names where it lies, and is rounded down when let pass") {
-  check_memory({"got = Word(data_address + (i == 5u ? 10ul : 4ul)).value;", "which is no multiple of 4: byte 10 of 'binding 1' (160 bytes)",
+  check_memory({"got = Word(data_address + uint64_t(i == 5u ? 10u : 4u)).value;", "which is no multiple of 4: byte 10 of 'binding 1' (160 bytes)",
                 FaultKind::Misaligned, 1, {5, 0, 0}, [](uint32_t lane) { return lane == 5 ? 102 : 101; }});
 }
 
 TEST_CASE("an address that was never set is called a null pointer") {
-  check_memory({"got = Word(uint64_t(i == 33u ? 0ul : data_address)).value;", "a null pointer plus 0 bytes: nothing is bound there", FaultKind::OutOfBounds, 1,
+  check_memory({"got = Word(i == 33u ? uint64_t(0) : data_address).value;", "a null pointer plus 0 bytes: nothing is bound there", FaultKind::OutOfBounds, 1,
                 {33, 0, 0}, [](uint32_t lane) { return lane == 33 ? 0 : 100; }});
 }
 
 TEST_CASE("an address before the first byte of a buffer says how far before") {
-  check_memory({"got = Word(data_address - (i == 2u ? 8ul : 0ul)).value;", ": 8 bytes before the start of 'binding 1' (160 bytes)",
+  check_memory({"got = Word(data_address - uint64_t(i == 2u ? 8u : 0u)).value;", ": 8 bytes before the start of 'binding 1' (160 bytes)",
                 FaultKind::OutOfBounds, 1, {2, 0, 0}, [](uint32_t lane) { return lane == 2 ? 0 : 100; }});
 }
 
@@ -91,7 +91,7 @@ TEST_CASE("texels outside of an image are 0 and stores there dropped when let pa
 }
 
 TEST_CASE("a ray query in what is no structure names what lies there, and finds nothing when let pass") {
-  check_memory({"rayQueryEXT q; rayQueryInitializeEXT(q, accelerationStructureEXT(data_address + 16ul), 0, 0xff, vec3(0), 0.0, vec3(1), 9.0); "
+  check_memory({"rayQueryEXT q; rayQueryInitializeEXT(q, accelerationStructureEXT(data_address + uint64_t(16u)), 0, 0xff, vec3(0), 0.0, vec3(1), 9.0); "
                 "got = rayQueryProceedEXT(q) ? 1u : 10u + rayQueryGetIntersectionTypeEXT(q, true);",
                 "which is not a top-level acceleration structure: byte 16 of 'binding 1' (160 bytes)", FaultKind::Structure, 64, {0, 0, 0},
                 [](uint32_t) { return 10; }});

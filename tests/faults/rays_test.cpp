@@ -63,7 +63,7 @@ TEST_CASE("a callable outside of the table is named, and is not called when let 
 }
 
 TEST_CASE("a trace into what is no structure names what lies there, and misses when let pass") {
-  check_mistake({trace("accelerationStructureEXT(uint64_t(8ul))", "0u", "0u"),
+  check_mistake({trace("accelerationStructureEXT(uint64_t(8u))", "0u", "0u"),
                  "traces a ray into 0x8, which is not a top-level acceleration structure: a null pointer plus 8 bytes", FaultKind::Structure, 36, {0, 0, 0},
                  [](uint32_t lane) { return column(lane) < 6 ? 30 : 99; }},
                 kPlace, run_wrong);

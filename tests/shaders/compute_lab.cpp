@@ -79,13 +79,16 @@ void ComputeLab::run(const LabOptions& options) {
   for (size_t i = 0; i < addressed.size(); ++i)
     std::memcpy(world.constant_bank.data() + isa::kPushConstantOffset + 8 * i, &address.at(addressed[i]), 8);
 
+  world.on_fault = options.on_fault;
   if (options.timing) {
     pipeline::GpuParams gpu;
     gpu.cores = 2;
     gpu.core.instruction_budget = kBudget;
-    pipeline::TimingMachine(gpu, world, false).run({});
+    pipeline::TimingMachine machine(gpu, world, false);
+    machine.run({});
+    faults = machine.passed();
   } else {
-    pipeline::run_functional(world, kBudget, {});
+    faults = pipeline::run_functional(world, kBudget, {}).faults;
   }
   for (auto& [binding, words] : buffers) bench.take(address[binding], words);
   for (auto& [binding, all] : buffer_arrays)

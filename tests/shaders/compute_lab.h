@@ -33,6 +33,7 @@ class ComputeLab {
   } linked;
   std::array<uint32_t, 3> grid{1, 1, 1};
   frontend::GlslOptions glsl;
+  core::FaultLog faults;  // that the last run let pass
 
   explicit ComputeLab(std::string file) : file_(std::move(file)) {}
   void run(const LabOptions& options = {});

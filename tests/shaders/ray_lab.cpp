@@ -9,6 +9,7 @@
 #include <cstring>
 #include <span>
 
+#include "base/registry.h"
 #include "isa/verify.h"
 #include "pipeline/binding_table.h"
 #include "pipeline/functional_machine.h"
@@ -144,6 +145,7 @@ std::vector<uint32_t> RayLab::run(const LabOptions& options) {
   world.constant_bank.resize(isa::kConstantBankBytes);
   world.launch_size = {kWidth, kHeight, 1};
   world.max_trace_depth = max_trace_depth;
+  world.any_hit = Registry<rt::AnyHitMode>::instance().entry(options.any_hit).make_default({});
   const pipeline::TableInput table = make_table(*this, shaders_, shaders, options);
   const core::Image linked = core::link(shaders.programs);
   world.image = &linked;
@@ -175,13 +177,16 @@ std::vector<uint32_t> RayLab::run(const LabOptions& options) {
   if (!push_constants.empty())
     std::memcpy(world.constant_bank.data() + isa::kPushConstantOffset, push_constants.data(), push_constants.size() * 4);
 
+  world.on_fault = options.on_fault;
   if (options.timing) {
     pipeline::GpuParams gpu;
     gpu.cores = 2;
     gpu.core.instruction_budget = kBudget;
-    pipeline::TimingMachine(gpu, world, false).run({});
+    pipeline::TimingMachine machine(gpu, world, false);
+    machine.run({});
+    faults = machine.passed();
   } else {
-    pipeline::run_functional(world, kBudget, {});
+    faults = pipeline::run_functional(world, kBudget, {}).faults;
   }
 
   const auto texels = memory.view<float>(world.images[0].base, kImageWidth * kImageHeight * 4);
@@ -196,13 +201,14 @@ std::vector<uint32_t> RayLab::run(const LabOptions& options) {
 
 const std::vector<LabOptions>& all_lab_options() {
   static const std::vector<LabOptions> kAll = {{16, true, false}, {32, true, false}, {64, true, false},
-                                               {64, false, false}, {255, true, false}, {16, true, true}, {64, true, true}};
+                                               {64, false, false}, {255, true, false}, {16, true, true}, {64, true, true},
+                                               {32, true, false, "deferred"}, {64, true, true, "deferred"}};
   return kAll;
 }
 
 std::string to_string(const LabOptions& options) {
-  return fmt::format("{} registers, {}, {} machine", options.max_registers, options.schedule ? "scheduled" : "in order",
-                     options.timing ? "timing" : "functional");
+  return fmt::format("{} registers, {}, {} machine, {} any-hit", options.max_registers, options.schedule ? "scheduled" : "in order",
+                     options.timing ? "timing" : "functional", options.any_hit);
 }
 
 }  // namespace glint::test

@@ -28,6 +28,8 @@ struct LabOptions {
   uint32_t max_registers = 64;
   bool schedule = true;
   bool timing = false;
+  const char* any_hit = "immediate";
+  core::OnFault on_fault = core::OnFault::Stop;
 };
 
 // The scene, seen from above along -z. Lanes (x, y) of a launch of kWidth x kHeight shoot at (x + 1/2, y + 1/2):
@@ -59,6 +61,7 @@ class RayLab {
   // buffers after the run are in `image` and `buffers_after`. Errors as pipeline::render().
   std::vector<uint32_t> run(const LabOptions& options = {});
   std::vector<float> image;
+  core::FaultLog faults;  // that were let pass
   std::map<uint32_t, std::vector<uint32_t>> buffers_after;
 
  private:
