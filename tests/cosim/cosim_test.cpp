@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <cstring>
 #include <vector>
 
+#include "base/registry.h"
 #include "pipeline/functional_machine.h"
 #include "pipeline/scene_world.h"
 #include "pipeline/timing_machine.h"
@@ -91,6 +93,30 @@ TEST_CASE("the timing machine retires what the functional machine retires, instr
   INFO(scene << " " << test::shader_folder(workload));
 
   CHECK(compare_machines(test::small_job(scene, workload, 16, 1)) == "");
+}
+
+TEST_CASE("both machines retire the same in every node format") {
+  const auto format = GENERATE(from_range(Registry<rt::NodeFormat>::names()));
+  pipeline::RenderJob job = test::small_job("WKND", pipeline::Workload::PathTracing, 16, 1);
+  job.gpu.bvh.format.name = format;
+  INFO(format);
+
+  CHECK(compare_machines(job) == "");
+}
+
+TEST_CASE("no node format changes a byte of a picture") {
+  const auto scene = GENERATE("WKND", "SHIP");
+  pipeline::RenderJob job =
+      test::small_job(scene, *scene == 'W' ? pipeline::Workload::PathTracing : pipeline::Workload::Shadow, 48, 1);
+  job.timing = false;
+  const std::vector<float> expected = pipeline::render(job).accumulation;
+  for (const std::string& format : Registry<rt::NodeFormat>::names()) {
+    job.gpu.bvh.format.name = format;
+    const pipeline::RenderResult result = pipeline::render(job);
+    INFO(scene << " " << format);
+    REQUIRE(result.accumulation.size() == expected.size());
+    CHECK(std::memcmp(result.accumulation.data(), expected.data(), expected.size() * sizeof expected[0]) == 0);
+  }
 }
 
 TEST_CASE("the any-hit shader runs alike on both machines") {

@@ -23,7 +23,8 @@ constexpr uint32_t kMaxTraceDepth = 8;     // the picture: four hits deep, each 
 
 enum Binding : uint32_t { kTopLevel, kImage, kVertices, kSpheres, kRays, kRecords };
 
-rt::StructureInfo build_scene(const Recording& r, mem::AddressSpace& memory) {
+rt::StructureInfo build_scene(const Recording& r, mem::AddressSpace& memory, const std::string& format) {
+  const rt::BuildOptions options{format.c_str()};
   std::vector<rt::StructureInfo> bottoms;
   std::vector<rt::Bounds> boxes;
   for (const auto& s : r.spheres) {
@@ -44,21 +45,21 @@ rt::StructureInfo build_scene(const Recording& r, mem::AddressSpace& memory) {
         geometry.aabbs = std::span(boxes).first(g.count);
       level.geometries.push_back(geometry);
     }
-    bottoms.push_back(rt::build_bottom(memory, "bottom level", level));
+    bottoms.push_back(rt::build_bottom(memory, "bottom level", level, options));
   }
   std::vector<rt::Instance> instances;
   for (const Instance& i : r.instances) instances.push_back({i.transform, i.custom, i.mask, i.sbt_offset, i.flags, i.bottom});
-  return rt::build_top(memory, "top level", instances, bottoms);
+  return rt::build_top(memory, "top level", instances, bottoms, options);
 }
 
 // Memory, shaders and table of one launch. Not movable: the world points into it.
 class Host {
  public:
-  explicit Host(const Recording& r) : recording_(r) {
+  explicit Host(const Recording& r, const std::string& format = "bvh6") : recording_(r) {
     world.memory = &memory;
     world.constant_bank.resize(isa::kConstantBankBytes);
     world.max_trace_depth = kMaxTraceDepth;
-    const rt::StructureInfo top = build_scene(r, memory);
+    const rt::StructureInfo top = build_scene(r, memory, format);
     bind(kTopLevel, top.address, top.bytes);
     upload(kVertices, "vertices", r.vertices);
     upload(kSpheres, "spheres", r.spheres);
@@ -155,8 +156,8 @@ const std::vector<RecordData>& hit_records() {
   return kRecords;
 }
 
-std::vector<Record> run_mode(const Recording& r, const Mode& mode, const std::string& any_hit, bool timing) {
-  Host host(r);
+std::vector<Record> run_mode(const Recording& r, const Mode& mode, const std::string& any_hit, bool timing, const std::string& format) {
+  Host host(r, format);
   host.world.any_hit = Registry<rt::AnyHitMode>::instance().entry(any_hit).make_default({});
   host.table.raygen = {host.general("rec.rgen"), {}};
   host.table.miss.records = {{host.general("rec.rmiss"), {}}, {host.general("rec2.rmiss"), {}}};

@@ -18,8 +18,9 @@ struct RecordData {  // struct SbtData of shaders/common.glsl
 // What the recording does not hold: the data of the hit records (see README.md).
 const std::vector<RecordData>& hit_records();
 
-// Compiles the set's shaders, as they are, and runs a mode; one record a ray.
-std::vector<Record> run_mode(const Recording& recording, const Mode& mode, const std::string& any_hit, bool timing = false);
+// Compiles the set's shaders, as they are, and runs a mode with structures of a node format; one record a ray.
+std::vector<Record> run_mode(const Recording& recording, const Mode& mode, const std::string& any_hit, bool timing = false,
+                             const std::string& format = "bvh6");
 
 // The picture, RGBA, `size` x `size`. The records' data may be given.
 std::vector<float> run_image(const Recording& recording, uint32_t size, const std::vector<RecordData>& records = hit_records());
