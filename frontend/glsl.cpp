@@ -1,6 +1,7 @@
 // GLSL to SPIR-V 1.6 through glslang in process: includes, defines, debug lines, messages with file and line.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
@@ -153,9 +154,22 @@ EShLanguage language_of(isa::Stage stage) {
   return EShLangCompute;
 }
 
+constexpr int kLinesBeforeDefines = 1;  // of the preamble
+
+// The place of a message as people know it: glslang numbers what preamble() gives it "-1", and has no place for what it
+// finds when it links.
+std::string place_in_files(const std::string& place, const std::string& path, const GlslOptions& options) {
+  if (place.rfind("Linking ", 0) == 0) return path;
+  if (place.rfind("-1:", 0) != 0) return place;
+  const int define = std::atoi(place.c_str() + 3) - 1 - kLinesBeforeDefines;
+  if (define < 0 || define >= int(options.defines.size())) return path;
+  const auto& [name, value] = options.defines[size_t(define)];
+  return fmt::format("{}: -D {}={}", path, name, value);
+}
+
 // glslang writes "ERROR: file:line: 'token' : text"; ours is "file:line: error: 'token' : text". Lines that
 // only count the errors are left out.
-std::string in_our_form(const std::string& log) {
+std::string in_our_form(const std::string& log, const std::string& path, const GlslOptions& options) {
   std::istringstream lines(log);
   std::string result;
   for (std::string line; std::getline(lines, line);) {
@@ -170,7 +184,7 @@ std::string in_our_form(const std::string& log) {
       const std::string severity = is_error ? "error: " : "warning: ";
       line = end_of_place == std::string::npos
                  ? severity + text
-                 : text.substr(0, end_of_place + 2) + severity + text.substr(end_of_place + 2);
+                 : place_in_files(text.substr(0, end_of_place), path, options) + ": " + severity + text.substr(end_of_place + 2);
     }
     if (!result.empty()) result += '\n';
     result += line;
@@ -187,10 +201,10 @@ std::string preamble(const GlslOptions& options) {
 constexpr int kDefaultGlslVersion = 460;  // GL_EXT_ray_tracing needs it
 
 std::vector<uint32_t> generate(glslang::TShader& shader, EShLanguage language, EShMessages messages,
-                               const std::string& path) {
+                               const std::string& path, const GlslOptions& glsl) {
   glslang::TProgram program;
   program.addShader(&shader);
-  if (!program.link(messages)) throw UserError(in_our_form(program.getInfoLog()));
+  if (!program.link(messages)) throw UserError(in_our_form(program.getInfoLog(), path, glsl));
   glslang::SpvOptions options;
   options.generateDebugInfo = true;
   options.disableOptimizer = true;
@@ -237,8 +251,8 @@ std::vector<uint32_t> glsl_text_to_spirv(const std::string& source, const std::s
   const auto messages = EShMessages(EShMsgSpvRules | EShMsgVulkanRules | EShMsgDebugInfo | EShMsgEnhanced);
   Includer includer(options.include_dirs);
   if (!shader.parse(GetDefaultResources(), kDefaultGlslVersion, ENoProfile, false, false, messages, includer))
-    throw UserError(in_our_form(shader.getInfoLog()));
-  std::vector<uint32_t> words = generate(shader, language, messages, path);
+    throw UserError(in_our_form(shader.getInfoLog(), path, options));
+  std::vector<uint32_t> words = generate(shader, language, messages, path, options);
   if (options.cache) store(*options.cache, key, includer.lookups(), words);
   return words;
 }

@@ -220,7 +220,7 @@ class Faults(GlintTest):
         told, pictures = [], []
         for mode in ("functional", "timing"):
             with self.subTest(mode=mode):
-                self.expect(4, ["wrong.comp:7 (instruction ", "past the end of", "launch id ("], "run", "wrong.comp", "--mode", mode, "--out", "stop")
+                self.expect(4, ["wrong.comp:6 (instruction ", "past the end of", "launch id ("], "run", "wrong.comp", "--mode", mode, "--out", "stop")
                 self.assertEqual(json.loads((self.folder / "stop/run.json").read_text())["on_fault"], "stop")
                 done = self.expect(0, ["wrong.comp:6 (instruction ", "wrong.comp:7 (instruction ", "(0, 0, 0), the first of 65536 times",
                                        "faults let pass: 131072, at 2 places"], "run", "wrong.comp", "--mode", mode, "--on-fault", "warn", "--out", mode)

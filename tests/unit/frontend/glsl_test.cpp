@@ -34,6 +34,20 @@ TEST_CASE("a mistake in a shader is reported with its file and line") {
   CHECK_THAT(message_of(path), Contains(path + ":4: error: 'b' : undeclared identifier"));
 }
 
+TEST_CASE("a mistake in a define of the command line names the define") {
+  const lab::Folder folder;
+  const std::string path = folder.write("d.comp", "#version 460\nvoid main() { int a = N; }\n");
+  GlslOptions options;
+  options.defines = {{"M", "1"}, {"N", "5ul"}};
+  CHECK_THAT(message_of(path, options), Contains(path + ": -D N=5ul: error: '64-bit literal'"));
+}
+
+TEST_CASE("a mistake that only linking finds names the file") {
+  const lab::Folder folder;
+  const std::string path = folder.write("none.comp", "#version 460\nvoid f() {}\n");
+  CHECK_THAT(message_of(path), Contains(path + ": error: Missing entry point"));
+}
+
 TEST_CASE("a mistake in an included file is reported at the included file's line") {
   const lab::Folder folder;
   const std::string header = folder.write("sub/bad.glsl", "\n\nint broken() { return missing; }\n");
