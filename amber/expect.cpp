@@ -66,9 +66,9 @@ class Check {
   }
 
   std::string values() const {
-    const Layout& layout = buffer_.layout;
-    uint64_t element = expect_.x / layout.stride * layout.stride;
-    size_t slot = slot_at(expect_.x - element);
+    const Layout& layout = expect_.as ? *expect_.as : buffer_.layout;
+    uint64_t element = expect_.as ? expect_.x : expect_.x / layout.stride * layout.stride;
+    size_t slot = expect_.as ? 0 : slot_at(expect_.x - element);
     const uint64_t shift = expect_.x - element - layout.slots[slot].offset;  // of data that lie across elements
     for (size_t i = 0; i < expect_.values.size(); ++i) {
       const Slot& at = layout.slots[slot];

@@ -23,7 +23,7 @@ class Launch {
       : script_(script), command_(command), pipeline_(script.pipelines.at(command.pipeline)), shaders_(shaders), bvh_(bvh) {
     world_.memory = &memory_;
     world_.constant_bank.resize(isa::kConstantBankBytes);
-    world_.robust_images = world_.robust_buffers = script.features.count("robustBufferAccess") != 0;
+    world_.robust_images = world_.robust_buffers = pipeline_.is_robust || script.features.count("robustBufferAccess") != 0;
     std::vector<isa::Program> programs;
     for (const CompiledShader& shader : shaders) programs.push_back(shader.program);
     image_ = core::link(programs);

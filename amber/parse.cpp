@@ -55,7 +55,11 @@ std::string Parsing::read_file(const std::string& file) {
 Script parse_script(const std::string& text, const std::string& path) {
   Script script;
   script.path = path;
-  if (text.rfind("#!amber", 0) != 0) throw UserError({path, 1, 0}, "the first line is not '#!amber'");
+  if (text.rfind("#!amber", 0) != 0) {
+    if (!has_sections(text)) throw UserError({path, 1, 0}, "the first line is not '#!amber'");
+    parse_sections(script, text);
+    return script;
+  }
   Parsing p{Tokens(text, path), script};
   for (Token token = p.tokens.next_after_line_ends(); token.is_word(); token = p.tokens.next_after_line_ends()) {
     if (token.text == "SET") parse_engine_data(p);

@@ -35,6 +35,10 @@ struct Parsing {
 };
 
 isa::Stage stage_named(Parsing& p, const std::string& name);
+// A shader's text so that its lines count from `first_line` on.
+std::string at_line(const std::string& text, int first_line);
+// One number, with whether it counts percent.
+std::pair<double, bool> parse_tolerance(Parsing& p);
 
 // parse_shader.cpp
 void parse_shader(Parsing& p);
@@ -49,6 +53,9 @@ void parse_structure(Parsing& p);
 // parse_pipeline.cpp
 void parse_pipeline(Parsing& p);
 void parse_derived_pipeline(Parsing& p);
+// parse_sections.cpp: the older language, whose scripts are divided by lines as [compute shader] and [test]
+bool has_sections(const std::string& text);
+void parse_sections(Script& script, const std::string& text);
 // parse_command.cpp: false when `name` is none of these
 bool parse_command(Parsing& p, const std::string& name, std::vector<Command>& to);
 

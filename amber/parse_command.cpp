@@ -39,14 +39,7 @@ void parse_run(Parsing& p, Command& command) {
 }
 
 void parse_tolerances(Parsing& p, Expectation& expect) {
-  while (p.tokens.peek().is_word() && !comparator_named(p.tokens.peek().text)) {
-    std::string text = p.tokens.next().text;
-    const bool is_percent = text.ends_with('%');
-    if (is_percent) text.pop_back();
-    double value = 0;
-    if (!parse_real(text, value)) p.wrong(fmt::format("'{}' is no tolerance", text));
-    expect.tolerances.emplace_back(value, is_percent);
-  }
+  while (p.tokens.peek().is_word() && !comparator_named(p.tokens.peek().text)) expect.tolerances.push_back(parse_tolerance(p));
   if (expect.tolerances.empty() || expect.tolerances.size() > 4) p.wrong("a tolerance has one to four numbers");
 }
 
@@ -103,6 +96,15 @@ void parse_copy(Parsing& p, Command& command) {
 }
 
 }  // namespace
+
+std::pair<double, bool> parse_tolerance(Parsing& p) {
+  std::string text = p.tokens.word("the tolerance");
+  const bool is_percent = text.ends_with('%');
+  if (is_percent) text.pop_back();
+  double value = 0;
+  if (!parse_real(text, value)) p.wrong(fmt::format("'{}' is no tolerance", text));
+  return {value, is_percent};
+}
 
 bool parse_command(Parsing& p, const std::string& name, std::vector<Command>& to) {
   Command command;

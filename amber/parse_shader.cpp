@@ -10,17 +10,10 @@ namespace {
 // What shaders need of a device they say themselves, and the compiler refuses by name what it lacks: scripts name many
 // features without need. These alone change what a launch does, and nothing else would tell.
 bool is_lacking(const std::string& name) {
-  for (const char* part : {"sparse", "nullDescriptor", "protectedMemory", "robustBufferAccess2", "robustImageAccess2"})
+  for (const char* part : {"sparse", "nullDescriptor", "protectedMemory", "robustBufferAccess2", "robustImageAccess2",
+                           "RoundingModeRTZ", "DenormFlushToZero"})
     if (name.find(part) != std::string::npos) return true;
   return false;
-}
-
-// The text so that its lines count from `first_line` on. GLSL ES wants #version before anything else.
-std::string at_line(const std::string& text, int first_line) {
-  const size_t end = text.find('\n');
-  const bool is_es = text.rfind("#version", 0) == 0 && end != std::string::npos && text.substr(0, end).find(" es") != std::string::npos;
-  if (is_es) return fmt::format("{}\n#line {}\n{}", text.substr(0, end), first_line + 1, text.substr(end + 1));
-  return std::string(size_t(first_line - 1), '\n') + text;
 }
 
 Language language_named(Parsing& p, const std::string& name) {
@@ -33,6 +26,14 @@ Language language_named(Parsing& p, const std::string& name) {
 }
 
 }  // namespace
+
+// GLSL ES wants #version before anything else.
+std::string at_line(const std::string& text, int first_line) {
+  const size_t end = text.find('\n');
+  const bool is_es = text.rfind("#version", 0) == 0 && end != std::string::npos && text.substr(0, end).find(" es") != std::string::npos;
+  if (is_es) return fmt::format("{}\n#line {}\n{}", text.substr(0, end), first_line + 1, text.substr(end + 1));
+  return std::string(size_t(first_line - 1), '\n') + text;
+}
 
 isa::Stage stage_named(Parsing& p, const std::string& name) {
   const std::map<std::string, isa::Stage> stages{{"compute", isa::Stage::Compute}, {"ray_generation", isa::Stage::RayGeneration},
@@ -74,7 +75,7 @@ void parse_virtual_file(Parsing& p) {
 
 void parse_device(Parsing& p, const std::string& command) {
   const std::string name = p.tokens.word("a name");
-  if (command == "DEVICE_FEATURE" && is_lacking(name)) p.unsupported(command + " " + name);
+  if (is_lacking(name)) p.unsupported(command + " " + name);
   p.script.features.insert(name);
 }
 

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "amber/expect.h"
 
 namespace glint::amber {
@@ -25,6 +27,9 @@ class Runner {
     switch (command.kind) {
       case Command::Kind::Run: return launch_pipeline(command), true;
       case Command::Kind::Copy: return copy(command), true;
+      case Command::Kind::Write:
+        std::copy(command.bytes.begin(), command.bytes.end(), script_.buffers.at(command.to).bytes.begin() + std::ptrdiff_t(command.offset));
+        return true;
       case Command::Kind::Repeat:
         for (uint32_t i = 0; i < command.count; ++i)
           if (!run(command.body)) return false;

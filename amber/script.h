@@ -90,18 +90,21 @@ struct Expectation {
   std::string buffer, other;
   Comparator comparator = Comparator::Eq;
   uint32_t x = 0, y = 0, width = 0, height = 0;   // x: bytes, but of pixels in pixels
+  std::optional<Layout> as;                       // of the values, from x on; else the buffer's
   std::vector<std::pair<double, bool>> tolerances;  // with whether it counts percent
   std::vector<std::string> values;
 };
 
 struct Command {
-  enum class Kind : uint8_t { Run, Expect, Copy, Repeat } kind = Kind::Run;
+  enum class Kind : uint8_t { Run, Expect, Copy, Write, Repeat } kind = Kind::Run;
   SourceLocation where;
   std::string pipeline;                        // Run
   std::array<uint32_t, 3> size{1, 1, 1};
   std::string raygen, miss, hit, callable;     // tables
   Expectation expect;
-  std::string from, to;                        // Copy
+  std::string from, to;                        // Copy; Write: to
+  uint32_t offset = 0;                         // Write
+  std::vector<std::byte> bytes;                // Write
   uint32_t count = 1;                          // Repeat
   std::vector<Command> body;
 };

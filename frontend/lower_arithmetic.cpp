@@ -172,10 +172,16 @@ void extended(Lowering& l, const Instruction& inst, const LoweringRow& row) {
   Emitter& e = l.emit();
   const std::string_view high = inst.op == spv::Op::OpSMulExtended ? "mul.hi.s32" : "mul.hi.u32";
   const Part part = l.part_of(l.type_of(inst.operands[0]));
-  if (bytes_of(part) < 4) return l.unsupported("extended arithmetic of narrow integers");
   const Operands a = l.value(inst.operands[0]), b = l.value(inst.operands[1]);
   Operands first, second;
   for (size_t i = 0; i < a.size(); ++i) {
+    if (bytes_of(part) < 4 && inst.op != spv::Op::OpISubBorrow) {  // all of it lies in 32 bits
+      const bool is_signed = inst.op == spv::Op::OpSMulExtended;
+      const Operand whole = e.value(row.name32, {widened(e, part, a[i], is_signed), widened(e, part, b[i], is_signed)});
+      first.push_back(narrowed(e, part, whole));
+      second.push_back(narrowed(e, part, e.value("shr.u32", {whole, Operand::value(8 * bytes_of(part))})));
+      continue;
+    }
     first.push_back(typed(e, row.name32, part, {a[i], b[i]}));
     if (inst.op == spv::Op::OpIAddCarry || inst.op == spv::Op::OpISubBorrow) {
       const Operand carry = inst.op == spv::Op::OpIAddCarry ? typed(e, "setp.lt.u32", part, {first.back(), a[i]})

@@ -265,6 +265,14 @@ struct Call {
   bool is_wide = false;  // any argument or result of 64 bits
 };
 
+// Of Ldexp: an integer of any width, as one of 32 bits. Beyond these limits every exponent gives 0 or infinity.
+Operand exponent(Emitter& e, Part part, const Operand& x) {
+  if (bytes_of(part) < 8) return widened(e, part, x, true);
+  constexpr int64_t kFar = 1 << 16;
+  const Operand near = e.value("min.s64", {e.value("max.s64", {x, Operand::value(uint64_t(-kFar))}), Operand::value(uint64_t(kFar))});
+  return e.value("cvt.u32.u64", {near});
+}
+
 Call read_call(Lowering& l, const Instruction& inst, size_t num_arguments, bool sign_extend) {
   Call call{inst.operands[1], {}, false};
   const auto note = [&](Id type) {
@@ -275,10 +283,13 @@ Call read_call(Lowering& l, const Instruction& inst, size_t num_arguments, bool 
   for (size_t i = 0; i < num_arguments; ++i) {
     const Id argument = inst.operands[2 + i];
     const Id type = l.type_of(argument);
-    note(type);
+    const bool is_exponent = call.function == GLSLstd450Ldexp && i == 1;
+    if (!is_exponent) note(type);
     Operands parts = l.value(argument);
-    for (size_t part = 0; part < parts.size(); ++part)
-      parts[part] = widened(l.emit(), l.layout().parts(type)[part], parts[part], sign_extend);
+    for (size_t part = 0; part < parts.size(); ++part) {
+      const Part kind = l.layout().parts(type)[part];
+      parts[part] = is_exponent ? exponent(l.emit(), kind, parts[part]) : widened(l.emit(), kind, parts[part], sign_extend);
+    }
     call.arguments.push_back(std::move(parts));
   }
   return call;
