@@ -212,6 +212,7 @@ std::vector<uint32_t> generate(glslang::TShader& shader, EShLanguage language, E
   std::vector<uint32_t> words;
   spv::SpvBuildLogger log;
   glslang::GlslangToSpv(*program.getIntermediate(language), words, &log, &options);
+  refuse_unknown_capabilities(words, path);
   const std::string invalid = validate_spirv(words);
   if (!invalid.empty()) throw UserError({path, 0, 0}, "glslang made invalid SPIR-V\n" + invalid);
   return words;

@@ -33,9 +33,9 @@ const std::vector<std::string>& pass_list() {
       "--convert-local-access-chains",
       "--eliminate-local-single-block",
       "--eliminate-local-single-store",
-      "--ssa-rewrite",  // no removal of dead code yet: the pass crashes on calls that take addresses of buffers
-      "--cfg-cleanup",
-      "--merge-blocks",
+      "--ssa-rewrite",
+      // Not here: removal of dead code, which crashes on calls that take addresses of buffers; and merging of blocks,
+      // which moves calls into continue constructs, where functions that end an any-hit shader are not inlined.
       "--inline-entry-points-exhaustive",
       "--eliminate-dead-functions",
       "--eliminate-dead-code-aggressive",

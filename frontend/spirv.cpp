@@ -52,6 +52,21 @@ std::string validate_spirv(const std::vector<uint32_t>& words) {
   return messages.empty() ? "the SPIR-V validator rejected the module without a message\n" : messages;
 }
 
+void refuse_unknown_capabilities(const std::vector<uint32_t>& words, const std::string& name) {
+  constexpr size_t kHeaderWords = 5;  // SPIR-V specification, 2.3 Physical Layout
+  std::string unknown, extensions;
+  for (size_t at = kHeaderWords; at < words.size() && words[at] >> 16 != 0; at += words[at] >> 16) {
+    const auto op = spv::Op(words[at] & 0xffff);
+    if (op == spv::Op::OpFunction) break;
+    if (op == spv::Op::OpExtension) extensions += fmt::format(" {}", reinterpret_cast<const char*>(&words[at + 1]));
+    if (op != spv::Op::OpCapability || at + 1 == words.size()) continue;
+    if (const std::string number = fmt::format("{}", words[at + 1]); name_of_capability(words[at + 1]) == number)
+      unknown += fmt::format("\n  {}: capability {}, which the installed SPIRV-Tools do not know", name, number);
+  }
+  if (!unknown.empty())
+    throw UnsupportedError(fmt::format("{}: not supported:{}\n  extensions of the module:{}", name, unknown, extensions));
+}
+
 bool is_spirv_file(const std::string& path) {
   const std::string ending = std::filesystem::path(path).extension().string();
   return ending == ".spv" || ending == ".spvasm";
@@ -69,6 +84,7 @@ std::vector<uint32_t> read_spirv(const std::string& path) {
   } else {
     std::memcpy(words.data(), bytes.data(), bytes.size());
   }
+  refuse_unknown_capabilities(words, path);
   const std::string invalid = validate_spirv(words);
   if (!invalid.empty()) throw UserError({path, 0, 0}, "invalid SPIR-V\n" + invalid);
   return words;

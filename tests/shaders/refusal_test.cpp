@@ -38,5 +38,14 @@ TEST_CASE("a mistake in a file that an included file includes is reported there"
   CHECK_THAT(message_of<UserError>("mistake.rchit"), Contains("glsl/parts/mistake.glsl:6: error: 'nothing'"));
 }
 
+TEST_CASE("a capability younger than the validator is refused by its number, with the extension that brings it") {
+  CHECK_THAT(message_of<UnsupportedError>("cluster.rchit"), Contains("capability 5437") && Contains("SPV_NV_cluster_acceleration_structure"));
+}
+
+TEST_CASE("a GLSL extension younger than the compiler is refused by name at its line") {
+  CHECK_THAT(message_of<UserError>("positions.rchit"),
+             Contains(":5: error: '#extension' : extension not supported: GL_EXT_ray_tracing_position_fetch"));
+}
+
 }  // namespace
 }  // namespace glint::test
