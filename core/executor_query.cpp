@@ -90,6 +90,11 @@ bool Executor::run_query(WarpContext& warp, const isa::Inst& inst, const isa::Op
   if (exec) {
     RayState* const states = find_numbered(warp, warp.queries, inst.operand[reads ? 1 : 0], warp.depth, "ray query");
     if (!states) return false;
+    // After a ray has been walked, shaders ask for more or for what it found.
+    const bool asks = row.effect == isa::Effect::QueryProceed || row.detail == isa::detail_of(Query::Type, true);
+    for (LaneMask lanes = asks ? exec : 0; lanes; lanes &= lanes - 1)
+      if (RayState& state = states[std::countr_zero(lanes)]; state.broken && !let_pass_broken(warp, std::countr_zero(lanes), state)) [[unlikely]]
+        return false;
     if (row.effect == isa::Effect::QueryProceed) {
       for_each_lane(exec, [&](int lane) { pass_over(states[lane]); });
       warp.waiting_for_rays = true;
@@ -120,8 +125,7 @@ bool Executor::begin_queries(WarpContext& warp, const isa::Inst& inst, RayState*
     ray.cull_mask = read_word(warp.regs, inst, kMask, lane) & 0xff;
     read_ray(warp.regs, inst, kRay, lane, ray);
     state.end_at_first_hit = !world_.nearest_first_hit;
-    if (!rt::begin(state, *world_.memory))
-      return fail(warp, lane, fmt::format("starts a ray query in {:#x}, which is not a top-level acceleration structure", ray.structure));
+    if (!rt::begin(state, *world_.memory) && !let_pass_structure(warp, lane, "starts a ray query in", ray.structure)) return false;
   }
   return true;
 }
