@@ -26,7 +26,7 @@ void bind(core::World& world, uint32_t set, uint32_t binding, uint64_t address_o
   std::memcpy(world.constant_bank.data() + set * isa::kSetBytes + binding * isa::kDescriptorBytes, descriptor, sizeof(descriptor));
 }
 
-rt::StructureInfo quads(mem::AddressSpace& memory) {
+rt::StructureInfo quads(mem::AddressSpace& memory, const rt::BuildOptions& options) {
   std::vector<std::array<float, 3>> corners;
   for (float x : {0.0f, 1.0f})
     for (const auto& [dx, y] : {std::pair{0.0f, 0.0f}, {1.0f, 0.0f}, {1.0f, 6.0f}, {0.0f, 6.0f}}) corners.push_back({x + dx, y, 0});
@@ -39,10 +39,10 @@ rt::StructureInfo quads(mem::AddressSpace& memory) {
     geometry.opaque = g == 0;
     level.geometries.push_back(geometry);
   }
-  return rt::build_bottom(memory, "quads", level);
+  return rt::build_bottom(memory, "quads", level, options);
 }
 
-rt::StructureInfo boxes(mem::AddressSpace& memory) {
+rt::StructureInfo boxes(mem::AddressSpace& memory, const rt::BuildOptions& options) {
   std::vector<rt::Bounds> bounds[2];
   for (uint32_t g = 0; g < 2; ++g)
     for (uint32_t y = 0; y < RayLab::kHeight; ++y) {
@@ -58,15 +58,15 @@ rt::StructureInfo boxes(mem::AddressSpace& memory) {
     geometry.opaque = g == 0;
     level.geometries.push_back(geometry);
   }
-  return rt::build_bottom(memory, "boxes", level);
+  return rt::build_bottom(memory, "boxes", level, options);
 }
 
-rt::StructureInfo scene(mem::AddressSpace& memory) {
-  const std::vector<rt::StructureInfo> bottoms{quads(memory), boxes(memory)};
+rt::StructureInfo scene(mem::AddressSpace& memory, const rt::BuildOptions& options) {
+  const std::vector<rt::StructureInfo> bottoms{quads(memory, options), boxes(memory, options)};
   const rt::Instance first{{1, 0, 0, 2, 0, 1, 0, 0, 0, 0, 1, 0}, 100, 0xff, 0, 0, 0};
   const rt::Instance second{{1, 0, 0, 4, 0, 1, 0, 0, 0, 0, 3, 2}, 200, 0x0f, 0, 0, 0};
   const rt::Instance third{{1, 0, 0, 6, 0, 1, 0, 0, 0, 0, 1, 0}, 300, 0xff, 4, 0, 1};
-  return rt::build_top(memory, "top", std::vector<rt::Instance>{first, second, third}, bottoms);
+  return rt::build_top(memory, "top", std::vector<rt::Instance>{first, second, third}, bottoms, options);
 }
 
 std::vector<std::byte> as_bytes(const std::vector<uint32_t>& words) {
@@ -153,7 +153,7 @@ std::vector<uint32_t> RayLab::run(const LabOptions& options) {
   world.max_callable_depth = max_callable_depth;
   world.local_bytes = pipeline::stack_bytes(linked, max_trace_depth, max_callable_depth);
 
-  const rt::StructureInfo top = scene(memory);
+  const rt::StructureInfo top = scene(memory, {options.node_format});
   bind(world, 0, 0, top.address, top.bytes);
   const Address structure_words = memory.allocate("the top level's address", 8);
   memory.write(structure_words, &top.address, 8);
@@ -200,15 +200,22 @@ std::vector<uint32_t> RayLab::run(const LabOptions& options) {
 }
 
 const std::vector<LabOptions>& all_lab_options() {
+  const auto in_format = [](const char* node_format, bool timing) {
+    LabOptions out;
+    out.timing = timing;
+    out.node_format = node_format;
+    return out;
+  };
   static const std::vector<LabOptions> kAll = {{16, true, false}, {32, true, false}, {64, true, false},
                                                {64, false, false}, {255, true, false}, {16, true, true}, {64, true, true},
-                                               {32, true, false, "deferred"}, {64, true, true, "deferred"}};
+                                               {32, true, false, "deferred"}, {64, true, true, "deferred"},
+                                               in_format("bvh2", false), in_format("bvh4", true), in_format("bvh8", false)};
   return kAll;
 }
 
 std::string to_string(const LabOptions& options) {
-  return fmt::format("{} registers, {}, {} machine, {} any-hit", options.max_registers, options.schedule ? "scheduled" : "in order",
-                     options.timing ? "timing" : "functional", options.any_hit);
+  return fmt::format("{} registers, {}, {} machine, {} any-hit, {}", options.max_registers, options.schedule ? "scheduled" : "in order",
+                     options.timing ? "timing" : "functional", options.any_hit, options.node_format);
 }
 
 }  // namespace glint::test

@@ -30,6 +30,7 @@ struct LabOptions {
   bool timing = false;
   const char* any_hit = "immediate";
   core::OnFault on_fault = core::OnFault::Stop;
+  const char* node_format = "bvh6";
 };
 
 // The scene, seen from above along -z. Lanes (x, y) of a launch of kWidth x kHeight shoot at (x + 1/2, y + 1/2):
