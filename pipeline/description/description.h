@@ -70,8 +70,9 @@ struct ImageDescription {
   std::array<uint32_t, 3> size{0, 0, 0};  // zeros: the file's, or the launch's
   uint32_t layers = 1;
   bool mipmaps = false;
-  std::string init = "zero";  // zero, value, checker, random
+  std::string init = "zero";  // zero, value, checker, random, data
   std::array<double, 4> value{0, 0, 0, 0};
+  std::vector<double> data;  // the format's channels of each texel: x first, then y, z and layers
   uint64_t seed = 1;
   core::Sampler sampler;
   std::vector<Save> saves;

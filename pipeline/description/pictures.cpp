@@ -76,6 +76,20 @@ Texel made_up(const ImageDescription& image, uint32_t x, uint32_t y, uint32_t z,
   return {0, 0, 0, 0};
 }
 
+// The texel whose number among those of its image is `index`; channels that the format lacks are 0, alpha 1.
+Texel given(const ImageDescription& image, size_t index, size_t channels) {
+  Texel out{0, 0, 0, 1};
+  std::copy_n(image.data.begin() + std::ptrdiff_t(index * channels), channels, out.begin());
+  return out;
+}
+
+void check_data(const ImageDescription& image, const core::ImageView& view, size_t channels) {
+  const size_t wanted = size_t{view.width} * view.height * view.depth * view.layers * channels;
+  if (image.data.size() != wanted)
+    throw UserError(image.where, fmt::format("image '{}' has {} numbers: {} x {} x {} texels with {} layers and {} channels want {}", image.name,
+                                             image.data.size(), view.width, view.height, view.depth, view.layers, channels, wanted));
+}
+
 core::Words words_of(const Texel& texel, const core::FormatInfo& info) {
   core::Words out{};
   for (size_t c = 0; c < 4; ++c)
@@ -148,10 +162,12 @@ Picture make_picture(const ImageDescription& image, ImageShape shape, const std:
     view.height = isa::num_coordinates(shape) > 1 || image.size[0] ? size[1] : 1;
     view.depth = shape == ImageShape::D3 || image.size[0] ? size[2] : 1;
     RandomNumbers random(image.seed);
+    const bool is_given = image.init == "data";
+    if (is_given) check_data(image, view, info.channels);
     for (uint32_t layer = 0; layer < view.layers; ++layer)
       for (uint32_t z = 0; z < view.depth; ++z)
         for (uint32_t y = 0; y < view.height; ++y)
-          for (uint32_t x = 0; x < view.width; ++x) level.push_back(made_up(image, x, y, z, random));
+          for (uint32_t x = 0; x < view.width; ++x) level.push_back(is_given ? given(image, level.size(), info.channels) : made_up(image, x, y, z, random));
   } else if (image.size[0] && (image.size[0] != view.width || image.size[1] != view.height)) {
     throw UserError(image.where, fmt::format("image '{}': its file is {} x {}, 'size' says {} x {}", image.name, view.width, view.height, image.size[0], image.size[1]));
   }

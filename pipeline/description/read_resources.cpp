@@ -79,7 +79,10 @@ ImageDescription read_image(Reading& r, const Value& value) {
   std::copy(size.begin(), size.end(), out.size.begin());
   out.layers = uint32_t(t.integer("layers", std::max<int64_t>(1, int64_t(out.files.size())), 1, 2048));
   out.mipmaps = t.flag("mipmaps", false);
-  out.init = t.name("init", t.take("value") ? "value" : "zero", {"zero", "value", "checker", "random"});
+  const bool has_data = t.take("data") != nullptr;
+  out.data = t.numbers("data");
+  out.init = has_data ? "data" : t.name("init", t.take("value") ? "value" : "zero", {"zero", "value", "checker", "random"});
+  if (has_data && !out.files.empty()) r.errors.error(value.where, fmt::format("image '{}' has both a file and data", out.name));
   const std::vector<double> color = t.numbers("value");
   for (size_t i = 0; i < 4; ++i) out.value[i] = i < color.size() ? color[i] : i == 3 ? 1 : 0;
   out.seed = uint64_t(t.integer("seed", 1, 0, INT64_MAX));

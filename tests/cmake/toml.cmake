@@ -5,4 +5,6 @@ if(TARGET glint)
     add_test(NAME pipeline_${suite}
       COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/pipeline_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR} ${suite})
   endforeach()
+  add_test(NAME pipeline_Texels
+    COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/texel_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR})
 endif()

@@ -1,0 +1,124 @@
+# Images of a pipeline file whose texels stand in the file itself: every shape, any binding, and mistakes.
+# SPDX-License-Identifier: Apache-2.0
+"""usage: texel_test.py GLINT SOURCE_DIR"""
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+GLINT = pathlib.Path(sys.argv[1]).resolve()
+
+LOOK = """#version 460
+layout(local_size_x = 1) in;
+layout(set = 3, binding = 200) uniform sampler2D plane;
+layout(set = 3, binding = 201) uniform samplerCube cube;
+layout(set = 3, binding = 202) uniform sampler3D deep;
+layout(set = 3, binding = 203) uniform usampler2D numbers;
+layout(set = 3, binding = 204) uniform texture2D several[2];
+layout(set = 3, binding = 205) uniform sampler pick;
+layout(set = 15, binding = 1023) buffer Out { float o[]; };
+void main() {
+  o[0] = texelFetch(plane, ivec2(1, 1), 0).y;
+  o[1] = textureLod(plane, vec2(0.5), 1.0).x;
+  o[2] = texture(cube, vec3(0, 0, -1)).x;
+  o[3] = texelFetch(deep, ivec3(0, 1, 1), 0).x;
+  o[4] = float(texelFetch(numbers, ivec2(1, 0), 0).z);
+  o[5] = textureLod(sampler2D(several[1], pick), vec2(0.9, 0.1), 0.0).x;
+  o[6] = float(o.length()) + float(textureQueryLevels(plane));
+}
+"""
+
+LOOK_FILE = """[compute]
+shader = "look.comp"
+[launch]
+groups = 1
+[[image]]
+set = 3
+binding = 200
+size = [2, 2]
+format = "rg32_float"
+data = [[1, 10], [2, 20], [3, 30], [6, 40]]
+mipmaps = true
+filter = "nearest"
+[[image]]
+set = 3
+binding = 201
+size = [1, 1]
+layers = 6
+format = "r32_float"
+data = [1, 2, 3, 4, 5, 6]
+[[image]]
+set = 3
+binding = 202
+size = [1, 2, 2]
+format = "r32_float"
+data = [1, 2, 3, 4.5]
+[[image]]
+set = 3
+binding = 203
+size = [2, 1]
+format = "rgba8_uint"
+data = [1, 2, 3, 4, 5, 6, 7, 8]
+[[image]]
+set = 3
+binding = 204
+size = [1, 1]
+data = [8, 0, 0, 1]
+[[image]]
+set = 3
+binding = 204
+element = 1
+size = [2, 1]
+data = [9, 0, 0, 1, 10, 0, 0, 1]
+[[sampler]]
+set = 3
+binding = 205
+filter = "nearest"
+[[buffer]]
+set = 15
+binding = 1023
+type = "f32"
+count = 7
+save = "out.csv"
+"""
+
+
+class Texels(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        (self.folder / "look.comp").write_text(LOOK)
+
+    def run_text(self, text):
+        (self.folder / "p.toml").write_text(text)
+        return subprocess.run([GLINT, "run", "p.toml", "--mode", "functional", "--out", "out"], capture_output=True, text=True, cwd=self.folder, timeout=300)
+
+    def refused(self, old, new, *parts):
+        self.assertIn(old, LOOK_FILE)
+        done = self.run_text(LOOK_FILE.replace(old, new, 1))
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        for part in parts:
+            self.assertIn(part, done.stderr)
+
+    def test_images_of_every_shape_hold_the_texels_of_the_file_far_up_in_their_sets(self):
+        done = self.run_text(LOOK_FILE)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertEqual([float(v) for v in (self.folder / "out/out.csv").read_text().split()[1:]], [40, 3, 6, 4.5, 7, 10, 9])
+
+    def test_texels_that_do_not_fill_their_image_are_refused_with_both_numbers(self):
+        self.refused("[1, 2, 3, 4.5]", "[1, 2, 3]", "image 'image_3_202' has 3 numbers", "want 4")
+
+    def test_an_image_of_a_file_and_of_data_is_refused(self):
+        self.refused("data = [8, 0, 0, 1]", "data = [8, 0, 0, 1]\nfile = 'a.png'", "both a file and data")
+
+    def test_a_binding_beyond_the_last_is_refused_at_its_line(self):
+        self.refused("binding = 1023", "binding = 1024", "p.toml:", "1024")
+
+    def test_an_image_that_no_binding_of_the_file_gives_is_named_by_the_shaders_line(self):
+        self.refused("binding = 201", "binding = 300", "look.comp:4", "cube")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
