@@ -78,7 +78,9 @@ std::string why_invalid(std::vector<uint32_t>& words) {
 
 }  // namespace
 
-std::vector<uint32_t> spirv_of(const Shader& shader, isa::Stage stage, frontend::ShaderCache* cache) {
+namespace {
+
+std::vector<uint32_t> assemble_or_compile(const Shader& shader, isa::Stage stage, frontend::ShaderCache* cache) {
   std::vector<uint32_t> words;
   switch (shader.language) {
     case Language::Glsl: {
@@ -98,6 +100,20 @@ std::vector<uint32_t> spirv_of(const Shader& shader, isa::Stage stage, frontend:
   words = frontend::assemble_spirv(shader.text, shader.path);
   words.at(1) = version;
   return words;
+}
+
+}  // namespace
+
+std::vector<uint32_t> spirv_of(const Shader& shader, isa::Stage stage, frontend::ShaderCache* cache) {
+  try {
+    return assemble_or_compile(shader, stage, cache);
+  } catch (const UserError& error) {
+    // Newer than the assembler and the GLSL compiler that Glint was built with: no mistake of the script.
+    const std::string message = error.what();
+    for (const char* unknown : {"Invalid capability '", "Invalid Opcode name '", "extension not supported: "})
+      if (message.find(unknown) != std::string::npos) throw UnsupportedError(fmt::format("{}: unsupported: shader '{}'\n{}", shader.path, shader.name, message));
+    throw;
+  }
 }
 
 CompiledShader compile(const Script& script, const Attachment& attachment, const pipeline::CompilerParams& compiler, frontend::ShaderCache* cache) {

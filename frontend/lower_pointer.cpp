@@ -253,12 +253,21 @@ void access_chain(Lowering& l, const Instruction& inst, const LoweringRow&) {
   walk_chain(l, inst, l.pointer(inst.operands[0]), 1);
 }
 
+// SPIR-V, "Memory Object Layout": shared memory has the strides that are stated only where its variables are blocks.
+bool has_stated_strides(const Lowering& l, Place place) {
+  if (place != Place::Shared) return true;
+  for (const auto& [id, variable] : l.module().variables)
+    if (variable.storage == spv::StorageClass::Workgroup && l.module().type(l.module().type(variable.type).element).is_block) return true;
+  return false;
+}
+
 // The pointer's own element first: pointers to arrays' elements.
 void pointer_access_chain(Lowering& l, const Instruction& inst, const LoweringRow&) {
   Pointer p = l.pointer(inst.operands[0]);
   const Type& type = l.module().type(l.type_of(inst.operands[0]));
   if (p.place != Place::Global && p.place != Place::Shared) return l.unsupported("OpPtrAccessChain of this pointer");
-  step_elements(l, &p, inst.operands[1], type.array_stride != 0 ? type.array_stride : l.layout().size(type.element));
+  const bool is_stated = type.array_stride != 0 && has_stated_strides(l, p.place);
+  step_elements(l, &p, inst.operands[1], is_stated ? type.array_stride : l.layout().size(type.element));
   walk_chain(l, inst, p, 2);
 }
 

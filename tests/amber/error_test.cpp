@@ -80,6 +80,10 @@ TEST_CASE("a script that asks for what there is not is unsupported, by name and 
              {"BUFFER b FORMAT R8G8B8A8_UNORM\n", "unsupported: graphics: buffers as large as a framebuffer"},
              {"CLEAR p\n", "unsupported: graphics: CLEAR"},
              {"SHADER compute s SPIRV-ASM TARGET_ENV spv9\nEND\nPIPELINE compute p\n ATTACH s\nEND\nRUN p 1 1 1\n", "unsupported: target environment 'spv9'"},
+             {"SHADER compute s SPIRV-ASM\nOpCapability Telepathy\nEND\nPIPELINE compute p\n ATTACH s\nEND\nRUN p 1 1 1\n", "t.amber:3:14: error: Invalid capability"},
+             {"SHADER compute s SPIRV-ASM\nOpDream %1\nEND\nPIPELINE compute p\n ATTACH s\nEND\nRUN p 1 1 1\n", "unsupported: shader 's'"},
+             {"SHADER compute s GLSL\n#version 450\n#extension GL_XX_none : require\nvoid main() {}\nEND\nPIPELINE compute p\n ATTACH s\nEND\nRUN p 1 1 1\n",
+              "extension not supported: GL_XX_none"},
              {"DANCE\n", "unsupported: command DANCE"}},
             Verdict::Unsupported, Exit::Unsupported);
 }
@@ -91,7 +95,7 @@ TEST_CASE("messages on GLSL count the lines of the script", "[amber]") {
 }
 
 TEST_CASE("messages on SPIR-V count the lines of the script", "[amber]") {
-  const Outcome outcome = outcome_of("SHADER compute s SPIRV-ASM\nOpCapability Shader\nOpNonsense\nEND\nPIPELINE compute p\n ATTACH s\nEND\nRUN p 1 1 1\n");
+  const Outcome outcome = outcome_of("SHADER compute s SPIRV-ASM\nOpCapability Shader\nOpTypeVoid\nEND\nPIPELINE compute p\n ATTACH s\nEND\nRUN p 1 1 1\n");
   CHECK(outcome.exit == Exit::UserInput);
   CHECK(contains(outcome.message, "t.amber:4"));
 }
@@ -113,7 +117,7 @@ TEST_CASE("under robustBufferAccess a store outside of a buffer is dropped and i
 TEST_CASE("a fault that is let pass is told with the lines of RUN and of the shader", "[amber]") {
   LaunchOptions options;
   options.on_fault = core::OnFault::Warn;
-  const Outcome outcome = run_script(parse_script(kPipeline + "RUN p 1 1 1\n", "t.amber"), options);
+  const Outcome outcome = run_script(parse_script("#!amber\n" + kPipeline + "RUN p 1 1 1\n", "t.amber"), options);
   CHECK(outcome.exit == Exit::Ok);
   REQUIRE(outcome.faults.size() == 1);
   CHECK(contains(outcome.faults[0], "t.amber:12: "));
