@@ -335,16 +335,6 @@ void break_off(RayState& s) {
 
 void run(RayState& s, const mem::AddressSpace& memory) { kFormats[s.format].run(s, memory); }
 
-void present(RayState& s, uint32_t row) {
-  const Candidate& next = s.table->row[row];
-  s.candidate = next.hit;
-  s.candidate_procedural = next.is_procedural;
-  s.candidate_opaque = next.is_opaque;
-  s.candidate_row = uint8_t(row);
-  s.status = next.is_procedural ? RayStatus::NeedsIntersection : RayStatus::NeedsAnyHit;
-  s.table->used &= ~(1u << row);
-}
-
 void accept_candidate(RayState& s) { commit(s, false); }
 void terminate_candidate(RayState& s) { commit(s, true); }
 

@@ -38,7 +38,15 @@ void break_off(RayState& state);
 void run(RayState& state, const mem::AddressSpace& memory);
 
 // Takes a candidate of a Gathered ray out of its table: its shader is next.
-void present(RayState& state, uint32_t row);
+inline void present(RayState& state, uint32_t row) {
+  const Candidate& next = state.table->row[row];
+  state.candidate = next.hit;
+  state.candidate_procedural = next.is_procedural;
+  state.candidate_opaque = next.is_opaque;
+  state.candidate_row = uint8_t(row);
+  state.status = next.is_procedural ? RayStatus::NeedsIntersection : RayStatus::NeedsAnyHit;
+  state.table->used &= ~(1u << row);
+}
 
 // Answers of shaders. NeedsAnyHit ends with one of the first three; NeedsIntersection with any number of
 // report() (each that answers NeedsAnyHit followed by one of the three), then finish_intersection().
