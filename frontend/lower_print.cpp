@@ -14,8 +14,8 @@ namespace {
 
 class Print {
  public:
-  Print(Lowering& l, const Instruction& inst)
-      : l_(l), format_(l.module().strings.at(inst.operands.at(2))), arguments_(inst.operands.begin() + 3, inst.operands.end()) {}
+  Print(Lowering& l, const Instruction& inst, const std::string& format)
+      : l_(l), format_(format), arguments_(inst.operands.begin() + 3, inst.operands.end()) {}
 
   void run() {
     for (size_t at = 0; at < format_.size(); ++at) {
@@ -114,6 +114,11 @@ class Print {
 
 }  // namespace
 
-void lower_print(Lowering& lowering, const Instruction& inst) { Print(lowering, inst).run(); }
+void lower_print(Lowering& lowering, const Instruction& inst) {
+  const auto& strings = lowering.module().strings;
+  const auto format = inst.operands.size() > 2 ? strings.find(inst.operands[2]) : strings.end();
+  if (format == strings.end()) return lowering.unsupported("a print whose format is no OpString");
+  Print(lowering, inst, format->second).run();
+}
 
 }  // namespace glint::frontend
