@@ -61,6 +61,11 @@ TEST_CASE("an index past an array in shared memory names the block's shared memo
                 {16, 0, 0}, [](uint32_t) { return 3; }});
 }
 
+TEST_CASE("an index that leaves the lane's stack is let pass, the stack's size is told") {
+  check_memory({"uint own[4] = uint[4](1u, 2u, 3u, 4u); got = own[i == 9u ? 1000000u : i % 4u];", "the stack of a lane has 16 bytes", FaultKind::OutOfBounds,
+                1, {9, 0, 0}, [](uint32_t lane) { return lane == 9 ? 0 : lane % 4 + 1; }});
+}
+
 TEST_CASE("a misaligned address names where it lies, and is rounded down when let pass") {
   check_memory({"got = Word(data_address + uint64_t(i == 5u ? 10u : 4u)).value;", "which is no multiple of 4: byte 10 of 'binding 1' (160 bytes)",
                 FaultKind::Misaligned, 1, {5, 0, 0}, [](uint32_t lane) { return lane == 5 ? 102 : 101; }});
