@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <spirv-tools/libspirv.hpp>
 #include <spirv/unified1/spirv.hpp11>
 
@@ -30,6 +31,25 @@ bool is_false_alarm(std::string_view message) {
   return false;
 }
 
+// Constants made of a component that a vector lacks: the validator passes them, the optimiser crashes on them.
+std::string missing_components(const std::vector<uint32_t>& words) {
+  constexpr size_t kHeaderWords = 5;
+  std::map<uint32_t, uint32_t> components, type_of;  // of vector types; of constants
+  for (size_t i = kHeaderWords; i < words.size(); i += words[i] >> 16) {
+    const auto op = spv::Op(words[i] & 0xffff);
+    const size_t length = words[i] >> 16;
+    if (op == spv::Op::OpFunction) break;
+    if (op == spv::Op::OpTypeVector) components[words[i + 1]] = words[i + 3];
+    if (op == spv::Op::OpSpecConstantComposite || op == spv::Op::OpConstantComposite) type_of[words[i + 2]] = words[i + 1];
+    if (op != spv::Op::OpSpecConstantOp || length != 6 || spv::Op(words[i + 3]) != spv::Op::OpCompositeExtract) continue;
+    const auto type = type_of.find(words[i + 4]);
+    const auto count = type == type_of.end() ? components.end() : components.find(type->second);
+    if (count != components.end() && words[i + 5] >= count->second)
+      return fmt::format("word {}: component {} of a vector of {}\n", i, words[i + 5], count->second);
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string validate_spirv(const std::vector<uint32_t>& words) {
@@ -47,7 +67,7 @@ std::string validate_spirv(const std::vector<uint32_t>& words) {
   spvtools::ValidatorOptions options;
   options.SetScalarBlockLayout(true);
   options.SetWorkgroupScalarBlockLayout(true);
-  if (tools.Validate(words.data(), words.size(), options)) return {};
+  if (tools.Validate(words.data(), words.size(), options)) return missing_components(words);
   if (messages.empty() && only_false_alarms) return {};
   return messages.empty() ? "the SPIR-V validator rejected the module without a message\n" : messages;
 }

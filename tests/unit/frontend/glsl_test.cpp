@@ -116,6 +116,10 @@ TEST_CASE("SPIR-V text becomes the newest version under which it is valid") {
   CHECK(old[1] == 0x00010300);
   CHECK(validate_spirv(old).empty());
   CHECK_THROWS_AS(assemble_spirv("OpNonsense\n", "x"), UserError);
+  const std::string beyond = "%one = OpConstant %uint 1\n%pair = OpTypeVector %uint 2\n%both = OpSpecConstantComposite %pair %one %one\n"
+                             "%third = OpSpecConstantOp %uint CompositeExtract %both 2\n";
+  CHECK_THAT(validate_spirv(assemble_spirv(start + "OpDecorate %block Block\n" + place + types + beyond + body, "x")),
+             Contains("component 2 of a vector of 2"));
 }
 
 TEST_CASE("words that are no valid module are refused") {
