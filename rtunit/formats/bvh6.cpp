@@ -3,7 +3,7 @@
 #include "rtunit/formats/bvh6.h"
 
 #include "base/registry.h"
-#include "rtunit/formats/layout.h"
+#include "rtunit/layout.h"
 
 namespace glint::rt {
 namespace {

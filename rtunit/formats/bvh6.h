@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "rtunit/box_test.h"
-#include "rtunit/formats/quantise.h"
+#include "rtunit/quantise.h"
 
 namespace glint::rt {
 

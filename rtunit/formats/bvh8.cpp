@@ -3,7 +3,7 @@
 #include "rtunit/formats/bvh8.h"
 
 #include "base/registry.h"
-#include "rtunit/formats/layout.h"
+#include "rtunit/layout.h"
 
 namespace glint::rt {
 namespace {

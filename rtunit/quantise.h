@@ -1,16 +1,33 @@
-// Outward quantisation of boxes.
+// Boxes in 8 bits a plane: steps of a power of two from an origin, an axis at a time (Ylitie et al. 2017, section 3.1).
 // SPDX-License-Identifier: Apache-2.0
-#include "rtunit/formats/quantise.h"
-
+#pragma once
+#include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
 
 #include "base/check.h"
+#include "rtunit/structure.h"
 
 namespace glint::rt {
-namespace {
 
-// False when a plane does not fit in 8 bits.
-bool fits(std::span<const Bounds> boxes, size_t axis, const Grid& grid, QuantisedPlanes planes) {
+// What turns bytes into planes: plane q lies at origin[axis] + q * 2^(exponent[axis] - 127), rounded to float once.
+struct Grid {
+  std::array<float, 3> origin{};
+  std::array<uint8_t, 3> exponent{};  // biased as in a float, 1..254
+
+  float step(size_t axis) const { return std::bit_cast<float>(uint32_t(exponent[axis]) << 23); }
+  static float plane(float origin, uint8_t q, float step) { return origin + float(q) * step; }
+};
+
+// Planes of a node's children on one axis.
+struct QuantisedPlanes {
+  std::span<uint8_t> low, high;
+};
+
+// With the grid's origin and exponent as they are; false when a plane does not fit in 8 bits.
+inline bool quantise_with_step(std::span<const Bounds> boxes, size_t axis, const Grid& grid, QuantisedPlanes planes) {
   const float origin = grid.origin[axis], step = grid.step(axis);
   for (size_t i = 0; i < boxes.size(); ++i) {
     const Bounds& box = boxes[i];
@@ -28,9 +45,8 @@ bool fits(std::span<const Bounds> boxes, size_t axis, const Grid& grid, Quantise
   return true;
 }
 
-}  // namespace
-
-void quantise(std::span<const Bounds> boxes, size_t axis, Grid& grid, QuantisedPlanes planes) {
+// Sets one axis of `grid` to the finest that holds all boxes, and their planes, rounded outwards.
+inline void quantise(std::span<const Bounds> boxes, size_t axis, Grid& grid, QuantisedPlanes planes) {
   float low = 0, high = 0;
   for (size_t i = 0; i < boxes.size(); ++i) {
     low = i ? std::fmin(low, boxes[i].low[axis]) : boxes[i].low[axis];
@@ -43,7 +59,7 @@ void quantise(std::span<const Bounds> boxes, size_t axis, Grid& grid, QuantisedP
   for (exponent = exponent < 1 ? 1 : exponent;; ++exponent) {
     GLINT_CHECK(exponent <= 254, "a box of {} to {} does not fit in 8 bits a plane", low, high);
     grid.exponent[axis] = uint8_t(exponent);
-    if (fits(boxes, axis, grid, planes)) return;
+    if (quantise_with_step(boxes, axis, grid, planes)) return;
   }
 }
 

@@ -1,11 +1,28 @@
-// Depth-first packing of nodes and leaves.
+// Where the nodes and leaves of a tree lie in a structure's bytes: what encodings have in common.
 // SPDX-License-Identifier: Apache-2.0
-#include "rtunit/formats/layout.h"
-
+#pragma once
+#include <cstddef>
 #include <cstring>
+#include <vector>
+
+#include "rtunit/node_format.h"
 
 namespace glint::rt {
-namespace {
+
+struct Layout {
+  std::vector<uint32_t> block;  // of each node of the tree, from the header
+  uint64_t bytes = 0;           // of the structure
+};
+
+inline std::span<const uint32_t> children_of(const BuildTree& tree, const BuildTree::Node& node) {
+  return std::span(tree.children).subspan(node.first_child, node.num_children);
+}
+
+inline std::vector<Bounds> bounds_of_children(const BuildTree& tree, const BuildTree::Node& node) {
+  std::vector<Bounds> out;
+  for (uint32_t child : children_of(tree, node)) out.push_back(tree.nodes[child].bounds);
+  return out;
+}
 
 // Calls place(child) for every child of every internal node: siblings together, the first child's subtree next.
 template <class Place>
@@ -23,39 +40,39 @@ void depth_first(const BuildTree& tree, Place place) {
   }
 }
 
-constexpr uint32_t blocks(uint64_t bytes) { return uint32_t(bytes / kBlockBytes); }
-
-}  // namespace
-
-Layout mixed_layout(const BuildTree& tree, uint32_t node_bytes) {
+// Depth first; the children of a node follow each other without gaps, leaves among internal nodes.
+inline Layout mixed_layout(const BuildTree& tree, uint32_t node_bytes) {
   Layout out{std::vector<uint32_t>(tree.nodes.size()), sizeof(StructureHeader) + node_bytes};
   out.block[0] = kRootBlock;
   depth_first(tree, [&](uint32_t child) {
     const NodeKind kind = tree.nodes[child].kind;
-    out.block[child] = blocks(out.bytes);
+    out.block[child] = uint32_t(out.bytes / kBlockBytes);
     out.bytes += kind == NodeKind::Internal ? node_bytes : leaf_bytes(kind);
   });
   return out;
 }
 
-Layout split_layout(const BuildTree& tree, uint32_t node_bytes) {
+// Depth first, internal nodes packed; behind them the leaves, at multiples of their own 64 bytes. Internal children of a
+// node follow each other without gaps, and so do its leaves.
+inline Layout split_layout(const BuildTree& tree, uint32_t node_bytes) {
   Layout out{std::vector<uint32_t>(tree.nodes.size()), 0};
   out.block[0] = kRootBlock;
   uint64_t nodes = sizeof(StructureHeader) + node_bytes, leaves = 0;
   depth_first(tree, [&](uint32_t child) {
     const NodeKind kind = tree.nodes[child].kind;
     uint64_t& end = kind == NodeKind::Internal ? nodes : leaves;
-    out.block[child] = blocks(end);
+    out.block[child] = uint32_t(end / kBlockBytes);
     end += kind == NodeKind::Internal ? node_bytes : leaf_bytes(kind);
   });
   const uint64_t first_leaf = (nodes + kLeafBytes - 1) / kLeafBytes * kLeafBytes;
   for (size_t n = 0; n < tree.nodes.size(); ++n)
-    if (tree.nodes[n].kind != NodeKind::Internal) out.block[n] += blocks(first_leaf);
+    if (tree.nodes[n].kind != NodeKind::Internal) out.block[n] += uint32_t(first_leaf / kBlockBytes);
   out.bytes = first_leaf + leaves;
   return out;
 }
 
-std::vector<std::byte> bytes_with_leaves(const BuildTree& tree, const Layout& layout) {
+// The structure's bytes with all leaves in place; header and internal nodes are zero.
+inline std::vector<std::byte> bytes_with_leaves(const BuildTree& tree, const Layout& layout) {
   std::vector<std::byte> out(layout.bytes);
   for (size_t n = 0; n < tree.nodes.size(); ++n) {
     const BuildTree::Node& node = tree.nodes[n];
@@ -63,16 +80,6 @@ std::vector<std::byte> bytes_with_leaves(const BuildTree& tree, const Layout& la
     std::memcpy(&out[size_t(layout.block[n]) * kBlockBytes], &tree.leaf_bytes[size_t(node.leaf_block) * kBlockBytes],
                 leaf_bytes(node.kind));
   }
-  return out;
-}
-
-std::span<const uint32_t> children_of(const BuildTree& tree, const BuildTree::Node& node) {
-  return std::span(tree.children).subspan(node.first_child, node.num_children);
-}
-
-std::vector<Bounds> bounds_of_children(const BuildTree& tree, const BuildTree::Node& node) {
-  std::vector<Bounds> out;
-  for (uint32_t child : children_of(tree, node)) out.push_back(tree.nodes[child].bounds);
   return out;
 }
 

@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "rtunit/box_test.h"
-#include "rtunit/formats/layout.h"
+#include "rtunit/layout.h"
 
 namespace glint::rt {
 
