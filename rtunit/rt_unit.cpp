@@ -379,8 +379,7 @@ bool RtUnit::send_entries(Cycle now) {
   Slot& slot = slots_[index];
   const auto row = uint32_t(std::countr_zero(slot.rows));
   LaneMask& lanes = slot.entries[row];
-  const uint32_t lanes_a_line = l1_.line_bytes() / kTableEntryBytes;
-  const uint32_t first = uint32_t(std::countr_zero(lanes)) / lanes_a_line * lanes_a_line;
+  const uint32_t lanes_a_line = l1_.line_bytes() / kTableEntryBytes, first = uint32_t(std::countr_zero(lanes)) / lanes_a_line * lanes_a_line;
   const LaneMask in_line = lanes >> first & ((LaneMask{1} << lanes_a_line) - 1);
   mem::Request request;
   request.line = tables_.entry(slot.warp, row, int(first));
@@ -391,12 +390,10 @@ bool RtUnit::send_entries(Cycle now) {
   ++stats_.table_writes;
   stats_.table_entries += num_lanes(in_line);
   lanes &= ~(in_line << first);
-  if (lanes) return true;
-  slot.rows &= ~(1u << row);
-  if (slot.rows == 0) {
-    gathering_.pop();
-    leave(index);
-  }
+  if (lanes == 0) slot.rows &= ~(1u << row);
+  if (slot.rows != 0) return true;
+  gathering_.pop();
+  leave(index);
   return true;
 }
 
