@@ -102,19 +102,16 @@ template <class T>
   const bool is_empty = n == 0 || (std::is_unsigned_v<T> && p > kLast);
   return is_empty ? T(0) : bits;
 }
-// x without its lowest n bits.
-template <class T>
-[[gnu::always_inline]] inline T without_low(T x, Wrapping<T> n) {
-  constexpr Wrapping<T> kLast = kBits<T> - 1;
-  const Wrapping<T> at = n < kLast ? n : kLast;
-  return n > kLast ? T(0) : T(T(x >> at) << at);
-}
-// No masks of ones: compilers make no vectors of a constant shifted by 64-bit counts.
+// The field in place differs from the background by the field's bits of a ^ (b >> position). Their upper neighbours leave
+// by two shifts, not by a mask of ones: compilers make no vectors of a constant shifted by 64-bit counts.
 template <class T>
 [[gnu::always_inline]] inline T inserted(T a, T b, uint32_t position, uint32_t length) {
-  const Wrapping<T> p = field_count<T>(position), end = p + field_count<T>(length);
-  const T moved = shifted_left(a, p);
-  return T(without_low(b, end) | (b ^ without_low(b, p)) | (moved ^ without_low(moved, end)));
+  using W = Wrapping<T>;
+  constexpr W kWidth = kBits<T>, kLast = kWidth - 1;
+  const W p = field_count<T>(position), n = field_count<T>(length);
+  const W above = (n < kWidth ? kWidth - n : W(0)) & kLast;
+  const W change = ((((b >> (p & kLast)) ^ a) << above) >> above) << (p & kLast);
+  return n == 0 || p > kLast ? b : T(b ^ change);
 }
 
 // High 64 bits of a product, from products of halves.
@@ -158,12 +155,10 @@ struct Division {
 // Two steps with a reciprocal that is a little too small, so that no step goes too far: the first leaves a
 // quotient below 2^17, the second one of 0 or 1.
 [[gnu::always_inline]] inline Division<uint64_t> divided(uint64_t a, uint64_t b) {
-  const double reciprocal = 1.0 / double(b) * (1.0 - 0x1p-49);
+  const double reciprocal = (1.0 - 0x1p-49) / double(b);
   const uint64_t first = uint64_t(double(a) * reciprocal);
   const uint64_t rest = a - first * b;
-  const double q = double(rest) * reciprocal;
-  const double n = q + kTwo52;
-  const uint64_t second = (double_bits(n) & 0xf'ffffu) - (n - kTwo52 > q ? 1u : 0u);
+  const uint64_t second = uint64_t(int64_t(double(rest) * reciprocal));
   const uint64_t last = rest - second * b;
   return {first + second + (last >= b ? 1u : 0u), last >= b ? last - b : last};
 }

@@ -56,25 +56,45 @@ template <bool kHigh, class T>
 inline T half_product(T a, T b) {
   return kHigh ? product_high(a, b) : T(Wrapping<T>(a) * Wrapping<T>(b));
 }
+// Handler of the product rows with a carry out: the product, which costs most, once for both results.
+template <class T, bool kHigh, bool kCarryIn>
+[[gnu::flatten]] void run_product(Warp& warp, const Inst& inst) {
+  const Slot* const slot = &inst.operand.front();
+  const Source<T> a(warp, slot[2]), b(warp, slot[3]), c(warp, slot[4]);
+  const Source<bool> carry(warp, kCarryIn ? slot[5] : Slot(0));
+  alignas(64) T product[kLanes];
+  all_lanes([&](int i) { product[i] = half_product<kHigh>(a.at(i), b.at(i)); });
+  const auto sum = [&](int i) { return sum_with_carry(product[i], c.at(i), kCarryIn && carry.at(i)); };
+  LaneMask out = 0;
+  for (int i = 0; i < kLanes; ++i) out |= kLaneBit[i] & (LaneMask{0} - LaneMask(sum(i).second));
+  write_lanes<T>(warp, slot[0], [&](int i) { return sum(i).first; });
+  write_predicate(warp, slot[1], out);
+}
+constexpr OpRow with_handler(OpRow row, Handler run) {
+  row.run = run;
+  return row;
+}
 template <class N, Text kHalf, bool kHigh>
 constexpr auto product_rows() {
   using T = typename N::Type;
   constexpr uint64_t kOnes = word(T(-1));
   constexpr uint64_t kProduct = kHigh ? 0 : 15;  // of 3 and 5
   return joined_rows(
-      ternary<T>(joined<"mad", kHalf, ".cc", N::kName>, Unit::Int,
-                 "Half of a product, plus the third source; the predicate is the carry out.",
-                 [](T a, T b, T c) { return sum_with_carry(half_product<kHigh>(a, b), c, false); },
-                 {{{3, 5, 1}, kProduct + 1, 0}, {{3, 5, kOnes}, kHigh ? kOnes : 14, !kHigh}}),
+      with_handler(ternary<T>(joined<"mad", kHalf, ".cc", N::kName>, Unit::Int,
+                              "Half of a product, plus the third source; the predicate is the carry out.",
+                              [](T, T, T) { return Two<T, bool>{}; },
+                              {{{3, 5, 1}, kProduct + 1, 0}, {{3, 5, kOnes}, kHigh ? kOnes : 14, !kHigh}}),
+                   &run_product<T, kHigh, false>),
       value_op<T, T, T, bool>(
           joined<"madc", kHalf, N::kName>, Unit::Int, "Half of a product, plus the third source and a carry.",
           [](T a, T b, T c, bool carry) { return sum_with_carry(half_product<kHigh>(a, b), c, carry).first; },
           {{{3, 5, 1, 0}, kProduct + 1}, {{3, 5, 1, 1}, kProduct + 2}}),
-      value_op<T, T, T, bool>(
-          joined<"madc", kHalf, ".cc", N::kName>, Unit::Int,
-          "Half of a product, plus the third source and a carry; the predicate is the carry out.",
-          [](T a, T b, T c, bool carry) { return sum_with_carry(half_product<kHigh>(a, b), c, carry); },
-          {{{3, 5, 1, 1}, kProduct + 2, 0}, {{3, 5, kOnes, 1}, kProduct, 1}}));
+      with_handler(value_op<T, T, T, bool>(
+                       joined<"madc", kHalf, ".cc", N::kName>, Unit::Int,
+                       "Half of a product, plus the third source and a carry; the predicate is the carry out.",
+                       [](T, T, T, bool) { return Two<T, bool>{}; },
+                       {{{3, 5, 1, 1}, kProduct + 2, 0}, {{3, 5, kOnes, 1}, kProduct, 1}}),
+                   &run_product<T, kHigh, true>));
 }
 
 constexpr auto kRows = rows_of_types<TypeS32, TypeU32, TypeS64, TypeU64>([]<class N>() {

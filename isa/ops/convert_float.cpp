@@ -1,5 +1,6 @@
 // Conversions between floats of 16, 32 and 64 bits, and rounding to integers.
 // SPDX-License-Identifier: Apache-2.0
+#include "isa/half_rows.h"
 #include "isa/ops/conversion_types.h"
 #include "isa/ops/families.h"
 
@@ -138,52 +139,54 @@ constexpr OpRow single_row() {
        {{0x7ff4'dead'beef'1234}, kSat ? 0 : 0x7fe6'f56d}});
 }
 
-// A float on its way to 16 bits: double rounded to odd, so that the second rounding is the only one.
-template <class S>
-inline float middle(typename S::Type x) {
-  if constexpr (std::is_same_v<S, TypeF64>)
-    return odd_float(x);
-  else
-    return S::value(x);
+// What a NaN of a double becomes: as recorded it keeps its sign and payload, quieted.
+template <class D>
+inline uint32_t narrowed_nan(double nan) {
+  constexpr int kPayload = std::is_same_v<D, TypeBf16> ? 7 : 10;  // bits
+  constexpr uint32_t kQuiet = uint32_t(D::kInfinity) | 1u << (kPayload - 1), kMask = (1u << kPayload) - 1;
+  const uint64_t bits = double_bits(nan);
+  return uint32_t(bits >> 48 & 0x8000) | kQuiet | (uint32_t(bits >> (52 - kPayload)) & kMask);
 }
-template <class D, class S, Round kRound>
-inline typename D::Type narrowed(typename S::Type source, float x) {
-  // As recorded: from double a NaN keeps sign and payload, quieted.
-  if constexpr (std::is_same_v<D, TypeBf16> && std::is_same_v<S, TypeF64>) {
-    const uint64_t bits = double_bits(source);
-    const uint32_t nan = uint32_t(bits >> 48 & 0x8000) | 0x7fc0 | uint32_t(bits >> 45 & 0x7f);
-    return source != source ? Bfloat{uint16_t(nan)} : rounded_bfloat<kRound>(x);
-  } else if constexpr (std::is_same_v<D, TypeBf16>) {
-    return rounded_bfloat<kRound>(x);
-  } else if constexpr (std::is_same_v<S, TypeF64>) {
-    const uint64_t bits = double_bits(source);
-    const uint32_t nan = uint32_t(bits >> 48 & 0x8000) | 0x7e00 | uint32_t(bits >> 42 & 0x3ff);
-    return source != source ? Half{uint16_t(nan)} : rounded_half<kRound>(x);
-  } else {
-    return rounded_half<kRound>(x);
-  }
+// Handler: clamps where the name says so and rounds to 16 bits, a row at a time. Doubles come as floats rounded to odd,
+// so that the second rounding is the only one. As recorded: .ftz changes nothing, a subnormal still rounds up or down to
+// the least f16.
+template <class D, class S, Round kRound, bool kSat, bool kRelu>
+[[gnu::flatten]] void run_narrow(Warp& warp, const Inst& inst) {
+  constexpr bool kFromDouble = std::is_same_v<S, TypeF64>;
+  const Slot* const slot = &inst.operand.front();
+  const Source<typename S::Type> source(warp, slot[1]);
+  alignas(64) float x[kLanes];
+  alignas(64) uint32_t out[kLanes];
+  if constexpr (kFromDouble)
+    odd_floats(source, x);
+  else
+    all_lanes([&](int i) { x[i] = source.at(i); });
+  if constexpr (kSat) all_lanes([&](int i) { x[i] = saturated(x[i]); });
+  if constexpr (kRelu) all_lanes([&](int i) { x[i] = x[i] <= 0.0f ? 0.0f : x[i]; });  // a NaN stays
+  if constexpr (std::is_same_v<D, TypeF16>)
+    narrow_to_halves<kRound>(x, out);
+  else
+    all_lanes([&](int i) { out[i] = rounded_bfloat<kRound>(x[i]).bits; });
+  write_lanes<uint32_t>(warp, slot[0], [&](int i) {
+    if constexpr (!kFromDouble || kSat) return out[i];
+    const double number = source.at(i);
+    return number != number ? narrowed_nan<D>(number) : out[i];
+  });
 }
 template <class D, class S, Round kRound, bool kFtz, bool kSat, bool kRelu>
 constexpr OpRow narrow_row() {
-  return value_op<typename S::Type>(
-      joined<"cvt", round_name<kRound>, when<kFtz, ".ftz">, when<kSat, ".sat">, when<kRelu, ".relu">,
-             D::kName, S::kName>,
-      Unit::Int,
-      kSat    ? "Narrows a float, rounded as the name says; clamped to [0, 1], NaN becomes 0."
-      : kRelu ? "Narrows a float, rounded as the name says; negative numbers become 0."
-              : "Narrows a float, rounded as the name says.",
-      [](typename S::Type x) {
-        // As recorded: .ftz changes nothing, a subnormal still rounds up or down to the least f16.
-        const float clamped = kSat ? saturated(middle<S>(x)) : middle<S>(x);
-        const typename D::Type narrow = narrowed<D, S, kRound>(x, kRelu && clamped <= 0.0f ? 0.0f : clamped);
-        if constexpr (kSat)
-          return x != x ? typename D::Type{0} : narrow;
-        else
-          return narrow;
-      },
-      {{{S::kOne}, D::kOne},
-       {{S::kTwoAndHalf}, kSat ? D::kOne : D::kTwoAndHalf},
-       {{S::kMinusOne}, kSat || kRelu ? 0 : D::kMinusOne}});
+  OpRow row;
+  row.name = joined<"cvt", round_name<kRound>, when<kFtz, ".ftz">, when<kSat, ".sat">, when<kRelu, ".relu">, D::kName,
+                    S::kName>;
+  row.operands = {Dst32, source_kind<typename S::Type>()};
+  row.run = &run_narrow<D, S, kRound, kSat, kRelu>;
+  row.doc = kSat    ? "Narrows a float, rounded as the name says; clamped to [0, 1], NaN becomes 0."
+            : kRelu ? "Narrows a float, rounded as the name says; negative numbers become 0."
+                    : "Narrows a float, rounded as the name says.";
+  row.examples = {{{S::kOne}, D::kOne},
+                  {{S::kTwoAndHalf}, kSat ? D::kOne : D::kTwoAndHalf},
+                  {{S::kMinusOne}, kSat || kRelu ? 0 : D::kMinusOne}};
+  return row;
 }
 template <class D, class S>
 constexpr auto rounded_rows() {

@@ -6,15 +6,20 @@
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
-// To f32 and f64 the host rounds, in a direction that the row sets; to 16 bits the work is done in integers.
-template <class To, class From, Round kRound, bool kSat>
+// To f32 and f64 the host rounds, in a direction that the row sets; to 16 bits the work is done in integers. D is the
+// float's type, as conversion rows know it.
+template <class D, class From, Round kRound, bool kSat>
 struct Convert {
+  using To = typename D::Type;
+  using Bits = std::conditional_t<sizeof(To) == 8, uint64_t, std::conditional_t<sizeof(To) == 4, uint32_t, uint16_t>>;
   To operator()(Register<From> source) const {
     const From x = From(source);
-    if constexpr (std::is_same_v<To, float>)
-      return kSat ? saturated(rounded_float(x)) : rounded_float(x);
+    if constexpr (kSat)  // of the integers only 0 and 1 lie in [0, 1]
+      return __builtin_bit_cast(To, Bits(x > 0 ? Bits(D::kOne) : Bits(0)));
+    else if constexpr (std::is_same_v<To, float>)
+      return rounded_float(x);
     else if constexpr (std::is_same_v<To, double>)
-      return kSat ? saturated(rounded_double(x)) : rounded_double(x);
+      return rounded_double(x);
     else
       return short_float(x);
   }
@@ -28,16 +33,17 @@ struct Convert {
       const uint32_t exact = float_bits(float(int32_t(limited)));
       return narrowed(float_of(x < 0 ? exact | 0x8000'0000u : exact));
     } else {
+      // To odd by bits: an integer is no subnormal float, so the 29 bits that a float lacks may go into one.
       const Reduced r = reduced(x);
-      return narrowed(odd_float(r.value) * r.scale);
+      const uint64_t bits = double_bits(r.value), low = bits & 0x1fff'ffff;
+      return narrowed(float(double_of((bits ^ low) | (low != 0 ? 0x2000'0000u : 0u))) * r.scale);
     }
   }
   static To narrowed(float x) {
-    const float kept = kSat ? saturated(x) : x;
     if constexpr (std::is_same_v<To, Half>)
-      return rounded_half<kRound>(kept);
+      return rounded_half<kRound>(x);
     else
-      return rounded_bfloat<kRound>(kept);
+      return rounded_bfloat<kRound>(x);
   }
 };
 
@@ -53,7 +59,7 @@ constexpr OpRow row() {
   using To = typename D::Type;
   using From = typename S::Type;
   constexpr bool kIsShort = sizeof(To) == 2;
-  constexpr Round kEffective = kIsExact<To, From> ? Round::Nearest : kRound;
+  constexpr Round kEffective = kSat || kIsExact<To, From> ? Round::Nearest : kRound;
   constexpr uint64_t kMinusOne = register_word<From>(From(-1));
   constexpr Examples kExamples{{{0}, 0},
                                {{1}, D::kOne},
@@ -64,7 +70,7 @@ constexpr OpRow row() {
                              sizeof(To) == 8 || sizeof(From) == 8 ? Unit::Sfu : Unit::Int,
                              kSat ? "Converts an integer, rounded as the name says; clamped to [0, 1]."
                                   : "Converts an integer, rounded as the name says.",
-                             Convert < To, From, kIsShort ? kEffective : Round::Nearest, kSat > {},
+                             Convert < D, From, kIsShort ? kEffective : Round::Nearest, kSat > {},
                              kExamples);
 }
 template <class D, class S>

@@ -1,8 +1,6 @@
 // Floats of 16 bits, alone and in pairs: f16 and bf16 arithmetic, rounded once; min, max, signs.
 // SPDX-License-Identifier: Apache-2.0
-#include "isa/half.h"
-
-#include "isa/op_makers.h"
+#include "isa/half_rows.h"
 #include "isa/ops/families.h"
 #include "isa/ops/modifiers.h"
 
@@ -15,8 +13,12 @@ inline uint32_t all_ones_if_negative(uint32_t x) {
   return uint32_t(int32_t(x) >> 31);
 }
 
-// What the rows below need to know of a format. Sources come in the upper half of a word, results leave in
-// the lower.
+// One float of each lane.
+struct alignas(64) Floats {
+  float at[kLanes];
+};
+
+// What the rows below need to know of a format.
 struct F16 {
   static constexpr Text kName = ".f16";
   static constexpr bool kHasFtz = true;
@@ -24,13 +26,12 @@ struct F16 {
   static constexpr uint32_t kSmallest = 0x0400;  // normal
   static constexpr uint32_t kHalfUlp = 0x1000;   // of 1
   static constexpr uint32_t kTied = 0x3be0, kAboveTie = 0x3bc1;
-  template <bool kFtz>
-  [[gnu::always_inline]] static float widen(uint32_t upper) {
-    return float_of_upper_half<kFtz>(upper);
+  template <bool kUpper>
+  [[gnu::always_inline]] static void widen(const uint32_t* words, float* out) {
+    widen_halves<kUpper>(words, out);
   }
-  template <bool kFtz>
-  [[gnu::always_inline]] static uint32_t narrow(float x) {
-    return half_bits<kFtz>(x);
+  [[gnu::always_inline]] static void narrow(const float* x, uint32_t* out) {
+    narrow_to_halves<Round::Nearest>(x, out);
   }
 
   // fma to odd: as if rounded toward zero, with the last bit set where that was not exact; so that rounding
@@ -59,13 +60,12 @@ struct Bf16 {
   static constexpr uint32_t kSmallest = 0x0080;  // normal
   static constexpr uint32_t kHalfUlp = 0x3b80;   // of 1
   static constexpr uint32_t kTied = 0x3f28, kAboveTie = 0x3edd;
-  template <bool>
-  [[gnu::always_inline]] static float widen(uint32_t upper) {
-    return float_of(upper & 0xffff'0000u);
+  template <bool kUpper>
+  [[gnu::always_inline]] static void widen(const uint32_t* words, float* out) {
+    all_lanes([&](int i) { out[i] = float_of(kUpper ? words[i] & 0xffff'0000u : words[i] << 16); });
   }
-  template <bool>
-  [[gnu::always_inline]] static uint32_t narrow(float x) {
-    return bfloat_bits(x);
+  [[gnu::always_inline]] static void narrow(const float* x, uint32_t* out) {
+    all_lanes([&](int i) { out[i] = bfloat_bits(x[i]); });
   }
 
   // As above, but the product may leave the range of single precision. So the larger of product and addend is
@@ -86,8 +86,8 @@ struct Add {
   static constexpr Text kDoc = "Adds";
   static constexpr size_t kSources = 2;
   template <class Format>
-  [[gnu::always_inline]] static float of(float a, float b) {
-    return a + b;
+  [[gnu::always_inline]] static void run(const Floats* in, float* out) {
+    all_lanes([&](int i) { out[i] = in[0].at[i] + in[1].at[i]; });
   }
   template <class Format>
   static constexpr Examples examples(Mode m) {
@@ -103,8 +103,8 @@ struct Subtract {
   static constexpr Text kDoc = "Subtracts";
   static constexpr size_t kSources = 2;
   template <class Format>
-  [[gnu::always_inline]] static float of(float a, float b) {
-    return a - b;
+  [[gnu::always_inline]] static void run(const Floats* in, float* out) {
+    all_lanes([&](int i) { out[i] = in[0].at[i] - in[1].at[i]; });
   }
   template <class Format>
   static constexpr Examples examples(Mode m) {
@@ -120,8 +120,8 @@ struct Multiply {
   static constexpr Text kDoc = "Multiplies";
   static constexpr size_t kSources = 2;
   template <class Format>
-  [[gnu::always_inline]] static float of(float a, float b) {
-    return a * b;
+  [[gnu::always_inline]] static void run(const Floats* in, float* out) {
+    all_lanes([&](int i) { out[i] = in[0].at[i] * in[1].at[i]; });
   }
   template <class Format>
   static constexpr Examples examples(Mode m) {
@@ -137,8 +137,9 @@ struct Fma {
   static constexpr Text kDoc = "Multiplies and adds, once";
   static constexpr size_t kSources = 3;
   template <class Format>
-  [[gnu::always_inline]] static float of(float a, float b, float c) {
-    return Format::fma_to_odd(a, b, c);
+  [[gnu::always_inline]] static void run(const Floats* in, float* out) {
+    fma_rows_to_odd(in[0].at, in[1].at, in[2].at, out,
+                    [](float a, float b, float c) { return Format::fma_to_odd(a, b, c); });
   }
   template <class Format>
   static constexpr Examples examples(Mode m) {
@@ -153,19 +154,37 @@ struct Fma {
   }
 };
 
-// The work of a lane.
-template <class Format, class Op, bool kFtz, bool kSat, bool kRelu>
+// A zero of its sign for a number below the one with the bits kLeast.
+template <uint32_t kLeast>
+[[gnu::always_inline]] inline float zero_below(float x) {
+  const uint32_t bits = float_bits(x);
+  return float_of((bits & 0x7fff'ffffu) < kLeast ? bits & 0x8000'0000u : bits);
+}
+
+// Handler of a row: halves to floats, the arithmetic in single precision, and back. A pair's halves one after the other.
+template <class Format, bool kPair, class Op, bool kFtz, bool kSat, bool kRelu>
 struct Arithmetic {
-  template <class... A>
-  [[gnu::always_inline]] uint32_t operator()(A... upper) const {
-    const float result = Op::template of<Format>(Format::template widen<kFtz>(upper)...);
-    if constexpr (kSat) {
-      const float positive = result > 0.0f ? result : 0.0f;  // NaN and -0 become +0
-      return Format::template narrow<kFtz>(positive < 1.0f ? positive : 1.0f);
+  [[gnu::flatten]] static void run(Warp& warp, const Inst& inst) {
+    alignas(64) uint32_t low[kLanes], high[kLanes];
+    half<false>(warp, inst, low);
+    if constexpr (kPair) half<true>(warp, inst, high);
+    write_lanes<uint32_t>(warp, inst.operand.front(), [&](int i) { return kPair ? low[i] | high[i] << 16 : low[i]; });
+  }
+  template <bool kUpper>
+  [[gnu::always_inline]] static void half(const Warp& warp, const Inst& inst, uint32_t* out) {
+    constexpr uint32_t kLeastNormal = 0x3880'0000;  // 2^-14: the only format with .ftz is f16
+    constexpr uint32_t kLeastKept = 0x387f'f000;    // with an unbounded exponent f16 would round less to less than 2^-14
+    Floats in[Op::kSources], result;
+    for (size_t n = 0; n < Op::kSources; ++n) {
+      const Source<uint32_t> source(warp, *(&inst.operand.front() + 1 + n));
+      Format::template widen<kUpper>(source.low, in[n].at);
+      if constexpr (kFtz) all_lanes([&](int i) { in[n].at[i] = zero_below<kLeastNormal>(in[n].at[i]); });
     }
-    const uint32_t bits = Format::template narrow<kFtz>(result);
-    // A mask, not a selection: that the compiler would turn into a branch, and the loop would stay scalar.
-    return kRelu ? bits & ~all_ones_if_negative(bits << 16) : bits;  // the NaN has no sign
+    Op::template run<Format>(in, result.at);
+    if constexpr (kSat) all_lanes([&](int i) { result.at[i] = saturated(result.at[i]); });
+    if constexpr (kRelu) all_lanes([&](int i) { result.at[i] = result.at[i] <= 0.0f ? 0.0f : result.at[i]; });  // a NaN stays
+    if constexpr (kFtz) all_lanes([&](int i) { result.at[i] = zero_below<kLeastKept>(result.at[i]); });
+    Format::narrow(result.at, out);
   }
 };
 
@@ -254,13 +273,18 @@ constexpr auto pair_words = when<kPair, ", in each half of a register">;
 
 template <class Format, bool kPair, class Op, bool kFtz, bool kSat, bool kRelu>
 constexpr OpRow arithmetic_row() {
-  return row<kPair, Op::kSources>(
-      joined<Op::kName, ".rn", when<kFtz, ".ftz">, when<kSat, ".sat">, when<kRelu, ".relu">,
-             suffix<Format, kPair>>,
-      joined<Op::kDoc, pair_words<kPair>, round_words<Round::Nearest>, when<kFtz, kFtzWords>,
-             when<kSat, kSatWords>, when<kRelu, kReluWords>, ".">,
-      Arithmetic<Format, Op, kFtz, kSat, kRelu>{},
-      Op::template examples<Format>({.ftz = kFtz, .sat = kSat, .relu = kRelu}));
+  const Examples examples = Op::template examples<Format>({.ftz = kFtz, .sat = kSat, .relu = kRelu});
+  OpRow out;
+  out.name = joined<Op::kName, ".rn", when<kFtz, ".ftz">, when<kSat, ".sat">, when<kRelu, ".relu">,
+                    suffix<Format, kPair>>;
+  out.unit = Unit::Fp16;
+  out.operands = {Dst32, Src32, Src32};
+  if constexpr (Op::kSources == 3) out.operands = {Dst32, Src32, Src32, Src32};
+  out.run = &Arithmetic<Format, kPair, Op, kFtz, kSat, kRelu>::run;
+  out.doc = joined<Op::kDoc, pair_words<kPair>, round_words<Round::Nearest>, when<kFtz, kFtzWords>,
+                   when<kSat, kSatWords>, when<kRelu, kReluWords>, ".">;
+  out.examples = kPair ? paired(examples) : examples;
+  return out;
 }
 template <class Format, bool kPair, class Op>
 constexpr auto two_source_rows = generated<Format::kHasFtz ? 4 : 1>([](auto i) {

@@ -4,12 +4,10 @@
 // instruction with the same mask; Choice: a lane outside its own mask takes part with nobody and still gets a result
 // (PTX leaves it open).
 // SPDX-License-Identifier: Apache-2.0
+#include <emmintrin.h>
+
 #include "isa/op_makers.h"
 #include "isa/ops/families.h"
-
-#if defined(__AVX2__)
-#include <immintrin.h>
-#endif
 
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
@@ -31,6 +29,38 @@ namespace {
   return mask;
 #else
   return mask_of([&](int i) { return row[i] == value; });
+#endif
+}
+
+// The same of words of 16 bits, 64-byte aligned.
+[[gnu::always_inline]] inline LaneMask lanes_equal(const uint16_t* words, uint16_t value) {
+#if defined(__AVX512F__)
+  return _mm512_cmpeq_epi16_mask(_mm512_load_si512(words), _mm512_set1_epi16(short(value)));
+#elif defined(__AVX2__)
+  const __m256i wanted = _mm256_set1_epi16(short(value));
+  const __m256i* const half = reinterpret_cast<const __m256i*>(words);
+  const __m256i low = _mm256_cmpeq_epi16(_mm256_load_si256(half), wanted);
+  const __m256i high = _mm256_cmpeq_epi16(_mm256_load_si256(half + 1), wanted);
+  // Packed 8 bytes of each in turns: put in order.
+  const __m256i bytes = _mm256_permute4x64_epi64(_mm256_packs_epi16(low, high), _MM_SHUFFLE(3, 1, 2, 0));
+  return uint32_t(_mm256_movemask_epi8(bytes));
+#else  // SSE2, which every 64-bit x86 has
+  const __m128i wanted = _mm_set1_epi16(short(value));
+  const __m128i* const quarter = reinterpret_cast<const __m128i*>(words);
+  const auto same = [&](int i) { return _mm_cmpeq_epi16(_mm_load_si128(quarter + i), wanted); };
+  const uint32_t low = uint32_t(_mm_movemask_epi8(_mm_packs_epi16(same(0), same(1))));
+  return low | uint32_t(_mm_movemask_epi8(_mm_packs_epi16(same(2), same(3)))) << 16;
+#endif
+}
+
+// For each lane the word of the lane `from` (below 32) says.
+[[gnu::always_inline]] inline void read_lanes(const uint32_t* row, const uint32_t* from, uint32_t* out) {
+#if defined(__AVX512F__)
+  const __m512i low = _mm512_loadu_si512(row), high = _mm512_loadu_si512(row + 16);
+  for (int i = 0; i < kLanes; i += 16)
+    _mm512_store_si512(out + i, _mm512_permutex2var_epi32(low, _mm512_load_si512(from + i), high));
+#else
+  all_lanes([&](int i) { out[i] = row[from[i]]; });
 #endif
 }
 
@@ -81,7 +111,7 @@ template <Shuffle kMode>
   alignas(64) uint32_t from[kLanes], value[kLanes];
   all_lanes([&](int i) { from[i] = source(i).lane; });
   const LaneMask inside = mask_of([&](int i) { return source(i).inside != 0; });
-  all_lanes([&](int i) { value[i] = a.low[from[i]]; });
+  read_lanes(a.low, from, value);
   write_predicate(warp, slot_at(inst, 1), inside);
   write_lanes<uint32_t>(warp, slot_at(inst, 0), [&](int i) { return value[i]; });
 }
@@ -107,20 +137,48 @@ template <Vote kVote>
   write_lanes<uint32_t>(warp, slot_at(inst, 0), [&](int i) { return result[i]; });
 }
 
+// 16 bits that differ where values of 32 or 64 bits do, mostly: the upper half of a product (Knuth's multiplier).
+inline uint16_t digest(uint32_t low, uint32_t high) {
+  return uint16_t((low * 0x9e37'79b1u + high * 0x85eb'ca77u) >> 16);
+}
+// The number of the lowest one of x > 0: the exponent of that bit as a float. The mask takes the sign of bit 31 away.
+inline uint32_t lowest_one(uint32_t x) {
+  return ((float_bits(float(int32_t(x & (0u - x)))) >> 23) - 127) & 31;
+}
+// For each lane those with its value, whoever executes. Digests of all lanes fill one or two vectors, so a lane takes
+// one comparison for all others. Every lane then looks at the lowest one that its digest names: where all find their
+// own value there, equal digests are equal values; else each lane compares the values.
+template <class T>
+[[gnu::always_inline]] inline void lanes_of_values(const Source<T>& a, LaneMask* out) {
+  alignas(64) uint16_t digests[kLanes];
+  alignas(64) uint32_t lowest[kLanes], low[kLanes], high[kLanes];
+  all_lanes([&](int i) { digests[i] = digest(a.low[i], sizeof(T) == 8 ? a.high[i] : 0u); });
+  for (int k = 0; k < kLanes; ++k) out[k] = lanes_equal(digests, digests[k]);
+  all_lanes([&](int i) { lowest[i] = lowest_one(out[i]); });
+  read_lanes(a.low, lowest, low);
+  uint32_t differences = 0;
+  for (int i = 0; i < kLanes; ++i) differences |= low[i] ^ a.low[i];
+  if constexpr (sizeof(T) == 8) {
+    read_lanes(a.high, lowest, high);
+    for (int i = 0; i < kLanes; ++i) differences |= high[i] ^ a.high[i];
+  }
+  if (differences == 0) [[likely]] return;
+  for (int k = 0; k < kLanes; ++k) {
+    out[k] = lanes_equal(a.low, a.low[k]);
+    if constexpr (sizeof(T) == 8) out[k] &= lanes_equal(a.high, a.high[k]);
+  }
+}
 // For each lane the members with its value.
 template <class T>
 [[gnu::flatten]] void match_any(Warp& warp, const Inst& inst) {
   const Source<T> a(warp, slot_at(inst, 1));
   const Source<uint32_t> masks(warp, slot_at(inst, 2));
-  uint32_t result[kLanes]{};
+  alignas(64) LaneMask result[kLanes], members_of[kLanes]{};
+  lanes_of_values(a, result);
   each_group(warp, masks, [&](LaneMask group, LaneMask members) {
-    for (LaneMask rest = group; rest; rest &= rest - 1) {
-      const int k = __builtin_ctz(rest);
-      result[k] = lanes_equal(a.low, a.low[k]) & members;
-      if constexpr (sizeof(T) == 8) result[k] &= lanes_equal(a.high, a.high[k]);
-    }
+    all_lanes([&](int i) { members_of[i] = (group & kLaneBit[i]) != 0 ? members : members_of[i]; });
   });
-  write_lanes<uint32_t>(warp, slot_at(inst, 0), [&](int i) { return result[i]; });
+  write_lanes<uint32_t>(warp, slot_at(inst, 0), [&](int i) { return result[i] & members_of[i]; });
 }
 // The members if all have one value, and whether they do; otherwise no lanes.
 template <class T>
