@@ -31,6 +31,10 @@ constexpr bool is_float(Part part) {
   return part == Part::Float16 || part == Part::Float32 || part == Part::Float64;
 }
 
+constexpr bool is_signed(Part part) {
+  return part == Part::Int8 || part == Part::Int16 || part == Part::Int32 || part == Part::Int64;
+}
+
 constexpr RegisterClass class_of(Part part) {
   if (part == Part::Bool) return RegisterClass::Predicate;
   return bytes_of(part) == 8 ? RegisterClass::B64 : RegisterClass::B32;

@@ -1,4 +1,4 @@
-// debugPrintfEXT: the format is checked against its arguments here; vectors become their components.
+// debugPrintfEXT: the format is matched with its arguments here; vectors become their components.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
@@ -43,9 +43,8 @@ class Print {
   size_t conversion(size_t first) {
     isa::Conversion c;
     size_t at = isa::parse_flags(format_, first + 1, c);
-    uint32_t count = 1;
     if (at < format_.size() && format_[at] == 'v') {
-      count = at + 1 < format_.size() ? uint32_t(format_[at + 1] - '0') : 0;
+      const uint32_t count = at + 1 < format_.size() ? uint32_t(format_[at + 1] - '0') : 0;
       if (count < 2 || count > 4) fail("a vector has 2 to 4 components");
       at += 2;
     }
@@ -58,19 +57,20 @@ class Print {
       fail(fmt::format("'{}' is no conversion; known are %d %i %u %x %X %o %f %F %e %E %g %G %a %A, with vectors as %v3f", spelled));
     if (std::max(c.width, c.precision) > isa::kMaxMessageWidth) fail(fmt::format("'{}': more than {} characters", spelled, isa::kMaxMessageWidth));
     if (next_ == arguments_.size()) fail(fmt::format("'{}' has no argument: the call gives {}", spelled, arguments_.size()));
-    const Part part = argument(c, count, spelled);
+    const Part part = argument(c);
     ++at;
     // Older documents of the extension write 64-bit numbers as %ul.
     if (!has_length && bytes_of(part) == 8 && at < format_.size() && format_[at] == 'l') ++at;
     return at;
   }
 
-  Part argument(isa::Conversion& c, uint32_t count, const std::string& spelled) {
+  Part argument(isa::Conversion& c) {
     const Id id = arguments_[next_++];
     const Part part = l_.part_of(l_.type_of(id));
     const Operands parts = l_.value(id);
-    if (parts.size() != count) fail(fmt::format("'{}' takes {}, argument {} has {}", spelled, count == 1 ? "one number" : fmt::format("{} components", count), next_, parts.size()));
-    if (is_float(part) != isa::is_float(c)) fail(fmt::format("'{}' prints {}, argument {} is {}", spelled, isa::is_float(c) ? "floats" : "integers", next_, is_float(part) ? "a float" : "an integer"));
+    // Choice: what is given is printed as what it is, where the specification leaves it undefined: all components, and
+    // floats under %d as floats. Drivers take such formats, and shaders have them.
+    if (is_float(part) != isa::is_float(c)) c.letter = is_float(part) ? 'f' : is_signed(part) ? 'd' : 'u';
     c.is_wide = bytes_of(part) == 8;
     for (size_t i = 0; i < parts.size(); ++i) {
       if (i > 0) text_ += ", ";
