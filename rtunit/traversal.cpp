@@ -175,7 +175,9 @@ void visit_triangles(RayState& s, const std::byte* bytes, const StackEntry& entr
     if (!intersect_triangle(s.space, leaf.vertex[a], leaf.vertex[b], leaf.vertex[c], found)) continue;
     const bool front = found.front != ((s.instance_flags & instance_flag::kFlipFacing) != 0);
     if (culled_by_facing(s, front)) continue;
-    if (!(found.t > s.ray.t_min) || !wins(s, found.t, s.instance, leaf.geometry, leaf.primitive[i])) continue;
+    // Open at both ends, also when a box's hit lies at the far one.
+    const bool inside = found.t > s.ray.t_min && found.t < s.ray.t_max;
+    if (!inside || !wins(s, found.t, s.instance, leaf.geometry, leaf.primitive[i])) continue;
     s.candidate = candidate_of(s, leaf.geometry, leaf.primitive[i]);
     s.candidate.t = found.t;
     s.candidate.u = found.u;

@@ -76,6 +76,28 @@ TEST_CASE("a triangle's interval is open at both ends") {
   CHECK(miss.committed.t == 5);
 }
 
+TEST_CASE("a triangle at the ray's end stays out when a box's hit lies there") {
+  const Positions p = triangle_at(0);
+  const Bounds box{{-1, -1, -1}, {1, 1, 1}};
+  Geometry procedural;
+  procedural.aabbs = {&box, 1};
+  mem::AddressSpace memory;
+  Instance of_triangle, of_box;
+  of_box.bottom = 1;
+  const std::vector built{build_bottom(memory, "triangle", {{triangles(p, true)}}), build_bottom(memory, "box", {{procedural}})};
+  const StructureInfo top = build_top(memory, "top", std::vector{of_triangle, of_box}, built);
+  RayState state = ray_of(top.address, {0, 0, 10}, {0, 0, -1}, 0, 10, 0);
+  REQUIRE(begin(state, memory));
+  run(state, memory);
+  REQUIRE(state.status == RayStatus::NeedsIntersection);  // the box, nearer, comes first
+  report(state, 10, 5);
+  if (state.status == RayStatus::NeedsAnyHit) accept_candidate(state);
+  finish_intersection(state);
+  run(state, memory);
+  CHECK(state.committed.instance == 1);
+  CHECK(state.committed.t == 10);
+}
+
 TEST_CASE("an instance is visited only when its mask shares a bit with the ray's low eight") {
   Instance instance;
   instance.mask = 0x12;
