@@ -4,8 +4,6 @@
 // instruction with the same mask; Choice: a lane outside its own mask takes part with nobody and still gets a result
 // (PTX leaves it open).
 // SPDX-License-Identifier: Apache-2.0
-#include <emmintrin.h>
-
 #include "isa/op_makers.h"
 #include "isa/ops/families.h"
 
@@ -29,27 +27,6 @@ namespace {
   return mask;
 #else
   return mask_of([&](int i) { return row[i] == value; });
-#endif
-}
-
-// The same of words of 16 bits, 64-byte aligned.
-[[gnu::always_inline]] inline LaneMask lanes_equal(const uint16_t* words, uint16_t value) {
-#if defined(__AVX512F__)
-  return _mm512_cmpeq_epi16_mask(_mm512_load_si512(words), _mm512_set1_epi16(short(value)));
-#elif defined(__AVX2__)
-  const __m256i wanted = _mm256_set1_epi16(short(value));
-  const __m256i* const half = reinterpret_cast<const __m256i*>(words);
-  const __m256i low = _mm256_cmpeq_epi16(_mm256_load_si256(half), wanted);
-  const __m256i high = _mm256_cmpeq_epi16(_mm256_load_si256(half + 1), wanted);
-  // Packed 8 bytes of each in turns: put in order.
-  const __m256i bytes = _mm256_permute4x64_epi64(_mm256_packs_epi16(low, high), _MM_SHUFFLE(3, 1, 2, 0));
-  return uint32_t(_mm256_movemask_epi8(bytes));
-#else  // SSE2, which every 64-bit x86 has
-  const __m128i wanted = _mm_set1_epi16(short(value));
-  const __m128i* const quarter = reinterpret_cast<const __m128i*>(words);
-  const auto same = [&](int i) { return _mm_cmpeq_epi16(_mm_load_si128(quarter + i), wanted); };
-  const uint32_t low = uint32_t(_mm_movemask_epi8(_mm_packs_epi16(same(0), same(1))));
-  return low | uint32_t(_mm_movemask_epi8(_mm_packs_epi16(same(2), same(3)))) << 16;
 #endif
 }
 
@@ -137,36 +114,32 @@ template <Vote kVote>
   write_lanes<uint32_t>(warp, slot_at(inst, 0), [&](int i) { return result[i]; });
 }
 
-// 16 bits that differ where values of 32 or 64 bits do, mostly: the upper half of a product (Knuth's multiplier).
-inline uint16_t digest(uint32_t low, uint32_t high) {
-  return uint16_t((low * 0x9e37'79b1u + high * 0x85eb'ca77u) >> 16);
-}
-// The number of the lowest one of x > 0: the exponent of that bit as a float. The mask takes the sign of bit 31 away.
-inline uint32_t lowest_one(uint32_t x) {
-  return ((float_bits(float(int32_t(x & (0u - x)))) >> 23) - 127) & 31;
-}
-// For each lane those with its value, whoever executes. Digests of all lanes fill one or two vectors, so a lane takes
-// one comparison for all others. Every lane then looks at the lowest one that its digest names: where all find their
-// own value there, equal digests are equal values; else each lane compares the values.
+// For each lane those with its value, whoever executes.
 template <class T>
 [[gnu::always_inline]] inline void lanes_of_values(const Source<T>& a, LaneMask* out) {
-  alignas(64) uint16_t digests[kLanes];
-  alignas(64) uint32_t lowest[kLanes], low[kLanes], high[kLanes];
-  all_lanes([&](int i) { digests[i] = digest(a.low[i], sizeof(T) == 8 ? a.high[i] : 0u); });
-  for (int k = 0; k < kLanes; ++k) out[k] = lanes_equal(digests, digests[k]);
-  all_lanes([&](int i) { lowest[i] = lowest_one(out[i]); });
-  read_lanes(a.low, lowest, low);
-  uint32_t differences = 0;
-  for (int i = 0; i < kLanes; ++i) differences |= low[i] ^ a.low[i];
-  if constexpr (sizeof(T) == 8) {
-    read_lanes(a.high, lowest, high);
-    for (int i = 0; i < kLanes; ++i) differences |= high[i] ^ a.high[i];
+#if defined(__AVX512F__)
+  // Lane k's bit goes to all lanes that hold what lane k holds: no mask leaves the vector registers for it.
+  const auto half = [](const uint32_t* row, int at) { return _mm512_loadu_si512(row + at); };
+  const __m512i low[] = {half(a.low, 0), half(a.low, 16)};
+  const __m512i high[] = {half(sizeof(T) == 8 ? a.high : a.low, 0), half(sizeof(T) == 8 ? a.high : a.low, 16)};
+  __m512i lanes[] = {_mm512_setzero_si512(), _mm512_setzero_si512()};
+  for (int k = 0; k < kLanes; ++k) {
+    const __m512i bit = _mm512_set1_epi32(int(kLaneBit[k])), wanted = _mm512_set1_epi32(int(a.low[k]));
+    for (int h = 0; h < 2; ++h) {
+      __mmask16 same = _mm512_cmpeq_epi32_mask(low[h], wanted);
+      if constexpr (sizeof(T) == 8)
+        same = _mm512_mask_cmpeq_epi32_mask(same, high[h], _mm512_set1_epi32(int(a.high[k])));
+      lanes[h] = _mm512_mask_or_epi32(lanes[h], same, lanes[h], bit);
+    }
   }
-  if (differences == 0) [[likely]] return;
+  _mm512_store_si512(out, lanes[0]);
+  _mm512_store_si512(out + 16, lanes[1]);
+#else
   for (int k = 0; k < kLanes; ++k) {
     out[k] = lanes_equal(a.low, a.low[k]);
     if constexpr (sizeof(T) == 8) out[k] &= lanes_equal(a.high, a.high[k]);
   }
+#endif
 }
 // For each lane the members with its value.
 template <class T>
