@@ -130,7 +130,7 @@ void DramChannel::issue_column(uint32_t index, DramClock now) {
     channel_gates_.raise(Write, now + t.rtw);
     bank.gates.raise(Precharge, now + t.rtp);
     run_timers_until(now + t.rtw);
-    returns_.push({clocks_.cycle_after(now + t.cl + t.data), slot.line, slot.sectors});
+    returns_.push({clocks_.cycle_after(now + t.cl + t.data), slot.line, slot.sectors, clocks_.cycle_after(now)});
     ++stats_.reads;
   }
   if (stats_.reads.value() + stats_.writes.value() > 1 && write != last_was_write_) ++stats_.turnarounds;

@@ -25,6 +25,7 @@ struct DramReturn {
   Cycle ready = 0;  // core cycle at which its last transfer is over
   Address line = 0;
   uint8_t sectors = 0;
+  Cycle command = 0;  // core cycle of its column command
 };
 
 struct DramStats {

@@ -184,7 +184,8 @@ void L1Cache::tick(Cycle now) {
 }
 
 void L1Cache::send_front(Cycle now) {
-  const Outgoing& out = miss_queue_.front();
+  Outgoing& out = miss_queue_.front();
+  out.packet.stamps.set(Stage::L1Queue, now);
   stats_.request_wait += now - out.ready;
   const uint32_t bytes = bytes_of(out.packet);
   const Cycle tail = request_port_.leave(now, bytes);
@@ -230,9 +231,19 @@ void L1Cache::answer_waiters(Cycle now, const Reply& reply) {
     waiter.missing &= uint8_t(~reply.sectors);
     if (waiter.missing) return false;
     answers_[size_t(waiter.client)].fills.push({now, waiter.order, waiter.token});
-    stats_.miss_latency.add(now - waiter.accepted);
+    count_miss(waiter.accepted, now, reply.stamps);
     return true;
   });
+}
+
+void L1Cache::count_miss(Cycle accepted, Cycle now, const Stamps& stamps) {
+  const Cycle latency = now - accepted;
+  const bool from_dram = stamps.end[size_t(Stage::DramService)] != stamps.end[size_t(Stage::L2Service)];
+  stats_.miss_latency.add(latency);
+  (from_dram ? stats_.dram_latency : stats_.l2_latency).add(latency);
+  ++stats_.timed_misses;
+  stats_.miss_cycles += latency;
+  add_stages(stats_.miss_stages, accepted, now, stamps);
 }
 
 Cycle L1Cache::next_event(Cycle now) const {

@@ -26,6 +26,12 @@ struct L1Stats : CacheStats {
   stats::Counter request_wait{&group, "request_wait", "cycle", "Sum over packets of the cycles they waited for the request port."};
   stats::Counter reply_wait{&group, "reply_wait", "cycle", "Sum over replies of the cycles between arrival and fill."};
   stats::Histogram miss_latency{&group, "miss_latency", "cycle", stats::linear(0, 2048, 32), "From a read that did not hit to its last sector."};
+  stats::Histogram l2_latency{&group, "l2_latency", "cycle", stats::linear(0, 2048, 32), "The same, of those whose last sector the L2 had."};
+  stats::Histogram dram_latency{&group, "dram_latency", "cycle", stats::linear(0, 2048, 32), "The same, of those whose last sector came from DRAM."};
+  stats::Counter timed_misses{&group, "timed_misses", "request", "Reads in them: all that did not hit, but atomics."};
+  stats::Counter miss_cycles{&group, "miss_cycles", "cycle", "Sum of their latencies."};
+  stats::Ratio mean_miss_latency{&group, "mean_miss_latency", "cycle", miss_cycles, timed_misses, "Mean latency of a read that did not hit."};
+  stats::Breakdown<Stage> miss_stages{&group, "miss_stages", "cycle", "The sum of their latencies, by stage."};
 };
 
 // An accepted miss or write becomes one packet in the bounded miss queue and leaves over the core's request port. Lines
@@ -92,6 +98,7 @@ class L1Cache final : public L1Port {
   bool fill(Cycle now);
   bool place(Cycle now, const Reply& reply);
   void answer_waiters(Cycle now, const Reply& reply);
+  void count_miss(Cycle accepted, Cycle now, const Stamps& stamps);
 
   const L1Params params_;
   const uint32_t line_bytes_;

@@ -51,6 +51,7 @@ void MemorySystem::check_drained() const {
   for (const auto& l1 : l1s_) {
     GLINT_CHECK_EQ(l1->reads_accepted(), l1->tokens_returned());
     GLINT_CHECK_EQ(l1->sectors_requested(), l1->sectors_received());
+    GLINT_CHECK_EQ(l1->stats().miss_stages.total(), l1->stats().miss_cycles.value());
     GLINT_CHECK(l1->drained(), "an L1 still holds misses or packets");
     sent += l1->packets_sent();
     requested += l1->sectors_requested();

@@ -7,6 +7,7 @@
 #include "base/types.h"
 #include "memsys/l1_port.h"
 #include "memsys/request.h"
+#include "memsys/stages.h"
 
 namespace glint::mem {
 
@@ -20,6 +21,7 @@ struct Packet {
   Token token = 0;      // of an atomic, for its reply; its client and order of acceptance too
   Client client = Client::Lsu;
   uint64_t order = 0;
+  Stamps stamps{};
 };
 
 // From a partition to an L1: sectors of a line. A packet may be answered by several replies, sector by sector.
@@ -30,6 +32,7 @@ struct Reply {
   Token token = 0;
   Client client = Client::Lsu;
   uint64_t order = 0;
+  Stamps stamps{};
 };
 
 // Address and control beside the data: with one 32-byte sector this makes GPGPU-Sim's 40-byte flit.

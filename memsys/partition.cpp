@@ -92,23 +92,33 @@ void Partition::feed_dram(Cycle now) {
 void Partition::receive_from_dram(Cycle now) {
   Ring<DramReturn>& returns = dram_.returns();
   for (; !returns.empty() && returns.front().ready <= now; returns.pop())
-    fill(now, returns.front().line, returns.front().sectors);
+    fill(now, returns.front());
 }
 
-void Partition::fill(Cycle now, Address line, uint8_t sectors) {
+// The answer to a packet, or to some of its sectors.
+Reply Partition::reply_to(const Packet& packet, uint8_t sectors) const {
+  if (!is_atomic(packet)) return {packet.line, sectors, false, 0, Client::Lsu, 0, packet.stamps};
+  return {packet.line, packet.sectors, true, packet.token, packet.client, packet.order, packet.stamps};
+}
+
+void Partition::fill(Cycle now, const DramReturn& data) {
+  const Address line = data.line;
+  const uint8_t sectors = data.sectors;
   const uint32_t slot = tags_.find(line);
   if (slot == kNone) evict(now, tags_.victim(line));
   TagArray::Line& filled = slot == kNone ? tags_.insert(line) : tags_.line(slot);
   filled.valid |= sectors;
   mshr_.arrive(mshr_.find(line), sectors, [&](Waiter& waiter) {
-    const Packet& packet = waiter.packet;
+    Packet& packet = waiter.packet;
+    packet.stamps.set(Stage::DramQueue, data.command);
+    packet.stamps.set(Stage::DramService, now);
     const uint8_t served = uint8_t(waiter.missing & sectors);
     waiter.missing &= uint8_t(~sectors);
     if (!is_atomic(packet)) {
-      if (served) send_reply(now, packet.core, {line, served});
+      if (served) send_reply(now, packet.core, reply_to(packet, served));
     } else if (waiter.missing == 0) {
       filled.dirty |= packet.sectors & filled.valid;
-      if (!packet.write) send_reply(now, packet.core, {line, packet.sectors, true, packet.token, packet.client, packet.order});
+      if (!packet.write) send_reply(now, packet.core, reply_to(packet, packet.sectors));
     }
     return waiter.missing == 0;
   });
@@ -117,7 +127,11 @@ void Partition::fill(Cycle now, Address line, uint8_t sectors) {
 void Partition::serve(Cycle now) {
   blocked_ = PartitionCycle::Count;
   if (head_received() > now) return;
-  const Packet packet = requests_->front();
+  Packet packet = requests_->front();
+  packet.stamps.set(Stage::Request, requests_->arrival());
+  packet.stamps.set(Stage::L2Queue, now);
+  packet.stamps.set(Stage::L2Service, now + params_.latency);
+  packet.stamps.set(Stage::DramWay, now + params_.latency + dram_latency_);
   if (!(packet.write && !is_atomic(packet) ? write(now, packet) : read(now, packet))) return;
   const uint32_t bytes = bytes_of(packet);
   request_port_.occupy_until(request_port_.received_at(requests_->arrival(), core_request_port_.cycles(bytes), bytes));
@@ -164,12 +178,15 @@ bool Partition::read(Cycle now, const Packet& packet) {
 void Partition::answer_present(Cycle now, const Packet& packet, uint8_t missing) {
   const Cycle ready = now + service_cycles(packet) - 1 + params_.latency;
   if (!is_atomic(packet)) {
-    if (const uint8_t present = uint8_t(packet.sectors & ~missing)) hit_replies_.push({ready, {packet.line, present}, packet.core});
+    if (const uint8_t present = uint8_t(packet.sectors & ~missing)) {
+      hit_replies_.push({ready, reply_to(packet, present), packet.core});
+      hit_replies_.back().reply.stamps.set_rest(Stage::L2Service, ready);
+    }
     return;
   }
   if (missing) return;
   tags_.line(tags_.find(packet.line)).dirty |= packet.sectors;
-  if (!packet.write) hit_replies_.push({ready, {packet.line, packet.sectors, true, packet.token, packet.client, packet.order}, packet.core});
+  if (!packet.write) hit_replies_.push({ready, reply_to(packet, packet.sectors), packet.core});
 }
 
 bool Partition::write(Cycle now, const Packet& packet) {

@@ -82,11 +82,12 @@ class Partition final : public Cell {
   void step(Cycle now);
   void feed_dram(Cycle now);
   void receive_from_dram(Cycle now);
-  void fill(Cycle now, Address line, uint8_t sectors);
+  void fill(Cycle now, const DramReturn& data);
   void serve(Cycle now);
   bool read(Cycle now, const Packet& packet);
   bool write(Cycle now, const Packet& packet);
   void answer_present(Cycle now, const Packet& packet, uint8_t missing);
+  Reply reply_to(const Packet& packet, uint8_t sectors) const;
   Cycle service_cycles(const Packet& packet) const;
   void queue_for_dram(Cycle ready, Address line, uint8_t sectors, bool write);
   void evict(Cycle now, const TagArray::Line& victim);

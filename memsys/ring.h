@@ -18,6 +18,7 @@ class Ring {
   }
   const T& front() const { return items_[head_]; }
   T& front() { return items_[head_]; }
+  T& back() { return items_[(head_ + size_ - 1) & (items_.size() - 1)]; }
   void pop() {
     head_ = (head_ + 1) & (items_.size() - 1);
     --size_;
