@@ -30,7 +30,7 @@ void binary(Lowering& l, const Instruction& inst, const LoweringRow& row) {
   l.set(inst.result, std::move(result));
 }
 
-// The count may have another width than the base, and is less than the base's width.
+// The count may have another width than the base. Beyond the base's width everything is shifted out, as PTX does (Choice).
 void shift(Lowering& l, const Instruction& inst, const LoweringRow& row) {
   Emitter& e = l.emit();
   const Part part = l.part_of(inst.type), count_part = l.part_of(l.type_of(inst.operands[1]));
@@ -39,7 +39,7 @@ void shift(Lowering& l, const Instruction& inst, const LoweringRow& row) {
   const Operands a = l.value(inst.operands[0]), b = l.value(inst.operands[1]);
   Operands result;
   for (size_t i = 0; i < a.size(); ++i) {
-    const Operand count = bytes_of(count_part) == 8 ? e.value("cvt.u32.u64", {b[i]}) : b[i];
+    const Operand count = bytes_of(count_part) == 8 ? e.value("cvt.u32.u64", {e.value("min.u64", {b[i], Operand::value(64)})}) : b[i];
     result.push_back(narrowed(e, part, e.value(name, {widened(e, part, a[i], is_signed), count})));
   }
   l.set(inst.result, std::move(result));

@@ -22,11 +22,12 @@ void each_part(Lowering& l, const Instruction& inst, auto&& convert) {
   l.set(inst.result, std::move(result));
 }
 
-// Towards 0; the result of numbers out of range is undefined (here: saturated to 32 or 64 bits, then cut).
+// Towards 0. Choice: numbers out of range become the nearest integer that there is, NaN 0, as PTX has it.
 void float_to_integer(Lowering& l, const Instruction& inst, const LoweringRow&) {
   const bool is_signed = inst.op == spv::Op::OpConvertFToS;
   each_part(l, inst, [&](Emitter& e, Part to, Part from, const Operand& x) {
-    return narrowed(e, to, e.value(fmt::format("cvt.rzi.{}.{}", type_name(to, is_signed), type_name(from, true)), {x}));
+    const std::string to_name = fmt::format("{}{}", is_signed ? 's' : 'u', 8 * bytes_of(to));
+    return narrowed(e, to, e.value(fmt::format("cvt.rzi.{}.{}", to_name, type_name(from, true)), {x}));
   });
 }
 

@@ -123,7 +123,7 @@ Operand log(Emitter& e, Operand x) {
 }
 
 Operand pow(Emitter& e, Operand x, Operand y) {
-  if (is_constant(y, 0)) return constant_f32(1);
+  if (is_constant(y, 0) || is_constant(y, 0x8000'0000)) return constant_f32(1);  // both zeros
   const Operand power = e.value("ex2.f32", {e.mul(y, e.value("lg2.f32", {x}))});
   if (y.kind == Operand::Kind::Constant) return power;
   return e.select(e.value("setp.eq.f32", {y, constant_f32(0)}), constant_f32(1), power);  // 0 * lg2(0) is NaN
