@@ -38,17 +38,10 @@ class RoundingScope {
   static constexpr uint32_t kProcessStart = 0x1f80;  // nearest, nothing flushed, no traps (System V ABI, 3.4.1)
 };
 
-// The work of the lanes apart from the change of direction around it: handlers of all directions share it.
-template <class F, class... A>
-[[gnu::noinline, gnu::flatten]] void run_in_scope(Warp& warp, const Inst& inst) {
-  run_value<F, A...>(warp, inst);
-}
-// Small and aligned, so that both loads of MXCSR lie in one cache line. AMD's Zen 5 foretells what such a load brings
-// from a hash of its address: far apart, 1 pair in 32 (measured) shared an entry, and a call took 15 ns a load more.
 template <Round kRound, bool kFtz, class F, class... A>
-[[gnu::aligned(64)]] void run_rounded(Warp& warp, const Inst& inst) {
+[[gnu::flatten]] void run_rounded(Warp& warp, const Inst& inst) {
   const RoundingScope<kRound, kFtz> scope;
-  run_in_scope<F, A...>(warp, inst);
+  run_value<F, A...>(warp, inst);
 }
 
 // As value_op, with the arithmetic of `f` (+, -, *, /, fma, sqrt, conversions) rounded in a direction, and
