@@ -10,6 +10,18 @@ Scene build_bunny(const LoadOptions& options);
 Scene build_mirror_box(const LoadOptions& options);
 Scene build_ship(const LoadOptions& options);
 Scene build_cornell(const LoadOptions& options);
+Scene build_sponza(const LoadOptions& options);
+Scene build_chestnut(const LoadOptions& options);
+Scene build_bathroom(const LoadOptions& options);
+Scene build_carnival(const LoadOptions& options);
+Scene build_fox(const LoadOptions& options);
+Scene build_party(const LoadOptions& options);
+Scene build_spring(const LoadOptions& options);
+Scene build_lands(const LoadOptions& options);
+Scene build_forest(const LoadOptions& options);
+Scene build_park(const LoadOptions& options);
+Scene build_car(const LoadOptions& options);
+Scene build_robot(const LoadOptions& options);
 
 // The Cornell box of edge 555 with its four materials: 24 vertices, 12 triangles, open towards +z.
 Model make_cornell_box();

@@ -6,12 +6,16 @@
 #include <tiny_obj_loader.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
+#include <fstream>
+#include <map>
 #include <unordered_map>
 
 #include "base/diagnostics.h"
 #include "scenes/builders.h"
 #include "scenes/mesh.h"
+#include "scenes/texture_loader.h"
 
 namespace glint::scenes {
 namespace {
@@ -53,12 +57,25 @@ Vertex corner_of(const tinyobj::attrib_t& attributes, const tinyobj::index_t& in
   return vertex;
 }
 
-tinyobj::ObjReader read(const std::string& path) {
+std::string contents(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+bool parse(tinyobj::ObjReader& reader, const std::string& path) {
   tinyobj::ObjReaderConfig config;
   config.triangulate = false;  // the loader's own triangulation is not a fan
   config.vertex_color = false;
+  const std::vector<std::string> parts = parts_of(path);
+  if (parts.empty()) return reader.ParseFromFile(path, config);
+  std::string text;
+  for (const std::string& part : parts) text += contents(part);
+  return reader.ParseFromString(text, contents(std::filesystem::path(path).replace_extension(".mtl").string()), config);
+}
+
+tinyobj::ObjReader read(const std::string& path) {
   tinyobj::ObjReader reader;
-  if (!reader.ParseFromFile(path, config))
+  if (!parse(reader, path))
     throw UserError({path}, "this OBJ file cannot be read: " + reader.Error(), "expected a Wavefront OBJ file");
   // A named material library that is absent would silently turn every colour grey.
   if (reader.Warning().find("not found") != std::string::npos && reader.GetMaterials().empty())
@@ -67,7 +84,48 @@ tinyobj::ObjReader read(const std::string& path) {
   return reader;
 }
 
+Material material_of(const tinyobj::material_t& m) {
+  return lambertian(float(m.diffuse[0]), float(m.diffuse[1]), float(m.diffuse[2]));
+}
+
+// `folder` is the library's: texture names are relative to it.
+void add_texture(Material& material, std::string name, const std::filesystem::path& folder,
+                 std::vector<Texture>& textures) {
+  if (name.empty()) return;
+  while (std::isspace(static_cast<unsigned char>(name.back()))) name.pop_back();
+  std::replace(name.begin(), name.end(), '\\', '/');
+  textures.push_back(load_texture((folder / name).string()));
+  material.texture = int32_t(textures.size() - 1);
+  if (material.diffuse == Vec4{0, 0, 0, 1}) material.diffuse = {1, 1, 1, 1};
+}
+
 }  // namespace
+
+std::vector<std::string> parts_of(const std::string& path) {
+  std::vector<std::string> parts;
+  std::error_code error;
+  if (std::filesystem::exists(path, error)) return parts;
+  for (char first = 'a'; first <= 'z'; ++first)
+    for (char second = 'a'; second <= 'z'; ++second) {
+      std::string part = path + '.' + first + second;
+      if (!std::filesystem::is_regular_file(part, error)) return parts;
+      parts.push_back(std::move(part));
+    }
+  return parts;
+}
+
+std::vector<Material> load_materials(const std::string& path) {
+  std::ifstream file(path);
+  std::map<std::string, int> names;
+  std::vector<tinyobj::material_t> read;
+  std::string warning, error;
+  if (file) tinyobj::LoadMtl(&names, &read, &file, &warning, &error);
+  if (!file.is_open() || !error.empty())
+    throw UserError({path}, "this material library cannot be read: " + error, "expected an MTL file");
+  std::vector<Material> materials;
+  for (const tinyobj::material_t& m : read) materials.push_back(material_of(m));
+  return materials;
+}
 
 std::string find_asset(const std::string& assets, const std::string& scene,
                        const std::vector<std::string>& candidates) {
@@ -81,11 +139,14 @@ std::string find_asset(const std::string& assets, const std::string& scene,
                               fmt::join(candidates, ", ")));
 }
 
-Model load_obj(const std::string& path, std::vector<Material>& materials) {
+Model load_obj(const std::string& path, std::vector<Material>& materials, std::vector<Texture>* textures) {
   const tinyobj::ObjReader reader = read(path);
   const auto base = int32_t(materials.size());
-  for (const tinyobj::material_t& m : reader.GetMaterials())
-    materials.push_back(lambertian(float(m.diffuse[0]), float(m.diffuse[1]), float(m.diffuse[2])));
+  for (const tinyobj::material_t& m : reader.GetMaterials()) {
+    materials.push_back(material_of(m));
+    if (textures)
+      add_texture(materials.back(), m.diffuse_texname, std::filesystem::path(path).parent_path(), *textures);
+  }
   if (reader.GetMaterials().empty()) materials.push_back(lambertian(0.7f, 0.7f, 0.7f));
 
   Model model;

@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -61,20 +62,24 @@ struct Camera {
 
 struct Scene {
   std::string name;
-  std::string form;          // "original", "built-in" or "stand-in": what the geometry really is
+  std::string form;          // what the geometry really is: "original", "partial" (files of the original are absent),
+                             // "stand-in" (files of another mesh) or "built-in" (generated)
   std::string note;          // one sentence for results: what differs from the original
   std::vector<Model> models;
   std::vector<Material> materials;
   std::vector<Texture> textures;
   Camera camera;
   bool alpha_test = false;   // triangle hit groups have the any-hit alpha shader
+  uint64_t original_triangles = 0;  // of the application's complete scene; 0 = it has none
   uint64_t triangles() const;
+  double fraction() const;   // of the original's triangles; 1 where it has none
   uint64_t procedurals() const;
   uint64_t hash() const;     // of everything that reaches a shader, stable across runs and machines
 };
 
 struct LoadOptions {
   std::string assets;        // folder of original data, "" = none
+  std::function<void(double fraction)> progress = {};  // of loading or generating; may be empty
 };
 
 struct SceneInfo {

@@ -1,0 +1,15 @@
+// Textures that are generated: stone, bricks, planks, panels, cloth, bark and leaves.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "scenes/scene.h"
+
+namespace glint::scenes {
+
+enum class Pattern { Stone, Bricks, Planks, Panels, Stripes, Bark };
+
+// `color` is 0 to 1; sides are texels. Opaque.
+Texture paint_texture(Pattern pattern, const Vec3& color, uint32_t width, uint32_t height, uint32_t seed);
+// A hand of five leaflets; alpha is exactly 0 outside of them.
+Texture paint_leaf(const Vec3& color, uint32_t side, uint32_t seed);
+
+}  // namespace glint::scenes

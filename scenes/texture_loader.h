@@ -1,0 +1,13 @@
+// Picture files as textures of a scene.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "scenes/scene.h"
+
+namespace glint::scenes {
+
+// Reads a PNG or JPEG file as RGBA8, alpha 255 where the file has none. UserError when it cannot be read.
+Texture load_texture(const std::string& path);
+
+}  // namespace glint::scenes
