@@ -21,6 +21,8 @@ CoreCell::CoreCell(const Params& params, const Context& context)
       tables_(table_layout(context.world, context.tables)),
       table_(*context.world.image, params),
       executor_(context.world, context.clock_mhz),
+      turn_(context.turn),
+      view_(context.turn ? std::make_unique<MemoryView>() : nullptr),
       lsu_(params, context.l1),
       schedulers_(params.schedulers),
       warps_(num_slots_),
@@ -37,6 +39,7 @@ CoreCell::CoreCell(const Params& params, const Context& context)
       op_counts_(isa::op_table().size()),
       op_lanes_(isa::op_table().size()) {
   GLINT_CHECK(num_slots_ > 0, "no warp fits: check() reports this");
+  executor_.use(view_.get());
   const bool counts_blocks = world_.block_size[0] != 0;
   const uint32_t places = counts_blocks ? std::min(params.blocks, num_slots_ / warps_per_block_) : num_slots_;
   GLINT_CHECK(places > 0, "no block fits: check_block() reports this");

@@ -12,6 +12,7 @@
 #include "core/issue_scheduler.h"
 #include "core/lsu.h"
 #include "core/params.h"
+#include "core/memory_view.h"
 #include "core/scoreboard.h"
 #include "core/sm_scheduler.h"
 #include "core/sm_stats.h"
@@ -40,6 +41,7 @@ class CoreCell final : public Cell {
     Address tables = 0;            // physical, of table_bytes() bytes: the candidates of its rays
   };
   // Program and parameters must have passed check().
+    Cycle turn = 0;                // after which other cores see what this one has written; 0: there are none
   CoreCell(const Params& params, const Context& context);
   ~CoreCell() override;
 
@@ -79,6 +81,8 @@ class CoreCell final : public Cell {
   Executor& executor() { return executor_; }  // to listen to what retires
   const CoreStats& stats() const { return stats_; }
   // Warp instructions and lanes by op, indexed as isa::op_table().
+  // What the core has done to global memory in the present turn; null without other cores.
+  MemoryView* view() { return view_.get(); }
   const std::vector<uint64_t>& op_counts() const { return op_counts_; }
   const std::vector<uint64_t>& op_lanes() const { return op_lanes_; }
 
@@ -104,7 +108,8 @@ class CoreCell final : public Cell {
   void collect_candidates(MemoryAccess& access, LaneMask lanes);
   void come_to_barrier(uint32_t slot, Cycle now, Cycle latency);
   void pass_barrier(const Block& block, Cycle at);
-  void start_fence(uint32_t slot, const IssueRow& row, Cycle now);
+  Cycle turn_end(Cycle now) const { return turn_ ? (now / turn_ + 1) * turn_ : 0; }
+  void start_fence(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now);
   void collect_memory(MemoryAccess& access, const Issued& issued);
   void start_rays(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now);
   void complete(uint32_t access_id, Cycle now);
@@ -131,6 +136,8 @@ class CoreCell final : public Cell {
   std::vector<uint32_t> outstanding_;      // a slot: accesses in flight
   std::vector<Cycle> fence_;               // a slot: latency of the fence that waits for them; 0: none
   std::vector<Resident*> home_;            // a slot: the block of its warp
+  const Cycle turn_;
+  std::unique_ptr<MemoryView> view_;
   std::vector<std::unique_ptr<Resident>> residents_;
   const uint32_t warps_per_block_;
   Seat seat_;                              // of the warp launched last

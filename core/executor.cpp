@@ -21,6 +21,7 @@ Issued Executor::execute(WarpContext& warp, Cycle now) {
   warp.regs.exec = issued.lanes = exec;
   if (reads_clock_) [[unlikely]]
     fill_clock(warp, now);
+  if (view_) view_->begin(now);
 
   bool ok = true;
   switch (row.effect) {

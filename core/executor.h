@@ -9,6 +9,7 @@
 #include "base/probe.h"
 #include "core/fault.h"
 #include "core/image.h"
+#include "core/memory_view.h"
 #include "core/texel_list.h"
 #include "core/warp_context.h"
 #include "isa/op_row.h"
@@ -93,6 +94,11 @@ class Executor {
   // address of the space, of generic accesses too. Without lanes whose access was let pass and went nowhere.
   LaneMask lanes_in(isa::Space space) const { return lanes_in_[size_t(space)]; }
 
+  // Global memory is reached through `view` from now on; without one, effects on it happen at once.
+  void use(MemoryView* view) { view_ = view; }
+  // Whether the last load or atomic writes its registers only when the view is committed.
+  bool is_late() const { return is_late_; }
+
   const World& world() const { return world_; }
 
  private:
@@ -117,6 +123,12 @@ class Executor {
   bool locate(WarpContext& warp, const isa::OpRow& row, isa::Space space, LaneMask& lanes, std::array<std::byte*, kLanes>& at);
   bool move_data(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space, LaneMask lanes);
   bool modify(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space, LaneMask lanes);
+  // The same of global memory seen through view_ (executor_view.cpp). `at`: where each of the lanes' data lies.
+  using Places = std::array<std::byte*, kLanes>;
+  void load_seen(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes, const Places& at);
+  void store_seen(const WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes, const Places& at);
+  void surface_seen(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, const Places& place);
+  void modify_seen(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes, const Places& at);
   bool access_local(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes);
   bool refuse(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space, LaneMask lanes, const std::string& why);
   bool check_local(WarpContext& warp, const isa::OpRow& row, LaneMask& lanes);
@@ -182,6 +194,8 @@ class Executor {
   const uint32_t table_rows_;  // of the any-hit mode
   CandidateCounts candidates_;
   std::array<LaneMask, size_t(isa::Space::Generic) + 1> lanes_in_{};
+  MemoryView* view_ = nullptr;
+  bool is_late_ = false;
   std::optional<Fault> fault_;
   FaultLog passed_;
   TexelList texels_;

@@ -141,19 +141,19 @@ size_t num_data(const isa::OpRow& row) {
   return slots - Slots(row).data;
 }
 
-Words load_texel(const isa::OpRow& row, TexelFormat format, const std::byte* at) {
-  if (row.image.request == ImageRequest::Texel) return decode(format, at);
-  Words words{};
-  std::memcpy(words.data(), at, size_t(row.memory.bytes * row.memory.count));
-  return words;
-}
-
 void store_texel(const isa::OpRow& row, TexelFormat format, const Words& words, std::byte* at) {
   if (row.image.request == ImageRequest::Texel) return encode(format, words, at);
   std::memcpy(at, words.data(), size_t(row.memory.bytes * row.memory.count));
 }
 
 }  // namespace
+
+Words load_texel(const isa::OpRow& row, TexelFormat format, const std::byte* at) {
+  if (row.image.request == ImageRequest::Texel) return decode(format, at);
+  Words words{};
+  std::memcpy(words.data(), at, size_t(row.memory.bytes * row.memory.count));
+  return words;
+}
 
 // Null: nothing is there, let pass (`fault()` is then not set) or not.
 const ImageView* Executor::find_image(WarpContext& warp, const isa::OpRow& row, int lane) {
@@ -184,6 +184,7 @@ const Sampler& Executor::find_sampler(const ImageView& image, Address handle) co
 bool Executor::run_image(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
   row.run(warp.regs, inst);
   texels_.clear();
+  is_late_ = false;
   bool ok = false;
   switch (row.image.request) {
     case ImageRequest::Sample:
@@ -307,6 +308,7 @@ bool Executor::surface(WarpContext& warp, const isa::Inst& inst, const isa::OpRo
   const auto format_of = [&](int lane) {
     return world_.images[warp.regs.access.address[size_t(lane)] % (1u << isa::kHandleSamplerShift)].format;
   };
+  if (view_) return surface_seen(warp, inst, row, place), true;
   // Lane by lane: atomics take turns; of stores to one texel the highest lane's stays. Choice: PTX leaves it open.
   for_each_lane(warp.regs.exec, [&](int lane) {
     const Lane operands(warp.regs, inst, lane);
@@ -330,6 +332,40 @@ bool Executor::surface(WarpContext& warp, const isa::Inst& inst, const isa::OpRo
     for (size_t c = 0; c < slots.results; ++c) warp.regs.write(inst.operand[c])[lane] = words[c];
   });
   return true;
+}
+
+// surface() where the image is seen through view_. A lane without a place loads 0.
+void Executor::surface_seen(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, const Places& place) {
+  const Slots slots(row);
+  const auto format_of = [&](int lane) {
+    return world_.images[warp.regs.access.address[size_t(lane)] % (1u << isa::kHandleSamplerShift)].format;
+  };
+  const auto bytes_of = [&](int lane) {
+    return row.image.request == ImageRequest::Texel ? uint32_t(info_of(format_of(lane)).bytes) : uint32_t(row.memory.bytes * row.memory.count);
+  };
+  const auto to = [&](size_t c, int lane) { return c < slots.results ? warp.regs.write(inst.operand[c]) + lane : nullptr; };
+  is_late_ = row.effect == isa::Effect::SurfaceAtomic && slots.results > 0;
+  if (row.effect == isa::Effect::SurfaceLoad)
+    for_each_lane(warp.regs.exec, [&](int lane) { is_late_ |= place[size_t(lane)] && view_->waits(place[size_t(lane)], bytes_of(lane)); });
+  for_each_lane(warp.regs.exec, [&](int lane) {
+    const Lane operands(warp.regs, inst, lane);
+    std::byte* const at = place[size_t(lane)];
+    std::array<std::byte, MemoryView::kWidest> scratch{};
+    if (row.effect == isa::Effect::SurfaceStore && at) {
+      Words words{};
+      for (size_t c = 0; c < num_data(row); ++c) words[c] = operands.word(slots.data + c);
+      store_texel(row, format_of(lane), words, scratch.data());
+      view_->store(at, scratch.data(), bytes_of(lane));
+    } else if (row.effect == isa::Effect::SurfaceAtomic && at) {
+      const uint32_t swap = num_data(row) > 1 ? operands.word(slots.data + 1) : 0;
+      view_->modify({at, row.atomic, operands.word(slots.data), swap, 4, to(0, lane)});
+    } else if (row.effect == isa::Effect::SurfaceLoad && at && is_late_) {
+      view_->load(MemoryView::LoadTexel{at, &row, format_of(lane), {to(0, lane), to(1, lane), to(2, lane), to(3, lane)}});
+    } else {
+      const Words words = at ? load_texel(row, format_of(lane), view_->read(at, bytes_of(lane), scratch)) : Words{};
+      for (size_t c = 0; c < slots.results; ++c) *to(c, lane) = words[c];
+    }
+  });
 }
 
 }  // namespace glint::core

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "base/check.h"
+#include "core/access_rows.h"
 #include "core/executor.h"
 #include "isa/generic_address.h"
 
@@ -15,43 +16,12 @@ using isa::Space;
 
 namespace {
 
-// Slot of the first value operand: loads write from slot 0, stores read after the address.
-constexpr size_t kLoadFirst = 0, kStoreFirst = 1;
-
 std::string_view verb_of(Effect effect) {
   return effect == Effect::Load ? "reads" : effect == Effect::Store ? "writes" : "changes";
 }
 std::string_view name_of(Space space) {
   constexpr std::string_view kNames[] = {"", "global", "local", "shared", "constant", "parameter", "generic"};
   return kNames[size_t(space)];
-}
-
-uint32_t narrow(const std::byte* from, const isa::Memory& shape) {
-  uint32_t value = 0;
-  std::memcpy(&value, from, shape.bytes);
-  if (!shape.sign_extend) return value;
-  return shape.bytes == 1 ? uint32_t(int32_t(int8_t(value))) : uint32_t(int32_t(int16_t(value)));
-}
-
-// Registers that an access fills or reads a lane: one a part, two for parts of 8 bytes.
-uint32_t rows_of(const isa::Memory& shape) { return shape.bytes == 8 ? 2u * shape.count : shape.count; }
-// Bytes of each in memory.
-uint32_t row_bytes(const isa::Memory& shape) { return shape.bytes == 8 ? 4u : shape.bytes; }
-// Register row of row `row`: a pair for 64-bit values, any registers for vectors.
-isa::Slot slot_of(const isa::Inst& inst, const isa::Memory& shape, size_t first, uint32_t row) {
-  return shape.bytes == 8 ? isa::Slot(inst.operand[first] + row) : inst.operand[first + row];
-}
-
-void load_rows(WarpContext& warp, const isa::Inst& inst, const isa::Memory& shape, LaneMask lanes,
-               const std::array<std::byte*, kLanes>& from) {
-  const uint32_t bytes = row_bytes(shape);
-  for (uint32_t row = 0; row < rows_of(shape); ++row) {
-    uint32_t* to = warp.regs.write(slot_of(inst, shape, kLoadFirst, row));
-    if (bytes == 4)
-      for_each_lane(lanes, [&](int lane) { std::memcpy(to + lane, from[size_t(lane)] + row * 4, 4); });
-    else
-      for_each_lane(lanes, [&](int lane) { to[lane] = narrow(from[size_t(lane)] + row * bytes, shape); });
-  }
 }
 
 // Lane by lane: where two lanes write one place, the higher lane's value stays. Choice: PTX leaves it open.
@@ -78,17 +48,12 @@ std::string outside_of(std::string_view object, Address address, uint64_t bytes,
   return fmt::format("{} bytes across the end of {} ({} bytes), {} of them past it", bytes, object, size, address + bytes - size);
 }
 
-uint64_t read_operand(const isa::Warp& regs, isa::Slot slot, int lane, uint32_t bytes) {
-  const uint32_t* const low = regs.read(slot);
-  if (bytes == 8) return low[lane] | uint64_t(low[kLanes + lane]) << 32;
-  return bytes == 2 ? low[lane] & 0xffffu : low[lane];
-}
-
 }  // namespace
 
 bool Executor::run_memory(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
   row.run(warp.regs, inst);
   lanes_in_.fill(0);
+  is_late_ = false;
   const LaneMask exec = warp.regs.exec;
   bool ok = true;
   if (row.memory.space != Space::Generic) {
@@ -176,11 +141,15 @@ bool Executor::move_data(WarpContext& warp, const isa::Inst& inst, const isa::Op
   std::array<std::byte*, kLanes> at;
   LaneMask inside = lanes;
   if (!locate(warp, row, space, inside, at)) return false;
+  const bool seen = view_ && space == Space::Global;
   if (row.effect == Effect::Store) {
-    store_rows(warp, inst, row.memory, inside, at);
+    seen ? store_seen(warp, inst, row, inside, at) : store_rows(warp, inst, row.memory, inside, at);
     return true;
   }
-  load_rows(warp, inst, row.memory, inside, at);
+  if (seen && view_->touched())
+    load_seen(warp, inst, row, inside, at);
+  else
+    load_rows(warp, inst, row.memory, inside, at);
   if (inside != lanes) [[unlikely]]
     load_zeros(warp, inst, row.memory, lanes & ~inside);
   return true;
@@ -197,6 +166,7 @@ bool Executor::modify(WarpContext& warp, const isa::Inst& inst, const isa::OpRow
   const bool has_second = row.operands.count > first + 1;
   if (returns && inside != lanes) [[unlikely]]
     load_zeros(warp, inst, row.memory, lanes & ~inside);
+  if (view_ && space == Space::Global) return modify_seen(warp, inst, row, inside, at), true;
   for_each_lane(inside, [&](int lane) {
     uint64_t old = 0;
     std::memcpy(&old, at[size_t(lane)], bytes);

@@ -30,6 +30,7 @@ MemoryAccess& Lsu::take(uint32_t scheduler, Cycle now) {
   access.atomic = false;
   access.issued = now;
   return access;
+  access.late_until = 0;
 }
 
 void Lsu::tick(Cycle now) {

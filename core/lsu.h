@@ -20,6 +20,7 @@ struct MemoryAccess {
   uint32_t pc = 0;
   Cycle issued = 0;
   mem::Traffic traffic = mem::Traffic::ShaderGlobal;
+  Cycle late_until = 0;       // registers that it fills are not written before
   bool write = false;
   bool texture = false;       // through the texture unit
   bool atomic = false;        // one that shared memory does, if it is there

@@ -98,7 +98,7 @@ void CoreCell::issue(SchedulerState& scheduler, uint32_t local, Cycle now) {
       stats_.latency.add(row.klass, row.latency);
       break;
     case Finish::Fence:
-      start_fence(slot, row, now);
+      start_fence(slot, row, issued, now);
       stats_.latency.add(row.klass, row.latency);
       break;
   }
@@ -133,11 +133,13 @@ void CoreCell::pass_barrier(const Block& block, Cycle at) {
   }
 }
 
-void CoreCell::start_fence(uint32_t slot, const IssueRow& row, Cycle now) {
+// A fence among cores lasts until they see what came before it, however short its latency.
+void CoreCell::start_fence(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now) {
   ++stats_.fences;
-  const bool waits = outstanding_[slot] > 0;
-  fence_[slot] = waits ? row.latency : 0;
-  front_[slot] = {waits ? kNever : now + row.latency, Stall::Fence};
+  const bool waits = outstanding_[slot] > 0, among_cores = isa::FenceScope(issued.row->detail) > isa::FenceScope::Block;
+  const Cycle latency = std::max<Cycle>(row.latency, among_cores && turn_ ? turn_end(now) - now : 0);
+  fence_[slot] = waits ? latency : 0;
+  front_[slot] = {waits ? kNever : now + latency, Stall::Fence};
 }
 
 void CoreCell::count(const IssueRow& row, const Issued& issued) {
@@ -192,6 +194,7 @@ bool CoreCell::start_access(uint32_t slot, const IssueRow& row, const Issued& is
   collect_lines(access, issued);
   // red: nobody waits for an answer.
   access.write |= issued.row->effect == Effect::Atomic && row.num_defs == 0;
+  if (executor_.is_late()) access.late_until = turn_end(now);
   ++outstanding_[slot];
   if (row.finish == Finish::CallRecord)
     front_[slot] = {kNever, Stall::Call};
@@ -270,7 +273,7 @@ void CoreCell::complete(uint32_t access_id, Cycle now) {
     // The branch itself was resolved long ago, or now.
     front_[slot] = {std::max(now, access.issued + row.latency), Stall::Call};
   } else if (!access.write) {
-    scoreboards_[slot].set(table_.defs(row), {now, row.wait});
+    scoreboards_[slot].set(table_.defs(row), {std::max(now, access.late_until), row.wait});
   }
   lsu_.release(access_id);
   --outstanding_[slot];

@@ -27,7 +27,8 @@ AddressSpace::~AddressSpace() {
 }
 
 Address AddressSpace::allocate(std::string name, uint64_t bytes) {
-  const size_t host_bytes = size_t(bytes == 0 ? 1 : bytes);
+  // Whole lines of the host: a line can be copied, whatever of it is used.
+  const size_t line = size_t(kHostAlignment), host_bytes = size_t(bytes == 0 ? line : (bytes + line - 1) / line * line);
   auto* data = static_cast<std::byte*>(::operator new[](host_bytes, kHostAlignment));
   std::memset(data, 0, host_bytes);
   const Address address = Address(allocations_.size()) << kShift;

@@ -5,12 +5,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <thread>
 
 #include "base/diagnostics.h"
 
 namespace glint {
 
+uint32_t EngineLoop::num_threads(uint32_t threads, size_t cells) {
+  const uint32_t wanted = threads ? threads : std::max(1u, std::thread::hardware_concurrency());
+  return std::min(wanted, uint32_t(std::max<size_t>(cells, 1)));
+}
+
 Cycle EngineLoop::run(const Between& between) {
+  if (const uint32_t threads = num_threads(options_.threads, cells_.size()); threads > 1 && !pool_)
+    pool_ = std::make_unique<CellPool>(cells_, threads, options_.homes);
   uint64_t last_progress = progress();
   Cycle last_moved = 0;
   for (Cycle now = 0;;) {
@@ -19,9 +28,9 @@ Cycle EngineLoop::run(const Between& between) {
     if (!options_.no_skip) {
       const Cycle event = next_event(now);
       if (event == kNever) throw_stuck(now, "nothing is left that could happen");
-      now = std::max(now, event / options_.window * options_.window);
+      now = std::max(now, event / options_.turn * options_.turn);
     }
-    run_window(now, now + options_.window);
+    run_turn(now, last_progress);
     const uint64_t moved = progress();
     if (moved != last_progress) {
       last_progress = moved;
@@ -29,13 +38,22 @@ Cycle EngineLoop::run(const Between& between) {
     } else if (now - last_moved >= options_.watchdog) {
       throw_stuck(now, fmt::format("nothing has moved since cycle {}", last_moved));
     }
-    now += options_.window;
+    now += options_.turn;
   }
 }
 
-// Cells of one window are independent of each other: a loop over threads would give the same result.
-void EngineLoop::run_window(Cycle from, Cycle until) {
-  for (Cell* cell : cells_) cell->advance(from, until);
+void EngineLoop::run_turn(Cycle from, uint64_t progress) {
+  // Who asks for a number of threads gets it.
+  const bool in_parallel = pool_ && (options_.threads || pace_.in_parallel(std::chrono::steady_clock::now(), progress));
+  const Cycle end = from + options_.turn, step = options_.window ? options_.window : options_.turn;
+  for (Cycle now = from; now < end; now += step) run_window(now, std::min(now + step, end), in_parallel);
+}
+
+void EngineLoop::run_window(Cycle from, Cycle until, bool in_parallel) {
+  if (in_parallel)
+    pool_->advance(from, until);
+  else
+    for (Cell* cell : cells_) cell->advance(from, until);
   for (ChannelBase* channel : channels_) channel->deliver();
 }
 

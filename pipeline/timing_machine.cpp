@@ -22,11 +22,16 @@ const GpuParams& checked(const GpuParams& params, const core::World& world) {
 
 }  // namespace
 
-TimingMachine::TimingMachine(const GpuParams& params, const core::World& world, bool no_skip)
+// A turn is as long as no message can be on its way: the cells of one are independent of each other.
+// Choice: stores are seen by other cores, and atomics done, at the end of the turn they were issued in, in order of cycle
+// and core (core/memory_view.h); PTX leaves the order of racing accesses open, and bounds it by fences only.
+// A machine of one core has nobody to wait for: its effects happen at issue.
+TimingMachine::TimingMachine(const GpuParams& params, const core::World& world, bool no_skip, const HostOptions& host)
     : params_(checked(params, world)),
       world_(world),
       memory_(params_.memory, params_.cores, params_.clock_mhz, &root_),
-      engine_({memory_.shortest_latency(), no_skip}) {
+      engine_({.turn = memory_.shortest_latency(), .no_skip = no_skip, .threads = host.threads, .window = host.window, .homes = host.homes}) {
+  const Cycle turn = params_.cores > 1 ? memory_.shortest_latency() : 0;
   for (uint32_t i = 0; i < params_.cores; ++i) {
     const std::string name = fmt::format("core[{}]", i);
     rt_groups_.push_back(std::make_unique<stats::Group>(&root_, fmt::format("rt_unit[{}]", i)));
@@ -38,9 +43,10 @@ TimingMachine::TimingMachine(const GpuParams& params, const core::World& world, 
     rt_units_.push_back(std::make_unique<rt::RtUnit>(params_.rt, rt));
     const Address local = world.memory->reserve(core::CoreCell::local_bytes(params_.core, world));
     cores_.push_back(std::make_unique<core::CoreCell>(
-        params_.core, core::CoreCell::Context{world, memory_.l1(i), *rt_units_.back(), local, &root_, name, no_skip, i, params_.cores, params_.clock_mhz, rt.tables.base}));
+        params_.core, core::CoreCell::Context{world, memory_.l1(i), *rt_units_.back(), local, &root_, name, no_skip, i, params_.cores, params_.clock_mhz, rt.tables.base, turn}));
     engine_.add(*cores_.back());
   }
+    if (core::MemoryView* view = cores_.back()->view()) views_.push_back(view);
   for (Cell* cell : memory_.cells()) engine_.add(*cell);
   for (ChannelBase* channel : memory_.channels()) engine_.add(*channel);
 }
@@ -54,6 +60,7 @@ Cycle TimingMachine::run(const std::function<void(uint64_t, uint64_t)>& progress
   const core::Fault* fault = nullptr;
   const Cycle quiet = engine_.run([&](Cycle now) {
     for (const auto& core : cores_)
+    core::MemoryView::commit(views_);
       if (!fault && core->fault()) fault = &*core->fault();
     if (fault) return EngineLoop::Next::Stop;
     dispatcher.dispatch(now);

@@ -15,11 +15,18 @@
 
 namespace glint::pipeline {
 
+// How the host runs the machine: no result depends on it (engine_loop.h).
+struct HostOptions {
+  uint32_t threads = 1;            // 0: as many as the host has processors, while they are faster than one
+  Cycle window = 0;                // 0: the longest
+  std::vector<uint32_t> homes{};   // of the cells, cores first, then partitions: the thread of each, if not in turn
+};
+
 // Builds the whole GPU for one launch. `world` outlives it.
 class TimingMachine {
  public:
   // UserError lists every parameter that cannot be.
-  TimingMachine(const GpuParams& params, const core::World& world, bool no_skip);
+  TimingMachine(const GpuParams& params, const core::World& world, bool no_skip, const HostOptions& host = {});
 
   // Runs the launch to its end; returns its cycles. Errors as render().
   Cycle run(const std::function<void(uint64_t done, uint64_t total)>& progress);
@@ -33,11 +40,13 @@ class TimingMachine {
   // Sums over the cores for the caller's result.
   void collect(RenderResult& result) const;
 
+  const GpuParams& params() const { return params_; }
   const stats::Group& root() const { return root_; }
   const core::CoreCell& core(uint32_t index) const { return *cores_[index]; }
   core::CoreCell& core(uint32_t index) { return *cores_[index]; }
   const rt::RtUnit& rt_unit(uint32_t index) const { return *rt_units_[index]; }
   const mem::MemorySystem& memory() const { return memory_; }
+  mem::MemorySystem& memory() { return memory_; }
   uint32_t num_cores() const { return uint32_t(cores_.size()); }
 
  private:
@@ -56,6 +65,7 @@ class TimingMachine {
   std::vector<std::unique_ptr<stats::Group>> rt_groups_;
   std::vector<std::unique_ptr<rt::RtUnit>> rt_units_;
   std::vector<std::unique_ptr<core::CoreCell>> cores_;
+  std::vector<core::MemoryView*> views_;  // of all cores; none when there is one core
   EngineLoop engine_;
 };
 

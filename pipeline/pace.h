@@ -1,0 +1,67 @@
+// Whether several threads are faster than one, for the launch that runs and the processors that are free.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <chrono>
+#include <cstdint>
+
+namespace glint {
+
+// Tries a few windows each way, goes on in the faster way for many, then tries again. It looks at the clock of the host:
+// what it chooses differs from run to run, and no result depends on it.
+class Pace {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  // Of the window that begins now; `progress` counts what the machine has done so far (Cell::progress).
+  bool in_parallel(Time now, uint64_t progress) {
+    if (windows_ == 0) begin(now, progress);
+    if (windows_++ < length()) return way_ == Way::Parallel;
+    end(now, progress);
+    begin(now, progress);
+    ++windows_;
+    return way_ == Way::Parallel;
+  }
+
+  // Choice: a trial is long enough for caches to settle; all trials are a twentieth of the time.
+  static constexpr uint32_t kTrial = 32, kStay = 40 * kTrial;
+
+ private:
+  enum class Way { Serial, Parallel };
+  enum class Phase { TrySerial, TryParallel, Stay };
+
+  uint32_t length() const { return phase_ == Phase::Stay ? kStay : kTrial; }
+  void begin(Time now, uint64_t progress) {
+    started_ = now;
+    progress_ = progress;
+    windows_ = 0;
+  }
+  // Time a step, in any unit: a phase in which nothing moved says nothing.
+  void end(Time now, uint64_t progress) {
+    const double time = std::chrono::duration<double>(now - started_).count();
+    const double cost = time / double(progress > progress_ ? progress - progress_ : 1);
+    switch (phase_) {
+      case Phase::TrySerial:
+        serial_ = cost;
+        phase_ = Phase::TryParallel;
+        way_ = Way::Parallel;
+        break;
+      case Phase::TryParallel:
+        way_ = cost < serial_ ? Way::Parallel : Way::Serial;
+        phase_ = Phase::Stay;
+        break;
+      case Phase::Stay:
+        phase_ = Phase::TrySerial;
+        way_ = Way::Serial;
+        break;
+    }
+  }
+
+  Phase phase_ = Phase::TrySerial;
+  Way way_ = Way::Serial;
+  uint32_t windows_ = 0;      // of the phase
+  uint64_t progress_ = 0;     // when it began
+  Time started_{};
+  double serial_ = 0;         // cost of the last trial
+};
+
+}  // namespace glint

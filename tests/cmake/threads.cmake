@@ -1,0 +1,1 @@
+glint_test(threads LINKS glint::pipeline)

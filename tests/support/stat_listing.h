@@ -1,0 +1,44 @@
+// All statistics of a machine as text, and where two of them differ.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <fmt/format.h>
+
+#include <sstream>
+#include <string>
+
+#include "base/stats.h"
+
+namespace glint::test {
+
+// All numbers of a tree, one a line: two runs are equal when these are.
+class Listing final : public stats::Visitor {
+ public:
+  void enter(const stats::Group& group) override { text += group.name() + "{"; }
+  void leave(const stats::Group&) override { text += "}\n"; }
+  void visit(const stats::Counter& stat) override { text += fmt::format("{}={}\n", stat.name(), stat.value()); }
+  void visit(const stats::Ratio& stat) override { text += fmt::format("{}={}\n", stat.name(), stat.value()); }
+  void visit(const stats::Value& stat) override { text += fmt::format("{}={}\n", stat.name(), stat.value()); }
+  void visit(const stats::Histogram& stat) override { text += fmt::format("{}={}\n", stat.name(), fmt::join(stat.counts(), ",")); }
+  void visit(const stats::BreakdownBase& stat) override {
+    for (const auto& [name, count] : stat.parts()) text += fmt::format("{}::{}={}\n", stat.name(), name, count);
+  }
+  std::string text;
+};
+
+// The first line in which two listings differ, or "".
+inline std::string first_difference(const std::string& a, const std::string& b) {
+  std::istringstream lines_a(a), lines_b(b);
+  for (std::string line_a, line_b, group; std::getline(lines_a, line_a) && std::getline(lines_b, line_b);) {
+    if (line_a.find('{') != std::string::npos) group = line_a.substr(0, line_a.find_last_of('{'));
+    if (line_a != line_b) return fmt::format("in {}: {} against {}", group, line_a, line_b);
+  }
+  return a == b ? "" : "one is longer";
+}
+
+inline std::string listing(const stats::Group& root) {
+  Listing listing;
+  root.accept(listing);
+  return listing.text;
+}
+
+}  // namespace glint::test
