@@ -52,7 +52,7 @@ void room(Model& model, int32_t wood, int32_t light, int32_t mirror, int32_t wal
   const float deep = kFront - kBack;
   for (int row = 0; row < 40; ++row)  // floor boards
     for (int board = 0; board < 4; ++board)
-      add_rounded_box(model, {{4.2f, 0, 0}, {0, 0.1f, 0}, {0, 0, deep / 82}, {-12.75f + 8.5f * float(board), -0.1f, kBack + deep * (float(row) + 0.5f) / 40}}, 150, wood, 0.1f);
+      add_rounded_box(model, {{4.25f, 0, 0}, {0, 0.1f, 0}, {0, 0, deep / 80}, {-12.75f + 8.5f * float(board), -0.1f, kBack + deep * (float(row) + 0.5f) / 40}}, 150, wood, 0.1f);
   add_patch(model, 3000, 1, wall, [=](float u, float v) -> Vec3 { return {kX * (2 * u - 1), kY * v, kBack}; });
   add_patch(model, 3000, 1, wall, [=](float u, float v) -> Vec3 { return {-kX, kY * v, kFront - deep * u}; });
   add_patch(model, 3000, 1, wall, [=](float u, float v) -> Vec3 { return {kX, kY * v, kBack + deep * u}; });

@@ -104,7 +104,7 @@ void generate(Scene& scene, const LoadOptions& options) {
   Generator generator(scene, options, kTriangles);
   Workshop shop(generator);
   const Frame view = in_view(scene.camera, 18);
-  const Frame car = view.inner({-0.2f, -0.2f, 0}, {5, 1.6f, 2.2f}, 35);
+  const Frame car = view.inner({-0.2f, -0.4f, 0}, {3.6f, 1.3f, 1.7f}, 35);
   body(generator, shop, car);
   wheels(generator, shop, car);
   surroundings(generator, shop, view);

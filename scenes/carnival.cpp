@@ -23,7 +23,7 @@ struct Fair {
     for (const float side : {-14.0f, 14.0f}) {
       const Vec3 middle = hub + Vec3{0, 0, side};
       for (const float part : {1.0f, 0.9f, 0.35f})
-        add_ring(model, {{radius * part, 0, 0}, {0, 0, 2.5f}, {0, radius * part, 0}, middle}, 4000, color(1), 0.012f);
+        add_ring(model, {{radius * part, 0, 0}, {0, 0, 2.5f}, {0, radius * part, 0}, middle}, 2400, color(1), 0.012f);
       for (uint32_t k = 0; k < kSpokes; ++k) {
         const double angle = 2 * kPi * k / kSpokes;
         add_cable(model, middle, middle + Vec3{radius * cosine(angle), radius * sine(angle), 0}, 0, 1.1f, 400, color(2));
@@ -41,7 +41,7 @@ struct Fair {
 
   void tent(const Vec3& foot, float size, uint32_t k) {
     static constexpr Vec2 kRoof[] = {{-1, 1}, {-0.6f, 0.98f}, {-0.55f, 1.1f}, {0.2f, 0.45f}, {0.9f, 0.05f}, {1, 0}};
-    add_lathe(model, upright(foot + Vec3{0, size, 0}, {size, size, size}), kRoof, 9000, color(k));
+    add_lathe(model, upright(foot + Vec3{0, size, 0}, {size, size, size}), kRoof, 6000, color(k));
     for (uint32_t s = 0; s < 12; ++s) {
       const double angle = 2 * kPi * s / 12;
       const Vec3 rim = foot + Vec3{size * 1.06f * cosine(angle), size * 0.42f, size * 1.06f * sine(angle)};

@@ -61,7 +61,7 @@ void generate(Scene& scene, const LoadOptions& options) {
   const int32_t ground = generator.color(0.8f, 0.8f, 0.8f);
   generator.model("chestnut", [&](Model& model) {
     add_tree(model, model,
-             {.foot = {20, -12, -30}, .up = {0, -sine(kTilt), cosine(kTilt)}, .height = 150, .spread = 0.75f, .leaf = 0.045f,
+             {.foot = {20, -12, -75}, .up = {0, -sine(kTilt), cosine(kTilt)}, .height = 150, .spread = 0.45f, .leaf = 0.035f,
               .wood = 0.3f, .bark = bark, .leaves = leaves, .seed = 11},
              kTriangles - kGround);
     add_ground(model, {-200, -200}, {240, 90}, [](float x, float z) { return -12 - 4 * fractal({x * 0.02f, 0, z * 0.02f}, 2); },

@@ -62,12 +62,14 @@ void plants(Generator& generator, Random& random) {
   const int32_t petals = generator.material(paint(212, 207, 207));
   for (uint32_t k = 0; k < 86; ++k)
     generator.model("Mesh", [&](Model& m) {
-      const float depth = 10 + 1.6f * float(k), x = -26 + 0.08f * depth + random.between(-0.45f, 0.45f) * depth, z = 62 - depth;
-      add_tree(m, m, {.foot = {x, ground(x, z) - 0.2f, z}, .height = random.between(7, 12), .spread = 0.5f, .leaf = 0.05f, .wood = 0.45f, .bark = bark, .leaves = leaves[k % 3], .seed = k}, 23'000);
+      const float depth = 24 + 1.5f * float(k), side = k % 2 ? 1.0f : -1.0f;
+      const float x = -26 + (0.08f + side * random.between(0.08f, 0.45f)) * depth, z = 62 - depth;
+      add_tree(m, m, {.foot = {x, ground(x, z) - 0.2f, z}, .height = random.between(5, 9), .spread = 0.5f, .leaf = 0.05f, .wood = 0.45f, .bark = bark, .leaves = leaves[k % 3], .seed = k}, 23'000);
     });
   for (uint32_t k = 0; k < 139; ++k)
     generator.model("bush", [&](Model& m) {
-      const float depth = 6 + 0.9f * float(k), x = -26 + 0.08f * depth + random.between(-0.4f, 0.4f) * depth, z = 62 - depth, size = random.between(0.5f, 1.3f);
+      const float depth = 12 + 0.8f * float(k), side = k % 2 ? 1.0f : -1.0f, z = 62 - depth;
+      const float x = -26 + (0.08f + side * random.between(0.03f, 0.4f)) * depth, size = random.between(0.4f, 1);
       add_bush(m, upright({x, ground(x, z) + 0.5f * size, z}, {size, size * 0.9f, size}), 7'400, generator.material(bush_color(random.next())), 0.16f, k);
     });
   for (uint32_t k = 0; k < 15; ++k)

@@ -47,7 +47,7 @@ void houses_and_boats(Generator& generator, const Frame& town, const Palette& pa
   for (uint32_t k = 0; k < 40; ++k)
     generator.model("House", [&](Model& m) {
       const float row = float(k / 8), depth = 70 + 16 * row, x = (float(k % 8) - 3.5f) * (5 + row) + random.between(-1, 1);
-      const float height = random.between(6, 9) + 1.2f * row;
+      const float height = random.between(5, 8) + 0.8f * row;
       add_house(m, town.inner({x, height - 1, -depth}, {3 + 0.5f * row, height, 4}, random.between(-12, 12)), palette, k);
     });
   for (uint32_t k = 0; k < 24; ++k)

@@ -56,14 +56,14 @@ void girl(Generator& generator, const Frame& view) {
   }
   generator.model("spring_jacket_stitches", [&](Model& m) { stitches(m, view.inner({0, -0.15f, 0}, {0.31f, 0.37f, 0.21f}), 235'000, seam, 1); });
   generator.model("spring_pants_stitches", [&](Model& m) { stitches(m, view.inner({0, -0.6f, 0}, {0.23f, 0.31f, 0.19f}), 150'000, seam, 2); });
-  generator.model("spring_hair", [&](Model& m) { add_hair(m, view.inner({0, 0.5f, -0.04f}, {0.18f, 0.19f, 0.17f}), 0.35f, view.y * -1.0f, 180'000, hair, 7); });
+  generator.model("spring_hair", [&](Model& m) { add_hair(m, view.inner({0, 0.52f, -0.09f}, {0.17f, 0.17f, 0.14f}), 0.3f, view.y * -2.5f, 180'000, hair, 7); });
   generator.model("spring_hairband", [&](Model& m) { add_ring(m, {view.x * 0.2f, view.y * 0.05f, view.z * 0.2f, view.at(0, 0.56f, -0.02f)}, 8'000, band, 0.12f); });
 }
 
 // Hills close by, then a mountain that rises over the whole picture.
 float slope(float x, float z) {
   const float away = 4 - z, far = away < 12 ? 0.0f : away - 12;
-  return -1.6f + 0.3f * fractal({x * 0.3f, 0, z * 0.3f}, 3) + 0.1f * away + 0.75f * far + 0.12f * far * fractal({x * 0.02f, 5, z * 0.02f}, 4);
+  return -1.1f + 0.3f * fractal({x * 0.3f, 0, z * 0.3f}, 3) + 0.3f * away + 0.75f * far + 0.12f * far * fractal({x * 0.02f, 5, z * 0.02f}, 4);
 }
 
 void generate(Scene& scene, const LoadOptions& options) {
@@ -82,7 +82,7 @@ void generate(Scene& scene, const LoadOptions& options) {
     add_ground(m, {-700, -930}, {500, 4}, slope, 150'000, rock);
     add_ground(m, {-30, -30}, {25, 4}, slope, generator.rest() - 150'000, grass);
   });
-  scene.note = "A procedural figure, grass and mountain; about the original's triangle count (1.9M) and 51 models as it has.";
+  scene.note = "A procedural figure, grass and mountain; about the original's triangle count (1.9M) and its number of models (51).";
 }
 
 }  // namespace
