@@ -157,7 +157,10 @@ void ControlFlow::finish_shader(spv::Op op) {
   const std::string_view leave = is_called ? "ret" : "exit";
   switch (op) {
     case spv::Op::OpReturn:
-    case spv::Op::OpUnreachable:  // never reached by a valid program; leaving is the smallest harm
+      emit_.end(leave);
+      break;
+    case spv::Op::OpUnreachable:  // never reached by a valid program
+      emit_.effect("trap", {});
       emit_.end(leave);
       break;
     case spv::Op::OpIgnoreIntersectionKHR:
