@@ -63,6 +63,7 @@ class Check {
     for (const auto& record : d_.callable.records) check_record(record, isa::Stage::Callable, "a callable record");
     for (const auto& record : d_.hit.records) check_hit(record);
     for (const auto& group : d_.groups) check_hit_group(group);
+    note_large_payloads();
     errors_.throw_if_errors();
   }
 
@@ -132,6 +133,16 @@ class Check {
     check_stage(group.closest_hit, isa::Stage::ClosestHit, group.where, "'closest_hit'");
     check_stage(group.any_hit, isa::Stage::AnyHit, group.where, "'any_hit'");
     check_stage(group.intersection, isa::Stage::Intersection, group.where, "'intersection'");
+  }
+
+  // Which payload a trace hands over is known only when it runs, so only what no trace can hand over is told.
+  void note_large_payloads() {
+    uint32_t largest = 0;
+    for (const ShaderModule& module : modules_.all()) largest = std::max(largest, module.reflection.largest_payload_bytes);
+    for (const ShaderModule& module : modules_.all())
+      if (module.reflection.incoming_payload_bytes > largest)
+        warnings_.push_back(fmt::format("{}: note: the shader reads a payload of {} bytes; the largest that any shader here hands to a trace has {}",
+                                        module.path, module.reflection.incoming_payload_bytes, largest));
   }
 
   const PipelineDescription& d_;

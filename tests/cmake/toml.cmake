@@ -5,6 +5,10 @@ if(TARGET glint)
     add_test(NAME pipeline_${suite}
       COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/pipeline_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR} ${suite})
   endforeach()
+  foreach(suite Rays Files)
+    add_test(NAME rules_${suite}
+      COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/rules_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR} ${suite})
+  endforeach()
   add_test(NAME pipeline_Texels
     COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/texel_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR})
 endif()

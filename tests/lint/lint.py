@@ -131,6 +131,25 @@ def doc_paths(root):
     return problems
 
 
+def semantics(root):
+    """Every rule of docs/semantics.md names tests, between asterisks, and those exist."""
+    known = set()
+    for path in (root / "tests").rglob("*_test.cpp"):
+        text = re.sub(r'"\s*\n\s*"', "", path.read_text())
+        known |= set(re.findall(r'TEST_CASE\(\s*"([^"]*)"', text))
+    for path in (root / "tests").rglob("*_test.py"):
+        known |= set(re.findall(r"def (test_\w+)", path.read_text()))
+    problems = []
+    for number, line in enumerate((root / "docs/semantics.md").read_text().splitlines(), 1):
+        if not line.startswith("- "):
+            continue
+        names = re.findall(r"\*([^*]+)\*", line)
+        if not names:
+            problems.append(f"docs/semantics.md:{number}: names no test")
+        problems += [f"docs/semantics.md:{number}: there is no test '{name}'" for name in names if name not in known]
+    return problems
+
+
 def wording(root):
     """No loose ends, no environment or printing in libraries."""
     problems = []

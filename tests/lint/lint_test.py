@@ -55,6 +55,12 @@ class LintNotices(unittest.TestCase):
         self.write("isa/a.h", "int x;\n")
         self.assertEqual(len(lint.headers(self.root)), 3)
 
+    def test_a_rule_whose_test_does_not_exist_and_one_without_a_test(self):
+        self.write("tests/a_test.cpp", HEAD + 'TEST_CASE("one is one") {}\n')
+        self.write("tests/b_test.py", "def test_two(self):\n")
+        self.write("docs/semantics.md", "# Rules\n- One. *one is one*; *test_two*\n- Two. *two is two*\n- Three.\n")
+        self.assertEqual(lint.semantics(self.root), ["docs/semantics.md:3: there is no test 'two is two'", "docs/semantics.md:4: names no test"])
+
     def test_a_path_in_the_docs_that_does_not_exist(self):
         self.write("docs/a.md", "See `docs/b.md` and `docs/a.md`.\n")
         self.assertEqual(lint.doc_paths(self.root), ["docs/a.md:1: docs/b.md does not exist"])

@@ -68,7 +68,7 @@ TEST_CASE("a shift by 64 bits looks at all of them") {
 }
 
 TEST_CASE("bit fields that reach beyond bit 31 are cut there") {
-  check_cases("bitfieldExtract(A, j, k)", {{kOnes, 24, 16, 0xff}, {kOnes, 32, 4, 0}, {kOnes, 0, 32, kOnes}, {kOnes, 5, 0, 0}, {0xdead'beef, 31, 1, 1}, {kOnes, 0, 99, kOnes}});
+  check_cases("bitfieldExtract(A, j, k)", {{kOnes, 24, 16, 0xff}, {kOnes, 32, 4, 0}, {kOnes, 0, 32, kOnes}, {kOnes, 5, 0, 0}, {0xdead'beef, 31, 1, 1}, {kOnes, 0, 99, kOnes}, {kOnes, 256, 8, 0xff}});
   check_cases("bitfieldExtract(i, j, k)", {{kIntMin, 24, 16, u(-128)}, {kIntMin, 40, 4, kOnes}, {kIntMax, 40, 4, 0}, {kOnes, 5, 0, 0}, {8, 3, 1, kOnes}});
   check_cases("bitfieldInsert(A, 0xffffffffu, j, k)", {{0, 24, 16, 0xff00'0000}, {7, 32, 4, 7}, {0, 0, 32, kOnes}, {7, 5, 0, 7}, {0, 0, 99, kOnes}});
 }
