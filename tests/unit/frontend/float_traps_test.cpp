@@ -108,7 +108,27 @@ TEST_CASE("floats out of the range of narrow and wide integers become the neares
   check_cases("int(int16_t(a))", {{f(1e6f), 0, 0, 32767}, {f(-1e6f), 0, 0, uint32_t(-32768)}, {kNan, 0, 0, 0}}, types);
   check_cases("uint(uint16_t(a))", {{f(1e6f), 0, 0, 65535}, {f(-1e6f), 0, 0, 0}, {kNan, 0, 0, 0}}, types);
   check_cases("uint(int64_t(a) >> 32)", {{f(1e30f), 0, 0, kIntMax}, {f(-1e30f), 0, 0, kIntMin}, {f(-1), 0, 0, kOnes}, {f(0x1p40f), 0, 0, 256}}, types);
+  check_cases("uint(int64_t(a) >> 32)", {{kNan, 0, 0, kIntMin}}, types);
+  check_cases("uint(uint64_t(a) >> 32)", {{kNan, 0, 0, kIntMin}}, types);
   check_cases("uint(uint64_t(a) >> 32)", {{f(1e30f), 0, 0, kOnes}, {f(-1e30f), 0, 0, 0}, {f(0x1p63f), 0, 0, 0x8000'0000}}, types);
+}
+
+TEST_CASE("halves and doubles have NaN, zeros, subnormals and limits of conversion as floats have") {
+  const std::string types = "#extension GL_EXT_shader_explicit_arithmetic_types : require\n";
+  const std::string half = types + "float16_t h(float x) { return float16_t(x); }\n";
+  check_cases("float(min(h(a), h(b)))", {{kNan, f(1), 0, f(1)}, {f(1), kNan, 0, f(1)}, {0, kMinusZero, 0, kMinusZero}}, half);
+  check_cases("float(max(h(a), h(b)))", {{kNan, f(1), 0, f(1)}, {0, kMinusZero, 0, 0}}, half);
+  check_cases("float(h(a) * h(b))", {{f(0x1p-14f), f(0.5f), 0, f(0x1p-15f)}, {f(0x1p-24f), f(0.5f), 0, 0}, {f(60000), f(2), 0, kInf}, {f(0x1p-24f), f(1.5f), 0, f(0x1p-23f)}}, half);
+  check_cases("float(h(a) / h(b))", {{f(1), 0, 0, kInf}, {0, 0, 0, kNan}, {f(1), f(3), 0, f(0x1.554p-2f)}}, half);
+  check_cases("h(a) == h(b)", {{kNan, kNan, 0, 0}, {0, kMinusZero, 0, 1}, {f(2049), f(2048), 0, 1}}, half);
+  check_cases("float(h(a))", {{f(65519), 0, 0, f(65504)}, {f(65520), 0, 0, kInf}, {f(0x1p-25f), 0, 0, 0}, {f(2049), 0, 0, f(2048)}, {f(2051), 0, 0, f(2052)}}, half);
+  check_cases("float(min(double(a), double(b)))", {{kNan, f(1), 0, f(1)}, {f(1), kNan, 0, f(1)}, {0, kMinusZero, 0, kMinusZero}}, types);
+  check_cases("float(double(a) * double(b))", {{f(0x1p-100f), f(0x1p-40f), 0, f(0x1p-140f)}, {0x7f7f'ffff, f(2), 0, kInf}, {f(0x1p-149f), f(0.5f), 0, 0}}, types);
+  check_cases("float(double(a) / double(b))", {{f(1), 0, 0, kInf}, {0, 0, 0, kNan}, {f(1), f(3), 0, 0x3eaa'aaab}}, types);
+  check_cases("float(sqrt(double(a)))", {{f(-1), 0, 0, kNan}, {kMinusZero, 0, 0, kMinusZero}, {f(2), 0, 0, 0x3fb5'04f3}}, types);
+  check_cases("int(double(a))", {{f(3e9f), 0, 0, kIntMax}, {f(-3e9f), 0, 0, kIntMin}, {kNan, 0, 0, kIntMin}, {f(-7.9f), 0, 0, uint32_t(-7)}}, types);
+  check_cases("uint(double(a))", {{f(5e9f), 0, 0, kOnes}, {f(-1), 0, 0, 0}, {kNan, 0, 0, kIntMin}}, types);
+  check_cases("double(a) != double(b)", {{kNan, kNan, 0, 1}, {0, kMinusZero, 0, 0}}, types);
 }
 
 TEST_CASE("ldexp rounds once, and every exponent is allowed") {
