@@ -1,5 +1,6 @@
 // Lanes meet again after every construct, and what must never be reached stops the run.
 // SPDX-License-Identifier: Apache-2.0
+#include <bit>
 #include <functional>
 
 #include "base/diagnostics.h"
@@ -73,6 +74,19 @@ TEST_CASE("what a module calls unreachable stops the run when a lane comes there
     ComputeLab lab("traps/unreachable.spvasm");
     lab.buffers[0] = Words(4);
     CHECK_THROWS_WITH(lab.run(options), Catch::Matchers::Contains("trap"));
+  }
+}
+
+TEST_CASE("remainders have the dividend's sign, moduli the divisor's; a switch over 64 bits compares all of them and falls through") {
+  for (const LabOptions& options : compute_lab_options()) {
+    INFO(to_string(options));
+    ComputeLab lab("traps/remainders.spvasm");
+    const auto u = [](int32_t x) { return uint32_t(x); };
+    const auto f = [](float x) { return std::bit_cast<uint32_t>(x); };
+    lab.buffers[1] = {u(-7), 3, 0, 1, 7, u(-3), kAll, kAll, u(-7), u(-3), 0, 0, 6, 3, 1, 0};
+    lab.buffers[0] = Words(16);
+    lab.run(options);
+    CHECK(lab.buffers[0] == Words{u(-1), 2, f(-1), 110, 1, u(-2), f(1), 10, u(-1), u(-1), f(-1), 1000, 0, 0, f(0), 1000});
   }
 }
 
