@@ -11,6 +11,7 @@ struct LaunchOptions {
   pipeline::GpuParams gpu;
   bool timing = false;   // cycle by cycle; else every effect at once
   bool no_skip = false;  // of the timing machine
+  uint32_t threads = 1;  // of the host, for it
   core::OnFault on_fault = core::OnFault::Stop;
   core::PrintLog* prints = nullptr;         // null: what shaders print is left out
   frontend::ShaderCache* cache = nullptr;   // null: shaders are compiled anew

@@ -291,9 +291,9 @@ std::span<const std::byte> PipelineWorld::buffer(size_t index) const {
   return {memory_.find(buffer_address_[index], buffer_bytes_[index]), size_t(buffer_bytes_[index])};
 }
 
-RenderResult run_pipeline(PipelineWorld& pipeline, const GpuParams& gpu, bool timing, bool no_skip,
+RenderResult run_pipeline(PipelineWorld& pipeline, const GpuParams& gpu, bool timing, bool no_skip, uint32_t threads,
                           const std::function<void(uint64_t, uint64_t)>& progress) {
-  RenderResult result = run_world(pipeline.world, gpu, timing, no_skip, progress);
+  RenderResult result = run_world(pipeline.world, gpu, timing, no_skip, threads, progress);
   result.structures = pipeline.structures;
   result.warnings = pipeline.warnings;
   return result;

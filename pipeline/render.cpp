@@ -16,12 +16,12 @@ RenderResult::RenderResult(RenderResult&&) noexcept = default;
 RenderResult& RenderResult::operator=(RenderResult&&) noexcept = default;
 const stats::Group& RenderResult::statistics() const { return stats->root(); }
 
-RenderResult run_world(const core::World& world, const GpuParams& gpu, bool timing, bool no_skip,
+RenderResult run_world(const core::World& world, const GpuParams& gpu, bool timing, bool no_skip, uint32_t threads,
                        const std::function<void(uint64_t, uint64_t)>& progress) {
   RenderResult result;
   const auto begin = std::chrono::steady_clock::now();
   if (timing) {
-    auto machine = std::make_unique<TimingMachine>(gpu, world, no_skip);
+    auto machine = std::make_unique<TimingMachine>(gpu, world, no_skip, HostOptions{.threads = threads});
     result.cycles = machine->run(progress);
     machine->collect(result);
     result.faults = machine->passed();
@@ -44,7 +44,7 @@ RenderResult run_world(const core::World& world, const GpuParams& gpu, bool timi
 RenderResult render(const RenderJob& job) {
   SceneWorld scene(job);
   scene.world.on_fault = job.on_fault;
-  RenderResult result = run_world(scene.world, job.gpu, job.timing, job.no_skip, job.progress);
+  RenderResult result = run_world(scene.world, job.gpu, job.timing, job.no_skip, job.threads, job.progress);
   result.width = job.frame.width;
   result.height = job.frame.height;
   result.structures = scene.structures;

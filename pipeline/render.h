@@ -26,6 +26,7 @@ struct RenderJob {
   GpuParams gpu;
   bool timing = true;
   bool no_skip = false;             // steps every cycle: slow, for checking
+  uint32_t threads = 1;             // of the host, for the timing machine (HostOptions)
   std::string shader_dir;           // folder with raygen.rgen, miss.rmiss, triangle.rchit and so on
   frontend::GlslOptions glsl;
   core::PrintLog* prints = nullptr;  // what the shaders print
@@ -75,8 +76,8 @@ struct RenderResult {
 };
 
 // Runs the launch of a world on either machine; everything of the result but pictures, structures and warnings.
-// `no_skip` steps every cycle. `progress` hears how many of the launch's warps have ended. Errors as render().
-RenderResult run_world(const core::World& world, const GpuParams& gpu, bool timing, bool no_skip,
+// `no_skip` steps every cycle, `threads` of the host do it (HostOptions). `progress` hears how many of the launch's warps have ended. Errors as render().
+RenderResult run_world(const core::World& world, const GpuParams& gpu, bool timing, bool no_skip, uint32_t threads,
                        const std::function<void(uint64_t done, uint64_t total)>& progress);
 
 // UserError, UnsupportedError: before anything runs. Error(Exit::Fault): the shaders did something wrong, with

@@ -28,6 +28,7 @@ struct Options {
   bool json = false, no_skip = false;
   ShaderOptions shaders;
   uint64_t print_limit = 1000;
+  uint32_t threads = 0;
   std::string on_fault_name = "stop";
   core::OnFault on_fault = core::OnFault::Stop;
   bool config_given = false, mode_given = false;  // not left at their defaults
@@ -59,6 +60,7 @@ pipeline::RenderJob make_job(const Session& session, const Options& options) {
   parse_size(options.size, job.frame);
   job.timing = options.mode == "timing";
   job.no_skip = options.no_skip;
+  job.threads = options.threads;
   job.on_fault = options.on_fault;
   job.shader_dir = options.shader_dir.empty() ? session.resources.shader_dir(std::string(workload.folder))
                                               : options.shader_dir;
@@ -86,7 +88,7 @@ report::RunInfo describe_run(const Session& session, const Options& options, con
 }
 
 Exit run_scripts(const Session& session, const Options& options) {
-  AmberOptions amber{{options.scene}, options.config, options.settings, options.max_instructions, options.mode_given && options.mode == "timing", options.no_skip, options.on_fault, options.shaders, options.print_limit};
+  AmberOptions amber{{options.scene}, options.config, options.settings, options.max_instructions, options.mode_given && options.mode == "timing", options.no_skip, options.threads, options.on_fault, options.shaders, options.print_limit};
   amber.scripts.insert(amber.scripts.end(), options.more.begin(), options.more.end());
   return run_amber(session, amber);
 }
@@ -96,10 +98,10 @@ Exit run(const Session& session, const Options& options) {
   if (!options.more.empty()) throw UserError({}, fmt::format("'{}' is one too many", options.more[0]), "only Amber scripts run several at a time");
   if (names_pipeline(options.scene))
     return run_pipeline(session, {options.scene, options.config_given ? options.config : "", options.mode_given ? options.mode : "", options.out,
-                                  options.settings, options.max_instructions, options.json, options.no_skip, options.shaders, options.print_limit, options.on_fault});
+                                  options.settings, options.max_instructions, options.json, options.no_skip, options.threads, options.shaders, options.print_limit, options.on_fault});
   if (names_kernel(options.scene))
     return run_ptx(session, {options.scene, options.launch, options.config, options.mode, options.out, options.settings,
-                             options.max_instructions, options.json, options.no_skip, options.on_fault});
+                             options.max_instructions, options.json, options.no_skip, options.threads, options.on_fault});
   const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(options.shaders);
   core::PrintLog prints(options.print_limit);
   pipeline::RenderJob job = make_job(session, options);
@@ -175,6 +177,9 @@ void add_run(CLI::App& app, Session& session) {
       ->capture_default_str();
   command->add_flag("--json", options->json, "Print the statistics as JSON instead of the summary");
   command->add_flag("--no-skip", options->no_skip, "Step every cycle: slow, same result, for checking");
+  command->add_option("--threads", options->threads, "Threads of the timing machine, same result with any number; 0: all processors, while they are faster than one")
+      ->check(CLI::Range(0u, 256u))
+      ->capture_default_str();
   command->add_option("--printf-limit", options->print_limit, "Messages of debugPrintfEXT to show, the first by launch id")->capture_default_str();
   add_shader_options(*command, options->shaders);
   add_frame_options(*command, *options);

@@ -19,7 +19,7 @@ Exit run_amber(const Session& session, const AmberOptions& options) {
   amber::LaunchOptions launch;
   launch.gpu = read_config(session.resources, options.config, options.settings);
   if (options.max_instructions > 0) launch.gpu.core.instruction_budget = options.max_instructions;
-  launch.timing = options.timing, launch.no_skip = options.no_skip, launch.on_fault = options.on_fault;
+  launch.timing = options.timing, launch.no_skip = options.no_skip, launch.threads = options.threads, launch.on_fault = options.on_fault;
   const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(options.shaders);
   core::PrintLog prints(options.print_limit);
   launch.cache = cache.get(), launch.prints = &prints;

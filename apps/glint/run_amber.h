@@ -16,6 +16,7 @@ struct AmberOptions {
   std::vector<std::string> settings;
   uint64_t max_instructions = 0;
   bool timing = false, no_skip = false;
+  uint32_t threads = 0;  // of the host
   core::OnFault on_fault = core::OnFault::Stop;
   ShaderOptions shaders;  // their folders and macros mean nothing to a script
   uint64_t print_limit = 0;  // of each launch

@@ -131,7 +131,7 @@ Exit run_pipeline(const Session& session, const PipelineOptions& options) {
   info.on_fault = core::name_of(options.on_fault);
   directory.write_config(describe_params(job.gpu), "Resolved configuration of: " + title);
   const pipeline::RenderResult result = run_recorded(session, "running", directory, info, [&](const ShowProgress& progress) {
-    return pipeline::run_pipeline(world, job.gpu, job.timing, job.no_skip, progress);
+    return pipeline::run_pipeline(world, job.gpu, job.timing, job.no_skip, options.threads, progress);
   }, &prints);
   directory.write_stats(result.statistics());
   std::vector<std::string> files = keep(world, directory);

@@ -16,6 +16,7 @@ struct PipelineOptions {
   std::vector<std::string> settings;
   uint64_t max_instructions = 0;
   bool json = false, no_skip = false;
+  uint32_t threads = 0;  // of the host
   ShaderOptions shaders;
   uint64_t print_limit = 0;
   core::OnFault on_fault = core::OnFault::Stop;

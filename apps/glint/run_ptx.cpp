@@ -115,7 +115,7 @@ Exit run_ptx(const Session& session, const KernelOptions& options) {
   info.on_fault = core::name_of(options.on_fault);
   directory.write_config(describe_params(job.gpu), "Resolved configuration of: " + title);
   const pipeline::RenderResult result = run_recorded(session, "running", directory, info, [&](const ShowProgress& progress) {
-    return pipeline::run_world(launched.world.world, job.gpu, options.mode == "timing", options.no_skip, progress);
+    return pipeline::run_world(launched.world.world, job.gpu, options.mode == "timing", options.no_skip, options.threads, progress);
   });
   directory.write_stats(result.statistics());
   std::vector<std::string> files = keep_buffers(launched, launch, directory);

@@ -16,6 +16,7 @@ struct KernelOptions {
   std::vector<std::string> settings;
   uint64_t max_instructions = 0;
   bool json = false, no_skip = false;
+  uint32_t threads = 0;  // of the host
   core::OnFault on_fault = core::OnFault::Stop;
 };
 
