@@ -122,6 +122,7 @@ Cycle CoreCell::next_event(Cycle from) const {
 }
 
 void CoreCell::step(Cycle now) {
+  sampler_.reach(now);
   const bool had_warps = num_resident_ > 0;
   if (had_warps) account_until(now);
   l1_.tick(now);
@@ -146,6 +147,8 @@ void CoreCell::account_until(Cycle now) {
   if (now <= accounted_) return;
   const uint64_t cycles = now - accounted_;
   for (SchedulerState& scheduler : schedulers_) stats_.stalls.add(scheduler.reason, cycles);
+  if (profile_)
+    for (SchedulerState& scheduler : schedulers_) profile_->spend(scheduler.index, scheduler.reason, cycles);
   stats_.cycles += cycles;
   stats_.resident_cycles += cycles * num_resident_;
   stats_.slot_cycles += cycles * params_.warps;
@@ -157,6 +160,7 @@ void CoreCell::finish(Cycle end) {
   if (num_resident_ == 0)
     for (SchedulerState& scheduler : schedulers_) scheduler.reason = Stall::NoWarp;
   account_until(end);
+  sampler_.finish(end);
   const CandidateCounts& counts = executor_.candidates();
   stats_.candidate_calls += counts.calls;
   stats_.candidate_lanes += counts.lanes;
@@ -179,7 +183,7 @@ std::string CoreCell::describe_stall() const {
                        ready == kNever ? std::string("without a known end") : fmt::format("until cycle {}", ready),
                        outstanding_[slot]);
   }
-  return out;
+  return out + l1_.describe() + rt_.describe();
 }
 
 }  // namespace glint::core

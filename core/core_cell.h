@@ -8,10 +8,12 @@
 #include <vector>
 
 #include "base/engine.h"
+#include "base/interval_sampler.h"
 #include "core/executor.h"
 #include "core/issue_scheduler.h"
 #include "core/lsu.h"
 #include "core/params.h"
+#include "core/profile.h"
 #include "core/memory_view.h"
 #include "core/scoreboard.h"
 #include "core/sm_scheduler.h"
@@ -80,6 +82,10 @@ class CoreCell final : public Cell {
 
   Executor& executor() { return executor_; }  // to listen to what retires
   const CoreStats& stats() const { return stats_; }
+  // Counts by instruction too, from before the first launch on; otherwise there is no profile.
+  void start_profile();
+  const Profile* profile() const { return profile_.get(); }
+  IntervalSampler& sampler() { return sampler_; }
   // Warp instructions and lanes by op, indexed as isa::op_table().
   // What the core has done to global memory in the present turn; null without other cores.
   MemoryView* view() { return view_.get(); }
@@ -98,6 +104,8 @@ class CoreCell final : public Cell {
   void account_until(Cycle now);
   SchedulerState& scheduler_of(uint32_t slot) { return schedulers_[slot % params_.schedulers]; }
   void run_scheduler(SchedulerState& scheduler, Cycle now);
+  Stall reason_of(const SchedulerState& scheduler, size_t warp, Cycle now) const;
+  uint32_t blamed_pc(const SchedulerState& scheduler, Cycle now) const;
   uint64_t find_ready(SchedulerState& scheduler, Cycle now);
   void issue(SchedulerState& scheduler, uint32_t local, Cycle now);
   void count(const IssueRow& row, const Issued& issued);
@@ -151,6 +159,8 @@ class CoreCell final : public Cell {
   std::optional<Fault> fault_;
   CoreStats stats_;
   std::vector<uint64_t> op_counts_, op_lanes_;
+  std::unique_ptr<Profile> profile_;       // null: not asked for
+  IntervalSampler sampler_;
 };
 
 }  // namespace glint::core

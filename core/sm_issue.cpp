@@ -19,7 +19,10 @@ bool is_surface(Effect effect) {
 // Gives this cycle of the scheduler to an instruction or to a reason.
 void CoreCell::run_scheduler(SchedulerState& scheduler, Cycle now) {
   const uint64_t ready = find_ready(scheduler, now);
-  if (!ready) return;
+  if (!ready) {
+    if (profile_) profile_->point(scheduler.index, blamed_pc(scheduler, now));
+    return;
+  }
   const uint32_t local = scheduler.policy->pick({ready, {scheduler.age.data(), scheduler.age.size()}, now});
   GLINT_DCHECK(ready >> local & 1, "the issue policy chose warp {}, which is not ready", local);
   scheduler.reason = Stall::Issued;
@@ -71,6 +74,7 @@ void CoreCell::issue(SchedulerState& scheduler, uint32_t local, Cycle now) {
   }
   ++progress_;
   count(row, issued);
+  if (profile_) profile_->issue(scheduler.index, issued.pc, num_lanes(issued.lanes));
   if (row.pipe != Pipe::Memory) scheduler.pipe_free[size_t(row.pipe)] = now + row.interval;
   const Cycle done = now + row.latency;
   front_[slot] = {now + 1, Stall::RawFixed};
@@ -206,6 +210,7 @@ bool CoreCell::start_access(uint32_t slot, const IssueRow& row, const Issued& is
   ++stats_.accesses;
   stats_.lines += access.lines.lines().size();
   stats_.sectors += access.lines.num_sectors();
+  if (profile_) profile_->access(issued.pc, access.lines.lines().size(), access.lines.num_sectors());
   return true;
 }
 
@@ -269,6 +274,7 @@ void CoreCell::complete(uint32_t access_id, Cycle now) {
   const uint32_t slot = access.slot;
   const IssueRow& row = table_.row(access.pc);
   stats_.latency.add(row.klass, now - access.issued);
+  if (profile_) profile_->end(access.pc, now - access.issued);
   if (row.finish == Finish::CallRecord) {
     // The branch itself was resolved long ago, or now.
     front_[slot] = {std::max(now, access.issued + row.latency), Stall::Call};
@@ -316,6 +322,7 @@ void CoreCell::complete_rays(uint32_t slot, Cycle now) {
   executor_.finish_rays(warps_[slot]);
   front_[slot] = {now + row.latency, Stall::RtWait};
   stats_.latency.add(row.klass, now + row.latency - rays_issued_[slot]);
+  if (profile_) profile_->end(rays_pc_[slot], now + row.latency - rays_issued_[slot]);
   ++progress_;
   refresh(slot);
 }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/l1_cache.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -253,6 +255,19 @@ Cycle L1Cache::next_event(Cycle now) const {
     if (!a.fills.empty()) next = std::min(next, a.fills.front().ready);
   }
   return next == kNever ? kNever : std::max(next, now);
+}
+
+std::string L1Cache::describe() const {
+  std::string out;
+  if (reads_accepted_ != tokens_returned_)
+    out += fmt::format("  L1: {} reads without an answer, {} lines on the way, {} of {} sectors have come\n", reads_accepted_ - tokens_returned_,
+                       mshr_.in_use(), sectors_received_, sectors_requested_);
+  if (!miss_queue_.empty()) {
+    const Packet& first = miss_queue_.front().packet;
+    out += fmt::format("  L1: {} packets wait to leave, the first {} line {:#x} for partition {}\n", miss_queue_.size(), first.write ? "writes" : "reads",
+                       first.line, map_.partition(first.line));
+  }
+  return out;
 }
 
 bool L1Cache::drained() const {

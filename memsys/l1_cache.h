@@ -51,6 +51,7 @@ class L1Cache final : public L1Port {
   void tick(Cycle now) override;
   Cycle next_event(Cycle now) const override;
   uint32_t line_bytes() const override { return line_bytes_; }
+  std::string describe() const override;
 
   const L1Stats& stats() const { return stats_; }
   // Holds nothing and waits for nothing; popped tokens equal accepted reads.

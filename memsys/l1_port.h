@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
+#include <string>
 
 #include "base/types.h"
 #include "memsys/request.h"
@@ -24,6 +25,8 @@ class L1Port {
   virtual void tick(Cycle now) = 0;
   virtual Cycle next_event(Cycle now) const = 0;  // kNever when nothing is in flight here
   virtual uint32_t line_bytes() const = 0;
+  // Lines on what is on the way and for whom it waits, for a machine that is stuck; "" when there is nothing to say.
+  virtual std::string describe() const { return {}; }
 };
 
 }  // namespace glint::mem

@@ -23,6 +23,7 @@ class MemorySystem {
   L1Cache& l1(uint32_t core) { return *l1s_[core]; }
   const L1Cache& l1(uint32_t core) const { return *l1s_[core]; }
   const Partition& partition(uint32_t index) const { return *partitions_[index]; }
+  Partition& partition(uint32_t index) { return *partitions_[index]; }
   uint32_t num_cores() const { return uint32_t(l1s_.size()); }
   uint32_t num_partitions() const { return uint32_t(partitions_.size()); }
   const PartitionMap& map() const { return map_; }

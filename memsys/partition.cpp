@@ -50,6 +50,7 @@ void Partition::advance(Cycle from, Cycle until) {
 
 // Stages from back to front: what leaves makes room for what enters in the same cycle.
 void Partition::step(Cycle now) {
+  sampler_.reach(now);
   dram_.advance(now);
   receive_from_dram(now);
   feed_dram(now);
@@ -258,6 +259,7 @@ void Partition::account(Cycle until) {
 }
 
 void Partition::finish(Cycle end) {
+  sampler_.finish(end);
   account(end);
   dram_.finish(end);
 }
@@ -269,7 +271,7 @@ bool Partition::finished() const {
 bool Partition::drained() const { return finished() && sectors_requested_ == sectors_replied_; }
 
 std::string Partition::describe_stall() const {
-  return fmt::format("partition {}: {} packets waiting, {} lines on the way, {} for DRAM, {} in DRAM, head: {}", index_,
+  return fmt::format("partition {}: {} packets waiting, {} lines on the way, {} for DRAM, {} in DRAM, head: {}\n", index_,
                      requests_->waiting(), mshr_.in_use(), to_dram_.size(), dram_.in_flight(), name_of(reason()));
 }
 

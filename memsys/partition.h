@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/engine.h"
+#include "base/interval_sampler.h"
 #include "base/stats.h"
 #include "memsys/address_map.h"
 #include "memsys/cache_stats.h"
@@ -54,6 +55,7 @@ class Partition final : public Cell {
 
   void finish(Cycle end);  // attributes the cycles up to the end of the run
   const L2Stats& stats() const { return stats_; }
+  IntervalSampler& sampler() { return sampler_; }
   const DramChannel& dram() const { return dram_; }
   uint64_t packets_received() const { return packets_received_; }
   uint64_t sectors_requested() const { return sectors_requested_; }
@@ -117,6 +119,7 @@ class Partition final : public Cell {
   Cycle busy_until_ = 0;
   Cycle accounted_ = 0;
   PartitionCycle blocked_ = PartitionCycle::Count;  // why the head could not be served; Count: it was not tried
+  IntervalSampler sampler_;
   uint64_t packets_received_ = 0, sectors_requested_ = 0, sectors_replied_ = 0, replies_sent_ = 0;
 };
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "base/types.h"
 #include "rtunit/ray.h"
@@ -29,6 +30,8 @@ class RtPort {
   virtual void tick(Cycle now) = 0;
   // Earliest cycle after `now` at which tick() can do anything without new input; kNever when idle.
   virtual Cycle next_event(Cycle now) const = 0;
+  // Lines on the warps inside and what they wait for, for a machine that is stuck; "" when there is nothing to say.
+  virtual std::string describe() const { return {}; }
 };
 
 }  // namespace glint::rt

@@ -44,9 +44,13 @@ class RtUnit final : public RtPort {
   // The L1's answers are new input: the L1's own next_event() tells of them.
   Cycle next_event(Cycle now) const override;
 
+  std::string describe() const override;
+
   // Gives the cycles up to `end` to their reasons: once, at the end of the run.
   void finish(Cycle end) { account_gap(end); }
   const RtStats& stats() const { return stats_; }
+  // RtStats::warp_cycles as it will be at the start of cycle `at`, when nothing happens before.
+  uint64_t warp_cycles_until(Cycle at) const { return stats_.warp_cycles.value() + (at - next_unaccounted_) * gap_warps_; }
   uint32_t num_resident() const { return num_resident_; }
   Probe<NodeVisited>& node_visited() { return node_visited_; }
 

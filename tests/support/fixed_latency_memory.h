@@ -1,6 +1,8 @@
 // A memory for tests of other parts: every read is answered after the same number of cycles.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <fmt/format.h>
+
 #include <array>
 #include <deque>
 #include <vector>
@@ -23,7 +25,8 @@ class FixedLatencyMemory final : public L1Port {
     }
     ++accesses_;
     log_.push_back(request);
-    if (!request.write) ready_[size_t(client)].push_back({now + latency_, request.token});
+    if (!request.write && swallows_) ++swallowed_;
+    else if (!request.write) ready_[size_t(client)].push_back({now + latency_, request.token});
     return true;
   }
   std::optional<Token> pop(Cycle now, Client client) override {
@@ -42,6 +45,10 @@ class FixedLatencyMemory final : public L1Port {
   }
   uint32_t line_bytes() const override { return line_bytes_; }
 
+  // From now on reads are taken and never answered.
+  void swallow() { swallows_ = true; }
+  std::string describe() const override { return fmt::format("  memory: {} reads never answered\n", swallowed_); }
+
   const std::vector<Request>& log() const { return log_; }  // accepted requests, in order
   uint64_t refused() const { return refused_; }
 
@@ -54,7 +61,8 @@ class FixedLatencyMemory final : public L1Port {
   uint32_t accesses_per_cycle_, line_bytes_;
   Cycle cycle_ = kNever;
   uint32_t accesses_ = 0;
-  uint64_t refused_ = 0;
+  uint64_t refused_ = 0, swallowed_ = 0;
+  bool swallows_ = false;
   std::array<std::deque<Answer>, size_t(Client::Count)> ready_;
   std::vector<Request> log_;
 };

@@ -126,6 +126,7 @@ struct OneCore {
   // Runs to the end; returns the cycle after the core's last activity.
   Cycle run() {
     cell = std::make_unique<CoreCell>(params_, CoreCell::Context{world, l1, rays, kLocalBase, &root, "core", options_.no_skip});
+    if (profile) cell->start_profile();
     EngineLoop engine({options_.window, options_.no_skip, 100'000});
     engine.add(*cell);
     Dispatcher dispatcher(params_, Executor(world).num_blocks(), {cell.get()});
@@ -142,6 +143,7 @@ struct OneCore {
   static constexpr Address kLocalBase = 1 << 20;
   Params params_;
   Options options_;
+  bool profile = false;
   mem::AddressSpace memory;
   World world;
   Image image;

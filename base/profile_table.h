@@ -1,0 +1,44 @@
+// What a profile tells of each instruction and what a time series tells of each interval: plain tables for every writer.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+// An instruction, or all instructions of a source line.
+struct ProfileRow {
+  std::string shader, stage;      // both empty: cycles that belong to no instruction
+  std::string file;               // as the compiler was given it; empty when unknown
+  uint32_t line = 0;              // 0: unknown
+  uint32_t index = 0;             // of the instruction in its shader
+  std::string op;
+  uint64_t issues = 0;            // warp instructions
+  uint64_t lanes = 0;             // that executed them, summed
+  uint64_t accesses = 0;          // of them, those that went to the L1
+  uint64_t requests = 0;          // lines asked for by these
+  uint64_t sectors = 0;           // of 32 B
+  uint64_t ended = 0;             // accesses and traces that came back
+  uint64_t latency = 0;           // issue to completion of these, cycles, summed
+  std::vector<uint64_t> slots;    // cycles of schedulers, by reason as in ProfileTable::reasons; the first is issuing
+
+  uint64_t total() const {
+    uint64_t sum = 0;
+    for (const uint64_t n : slots) sum += n;
+    return sum;
+  }
+};
+
+struct ProfileTable {
+  std::vector<std::string> reasons;
+  std::vector<ProfileRow> rows;   // in program order; the slots of all rows are the cycles of all schedulers
+};
+
+// One row an interval, `columns` long each.
+struct SeriesTable {
+  std::vector<std::string> columns;
+  std::vector<std::vector<double>> rows;
+};
+
+}  // namespace glint

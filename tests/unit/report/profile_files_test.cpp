@@ -1,0 +1,96 @@
+// The files of a profile: what is written is read again, and nothing is lost on the way.
+// SPDX-License-Identifier: Apache-2.0
+#include "base/diagnostics.h"
+#include "report/annotate.h"
+#include "report/profile_files.h"
+#include "tests/support/catch.h"
+
+namespace glint::report {
+namespace {
+
+ProfileRow row(const std::string& file, uint32_t line, uint32_t index, std::vector<uint64_t> slots) {
+  ProfileRow out;
+  out.shader = "a.rgen", out.stage = "raygen", out.op = "ld.global.u32", out.file = file, out.line = line, out.index = index;
+  out.issues = slots[0], out.lanes = slots[0] * 16, out.sectors = 4, out.slots = std::move(slots);
+  return out;
+}
+
+// Two instructions of one line, one of another file, one of no line, and cycles without a warp.
+ProfileTable sample() {
+  ProfileTable out;
+  out.reasons = {"issued", "long_scoreboard", "no_warp"};
+  out.rows = {row("x, \"y\".glsl", 3, 0, {10, 90, 0}), row("x, \"y\".glsl", 3, 1, {10, 40, 0}), row("b.glsl", 1, 2, {5, 45, 0}), row("", 0, 3, {1, 0, 0})};
+  ProfileRow nowhere;
+  nowhere.slots = {0, 0, 99};
+  out.rows.push_back(nowhere);
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("the rows of a line are its instructions added up") {
+  const std::vector<ProfileRow> lines = by_line(sample());
+  REQUIRE(lines.size() == 2);
+  CHECK(lines[0].file == "b.glsl");
+  CHECK(lines[1].line == 3);
+  CHECK(lines[1].slots == std::vector<uint64_t>{20, 130, 0});
+  CHECK(lines[1].lanes == 320);
+  CHECK(lines[1].sectors == 8);
+}
+
+TEST_CASE("a profile that is written and read again has the same instructions, commas and quotes included") {
+  const ProfileTable again = parse_profile(profile_csv(sample()), "profile.csv");
+  CHECK(again.reasons == sample().reasons);
+  REQUIRE(again.rows.size() == 5);  // not the lines
+  CHECK(again.rows[0].file == "x, \"y\".glsl");
+  CHECK(again.rows[4].slots == std::vector<uint64_t>{0, 0, 99});
+  CHECK(profile_csv(again) == profile_csv(sample()));
+}
+
+TEST_CASE("a file that is no profile is refused with its place") {
+  CHECK_THROWS_WITH(parse_profile("path,value\n", "p.csv"), Catch::Contains("p.csv:1"));
+  std::string cut = profile_csv(sample());
+  cut.resize(cut.size() - 4);
+  CHECK_THROWS_WITH(parse_profile(cut, "p.csv"), Catch::Contains("p.csv:8") && Catch::Contains("columns"));
+  std::string wrong = profile_csv(sample());
+  wrong.replace(wrong.find(",90,"), 4, ",9o,");
+  CHECK_THROWS_WITH(parse_profile(wrong, "p.csv"), Catch::Contains("p.csv:2") && Catch::Contains("9o"));
+}
+
+TEST_CASE("folded stacks have each cycle once") {
+  CHECK(profile_folded(sample()) ==
+        "gpu;no_warp 99\n"
+        "raygen;a.rgen;issued 1\n"
+        "raygen;b.glsl:1;issued 5\n"
+        "raygen;b.glsl:1;long_scoreboard 45\n"
+        "raygen;x, \"y\".glsl:3;issued 20\n"
+        "raygen;x, \"y\".glsl:3;long_scoreboard 130\n");
+}
+
+TEST_CASE("annotated source shows each line's share of the cycles of instructions and what it waits for") {
+  const std::string text = annotate(sample(), "b.glsl", "void main() {\n}\n", {});
+  CHECK(text.find("b.glsl: 24.9 %") == 0);  // 50 of 201
+  CHECK(text.find("24.9 %       5   16.0        4  long_scoreboard 90.0 %     1  void main() {") != std::string::npos);
+  CHECK(text.find("    2  }") != std::string::npos);
+}
+
+TEST_CASE("without its source a file's lines with figures are shown, and no others") {
+  const std::string text = annotate(sample(), "x, \"y\".glsl", std::nullopt, {});
+  CHECK(text.find("74.6 %") != std::string::npos);  // 150 of 201
+  CHECK(std::count(text.begin(), text.end(), '\n') == 4);  // heading, columns, line 3, an empty one
+}
+
+TEST_CASE("files come with the costliest first, and the reasons add up to all cycles") {
+  const std::vector<FileShare> files = files_of(sample());
+  REQUIRE(files.size() == 2);
+  CHECK(files[1].file == "b.glsl");
+  const std::string reasons = reason_table(sample(), {});
+  CHECK(reasons.find("cycles of all schedulers: 300") == 0);
+  CHECK(reasons.find("long_scoreboard") < reasons.find("no_warp"));
+}
+
+TEST_CASE("a series has its columns and a line an interval") {
+  CHECK(series_csv({{"cycle", "ipc"}, {{100, 0.5}, {150, 0}}}) == "cycle,ipc\n100,0.5\n150,0\n");
+}
+
+}  // namespace glint::report
