@@ -62,7 +62,9 @@ void RunDirectory::write_run(const RunInfo& info) const {
   json["scene"] = {{"name", info.scene},
                    {"form", info.scene_form},
                    {"note", info.scene_note},
-                   {"hash", fmt::format("{:016x}", info.scene_hash)}};
+                   {"hash", fmt::format("{:016x}", info.scene_hash)},
+                   {"triangles", info.scene_triangles},
+                   {"fraction", info.scene_fraction}};
   json["shader"] = info.shader;
   json["config"] = {{"name", info.config}, {"hash", fmt::format("{:016x}", info.config_hash)}};
   json["mode"] = info.mode;

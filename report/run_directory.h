@@ -25,7 +25,8 @@ struct RunInfo {
   std::vector<std::string> command;  // argv
   std::string version, git, compiler;
   std::string scene, scene_form, scene_note, shader, config, mode;
-  uint64_t scene_hash = 0, config_hash = 0, seed = 0;
+  uint64_t scene_hash = 0, scene_triangles = 0, config_hash = 0, seed = 0;
+  double scene_fraction = 1;  // of the original's triangles
   uint32_t width = 0, height = 0, samples = 0;
   std::string started;  // ISO 8601, UTC
   double wall_seconds = 0;

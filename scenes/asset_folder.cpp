@@ -88,10 +88,11 @@ class FolderLoader {
 
  private:
   bool add(const std::string& name, const Source& source) {
-    const size_t first = scene_.materials.size();
+    const size_t first = scene_.materials.size(), first_texture = scene_.textures.size();
     Model model = source.is_copy ? copy(name, source) : load(source.file);
     if (model.indices.empty()) {
       scene_.materials.resize(first);
+      scene_.textures.resize(first_texture);
       return false;
     }
     model.name = name;

@@ -31,6 +31,7 @@ void adjust(Model& model, float scale, const Vec3& move) {
 Model load_bunny(Scene& scene, const LoadOptions& options) {
   scene.form = "stand-in";
   if (options.assets.empty()) {
+    scene.form = "built-in";
     scene.materials.push_back(lambertian(0.7f, 0.7f, 0.7f));
     scene.note = "A procedural bunny of the original's size, place and about its triangle count (144,046).";
     return make_bunny_stand_in(int32_t(scene.materials.size() - 1));
@@ -52,6 +53,7 @@ Model load_bunny(Scene& scene, const LoadOptions& options) {
 Model load_statue(Scene& scene, const LoadOptions& options) {
   scene.form = "stand-in";
   if (options.assets.empty()) {
+    scene.form = "built-in";
     scene.materials.push_back(lambertian(0.7f, 0.7f, 0.7f));
     scene.note = "A procedural winged statue of the original's size, place and about its triangle count (448.9K).";
     return make_statue_stand_in(int32_t(scene.materials.size() - 1));

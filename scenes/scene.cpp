@@ -144,6 +144,7 @@ Scene load_scene(const std::string& name, const LoadOptions& options) {
     if (wanted != entry.name) continue;
     Scene scene = entry.build(options);
     scene.original_triangles = entry.triangles;
+    if (entry.triangles > 0) scene.note += fmt::format(" {:.1f} % of the original's triangles.", 100 * scene.fraction());
     return scene;
   }
   const std::string near = nearest(wanted, names);

@@ -5,5 +5,5 @@ target_link_libraries(glint_reference PUBLIC glint::scenes PRIVATE embree glint_
 target_include_directories(glint_reference PUBLIC ${PROJECT_SOURCE_DIR})
 add_executable(render_reference reference/render_reference.cpp)
 target_link_libraries(render_reference PRIVATE glint::reference)
-glint_test(unit_scenes FOLDER unit/scenes LINKS glint::scenes)
+glint_test(unit_scenes FOLDER unit/scenes LINKS glint::scenes glint::reference)
 glint_test(reference LINKS glint::reference)

@@ -86,14 +86,14 @@ TEST_CASE("the diffuse lamp of the box hangs at 0.998 of its height over the sta
   }
 }
 
-TEST_CASE("stand-ins say what they are and have the original's size and number of triangles") {
+TEST_CASE("generated meshes say what they are and have the original's size and number of triangles") {
   struct Expected {
     const char* name;
     const char* form;
     uint64_t triangles, tolerance;
     size_t materials;
   };
-  for (const Expected& e : {Expected{"BUNNY", "stand-in", 144058, 1500, 5}, {"REF", "stand-in", 448912, 4500, 6},
+  for (const Expected& e : {Expected{"BUNNY", "built-in", 144058, 1500, 5}, {"REF", "built-in", 448912, 4500, 6},
                             {"SHIP", "built-in", 6255, 60, 11}}) {
     const Scene scene = load_scene(e.name, {});
     INFO(e.name << ": " << scene.triangles());
