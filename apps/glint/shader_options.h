@@ -19,6 +19,8 @@ struct ShaderOptions {
   bool contract = false, no_cache = false;
 };
 
+// -I and -D alone; all of them.
+void add_source_options(CLI::App& command, ShaderOptions& options);
 void add_shader_options(CLI::App& command, ShaderOptions& options);
 
 // `cache` may be null.

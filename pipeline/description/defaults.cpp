@@ -3,6 +3,7 @@
 #include "pipeline/description/defaults.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <bit>
 #include <filesystem>
@@ -84,10 +85,11 @@ opaque = {}
 
 class Writer {
  public:
-  Writer(const Modules& modules, const std::string& folder) : modules_(modules), folder_(folder) {}
+  Writer(const Modules& modules, const std::string& folder, const frontend::GlslOptions& glsl) : modules_(modules), folder_(folder), glsl_(glsl) {}
 
   std::string run() {
     out_ = "# Written by `glint init`; docs/pipelines.md explains every key. Paths start at this file's folder.\n";
+    write_compile();
     write_stages();
     write_launch();
     write_push_constants();
@@ -103,10 +105,21 @@ class Writer {
     out_ += fmt::format(text, std::forward<T>(values)...) + "\n";
   }
 
-  std::string path_of(const ShaderModule& m) const {
+  std::string from_folder(const std::string& path) const {
     std::error_code failed;
-    const fs::path relative = fs::proximate(m.path, folder_.empty() ? "." : folder_, failed);
-    return failed || relative.empty() ? m.path : relative.string();
+    const fs::path relative = fs::proximate(path, folder_.empty() ? "." : folder_, failed);
+    return failed || relative.empty() ? path : relative.string();
+  }
+  std::string path_of(const ShaderModule& m) const { return from_folder(m.path); }
+
+  void write_compile() {
+    if (glsl_.include_dirs.empty() && glsl_.defines.empty()) return;
+    std::vector<std::string> folders, macros;
+    for (const std::string& folder : glsl_.include_dirs) folders.push_back(quoted(from_folder(folder)));
+    for (const auto& [name, value] : glsl_.defines) macros.push_back(fmt::format("{} = {}", name, quoted(value)));
+    line("\n[compile]");
+    if (!folders.empty()) line("include = [{}]", fmt::join(folders, ", "));
+    if (!macros.empty()) line("define = {{ {} }}", fmt::join(macros, ", "));
   }
 
   void write_record_data(const std::vector<const ShaderModule*>& shaders) {
@@ -281,6 +294,7 @@ class Writer {
 
   const Modules& modules_;
   const std::string folder_;
+  const frontend::GlslOptions& glsl_;
   std::string out_;
   const ShaderModule* start_ = nullptr;
   std::array<uint32_t, 2> threads_{};
@@ -294,7 +308,7 @@ std::string default_description(const std::vector<std::string>& shaders, const s
   PipelineDescription description;
   for (const std::string& shader : shaders) description.shaders.push_back({shader, shader, "", glsl, {}});
   const Modules modules(description, {}, true);
-  return Writer(modules, folder).run();
+  return Writer(modules, folder, glsl).run();
 }
 
 std::vector<std::string> with_companions(const std::string& shader) {

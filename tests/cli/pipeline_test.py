@@ -231,6 +231,15 @@ class Defaults(PipelineTest):
         self.assertEqual((width, height), (256, 256))
         self.assertGreater(len(set(pixels)), 50)  # the pyramid's faces mix colours
 
+    def test_an_image_without_a_format_has_the_one_that_the_shader_declares(self):
+        self.write("count.comp", """#version 460
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(set = 0, binding = 0, r32ui) uniform uimage2D counts;
+layout(set = 0, binding = 1) buffer Words { uint words[]; };
+void main() { words[gl_LocalInvocationIndex % 2u] = imageAtomicAdd(counts, ivec2(1, 5), 1u) * 0u + 9u; }
+""")
+        self.assertRegex(self.run_file("count.comp").stdout, r"(?i)words.* 9 9 0")
+
     def test_init_writes_a_file_that_runs_as_it_is(self):
         for name in (*PICTURES, "reduction"):
             with self.subTest(example=name):
@@ -238,6 +247,20 @@ class Defaults(PipelineTest):
                 done = self.glint("init", f"{name}.toml", *shaders)
                 self.assertEqual(done.returncode, 0, done.stderr)
                 self.run_file(f"{name}.toml")
+
+    def test_init_keeps_include_folders_and_macros_of_the_command_line(self):
+        (self.folder / "parts").mkdir()
+        self.write("parts/scale.glsl", "const uint kScale = SCALE;\n")
+        self.write("scaled.comp", """#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "scale.glsl"
+layout(local_size_x = 1) in;
+layout(set = 0, binding = 0) buffer Words { uint words[]; };
+void main() { words[0] = kScale; }
+""")
+        done = self.glint("init", "scaled.toml", "scaled.comp", "-I", "parts", "-D", "SCALE=7u")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(self.run_file("scaled.toml").stdout, r"Words +7 0 0")
 
     def test_init_does_not_write_over_a_file(self):
         self.write("there.toml", "x")
