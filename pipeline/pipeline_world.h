@@ -61,6 +61,6 @@ class PipelineWorld {
 
 // Runs it: counts, statistics and time; no picture. Errors as render().
 RenderResult run_pipeline(PipelineWorld& pipeline, const GpuParams& gpu, bool timing, bool no_skip, uint32_t threads,
-                          const std::function<void(uint64_t done, uint64_t total)>& progress);
+                          const std::function<void(uint64_t done, uint64_t total)>& progress, const Observation& observe = {});
 
 }  // namespace glint::pipeline

@@ -17,14 +17,17 @@ RenderResult& RenderResult::operator=(RenderResult&&) noexcept = default;
 const stats::Group& RenderResult::statistics() const { return stats->root(); }
 
 RenderResult run_world(const core::World& world, const GpuParams& gpu, bool timing, bool no_skip, uint32_t threads,
-                       const std::function<void(uint64_t, uint64_t)>& progress) {
+                       const std::function<void(uint64_t, uint64_t)>& progress, const Observation& observation) {
   RenderResult result;
   const auto begin = std::chrono::steady_clock::now();
   if (timing) {
     auto machine = std::make_unique<TimingMachine>(gpu, world, no_skip, HostOptions{.threads = threads});
+    observe(*machine, observation);
     result.cycles = machine->run(progress);
     machine->collect(result);
     result.faults = machine->passed();
+    if (observation.profile) result.profile = profile_of(*machine, *world.image);
+    if (observation.sample) result.series = series_of(*machine, observation.sample);
     result.stats = std::make_unique<RunStats>(std::move(machine));
   } else {
     const FunctionalCounts counts = run_functional(world, gpu.core.instruction_budget, progress);
@@ -44,7 +47,7 @@ RenderResult run_world(const core::World& world, const GpuParams& gpu, bool timi
 RenderResult render(const RenderJob& job) {
   SceneWorld scene(job);
   scene.world.on_fault = job.on_fault;
-  RenderResult result = run_world(scene.world, job.gpu, job.timing, job.no_skip, job.threads, job.progress);
+  RenderResult result = run_world(scene.world, job.gpu, job.timing, job.no_skip, job.threads, job.progress, job.observe);
   result.width = job.frame.width;
   result.height = job.frame.height;
   result.structures = scene.structures;

@@ -8,10 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "base/profile_table.h"
 #include "base/stats.h"
 #include "core/executor.h"
 #include "frontend/compile.h"
 #include "pipeline/params.h"
+#include "pipeline/run_profile.h"
 #include "scenes/camera.h"
 #include "scenes/scene.h"
 
@@ -33,6 +35,7 @@ struct RenderJob {
   // Told now and then how many of the launch's warps have ended.
   std::function<void(uint64_t done, uint64_t total)> progress;
   core::OnFault on_fault = core::OnFault::Stop;
+  Observation observe;              // of the timing machine
 };
 
 // Counted by either machine.
@@ -70,6 +73,8 @@ struct RenderResult {
   StructureCounts structures;
   core::FaultLog faults;              // that World::on_fault let pass
   std::vector<std::string> warnings;  // of compiling the shaders
+  ProfileTable profile;             // of the timing machine, if it was asked for
+  SeriesTable series;
   double wall_seconds = 0;          // of the run alone, without compiling and building
   std::unique_ptr<RunStats> stats;
   const stats::Group& statistics() const;  // root of the tree
@@ -77,8 +82,10 @@ struct RenderResult {
 
 // Runs the launch of a world on either machine; everything of the result but pictures, structures and warnings.
 // `no_skip` steps every cycle, `threads` of the host do it (HostOptions). `progress` hears how many of the launch's warps have ended. Errors as render().
+// `observe`: what else to note of a timing run.
 RenderResult run_world(const core::World& world, const GpuParams& gpu, bool timing, bool no_skip, uint32_t threads,
-                       const std::function<void(uint64_t done, uint64_t total)>& progress);
+                       const std::function<void(uint64_t done, uint64_t total)>& progress,
+                       const Observation& observe = {});
 
 // UserError, UnsupportedError: before anything runs. Error(Exit::Fault): the shaders did something wrong, with
 // place and launch id. Error(Exit::Stuck): the machine makes no progress.

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/conservation.h"
 #include "pipeline/functional_machine.h"
 
 namespace glint::pipeline {
@@ -80,6 +81,8 @@ Cycle TimingMachine::run(const std::function<void(uint64_t, uint64_t)>& progress
   memory_.check_drained();
   root_.cycles += end;
   root_.attributed += quiet;
+  const std::string lost = broken(balances(*this));
+  GLINT_CHECK(lost.empty(), "\n{}", lost);
   const core::FaultLog faults = passed();
   for (size_t kind = 0; kind < size_t(core::FaultKind::Count); ++kind) root_.faults.add(core::FaultKind(kind), faults.count(core::FaultKind(kind)));
   return end;

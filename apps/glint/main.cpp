@@ -73,6 +73,7 @@ int main_of(int argc, char** argv) {
   app.set_version_flag("--version", GLINT_VERSION);
   app.require_subcommand(1);
   add_run(app, session);
+  add_annotate(app, session);
   add_init(app, session);
   add_compile(app, session);
   add_asm(app, session);

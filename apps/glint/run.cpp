@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "apps/glint/config.h"
+#include "apps/glint/observe_options.h"
 #include "apps/glint/recorded_run.h"
 #include "apps/glint/run_amber.h"
 #include "apps/glint/run_pipeline.h"
@@ -31,6 +32,7 @@ struct Options {
   uint32_t threads = 0;
   std::string on_fault_name = "stop";
   core::OnFault on_fault = core::OnFault::Stop;
+  pipeline::Observation observe;
   bool config_given = false, mode_given = false;  // not left at their defaults
 };
 
@@ -62,6 +64,8 @@ pipeline::RenderJob make_job(const Session& session, const Options& options) {
   job.no_skip = options.no_skip;
   job.threads = options.threads;
   job.on_fault = options.on_fault;
+  job.observe = options.observe;
+  check_observation(job.observe, job.timing);
   job.shader_dir = options.shader_dir.empty() ? session.resources.shader_dir(std::string(workload.folder))
                                               : options.shader_dir;
   job.scene = scenes::load_scene(options.scene, {options.assets});
@@ -94,14 +98,17 @@ Exit run_scripts(const Session& session, const Options& options) {
 }
 
 Exit run(const Session& session, const Options& options) {
-  if (names_script(options.scene)) return run_scripts(session, options);
+  if (names_script(options.scene)) {
+    if (options.observe.profile || options.observe.sample) throw UserError({}, "--profile and --sample do not go with Amber scripts", "a script has no run directory");
+    return run_scripts(session, options);
+  }
   if (!options.more.empty()) throw UserError({}, fmt::format("'{}' is one too many", options.more[0]), "only Amber scripts run several at a time");
   if (names_pipeline(options.scene))
     return run_pipeline(session, {options.scene, options.config_given ? options.config : "", options.mode_given ? options.mode : "", options.out,
-                                  options.settings, options.max_instructions, options.json, options.no_skip, options.threads, options.shaders, options.print_limit, options.on_fault});
+                                  options.settings, options.max_instructions, options.json, options.no_skip, options.threads, options.shaders, options.print_limit, options.on_fault, options.observe});
   if (names_kernel(options.scene))
     return run_ptx(session, {options.scene, options.launch, options.config, options.mode, options.out, options.settings,
-                             options.max_instructions, options.json, options.no_skip, options.threads, options.on_fault});
+                             options.max_instructions, options.json, options.no_skip, options.threads, options.on_fault, options.observe});
   const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(options.shaders);
   core::PrintLog prints(options.print_limit);
   pipeline::RenderJob job = make_job(session, options);
@@ -120,8 +127,9 @@ Exit run(const Session& session, const Options& options) {
   for (const std::string& warning : result.warnings) fmt::print(stderr, "{}\n", warning);
   directory.write_image({result.width, result.height, result.rgba});
   directory.write_stats(result.statistics());
-  print_result(session, options.json, job, result, title_of(job, options),
-               {"picture    " + directory.path_of("image.png"), "statistics " + directory.path_of("stats.txt")});
+  std::vector<std::string> files = write_observation(job.observe, result, directory);
+  files.insert(files.begin(), {"picture    " + directory.path_of("image.png"), "statistics " + directory.path_of("stats.txt")});
+  print_result(session, options.json, job, result, title_of(job, options), std::move(files));
   return Exit::Ok;
 }
 
@@ -181,6 +189,7 @@ void add_run(CLI::App& app, Session& session) {
       ->check(CLI::Range(0u, 256u))
       ->capture_default_str();
   command->add_option("--printf-limit", options->print_limit, "Messages of debugPrintfEXT to show, the first by launch id")->capture_default_str();
+  add_observe_options(*command, options->observe);
   add_shader_options(*command, options->shaders);
   add_frame_options(*command, *options);
   command->callback(

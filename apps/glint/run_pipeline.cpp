@@ -10,6 +10,7 @@
 #include <iterator>
 
 #include "apps/glint/config.h"
+#include "apps/glint/observe_options.h"
 #include "apps/glint/outputs.h"
 #include "apps/glint/recorded_run.h"
 #include "pipeline/description/defaults.h"
@@ -117,6 +118,7 @@ Exit run_pipeline(const Session& session, const PipelineOptions& options) {
   const uint64_t budget = options.max_instructions ? options.max_instructions : machine.max_instructions;
   if (budget) job.gpu.core.instruction_budget = budget;
   job.timing = mode == "timing";
+  check_observation(options.observe, job.timing);
   job.no_skip = options.no_skip;
   pipeline::PipelineWorld world(description, job.gpu);
   core::PrintLog prints(options.print_limit);
@@ -131,11 +133,12 @@ Exit run_pipeline(const Session& session, const PipelineOptions& options) {
   info.on_fault = core::name_of(options.on_fault);
   directory.write_config(describe_params(job.gpu), "Resolved configuration of: " + title);
   const pipeline::RenderResult result = run_recorded(session, "running", directory, info, [&](const ShowProgress& progress) {
-    return pipeline::run_pipeline(world, job.gpu, job.timing, job.no_skip, options.threads, progress);
+    return pipeline::run_pipeline(world, job.gpu, job.timing, job.no_skip, options.threads, progress, options.observe);
   }, &prints);
   directory.write_stats(result.statistics());
   std::vector<std::string> files = keep(world, directory);
   files.push_back("statistics " + directory.path_of("stats.txt"));
+  for (std::string& line : write_observation(options.observe, result, directory)) files.push_back(std::move(line));
   print_result(session, options.json, job, result, title, std::move(files));
   return Exit::Ok;
 }

@@ -7,6 +7,7 @@
 #include "apps/glint/session.h"
 #include "apps/glint/shader_options.h"
 #include "core/fault.h"
+#include "pipeline/run_profile.h"
 
 namespace glint::app {
 
@@ -20,6 +21,7 @@ struct PipelineOptions {
   ShaderOptions shaders;
   uint64_t print_limit = 0;
   core::OnFault on_fault = core::OnFault::Stop;
+  pipeline::Observation observe;
 };
 
 // A shader file, or a TOML file that is no launch of a kernel.

@@ -10,6 +10,7 @@
 
 #include "apps/glint/config.h"
 #include "apps/glint/launch_file.h"
+#include "apps/glint/observe_options.h"
 #include "apps/glint/recorded_run.h"
 #include "pipeline/kernel_launch.h"
 #include "report/config_file.h"
@@ -89,6 +90,7 @@ report::RunInfo describe_run(const Session& session, const KernelOptions& option
 bool names_kernel(const std::string& what) { return what.ends_with(".ptx") || what.ends_with(".toml"); }
 
 Exit run_ptx(const Session& session, const KernelOptions& options) {
+  check_observation(options.observe, options.mode == "timing");
   const bool is_ptx = options.what.ends_with(".ptx");
   if (is_ptx && options.launch.empty())
     throw UserError({}, fmt::format("'{}' needs a launch file: --launch FILE.toml gives grid, block and arguments", options.what));
@@ -115,11 +117,12 @@ Exit run_ptx(const Session& session, const KernelOptions& options) {
   info.on_fault = core::name_of(options.on_fault);
   directory.write_config(describe_params(job.gpu), "Resolved configuration of: " + title);
   const pipeline::RenderResult result = run_recorded(session, "running", directory, info, [&](const ShowProgress& progress) {
-    return pipeline::run_world(launched.world.world, job.gpu, options.mode == "timing", options.no_skip, options.threads, progress);
+    return pipeline::run_world(launched.world.world, job.gpu, options.mode == "timing", options.no_skip, options.threads, progress, options.observe);
   });
   directory.write_stats(result.statistics());
   std::vector<std::string> files = keep_buffers(launched, launch, directory);
   files.push_back("statistics " + directory.path_of("stats.txt"));
+  for (std::string& line : write_observation(options.observe, result, directory)) files.push_back(std::move(line));
   print_result(session, options.json, job, result, title, std::move(files));
   return Exit::Ok;
 }

@@ -6,6 +6,7 @@
 
 #include "apps/glint/session.h"
 #include "core/fault.h"
+#include "pipeline/run_profile.h"
 
 namespace glint::app {
 
@@ -18,6 +19,7 @@ struct KernelOptions {
   bool json = false, no_skip = false;
   uint32_t threads = 0;  // of the host
   core::OnFault on_fault = core::OnFault::Stop;
+  pipeline::Observation observe;
 };
 
 // Whether `glint run` means a kernel, not a scene: a path that ends in .ptx or .toml.

@@ -25,6 +25,7 @@ struct Session {
 
 // Each adds its subcommand; its callback sets Session::action.
 void add_run(CLI::App& app, Session& session);
+void add_annotate(CLI::App& app, Session& session);
 void add_init(CLI::App& app, Session& session);
 void add_compile(CLI::App& app, Session& session);
 void add_asm(CLI::App& app, Session& session);
