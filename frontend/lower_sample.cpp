@@ -105,6 +105,32 @@ void sample(Lowering& l, const Instruction& inst, const LoweringRow&) {
   l.set(inst.result, {l.emit().fresh(name, sources)});
 }
 
+// The level that an implicit sample would read, held to the image's levels, and the level before that.
+// Model: without the sampler's bias and limits, and not rounded for samplers that take the nearest level.
+void query_lod(Lowering& l, const Instruction& inst, const LoweringRow&) {
+  Emitter& e = l.emit();
+  const auto geometry = geometry_of(l, l.type_of(inst.operands[0]), false);
+  if (!geometry) return;
+  if (geometry->name.find("cube") != std::string_view::npos) return l.unsupported("textureQueryLod of a cube");
+  if (!has_derivatives(l)) return l.unsupported("textureQueryLod without a derivative group");
+  const Operand handle = l.scalar(inst.operands[0]);
+  Operands at = l.value(inst.operands[1]);
+  at.resize(geometry->coordinates, Operand::value(0));
+  const Operands change = gradients(l, at, constant_f32(1));
+  constexpr std::string_view kAxes[] = {"width", "height", "depth"};
+  Operand along[2] = {constant_f32(0), constant_f32(0)};  // squared lengths in texels, to the right and down
+  for (size_t axis = 0; axis < at.size(); ++axis) {
+    const Operand size = e.value("cvt.rn.f32.u32", {e.fresh(fmt::format("txq.{}.b32", kAxes[axis]), {handle})});
+    for (size_t i = 0; i < 2; ++i) {
+      const Operand step = e.mul(change[i * at.size() + axis], size);
+      along[i] = e.add(along[i], e.mul(step, step));
+    }
+  }
+  const Operand level = e.mul(e.value("lg2.f32", {e.value("max.f32", {along[0], along[1]})}), constant_f32(0.5f));
+  const Operand last = e.add(e.value("cvt.rn.f32.u32", {e.fresh("txq.num_mipmap_levels.b32", {handle})}), constant_f32(-1));
+  l.set(inst.result, {e.value("min.f32", {e.value("max.f32", {level, constant_f32(0)}), last}), level});
+}
+
 Operands gather_at(Lowering& l, const Sample& s, uint32_t component, const std::optional<Operand>& offset) {
   Operands sources = s.place;
   if (offset) sources.push_back(*offset);
@@ -138,6 +164,7 @@ constexpr LoweringRow kRows[] = {
     {OpImageSampleDrefExplicitLod, sample, ""}, {OpImageSampleDrefImplicitLod, sample, ""},
     {OpImageSampleProjExplicitLod, sample, ""}, {OpImageSampleProjImplicitLod, sample, ""},
     {OpImageSampleProjDrefExplicitLod, sample, ""}, {OpImageSampleProjDrefImplicitLod, sample, ""},
+    {OpImageQueryLod, query_lod, ""},
     {OpImageGather, gather, ""},                {OpImageDrefGather, gather, ""},
 };
 

@@ -307,7 +307,7 @@ bool Parser::declare_type(const Instruction& inst) {
     case spv::Op::OpTypeImage:
       type.kind = Kind::Image, type.element = args[0], type.dim = spv::Dim(args[1]),
       type.is_storage_image = args[5] == 2;
-      type.is_arrayed = args[3] != 0, type.is_multisampled = args[4] != 0;
+      type.is_arrayed = args[3] != 0, type.is_multisampled = args[4] != 0, type.format = spv::ImageFormat(args[6]);
       break;
     case spv::Op::OpTypeSampler:
       type.kind = Kind::Sampler;

@@ -42,6 +42,7 @@ struct Type {
   uint32_t array_stride = 0;    // bytes; 0 = not decorated
   spv::StorageClass storage{};  // Pointer
   spv::Dim dim{};               // Image
+  spv::ImageFormat format{};    // Image
   bool is_storage_image = false, is_arrayed = false, is_multisampled = false;  // Image
   bool is_block = false;         // Struct: decorated Block or BufferBlock
   bool is_buffer_block = false;  // Struct: decorated BufferBlock, a storage buffer of storage class Uniform

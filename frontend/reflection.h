@@ -30,6 +30,7 @@ struct Binding {
   BlockType block{};   // of buffers
   isa::ImageShape shape = isa::ImageShape::D2;  // of images
   std::string texel{}; // of images: "f32", "u32", "s32"
+  std::string format{};  // of storage images, as GLSL names it: "r32ui"; empty: none is declared
   bool operator==(const Binding& o) const {  // layouts aside
     return set == o.set && binding == o.binding && kind == o.kind && name == o.name && count == o.count;
   }

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spirv-tools/optimizer.hpp>
 #include <spirv/unified1/spirv.hpp11>
 
 #include "frontend/compile.h"
 #include "frontend/debug_print.h"
+#include "frontend/module_repairs.h"
 #include "frontend/spirv.h"
 #include "frontend/vendor_ray_tracing.h"
 
@@ -60,6 +62,12 @@ const std::vector<std::string>& pass_list() {
   return kPasses;
 }
 
+// Constants alone, before lengths of arrays are looked at.
+const std::vector<std::string>& constants_only() {
+  static const std::vector<std::string> kPasses = {"--strip-nonsemantic", "--freeze-spec-const", "--fold-spec-const-op-composite"};
+  return kPasses;
+}
+
 // When R1 makes a module that is not valid: functions inlined and nothing else.
 const std::vector<std::string>& inlining_only() {
   static const std::vector<std::string> kPasses = {
@@ -99,11 +107,11 @@ std::vector<uint32_t> with_extensions(std::vector<uint32_t> words, const std::ve
   return words;
 }
 
-// The module after `passes`; empty, and `messages` says why, when they fail or what they make is not valid.
-std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes,
-                                std::string* messages) {
+// The module after `passes`; empty, and `messages` says why, when they fail.
+std::vector<uint32_t> after_passes(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes,
+                                   std::string* messages) {
   std::vector<uint32_t> extensions, output;
-  std::vector<uint32_t> input = without_extensions(with_known_prints(spirv), &extensions);
+  std::vector<uint32_t> input = without_extensions(spirv, &extensions);
   allow_inlining(input);
   spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_3);
   optimizer.SetMessageConsumer(
@@ -115,10 +123,33 @@ std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, const std::v
   spvtools::OptimizerOptions options;
   options.set_run_validator(false);  // done here, with the extensions in place
   if (!optimizer.Run(input.data(), input.size(), &output, options)) return {};
-  output = with_debug_prints(with_extensions(std::move(output), extensions));
+  return with_extensions(std::move(output), extensions);
+}
+
+// The same; empty, too, when what the passes make is not valid.
+std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes,
+                                std::string* messages) {
+  std::vector<uint32_t> output = after_passes(with_known_prints(spirv), passes, messages);
+  if (output.empty()) return {};
+  output = with_debug_prints(output);
   const std::string after = validate_spirv(output);
   *messages += after;
   return after.empty() ? output : std::vector<uint32_t>{};
+}
+
+// Lengths that are 0 because nobody set a specialisation constant are 1 from here on.
+std::vector<uint32_t> with_lengths(std::vector<uint32_t> spirv, const std::string& name, Diagnostics& warnings) {
+  if (!has_specialised_lengths(spirv)) return spirv;
+  std::string messages;
+  std::vector<std::string> names;
+  std::vector<uint32_t> folded = after_passes(spirv, constants_only(), &messages);
+  if (folded.empty()) return spirv;
+  std::vector<uint32_t> output = with_positive_lengths(folded, &names);
+  if (output.size() == folded.size()) return spirv;
+  warnings.warning({name, 0, 0}, fmt::format("lengths of arrays are 0 by the defaults of specialisation constants, and taken as 1{}{}; "
+                                             "set the constants to run the shader",
+                                             names.empty() ? "" : ": ", fmt::join(names, ", ")));
+  return output;
 }
 
 }  // namespace
@@ -127,11 +158,14 @@ std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& n
   const std::string before =
       spirv.size() < kHeaderWords ? "too short to hold a header\n" : validate_spirv(spirv);
   if (!before.empty()) throw UserError({name, 0, 0}, "invalid SPIR-V\n" + before);
-  spirv = with_standard_traces(spirv);
+  spirv = with_lengths(with_standard_traces(spirv), name, warnings);
   std::string messages;
   for (const auto* passes : {&pass_list(), &inlining_only()}) {
     std::vector<uint32_t> output = optimised(spirv, *passes, &messages);
-    if (!output.empty()) return output;
+    if (output.empty()) continue;
+    if (!has_calls(output)) return output;
+    const std::vector<uint32_t> again = optimised(with_ends_that_return(spirv), *passes, &messages);
+    return again.empty() || has_calls(again) ? output : again;
   }
   warnings.warning({name, 0, 0}, "the SPIR-V optimiser failed, going on with the module as it was: " + messages);
   return spirv;

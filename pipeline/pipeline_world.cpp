@@ -160,7 +160,8 @@ void PipelineWorld::upload_images() {
   for (size_t i : in_order(slots)) {
     const ImageDescription& d = description_.images[i];
     const BindingUse* use = use_of(d.slot);
-    Picture picture = make_picture(d, use ? use->binding.shape : isa::ImageShape::D2, use ? use->binding.texel : "", world.launch_size);
+    Picture picture = make_picture(d, use ? use->binding.shape : isa::ImageShape::D2, use ? use->binding.texel : "", world.launch_size,
+                                   use ? use->binding.format : "");
     picture.view.base = memory_.allocate(title(d.name, d.slot), picture.texels.size());
     memory_.write(picture.view.base, picture.texels.data(), picture.texels.size());
     image_handle_[i] = world.images.size();

@@ -134,10 +134,12 @@ void check_shape(const ImageDescription& image, const core::ImageView& view) {
 
 }  // namespace
 
-Picture make_picture(const ImageDescription& image, ImageShape shape, const std::string& texel, std::array<uint32_t, 3> fallback) {
+Picture make_picture(const ImageDescription& image, ImageShape shape, const std::string& texel, std::array<uint32_t, 3> fallback,
+                     const std::string& declared) {
   Picture out;
   core::ImageView& view = out.view;
-  const TexelFormat plain = texel == "u32" ? TexelFormat::Rgba32Uint : texel == "s32" ? TexelFormat::Rgba32Sint : TexelFormat::Rgba32Float;
+  const TexelFormat widest = texel == "u32" ? TexelFormat::Rgba32Uint : texel == "s32" ? TexelFormat::Rgba32Sint : TexelFormat::Rgba32Float;
+  const TexelFormat plain = (image.files.empty() ? format_named(declared) : std::nullopt).value_or(widest);
   const bool is_hdr = !image.files.empty() && stbi_is_hdr(image.files[0].c_str()) != 0;
   view.format = image.format.value_or(!image.files.empty() && !is_hdr && texel != "u32" && texel != "s32" ? TexelFormat::Rgba8Unorm : plain);
   const core::FormatInfo& info = core::info_of(view.format);

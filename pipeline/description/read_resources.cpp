@@ -152,6 +152,9 @@ std::vector<std::string> format_names() {
 }
 
 std::optional<core::TexelFormat> format_named(const std::string& name) {
+  if (name == "r11f_g11f_b10f") return core::TexelFormat::R11g11b10Float;
+  if (name == "rgb10_a2") return core::TexelFormat::Rgb10a2Unorm;
+  if (name == "rgb10_a2ui") return core::TexelFormat::Rgb10a2Uint;
   for (size_t i = 0; i < size_t(core::TexelFormat::Count); ++i) {
     const std::string full(core::info_of(core::TexelFormat(i)).name);
     const size_t bar = full.find('_');
