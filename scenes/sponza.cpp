@@ -149,7 +149,7 @@ struct Hall {
         columns(side, z, floor);
         if (k + 1 < kBays) arch(side, z, z + bay, floor);
       }
-      if (k % 2 == 0) add_cloth(model, {{80, 0, 0}, {0, 150, 0}, {0, 0, 35}, {side * (kColumns - 60), 560, z + bay / 2}}, 3600, paint[9 + k % 3], 5, k);
+      if (k % 2 == 0) add_cloth(model, {{80, 0, 0}, {0, 150, 0}, {0, 0, 35}, {side * (kColumns - 60), 560, z + bay / 2}}, 2800, paint[9 + k % 3], 5, k);
       add_lathe(model, upright({side * 160, 25, z}, {28, 25, 28}), std::array<Vec2, 4>{{{-1, 0.5f}, {0, 1}, {0.7f, 0.6f}, {1, 0.8f}}}, 700, paint[12]);
     }
     for (const float floor : {0.0f, 1.0f})  // gallery ceilings
