@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "core/block.h"
+#include "isa/descriptors.h"
 #include "pipeline/binding_table.h"
 #include "pipeline/render.h"
 
@@ -157,7 +158,9 @@ const frontend::Binding* Launch::reflected(const Binding& binding) const {
 
 void Launch::write_descriptor(const Binding& binding, uint64_t first, uint64_t second) {
   const uint64_t descriptor[2] = {first, second};
-  std::memcpy(world_.constant_bank.data() + binding.set * isa::kSetBytes + binding.binding * isa::kDescriptorBytes, descriptor, sizeof descriptor);
+  const size_t at = isa::descriptor_offset(binding.set, binding.binding);
+  world_.constant_bank.resize(std::max(world_.constant_bank.size(), at + sizeof descriptor));
+  std::memcpy(world_.constant_bank.data() + at, descriptor, sizeof descriptor);
 }
 
 // docs/abi.md: arrays of buffers and of structures have their descriptors in a table in global memory.

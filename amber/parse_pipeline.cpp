@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "amber/parse.h"
+#include "isa/descriptors.h"
 
 namespace glint::amber {
 namespace {
@@ -88,7 +89,7 @@ void parse_bind_attributes(Parsing& p, Binding& binding, bool& has_kind) {
     const std::string name = p.tokens.next().text;
     if (name == "AS") binding.kind = kind_named(p, p.tokens.word("what it is bound as")), has_kind = true;
     else if (name == "DESCRIPTOR_SET") binding.set = uint32_t(p.tokens.integer("the set", 0, isa::kMaxSets - 1));
-    else if (name == "BINDING") binding.binding = uint32_t(p.tokens.integer("the binding", 0, isa::kBindingsPerSet - 1));
+    else if (name == "BINDING") binding.binding = uint32_t(p.tokens.integer("the binding", 0, isa::kMaxBindings - 1));
     else if (name == "OFFSET" || name == "DESCRIPTOR_OFFSET") parse_bytes(p, binding.offsets);
     else if (name == "DESCRIPTOR_RANGE") parse_bytes(p, binding.ranges);
     else if (name == "BASE_MIP_LEVEL") binding.base_level = p.tokens.number("the level");

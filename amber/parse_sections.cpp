@@ -5,6 +5,7 @@
 #include <regex>
 
 #include "amber/parse.h"
+#include "isa/descriptors.h"
 
 namespace glint::amber {
 namespace {
@@ -60,7 +61,7 @@ std::string parse_place(Parsing& p) {
   int64_t set = 0, binding = 0;
   const bool is_good = (colon == std::string::npos || parse_integer(text.substr(0, colon), set)) &&
                        parse_integer(colon == std::string::npos ? text : text.substr(colon + 1), binding) && set >= 0 && set < isa::kMaxSets &&
-                       binding >= 0 && binding < isa::kBindingsPerSet;
+                       binding >= 0 && binding < isa::kMaxBindings;
   if (!is_good) p.wrong(fmt::format("'{}' is no binding", text));
   return fmt::format("{}:{}", set, binding);
 }

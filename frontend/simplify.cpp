@@ -7,6 +7,7 @@
 #include <spirv-tools/optimizer.hpp>
 #include <spirv/unified1/spirv.hpp11>
 
+#include "frontend/by_reference.h"
 #include "frontend/compile.h"
 #include "frontend/debug_print.h"
 #include "frontend/module_repairs.h"
@@ -158,7 +159,7 @@ std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& n
   const std::string before =
       spirv.size() < kHeaderWords ? "too short to hold a header\n" : validate_spirv(spirv);
   if (!before.empty()) throw UserError({name, 0, 0}, "invalid SPIR-V\n" + before);
-  spirv = with_lengths(with_standard_traces(spirv), name, warnings);
+  spirv = with_references(with_lengths(with_standard_traces(spirv), name, warnings));
   std::string messages;
   for (const auto* passes : {&pass_list(), &inlining_only()}) {
     std::vector<uint32_t> output = optimised(spirv, *passes, &messages);

@@ -28,6 +28,7 @@ InterferenceGraph::InterferenceGraph(const VirtualProgram& program, const Livene
   neighbours_.resize(registers);
   wishes_.resize(registers);
   parent_.resize(registers);
+  visited_.resize(registers);
   for (VirtualRegister r = 0; r < registers; ++r) {
     parent_[r] = r;
     if (file_of(classes_[r]) != file) continue;
@@ -111,15 +112,19 @@ VirtualRegister InterferenceGraph::representative(VirtualRegister r) const {
 
 bool InterferenceGraph::safe_to_merge(VirtualRegister a, VirtualRegister b, uint32_t max_registers) const {
   const RegisterClass self = classes_[a];
-  std::vector<VirtualRegister> all;
-  for (VirtualRegister from : {a, b})
-    for (VirtualRegister n : neighbours_[from]) all.push_back(representative(n));
-  std::sort(all.begin(), all.end());
-  all.erase(std::unique(all.begin(), all.end()), all.end());
+  const uint32_t slots = slots_for(self, max_registers);
   uint32_t significant = 0;
-  for (VirtualRegister n : all)
-    if (neighbours_[n].size() + 1 >= slots_for(classes_[n], max_registers)) significant += blocked_by(self, classes_[n]);
-  return significant < slots_for(self, max_registers);
+  ++visit_;
+  for (VirtualRegister from : {a, b})
+    for (VirtualRegister neighbour : neighbours_[from]) {
+      const VirtualRegister n = representative(neighbour);
+      if (visited_[n] == visit_) continue;
+      visited_[n] = visit_;
+      if (neighbours_[n].size() + 1 < slots_for(classes_[n], max_registers)) continue;
+      significant += blocked_by(self, classes_[n]);
+      if (significant >= slots) return false;  // most moves of large shaders, after a few neighbours
+    }
+  return true;
 }
 
 void InterferenceGraph::merge(VirtualRegister into, VirtualRegister gone) {

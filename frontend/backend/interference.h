@@ -69,6 +69,8 @@ class InterferenceGraph {
   std::vector<std::vector<VirtualRegister>> neighbours_;
   std::vector<std::vector<SlotWish>> wishes_;
   mutable std::vector<VirtualRegister> parent_;    // union-find
+  mutable std::vector<uint64_t> visited_;          // the search that saw a register last
+  mutable uint64_t visit_ = 0;
   std::vector<Move> moves_;
 };
 
