@@ -30,14 +30,14 @@ class Profile(unittest.TestCase):
 
     def test_profile_series_and_statistics_of_a_run_agree(self):
         self.glint(0, "run", "WKND", *SMALL, "--profile", "--sample", "1000", "--out", "out")
-        rows = list(csv.DictReader(open(self.folder / "out/profile.csv")))
+        rows = list(csv.DictReader((self.folder / "out/profile.csv").read_text().splitlines()))
         slots = sum(int(r["cycles"]) for r in rows if r["by"] != "line")
         self.assertEqual(slots, self.stats(r"gpu\.core\[\d+\]\.issue_slots::\w+"))
         issues = sum(int(r["issues"]) for r in rows if r["by"] == "instruction")
         self.assertEqual(issues, self.stats(r"gpu\.core\[\d+\]\.instructions"))
         folded = (self.folder / "out/profile.folded").read_text().splitlines()
         self.assertEqual(sum(int(line.rsplit(" ", 1)[1]) for line in folded), slots)
-        series = list(csv.DictReader(open(self.folder / "out/series.csv")))
+        series = list(csv.DictReader((self.folder / "out/series.csv").read_text().splitlines()))
         self.assertEqual(sum(float(r["instructions"]) for r in series), issues)
 
     def test_annotate_shows_the_source_lines_with_their_share(self):

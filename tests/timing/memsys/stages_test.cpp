@@ -1,5 +1,7 @@
 // Where the time of a miss goes: each stage to the cycle, and their sum.
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <array>
 
 #include "tests/support/catch.h"
@@ -107,4 +109,14 @@ TEST_CASE("packets that meet at a slice wait in its queue, and the stages add up
   CHECK(all[size_t(Stage::L2Service)] == 400 * 42);
   CHECK(all[size_t(Stage::DramWay)] == 400 * 100);
   CHECK(cycles > 400 * 276);
+}
+
+TEST_CASE("an L1 that waits says for how many reads, and what stands first in its queue") {
+  Params params;
+  MemoryRig rig(params);
+  CHECK(rig.l1().describe() == "");
+  REQUIRE(rig.l1().access(0, Client::Lsu, {kLine, 3, false, Traffic::RtNode, 1}));
+  CHECK(rig.l1().describe() == fmt::format("  L1: 1 reads without an answer, 1 lines on the way, 0 of 2 sectors have come\n"
+                                           "  L1: 1 packets wait to leave, the first reads line {:#x} for partition {}\n",
+                                           kLine, rig.memory().map().partition(kLine)));
 }
