@@ -28,9 +28,10 @@ MemoryAccess& Lsu::take(uint32_t scheduler, Cycle now) {
   access.lines.clear();
   access.num_sent = access.num_answers = access.passes = access.num_table_lines = 0;
   access.atomic = false;
+  access.bank_turns = 1;
   access.issued = now;
-  return access;
   access.late_until = 0;
+  return access;
 }
 
 void Lsu::tick(Cycle now) {
@@ -66,10 +67,13 @@ void Lsu::accept(Cycle now) {
     // The cycle between issue and here is the first of the latency, so that an unloaded unit adds just that.
     access.ready = now - 1 + (access.texture ? tex_unit_ : lsu_unit_).latency;
     if (access.texture) pipe.free_at = now + tex_unit_.interval;
+    const uint32_t tag_cycles = uint32_t(access.lines.lines().size() + params_.lines_per_cycle - 1) / params_.lines_per_cycle;
+    access.hold = access.bank_turns > tag_cycles ? access.bank_turns - tag_cycles : 0;
+    if (access.bank_turns > 1) access.ready += std::max<Cycle>(conflict_latency(access.bank_turns - 1), access.hold) - access.hold;
     if (access.passes > 0) {
       const Cycle more = shared_cycles(access) - 1;
       if (&pipe == &pipes_[kShared]) access.ready = now - 1 + (access.atomic ? shared_.atomic_latency : shared_.latency);
-      access.ready += more;
+      access.ready += access.atomic ? more : conflict_latency(more);
       pipe.free_at = now + 1 + more;
     }
     pipe.id[(pipe.head + pipe.count++) % pipe.id.size()] = id;
@@ -93,7 +97,7 @@ void Lsu::finish_shared(Cycle now) {
   for (; pipe.count > 0 && accesses_[pipe.front()].ready <= now; pop(pipe)) completed_.push_back(pipe.front());
 }
 
-// One line a cycle; the pipe not served last goes first.
+// Lines of one access a cycle; the pipe not served last goes first.
 void Lsu::send(Cycle now) {
   finish_shared(now);
   if (now < port_free_) return;
@@ -110,12 +114,22 @@ bool Lsu::send_line(Cycle now, Pipe& pipe) {
   const uint32_t id = pipe.front();
   MemoryAccess& access = accesses_[id];
   const auto lines = access.lines.lines();
-  const LineSectors& line = lines[access.num_sent];
-  const mem::Traffic traffic = access.num_sent < access.num_table_lines ? mem::Traffic::RtTable : access.traffic;
-  if (!l1_.access(now, mem::Client::Lsu, {line.line, line.sectors, access.write, traffic, id})) return false;
-  const auto sectors = uint32_t(std::popcount(line.sectors));
-  port_free_ = now + (sectors + params_.sectors_per_cycle - 1) / params_.sectors_per_cycle;
-  if (++access.num_sent == lines.size()) {
+  if (access.hold > 0) {
+    port_free_ = access.ready = now + access.hold;
+    access.hold = 0;
+    return true;
+  }
+  uint32_t cycles = 0;
+  for (uint32_t n = 0; n < params_.lines_per_cycle && access.num_sent < lines.size(); ++n) {
+    const LineSectors& line = lines[access.num_sent];
+    const mem::Traffic traffic = access.num_sent < access.num_table_lines ? mem::Traffic::RtTable : access.traffic;
+    if (!l1_.access(now, mem::Client::Lsu, {line.line, line.sectors, access.write, traffic, id})) break;
+    ++access.num_sent;
+    cycles = std::max(cycles, (uint32_t(std::popcount(line.sectors)) + params_.sectors_per_cycle - 1) / params_.sectors_per_cycle);
+  }
+  if (cycles == 0) return false;
+  port_free_ = now + cycles;
+  if (access.num_sent == lines.size()) {
     pop(pipe);
     if (access.write) completed_.push_back(id);
   }

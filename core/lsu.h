@@ -1,6 +1,7 @@
 // The load-store unit of a core: takes warp accesses from the schedulers' queues, sends their lines to the L1.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -19,11 +20,12 @@ struct MemoryAccess {
   uint32_t slot = 0;          // warp slot
   uint32_t pc = 0;
   Cycle issued = 0;
-  mem::Traffic traffic = mem::Traffic::ShaderGlobal;
   Cycle late_until = 0;       // registers that it fills are not written before
+  mem::Traffic traffic = mem::Traffic::ShaderGlobal;
   bool write = false;
   bool texture = false;       // through the texture unit
   bool atomic = false;        // one that shared memory does, if it is there
+  uint32_t bank_turns = 1;    // words of the fullest bank of the L1's array, where that counts
   uint32_t passes = 0;        // of shared memory; an access may go there and to lines (generic addresses)
   LineList lines;
   uint32_t num_table_lines = 0;  // the first of them: candidates that the called shaders see
@@ -31,10 +33,11 @@ struct MemoryAccess {
  private:
   friend class Lsu;
   uint32_t num_sent = 0, num_answers = 0;
+  Cycle hold = 0;             // of the L1's array before its first line, for words that meet in a bank
   Cycle ready = 0;            // in the pipe: when its first line can go to the L1
 };
 
-// Queue of each scheduler -> (accept_interval) -> load-store or texture pipe -> one line a cycle -> L1,
+// Queue of each scheduler -> (accept_interval) -> load-store or texture pipe -> lines_per_cycle -> L1,
 //                                              or -> shared memory, one pass a cycle.
 // Model: shared memory and L1 do not disturb each other, where hardware has one array for both.
 // Model: one queue for both pipes, in order; the texture unit shares the L1's door with loads and stores.
@@ -82,6 +85,10 @@ class Lsu {
   void finish_shared(Cycle now);
   void pop(Pipe& pipe);
   static size_t pipe_of(const MemoryAccess& access) { return access.lines.lines().empty() ? kShared : access.texture; }
+  // Latency of `turns` further turns of the banks.
+  Cycle conflict_latency(Cycle turns) const {
+    return std::max<Cycle>(turns * shared_.conflict_turn, shared_.conflict_hidden) - shared_.conflict_hidden;
+  }
   Cycle shared_cycles(const MemoryAccess& access) const;
 
   mem::L1Port& l1_;

@@ -10,6 +10,7 @@
 #include "base/registry.h"
 #include "base/types.h"
 #include "core/issue_scheduler.h"
+#include "core/op_times.h"
 #include "isa/op_row.h"
 
 namespace glint::core {
@@ -76,6 +77,9 @@ struct LsuParams {
   uint32_t accept_interval = 2;
   uint32_t sectors_per_cycle = 2;  // 512 bits a cycle between L1 and registers
   uint32_t accesses = 128;         // Choice: unpublished; 4 a resident warp at 32 warps
+  // An H200 looks up 4 lines a cycle, and reads as many words of a bank as an access wants there, one after another.
+  uint32_t lines_per_cycle = 1;    // Volta and later: one line of 128 B a cycle
+  bool bank_conflicts = false;
   static constexpr auto params() {
     return std::tuple{
         param(&LsuParams::queue, "queue", "instruction",
@@ -85,21 +89,27 @@ struct LsuParams {
         param(&LsuParams::sectors_per_cycle, "sectors_per_cycle", "sector",
             "32 B sectors asked of the L1 a cycle.", 1, 4),
         param(&LsuParams::accesses, "accesses", "instruction",
-            "Memory instructions of a core between issue and completion.", 1, 1024)};
+            "Memory instructions of a core between issue and completion.", 1, 1024),
+        param(&LsuParams::lines_per_cycle, "lines_per_cycle", "line", "Lines of one access asked of the L1 in the same cycle.", 1, 32),
+        flag(&LsuParams::bank_conflicts, "bank_conflicts",
+            "An access to global memory takes a cycle for each different word in the fullest of 32 banks of 4 bytes.")};
   }
 };
 
-// Defaults: microbenchmarks of an H200. Model: conflicts add a pass each; there, n lanes in a bank take n cycles of the
-// unit and 2n - 5 more of latency.
+// Defaults: microbenchmarks of an H200, but for conflicts: there, n lanes in a bank take n cycles of the unit and 2n - 5
+// more of latency (a turn 2, hidden 3).
 struct SharedParams {
   uint32_t latency = 23;         // dependent loads
   uint32_t atomic_latency = 76;  // dependent atom.shared.add.u32; 126 when 32 lanes meet in a word
   uint32_t atomic_pass = 2;
+  uint32_t conflict_turn = 1, conflict_hidden = 0;
   static constexpr auto params() {
     return std::tuple{
         param(&SharedParams::latency, "latency", "cycle", "A load without bank conflicts, issue to dependent issue.", 1, 1000),
         param(&SharedParams::atomic_latency, "atomic_latency", "cycle", "The same of an atomic.", 1, 1000),
-        param(&SharedParams::atomic_pass, "atomic_pass", "cycle", "Each further turn of lanes that meet in a bank, for an atomic.", 1, 100)};
+        param(&SharedParams::atomic_pass, "atomic_pass", "cycle", "Each further turn of lanes that meet in a bank, for an atomic.", 1, 100),
+        param(&SharedParams::conflict_turn, "conflict_turn", "cycle", "Latency of each further turn of a load, also of global memory.", 0, 100),
+        param(&SharedParams::conflict_hidden, "conflict_hidden", "cycle", "Of that, in all, what the latency without conflicts hides.", 0, 100)};
   }
 };
 
@@ -121,7 +131,11 @@ struct Params {
   uint32_t blocks = 16;            // Turing and GA10x (CUDA programming guide, compute capability 7.5 and 8.6)
   uint32_t shared_bytes = 65536;   // Turing: up to 64 KiB of the 96 KiB that it shares with the L1
   PolicyChoice<IssueScheduler> issue{"gto"};
+  PolicyChoice<OpTimes> op_times{"by_unit"};
   Units units;
+  // An H200: 1 (4 cycles within a pipe, 5 to another; 17 and 18 from the special-function unit) and 9 (a comparison's
+  // result selects after 4 cycles and guards after 13). 0 here: the latencies of other parts have these in them.
+  uint32_t pipe_crossing = 0, guard_delay = 0;
   LsuParams lsu;
   SharedParams shared;
   FenceParams fence;
@@ -137,7 +151,10 @@ struct Params {
         param(&Params::blocks, "blocks", "block", "Resident blocks of a core; launches without blocks do not count.", 1, kMaxWarps),
         param(&Params::shared_bytes, "shared_bytes", "byte", "Shared memory of a core.", 0, 1 << 20),
         policy(&Params::issue, "issue", "Which ready warp a scheduler issues from."),
+        policy(&Params::op_times, "op_times", "Times of single ops, where they are not those of their unit."),
         section(&Params::units, "units", "Latency and initiation interval of the execution units."),
+        param(&Params::pipe_crossing, "pipe_crossing", "cycle", "Later that a result reaches another pipe than its own.", 0, 100),
+        param(&Params::guard_delay, "guard_delay", "cycle", "Later that a predicate guards an instruction than it can be read.", 0, 100),
         section(&Params::lsu, "lsu", "Load-store unit."),
         section(&Params::shared, "shared", "Shared memory: 32 banks of 4 bytes."),
         section(&Params::fence, "fence", "Memory fences."),

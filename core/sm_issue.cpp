@@ -80,7 +80,7 @@ void CoreCell::issue(SchedulerState& scheduler, uint32_t local, Cycle now) {
   front_[slot] = {now + 1, Stall::RawFixed};
   switch (row.finish) {
     case Finish::Fixed:
-      scoreboards_[slot].set(table_.defs(row), {done, row.wait});
+      scoreboards_[slot].set(table_.defs(row), {done, row.wait}, row.alternates ? Pipe::Count : row.pipe);
       stats_.latency.add(row.klass, row.latency);
       break;
     case Finish::Control:
@@ -194,11 +194,11 @@ bool CoreCell::start_access(uint32_t slot, const IssueRow& row, const Issued& is
   MemoryAccess& access = lsu_.take(slot % params_.schedulers, now);
   access.slot = slot;
   access.pc = issued.pc;
+  if (executor_.is_late()) access.late_until = turn_end(now);
   access.write = issued.row->effect == Effect::Store || issued.row->effect == Effect::SurfaceStore;
   collect_lines(access, issued);
   // red: nobody waits for an answer.
   access.write |= issued.row->effect == Effect::Atomic && row.num_defs == 0;
-  if (executor_.is_late()) access.late_until = turn_end(now);
   ++outstanding_[slot];
   if (row.finish == Finish::CallRecord)
     front_[slot] = {kNever, Stall::Call};
@@ -256,8 +256,10 @@ void CoreCell::collect_memory(MemoryAccess& access, const Issued& issued) {
                                                               : mem::Traffic::ShaderGlobal;
   access.atomic = is_atomic;
   if (const LaneMask lanes = executor_.lanes_in(Space::Shared)) access.passes = shared_passes(addresses, lanes, bytes, is_atomic);
+  const LaneMask in_global = executor_.lanes_in(Space::Global);
+  if (params_.lsu.bank_conflicts && !is_atomic && in_global) access.bank_turns = shared_passes(addresses, in_global, bytes, false);
   coalesce_local(access.lines, local_, access.slot, addresses, executor_.lanes_in(Space::Local), bytes);
-  coalesce_global(access.lines, *world_.memory, addresses, executor_.lanes_in(Space::Global), bytes);
+  coalesce_global(access.lines, *world_.memory, addresses, in_global, bytes);
 }
 
 void CoreCell::collect_texels(MemoryAccess& access, LaneMask lanes) {
@@ -350,7 +352,10 @@ void CoreCell::refresh(uint32_t slot) {
   SchedulerState& scheduler = scheduler_of(slot);
   const uint32_t local = slot / params_.schedulers;
   const IssueRow& row = table_.row(warps_[slot].simt.pc);
-  const Scoreboard::Ready ready = scoreboards_[slot].ready(table_.uses(row), front_[slot]);
+  const Cycle crossing = params_.pipe_crossing, guard = params_.guard_delay;
+  const Scoreboard::Ready ready = crossing + guard == 0
+                                      ? scoreboards_[slot].ready(table_.uses(row), front_[slot])
+                                      : scoreboards_[slot].ready(table_.uses(row), front_[slot], row, crossing, guard);
   scheduler.ready_at[local] = ready.at;
   scheduler.wait[local] = ready.wait;
   scheduler.pipe[local] = row.pipe;

@@ -100,6 +100,13 @@ Stall wait_of(const isa::OpRow& row, Finish finish) {
   return pipe_of(row.unit) == Pipe::Sfu ? Stall::RawSfu : Stall::RawFixed;
 }
 
+void take_time(IssueRow& row, const OpTime& time) {
+  if (time.pipe != Unit::Count) row.pipe = pipe_of(time.pipe);
+  row.latency = uint16_t(time.latency);
+  row.interval = uint16_t(time.interval);
+  row.alternates = time.alternates;
+}
+
 }  // namespace
 
 Pipe pipe_of(Unit unit) {
@@ -128,6 +135,7 @@ Pipe pipe_of(Unit unit) {
 
 IssueTable::IssueTable(const Image& image, const Params& params) {
   const auto units = params.units.by_unit();
+  const auto op_times = params.op_times.make({});
   rows_.reserve(image.code.size());
   for (size_t pc = 0; pc < image.code.size(); ++pc) {
     const isa::Inst& inst = image.code[pc];
@@ -136,7 +144,8 @@ IssueTable::IssueTable(const Image& image, const Params& params) {
     IssueRow row;
     row.first_use = uint32_t(registers_.size());
     add_operands(registers_, op, inst, false);
-    if (inst.guard != isa::kNoGuard)
+    row.is_guarded = inst.guard != isa::kNoGuard;
+    if (row.is_guarded)
       registers_.push_back(uint16_t(kFirstPredicate + (inst.guard & ~isa::kGuardNegate)));
     const size_t first_def = registers_.size();
     add_operands(registers_, op, inst, true);
@@ -150,6 +159,8 @@ IssueTable::IssueTable(const Image& image, const Params& params) {
     row.is_conditional = op.effect == Effect::Branch && inst.guard != isa::kNoGuard;
     row.latency = row.finish == Finish::Fence ? fence_latency(op, params.fence) : uint16_t(unit.latency);
     row.interval = uint16_t(unit.interval);
+    if (row.finish == Finish::Fixed)
+      if (const OpTime* time = op_times->find(op.name)) take_time(row, *time);
     rows_.push_back(row);
   }
 }

@@ -39,7 +39,9 @@ struct IssueRow {
   isa::Class klass = isa::Class::Alu;
   isa::Stage stage = isa::Stage::Compute;
   Stall wait = Stall::RawFixed; // what a dependent instruction waits for
-  bool is_conditional = false;  // a guarded branch
+  bool is_conditional : 1 = false;  // a guarded branch
+  bool is_guarded : 1 = false;      // the last source is its guard
+  bool alternates : 1 = false;      // OpTime::alternates
   uint16_t latency = 1;
   uint16_t interval = 1;        // of the pipe
 };

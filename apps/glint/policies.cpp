@@ -4,6 +4,7 @@
 
 #include "base/registry.h"
 #include "core/issue_scheduler.h"
+#include "core/op_times.h"
 #include "memsys/dram_scheduler.h"
 #include "report/stat_writer.h"
 #include "rtunit/any_hit_mode.h"
@@ -24,6 +25,7 @@ void add(std::vector<PolicyInfo>& out, const char* key, const char* folder) {
 std::vector<PolicyInfo> all_policies() {
   std::vector<PolicyInfo> out;
   add<core::IssueScheduler>(out, "core.issue", "core/schedulers");
+  add<core::OpTimes>(out, "core.op_times", "core/op_times");
   add<mem::DramScheduler>(out, "memory.dram.scheduler", "memsys/dram_schedulers");
   add<rt::AnyHitMode>(out, "rt.any_hit", "rtunit/any_hit");
   add<rt::RayScheduler>(out, "rt.scheduler", "rtunit/schedulers");

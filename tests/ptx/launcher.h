@@ -44,6 +44,7 @@ class Launcher {
     return {view.begin(), view.end()};
   }
   pipeline::KernelWorld& world() { return world_; }
+  void set_arguments() { world_.set_arguments(arguments_); }
 
  private:
   void prepare(const pipeline::KernelGrid& grid) {

@@ -1,0 +1,67 @@
+// Times of ops `hopper`: where an op of an H200 differs from its unit, as microbenchmarks measured it.
+// SPDX-License-Identifier: Apache-2.0
+#include "core/op_times.h"
+
+namespace glint::core {
+namespace {
+
+using isa::Unit;
+
+// Source: dependent chains and 32 warps of independent ones on an NVIDIA H200 (1980 MHz), of PTX ops as its assembler
+// translates them; intervals are 32 lanes x 4 schedulers over the lane operations that a core did in a cycle. Latencies
+// of steps of two ops are split at the latencies that the other op has alone and the crossing of pipes (1 cycle).
+// Model: a sequence of instructions (divisions) holds one pipe for its throughput; its issue slots are free.
+constexpr OpTime kTimes[] = {
+    // The assembler turns every second addition into a multiply-add on the other pipe: 5 cycles, one a cycle.
+    {"add.cc.*", 4, 2}, {"sub.cc.*", 4, 2}, {"add.sat.s32", 4, 2}, {"sub.sat.s32", 4, 2},
+    {"add.s32", 5, 1, Unit::Fp32, true}, {"add.u32", 5, 1, Unit::Fp32, true},
+    {"sub.s32", 5, 1, Unit::Fp32, true}, {"sub.u32", 5, 1, Unit::Fp32, true},
+    // Integer multiplication runs on the single-precision pipe, at half its rate.
+    {"mul.lo.s32", 4, 2, Unit::Fp32}, {"mul.lo.u32", 4, 2, Unit::Fp32},
+    {"mad.lo.s32", 4, 2, Unit::Fp32}, {"mad.lo.u32", 4, 2, Unit::Fp32},
+    {"mul.hi.s32", 9, 4, Unit::Fp32}, {"mul.hi.u32", 9, 4, Unit::Fp32},
+    {"mad.hi.s32", 9, 4, Unit::Fp32}, {"mad.hi.u32", 9, 4, Unit::Fp32},
+    {"mul.wide.*32", 4, 3, Unit::Fp32}, {"mad.wide.*32", 4, 3, Unit::Fp32},
+    {"mul24.lo.*", 10, 2, Unit::Fp32}, {"dp4a.*", 4, 2, Unit::Fp32},
+    {"mul.lo.*64", 12, 8, Unit::Fp32}, {"mad.lo.*64", 12, 8, Unit::Fp32},
+    {"mul.hi.*64", 30, 16, Unit::Fp32}, {"mad.hi.*64", 30, 16, Unit::Fp32},  // guess: four wide products
+    // Two instructions each. Comparisons of 64 bits: two, of which the second has the result.
+    {"and.b64", 4, 4}, {"or.b64", 4, 4}, {"xor.b64", 4, 4}, {"not.b64", 4, 4}, {"selp.b64", 4, 4},
+    {"shl.b64", 6, 2}, {"shr.*64", 5, 4}, {"setp.*.f64", 8, 2}, {"setp.*64", 8, 4},
+    {"bfe.*32", 8, 8}, {"bfi.b32", 8, 9}, {"clz.b32", 23, 8},
+    // Integer division and remainder: sequences.
+    {"div.s32", 131, 33}, {"div.u32", 124, 29}, {"rem.s32", 132, 30}, {"rem.u32", 126, 28},
+    {"div.s64", 331, 120}, {"div.u64", 331, 120}, {"rem.s64", 331, 120}, {"rem.u64", 331, 120},  // intervals: guess
+    // Comparisons, minima and the like run on the integer pipe.
+    {"setp.*.f32", 4, 2, Unit::Int}, {"set.*.f32", 4, 2, Unit::Int}, {"testp.*.f32", 4, 2, Unit::Int},
+    {"min.*f32", 4, 2, Unit::Int}, {"max.*f32", 4, 2, Unit::Int},
+    {"add.rn*.f16x2", 8, 1}, {"mul.rn*.f16x2", 8, 1}, {"fma.rn*.f16x2", 8, 1}, {"fma.rn*.bf16x2", 8, 1},
+    // Sequences around the special-function unit.
+    {"div.rn*.f32", 57, 17}, {"rcp.rn*.f32", 77, 12}, {"sqrt.rn*.f32", 55, 12},
+    {"rcp.approx.f32", 41, 8}, {"rsqrt.approx.f32", 39, 8}, {"lg2.approx.f32", 39, 8}, {"sqrt.approx.f32", 39, 8},
+    {"sin.approx*", 23, 8}, {"cos.approx*", 23, 8}, {"div.approx*", 23, 8}, {"div.full*", 40, 8},  // div: rcp and mul
+    {"rcp.approx.ftz.f64", 17, 8, Unit::Sfu}, {"rsqrt.approx.ftz.f64", 17, 8, Unit::Sfu},
+    {"sqrt.rn.f64", 92, 28}, {"rcp.rn.f64", 92, 20},  // rcp: guess
+    // Conversions.
+    {"cvt.rn.f32.s32", 4, 2, Unit::Int}, {"cvt.rn.f32.u32", 4, 2, Unit::Int},
+    {"cvt.rn.f16.f32", 4, 2, Unit::Int}, {"cvt.f32.f16", 4, 1, Unit::Fp32},
+    {"cvt.f64.f32", 18, 8, Unit::Sfu}, {"cvt.rn.f32.f64", 18, 8, Unit::Sfu},
+    // Across lanes.
+    {"vote.*", 13, 2, Unit::Int}, {"match.*", 28, 8}, {"shfl.sync.up.*", 24, 4}, {"shfl.sync.down.*", 24, 4}, {"redux.*", 44, 8},
+};
+
+class Hopper final : public OpTimes {
+ public:
+  static constexpr std::string_view kName = "hopper";
+  static constexpr std::string_view kDoc = "An H200, op by op, where an op differs from its unit.";
+  struct Params {
+    static constexpr auto params() { return std::tuple{}; }
+  };
+  Hopper(Params, Context) {}
+  std::span<const OpTime> entries() const override { return kTimes; }
+};
+
+const Register<OpTimes, Hopper> registered;
+
+}  // namespace
+}  // namespace glint::core
