@@ -15,6 +15,7 @@
 #include "apps/glint/workloads.h"
 #include "pipeline/render.h"
 #include "report/config_file.h"
+#include "report/progress.h"
 #include "report/run_directory.h"
 
 namespace glint::app {
@@ -68,7 +69,8 @@ pipeline::RenderJob make_job(const Session& session, const Options& options) {
   check_observation(job.observe, job.timing);
   job.shader_dir = options.shader_dir.empty() ? session.resources.shader_dir(std::string(workload.folder))
                                               : options.shader_dir;
-  job.scene = scenes::load_scene(options.scene, {options.assets});
+  report::Progress progress(session.on_terminal ? stdout : nullptr, "loading", session.terminal);
+  job.scene = scenes::load_scene(options.scene, {options.assets, [&](double part) { progress.update(uint64_t(100 * part), 100); }});
   return job;
 }
 
@@ -83,6 +85,8 @@ report::RunInfo describe_run(const Session& session, const Options& options, con
   info.scene_form = job.scene.form;
   info.scene_note = job.scene.note;
   info.scene_hash = job.scene.hash();
+  info.scene_triangles = job.scene.triangles();
+  info.scene_fraction = job.scene.fraction();
   info.shader = options.shader;
   info.width = job.frame.width;
   info.height = job.frame.height;
@@ -171,7 +175,7 @@ void add_run(CLI::App& app, Session& session) {
   command->add_option("--mode", options->mode, "timing: cycle by cycle; functional: picture and counts only")
       ->check(CLI::IsMember({"timing", "functional"}))
       ->capture_default_str();
-  command->add_option("--assets", options->assets, "Folder of original scene data")->type_name("DIR");
+  command->add_option("--assets", options->assets, "Folder of original scene data")->type_name("DIR")->envname("GLINT_ASSETS");
   command->add_option("--out", options->out, "Run directory (default: out/SCENE_SHADER-MODE)")
       ->type_name("DIR");
   command
