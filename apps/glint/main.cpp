@@ -79,6 +79,7 @@ int main_of(int argc, char** argv) {
   add_asm(app, session);
   add_isa(app, session);
   add_list(app, session);
+  add_microbench(app, session);
   add_describe(app, session);
   try {
     app.parse(argc, argv);

@@ -31,6 +31,7 @@ void add_compile(CLI::App& app, Session& session);
 void add_asm(CLI::App& app, Session& session);
 void add_isa(CLI::App& app, Session& session);
 void add_list(CLI::App& app, Session& session);
+void add_microbench(CLI::App& app, Session& session);
 void add_describe(CLI::App& app, Session& session);
 
 }  // namespace glint::app
