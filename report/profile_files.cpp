@@ -76,7 +76,7 @@ std::vector<std::string> read_line(const std::string& text, size_t& at) {
 // Numbers of a row from column `first` on.
 class Numbers {
  public:
-  Numbers(const std::vector<std::string>& cells, const std::string& name, uint32_t line) : cells_(cells), name_(name), line_(line) {}
+  Numbers(const std::vector<std::string>& cells, const std::string& name, int line) : cells_(cells), name_(name), line_(line) {}
   uint64_t at(size_t column) const {
     uint64_t value = 0;
     const std::string& cell = cells_[column];
@@ -89,7 +89,7 @@ class Numbers {
  private:
   const std::vector<std::string>& cells_;
   const std::string& name_;
-  const uint32_t line_;
+  const int line_;
 };
 
 ProfileRow row_of(const std::vector<std::string>& cells, const Numbers& numbers) {
@@ -158,7 +158,7 @@ ProfileTable parse_profile(const std::string& text, const std::string& name) {
   if (header.size() <= kColumns.size() || !std::equal(kColumns.begin(), kColumns.end(), header.begin()))
     throw UserError({name, 1, 0}, "this is no profile of this version", "`glint run ... --profile` writes one");
   out.reasons.assign(header.begin() + ptrdiff_t(kColumns.size()), header.end());
-  for (uint32_t line = 2; at < text.size(); ++line) {
+  for (int line = 2; at < text.size(); ++line) {
     const std::vector<std::string> cells = read_line(text, at);
     if (cells.size() != header.size())
       throw UserError({name, line, 0}, fmt::format("expected {} columns, found {}", header.size(), cells.size()));
