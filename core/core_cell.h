@@ -12,9 +12,9 @@
 #include "core/executor.h"
 #include "core/issue_scheduler.h"
 #include "core/lsu.h"
+#include "core/memory_view.h"
 #include "core/params.h"
 #include "core/profile.h"
-#include "core/memory_view.h"
 #include "core/scoreboard.h"
 #include "core/sm_scheduler.h"
 #include "core/sm_stats.h"
@@ -41,9 +41,9 @@ class CoreCell final : public Cell {
     uint32_t index = 0, cores = 1;
     double clock_mhz = 0.0;        // 0: programs read no time
     Address tables = 0;            // physical, of table_bytes() bytes: the candidates of its rays
+    Cycle turn = 0;                // after which other cores see what this one has written; 0: there are none
   };
   // Program and parameters must have passed check().
-    Cycle turn = 0;                // after which other cores see what this one has written; 0: there are none
   CoreCell(const Params& params, const Context& context);
   ~CoreCell() override;
 
@@ -81,14 +81,14 @@ class CoreCell final : public Cell {
   void finish(Cycle end);
 
   Executor& executor() { return executor_; }  // to listen to what retires
+  // What the core has done to global memory in the present turn; null without other cores.
+  MemoryView* view() { return view_.get(); }
   const CoreStats& stats() const { return stats_; }
   // Counts by instruction too, from before the first launch on; otherwise there is no profile.
   void start_profile();
   const Profile* profile() const { return profile_.get(); }
   IntervalSampler& sampler() { return sampler_; }
   // Warp instructions and lanes by op, indexed as isa::op_table().
-  // What the core has done to global memory in the present turn; null without other cores.
-  MemoryView* view() { return view_.get(); }
   const std::vector<uint64_t>& op_counts() const { return op_counts_; }
   const std::vector<uint64_t>& op_lanes() const { return op_lanes_; }
 
@@ -136,6 +136,8 @@ class CoreCell final : public Cell {
   const rt::TableLayout tables_;
   IssueTable table_;
   Executor executor_;
+  const Cycle turn_;
+  std::unique_ptr<MemoryView> view_;
   Lsu lsu_;
   std::vector<SchedulerState> schedulers_;
   std::vector<WarpContext> warps_;
@@ -144,8 +146,6 @@ class CoreCell final : public Cell {
   std::vector<uint32_t> outstanding_;      // a slot: accesses in flight
   std::vector<Cycle> fence_;               // a slot: latency of the fence that waits for them; 0: none
   std::vector<Resident*> home_;            // a slot: the block of its warp
-  const Cycle turn_;
-  std::unique_ptr<MemoryView> view_;
   std::vector<std::unique_ptr<Resident>> residents_;
   const uint32_t warps_per_block_;
   Seat seat_;                              // of the warp launched last

@@ -46,8 +46,8 @@ TimingMachine::TimingMachine(const GpuParams& params, const core::World& world, 
     cores_.push_back(std::make_unique<core::CoreCell>(
         params_.core, core::CoreCell::Context{world, memory_.l1(i), *rt_units_.back(), local, &root_, name, no_skip, i, params_.cores, params_.clock_mhz, rt.tables.base, turn}));
     engine_.add(*cores_.back());
-  }
     if (core::MemoryView* view = cores_.back()->view()) views_.push_back(view);
+  }
   for (Cell* cell : memory_.cells()) engine_.add(*cell);
   for (ChannelBase* channel : memory_.channels()) engine_.add(*channel);
 }
@@ -60,8 +60,8 @@ Cycle TimingMachine::run(const std::function<void(uint64_t, uint64_t)>& progress
   core::Dispatcher dispatcher(params_.core, executor.num_blocks(), cores);
   const core::Fault* fault = nullptr;
   const Cycle quiet = engine_.run([&](Cycle now) {
-    for (const auto& core : cores_)
     core::MemoryView::commit(views_);
+    for (const auto& core : cores_)
       if (!fault && core->fault()) fault = &*core->fault();
     if (fault) return EngineLoop::Next::Stop;
     dispatcher.dispatch(now);
