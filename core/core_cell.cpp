@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "base/num_lanes.h"
 
 namespace glint::core {
 
@@ -99,6 +100,7 @@ void CoreCell::launch_warp(Resident& home, uint32_t warp_in_block, Cycle ready) 
   scheduler.age[local] = num_launched_++;
   ++num_resident_;
   ++stats_.warps;
+  stats_.stage[size_t(world_.image->shaders[world_.raygen].stage)]->invocations += num_lanes(warps_[slot].simt.active);
   ++progress_;
   refresh(slot);
 }
@@ -162,6 +164,7 @@ void CoreCell::finish(Cycle end) {
   account_until(end);
   sampler_.finish(end);
   const CandidateCounts& counts = executor_.candidates();
+  for (int stage = 0; stage < kNumStages; ++stage) stats_.stage[size_t(stage)]->invocations += executor_.called_lanes(isa::Stage(stage));
   stats_.candidate_calls += counts.calls;
   stats_.candidate_lanes += counts.lanes;
   stats_.candidates_gathered += counts.gathered;

@@ -60,7 +60,7 @@ class Executor {
   uint32_t num_warps() const { return num_blocks() * warps_per_block(); }
 
   // Empties `block` for block `index` of the launch: zeroed shared memory, no warp has arrived anywhere. Blocks are
-  // numbered x fastest.
+  // numbered x fastest, if the layout does not say otherwise.
   void start(Block& block, uint32_t index) const;
   // Puts a warp of the block into `warp`, at the entry of the ray generation (or compute) shader. Neither may move
   // until the warp has ended.
@@ -86,6 +86,8 @@ class Executor {
   const FaultLog& passed() const { return passed_; }
 
   const CandidateCounts& candidates() const { return candidates_; }
+  // Lanes that have begun a shader of the stage because another called it.
+  uint64_t called_lanes(isa::Stage stage) const { return called_lanes_[size_t(stage)]; }
 
   // Of the last texture or surface op; empty when it needed no memory.
   const TexelList& texels() const { return texels_; }
@@ -193,6 +195,7 @@ class Executor {
   const double clock_mhz_;
   const uint32_t table_rows_;  // of the any-hit mode
   CandidateCounts candidates_;
+  std::array<uint64_t, size_t(isa::Stage::Compute) + 1> called_lanes_{};
   std::array<LaneMask, size_t(isa::Space::Generic) + 1> lanes_in_{};
   MemoryView* view_ = nullptr;
   bool is_late_ = false;
@@ -204,7 +207,8 @@ class Executor {
 // The fault of a warp that has run for longer than any real one, at the instruction `pc`.
 Fault no_end_in_sight(const World& world, const WarpContext& warp, uint32_t pc, uint64_t instruction_budget);
 
-// Launch coordinates of a lane of a warp: x runs fastest, in a launch with blocks within the block.
+// Launch coordinates of a lane of a warp, as World::layout has them; in a launch with blocks x runs fastest within the block.
+// A lane without a thread is outside of the launch.
 std::array<uint32_t, 3> launch_id(const World& world, uint32_t warp_index, int lane);
 uint32_t warps_per_block(const World& world);
 

@@ -257,6 +257,7 @@ uint32_t Executor::call_by_shader(WarpContext& warp, const std::array<uint32_t, 
     for_each_lane(callers, [&](int lane) { same |= LaneMask{target[size_t(lane)] == shader} << lane; });
     callers &= ~same;
     const Shader& callee = world_.image->shaders[shader];
+    called_lanes_[size_t(callee.stage)] += num_lanes(same);
     fill_specials(warp, same, callee);
     if (calls++ == 0) {
       simt.pc = callee.entry;

@@ -20,6 +20,7 @@ struct StageStats : stats::Group {
   stats::Breakdown<isa::Class> instructions{this, "instructions", "instruction",
       "Warp instructions issued, by class."};
   stats::Breakdown<isa::Class> lanes{this, "lanes", "instruction", "Lane instructions, by class."};
+  stats::Counter invocations{this, "invocations", "lane", "Lanes that began a shader of the stage."};
 };
 
 struct CoreStats : stats::Group {

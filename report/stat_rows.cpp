@@ -93,14 +93,6 @@ class NameVisitor final : public PathVisitor {
   std::set<std::string> seen_;
 };
 
-bool matches(std::string_view pattern, std::string_view text) {
-  if (pattern.empty()) return text.empty();
-  if (pattern[0] == '*')
-    return matches(pattern.substr(1), text) ||
-           (!text.empty() && text[0] != '.' && matches(pattern, text.substr(1)));
-  return !text.empty() && pattern[0] == text[0] && matches(pattern.substr(1), text.substr(1));
-}
-
 class SumVisitor final : public PathVisitor {
  public:
   explicit SumVisitor(const std::string& pattern) : pattern_(pattern) {}
@@ -116,12 +108,19 @@ class SumVisitor final : public PathVisitor {
 
  private:
   void add(const stats::Stat& stat, double value, const std::string& part = {}) {
-    if (matches(pattern_, path_of(stat) + part)) sum = sum.value_or(0.0) + value;
+    if (path_matches(pattern_, path_of(stat) + part)) sum = sum.value_or(0.0) + value;
   }
   const std::string& pattern_;
 };
 
 }  // namespace
+
+bool path_matches(std::string_view pattern, std::string_view path) {
+  if (pattern.empty()) return path.empty();
+  if (pattern[0] == '*')
+    return path_matches(pattern.substr(1), path) || (!path.empty() && path[0] != '.' && path_matches(pattern, path.substr(1)));
+  return !path.empty() && pattern[0] == path[0] && path_matches(pattern.substr(1), path.substr(1));
+}
 
 std::vector<StatRow> stat_rows(const stats::Group& root) {
   RowVisitor visitor;

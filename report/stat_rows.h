@@ -3,6 +3,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/stats.h"
@@ -23,8 +24,10 @@ std::vector<StatRow> stat_rows(const stats::Group& root);
 // out. A histogram that is empty is there too. In order of first appearance.
 std::vector<StatRow> stat_names(const stats::Group& root);
 
-// The sum of the values whose path (as in StatRow, bins of histograms apart) matches `pattern`, in which '*'
-// stands for any characters but '.'; absent when no path matches.
+// Whether a path is of `pattern`, in which '*' stands for any characters but '.'.
+bool path_matches(std::string_view pattern, std::string_view path);
+
+// The sum of the values whose path (as in StatRow, bins of histograms apart) matches `pattern`; absent when no path does.
 std::optional<double> stat_sum(const stats::Group& root, const std::string& pattern);
 
 }  // namespace glint::report

@@ -31,6 +31,7 @@ struct RtStats : stats::Group {
 
   stats::Counter warps{this, "warps", "warp", "Warps accepted, again after shaders included."};
   stats::Counter rays{this, "rays", "ray", "Rays accepted for the first time."};
+  stats::Counter first_hit_rays{this, "first_hit_rays", "ray", "Of them, those that may end at any hit: TerminateOnFirstHit."};
   stats::Counter resumed{this, "resumed_rays", "ray", "Rays accepted again after an intersection or any-hit shader."};
   stats::Counter finished{this, "finished_rays", "ray", "Rays whose traversal ended in the unit."};
   stats::Counter suspended{this, "suspended_rays", "ray", "Times a ray was given back to run a shader before its traversal had ended."};

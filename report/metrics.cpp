@@ -1,0 +1,82 @@
+// Metrics as a table's row, as lines and as a page.
+// SPDX-License-Identifier: Apache-2.0
+#include "report/metrics.h"
+
+#include <fmt/format.h>
+
+#include "report/formula.h"
+#include "report/table.h"
+
+namespace glint::report {
+namespace {
+
+// What tells runs apart: column and name in run.json.
+constexpr std::pair<std::string_view, std::string_view> kIdentity[] = {
+    {"scene", "scene.name"}, {"form", "scene.form"}, {"shader", "shader"}, {"config", "config.name"}, {"config_hash", "config.hash"}};
+constexpr std::pair<std::string_view, std::string_view> kNumbers[] = {
+    {"fraction", "scene.fraction"}, {"width", "width"}, {"height", "height"}, {"samples", "samples"}};
+
+// RFC 4180, as stats.csv.
+std::string field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
+std::string cell(std::optional<double> value) { return value ? fmt::format("{}", *value) : ""; }
+
+}  // namespace
+
+std::vector<MetricValue> metrics_of(const RunRecord& run) {
+  std::vector<MetricValue> out;
+  for (const MetricGroup& group : metric_groups())
+    for (const Metric& metric : group.metrics)
+      out.push_back({&metric, metric.formula.empty() ? std::nullopt : evaluate(std::string(metric.formula), run)});
+  return out;
+}
+
+std::string metrics_header() {
+  std::string out = "workload";
+  for (const auto& [column, name] : kIdentity) out += fmt::format(",{}", column);
+  for (const auto& [column, name] : kNumbers) out += fmt::format(",{}", column);
+  for (const MetricGroup& group : metric_groups())
+    for (const Metric& metric : group.metrics) out += fmt::format(",{}", metric.name);
+  return out + "\n";
+}
+
+std::string metrics_row(const std::string& workload, const RunRecord& run) {
+  std::string out = field(workload);
+  for (const auto& [column, name] : kIdentity) out += "," + field(run.text(std::string(name)));
+  for (const auto& [column, name] : kNumbers) out += "," + cell(run.fact(std::string(name)));
+  for (const MetricValue& value : metrics_of(run)) out += "," + cell(value.value);
+  return out + "\n";
+}
+
+std::string metrics_text(const RunRecord& run) {
+  std::vector<std::vector<std::string>> rows;
+  for (const MetricValue& value : metrics_of(run)) {
+    const Metric& metric = *value.metric;
+    const std::string why(metric.formula.empty() ? metric.paper : "nothing to divide by, or not counted in this run");
+    rows.push_back({std::string(metric.name), value.value ? fmt::format("{:.6g}", *value.value) : "-", std::string(metric.unit),
+                    value.value ? std::string(metric.doc) : why});
+  }
+  return table(rows, "<><<");
+}
+
+std::string metrics_markdown() {
+  std::string out;
+  for (const MetricGroup& group : metric_groups()) {
+    out += fmt::format("## {} ({})\n\n| metric | unit | meaning | formula | in the paper |\n|---|---|---|---|---|\n", group.title, group.metrics.size());
+    for (const Metric& m : group.metrics) {
+      const bool absent = m.formula.empty();
+      out += fmt::format("| `{}` | {} | {} | {} | {} |\n", m.name, m.unit, m.doc, absent ? fmt::format("*empty:* {}", m.paper) : fmt::format("`{}`", m.formula),
+                         absent ? "" : m.paper);
+    }
+    out += "\n";
+  }
+  out.pop_back();
+  return out;
+}
+
+}  // namespace glint::report

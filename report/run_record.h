@@ -1,0 +1,38 @@
+// A finished run as its directory tells it: statistics, facts of run.json and configuration keys, by name.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace glint::report {
+
+class RunRecord {
+ public:
+  // UserError when a file is absent or is not what a run writes.
+  static RunRecord read(const std::string& directory);
+
+  // From texts, for read() and tests: stats.csv, run.json, config.toml. Names stand in messages.
+  void add_stats(const std::string& csv, const std::string& name);
+  void add_facts(const std::string& json, const std::string& name);
+  void add_config(const std::string& toml);
+
+  // Values of all statistics whose path matches (path_matches()); empty when none does.
+  std::vector<double> values(const std::string& pattern) const;
+  // A number of run.json by its dotted path ("scene.triangles"), or of the configuration ("rt.warps").
+  std::optional<double> fact(const std::string& name) const { return find(facts_, name); }
+  std::optional<double> config(const std::string& key) const { return find(config_, key); }
+  // A string of run.json; "" when it has none.
+  std::string text(const std::string& name) const;
+
+ private:
+  static std::optional<double> find(const std::map<std::string, double>& map, const std::string& name);
+
+  std::vector<std::pair<std::string, double>> stats_;
+  std::map<std::string, double> facts_, config_;
+  std::map<std::string, std::string> texts_;
+};
+
+}  // namespace glint::report
