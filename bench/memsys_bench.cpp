@@ -5,6 +5,7 @@
 #include <random>
 #include <vector>
 
+#include "memsys/dram_channel.h"
 #include "memsys/memory_system.h"
 
 namespace {
@@ -64,7 +65,8 @@ void dram_stream(benchmark::State& state) {
 // One channel by itself, its queue kept full of random sectors.
 void dram_channel_random(benchmark::State& state) {
   stats::Group root(nullptr, "bench");
-  DramChannel channel(DramParams{}, 256, 1365.0, &root);
+  const DramParams params;
+  DramChannel channel({params, 256, 1365.0, &root});
   std::mt19937_64 random(1);
   uint64_t requests = 0;
   for (auto _ : state) {

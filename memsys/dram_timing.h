@@ -1,44 +1,25 @@
-// DRAM times in command clocks, and the exact relation between core cycles and command clocks.
+// DRAM times in command clocks.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 
-#include "base/types.h"
-#include "memsys/params.h"
+#include "base/check.h"
+#include "memsys/clock_domains.h"
+#include "memsys/dram_params.h"
 #include "memsys/request.h"
 
 namespace glint::mem {
 
-// Command clocks since launch. A type of its own in name only: never mix with Cycle.
-using DramClock = uint64_t;
-
-// Both clocks tick on multiples of a common tick and start together at 0. With clocks in whole kHz a core cycle is
-// dram_khz/g ticks and a command clock core_khz/g ticks, g their greatest common divisor: integers, no drift.
-// Products stay below 2^64 for 2^40 cycles and clocks up to 16 GHz.
-class ClockDomains {
- public:
-  ClockDomains(double core_mhz, double dram_mhz) {
-    const uint64_t core = uint64_t(std::llround(core_mhz * 1000)), dram = uint64_t(std::llround(dram_mhz * 1000));
-    const uint64_t g = std::gcd(core, dram);
-    cycle_ticks_ = dram / g;
-    clock_ticks_ = core / g;
-  }
-  // The last command clock edge at or before the start of a core cycle.
-  DramClock clock_at(Cycle cycle) const { return cycle * cycle_ticks_ / clock_ticks_; }
-  // The first core cycle that starts at or after a command clock edge.
-  Cycle cycle_after(DramClock clock) const { return (clock * clock_ticks_ + cycle_ticks_ - 1) / cycle_ticks_; }
-
- private:
-  uint64_t cycle_ticks_ = 1, clock_ticks_ = 1;
-};
-
 struct DramTiming {
   DramClock rcd, rcd_write, rp, ras, rc, cl, wl, wr, rtp, ccd_s, ccd_l, rrd_s, rrd_l, faw, wtr_s, wtr_l;
   DramClock data;  // data-bus clocks of one request: a sector, or an atom where that is larger
-  DramClock rtw;   // read command to write command: two clocks to turn the bus around, as GPGPU-Sim has it
+  DramClock rtw;   // read command to write command: the bus turns around between their data
+  DramClock activate;  // of the command bus
+  DramClock refresh_interval = kNever;  // from one refresh command to the next; kNever: none
+  DramClock refresh_time = 0;           // from it until its banks can open rows again
+  bool refresh_per_bank = false;
 
   explicit DramTiming(const DramParams& p) {
     const auto clocks = [&](double ns) { return DramClock(std::ceil(ns * p.clock_mhz / 1000.0 - 1e-6)); };
@@ -51,7 +32,14 @@ struct DramTiming {
     data = bursts * burst;
     ccd_s = std::max(clocks(p.ccd_s), burst) * bursts;
     ccd_l = std::max(clocks(p.ccd_l), burst) * bursts;
-    rtw = cl + data + 2 > wl ? cl + data + 2 - wl : 1;
+    rtw = cl + data + p.bus_turn > wl ? cl + data + p.bus_turn - wl : 1;
+    activate = p.activate_clocks;
+    if (p.refresh == "none") return;
+    refresh_per_bank = p.refresh == "per_bank";
+    refresh_time = clocks(refresh_per_bank ? p.rfc_bank : p.rfc);
+    // A longest time, so rounded down; one bank after another, each has its turn once in that time.
+    const double interval = refresh_per_bank ? p.refi / p.banks : p.refi;
+    refresh_interval = std::max<DramClock>(1, DramClock(std::floor(interval * p.clock_mhz / 1000.0 + 1e-6)));
   }
 };
 

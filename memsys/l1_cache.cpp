@@ -26,6 +26,7 @@ L1Cache::L1Cache(const Params& params, uint16_t core, const PartitionMap& map, s
       tags_(uint32_t(params_.size / line_bytes_) / num_ways(params_.size, params_.ways, line_bytes_),
             num_ways(params_.size, params_.ways, line_bytes_), line_bytes_),
       mshr_(params_.mshr_entries, params_.mshr_merges),
+      passing_(params_.mshr_entries),
       miss_queue_(params_.miss_queue),
       request_port_(params.noc.core_request_bytes),
       reply_port_(params.noc.core_reply_bytes),
@@ -39,6 +40,7 @@ bool L1Cache::refuse(Refusal reason) {
 
 bool L1Cache::access(Cycle now, Client client, const Request& request) {
   GLINT_DCHECK(request.sectors != 0 && request.line % line_bytes_ == 0, "line {:#x}", request.line);
+  if (passes_l1(request.traffic) && !request.write) return read(now, client, request);
   if (now != port_cycle_) port_cycle_ = now, accesses_ = 0, busy_banks_ = 0;
   if (accesses_ == params_.ports) return refuse(Refusal::Port);
   const uint64_t bank = uint64_t{1} << (params_.banks == 1 ? 0 : request.line / line_bytes_ % params_.banks);
@@ -66,7 +68,11 @@ bool L1Cache::read(Cycle now, Client client, const Request& request) {
     if (entry != kNone && mshr_.merge_limit(entry)) return refuse(Refusal::MergeLimit);
     fetched = entry == kNone ? missing : uint8_t(missing & ~mshr_.pending(entry));
     if (fetched && queue_full()) return refuse(Refusal::QueueFull);
-    if (entry == kNone) entry = mshr_.allocate(request.line);
+    if (entry == kNone) {
+      entry = mshr_.allocate(request.line);
+      passing_[entry] = true;
+    }
+    passing_[entry] &= uint8_t{passes_l1(request.traffic)};
     mshr_.expect(entry, fetched);
     mshr_.add(entry, {now, order_, request.token, missing, client});
     if (fetched) {
@@ -200,7 +206,7 @@ void L1Cache::send_front(Cycle now) {
 // Takes the oldest reply; false when it needs a place in the cache and its dirty victim finds none in the miss queue.
 bool L1Cache::fill(Cycle now) {
   const Reply reply = replies_->front();
-  if (!reply.is_atomic && !place(now, reply)) return false;
+  if (!reply.is_atomic && !passing_[mshr_.find(reply.line)] && !place(now, reply)) return false;
   const uint32_t bytes = bytes_of(reply);
   ++stats_.fills;
   stats_.reply_bytes += bytes;

@@ -36,6 +36,7 @@ struct L1Stats : CacheStats {
 
 // An accepted miss or write becomes one packet in the bounded miss queue and leaves over the core's request port. Lines
 // are allocated when data arrives (streaming): only MSHRs and the miss queue limit the misses in flight.
+// Lines of instructions and constants pass through MSHRs and miss queue for caches of the core that keep them.
 // Atomics go past the cache to the L2, which executes them; what the cache holds of their sectors is dropped.
 // Model: a write covers whole sectors; a write to a line on its way does not disturb it.
 // Model: a read that waits for a sector already on its way is ready when the sector is, even within the hit latency.
@@ -110,6 +111,7 @@ class L1Cache final : public L1Port {
   L1Stats stats_;
   TagArray tags_;
   Mshr<Waiter> mshr_;
+  std::vector<uint8_t> passing_;  // an MSHR: its line is of instructions or constants, and is not kept
   LineTable seen_;
   Ring<Outgoing> miss_queue_;
   std::array<Answers, size_t(Client::Count)> answers_;

@@ -9,13 +9,14 @@
 
 namespace glint::mem {
 
-enum class Client : uint8_t { Lsu, RtUnit, Count };  // each has its own queue of completions
+enum class Client : uint8_t { Lsu, RtUnit, Code, Count };  // each has its own queue of completions
 
 // Contract (tests/contract/l1_port_test.cpp):
 //  - access() takes a request or refuses it (port, bank, MSHR or queue full this cycle); a refused request has
 //    changed nothing and may be tried again in a later cycle.
 //  - every accepted read gives its token back exactly once: after exactly the hit latency on a hit, when its last
 //    sector has arrived otherwise. Writes give nothing back.
+//  - reads of instructions and constants take none of its ports and banks, and it keeps none of their lines.
 //  - tokens of one client come back in order of readiness, ties in order of acceptance.
 class L1Port {
  public:

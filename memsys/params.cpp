@@ -67,6 +67,13 @@ void check_dram(const DramParams& d, uint32_t line, uint32_t interleave, Checker
   c.require(d.transfers_per_clock == 0 || d.burst % d.transfers_per_clock == 0,
             fmt::format("'dram.burst' is {}, expected a multiple of 'dram.transfers_per_clock' = {}", d.burst,
                         d.transfers_per_clock));
+  c.require(d.banks <= 64, fmt::format("'dram.banks' is {}, expected at most 64", d.banks));
+  const bool per_bank = d.refresh == "per_bank";
+  const double refresh = (per_bank ? d.rfc_bank : d.rfc) + d.ras + d.rp;  // with the row that has just been opened
+  c.require(d.refresh == "none" || d.refi > refresh,
+            fmt::format("'dram.refi' is {} ns, expected more than the {} ns of '{}', 'dram.ras' and 'dram.rp'", d.refi, refresh,
+                        per_bank ? "dram.rfc_bank" : "dram.rfc"),
+            "nothing but refreshes would ever happen");
   c.require(d.rc + 1e-9 >= d.ras, fmt::format("'dram.rc' is {} ns, expected at least 'dram.ras' = {} ns", d.rc, d.ras));
 }
 

@@ -6,8 +6,7 @@
 
 #include "base/diagnostics.h"
 #include "base/params.h"
-#include "base/registry.h"
-#include "memsys/dram_scheduler.h"
+#include "memsys/dram_params.h"
 
 namespace glint::mem {
 
@@ -79,60 +78,6 @@ struct L2Params {
         param(&L2Params::dram_queue, "dram_queue", "request", "Sector reads and writes between the slice and the DRAM scheduler.", 0, 1 << 16),
         param(&L2Params::atomic_interval, "atomic_interval", "cycle", "Cycles of the slice for each sector of an atomic.", 1, 1000)};
   }
-};
-
-// Times in nanoseconds: a data sheet's numbers, rounded up to command clocks as JEDEC standards ask.
-struct DramParams {
-  uint32_t channels = 4;
-  uint32_t bank_groups = 4;
-  uint32_t banks = 16;
-  uint32_t row_bytes = 2048;
-  uint32_t bus_bytes = 2;
-  double clock_mhz = 1750.0;         // GDDR6 command clock, tCK 570 ps (Ramulator 2.1 GDDR6-14000)
-  uint32_t transfers_per_clock = 4;  // 7 GT/s on 2 bytes: 14 GB/s a channel, 56 GB/s on 4 (Vulkan-Sim MOBILE)
-  uint32_t burst = 16;               // GDDR6: 16n prefetch, 32 B an access
-  uint32_t queue = 64;               // Vulkan-Sim: frfcfs_dram_sched_queue_size
-  uint32_t latency = 100;            // Vulkan-Sim: dram_latency, core cycles
-  bool dual_command_bus = false;
-  PolicyChoice<DramScheduler> scheduler{"frfcfs"};
-  // Ramulator 2.1, GDDR6-14000 at 1.35 V, clocks of 0.57 ns turned into times.
-  double rcd = 15.4, rcd_write = 9.2, rp = 15.4, ras = 30.2, rc = 45.0;
-  double cl = 13.7, wl = 3.4, wr = 15.4, rtp = 2.28;
-  double ccd_s = 1.14, ccd_l = 2.28, rrd_s = 4.56, rrd_l = 4.56, faw = 16.5;
-  double wtr_s = 5.13, wtr_l = 6.27;
-
-  static constexpr auto params() {
-    return std::tuple{
-        param(&DramParams::channels, "channels", "channel", "Memory partitions, each one L2 slice and one DRAM channel.", 0, 1024),
-        param(&DramParams::bank_groups, "bank_groups", "group", "Bank groups of a channel.", 0, 64),
-        param(&DramParams::banks, "banks", "bank", "Banks of a channel, over all groups.", 0, 64),
-        param(&DramParams::row_bytes, "row_bytes", "byte", "Bytes of a row of one bank.", 0, 1 << 20),
-        param(&DramParams::bus_bytes, "bus_bytes", "byte", "Width of a channel's data bus.", 0, 1024),
-        param(&DramParams::clock_mhz, "clock_mhz", "MHz", "Command clock.", 1.0, 100000.0),
-        param(&DramParams::transfers_per_clock, "transfers_per_clock", "transfer/clock", "Data transfers a command clock.", 0, 64),
-        param(&DramParams::burst, "burst", "transfer", "Transfers of one column command.", 0, 256),
-        param(&DramParams::queue, "queue", "request", "Requests the scheduler chooses from.", 0, 1 << 16),
-        param(&DramParams::latency, "latency", "core cycle", "From the L2 slice to the scheduler's queue.", 0, 10000),
-        flag(&DramParams::dual_command_bus, "dual_command_bus", "One row and one column command a clock, as HBM; otherwise one command a clock."),
-        policy(&DramParams::scheduler, "scheduler", "Which waiting request a free bank gets."),
-        param(&DramParams::rcd, "rcd", "ns", "Activate to read.", 0.0, 10000.0),
-        param(&DramParams::rcd_write, "rcd_write", "ns", "Activate to write.", 0.0, 10000.0),
-        param(&DramParams::rp, "rp", "ns", "Precharge to activate.", 0.0, 10000.0),
-        param(&DramParams::ras, "ras", "ns", "Activate to precharge.", 0.0, 10000.0),
-        param(&DramParams::rc, "rc", "ns", "Activate to activate of one bank.", 0.0, 10000.0),
-        param(&DramParams::cl, "cl", "ns", "Read command to its first data.", 0.0, 10000.0),
-        param(&DramParams::wl, "wl", "ns", "Write command to its first data.", 0.0, 10000.0),
-        param(&DramParams::wr, "wr", "ns", "Last write data to precharge.", 0.0, 10000.0),
-        param(&DramParams::rtp, "rtp", "ns", "Read command to precharge.", 0.0, 10000.0),
-        param(&DramParams::ccd_s, "ccd_s", "ns", "Column command to column command, other bank group.", 0.0, 10000.0),
-        param(&DramParams::ccd_l, "ccd_l", "ns", "Column command to column command, same bank group.", 0.0, 10000.0),
-        param(&DramParams::rrd_s, "rrd_s", "ns", "Activate to activate, other bank group.", 0.0, 10000.0),
-        param(&DramParams::rrd_l, "rrd_l", "ns", "Activate to activate, same bank group.", 0.0, 10000.0),
-        param(&DramParams::faw, "faw", "ns", "Window that holds at most four activates.", 0.0, 10000.0),
-        param(&DramParams::wtr_s, "wtr_s", "ns", "Last write data to read command, other bank group.", 0.0, 10000.0),
-        param(&DramParams::wtr_l, "wtr_l", "ns", "Last write data to read command, same bank group.", 0.0, 10000.0)};
-  }
-  uint32_t atom_bytes() const { return bus_bytes * burst; }  // of one column command
 };
 
 struct Params {

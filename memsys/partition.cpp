@@ -27,7 +27,7 @@ Partition::Partition(const Params& params, uint32_t index, const PartitionMap& m
       requests_(requests),
       replies_(std::move(replies)),
       stats_(&group_),
-      dram_(params.dram, params.interleave, core_mhz, &group_),
+      dram_(params.dram.model.make({params.dram, params.interleave, core_mhz, &group_})),
       tags_(uint32_t(params_.slice_size / line_bytes_) / num_ways(params_.slice_size, params_.ways, line_bytes_),
             num_ways(params_.slice_size, params_.ways, line_bytes_), line_bytes_),
       mshr_(params_.mshr_entries, params_.mshr_merges),
@@ -51,7 +51,7 @@ void Partition::advance(Cycle from, Cycle until) {
 // Stages from back to front: what leaves makes room for what enters in the same cycle.
 void Partition::step(Cycle now) {
   sampler_.reach(now);
-  dram_.advance(now);
+  dram_->advance(now);
   receive_from_dram(now);
   feed_dram(now);
   while (!hit_replies_.empty() && hit_replies_.front().ready <= now) {
@@ -62,11 +62,11 @@ void Partition::step(Cycle now) {
 }
 
 Cycle Partition::next_work() const {
-  Cycle next = dram_.next_command();
-  if (!dram_.returns().empty()) next = std::min(next, dram_.returns().front().ready);
+  Cycle next = dram_->next_command();
+  if (!dram_->returns().empty()) next = std::min(next, dram_->returns().front().ready);
   if (!hit_replies_.empty()) next = std::min(next, hit_replies_.front().ready);
   // A full scheduler or a blocked head moves only with one of the events above.
-  if (!to_dram_.empty() && !dram_.full()) next = std::min(next, to_dram_.front().ready);
+  if (!to_dram_.empty() && !dram_->full()) next = std::min(next, to_dram_.front().ready);
   if (blocked_ == PartitionCycle::Count) next = std::min(next, head_received());
   return next;
 }
@@ -83,15 +83,15 @@ Cycle Partition::head_received() const {
 }
 
 void Partition::feed_dram(Cycle now) {
-  while (!to_dram_.empty() && to_dram_.front().ready <= now && !dram_.full()) {
+  while (!to_dram_.empty() && to_dram_.front().ready <= now && !dram_->full()) {
     const ToDram& out = to_dram_.front();
-    dram_.add(now, out.line, out.sectors, map_.local(out.line + uint64_t(std::countr_zero(out.sectors)) * kSectorBytes), out.write);
+    dram_->add(now, out.line, out.sectors, map_.local(out.line + uint64_t(std::countr_zero(out.sectors)) * kSectorBytes), out.write);
     to_dram_.pop();
   }
 }
 
 void Partition::receive_from_dram(Cycle now) {
-  Ring<DramReturn>& returns = dram_.returns();
+  Ring<DramReturn>& returns = dram_->returns();
   for (; !returns.empty() && returns.front().ready <= now; returns.pop())
     fill(now, returns.front());
 }
@@ -244,7 +244,7 @@ void Partition::send_reply(Cycle now, uint16_t core, const Reply& reply) {
 // Why nothing is served from accounted_ on, until the next event.
 PartitionCycle Partition::reason() const {
   if (blocked_ != PartitionCycle::Count) return blocked_;
-  if (dram_.in_flight() > 0 || !dram_.returns().empty()) return PartitionCycle::DramWait;
+  if (dram_->in_flight() > 0 || !dram_->returns().empty()) return PartitionCycle::DramWait;
   if (!hit_replies_.empty() || !to_dram_.empty()) return PartitionCycle::Pipeline;
   return PartitionCycle::Idle;
 }
@@ -261,18 +261,18 @@ void Partition::account(Cycle until) {
 void Partition::finish(Cycle end) {
   sampler_.finish(end);
   account(end);
-  dram_.finish(end);
+  dram_->finish(end);
 }
 
 bool Partition::finished() const {
-  return requests_->waiting() == 0 && hit_replies_.empty() && to_dram_.empty() && mshr_.in_use() == 0 && dram_.finished();
+  return requests_->waiting() == 0 && hit_replies_.empty() && to_dram_.empty() && mshr_.in_use() == 0 && dram_->finished();
 }
 
 bool Partition::drained() const { return finished() && sectors_requested_ == sectors_replied_; }
 
 std::string Partition::describe_stall() const {
   return fmt::format("partition {}: {} packets waiting, {} lines on the way, {} for DRAM, {} in DRAM, head: {}\n", index_,
-                     requests_->waiting(), mshr_.in_use(), to_dram_.size(), dram_.in_flight(), name_of(reason()));
+                     requests_->waiting(), mshr_.in_use(), to_dram_.size(), dram_->in_flight(), name_of(reason()));
 }
 
 }  // namespace glint::mem

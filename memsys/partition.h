@@ -1,6 +1,7 @@
 // A memory partition: one slice of the L2 and the DRAM channel behind it, a cell of its own.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -9,7 +10,7 @@
 #include "base/stats.h"
 #include "memsys/address_map.h"
 #include "memsys/cache_stats.h"
-#include "memsys/dram_channel.h"
+#include "memsys/dram_model.h"
 #include "memsys/fan_in.h"
 #include "memsys/mshr.h"
 #include "memsys/packet.h"
@@ -50,13 +51,13 @@ class Partition final : public Cell {
   void advance(Cycle from, Cycle until) override;
   Cycle next_event(Cycle from) const override;
   bool finished() const override;
-  uint64_t progress() const override { return packets_received_ + replies_sent_ + dram_.stats().picks.value(); }
+  uint64_t progress() const override { return packets_received_ + replies_sent_ + dram_->stats().picks.value(); }
   std::string describe_stall() const override;
 
   void finish(Cycle end);  // attributes the cycles up to the end of the run
   const L2Stats& stats() const { return stats_; }
   IntervalSampler& sampler() { return sampler_; }
-  const DramChannel& dram() const { return dram_; }
+  const DramModel& dram() const { return *dram_; }
   uint64_t packets_received() const { return packets_received_; }
   uint64_t sectors_requested() const { return sectors_requested_; }
   uint64_t sectors_replied() const { return sectors_replied_; }
@@ -109,7 +110,7 @@ class Partition final : public Cell {
   FanIn<Packet>* requests_;
   std::vector<FanIn<Reply>*> replies_;
   L2Stats stats_;
-  DramChannel dram_;
+  const std::unique_ptr<DramModel> dram_;
   TagArray tags_;
   Mshr<Waiter> mshr_;
   LineTable seen_;

@@ -12,17 +12,19 @@ namespace glint::mem {
 enum class Traffic : uint8_t {
   ShaderGlobal, ShaderLocal, ShaderTexture, ShaderSurface, ShaderBinding,
   ShaderAtomic,  // read-modify-write at the L2
+  Instruction, Constant,  // lines for a core's caches of them: an L1 keeps none
   RtNode, RtInstance, RtTriangle, RtProcedural,
   RtTable,       // candidates that wait for their shaders
   Count
 };
 constexpr std::string_view name_of(Traffic t) {
   constexpr std::string_view kNames[] = {"shader_global",  "shader_local", "shader_texture", "shader_surface",
-                                         "shader_binding", "shader_atomic", "rt_node",       "rt_instance",
+                                         "shader_binding", "shader_atomic", "instruction", "constant", "rt_node", "rt_instance",
                                          "rt_triangle",    "rt_procedural", "rt_table"};
   return kNames[size_t(t)];
 }
 constexpr bool is_rt(Traffic t) { return t >= Traffic::RtNode; }
+constexpr bool passes_l1(Traffic t) { return t == Traffic::Instruction || t == Traffic::Constant; }
 
 inline constexpr uint32_t kSectorBytes = 32;  // the unit of transfer between all levels (Volta and later)
 

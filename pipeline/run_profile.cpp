@@ -66,7 +66,7 @@ void observe(TimingMachine& machine, const Observation& what) {
   for (uint32_t i = 0; i < machine.memory().num_partitions(); ++i) {
     mem::Partition& partition = machine.memory().partition(i);
     partition.sampler().start(what.sample, [&partition](Cycle at) -> std::vector<uint64_t> {
-      const mem::DramChannel& dram = partition.dram();
+      const mem::DramModel& dram = partition.dram();
       return {partition.stats().reads.total(), partition.stats().hits.total(), dram.stats().busy_clocks.value(), dram.clocks().clock_at(at)};
     });
   }

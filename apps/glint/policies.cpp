@@ -26,6 +26,7 @@ std::vector<PolicyInfo> all_policies() {
   std::vector<PolicyInfo> out;
   add<core::IssueScheduler>(out, "core.issue", "core/schedulers");
   add<core::OpTimes>(out, "core.op_times", "core/op_times");
+  add<mem::DramModel>(out, "memory.dram.model", "memsys/dram_models");
   add<mem::DramScheduler>(out, "memory.dram.scheduler", "memsys/dram_schedulers");
   add<rt::AnyHitMode>(out, "rt.any_hit", "rtunit/any_hit");
   add<rt::RayScheduler>(out, "rt.scheduler", "rtunit/schedulers");

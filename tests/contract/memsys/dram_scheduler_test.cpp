@@ -49,7 +49,7 @@ std::vector<uint32_t> exercise(const std::string& name, uint32_t seed) {
 }  // namespace
 
 TEST_CASE("every DRAM scheduler picks each request once, for its bank, and always makes progress") {
-  REQUIRE(Registry<DramScheduler>::names() == std::vector<std::string>{"fcfs", "frfcfs"});
+  REQUIRE(Registry<DramScheduler>::names() == std::vector<std::string>{"fcfs", "frfcfs", "write_drain"});
   for (const std::string& name : Registry<DramScheduler>::names()) {
     INFO(name);
     const std::vector<uint32_t> once = exercise(name, 11);

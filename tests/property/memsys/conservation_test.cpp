@@ -30,7 +30,10 @@ Params cramped(uint32_t variant) {
   p.dram.bus_bytes = variant % 4 == 3 ? 4 : variant % 4 == 2 ? 1 : 2;
   p.dram.dual_command_bus = variant % 2;
   p.dram.latency = variant % 2 ? 0 : 10;
-  p.dram.scheduler = PolicyChoice<DramScheduler>(variant % 3 == 2 ? "fcfs" : "frfcfs");
+  p.dram.scheduler = PolicyChoice<DramScheduler>(variant % 3 == 2 ? "fcfs" : variant % 4 == 3 ? "write_drain" : "frfcfs");
+  p.dram.refresh = variant % 3 == 0 ? "none" : variant % 3 == 1 ? "all_bank" : "per_bank";
+  p.dram.activate_clocks = 1 + variant % 2;
+  if (variant == 11) p.dram.model = PolicyChoice<DramModel>("simple");
   return p;
 }
 
@@ -113,8 +116,8 @@ Outcome simulate(uint32_t variant, Cycle window, bool step, uint32_t seed = 5) {
     CHECK(d.use.total() == partition.dram().clocks().clock_at(kEnd));
     CHECK(d.requests.value() == d.reads.value() + d.writes.value());
     CHECK(d.picks.value() == d.requests.value());
-    CHECK(d.busy_clocks.value() == d.requests.value() * partition.dram().timing().data);
-    CHECK(d.activates.value() + d.row_hits.value() == d.picks.value());
+    CHECK(d.busy_clocks.value() == d.requests.value() * partition.dram().data_clocks());
+    if (variant != 11) CHECK(d.activates.value() + d.row_hits.value() == d.picks.value() + d.reopened.value());
   }
   Outcome out{rig.answers(), {}};
   Collect collect;

@@ -14,6 +14,7 @@ namespace {
 DramParams plain() {
   DramParams p;
   p.clock_mhz = 1000.0;
+  p.refresh = "none";
   p.rcd = 15, p.rcd_write = 9, p.rp = 16, p.ras = 30, p.rc = 46, p.cl = 14, p.wl = 4, p.wr = 17, p.rtp = 5;
   p.ccd_s = 4, p.ccd_l = 6, p.rrd_s = 5, p.rrd_l = 7, p.faw = 40, p.wtr_s = 8, p.wtr_l = 10;
   return p;
@@ -22,7 +23,7 @@ DramParams plain() {
 // One channel; addresses are chosen by bank group, bank in the group and row, with the mapping turned back.
 class Rig {
  public:
-  explicit Rig(const DramParams& params) : root(nullptr, "test"), channel(params, 256, 1000.0, &root), params_(params) {
+  explicit Rig(const DramParams& params) : root(nullptr, "test"), params_(params), channel({params_, 256, 1000.0, &root}) {
     DramMap map(params.banks, params.bank_groups, params.row_bytes, 256);
     for (Address local = 0; local < Address{params.banks} * params.row_bytes * 8; local += 256) {
       const DramLocation at = map.locate(local);
@@ -50,10 +51,14 @@ class Rig {
   }
 
   stats::Group root;
-  DramChannel channel;
 
  private:
   DramParams params_;
+
+ public:
+  DramChannel channel;
+
+ private:
   std::map<std::pair<uint32_t, uint32_t>, Address> place_;
   Cycle idle_ = 0;
 };

@@ -1,4 +1,4 @@
-// DRAM commands: which one goes out at which clock, and what that forbids afterwards.
+// Policy: banks with row buffers, every command at the first clock that its timing allows; what it forbids afterwards.
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/dram_channel.h"
 
@@ -7,25 +7,25 @@
 
 namespace glint::mem {
 
-DramStats::DramStats(stats::Group* parent) : group(parent, "dram") {}
-
-DramChannel::DramChannel(const DramParams& params, uint32_t interleave, double core_mhz, stats::Group* parent)
-    : timing_(params),
-      clocks_(core_mhz, params.clock_mhz),
-      map_(params.banks, params.bank_groups, params.row_bytes, interleave),
-      dual_command_bus_(params.dual_command_bus),
-      stats_(parent),
-      scheduler_(params.scheduler.make({params.banks, params.queue})),
-      slots_(params.queue),  // a request keeps its place until its column command
-      banks_(params.banks),
-      group_gates_(params.bank_groups) {
-  for (uint32_t bank = 0; bank < params.banks; ++bank) bank_group_.push_back(uint8_t(bank % params.bank_groups));
+DramChannel::DramChannel(const Context& context)
+    : DramModel(context, DramTiming(context.params).data),
+      timing_(context.params),
+      map_(context.params.banks, context.params.bank_groups, context.params.row_bytes, context.interleave),
+      dual_command_bus_(context.params.dual_command_bus),
+      scheduler_(context.params.scheduler.make({context.params.banks, context.params.queue})),
+      slots_(context.params.queue),  // a request keeps its place until its column command
+      banks_(context.params.banks),
+      group_gates_(context.params.bank_groups),
+      group_turned_(context.params.bank_groups),
+      refresh_due_(timing_.refresh_interval) {
+  for (uint32_t bank = 0; bank < banks_.size(); ++bank) bank_group_.push_back(uint8_t(bank % group_gates_.size()));
   for (uint32_t slot = 0; slot < slots_.size(); ++slot) free_.push_back(uint32_t(slots_.size()) - 1 - slot);
 }
 
 void DramChannel::add(Cycle now, Address line, uint8_t sectors, Address local, bool write) {
   const uint32_t slot = free_.back();
   free_.pop_back();
+  ++in_flight_;
   const DramLocation at = map_.locate(local);
   const DramClock arrival = clocks_.clock_at(now) + 1;
   slots_[slot] = {{at.bank, at.row, next_age_++, write}, arrival, line, sectors};
@@ -43,12 +43,14 @@ void DramChannel::advance(Cycle now) {
 
 void DramChannel::finish(Cycle end) {
   advance(end);
+  refresh_up_to(clocks_.clock_at(end));
   account(clocks_.clock_at(end));
 }
 
 void DramChannel::step(DramClock now) {
+  const bool refreshed = refresh_up_to(now);
   account(now);
-  if (pick_all()) plan_from(now);
+  if (pick_all() || refreshed) plan_from(now);
   if (plan_.at == now) {
     const Plan plan = plan_;
     if (plan.column != kNone) issue_column(plan.column, now);
@@ -56,7 +58,8 @@ void DramChannel::step(DramClock now) {
     if (plan.column != kNone) pick_all();  // its bank is free for another request
     plan_from(now + 1);
   }
-  next_step_ = plan_.at;
+  // With nothing to do, refreshes are made up for by the next step: nobody sees them.
+  next_step_ = busy_banks_ ? std::min(plan_.at, refresh_due_) : plan_.at;
 }
 
 // Gives free banks requests; true when any got one. Only a free bank or a new request changes what pick() answers.
@@ -123,11 +126,15 @@ void DramChannel::issue_column(uint32_t index, DramClock now) {
     const DramClock data_end = now + t.wl + t.data;
     group.raise(Read, data_end + t.wtr_l);
     channel_gates_.raise(Read, data_end + t.wtr_s);
+    group_turned_[bank_group_[index]] = data_end + t.wtr_l;
+    turned_[0] = data_end + t.wtr_s;
+    turned_long_ = data_end + t.wtr_l;
     bank.gates.raise(Precharge, data_end + t.wr);
     run_timers_until(data_end + t.wtr_s);
     ++stats_.writes;
   } else {
     channel_gates_.raise(Write, now + t.rtw);
+    turned_[1] = now + t.rtw;
     bank.gates.raise(Precharge, now + t.rtp);
     run_timers_until(now + t.rtw);
     returns_.push({clocks_.cycle_after(now + t.cl + t.data), slot.line, slot.sectors, clocks_.cycle_after(now)});
@@ -141,6 +148,7 @@ void DramChannel::issue_column(uint32_t index, DramClock now) {
   stats_.queue_clocks += now - slot.arrival;
   stats_.queue_latency.add(now - slot.arrival);
   free_.push_back(bank.current);
+  --in_flight_;
   bank.current = kNone;
   busy_banks_ &= ~(uint64_t{1} << index);
 }
@@ -164,32 +172,122 @@ void DramChannel::issue_row(uint32_t index, DramClock now) {
   bank.gates.raise(Activate, now + t.rc);
   group_gates_[bank_group_[index]].raise(Activate, now + t.rrd_l);
   channel_gates_.raise(Activate, now + t.rrd_s);
+  if (t.activate > 1) {
+    channel_gates_.raise(Activate, now + t.activate);
+    channel_gates_.raise(Precharge, now + t.activate);
+    if (!dual_command_bus_) channel_gates_.raise(Read, now + t.activate), channel_gates_.raise(Write, now + t.activate);
+  }
   last_activates_[num_activates_++ % 4] = now;
   if (num_activates_ >= 4) channel_gates_.raise(Activate, last_activates_[num_activates_ % 4] + t.faw);
   run_timers_until(now + std::max({t.rc, t.ras, t.rcd}));
   ++stats_.activates;
 }
 
-// Attributes the clocks [accounted_, until), in which no command went out after the first and no bank changed hands.
+// Attributes the clocks [accounted_, until), in which no command went out after the first, no bank changed hands and no
+// refresh fell due.
 void DramChannel::account(DramClock until) {
   if (until <= accounted_) return;
   const DramClock length = until - accounted_;
   const DramClock data = std::clamp(data_until_, accounted_, until) - accounted_;
-  bool open = false;
-  for (uint64_t rest = busy_banks_; rest && !open; rest &= rest - 1)
-    open = banks_[std::countr_zero(rest)].next >= Read;
-  const DramUse waiting = open ? DramUse::ColumnWait : busy_banks_ ? DramUse::RowWait : DramUse::Idle;
   stats_.use.add(DramUse::Data, data);
-  stats_.use.add(waiting, length - data);
   stats_.clocks += length;
   if (busy_banks_) {
+    account_waiting(accounted_ + data, until);
     stats_.active_clocks += length;
     stats_.any_bank_clocks += length;
     stats_.bank_clocks += length * uint64_t(std::popcount(busy_banks_));
   } else {
+    stats_.use.add(DramUse::Idle, length - data);
     stats_.active_clocks += std::clamp(timers_until_, accounted_, until) - accounted_;
   }
   accounted_ = until;
 }
 
+// The clocks [from, until) without data, of which some bank has a request.
+void DramChannel::account_waiting(DramClock from, DramClock until) {
+  if (from == until) return;
+  DramClock turned = kNever, refreshed = kNever;
+  const bool turning = std::max(turned_[0], turned_[1]) > from || turned_long_ > from, refreshing = refreshed_until_ > from;
+  bool open = false;
+  for (uint64_t rest = busy_banks_; rest; rest &= rest - 1) {
+    const uint32_t index = uint32_t(std::countr_zero(rest));
+    if (banks_[index].next >= Read) {
+      open = true;
+      if (!turning) break;
+      turned = std::min(turned, turned_at(index));
+    } else if (!open && refreshing) {
+      refreshed = std::min(refreshed, banks_[index].refresh_until);
+    }
+  }
+  const DramClock first = open ? (turning ? turned : 0) : refreshing ? refreshed : 0;
+  const DramClock special = std::clamp(first, from, until) - from;
+  stats_.use.add(open ? DramUse::Turnaround : DramUse::Refresh, special);
+  stats_.use.add(open ? DramUse::ColumnWait : DramUse::RowWait, until - from - special);
+}
+
+// When the bus has turned for the column command of the bank's request.
+DramClock DramChannel::turned_at(uint32_t index) const {
+  if (banks_[index].next == Write) return turned_[1];
+  return std::max(turned_[0], group_turned_[bank_group_[index]]);
+}
+
+// Refreshes that have fallen due; true when there was one.
+bool DramChannel::refresh_up_to(DramClock now) {
+  if (refresh_due_ > now) return false;
+  for (; refresh_due_ <= now; refresh_due_ += timing_.refresh_interval) {
+    account(refresh_due_);
+    refresh(refresh_due_);
+  }
+  return true;
+}
+
+void DramChannel::refresh(DramClock due) {
+  ++stats_.refreshes;
+  if (timing_.refresh_per_bank) {
+    Bank& bank = banks_[refresh_next_];
+    refresh_next_ = refresh_next_ + 1 == banks_.size() ? 0 : refresh_next_ + 1;
+    refresh_bank(bank, closed_at(bank, due) + timing_.refresh_time);
+    return;
+  }
+  // One command closes all rows, so the last bank that may be closed holds up the others.
+  DramClock precharge = 0, start = due;
+  for (const Bank& bank : banks_) {
+    start = std::max(start, bank.gates.at[Activate]);
+    if (bank.row != kClosed) precharge = std::max({precharge, due, bank.gates.at[Precharge]});
+  }
+  if (precharge) start = std::max(start, precharge + timing_.rp);
+  for (Bank& bank : banks_) refresh_bank(bank, start + timing_.refresh_time);
+}
+
+// When the bank's row is closed and it can be refreshed, from `due` on: it then could be opened as well.
+DramClock DramChannel::closed_at(const Bank& bank, DramClock due) const {
+  const DramClock closed = bank.row == kClosed ? due : std::max(due, bank.gates.at[Precharge]) + timing_.rp;
+  return std::max(closed, bank.gates.at[Activate]);
+}
+
+void DramChannel::refresh_bank(Bank& bank, DramClock until) {
+  bank.row = kClosed;
+  bank.gates.raise(Activate, until);
+  bank.refresh_until = until;
+  refreshed_until_ = std::max(refreshed_until_, until);
+  if (bank.current == kNone) return;
+  if (bank.next >= Read) ++stats_.reopened;
+  bank.next = Activate;
+}
+
+namespace {
+
+class Banked final : public DramChannel {
+ public:
+  static constexpr const char* kName = "banked";
+  static constexpr const char* kDoc = "Banks, rows, command timing and refresh; `memory.dram.scheduler` orders the requests.";
+  struct Params {
+    static constexpr auto params() { return std::tuple{}; }
+  };
+  Banked(const Params&, const Context& context) : DramChannel(context) {}
+};
+
+const Register<DramModel, Banked> registered;
+
+}  // namespace
 }  // namespace glint::mem

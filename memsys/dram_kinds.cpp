@@ -1,0 +1,115 @@
+// Named kinds of DRAM: what their data sheets say of one channel.
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+
+#include "memsys/dram_params.h"
+
+namespace glint::mem {
+namespace {
+
+struct Kind {
+  std::string_view name, doc;
+  void (*apply)(DramParams&);
+};
+
+void set_times(DramParams& p, const std::array<double, 16>& t) {
+  double* const fields[] = {&p.rcd,   &p.rcd_write, &p.rp,    &p.ras,   &p.rc,    &p.cl,  &p.wl,    &p.wr,
+                            &p.rtp,   &p.ccd_s,     &p.ccd_l, &p.rrd_s, &p.rrd_l, &p.faw, &p.wtr_s, &p.wtr_l};
+  static_assert(std::size(fields) == std::tuple_size_v<std::array<double, 16>>);
+  for (size_t i = 0; i < t.size(); ++i) *fields[i] = t[i];
+}
+void set_refresh(DramParams& p, double refi, double rfc, double rfc_bank) {
+  p.refi = refi, p.rfc = rfc, p.rfc_bank = rfc_bank;
+}
+void set_bus(DramParams& p, double clock_mhz, uint32_t transfers_per_clock, uint32_t burst, uint32_t bus_bytes) {
+  p.clock_mhz = clock_mhz, p.transfers_per_clock = transfers_per_clock, p.burst = burst, p.bus_bytes = bus_bytes;
+}
+void set_array(DramParams& p, uint32_t row_bytes, bool dual_command_bus, uint32_t activate_clocks) {
+  p.bank_groups = 4, p.banks = 16, p.row_bytes = row_bytes, p.bus_turn = 2;
+  p.dual_command_bus = dual_command_bus, p.activate_clocks = activate_clocks;
+}
+
+// All from Ramulator 2.1's presets, clocks turned into nanoseconds. Order of the times:
+// rcd, rcd_write, rp, ras, rc, cl, wl, wr, rtp, ccd_s, ccd_l, rrd_s, rrd_l, faw, wtr_s, wtr_l.
+
+// GDDR6-14000 at 1.35 V: tCK 0.57 ns, refresh every 3333, 211 or 106 clocks.
+void gddr6_14000(DramParams& p) {
+  set_bus(p, 1750.0, 8, 16, 2);
+  set_array(p, 2048, false, 1);
+  set_times(p, {15.4, 9.2, 15.4, 30.2, 45.0, 13.7, 3.4, 15.4, 2.28, 1.14, 2.28, 4.56, 4.56, 16.5, 5.13, 6.27});
+  set_refresh(p, 1900.0, 120.3, 60.4);
+}
+// Half the transfers a clock, as Vulkan-Sim's mobile part has 7 GT/s on a 1750 MHz command clock.
+void gddr6_7000(DramParams& p) {
+  gddr6_14000(p);
+  p.transfers_per_clock = 4;
+}
+void gddr6_14000_1v25(DramParams& p) {
+  gddr6_14000(p);
+  set_times(p, {17.1, 11.4, 17.1, 34.2, 51.3, 13.7, 3.4, 15.4, 2.28, 1.14, 2.28, 6.27, 6.27, 24.5, 5.13, 6.27});
+}
+// LPDDR5-6400: tCK 1.25 ns, 16-bit channel; an activate is two commands (ACT-1, ACT-2); refresh of 16 Gb dies every
+// 3125, 224 or 112 clocks.
+void lpddr5_6400(DramParams& p) {
+  set_bus(p, 800.0, 8, 16, 2);
+  set_array(p, 2048, false, 2);
+  set_times(p, {18.75, 18.75, 18.75, 42.5, 61.25, 21.25, 11.25, 35.0, 10.0, 2.5, 5.0, 5.0, 5.0, 20.0, 6.25, 12.5});
+  set_refresh(p, 3906.25, 280.0, 140.0);
+}
+// HBM3-6400, one pseudo-channel: tCK 0.625 ns, an activate takes 1.5 clocks of the row command bus; refresh every 6240,
+// 416 (8 Gb a channel) or 320 clocks.
+void hbm3_6400(DramParams& p) {
+  set_bus(p, 1600.0, 4, 8, 4);
+  set_array(p, 1024, true, 2);
+  set_times(p, {19.375, 9.375, 16.25, 28.125, 45.0, 12.5, 6.25, 20.625, 5.625, 1.25, 2.5, 2.5, 3.125, 15.0, 4.375, 6.25});
+  set_refresh(p, 3900.0, 260.0, 200.0);
+}
+
+constexpr Kind kKinds[] = {
+    {"gddr6_7000", "GDDR6 at 7 GT/s with the times of GDDR6-14000 at 1.35 V: 14 GB/s a 16-bit channel.", gddr6_7000},
+    {"gddr6_14000", "GDDR6-14000 at 1.35 V: 28 GB/s a 16-bit channel.", gddr6_14000},
+    {"gddr6_14000_1v25", "GDDR6-14000 at 1.25 V: the same with slower rows.", gddr6_14000_1v25},
+    {"lpddr5_6400", "LPDDR5-6400: 12.8 GB/s a 16-bit channel.", lpddr5_6400},
+    {"hbm3_6400", "HBM3-6400: 25.6 GB/s a 32-bit pseudo-channel.", hbm3_6400}};
+
+const Kind* find(std::string_view name) {
+  const auto kind = std::find_if(std::begin(kKinds), std::end(kKinds), [&](const Kind& k) { return k.name == name; });
+  return kind == std::end(kKinds) ? nullptr : &*kind;
+}
+
+}  // namespace
+
+std::vector<std::string> dram_kinds() {
+  std::vector<std::string> out;
+  for (const Kind& kind : kKinds) out.emplace_back(kind.name);
+  return out;
+}
+
+std::string_view dram_kind_doc(std::string_view name) {
+  const Kind* kind = find(name);
+  return kind ? kind->doc : std::string_view();
+}
+
+void apply_dram_kind(DramParams& params, std::string_view name) {
+  const Kind* kind = find(name);
+  GLINT_CHECK(kind, "no kind of DRAM is named '{}'", name);
+  kind->apply(params);
+  params.kind = name;
+}
+
+std::vector<std::string> refresh_modes() { return {"none", "all_bank", "per_bank"}; }
+
+void read_param(ConfigTable& table, DramParams& out, const DramKindParam& param) {
+  const bool given = table.has(param.name);
+  const std::string kind = table.take_name(param.name, out.kind, dram_kinds());
+  if (given && find(kind)) apply_dram_kind(out, kind);
+}
+
+void describe_param(std::vector<ParamInfo>& out, const std::string& prefix, const DramParams& params, const DramKindParam& param) {
+  std::string range;
+  for (const std::string& name : dram_kinds()) range += (range.empty() ? "" : ", ") + name;
+  out.push_back({prefix + std::string(param.name), "", std::string(param.doc), config_text(params.kind), range});
+}
+
+}  // namespace glint::mem

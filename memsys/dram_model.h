@@ -1,0 +1,68 @@
+// Policy: how long a memory channel takes for the requests of its L2 slices.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+
+#include "base/stats.h"
+#include "base/types.h"
+#include "memsys/clock_domains.h"
+#include "memsys/dram_stats.h"
+#include "memsys/ring.h"
+
+namespace glint::mem {
+
+struct DramParams;
+
+// Read data that has left the data bus.
+struct DramReturn {
+  Cycle ready = 0;  // core cycle at which its last transfer is over
+  Address line = 0;
+  uint8_t sectors = 0;
+  Cycle command = 0;  // core cycle of its column command
+};
+
+// Contract (tests/contract/memsys/dram_model_test.cpp):
+//  - every added read comes back once in returns(), in order of `ready`, which lies after the cycle it was added in;
+//    writes give nothing back;
+//  - a place is taken from add() on until next_command() at the latest frees it: full() ends without further requests;
+//  - nothing depends on how often advance() is called, provided it is at each next_command();
+//  - every clock up to finish() is in `use` once, and data moves no faster than the bus;
+//  - no heap traffic once warm.
+class DramModel {
+ public:
+  struct Context {
+    const DramParams& params;
+    uint32_t interleave = 256;
+    double core_mhz = 1000;
+    stats::Group* parent = nullptr;
+  };
+  virtual ~DramModel() = default;
+
+  bool full() const { return in_flight_ == capacity_; }
+  // Needs !full() and advance(now) before. The model sees the request at the next command clock edge.
+  virtual void add(Cycle now, Address line, uint8_t sectors, Address local, bool write) = 0;
+  // All that happens in the clocks up to core cycle `now`.
+  virtual void advance(Cycle now) = 0;
+  virtual void finish(Cycle end) = 0;  // closes the accounts at the end of a run
+  Cycle next_command() const { return next_step_ == kNever ? kNever : clocks_.cycle_after(next_step_); }
+  Ring<DramReturn>& returns() { return returns_; }  // in order of `ready`, which may lie ahead
+  const Ring<DramReturn>& returns() const { return returns_; }
+  size_t in_flight() const { return in_flight_; }
+  bool finished() const { return in_flight_ == 0 && returns_.empty(); }
+  const DramStats& stats() const { return stats_; }
+  const ClockDomains& clocks() const { return clocks_; }
+  DramClock data_clocks() const { return data_clocks_; }  // of the data bus, of one request
+
+ protected:
+  DramModel(const Context& context, DramClock data_clocks);  // in dram_params.h
+
+  const ClockDomains clocks_;
+  const DramClock data_clocks_;
+  DramStats stats_;
+  Ring<DramReturn> returns_;
+  DramClock next_step_ = kNever;
+  size_t in_flight_ = 0;  // requests without their column command
+  const size_t capacity_;
+};
+
+}  // namespace glint::mem

@@ -1,0 +1,101 @@
+// Policy: one latency and one bandwidth, in order of arrival: no banks, rows, turnarounds or refresh.
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "memsys/dram_model.h"
+#include "memsys/dram_timing.h"
+
+namespace glint::mem {
+namespace {
+
+// A request is on the data bus when those before it have left, data_clocks / efficiency after them; a read's data has
+// come `latency` after that begins and its own transfer.
+// Model: a place in the queue is free when its transfer begins, as with banks when the column command goes out.
+class Simple final : public DramModel {
+ public:
+  static constexpr const char* kName = "simple";
+  static constexpr const char* kDoc = "A fixed latency and a share of the peak bandwidth, first come, first served: for fast sweeps.";
+  struct Params {
+    double latency = 29.1;    // tRCD + CL of GDDR6-14000: a closed row
+    double efficiency = 0.9;  // Choice: what refresh and turnarounds leave of streams, about
+    static constexpr auto params() {
+      return std::tuple{param(&Params::latency, "latency", "ns", "From the beginning of a read's service to its first data.", 0.0, 1e6),
+                        param(&Params::efficiency, "efficiency", "ratio", "Share of the data bus's peak bandwidth that can be had.", 0.01, 1.0)};
+    }
+  };
+
+  Simple(const Params& params, const Context& context)
+      : DramModel(context, DramTiming(context.params).data),
+        latency_(DramClock(std::ceil(params.latency * context.params.clock_mhz / 1000.0 - 1e-6))),
+        // Parts of a clock: 2^10 of them, so that any efficiency is met in the long run.
+        spacing_(std::max<DramClock>(data_clocks_ << kFraction, DramClock(std::ceil(double(data_clocks_ << kFraction) / params.efficiency)))),
+        waiting_(context.params.queue) {}
+
+  void add(Cycle now, Address line, uint8_t sectors, Address, bool write) override {
+    const DramClock arrival = clocks_.clock_at(now) + 1;
+    const DramClock start = std::max(arrival << kFraction, free_at_);
+    free_at_ = start + spacing_;
+    waiting_.push({(start + kRound) >> kFraction, arrival, line, sectors, write});
+    next_step_ = waiting_.front().start;
+    ++in_flight_;
+    ++stats_.requests;
+  }
+  void advance(Cycle now) override {
+    const DramClock last = clocks_.clock_at(now);
+    for (; !waiting_.empty() && waiting_.front().start <= last; waiting_.pop()) transfer(waiting_.front());
+    next_step_ = waiting_.empty() ? kNever : waiting_.front().start;
+  }
+  void finish(Cycle end) override {
+    advance(end);
+    account(clocks_.clock_at(end), false);
+  }
+
+ private:
+  static constexpr uint32_t kFraction = 10;
+  static constexpr DramClock kRound = (1u << kFraction) - 1;
+  struct Waiting {
+    DramClock start = 0, arrival = 0;
+    Address line = 0;
+    uint8_t sectors = 0;
+    bool write = false;
+  };
+
+  void transfer(const Waiting& request) {
+    account(request.arrival, false);
+    account(request.start, true);
+    data_until_ = request.start + data_clocks_;
+    stats_.busy_clocks += data_clocks_;
+    stats_.queue_clocks += request.start - request.arrival;
+    stats_.queue_latency.add(request.start - request.arrival);
+    ++stats_.picks;
+    --in_flight_;
+    if (request.write) {
+      ++stats_.writes;
+      return;
+    }
+    ++stats_.reads;
+    returns_.push({clocks_.cycle_after(request.start + latency_ + data_clocks_), request.line, request.sectors, clocks_.cycle_after(request.start)});
+  }
+  // Attributes the clocks up to `until`; after the data, requests wait or nobody does.
+  void account(DramClock until, bool waiting) {
+    if (until <= accounted_) return;
+    const DramClock data = std::clamp(data_until_, accounted_, until) - accounted_;
+    const DramClock length = until - accounted_;
+    stats_.use.add(DramUse::Data, data);
+    stats_.use.add(waiting ? DramUse::ColumnWait : DramUse::Idle, length - data);
+    stats_.clocks += length;
+    stats_.active_clocks += waiting ? length : data;
+    accounted_ = until;
+  }
+
+  const DramClock latency_, spacing_;
+  Ring<Waiting> waiting_;
+  DramClock free_at_ = 0;  // in parts of a clock
+  DramClock accounted_ = 0, data_until_ = 0;
+};
+
+const Register<DramModel, Simple> registered;
+
+}  // namespace
+}  // namespace glint::mem
