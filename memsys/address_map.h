@@ -1,4 +1,4 @@
-// Where a physical address lives: its partition, and its bank, row and column there.
+// Where a physical address lives: its L2 slice and partition, and its bank, row and column there.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -7,24 +7,30 @@
 
 namespace glint::mem {
 
-// Partitions. Memory is cut into chunks of `interleave` bytes and the chunks into groups of one chunk a partition.
-// Inside a group chunk r goes to partition (r + hash(group)) mod N: each group fills every partition once, whatever N
-// is, so partitions stay equally full and their local addresses dense; and the hash turns each group differently, so
-// that strides which are multiples of N chunks still spread. (IPOLY hashes need N = 16, 32 or 64.)
+// L2 slices, those of one memory partition next to each other. Memory is cut into chunks of `interleave` bytes and the
+// chunks into groups of one chunk a slice. Inside a group chunk r goes to slice (r + hash(group)) mod N: each group fills
+// every slice once, whatever N is, so slices stay equally full and their local addresses dense; and the hash turns each
+// group differently, so that strides which are multiples of N chunks still spread. (IPOLY hashes need N = 16, 32 or 64.)
+// Without a hash, chunk r goes to slice r, as GPGPU-Sim does with memory partition index 0.
 class PartitionMap {
  public:
-  PartitionMap(uint32_t partitions, uint32_t interleave) : partitions_(partitions), interleave_(interleave) {}
+  PartitionMap(uint32_t partitions, uint32_t slices, uint32_t interleave, bool mixed = true)
+      : slices_(partitions * slices), slices_of_one_(slices), interleave_(interleave), mixed_(mixed) {}
 
-  uint32_t partition(Address address) const {
+  uint32_t slice(Address address) const {
     const uint64_t chunk = address / interleave_;
-    const uint64_t group = chunk / partitions_;
-    return uint32_t((chunk % partitions_ + (hash(group) >> 40)) % partitions_);
+    if (!mixed_) return uint32_t(chunk % slices_);
+    const uint64_t group = chunk / slices_;
+    return uint32_t((chunk % slices_ + (hash(group) >> 40)) % slices_);
   }
-  // Dense inside the partition: the group number takes the place of the chunk number.
-  Address local(Address address) const {
-    return address / interleave_ / partitions_ * interleave_ + address % interleave_;
+  uint32_t partition_of(uint32_t slice) const { return slices_of_one_ == 1 ? slice : slice / slices_of_one_; }
+  uint32_t partition(Address address) const { return partition_of(slice(address)); }
+  // Dense inside the partition: group number and slice take the place of the chunk number.
+  Address local(Address address, uint32_t slice) const {
+    const uint64_t chunk = address / interleave_ / slices_ * slices_of_one_ + slice % slices_of_one_;
+    return chunk * interleave_ + address % interleave_;
   }
-  uint32_t partitions() const { return partitions_; }
+  uint32_t slices() const { return slices_; }
 
  private:
   // The finaliser of MurmurHash3 (Appleby): every input bit reaches every output bit.
@@ -33,7 +39,8 @@ class PartitionMap {
     x = (x ^ (x >> 33)) * 0xc4ce'b9fe'1a85'ec53ull;
     return x ^ (x >> 33);
   }
-  uint32_t partitions_, interleave_;
+  uint32_t slices_, slices_of_one_, interleave_;
+  bool mixed_;
 };
 
 struct DramLocation {

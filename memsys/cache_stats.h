@@ -1,6 +1,8 @@
 // What a cache counts, by traffic class: the same words for L1 and L2.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <string>
+
 #include "base/stats.h"
 #include "memsys/line_table.h"
 #include "memsys/request.h"
@@ -8,15 +10,15 @@
 namespace glint::mem {
 
 // Why a request was turned away, or had to wait at the head of its queue.
-enum class Refusal : uint8_t { Port, Bank, MshrFull, MergeLimit, QueueFull, Count };
+enum class Refusal : uint8_t { Port, Bank, MshrFull, MergeLimit, QueueFull, SetHeld, Count };
 constexpr std::string_view name_of(Refusal reason) {
-  constexpr std::string_view kNames[] = {"port", "bank", "mshr_full", "merge_limit", "queue_full"};
+  constexpr std::string_view kNames[] = {"port", "bank", "mshr_full", "merge_limit", "queue_full", "set_held"};
   return kNames[size_t(reason)];
 }
 
 // reads = hits + pending_hits + misses; write hits and misses likewise.
 struct CacheStats {
-  CacheStats(stats::Group* parent, const char* name) : group(parent, name) {}
+  CacheStats(stats::Group* parent, const std::string& name) : group(parent, name) {}
   stats::Group group;
   stats::Breakdown<Traffic> reads{&group, "reads", "request", "Reads taken, by traffic class."};
   stats::Breakdown<Traffic> hits{&group, "hits", "request", "Reads that found all their sectors present."};

@@ -14,14 +14,14 @@ uint32_t num_ways(uint64_t size, uint32_t ways, uint32_t line) { return ways ? w
 
 }  // namespace
 
-L1Cache::L1Cache(const Params& params, uint16_t core, const PartitionMap& map, std::vector<FanIn<Packet>*> requests,
-                 FanIn<Reply>* replies, stats::Group* parent)
+L1Cache::L1Cache(const Params& params, uint16_t core, const PartitionMap& map, L1Links links, stats::Group* parent)
     : params_(params.l1),
       line_bytes_(params.line),
       core_(core),
+      allocate_on_miss_(params.l1.allocate == "on_miss"),
       map_(map),
-      requests_(std::move(requests)),
-      replies_(replies),
+      links_(std::move(links)),
+      credits_left_(links_.requests.size(), params.noc.credits),
       stats_(parent),
       tags_(uint32_t(params_.size / line_bytes_) / num_ways(params_.size, params_.ways, line_bytes_),
             num_ways(params_.size, params_.ways, line_bytes_), line_bytes_),
@@ -30,8 +30,7 @@ L1Cache::L1Cache(const Params& params, uint16_t core, const PartitionMap& map, s
       miss_queue_(params_.miss_queue),
       request_port_(params.noc.core_request_bytes),
       reply_port_(params.noc.core_reply_bytes),
-      partition_reply_port_(params.noc.partition_reply_bytes),
-      request_latency_(params.noc.request_latency) {}
+      partition_reply_port_(params.noc.partition_reply_bytes) {}
 
 bool L1Cache::refuse(Refusal reason) {
   stats_.refusals.add(reason);
@@ -43,12 +42,13 @@ bool L1Cache::access(Cycle now, Client client, const Request& request) {
   if (passes_l1(request.traffic) && !request.write) return read(now, client, request);
   if (now != port_cycle_) port_cycle_ = now, accesses_ = 0, busy_banks_ = 0;
   if (accesses_ == params_.ports) return refuse(Refusal::Port);
-  const uint64_t bank = uint64_t{1} << (params_.banks == 1 ? 0 : request.line / line_bytes_ % params_.banks);
+  const uint64_t bank = bank_of(request.line);
   if (busy_banks_ & bank) return refuse(Refusal::Bank);
-  const bool local = params_.local_write_back && request.traffic == Traffic::ShaderLocal;
+  if (filled_cycle_ == now && (filled_bank_ & bank) && params_.fill_takes_access) return refuse(Refusal::Bank);
+  const bool keeps = is_local(request.traffic) ? params_.local_write_back : params_.global_write_back;
   const bool taken = request.traffic == Traffic::ShaderAtomic ? pass_atomic(now, client, request)
                      : !request.write                         ? read(now, client, request)
-                     : local                                  ? write_local(now, request)
+                     : keeps                                  ? write_back(now, request)
                                                               : write_through(now, request);
   if (!taken) return false;
   ++accesses_;
@@ -68,6 +68,12 @@ bool L1Cache::read(Cycle now, Client client, const Request& request) {
     if (entry != kNone && mshr_.merge_limit(entry)) return refuse(Refusal::MergeLimit);
     fetched = entry == kNone ? missing : uint8_t(missing & ~mshr_.pending(entry));
     if (fetched && queue_full()) return refuse(Refusal::QueueFull);
+    if (allocate_on_miss_ && !passes_l1(request.traffic)) {
+      if (slot == kNone && !tags_.has_victim(request.line)) return refuse(Refusal::SetHeld);
+      const uint32_t packets = (fetched ? 1 : 0) + (slot == kNone && tags_.victim(request.line).dirty ? 1 : 0);
+      if (!queue_room(packets)) return refuse(Refusal::QueueFull);
+      hold(now, request.line, slot);
+    }
     if (entry == kNone) {
       entry = mshr_.allocate(request.line);
       passing_[entry] = true;
@@ -76,7 +82,7 @@ bool L1Cache::read(Cycle now, Client client, const Request& request) {
     mshr_.expect(entry, fetched);
     mshr_.add(entry, {now, order_, request.token, missing, client});
     if (fetched) {
-      queue_packet(now + params_.miss_latency, request.line, fetched, false, request.traffic);
+      queue_packet(now + params_.miss_latency, {.line = request.line, .sectors = fetched, .traffic = request.traffic});
       sectors_requested_ += num_sectors(fetched);
     }
   }
@@ -87,16 +93,30 @@ bool L1Cache::read(Cycle now, Client client, const Request& request) {
   return true;
 }
 
-// Write-through without allocation: sectors that are present stay valid, with the new bytes.
+// Keeps a line for data on its way; evicts another for it when it has none.
+void L1Cache::hold(Cycle now, Address line, uint32_t slot) {
+  if (slot == kNone) evict(now, tags_.victim(line));
+  (slot == kNone ? tags_.insert(line) : tags_.line(slot)).held = true;
+}
+
+// Write-through: sectors that are present stay valid, with the new bytes. A line that is absent is allocated when asked
+// for, with the sectors that the write covers.
 bool L1Cache::write_through(Cycle now, const Request& request) {
-  if (queue_full()) return refuse(Refusal::QueueFull);
   const uint32_t slot = tags_.find(request.line);
+  const uint8_t covered = params_.write_allocate ? covered_sectors(request) : uint8_t{0};
+  const bool allocates = slot == kNone && covered && tags_.has_victim(request.line);
+  const bool evicts_dirty = allocates && tags_.victim(request.line).dirty;
+  if (!queue_room(evicts_dirty ? 2 : 1)) return refuse(Refusal::QueueFull);
+  if (allocates) evict(now, tags_.victim(request.line));
   if (slot != kNone) {
     tags_.touch(slot);
     stats_.write_hits.add(request.traffic);
   }
+  if (allocates) tags_.insert(request.line).valid = covered;
+  else if (slot != kNone && covered) tags_.line(slot).valid |= covered;
   stats_.writes.add(request.traffic);
-  queue_packet(now + params_.miss_latency, request.line, request.sectors, true, request.traffic);
+  queue_packet(now + params_.miss_latency,
+               {.line = request.line, .sectors = request.sectors, .write = true, .traffic = request.traffic, .words = request.words});
   return true;
 }
 
@@ -105,7 +125,8 @@ bool L1Cache::pass_atomic(Cycle now, Client client, const Request& request) {
   if (queue_full()) return refuse(Refusal::QueueFull);
   const uint32_t slot = tags_.find(request.line);
   if (slot != kNone) tags_.drop(slot, request.sectors);
-  queue_packet(now + params_.miss_latency, request.line, request.sectors, request.write, request.traffic, request.token, client);
+  queue_packet(now + params_.miss_latency, {.line = request.line, .sectors = request.sectors, .write = request.write,
+                                            .traffic = request.traffic, .token = request.token, .client = client, .order = order_});
   if (request.write) {
     stats_.writes.add(request.traffic);
     return true;
@@ -120,9 +141,10 @@ bool L1Cache::pass_atomic(Cycle now, Client client, const Request& request) {
 }
 
 // Write-back with write-validate: whole sectors are written, so nothing needs to be fetched.
-bool L1Cache::write_local(Cycle now, const Request& request) {
+bool L1Cache::write_back(Cycle now, const Request& request) {
   const uint32_t slot = tags_.find(request.line);
   if (slot == kNone) {
+    if (!tags_.has_victim(request.line)) return refuse(Refusal::SetHeld);
     const TagArray::Line& victim = tags_.victim(request.line);
     if (victim.dirty && queue_full()) return refuse(Refusal::QueueFull);
     evict(now, victim);
@@ -138,18 +160,19 @@ bool L1Cache::write_local(Cycle now, const Request& request) {
   return true;
 }
 
-void L1Cache::queue_packet(Cycle ready, Address line, uint8_t sectors, bool write, Traffic traffic, Token token,
-                           Client client) {
+void L1Cache::queue_packet(Cycle ready, const Packet& packet) {
   // A write-back of a fill is ready at once and may not overtake; the queue is in order, so it waits for those before it.
-  miss_queue_.push({ready, {line, core_, sectors, write, traffic, token, client, order_}});
+  miss_queue_.push({ready, map_.slice(packet.line), packet});
+  miss_queue_.back().packet.core = core_;
 }
 
 void L1Cache::evict(Cycle now, const TagArray::Line& victim) {
-  if (!victim.valid) return;
+  if (!victim.used()) return;
   ++stats_.evictions;
   if (!victim.dirty) return;
   ++stats_.write_backs;
-  queue_packet(now, victim.address, victim.dirty, true, Traffic::ShaderLocal);
+  const Traffic traffic = params_.global_write_back ? Traffic::ShaderGlobal : Traffic::ShaderLocal;
+  queue_packet(now, {.line = victim.address, .sectors = victim.dirty, .write = true, .traffic = traffic});
 }
 
 std::optional<Token> L1Cache::pop(Cycle now, Client client) {
@@ -170,23 +193,32 @@ std::optional<Token> L1Cache::pop(Cycle now, Client client) {
 }
 
 Cycle L1Cache::next_departure() const {
-  return miss_queue_.empty() ? kNever : std::max(miss_queue_.front().ready, request_port_.free_at());
+  if (miss_queue_.empty() || !has_credit(miss_queue_.front().slice)) return kNever;
+  return std::max({miss_queue_.front().ready, request_port_.free_at(), last_credit_});
 }
 
 Cycle L1Cache::next_fill() const {
-  if (replies_->arrival() == kNever) return kNever;
-  const uint32_t bytes = bytes_of(replies_->front());
-  return std::max(reply_port_.received_at(replies_->arrival(), partition_reply_port_.cycles(bytes), bytes), fill_not_before_);
+  if (fill_blocked_ || links_.replies->arrival() == kNever) return kNever;
+  const uint32_t bytes = bytes_of(links_.replies->front());
+  return std::max(reply_port_.received_at(links_.replies->arrival(), partition_reply_port_.cycles(bytes), bytes), fill_not_before_);
+}
+
+void L1Cache::take_credits(Cycle now) {
+  for (; next_credit() <= now; links_.credits->pop()) {
+    last_credit_ = next_credit();
+    ++credits_left_[links_.credits->front().slice];
+  }
 }
 
 void L1Cache::tick(Cycle now) {
+  take_credits(now);
   for (;;) {
     const Cycle departure = next_departure(), arrival = next_fill();
     if (std::min(departure, arrival) > now) return;
     if (departure <= arrival) {  // departures first: a place in the queue freed this cycle can take a write-back
       send_front(departure);
     } else if (!fill(arrival)) {
-      fill_not_before_ = next_departure();
+      fill_blocked_ = true;
     }
   }
 }
@@ -197,24 +229,28 @@ void L1Cache::send_front(Cycle now) {
   stats_.request_wait += now - out.ready;
   const uint32_t bytes = bytes_of(out.packet);
   const Cycle tail = request_port_.leave(now, bytes);
-  requests_[map_.partition(out.packet.line)]->send(core_, tail + request_latency_, out.packet);
+  links_.requests[out.slice]->send(core_, tail + links_.request_latency[out.slice], out.packet);
+  if (links_.credits) --credits_left_[out.slice];
   stats_.request_bytes += bytes;
   ++packets_sent_;
   miss_queue_.pop();
+  if (fill_blocked_) fill_blocked_ = false, fill_not_before_ = now;
 }
 
 // Takes the oldest reply; false when it needs a place in the cache and its dirty victim finds none in the miss queue.
 bool L1Cache::fill(Cycle now) {
-  const Reply reply = replies_->front();
-  if (!reply.is_atomic && !passing_[mshr_.find(reply.line)] && !place(now, reply)) return false;
+  const Reply reply = links_.replies->front();
+  const bool is_kept = !reply.is_atomic && !passing_[mshr_.find(reply.line)];
+  if (is_kept && !place(now, reply)) return false;
   const uint32_t bytes = bytes_of(reply);
   ++stats_.fills;
   stats_.reply_bytes += bytes;
-  stats_.reply_wait += now - replies_->arrival();
+  stats_.reply_wait += now - links_.replies->arrival();
   sectors_received_ += num_sectors(reply.sectors);
-  reply_port_.occupy_until(reply_port_.received_at(replies_->arrival(), partition_reply_port_.cycles(bytes), bytes));
-  replies_->pop();
+  reply_port_.occupy_until(reply_port_.received_at(links_.replies->arrival(), partition_reply_port_.cycles(bytes), bytes));
+  links_.replies->pop();
   fill_not_before_ = now + 1;
+  if (is_kept) filled_cycle_ = now, filled_bank_ = bank_of(reply.line);
   if (reply.is_atomic)
     answers_[size_t(reply.client)].fills.push({now, reply.order, reply.token});
   else
@@ -225,12 +261,14 @@ bool L1Cache::fill(Cycle now) {
 bool L1Cache::place(Cycle now, const Reply& reply) {
   const uint32_t slot = tags_.find(reply.line);
   if (slot == kNone) {
+    if (!tags_.has_victim(reply.line)) return true;  // nothing was held for it, and all else is
     const TagArray::Line& victim = tags_.victim(reply.line);
     if (victim.dirty && queue_full()) return false;
     evict(now, victim);
   }
   TagArray::Line& line = slot == kNone ? tags_.insert(reply.line) : tags_.line(slot);
   line.valid |= reply.sectors;
+  line.held = allocate_on_miss_ && (mshr_.pending(mshr_.find(reply.line)) & ~reply.sectors);
   return true;
 }
 
@@ -255,7 +293,7 @@ void L1Cache::count_miss(Cycle accepted, Cycle now, const Stamps& stamps) {
 }
 
 Cycle L1Cache::next_event(Cycle now) const {
-  Cycle next = std::min(next_departure(), next_fill());
+  Cycle next = std::min({next_departure(), next_fill(), next_credit()});
   for (const Answers& a : answers_) {
     if (!a.hits.empty()) next = std::min(next, a.hits.front().ready);
     if (!a.fills.empty()) next = std::min(next, a.fills.front().ready);
@@ -271,7 +309,7 @@ std::string L1Cache::describe() const {
   if (!miss_queue_.empty()) {
     const Packet& first = miss_queue_.front().packet;
     out += fmt::format("  L1: {} packets wait to leave, the first {} line {:#x} for partition {}\n", miss_queue_.size(), first.write ? "writes" : "reads",
-                       first.line, map_.partition(first.line));
+                       first.line, map_.partition_of(miss_queue_.front().slice));
   }
   return out;
 }

@@ -34,8 +34,17 @@ struct L1Stats : CacheStats {
   stats::Breakdown<Stage> miss_stages{&group, "miss_stages", "cycle", "The sum of their latencies, by stage."};
 };
 
-// An accepted miss or write becomes one packet in the bounded miss queue and leaves over the core's request port. Lines
-// are allocated when data arrives (streaming): only MSHRs and the miss queue limit the misses in flight.
+// The network as one L1 sees it. All outlive the cache.
+struct L1Links {
+  std::vector<FanIn<Packet>*> requests{};   // inbound sides, by slice
+  std::vector<Cycle> request_latency{};     // by slice
+  FanIn<Reply>* replies = nullptr;          // this core's own
+  FanIn<Credit>* credits = nullptr;         // this core's own; null: packets need none
+};
+
+// An accepted miss or write becomes one packet in the bounded miss queue and leaves over the core's request port, when
+// its slice has a place for it. Lines are allocated when data arrives (streaming), so that only MSHRs and the miss queue
+// limit the misses in flight; or (`allocate`) when the miss is accepted, and held until then.
 // Lines of instructions and constants pass through MSHRs and miss queue for caches of the core that keep them.
 // Atomics go past the cache to the L2, which executes them; what the cache holds of their sectors is dropped.
 // Model: a write covers whole sectors; a write to a line on its way does not disturb it.
@@ -43,9 +52,7 @@ struct L1Stats : CacheStats {
 // Model: local memory that is dirty at the end of a run is not written back: its thread is gone.
 class L1Cache final : public L1Port {
  public:
-  // requests[p] is partition p's inbound side, `replies` this core's own. Both outlive the cache.
-  L1Cache(const Params& params, uint16_t core, const PartitionMap& map, std::vector<FanIn<Packet>*> requests,
-          FanIn<Reply>* replies, stats::Group* parent);
+  L1Cache(const Params& params, uint16_t core, const PartitionMap& map, L1Links links, stats::Group* parent);
 
   bool access(Cycle now, Client client, const Request& request) override;
   std::optional<Token> pop(Cycle now, Client client) override;
@@ -79,6 +86,7 @@ class L1Cache final : public L1Port {
   };
   struct Outgoing {
     Cycle ready = 0;
+    uint32_t slice = 0;
     Packet packet;
   };
   struct Answers {  // of one client; each ring is in order of readiness
@@ -88,16 +96,21 @@ class L1Cache final : public L1Port {
   bool refuse(Refusal reason);
   bool read(Cycle now, Client client, const Request& request);
   bool write_through(Cycle now, const Request& request);
-  bool write_local(Cycle now, const Request& request);
+  bool write_back(Cycle now, const Request& request);
+  uint64_t bank_of(Address line) const { return uint64_t{1} << (params_.banks == 1 ? 0 : line / line_bytes_ % params_.banks); }
+  bool has_credit(uint32_t slice) const { return !links_.credits || credits_left_[slice] > 0; }
+  Cycle next_credit() const { return links_.credits ? links_.credits->arrival() : kNever; }
+  void take_credits(Cycle now);
   bool pass_atomic(Cycle now, Client client, const Request& request);
-  bool queue_full() const { return miss_queue_.size() >= params_.miss_queue; }
-  void queue_packet(Cycle ready, Address line, uint8_t sectors, bool write, Traffic traffic, Token token = 0,
-                    Client client = Client::Lsu);
+  bool queue_room(uint32_t packets) const { return miss_queue_.size() + packets <= params_.miss_queue; }
+  bool queue_full() const { return !queue_room(1); }
+  void queue_packet(Cycle ready, const Packet& packet);
   void evict(Cycle now, const TagArray::Line& victim);
   Cycle next_departure() const;
   Cycle next_fill() const;
   void send_front(Cycle now);
   bool fill(Cycle now);
+  void hold(Cycle now, Address line, uint32_t slot);
   bool place(Cycle now, const Reply& reply);
   void answer_waiters(Cycle now, const Reply& reply);
   void count_miss(Cycle accepted, Cycle now, const Stamps& stamps);
@@ -105,9 +118,10 @@ class L1Cache final : public L1Port {
   const L1Params params_;
   const uint32_t line_bytes_;
   const uint16_t core_;
+  const bool allocate_on_miss_;
   const PartitionMap map_;
-  std::vector<FanIn<Packet>*> requests_;
-  FanIn<Reply>* replies_;
+  const L1Links links_;
+  std::vector<uint32_t> credits_left_;  // by slice
   L1Stats stats_;
   TagArray tags_;
   Mshr<Waiter> mshr_;
@@ -117,11 +131,14 @@ class L1Cache final : public L1Port {
   std::array<Answers, size_t(Client::Count)> answers_;
   Port request_port_, reply_port_;
   Port partition_reply_port_;  // only to know how long a reply took to be sent
-  const Cycle request_latency_;
   Cycle port_cycle_ = kNever;  // accesses_ and busy_banks_ are of this cycle
   uint32_t accesses_ = 0;
   uint64_t busy_banks_ = 0;
-  Cycle fill_not_before_ = 0;  // one fill a cycle; later when a dirty victim found the miss queue full
+  Cycle filled_cycle_ = kNever;  // of the last fill, and its bank
+  uint64_t filled_bank_ = 0;
+  Cycle fill_not_before_ = 0;  // one fill a cycle
+  bool fill_blocked_ = false;  // a dirty victim found the miss queue full: until a packet leaves
+  Cycle last_credit_ = 0;
   uint64_t order_ = 0;
   uint64_t packets_sent_ = 0, sectors_requested_ = 0, sectors_received_ = 0, reads_accepted_ = 0, tokens_returned_ = 0;
 };

@@ -29,7 +29,7 @@ class MemorySystem {
   const PartitionMap& map() const { return map_; }
 
   std::vector<Cell*> cells();             // one a partition
-  std::vector<ChannelBase*> channels();   // one a partition, then one a core
+  std::vector<ChannelBase*> channels();   // one a slice, then one a core, then the credits of each core
   // The engine's window may be this long: no message arrives sooner after it was sent. At least 1.
   Cycle shortest_latency() const { return shortest_latency_; }
 
@@ -37,11 +37,17 @@ class MemorySystem {
   void check_drained() const;  // at the end of a run: every request was answered and nothing is left; aborts otherwise
 
  private:
+  void check_conserved() const;
+  double imbalance() const;
+
   stats::Group group_;
+  stats::Value imbalance_{&group_, "dram_imbalance", "ratio", [this] { return imbalance(); },
+                          "Data clocks of the busiest channel over the mean of all: 1 is even."};
   PartitionMap map_;
   Cycle shortest_latency_;
-  std::vector<std::unique_ptr<FanIn<Packet>>> requests_;  // by partition
+  std::vector<std::unique_ptr<FanIn<Packet>>> requests_;  // by slice
   std::vector<std::unique_ptr<FanIn<Reply>>> replies_;    // by core
+  std::vector<std::unique_ptr<FanIn<Credit>>> credits_;   // by core; none when they are unlimited
   std::vector<std::unique_ptr<stats::Group>> core_groups_;
   std::vector<std::unique_ptr<L1Cache>> l1s_;
   std::vector<std::unique_ptr<Partition>> partitions_;

@@ -21,7 +21,13 @@ struct Packet {
   Token token = 0;      // of an atomic, for its reply; its client and order of acceptance too
   Client client = Client::Lsu;
   uint64_t order = 0;
+  WordMask words = kAllWords;  // of a write
   Stamps stamps{};
+};
+
+// A slice has served a packet: its core may send another. Travels beside the replies.
+struct Credit {
+  uint16_t slice = 0;
 };
 
 // From a partition to an L1: sectors of a line. A packet may be answered by several replies, sector by sector.
@@ -47,7 +53,7 @@ constexpr uint32_t bytes_of(const Packet& p) {
 constexpr uint32_t bytes_of(const Reply& r) { return kHeaderBytes + num_sectors(r.sectors) * kSectorBytes; }
 
 // One side of a crossbar port. A packet occupies it for a whole number of cycles.
-// Model: the switch inside never blocks and buffers are unbounded; only the ports limit.
+// Model: the switch inside never blocks; ports and, towards the slices, credits limit.
 class Port {
  public:
   explicit Port(uint32_t bytes_per_cycle) : bytes_per_cycle_(bytes_per_cycle) {}

@@ -102,26 +102,20 @@ void check(const Params& p, Diagnostics& diagnostics, const std::string& section
   c.at_least_one("noc.core_reply_bytes", p.noc.core_reply_bytes, "packets must move");
   c.at_least_one("noc.partition_request_bytes", p.noc.partition_request_bytes, "packets must move");
   c.at_least_one("noc.partition_reply_bytes", p.noc.partition_reply_bytes, "packets must move");
+  c.require(p.l1.allocate != "on_miss" || p.l1.miss_queue >= 2,
+            fmt::format("'l1.miss_queue' is {}, expected at least 2: a miss and the write-back of its victim", p.l1.miss_queue));
+  c.require(!p.l1.write_allocate || p.l1.miss_queue >= 2,
+            fmt::format("'l1.miss_queue' is {}, expected at least 2: a write and the write-back of its victim", p.l1.miss_queue));
+  c.require(p.l1.banks <= 64, fmt::format("'l1.banks' is {}, expected at most 64", p.l1.banks));
+  c.require(p.noc.sides <= p.num_slices() || p.num_slices() == 0,
+            fmt::format("'noc.sides' is {}, expected at most the {} slices", p.noc.sides, p.num_slices()));
+  c.require(p.noc.sides > 1 || p.noc.far_latency == 0,
+            fmt::format("'noc.far_latency' is {}, and 'noc.sides' is 1: nothing lies far", p.noc.far_latency));
+  c.require(p.num_slices() <= 4096, fmt::format("'dram.channels' x 'l2.slices' is {}, expected at most 4096", p.num_slices()));
   check_dram(p.dram, p.line, p.interleave, c);
 }
 
-Peak peak(const Params& p, uint32_t num_cores, double core_mhz) {
-  const double hz = core_mhz * 1e6;
-  const double channels = p.dram.channels;
-  // Of a port's bytes the share that is data, when every reply carries one sector.
-  const double data_share = double(kSectorBytes) / double(kSectorBytes + kHeaderBytes);
-  Peak out;
-  out.l2_bytes = p.l2.slice_size * p.dram.channels;
-  out.l1_bytes_per_second = hz * num_cores * std::min(p.l1.ports, p.l1.banks) * p.line;
-  out.noc_bytes_per_second = hz * data_share * std::min(double(num_cores) * p.noc.core_reply_bytes, channels * p.noc.partition_reply_bytes);
-  out.l2_bytes_per_second = hz * channels * p.l2.sectors_per_cycle * kSectorBytes;
-  out.dram_bytes_per_second = channels * p.dram.clock_mhz * 1e6 * p.dram.transfers_per_clock * p.dram.bus_bytes;
-  return out;
-}
-
-std::string Peak::to_string() const {
-  return fmt::format("L1 {:.1f} GB/s, NoC {:.1f} GB/s, L2 {} KiB at {:.1f} GB/s, DRAM {:.1f} GB/s", l1_bytes_per_second / 1e9,
-                     noc_bytes_per_second / 1e9, l2_bytes / 1024, l2_bytes_per_second / 1e9, dram_bytes_per_second / 1e9);
-}
+std::vector<std::string> l1_allocations() { return {"on_fill", "on_miss"}; }
+std::vector<std::string> partition_hashes() { return {"mixed", "none"}; }
 
 }  // namespace glint::mem

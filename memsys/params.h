@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "base/diagnostics.h"
 #include "base/params.h"
@@ -11,6 +12,9 @@
 namespace glint::mem {
 
 // Defaults: the mobile part of Vulkan-Sim 2.0 and LumiBench (8 cores, 4 channels), with physical DRAM timing.
+std::vector<std::string> l1_allocations();    // on_fill, on_miss
+std::vector<std::string> partition_hashes();  // mixed, none
+
 struct L1Params {
   uint64_t size = 32 * 1024;     // Vulkan-Sim MOBILE: S:1:128:256
   uint32_t ways = 0;
@@ -22,6 +26,10 @@ struct L1Params {
   uint32_t mshr_merges = 8;
   uint32_t miss_queue = 16;      // Vulkan-Sim: 16
   bool local_write_back = true;  // Vulkan-Sim: "L", local write-back, global write-through
+  bool global_write_back = false;
+  bool write_allocate = false;          // Vulkan-Sim: "N"; Accel-Sim's newer parts allocate
+  std::string allocate = "on_fill";     // Vulkan-Sim: "s", streaming
+  bool fill_takes_access = true;        // Choice: arrays of one port; unpublished
 
   static constexpr auto params() {
     return std::tuple{
@@ -34,7 +42,11 @@ struct L1Params {
         param(&L1Params::mshr_entries, "mshr_entries", "line", "Lines that can be on the way.", 0, 1 << 16),
         param(&L1Params::mshr_merges, "mshr_merges", "request", "Reads that can wait for one line, the first included.", 0, 1 << 12),
         param(&L1Params::miss_queue, "miss_queue", "packet", "Misses, writes and write-backs waiting for the network.", 0, 1 << 16),
-        flag(&L1Params::local_write_back, "local_write_back", "Local memory is written back on eviction instead of written through.")};
+        flag(&L1Params::local_write_back, "local_write_back", "Local memory is written back on eviction instead of written through."),
+        flag(&L1Params::global_write_back, "global_write_back", "All other memory is written back on eviction as well."),
+        flag(&L1Params::write_allocate, "write_allocate", "A write that is written through keeps its whole sectors in a line; otherwise it allocates none."),
+        choice(&L1Params::allocate, "allocate", "When a miss takes its line: with the data (streaming), or already when it leaves, held until then.", &l1_allocations),
+        flag(&L1Params::fill_takes_access, "fill_takes_access", "A fill keeps its bank from taking an access in the same cycle.")};
   }
 };
 
@@ -45,6 +57,9 @@ struct NocParams {
   uint32_t partition_reply_bytes = 40;
   uint32_t request_latency = 48;          // with the L1 and L2 latencies: L2 hits take 160 cycles (TTA's baseline)
   uint32_t reply_latency = 48;
+  uint32_t credits = 16;                  // Choice: a core's L1 can send no more than its miss queue; unpublished
+  uint32_t sides = 1;                     // H100: 2, of which the far one costs 156 cycles more there and back
+  uint32_t far_latency = 0;
 
   static constexpr auto params() {
     return std::tuple{
@@ -53,11 +68,15 @@ struct NocParams {
         param(&NocParams::partition_request_bytes, "partition_request_bytes", "byte/cycle", "Width of a partition's port from the cores.", 0, 4096),
         param(&NocParams::partition_reply_bytes, "partition_reply_bytes", "byte/cycle", "Width of a partition's port towards the cores.", 0, 4096),
         param(&NocParams::request_latency, "request_latency", "cycle", "One way, core to partition, without port time.", 0, 10000),
-        param(&NocParams::reply_latency, "reply_latency", "cycle", "One way, partition to core, without port time.", 0, 10000)};
+        param(&NocParams::reply_latency, "reply_latency", "cycle", "One way, partition to core, without port time.", 0, 10000),
+        param(&NocParams::credits, "credits", "packet", "Packets of one core that may be on their way to one L2 slice or wait there; 0 is no limit.", 0, 1 << 12),
+        param(&NocParams::sides, "sides", "side", "Parts of the chip that cores and slices are split into evenly, in order.", 1, 16),
+        param(&NocParams::far_latency, "far_latency", "cycle", "One way between two sides, beyond the latency within one.", 0, 10000)};
   }
 };
 
 struct L2Params {
+  uint32_t slices = 1;               // Vulkan-Sim MOBILE: one sub-partition
   uint64_t slice_size = 128 * 1024;  // Vulkan-Sim: S:64:128:16 a partition
   uint32_t ways = 16;
   uint32_t latency = 42;             // see NocParams::request_latency
@@ -66,23 +85,29 @@ struct L2Params {
   uint32_t mshr_merges = 4;
   uint32_t dram_queue = 64;          // Vulkan-Sim: dram_partition_queues
   uint32_t atomic_interval = 2;      // Choice: unpublished; an H200 does 1.4 G lane atomics a second on one word
+  bool write_masks = true;           // GPGPU-Sim: byte masks, a sector is fetched when it is read
+  bool fill_takes_service = true;    // Choice: arrays of one port; unpublished
 
   static constexpr auto params() {
     return std::tuple{
-        param(&L2Params::slice_size, "slice_size", "byte", "Capacity of the slice of one partition.", 0, uint64_t{1} << 32),
+        param(&L2Params::slices, "slices", "slice", "Slices of a partition, each with ports of its own, in front of its DRAM channel.", 1, 16),
+        param(&L2Params::slice_size, "slice_size", "byte", "Capacity of one slice.", 0, uint64_t{1} << 32),
         param(&L2Params::ways, "ways", "way", "Lines of a set; 0 makes the slice fully associative.", 0, 1 << 20),
         param(&L2Params::latency, "latency", "cycle", "From service to the reply of a hit, or to the miss's way to DRAM.", 1, 10000),
         param(&L2Params::sectors_per_cycle, "sectors_per_cycle", "sector/cycle", "Sectors read or written a cycle.", 0, 64),
         param(&L2Params::mshr_entries, "mshr_entries", "line", "Lines that can be on the way.", 0, 1 << 16),
         param(&L2Params::mshr_merges, "mshr_merges", "request", "Reads that can wait for one line, the first included.", 0, 1 << 12),
         param(&L2Params::dram_queue, "dram_queue", "request", "Sector reads and writes between the slice and the DRAM scheduler.", 0, 1 << 16),
-        param(&L2Params::atomic_interval, "atomic_interval", "cycle", "Cycles of the slice for each sector of an atomic.", 1, 1000)};
+        param(&L2Params::atomic_interval, "atomic_interval", "cycle", "Cycles of the slice for each sector of an atomic.", 1, 1000),
+        flag(&L2Params::write_masks, "write_masks", "A sector of which a part is written is fetched when it is read; otherwise each write covers its sectors."),
+        flag(&L2Params::fill_takes_service, "fill_takes_service", "Sectors from DRAM take the slice's time as sectors read do.")};
   }
 };
 
 struct Params {
   uint32_t line = 128;        // Volta and later: 4 sectors of 32 B
   uint32_t interleave = 256;  // GPGPU-Sim: dramid@8
+  std::string hash = "mixed";
   L1Params l1;
   NocParams noc;
   L2Params l2;
@@ -91,26 +116,17 @@ struct Params {
   static constexpr auto params() {
     return std::tuple{param(&Params::line, "line", "byte", "Line of both cache levels.", 0, 4096),
                       param(&Params::interleave, "interleave", "byte", "Consecutive bytes that stay in one partition.", 0, 1 << 20),
+                      choice(&Params::hash, "hash", "How addresses spread over slices: each round of them turned by a hash, or one after another.", &partition_hashes),
                       section(&Params::l1, "l1", "Data cache of each core."),
                       section(&Params::noc, "noc", "Network between cores and partitions."),
                       section(&Params::l2, "l2", "Cache slice of each partition."),
                       section(&Params::dram, "dram", "Memory channel of each partition.")};
   }
+  uint32_t num_slices() const { return dram.channels * l2.slices; }
 };
 
 // Reports every impossible combination with what was expected. Call before building a MemorySystem.
 // `section` ("memory.") stands before each key in the messages.
 void check(const Params& params, Diagnostics& diagnostics, const std::string& section = {});
-
-// What the machine could do at best, to hold against a data sheet.
-struct Peak {
-  uint64_t l2_bytes = 0;             // capacity over all slices
-  double l1_bytes_per_second = 0;    // data of all cores' L1 hits
-  double noc_bytes_per_second = 0;   // reply data into cores or out of partitions, whichever is narrower
-  double l2_bytes_per_second = 0;    // data of all slices
-  double dram_bytes_per_second = 0;  // all data buses
-  std::string to_string() const;     // one line
-};
-Peak peak(const Params& params, uint32_t num_cores, double core_mhz);
 
 }  // namespace glint::mem

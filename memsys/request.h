@@ -15,20 +15,28 @@ enum class Traffic : uint8_t {
   Instruction, Constant,  // lines for a core's caches of them: an L1 keeps none
   RtNode, RtInstance, RtTriangle, RtProcedural,
   RtTable,       // candidates that wait for their shaders
+  RtStack,       // of rays
   Count
 };
 constexpr std::string_view name_of(Traffic t) {
   constexpr std::string_view kNames[] = {"shader_global",  "shader_local", "shader_texture", "shader_surface",
                                          "shader_binding", "shader_atomic", "instruction", "constant", "rt_node", "rt_instance",
-                                         "rt_triangle",    "rt_procedural", "rt_table"};
+                                         "rt_triangle",    "rt_procedural", "rt_table", "rt_stack"};
   return kNames[size_t(t)];
 }
 constexpr bool is_rt(Traffic t) { return t >= Traffic::RtNode; }
+constexpr bool is_local(Traffic t) { return t == Traffic::ShaderLocal || t == Traffic::RtStack; }  // one thread's own
 constexpr bool passes_l1(Traffic t) { return t == Traffic::Instruction || t == Traffic::Constant; }
 
 inline constexpr uint32_t kSectorBytes = 32;  // the unit of transfer between all levels (Volta and later)
 
 using Token = uint32_t;  // the requester's own name for a request; returned untouched
+
+// Bit i: the i-th 4 bytes of a line of at most 256. Model: 4 bytes are written whole or not at all; a store of less
+// counts as if it left them open.
+using WordMask = uint64_t;
+inline constexpr WordMask kAllWords = ~WordMask{0};
+inline constexpr uint32_t kWordsPerSector = kSectorBytes / 4;
 
 struct Request {
   Address line = 0;         // physical, aligned to the L1 line size
@@ -36,8 +44,19 @@ struct Request {
   bool write = false;
   Traffic traffic = Traffic::ShaderGlobal;
   Token token = 0;          // reads: comes back once when all sectors are there. Writes: not answered.
+  WordMask words = kAllWords;  // of a write: which words of the line it covers
   // Traffic::ShaderAtomic: a "read" whose token comes back when the L2 has changed the sectors, or a "write" likewise
   // without an answer.
 };
+
+// The sectors of a write that it covers.
+constexpr uint8_t covered_sectors(const Request& request) {
+  constexpr WordMask kSector = (WordMask{1} << kWordsPerSector) - 1;
+  if (request.words == kAllWords) return request.sectors;
+  uint8_t out = 0;
+  for (uint32_t i = 0; i < 8; ++i)
+    if ((request.words >> (i * kWordsPerSector) & kSector) == kSector) out |= uint8_t(request.sectors & 1u << i);
+  return out;
+}
 
 }  // namespace glint::mem

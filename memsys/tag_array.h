@@ -17,9 +17,11 @@ class TagArray {
 
   struct Line {
     Address address = 0;
-    uint8_t valid = 0;  // sectors present; 0 means the slot is free
-    uint8_t dirty = 0;  // sectors newer than the level below
+    uint8_t valid = 0;  // sectors present
+    uint8_t dirty = 0;  // sectors newer than the level below, also those written only in part
+    bool held = false;  // its data is on the way: never a victim
     uint32_t newer = kNone, older = kNone;
+    bool used() const { return valid || dirty || held; }
   };
 
   TagArray(uint32_t sets, uint32_t ways, uint32_t line_bytes)
@@ -39,15 +41,18 @@ class TagArray {
   Line& line(uint32_t slot) { return lines_[slot]; }
   const Line& line(uint32_t slot) const { return lines_[slot]; }
 
-  // The line that insert(address) would replace.
-  const Line& victim(Address address) const { return lines_[oldest_[set_of(address)]]; }
+  uint32_t slot_of(const Line& line) const { return uint32_t(&line - lines_.data()); }
+
+  // The line that insert(address) would replace. With lines that are held: has_victim() first.
+  const Line& victim(Address address) const { return lines_[oldest_free(set_of(address))]; }
+  bool has_victim(Address address) const { return oldest_free(set_of(address)) != kNone; }
 
   // Replaces the victim by `address` (absent until now), most recently used, without valid sectors: the caller
   // sets at least one.
   Line& insert(Address address) {
-    const uint32_t slot = oldest_[set_of(address)];
+    const uint32_t slot = oldest_free(set_of(address));
     Line& line = lines_[slot];
-    if (line.valid) index_.erase(line.address);
+    if (line.used()) index_.erase(line.address);
     line.address = address;
     line.valid = line.dirty = 0;
     index_.insert(address, slot);
@@ -60,7 +65,7 @@ class TagArray {
     Line& line = lines_[slot];
     line.valid &= uint8_t(~sectors);
     line.dirty &= uint8_t(~sectors);
-    if (!line.valid) index_.erase(line.address);
+    if (!line.used()) index_.erase(line.address);
   }
 
   void touch(uint32_t slot) {  // now the most recently used of its set
@@ -76,6 +81,11 @@ class TagArray {
   }
 
  private:
+  uint32_t oldest_free(uint32_t set) const {
+    uint32_t slot = oldest_[set];
+    while (slot != kNone && lines_[slot].held) slot = lines_[slot].newer;
+    return slot;
+  }
   // Model: a multiplicative hash spreads power-of-two strides over the sets; real hashes are not published.
   uint32_t set_of(Address address) const {
     if (newest_.size() == 1) return 0;

@@ -70,7 +70,8 @@ std::vector<Balance> of_rays(const core::CoreStats& core, const rt::RtUnit& unit
 std::vector<Balance> of_partition(uint32_t index, const mem::Partition& partition, uint64_t cycles) {
   const mem::DramStats& dram = partition.dram().stats();
   Ledger ledger(fmt::format("partition[{}]", index));
-  ledger.equal("attributed cycles = cycles", partition.stats().cycles.total(), cycles);
+  for (uint32_t i = 0; i < partition.num_slices(); ++i)
+    ledger.equal("attributed cycles = cycles", partition.slice(i).stats().cycles.total(), cycles);
   ledger.equal("DRAM requests = reads + writes", dram.requests.value(), dram.reads.value() + dram.writes.value());
   ledger.equal("attributed DRAM clocks = clocks", dram.use.total(), dram.clocks.value());
   return std::move(ledger.rows);

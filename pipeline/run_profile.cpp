@@ -67,7 +67,9 @@ void observe(TimingMachine& machine, const Observation& what) {
     mem::Partition& partition = machine.memory().partition(i);
     partition.sampler().start(what.sample, [&partition](Cycle at) -> std::vector<uint64_t> {
       const mem::DramModel& dram = partition.dram();
-      return {partition.stats().reads.total(), partition.stats().hits.total(), dram.stats().busy_clocks.value(), dram.clocks().clock_at(at)};
+      const uint64_t reads = partition.sum([](const mem::L2Slice& slice) { return slice.stats().reads.total(); });
+      const uint64_t hits = partition.sum([](const mem::L2Slice& slice) { return slice.stats().hits.total(); });
+      return {reads, hits, dram.stats().busy_clocks.value(), dram.clocks().clock_at(at)};
     });
   }
 }

@@ -22,9 +22,16 @@ Params cramped(uint32_t variant) {
   p.l1.mshr_entries = 6, p.l1.mshr_merges = 2, p.l1.miss_queue = 4;
   p.l1.ports = 1 + variant % 3, p.l1.banks = 4;
   p.noc.request_latency = 3 + variant % 5, p.noc.reply_latency = 4 + variant % 3;
+  p.l1.allocate = variant % 2 ? "on_miss" : "on_fill";
+  p.l1.write_allocate = variant % 3 == 1, p.l1.global_write_back = variant % 5 == 2;
+  p.l1.fill_takes_access = variant % 4 < 2;
+  p.noc.credits = variant % 4, p.noc.sides = variant % 6 == 5 ? 2 : 1, p.noc.far_latency = variant % 6 == 5 ? 9 : 0;
   p.noc.core_reply_bytes = 16, p.noc.partition_request_bytes = 12;
   p.l2.slice_size = 16 * 128, p.l2.ways = variant % 2 ? 16 : 4;
   p.l2.mshr_entries = 4, p.l2.mshr_merges = 2, p.l2.dram_queue = 8;
+  p.l2.slices = variant % 6 == 5 ? 2 : variant % 7 == 4 ? 3 : 1;
+  p.l2.write_masks = variant % 4 < 3, p.l2.fill_takes_service = variant % 5 < 3;
+  p.hash = variant % 8 == 6 ? "none" : "mixed";
   p.dram.channels = 1 + variant % 3;
   p.dram.queue = 3 + variant % 4;
   p.dram.bus_bytes = variant % 4 == 3 ? 4 : variant % 4 == 2 ? 1 : 2;
@@ -53,6 +60,7 @@ struct CoreTraffic {
         const Address line = (random() % 4 ? random() % 48 : random() % 4096) * 128;
         const bool write = random() % 4 == 0;
         pending = Request{line, uint8_t(1 + random() % 15), write, Traffic(random() % uint32_t(Traffic::Count)), next};
+        if (write && random() % 2) pending->words = (uint64_t{random()} << 32 | random()) | (random() % 2 ? 0xffff'ffffull : 0);
       }
       if (!l1.access(now, Client(next % 2), *pending)) continue;
       if (pending->write) ++writes;
@@ -112,7 +120,7 @@ Outcome simulate(uint32_t variant, Cycle window, bool step, uint32_t seed = 5) {
   for (uint32_t p = 0; p < rig.memory().num_partitions(); ++p) {
     const Partition& partition = rig.memory().partition(p);
     const DramStats& d = partition.dram().stats();
-    CHECK(partition.stats().cycles.total() == kEnd);
+    for (uint32_t i = 0; i < partition.num_slices(); ++i) CHECK(partition.slice(i).stats().cycles.total() == kEnd);
     CHECK(d.use.total() == partition.dram().clocks().clock_at(kEnd));
     CHECK(d.requests.value() == d.reads.value() + d.writes.value());
     CHECK(d.picks.value() == d.requests.value());

@@ -1,6 +1,6 @@
 // Impossible configurations are reported with what was expected; peaks match data sheets.
 // SPDX-License-Identifier: Apache-2.0
-#include "memsys/params.h"
+#include "memsys/peak.h"
 
 #include <functional>
 
@@ -55,10 +55,11 @@ TEST_CASE("each impossible value is reported once with what was expected") {
 
 TEST_CASE("peaks of the mobile part are those of its data sheet") {
   const Peak p = peak(Params{}, 8, 1365.0);
-  CHECK(p.dram_bytes_per_second == Approx(56e9));
+  CHECK(p.dram_bandwidth == Approx(56e9));
+  CHECK(p.dram_refreshed == Approx(56e9 * (1 - 120.3 / 1900)));
   CHECK(p.l2_bytes == 512 * 1024);
-  CHECK(p.l1_bytes_per_second == Approx(8 * 128 * 1365e6));
-  CHECK(p.noc_bytes_per_second == Approx(4 * 32 * 1365e6));
+  CHECK(p.l1_bandwidth == Approx(8 * 128 * 1365e6));
+  CHECK(p.network() == Approx(4 * 32 * 1365e6));
 }
 
 TEST_CASE("every parameter can be read from a configuration and unknown policies are refused") {

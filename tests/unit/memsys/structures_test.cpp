@@ -120,12 +120,12 @@ TEST_CASE("a fan-in shows nothing before delivery but counts it as the next arri
 
 TEST_CASE("any number of partitions is filled equally and addresses stay unique inside each") {
   const uint32_t n = GENERATE(1u, 3u, 4u, 12u, 24u, 80u);
-  PartitionMap map(n, 256);
+  PartitionMap map(n, 1, 256);
   std::vector<std::set<Address>> local(n);
   for (uint32_t chunk = 0; chunk < n * 100; ++chunk) {
     const Address address = Address{chunk} * 256;
     CHECK(map.partition(address) == map.partition(address + 255));
-    local[map.partition(address)].insert(map.local(address));
+    local[map.partition(address)].insert(map.local(address, map.slice(address)));
   }
   for (const std::set<Address>& one : local) {
     CHECK(one.size() == 100);
@@ -134,7 +134,7 @@ TEST_CASE("any number of partitions is filled equally and addresses stay unique 
 }
 
 TEST_CASE("strides of the number of partitions still reach every partition") {
-  PartitionMap map(12, 256);
+  PartitionMap map(12, 1, 256);
   std::vector<int> count(12);
   for (uint32_t i = 0; i < 1200; ++i) ++count[map.partition(Address{i} * 12 * 256)];
   for (const int n : count) CHECK(n > 60);  // 100 on average

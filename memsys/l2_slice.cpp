@@ -1,0 +1,249 @@
+// The events of an L2 slice: packets in, tags, the way to DRAM and back, replies out.
+// SPDX-License-Identifier: Apache-2.0
+#include "memsys/l2_slice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace glint::mem {
+namespace {
+
+uint32_t num_ways(uint64_t size, uint32_t ways, uint32_t line) { return ways ? ways : uint32_t(size / line); }
+
+}  // namespace
+
+L2Slice::L2Slice(const Params& params, uint32_t index, const PartitionMap& map, SliceLinks links, stats::Group* parent, const std::string& name)
+    : params_(params.l2),
+      line_bytes_(params.line),
+      atom_sectors_(std::max(params.dram.atom_bytes(), kSectorBytes) / kSectorBytes),
+      index_(index),
+      dram_latency_(params.dram.latency),
+      map_(map),
+      links_(std::move(links)),
+      stats_(parent, name),
+      tags_(uint32_t(params_.slice_size / line_bytes_) / num_ways(params_.slice_size, params_.ways, line_bytes_),
+            num_ways(params_.slice_size, params_.ways, line_bytes_), line_bytes_),
+      words_(params_.write_masks ? params_.slice_size / line_bytes_ : 0),
+      mshr_(params_.mshr_entries, params_.mshr_merges),
+      request_port_(params.noc.partition_request_bytes),
+      reply_port_(params.noc.partition_reply_bytes),
+      core_request_port_(params.noc.core_request_bytes),
+      to_dram_(params_.dram_queue) {}
+
+void L2Slice::send_ready_replies(Cycle now) {
+  while (!hit_replies_.empty() && hit_replies_.front().ready <= now) {
+    send_reply(now, hit_replies_.front().core, hit_replies_.front().reply);
+    hit_replies_.pop();
+  }
+}
+
+Cycle L2Slice::next_work() const {
+  Cycle next = hit_replies_.empty() ? kNever : hit_replies_.front().ready;
+  // A blocked head moves only when something has come back from DRAM or left for it.
+  if (blocked_ == SliceCycle::Count) next = std::min(next, head_received());
+  return next;
+}
+
+Cycle L2Slice::head_received() const {
+  if (links_.requests->arrival() == kNever) return kNever;
+  const uint32_t bytes = bytes_of(links_.requests->front());
+  return std::max(request_port_.received_at(links_.requests->arrival(), core_request_port_.cycles(bytes), bytes), busy_until_);
+}
+
+// The answer to a packet, or to some of its sectors.
+Reply L2Slice::reply_to(const Packet& packet, uint8_t sectors) const {
+  if (!is_atomic(packet)) return {packet.line, sectors, false, 0, Client::Lsu, 0, packet.stamps};
+  return {packet.line, packet.sectors, true, packet.token, packet.client, packet.order, packet.stamps};
+}
+
+void L2Slice::fill(Cycle now, const DramReturn& data) {
+  const Address line = data.line;
+  const uint8_t sectors = data.sectors;
+  const uint32_t slot = tags_.find(line);
+  if (slot == kNone) evict(now, tags_.victim(line));
+  TagArray::Line& filled = slot == kNone ? tags_.insert(line) : tags_.line(slot);
+  if (!words_.empty()) stats_.completed_sectors += num_sectors(sectors & filled.dirty & uint8_t(~filled.valid));
+  filled.valid |= sectors;
+  if (params_.fill_takes_service) busy_until_ = std::max(busy_until_, now) + sector_cycles(sectors);
+  mshr_.arrive(mshr_.find(line), sectors, [&](Waiter& waiter) {
+    Packet& packet = waiter.packet;
+    packet.stamps.set(Stage::DramQueue, data.command);
+    packet.stamps.set(Stage::DramService, now);
+    const uint8_t served = uint8_t(waiter.missing & sectors);
+    waiter.missing &= uint8_t(~sectors);
+    if (!is_atomic(packet)) {
+      if (served) send_reply(now, packet.core, reply_to(packet, served));
+    } else if (waiter.missing == 0) {
+      filled.dirty |= packet.sectors & filled.valid;
+      if (!packet.write) send_reply(now, packet.core, reply_to(packet, packet.sectors));
+    }
+    return waiter.missing == 0;
+  });
+}
+
+void L2Slice::serve(Cycle now) {
+  blocked_ = SliceCycle::Count;
+  if (head_received() > now) return;
+  Packet packet = links_.requests->front();
+  packet.stamps.set(Stage::Request, links_.requests->arrival());
+  packet.stamps.set(Stage::L2Queue, now);
+  packet.stamps.set(Stage::L2Service, now + params_.latency);
+  packet.stamps.set(Stage::DramWay, now + params_.latency + dram_latency_);
+  if (!(packet.write && !is_atomic(packet) ? write(now, packet) : read(now, packet))) return;
+  const uint32_t bytes = bytes_of(packet);
+  request_port_.occupy_until(request_port_.received_at(links_.requests->arrival(), core_request_port_.cycles(bytes), bytes));
+  stats_.request_bytes += bytes;
+  stats_.request_wait += now - links_.requests->arrival();
+  ++packets_received_;
+  // Not sooner than any message: a window may be as long as the shortest of them.
+  if (!links_.credits.empty()) links_.credits[packet.core]->send(index_, now + 1 + links_.reply_latency[packet.core], {uint16_t(index_)});
+  busy_until_ = now + service_cycles(packet);
+  links_.requests->pop();
+}
+
+Cycle L2Slice::service_cycles(const Packet& packet) const {
+  const Cycle sectors = num_sectors(packet.sectors);
+  if (is_atomic(packet)) return sectors * params_.atomic_interval;
+  return sector_cycles(packet.sectors);
+}
+
+// Reads, and atomics, which need what they change.
+bool L2Slice::read(Cycle now, const Packet& packet) {
+  const uint32_t slot = tags_.find(packet.line);
+  const uint8_t missing = slot == kNone ? packet.sectors : uint8_t(packet.sectors & ~tags_.line(slot).valid);
+  uint8_t fetched = 0;
+  if (missing) {
+    uint32_t entry = mshr_.find(packet.line);
+    if (entry == kNone && mshr_.full()) return blocked_ = SliceCycle::MshrFull, false;
+    if (entry != kNone && mshr_.merge_limit(entry)) return blocked_ = SliceCycle::MergeLimit, false;
+    if (const uint8_t absent = entry == kNone ? missing : uint8_t(missing & ~mshr_.pending(entry))) {
+      fetched = entry == kNone ? whole_atoms(absent) : uint8_t(whole_atoms(absent) & ~mshr_.pending(entry));
+      if (!dram_room(num_sectors(fetched))) return blocked_ = SliceCycle::QueueFull, false;
+    }
+    if (entry == kNone) entry = mshr_.allocate(packet.line);
+    mshr_.expect(entry, fetched);
+    mshr_.add(entry, {packet, missing});
+    if (fetched) queue_for_dram(now + params_.latency + dram_latency_, packet.line, fetched, false);
+  }
+  if (slot != kNone) tags_.touch(slot);
+  answer_present(now, packet, missing);
+  if (!packet.write) sectors_requested_ += num_sectors(packet.sectors);
+  stats_.count_read(packet.traffic, missing, fetched, packet.line, seen_);
+  return true;
+}
+
+// Replies for what is here. An atomic waits for all of its sectors, and is done in one piece.
+// Model: the atomics of one line follow each other at the slice's pace, whether they wait for DRAM or not.
+void L2Slice::answer_present(Cycle now, const Packet& packet, uint8_t missing) {
+  const Cycle ready = now + service_cycles(packet) - 1 + params_.latency;
+  if (!is_atomic(packet)) {
+    if (const uint8_t present = uint8_t(packet.sectors & ~missing)) {
+      hit_replies_.push({ready, reply_to(packet, present), packet.core});
+      hit_replies_.back().reply.stamps.set_rest(Stage::L2Service, ready);
+    }
+    return;
+  }
+  if (missing) return;
+  tags_.line(tags_.find(packet.line)).dirty |= packet.sectors;
+  if (!packet.write) hit_replies_.push({ready, reply_to(packet, packet.sectors), packet.core});
+}
+
+bool L2Slice::write(Cycle now, const Packet& packet) {
+  const uint32_t slot = tags_.find(packet.line);
+  if (slot == kNone) {
+    const TagArray::Line& victim = tags_.victim(packet.line);
+    if (victim.dirty && !dram_room(num_sectors(victim.dirty))) return blocked_ = SliceCycle::QueueFull, false;
+    evict(now, victim);
+    seen_.insert_if_new(packet.line);
+  } else {
+    tags_.touch(slot);
+    stats_.write_hits.add(packet.traffic);
+  }
+  TagArray::Line& line = slot == kNone ? tags_.insert(packet.line) : tags_.line(slot);
+  line.valid |= words_.empty() || packet.words == kAllWords ? packet.sectors : whole_sectors(packet, tags_.slot_of(line), line.valid);
+  line.dirty |= packet.sectors;
+  stats_.writes.add(packet.traffic);
+  return true;
+}
+
+// Which sectors of a write the slice then holds whole: those that were, that it covers, or that it completes.
+uint8_t L2Slice::whole_sectors(const Packet& packet, uint32_t slot, uint8_t valid) {
+  constexpr WordMask kSector = (WordMask{1} << kWordsPerSector) - 1;
+  uint8_t out = 0;
+  for (uint32_t i = 0; i < line_bytes_ / kSectorBytes; ++i) {
+    const auto bit = uint8_t(1u << i);
+    if (!(packet.sectors & bit)) continue;
+    const WordMask whole = kSector << (i * kWordsPerSector);
+    if (!(tags_.line(slot).dirty & bit)) words_[slot] &= ~whole;  // of a line that was here before, or of old data
+    words_[slot] |= packet.words & whole;
+    if ((valid & bit) || (words_[slot] & whole) == whole) out |= bit;
+    else ++stats_.partial_writes;
+  }
+  return out;
+}
+
+// One DRAM request an atom that holds any of `sectors`.
+void L2Slice::queue_for_dram(Cycle ready, Address line, uint8_t sectors, bool write) {
+  const uint32_t atom = (1u << atom_sectors_) - 1;
+  for (uint32_t first = 0; first < line_bytes_ / kSectorBytes; first += atom_sectors_)
+    if (const uint8_t mask = uint8_t(sectors & (atom << first))) {
+      to_dram_.push({ready, line, mask, write});
+      ++(write ? stats_.dram_writes : stats_.dram_reads);
+    }
+}
+
+uint8_t L2Slice::whole_atoms(uint8_t sectors) const {
+  const uint32_t atom = (1u << atom_sectors_) - 1;
+  uint8_t out = 0;
+  for (uint32_t first = 0; first < line_bytes_ / kSectorBytes; first += atom_sectors_)
+    if (sectors & (atom << first)) out |= uint8_t(atom << first);
+  return out;
+}
+
+void L2Slice::evict(Cycle now, const TagArray::Line& victim) {
+  if (!victim.used()) return;
+  ++stats_.evictions;
+  if (!victim.dirty) return;
+  ++stats_.write_backs;
+  queue_for_dram(now + dram_latency_, victim.address, victim.dirty, true);
+}
+
+void L2Slice::send_reply(Cycle now, uint16_t core, const Reply& reply) {
+  stats_.reply_wait += std::max(now, reply_port_.free_at()) - now;
+  const uint32_t bytes = bytes_of(reply);
+  const Cycle tail = reply_port_.leave(now, bytes);
+  links_.replies[core]->send(index_, tail + links_.reply_latency[core], reply);
+  stats_.reply_bytes += bytes;
+  sectors_replied_ += num_sectors(reply.sectors);
+  ++replies_sent_;
+}
+
+// Why nothing is served from accounted_ on, until the next event.
+SliceCycle L2Slice::reason(bool dram_works) const {
+  if (blocked_ != SliceCycle::Count) return blocked_;
+  if (dram_works) return SliceCycle::DramWait;
+  if (!hit_replies_.empty() || !to_dram_.empty()) return SliceCycle::Pipeline;
+  return SliceCycle::Idle;
+}
+
+// Attributes the cycles [accounted_, until), after the last event and before the next.
+void L2Slice::account(Cycle until, bool dram_works) {
+  if (until <= accounted_) return;
+  const Cycle serving = std::clamp(busy_until_, accounted_, until) - accounted_;
+  stats_.cycles.add(SliceCycle::Service, serving);
+  stats_.cycles.add(reason(dram_works), until - accounted_ - serving);
+  accounted_ = until;
+}
+
+bool L2Slice::finished() const {
+  return links_.requests->waiting() == 0 && hit_replies_.empty() && to_dram_.empty() && mshr_.in_use() == 0;
+}
+
+std::string L2Slice::describe(bool dram_works) const {
+  return fmt::format("{} packets waiting, {} lines on the way, {} for DRAM, head: {}", links_.requests->waiting(), mshr_.in_use(),
+                     to_dram_.size(), name_of(reason(dram_works)));
+}
+
+}  // namespace glint::mem
