@@ -11,10 +11,6 @@
 
 namespace glint::isa::GLINT_ISA_PATH {
 
-// The direction as vector instructions take it, without a look at MXCSR.
-template <Round kRound>
-inline constexpr int kStaticRound = int(kRound) | 8;  // _MM_FROUND_NO_EXC
-
 // The lower (or upper) halves of a row of words as floats, exactly.
 template <bool kUpper>
 [[gnu::always_inline]] inline void widen_halves(const uint32_t* words, float* out) {

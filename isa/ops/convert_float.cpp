@@ -3,6 +3,7 @@
 #include "isa/half_rows.h"
 #include "isa/ops/conversion_types.h"
 #include "isa/ops/families.h"
+#include "isa/rounded_arithmetic.h"
 
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
@@ -123,12 +124,11 @@ constexpr auto wider_flushing_rows() {
 // To a narrower type. From double to single the host rounds, and a NaN keeps what fits of its payload.
 template <Round kRound, bool kFtz, bool kSat>
 constexpr OpRow single_row() {
-  return rounded_op<kRound, double>(
+  return rounded_op<kRound, Narrowing, double>(
       joined<"cvt", round_name<kRound>, when<kFtz, ".ftz">, when<kSat, ".sat">, ".f32.f64">, Unit::Sfu,
       kSat ? "Narrows a float; clamped to [0, 1], NaN becomes 0."
            : "Narrows a float; a NaN keeps what fits of its payload.",
-      [](double x) {
-        const float narrow = float(x);
+      [](float narrow, double) {
         const float kept = kFtz ? flushed(narrow) : narrow;
         return kSat ? saturated(kept) : kept;
       },

@@ -2,12 +2,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/ops/conversion_types.h"
 #include "isa/ops/families.h"
+#include "isa/rounding.h"
 
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
-// To f32 and f64 the host rounds, in a direction that the row sets; to 16 bits the work is done in integers. D is the
-// float's type, as conversion rows know it.
+// To f32 and f64 of many bits: the host rounds, in a direction that the row sets.
+template <class To, class From>
+struct FromInteger {
+  [[gnu::always_inline]] static To of(Register<From> x) {
+    if constexpr (std::is_same_v<To, float>)
+      return rounded_float(From(x));
+    else
+      return rounded_double(From(x));
+  }
+#if defined(__AVX512F__)
+  template <Round kRound>
+  [[gnu::always_inline]] static auto rounded(__m512i x) {
+    constexpr int kDirection = kStaticRound<kRound>;
+    constexpr bool kIsSigned = std::is_signed_v<From>;
+    if constexpr (std::is_same_v<To, double>)
+      return kIsSigned ? _mm512_cvt_roundepi64_pd(x, kDirection) : _mm512_cvt_roundepu64_pd(x, kDirection);
+    else if constexpr (sizeof(From) == 8)
+      return kIsSigned ? _mm512_cvt_roundepi64_ps(x, kDirection) : _mm512_cvt_roundepu64_ps(x, kDirection);
+    else
+      return kIsSigned ? _mm512_cvt_roundepi32_ps(x, kDirection) : _mm512_cvt_roundepu32_ps(x, kDirection);
+  }
+#endif
+};
+
+// To 16 bits the work is done in integers. D is the float's type, as conversion rows know it.
 template <class D, class From, Round kRound, bool kSat>
 struct Convert {
   using To = typename D::Type;
@@ -58,20 +82,22 @@ template <class D, class S, Round kRound, bool kSat>
 constexpr OpRow row() {
   using To = typename D::Type;
   using From = typename S::Type;
-  constexpr bool kIsShort = sizeof(To) == 2;
-  constexpr Round kEffective = kSat || kIsExact<To, From> ? Round::Nearest : kRound;
+  constexpr bool kIsRounded = !kSat && !kIsExact<To, From>;
   constexpr uint64_t kMinusOne = register_word<From>(From(-1));
   constexpr Examples kExamples{{{0}, 0},
                                {{1}, D::kOne},
                                {{std::is_signed_v<From> ? kMinusOne : 1},
                                 std::is_signed_v<From> ? (kSat ? 0 : D::kMinusOne) : D::kOne}};
-  return rounded_op < kIsShort ? Round::Nearest : kEffective,
-         Register < From >> (joined<"cvt", round_name<kRound>, when<kSat, ".sat">, D::kName, S::kName>,
-                             sizeof(To) == 8 || sizeof(From) == 8 ? Unit::Sfu : Unit::Int,
-                             kSat ? "Converts an integer, rounded as the name says; clamped to [0, 1]."
-                                  : "Converts an integer, rounded as the name says.",
-                             Convert < D, From, kIsShort ? kEffective : Round::Nearest, kSat > {},
-                             kExamples);
+  constexpr std::string_view kName = joined<"cvt", round_name<kRound>, when<kSat, ".sat">, D::kName, S::kName>;
+  constexpr std::string_view kDoc = kSat ? "Converts an integer, rounded as the name says; clamped to [0, 1]."
+                                         : "Converts an integer, rounded as the name says.";
+  constexpr Unit kUnit = sizeof(To) == 8 || sizeof(From) == 8 ? Unit::Sfu : Unit::Int;
+  if constexpr (kIsRounded && sizeof(To) > 2)
+    return rounded_op<kRound, FromInteger<To, From>, Register<From>>(
+        kName, kUnit, kDoc, [](To x, Register<From>) { return x; }, kExamples);
+  else
+    return value_op<Register<From>>(kName, kUnit, kDoc, Convert<D, From, kIsRounded ? kRound : Round::Nearest, kSat>{},
+                                    kExamples);
 }
 template <class D, class S>
 constexpr auto pair_rows() {

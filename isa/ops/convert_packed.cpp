@@ -1,5 +1,6 @@
 // Conversions that pack several results into a register, and the formats of tensor cores: pairs, tf32, bytes.
 // SPDX-License-Identifier: Apache-2.0
+#include "isa/half_rows.h"
 #include "isa/ops/conversion_types.h"
 #include "isa/ops/families.h"
 
@@ -12,25 +13,36 @@ inline float relu(float x) {
   return kOn && x <= 0.0f ? 0.0f : x;
 }
 
-template <class N, Round kRound>
-inline uint32_t narrow_bits(float x) {
+// One half of a pair from a row of floats.
+template <class N, Round kRound, bool kRelu>
+[[gnu::always_inline]] inline void narrow_row(const Source<float>& source, uint32_t* out) {
+  alignas(64) float x[kLanes];
+  all_lanes([&](int i) { x[i] = relu<kRelu>(source.at(i)); });
   if constexpr (std::is_same_v<N, TypeF16>)
-    return rounded_half<kRound>(x).bits;
+    narrow_to_halves<kRound>(x, out);
   else
-    return rounded_bfloat<kRound>(x).bits;
+    all_lanes([&](int i) { out[i] = rounded_bfloat<kRound>(x[i]).bits; });
+}
+template <class N, Round kRound, bool kRelu>
+[[gnu::flatten]] void run_pair(Warp& warp, const Inst& inst) {
+  const Slot* const slot = &inst.operand.front();
+  alignas(64) uint32_t high[kLanes], low[kLanes];
+  narrow_row<N, kRound, kRelu>(Source<float>(warp, slot[1]), high);
+  narrow_row<N, kRound, kRelu>(Source<float>(warp, slot[2]), low);
+  write_lanes<uint32_t>(warp, slot[0], [&](int i) { return high[i] << 16 | low[i]; });
 }
 // Two floats to a pair; the first source becomes the upper half.
 template <class N, Round kRound, bool kRelu>
 constexpr OpRow pair_row() {
-  return binary<float>(joined<"cvt", round_name<kRound>, when<kRelu, ".relu">, N::kName, "x2.f32">, Unit::Int,
-                       kRelu ? "Narrows two floats, the first to the upper half; negative numbers become 0."
-                             : "Narrows two floats, the first to the upper half.",
-                       [](float a, float b) {
-                         const float high = relu<kRelu>(a), low = relu<kRelu>(b);
-                         return narrow_bits<N, kRound>(high) << 16 | narrow_bits<N, kRound>(low);
-                       },
-                       {{{TypeF32::kTwoAndHalf, TypeF32::kOne}, N::kTwoAndHalf << 16 | N::kOne},
-                        {{TypeF32::kOne, TypeF32::kMinusOne}, N::kOne << 16 | (kRelu ? 0 : N::kMinusOne)}});
+  OpRow row;
+  row.name = joined<"cvt", round_name<kRound>, when<kRelu, ".relu">, N::kName, "x2.f32">;
+  row.operands = {Dst32, Src32, Src32};
+  row.run = &run_pair<N, kRound, kRelu>;
+  row.doc = kRelu ? "Narrows two floats, the first to the upper half; negative numbers become 0."
+                  : "Narrows two floats, the first to the upper half.";
+  row.examples = {{{TypeF32::kTwoAndHalf, TypeF32::kOne}, N::kTwoAndHalf << 16 | N::kOne},
+                  {{TypeF32::kOne, TypeF32::kMinusOne}, N::kOne << 16 | (kRelu ? 0 : N::kMinusOne)}};
+  return row;
 }
 template <class N>
 constexpr auto pair_rows() {

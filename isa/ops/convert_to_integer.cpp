@@ -1,5 +1,6 @@
 // Conversions of floats to integers: rounded, then clamped to the range.
 // SPDX-License-Identifier: Apache-2.0
+#include "isa/half_rows.h"
 #include "isa/ops/conversion_types.h"
 #include "isa/ops/families.h"
 
@@ -18,6 +19,59 @@ struct Convert {
   }
 };
 
+#if defined(__AVX512F__)
+
+// Eight doubles, rounded and clamped: 32-bit words for the narrower integers. The instructions give the lowest number
+// for all that a signed one cannot hold, and the highest for an unsigned one.
+template <class To, Round kRound, bool kFromDouble>
+[[gnu::always_inline]] inline auto to_integer_part(__m512d x) {
+  constexpr int kDirection = kStaticRound<kRound>;
+  constexpr bool kIsSigned = std::is_signed_v<To>;
+  constexpr To kLow = kIsSigned ? To(Unsigned<To>(1) << (kBits<To> - 1)) : To(0), kHigh = To(~kLow);
+  constexpr To kNan = kFromNan<To, kFromDouble>;
+  const __mmask8 is_nan = _mm512_cmp_pd_mask(x, x, _CMP_UNORD_Q);
+  const __m512d above = _mm512_max_pd(x, _mm512_set1_pd(double(kLow)));
+  if constexpr (sizeof(To) < 8) {
+    const __m512d inside = _mm512_min_pd(above, _mm512_set1_pd(double(kHigh)));
+    const __m256i number = std::is_same_v<To, uint32_t> ? _mm512_cvt_roundpd_epu32(inside, kDirection)
+                                                        : _mm512_cvt_roundpd_epi32(inside, kDirection);
+    return _mm256_mask_set1_epi32(number, is_nan, int(kNan));
+  } else {
+    const __m512i number = kIsSigned ? _mm512_cvt_roundpd_epi64(above, kDirection)
+                                     : _mm512_cvt_roundpd_epu64(above, kDirection);
+    const __mmask8 is_high = _mm512_cmp_pd_mask(x, _mm512_set1_pd(kIsSigned ? 0x1p63 : 0x1p64), _CMP_GE_OQ);
+    return _mm512_mask_set1_epi64(_mm512_mask_set1_epi64(number, is_high, int64_t(kHigh)), is_nan, int64_t(kNan));
+  }
+}
+// A row of S as doubles, eight lanes at a time: `take(i, doubles)` of the lanes from i on.
+template <class S, bool kFtz, class Take>
+[[gnu::always_inline]] inline void each_doubles(const Source<typename S::Type>& source, Take&& take) {
+  if constexpr (std::is_same_v<S, TypeF64>) {
+    for (int i = 0; i < kLanes; i += 8) take(i, load_part(source, i));
+  } else {
+    alignas(64) float x[kLanes];
+    if constexpr (std::is_same_v<S, TypeF16>)
+      widen_halves<false>(source.low, x);
+    else
+      all_lanes([&](int i) { x[i] = kFtz ? flushed(S::value(source.at(i))) : S::value(source.at(i)); });
+    for (int i = 0; i < kLanes; i += 8) take(i, _mm512_cvtps_pd(_mm256_load_ps(x + i)));
+  }
+}
+// Handler, instead of the work of a lane: ten times as fast.
+template <class To, class S, Round kRound, bool kFtz>
+[[gnu::flatten]] void run_convert(Warp& warp, const Inst& inst) {
+  const Slot* const slot = &inst.operand.front();
+  const Source<typename S::Type> source(warp, slot[1]);
+  alignas(64) std::conditional_t<sizeof(To) == 8, uint64_t, uint32_t> out[kLanes];
+  each_doubles<S, kFtz>(source, [&](int i, __m512d x) {
+    const auto numbers = to_integer_part<To, kRound, std::is_same_v<S, TypeF64>>(x);
+    __builtin_memcpy(out + i, &numbers, sizeof numbers);
+  });
+  write_lanes<Register<To>>(warp, slot[0], [&](int i) { return Register<To>(out[i]); });
+}
+
+#endif
+
 template <class D, class S, Round kRound, bool kFtz, bool kSat>
 constexpr OpRow row() {
   using To = typename D::Type;
@@ -25,7 +79,7 @@ constexpr OpRow row() {
   // Subnormals matter to the directed roundings only: the others share a handler.
   constexpr bool kFlush = kFtz && (kRound == Round::Down || kRound == Round::Up);
   constexpr To kHigh = To(std::is_signed_v<To> ? Unsigned<To>(-1) >> 1 : Unsigned<To>(-1));
-  return value_op<typename S::Type>(
+  OpRow row = value_op<typename S::Type>(
       joined<"cvt", integer_round_name<kRound>, when<kFtz, ".ftz">, when<kSat, ".sat">, D::kName, S::kName>,
       Unit::Sfu, "Rounds to an integer and clamps it to the range of the result.",
       Convert<To, S, kRound, kFlush>{},
@@ -34,6 +88,10 @@ constexpr OpRow row() {
        {{S::kTwoAndHalf}, kRound == Round::Up ? 3 : 2},
        {{S::kInfinity}, register_word<To>(kHigh)},
        {{S::kNan}, register_word<To>(kFromNan<To, kFromDouble>)}});
+#if defined(__AVX512F__)
+  row.run = &run_convert<To, S, kRound, kFlush>;
+#endif
+  return row;
 }
 
 template <class D, class S>

@@ -3,7 +3,7 @@
 #include "isa/op_makers.h"
 #include "isa/ops/families.h"
 #include "isa/ops/modifiers.h"
-#include "isa/rounding.h"
+#include "isa/rounded_arithmetic.h"
 
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
@@ -33,11 +33,11 @@ inline double with_nan(double result, double strongest, double strong, double we
   return with_nan(result, strongest, is_nan(strong) ? strong : weak);
 }
 
-struct Add {
+struct Add : Sum {
   static constexpr Text kName = "add";
   static constexpr Text kDoc = "Adds";
   static constexpr Unit kUnit = Unit::Fp64;
-  double operator()(double a, double b) const { return with_nan(a + b, b, a); }
+  double operator()(double result, double a, double b) const { return with_nan(result, b, a); }
   static constexpr Examples examples(Round round) {
     const bool is_toward_zero = round == Round::Down || round == Round::Zero;
     return {{{kOne, kTiny}, round == Round::Up ? kOne + 1 : kOne},
@@ -49,11 +49,11 @@ struct Add {
             {{kNan, kOne}, kNan}};
   }
 };
-struct Subtract {
+struct Subtract : Difference {
   static constexpr Text kName = "sub";
   static constexpr Text kDoc = "Subtracts";
   static constexpr Unit kUnit = Unit::Fp64;
-  double operator()(double a, double b) const { return with_nan(a - b, b, a); }
+  double operator()(double result, double a, double b) const { return with_nan(result, b, a); }
   static constexpr Examples examples(Round round) {
     const bool is_toward_zero = round == Round::Down || round == Round::Zero;
     return {{{kOne, kTiny | kSign}, round == Round::Up ? kOne + 1 : kOne},
@@ -64,11 +64,11 @@ struct Subtract {
             {{kOne, kSignaling}, kSignaling | kQuiet}};
   }
 };
-struct Multiply {
+struct Multiply : Product {
   static constexpr Text kName = "mul";
   static constexpr Text kDoc = "Multiplies";
   static constexpr Unit kUnit = Unit::Fp64;
-  double operator()(double a, double b) const { return with_nan(a * b, b, a); }
+  double operator()(double result, double a, double b) const { return with_nan(result, b, a); }
   static constexpr Examples examples(Round round) {
     return {{{kOne + 1, kOne + 1}, round == Round::Up ? kOne + 3 : kOne + 2},
             {{kSign, kTwo}, kSign},
@@ -76,10 +76,10 @@ struct Multiply {
             {{kNan, kSignaling}, kSignaling | kQuiet}};
   }
 };
-struct MultiplyAdd {
+struct MultiplyAdd : ProductSum {
   static constexpr Text kDoc = "Multiplies and adds, rounding once";
   static constexpr Unit kUnit = Unit::Fp64;
-  double operator()(double a, double b, double c) const { return with_nan(__builtin_fma(a, b, c), b, c, a); }
+  double operator()(double result, double a, double b, double c) const { return with_nan(result, b, c, a); }
   static constexpr Examples examples(Round round) {
     return {{{kOne + 1, kOne + 1, (kOne + 2) | kSign}, 0x3970'0000'0000'0000},
             {{kOne, kOne, kTiny}, round == Round::Up ? kOne + 1 : kOne},
@@ -95,11 +95,11 @@ struct Fma : MultiplyAdd {
 struct Mad : MultiplyAdd {  // PTX's other name of the same
   static constexpr Text kName = "mad";
 };
-struct Divide {
+struct Divide : Quotient {
   static constexpr Text kName = "div";
   static constexpr Text kDoc = "Divides";
   static constexpr Unit kUnit = Unit::Fp64Div;
-  double operator()(double a, double b) const { return with_nan(a / b, a, b); }
+  double operator()(double result, double a, double b) const { return with_nan(result, a, b); }
   static constexpr Examples examples(Round round) {
     return {{{kOne, kThree}, round == Round::Up ? kThird + 1 : kThird},
             {{kOne, kSign}, kInfinity | kSign},
@@ -107,22 +107,22 @@ struct Divide {
             {{kNan, kSignaling}, kNan}};
   }
 };
-struct Reciprocal {
+struct Reciprocal : Inverse {
   static constexpr Text kName = "rcp";
   static constexpr Text kDoc = "Reciprocal";
   static constexpr Unit kUnit = Unit::Fp64Div;
-  double operator()(double a) const { return with_nan(1.0 / a, a); }
+  double operator()(double result, double a) const { return with_nan(result, a); }
   static constexpr Examples examples(Round round) {
     return {{{kThree}, round == Round::Up ? kThird + 1 : kThird},
             {{kSign}, kInfinity | kSign},
             {{kSignaling}, kSignaling | kQuiet}};
   }
 };
-struct SquareRoot {
+struct SquareRoot : Root {
   static constexpr Text kName = "sqrt";
   static constexpr Text kDoc = "Square root";
   static constexpr Unit kUnit = Unit::Fp64Div;
-  double operator()(double a) const { return with_nan(__builtin_sqrt(a), a); }
+  double operator()(double result, double a) const { return with_nan(result, a); }
   static constexpr Examples examples(Round round) {
     const bool is_up = round == Round::Nearest || round == Round::Up;
     return {{{0x4010'0000'0000'0000}, kTwo},
@@ -135,9 +135,9 @@ struct SquareRoot {
 // {.rn,.rz,.rm,.rp}
 template <class Op, class... A>
 constexpr auto rounded = generated<4>([](auto i) {
-  return rounded_op<kRounds[i], A...>(joined<Op::kName, round_name<kRounds[i]>, ".f64">, Op::kUnit,
-                                      joined<Op::kDoc, round_words<kRounds[i]>, ".">, Op{},
-                                      Op::examples(kRounds[i]));
+  return rounded_op<kRounds[i], Op, A...>(joined<Op::kName, round_name<kRounds[i]>, ".f64">, Op::kUnit,
+                                          joined<Op::kDoc, round_words<kRounds[i]>, ".">, Op{},
+                                          Op::examples(kRounds[i]));
 });
 
 // Signed integers in two's complement order like the doubles, -0 before +0.

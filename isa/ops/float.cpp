@@ -3,7 +3,7 @@
 #include "isa/op_makers.h"
 #include "isa/ops/families.h"
 #include "isa/ops/modifiers.h"
-#include "isa/rounding.h"
+#include "isa/rounded_arithmetic.h"
 
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
@@ -23,23 +23,22 @@ inline float saturated(float x) {
   return x > 0.0f ? below : 0.0f;
 }
 
-// The work of a lane: saturates the result, or makes its NaN the canonical one.
-template <class Op, bool kSat>
-struct Arithmetic {
+// Saturates the result, or makes its NaN the canonical one.
+template <bool kSat>
+struct Finish {
   template <class... A>
-  float operator()(A... a) const {
+  float operator()(float result, A...) const {
     if constexpr (kSat)
-      return saturated(Op{}(a...));
+      return saturated(result);
     else
-      return canonical(Op{}(a...));
+      return canonical(result);
   }
 };
 
-struct Add {
+struct Add : Sum {
   static constexpr Text kName = "add";
   static constexpr Text kDoc = "Adds";
   static constexpr Unit kUnit = Unit::Fp32;
-  float operator()(float a, float b) const { return a + b; }
   static constexpr Examples examples(Mode m) {
     const bool is_down = m.round == Round::Down, is_toward_zero = is_down || m.round == Round::Zero;
     return {{{kHalf, 0x3080'0000}, m.round == Round::Up ? 0x3f00'0001u : kHalf},
@@ -51,11 +50,10 @@ struct Add {
             {{0x7fc0'0000, 1}, m.sat ? 0 : kNan}};
   }
 };
-struct Subtract {
+struct Subtract : Difference {
   static constexpr Text kName = "sub";
   static constexpr Text kDoc = "Subtracts";
   static constexpr Unit kUnit = Unit::Fp32;
-  float operator()(float a, float b) const { return a - b; }
   static constexpr Examples examples(Mode m) {
     const bool is_down = m.round == Round::Down, is_toward_zero = is_down || m.round == Round::Zero;
     return {{{kHalf, 0xb080'0000}, m.round == Round::Up ? 0x3f00'0001u : kHalf},
@@ -69,11 +67,10 @@ struct Subtract {
             {{kInfinity, kInfinity}, m.sat ? 0 : kNan}};
   }
 };
-struct Multiply {
+struct Multiply : Product {
   static constexpr Text kName = "mul";
   static constexpr Text kDoc = "Multiplies";
   static constexpr Unit kUnit = Unit::Fp32;
-  float operator()(float a, float b) const { return a * b; }
   static constexpr Examples examples(Mode m) {
     return {{{0x3f00'0001, 0x3f00'0001}, m.round == Round::Up ? 0x3e80'0003u : 0x3e80'0002u},
             {{0x0080'0000, kHalf}, m.ftz ? 0u : 0x0040'0000u},
@@ -83,10 +80,9 @@ struct Multiply {
             {{0, kInfinity}, m.sat ? 0 : kNan}};
   }
 };
-struct MultiplyAdd {
+struct MultiplyAdd : ProductSum {
   static constexpr Text kDoc = "Multiplies and adds, rounding once";
   static constexpr Unit kUnit = Unit::Fp32;
-  float operator()(float a, float b, float c) const { return __builtin_fmaf(a, b, c); }
   static constexpr Examples examples(Mode m) {
     const bool is_down = m.round == Round::Down, is_toward_zero = is_down || m.round == Round::Zero;
     return {{{0x3f80'0001, 0x3f80'0001, 0xbf80'0002}, 0x2880'0000},
@@ -104,11 +100,10 @@ struct Fma : MultiplyAdd {
 struct Mad : MultiplyAdd {  // PTX's other name of the same
   static constexpr Text kName = "mad";
 };
-struct Divide {
+struct Divide : Quotient {
   static constexpr Text kName = "div";
   static constexpr Text kDoc = "Divides";
   static constexpr Unit kUnit = Unit::FpDiv;
-  float operator()(float a, float b) const { return a / b; }
   static constexpr Examples examples(Mode m) {
     const bool is_up = m.round == Round::Nearest || m.round == Round::Up;
     return {{{kOne, 0x4040'0000}, is_up ? 0x3eaa'aaabu : 0x3eaa'aaaau},
@@ -117,11 +112,10 @@ struct Divide {
             {{6, kTwo}, m.ftz ? 0u : 3u}};
   }
 };
-struct Reciprocal {
+struct Reciprocal : Inverse {
   static constexpr Text kName = "rcp";
   static constexpr Text kDoc = "Reciprocal";
   static constexpr Unit kUnit = Unit::FpDiv;
-  float operator()(float a) const { return 1.0f / a; }
   static constexpr Examples examples(Mode m) {
     const bool is_up = m.round == Round::Nearest || m.round == Round::Up;
     return {{{0x4040'0000}, is_up ? 0x3eaa'aaabu : 0x3eaa'aaaau},
@@ -130,11 +124,10 @@ struct Reciprocal {
             {{0x7f00'0000}, m.ftz ? 0u : 0x0040'0000u}};
   }
 };
-struct SquareRoot {
+struct SquareRoot : Root {
   static constexpr Text kName = "sqrt";
   static constexpr Text kDoc = "Square root";
   static constexpr Unit kUnit = Unit::FpDiv;
-  float operator()(float a) const { return __builtin_sqrtf(a); }
   static constexpr Examples examples(Mode m) {
     return {{{0x4080'0000}, kTwo},
             {{kTwo}, m.round == Round::Up ? 0x3fb5'04f4u : 0x3fb5'04f3u},
@@ -149,10 +142,10 @@ struct SquareRoot {
 
 template <class Op, Round kRound, bool kFtz, bool kSat, class... A>
 constexpr OpRow arithmetic_row() {
-  return flushed_op<kRound, kFtz, A...>(
+  return flushed_op<kRound, kFtz, Op, A...>(
       joined<Op::kName, round_name<kRound>, when<kFtz, ".ftz">, when<kSat, ".sat">, ".f32">, Op::kUnit,
       joined<Op::kDoc, round_words<kRound>, when<kFtz, kFtzWords>, when<kSat, kSatWords>, ".">,
-      Arithmetic<Op, kSat>{}, Op::examples({.round = kRound, .ftz = kFtz, .sat = kSat}));
+      Finish<kSat>{}, Op::examples({.round = kRound, .ftz = kFtz, .sat = kSat}));
 }
 // {.rn,.rz,.rm,.rp}{.ftz}, and {.sat} where PTX has it.
 template <class Op, class... A>

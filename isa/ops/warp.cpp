@@ -118,22 +118,23 @@ template <Vote kVote>
 template <class T>
 [[gnu::always_inline]] inline void lanes_of_values(const Source<T>& a, LaneMask* out) {
 #if defined(__AVX512F__)
-  // Lane k's bit goes to all lanes that hold what lane k holds: no mask leaves the vector registers for it.
-  const auto half = [](const uint32_t* row, int at) { return _mm512_loadu_si512(row + at); };
-  const __m512i low[] = {half(a.low, 0), half(a.low, 16)};
-  const __m512i high[] = {half(sizeof(T) == 8 ? a.high : a.low, 0), half(sizeof(T) == 8 ? a.high : a.low, 16)};
-  __m512i lanes[] = {_mm512_setzero_si512(), _mm512_setzero_si512()};
+  // The masks go to memory by halves as they are made. Words that differ leave bits, of which one test makes a mask:
+  // tests and comparisons are what this waits for.
+  const auto part = [](const uint32_t* row, int half) { return _mm512_loadu_si512(row + 16 * half); };
+  const uint32_t* const upper = sizeof(T) == 8 ? a.high : a.low;
+  const __m512i low[] = {part(a.low, 0), part(a.low, 1)}, high[] = {part(upper, 0), part(upper, 1)};
+  alignas(64) __mmask16 lanes[2 * kLanes];
   for (int k = 0; k < kLanes; ++k) {
-    const __m512i bit = _mm512_set1_epi32(int(kLaneBit[k])), wanted = _mm512_set1_epi32(int(a.low[k]));
+    const __m512i wanted = _mm512_set1_epi32(int(a.low[k])), wanted_high = _mm512_set1_epi32(int(upper[k]));
     for (int h = 0; h < 2; ++h) {
-      __mmask16 same = _mm512_cmpeq_epi32_mask(low[h], wanted);
-      if constexpr (sizeof(T) == 8)
-        same = _mm512_mask_cmpeq_epi32_mask(same, high[h], _mm512_set1_epi32(int(a.high[k])));
-      lanes[h] = _mm512_mask_or_epi32(lanes[h], same, lanes[h], bit);
+      __m512i different = _mm512_xor_si512(low[h], wanted);
+      if constexpr (sizeof(T) == 8)  // different | (high ^ wanted_high)
+        different = _mm512_ternarylogic_epi32(different, high[h], wanted_high, 0xf6);
+      lanes[2 * k + h] = _mm512_testn_epi32_mask(different, different);
     }
   }
-  _mm512_store_si512(out, lanes[0]);
-  _mm512_store_si512(out + 16, lanes[1]);
+  _mm512_store_si512(out, _mm512_load_si512(lanes));
+  _mm512_store_si512(out + 16, _mm512_load_si512(lanes + kLanes));
 #else
   for (int k = 0; k < kLanes; ++k) {
     out[k] = lanes_equal(a.low, a.low[k]);
@@ -172,6 +173,12 @@ template <class T>
   write_predicate(warp, slot_at(inst, 1), matched);
 }
 
+// Combines neighbours that lie kHalf apart until one value is left: vectors of half the length each time.
+template <int kHalf, class F, class T>
+[[gnu::always_inline]] inline void fold(T* value) {
+  for (int i = 0; i < kHalf; ++i) value[i] = F{}(value[i], value[i + kHalf]);
+  if constexpr (kHalf > 1) fold<kHalf / 2, F>(value);
+}
 // Combines the members' values; the neutral value stands for the others.
 template <class T, T kNeutral, class F>
 [[gnu::flatten]] void reduce(Warp& warp, const Inst& inst) {
@@ -179,9 +186,11 @@ template <class T, T kNeutral, class F>
   const Source<uint32_t> masks(warp, slot_at(inst, 2));
   uint32_t result[kLanes]{};
   each_group(warp, masks, [&](LaneMask group, LaneMask members) {
-    T sum = kNeutral;
-    for (int i = 0; i < kLanes; ++i) sum = F{}(sum, (members & kLaneBit[i]) != 0 ? a.at(i) : kNeutral);
-    all_lanes([&](int i) { result[i] = (group & kLaneBit[i]) != 0 ? uint32_t(sum) : result[i]; });
+    alignas(64) T value[kLanes];
+    all_lanes([&](int i) { value[i] = (members & kLaneBit[i]) != 0 ? a.at(i) : kNeutral; });
+    fold<kLanes / 2, F>(value);
+    const uint32_t folded = uint32_t(value[0]);
+    all_lanes([&](int i) { result[i] = (group & kLaneBit[i]) != 0 ? folded : result[i]; });
   });
   write_lanes<uint32_t>(warp, slot_at(inst, 0), [&](int i) { return result[i]; });
 }

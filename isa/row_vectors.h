@@ -1,0 +1,52 @@
+// Parts of rows as 512-bit vectors: 16 words, or 8 of the doubles and long integers that lie in two rows.
+//
+// Where no compiler finds the instruction: rounding in a direction of its own, conversions. Included only by
+// isa/ops/*.cpp (see op_makers.h); empty on paths without AVX-512.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <type_traits>
+
+#include "isa/op_makers.h"
+
+namespace glint::isa::GLINT_ISA_PATH {
+
+#if defined(__AVX512F__)
+
+// The lanes from `i` on, a multiple of their number.
+template <class T>
+[[gnu::always_inline]] inline auto load_part(const Source<T>& source, int i) {
+  static_assert(sizeof(T) >= 4);
+  if constexpr (sizeof(T) == 4) {
+    const __m512i words = _mm512_loadu_si512(source.low + i);
+    if constexpr (std::is_same_v<T, float>)
+      return _mm512_castsi512_ps(words);
+    else
+      return words;
+  } else {
+    const auto half = [i](const uint32_t* row) {
+      return _mm512_cvtepu32_epi64(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(row + i)));
+    };
+    const __m512i words = _mm512_or_si512(half(source.low), _mm512_slli_epi64(half(source.high), 32));
+    if constexpr (std::is_same_v<T, double>)
+      return _mm512_castsi512_pd(words);
+    else
+      return words;
+  }
+}
+
+[[gnu::always_inline]] inline void store_part(float* out, __m512 x) {
+  _mm512_store_ps(out, x);
+}
+[[gnu::always_inline]] inline void store_part(float* out, __m256 x) {
+  _mm256_store_ps(out, x);
+}
+[[gnu::always_inline]] inline void store_part(double* out, __m512d x) {
+  _mm512_store_pd(out, x);
+}
+[[gnu::always_inline]] inline void store_part(uint32_t* out, __m512i x) {
+  _mm512_store_si512(out, x);
+}
+
+#endif
+
+}  // namespace glint::isa::GLINT_ISA_PATH
