@@ -48,6 +48,13 @@ template <class Visit>
   for (LaneMask rest = warp.exec; rest;) {
     const uint32_t mask = masks.at(__builtin_ctz(rest));
     const LaneMask group = lanes_equal(masks.low, mask) & rest;
+    // Mostly all give one mask: then what follows need not wait until it is known, it is foreseen.
+    if (group == rest) [[likely]] {
+      LaneMask all = rest;
+      asm("" : "+r"(all));
+      visit(all, all & mask);
+      return;
+    }
     visit(group, group & mask);
     rest &= ~group;
   }
@@ -118,23 +125,25 @@ template <Vote kVote>
 template <class T>
 [[gnu::always_inline]] inline void lanes_of_values(const Source<T>& a, LaneMask* out) {
 #if defined(__AVX512F__)
-  // The masks go to memory by halves as they are made. Words that differ leave bits, of which one test makes a mask:
-  // tests and comparisons are what this waits for.
-  const auto part = [](const uint32_t* row, int half) { return _mm512_loadu_si512(row + 16 * half); };
+  // Words that differ leave bits. Packed to 16 bits, where what was not 0 stays so, one test of 32 lanes makes a mask:
+  // such instructions, one or two a cycle, are what this waits for. Packing takes four lanes in turn from either source.
+  const __m512i fours = _mm512_setr_epi64(0, 1, 4, 5, 8, 9, 12, 13), others = _mm512_setr_epi64(2, 3, 6, 7, 10, 11, 14, 15);
+  const auto dealt = [](const uint32_t* row, __m512i which) {
+    return _mm512_permutex2var_epi64(_mm512_loadu_si512(row), which, _mm512_loadu_si512(row + 16));
+  };
   const uint32_t* const upper = sizeof(T) == 8 ? a.high : a.low;
-  const __m512i low[] = {part(a.low, 0), part(a.low, 1)}, high[] = {part(upper, 0), part(upper, 1)};
-  alignas(64) __mmask16 lanes[2 * kLanes];
+  const __m512i low[] = {dealt(a.low, fours), dealt(a.low, others)}, high[] = {dealt(upper, fours), dealt(upper, others)};
   for (int k = 0; k < kLanes; ++k) {
     const __m512i wanted = _mm512_set1_epi32(int(a.low[k])), wanted_high = _mm512_set1_epi32(int(upper[k]));
+    __m512i different[2];
     for (int h = 0; h < 2; ++h) {
-      __m512i different = _mm512_xor_si512(low[h], wanted);
+      different[h] = _mm512_xor_si512(low[h], wanted);
       if constexpr (sizeof(T) == 8)  // different | (high ^ wanted_high)
-        different = _mm512_ternarylogic_epi32(different, high[h], wanted_high, 0xf6);
-      lanes[2 * k + h] = _mm512_testn_epi32_mask(different, different);
+        different[h] = _mm512_ternarylogic_epi32(different[h], high[h], wanted_high, 0xf6);
     }
+    const __m512i packed = _mm512_packs_epi32(different[0], different[1]);
+    out[k] = _mm512_testn_epi16_mask(packed, packed);
   }
-  _mm512_store_si512(out, _mm512_load_si512(lanes));
-  _mm512_store_si512(out + 16, _mm512_load_si512(lanes + kLanes));
 #else
   for (int k = 0; k < kLanes; ++k) {
     out[k] = lanes_equal(a.low, a.low[k]);
@@ -175,9 +184,25 @@ template <class T>
 
 // Combines neighbours that lie kHalf apart until one value is left: vectors of half the length each time.
 template <int kHalf, class F, class T>
-[[gnu::always_inline]] inline void fold(T* value) {
+[[gnu::always_inline]] inline T folded(T* value) {
+#if defined(__AVX512F__)
+  static_assert(kHalf == 16);
+  typedef T Row __attribute__((vector_size(64)));
+  constexpr __mmask8 kAll64 = 0xff;  // masked, since g++ 12 warns of its own unmasked forms (GCC bug 105593)
+  constexpr __mmask16 kAll32 = 0xffff;
+  const auto row = [](__m512i x) { return __builtin_bit_cast(Row, x); };
+  const auto words = [](Row x) { return __builtin_bit_cast(__m512i, x); };
+  Row x = F{}(row(_mm512_load_si512(value)), row(_mm512_load_si512(value + kHalf)));
+  x = F{}(x, row(_mm512_maskz_shuffle_i64x2(kAll64, words(x), words(x), 0x4e)));
+  x = F{}(x, row(_mm512_maskz_shuffle_i64x2(kAll64, words(x), words(x), 0xb1)));
+  x = F{}(x, row(_mm512_maskz_shuffle_epi32(kAll32, words(x), _MM_PERM_BADC)));
+  x = F{}(x, row(_mm512_maskz_shuffle_epi32(kAll32, words(x), _MM_PERM_CDAB)));
+  return x[0];
+#else
   for (int i = 0; i < kHalf; ++i) value[i] = F{}(value[i], value[i + kHalf]);
-  if constexpr (kHalf > 1) fold<kHalf / 2, F>(value);
+  if constexpr (kHalf > 1) return folded<kHalf / 2, F>(value);
+  return value[0];
+#endif
 }
 // Combines the members' values; the neutral value stands for the others.
 template <class T, T kNeutral, class F>
@@ -188,9 +213,8 @@ template <class T, T kNeutral, class F>
   each_group(warp, masks, [&](LaneMask group, LaneMask members) {
     alignas(64) T value[kLanes];
     all_lanes([&](int i) { value[i] = (members & kLaneBit[i]) != 0 ? a.at(i) : kNeutral; });
-    fold<kLanes / 2, F>(value);
-    const uint32_t folded = uint32_t(value[0]);
-    all_lanes([&](int i) { result[i] = (group & kLaneBit[i]) != 0 ? folded : result[i]; });
+    const uint32_t all = uint32_t(folded<kLanes / 2, F>(value));
+    all_lanes([&](int i) { result[i] = (group & kLaneBit[i]) != 0 ? all : result[i]; });
   });
   write_lanes<uint32_t>(warp, slot_at(inst, 0), [&](int i) { return result[i]; });
 }
@@ -258,26 +282,26 @@ constexpr OpRow kRows[] = {
         "The lanes of the mask and true if all have the same value; otherwise 0 and false.",
         {{{9, 7}, 7, 1}, {{0x1'0000'0000, 2}, 2, 1}}),
     reduction<uint32_t, 0>("redux.sync.add.u32", "Sum over the lanes of the mask.",
-                           [](uint32_t a, uint32_t b) { return a + b; }, {{{5, 3}, 10}, {{0x8000'0001, 7}, 0x8000'0003}}),
+                           [](auto a, auto b) { return a + b; }, {{{5, 3}, 10}, {{0x8000'0001, 7}, 0x8000'0003}}),
     reduction<uint32_t, 0>("redux.sync.add.s32", "Sum over the lanes of the mask.",
-                           [](uint32_t a, uint32_t b) { return a + b; },
+                           [](auto a, auto b) { return a + b; },
                            {{{5, 3}, 10}, {{0xffff'ffff, 7}, 0xffff'fffd}}),
     reduction<uint32_t, ~0u>("redux.sync.min.u32", "Minimum over the lanes of the mask.",
-                             [](uint32_t a, uint32_t b) { return a < b ? a : b; }, {{{5, 3}, 5}, {{0xffff'ffff, 7}, 0xffff'ffff}}),
+                             [](auto a, auto b) { return a < b ? a : b; }, {{{5, 3}, 5}, {{0xffff'ffff, 7}, 0xffff'ffff}}),
     reduction<int32_t, 0x7fff'ffff>("redux.sync.min.s32", "Signed minimum over the lanes of the mask.",
-                                    [](int32_t a, int32_t b) { return a < b ? a : b; },
+                                    [](auto a, auto b) { return a < b ? a : b; },
                                     {{{5, 3}, 5}, {{0xffff'ffff, 7}, 0xffff'ffff}}),
     reduction<uint32_t, 0>("redux.sync.max.u32", "Maximum over the lanes of the mask.",
-                           [](uint32_t a, uint32_t b) { return a > b ? a : b; }, {{{5, 3}, 5}, {{0xffff'ffff, 7}, 0xffff'ffff}}),
+                           [](auto a, auto b) { return a > b ? a : b; }, {{{5, 3}, 5}, {{0xffff'ffff, 7}, 0xffff'ffff}}),
     reduction<int32_t, -0x7fff'ffff - 1>("redux.sync.max.s32", "Signed maximum over the lanes of the mask.",
-                                         [](int32_t a, int32_t b) { return a > b ? a : b; },
+                                         [](auto a, auto b) { return a > b ? a : b; },
                                          {{{5, 3}, 5}, {{0xffff'ffff, 7}, 0xffff'ffff}}),
     reduction<uint32_t, ~0u>("redux.sync.and.b32", "Bitwise and over the lanes of the mask.",
-                             [](uint32_t a, uint32_t b) { return a & b; }, {{{5, 3}, 5}, {{0, 7}, 0}}),
+                             [](auto a, auto b) { return a & b; }, {{{5, 3}, 5}, {{0, 7}, 0}}),
     reduction<uint32_t, 0>("redux.sync.or.b32", "Bitwise or over the lanes of the mask.",
-                           [](uint32_t a, uint32_t b) { return a | b; }, {{{5, 3}, 5}, {{0, 7}, 0}}),
+                           [](auto a, auto b) { return a | b; }, {{{5, 3}, 5}, {{0, 7}, 0}}),
     reduction<uint32_t, 0>("redux.sync.xor.b32", "Bitwise exclusive or over the lanes of the mask.",
-                           [](uint32_t a, uint32_t b) { return a ^ b; }, {{{5, 3}, 0}, {{5, 7}, 5}}),
+                           [](auto a, auto b) { return a ^ b; }, {{{5, 3}, 0}, {{5, 7}, 5}}),
     // Who runs is not among its operands: no example holds for every warp.
     row("activemask.b32", {Dst32}, &active_mask, "The lanes that execute this instruction.", {}),
     // The second result differs from lane to lane: true in the lane of the first.
