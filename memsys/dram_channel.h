@@ -86,7 +86,6 @@ class DramChannel : public DramModel {
   // When the data bus may carry a Read or a Write again, as far as its direction is concerned: part of the gates above.
   std::vector<DramClock> group_turned_;  // to reading, by group
   DramClock turned_[2] = {};             // to reading, to writing
-  DramClock turned_long_ = 0;            // the latest of all groups
   DramClock last_activates_[4] = {};  // a ring: tFAW allows no fifth inside the window
   uint64_t num_activates_ = 0;
   uint64_t busy_banks_ = 0;     // bit = bank works on a request
@@ -94,7 +93,6 @@ class DramChannel : public DramModel {
   uint64_t next_age_ = 0;
   DramClock refresh_due_ = kNever;
   uint32_t refresh_next_ = 0;          // bank, when they take turns
-  DramClock refreshed_until_ = 0;      // some bank is in refresh up to here
   Plan plan_;
   DramClock accounted_ = 0;     // clocks before this have been attributed
   DramClock data_until_ = 0;    // DramUse::Data up to here

@@ -103,7 +103,7 @@ void L1Cache::hold(Cycle now, Address line, uint32_t slot) {
 // for, with the sectors that the write covers.
 bool L1Cache::write_through(Cycle now, const Request& request) {
   const uint32_t slot = tags_.find(request.line);
-  const uint8_t covered = params_.write_allocate ? covered_sectors(request) : uint8_t{0};
+  const uint8_t covered = params_.write_allocate ? covered_sectors(request, line_bytes_) : uint8_t{0};
   const bool allocates = slot == kNone && covered && tags_.has_victim(request.line);
   const bool evicts_dirty = allocates && tags_.victim(request.line).dirty;
   if (!queue_room(evicts_dirty ? 2 : 1)) return refuse(Refusal::QueueFull);
@@ -111,9 +111,10 @@ bool L1Cache::write_through(Cycle now, const Request& request) {
   if (slot != kNone) {
     tags_.touch(slot);
     stats_.write_hits.add(request.traffic);
+    if (params_.write_evict) tags_.drop(slot, request.sectors);
   }
   if (allocates) tags_.insert(request.line).valid = covered;
-  else if (slot != kNone && covered) tags_.line(slot).valid |= covered;
+  else if (slot != kNone && covered && !params_.write_evict) tags_.line(slot).valid |= covered;
   stats_.writes.add(request.traffic);
   queue_packet(now + params_.miss_latency,
                {.line = request.line, .sectors = request.sectors, .write = true, .traffic = request.traffic, .words = request.words});

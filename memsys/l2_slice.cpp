@@ -170,12 +170,11 @@ bool L2Slice::write(Cycle now, const Packet& packet) {
 
 // Which sectors of a write the slice then holds whole: those that were, that it covers, or that it completes.
 uint8_t L2Slice::whole_sectors(const Packet& packet, uint32_t slot, uint8_t valid) {
-  constexpr WordMask kSector = (WordMask{1} << kWordsPerSector) - 1;
   uint8_t out = 0;
   for (uint32_t i = 0; i < line_bytes_ / kSectorBytes; ++i) {
     const auto bit = uint8_t(1u << i);
     if (!(packet.sectors & bit)) continue;
-    const WordMask whole = kSector << (i * kWordsPerSector);
+    const WordMask whole = words_of_sector(i, line_bytes_);
     if (!(tags_.line(slot).dirty & bit)) words_[slot] &= ~whole;  // of a line that was here before, or of old data
     words_[slot] |= packet.words & whole;
     if ((valid & bit) || (words_[slot] & whole) == whole) out |= bit;

@@ -18,10 +18,10 @@ struct Packet {
   uint8_t sectors = 0;
   bool write = false;
   Traffic traffic = Traffic::ShaderGlobal;
+  WordMask words = kAllWords;  // of a write
   Token token = 0;      // of an atomic, for its reply; its client and order of acceptance too
   Client client = Client::Lsu;
   uint64_t order = 0;
-  WordMask words = kAllWords;  // of a write
   Stamps stamps{};
 };
 

@@ -28,6 +28,7 @@ struct L1Params {
   bool local_write_back = true;  // Vulkan-Sim: "L", local write-back, global write-through
   bool global_write_back = false;
   bool write_allocate = false;          // Vulkan-Sim: "N"; Accel-Sim's newer parts allocate
+  bool write_evict = false;             // GPGPU-Sim's global stores: what they hit is dropped
   std::string allocate = "on_fill";     // Vulkan-Sim: "s", streaming
   bool fill_takes_access = true;        // Choice: arrays of one port; unpublished
 
@@ -35,7 +36,7 @@ struct L1Params {
     return std::tuple{
         param(&L1Params::size, "size", "byte", "Capacity of the data array.", 0, uint64_t{1} << 30),
         param(&L1Params::ways, "ways", "way", "Lines of a set; 0 makes the cache fully associative.", 0, 1 << 20),
-        param(&L1Params::hit_latency, "hit_latency", "cycle", "From an access to its token when all sectors are present.", 1, 10000),
+        param(&L1Params::hit_latency, "hit_latency", "cycle", "From an access to its token when all sectors are present.", 0, 10000),
         param(&L1Params::miss_latency, "miss_latency", "cycle", "From an access to the earliest departure of its miss.", 0, 10000),
         param(&L1Params::ports, "ports", "access/cycle", "Accesses taken a cycle.", 0, 64),
         param(&L1Params::banks, "banks", "bank", "Banks, chosen by line; each takes one access a cycle.", 0, 64),
@@ -45,6 +46,7 @@ struct L1Params {
         flag(&L1Params::local_write_back, "local_write_back", "Local memory is written back on eviction instead of written through."),
         flag(&L1Params::global_write_back, "global_write_back", "All other memory is written back on eviction as well."),
         flag(&L1Params::write_allocate, "write_allocate", "A write that is written through keeps its whole sectors in a line; otherwise it allocates none."),
+        flag(&L1Params::write_evict, "write_evict", "A write that is written through drops the sectors that it hits; otherwise they get the new bytes."),
         choice(&L1Params::allocate, "allocate", "When a miss takes its line: with the data (streaming), or already when it leaves, held until then.", &l1_allocations),
         flag(&L1Params::fill_takes_access, "fill_takes_access", "A fill keeps its bank from taking an access in the same cycle.")};
   }

@@ -32,11 +32,15 @@ inline constexpr uint32_t kSectorBytes = 32;  // the unit of transfer between al
 
 using Token = uint32_t;  // the requester's own name for a request; returned untouched
 
-// Bit i: the i-th 4 bytes of a line of at most 256. Model: 4 bytes are written whole or not at all; a store of less
-// counts as if it left them open.
-using WordMask = uint64_t;
+// Bit i: the i-th of 32 equal parts of a line, words of 4 bytes where it has 128. Model: such a part is written whole or
+// not at all; a store of less counts as if it left it open.
+using WordMask = uint32_t;
 inline constexpr WordMask kAllWords = ~WordMask{0};
-inline constexpr uint32_t kWordsPerSector = kSectorBytes / 4;
+// Of one sector, in a line of `line_bytes`.
+constexpr WordMask words_of_sector(uint32_t sector, uint32_t line_bytes) {
+  const uint32_t words = 32 * kSectorBytes / line_bytes;
+  return (kAllWords >> (32 - words)) << (sector * words);
+}
 
 struct Request {
   Address line = 0;         // physical, aligned to the L1 line size
@@ -50,12 +54,11 @@ struct Request {
 };
 
 // The sectors of a write that it covers.
-constexpr uint8_t covered_sectors(const Request& request) {
-  constexpr WordMask kSector = (WordMask{1} << kWordsPerSector) - 1;
+constexpr uint8_t covered_sectors(const Request& request, uint32_t line_bytes) {
   if (request.words == kAllWords) return request.sectors;
   uint8_t out = 0;
-  for (uint32_t i = 0; i < 8; ++i)
-    if ((request.words >> (i * kWordsPerSector) & kSector) == kSector) out |= uint8_t(request.sectors & 1u << i);
+  for (uint32_t i = 0; i < line_bytes / kSectorBytes; ++i)
+    if (const WordMask whole = words_of_sector(i, line_bytes); (request.words & whole) == whole) out |= uint8_t(request.sectors & 1u << i);
   return out;
 }
 

@@ -2,10 +2,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/config.h"
 
+#include <fmt/format.h>
+
+#include <cstdio>
+
 #include "base/config.h"
 #include "base/diagnostics.h"
+#include "memsys/peak.h"
 
 namespace glint::app {
+namespace {
+
+// What is impossible is the machine's to refuse, when one is built.
+void print_warnings(const pipeline::GpuParams& params) {
+  Diagnostics diagnostics;
+  mem::check(params.memory, diagnostics);
+  if (diagnostics.has_errors()) return;
+  mem::warn(params.memory, params.cores, params.clock_mhz, diagnostics, "memory.");
+  for (const std::string& message : diagnostics.messages()) fmt::print(stderr, "{}\n", message);
+}
+
+}  // namespace
 
 pipeline::GpuParams read_config(const Resources& resources, const std::string& name_or_path,
                                 const std::vector<std::string>& settings) {
@@ -17,6 +34,7 @@ pipeline::GpuParams read_config(const Resources& resources, const std::string& n
   pipeline::GpuParams params;
   read_params(root, params);
   diagnostics.throw_if_errors();
+  print_warnings(params);
   return params;
 }
 

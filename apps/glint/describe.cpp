@@ -7,6 +7,7 @@
 #include "apps/glint/config.h"
 #include "apps/glint/session.h"
 #include "base/params.h"
+#include "memsys/peak.h"
 
 namespace glint::app {
 namespace {
@@ -49,6 +50,9 @@ Exit describe(const Session& session, const Options& options) {
     print_markdown(found);
   else
     for (const ParamInfo& info : found) print(info);
+  const bool has_memory = options.key.empty() || options.key == "memory";
+  if (has_memory && !options.markdown)
+    fmt::print("at best: {}\n", mem::peak(params.memory, params.cores, params.clock_mhz).to_string());
   return Exit::Ok;
 }
 

@@ -128,7 +128,6 @@ void DramChannel::issue_column(uint32_t index, DramClock now) {
     channel_gates_.raise(Read, data_end + t.wtr_s);
     group_turned_[bank_group_[index]] = data_end + t.wtr_l;
     turned_[0] = data_end + t.wtr_s;
-    turned_long_ = data_end + t.wtr_l;
     bank.gates.raise(Precharge, data_end + t.wr);
     run_timers_until(data_end + t.wtr_s);
     ++stats_.writes;
@@ -207,21 +206,19 @@ void DramChannel::account(DramClock until) {
 void DramChannel::account_waiting(DramClock from, DramClock until) {
   if (from == until) return;
   DramClock turned = kNever, refreshed = kNever;
-  const bool turning = std::max(turned_[0], turned_[1]) > from || turned_long_ > from, refreshing = refreshed_until_ > from;
   bool open = false;
   for (uint64_t rest = busy_banks_; rest; rest &= rest - 1) {
     const uint32_t index = uint32_t(std::countr_zero(rest));
     if (banks_[index].next >= Read) {
       open = true;
-      if (!turning) break;
       turned = std::min(turned, turned_at(index));
-    } else if (!open && refreshing) {
+      if (turned <= from) break;
+    } else {
       refreshed = std::min(refreshed, banks_[index].refresh_until);
     }
   }
-  const DramClock first = open ? (turning ? turned : 0) : refreshing ? refreshed : 0;
-  const DramClock special = std::clamp(first, from, until) - from;
-  stats_.use.add(open ? DramUse::Turnaround : DramUse::Refresh, special);
+  const DramClock special = std::clamp(open ? turned : refreshed, from, until) - from;
+  if (special) stats_.use.add(open ? DramUse::Turnaround : DramUse::Refresh, special);
   stats_.use.add(open ? DramUse::ColumnWait : DramUse::RowWait, until - from - special);
 }
 
@@ -269,7 +266,6 @@ void DramChannel::refresh_bank(Bank& bank, DramClock until) {
   bank.row = kClosed;
   bank.gates.raise(Activate, until);
   bank.refresh_until = until;
-  refreshed_until_ = std::max(refreshed_until_, until);
   if (bank.current == kNone) return;
   if (bank.next >= Read) ++stats_.reopened;
   bank.next = Activate;

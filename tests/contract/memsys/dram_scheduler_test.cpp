@@ -74,3 +74,24 @@ TEST_CASE("a hit cap lets the oldest request through after that many row hits") 
   CHECK(scheduler->pick(0, 5) == 0);
   CHECK(scheduler->pick(0, 9) == 3);
 }
+
+TEST_CASE("write_drain keeps writes back until enough wait, drains to its lower mark and then reads again") {
+  PolicyChoice<DramScheduler> choice("write_drain");
+  Config config;
+  config.add_text("test", "high = 3\nlow = 1\n");
+  Diagnostics diagnostics;
+  ConfigTable table = config.root(diagnostics);
+  Registry<DramScheduler>::instance().entry("write_drain").read(table, choice);
+  REQUIRE_FALSE(diagnostics.has_errors());
+  const auto scheduler = choice.make({1, 16});
+  for (uint32_t i = 0; i < 2; ++i) scheduler->add(i, {0, 5, i, true});
+  for (uint32_t i = 2; i < 6; ++i) scheduler->add(i, {0, 5, i, false});
+  CHECK(scheduler->pick(0, 5) == 2);  // two writes are older, and not enough
+  scheduler->add(6, {0, 5, 6, true});
+  CHECK(scheduler->pick(0, 5) == 0);
+  CHECK(scheduler->pick(0, 5) == 1);
+  CHECK(scheduler->pick(0, 5) == 3);  // one write is left
+  CHECK(scheduler->pick(0, 5) == 4);
+  CHECK(scheduler->pick(0, 5) == 5);
+  CHECK(scheduler->pick(0, 5) == 6);  // no read is left
+}

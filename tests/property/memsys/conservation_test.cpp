@@ -60,7 +60,7 @@ struct CoreTraffic {
         const Address line = (random() % 4 ? random() % 48 : random() % 4096) * 128;
         const bool write = random() % 4 == 0;
         pending = Request{line, uint8_t(1 + random() % 15), write, Traffic(random() % uint32_t(Traffic::Count)), next};
-        if (write && random() % 2) pending->words = (uint64_t{random()} << 32 | random()) | (random() % 2 ? 0xffff'ffffull : 0);
+        if (write && random() % 2) pending->words = WordMask(random() | (random() % 2 ? 0xffffu : 0u));
       }
       if (!l1.access(now, Client(next % 2), *pending)) continue;
       if (pending->write) ++writes;

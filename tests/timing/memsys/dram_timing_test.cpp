@@ -1,75 +1,13 @@
 // DRAM commands to the clock: row hits, misses, conflicts, windows and turnarounds.
 // SPDX-License-Identifier: Apache-2.0
-#include <map>
-
-#include "memsys/dram_channel.h"
 #include "tests/support/catch.h"
+#include "tests/support/dram_rig.h"
 
 using namespace glint;
 using namespace glint::mem;
 
-namespace {
-
-// Core and command clocks are equal, all times are whole clocks, and an access moves 4 clocks of data.
-DramParams plain() {
-  DramParams p;
-  p.clock_mhz = 1000.0;
-  p.refresh = "none";
-  p.rcd = 15, p.rcd_write = 9, p.rp = 16, p.ras = 30, p.rc = 46, p.cl = 14, p.wl = 4, p.wr = 17, p.rtp = 5;
-  p.ccd_s = 4, p.ccd_l = 6, p.rrd_s = 5, p.rrd_l = 7, p.faw = 40, p.wtr_s = 8, p.wtr_l = 10;
-  return p;
-}
-
-// One channel; addresses are chosen by bank group, bank in the group and row, with the mapping turned back.
-class Rig {
- public:
-  explicit Rig(const DramParams& params) : root(nullptr, "test"), params_(params), channel({params_, 256, 1000.0, &root}) {
-    DramMap map(params.banks, params.bank_groups, params.row_bytes, 256);
-    for (Address local = 0; local < Address{params.banks} * params.row_bytes * 8; local += 256) {
-      const DramLocation at = map.locate(local);
-      place_.try_emplace({at.bank, at.row}, local);
-    }
-  }
-  void add(Cycle now, uint32_t bank, uint32_t row, bool write = false, uint32_t name = 0) {
-    channel.advance(now);
-    channel.add(now, name * 128, 1, place_.at({bank, row}), write);
-  }
-  // Runs to the end; the cycle at which each read's data was complete, by name.
-  std::map<uint32_t, Cycle> run() {
-    std::map<uint32_t, Cycle> out;
-    while (channel.next_command() != kNever) channel.advance(channel.next_command());
-    for (; !channel.returns().empty(); channel.returns().pop())
-      out[uint32_t(channel.returns().front().line / 128)] = channel.returns().front().ready;
-    return out;
-  }
-  Cycle read_alone(uint32_t bank, uint32_t row) {
-    const Cycle start = idle_;
-    add(start, bank, row);
-    const Cycle end = run()[0];
-    idle_ = end + 1000;
-    return end - start;
-  }
-
-  stats::Group root;
-
- private:
-  DramParams params_;
-
- public:
-  DramChannel channel;
-
- private:
-  std::map<std::pair<uint32_t, uint32_t>, Address> place_;
-  Cycle idle_ = 0;
-};
-
-constexpr Cycle kEdge = 1;  // a request is seen at the next clock edge
-constexpr Cycle kData = 4;
-
-}  // namespace
-
 TEST_CASE("a closed bank needs activate and read, an open row only read, a conflict precharge too") {
-  Rig rig(plain());
+  DramRig rig(plain());
   CHECK(rig.read_alone(3, 1) == kEdge + 15 + 14 + kData);
   CHECK(rig.read_alone(3, 1) == kEdge + 14 + kData);
   CHECK(rig.read_alone(3, 2) == kEdge + 16 + 15 + 14 + kData);
@@ -80,7 +18,7 @@ TEST_CASE("a closed bank needs activate and read, an open row only read, a confl
 
 TEST_CASE("row hits of one bank group are spaced by the long column delay, of two by the short one") {
   for (const auto& [second, spacing] : {std::pair{0u, 6}, {4u, 6}, {1u, 4}}) {
-    Rig rig(plain());
+    DramRig rig(plain());
     rig.read_alone(0, 1), rig.read_alone(second, 1);
     rig.add(9000, 0, 1, false, 1);
     rig.add(9000, second, 1, false, 2);
@@ -90,7 +28,7 @@ TEST_CASE("row hits of one bank group are spaced by the long column delay, of tw
 }
 
 TEST_CASE("a bank that was just opened is not closed before tRAS") {
-  Rig rig(plain());
+  DramRig rig(plain());
   rig.add(0, 0, 1, false, 1);
   rig.add(0, 0, 2, false, 2);
   auto at = rig.run();
@@ -102,7 +40,7 @@ TEST_CASE("a bank that was just opened is not closed before tRAS") {
 TEST_CASE("a long tRC holds back the next activate of the bank") {
   DramParams params = plain();
   params.rc = 60;
-  Rig rig(params);
+  DramRig rig(params);
   rig.add(0, 0, 1, false, 1);
   rig.add(0, 0, 2, false, 2);
   CHECK(rig.run()[2] == kEdge + 60 + 15 + 14 + kData);
@@ -111,7 +49,7 @@ TEST_CASE("a long tRC holds back the next activate of the bank") {
 TEST_CASE("activates are spaced by tRRD and the fifth waits for the window of four") {
   DramParams params = plain();
   params.dual_command_bus = true;
-  Rig rig(params);
+  DramRig rig(params);
   for (uint32_t i = 0; i < 5; ++i) rig.add(0, i, 1, false, i + 1);  // banks 0 to 3 in groups 0 to 3, bank 4 in group 0
   auto at = rig.run();
   const Cycle first = kEdge + 15 + 14 + kData;
@@ -123,14 +61,14 @@ TEST_CASE("activates are spaced by tRRD and the fifth waits for the window of fo
 }
 
 TEST_CASE("on a single command bus an activate gives way to a column command of the same clock") {
-  Rig rig(plain());
+  DramRig rig(plain());
   for (uint32_t i = 0; i < 4; ++i) rig.add(0, i, 1, false, i + 1);
   // The fourth activate would go out at clock 16, as the first read does.
   CHECK(rig.run()[4] == kEdge + 15 + 1 + 15 + 14 + kData);
 }
 
 TEST_CASE("two activates of one bank group are spaced by the long tRRD") {
-  Rig rig(plain());
+  DramRig rig(plain());
   rig.add(0, 0, 1, false, 1);
   rig.add(0, 4, 1, false, 2);
   auto at = rig.run();
@@ -139,7 +77,7 @@ TEST_CASE("two activates of one bank group are spaced by the long tRRD") {
 
 TEST_CASE("a read after a write waits for the data and tWTR of its bank group") {
   for (const auto& [second, wtr] : {std::pair{0u, 10u}, {1u, 8u}}) {
-    Rig rig(plain());
+    DramRig rig(plain());
     rig.read_alone(0, 1), rig.read_alone(second, 1);
     rig.add(9000, 0, 1, true);
     rig.add(9000, second, 1, false, 2);
@@ -149,7 +87,7 @@ TEST_CASE("a read after a write waits for the data and tWTR of its bank group") 
 }
 
 TEST_CASE("a write after a read waits until the bus can turn") {
-  Rig rig(plain());
+  DramRig rig(plain());
   rig.read_alone(0, 1), rig.read_alone(1, 1);
   rig.add(9000, 0, 1, false, 1);
   rig.add(9000, 1, 1, true);
@@ -160,7 +98,7 @@ TEST_CASE("a write after a read waits until the bus can turn") {
 }
 
 TEST_CASE("a written row is not closed before its write recovery") {
-  Rig rig(plain());
+  DramRig rig(plain());
   rig.read_alone(0, 1);
   rig.add(9000, 0, 1, true);
   rig.add(9000, 0, 2, false, 2);
@@ -171,7 +109,7 @@ TEST_CASE("FR-FCFS serves a younger row hit first and FCFS does not") {
   const auto order = [](const char* scheduler) {
     DramParams params = plain();
     params.scheduler = PolicyChoice<DramScheduler>(scheduler);
-    Rig rig(params);
+    DramRig rig(params);
     rig.read_alone(0, 1);
     rig.add(9000, 0, 1, false, 1);
     rig.add(9000, 0, 2, false, 2);
@@ -184,7 +122,7 @@ TEST_CASE("FR-FCFS serves a younger row hit first and FCFS does not") {
 }
 
 TEST_CASE("a stream of row hits over bank groups keeps the data bus full") {
-  Rig rig(plain());
+  DramRig rig(plain());
   for (uint32_t bank = 0; bank < 4; ++bank) rig.read_alone(bank, 1);
   const uint64_t busy = rig.channel.stats().busy_clocks.value();
   for (uint32_t i = 0; i < 64; ++i) rig.add(9000, i % 4, 1, false, i + 1);
@@ -194,7 +132,7 @@ TEST_CASE("a stream of row hits over bank groups keeps the data bus full") {
 }
 
 TEST_CASE("every command clock is attributed and the ratios follow their definitions") {
-  Rig rig(plain());
+  DramRig rig(plain());
   rig.add(0, 0, 1, false, 1);
   rig.add(0, 1, 1, false, 2);
   rig.run();
@@ -221,7 +159,7 @@ TEST_CASE("every command clock is attributed and the ratios follow their definit
 TEST_CASE("a full queue says so and frees a place with each column command") {
   DramParams params = plain();
   params.queue = 2;
-  Rig rig(params);
+  DramRig rig(params);
   rig.add(0, 0, 1, false, 1);
   CHECK_FALSE(rig.channel.full());
   rig.add(0, 1, 1, false, 2);
