@@ -6,7 +6,6 @@
 #include <bit>
 
 #include "base/check.h"
-#include "memsys/request.h"
 
 namespace glint::core {
 
@@ -14,28 +13,35 @@ void LineList::add(Address physical, uint32_t bytes) {
   const Address first = physical / mem::kSectorBytes;
   const Address last = (physical + bytes - 1) / mem::kSectorBytes;
   for (Address sector = first; sector <= last; ++sector) {
-    const Address address = sector * mem::kSectorBytes;
-    add_sector(address & ~mask_, uint32_t((address & mask_) / mem::kSectorBytes));
+    const Address address = sector * mem::kSectorBytes, line = address & ~mask_;
+    // Parts of the line that lie in the sector and in [physical, physical + bytes) as a whole.
+    const uint64_t round_up = (uint64_t{1} << part_shift_) - 1;
+    const uint64_t begin = (std::max(physical, address) - line + round_up) >> part_shift_;
+    const uint64_t end = (std::min(physical + bytes, address + mem::kSectorBytes) - line) >> part_shift_;
+    const uint64_t words = begin < end ? (uint64_t{1} << end) - (uint64_t{1} << begin) : 0;
+    add_sector(line, uint32_t((address & mask_) / mem::kSectorBytes), mem::WordMask(words));
   }
 }
 
-void LineList::add_sector(Address line, uint32_t sector) {
+void LineList::add_sector(Address line, uint32_t sector, mem::WordMask words) {
   const auto bit = uint8_t(1u << sector);
   // Neighbouring lanes mostly share a line, so the line hit last is tried first.
   if (count_ > 0 && lines_[last_].line == line) {
     lines_[last_].sectors |= bit;
+    lines_[last_].words |= words;
     return;
   }
   for (uint32_t i = count_; i-- > 0;) {
     if (lines_[i].line == line) {
       lines_[i].sectors |= bit;
+      lines_[i].words |= words;
       last_ = i;
       return;
     }
   }
   GLINT_CHECK(count_ < kMaxLines, "an access of more than {} lines", kMaxLines);
   last_ = count_;
-  lines_[count_++] = {line, bit};
+  lines_[count_++] = {line, bit, words};
 }
 
 uint32_t LineList::num_sectors() const {

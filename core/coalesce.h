@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 
@@ -10,6 +11,7 @@
 #include "core/texel_list.h"
 #include "core/warp_context.h"
 #include "isa/op_row.h"
+#include "memsys/request.h"
 
 namespace glint::core {
 
@@ -19,12 +21,13 @@ inline constexpr uint32_t kMaxLines = kMaxTexels * kLanes;
 struct LineSectors {
   Address line = 0;      // physical
   uint8_t sectors = 0;   // bit i: sector i
+  mem::WordMask words = 0;  // which of its 32 parts are touched whole
 };
 
 // The lines that one warp instruction touches, in the order of their first lane.
 class LineList {
  public:
-  explicit LineList(uint32_t line_bytes) : mask_(line_bytes - 1) {}
+  explicit LineList(uint32_t line_bytes) : mask_(line_bytes - 1), part_shift_(uint32_t(std::countr_zero(line_bytes)) - 5) {}
   void clear() { count_ = last_ = 0; }
   // Adds [physical, physical + bytes).
   void add(Address physical, uint32_t bytes);
@@ -32,9 +35,10 @@ class LineList {
   uint32_t num_sectors() const;
 
  private:
-  void add_sector(Address line, uint32_t sector);
+  void add_sector(Address line, uint32_t sector, mem::WordMask words);
 
   Address mask_;         // line size - 1
+  uint32_t part_shift_;  // of the 32 parts of a line
   uint32_t count_ = 0, last_ = 0;
   std::array<LineSectors, kMaxLines> lines_;
 };

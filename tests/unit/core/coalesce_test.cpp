@@ -91,4 +91,18 @@ TEST_CASE_METHOD(Fixture, "four words of local memory are four lines, one for ea
   for (size_t i = 0; i < 4; ++i) CHECK(list.lines()[i].line == 0x10000 + (4 + i) * 128);
 }
 
+TEST_CASE_METHOD(Fixture, "the parts of a line that are touched whole are known, and those touched in part are not") {
+  with_stride(8, 4, 0x0000'000f);
+  CHECK(list.lines()[0].words == 0b0101'0101);
+
+  with_stride(0, 2, 0x1, 4);  // half a word
+  CHECK(list.lines()[0].words == 0);
+
+  with_stride(0, 8, 0x1, 6);  // the end of a word, a word, the beginning of a word
+  CHECK(list.lines()[0].words == 0b0100);
+
+  with_stride(4, 4);
+  CHECK(list.lines()[0].words == 0xffff'ffff);
+}
+
 }  // namespace glint::core
