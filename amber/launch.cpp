@@ -10,7 +10,9 @@
 #include "core/block.h"
 #include "isa/descriptors.h"
 #include "pipeline/binding_table.h"
+#include "pipeline/description/modules.h"
 #include "pipeline/render.h"
+#include "pipeline/unbound.h"
 
 namespace glint::amber {
 namespace {
@@ -30,6 +32,7 @@ class Launch {
     image_ = core::link(programs);
     world_.image = &image_;
     for (const Binding& binding : pipeline_.bindings) bind(binding);
+    for (const CompiledShader& shader : shaders) pipeline::mark_unbound(world_, shader.reflection.bindings, bound_);
     if (pipeline_.is_ray_tracing) set_ray_tracing();
     else set_compute();
   }
@@ -57,7 +60,8 @@ class Launch {
   void bind_structures(const Binding& binding);
   void set_push_constants(const Binding& binding);
   void write_descriptor(const Binding& binding, uint64_t first, uint64_t second);
-  void write_descriptors(const Binding& binding, const std::vector<std::array<uint64_t, 2>>& all);
+  void write_descriptors(const Binding& binding, std::vector<std::array<uint64_t, 2>> all);
+  void check_kind(const Binding& binding) const;
   const frontend::Binding* reflected(const Binding& binding) const;
   core::ImageView view_of(const Binding& binding, const Buffer& buffer, size_t element);
   Address upload(const Buffer& buffer);
@@ -75,6 +79,7 @@ class Launch {
   mem::AddressSpace memory_;
   core::Image image_;
   core::World world_;
+  std::set<pipeline::BindingPlace> bound_;
   std::map<std::string, Address> addresses_;   // of buffers
   std::map<std::string, Address> structures_;  // of top levels
 };
@@ -138,6 +143,7 @@ void Launch::set_ray_tracing() {
 }
 
 void Launch::bind(const Binding& binding) {
+  check_kind(binding);
   switch (binding.kind) {
     case BindKind::Uniform:
     case BindKind::Storage: return bind_buffers(binding);
@@ -157,20 +163,44 @@ const frontend::Binding* Launch::reflected(const Binding& binding) const {
 }
 
 void Launch::write_descriptor(const Binding& binding, uint64_t first, uint64_t second) {
-  const uint64_t descriptor[2] = {first, second};
-  const size_t at = isa::descriptor_offset(binding.set, binding.binding);
-  world_.constant_bank.resize(std::max(world_.constant_bank.size(), at + sizeof descriptor));
-  std::memcpy(world_.constant_bank.data() + at, descriptor, sizeof descriptor);
+  bound_.insert({binding.set, binding.binding});
+  pipeline::write_descriptor(world_, {binding.set, binding.binding}, first, second);
 }
 
 // docs/abi.md: arrays of buffers and of structures have their descriptors in a table in global memory.
-void Launch::write_descriptors(const Binding& binding, const std::vector<std::array<uint64_t, 2>>& all) {
+void Launch::write_descriptors(const Binding& binding, std::vector<std::array<uint64_t, 2>> all) {
   const frontend::Binding* use = reflected(binding);
   if (!use || use->count == 1) return write_descriptor(binding, all[0][0], all[0][1]);
-  const uint64_t count = std::max<uint64_t>(use->count, all.size());
-  const Address table = memory_.allocate(fmt::format("descriptors of set {} binding {}", binding.set, binding.binding), count * isa::kDescriptorBytes);
+  if (all.size() < use->count) all.resize(use->count, {isa::unbound_address(binding.set, binding.binding), 0});
+  const Address table = memory_.allocate(fmt::format("descriptors of set {} binding {}", binding.set, binding.binding), all.size() * isa::kDescriptorBytes);
   memory_.write(table, all.data(), all.size() * isa::kDescriptorBytes);
-  write_descriptor(binding, table, count);
+  write_descriptor(binding, table, all.size());
+}
+
+// Scripts may bind anything to anything; what the shader would not take is a mistake of the script. Aliases of other kinds
+// at one place are none.
+void Launch::check_kind(const Binding& binding) const {
+  using frontend::BindingKind;
+  const auto takes = [&](BindingKind kind) {
+    switch (binding.kind) {
+      case BindKind::Uniform:
+      case BindKind::Storage: return kind == BindingKind::UniformBuffer || kind == BindingKind::StorageBuffer;
+      case BindKind::Sampler: return kind == BindingKind::Sampler;
+      case BindKind::Structure: return kind == BindingKind::AccelerationStructure;
+      case BindKind::PushConstants: return true;
+      default: return kind == BindingKind::SampledImage || kind == BindingKind::StorageImage;
+    }
+  };
+  const frontend::Binding* other = nullptr;
+  for (const CompiledShader& shader : shaders_)
+    for (const frontend::Binding& each : shader.reflection.bindings) {
+      if (each.set != binding.set || each.binding != binding.binding) continue;
+      if (takes(each.kind)) return;
+      other = &each;
+    }
+  if (other && !binding.names.empty())
+    throw UserError(binding.where, fmt::format("set {} binding {}: the shader declares the {} '{}', and '{}' is none", binding.set, binding.binding,
+                                               pipeline::name_of(other->kind), other->name, binding.names[0]));
 }
 
 Address Launch::upload(const Buffer& buffer) {
@@ -220,11 +250,13 @@ core::ImageView Launch::view_of(const Binding& binding, const Buffer& buffer, si
 void Launch::bind_images(const Binding& binding) {
   write_descriptor(binding, world_.images.size(), binding.names.size());
   for (size_t i = 0; i < binding.names.size(); ++i) world_.images.push_back(view_of(binding, script_.buffers.at(binding.names[i]), i));
+  pipeline::mark_rest_unbound(world_, reflected(binding), binding.names.size());
 }
 
 void Launch::bind_samplers(const Binding& binding) {
   write_descriptor(binding, world_.samplers.size(), binding.names.size());
   for (const std::string& name : binding.names) world_.samplers.push_back(script_.samplers.at(name));
+  pipeline::mark_rest_unbound(world_, reflected(binding), binding.names.size());
 }
 
 rt::StructureInfo Launch::build_bottom(const std::string& name) {

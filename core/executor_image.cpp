@@ -167,6 +167,12 @@ const ImageView* Executor::find_image(WarpContext& warp, const isa::OpRow& row, 
     return nullptr;
   }
   const ImageView& image = world_.images[number];
+  const bool filters = row.image.request == ImageRequest::Sample || row.image.request == ImageRequest::Gather;
+  const std::string& unbound = !image.is_bound ? image.name : find_sampler(image, handle).unbound;
+  if (!image.is_bound || (filters && !unbound.empty())) [[unlikely]] {
+    let_pass(warp, lane, FaultKind::Image, [&] { return fmt::format("uses {}, to which nothing is bound", unbound); });
+    return nullptr;
+  }
   if (row.image.request != ImageRequest::Query && !fits(row.image, image.shape)) [[unlikely]] {
     let_pass(warp, lane, FaultKind::Image, [&] {
       return fmt::format("uses image '{}', which is {}, as {}", image.name, name_of(image.shape), name_of(row.image.shape));

@@ -7,6 +7,7 @@
 #include "base/check.h"
 #include "core/access_rows.h"
 #include "core/executor.h"
+#include "isa/descriptors.h"
 #include "isa/generic_address.h"
 
 namespace glint::core {
@@ -114,9 +115,10 @@ bool Executor::locate(WarpContext& warp, const isa::OpRow& row, Space space, Lan
                                                           : nullptr;
     if (!place) [[unlikely]] {
       const bool is_global = space == Space::Global;
-      if (!(is_global && world_.robust_buffers) && !let_pass(warp, lane, FaultKind::OutOfBounds, [&] {
+      const bool is_robust = is_global && world_.robust_buffers && !isa::unbound_place(address);
+      if (!is_robust && !let_pass(warp, lane, FaultKind::OutOfBounds, [&] {
             return fmt::format("{} {} bytes at {}{:#x}: {}", verb_of(row.effect), bytes, is_global ? "" : "shared address ", address,
-                               is_global ? world_.memory->explain(address, bytes) : outside_of("the block's shared memory", address, bytes, shared.size()));
+                               is_global ? whereabouts(*world_.memory, address, bytes) : outside_of("the block's shared memory", address, bytes, shared.size()));
           }))
         return false;
       lanes &= ~(LaneMask{1} << lane);

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "isa/descriptors.h"
+
 namespace glint::core {
 
 std::string_view name_of(FaultKind kind) {
@@ -79,6 +81,7 @@ std::string whereabouts(const mem::AddressSpace& memory, Address address, uint64
     const auto& object = memory.allocations()[size_t(address >> mem::AddressSpace::kShift)];
     return fmt::format("byte {} of '{}' ({} bytes)", offset, object.name, object.bytes);
   }
+  if (const auto place = isa::unbound_place(address)) return fmt::format("set {} binding {}, to which nothing is bound", place->set, place->binding);
   return memory.explain(address, bytes);
 }
 

@@ -65,7 +65,7 @@ class FaultLog {
   std::map<std::pair<uint32_t, FaultKind>, Entry> entries_;
 };
 
-// "byte 64 of 'Vertices' (1200 bytes)", or how far outside of which allocation an address is.
+// "byte 64 of 'Vertices' (1200 bytes)", or how far outside of which allocation an address is, or that nobody bound it.
 std::string whereabouts(const mem::AddressSpace& memory, Address address, uint64_t bytes);
 
 }  // namespace glint::core

@@ -23,6 +23,7 @@ struct Sampler {
   float lod_bias = 0.0f, min_lod = 0.0f, max_lod = 1000.0f;
   bool unnormalized = false;          // coordinates count texels; level 0 only
   Comparison compare = Comparison::Never;
+  std::string unbound{};              // not empty: nobody bound it, and this is where it would be
 };
 
 struct TexelIndex {
@@ -40,6 +41,7 @@ struct ImageView {
   isa::ImageShape shape = isa::ImageShape::D2;
   uint32_t depth = 1, layers = 1, levels = 1;
   Sampler sampler{};
+  bool is_bound = true;               // if not, its use is a fault and `name` says where it would be
 
   uint32_t texel_bytes() const { return info_of(format).bytes; }
   // Texels along an axis of a level: half of the level above, at least 1.

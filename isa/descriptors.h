@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <optional>
 
 #include "isa/program.h"
 
@@ -17,6 +18,22 @@ static_assert(kMoreBindingsOffset >= kConstantBankBytes);
 constexpr uint32_t descriptor_offset(uint32_t set, uint32_t binding) {
   if (binding < kBindingsPerSet) return set * kSetBytes + binding * kDescriptorBytes;
   return kMoreBindingsOffset + (set * (kMaxBindings - kBindingsPerSet) + binding - kBindingsPerSet) * kDescriptorBytes;
+}
+
+// The address that stands in a descriptor that nobody bound, as good as no program makes one up. Its (set, binding) can
+// be told as long as what is added to it stays within 32 GiB either way.
+inline constexpr uint64_t kUnboundBase = 0xfff8'0000'0000'0000;
+inline constexpr int kUnboundPlaceShift = 36;
+constexpr uint64_t unbound_address(uint32_t set, uint32_t binding) {
+  return kUnboundBase + (uint64_t{set * kMaxBindings + binding} << kUnboundPlaceShift);
+}
+struct UnboundPlace {
+  uint32_t set, binding;
+};
+constexpr std::optional<UnboundPlace> unbound_place(uint64_t address) {
+  const uint64_t place = (address - kUnboundBase + (uint64_t{1} << (kUnboundPlaceShift - 1))) >> kUnboundPlaceShift;
+  if (place >= uint64_t{kMaxSets} * kMaxBindings) return std::nullopt;
+  return UnboundPlace{uint32_t(place / kMaxBindings), uint32_t(place % kMaxBindings)};
 }
 
 }  // namespace glint::isa

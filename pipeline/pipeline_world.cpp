@@ -45,6 +45,8 @@ PipelineWorld::PipelineWorld(const PipelineDescription& description, const GpuPa
   upload_images();
   add_samplers();
   build_structures(gpu);
+  for (const auto& [place, use] : modules_.bindings())  // those that no code uses; check_pipeline() refuses the others
+    if (!bound_.count(place)) mark_unbound(world, use.binding);
   if (description_.raygen) fill_records();
   set_push_constants();
   errors_.throw_if_errors();
@@ -84,11 +86,8 @@ const BindingUse* PipelineWorld::use_of(const Slot& slot) const {
 
 void PipelineWorld::bind(const Slot& slot, uint64_t address_or_handle, uint64_t bytes_or_count) {
   if (!slot.is_bound()) return;
-  const uint64_t descriptor[2] = {address_or_handle, bytes_or_count};
-  static_assert(sizeof(descriptor) == isa::kDescriptorBytes);
-  const size_t at = isa::descriptor_offset(slot.set.value_or(0), *slot.binding);
-  world.constant_bank.resize(std::max(world.constant_bank.size(), at + sizeof(descriptor)));
-  std::memcpy(world.constant_bank.data() + at, descriptor, sizeof(descriptor));
+  bound_.insert({slot.set.value_or(0), *slot.binding});
+  write_descriptor(world, {slot.set.value_or(0), *slot.binding}, address_or_handle, bytes_or_count);
 }
 
 // docs/abi.md: arrays of buffers and of acceleration structures have their descriptors in a table in global memory.

@@ -9,6 +9,7 @@
 #include "pipeline/binding_table.h"
 #include "pipeline/description/check.h"
 #include "pipeline/render.h"
+#include "pipeline/unbound.h"
 
 namespace glint::pipeline {
 
@@ -55,6 +56,7 @@ class PipelineWorld {
   std::vector<Address> buffer_address_;
   std::vector<uint64_t> buffer_bytes_;
   std::vector<size_t> image_handle_;
+  std::set<BindingPlace> bound_;
   std::map<std::pair<uint32_t, uint32_t>, Address> tables_;  // of arrays of buffers and structures
   Diagnostics errors_;
 };

@@ -63,6 +63,7 @@ SceneWorld::SceneWorld(const RenderJob& job) {
   const std::vector<std::byte> frame = scenes::uniform_block(job.scene, job.workload, job.frame);
   bind(kFrame, upload("binding 3 (frame)", frame.data(), frame.size()), frame.size());
   build_structures(job);
+  mark_all_unbound(world, bound_);  // shaders of a folder of one's own may ask for more
 }
 
 void SceneWorld::link_shaders(const RenderJob& job) {
@@ -84,9 +85,8 @@ Address SceneWorld::upload(const std::string& name, const void* data, uint64_t b
 }
 
 void SceneWorld::bind(uint32_t binding, uint64_t address_or_handle, uint64_t bytes_or_count) {
-  const uint64_t descriptor[2] = {address_or_handle, bytes_or_count};
-  static_assert(sizeof(descriptor) == isa::kDescriptorBytes);
-  std::memcpy(world.constant_bank.data() + binding * isa::kDescriptorBytes, descriptor, sizeof(descriptor));
+  bound_.insert(binding);
+  write_descriptor(world, {0, binding}, address_or_handle, bytes_or_count);
 }
 
 void SceneWorld::upload_geometry(const scenes::Scene& scene) {

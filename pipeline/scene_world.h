@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "pipeline/render.h"
+#include "pipeline/unbound.h"
 #include "rtunit/build.h"
 
 namespace glint::pipeline {
@@ -38,6 +39,7 @@ class SceneWorld {
   Address upload(const std::string& name, const void* data, uint64_t bytes);
 
   mem::AddressSpace memory_;
+  std::set<uint32_t> bound_;  // of set 0
   core::Image image_;
 };
 

@@ -124,5 +124,74 @@ TEST_CASE("a fault that is let pass is told with the lines of RUN and of the sha
   CHECK(contains(outcome.faults[0], "t.amber:5 "));
 }
 
+// One shader a kind of binding, at set 1 binding 3; nothing is bound there.
+const std::vector<std::pair<std::string, std::string>> kUnbound = {
+    {"layout(set = 1, binding = 3) buffer U { uint u[]; };", "v[0] = u[1]"},
+    {"layout(set = 1, binding = 3) uniform U { uint u; };", "v[0] = u"},
+    {"layout(set = 1, binding = 3) buffer U { uint u[]; } us[2];", "v[0] = us[v[1] & 1].u[1]"},
+    {"layout(set = 1, binding = 3, r32ui) uniform uimage2D u;", "v[0] = imageLoad(u, ivec2(0)).x"},
+    {"layout(set = 1, binding = 3, r32ui) uniform uimage2D u;", "v[0] = 0; imageStore(u, ivec2(0), uvec4(7))"},
+    {"layout(set = 1, binding = 3) uniform sampler2D u;", "v[0] = uint(textureLod(u, vec2(0), 0).x)"},
+    {"layout(set = 1, binding = 3) uniform texture2D t;\nlayout(set = 0, binding = 9) uniform sampler s;", "v[0] = uint(textureLod(sampler2D(t, s), vec2(0), 0).x)"},
+    {"layout(set = 0, binding = 9) uniform texture2D t;\nlayout(set = 1, binding = 3) uniform sampler s;", "v[0] = uint(textureLod(sampler2D(t, s), vec2(0), 0).x)"},
+    {"layout(set = 1, binding = 3) uniform sampler2D u;", "v[0] = textureSize(u, 0).x"},
+    {"layout(set = 1, binding = 70) uniform sampler2D w;\nlayout(set = 1, binding = 3) uniform usamplerBuffer u;", "v[0] = texelFetch(u, 0).x"},
+    {"layout(set = 1, binding = 3) uniform accelerationStructureEXT u;",
+     "rayQueryEXT q; rayQueryInitializeEXT(q, u, 0, 0xff, vec3(0), 0, vec3(1), 1); v[0] = rayQueryProceedEXT(q) ? 1 : 0"}};
+
+std::string unbound_script(const std::string& declarations, const std::string& statement, const std::string& before = "") {
+  return before + "SHADER compute s GLSL\n#version 460\n#extension GL_EXT_ray_query : require\nlayout(binding = 0) buffer B { uint v[]; };\n" + declarations +
+         "\nvoid main() { " + statement + "; }\nEND\nBUFFER b DATA_TYPE uint32 DATA 5 6 END\nIMAGE t FORMAT R32_SFLOAT DIM_2D WIDTH 1 HEIGHT 1 FILL 3\n" +
+         "SAMPLER s\nPIPELINE compute p\n ATTACH s\n BIND BUFFER b AS storage DESCRIPTOR_SET 0 BINDING 0\n" +
+         (declarations.find("binding = 9) uniform sampler") != std::string::npos     ? " BIND SAMPLER s DESCRIPTOR_SET 0 BINDING 9\n"
+          : declarations.find("binding = 9) uniform texture") != std::string::npos ? " BIND BUFFER t AS sampled_image DESCRIPTOR_SET 0 BINDING 9\n"
+                                                                                    : "") +
+         "END\nRUN p 1 1 1\nEXPECT b IDX 0 EQ 0\n";
+}
+
+TEST_CASE("the use of a binding that nobody bound is a fault that names set, binding, line and launch id", "[amber]") {
+  for (const auto& [declarations, statement] : kUnbound)
+    for (const char* before : {"", "DEVICE_FEATURE robustBufferAccess\n"}) {
+      const Outcome outcome = outcome_of(unbound_script(declarations, statement, before));
+      INFO(declarations << "\n-> " << outcome.message);
+      CHECK(outcome.exit == Exit::Fault);
+      CHECK(contains(outcome.message, "set 1 binding 3"));
+      CHECK(contains(outcome.message, "to which nothing is bound"));
+      CHECK(contains(outcome.message, "t.amber:"));
+      CHECK(contains(outcome.message, "launch id (0, 0, 0)"));
+    }
+}
+
+TEST_CASE("the use of a binding that nobody bound, let pass, reads 0 and writes nothing", "[amber]") {
+  LaunchOptions options;
+  options.on_fault = core::OnFault::Warn;
+  for (const auto& [declarations, statement] : kUnbound) {
+    const Outcome outcome = run_script(parse_script("#!amber\n" + unbound_script(declarations, statement), "t.amber"), options);
+    INFO(declarations << "\n-> " << outcome.message);
+    CHECK(outcome.exit == Exit::Ok);
+    REQUIRE(!outcome.faults.empty());
+    CHECK(contains(outcome.faults[0], "set 1 binding 3"));
+  }
+}
+
+TEST_CASE("an element of an array of descriptors that nobody bound is a fault, too", "[amber]") {
+  const std::string images = "SHADER compute s GLSL\n#version 460\nlayout(binding = 0) buffer B { uint v[]; };\n"
+                             "layout(binding = 1, r32ui) uniform uimage2D u[3];\nvoid main() { v[0] = imageLoad(u[v[1]], ivec2(0)).x; }\nEND\n"
+                             "IMAGE i FORMAT R32_UINT DIM_2D WIDTH 1 HEIGHT 1 FILL 3\n";
+  const auto run = [&](const char* element) {
+    return outcome_of(images + "BUFFER b DATA_TYPE uint32 DATA 9 " + element + " END\nPIPELINE compute p\n ATTACH s\n BIND BUFFER b AS storage DESCRIPTOR_SET 0 BINDING 0\n"
+                      " BIND BUFFER_ARRAY i AS storage_image DESCRIPTOR_SET 0 BINDING 1\nEND\nRUN p 1 1 1\nEXPECT b IDX 0 EQ 3\n");
+  };
+  CHECK(run("0").exit == Exit::Ok);
+  CHECK(contains(run("2").message, "uses set 0 binding 1 (u), to which nothing is bound"));
+}
+
+TEST_CASE("a buffer bound where the shader declares an image is an error of the script", "[amber]") {
+  const Outcome outcome = outcome_of("SHADER compute s GLSL\n#version 450\nlayout(binding = 0, r32ui) uniform uimage2D i;\nvoid main() { imageStore(i, ivec2(0), uvec4(1)); }\nEND\n"
+                                     "BUFFER b DATA_TYPE uint32 DATA 1 2 END\nPIPELINE compute p\n ATTACH s\n BIND BUFFER b AS storage DESCRIPTOR_SET 0 BINDING 0\nEND\nRUN p 1 1 1\n");
+  CHECK(outcome.exit == Exit::UserInput);
+  CHECK(contains(outcome.message, "the shader declares the storage image 'i', and 'b' is none"));
+}
+
 }  // namespace
 }  // namespace glint::amber
