@@ -124,7 +124,7 @@ bool Executor::begin_queries(WarpContext& warp, const isa::Inst& inst, RayState*
     ray.flags = read_word(warp.regs, inst, kFlags, lane);
     ray.cull_mask = read_word(warp.regs, inst, kMask, lane) & 0xff;
     read_ray(warp.regs, inst, kRay, lane, ray);
-    state.end_at_first_hit = !world_.nearest_first_hit;
+    state.rules.end_at_first_hit = !world_.nearest_first_hit;
     if (!rt::begin(state, *world_.memory) && !let_pass_structure(warp, lane, "starts a ray query in", ray.structure)) return false;
   }
   return true;

@@ -97,7 +97,7 @@ bool Executor::trace(WarpContext& warp, const isa::Inst& inst) {
     const int lane = std::countr_zero(lanes);
     rt::RayState& state = frame.ray[size_t(lane)];
     set_ray(warp.regs, inst, lane, state.ray);
-    state.end_at_first_hit = !world_.nearest_first_hit;
+    state.rules.end_at_first_hit = !world_.nearest_first_hit;
     state.table = table_of(frame, lane);
     if (!rt::begin(state, *world_.memory) && !let_pass_structure(warp, lane, "traces a ray into", state.ray.structure)) [[unlikely]] {
       --warp.depth;

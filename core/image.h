@@ -104,7 +104,7 @@ struct World {
   uint32_t shared_bytes = 0;               // shared memory of a block
   uint32_t dynamic_shared_bytes = 0;       // the part of it that the launch asked for, not the program
   std::shared_ptr<const rt::AnyHitMode> any_hit;  // null: immediate
-  bool nearest_first_hit = true;           // rt::RayState::end_at_first_hit is its opposite
+  bool nearest_first_hit = true;           // rt::TraversalRules::end_at_first_hit is its opposite
   uint32_t local_bytes = 0;                // stack a lane
   uint32_t max_trace_depth = 1;            // nested rt.trace (Vulkan's recursion depth)
   uint32_t max_callable_depth = 31;        // nested executeCallableEXT. Choice: Vulkan only limits the stack's bytes

@@ -37,10 +37,10 @@ TimingMachine::TimingMachine(const GpuParams& params, const core::World& world, 
     const std::string name = fmt::format("core[{}]", i);
     rt_groups_.push_back(std::make_unique<stats::Group>(&root_, fmt::format("rt_unit[{}]", i)));
     rt::RtUnit::Context rt{*world.memory, memory_.l1(i), rt_groups_.back().get(), 0};
-    if (params_.rt.result_store)
-      rt.results = world.memory->reserve(uint64_t(params_.rt.warps) * kLanes * mem::kSectorBytes);
+    if (const uint64_t bytes = rt::RtUnit::result_bytes(params_.rt)) rt.results = world.memory->reserve(bytes);
     if (const uint64_t bytes = core::CoreCell::table_bytes(params_.core, world))
       rt.tables = core::CoreCell::table_layout(world, world.memory->reserve(bytes));
+    if (const uint64_t bytes = rt::RtUnit::stack_bytes_per_warp(params_.rt)) rt.stacks = world.memory->reserve(bytes * params_.core.warps);
     rt_units_.push_back(std::make_unique<rt::RtUnit>(params_.rt, rt));
     const Address local = world.memory->reserve(core::CoreCell::local_bytes(params_.core, world));
     cores_.push_back(std::make_unique<core::CoreCell>(

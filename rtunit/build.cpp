@@ -171,8 +171,7 @@ void measure(const BuildTree& tree, const Leaves& leaves, StructureInfo& info) {
   info.stack_need = need[0];
 }
 
-StructureInfo write(mem::AddressSpace& memory, const std::string& name, uint8_t level, Leaves& leaves,
-                    const BuildOptions& options) {
+EncodedBottom encode(const std::string& name, uint8_t level, Leaves& leaves, const BuildOptions& options) {
   const std::unique_ptr<NodeFormat> format = options.format.make({});
   BuildTree tree;
   build_tree(leaves.items, format->width(), tree);
@@ -196,9 +195,7 @@ StructureInfo write(mem::AddressSpace& memory, const std::string& name, uint8_t 
   header.stack_need = info.stack_need;
   header.bytes = info.bytes;
   std::memcpy(bytes.data(), &header, sizeof header);
-  info.address = memory.allocate(name, info.bytes);
-  memory.write(info.address, bytes.data(), info.bytes);
-  return info;
+  return {info, std::move(bytes)};
 }
 
 // Inverse of a 3x4 affine transform, in double and rounded once; nothing when it has none.
@@ -253,8 +250,7 @@ std::unique_ptr<NodeFormat> make_format(FormatId id) {
   return nullptr;
 }
 
-StructureInfo build_bottom(mem::AddressSpace& memory, const std::string& name, const BottomLevel& input,
-                           const BuildOptions& options) {
+EncodedBottom encode_bottom(const std::string& name, const BottomLevel& input, const BuildOptions& options) {
   Leaves leaves;
   for (size_t g = 0; g < input.geometries.size(); ++g) {
     const Geometry& geometry = input.geometries[g];
@@ -263,7 +259,19 @@ StructureInfo build_bottom(mem::AddressSpace& memory, const std::string& name, c
     else
       add_aabbs(geometry, uint32_t(g), leaves);
   }
-  return write(memory, name, 0, leaves, options);
+  return encode(name, 0, leaves, options);
+}
+
+StructureInfo place(mem::AddressSpace& memory, const std::string& name, const EncodedBottom& bottom) {
+  StructureInfo info = bottom.info;
+  info.address = memory.allocate(name, info.bytes);
+  memory.write(info.address, bottom.bytes.data(), info.bytes);
+  return info;
+}
+
+StructureInfo build_bottom(mem::AddressSpace& memory, const std::string& name, const BottomLevel& input,
+                           const BuildOptions& options) {
+  return place(memory, name, encode_bottom(name, input, options));
 }
 
 StructureInfo build_top(mem::AddressSpace& memory, const std::string& name, std::span<const Instance> instances,
@@ -292,7 +300,7 @@ StructureInfo build_top(mem::AddressSpace& memory, const std::string& name, std:
     ++leaves.primitives;
     leaves.add(bounds, NodeKind::Instance, leaf, bottom.stack_need);
   }
-  return write(memory, name, 1, leaves, options);
+  return place(memory, name, encode(name, 1, leaves, options));
 }
 
 }  // namespace glint::rt

@@ -63,7 +63,16 @@ struct StructureInfo {
   uint32_t stack_need = 0;    // stack entries that the worst ray needs, instances' bottom levels included
 };
 
+// A bottom level as bytes that may lie anywhere: all that is left of its geometry. `info.address` is not set.
+struct EncodedBottom {
+  StructureInfo info;
+  std::vector<std::byte> bytes;
+};
 // UserError when an index is out of range or the tree is too deep for the ray stack.
+EncodedBottom encode_bottom(const std::string& name, const BottomLevel& input, const BuildOptions& options = {});
+StructureInfo place(mem::AddressSpace& memory, const std::string& name, const EncodedBottom& bottom);
+
+// Both at once.
 StructureInfo build_bottom(mem::AddressSpace& memory, const std::string& name, const BottomLevel& input,
                            const BuildOptions& options = {});
 

@@ -6,11 +6,12 @@
 
 #include "rtunit/candidate_table.h"
 #include "rtunit/ray.h"
+#include "rtunit/ray_path.h"
+#include "rtunit/traversal_rules.h"
 
 namespace glint::rt {
 
-// Full stack. Model: hardware keeps a short stack and spills; here every entry is on chip. build_top() proves that
-// no ray can need more.
+// build_top() proves that no ray can need more. How many of them are on chip is the stack model's (rtunit/stack_model.h).
 inline constexpr int kStackEntries = 192;
 
 // One node still to be visited: where it is and where the ray enters it.
@@ -32,15 +33,14 @@ struct RayState {
   RayStatus status = RayStatus::Idle;
   Hit committed;                         // t = t_max until a hit is confirmed
   Hit candidate;                         // while NeedsIntersection or NeedsAnyHit
-  // Whether kTerminateOnFirstHit ends the ray at the first hit that is found, or only lets it end once no nearer one
-  // can be. Set before begin().
-  bool end_at_first_hit = true;
+  TraversalRules rules;
   bool candidate_procedural = false;     // the candidate came from an AABB: its attributes are memory
   bool candidate_opaque = false;         // NeedsIntersection: a report is confirmed without an any-hit shader
   bool attribute_slot = false;           // which of the two attribute buffers holds the committed attributes
   bool report_accepted = false;          // result of the last rt.report
   bool terminated = false;               // rt.terminate or terminate-on-first-hit: finish after this shader
   CandidateTable* table = nullptr;       // where candidates are gathered; null: the ray stops at each. Set before begin()
+  RayPath* path = nullptr;               // the RT unit's, when its stack model needs one; begin() sets null
   uint8_t candidate_row = 0;             // of the table, that the candidate came from
   bool broken = false;                   // the structure's bytes led outside memory: the ray ended without meaning
 
@@ -51,13 +51,21 @@ struct RayState {
   uint32_t instance_flags = 0, instance_custom_index = 0, instance_sbt_record = 0;
   int16_t stack_size = 0, bottom_stack_base = -1;  // entries below bottom_stack_base belong to the top level
   int16_t stack_peak = 0;
+  int16_t stack_off_chip = 0;            // entries at the bottom that the RT unit does not hold: the stack model's
   uint8_t format = 0;                    // FormatId of the structure
   uint8_t node_bytes = 0;                // of its internal nodes
 
   // Counted by the traversal, for probes and statistics.
   uint32_t nodes_visited = 0, box_tests = 0, triangle_tests = 0, leaves_visited = 0, instances_visited = 0;
+  uint32_t hits_in_interval = 0;         // triangles met within the ray, nearer than the hit so far or not
 
   std::array<StackEntry, kStackEntries> stack;  // left uninitialised: only entries below stack_size mean anything
 };
+
+// The ray ended with entries left that nobody looks at any more.
+inline bool has_left_stack(const RayState& s) {
+  return s.status == RayStatus::Done &&
+         (s.broken || s.terminated || (s.rules.end_at_first_hit && (s.ray.flags & ray_flag::kTerminateOnFirstHit) && s.committed.valid()));
+}
 
 }  // namespace glint::rt

@@ -11,6 +11,7 @@ namespace glint::rt {
 enum class Stall : uint8_t {
   NodeRequest,    // sent a request to the L1
   L1Refused,      // had a request and the L1 did not take it
+  MshrFull,       // a lane wants to read and no entry is free
   TestBusy,       // a node waits for a test pipeline
   WaitingMemory,  // nodes are on their way
   TestLatency,    // only tests in flight
@@ -19,7 +20,7 @@ enum class Stall : uint8_t {
   Count
 };
 constexpr std::string_view name_of(Stall s) {
-  constexpr std::string_view kNames[] = {"node_request", "l1_refused", "test_busy", "waiting_memory",
+  constexpr std::string_view kNames[] = {"node_request", "l1_refused", "mshr_full", "test_busy", "waiting_memory",
                                          "test_latency", "handover",   "idle"};
   static_assert(std::size(kNames) == size_t(Stall::Count));
   return kNames[size_t(s)];
@@ -46,11 +47,20 @@ struct RtStats : stats::Group {
   stats::Counter triangle_tests{this, "triangle_tests", "test", "Ray-triangle tests."};
 
   stats::Counter fetches{this, "fetches", "node", "Distinct nodes asked for: one a group of lanes of a warp."};
+  stats::Counter headers{this, "headers", "lane", "Structure headers that lanes read on their own (rt.shortcuts.fetch_headers)."};
+  stats::Counter descriptors{this, "descriptors", "lane", "Leaf descriptors that lanes read on their own (rt.shortcuts.fetch_descriptors)."};
   stats::Counter merged_lanes{this, "merged_lanes", "lane", "Lanes that shared another lane's fetch."};
+  stats::Counter merged_across{this, "merged_across", "lane", "Of them, those of another warp."};
+  stats::Counter stale_nodes{this, "stale_nodes", "node", "Nodes visited though they lay behind the ray's hit (rt.retest = false)."};
+  stats::Counter stack_spills{this, "stack_spills", "sector", "32 B of a ray's stack written to memory."};
+  stats::Counter stack_fills{this, "stack_fills", "sector", "32 B of a ray's stack read back."};
+  stats::Counter restarts{this, "restarts", "ray", "Times a ray began again at the root, because its stack had forgotten entries."};
+  stats::Counter restart_nodes{this, "restart_nodes", "node", "Nodes that they visited again; not among those visited."};
   stats::Counter requests{this, "requests", "request", "Read requests that the L1 took."};
   stats::Counter sectors{this, "sectors", "sector", "32 B sectors asked for."};
   stats::Counter refusals{this, "refusals", "request", "Times the L1 refused a request."};
   stats::Counter result_writes{this, "result_writes", "request", "Write requests for results."};
+  stats::Counter hit_writes{this, "hit_writes", "request", "Write requests for single hits and candidates (rt.shortcuts.store_each_hit)."};
   stats::Counter table_writes{this, "table_writes", "request", "Write requests for candidates of the deferred any-hit mode."};
   stats::Counter table_entries{this, "table_entries", "candidate", "Candidates that they wrote."};
 

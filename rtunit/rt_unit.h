@@ -32,10 +32,14 @@ class RtUnit final : public RtPort {
     const mem::AddressSpace& memory;
     mem::L1Port& l1;
     stats::Group* stats = nullptr;
-    Address results = 0;  // physical, line-aligned: 32 B x 32 lanes x warps, used with result_store only
+    Address results = 0;  // physical, line-aligned: result_bytes() of it
     TableLayout tables{};  // line-aligned; where rays that gather candidates have theirs written
+    Address stacks = 0;    // physical, line-aligned: stack_bytes_per_warp() for each warp slot of the core
   };
   RtUnit(const Params& params, const Context& context);
+  // What Context::results must hold; 0: it is not used.
+  static uint64_t result_bytes(const Params& params);
+  static uint64_t stack_bytes_per_warp(const Params& params);
 
   bool can_accept() const override { return num_resident_ < slots_.size(); }
   void submit(Cycle now, uint32_t warp_slot, LaneMask mask, RayState* states) override;
@@ -56,6 +60,12 @@ class RtUnit final : public RtPort {
 
  private:
   static constexpr uint32_t kNone = ~0u;
+  // Choice: stores of single hits begin again at the first place after so many; Vulkan-Sim never does.
+  static constexpr uint32_t kHitPlaces = 1 << 16, kHitPlaceBytes = 256;
+
+  // What a lane reads: a node, a header or a leaf's descriptor on its own (Shortcuts), a node that it has visited before, or
+  // a sector of its stack.
+  enum class Part : uint8_t { Node, Header, Descriptor, Replay, Fill };
 
   // A place in the warp buffer. A lane of `mask` is in exactly one of: `wanting` a node, a fetch, a test, `stopped`.
   struct Slot {
@@ -66,6 +76,13 @@ class RtUnit final : public RtPort {
     uint64_t age = 0;
     Cycle arrived = 0;
     std::array<Fetch, kLanes> node;
+    std::array<Part, kLanes> part;
+    LaneMask headers = 0, described = 0;          // lanes whose next read is a header; whose leaf's descriptor has been read
+    uint32_t stores = 0;                          // of single hits, to be sent
+    Cycle last_store = 0;
+    bool is_leaving = false;                      // all is done; the last store's acknowledgement is on its way
+    std::array<StackWork, kLanes> stack;          // still to be done before the lane's next node
+    uint32_t spills = 0;                          // sectors of its lanes' stacks to be sent
     uint32_t rows = 0;                            // of the candidate table with entries to write
     std::array<LaneMask, kMaxTableRows> entries;  // of a row in `rows`: the lanes
   };
@@ -74,8 +91,17 @@ class RtUnit final : public RtPort {
     uint32_t slot = 0;
     LaneMask lanes = 0;
     Fetch node;
+    Part part = Part::Node;
     uint32_t sent = 0;        // bytes
     uint32_t unanswered = 0;  // requests
+    uint32_t next = kNone;    // another slot's lanes that share it
+  };
+  // A sector of a lane's stack, to be written or read.
+  struct StackOp {
+    uint32_t slot = 0;
+    uint16_t row = 0;
+    uint8_t lane = 0;
+    bool is_fill = false;
   };
   struct Test {
     uint32_t slot = 0;
@@ -86,8 +112,10 @@ class RtUnit final : public RtPort {
     Cycle ready = 0;
     uint32_t slot = 0;
     uint8_t lane = 0;
+    uint8_t stores = 0;  // of hits, to be sent when the test ends
   };
   struct Pipeline {
+    Pipeline(const PipelineParams& p, size_t room) : params(p), waiting(room), running(room) {}
     PipelineParams params;
     mem::Ring<Test> waiting;
     mem::Ring<Running> running;
@@ -95,28 +123,43 @@ class RtUnit final : public RtPort {
     uint32_t started = 0;  // in the interval that began at interval_start
     bool used = false;     // interval_start means something
   };
-  enum Pipe : size_t { kBox, kTriangle, kTransform, kNumPipes };
+  enum Pipe : size_t { kBox, kTriangle, kTransform, kHeader, kDescriptor, kNumPipes };
 
   void account_gap(Cycle now);
   void account(Cycle now, Stall reason);
   void retire(Cycle now);
   void finish_tests(Cycle now);
   void receive_nodes(Cycle now);
+  void hand_out(uint32_t index, Cycle now);
   void start_tests(Cycle now);
   Stall send_requests(Cycle now);
   Stall waiting_reason() const;
 
   void place(uint32_t slot_index, int lane, Cycle now);
+  Fetch next_read(Slot& slot, int lane) const;
+  static Pipe pipe_for(const NodeFetch& fetch);
   void stop(Slot& slot, uint32_t slot_index, int lane, Cycle now);
-  void visit(const Test& test, Cycle now);
+  uint32_t visit(const Test& test, Cycle now);
+  void count_node(NodeKind kind);
   bool choose_fetch(Cycle now);
+  uint32_t new_fetch(uint32_t slot, LaneMask lanes, const Fetch& node, Part part);
+  static LaneMask lanes_wanting(const Slot& slot, const Fetch& node);
+  void admit(Slot& slot, uint32_t slot_index, int lane, Cycle now);
+  void keep_path(RayState& state, uint32_t warp_slot, int lane);
+  bool tend_stack(uint32_t slot_index, int lane);
+  bool can_send_stack(Cycle now) const;
+  bool send_stack(Cycle now);
+  bool is_mshr_full() const { return params_.mshr_entries != 0 && num_fetches_ >= params_.mshr_entries; }
+  bool has_reads_waiting() const;
   bool send_node(Cycle now);
   bool send_result(Cycle now);
   bool send_entries(Cycle now);
   bool send_next(Cycle now);
-  void collect_entries(uint32_t slot_index, int lane);
-  void leave(uint32_t slot_index);
-  bool wants_to_send() const;
+  bool send_hit(Cycle now);
+  uint32_t collect_entries(uint32_t slot_index, int lane);
+  void leave(uint32_t slot_index, Cycle now);
+  void acknowledge(Cycle now);
+  bool wants_to_send(Cycle now) const;
 
   const Params params_;
   const mem::AddressSpace& memory_;
@@ -126,6 +169,12 @@ class RtUnit final : public RtPort {
   RtStats stats_;
   Probe<NodeVisited> node_visited_;
   std::unique_ptr<RayScheduler> scheduler_;
+  std::unique_ptr<Coalescer> coalescer_;
+  std::unique_ptr<ChildOrder> child_order_;
+  std::unique_ptr<StackModel> stack_model_;
+  const StackLayout stacks_;
+  const bool tends_stacks_;  // the stack model can ask for something
+  std::vector<std::unique_ptr<std::array<RayPath, kLanes>>> paths_;  // by the core's warp slot
 
   std::vector<Slot> slots_;
   std::vector<WarpView> views_;
@@ -136,9 +185,13 @@ class RtUnit final : public RtPort {
   mem::Ring<uint32_t> writing_;         // slots with results to write
   mem::Ring<uint32_t> gathering_;       // slots with table entries to write
   mem::Ring<uint32_t> completions_;     // warps given back
+  mem::Ring<StackOp> stack_ops_;
   uint32_t sending_ = kNone;            // fetch whose requests have not all been taken
   uint32_t num_resident_ = 0, num_rays_ = 0, num_fetches_ = 0;
+  uint32_t num_stores_ = 0, num_leaving_ = 0;  // Slot::stores and is_leaving over all slots
+  uint32_t next_hit_place_ = 0;
   uint64_t next_age_ = 0;
+  bool has_news_ = false;               // something was submitted since the last tick
 
   // The past, for cycles that are skipped: nothing happened in them, so they were like the end of the last one.
   Cycle next_unaccounted_ = 0;

@@ -16,7 +16,7 @@ namespace glint::rt {
 namespace {
 
 bool has(const RayState& s, uint32_t flag) { return (s.ray.flags & flag) != 0; }
-bool ends_at_first_hit(const RayState& s) { return s.end_at_first_hit && has(s, ray_flag::kTerminateOnFirstHit); }
+bool ends_at_first_hit(const RayState& s) { return s.rules.end_at_first_hit && has(s, ray_flag::kTerminateOnFirstHit); }
 
 void finish(RayState& s) {
   s.status = RayStatus::Done;
@@ -76,7 +76,7 @@ void settle(RayState& s) {
       enter_space(s.space, s.ray.origin, s.ray.direction);
     }
     if (s.stack_size == 0) return end_traversal(s);
-    if (s.stack[size_t(s.stack_size) - 1].t_enter <= s.committed.t) return;
+    if (!s.rules.retest || s.stack[size_t(s.stack_size) - 1].t_enter <= s.committed.t) return;
     --s.stack_size;
   }
 }
@@ -84,6 +84,8 @@ void settle(RayState& s) {
 void push(RayState& s, NodeRef node, float t_enter) {
   if (s.stack_size >= kStackEntries) [[unlikely]]
     return break_off(s);  // only a structure that a shader has overwritten is that deep
+  if (s.path) [[unlikely]]
+    s.path->parent[size_t(s.stack_size)] = s.path->depth;
   s.stack[size_t(s.stack_size++)] = {node, t_enter};
   if (s.stack_size > s.stack_peak) s.stack_peak = s.stack_size;
 }
@@ -93,20 +95,29 @@ bool culled_by_kind(const RayState& s, NodeKind kind) {
          (kind == NodeKind::Procedural && has(s, ray_flag::kSkipAabbs));
 }
 
+// Takes out the children of kinds that the ray skips; returns how many are left.
+int without_skipped(const RayState& s, int hits, float* t_enter, NodeRef* child) {
+  int count = 0;
+  for (int i = 0; i < hits; ++i) {
+    if (culled_by_kind(s, kind_of(child[i]))) continue;
+    t_enter[count] = t_enter[i];
+    child[count++] = child[i];
+  }
+  return count;
+}
+
 template <class Format>
 void visit_internal(RayState& s, const std::byte* bytes) {
   float t_enter[Format::kWidth];
   NodeRef child[Format::kWidth];
-  const int hits = Format::test(bytes, s.space, s.ray.t_min, s.committed.t, t_enter, child, s.box_tests);
-  // nearest on top of the stack; of equals the lower child
-  int order[Format::kWidth], count = 0;
-  for (int i = 0; i < hits; ++i) {
-    if (culled_by_kind(s, kind_of(child[i]))) continue;
-    int at = count++;
-    for (; at > 0 && t_enter[i] < t_enter[order[at - 1]]; --at) order[at] = order[at - 1];
-    order[at] = i;
-  }
-  for (int i = count - 1; i >= 0; --i) push(s, child[order[i]], t_enter[order[i]]);
+  int hits = Format::test(bytes, s.space, s.ray.t_min, s.committed.t, t_enter, child, s.box_tests);
+  if (has(s, ray_flag::kSkipTriangles | ray_flag::kSkipAabbs)) hits = without_skipped(s, hits, t_enter, child);
+  uint8_t order[Format::kWidth];
+  if (!s.rules.order) [[likely]]
+    nearest_first({hits, t_enter, child}, order);
+  else
+    s.rules.order->sort({hits, t_enter, child}, order);
+  for (int i = hits - 1; i >= 0; --i) push(s, child[order[i]], t_enter[order[i]]);  // the first is on top
 }
 
 void visit_instance(RayState& s, const std::byte* bytes, const StackEntry& entry) {
@@ -177,6 +188,7 @@ void visit_triangles(RayState& s, const std::byte* bytes, const StackEntry& entr
     if (culled_by_facing(s, front)) continue;
     // Open at both ends, also when a box's hit lies at the far one.
     const bool inside = found.t > s.ray.t_min && found.t < s.ray.t_max;
+    s.hits_in_interval += inside;
     if (!inside || !wins(s, found.t, s.instance, leaf.geometry, leaf.primitive[i])) continue;
     s.candidate = candidate_of(s, leaf.geometry, leaf.primitive[i]);
     s.candidate.t = found.t;
@@ -216,8 +228,16 @@ void visit_procedural(RayState& s, const std::byte* bytes) {
   passes(s, RayStatus::NeedsIntersection);
 }
 
+// The node that is about to be visited is the last of its depth.
+void remember(const RayState& s, RayPath& path) {
+  path.depth = uint8_t(path.parent[size_t(s.stack_size) - 1] + 1);
+  path.node[path.depth] = next_fetch(s);
+}
+
 template <class Format>
 void step_as(RayState& s, const std::byte* bytes) {
+  if (s.path) [[unlikely]]
+    remember(s, *s.path);
   const StackEntry entry = s.stack[size_t(--s.stack_size)];
   ++s.nodes_visited;
   switch (kind_of(entry.node)) {
@@ -305,9 +325,12 @@ bool begin(RayState& s, const mem::AddressSpace& memory) {
   s.instance_leaf = 0;
   s.instance = kNoHit;
   s.instance_flags = s.instance_custom_index = s.instance_sbt_record = 0;
-  s.stack_size = s.stack_peak = 0;
+  s.stack_size = s.stack_peak = s.stack_off_chip = 0;
+  s.rules.retest = true;
+  s.rules.order = nullptr;
+  s.path = nullptr;
   s.bottom_stack_base = -1;
-  s.nodes_visited = s.box_tests = s.triangle_tests = s.leaves_visited = s.instances_visited = 0;
+  s.nodes_visited = s.box_tests = s.triangle_tests = s.leaves_visited = s.instances_visited = s.hits_in_interval = 0;
   if (s.table) s.table->clear();
   s.status = RayStatus::Done;
   if (s.ray.structure == 0) return true;

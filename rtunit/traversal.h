@@ -15,11 +15,6 @@ namespace glint::rt {
 bool begin(RayState& state, const mem::AddressSpace& memory);
 
 // What step() must be given next. Only while Traversing.
-struct Fetch {
-  Address address = 0;  // virtual
-  uint32_t bytes = 0;
-  NodeKind kind = NodeKind::Internal;
-};
 inline Fetch next_fetch(const RayState& state) {
   const NodeRef ref = state.stack[size_t(state.stack_size) - 1].node;
   const NodeKind kind = kind_of(ref);

@@ -8,8 +8,11 @@
 #include "memsys/dram_scheduler.h"
 #include "report/stat_writer.h"
 #include "rtunit/any_hit_mode.h"
+#include "rtunit/child_order.h"
+#include "rtunit/coalescer.h"
 #include "rtunit/node_format.h"
 #include "rtunit/ray_scheduler.h"
+#include "rtunit/stack_model.h"
 
 namespace glint::app {
 namespace {
@@ -30,6 +33,9 @@ std::vector<PolicyInfo> all_policies() {
   add<mem::DramScheduler>(out, "memory.dram.scheduler", "memsys/dram_schedulers");
   add<rt::AnyHitMode>(out, "rt.any_hit", "rtunit/any_hit");
   add<rt::RayScheduler>(out, "rt.scheduler", "rtunit/schedulers");
+  add<rt::ChildOrder>(out, "rt.child_order", "rtunit/child_orders");
+  add<rt::Coalescer>(out, "rt.coalescing", "rtunit/coalescers");
+  add<rt::StackModel>(out, "rt.stack", "rtunit/stacks");
   add<rt::NodeFormat>(out, "bvh.format", "rtunit/formats");
   add<report::StatWriter>(out, "(statistics file)", "report/formats");
   return out;

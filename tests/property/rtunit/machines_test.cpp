@@ -73,7 +73,7 @@ struct Tables {
       for (size_t lane = 0; lane < kLanes; ++lane) {
         of_warp[w][lane].row.resize(rows);
         warps[w][lane].table = &of_warp[w][lane];
-        warps[w][lane].end_at_first_hit = false;
+        warps[w][lane].rules.end_at_first_hit = false;
         REQUIRE(begin(warps[w][lane], memory));
       }
   }
@@ -98,7 +98,7 @@ TEST_CASE("rays that gather candidates find the hit of rays that stop at each, w
     for (size_t w = 0; w < stopping.size(); ++w)
       for (size_t lane = 0; lane < kLanes; ++lane) {
         RayState &a = stopping[w][lane], &b = gathering[w][lane];
-        a.end_at_first_hit = false;
+        a.rules.end_at_first_hit = false;
         REQUIRE(begin(a, zoo.memory));
         run_to_end(a, zoo.memory);
         uint32_t decided = 0;

@@ -35,6 +35,7 @@ TEST_CASE("a lone ray takes its fetches and tests in sequence, and two cycles to
     Params params;
     params.request_bytes = seed % 2 ? 64 : 32;
     params.responses_per_cycle = 4;
+    params.stack.name = "full";
     const Cycle latency = 3 * seed;
     mem::FixedLatencyMemory l1(latency);
     RtUnit unit(params, {scene.memory, l1});

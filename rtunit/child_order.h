@@ -1,0 +1,38 @@
+// In which order a ray visits the children of a node that it has hit: the interface of child orders.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "rtunit/structure.h"
+
+namespace glint::rt {
+
+// Children of one node that the ray enters, in index order.
+struct ChildHits {
+  int count = 0;
+  const float* t_enter = nullptr;
+  const NodeRef* child = nullptr;
+};
+
+// Contract (tests/contract/rt_child_order_test.cpp):
+//  - sort() writes each of 0 .. hits.count - 1 to `order` once, the child to be visited first to order[0];
+//  - the choice depends on the argument alone: an order has no state and serves all rays.
+class ChildOrder {
+ public:
+  struct Context {};
+  virtual ~ChildOrder() = default;
+  virtual void sort(const ChildHits& hits, uint8_t* order) const = 0;
+  // What rays are told to use; null: nearest_first(), which is compiled into the traversal.
+  virtual const ChildOrder* for_rays() const { return this; }
+};
+
+// By distance; of equals the lower child.
+inline void nearest_first(const ChildHits& hits, uint8_t* order) {
+  for (int i = 0; i < hits.count; ++i) {
+    int at = i;
+    for (; at > 0 && hits.t_enter[i] < hits.t_enter[order[at - 1]]; --at) order[at] = order[at - 1];
+    order[at] = uint8_t(i);
+  }
+}
+
+}  // namespace glint::rt

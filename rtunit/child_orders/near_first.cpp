@@ -1,0 +1,25 @@
+// Child order `near_first`: by distance, as hardware that sorts its hits does.
+// SPDX-License-Identifier: Apache-2.0
+#include "base/registry.h"
+#include "rtunit/child_order.h"
+
+namespace glint::rt {
+namespace {
+
+class NearFirst final : public ChildOrder {
+ public:
+  static constexpr std::string_view kName = "near_first";
+  static constexpr std::string_view kDoc = "The nearest child first; of equals the lower.";
+  struct Params {
+    static constexpr auto params() { return std::tuple{}; }
+  };
+  NearFirst(Params, Context) {}
+
+  void sort(const ChildHits& hits, uint8_t* order) const override { nearest_first(hits, order); }
+  const ChildOrder* for_rays() const override { return nullptr; }
+};
+
+const Register<ChildOrder, NearFirst> registered;
+
+}  // namespace
+}  // namespace glint::rt

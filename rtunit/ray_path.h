@@ -1,0 +1,28 @@
+// The way from the root to every node that a ray still has to visit, for stacks that forget entries.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "rtunit/structure.h"
+
+namespace glint::rt {
+
+// A node to be brought from memory.
+struct Fetch {
+  Address address = 0;  // virtual
+  uint32_t bytes = 0;
+  NodeKind kind = NodeKind::Internal;
+};
+
+// Kept by the traversal for rays that have one. node[d] is the node visited last at depth d; of a ray's stack, entry i is a
+// child of node[parent[i]]. Depths wrap at 256: no tree that fits a stack of 192 entries is near it.
+struct RayPath {
+  const void* ray = nullptr;  // whose it is
+  static constexpr uint8_t kNoParent = 0xff;
+  uint8_t depth = 0;  // of the node visited last
+  std::array<uint8_t, 256> parent;
+  std::array<Fetch, 256> node;
+};
+
+}  // namespace glint::rt

@@ -1,0 +1,24 @@
+// Stack model `full`: every entry of a ray is on chip.
+// SPDX-License-Identifier: Apache-2.0
+#include "base/registry.h"
+#include "rtunit/stack_model.h"
+
+namespace glint::rt {
+namespace {
+
+class Full final : public StackModel {
+ public:
+  static constexpr std::string_view kName = "full";
+  static constexpr std::string_view kDoc = "Every entry is on chip.";
+  struct Params {
+    static constexpr auto params() { return std::tuple{}; }
+  };
+  Full(Params, Context) {}
+
+  StackWork settle(RayState&) const override { return {}; }
+};
+
+const Register<StackModel, Full> registered;
+
+}  // namespace
+}  // namespace glint::rt

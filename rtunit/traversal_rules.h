@@ -1,0 +1,17 @@
+// What Vulkan leaves open about a ray's way through a structure. None of it changes which hit is nearest.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "rtunit/child_order.h"
+
+namespace glint::rt {
+
+struct TraversalRules {
+  // Whether kTerminateOnFirstHit ends the ray at the first hit that is found, or only lets it end once no nearer one can be.
+  // Set before begin().
+  bool end_at_first_hit = true;
+  // The RT unit that walks the ray sets these; begin() sets what is here.
+  bool retest = true;                 // entries behind the hit are dropped when they come up, not visited
+  const ChildOrder* order = nullptr;  // null: nearest_first()
+};
+
+}  // namespace glint::rt

@@ -1,0 +1,117 @@
+// Every registered stack model keeps the promises of rtunit/stack_model.h.
+// SPDX-License-Identifier: Apache-2.0
+#include <set>
+
+#include "base/registry.h"
+#include "rtunit/stack_model.h"
+#include "rtunit/traversal.h"
+#include "tests/support/catch.h"
+#include "tests/support/rt_scenes.h"
+
+namespace glint::rt::test {
+namespace {
+
+std::unique_ptr<StackModel> model_of(const std::string& name) { return Registry<StackModel>::instance().entry(name).make_default({}); }
+
+// A ray that does nothing but push and pop.
+struct Walker {
+  RayState ray;
+  RayPath path;
+  explicit Walker(const StackModel& model) {
+    ray.status = RayStatus::Traversing;
+    ray.stack_size = 1;
+    path.parent[0] = RayPath::kNoParent;
+    if (model.keeps_path()) ray.path = &path;
+  }
+  void visit(int pops, int pushes) {
+    const auto depth = uint8_t(path.parent[size_t(ray.stack_size) - 1] + 1);
+    ray.stack_size = int16_t(ray.stack_size - pops);
+    for (; pushes > 0 && ray.stack_size < kStackEntries; --pushes) path.parent[size_t(ray.stack_size++)] = depth;
+  }
+};
+
+TEST_CASE("every stack model keeps the next entry on chip, and fills what it has spilled and nothing else") {
+  const auto names = Registry<StackModel>::names();
+  REQUIRE(names.size() >= 3);
+  for (const std::string& name : names) {
+    CAPTURE(name);
+    const auto model = model_of(name);
+    Random random{3};
+    int most_on_chip = 0;
+    for (int round = 0; round < 300; ++round) {
+      Walker walker(*model);
+      std::set<int> in_memory;  // rows
+      const auto settle = [&] {
+        const StackWork work = model->settle(walker.ray);
+        for (int i = 0; i < work.spills; ++i) REQUIRE(in_memory.insert(work.row + i).second);
+        for (int i = 1; i <= work.fills; ++i) REQUIRE(in_memory.erase(work.row - i) == 1);
+        for (const int row : in_memory) REQUIRE(row < int(model->rows()));
+        const int on_chip = walker.ray.stack_size - walker.ray.stack_off_chip;
+        REQUIRE((on_chip > 0 || walker.ray.stack_size == 0));
+        REQUIRE((walker.ray.stack_size > 0 || walker.ray.stack_off_chip == 0));
+        most_on_chip = std::max(most_on_chip, on_chip);
+        REQUIRE(work.replays < 250);
+      };
+      settle();
+      while (walker.ray.stack_size > 0) {
+        const int deep = random.below(10) ? 1 : 1 + int(random.below(uint32_t(walker.ray.stack_size)));
+        walker.visit(deep, random.below(100) < 60 - uint32_t(walker.ray.stack_size) / 4 ? int(random.below(5)) : 0);
+        settle();
+      }
+      CHECK(in_memory.empty());
+    }
+    if (name == "full") CHECK(most_on_chip > 20);
+    else CHECK(most_on_chip == 8);
+  }
+}
+
+TEST_CASE("a short stack spills four entries when a ninth comes, and fills them when none is left on chip") {
+  const auto model = model_of("short_stack");
+  Walker walker(*model);
+  walker.visit(1, 8);
+  CHECK(model->settle(walker.ray).spills == 0);
+  walker.visit(0, 1);
+  StackWork work = model->settle(walker.ray);
+  CHECK((work.spills == 1 && work.row == 0 && walker.ray.stack_off_chip == 4));
+  walker.visit(4, 0);
+  CHECK(model->settle(walker.ray).fills == 0);
+  walker.visit(1, 0);
+  work = model->settle(walker.ray);
+  CHECK((work.fills == 1 && work.row == 1 && walker.ray.stack_off_chip == 0));
+}
+
+TEST_CASE("a ray that ends at its first hit leaves its stack where it is") {
+  const auto model = model_of("short_stack");
+  Walker walker(*model);
+  walker.visit(1, 30);
+  CHECK(model->settle(walker.ray).spills == 6);
+  walker.ray.status = RayStatus::Done;
+  walker.ray.stack_size = 0;
+  SECTION("without reading it") {
+    walker.ray.ray.flags = ray_flag::kTerminateOnFirstHit;
+    walker.ray.committed.instance = 1;
+    CHECK(model->settle(walker.ray).fills == 0);
+  }
+  SECTION("but one whose entries lie behind its hit reads them to know it") { CHECK(model->settle(walker.ray).fills == 6); }
+  CHECK(walker.ray.stack_off_chip == 0);
+}
+
+TEST_CASE("a restart visits the nodes above the entry that was forgotten, from the root on") {
+  const auto model = model_of("restart_trail");
+  Walker walker(*model);
+  walker.visit(1, 5);  // children of the root, at depth 0
+  model->settle(walker.ray);
+  walker.visit(1, 5);  // of its last child, at depth 1: nine entries, one is forgotten
+  CHECK(model->settle(walker.ray).replays == 0);
+  CHECK(walker.ray.stack_off_chip == 1);
+  for (int i = 0; i < 7; ++i) {
+    walker.visit(1, 0);
+    REQUIRE(model->settle(walker.ray).replays == 0);
+  }
+  walker.visit(1, 0);
+  CHECK(model->settle(walker.ray).replays == 1);  // the root alone
+  CHECK(walker.ray.stack_off_chip == 0);
+}
+
+}  // namespace
+}  // namespace glint::rt::test
