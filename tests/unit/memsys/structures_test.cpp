@@ -118,18 +118,24 @@ TEST_CASE("a fan-in shows nothing before delivery but counts it as the next arri
   CHECK(in.ready(5));
 }
 
-TEST_CASE("any number of partitions is filled equally and addresses stay unique inside each") {
-  const uint32_t n = GENERATE(1u, 3u, 4u, 12u, 24u, 80u);
-  PartitionMap map(n, 1, 256);
+TEST_CASE("any number of partitions and slices is filled equally and addresses stay unique inside each") {
+  const uint32_t n = GENERATE(1u, 3u, 4u, 12u, 24u, 80u), slices = GENERATE(1u, 2u, 3u);
+  const bool mixed = GENERATE(true, false);
+  PartitionMap map(n, slices, 256, mixed);
   std::vector<std::set<Address>> local(n);
-  for (uint32_t chunk = 0; chunk < n * 100; ++chunk) {
+  std::vector<int> of_slice(n * slices);
+  bool one_chunk = true;
+  for (uint32_t chunk = 0; chunk < n * slices * 100; ++chunk) {
     const Address address = Address{chunk} * 256;
-    CHECK(map.partition(address) == map.partition(address + 255));
+    one_chunk = one_chunk && map.slice(address) == map.slice(address + 255);
+    ++of_slice[map.slice(address)];
     local[map.partition(address)].insert(map.local(address, map.slice(address)));
   }
+  CHECK(one_chunk);
+  for (const int chunks : of_slice) CHECK(chunks == 100);
   for (const std::set<Address>& one : local) {
-    CHECK(one.size() == 100);
-    CHECK(*one.rbegin() == 99 * 256);  // dense
+    CHECK(one.size() == 100 * slices);
+    CHECK(*one.rbegin() == (100 * slices - 1) * 256);  // dense
   }
 }
 
@@ -138,6 +144,20 @@ TEST_CASE("strides of the number of partitions still reach every partition") {
   std::vector<int> count(12);
   for (uint32_t i = 0; i < 1200; ++i) ++count[map.partition(Address{i} * 12 * 256)];
   for (const int n : count) CHECK(n > 60);  // 100 on average
+}
+
+TEST_CASE("a line that is held is no victim, and a set of such lines has none") {
+  TagArray tags(1, 2, 128);
+  tags.insert(0).held = true;
+  tags.insert(128).valid = 1;
+  tags.touch(tags.find(128));
+  CHECK(tags.victim(256).address == 128);  // 0 is older, and held
+  tags.insert(256).held = true;
+  CHECK_FALSE(tags.has_victim(384));
+  CHECK(tags.find(0) != TagArray::kNone);
+  tags.line(tags.find(0)).held = false;
+  tags.line(tags.find(0)).valid = 1;
+  CHECK(tags.victim(384).address == 0);
 }
 
 TEST_CASE("a row's chunks share bank group turns and a full row has row_bytes bytes") {
