@@ -42,6 +42,7 @@ class Launch {
     world_.prints = options.prints;
     world_.nearest_first_hit = options.gpu.rt.nearest_first_hit;
     world_.any_hit = options.gpu.rt.any_hit.make({});
+    world_.layout = options.gpu.core.layout.make({});
     const pipeline::RenderResult result = pipeline::run_world(world_, options.gpu, options.timing, options.no_skip, options.threads, {});
     for (const auto& [name, address] : addresses_) {
       std::vector<std::byte>& bytes = script_.buffers.at(name).bytes;

@@ -23,6 +23,8 @@ CoreCell::CoreCell(const Params& params, const Context& context)
       table_(*context.world.image, params),
       executor_(context.world, context.clock_mhz),
       turn_(context.turn),
+      holds_operands_(params.lsu.war_latency + params.lsu.shared_war_latency > 0),
+      times_constants_(params.constant.serial || !params.constant.perfect),
       view_(context.turn ? std::make_unique<MemoryView>() : nullptr),
       lsu_(params, context.l1),
       schedulers_(params.schedulers),
@@ -34,6 +36,9 @@ CoreCell::CoreCell(const Params& params, const Context& context)
       home_(num_slots_),
       warps_per_block_(executor_.warps_per_block()),
       seat_{0, num_slots_, context.index, context.cores},
+      line_(num_slots_),
+      waits_for_line_(num_slots_),
+      constant_(num_slots_),
       rays_issued_(num_slots_),
       rays_pc_(num_slots_),
       stats_(context.parent, context.name),
@@ -41,6 +46,10 @@ CoreCell::CoreCell(const Params& params, const Context& context)
       op_lanes_(isa::op_table().size()) {
   GLINT_CHECK(num_slots_ > 0, "no warp fits: check() reports this");
   executor_.use(view_.get());
+  if (!params.fetch.perfect || !params.constant.perfect) {
+    code_stats_ = std::make_unique<CodeStats>(&stats_);
+    code_ = std::make_unique<Code>(params_, context, *code_stats_);
+  }
   const bool counts_blocks = world_.block_size[0] != 0;
   const uint32_t places = counts_blocks ? std::min(params.blocks, num_slots_ / warps_per_block_) : num_slots_;
   GLINT_CHECK(places > 0, "no block fits: check_block() reports this");
@@ -67,6 +76,10 @@ uint64_t CoreCell::table_bytes(const Params& params, const World& world) {
   return table_layout(world, 0).bytes_per_warp() * occupancy(params, world.image->num_registers);
 }
 
+LaunchNeeds CoreCell::needs_of(const World& world) {
+  return {world.image->num_registers, core::warps_per_block(world), world.shared_bytes, world.block_size[0] != 0};
+}
+
 bool CoreCell::has_room() const {
   return num_resident_ + warps_per_block_ <= num_slots_ && num_blocks_ < residents_.size() &&
          uint64_t{num_blocks_ + 1} * world_.shared_bytes <= params_.shared_bytes;
@@ -77,6 +90,9 @@ void CoreCell::launch(Cycle now, uint32_t block_index, Cycle ready) {
   if (num_resident_ == 0)
     for (SchedulerState& scheduler : schedulers_) scheduler.reason = Stall::NoWarp;
   account_until(now);
+  now_ = now;
+  if (stats_.blocks.value() > 0) ready = std::max(ready, block_start_ + params_.block_interval);
+  block_start_ = ready;
   Resident& home = **std::find_if(residents_.begin(), residents_.end(), [](const auto& r) { return r->warps == 0; });
   executor_.start(home.block, block_index);
   home.warps = warps_per_block_;
@@ -95,6 +111,8 @@ void CoreCell::launch_warp(Resident& home, uint32_t warp_in_block, Cycle ready) 
   home_[slot] = &home;
   fence_[slot] = 0;
   scoreboards_[slot].reset();
+  line_[slot] = InstructionFetch::kNone;
+  waits_for_line_[slot] = false;
   front_[slot] = {ready, Stall::Dispatch};
   scheduler.resident |= uint64_t{1} << local;
   scheduler.age[local] = num_launched_++;
@@ -119,12 +137,14 @@ Cycle CoreCell::next_event(Cycle from) const {
   for (const SchedulerState& scheduler : schedulers_) next = std::min(next, scheduler.sleep_until);
   if (next <= from) return from;
   if (from == 0) return finished() ? next : from;
+  if (code_) next = std::min(next, code_->cache.next_event(from - 1));
   next = std::min({next, lsu_.next_event(from - 1), l1_.next_event(from - 1), rt_.next_event(from - 1)});
   return std::max(next, from);
 }
 
 void CoreCell::step(Cycle now) {
   sampler_.reach(now);
+  now_ = now;
   const bool had_warps = num_resident_ > 0;
   if (had_warps) account_until(now);
   l1_.tick(now);
@@ -132,6 +152,9 @@ void CoreCell::step(Cycle now) {
   if (now & 1) rt_.tick(now);
   lsu_.tick(now);
   if (!(now & 1)) rt_.tick(now);
+  if (code_) take_code(now);
+  if (holds_operands_)
+    for (uint32_t id : lsu_.accepted()) read_operands(id, now);
   for (uint32_t id : lsu_.completed()) complete(id, now);
   while (const auto slot = rt_.pop_completion(now)) complete_rays(*slot, now);
   for (SchedulerState& scheduler : schedulers_) {

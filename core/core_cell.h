@@ -9,7 +9,9 @@
 
 #include "base/engine.h"
 #include "base/interval_sampler.h"
+#include "core/constant_cache.h"
 #include "core/executor.h"
+#include "core/instruction_fetch.h"
 #include "core/issue_scheduler.h"
 #include "core/lsu.h"
 #include "core/memory_view.h"
@@ -27,7 +29,6 @@ namespace glint::core {
 // A cycle, in order: L1, RT unit and load-store unit; their answers wake warps; each scheduler issues one
 // instruction, which is executed at once and charged for afterwards. Cycles in which nothing can happen are
 // skipped, and give the same result as stepping through them.
-// Model: no instruction cache (every fetch hits) and no register-file banks (operands never conflict).
 class CoreCell final : public Cell {
  public:
   struct Context {
@@ -41,6 +42,7 @@ class CoreCell final : public Cell {
     uint32_t index = 0, cores = 1;
     double clock_mhz = 0.0;        // 0: programs read no time
     Address tables = 0;            // physical, of table_bytes() bytes: the candidates of its rays
+    Address code = 0, constants = 0;  // physical: the image's instructions, the constant bank; if their caches are not perfect
     Cycle turn = 0;                // after which other cores see what this one has written; 0: there are none
   };
   // Program and parameters must have passed check().
@@ -52,6 +54,9 @@ class CoreCell final : public Cell {
   // And for candidates, in the deferred any-hit mode.
   static rt::TableLayout table_layout(const World& world, Address base);
   static uint64_t table_bytes(const Params& params, const World& world);
+  // And, of all cores together, for instructions and constants; 0 where those are always there.
+  static uint64_t code_bytes(const Params& params, const World& world);
+  static uint64_t constant_bytes(const Params& params, const World& world);
 
   // Launching, between windows only.
   uint32_t num_slots() const { return num_slots_; }
@@ -59,6 +64,8 @@ class CoreCell final : public Cell {
   // Room for a whole block: warp slots, shared memory, and a block's place.
   // Model: a warp's slot and registers are free when the warp has ended; hardware keeps them until the block has.
   bool has_room() const;
+  // Blocks and warps that fit at a time, and what limits them.
+  static LaunchNeeds needs_of(const World& world);
   // Puts block `block_index` of the launch into the lowest free slots; its first instructions can issue at `ready`.
   void launch(Cycle now, uint32_t block_index, Cycle ready);
 
@@ -66,7 +73,7 @@ class CoreCell final : public Cell {
   void advance(Cycle from, Cycle until) override;
   Cycle next_event(Cycle from) const override;
   bool finished() const override {
-    return num_resident_ == 0 && lsu_.idle() && l1_.next_event(accounted_) == kNever;  // last writes have left
+    return num_resident_ == 0 && lsu_.idle() && (!code_ || code_->cache.idle()) && l1_.next_event(accounted_) == kNever;  // last writes have left
   }
   uint64_t progress() const override { return progress_; }
   std::string describe_stall() const override;
@@ -99,6 +106,14 @@ class CoreCell final : public Cell {
     uint32_t warps = 0;  // of it that hold a slot; 0: the place is free
   };
 
+  // Caches of instructions and constants; a pointer is null where they are perfect.
+  struct Code {
+    Code(const Params& params, const Context& context, CodeStats& stats);
+    CodeCache cache;
+    std::unique_ptr<InstructionFetch> fetch;
+    std::unique_ptr<ConstantCache> constants;
+  };
+
   void launch_warp(Resident& home, uint32_t warp_in_block, Cycle ready);
   void step(Cycle now);
   void account_until(Cycle now);
@@ -107,6 +122,9 @@ class CoreCell final : public Cell {
   Stall reason_of(const SchedulerState& scheduler, size_t warp, Cycle now) const;
   uint32_t blamed_pc(const SchedulerState& scheduler, Cycle now) const;
   uint64_t find_ready(SchedulerState& scheduler, Cycle now);
+  uint64_t leave_out_bank_conflicts(SchedulerState& scheduler, uint64_t free, Cycle now, Cycle& next) const;
+  void read_banks(SchedulerState& scheduler, uint32_t pc, Cycle now);
+  Scoreboard::Ready operands_ready(uint32_t slot, const IssueRow& row) const;
   void issue(SchedulerState& scheduler, uint32_t local, Cycle now);
   void count(const IssueRow& row, const Issued& issued);
   void count_access(const isa::OpRow& op);
@@ -121,6 +139,14 @@ class CoreCell final : public Cell {
   void collect_memory(MemoryAccess& access, const Issued& issued);
   void start_rays(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now);
   void complete(uint32_t access_id, Cycle now);
+  void read_operands(uint32_t access_id, Cycle now);
+  uint32_t war_latency(const MemoryAccess& access) const {
+    return access.lines.lines().empty() ? params_.lsu.shared_war_latency : params_.lsu.war_latency;
+  }
+  void finish_constant(uint32_t slot, Cycle now);
+  void start_constant(SchedulerState& scheduler, uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now);
+  void come_to_line(uint32_t slot);
+  void take_code(Cycle now);
   void complete_rays(uint32_t slot, Cycle now);
   void retire(uint32_t slot);
   void free_slot(uint32_t slot);
@@ -137,6 +163,7 @@ class CoreCell final : public Cell {
   IssueTable table_;
   Executor executor_;
   const Cycle turn_;
+  const bool holds_operands_, times_constants_;
   std::unique_ptr<MemoryView> view_;
   Lsu lsu_;
   std::vector<SchedulerState> schedulers_;
@@ -150,6 +177,15 @@ class CoreCell final : public Cell {
   const uint32_t warps_per_block_;
   Seat seat_;                              // of the warp launched last
   uint32_t num_blocks_ = 0;                // resident
+  std::vector<uint32_t> line_;             // a slot: line of instructions that the warp is in or waits for
+  std::vector<uint8_t> waits_for_line_;
+  struct ConstantLoad {
+    uint32_t pc = 0;
+    Cycle issued = 0, latency = 0;         // of a hit
+  };
+  std::vector<ConstantLoad> constant_;     // a slot: its last one
+  Cycle now_ = 0;                          // of the present step or launch
+  Cycle block_start_ = 0;                  // of the block launched last
   Cycle barrier_free_ = 0;                 // of the core's barrier unit
   std::vector<Cycle> rays_issued_;         // a slot: when its rays were handed over
   std::vector<uint32_t> rays_pc_;
@@ -158,6 +194,8 @@ class CoreCell final : public Cell {
   Cycle accounted_ = 0;                    // every cycle before has been given to a reason
   std::optional<Fault> fault_;
   CoreStats stats_;
+  std::unique_ptr<CodeStats> code_stats_;  // null where instructions and constants are always there, as is:
+  std::unique_ptr<Code> code_;
   std::vector<uint64_t> op_counts_, op_lanes_;
   std::unique_ptr<Profile> profile_;       // null: not asked for
   IntervalSampler sampler_;

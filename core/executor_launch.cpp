@@ -25,14 +25,39 @@ std::array<uint32_t, 3> grid_size(const World& world) {
   return grid;
 }
 
-// The first of the threads of a warp in its block, or in the launch when there are no blocks, and how many it has.
-struct Threads {
-  uint64_t first, count;
+// Tiles of a launch without blocks; zeros where its warps are consecutive launch indices.
+struct Tiles {
+  uint32_t width = 0, height = 0, columns = 0, rows = 0;
 };
-Threads threads_of(const World& world, uint32_t warp) {
-  const uint64_t all = product(has_blocks(world) ? world.block_size : world.launch_size);
-  const uint64_t first = uint64_t(warp) * kLanes;
-  return {first, std::min<uint64_t>(kLanes, all - first)};
+Tiles tiles_of(const World& world) {
+  if (!world.layout || has_blocks(world)) return {};
+  const auto [width, height] = world.layout->tile();
+  const auto& size = world.launch_size;
+  if (width == 0 || size[1] < height) return {};
+  return {width, height, (size[0] + width - 1) / width, (size[1] + height - 1) / height};
+}
+
+// Block `index` of the launch, in the layout's order.
+std::array<uint32_t, 3> block_id(const World& world, uint32_t index) {
+  const std::array<uint32_t, 3> grid = grid_size(world);
+  if (!world.layout) return coordinates(index, grid);
+  const auto [x, y] = world.layout->nth(index % (grid[0] * grid[1]), grid[0], grid[1]);
+  return {x, y, index / (grid[0] * grid[1])};
+}
+
+// Lanes that have a thread: all but at the edges of the launch or of the block.
+LaneMask lanes_of(const World& world, uint32_t warp_index, uint32_t warp_in_block) {
+  if (tiles_of(world).width == 0) {
+    const uint64_t all = product(has_blocks(world) ? world.block_size : world.launch_size);
+    const uint64_t left = all - uint64_t(has_blocks(world) ? warp_in_block : warp_index) * kLanes;
+    return left >= uint64_t(kLanes) ? kAllLanes : (LaneMask{1} << left) - 1;
+  }
+  LaneMask lanes = 0;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const std::array<uint32_t, 3> id = launch_id(world, warp_index, lane);
+    if (id[0] < world.launch_size[0] && id[1] < world.launch_size[1]) lanes |= LaneMask{1} << lane;
+  }
+  return lanes;
 }
 
 }  // namespace
@@ -42,10 +67,16 @@ uint32_t warps_per_block(const World& world) {
 }
 
 std::array<uint32_t, 3> launch_id(const World& world, uint32_t warp_index, int lane) {
+  if (const Tiles tiles = tiles_of(world); tiles.width) {
+    const uint32_t layer = tiles.columns * tiles.rows;
+    const auto [column, row] = world.layout->nth(warp_index % layer, tiles.columns, tiles.rows);
+    const auto [x, y] = world.layout->lane_place(lane);
+    return {column * tiles.width + x, row * tiles.height + y, warp_index / layer};
+  }
   const uint32_t warps = warps_per_block(world);
   const uint64_t thread = uint64_t(has_blocks(world) ? warp_index % warps : warp_index) * kLanes + uint64_t(lane);
   if (!has_blocks(world)) return coordinates(thread, world.launch_size);
-  const std::array<uint32_t, 3> block = coordinates(warp_index / warps, grid_size(world));
+  const std::array<uint32_t, 3> block = block_id(world, warp_index / warps);
   std::array<uint32_t, 3> id = coordinates(thread, world.block_size);
   for (size_t axis = 0; axis < 3; ++axis) id[axis] += block[axis] * world.block_size[axis];
   return id;
@@ -66,11 +97,12 @@ uint32_t Executor::warps_per_block() const { return core::warps_per_block(world_
 
 uint32_t Executor::num_blocks() const {
   if (has_blocks(world_)) return uint32_t(product(grid_size(world_)));
+  if (const Tiles tiles = tiles_of(world_); tiles.width) return tiles.columns * tiles.rows * world_.launch_size[2];
   return uint32_t((product(world_.launch_size) + kLanes - 1) / kLanes);
 }
 
 void Executor::start(Block& block, uint32_t index) const {
-  const auto id = has_blocks(world_) ? coordinates(index, grid_size(world_)) : std::array<uint32_t, 3>{index, 0, 0};
+  const auto id = has_blocks(world_) ? block_id(world_, index) : std::array<uint32_t, 3>{index, 0, 0};
   block.start(index, id, warps_per_block(), world_.shared_bytes);
 }
 
@@ -104,8 +136,7 @@ void Executor::start(WarpContext& warp, Block& block, uint32_t warp_in_block, co
   warp.instructions = 0;
   warp.waiting_for_rays = warp.waiting_at_barrier = false;
 
-  const uint64_t count = threads_of(world_, has_blocks(world_) ? warp_in_block : warp.warp_index).count;
-  warp.simt.start(image.shaders[world_.raygen].entry, count == kLanes ? kAllLanes : (LaneMask{1} << count) - 1);
+  warp.simt.start(image.shaders[world_.raygen].entry, lanes_of(world_, warp.warp_index, warp_in_block));
   fill_launch_specials(warp, seat);
   fill_specials(warp, warp.simt.active, image.shaders[world_.raygen]);
 }

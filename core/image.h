@@ -12,6 +12,7 @@
 #include "core/fault.h"
 #include "core/image_view.h"
 #include "core/print_log.h"
+#include "core/warp_layout.h"
 #include "isa/message.h"
 #include "isa/op_row.h"
 #include "isa/program.h"
@@ -99,8 +100,9 @@ struct World {
   BindingTable table;
   std::array<uint32_t, 3> launch_size{1, 1, 1};  // threads
   // Threads of a block (at most kMaxBlockThreads); `launch_size` is then a multiple of it in each direction. Zeros: the
-  // launch has no blocks, and each warp of 32 consecutive threads is one of its own (ray generation).
+  // launch has no blocks, and each warp is one of its own (ray generation); `layout` says of which threads.
   std::array<uint32_t, 3> block_size{0, 0, 0};
+  std::shared_ptr<const WarpLayout> layout;  // null: linear
   uint32_t shared_bytes = 0;               // shared memory of a block
   uint32_t dynamic_shared_bytes = 0;       // the part of it that the launch asked for, not the program
   std::shared_ptr<const rt::AnyHitMode> any_hit;  // null: immediate

@@ -11,16 +11,18 @@ namespace glint::core {
 
 Lsu::Lsu(const Params& params, mem::L1Port& l1)
     : l1_(l1), params_(params.lsu), shared_(params.shared), lsu_unit_(params.units.lsu), tex_unit_(params.units.tex),
-      num_queues_(params.schedulers), queue_capacity_(params.lsu.queue),
-      accesses_(params.lsu.accesses, MemoryAccess(l1.line_bytes())) {
+      num_queues_(params.schedulers), samples_per_cycle_(params.texture.samples_per_cycle), own_queue_(params.texture.queue > 0),
+      own_door_(params.texture.own_door), accesses_(params.lsu.accesses, MemoryAccess(l1.line_bytes())) {
+  groups_[0].capacity = params.lsu.queue;
+  groups_[1].capacity = params.texture.queue;
   for (Pipe& pipe : pipes_) pipe.id.resize(accesses_.size());
   for (uint32_t id = uint32_t(accesses_.size()); id-- > 0;) free_.push_back(id);
   completed_.reserve(accesses_.size());
 }
 
-MemoryAccess& Lsu::take(uint32_t scheduler, Cycle now) {
-  GLINT_DCHECK(can_take(scheduler), "scheduler {} has no room for an access", scheduler);
-  Queue& queue = queues_[scheduler];
+MemoryAccess& Lsu::take(uint32_t scheduler, Cycle now, bool texture) {
+  GLINT_DCHECK(can_take(scheduler, texture), "scheduler {} has no room for an access", scheduler);
+  Queue& queue = groups_[texture && own_queue_].queues[scheduler];
   const uint32_t id = free_.back();
   free_.pop_back();
   queue.id[(queue.head + queue.count++) % kMaxQueue] = id;
@@ -28,6 +30,8 @@ MemoryAccess& Lsu::take(uint32_t scheduler, Cycle now) {
   access.lines.clear();
   access.num_sent = access.num_answers = access.passes = access.num_table_lines = 0;
   access.atomic = false;
+  access.texture = texture;
+  access.samples = 0;
   access.bank_turns = 1;
   access.issued = now;
   access.late_until = 0;
@@ -37,7 +41,8 @@ MemoryAccess& Lsu::take(uint32_t scheduler, Cycle now) {
 void Lsu::tick(Cycle now) {
   completed_.clear();
   take_answers(now);
-  accept(now);
+  num_accepted_ = 0;
+  for (Group& group : groups_) accept(group, now);
   send(now);
 }
 
@@ -50,37 +55,52 @@ void Lsu::take_answers(Cycle now) {
 }
 
 // Round robin over the schedulers' queues, one access in accept_interval cycles.
-void Lsu::accept(Cycle now) {
-  if (now < accept_at_) return;
+void Lsu::accept(Group& group, Cycle now) {
+  if (now < group.accept_at || group.capacity == 0) return;
   for (uint32_t i = 0; i < num_queues_; ++i) {
-    const uint32_t q = (next_queue_ + i) % num_queues_;
-    Queue& queue = queues_[q];
+    const uint32_t q = (group.next + i) % num_queues_;
+    Queue& queue = group.queues[q];
     if (queue.count == 0 || now < queue.free_at) continue;
     const uint32_t id = queue.id[queue.head];
-    MemoryAccess& access = accesses_[id];
-    Pipe& pipe = pipes_[pipe_of(access)];
-    if (access.issued >= now || now < pipe.free_at) continue;
+    Pipe& pipe = pipes_[pipe_of(accesses_[id])];
+    if (accesses_[id].issued >= now || now < pipe.free_at) continue;
     queue.head = (queue.head + 1) % kMaxQueue;
     --queue.count;
     ++num_vacated_;
     queue.free_at = now + lsu_unit_.interval;
-    // The cycle between issue and here is the first of the latency, so that an unloaded unit adds just that.
-    access.ready = now - 1 + (access.texture ? tex_unit_ : lsu_unit_).latency;
-    if (access.texture) pipe.free_at = now + tex_unit_.interval;
-    const uint32_t tag_cycles = uint32_t(access.lines.lines().size() + params_.lines_per_cycle - 1) / params_.lines_per_cycle;
-    access.hold = access.bank_turns > tag_cycles ? access.bank_turns - tag_cycles : 0;
-    if (access.bank_turns > 1) access.ready += std::max<Cycle>(conflict_latency(access.bank_turns - 1), access.hold) - access.hold;
-    if (access.passes > 0) {
-      const Cycle more = shared_cycles(access) - 1;
-      if (&pipe == &pipes_[kShared]) access.ready = now - 1 + (access.atomic ? shared_.atomic_latency : shared_.latency);
-      access.ready += access.atomic ? more : conflict_latency(more);
-      pipe.free_at = now + 1 + more;
-    }
-    pipe.id[(pipe.head + pipe.count++) % pipe.id.size()] = id;
-    accept_at_ = now + params_.accept_interval;
-    next_queue_ = (q + 1) % num_queues_;
+    group.accept_at = now + params_.accept_interval;
+    group.next = (q + 1) % num_queues_;
+    enter(id, pipe, now);
     return;
   }
+}
+
+// Puts an access at the end of its pipe.
+void Lsu::enter(uint32_t id, Pipe& pipe, Cycle now) {
+  MemoryAccess& access = accesses_[id];
+  // The cycle between issue and here is the first of the latency, so that an unloaded unit adds just that.
+  access.ready = now - 1 + (access.texture ? tex_unit_ : lsu_unit_).latency;
+  if (access.texture) {
+    const Cycle cycles = texture_cycles(access);
+    pipe.free_at = now + std::max<Cycle>(tex_unit_.interval, cycles);
+    access.ready += std::max<Cycle>(cycles, 1) - 1;
+  }
+  const uint32_t tag_cycles = uint32_t(access.lines.lines().size() + params_.lines_per_cycle - 1) / params_.lines_per_cycle;
+  access.hold = access.bank_turns > tag_cycles ? access.bank_turns - tag_cycles : 0;
+  if (access.bank_turns > 1) access.ready += std::max<Cycle>(conflict_latency(access.bank_turns - 1), access.hold) - access.hold;
+  if (access.passes > 0) {
+    const Cycle more = shared_cycles(access) - 1;
+    if (&pipe == &pipes_[kShared]) access.ready = now - 1 + (access.atomic ? shared_.atomic_latency : shared_.latency);
+    access.ready += access.atomic ? more : conflict_latency(more);
+    pipe.free_at = now + 1 + more;
+  }
+  pipe.id[(pipe.head + pipe.count++) % pipe.id.size()] = id;
+  accepted_[num_accepted_++] = id;
+}
+
+// Of the texture units, for the samples of an access; 0 where only the interval counts.
+Cycle Lsu::texture_cycles(const MemoryAccess& access) const {
+  return samples_per_cycle_ ? (access.samples + samples_per_cycle_ - 1) / samples_per_cycle_ : 0;
 }
 
 Cycle Lsu::shared_cycles(const MemoryAccess& access) const {
@@ -97,25 +117,25 @@ void Lsu::finish_shared(Cycle now) {
   for (; pipe.count > 0 && accesses_[pipe.front()].ready <= now; pop(pipe)) completed_.push_back(pipe.front());
 }
 
-// Lines of one access a cycle; the pipe not served last goes first.
+// Lines of one access a cycle and door; the pipe not served last goes first.
 void Lsu::send(Cycle now) {
   finish_shared(now);
-  if (now < port_free_) return;
+  const uint32_t first = next_pipe_;
   for (uint32_t i = 0; i < 2; ++i) {
-    const uint32_t p = (next_pipe_ + i) % 2;
-    if (pipes_[p].count > 0 && accesses_[pipes_[p].front()].ready <= now && send_line(now, pipes_[p])) {
-      next_pipe_ = 1 - p;
-      return;
-    }
+    const uint32_t p = (first + i) % 2;
+    if (now < door_of(p) || pipes_[p].count == 0 || accesses_[pipes_[p].front()].ready > now) continue;
+    if (send_line(now, p)) next_pipe_ = 1 - p;
   }
 }
 
-bool Lsu::send_line(Cycle now, Pipe& pipe) {
+bool Lsu::send_line(Cycle now, size_t p) {
+  Pipe& pipe = pipes_[p];
+  Cycle& door_free = door_of(p);
   const uint32_t id = pipe.front();
   MemoryAccess& access = accesses_[id];
   const auto lines = access.lines.lines();
   if (access.hold > 0) {
-    port_free_ = access.ready = now + access.hold;
+    door_free = access.ready = now + access.hold;
     access.hold = 0;
     return true;
   }
@@ -123,12 +143,12 @@ bool Lsu::send_line(Cycle now, Pipe& pipe) {
   for (uint32_t n = 0; n < params_.lines_per_cycle && access.num_sent < lines.size(); ++n) {
     const LineSectors& line = lines[access.num_sent];
     const mem::Traffic traffic = access.num_sent < access.num_table_lines ? mem::Traffic::RtTable : access.traffic;
-    if (!l1_.access(now, mem::Client::Lsu, {line.line, line.sectors, access.write, traffic, id})) break;
+    if (!l1_.access(now, mem::Client::Lsu, {line.line, line.sectors, access.write, traffic, id, line.words})) break;
     ++access.num_sent;
     cycles = std::max(cycles, (uint32_t(std::popcount(line.sectors)) + params_.sectors_per_cycle - 1) / params_.sectors_per_cycle);
   }
   if (cycles == 0) return false;
-  port_free_ = now + cycles;
+  door_free = now + cycles;
   if (access.num_sent == lines.size()) {
     pop(pipe);
     if (access.write) completed_.push_back(id);
@@ -138,14 +158,17 @@ bool Lsu::send_line(Cycle now, Pipe& pipe) {
 
 Cycle Lsu::next_event(Cycle now) const {
   Cycle next = kNever;
-  for (const Pipe& pipe : pipes_)
-    if (pipe.count > 0) next = std::min(next, std::max(accesses_[pipe.front()].ready, &pipe == &pipes_[kShared] ? 0 : port_free_));
-  for (uint32_t q = 0; q < num_queues_; ++q) {
-    const Queue& queue = queues_[q];
-    if (queue.count == 0) continue;
-    const MemoryAccess& access = accesses_[queue.id[queue.head]];
-    next = std::min(next, std::max({queue.free_at, access.issued + 1, accept_at_, pipes_[pipe_of(access)].free_at}));
+  for (size_t p = 0; p < pipes_.size(); ++p) {
+    const Cycle door = p == kShared ? 0 : door_free_[own_door_ && p == 1];
+    if (pipes_[p].count > 0) next = std::min(next, std::max(accesses_[pipes_[p].front()].ready, door));
   }
+  for (const Group& group : groups_)
+    for (uint32_t q = 0; q < num_queues_; ++q) {
+      const Queue& queue = group.queues[q];
+      if (queue.count == 0) continue;
+      const MemoryAccess& access = accesses_[queue.id[queue.head]];
+      next = std::min(next, std::max({queue.free_at, access.issued + 1, group.accept_at, pipes_[pipe_of(access)].free_at}));
+    }
   return next == kNever ? kNever : std::max(next, now + 1);
 }
 

@@ -24,6 +24,7 @@ struct MemoryAccess {
   mem::Traffic traffic = mem::Traffic::ShaderGlobal;
   bool write = false;
   bool texture = false;       // through the texture unit
+  uint32_t samples = 0;       // then: of up to four texels
   bool atomic = false;        // one that shared memory does, if it is there
   uint32_t bank_turns = 1;    // words of the fullest bank of the L1's array, where that counts
   uint32_t passes = 0;        // of shared memory; an access may go there and to lines (generic addresses)
@@ -37,24 +38,29 @@ struct MemoryAccess {
   Cycle ready = 0;            // in the pipe: when its first line can go to the L1
 };
 
-// Queue of each scheduler -> (accept_interval) -> load-store or texture pipe -> lines_per_cycle -> L1,
+// Queue of each scheduler -> (accept_interval) -> load-store pipe -> lines_per_cycle -> L1,
 //                                              or -> shared memory, one pass a cycle.
+// The same for the texture pipe, which has queues and a door of its own or shares those of loads.
 // Model: shared memory and L1 do not disturb each other, where hardware has one array for both.
-// Model: one queue for both pipes, in order; the texture unit shares the L1's door with loads and stores.
 class Lsu {
  public:
   Lsu(const Params& params, mem::L1Port& l1);
 
   // Whether an instruction of that scheduler can issue: room in its queue and in the table of accesses.
-  bool can_take(uint32_t scheduler) const { return !free_.empty() && queues_[scheduler].count < queue_capacity_; }
+  bool can_take(uint32_t scheduler, bool texture = false) const {
+    const Group& group = groups_[texture && own_queue_];
+    return !free_.empty() && group.queues[scheduler].count < group.capacity;
+  }
   // Grows whenever can_take() may have become true for some scheduler.
   uint64_t num_vacated() const { return num_vacated_; }
   // A new access at the end of the scheduler's queue: the caller fills all of it in before the next tick.
-  MemoryAccess& take(uint32_t scheduler, Cycle now);
+  MemoryAccess& take(uint32_t scheduler, Cycle now, bool texture = false);
   // Advances to `now`; afterwards completed() holds the accesses that ended in this cycle, each once:
   // reads when their last line has come, writes when the L1 has taken the last line.
   void tick(Cycle now);
   std::span<const uint32_t> completed() const { return {completed_.data(), completed_.size()}; }
+  // Those that have left their queues in this cycle.
+  std::span<const uint32_t> accepted() const { return {accepted_.data(), num_accepted_}; }
   const MemoryAccess& access(uint32_t id) const { return accesses_[id]; }
   void release(uint32_t id) {
     free_.push_back(id);
@@ -71,6 +77,11 @@ class Lsu {
     uint32_t head = 0, count = 0;
     Cycle free_at = 0;        // of this scheduler's address generation
   };
+  struct Group {              // queues that one unit takes from in turn
+    std::array<Queue, kMaxSchedulers> queues{};
+    uint32_t capacity = 0, next = 0;
+    Cycle accept_at = 0;
+  };
   struct Pipe {               // accesses in order, as a ring
     std::vector<uint32_t> id;
     uint32_t head = 0, count = 0;
@@ -79,9 +90,12 @@ class Lsu {
   };
 
   void take_answers(Cycle now);
-  void accept(Cycle now);
+  void accept(Group& group, Cycle now);
+  void enter(uint32_t id, Pipe& pipe, Cycle now);
   void send(Cycle now);
-  bool send_line(Cycle now, Pipe& pipe);
+  Cycle& door_of(size_t pipe) { return door_free_[own_door_ && pipe == 1]; }
+  Cycle texture_cycles(const MemoryAccess& access) const;
+  bool send_line(Cycle now, size_t pipe);
   void finish_shared(Cycle now);
   void pop(Pipe& pipe);
   static size_t pipe_of(const MemoryAccess& access) { return access.lines.lines().empty() ? kShared : access.texture; }
@@ -95,12 +109,15 @@ class Lsu {
   const LsuParams params_;
   const SharedParams shared_;
   const UnitParams lsu_unit_, tex_unit_;
-  const uint32_t num_queues_, queue_capacity_;
-  std::array<Queue, kMaxSchedulers> queues_{};
+  const uint32_t num_queues_, samples_per_cycle_;
+  const bool own_queue_, own_door_;  // of the texture unit
+  std::array<Group, 2> groups_;      // of loads and stores, and of textures if they have their own
   static constexpr size_t kShared = 2;
   std::array<Pipe, 3> pipes_;  // load-store, texture, shared memory
-  uint32_t next_queue_ = 0, next_pipe_ = 0;
-  Cycle accept_at_ = 0, port_free_ = 0;
+  uint32_t next_pipe_ = 0;
+  std::array<Cycle, 2> door_free_{};  // to the L1; the second is the texture unit's own
+  std::array<uint32_t, 2> accepted_{};
+  uint32_t num_accepted_ = 0;
   uint64_t num_vacated_ = 0;
   std::vector<MemoryAccess> accesses_;
   std::vector<uint32_t> free_, completed_;  // reserved once

@@ -1,4 +1,4 @@
-// How many warps fit into a core's register file.
+// How many warps and blocks fit into a core, and why no more.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/params.h"
 
@@ -20,6 +20,22 @@ uint32_t registers_per_warp(uint32_t num_registers) {
 
 uint32_t occupancy(const Params& params, uint32_t num_registers) {
   return std::min(params.warps, params.registers / registers_per_warp(num_registers));
+}
+
+std::string_view name_of(Residency::Limit limit) {
+  constexpr std::string_view kNames[] = {"warps", "registers", "blocks", "shared memory"};
+  return kNames[size_t(limit)];
+}
+
+Residency residency(const Params& params, const LaunchNeeds& needs) {
+  using Limit = Residency::Limit;
+  const std::pair<Limit, uint32_t> fits[] = {
+      {Limit::Warps, params.warps / needs.warps},
+      {Limit::Registers, params.registers / registers_per_warp(needs.registers) / needs.warps},
+      {Limit::Blocks, needs.has_blocks ? params.blocks : kMaxWarps},
+      {Limit::SharedMemory, needs.shared_bytes ? params.shared_bytes / needs.shared_bytes : kMaxWarps}};
+  const auto least = *std::min_element(std::begin(fits), std::end(fits), [](const auto& a, const auto& b) { return a.second < b.second; });
+  return {least.first, least.second, least.second * needs.warps};
 }
 
 void check(const Params& params, uint32_t num_registers, Diagnostics& diagnostics) {

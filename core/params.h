@@ -9,14 +9,17 @@
 #include "base/params.h"
 #include "base/registry.h"
 #include "base/types.h"
+#include "core/code_params.h"
 #include "core/issue_scheduler.h"
 #include "core/op_times.h"
+#include "core/warp_layout.h"
 #include "isa/op_row.h"
 
 namespace glint::core {
 
 inline constexpr uint32_t kMaxWarps = 64;        // resident warps of a core (GA100, GH100)
 inline constexpr uint32_t kMaxSchedulers = 8;
+inline constexpr uint32_t kMaxRegisterBanks = 8;
 inline constexpr uint32_t kRegisterUnit = 8;     // registers of a lane are given out in eights (CUDA occupancy tables)
 
 struct UnitParams {
@@ -80,6 +83,8 @@ struct LsuParams {
   // An H200 looks up 4 lines a cycle, and reads as many words of a bank as an access wants there, one after another.
   uint32_t lines_per_cycle = 1;    // Volta and later: one line of 128 B a cycle
   bool bank_conflicts = false;
+  // Same paper, table 2: the registers of a load may be overwritten 11 cycles after it, of one from shared memory 9.
+  uint32_t war_latency = 11, shared_war_latency = 9;
   static constexpr auto params() {
     return std::tuple{
         param(&LsuParams::queue, "queue", "instruction",
@@ -92,7 +97,35 @@ struct LsuParams {
             "Memory instructions of a core between issue and completion.", 1, 1024),
         param(&LsuParams::lines_per_cycle, "lines_per_cycle", "line", "Lines of one access asked of the L1 in the same cycle.", 1, 32),
         flag(&LsuParams::bank_conflicts, "bank_conflicts",
-            "An access to global memory takes a cycle for each different word in the fullest of 32 banks of 4 bytes.")};
+            "An access to global memory takes a cycle for each different word in the fullest of 32 banks of 4 bytes."),
+        param(&LsuParams::war_latency, "war_latency", "cycle",
+            "From a memory instruction to the first that may overwrite its sources, if it does not wait in its queue; 0: they are read at issue.", 0, 1000),
+        param(&LsuParams::shared_war_latency, "shared_war_latency", "cycle", "The same of shared memory.", 0, 1000)};
+  }
+};
+
+// Defaults: Turing: four texture units a core, each one bilinear sample a cycle (Turing whitepaper, 2018, TU102: 288 units
+// in 72 cores). Queue and door of its own: Choice, as MICRO 2025 draws the unit; its depth is not published.
+struct TextureParams {
+  uint32_t samples_per_cycle = 4;
+  uint32_t queue = 5;
+  bool own_door = true;
+  static constexpr auto params() {
+    return std::tuple{
+        param(&TextureParams::samples_per_cycle, "samples_per_cycle", "sample", "Samples of up to four texels a cycle and core; 0: the unit's interval alone limits it.", 0, 128),
+        param(&TextureParams::queue, "queue", "instruction", "Texture and image instructions that wait in a queue of each scheduler; 0: in the one of loads.", 0, 16),
+        flag(&TextureParams::own_door, "own_door", "Texels and loads are asked of the L1 in the same cycle, its ports permitting.")};
+  }
+};
+
+// Defaults: MICRO 2025, section 5.3: two banks a sub-core with a port each, read within three cycles; off because an ideal
+// register file predicts as well there. Model: no cache of operands; memory instructions read when the ports are free.
+struct RegisterFileParams {
+  uint32_t banks = 0, window = 3;
+  static constexpr auto params() {
+    return std::tuple{
+        param(&RegisterFileParams::banks, "banks", "bank", "Banks of a scheduler's registers, register r in bank r mod this; 0: no conflicts.", 0, kMaxRegisterBanks),
+        param(&RegisterFileParams::window, "window", "cycle", "In which an instruction of fixed latency reads its registers, one a bank and cycle.", 1, 16)};
   }
 };
 
@@ -136,11 +169,20 @@ struct Params {
   // An H200: 1 (4 cycles within a pipe, 5 to another; 17 and 18 from the special-function unit) and 9 (a comparison's
   // result selects after 4 cycles and guards after 13). 0 here: the latencies of other parts have these in them.
   uint32_t pipe_crossing = 0, guard_delay = 0;
+  // Results of fixed latency are written in the order of their ends: nothing checks them (MICRO 2025, section 4.1).
+  bool write_order = false;
+  RegisterFileParams register_file;
+  FetchParams fetch;
+  ConstantParams constant;
+  CodeCacheParams code_cache;
   LsuParams lsu;
+  TextureParams texture;
   SharedParams shared;
   FenceParams fence;
   uint32_t launch_latency = 5000;  // Vulkan-Sim, -gpgpu_kernel_launch_latency
   uint32_t warp_launch_latency = 0;
+  uint32_t block_interval = 1;     // GPGPU-Sim and Accel-Sim: a core takes one block a cycle (issue_block2core)
+  PolicyChoice<WarpLayout> layout{"linear"};
   uint64_t instruction_budget = 100'000'000;
   static constexpr auto params() {
     return std::tuple{
@@ -155,13 +197,21 @@ struct Params {
         section(&Params::units, "units", "Latency and initiation interval of the execution units."),
         param(&Params::pipe_crossing, "pipe_crossing", "cycle", "Later that a result reaches another pipe than its own.", 0, 100),
         param(&Params::guard_delay, "guard_delay", "cycle", "Later that a predicate guards an instruction than it can be read.", 0, 100),
+        flag(&Params::write_order, "write_order", "A result waits for earlier ones of its register, also where it would end after them anyway."),
+        section(&Params::register_file, "register_file", "Register-file banks."),
+        section(&Params::fetch, "fetch", "Instruction caches of the schedulers."),
+        section(&Params::constant, "constant", "Constant cache."),
+        section(&Params::code_cache, "code_cache", "Cache behind both."),
         section(&Params::lsu, "lsu", "Load-store unit."),
+        section(&Params::texture, "texture", "Texture unit."),
         section(&Params::shared, "shared", "Shared memory: 32 banks of 4 bytes."),
         section(&Params::fence, "fence", "Memory fences."),
         param(&Params::launch_latency, "launch_latency", "cycle",
             "From the launch to the first instruction.", 0, 1'000'000),
         param(&Params::warp_launch_latency, "warp_launch_latency", "cycle",
             "From taking a warp slot to the first instruction.", 0, 100'000),
+        param(&Params::block_interval, "block_interval", "cycle", "Between two blocks that start on a core.", 0, 10'000),
+        policy(&Params::layout, "warp_layout", "Which threads of a launch form a warp, and the order in which warps and blocks start."),
         param(&Params::instruction_budget, "instruction_budget", "instruction",
             "Instructions after which a warp is held to have no end.", 1, uint64_t{1} << 40)};
   }
@@ -169,6 +219,21 @@ struct Params {
 
 // Warps that fit when each lane holds `num_registers` registers; 0 when not even one does.
 uint32_t occupancy(const Params& params, uint32_t num_registers);
+
+// What a launch asks of a core, and what of it fits there at a time.
+struct LaunchNeeds {
+  uint32_t registers = 1;         // a lane
+  uint32_t warps = 1;             // a block; 1 without blocks
+  uint32_t shared_bytes = 0;      // a block
+  bool has_blocks = false;
+};
+struct Residency {
+  // Which of a core's resources is used up first; in this order when several are.
+  enum class Limit : uint8_t { Warps, Registers, Blocks, SharedMemory } limit = Limit::Warps;
+  uint32_t blocks = 0, warps = 0;
+};
+std::string_view name_of(Residency::Limit limit);
+Residency residency(const Params& params, const LaunchNeeds& needs);
 
 // Reports a program that cannot run on such a core, or a block that does not fit.
 void check(const Params& params, uint32_t num_registers, Diagnostics& diagnostics);

@@ -1,6 +1,7 @@
 // When each register and predicate of one warp can be read or overwritten.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <array>
 #include <span>
 
@@ -11,7 +12,8 @@
 namespace glint::core {
 
 // An instruction issues when its sources are ready (read after write) and its destinations are too (write after
-// write: results of one register arrive in order). Write after read needs no check: operands are read at issue.
+// write: results of one register arrive in order). Write after read needs no check but for memory instructions, which
+// read their registers when they leave their queue.
 // Model: hardware of this kind leaves fixed latencies to stall counts that the compiler sets, and counts variable
 // ones in six counters a warp; a ready time a register gives the same cycles when those are set well.
 class Scoreboard {
@@ -25,6 +27,8 @@ class Scoreboard {
     ready_.fill(0);
     wait_.fill(Stall::RawFixed);
     from_.fill(Pipe::Count);
+    readers_.fill(0);
+    held_.fill(0);
   }
   // When all of `registers` are ready; not before `start`, which waits for `start.wait`.
   Ready ready(std::span<const uint16_t> registers, Ready start) const {
@@ -32,18 +36,48 @@ class Scoreboard {
       if (ready_[r] > start.at) start = {ready_[r], wait_[r]};
     return start;
   }
-  // The same where results reach other pipes `crossing` cycles later than their own, and guards `guard` cycles later.
-  Ready ready(std::span<const uint16_t> registers, Ready start, const IssueRow& row, Cycle crossing, Cycle guard) const {
+  // The same where results reach other pipes `crossing` cycles later than their own, and guards `guard` cycles later; and
+  // where the instruction's own results may come `slack` cycles after those it waits for.
+  Ready ready(std::span<const uint16_t> registers, Ready start, const IssueRow& row, Cycle crossing, Cycle guard, Cycle slack) const {
     const size_t guard_at = row.is_guarded ? size_t(row.num_uses - row.num_defs - 1) : registers.size();
     for (size_t i = 0; i < registers.size(); ++i) {
       const uint16_t r = registers[i];
       if (ready_[r] == 0) continue;
-      const bool crosses = from_[r] != Pipe::Count && from_[r] != row.pipe && i < size_t(row.num_uses - row.num_defs);
+      const bool is_source = i < size_t(row.num_uses - row.num_defs);
+      const bool crosses = from_[r] != Pipe::Count && from_[r] != row.pipe && is_source;
       const Cycle later = i == guard_at ? guard : crosses ? crossing : 0;
-      const Cycle at = ready_[r] == kNever ? kNever : ready_[r] + later;
+      const Cycle at = ready_[r] == kNever ? kNever : before(ready_[r] + later, is_source ? 0 : slack);
       if (at > start.at) start = {at, wait_[r]};
     }
     return start;
+  }
+  // The same for an instruction whose results come `latency` cycles after its issue: earlier ones of its registers need only
+  // come before them.
+  Ready ready_in_order(std::span<const uint16_t> sources, std::span<const uint16_t> results, Ready start, Cycle latency) const {
+    start = ready(sources, start);
+    for (uint16_t r : results) {
+      const Cycle at = before(ready_[r], latency - 1);
+      if (at > start.at) start = {at, wait_[r]};
+    }
+    return start;
+  }
+  // Not before all of `registers` have been read by those that hold them.
+  Ready unread(std::span<const uint16_t> registers, Ready start) const {
+    for (uint16_t r : registers) {
+      const Cycle at = readers_[r] ? kNever : held_[r];
+      if (at > start.at) start = {at, Stall::OperandRead};
+    }
+    return start;
+  }
+  void hold(std::span<const uint16_t> registers) {
+    for (uint16_t r : registers) ++readers_[r];
+  }
+  // One of those that hold them reads them until `end`.
+  void read(std::span<const uint16_t> registers, Cycle end) {
+    for (uint16_t r : registers) {
+      --readers_[r];
+      held_[r] = std::max(held_[r], end);
+    }
   }
   // `from`: the pipe whose result it is; Count: none whose results reach others later.
   void set(std::span<const uint16_t> registers, Ready value, Pipe from = Pipe::Count) {
@@ -55,9 +89,13 @@ class Scoreboard {
   }
 
  private:
+  static Cycle before(Cycle at, Cycle cycles) { return at == kNever ? kNever : std::max(at, cycles) - cycles; }
+
   std::array<Cycle, kScoreboardEntries> ready_{};
   std::array<Stall, kScoreboardEntries> wait_{};
   std::array<Pipe, kScoreboardEntries> from_{};
+  std::array<uint16_t, kScoreboardEntries> readers_{};  // memory instructions that have not read it yet
+  std::array<Cycle, kScoreboardEntries> held_{};        // until then by those that are reading it
 };
 
 }  // namespace glint::core

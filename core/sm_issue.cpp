@@ -10,12 +10,6 @@ namespace glint::core {
 
 using isa::Effect;
 
-namespace {
-bool is_surface(Effect effect) {
-  return effect == Effect::SurfaceLoad || effect == Effect::SurfaceStore || effect == Effect::SurfaceAtomic;
-}
-}  // namespace
-
 // Gives this cycle of the scheduler to an instruction or to a reason.
 void CoreCell::run_scheduler(SchedulerState& scheduler, Cycle now) {
   const uint64_t ready = find_ready(scheduler, now);
@@ -47,20 +41,52 @@ uint64_t CoreCell::find_ready(SchedulerState& scheduler, Cycle now) {
     free |= uint64_t{!blocked} << i;
   }
   const uint64_t at_lsu = free & scheduler.needs_lsu, at_rt = free & scheduler.needs_rt;
-  scheduler.watches_lsu = at_lsu && !lsu_.can_take(scheduler.index);
+  const uint64_t at_tex = free & scheduler.needs_tex;
+  const bool lsu_full = at_lsu && !lsu_.can_take(scheduler.index), tex_full = at_tex && !lsu_.can_take(scheduler.index, true);
+  scheduler.watches_lsu = lsu_full || tex_full;
   scheduler.watches_rt = at_rt && !rt_.can_accept();
   scheduler.lsu_vacated = lsu_.num_vacated();
-  if (scheduler.watches_lsu) {
+  if (lsu_full) {
     free &= ~at_lsu;
     reason = std::min(reason, Stall::LsuThrottle);
+  }
+  if (tex_full) {
+    free &= ~at_tex;
+    reason = std::min(reason, Stall::TexThrottle);
   }
   if (scheduler.watches_rt) {
     free &= ~at_rt;
     reason = std::min(reason, Stall::RtFull);
   }
+  if (params_.register_file.banks) {
+    const uint64_t kept = leave_out_bank_conflicts(scheduler, free, now, next);
+    if (kept != free) reason = std::min(reason, Stall::RegisterBanks);
+    free = kept;
+  }
   scheduler.reason = reason;
   scheduler.sleep_until = next;
   return free;
+}
+
+// An instruction reads its registers in the window that begins with its issue, one a bank and cycle, after those of others.
+uint64_t CoreCell::leave_out_bank_conflicts(SchedulerState& scheduler, uint64_t free, Cycle now, Cycle& next) const {
+  for (uint64_t rest = free; rest; rest &= rest - 1) {
+    const auto local = uint32_t(std::countr_zero(rest));
+    const IssueTable::BankReads& reads = table_.bank_reads(warps_[local * params_.schedulers + scheduler.index].simt.pc);
+    Cycle at = now;
+    for (size_t bank = 0; bank < reads.size(); ++bank)
+      if (reads[bank]) at = std::max(at, std::max<Cycle>(scheduler.bank_free[bank] + reads[bank], params_.register_file.window) - params_.register_file.window);
+    if (at == now) continue;
+    free &= ~(uint64_t{1} << local);
+    next = std::min(next, at);
+  }
+  return free;
+}
+
+void CoreCell::read_banks(SchedulerState& scheduler, uint32_t pc, Cycle now) {
+  const IssueTable::BankReads& reads = table_.bank_reads(pc);
+  for (size_t bank = 0; bank < reads.size(); ++bank)
+    if (reads[bank]) scheduler.bank_free[bank] = std::max(scheduler.bank_free[bank], now) + reads[bank];
 }
 
 void CoreCell::issue(SchedulerState& scheduler, uint32_t local, Cycle now) {
@@ -76,10 +102,15 @@ void CoreCell::issue(SchedulerState& scheduler, uint32_t local, Cycle now) {
   count(row, issued);
   if (profile_) profile_->issue(scheduler.index, issued.pc, num_lanes(issued.lanes));
   if (row.pipe != Pipe::Memory) scheduler.pipe_free[size_t(row.pipe)] = now + row.interval;
+  if (params_.register_file.banks) read_banks(scheduler, issued.pc, now);
   const Cycle done = now + row.latency;
   front_[slot] = {now + 1, Stall::RawFixed};
   switch (row.finish) {
     case Finish::Fixed:
+      if (row.pipe == Pipe::Const && times_constants_ && issued.lanes) {
+        start_constant(scheduler, slot, row, issued, now);
+        break;
+      }
       scoreboards_[slot].set(table_.defs(row), {done, row.wait}, row.alternates ? Pipe::Count : row.pipe);
       stats_.latency.add(row.klass, row.latency);
       break;
@@ -165,137 +196,6 @@ void CoreCell::count(const IssueRow& row, const Issued& issued) {
   if (row.pipe == Pipe::Const) ++stats_.constant_loads;
 }
 
-void CoreCell::count_access(const isa::OpRow& op) {
-  // Generic accesses count where most of them go; every other effect makes no access.
-  const bool local = op.memory.space == isa::Space::Local, shared = op.memory.space == isa::Space::Shared;
-  if (op.effect == Effect::Atomic) {
-    ++(shared ? stats_.shared_atomics : stats_.global_atomics);
-  } else if (op.effect == Effect::Load) {
-    ++(shared ? stats_.shared_loads : local ? stats_.local_loads : stats_.global_loads);
-  } else if (op.effect == Effect::Store) {
-    ++(shared ? stats_.shared_stores : local ? stats_.local_stores : stats_.global_stores);
-  } else if (op.effect == Effect::Texture) {
-    ++stats_.texture_fetches;
-  } else if (op.effect == Effect::SurfaceLoad || op.effect == Effect::SurfaceAtomic) {
-    ++stats_.surface_loads;  // Model: an atomic on an image costs what a load of it costs
-  } else if (op.effect == Effect::SurfaceStore) {
-    ++stats_.surface_stores;
-  } else {
-    ++stats_.binding_reads;
-  }
-}
-
-// Hands the access to the load-store unit; false when no lane makes one.
-bool CoreCell::start_access(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now) {
-  if (issued.lanes == 0) return false;
-  // Texels that are all border, or outside of their image, need no memory.
-  const bool is_image = issued.row->effect == Effect::Texture || is_surface(issued.row->effect);
-  if (is_image && executor_.texels().empty()) return false;
-  MemoryAccess& access = lsu_.take(slot % params_.schedulers, now);
-  access.slot = slot;
-  access.pc = issued.pc;
-  if (executor_.is_late()) access.late_until = turn_end(now);
-  access.write = issued.row->effect == Effect::Store || issued.row->effect == Effect::SurfaceStore;
-  collect_lines(access, issued);
-  // red: nobody waits for an answer.
-  access.write |= issued.row->effect == Effect::Atomic && row.num_defs == 0;
-  ++outstanding_[slot];
-  if (row.finish == Finish::CallRecord)
-    front_[slot] = {kNever, Stall::Call};
-  else
-    scoreboards_[slot].set(table_.defs(row), {kNever, row.wait});
-  count_access(*issued.row);
-  stats_.shared_passes += access.passes;
-  if (access.lines.lines().empty()) return true;
-  ++stats_.accesses;
-  stats_.lines += access.lines.lines().size();
-  stats_.sectors += access.lines.num_sectors();
-  if (profile_) profile_->access(issued.pc, access.lines.lines().size(), access.lines.num_sectors());
-  return true;
-}
-
-void CoreCell::collect_lines(MemoryAccess& access, const Issued& issued) {
-  const isa::Access& addresses = warps_[access.slot].regs.access;
-  access.texture = false;
-  if (issued.row->effect == Effect::Texture) {
-    access.traffic = mem::Traffic::ShaderTexture;
-    collect_texels(access, issued.lanes);
-  } else if (is_surface(issued.row->effect)) {
-    access.traffic = mem::Traffic::ShaderSurface;
-    collect_texels(access, issued.lanes);
-  } else if (isa::is_shader_call(issued.row->effect)) {
-    access.traffic = mem::Traffic::ShaderBinding;
-    if (issued.row->effect == Effect::CallCandidate) collect_candidates(access, issued.lanes);
-    coalesce_global(access.lines, *world_.memory, addresses, issued.lanes, mem::kSectorBytes);
-  } else {
-    collect_memory(access, issued);
-  }
-}
-
-// The entries of the candidates whose shaders are called.
-// Model: one read for all of a warp's lanes, with their records of the binding table; what the shaders then read of a
-// candidate is in registers. Tables of nested traces share their place: an outer one is empty by then.
-void CoreCell::collect_candidates(MemoryAccess& access, LaneMask lanes) {
-  if (tables_.rows == 0) return;
-  const TraceFrame& frame = warps_[access.slot].frame();
-  for_each_lane(lanes, [&](int lane) {
-    access.lines.add(tables_.entry(access.slot, frame.ray[size_t(lane)].candidate_row, lane), rt::kTableEntryBytes);
-  });
-  access.num_table_lines = uint32_t(access.lines.lines().size());
-}
-
-// Loads, stores and atomics. Model: lanes of a generic access that are in local memory travel as global traffic, and
-// those in the constant bank take no time of their own.
-void CoreCell::collect_memory(MemoryAccess& access, const Issued& issued) {
-  using isa::Space;
-  const isa::Access& addresses = warps_[access.slot].regs.access;
-  const auto bytes = uint32_t(issued.row->memory.bytes * issued.row->memory.count);
-  const bool is_atomic = issued.row->effect == Effect::Atomic;
-  access.traffic = is_atomic                                        ? mem::Traffic::ShaderAtomic
-                   : issued.row->memory.space == Space::Local ? mem::Traffic::ShaderLocal
-                                                              : mem::Traffic::ShaderGlobal;
-  access.atomic = is_atomic;
-  if (const LaneMask lanes = executor_.lanes_in(Space::Shared)) access.passes = shared_passes(addresses, lanes, bytes, is_atomic);
-  const LaneMask in_global = executor_.lanes_in(Space::Global);
-  if (params_.lsu.bank_conflicts && !is_atomic && in_global) access.bank_turns = shared_passes(addresses, in_global, bytes, false);
-  coalesce_local(access.lines, local_, access.slot, addresses, executor_.lanes_in(Space::Local), bytes);
-  coalesce_global(access.lines, *world_.memory, addresses, in_global, bytes);
-}
-
-void CoreCell::collect_texels(MemoryAccess& access, LaneMask lanes) {
-  access.texture = true;
-  for (const auto& row : executor_.texels().rows())
-    for_each_lane(lanes, [&](int lane) {
-      const Address texel = row[size_t(lane)];
-      if (texel != TexelList::kNone) access.lines.add(world_.memory->physical(texel), 4);
-    });
-}
-
-void CoreCell::complete(uint32_t access_id, Cycle now) {
-  const MemoryAccess& access = lsu_.access(access_id);
-  const uint32_t slot = access.slot;
-  const IssueRow& row = table_.row(access.pc);
-  stats_.latency.add(row.klass, now - access.issued);
-  if (profile_) profile_->end(access.pc, now - access.issued);
-  if (row.finish == Finish::CallRecord) {
-    // The branch itself was resolved long ago, or now.
-    front_[slot] = {std::max(now, access.issued + row.latency), Stall::Call};
-  } else if (!access.write) {
-    scoreboards_[slot].set(table_.defs(row), {std::max(now, access.late_until), row.wait});
-  }
-  lsu_.release(access_id);
-  --outstanding_[slot];
-  ++progress_;
-  if (fence_[slot] != 0 && outstanding_[slot] == 0) {
-    front_[slot].at = now + fence_[slot];
-    fence_[slot] = 0;
-  }
-  if (!warps_[slot].simt.finished())
-    refresh(slot);
-  else if (outstanding_[slot] == 0)
-    free_slot(slot);
-}
-
 // Gives the rays of an rt.trace or rt.resume to the RT unit, or goes on at once when none has to travel.
 void CoreCell::start_rays(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now) {
   WarpContext& warp = warps_[slot];
@@ -347,21 +247,33 @@ void CoreCell::free_slot(uint32_t slot) {
   if (--home_[slot]->warps == 0) --num_blocks_;
 }
 
-// Looks up when the warp's next instruction has its operands, after anything about that changed.
+Scoreboard::Ready CoreCell::operands_ready(uint32_t slot, const IssueRow& row) const {
+  const Scoreboard& board = scoreboards_[slot];
+  const Cycle crossing = params_.pipe_crossing, guard = params_.guard_delay;
+  const Cycle slack = row.finish == Finish::Fixed && !params_.write_order ? row.latency - 1 : 0;
+  const auto uses = table_.uses(row);
+  Scoreboard::Ready ready = crossing + guard > 0 ? board.ready(uses, front_[slot], row, crossing, guard, slack)
+                            : slack > 0 ? board.ready_in_order(uses.first(uses.size() - row.num_defs), table_.defs(row), front_[slot], row.latency)
+                                        : board.ready(uses, front_[slot]);
+  if (holds_operands_) ready = board.unread(table_.defs(row), ready);
+  if (waits_for_line_[slot] && ready.at != kNever) ready = {kNever, Stall::NoInstruction};
+  return ready;
+}
+
+// Looks up when the warp's next instruction is there and has its operands, after anything about that changed.
 void CoreCell::refresh(uint32_t slot) {
+  if (code_ && code_->fetch) come_to_line(slot);
   SchedulerState& scheduler = scheduler_of(slot);
   const uint32_t local = slot / params_.schedulers;
   const IssueRow& row = table_.row(warps_[slot].simt.pc);
-  const Cycle crossing = params_.pipe_crossing, guard = params_.guard_delay;
-  const Scoreboard::Ready ready = crossing + guard == 0
-                                      ? scoreboards_[slot].ready(table_.uses(row), front_[slot])
-                                      : scoreboards_[slot].ready(table_.uses(row), front_[slot], row, crossing, guard);
+  const Scoreboard::Ready ready = operands_ready(slot, row);
   scheduler.ready_at[local] = ready.at;
   scheduler.wait[local] = ready.wait;
   scheduler.pipe[local] = row.pipe;
-  const uint64_t lsu = row.finish == Finish::Memory || row.finish == Finish::CallRecord;
-  const uint64_t rt = row.finish == Finish::Rays;
+  const bool memory = row.finish == Finish::Memory || row.finish == Finish::CallRecord;
+  const uint64_t tex = memory && row.is_texture, lsu = memory && !row.is_texture, rt = row.finish == Finish::Rays;
   scheduler.needs_lsu = (scheduler.needs_lsu & ~(uint64_t{1} << local)) | lsu << local;
+  scheduler.needs_tex = (scheduler.needs_tex & ~(uint64_t{1} << local)) | tex << local;
   scheduler.needs_rt = (scheduler.needs_rt & ~(uint64_t{1} << local)) | rt << local;
   scheduler.wake();
 }

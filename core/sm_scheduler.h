@@ -19,14 +19,15 @@ struct SchedulerState {
   std::array<Cycle, kMaxWarpsPerScheduler> ready_at{};      // operands of its next instruction; kNever: not known
   std::array<Stall, kMaxWarpsPerScheduler> wait{};          // what it waits for until then
   std::array<Pipe, kMaxWarpsPerScheduler> pipe{};           // of its next instruction
-  uint64_t needs_lsu = 0, needs_rt = 0;                     // its next instruction goes through that door
+  uint64_t needs_lsu = 0, needs_tex = 0, needs_rt = 0;                     // its next instruction goes through that door
   std::array<uint64_t, kMaxWarpsPerScheduler> age{};        // launch number
   std::array<Cycle, kNumPipes> pipe_free{};
+  std::array<Cycle, kMaxRegisterBanks> bank_free{};         // of the register file: its port
 
   // Until `sleep_until` no warp can issue and the reason stays, unless something wakes the scheduler, or a door that
   // it watches may have opened: the RT unit's in any cycle of the core, the load-store unit's when vacated.
   Cycle sleep_until = 0;
-  bool watches_rt = false, watches_lsu = false;
+  bool watches_rt = false, watches_lsu = false;  // either queue of that unit
   uint64_t lsu_vacated = 0;  // Lsu::num_vacated() when it was looked at
   Stall reason = Stall::NoWarp;
 

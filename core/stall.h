@@ -13,12 +13,16 @@ namespace glint::core {
 enum class Stall : uint8_t {
   Issued,           // an instruction was issued
   MathThrottle,     // operands ready, the execution pipe still takes the previous instruction
+  RegisterBanks,    // operands ready, the banks of the register file still read those of another instruction
   LsuThrottle,      // operands ready, the scheduler's memory queue or the table of accesses is full
+  TexThrottle,      // the same of the queue of texture instructions
   RtFull,           // rays ready, the RT unit takes no more warps
   RawFixed,         // result of an integer, floating-point, move or predicate instruction
+  OperandRead,      // a register to overwrite that a memory instruction has not read yet
   RawSfu,           // result of the special-function pipe: transcendentals and divisions
   Const,            // result of a constant load
   Branch,           // target of a branch not yet known
+  NoInstruction,    // line of instructions
   LocalMemory,      // load from local memory
   SharedMemory,     // load from shared memory, or atomic on it
   Texture,          // texture or image load
@@ -35,8 +39,8 @@ enum class Stall : uint8_t {
 
 constexpr std::string_view name_of(Stall s) {
   constexpr std::string_view kNames[] = {
-      "issued", "math_pipe_throttle", "lsu_throttle", "rt_full", "raw_fixed", "raw_sfu", "const", "branch",
-      "local_memory", "shared_memory", "texture", "long_scoreboard", "call", "barrier", "membar", "rt_wait", "dispatch", "drain", "no_warp"};
+      "issued", "math_pipe_throttle", "register_banks", "lsu_throttle", "tex_throttle", "rt_full", "raw_fixed", "operand_read", "raw_sfu", "const",
+      "branch", "no_instruction", "local_memory", "shared_memory", "texture", "long_scoreboard", "call", "barrier", "membar", "rt_wait", "dispatch", "drain", "no_warp"};
   static_assert(std::size(kNames) == size_t(Stall::Count));
   return kNames[size_t(s)];
 }

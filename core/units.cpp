@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/units.h"
 
+#include <algorithm>
+
 #include "base/check.h"
 #include "isa/barrier.h"
 
@@ -161,8 +163,20 @@ IssueTable::IssueTable(const Image& image, const Params& params) {
     row.interval = uint16_t(unit.interval);
     if (row.finish == Finish::Fixed)
       if (const OpTime* time = op_times->find(op.name)) take_time(row, *time);
+    row.is_texture = row.finish == Finish::Memory && op.unit == Unit::Tex;
     rows_.push_back(row);
+    if (params.register_file.banks) count_bank_reads(row, params.register_file);
   }
+}
+
+// Constants, specials and predicates are not in the banks.
+void IssueTable::count_bank_reads(const IssueRow& row, const RegisterFileParams& params) {
+  BankReads reads{};
+  if (row.finish == Finish::Fixed)
+    for (uint16_t r : sources(row))
+      if (r < kFirstPredicate) ++reads[r % params.banks];
+  for (uint8_t& n : reads) n = uint8_t(std::min<uint32_t>(n, params.window));
+  bank_reads_.push_back(reads);
 }
 
 }  // namespace glint::core

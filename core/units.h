@@ -1,6 +1,7 @@
 // What the issue logic needs of each instruction, decoded once: its pipe, its latency, its registers.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -42,6 +43,7 @@ struct IssueRow {
   bool is_conditional : 1 = false;  // a guarded branch
   bool is_guarded : 1 = false;      // the last source is its guard
   bool alternates : 1 = false;      // OpTime::alternates
+  bool is_texture : 1 = false;      // through the texture unit
   uint16_t latency = 1;
   uint16_t interval = 1;        // of the pipe
 };
@@ -58,12 +60,23 @@ class IssueTable {
   const IssueRow& row(uint32_t pc) const { return rows_[pc]; }
   // Sources, guard and destinations: all have to be ready before issue.
   std::span<const uint16_t> uses(const IssueRow& row) const { return {registers_.data() + row.first_use, row.num_uses}; }
+  // Registers that a memory instruction reads when it leaves its queue: the sources without the guard.
+  std::span<const uint16_t> sources(const IssueRow& row) const {
+    return {registers_.data() + row.first_use, size_t(row.num_uses - row.num_defs - row.is_guarded)};
+  }
   std::span<const uint16_t> defs(const IssueRow& row) const {
     return {registers_.data() + row.first_use + row.num_uses - row.num_defs, row.num_defs};
   }
+  // Registers that an instruction of fixed latency reads from each bank of the register file, at most the window's cycles.
+  // Empty where there are no banks.
+  using BankReads = std::array<uint8_t, kMaxRegisterBanks>;
+  const BankReads& bank_reads(uint32_t pc) const { return bank_reads_[pc]; }
 
  private:
+  void count_bank_reads(const IssueRow& row, const RegisterFileParams& params);
+
   std::vector<IssueRow> rows_;
+  std::vector<BankReads> bank_reads_;
   std::vector<uint16_t> registers_;
 };
 

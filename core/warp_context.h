@@ -50,7 +50,7 @@ struct HitObject {
 struct WarpContext {
   isa::Warp regs;
   SimtStack simt;
-  uint32_t warp_index = 0;            // of the launch; without blocks, warp w holds launch indices [32 w, 32 w + 32)
+  uint32_t warp_index = 0;            // of the launch, in the order of World::layout
   Block* block = nullptr;             // that it belongs to
   uint32_t warp_in_block = 0;
   uint32_t depth = 0;                 // open rt.trace levels

@@ -39,6 +39,7 @@ PipelineWorld::PipelineWorld(const PipelineDescription& description, const GpuPa
   world.constant_bank.resize(isa::kConstantBankBytes);
   world.nearest_first_hit = gpu.rt.nearest_first_hit;
   world.any_hit = gpu.rt.any_hit.make({});
+  world.layout = gpu.core.layout.make({});
   link();
   set_launch();
   upload_buffers();

@@ -20,6 +20,7 @@
 namespace glint::pipeline {
 
 using Workload = scenes::Workload;
+class StructureCache;
 
 struct RenderJob {
   scenes::Scene scene;
@@ -29,6 +30,7 @@ struct RenderJob {
   bool timing = true;
   bool no_skip = false;             // steps every cycle: slow, for checking
   uint32_t threads = 1;             // of the host, for the timing machine (HostOptions)
+  StructureCache* structure_cache = nullptr;  // null: every structure is built
   std::string shader_dir;           // folder with raygen.rgen, miss.rmiss, triangle.rchit and so on
   frontend::GlslOptions glsl;
   core::PrintLog* prints = nullptr;  // what the shaders print
@@ -71,6 +73,7 @@ struct RenderResult {
   ClassCounts by_class[size_t(isa::Class::Count)];
   RayCounts rays;
   StructureCounts structures;
+  core::Residency residency;          // of each core, timing machine
   core::FaultLog faults;              // that World::on_fault let pass
   std::vector<std::string> warnings;  // of compiling the shaders
   ProfileTable profile;             // of the timing machine, if it was asked for

@@ -56,6 +56,7 @@ SceneWorld::SceneWorld(const RenderJob& job) {
   world.constant_bank.resize(isa::kConstantBankBytes);
   world.nearest_first_hit = job.gpu.rt.nearest_first_hit;
   world.any_hit = job.gpu.rt.any_hit.make({});
+  world.layout = job.gpu.core.layout.make({});
   world.launch_size = {job.frame.width, job.frame.height, 1};
   link_shaders(job);
   upload_geometry(job.scene);

@@ -33,6 +33,8 @@ TimingMachine::TimingMachine(const GpuParams& params, const core::World& world, 
       memory_(params_.memory, params_.cores, params_.clock_mhz, &root_),
       engine_({.turn = memory_.shortest_latency(), .no_skip = no_skip, .threads = host.threads, .window = host.window, .homes = host.homes}) {
   const Cycle turn = params_.cores > 1 ? memory_.shortest_latency() : 0;
+  const auto reserve = [&](uint64_t bytes) { return bytes ? world.memory->reserve(bytes) : Address{0}; };
+  const Address code = reserve(core::CoreCell::code_bytes(params_.core, world)), constants = reserve(core::CoreCell::constant_bytes(params_.core, world));
   for (uint32_t i = 0; i < params_.cores; ++i) {
     const std::string name = fmt::format("core[{}]", i);
     rt_groups_.push_back(std::make_unique<stats::Group>(&root_, fmt::format("rt_unit[{}]", i)));
@@ -44,7 +46,7 @@ TimingMachine::TimingMachine(const GpuParams& params, const core::World& world, 
     rt_units_.push_back(std::make_unique<rt::RtUnit>(params_.rt, rt));
     const Address local = world.memory->reserve(core::CoreCell::local_bytes(params_.core, world));
     cores_.push_back(std::make_unique<core::CoreCell>(
-        params_.core, core::CoreCell::Context{world, memory_.l1(i), *rt_units_.back(), local, &root_, name, no_skip, i, params_.cores, params_.clock_mhz, rt.tables.base, turn}));
+        params_.core, core::CoreCell::Context{world, memory_.l1(i), *rt_units_.back(), local, &root_, name, no_skip, i, params_.cores, params_.clock_mhz, rt.tables.base, code, constants, turn}));
     engine_.add(*cores_.back());
     if (core::MemoryView* view = cores_.back()->view()) views_.push_back(view);
   }
@@ -95,6 +97,7 @@ core::FaultLog TimingMachine::passed() const {
 }
 
 void TimingMachine::collect(RenderResult& result) const {
+  result.residency = core::residency(params_.core, core::CoreCell::needs_of(world_));
   for (const auto& core : cores_) {
     const core::CoreStats& stats = core->stats();
     for (size_t c = 0; c < size_t(isa::Class::Count); ++c) {

@@ -72,6 +72,7 @@ void RunDirectory::write_run(const RunInfo& info) const {
   json["height"] = info.height;
   json["samples"] = info.samples;
   json["seed"] = info.seed;
+  if (const auto& r = info.residency) json["residency"] = {{"warps", r->warps}, {"blocks", r->blocks}, {"limit", r->limit}};
   json["started"] = info.started;
   json["wall_seconds"] = info.wall_seconds;
   json["on_fault"] = info.on_fault;

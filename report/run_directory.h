@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,12 @@ struct FaultInfo {
   uint64_t count = 0;
 };
 
+// What of a launch fits a core at a time, and what is used up first.
+struct ResidencyInfo {
+  uint32_t warps = 0, blocks = 0;
+  std::string limit;
+};
+
 // What run.json says besides schema and paths. The only file of a run that holds wall-clock times.
 struct RunInfo {
   std::vector<std::string> command;  // argv
@@ -28,6 +35,7 @@ struct RunInfo {
   uint64_t scene_hash = 0, scene_triangles = 0, config_hash = 0, seed = 0;
   double scene_fraction = 1;  // of the original's triangles
   uint32_t width = 0, height = 0, samples = 0;
+  std::optional<ResidencyInfo> residency;              // of a timing run
   std::string started;  // ISO 8601, UTC
   double wall_seconds = 0;
   std::string on_fault = "stop";

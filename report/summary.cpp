@@ -49,6 +49,8 @@ std::string execution(const Summary& s) {
                                     : ""});
     rows.push_back({"IPC", fmt::format("{:.3f}", part(s.warp_instructions, t.cycles)),
                     "warp instructions a cycle, all cores"});
+    if (t.warp_slots > 0)
+      rows.push_back({"warps a core", fmt::format("{} of {}", t.resident_warps, t.warp_slots), fmt::format("at most, limited by {}", t.residency_limit)});
   }
   rows.push_back({"warp instructions", with_thousands(s.warp_instructions), ""});
   rows.push_back({"SIMT efficiency", percent(s.simt_efficiency), "lanes that do work"});

@@ -5,6 +5,7 @@
 #include "base/registry.h"
 #include "core/issue_scheduler.h"
 #include "core/op_times.h"
+#include "core/warp_layout.h"
 #include "memsys/dram_scheduler.h"
 #include "report/stat_writer.h"
 #include "rtunit/any_hit_mode.h"
@@ -29,6 +30,7 @@ std::vector<PolicyInfo> all_policies() {
   std::vector<PolicyInfo> out;
   add<core::IssueScheduler>(out, "core.issue", "core/schedulers");
   add<core::OpTimes>(out, "core.op_times", "core/op_times");
+  add<core::WarpLayout>(out, "core.warp_layout", "core/warp_layouts");
   add<mem::DramModel>(out, "memory.dram.model", "memsys/dram_models");
   add<mem::DramScheduler>(out, "memory.dram.scheduler", "memsys/dram_schedulers");
   add<rt::AnyHitMode>(out, "rt.any_hit", "rtunit/any_hit");

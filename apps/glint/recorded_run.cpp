@@ -47,6 +47,7 @@ pipeline::RenderResult run_recorded(const Session& session, const std::string& w
     pipeline::RenderResult result = run([&](uint64_t done, uint64_t total) { progress.update(done, total); });
     for (const core::FaultLog::Entry& fault : result.faults.in_order())
       info.faults.push_back({std::string(core::name_of(fault.kind)), fault.first.place, fault.first.what, fault.first.launch_id, fault.count});
+    if (result.residency.warps > 0) info.residency = {result.residency.warps, result.residency.blocks, std::string(name_of(result.residency.limit))};
     finish(Exit::Ok, "");
     return result;
   } catch (const Error& error) {

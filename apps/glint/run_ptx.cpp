@@ -108,6 +108,7 @@ Exit run_ptx(const Session& session, const KernelOptions& options) {
   launched.world.set_grid(launch.grid);
   set_arguments(launched, launch, launch_path);
   launched.world.world.on_fault = options.on_fault;
+  launched.world.world.layout = job.gpu.core.layout.make({});
 
   const auto& [gx, gy, gz] = launch.grid.grid;
   const auto& [bx, by, bz] = launch.grid.block;

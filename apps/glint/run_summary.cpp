@@ -39,6 +39,9 @@ report::TimingSummary timing_of(const pipeline::RenderJob& job, const pipeline::
   report::TimingSummary out;
   out.cycles = result.cycles;
   out.clock_mhz = job.gpu.clock_mhz;
+  out.resident_warps = result.residency.warps;
+  out.warp_slots = job.gpu.core.warps;
+  out.residency_limit = name_of(result.residency.limit);
   out.l1_rt = sums.hits(l1, "rt_*");
   out.l1_shader = sums.hits(l1, "shader_*");
   out.l2 = sums.hits("gpu.memory.partition[*].l2", "*");

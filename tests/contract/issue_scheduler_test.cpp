@@ -74,6 +74,23 @@ TEST_CASE("gto is not greedy for a new warp in the old one's place") {
   CHECK(gto->pick({0b11, std::vector<uint64_t>{2, 1}, 1}) == 1);
 }
 
+TEST_CASE("cggty stays with its warp while that is ready, then takes the youngest") {
+  const auto cggty = make("cggty", 4);
+  const std::vector<uint64_t> age = {30, 10, 20, 40};
+
+  CHECK(cggty->pick({0b0111, age, 0}) == 0);  // youngest of 0, 1 and 2
+  CHECK(cggty->pick({0b1111, age, 1}) == 0);  // greedy, although 3 is younger
+  CHECK(cggty->pick({0b1110, age, 2}) == 3);  // then the youngest
+  CHECK(cggty->pick({0b0110, age, 3}) == 2);
+  CHECK(cggty->pick({0b1111, age, 4}) == 2);
+}
+
+TEST_CASE("cggty is not greedy for a new warp in the old one's place") {
+  const auto cggty = make("cggty", 2);
+  CHECK(cggty->pick({0b01, std::vector<uint64_t>{0, 1}, 0}) == 0);
+  CHECK(cggty->pick({0b11, std::vector<uint64_t>{2, 3}, 1}) == 1);
+}
+
 TEST_CASE("lrr goes round") {
   const auto lrr = make("lrr", 4);
   const std::vector<uint64_t> age = {30, 10, 20, 40};

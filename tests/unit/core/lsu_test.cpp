@@ -30,8 +30,8 @@ class HalfTimeMemory final : public mem::L1Port {
 
 // An access of `lines` whole lines.
 void take(Lsu& lsu, uint32_t scheduler, Cycle now, uint32_t lines, bool write = false, bool texture = false, uint32_t bytes = 128) {
-  REQUIRE(lsu.can_take(scheduler));
-  MemoryAccess& access = lsu.take(scheduler, now);
+  REQUIRE(lsu.can_take(scheduler, texture));
+  MemoryAccess& access = lsu.take(scheduler, now, texture);
   access.write = write;
   access.texture = texture;
   for (uint32_t i = 0; i < lines; ++i) access.lines.add(4096 + 128 * i, bytes);
@@ -113,6 +113,7 @@ TEST_CASE("a texture access takes the texture unit's latency and does not hold u
   mem::FixedLatencyMemory memory(kMemoryLatency);
   Params params;
   params.units.tex.latency = 180;
+  params.texture = {0, 0, false};
   Lsu lsu(params, memory);
 
   take(lsu, 0, 0, 1, false, true);

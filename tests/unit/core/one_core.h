@@ -87,10 +87,16 @@ class Code {
   isa::Program program_;
 };
 
-// No launch latency, and round numbers where a test adds them up.
+// No launch latency, and nothing that costs cycles beside what a test adds up: tests of the rest turn it on.
 inline Params quick_params() {
   Params params;
   params.launch_latency = 0;
+  params.block_interval = 0;
+  params.write_order = true;
+  params.fetch.perfect = params.constant.perfect = true;
+  params.constant.serial = false;
+  params.lsu.war_latency = params.lsu.shared_war_latency = 0;
+  params.texture = {0, 0, false};
   return params;
 }
 
@@ -106,6 +112,7 @@ struct OneCore {
     Cycle window = 32;
     uint32_t block_threads = 0;  // 0: no blocks
     uint32_t shared_bytes = 0;
+    Address code = 0, constants = 0;
   };
 
   OneCore(Code& code, const Params& params, Options options)
@@ -125,7 +132,7 @@ struct OneCore {
   }
   // Runs to the end; returns the cycle after the core's last activity.
   Cycle run() {
-    cell = std::make_unique<CoreCell>(params_, CoreCell::Context{world, l1, rays, kLocalBase, &root, "core", options_.no_skip});
+    cell = std::make_unique<CoreCell>(params_, CoreCell::Context{world, l1, rays, kLocalBase, &root, "core", options_.no_skip, 0, 1, 0.0, 0, options_.code, options_.constants});
     if (profile) cell->start_profile();
     EngineLoop engine({options_.window, options_.no_skip, 100'000});
     engine.add(*cell);

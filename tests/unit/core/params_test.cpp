@@ -1,4 +1,4 @@
-// Occupancy: how many warps a core's registers hold.
+// Occupancy: how many warps and blocks a core holds.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/params.h"
 
@@ -31,6 +31,27 @@ TEST_CASE("a program that does not fit once is reported with the number that wou
   CHECK_FALSE(fits.has_errors());
   REQUIRE(too_large.has_errors());
   CHECK(too_large.messages()[0].find("core.registers to 1280") != std::string::npos);
+}
+
+TEST_CASE("what is used up first limits the blocks of a core") {
+  using Limit = Residency::Limit;
+  Params params;
+  params.warps = 32;
+  params.registers = 32768;
+  params.blocks = 16;
+  params.shared_bytes = 65536;
+  const auto of = [&](LaunchNeeds needs) {
+    const Residency r = residency(params, needs);
+    return std::tuple{r.limit, r.blocks, r.warps};
+  };
+
+  CHECK(of({32, 1, 0, false}) == std::tuple{Limit::Warps, 32u, 32u});
+  CHECK(of({33, 1, 0, false}) == std::tuple{Limit::Registers, 25u, 25u});
+  CHECK(of({32, 1, 0, true}) == std::tuple{Limit::Blocks, 16u, 16u});
+  CHECK(of({32, 2, 4096, true}) == std::tuple{Limit::Warps, 16u, 32u});   // all at once: the first is named
+  CHECK(of({32, 2, 4097, true}) == std::tuple{Limit::SharedMemory, 15u, 30u});
+  CHECK(of({64, 5, 0, true}) == std::tuple{Limit::Registers, 3u, 15u});
+  CHECK(of({16, 5, 0, true}) == std::tuple{Limit::Warps, 6u, 30u});
 }
 
 TEST_CASE("units have their keys under the names of the instruction table") {

@@ -1,0 +1,105 @@
+// The cache of a core behind its instruction and constant caches.
+// SPDX-License-Identifier: Apache-2.0
+#include "core/code_cache.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "base/check.h"
+
+namespace glint::core {
+
+mem::TagArray make_tags(uint32_t size, uint32_t ways, uint32_t line) {
+  const uint32_t lines = std::max(size / line, 1u), each = ways == 0 ? lines : std::min(ways, lines);
+  return mem::TagArray(lines / each, each, line);
+}
+
+CodeCache::CodeCache(const CodeCacheParams& params, uint32_t most, mem::L1Port& l1, CodeStats& stats)
+    : there_(params.latency / 2), back_(params.latency - params.latency / 2), line_bytes_(l1.line_bytes()), l1_(l1), stats_(stats),
+      tags_(make_tags(params.size, params.ways, line_bytes_)), asked_(most), hits_(most), fills_(most), missing_(most) {
+  answers_.reserve(size_t{most} * kMaxClients);
+}
+
+void CodeCache::ask(uint32_t client, Address line, mem::Traffic traffic, Cycle now) {
+  GLINT_DCHECK(client < kMaxClients && line % line_bytes_ == 0, "client {}, line {:#x}", client, line);
+  asked_.push({now, client, line, traffic});
+  ++stats_.cache_reads;
+}
+
+void CodeCache::tick(Cycle now) {
+  answers_.clear();
+  take_fills(now);
+  answer(hits_, now);
+  answer(fills_, now);
+  look_up(now);
+  send(now);
+}
+
+// The cycle between asking and here is the first of the latency, so that an unloaded cache adds just that.
+void CodeCache::look_up(Cycle now) {
+  if (asked_.empty() || now < lookup_free_ || now <= asked_.front().at) return;
+  const Asked asked = asked_.front();
+  asked_.pop();
+  lookup_free_ = now + 1;
+  if (const uint32_t slot = tags_.find(asked.line); slot != mem::TagArray::kNone) {
+    tags_.touch(slot);
+    hits_.push({now - 1 + there_ + back_, 1u << asked.client, asked.line});
+  } else {
+    miss(asked, now);
+  }
+}
+
+void CodeCache::miss(const Asked& asked, Cycle now) {
+  ++stats_.cache_misses;
+  Missing* free = nullptr;
+  for (Missing& missing : missing_) {
+    if (missing.clients && missing.line == asked.line) {
+      missing.clients |= 1u << asked.client;
+      return;
+    }
+    if (!missing.clients && !free) free = &missing;
+  }
+  GLINT_CHECK(free, "more lines are missing than are waited for");
+  *free = {asked.line, now - 1 + there_, 1u << asked.client, false, asked.traffic};
+  ++num_missing_;
+  ++num_unsent_;
+}
+
+void CodeCache::send(Cycle now) {
+  if (num_unsent_ == 0) return;
+  const auto sectors = uint8_t((1u << line_bytes_ / mem::kSectorBytes) - 1);
+  for (Missing& missing : missing_) {
+    if (!missing.clients || missing.sent || missing.send_at > now) continue;
+    if (!l1_.access(now, mem::Client::Code, {missing.line, sectors, false, missing.traffic, mem::Token(&missing - missing_.data())})) return;
+    missing.sent = true;
+    --num_unsent_;
+  }
+}
+
+void CodeCache::take_fills(Cycle now) {
+  while (const auto token = l1_.pop(now, mem::Client::Code)) {
+    Missing& missing = missing_[*token];
+    if (tags_.find(missing.line) == mem::TagArray::kNone) tags_.insert(missing.line).valid = 1;
+    fills_.push({now + back_, missing.clients, missing.line});
+    missing.clients = 0;
+    --num_missing_;
+  }
+}
+
+void CodeCache::answer(mem::Ring<Timed>& from, Cycle now) {
+  for (; !from.empty() && from.front().at <= now; from.pop())
+    for (uint32_t rest = from.front().clients; rest; rest &= rest - 1) answers_.push_back({uint32_t(std::countr_zero(rest)), from.front().line});
+}
+
+Cycle CodeCache::next_event(Cycle now) const {
+  Cycle next = kNever;
+  if (!asked_.empty()) next = std::max(asked_.front().at + 1, lookup_free_);
+  if (!hits_.empty()) next = std::min(next, hits_.front().at);
+  if (!fills_.empty()) next = std::min(next, fills_.front().at);
+  if (num_unsent_)
+    for (const Missing& missing : missing_)
+      if (missing.clients && !missing.sent) next = std::min(next, missing.send_at);
+  return next == kNever ? kNever : std::max(next, now + 1);
+}
+
+}  // namespace glint::core

@@ -1,0 +1,61 @@
+// The constant cache of a core: which lines of constant loads are there, and which warps wait for others.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/code_cache.h"
+#include "isa/warp.h"
+
+namespace glint::core {
+
+// Different words that the lanes of an access begin at: the turns that broadcasting one after another takes.
+uint32_t different_words(const isa::Access& access, LaneMask lanes);
+
+// A load whose lines are all there takes its fixed time; else its warp waits for all of them.
+class ConstantCache {
+ public:
+  // `base`: physical address of the constant bank, of `bytes`; `client`: its number in the cache behind.
+  ConstantCache(const ConstantParams& params, Address base, uint64_t bytes, uint32_t client, CodeCache& cache, CodeStats& stats);
+
+  // Looks up the lines at `offset + access.address` of the lanes: none is longer than the line it is in, all are aligned.
+  // False: the warp of `slot` waits, until arrive().
+  bool look_up(uint32_t slot, const isa::Access& access, LaneMask lanes, uint64_t offset, Cycle now);
+  // A line from the cache behind; `served` is called with each slot that waits for nothing any more.
+  template <class Served>
+  void arrive(Address line, Served&& served) {
+    for (size_t i = waits_.size(); i-- > 0;) {
+      if (outer(waits_[i].line) != line) continue;
+      keep(waits_[i].line);
+      const uint32_t slot = waits_[i].slot;
+      waits_[i] = waits_.back();
+      waits_.pop_back();
+      if (--missing_[slot] == 0) served(slot);
+    }
+  }
+  // Lines that a core's warps may wait for.
+  static constexpr uint32_t kMost = 64 * uint32_t(kLanes);
+
+ private:
+  struct Wait {
+    uint32_t slot = 0;
+    Address line = 0;
+  };
+  Address outer(Address line) const { return line & ~Address{cache_.line_bytes() - 1}; }
+  void want(uint32_t slot, Address line, Cycle now);
+  void keep(Address line) {
+    if (tags_.find(line) == mem::TagArray::kNone) tags_.insert(line).valid = 1;
+  }
+
+  const uint32_t line_bytes_, client_;
+  const Address base_;
+  const uint64_t bytes_;
+  CodeCache& cache_;
+  CodeStats& stats_;
+  mem::TagArray tags_;
+  std::vector<Wait> waits_;                 // reserved once
+  std::array<uint32_t, 64> missing_{};      // a slot: lines it waits for
+};
+
+}  // namespace glint::core
