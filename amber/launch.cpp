@@ -31,6 +31,7 @@ class Launch {
     for (const CompiledShader& shader : shaders) programs.push_back(shader.program);
     image_ = core::link(programs);
     world_.image = &image_;
+    plan_parts();
     for (const Binding& binding : pipeline_.bindings) bind(binding);
     for (const CompiledShader& shader : shaders) pipeline::mark_unbound(world_, shader.reflection.bindings, bound_);
     if (pipeline_.is_ray_tracing) set_ray_tracing();
@@ -44,14 +45,21 @@ class Launch {
     world_.any_hit = options.gpu.rt.any_hit.make({});
     world_.layout = options.gpu.core.layout.make({});
     const pipeline::RenderResult result = pipeline::run_world(world_, options.gpu, options.timing, options.no_skip, options.threads, {});
-    for (const auto& [name, address] : addresses_) {
-      std::vector<std::byte>& bytes = script_.buffers.at(name).bytes;
-      std::memcpy(bytes.data(), memory_.find(address, bytes.size()), bytes.size());
-    }
+    for (const auto& [name, parts] : parts_)
+      for (const Part& part : parts)
+        if (part.address && part.end > part.first) {
+          std::byte* const to = script_.buffers.at(name).bytes.data() + part.first;
+          std::memcpy(to, memory_.find(part.address, part.end - part.first), part.end - part.first);
+        }
     return {result.cycles, result.faults};
   }
 
  private:
+  // Bytes of a buffer that lie in memory as an allocation of their own, so that what is past them is past its end.
+  struct Part {
+    uint64_t first = 0, end = 0;
+    Address address = 0;  // 0: not yet in memory
+  };
   void set_compute();
   void set_ray_tracing();
   void bind(const Binding& binding);
@@ -65,7 +73,8 @@ class Launch {
   void check_kind(const Binding& binding) const;
   const frontend::Binding* reflected(const Binding& binding) const;
   core::ImageView view_of(const Binding& binding, const Buffer& buffer, size_t element);
-  Address upload(const Buffer& buffer);
+  void plan_parts();
+  Address upload(const Buffer& buffer, uint64_t offset);
   Address build(const std::string& top_level);
   rt::StructureInfo build_bottom(const std::string& name);
   pipeline::TableRecord record(const std::string& group, pipeline::TableInput& input);
@@ -81,7 +90,7 @@ class Launch {
   core::Image image_;
   core::World world_;
   std::set<pipeline::BindingPlace> bound_;
-  std::map<std::string, Address> addresses_;   // of buffers
+  std::map<std::string, std::vector<Part>> parts_;  // of buffers that something binds
   std::map<std::string, Address> structures_;  // of top levels
 };
 
@@ -204,13 +213,40 @@ void Launch::check_kind(const Binding& binding) const {
                                                pipeline::name_of(other->kind), other->name, binding.names[0]));
 }
 
-Address Launch::upload(const Buffer& buffer) {
-  const auto [it, is_new] = addresses_.try_emplace(buffer.name, 0);
-  if (is_new) {
-    it->second = memory_.allocate(buffer.name, std::max<uint64_t>(buffer.bytes.size(), 4));
-    memory_.write(it->second, buffer.bytes.data(), buffer.bytes.size());
+// A buffer is uploaded in the parts that descriptors name, so that an access past the range of one is a fault.
+// Choice: where parts overlap, all of the buffer is one: shaders may see a byte through both.
+void Launch::plan_parts() {
+  for (const Binding& binding : pipeline_.bindings) {
+    if (binding.kind == BindKind::Sampler || binding.kind == BindKind::Structure || binding.kind == BindKind::PushConstants) continue;
+    const bool has_range = binding.kind == BindKind::Uniform || binding.kind == BindKind::Storage;
+    for (size_t i = 0; i < binding.names.size(); ++i) {
+      Part part;
+      part.end = script_.buffers.at(binding.names[i]).bytes.size();
+      if (has_range && i < binding.offsets.size()) part.first = std::min(binding.offsets[i], part.end);
+      if (has_range && i < binding.ranges.size()) part.end = part.first + std::min(binding.ranges[i], part.end - part.first);
+      std::vector<Part>& parts = parts_[binding.names[i]];
+      const auto is_same = [&](const Part& p) { return p.first == part.first && p.end == part.end; };
+      if (std::none_of(parts.begin(), parts.end(), is_same)) parts.push_back(part);
+    }
   }
-  return it->second;
+  for (auto& [name, parts] : parts_) {
+    std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.first < b.first; });
+    const auto overlap = [](const Part& a, const Part& b) { return b.first < a.end; };
+    if (std::adjacent_find(parts.begin(), parts.end(), overlap) != parts.end()) parts = {{0, script_.buffers.at(name).bytes.size(), 0}};
+  }
+}
+
+// Where byte `offset` of a buffer is.
+Address Launch::upload(const Buffer& buffer, uint64_t offset) {
+  std::vector<Part>& parts = parts_.at(buffer.name);
+  Part& part = *std::prev(std::upper_bound(parts.begin(), parts.end(), offset, [](uint64_t at, const Part& p) { return at < p.first; }));
+  const uint64_t bytes = part.end - part.first;
+  if (!part.address) {
+    const std::string title = bytes == buffer.bytes.size() ? buffer.name : fmt::format("{}, bytes {} to {}", buffer.name, part.first, part.end);
+    part.address = memory_.allocate(title, std::max<uint64_t>(bytes, 4));
+    if (bytes) memory_.write(part.address, buffer.bytes.data() + part.first, bytes);
+  }
+  return part.address + offset - part.first;
 }
 
 void Launch::bind_buffers(const Binding& binding) {
@@ -220,7 +256,7 @@ void Launch::bind_buffers(const Binding& binding) {
     const uint64_t offset = i < binding.offsets.size() ? binding.offsets[i] : 0;
     if (offset >= buffer.bytes.size()) throw UserError(binding.where, fmt::format("the offset {} is past the end of buffer '{}' ({} bytes)", offset, buffer.name, buffer.bytes.size()));
     const uint64_t rest = buffer.bytes.size() - offset;
-    all.push_back({upload(buffer) + offset, i < binding.ranges.size() ? std::min(rest, binding.ranges[i]) : rest});
+    all.push_back({upload(buffer, offset), i < binding.ranges.size() ? std::min(rest, binding.ranges[i]) : rest});
   }
   write_descriptors(binding, all);
 }
@@ -237,7 +273,7 @@ core::ImageView Launch::view_of(const Binding& binding, const Buffer& buffer, si
   const uint32_t dimensions = buffer.dimensions ? buffer.dimensions : 2;
   const frontend::Binding* use = reflected(binding);
   view.shape = use ? use->shape : is_texels ? isa::ImageShape::Buffer : dimensions == 1 ? isa::ImageShape::D1 : dimensions == 2 ? isa::ImageShape::D2 : isa::ImageShape::D3;
-  view.base = upload(buffer) + (element < binding.offsets.size() ? binding.offsets[element] : 0);
+  view.base = upload(buffer, 0) + (element < binding.offsets.size() ? binding.offsets[element] : 0);
   if (binding.base_level >= view.levels) throw UserError(binding.where, fmt::format("'{}' has {} levels", buffer.name, view.levels));
   const core::ImageView whole = view;
   view.base += whole.bytes_before_level(binding.base_level);

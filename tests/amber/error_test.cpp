@@ -186,6 +186,24 @@ TEST_CASE("an element of an array of descriptors that nobody bound is a fault, t
   CHECK(contains(run("2").message, "uses set 0 binding 1 (u), to which nothing is bound"));
 }
 
+TEST_CASE("an access past the range of a descriptor is a fault though the buffer goes on", "[amber]") {
+  const auto script = [](const char* bindings, const char* expected) {
+    return std::string("SHADER compute s GLSL\n#version 450\nlayout(binding = 0) buffer A { uint a[]; };\nlayout(binding = 1) buffer B { uint b[]; };\n"
+                       "void main() { a[0] = a.length(); b[0] = a[4]; }\nEND\nBUFFER x DATA_TYPE uint32 SIZE 128 SERIES_FROM 1 INC_BY 1\n"
+                       "PIPELINE compute p\n ATTACH s\n") + bindings + "END\nRUN p 1 1 1\n" + expected;
+  };
+  const std::string near = " BIND BUFFER x AS storage DESCRIPTOR_SET 0 BINDING 0 DESCRIPTOR_RANGE 16\n", far = " BIND BUFFER x AS storage DESCRIPTOR_SET 0 BINDING 1 DESCRIPTOR_OFFSET 256\n";
+  const Outcome outcome = outcome_of(script((near + far).c_str(), ""));
+  CHECK(outcome.exit == Exit::Fault);
+  CHECK(contains(outcome.message, "0 bytes past the end of 'x, bytes 0 to 16' (16 bytes)"));
+  const Outcome robust = outcome_of("DEVICE_FEATURE robustBufferAccess\n" + script((near + far).c_str(), "EXPECT x IDX 0 EQ 4 2\nEXPECT x IDX 252 EQ 64 0 66\n"));
+  CHECK(robust.message == "");
+  CHECK(robust.exit == Exit::Ok);
+  // Ranges that overlap: the buffer's end counts.
+  const std::string all = " BIND BUFFER x AS storage DESCRIPTOR_SET 0 BINDING 1\n";
+  CHECK(outcome_of(script((near + all).c_str(), "EXPECT x IDX 0 EQ 5\n")).exit == Exit::Ok);
+}
+
 TEST_CASE("a buffer bound where the shader declares an image is an error of the script", "[amber]") {
   const Outcome outcome = outcome_of("SHADER compute s GLSL\n#version 450\nlayout(binding = 0, r32ui) uniform uimage2D i;\nvoid main() { imageStore(i, ivec2(0), uvec4(1)); }\nEND\n"
                                      "BUFFER b DATA_TYPE uint32 DATA 1 2 END\nPIPELINE compute p\n ATTACH s\n BIND BUFFER b AS storage DESCRIPTOR_SET 0 BINDING 0\nEND\nRUN p 1 1 1\n");
