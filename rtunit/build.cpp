@@ -221,8 +221,10 @@ std::optional<std::array<float, 12>> inverse(const std::array<float, 12>& m) {
   return out;
 }
 
-// World box of a transformed box, padded by what the rounding of the object-space ray may move it.
+// World box of a transformed box, padded by what the rounding of the object-space ray may move it: not at all without a
+// transform, where a pad could cost a whole step of a node's planes.
 Bounds world_bounds(const std::array<float, 12>& m, const Bounds& box) {
+  if (m == kIdentity) return box;
   constexpr double kPad = 8 * 0x1p-24;
   Bounds out;
   for (size_t r = 0; r < 3; ++r) {
