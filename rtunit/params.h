@@ -53,7 +53,7 @@ struct Params {
         param(&Params::requests_per_cycle, "requests_per_cycle", "request", "Requests sent to the L1 a cycle.", 1, 16),
         param(&Params::request_bytes, "request_bytes", "B", "Largest request; a multiple of the 32 B sector.", 32, 128),
         param(&Params::responses_per_cycle, "responses_per_cycle", "response", "Answers taken from the L1 a cycle.", 1, 64),
-        param(&Params::mshr_entries, "mshr_entries", "entry", "Reads of the unit that wait for the L1 at once; 0: as many as it has lanes.", 0, 2048),
+        param(&Params::mshr_entries, "mshr_entries", "entry", "Nodes (and sectors of stacks) that wait for the L1 at once; 0: as many as the unit has lanes.", 0, 2048),
         param(&Params::retires_per_cycle, "retires_per_cycle", "warp", "Warps given back to the core a cycle.", 1, 64),
         flag(&Params::result_store, "result_store", "Write 32 B a ray through the L1 before its warp is given back."),
         flag(&Params::nearest_first_hit, "nearest_first_hit", "Rays that may end at any hit look for the nearest, so that their result is independent of traversal order."),
