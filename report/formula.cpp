@@ -25,7 +25,7 @@ Maybe both(Maybe a, Maybe b, Function function) {
 constexpr std::pair<std::string_view, std::string_view> kUnits[] = {{"core.", "gpu.core[*]."},
                                                                     {"rt.", "gpu.rt_unit[*].rt."},
                                                                     {"l1.", "gpu.memory.core[*].l1."},
-                                                                    {"l2.", "gpu.memory.partition[*].l2."},
+                                                                    {"l2.", "gpu.memory.partition[*].l2*."},
                                                                     {"dram.", "gpu.memory.partition[*].dram."}};
 
 std::string whole_path(const std::string& path) {

@@ -10,7 +10,7 @@ constexpr std::string_view kNoStoreQueue = "Glint's RT unit has no store queue: 
 constexpr Metric kGpu[] = {
     {"cycles", "cycle", "The launch, core clock.", "sum(gpu.cycles)", "Fig. 7 (PT)"},
     {"insn", "lane instruction", "Instructions that lanes executed.", "sum(core.lane_instructions)", ""},
-    {"ipc", "lane instruction/cycle", "Lane instructions a cycle of the whole GPU, as GPGPU-Sim's gpu_tot_ipc counts; divided by 32, not warp instructions.", "sum(core.lane_instructions) / sum(gpu.cycles)", "Fig. 14, Fig. 6"},
+    {"ipc", "lane instruction/cycle", "Lane instructions a cycle of the whole GPU, as GPGPU-Sim's gpu_tot_ipc; up to 32 times the warp instructions a cycle that `glint run` shows as IPC.", "sum(core.lane_instructions) / sum(gpu.cycles)", "Fig. 14, Fig. 6"},
     {"occupancy", "fraction", "Resident warps of the warp slots.", "sum(core.resident_cycles) / sum(core.slot_cycles)", ""},
     {"simt_efficiency", "fraction", "Lanes that execute of 32, averaged over warp instructions.", "sum(core.lane_instructions) / (32 * sum(core.instructions))", "Fig. 9 (bottom)"},
     {"sim_rate", "lane instruction/s", "Simulation speed on the host. The only metric that differs from run to run.", "sum(core.lane_instructions) / run(wall_seconds)", ""},

@@ -16,6 +16,14 @@ GENERATED = {
         "Presets are in `configs/`; `--set KEY=VALUE` overrides one key. A policy's own keys stand in a table of its name.",
         ["describe", "--markdown", "--config", "mobile"]),
     "docs/isa.md": (None, None, ["isa", "--index"]),  # brings its own title
+    "docs/metrics.md": (
+        "Metrics",
+        "The 87 columns of `metrics.csv` that `glint bench` writes, after those that name the run; `glint stats RUN --format metrics` prints them.\n"
+        "The names are LumiBench's groups (35 of the GPU, 29 of the RT unit, 23 of scene and shaders) in words of Vulkan-Sim; the paper does not list its own.\n"
+        "A formula is what is computed: `sum(PATH)`, `max(PATH)` go over all statistics of docs/stats.md whose path matches; `core.`, `rt.`, `l1.`, `l2.` and\n"
+        "`dram.` stand for those of all instances; `run(NAME)` is a number of `run.json`, `config(KEY)` a key. A cell is empty where Glint has no such\n"
+        "number, and where a run has nothing to divide by (no texture reads, no rays).",
+        ["list", "metrics", "--markdown"]),
     "docs/stats.md": (
         "Statistics",
         "Every statistic of the timing machine, as `stats.txt`, `stats.csv` and `stats.json` of a run directory name it;\n"

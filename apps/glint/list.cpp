@@ -1,4 +1,4 @@
-// `glint list WHAT`: scenes, shaders, configs, policies, ops, stats.
+// `glint list WHAT`: scenes, shaders, workloads, configs, policies, ops, stats, metrics.
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -9,7 +9,9 @@
 #include "apps/glint/stat_list.h"
 #include "apps/glint/workloads.h"
 #include "isa/op_row.h"
+#include "report/metrics.h"
 #include "report/table.h"
+#include "report/vulkan_sim.h"
 #include "scenes/scene.h"
 
 namespace glint::app {
@@ -26,6 +28,24 @@ Rows scene_rows() {
 Rows shader_rows() {
   Rows rows;
   for (const WorkloadInfo& info : kWorkloads) rows.push_back({std::string(info.name), std::string(info.doc)});
+  return rows;
+}
+
+Rows workload_rows() {
+  Rows rows;
+  for (const NamedWorkload& workload : lumibench())
+    rows.push_back({workload.name(), std::string(workload.scene), std::string(workload.shader), workload.in_subset ? "subset" : ""});
+  return rows;
+}
+
+std::string metrics_page() {
+  return report::metrics_markdown() + "\n## Vulkan-Sim's names\n\n`glint stats RUN --format vulkan-sim` prints them.\n\n" + report::vulkan_sim_markdown();
+}
+
+Rows metric_rows() {
+  Rows rows;
+  for (const report::MetricGroup& group : report::metric_groups())
+    for (const report::Metric& metric : group.metrics) rows.push_back({std::string(metric.name), std::string(metric.unit), std::string(metric.doc)});
   return rows;
 }
 
@@ -59,11 +79,17 @@ Exit list(const Session& session, const std::string& what, bool markdown) {
     write_output("", markdown ? stat_list_markdown() : stat_list());
     return Exit::Ok;
   }
-  const Rows rows = what == "scenes"    ? scene_rows()
-                    : what == "shaders" ? shader_rows()
-                    : what == "configs" ? config_rows(session.resources)
-                    : what == "ops"     ? op_rows()
-                                        : policy_rows();
+  if (what == "metrics" && markdown) {
+    write_output("", metrics_page());
+    return Exit::Ok;
+  }
+  const Rows rows = what == "scenes"      ? scene_rows()
+                    : what == "shaders"   ? shader_rows()
+                    : what == "workloads" ? workload_rows()
+                    : what == "configs"   ? config_rows(session.resources)
+                    : what == "ops"       ? op_rows()
+                    : what == "metrics"   ? metric_rows()
+                                          : policy_rows();
   write_output("", report::table(rows, ""));
   return Exit::Ok;
 }
@@ -76,11 +102,11 @@ void add_list(CLI::App& app, Session& session) {
     bool markdown = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("list", "List scenes, shaders, configs, policies, ops or stats");
+  CLI::App* command = app.add_subcommand("list", "List scenes, shaders, workloads, configs, policies, ops, stats or metrics");
   command->add_option("WHAT", options->what, "What to list")
       ->required()
-      ->check(CLI::IsMember({"scenes", "shaders", "configs", "policies", "ops", "stats"}));
-  command->add_flag("--markdown", options->markdown, "Of stats: as docs/stats.md");
+      ->check(CLI::IsMember({"scenes", "shaders", "workloads", "configs", "policies", "ops", "stats", "metrics"}));
+  command->add_flag("--markdown", options->markdown, "Of stats and metrics: as docs/stats.md and docs/metrics.md");
   command->callback([&session, options] {
     session.action = [&session, options] { return list(session, options->what, options->markdown); };
   });

@@ -32,6 +32,7 @@ void look_at_terminal(Session& session) {
   const char* kind = std::getenv("TERM");
   session.on_terminal = ::isatty(STDOUT_FILENO) != 0;
   session.terminal.utf8 = session.on_terminal && locale_is_utf8();
+  session.can_move_cursor = session.on_terminal && kind && std::string(kind) != "dumb";
   session.terminal.colour =
       session.on_terminal && !(no_colour && *no_colour) && kind && std::string(kind) != "dumb";
 }
@@ -64,7 +65,7 @@ int run_action(const Session& session) {
 }
 
 int main_of(int argc, char** argv) {
-  Session session{{argv, argv + argc}, Resources::find(), {}, false, {}};
+  Session session{.arguments = {argv, argv + argc}, .resources = Resources::find(), .terminal = {}, .action = {}};
   look_at_terminal(session);
   CLI::App app(
       "Glint: a GPU you can read. Runs ray-tracing shaders on a simulated GPU and says what it did, cycle by "
@@ -73,6 +74,8 @@ int main_of(int argc, char** argv) {
   app.set_version_flag("--version", GLINT_VERSION);
   app.require_subcommand(1);
   add_run(app, session);
+  add_bench(app, session);
+  add_stats(app, session);
   add_annotate(app, session);
   add_init(app, session);
   add_compile(app, session);

@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "apps/glint/config.h"
+#include "apps/glint/progress_pipe.h"
 #include "apps/glint/run_summary.h"
 #include "report/config_file.h"
 #include "report/progress.h"
@@ -32,6 +33,7 @@ report::RunInfo new_run_info(const Session& session, const pipeline::GpuParams& 
 pipeline::RenderResult run_recorded(const Session& session, const std::string& what, const report::RunDirectory& directory,
                                     report::RunInfo& info, const std::function<pipeline::RenderResult(const ShowProgress&)>& run, core::PrintLog* prints) {
   report::Progress progress(session.on_terminal ? stdout : nullptr, what, session.terminal);
+  ProgressPipe pipe(session.progress_descriptor, what);
   const auto start = std::chrono::steady_clock::now();
   const auto finish = [&](Exit exit, const std::string& message) {
     info.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -44,7 +46,10 @@ pipeline::RenderResult run_recorded(const Session& session, const std::string& w
     directory.write_run(info);
   };
   try {
-    pipeline::RenderResult result = run([&](uint64_t done, uint64_t total) { progress.update(done, total); });
+    pipeline::RenderResult result = run([&](uint64_t done, uint64_t total) {
+      progress.update(done, total);
+      pipe.update(done, total);
+    });
     for (const core::FaultLog::Entry& fault : result.faults.in_order())
       info.faults.push_back({std::string(core::name_of(fault.kind)), fault.first.place, fault.first.what, fault.first.launch_id, fault.count});
     if (result.residency.warps > 0) info.residency = {result.residency.warps, result.residency.blocks, std::string(name_of(result.residency.limit))};

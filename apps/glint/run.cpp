@@ -6,7 +6,10 @@
 #include <memory>
 
 #include "apps/glint/config.h"
+#include "apps/glint/frame_options.h"
+#include "apps/glint/image_size.h"
 #include "apps/glint/observe_options.h"
+#include "apps/glint/progress_pipe.h"
 #include "apps/glint/recorded_run.h"
 #include "apps/glint/run_amber.h"
 #include "apps/glint/run_pipeline.h"
@@ -37,20 +40,14 @@ struct Options {
   bool config_given = false, mode_given = false;  // not left at their defaults
 };
 
-constexpr uint32_t kMaxSide = 16384;  // pixels; beyond it images exceed what a PNG encoder here takes
-
-void parse_size(const std::string& text, scenes::RenderParams& frame) {
-  const auto number = [&](const std::string& digits) -> uint32_t {
-    if (digits.empty() || digits.size() > 5 || digits.find_first_not_of("0123456789") != std::string::npos)
-      return 0;
-    return uint32_t(std::stoul(digits));
-  };
-  const size_t x = text.find('x');
-  frame.width = number(text.substr(0, x));
-  frame.height = x == std::string::npos ? 0 : number(text.substr(x + 1));
-  if (frame.width < 1 || frame.height < 1 || frame.width > kMaxSide || frame.height > kMaxSide)
-    throw UserError({}, fmt::format("--size is '{}', expected WIDTHxHEIGHT, each 1 to {}", text, kMaxSide),
-                    "for example --size 128x128");
+// SHIP_SH is SHIP with --shader sh.
+void take_workload_name(Options& options, bool shader_given) {
+  const std::optional<SceneAndShader> named = split_workload(options.scene);
+  if (!named) return;
+  if (shader_given && options.shader != named->shader)
+    throw UserError({}, fmt::format("'{}' is {} with --shader {}, and --shader is {}", options.scene, named->scene, named->shader, options.shader));
+  options.scene = named->scene;
+  options.shader = named->shader;
 }
 
 pipeline::RenderJob make_job(const Session& session, const Options& options) {
@@ -70,7 +67,11 @@ pipeline::RenderJob make_job(const Session& session, const Options& options) {
   job.shader_dir = options.shader_dir.empty() ? session.resources.shader_dir(std::string(workload.folder))
                                               : options.shader_dir;
   report::Progress progress(session.on_terminal ? stdout : nullptr, "loading", session.terminal);
-  job.scene = scenes::load_scene(options.scene, {options.assets, [&](double part) { progress.update(uint64_t(100 * part), 100); }});
+  ProgressPipe pipe(session.progress_descriptor, "loading");
+  job.scene = scenes::load_scene(options.scene, {options.assets, [&](double part) {
+    progress.update(uint64_t(100 * part), 100);
+    pipe.update(uint64_t(1000 * part), 1000);
+  }});
   return job;
 }
 
@@ -92,6 +93,9 @@ report::RunInfo describe_run(const Session& session, const Options& options, con
   info.height = job.frame.height;
   info.samples = job.frame.samples;
   info.seed = job.frame.seed;
+  info.bounces = job.frame.bounces;
+  info.shadow_rays = job.frame.shadow_rays;
+  info.ao_rays = job.frame.ao_rays;
   return info;
 }
 
@@ -126,7 +130,10 @@ Exit run(const Session& session, const Options& options) {
   directory.write_config(describe_params(job.gpu), "Resolved configuration of: " + title_of(job, options));
   const pipeline::RenderResult result = run_recorded(session, "rendering", directory, info, [&](const ShowProgress& progress) {
     job.progress = progress;
-    return pipeline::render(job);
+    pipeline::RenderResult rendered = pipeline::render(job);
+    const pipeline::StructureCounts& made = rendered.structures;
+    info.structures = {made.bytes, made.triangles, made.procedurals, made.bottom_levels, made.instances, made.top_depth, made.bottom_depth};
+    return rendered;
   }, &prints);
   for (const std::string& warning : result.warnings) fmt::print(stderr, "{}\n", warning);
   directory.write_image({result.width, result.height, result.rgba});
@@ -137,29 +144,12 @@ Exit run(const Session& session, const Options& options) {
   return Exit::Ok;
 }
 
-void add_frame_options(CLI::App& command, Options& options) {
-  command.add_option("--size", options.size, "Image size in pixels")->type_name("WxH")->capture_default_str();
-  command.add_option("--spp", options.frame.samples, "Samples a pixel")
-      ->check(CLI::Range(1u, 65536u))
-      ->capture_default_str();
-  command.add_option("--bounces", options.frame.bounces, "Longest path of pt, in rays")
-      ->check(CLI::Range(1u, 1000u))
-      ->capture_default_str();
-  command.add_option("--shadow-rays", options.frame.shadow_rays, "Shadow rays a hit of sh")
-      ->check(CLI::Range(1u, 4096u))
-      ->capture_default_str();
-  command.add_option("--ao-rays", options.frame.ao_rays, "Occlusion rays a hit of ao")
-      ->check(CLI::Range(1u, 4096u))
-      ->capture_default_str();
-  command.add_option("--seed", options.frame.seed, "Seed of the pixel jitter")->capture_default_str();
-}
-
 }  // namespace
 
 void add_run(CLI::App& app, Session& session) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("run", "Render a scene, or launch a pipeline or a PTX kernel, on the simulated GPU");
-  command->add_option("SCENE", options->scene, "Scene; 'glint list scenes' names them. Or a pipeline: FILE.toml, or one shader file. Or a kernel: FILE.ptx, or its launch FILE.toml. Or an Amber script: FILE.amber")->required();
+  command->add_option("SCENE", options->scene, "Scene; 'glint list scenes' names them. Or a workload: SHIP_SH. Or a pipeline: FILE.toml, or one shader file. Or a kernel: FILE.ptx, or its launch FILE.toml. Or an Amber script: FILE.amber")->required();
   command->add_option("MORE", options->more, "More Amber scripts, after a first one: FILE.amber");
   command->add_option("--launch", options->launch, "Launch file of a kernel: grid, block, arguments")->type_name("FILE");
   command->add_option("--shader", options->shader, "pt, sh or ao; 'glint list shaders' explains")
@@ -195,14 +185,20 @@ void add_run(CLI::App& app, Session& session) {
   command->add_option("--printf-limit", options->print_limit, "Messages of debugPrintfEXT to show, the first by launch id")->capture_default_str();
   add_observe_options(*command, options->observe);
   add_shader_options(*command, options->shaders);
-  add_frame_options(*command, *options);
+  command->add_option("--size", options->size, "Image size in pixels")->type_name("WxH")->capture_default_str();
+  add_frame_options(*command, options->frame);
+  command->add_option("--progress-fd", session.progress_descriptor, "Descriptor to write the progress to")->group("");  // for `bench`
   command->callback(
       [&session, options, command] {
         options->config_given = command->count("--config") > 0;
         options->mode_given = command->count("--mode") > 0;
         options->on_fault = options->on_fault_name == "warn" ? core::OnFault::Warn : core::OnFault::Stop;
         if (options->shaders.contract) options->settings.push_back("compiler.contract=true");
-        session.action = [&session, options] { return run(session, *options); };
+        const bool shader_given = command->count("--shader") > 0;
+        session.action = [&session, options, shader_given] {
+          take_workload_name(*options, shader_given);
+          return run(session, *options);
+        };
       });
 }
 

@@ -20,11 +20,15 @@ struct Session {
   Resources resources;
   report::Terminal terminal;     // of stdout
   bool on_terminal = false;      // stdout is one: progress may be drawn
+  bool can_move_cursor = false;  // and it knows escape sequences
+  int progress_descriptor = -1;  // where a process that started this one listens; -1 = nowhere
   std::function<Exit()> action;  // set by the subcommand that was chosen
 };
 
 // Each adds its subcommand; its callback sets Session::action.
 void add_run(CLI::App& app, Session& session);
+void add_bench(CLI::App& app, Session& session);
+void add_stats(CLI::App& app, Session& session);
 void add_annotate(CLI::App& app, Session& session);
 void add_init(CLI::App& app, Session& session);
 void add_compile(CLI::App& app, Session& session);

@@ -1,6 +1,10 @@
 # The command as a user meets it: through the real binary.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 if(TARGET glint)
+  foreach(suite Workloads Bench Paper)
+    add_test(NAME cli_${suite}
+      COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/bench_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR} ${suite})
+  endforeach()
   foreach(suite Usage Compile Configuration Faults RunDirectory Docs)
     add_test(NAME cli_${suite}
       COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/cli_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR} ${suite})

@@ -1,0 +1,22 @@
+// Tells another process how far a run is: lines "loading 437" in thousandths, through a file descriptor.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string>
+
+namespace glint::app {
+
+class ProgressPipe {
+ public:
+  // `descriptor` below 0: tells nobody. `phase` is one word.
+  ProgressPipe(int descriptor, std::string phase) : descriptor_(descriptor), phase_(std::move(phase)) {}
+  // Writes when a thousandth is full: at most a thousand short lines a phase.
+  void update(uint64_t done, uint64_t total);
+
+ private:
+  int descriptor_;
+  std::string phase_;
+  uint64_t told_ = 0;
+};
+
+}  // namespace glint::app

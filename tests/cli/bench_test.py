@@ -1,0 +1,184 @@
+# Workloads by name, suites of them, their metrics, and the paper's statements. Runs the real binary.
+# SPDX-License-Identifier: Apache-2.0
+"""usage: bench_test.py GLINT SOURCE_DIR"""
+import csv
+import json
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+GLINT, ROOT = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+SMALL = ["--size", "16x16", "--spp", "1"]
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(ROOT / "tools"))
+import check_paper  # noqa: E402
+
+
+class BenchTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def glint(self, code, *arguments):
+        done = subprocess.run([GLINT, *map(str, arguments)], capture_output=True, text=True, cwd=self.folder, timeout=300)
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done
+
+    def metrics(self, folder="out"):
+        with open(self.folder / folder / "metrics.csv", newline="") as file:
+            return {row["workload"]: row for row in csv.DictReader(file)}
+
+
+class Workloads(BenchTest):
+    def test_there_are_46_workloads_and_the_subset_is_that_of_the_papers_table_2(self):
+        rows = [line.split() for line in self.glint(0, "list", "workloads").stdout.splitlines()]
+        self.assertEqual(len(rows), 46)
+        self.assertEqual(len({row[1] for row in rows}), 16)
+        self.assertEqual([row[0] for row in rows if row[1] == "CHSNT"], ["CHSNT_PT"])
+        self.assertEqual({row[0] for row in rows if row[-1] == "subset"}, set(check_paper.SUBSET))
+
+    def test_a_workload_by_name_is_its_scene_with_its_shaders(self):
+        self.glint(0, "run", "ship_ao", *SMALL, "--out", "a")
+        self.glint(0, "run", "SHIP", "--shader", "ao", *SMALL, "--out", "b")
+        self.assertEqual((self.folder / "a/stats.csv").read_bytes(), (self.folder / "b/stats.csv").read_bytes())
+        self.assertIn("--shader", self.glint(2, "run", "SHIP_AO", "--shader", "sh", *SMALL).stderr)
+
+    def rays(self, *arguments):
+        """All rays, and those that may end at any hit."""
+        self.glint(0, "run", *arguments, *SMALL, "--out", "out")
+        lines = self.glint(0, "stats", "out", "--format", "metrics").stdout.splitlines()
+        values = {line.split()[0]: line.split()[1] for line in lines}
+        return int(float(values["rays_total"])), int(float(values["rays_any"]))
+
+    def test_the_counts_of_rays_are_those_of_the_options(self):
+        self.assertEqual(self.rays("WKND_PT", "--bounces", "1"), (256, 0))
+        three, six = self.rays("SHIP_AO", "--ao-rays", "3"), self.rays("SHIP_AO", "--ao-rays", "6")
+        self.assertEqual((three[0] - three[1], six[0] - six[1]), (256, 256))  # a primary ray a pixel
+        self.assertEqual((three[1] % 3, six[1]), (0, 2 * three[1]))
+        self.assertGreater(three[1], 0)
+        one, four = self.rays("SHIP_SH", "--shadow-rays", "1"), self.rays("SHIP_SH", "--shadow-rays", "4")
+        self.assertEqual((one[0] - one[1], four[1]), (256, 4 * one[1]))  # outdoors all go the same way
+
+
+class Bench(BenchTest):
+    def test_metrics_of_a_suite_are_those_of_its_runs(self):
+        done = self.glint(0, "bench", "WKND_PT", "ship_sh", *SMALL, "-j", "2", "--out", "out")
+        self.assertNotIn("\x1b", done.stdout)
+        metrics = self.metrics()
+        self.assertEqual(list(metrics), ["WKND_PT", "SHIP_SH"])  # in the paper's order
+        self.glint(0, "run", "SHIP_SH", *SMALL, "--out", "alone")
+        stats = json.loads((self.folder / "alone/stats.json").read_text())["gpu"]
+        self.assertEqual(float(metrics["SHIP_SH"]["cycles"]), stats["cycles"]["value"])
+        units = [unit["rt"] for name, unit in stats.items() if name.startswith("rt_unit")]
+        self.assertEqual(float(metrics["SHIP_SH"]["rays_total"]), sum(unit["rays"]["value"] for unit in units))
+        row = metrics["WKND_PT"]
+        self.assertEqual((float(row["procedurals"]), float(row["blas_count"]), float(row["n_raygen"])), (487, 487, 256))
+        self.assertEqual(float(row["n_chit"]) + float(row["n_miss"]), float(row["rays_total"]))
+        self.assertAlmostEqual(sum(float(row[m]) for m in ("%internal", "%tlas_leaf", "%leaf")), 100)
+        self.assertAlmostEqual(sum(float(row[f"ins_{c}%"]) for c in ("alu", "sfu", "mem", "tex", "ctrl", "rt")), 100)
+
+    def test_every_formula_has_a_value_in_a_run_and_only_those_without_are_empty(self):
+        self.glint(0, "run", "WKND_PT", *SMALL, "--out", "out")
+        lines = [line.split() for line in self.glint(0, "stats", "out", "--format", "metrics").stdout.splitlines()]
+        self.assertEqual(len(lines), 87)
+        self.assertEqual({line[0] for line in lines if line[1] == "-"}, {"rt_store_q_max", "rt_store_cycles", "acc_structure", "acc_prim_leaf"})
+        peer = self.glint(0, "stats", "out", "--format", "vulkan-sim").stdout
+        self.assertRegex(peer, r"(?m)^rt_avg_nodes_per_ray = \d")
+        missing = re.findall(r"(?m)^# (\S+): nothing to divide", peer)
+        self.assertEqual(missing, ["rt_overall_miss_rate"] if "rt_overall_miss_rate" in missing else [])
+        self.assertEqual(self.glint(0, "stats", "out").stdout, (self.folder / "out/stats.txt").read_text())
+        self.glint(2, "stats", "nowhere", "--format", "metrics")
+
+    def test_resume_leaves_out_what_is_complete_and_runs_again_what_another_configuration_left(self):
+        def runs(*more):
+            return re.findall(r"(?m)^ *\d+/\d+ (\w+)", self.glint(0, "bench", "SHIP_SH", "WKND_SH", *SMALL, "--out", "out", *more).stdout)
+        self.assertEqual(sorted(runs()), ["SHIP_SH", "WKND_SH"])
+        first = self.metrics()
+        self.assertEqual(runs("--resume"), [])
+        self.assertEqual(self.metrics(), first)
+        (self.folder / "out/SHIP_SH/workload.json").unlink()
+        self.assertEqual(runs("--resume"), ["SHIP_SH"])
+        self.assertEqual(sorted(runs("--resume", "--set", "core.warps=8")), ["SHIP_SH", "WKND_SH"])
+        self.assertEqual(sorted(runs()), ["SHIP_SH", "WKND_SH"])
+
+    def test_a_workload_that_fails_does_not_stop_the_others_and_the_exit_status_says_so(self):
+        (self.folder / "out/SHIP_SH").mkdir(parents=True)
+        (self.folder / "out/SHIP_SH/stats.csv").mkdir()  # cannot be replaced by a file
+        done = self.glint(1, "bench", "SHIP_SH", "WKND_SH", *SMALL, "--out", "out")
+        self.assertIn("FAILED", done.stdout)
+        self.assertIn("SHIP_SH", done.stderr)
+        self.assertEqual(list(self.metrics()), ["WKND_SH"])
+
+    def test_an_interrupted_suite_keeps_what_is_finished_and_leaves_no_process(self):
+        bench = subprocess.Popen([GLINT, "bench", "SHIP_SH", "PARK_PT", *SMALL, "-j", "2", "--out", "out"], cwd=self.folder,
+                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        deadline = time.monotonic() + 250
+        while not (self.folder / "out/SHIP_SH/workload.json").exists() and time.monotonic() < deadline:
+            time.sleep(0.02)
+        children = pathlib.Path(f"/proc/{bench.pid}/task/{bench.pid}/children").read_text().split()
+        bench.send_signal(signal.SIGINT)
+        out, err = bench.communicate(timeout=60)
+        if "PARK_PT" in self.metrics():
+            self.skipTest("the second workload was faster than the signal")
+        self.assertEqual(bench.returncode, 1, out + err)
+        self.assertIn("--resume", err)
+        self.assertEqual(list(self.metrics()), ["SHIP_SH"])
+        self.assertFalse((self.folder / "out/PARK_PT/workload.json").exists())
+        self.assertEqual([pid for pid in children if os.path.exists(f"/proc/{pid}")], [])
+
+    def test_names_that_are_none_are_refused_with_the_nearest(self):
+        self.assertIn("did you mean 'SHIP_SH'?", self.glint(2, "bench", "SHIP_SK").stderr)
+        self.assertIn("CHSNT_SH", self.glint(2, "bench", "CHSNT_SH").stderr)
+        self.assertFalse((self.folder / "out").exists())
+
+
+class Paper(unittest.TestCase):
+    """tools/check_paper.py on figures made for it."""
+
+    def table(self, **changes):
+        rows = []
+        for name in check_paper.SUBSET:
+            row = {"workload": name, "dram_eff": "0.6", "rt_efficiency": {"PT": "0.2", "AO": "0.4", "SH": "0.6"}[name[-2:]], "ins_alu%": "70",
+                   "ins_mem%": "20", "ins_sfu%": "1", "ins_tex%": "1", "ins_ctrl%": "7", "ins_rt%": "1", "ipc": "5"}
+            row.update({metric: value for (workload, metric), value in changes.get("cells", {}).items() if workload == name})
+            rows.append(row)
+        return check_paper.Table(rows)
+
+    def verdicts(self, table, part, **others):
+        return [verdict for _, text, verdict, _ in check_paper.evaluate(table, **others) if part in text]
+
+    def test_an_order_that_is_there_holds_and_one_that_is_not_does_not(self):
+        self.assertEqual(self.verdicts(self.table(), "RT efficiency: PT lowest"), ["holds"])
+        broken = self.table(cells={("BUNNY_AO", "rt_efficiency"): "0.9"})
+        self.assertEqual(self.verdicts(broken, "RT efficiency: PT lowest"), ["does not hold"])
+        self.assertEqual(self.verdicts(self.table(), "ALU is the most frequent"), ["holds"])
+        self.assertEqual(self.verdicts(self.table(cells={("WKND_PT", "ins_mem%"): "71"}), "ALU is the most frequent"), ["does not hold"])
+
+    def test_a_bound_is_kept_on_both_sides(self):
+        for value, verdict in (("0.47", "does not hold"), ("0.48", "holds"), ("0.88", "holds"), ("0.89", "does not hold")):
+            self.assertEqual(self.verdicts(self.table(cells={("BATH_PT", "dram_eff"): value}), "DRAM efficiency lies within"), [verdict], value)
+
+    def test_what_lacks_rows_cells_or_another_run_cannot_be_judged(self):
+        self.assertEqual(self.verdicts(self.table(), "CHSNT_PT's traversal ratio"), ["cannot be judged"])
+        self.assertEqual(self.verdicts(self.table(cells={("BATH_PT", "dram_eff"): ""}), "DRAM efficiency lies within"), ["cannot be judged"])
+        self.assertEqual(self.verdicts(self.table(), "IPC is higher on desktop"), ["cannot be judged"])
+        self.assertEqual(self.verdicts(self.table(), "IPC is higher on desktop", desktop=self.table()), ["does not hold"])
+
+    def test_misses_of_the_shaders_follow_from_the_rates(self):
+        cells = {"acc_internal": "80", "acc_instance_leaf": "0", "acc_quad_leaf": "20", "acc_proc_leaf": "0", "rt_miss_rate": "0.25",
+                 "l1d_miss_rate": "0.125", "l1d_shader_miss_rate": "0.0833333333333333333"}  # 300 shader reads, 25 of them misses
+        table = self.table(cells={("BUNNY_AO", metric): value for metric, value in cells.items()})
+        rt, shader = check_paper.rt_and_shader_misses(table, "BUNNY_AO")
+        self.assertAlmostEqual(rt, 25)
+        self.assertAlmostEqual(shader, 25)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
