@@ -67,11 +67,16 @@ void RunDirectory::write_run(const RunInfo& info) const {
                    {"fraction", info.scene_fraction}};
   json["shader"] = info.shader;
   json["config"] = {{"name", info.config}, {"hash", fmt::format("{:016x}", info.config_hash)}};
+  for (const auto& [name, value] : info.memory_peaks) json["memory_peaks"][name] = value;
   json["mode"] = info.mode;
   json["width"] = info.width;
   json["height"] = info.height;
   json["samples"] = info.samples;
   json["seed"] = info.seed;
+  if (info.bounces > 0) json["rays"] = {{"bounces", info.bounces}, {"shadow_rays", info.shadow_rays}, {"ao_rays", info.ao_rays}};
+  if (const auto& s = info.structures)
+    json["structures"] = {{"bytes", s->bytes},         {"triangles", s->triangles}, {"procedurals", s->procedurals},  {"bottom_levels", s->bottom_levels},
+                          {"instances", s->instances}, {"top_depth", s->top_depth}, {"bottom_depth", s->bottom_depth}};
   if (const auto& r = info.residency) json["residency"] = {{"warps", r->warps}, {"blocks", r->blocks}, {"limit", r->limit}};
   json["started"] = info.started;
   json["wall_seconds"] = info.wall_seconds;

@@ -21,6 +21,12 @@ struct FaultInfo {
   uint64_t count = 0;
 };
 
+// What the acceleration structures of a scene came to.
+struct StructureInfo {
+  uint64_t bytes = 0, triangles = 0, procedurals = 0, bottom_levels = 0, instances = 0;
+  uint32_t top_depth = 0, bottom_depth = 0;
+};
+
 // What of a launch fits a core at a time, and what is used up first.
 struct ResidencyInfo {
   uint32_t warps = 0, blocks = 0;
@@ -35,7 +41,10 @@ struct RunInfo {
   uint64_t scene_hash = 0, scene_triangles = 0, config_hash = 0, seed = 0;
   double scene_fraction = 1;  // of the original's triangles
   uint32_t width = 0, height = 0, samples = 0;
+  uint32_t bounces = 0, shadow_rays = 0, ao_rays = 0;  // of a scene's frame; 0 = it is none
+  std::optional<StructureInfo> structures;             // once they are built
   std::optional<ResidencyInfo> residency;              // of a timing run
+  std::vector<std::pair<std::string, double>> memory_peaks;  // what the memory system could do at best
   std::string started;  // ISO 8601, UTC
   double wall_seconds = 0;
   std::string on_fault = "stop";
