@@ -201,7 +201,8 @@ void RtUnit::place(uint32_t slot_index, int lane, Cycle now) {
   RayState& state = slot.states[lane];
   if (state.status == RayStatus::Traversing) {
     const Fetch node = next_read(slot, lane);
-    if (memory_.find(node.address, node.bytes)) {
+    if (const std::byte* bytes = memory_.find(node.address, node.bytes)) {
+      __builtin_prefetch(bytes);  // it is tested many cycles from now
       slot.node[size_t(lane)] = node;
       slot.wanting |= LaneMask{1} << lane;
       return;
