@@ -5,15 +5,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/profile_table.h"
 #include "base/types.h"
 #include "core/stall.h"
 
 namespace glint::core {
 
-struct InstructionCounts {
-  uint64_t issues = 0, lanes = 0;
-  uint64_t accesses = 0, requests = 0, sectors = 0;  // to the L1
-  uint64_t ended = 0, latency = 0;                   // accesses and traces; issue to completion, summed
+struct InstructionCounts : ProfileCounts {
   std::array<uint64_t, size_t(Stall::Count)> slots{};  // cycles of schedulers
 };
 

@@ -41,10 +41,7 @@ std::vector<Balance> of_profile(const core::CoreCell& core) {
   core::InstructionCounts sum = profile->nowhere();
   for (uint32_t pc = 0; pc < profile->num_instructions(); ++pc) {
     const core::InstructionCounts& counts = profile->of(pc);
-    sum.issues += counts.issues;
-    sum.lanes += counts.lanes;
-    sum.requests += counts.requests;
-    sum.sectors += counts.sectors;
+    sum += counts;
     for (size_t i = 0; i < sum.slots.size(); ++i) sum.slots[i] += counts.slots[i];
   }
   ledger.equal("issues = instructions", sum.issues, s.instructions.value());

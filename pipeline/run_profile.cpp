@@ -15,16 +15,7 @@ enum OfCore { kInstructions, kRtWarps, kL1Reads, kL1Hits };
 enum OfPartition { kL2Reads, kL2Hits, kDramBusy, kDramClocks };
 using Samples = std::vector<std::vector<uint64_t>>;
 
-void add(ProfileRow& row, const core::InstructionCounts& counts) {
-  row.issues += counts.issues;
-  row.lanes += counts.lanes;
-  row.accesses += counts.accesses;
-  row.requests += counts.requests;
-  row.sectors += counts.sectors;
-  row.ended += counts.ended;
-  row.latency += counts.latency;
-  for (size_t i = 0; i < counts.slots.size(); ++i) row.slots[i] += counts.slots[i];
-}
+void add(ProfileRow& row, const core::InstructionCounts& counts) { row.add(counts, counts.slots); }
 
 ProfileRow row_of(const core::Image& image, uint32_t pc, size_t reasons) {
   const core::Shader& shader = image.shaders[image.shader_of[pc]];

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "base/diagnostics.h"
+#include "report/csv_field.h"
 
 namespace glint::report {
 namespace {
@@ -19,16 +20,9 @@ constexpr const char* kNone = "no_warp";
 // Before the reasons.
 const std::vector<std::string> kColumns = {"by", "stage", "shader", "file", "line", "index", "op", "issues", "lanes", "accesses", "requests", "sectors", "ended", "latency", "cycles"};
 
-std::string quoted(const std::string& cell) {
-  if (cell.find_first_of(",\"\n") == std::string::npos) return cell;
-  std::string out = "\"";
-  for (const char c : cell) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
 std::string csv_line(const std::vector<std::string>& cells) {
   std::string out;
-  for (size_t i = 0; i < cells.size(); ++i) out += (i ? "," : "") + quoted(cells[i]);
+  for (size_t i = 0; i < cells.size(); ++i) out += (i ? "," : "") + csv_field(cells[i]);
   return out + "\n";
 }
 
@@ -37,18 +31,6 @@ std::string row_text(const char* by, const ProfileRow& row) {
   for (const uint64_t n : {row.issues, row.lanes, row.accesses, row.requests, row.sectors, row.ended, row.latency, row.total()}) cells.push_back(std::to_string(n));
   for (const uint64_t n : row.slots) cells.push_back(std::to_string(n));
   return csv_line(cells);
-}
-
-void add(ProfileRow& to, const ProfileRow& row) {
-  to.issues += row.issues;
-  to.lanes += row.lanes;
-  to.accesses += row.accesses;
-  to.requests += row.requests;
-  to.sectors += row.sectors;
-  to.ended += row.ended;
-  to.latency += row.latency;
-  to.slots.resize(row.slots.size());
-  for (size_t i = 0; i < row.slots.size(); ++i) to.slots[i] += row.slots[i];
 }
 
 // Cells of the line of a table that begins at `at`, which moves behind it. Quoted cells may hold line ends.
@@ -115,7 +97,7 @@ std::vector<ProfileRow> by_line(const ProfileTable& profile) {
     ProfileRow& line = lines[{row.file, row.line}];
     line.file = row.file;
     line.line = row.line;
-    add(line, row);
+    line.add(row, row.slots);
   }
   std::vector<ProfileRow> out;
   for (auto& [place, row] : lines) out.push_back(std::move(row));

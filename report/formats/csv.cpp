@@ -1,18 +1,11 @@
 // Statistics as comma-separated values for spreadsheets: header `path,value,unit,doc`.
 // SPDX-License-Identifier: Apache-2.0
+#include "report/csv_field.h"
 #include "report/stat_rows.h"
 #include "report/stat_writer.h"
 
 namespace glint::report {
 namespace {
-
-// RFC 4180: a field with a comma, quote or newline is quoted, its quotes doubled.
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
 
 class CsvWriter final : public StatWriter {
  public:
@@ -24,7 +17,7 @@ class CsvWriter final : public StatWriter {
   std::string write(const stats::Group& root) const override {
     std::string out = "path,value,unit,doc\n";
     for (const StatRow& row : stat_rows(root))
-      out += field(row.path) + "," + field(row.value) + "," + field(row.unit) + "," + field(row.doc) + "\n";
+      out += csv_field(row.path) + "," + csv_field(row.value) + "," + csv_field(row.unit) + "," + csv_field(row.doc) + "\n";
     return out;
   }
 };
