@@ -21,6 +21,11 @@ std::vector<Save> read_saves(TableReader& t) {
   return out;
 }
 
+// Of a resource that its file does not name: after its slot, where it has one.
+std::string name_of_slot(const char* kind, const Slot& slot) {
+  return slot.is_bound() ? fmt::format("{}_{}_{}", kind, slot.set.value_or(0), *slot.binding) : kind;
+}
+
 core::Sampler read_sampler_keys(TableReader& t) {
   core::Sampler out;
   const std::vector<std::string> filters{"nearest", "linear"};
@@ -52,7 +57,7 @@ BufferDescription read_buffer(Reading& r, const Value& value) {
   BufferDescription out;
   out.where = value.where;
   out.slot = read_slot(t);
-  out.name = t.text("name", out.slot.is_bound() ? fmt::format("buffer_{}_{}", out.slot.set.value_or(0), *out.slot.binding) : "buffer");
+  out.name = t.text("name", name_of_slot("buffer", out.slot));
   out.data = read_data(r, t, true);
   out.saves = read_saves(t);
   out.show = uint32_t(t.integer("show", 0, 0, 1 << 20));
@@ -65,7 +70,7 @@ ImageDescription read_image(Reading& r, const Value& value) {
   ImageDescription out;
   out.where = value.where;
   out.slot = read_slot(t);
-  out.name = t.text("name", out.slot.is_bound() ? fmt::format("image_{}_{}", out.slot.set.value_or(0), *out.slot.binding) : "image");
+  out.name = t.text("name", name_of_slot("image", out.slot));
   for (const std::string& file : t.texts("file")) out.files.push_back(r.beside(file));
   if (t.take("format")) {
     out.format = format_named(t.text("format"));
