@@ -6,6 +6,7 @@
 #include "core/issue_scheduler.h"
 #include "core/op_times.h"
 #include "core/warp_layout.h"
+#include "memsys/dram_model.h"
 #include "memsys/dram_scheduler.h"
 #include "report/stat_writer.h"
 #include "rtunit/any_hit_mode.h"
