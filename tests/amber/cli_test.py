@@ -2,25 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """usage: cli_test.py GLINT SOURCE_DIR"""
 import pathlib
-import subprocess
 import sys
-import tempfile
-import unittest
 
-GLINT, ROOT = sys.argv[1], pathlib.Path(sys.argv[2])
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
+import glint_case
+from glint_case import ROOT, GlintTest
+
 BUFFER = "#!amber\nBUFFER b DATA_TYPE int32 DATA 1 2 END\n"
 GOOD, BAD = BUFFER + "EXPECT b IDX 4 EQ 2\n", BUFFER + "EXPECT b IDX 4 EQ 3\n"
 GRAPHICS = "#!amber\nPIPELINE graphics p\nEND\n"
 
 
-class Amber(unittest.TestCase):
+class Amber(GlintTest):
     def run_scripts(self, *texts, arguments=()):
-        with tempfile.TemporaryDirectory() as folder:
-            names = []
-            for i, text in enumerate(texts):
-                names.append(f"{i}.amber")
-                (pathlib.Path(folder) / names[-1]).write_text(text)
-            return subprocess.run([GLINT, "run", *names, *arguments], capture_output=True, text=True, cwd=folder, timeout=300)
+        return self.glint("run", *(self.write(f"{i}.amber", text) for i, text in enumerate(texts)), *arguments)
 
     def check(self, done, code, out, err=""):
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
@@ -47,7 +42,7 @@ class Amber(unittest.TestCase):
         self.check(self.run_scripts(GOOD, GRAPHICS), 3, "1 passed, 0 failed, 1 unsupported")
 
     def test_the_timing_machine_tells_cycles(self):
-        done = subprocess.run([GLINT, "run", str(ROOT / "tests/amber/scripts/shared.amber"), "--mode", "timing"], capture_output=True, text=True, timeout=300)
+        done = self.glint("run", ROOT / "tests/amber/scripts/shared.amber", "--mode", "timing")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertRegex(done.stdout, r"shared.amber: [1-9][0-9]+ cycles")
 
@@ -58,4 +53,4 @@ class Amber(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    glint_case.main()

@@ -3,38 +3,17 @@
 """usage: cli_test.py GLINT SOURCE_DIR [SUITE...]"""
 import json
 import os
-import pathlib
 import shutil
 import subprocess
 import sys
-import tempfile
-import unittest
 
-GLINT, ROOT = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+import glint_case
+from glint_case import GLINT, ROOT, GlintTest
+
 SMALL = ["--size", "16x16", "--spp", "1"]
 
 
-class GlintTest(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def glint(self, *arguments):
-        return subprocess.run([GLINT, *map(str, arguments)], capture_output=True, text=True, cwd=self.folder, timeout=300)
-
-    def expect(self, code, parts, *arguments):
-        """Runs glint; it must exit with `code` and say every one of `parts` on stderr."""
-        done = self.glint(*arguments)
-        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
-        for part in parts:
-            self.assertIn(part, done.stderr)
-        return done
-
-    def write(self, name, text):
-        (self.folder / name).write_text(text)
-        return name
-
+class ShadersTest(GlintTest):
     def shaders_with(self, name, text):
         """A copy of the path tracer in which one file is replaced; the copied includes lie beside it."""
         shutil.copytree(ROOT / "shaders", self.folder / "shaders", dirs_exist_ok=True)
@@ -200,7 +179,7 @@ void main() {
 """
 
 
-class Faults(GlintTest):
+class Faults(ShadersTest):
     def test_an_endless_loop_ends_with_4_and_names_the_shader_in_both_modes(self):
         folder = self.shaders_with("raygen.rgen", ENDLESS)
         for mode in ("functional", "timing"):
@@ -313,4 +292,4 @@ class Docs(GlintTest):
 
 if __name__ == "__main__":
     os.environ.pop("NO_COLOR", None)
-    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
+    glint_case.main()

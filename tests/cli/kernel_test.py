@@ -2,10 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """usage: kernel_test.py GLINT SOURCE_DIR"""
 import struct
-import sys
-import unittest
 
-from cli_test import ROOT, GlintTest
+import glint_case
+from glint_case import ROOT, GlintTest
 
 KERNELS = ROOT / "shaders/kernels"
 
@@ -51,4 +50,4 @@ class Kernels(GlintTest):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
+    glint_case.main()

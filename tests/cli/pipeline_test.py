@@ -3,16 +3,14 @@
 """usage: pipeline_test.py GLINT SOURCE_DIR [SUITE...]"""
 import base64
 import json
-import pathlib
 import shutil
 import struct
 import subprocess
-import sys
-import tempfile
-import unittest
 import zlib
 
-GLINT, ROOT = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+import glint_case
+from glint_case import ROOT, GlintTest
+
 PICTURES = ["mandelbrot", "hello_triangle", "spheres", "cutout", "materials", "ambient_occlusion"]
 
 
@@ -48,30 +46,11 @@ def npy(path):
     return data[10:10 + length].decode(), data[10 + length:]
 
 
-class PipelineTest(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def glint(self, *arguments):
-        return subprocess.run([GLINT, *map(str, arguments)], capture_output=True, text=True, cwd=self.folder, timeout=300)
-
-    def expect(self, code, parts, *arguments):
-        done = self.glint(*arguments)
-        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
-        for part in parts:
-            self.assertIn(part, done.stderr)
-        return done
-
+class PipelineTest(GlintTest):
     def run_file(self, what, *arguments):
         done = self.glint("run", what, "--mode", "functional", "--out", "out", *arguments)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         return done
-
-    def write(self, name, text):
-        (self.folder / name).write_text(text)
-        return name
 
     def copy(self, example):
         shutil.copytree(ROOT / "examples" / example, self.folder, dirs_exist_ok=True)
@@ -333,4 +312,4 @@ class Mistakes(PipelineTest):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
+    glint_case.main()

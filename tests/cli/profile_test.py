@@ -2,25 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """usage: profile_test.py GLINT SOURCE_DIR"""
 import csv
-import pathlib
 import re
-import subprocess
-import sys
-import tempfile
-import unittest
 
-GLINT, ROOT = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+import glint_case
+from glint_case import ROOT, GlintTest
+
 SMALL = ["--size", "16x16", "--spp", "1"]
 
 
-class Profile(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
+class Profile(GlintTest):
     def glint(self, code, *arguments):
-        done = subprocess.run([GLINT, *map(str, arguments)], capture_output=True, text=True, cwd=self.folder, timeout=300)
+        done = super().glint(*arguments)
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
         return done
 
@@ -60,4 +52,4 @@ class Profile(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
+    glint_case.main()

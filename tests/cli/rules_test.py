@@ -2,14 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """usage: rules_test.py GLINT SOURCE_DIR [SUITE...]"""
 import json
-import pathlib
 import struct
-import subprocess
-import sys
-import tempfile
-import unittest
 
-GLINT, ROOT = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+import glint_case
+from glint_case import GlintTest
+
 UNTOUCHED, MISS = (-9, -9, -9, -9), (-1, -1, -1, -1)
 FRONT, BACK = 254, 255
 
@@ -43,20 +40,14 @@ LEVEL = '[[bottom_level]]\nname = "{name}"\n[[bottom_level.geometry]]\n{geometry
 HIT = '[[hit]]\nclosest_hit = "probe.rchit"\ndata = {{ tag = {tag} }}\n'
 
 
-class RulesTest(unittest.TestCase):
+class RulesTest(GlintTest):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         for name, text in SHADERS.items():
             self.write(name, text)
 
-    def write(self, name, text):
-        (self.folder / name).write_text(text)
-        return name
-
     def glint(self, file, mode="functional", code=0):
-        done = subprocess.run([GLINT, "run", file, "--mode", mode, "--out", "out"], capture_output=True, text=True, cwd=self.folder, timeout=300)
+        done = super().glint("run", file, "--mode", mode, "--out", "out")
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
         return done
 
@@ -258,4 +249,4 @@ class Files(RulesTest):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
+    glint_case.main()

@@ -2,14 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """usage: shader_test.py GLINT SOURCE_DIR [SUITE...]"""
 import json
-import os
-import pathlib
-import subprocess
-import sys
-import tempfile
-import unittest
 
-GLINT, ROOT = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+import glint_case
+from glint_case import GlintTest
 
 RAYGEN = """#version 460
 #extension GL_EXT_ray_tracing : require
@@ -57,23 +52,14 @@ void main() {
 """
 
 
-class ShaderTest(unittest.TestCase):
+class ShaderTest(GlintTest):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         self.write("include/part.glsl", "float part() { return 3.0; }\n")
         self.write("a.comp", COMPUTE)
 
-    def write(self, name, text):
-        path = self.folder / name
-        path.parent.mkdir(exist_ok=True)
-        path.write_text(text)
-        return path
-
     def glint(self, *arguments, code=0):
-        environment = dict(os.environ, GLINT_CACHE=str(self.folder / "cache"))
-        done = subprocess.run([GLINT, *map(str, arguments)], capture_output=True, cwd=self.folder, timeout=300, env=environment)
+        done = super().glint(*arguments, text=False, GLINT_CACHE=str(self.folder / "cache"))
         self.assertEqual(done.returncode, code, done.stdout.decode(errors="replace") + done.stderr.decode(errors="replace"))
         return done
 
@@ -236,4 +222,4 @@ class Emission(ShaderTest):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
+    glint_case.main()

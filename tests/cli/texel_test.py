@@ -1,13 +1,8 @@
 # Images of a pipeline file whose texels stand in the file itself: every shape, any binding, and mistakes.
 # SPDX-License-Identifier: Apache-2.0
 """usage: texel_test.py GLINT SOURCE_DIR"""
-import pathlib
-import subprocess
-import sys
-import tempfile
-import unittest
-
-GLINT = pathlib.Path(sys.argv[1]).resolve()
+import glint_case
+from glint_case import GlintTest
 
 LOOK = """#version 460
 layout(local_size_x = 1) in;
@@ -84,27 +79,20 @@ save = "out.csv"
 """
 
 
-class Texels(unittest.TestCase):
+class Texels(GlintTest):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-        (self.folder / "look.comp").write_text(LOOK)
+        super().setUp()
+        self.write("look.comp", LOOK)
 
-    def run_text(self, text):
-        (self.folder / "p.toml").write_text(text)
-        return subprocess.run([GLINT, "run", "p.toml", "--mode", "functional", "--out", "out"], capture_output=True, text=True, cwd=self.folder, timeout=300)
+    def run_text(self, code, parts, text):
+        return self.expect(code, parts, "run", self.write("p.toml", text), "--mode", "functional", "--out", "out")
 
     def refused(self, old, new, *parts):
         self.assertIn(old, LOOK_FILE)
-        done = self.run_text(LOOK_FILE.replace(old, new, 1))
-        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
-        for part in parts:
-            self.assertIn(part, done.stderr)
+        self.run_text(2, parts, LOOK_FILE.replace(old, new, 1))
 
     def test_images_of_every_shape_hold_the_texels_of_the_file_far_up_in_their_sets(self):
-        done = self.run_text(LOOK_FILE)
-        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.run_text(0, [], LOOK_FILE)
         self.assertEqual([float(v) for v in (self.folder / "out/out.csv").read_text().split()[1:]], [40, 3, 6, 4.5, 7, 10, 9])
 
     def test_texels_that_do_not_fill_their_image_are_refused_with_both_numbers(self):
@@ -121,4 +109,4 @@ class Texels(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
+    glint_case.main()
