@@ -1,24 +1,13 @@
 // The published simulator's RT unit, one ray at a time: cycles under its presets as its own arithmetic gives them.
 // SPDX-License-Identifier: Apache-2.0
-#include "base/config.h"
-#include "base/diagnostics.h"
-#include "pipeline/params.h"
 #include "tests/support/catch.h"
 #include "tests/support/rt_launch.h"
+#include "tests/timing/vulkan_sim/preset.h"
 
 namespace glint::rt::test {
 namespace {
 
-pipeline::GpuParams preset(const std::string& name) {
-  Config config;
-  config.add_file(std::string(GLINT_SOURCE_DIR) + "/configs/" + name + ".toml");
-  Diagnostics diagnostics;
-  ConfigTable root = config.root(diagnostics);
-  pipeline::GpuParams params;
-  read_params(root, params);
-  diagnostics.throw_if_errors();
-  return params;
-}
+using glint::test::preset;
 
 struct Scene {
   mem::AddressSpace memory;
