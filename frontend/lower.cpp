@@ -193,6 +193,7 @@ std::optional<Operand> Lowering::address_of(Id id) {
   const Pointer p = pointer(id);
   if (p.place == Place::Global) return emitter_.value("add.u64", {p.base, Operand::value(uint64_t(p.displacement))});
   if (p.place == Place::Shared) return emitter_.value("add.u32", {p.base, Operand::value(uint32_t(p.displacement))});
+  if (p.place == Place::Resource && layout_.is_array_of_blocks(p.type)) return buffer_entry(p);
   return std::nullopt;
 }
 

@@ -45,6 +45,7 @@ struct Pointer {
   bool is_volatile = false;                // two loads may differ
   Operand part_index = Operand::value(0);  // Builtin, AttributePair: dynamic part index
   Operand entry;                           // Global, of an array of buffers: the address of its descriptor
+  Operand table;                           // Resource, of a pointer that is a value: the address of the descriptor with index 0
   Operands texel;                          // Texel: handle, then the layer of arrays and coordinates
   std::string_view shape;                  // Texel: the geometry as image ops name it
 };
@@ -117,6 +118,7 @@ class Lowering {
   Operands load_builtin(spv::BuiltIn builtin, Id type);
   std::optional<Operand> address_of(Id pointer);  // none: not a pointer that is a value
   std::optional<Operands> load_compute_builtin(spv::BuiltIn builtin);  // none: not a built-in of compute or subgroups
+  Operand buffer_entry(const Pointer& pointer);  // the address of the descriptor that the index of a buffer in an array means
   Pointer buffer_element(Pointer pointer);  // from the index of a buffer in an array to the buffer
   uint32_t local_offset(Id variable);  // bytes in the frame; allotted on first use
   uint32_t ray_query(Id variable);     // the first query or hit object of a variable; numbers are given on first use

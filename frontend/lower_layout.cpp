@@ -34,6 +34,13 @@ bool Layout::is_address(Id id) const {
          type.storage == spv::StorageClass::Workgroup;
 }
 
+bool Layout::is_array_of_blocks(Id pointee) const {
+  const Type* type = &module_.type(pointee);
+  if (type->kind != Kind::Array && type->kind != Kind::RuntimeArray) return false;
+  while (type->kind == Kind::Array || type->kind == Kind::RuntimeArray) type = &module_.type(type->element);
+  return type->kind == Kind::Struct && (type->is_block || type->is_buffer_block);
+}
+
 const std::vector<Part>& Layout::parts(Id id) {
   if (const auto it = parts_.find(id); it != parts_.end()) return it->second;
   const Type& type = module_.type(id);

@@ -72,6 +72,8 @@ class Layout {
 
   // Pointers that are values: to buffers, 64 bits, and to shared memory, 32. Other pointers are places only.
   bool is_address(Id type) const;
+  // Of a variable that is an array of buffers: a pointer to it is the address of a descriptor in a table.
+  bool is_array_of_blocks(Id pointee) const;
 
   // Types met so far that no part can hold (floats of 128 bits, ...); they count as 32-bit words until reported.
   const std::set<Id>& unsupported() const { return unsupported_; }

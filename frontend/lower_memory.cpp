@@ -174,11 +174,15 @@ void Lowering::note_store(Place place) {
   ++version_of(place);
 }
 
-Pointer Lowering::buffer_element(Pointer p) {
+Operand Lowering::buffer_entry(const Pointer& p) {
+  if (p.table.kind != Operand::Kind::None) return descriptor_in_table(*this, p.table, p.base);
   const Decorations& d = decorations(p.variable);
   const uint32_t at = isa::descriptor_offset(d.set.value_or(0), d.binding.value_or(0));
-  const Operand table = emitter_.load("ld.const.b64", Operand::value(0), int32_t(at), 1, 1)[0];
-  p.entry = descriptor_in_table(*this, table, p.base);
+  return descriptor_in_table(*this, emitter_.load("ld.const.b64", Operand::value(0), int32_t(at), 1, 1)[0], p.base);
+}
+
+Pointer Lowering::buffer_element(Pointer p) {
+  p.entry = buffer_entry(p);
   p.base = emitter_.load("ld.global.b64", p.entry, 0, 1, 1)[0];
   p.place = Place::Global;
   return p;

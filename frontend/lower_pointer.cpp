@@ -126,6 +126,11 @@ Pointer Lowering::pointer_from_value(Id id) {
   const Type& type = module_.type(type_of(id));
   Pointer p;
   p.type = type.element;
+  if (layout_.is_array_of_blocks(p.type)) {
+    p.place = Place::Resource;
+    p.table = scalar(id);
+    return p;
+  }
   p.place = type.storage == spv::StorageClass::Workgroup ? Place::Shared : Place::Global;
   p.base = scalar(id);
   p.alignment = 4;  // what every access has that says nothing: wider parts have ops of their own
@@ -299,9 +304,9 @@ void copy_memory(Lowering& l, const Instruction& inst, const LoweringRow&) {
 void array_length(Lowering& l, const Instruction& inst, const LoweringRow&) {
   const Pointer p = l.pointer(inst.operands[0]);
   const Decorations& d = l.decorations(p.variable);
-  if (p.place != Place::Global || !d.binding) return l.unsupported("OpArrayLength of this pointer");
-  const uint32_t descriptor = isa::descriptor_offset(d.set.value_or(0), *d.binding);
   const bool in_table = p.entry.kind != Operand::Kind::None;
+  if (p.place != Place::Global || (!in_table && !d.binding)) return l.unsupported("OpArrayLength of this pointer");
+  const uint32_t descriptor = isa::descriptor_offset(d.set.value_or(0), d.binding.value_or(0));
   const Operand bytes = in_table
                             ? l.emit().load("ld.global.b32", p.entry, 8, 1, 1)[0]
                             : l.emit().load("ld.const.b32", Operand::value(0), int32_t(descriptor + 8), 1, 1)[0];
