@@ -14,6 +14,7 @@ using isa::Unit;
 // into which its compiler breaks it.
 constexpr uint32_t kPipe = 5;
 constexpr OpTime kTimes[] = {
+    {"add.*f64", 8 + kPipe, 4}, {"sub.*f64", 8 + kPipe, 4}, {"mul.*f64", 8 + kPipe, 4},
     {"add.*f32", 4 + kPipe, 2}, {"sub.*f32", 4 + kPipe, 2}, {"mul.*f32", 4 + kPipe, 2}, {"fma.*f32", 8 + 2 * kPipe, 4},
     {"min.*f32", 13 + kPipe, 2}, {"max.*f32", 13 + kPipe, 2},
     {"add.*32", 4 + kPipe, 2}, {"sub.*32", 4 + kPipe, 2}, {"mul.*32", 4 + kPipe, 2}, {"mad.*32", 5 + kPipe, 2},
