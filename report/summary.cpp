@@ -74,6 +74,8 @@ std::string mix(const Summary& s, const Terminal& terminal) {
   return table(rows, "<>><>", " ");
 }
 
+std::string peaks(const TimingSummary& t) { return t.memory_peaks.empty() ? "" : " at best: " + t.memory_peaks + "\n"; }
+
 std::string machine(const TimingSummary& t, const Terminal& terminal) {
   Rows rows;
   add_hit_rate(rows, "L1D hits, RT unit", t.l1_rt, terminal);
@@ -115,7 +117,7 @@ std::string format_summary(const Summary& s, const Terminal& terminal) {
   if (!s.note.empty()) out += " " + s.note + "\n";
   out += "\n" + execution(s);
   if (!s.mix.empty()) out += "\n" + heading("Instruction mix", terminal) + "\n" + mix(s, terminal);
-  if (s.timing) out += "\n" + heading("Memory and RT unit", terminal) + "\n" + machine(*s.timing, terminal);
+  if (s.timing) out += "\n" + heading("Memory and RT unit", terminal) + "\n" + peaks(*s.timing) + machine(*s.timing, terminal);
   out += "\n" + heading("Rays", terminal) + "\n" + rays(s);
   out += "\n" + heading("Simulation", terminal) + "\n" + speed(s);
   for (const std::string& file : s.files) out += " " + file + "\n";

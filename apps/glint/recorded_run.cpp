@@ -10,6 +10,7 @@
 #include "apps/glint/config.h"
 #include "apps/glint/progress_pipe.h"
 #include "apps/glint/run_summary.h"
+#include "memsys/peak.h"
 #include "report/config_file.h"
 #include "report/progress.h"
 #include "report/stat_writer.h"
@@ -25,6 +26,10 @@ report::RunInfo new_run_info(const Session& session, const pipeline::GpuParams& 
   info.config = config;
   info.config_hash = report::fnv1a(report::config_key_values(describe_params(gpu)));
   info.mode = mode;
+  const mem::Peak peak = mem::peak(gpu.memory, gpu.cores, gpu.clock_mhz);
+  info.memory_peaks = {{"l1_bytes", double(peak.l1_bytes)},       {"l1_bytes_per_second", peak.l1_bandwidth},
+                       {"network_bytes_per_second", peak.network()}, {"l2_bytes", double(peak.l2_bytes)},
+                       {"l2_bytes_per_second", peak.l2_bandwidth},   {"dram_bytes_per_second", peak.dram_bandwidth}};
   info.started = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
                              fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
   return info;

@@ -3,6 +3,7 @@
 #include "apps/glint/run_summary.h"
 
 #include "isa/warp.h"
+#include "memsys/peak.h"
 #include "report/stat_rows.h"
 
 namespace glint::app {
@@ -44,7 +45,9 @@ report::TimingSummary timing_of(const pipeline::RenderJob& job, const pipeline::
   out.residency_limit = name_of(result.residency.limit);
   out.l1_rt = sums.hits(l1, "rt_*");
   out.l1_shader = sums.hits(l1, "shader_*");
-  out.l2 = sums.hits("gpu.memory.partition[*].l2", "*");
+  out.memory_peaks = mem::peak(job.gpu.memory, job.gpu.cores, job.gpu.clock_mhz).to_string();
+  const report::HitRate one = sums.hits("gpu.memory.partition[*].l2", "*"), several = sums.hits("gpu.memory.partition[*].l2[*]", "*");
+  out.l2 = {one.hits + several.hits, one.accesses + several.accesses};
   out.dram_utilisation = sums.ratio(dram + ".busy_clocks", dram + ".clocks");
   out.dram_efficiency = sums.ratio(dram + ".busy_clocks", dram + ".active_clocks");
   out.rt_occupancy = sums.ratio(rt + ".warp_cycles", rt + ".unit_cycles", job.gpu.rt.warps);
