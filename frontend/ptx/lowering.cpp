@@ -8,6 +8,7 @@
 #include <cctype>
 
 #include "frontend/backend/liveness.h"
+#include "frontend/ptx/machine.h"
 
 namespace glint::frontend::ptx {
 
@@ -45,9 +46,11 @@ VirtualProgram Lowering::run() {
         error(entry_.place, fmt::format("label '{}' is branched to but stands nowhere", draft_.blocks[next].name));
   if (errors_.has_errors()) return std::move(program_);
   if (options_.contract) contract(draft_, free_, program_);
+  if (options_.shape) exit_at_branches(draft_);
   add_reconvergence(draft_);
   program_.blocks = lay_out(std::move(draft_));
   zero_what_nobody_wrote(program_);
+  if (options_.shape) shape_for_machine(program_);
   kernel_.constant_bank_bytes = std::max(isa::kConstantBankBytes, isa::kPushConstantOffset + bank_bytes_);
   return std::move(program_);
 }

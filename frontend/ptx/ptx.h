@@ -48,6 +48,8 @@ struct PtxOptions {
   // mul, then add or sub, none with a rounding modifier, become fma where nothing else reads the product.
   // Choice: PTX allows it ("may be optimized aggressively"), and NVIDIA's assembler does it unless told -fmad=false.
   bool contract = true;
+  // What the hardware's assembler does besides (frontend/ptx/machine.h): fewer instructions, the same results.
+  bool shape = true;
 };
 
 // Kernels of a module, in the order of the text.

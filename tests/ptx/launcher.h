@@ -13,8 +13,8 @@ namespace glint {
 // One kernel, its buffers and arguments in order.
 class Launcher {
  public:
-  Launcher(const std::string& text, const std::string& file, const std::string& entry)
-      : world_(frontend::compile_ptx(text, file, entry, {})) {}
+  Launcher(const std::string& text, const std::string& file, const std::string& entry, const frontend::PtxOptions& options = {})
+      : world_(frontend::compile_ptx(text, file, entry, options)) {}
 
   template <class T>
   Launcher& buffer(const std::vector<T>& data) {

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "isa/text.h"
 #include "tests/ptx/launcher.h"
 #include "tests/support/catch.h"
 
@@ -22,8 +23,8 @@ std::string storing(const std::string& body, const std::string& before = "") {
          "\nld.param.u64 %at, [to]; mad.wide.u32 %at, %lane, 4, %at; st.global.u32 [%at], %out; ret;\n}\n";
 }
 
-std::vector<uint32_t> outputs(const std::string& text, const pipeline::KernelGrid& grid = {{1, 1, 1}, {32, 1, 1}, 0}) {
-  Launcher k(text, "test.ptx", "k");
+std::vector<uint32_t> outputs(const std::string& text, const pipeline::KernelGrid& grid = {{1, 1, 1}, {32, 1, 1}, 0}, const frontend::PtxOptions& options = {}) {
+  Launcher k(text, "test.ptx", "k", options);
   const uint32_t threads = grid.block[0] * grid.block[1] * grid.block[2];
   k.buffer(std::vector<uint32_t>(threads));
   k.run_functional(grid);
@@ -37,6 +38,22 @@ std::string message_of(const std::string& text) {
     return error.what();
   }
   return "no error";
+}
+
+const pipeline::KernelGrid kWarp{{1, 1, 1}, {32, 1, 1}, 0};
+
+// The kernel as it is run; its results are checked against those of the text as it stands.
+std::string shaped(const std::string& body, const std::string& before = "") {
+  const std::string text = storing(body, before);
+  frontend::PtxOptions plain;
+  plain.shape = false;
+  CHECK(outputs(text) == outputs(text, kWarp, plain));
+  return isa::to_text(frontend::compile_ptx(text, "test.ptx", "k", {}).program);
+}
+size_t count(const std::string& text, const std::string& part) {
+  size_t n = 0;
+  for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
+  return n;
 }
 
 std::vector<uint32_t> expected(uint32_t (*of_lane)(uint32_t)) {
@@ -155,6 +172,52 @@ TEST_CASE("local memory, vectors, literals and predicates mean what PTX says") {
     add.u32 %out, %r1, %r2; add.u32 %out, %out, %r3; add.u32 %out, %out, %r4; add.u32 %out, %out, %r5; add.u32 %out, %out, %r6;
     @%p1 add.u32 %out, %out, 1000; @%p2 add.u32 %out, %out, 2000;)";
   CHECK(outputs(storing(body)) == expected([](uint32_t lane) { return lane + 16 + 16 + 3 + 0x40005 + 2 + (lane < 4 ? 1000 : 2000); }));
+}
+
+TEST_CASE("a comparison takes in the predicate that it is combined with, unless others read it alone") {
+  const std::string both = "setp.gt.u32 %p1,%lane,3;setp.lt.u32 %p2,%lane,20;and.pred %p3,%p1,%p2;setp.eq.u32 %p4,%lane,30;or.pred %p5,%p4,%p3;\n@%p5 mov.u32 %out,7;\n";
+  const std::string text = shaped(both);
+  CHECK(count(text, "setp.lt.and.u32") + count(text, "setp.gt.and.u32") == 1);
+  CHECK(count(text, "setp.eq.or.u32") == 1);
+  CHECK(count(text, ".pred") == 0);
+  CHECK(count(shaped(both + "@%p1 add.u32 %out,%out,1;@%p2 add.u32 %out,%out,2;\n"), "and.pred") == 1);
+  // What it compares has changed since.
+  CHECK(count(shaped("mov.u32 %r1,%lane;setp.gt.u32 %p1,%r1,3;setp.ne.u32 %p2,%lane,9;add.u32 %r1,%r1,%lane;and.pred %p3,%p1,%p2;\n"
+                     "@%p1 add.u32 %out,%out,1;\n@%p3 add.u32 %out,%out,%r1;\n"), "setp.gt.and") == 0);
+}
+
+TEST_CASE("a product that only sums read becomes part of each of them") {
+  const std::string body = "mul.lo.u32 %r9,%lane,7;mul.wide.u32 %rd1,%r9,12;cvt.u64.u32 %rd4,%lane;add.s64 %rd2,%rd1,%rd4;add.s64 %rd3,%rd2,%rd1;xor.b64 %rd5,%rd2,%rd3;cvt.u32.u64 %out,%rd5;\n";
+  const std::string text = shaped(body);
+  CHECK(count(text, "mad.wide.u32") == 3);  // and the one of the store
+  CHECK(count(text, "mul.wide.u32") == 0);
+  const std::string read = shaped(body + "cvt.u32.u64 %r5,%rd1;add.u32 %out,%out,%r5;\n");
+  CHECK(count(read, "mul.wide.u32") == 1);
+  CHECK(count(shaped("shl.b32 %r1,%lane,5;add.s32 %r2,%r1,3;add.s32 %r3,%r1,%lane;xor.b32 %out,%r2,%r3;\n"), "shl.b32") == 0);
+}
+
+TEST_CASE("words of shared memory are loaded together where their place is known to be aligned") {
+  const std::string room = ".shared .align 16 .b8 room[4096];\n";
+  const auto body = [](int stride, const std::string& between = "") {
+    return fmt::format("mov.u32 %r1,room;shl.b32 %r2,%lane,{};add.s32 %r3,%r1,%r2;st.shared.u32 [%r3],%lane;st.shared.u32 [%r3+12],5;bar.sync 0;\n"
+                       "ld.shared.u32 %r4,[%r3];ld.shared.u32 %r5,[%r3+12];{}ld.shared.u32 %r6,[%r3+4];ld.shared.u32 %r7,[%r3+8];\n"
+                       "mad.lo.u32 %out,%r4,3,%r5;mad.lo.u32 %out,%r6,5,%out;mad.lo.u32 %out,%r7,7,%out;\n", stride, between);
+  };
+  CHECK(count(shaped(body(4), room), "ld.shared.v4") == 1);
+  CHECK(count(shaped(body(4), room), "ld.shared.b32") == 0);
+  CHECK(count(shaped(body(3), room), "ld.shared.v4") == 0);
+  CHECK(count(shaped(body(3), room), "ld.shared.v2") == 2);
+  CHECK(count(shaped(body(2), room), "ld.shared.v") == 0);
+  CHECK(count(shaped(body(4, "st.shared.u32 [%r3+8],9;"), room), "ld.shared.v4") == 0);
+}
+
+TEST_CASE("lanes that branch to the end of the kernel end where they are") {
+  const std::string text = kHead + ".visible .entry k(.param .u64 to)\n{\n.reg .b32 %lane; .reg .b64 %at; .reg .pred %p;\nmov.u32 %lane, %tid.x;\n"
+                           "setp.gt.u32 %p, %lane, 4;\n@%p bra END;\nld.param.u64 %at, [to]; mad.wide.u32 %at, %lane, 4, %at; st.global.u32 [%at], 1;\nEND: ret;\n}\n";
+  const std::string code = isa::to_text(frontend::compile_ptx(text, "test.ptx", "k", {}).program);
+  CHECK(count(code, "%p0 exit") == 1);
+  CHECK(count(code, "ssy") + count(code, "join") + count(code, "bra") == 0);
+  CHECK(outputs(text) == expected([](uint32_t lane) { return uint32_t(lane <= 4); }));
 }
 
 TEST_CASE("mistakes are told with file, line and column, all at once") {

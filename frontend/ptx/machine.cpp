@@ -1,0 +1,212 @@
+// Predicates into comparisons, products into sums, words into vectors, branches into exits.
+// SPDX-License-Identifier: Apache-2.0
+#include "frontend/ptx/machine.h"
+
+#include <algorithm>
+#include <string>
+
+#include "frontend/backend/slots.h"
+
+namespace glint::frontend::ptx {
+namespace {
+
+using Operand = VirtualOperand;
+
+uint64_t lowest_bit(uint64_t value) { return value & (~value + 1); }
+
+class Shaping {
+ public:
+  explicit Shaping(VirtualProgram& program)
+      : program_(program), definitions_(program.registers.size()), uses_(program.registers.size()), users_(program.registers.size()),
+        definition_(program.registers.size()) {
+    for (VirtualBlock& block : program.blocks)
+      for (VirtualInst& inst : block.code) {
+        for_each_def(inst, [&](VirtualRegister r) {
+          ++definitions_[r];
+          definition_[r] = is_guarded(inst) ? nullptr : &inst;
+        });
+        for_each_use(inst, [&](VirtualRegister r) {
+          ++uses_[r];
+          users_[r].push_back(&inst);
+        });
+      }
+  }
+
+  void run() {
+    for (VirtualBlock& block : program_.blocks) {
+      for (VirtualInst& inst : block.code) combine_predicates(block, inst);
+      merge_loads(block);
+    }
+    for (VirtualBlock& block : program_.blocks) std::erase_if(block.code, [&](const VirtualInst& inst) { return is_merged(inst); });
+  }
+  void spread_products() {
+    for (VirtualRegister r = 0; r < definitions_.size(); ++r)
+      if (definitions_[r] == 1 && definition_[r]) spread(*definition_[r], r);
+  }
+
+ private:
+  // The one definition, which then comes before every use, with operands that hold the same value there.
+  VirtualInst* definition(const Operand& o) const { return is_register(o) && definitions_[o.reg] == 1 ? definition_[o.reg] : nullptr; }
+  bool is_stable(const Operand& o) const { return is_constant(o) || definition(o); }
+  bool is_unchanged(const VirtualBlock& block, const Operand& o, const VirtualInst& from, const VirtualInst& to) const {
+    if (is_stable(o)) return true;
+    const VirtualInst *first = block.code.data(), *last = first + block.code.size();
+    if (!is_register(o) || std::less<>()(&from, first) || !std::less<>()(&from, last) || &from >= &to) return false;
+    bool changes = false;
+    for (const VirtualInst* between = &from; between < &to; ++between)
+      for_each_def(*between, [&](VirtualRegister r) { changes |= r == o.reg; });
+    return !changes;
+  }
+
+  void combine_predicates(const VirtualBlock& block, VirtualInst& inst) {
+    if (!is_real(inst) || (inst.op != and_pred_ && inst.op != or_pred_)) return;
+    for (size_t k : {size_t{2}, size_t{1}}) {
+      const Operand test = inst.operands[k], other = inst.operands[3 - k];
+      const VirtualInst* setp = definition(test);
+      if (!setp || uses_[test.reg] != 1 || setp->operands.size() != 3 || !is_register(other)) continue;
+      const std::string name(row_of(*setp).name);
+      const size_t type = name.rfind('.');
+      if (!name.starts_with("setp.")) continue;
+      const int row = isa::find_op(name.substr(0, type) + (inst.op == and_pred_ ? ".and" : ".or") + name.substr(type));
+      if (row < 0 || !is_unchanged(block, setp->operands[1], *setp, inst) || !is_unchanged(block, setp->operands[2], *setp, inst)) continue;
+      inst.op = uint16_t(row);
+      inst.operands = {inst.operands[0], Operand::of(new_predicate()), setp->operands[1], setp->operands[2], other};
+      return;
+    }
+  }
+
+  VirtualRegister new_predicate() {
+    definitions_.push_back(1);
+    uses_.push_back(0);
+    users_.emplace_back();
+    definition_.push_back(nullptr);
+    return program_.new_register(RegisterClass::Predicate);
+  }
+
+  // A product that only sums read, and more than one of them: the backend fuses those that one reads.
+  void spread(const VirtualInst& product, VirtualRegister r) {
+    const uint16_t mad = fused(product);
+    if (mad == 0 || uses_[r] < 2) return;
+    const Operand a = product.operands[1];
+    const Operand b = product.op == ops_.shl_b32 ? Operand::value(uint64_t{1} << product.operands[2].constant) : product.operands[2];
+    if (!is_stable(a) || !is_stable(b)) return;
+    const bool wide = program_.registers[r] == RegisterClass::B64;
+    for (const VirtualInst* user : users_[r])
+      if (!is_sum(*user, r, wide)) return;
+    for (VirtualInst* user : users_[r]) {
+      const Operand addend = user->operands[is_register(user->operands[1]) && user->operands[1].reg == r ? 2 : 1];
+      user->op = mad;
+      user->operands = {user->operands[0], a, b, addend};
+    }
+  }
+  uint16_t fused(const VirtualInst& product) const {
+    if (product.op == ops_.mul_wide_s32) return ops_.mad_wide_s32;
+    if (product.op == ops_.mul_wide_u32) return ops_.mad_wide_u32;
+    const bool shifts = product.op == ops_.shl_b32 && is_constant(product.operands[2]) && product.operands[2].constant < 32;
+    return shifts || product.op == ops_.mul_lo_s32 || product.op == ops_.mul_lo_u32 ? ops_.mad_lo_u32 : uint16_t{0};
+  }
+  bool is_sum(const VirtualInst& inst, VirtualRegister r, bool wide) const {
+    if (!is_real(inst)) return false;
+    if (wide ? inst.op != ops_.add_s64 && inst.op != ops_.add_u64 : inst.op != ops_.add_s32 && inst.op != ops_.add_u32) return false;
+    int times = 0;
+    for (size_t k : {size_t{1}, size_t{2}}) {
+      times += is_register(inst.operands[k]) && inst.operands[k].reg == r;
+      if (inst.operands[k].kind == Operand::Kind::StackPointer) return false;
+    }
+    return times == 1;
+  }
+
+  // A power of two that divides the value.
+  uint64_t alignment(const Operand& o, int depth = 0) const {
+    constexpr uint64_t kMost = 4096;
+    constexpr int kDeepest = 8;
+    if (is_constant(o)) return o.constant ? std::min(lowest_bit(o.constant), kMost) : kMost;
+    const VirtualInst* source = depth < kDeepest ? definition(o) : nullptr;
+    if (!source) return 1;
+    const auto of = [&](size_t k) { return alignment(source->operands[k], depth + 1); };
+    const uint16_t op = source->op;
+    if (op == ops_.mov_b32) return of(1);
+    if (op == ops_.add_s32 || op == ops_.add_u32) return std::min(of(1), of(2));
+    if (op == ops_.mul_lo_s32 || op == ops_.mul_lo_u32) return std::min(of(1) * of(2), kMost);
+    if (op == ops_.mad_lo_u32 || op == mad_lo_s32_) return std::min({of(1) * of(2), of(3), kMost});
+    if (op == ops_.shl_b32 && is_constant(source->operands[2]) && source->operands[2].constant < 32)
+      return std::min(of(1) << source->operands[2].constant, kMost);
+    return 1;
+  }
+
+  bool is_merged(const VirtualInst& inst) const { return is_real(inst) && inst.op == load_shared_ && inst.operands.empty(); }
+  bool is_word_load(const VirtualInst& inst) const {
+    if (!is_real(inst) || inst.op != load_shared_ || is_merged(inst) || is_guarded(inst)) return false;
+    return definition(inst.operands[0]) && definition(inst.operands[1]);
+  }
+
+  // Nothing between the loads of a group writes memory or waits.
+  void merge_loads(VirtualBlock& block) {
+    for (size_t begin = 0; begin < block.code.size(); ++begin) {
+      if (!is_word_load(block.code[begin])) continue;
+      std::vector<VirtualInst*> group;
+      for (size_t i = begin; i < block.code.size() && is_pure(block.code[i]); ++i) {
+        VirtualInst& inst = block.code[i];
+        if (is_word_load(inst) && inst.operands[1].reg == block.code[begin].operands[1].reg) group.push_back(&inst);
+      }
+      for (size_t words : {size_t{4}, size_t{2}})
+        if (merge(group, words)) break;
+    }
+  }
+  // The first of the group and those behind or before it in the same vector.
+  bool merge(const std::vector<VirtualInst*>& group, size_t words) {
+    VirtualInst& first = *group.front();
+    const auto bytes = int32_t(4 * words);
+    if (first.imm < 0 || alignment(first.operands[1]) % uint64_t(bytes) != 0) return false;
+    const int32_t base = first.imm / bytes * bytes;
+    std::vector<VirtualInst*> parts;
+    for (size_t word = 0; word < words; ++word) {
+      const auto at = std::find_if(group.begin(), group.end(), [&](const VirtualInst* i) { return i->imm == base + int32_t(4 * word); });
+      if (at == group.end()) return false;
+      parts.push_back(*at);
+    }
+    std::vector<Operand> operands;
+    for (const VirtualInst* part : parts) operands.push_back(part->operands[0]);
+    operands.push_back(first.operands[1]);
+    for (VirtualInst* part : parts)
+      if (part != &first) part->operands.clear();
+    first.op = words == 4 ? load_shared_v4_ : load_shared_v2_;
+    first.operands = std::move(operands);
+    first.imm = base;
+    return true;
+  }
+
+  VirtualProgram& program_;
+  const Ops ops_;
+  const uint16_t and_pred_ = isa::op_index("and.pred"), or_pred_ = isa::op_index("or.pred"), mad_lo_s32_ = isa::op_index("mad.lo.s32");
+  const uint16_t load_shared_ = isa::op_index("ld.shared.b32");
+  const uint16_t load_shared_v2_ = isa::op_index("ld.shared.v2.b32"), load_shared_v4_ = isa::op_index("ld.shared.v4.b32");
+  std::vector<uint32_t> definitions_, uses_;
+  std::vector<std::vector<VirtualInst*>> users_;
+  std::vector<VirtualInst*> definition_;
+};
+
+}  // namespace
+
+void exit_at_branches(Draft& draft) {
+  const size_t blocks = draft.blocks.size();
+  for (size_t b = 0; b < blocks; ++b) {
+    if (draft.blocks[b].end != DraftBlock::End::Branch) continue;
+    const DraftBlock& taken = draft.blocks[draft.blocks[b].taken];
+    if (!taken.code.empty() || taken.end != DraftBlock::End::Exit) continue;
+    DraftBlock copy;
+    copy.name = taken.name;
+    copy.line = taken.line;
+    // Not the last: the way on is the one to the last exit.
+    draft.layout.insert(draft.layout.begin() + 1, BlockId(draft.blocks.size()));
+    draft.blocks[b].taken = BlockId(draft.blocks.size());
+    draft.blocks.push_back(std::move(copy));
+  }
+}
+
+void shape_for_machine(VirtualProgram& program) {
+  Shaping(program).spread_products();
+  Shaping(program).run();
+}
+
+}  // namespace glint::frontend::ptx
