@@ -271,7 +271,8 @@ void CoreCell::refresh(uint32_t slot) {
   scheduler.wait[local] = ready.wait;
   scheduler.pipe[local] = row.pipe;
   const bool memory = row.finish == Finish::Memory || row.finish == Finish::CallRecord;
-  const uint64_t tex = memory && row.is_texture, lsu = memory && !row.is_texture, rt = row.finish == Finish::Rays;
+  const bool own_queue = row.is_texture && params_.texture.queue > 0;
+  const uint64_t tex = memory && own_queue, lsu = memory && !own_queue, rt = row.finish == Finish::Rays;
   scheduler.needs_lsu = (scheduler.needs_lsu & ~(uint64_t{1} << local)) | lsu << local;
   scheduler.needs_tex = (scheduler.needs_tex & ~(uint64_t{1} << local)) | tex << local;
   scheduler.needs_rt = (scheduler.needs_rt & ~(uint64_t{1} << local)) | rt << local;

@@ -7,3 +7,4 @@ glint_test(contract_warp_layout LINKS glint::pipeline SOURCES contract/warp_layo
 glint_test(timing_hazards LINKS glint::pipeline SOURCES timing/hazard_test.cpp)
 glint_test(timing_code LINKS glint::pipeline SOURCES timing/code_cache_test.cpp timing/core_code_test.cpp)
 glint_test(timing_texture_unit LINKS glint::pipeline SOURCES timing/texture_unit_test.cpp)
+glint_test(timing_machine LINKS glint::pipeline SOURCES timing/machine_test.cpp)

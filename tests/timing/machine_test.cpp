@@ -1,0 +1,76 @@
+// Both machines over a whole frame: no mechanism of a core and no layout of threads changes a picture, nor do skipping and threads cycles.
+// SPDX-License-Identifier: Apache-2.0
+#include "core/warp_layout.h"
+#include "tests/support/catch.h"
+#include "tests/support/small_jobs.h"
+
+namespace glint::core {
+namespace {
+
+// A frame whose edges cut tiles, of spheres and rays that scatter.
+pipeline::RenderJob frame() {
+  pipeline::RenderJob job = test::small_job("WKND", pipeline::Workload::PathTracing, 0, 1);
+  job.frame.width = 27;
+  job.frame.height = 18;
+  job.gpu = test::preset("mobile");
+  job.gpu.cores = 2;
+  job.timing = true;
+  job.threads = 1;
+  return job;
+}
+
+// Every mechanism of a core that the preset leaves off.
+Params all_on(Params params) {
+  params.issue = PolicyChoice<IssueScheduler>("cggty");
+  params.block_interval = 1;
+  params.write_order = false;
+  params.register_file = {2, 3};
+  params.fetch = {false, 1024, 4, 2};
+  params.constant = {false, 256, 2, 64, true};
+  params.code_cache = {4096, 4, 78};
+  params.lsu.war_latency = 11;
+  params.lsu.shared_war_latency = 9;
+  params.texture = {4, 5, true};
+  return params;
+}
+
+}  // namespace
+
+TEST_CASE("a picture is the same with every layout of threads, on both machines") {
+  pipeline::RenderJob job = frame();
+  const std::vector<float> picture = pipeline::render(job).rgba;
+  for (const std::string& name : Registry<WarpLayout>::names())
+    for (const bool timing : {false, true}) {
+      CAPTURE(name, timing);
+      job.timing = timing;
+      job.gpu.core.layout = PolicyChoice<WarpLayout>(name.c_str());
+      CHECK(pipeline::render(job).rgba == picture);
+    }
+}
+
+TEST_CASE("with every mechanism of a core on, a frame takes longer and is the same, stepped, skipped and on threads") {
+  pipeline::RenderJob job = frame();
+  const pipeline::RenderResult plain = pipeline::render(job);
+  job.gpu.core = all_on(job.gpu.core);
+  const pipeline::RenderResult costly = pipeline::render(job);
+  CHECK(costly.rgba == plain.rgba);
+  CHECK(costly.cycles > plain.cycles);
+  job.threads = 2;
+  CHECK(pipeline::render(job).cycles == costly.cycles);
+  job.threads = 1;
+  job.no_skip = true;
+  CHECK(pipeline::render(job).cycles == costly.cycles);
+}
+
+TEST_CASE("a timing run says what limits the warps of a core") {
+  pipeline::RenderJob job = frame();
+  const pipeline::RenderResult result = pipeline::render(job);
+  CHECK(result.residency.warps < job.gpu.core.warps);
+  CHECK(result.residency.limit == Residency::Limit::Registers);
+  job.gpu.core.warps = 8;
+  const pipeline::RenderResult fewer = pipeline::render(job);
+  CHECK(fewer.residency.warps == 8);
+  CHECK(fewer.residency.limit == Residency::Limit::Warps);
+}
+
+}  // namespace glint::core
