@@ -12,10 +12,12 @@ struct Scene {
   Positions positions;
   StructureInfo top;
   std::vector<WarpRays> rays;
-  explicit Scene(uint32_t triangles_count, size_t warps) {
+  explicit Scene(uint32_t triangles_count, size_t warps, const std::string& format = "bvh6") {
     Random random{42};
     positions = soup(random, triangles_count, 10, 20 / std::cbrt(float(triangles_count)));
-    top = single(memory, triangles(positions));
+    BuildOptions options;
+    options.format.name = format;
+    top = single(memory, triangles(positions), options);
     rays.resize(warps);
     for (WarpRays& warp : rays)
       for (RayState& state : warp) {
@@ -25,8 +27,8 @@ struct Scene {
   }
 };
 
-void functional(benchmark::State& bench) {
-  const Scene scene(uint32_t(bench.range(0)), 64);
+void functional(benchmark::State& bench, const std::string& format) {
+  const Scene scene(uint32_t(bench.range(0)), 64, format);
   uint64_t visits = 0;
   for (auto _ : bench)
     for (const WarpRays& warp : scene.rays)
@@ -39,7 +41,10 @@ void functional(benchmark::State& bench) {
       }
   bench.counters["visits"] = benchmark::Counter(double(visits), benchmark::Counter::kIsRate);
 }
-BENCHMARK(functional)->Arg(1000)->Arg(100000);
+BENCHMARK_CAPTURE(functional, bvh2, "bvh2")->Arg(1000);
+BENCHMARK_CAPTURE(functional, bvh4, "bvh4")->Arg(1000);
+BENCHMARK_CAPTURE(functional, bvh6, "bvh6")->Arg(1000)->Arg(100000);
+BENCHMARK_CAPTURE(functional, bvh8, "bvh8")->Arg(1000);
 
 void timed(benchmark::State& bench) {
   Scene scene(uint32_t(bench.range(0)), 64);

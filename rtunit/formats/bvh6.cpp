@@ -3,24 +3,9 @@
 #include "rtunit/formats/bvh6.h"
 
 #include "base/registry.h"
-#include "rtunit/layout.h"
 
 namespace glint::rt {
 namespace {
-
-Bvh6::Node make_node(const BuildTree& tree, const BuildTree::Node& from, const Layout& layout) {
-  const std::vector<Bounds> boxes = bounds_of_children(tree, from);
-  Bvh6::Node node;
-  Grid grid;
-  for (size_t a = 0; a < 3; ++a) quantise(boxes, a, grid, {node.low[a], node.high[a]});
-  node.origin = grid.origin;
-  node.exponent = grid.exponent;
-  for (uint32_t index : children_of(tree, from)) {
-    if (node.num_children == 0) node.first_block = layout.block[index];
-    node.kind[node.num_children++] = uint8_t(tree.nodes[index].kind);
-  }
-  return node;
-}
 
 class Bvh6Format final : public NodeFormat {
  public:
@@ -37,32 +22,11 @@ class Bvh6Format final : public NodeFormat {
 
   std::vector<std::byte> encode(const BuildTree& tree) const override {
     const Layout layout = mixed_layout(tree, Bvh6::kNodeBytes);
-    std::vector<std::byte> out = bytes_with_leaves(tree, layout);
-    for (size_t n = 0; n < tree.nodes.size(); ++n) {
-      if (tree.nodes[n].kind != NodeKind::Internal) continue;
-      const Bvh6::Node node = make_node(tree, tree.nodes[n], layout);
-      std::memcpy(&out[size_t(layout.block[n]) * kBlockBytes], &node, sizeof node);
-    }
-    return out;
+    return Bvh6::encode(tree, layout, [&](Bvh6::Node& node, std::span<const uint32_t> children) {
+      if (!children.empty()) node.first_block = layout.block[children[0]];
+    });
   }
-
-  uint32_t decode(const std::byte* bytes, std::span<DecodedChild> out) const override {
-    Bvh6::Node node;
-    std::memcpy(&node, bytes, sizeof node);
-    const Grid grid{node.origin, node.exponent};
-    uint32_t block = node.first_block;
-    const uint32_t count = node.num_children < Bvh6::kWidth ? node.num_children : uint32_t(Bvh6::kWidth);
-    for (uint32_t i = 0; i < count; ++i) {
-      const NodeKind kind = NodeKind(node.kind[i] & 7);
-      out[i].node = node_ref(block, kind);
-      for (size_t a = 0; a < 3; ++a) {
-        out[i].bounds.low[a] = Grid::plane(node.origin[a], node.low[a][i], grid.step(a));
-        out[i].bounds.high[a] = Grid::plane(node.origin[a], node.high[a][i], grid.step(a));
-      }
-      block += Bvh6::blocks_of(kind);
-    }
-    return count;
-  }
+  uint32_t decode(const std::byte* bytes, std::span<DecodedChild> out) const override { return Bvh6::decode(bytes, out); }
 };
 
 const Register<NodeFormat, Bvh6Format> registered;

@@ -1,12 +1,7 @@
 // Node format `bvh8`: 80-byte nodes of eight boxes in 8 bits a plane (Ylitie, Karras, Laine 2017).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <cmath>
-#include <cstddef>
-#include <cstring>
-
-#include "rtunit/box_test.h"
-#include "rtunit/quantise.h"
+#include "rtunit/quantised_boxes.h"
 
 namespace glint::rt {
 
@@ -14,7 +9,7 @@ namespace glint::rt {
 // two base indices of 4 B, 8 B about the children, 48 B planes; nodes and leaves in arrays of their own.
 // Model: children are visited by distance, as in every format; the paper's order by octant is not there, so the byte
 // behind the exponents counts the children, and the kinds say which are nodes.
-struct Bvh8 {
+struct Bvh8 : QuantisedBoxes<Bvh8> {
   static constexpr int kWidth = 8;
 
   struct Node {
@@ -44,39 +39,6 @@ struct Bvh8 {
     const Node& node_;
     uint32_t next_node_, next_leaf_;
   };
-
-  // Children that the ray enters in [t_min, t_max], in index order. Returns how many; counts the tests.
-  static int test(const std::byte* bytes, const RaySpace& space, float t_min, float t_max, float* t_enter,
-                  NodeRef* child, uint32_t& box_tests) {
-    Node node;
-    std::memcpy(&node, bytes, sizeof node);
-    const Grid grid{node.origin, node.exponent};
-    float t_near[kWidth], t_far[kWidth];
-    for (int i = 0; i < kWidth; ++i) t_near[i] = -__builtin_inff(), t_far[i] = __builtin_inff();
-    for (size_t a = 0; a < 3; ++a) {
-      const bool backward = std::signbit(space.inverse_direction[a]);
-      const uint8_t* near_q = backward ? node.high[a] : node.low[a];
-      const uint8_t* far_q = backward ? node.low[a] : node.high[a];
-      const float step = grid.step(a);
-      for (int i = 0; i < kWidth; ++i)
-        clip_slab(Grid::plane(node.origin[a], near_q[i], step), Grid::plane(node.origin[a], far_q[i], step),
-                  space.origin[a], space.inverse_direction[a], t_near[i], t_far[i]);
-    }
-    const int count = node.num_children < kWidth ? node.num_children : kWidth;
-    box_tests += uint32_t(count);
-    int hits = 0;
-    References references(node);
-    for (int i = 0; i < count; ++i) {
-      const NodeRef reference = references.next(i);
-      float enter = widen_near(t_near[i]), leave = widen_far(t_far[i]);
-      enter = enter > t_min ? enter : t_min;
-      leave = leave < t_max ? leave : t_max;
-      if (!(enter <= leave)) continue;
-      t_enter[hits] = enter;
-      child[hits++] = reference;
-    }
-    return hits;
-  }
 };
 
 }  // namespace glint::rt
