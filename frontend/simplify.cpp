@@ -10,6 +10,7 @@
 #include "frontend/by_reference.h"
 #include "frontend/compile.h"
 #include "frontend/debug_print.h"
+#include "frontend/inlined_size.h"
 #include "frontend/module_repairs.h"
 #include "frontend/spirv.h"
 #include "frontend/vendor_ray_tracing.h"
@@ -160,6 +161,7 @@ std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& n
       spirv.size() < kHeaderWords ? "too short to hold a header\n" : validate_spirv(spirv);
   if (!before.empty()) throw UserError({name, 0, 0}, "invalid SPIR-V\n" + before);
   spirv = with_references(with_lengths(with_standard_traces(spirv), name, warnings));
+  check_inlined_size(spirv, name);
   std::string messages;
   for (const auto* passes : {&pass_list(), &inlining_only()}) {
     std::vector<uint32_t> output = optimised(spirv, *passes, &messages);

@@ -47,5 +47,23 @@ TEST_CASE("a GLSL extension younger than the compiler is refused by name at its 
              Contains(":5: error: '#extension' : extension not supported: GL_EXT_ray_tracing_position_fetch"));
 }
 
+TEST_CASE("functions that would grow past all bounds when inlined are refused at once, by name and number") {
+  // Ten levels, each calling the next three times: 3 to the 10th copies of the last.
+  std::string text = "#version 450\nlayout(binding = 0) buffer B { vec4 v[]; };\nvec4 last(vec4 x) { return sin(x) * v[3]; }\n";
+  std::string callee = "last";
+  for (int level = 0; level < 10; ++level) {
+    const std::string name = "f" + std::to_string(level);
+    text += "vec4 " + name + "(vec4 x) { return " + callee + "(x) + " + callee + "(x.yzwx) * " + callee + "(-x); }\n";
+    callee = name;
+  }
+  const auto compile = [&] {
+    Diagnostics notes;
+    const std::vector<uint32_t> words = frontend::glsl_text_to_spirv(text + "void main() { v[0] = " + callee + "(v[1]); }\n", "deep.comp", isa::Stage::Compute, {});
+    frontend::compile_module(words, "deep.comp", "main", {}, notes, nullptr);
+  };
+  CHECK_THROWS_WITH(compile(), Contains("'last' is there 59049 times") && Contains("deep.comp: calls that, put in place, make"));
+  CHECK_THROWS_AS(compile(), UnsupportedError);
+}
+
 }  // namespace
 }  // namespace glint::test
