@@ -7,8 +7,8 @@
 
 namespace glint::app {
 
-// Peak resident memory of a run in bytes, generous: measured peaks of the generated scenes, and what pixels and threads add.
-uint64_t memory_estimate(const NamedWorkload& workload, uint64_t pixels);
+// Peak resident memory of a run in bytes, rather too much than too little. `from_files`: of original data, not generated.
+uint64_t memory_estimate(const NamedWorkload& workload, uint64_t pixels, bool from_files);
 
 // Relative time of a run, in any unit: for the order of starts and the time left only.
 double time_weight(const NamedWorkload& workload, bool timing, uint64_t pixels, uint64_t samples);

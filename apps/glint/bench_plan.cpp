@@ -83,7 +83,7 @@ BenchPlan plan_bench(const Session& session, const BenchOptions& options) {
     BenchTask task{workload, plan.directory + "/" + workload.name(), {}};
     task.process.arguments = command_of(options, task);
     task.process.log = task.directory + "/log.txt";
-    task.process.memory = memory_estimate(workload, pixels);
+    task.process.memory = memory_estimate(workload, pixels, !options.assets.empty());
     task.process.weight = time_weight(workload, options.mode == "timing", pixels, frame.samples);
     task.is_complete = options.resume && is_complete(task, plan.key);
     plan.tasks.push_back(std::move(task));

@@ -21,7 +21,7 @@
 namespace glint::app {
 namespace {
 
-constexpr int kWakeUp = 100;  // milliseconds between looks at the clock
+constexpr std::chrono::milliseconds kWakeUp{100};  // between looks at the clock
 
 sigset_t watched_signals() {
   sigset_t set;
@@ -78,13 +78,16 @@ bool ProcessPool::run() {
   ::sigprocmask(SIG_BLOCK, &set, &before);
   const int signals = ::signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
   start_ = Clock::now();
+  Clock::time_point told{};
   for (;;) {
     if (!interrupted_) start_what_fits();
     if (children_.empty()) break;
     listen(signals);
     reap();
     for (const Child& child : children_) processes_[child.index].seconds = seconds_since(child.start);
-    if (on_time) on_time();
+    if (!on_time || Clock::now() - told < kWakeUp) continue;
+    told = Clock::now();
+    on_time();
   }
   ::close(signals);
   ::sigprocmask(SIG_SETMASK, &before, nullptr);
@@ -135,7 +138,7 @@ bool ProcessPool::start(size_t index) {
 void ProcessPool::listen(int signals) {
   std::vector<pollfd> watched = {{signals, POLLIN, 0}};
   for (const Child& child : children_) watched.push_back({child.pipe, POLLIN, 0});
-  if (::poll(watched.data(), watched.size(), kWakeUp) <= 0) return;
+  if (::poll(watched.data(), watched.size(), int(kWakeUp.count())) <= 0) return;
   signalfd_siginfo info;
   while (::read(signals, &info, sizeof info) == ssize_t(sizeof info))
     if (info.ssi_signo != uint32_t(SIGCHLD)) stop_all();
