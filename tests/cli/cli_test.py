@@ -143,7 +143,7 @@ class Configuration(GlintTest):
         for preset in sorted((ROOT / "configs").glob("*.toml")):
             done = self.glint("describe", "core.warps", "--config", preset.stem)
             self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertRegex(done.stdout, r"core\.warps = (32|64)\n")
+            self.assertRegex(done.stdout, r"core\.warps = (16|32|64)\n")
             self.assertIn("range  1 to", done.stdout)
 
     def test_an_unknown_key_to_describe_is_refused_with_the_nearest(self):

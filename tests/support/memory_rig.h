@@ -80,11 +80,15 @@ class MemoryRig {
       if (!step_) now = std::max(now, std::min(wanted, l1.next_event(now)));
       if (now >= until) break;
       l1.tick(now);
-      for (const Client client : {Client::Lsu, Client::RtUnit})
-        while (const std::optional<Token> token = l1.pop(now, client)) answers_.push_back({now, core, client, *token});
+      collect(l1, core, now);
       if (wanted <= now) wanted = driver(core, now);
+      collect(l1, core, now);  // what was answered at once
       ++now;
     }
+  }
+  void collect(L1Cache& l1, uint32_t core, Cycle now) {
+    for (const Client client : {Client::Lsu, Client::RtUnit})
+      while (const std::optional<Token> token = l1.pop(now, client)) answers_.push_back({now, core, client, *token});
   }
 
   stats::Group root_;

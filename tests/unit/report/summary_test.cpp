@@ -20,7 +20,13 @@ Summary example() {
   s.nodes_per_ray = 12;
   s.bvh_depth = 8;
   s.wall_seconds = 2;
-  s.timing = TimingSummary{6000, 1000, {75, 100}, {0, 0}, {1, 4}, 0.25, 0.5, std::nullopt, 0.125};
+  TimingSummary timing;
+  timing.cycles = 6000, timing.clock_mhz = 1000;
+  timing.resident_warps = 24, timing.warp_slots = 32, timing.residency_limit = "registers";
+  timing.memory_peaks = "DRAM 42.0 GB/s";
+  timing.l1_rt = {75, 100}, timing.l2 = {1, 4};
+  timing.dram_utilisation = 0.25, timing.dram_efficiency = 0.5, timing.rt_efficiency = 0.125;
+  s.timing = timing;
   return s;
 }
 
@@ -32,11 +38,14 @@ TEST_CASE("the summary derives IPC, shares, hit rates and the traversal ratio fr
   const std::string text = format_summary(example(), {});
 
   CHECK(has(text, "6 000  = 0.006 ms at 1000 MHz"));
-  CHECK(has(text, "IPC                 0.500"));
+  CHECK(has(text, "IPC                   0.500"));
   CHECK(has(text, "alu             750  75.0 %  ###############.....   25.0 %  #####..............."));
   CHECK(has(text, "L1D hits, RT unit   75.0 %"));
   CHECK(has(text, "75 of 100 accesses"));
   CHECK(has(text, "1.50  nodes a ray / BVH depth 8"));
+  CHECK(has(text, "24 of 32"));
+  CHECK(has(text, "at most, limited by registers"));
+  CHECK(has(text, " at best: DRAM 42.0 GB/s"));
   CHECK(has(text, "1500 warp instructions/s") == false);
   CHECK(has(text, "2 k warp instructions/s, 3 k cycles/s"));
 }
