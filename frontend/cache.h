@@ -6,13 +6,12 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <string_view>
+
+#include "base/file_store.h"
 
 namespace glint::frontend {
 
-// Any number of threads and processes may use one folder at a time: files appear whole, by renaming. A file that is
-// damaged, or belongs to another key of the same hash, counts as not there and is written again. What cannot be
-// written is only slower next time: no error.
+// Any number of threads may use one at a time, and any number of processes its folder (base/file_store.h).
 class ShaderCache {
  public:
   struct Options {
@@ -24,7 +23,8 @@ class ShaderCache {
     uint64_t found = 0, missing = 0, damaged = 0;
   };
 
-  explicit ShaderCache(Options options) : options_(std::move(options)) {}
+  explicit ShaderCache(const Options& options)
+      : max_bytes_(options.max_bytes), files_({options.folder, ".shader", options.build, options.max_bytes}) {}
 
   std::optional<std::string> find(const std::string& key);
   void store(const std::string& key, const std::string& value);
@@ -32,17 +32,14 @@ class ShaderCache {
   std::string file_of(const std::string& key) const;
 
  private:
-  std::optional<std::string> read(const std::string& key);
-  void write(const std::string& key, const std::string& value) const;
+  void remember(const std::string& key, const std::string& value);
 
-  const Options options_;
+  const uint64_t max_bytes_;
   mutable std::mutex mutex_;
+  FileStore files_;
   std::map<std::string, std::string, std::less<>> memory_;
-  uint64_t memory_bytes_ = 0, written_bytes_ = 0;
-  bool swept_ = false;
+  uint64_t memory_bytes_ = 0;
   Counts counts_;
 };
-
-uint64_t content_hash(std::string_view bytes);
 
 }  // namespace glint::frontend

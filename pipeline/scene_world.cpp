@@ -10,6 +10,7 @@
 
 #include "base/check.h"
 #include "pipeline/binding_table.h"
+#include "pipeline/structure_cache.h"
 
 namespace glint::pipeline {
 namespace {
@@ -36,6 +37,7 @@ WorkloadShaders compile_workload(const RenderJob& job) {
   WorkloadShaders out;
   frontend::GlslOptions glsl = job.glsl;
   if (job.scene.alpha_test) glsl.defines.emplace_back("GLINT_ALPHA_TEST", "1");
+  if (!job.scene.instances.empty()) glsl.defines.emplace_back("GLINT_INSTANCES", "1");
   const frontend::BackendOptions backend{job.gpu.compiler.max_registers, job.gpu.compiler.schedule, job.gpu.compiler.contract};
   auto compile = [&](const char* file) {
     out.programs.push_back(frontend::compile_file(job.shader_dir + "/" + file, glsl, backend, out.warnings));
@@ -115,7 +117,7 @@ void SceneWorld::upload_geometry(const scenes::Scene& scene) {
 
 void SceneWorld::upload_images(const RenderJob& job) {
   auto add = [&](std::string name, core::ImageView::Format format, uint32_t width, uint32_t height, const void* texels) {
-    const uint64_t bytes = uint64_t(width) * height * (format == core::ImageView::Format::Rgba8Unorm ? 4 : 16);
+    const uint64_t bytes = uint64_t(width) * height * core::info_of(format).bytes;
     const Address base = memory_.allocate(name, bytes);
     if (texels) memory_.write(base, texels, bytes);
     world.images.push_back({format, width, height, base, std::move(name)});
@@ -127,15 +129,16 @@ void SceneWorld::upload_images(const RenderJob& job) {
   // A scene without textures binds one white texel, as the original application does.
   static constexpr uint8_t kWhite[4] = {255, 255, 255, 255};
   const uint64_t first = world.images.size();
-  for (const scenes::Texture& texture : job.scene.textures)
-    add("texture " + texture.name, Format::Rgba8Unorm, texture.width, texture.height, texture.rgba.data());
+  for (const scenes::Texture& texture : job.scene.textures) {
+    add("texture " + texture.name, texture.srgb ? Format::Rgba8Srgb : Format::Rgba8Unorm, texture.width, texture.height, texture.rgba.data());
+    if (texture.repeat) world.images.back().sampler.wrap.fill(core::Wrap::Repeat);
+  }
   if (job.scene.textures.empty()) add("texture (white)", Format::Rgba8Unorm, 1, 1, kWhite);
   bind(kTextures, first, world.images.size() - first);
 }
 
 void SceneWorld::build_structures(const RenderJob& job) {
   std::vector<rt::StructureInfo> bottoms;
-  std::vector<rt::Instance> instances;
   for (const Model& model : job.scene.models) {
     rt::BottomLevel level;
     rt::Geometry geometry;
@@ -153,14 +156,20 @@ void SceneWorld::build_structures(const RenderJob& job) {
       structures.triangles += model.indices.size() / 3;
     }
     level.geometries.push_back(geometry);
-    bottoms.push_back(rt::build_bottom(memory_, "bottom level " + model.name, level, job.gpu.bvh));
-    rt::Instance instance;
-    instance.bottom = instance.custom_index = uint32_t(bottoms.size() - 1);
-    instance.sbt_offset = model.is_procedural() ? kSphereRecord : 0;
-    instance.flags = rt::instance_flag::kFacingCullDisable;
-    instances.push_back(instance);
+    const std::string name = "bottom level " + model.name;
+    const rt::EncodedBottom bottom = job.structure_cache ? job.structure_cache->encode(name, level, job.gpu.bvh) : rt::encode_bottom(name, level, job.gpu.bvh);
+    bottoms.push_back(rt::place(memory_, name, bottom));
     structures.bytes += bottoms.back().bytes;
     structures.bottom_depth = std::max(structures.bottom_depth, bottoms.back().depth);
+  }
+  std::vector<rt::Instance> instances;
+  for (const scenes::Instance& placed : scenes::instances_of(job.scene)) {
+    rt::Instance instance;
+    instance.bottom = instance.custom_index = placed.model;
+    instance.transform = placed.to_world;
+    instance.sbt_offset = job.scene.models[placed.model].is_procedural() ? kSphereRecord : 0;
+    instance.flags = rt::instance_flag::kFacingCullDisable;
+    instances.push_back(instance);
   }
   const rt::StructureInfo top = rt::build_top(memory_, "top level", instances, bottoms, job.gpu.bvh);
   structures.bytes += top.bytes;

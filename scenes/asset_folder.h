@@ -38,8 +38,6 @@ std::string find_folder(const std::string& assets, const std::vector<std::string
 // A colour of 0 to 255, over 256 as the application has it.
 Material paint(int r, int g, int b);
 
-// 3x4, rows.
-using Affine = std::array<float, 12>;
 // Appends a copy of `part`, moved: normals by the inverse transpose, normalised; every material `material`, or the
 // part's own when that is negative.
 void append_copy(Model& model, const Model& part, const Affine& matrix, int32_t material);

@@ -9,6 +9,8 @@
 
 #include "base/diagnostics.h"
 #include "scenes/builders.h"
+#include "scenes/instancing.h"
+#include "scenes/scene_file.h"
 
 namespace glint::scenes {
 namespace {
@@ -78,6 +80,7 @@ void add(ContentHash& hash, const Model& model) {
 
 void add(ContentHash& hash, const Texture& texture) {
   hash.add(uint64_t{texture.width} << 32 | texture.height);
+  if (texture.srgb || texture.repeat) hash.add(uint64_t{texture.srgb} << 1 | uint64_t{texture.repeat});
   for (const uint8_t byte : texture.rgba) hash.add(uint64_t{byte});
 }
 
@@ -87,17 +90,48 @@ void add(ContentHash& hash, const Camera& c) {
   hash.add(uint64_t{c.has_sky});
 }
 
+uint64_t triangles_of(const Model& model) { return model.is_procedural() ? 0 : model.indices.size() / 3; }
+
 std::string upper_case(std::string text) {
   for (char& c : text) c = char(std::toupper(static_cast<unsigned char>(c)));
   return text;
 }
 
+Scene build_scene(const std::string& name, const LoadOptions& options) {
+  const std::string wanted = upper_case(name);
+  std::vector<std::string> names;
+  for (const Entry& entry : kScenes) {
+    names.push_back(entry.name);
+    if (wanted != entry.name) continue;
+    Scene scene = entry.build(options);
+    scene.original_triangles = entry.triangles;
+    if (entry.triangles > 0) scene.note += fmt::format(" {:.1f} % of the original's triangles.", 100 * scene.fraction());
+    return scene;
+  }
+  const std::string near = nearest(wanted, names);
+  throw UserError({}, fmt::format("unknown scene '{}'", name),
+                  near.empty() ? fmt::format("the scenes are {}", fmt::join(names, ", "))
+                               : fmt::format("did you mean '{}'?", near));
+}
+
 }  // namespace
+
+uint64_t Scene::stored_triangles() const {
+  uint64_t count = 0;
+  for (const Model& model : models) count += triangles_of(model);
+  return count;
+}
+
+std::vector<Instance> instances_of(const Scene& scene) {
+  if (!scene.instances.empty()) return scene.instances;
+  std::vector<Instance> once(scene.models.size());
+  for (uint32_t i = 0; i < once.size(); ++i) once[i].model = i;
+  return once;
+}
 
 uint64_t Scene::triangles() const {
   uint64_t count = 0;
-  for (const Model& model : models)
-    if (!model.is_procedural()) count += model.indices.size() / 3;
+  for (const Instance& instance : instances_of(*this)) count += triangles_of(models[instance.model]);
   return count;
 }
 
@@ -115,6 +149,10 @@ uint64_t Scene::hash() const {
   ContentHash content;
   content.add(uint64_t{models.size()});
   for (const Model& model : models) add(content, model);
+  for (const Instance& instance : instances) {
+    content.add(uint64_t{instance.model});
+    content.add(instance.to_world);
+  }
   content.add(uint64_t{materials.size()});
   for (const Material& m : materials) {
     content.add(m.diffuse);
@@ -137,20 +175,9 @@ std::vector<SceneInfo> scene_list() {
 }
 
 Scene load_scene(const std::string& name, const LoadOptions& options) {
-  const std::string wanted = upper_case(name);
-  std::vector<std::string> names;
-  for (const Entry& entry : kScenes) {
-    names.push_back(entry.name);
-    if (wanted != entry.name) continue;
-    Scene scene = entry.build(options);
-    scene.original_triangles = entry.triangles;
-    if (entry.triangles > 0) scene.note += fmt::format(" {:.1f} % of the original's triangles.", 100 * scene.fraction());
-    return scene;
-  }
-  const std::string near = nearest(wanted, names);
-  throw UserError({}, fmt::format("unknown scene '{}'", name),
-                  near.empty() ? fmt::format("the scenes are {}", fmt::join(names, ", "))
-                               : fmt::format("did you mean '{}'?", near));
+  Scene scene = names_scene_file(name) ? load_scene_file(name, options) : build_scene(name, options);
+  if (options.instancing) share_copies(scene);
+  return scene;
 }
 
 }  // namespace glint::scenes

@@ -17,6 +17,7 @@
 #include "apps/glint/session.h"
 #include "apps/glint/workloads.h"
 #include "pipeline/render.h"
+#include "pipeline/structure_cache.h"
 #include "report/config_file.h"
 #include "report/progress.h"
 #include "report/run_directory.h"
@@ -30,7 +31,7 @@ struct Options {
   std::vector<std::string> settings, more;
   scenes::RenderParams frame;
   uint64_t max_instructions = 0;
-  bool json = false, no_skip = false;
+  bool json = false, no_skip = false, instancing = false;
   ShaderOptions shaders;
   uint64_t print_limit = 1000;
   uint32_t threads = 0;
@@ -68,7 +69,7 @@ pipeline::RenderJob make_job(const Session& session, const Options& options) {
                                               : options.shader_dir;
   report::Progress progress(session.on_terminal ? stdout : nullptr, "loading", session.terminal);
   ProgressPipe pipe(session.progress_descriptor, "loading");
-  job.scene = scenes::load_scene(options.scene, {options.assets, [&](double part) {
+  job.scene = scenes::load_scene(options.scene, {options.assets, options.instancing, [&](double part) {
     progress.update(uint64_t(100 * part), 100);
     pipe.update(uint64_t(1000 * part), 1000);
   }});
@@ -121,6 +122,8 @@ Exit run(const Session& session, const Options& options) {
   core::PrintLog prints(options.print_limit);
   pipeline::RenderJob job = make_job(session, options);
   job.glsl = glsl_options(options.shaders, cache.get());
+  const std::unique_ptr<pipeline::StructureCache> structures = open_structure_cache(options.shaders);
+  job.structure_cache = structures.get();
   job.prints = &prints;
   const report::RunDirectory directory(
       options.out.empty() ? fmt::format("out/{}_{}-{}", job.scene.name, options.shader, options.mode)
@@ -149,7 +152,7 @@ Exit run(const Session& session, const Options& options) {
 void add_run(CLI::App& app, Session& session) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("run", "Render a scene, or launch a pipeline or a PTX kernel, on the simulated GPU");
-  command->add_option("SCENE", options->scene, "Scene; 'glint list scenes' names them. Or a workload: SHIP_SH. Or a pipeline: FILE.toml, or one shader file. Or a kernel: FILE.ptx, or its launch FILE.toml. Or an Amber script: FILE.amber")->required();
+  command->add_option("SCENE", options->scene, "Scene; 'glint list scenes' names them. Or a workload: SHIP_SH. Or a scene of your own: FILE.obj, FILE.gltf, FILE.glb. Or a pipeline: FILE.toml, or one shader file. Or a kernel: FILE.ptx, or its launch FILE.toml. Or an Amber script: FILE.amber")->required();
   command->add_option("MORE", options->more, "More Amber scripts, after a first one: FILE.amber");
   command->add_option("--launch", options->launch, "Launch file of a kernel: grid, block, arguments")->type_name("FILE");
   command->add_option("--shader", options->shader, "pt, sh or ao; 'glint list shaders' explains")
@@ -166,6 +169,7 @@ void add_run(CLI::App& app, Session& session) {
       ->check(CLI::IsMember({"timing", "functional"}))
       ->capture_default_str();
   command->add_option("--assets", options->assets, "Folder of original scene data")->type_name("DIR")->envname("GLINT_ASSETS");
+  command->add_flag("--instancing", options->instancing, "Models of a scene that are affine copies of another share its structure and vertices");
   command->add_option("--out", options->out, "Run directory (default: out/SCENE_SHADER-MODE)")
       ->type_name("DIR");
   command

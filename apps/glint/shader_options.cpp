@@ -1,4 +1,4 @@
-// Include folders, macros, contraction, and where the cache of compiled shaders lies.
+// Include folders, macros, contraction, and where the caches of compiled shaders and built structures lie.
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/shader_options.h"
 
@@ -17,11 +17,11 @@ std::string variable(const char* name) {
   return value ? value : "";
 }
 
-std::string cache_folder() {
-  if (const std::string folder = variable("GLINT_CACHE"); !folder.empty()) return folder + "/shaders";
+std::string cache_folder(const std::string& kind) {
+  if (const std::string folder = variable("GLINT_CACHE"); !folder.empty()) return folder + "/" + kind;
   // XDG Base Directory Specification: relative paths there are invalid and left out.
-  if (const std::string folder = variable("XDG_CACHE_HOME"); folder.starts_with('/')) return folder + "/glint/shaders";
-  if (const std::string home = variable("HOME"); !home.empty()) return home + "/.cache/glint/shaders";
+  if (const std::string folder = variable("XDG_CACHE_HOME"); folder.starts_with('/')) return folder + "/glint/" + kind;
+  if (const std::string home = variable("HOME"); !home.empty()) return home + "/.cache/glint/" + kind;
   return {};  // only in memory
 }
 
@@ -44,7 +44,7 @@ void add_source_options(CLI::App& command, ShaderOptions& options) {
 void add_shader_options(CLI::App& command, ShaderOptions& options) {
   add_source_options(command, options);
   command.add_flag("--contract", options.contract, "Make a * b + c of GLSL one fma, as drivers do, but where it is `precise`");
-  command.add_flag("--no-cache", options.no_cache, "Compile shaders anew, and keep none");
+  command.add_flag("--no-cache", options.no_cache, "Compile shaders and build structures anew, and keep none");
 }
 
 frontend::GlslOptions glsl_options(const ShaderOptions& options, frontend::ShaderCache* cache) {
@@ -63,7 +63,13 @@ std::unique_ptr<frontend::ShaderCache> open_shader_cache(const ShaderOptions& op
   if (options.no_cache) return nullptr;
   const std::string build = build_id();
   // Where the executable cannot be told from another one, what it compiled stays in memory.
-  return std::make_unique<frontend::ShaderCache>(frontend::ShaderCache::Options{build.empty() ? "" : cache_folder(), build});
+  return std::make_unique<frontend::ShaderCache>(frontend::ShaderCache::Options{build.empty() ? "" : cache_folder("shaders"), build});
+}
+
+std::unique_ptr<pipeline::StructureCache> open_structure_cache(const ShaderOptions& options) {
+  const std::string build = build_id();
+  if (options.no_cache || build.empty()) return nullptr;
+  return std::make_unique<pipeline::StructureCache>(pipeline::StructureCache::Options{cache_folder("structures"), build});
 }
 
 }  // namespace glint::app

@@ -7,6 +7,7 @@
 
 #include "frontend/cache.h"
 #include "frontend/compile.h"
+#include "pipeline/structure_cache.h"
 
 namespace CLI {
 class App;
@@ -28,5 +29,8 @@ frontend::GlslOptions glsl_options(const ShaderOptions& options, frontend::Shade
 
 // In $GLINT_CACHE/shaders, $XDG_CACHE_HOME/glint/shaders or ~/.cache/glint/shaders. Null with --no-cache.
 std::unique_ptr<frontend::ShaderCache> open_shader_cache(const ShaderOptions& options);
+
+// In the folder `structures` beside it. Null with --no-cache.
+std::unique_ptr<pipeline::StructureCache> open_structure_cache(const ShaderOptions& options);
 
 }  // namespace glint::app

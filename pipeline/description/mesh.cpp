@@ -7,20 +7,16 @@
 #include <cstring>
 #include <filesystem>
 
-#include "pipeline/description/gltf.h"
 #include "scenes/obj_loader.h"
+#include "scenes/scene_file.h"
 
 namespace glint::pipeline {
 
 scenes::Model load_mesh(const std::string& path, const SourceLocation& where) {
   std::error_code failed;
   if (!std::filesystem::is_regular_file(path, failed)) throw UserError(where, fmt::format("cannot read '{}'", path));
-  const std::string ending = std::filesystem::path(path).extension().string();
-#ifdef GLINT_GLTF
-  if (ending == ".gltf" || ending == ".glb") return load_gltf(path, where);
-#endif
-  if (ending != ".obj")
-    throw UserError(where, fmt::format("'{}' is no mesh that is read here", path), "OBJ, and glTF where libtinygltf-dev was there when Glint was built");
+  if (!scenes::names_scene_file(path)) throw UserError(where, fmt::format("'{}' is no mesh that is read here", path), "OBJ and glTF are");
+  if (!path.ends_with(".obj")) return scenes::flattened(scenes::load_gltf(path, {}));
   std::vector<scenes::Material> materials;
   return scenes::load_obj(path, materials);
 }

@@ -9,7 +9,7 @@
 
 namespace glint::pipeline {
 
-// OBJ; glTF (.gltf, .glb) where the library was there when Glint was built. UserError when it cannot be read.
+// OBJ or glTF (.gltf, .glb; all of its scene in world coordinates). UserError when it cannot be read.
 scenes::Model load_mesh(const std::string& path, const SourceLocation& where);
 
 // positions: 3 floats a vertex; normals: 3; coordinates: 2; indices: u32, three a triangle.

@@ -7,24 +7,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <memory>
 
 #include "pipeline/description/data.h"
-
-#if defined(__GNUC__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wall"
-#pragma GCC diagnostic ignored "-Wextra"
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wunused-function"
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#endif
-#define STB_IMAGE_IMPLEMENTATION
-#define STB_IMAGE_STATIC
-#include <stb_image.h>
-#if defined(__GNUC__)
-#pragma GCC diagnostic pop
-#endif
+#include "scenes/picture_decoder.h"
 
 namespace glint::pipeline {
 namespace {
@@ -41,25 +26,20 @@ struct Layer {
 
 // 8-bit files as values of 0..1, unless the format keeps integers.
 Layer load(const std::string& path, bool as_integers, const SourceLocation& where) {
+  const scenes::DecodedPicture picture = scenes::decode_picture_file(path);
+  if (!picture.error.empty()) throw UserError(where, fmt::format("cannot read the image '{}': {}", path, picture.error));
   Layer out;
-  int width = 0, height = 0, channels = 0;
-  const auto fail = [&] { return UserError(where, fmt::format("cannot read the image '{}': {}", path, stbi_failure_reason() ? stbi_failure_reason() : "unknown kind")); };
-  out.is_float = stbi_is_hdr(path.c_str()) != 0;
-  const auto take = [&](const auto* data, double scale) {
-    out.width = uint32_t(width), out.height = uint32_t(height);
-    out.texels.resize(size_t(width) * size_t(height));
+  out.width = picture.width, out.height = picture.height;
+  out.is_float = !picture.floats.empty();
+  out.texels.resize(size_t(picture.width) * picture.height);
+  const auto take = [&](const auto& data, double scale) {
     for (size_t i = 0; i < out.texels.size(); ++i)
       for (size_t c = 0; c < 4; ++c) out.texels[i][c] = double(data[i * 4 + c]) * scale;
   };
-  if (out.is_float) {
-    const std::unique_ptr<float, void (*)(void*)> data(stbi_loadf(path.c_str(), &width, &height, &channels, 4), stbi_image_free);
-    if (!data) throw fail();
-    take(data.get(), 1.0);
-  } else {
-    const std::unique_ptr<stbi_uc, void (*)(void*)> data(stbi_load(path.c_str(), &width, &height, &channels, 4), stbi_image_free);
-    if (!data) throw fail();
-    take(data.get(), as_integers ? 1.0 : 1.0 / 255);
-  }
+  if (out.is_float)
+    take(picture.floats, 1.0);
+  else
+    take(picture.bytes, as_integers ? 1.0 : 1.0 / 255);
   return out;
 }
 
@@ -140,7 +120,7 @@ Picture make_picture(const ImageDescription& image, ImageShape shape, const std:
   core::ImageView& view = out.view;
   const TexelFormat widest = texel == "u32" ? TexelFormat::Rgba32Uint : texel == "s32" ? TexelFormat::Rgba32Sint : TexelFormat::Rgba32Float;
   const TexelFormat plain = (image.files.empty() ? format_named(declared) : std::nullopt).value_or(widest);
-  const bool is_hdr = !image.files.empty() && stbi_is_hdr(image.files[0].c_str()) != 0;
+  const bool is_hdr = !image.files.empty() && scenes::is_hdr_picture(image.files[0]);
   view.format = image.format.value_or(!image.files.empty() && !is_hdr && texel != "u32" && texel != "s32" ? TexelFormat::Rgba8Unorm : plain);
   const core::FormatInfo& info = core::info_of(view.format);
   check_format(image, info, texel);

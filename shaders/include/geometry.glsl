@@ -45,7 +45,11 @@ Surface load_surface(uint model, uint primitive, vec2 barycentrics) {
   Vertex v2 = load_vertex(offsets.y + indices[first + 2u]);
   vec3 weight = vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics.x, barycentrics.y);
   Surface surface;
-  surface.normal = normalize(v0.normal * weight.x + v1.normal * weight.y + v2.normal * weight.z);
+  vec3 normal = v0.normal * weight.x + v1.normal * weight.y + v2.normal * weight.z;
+#ifdef GLINT_INSTANCES
+  normal = (normal * gl_WorldToObjectEXT).xyz;  // normals turn by the inverse transpose
+#endif
+  surface.normal = normalize(normal);
   surface.texture_coordinate = v0.texture_coordinate * weight.x + v1.texture_coordinate * weight.y +
                                v2.texture_coordinate * weight.z;
   surface.material = v0.material;

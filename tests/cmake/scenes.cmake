@@ -7,3 +7,8 @@ add_executable(render_reference reference/render_reference.cpp)
 target_link_libraries(render_reference PRIVATE glint::reference)
 glint_test(unit_scenes FOLDER unit/scenes LINKS glint::scenes glint::reference)
 glint_test(reference LINKS glint::reference)
+if(TARGET glint)
+  find_package(Python3 REQUIRED COMPONENTS Interpreter)
+  add_test(NAME scene_files
+    COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/scene_file_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR})
+endif()

@@ -1,0 +1,139 @@
+// Files of a store: header, key, value; and keeping the folder small.
+// SPDX-License-Identifier: Apache-2.0
+#include "base/file_store.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+namespace glint {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Header {
+  char magic[8] = {'g', 'l', 'i', 'n', 't', 's', 'h', '1'};
+  uint64_t key_bytes = 0, value_bytes = 0, hash = 0;  // of key and value
+};
+
+Header header_of(const std::string& key, std::string_view value) {
+  Header header;
+  header.key_bytes = key.size(), header.value_bytes = value.size();
+  header.hash = content_hash(value, content_hash(key));
+  return header;
+}
+
+// Keeps the newest of a folder's entries, up to `max_bytes`.
+void remove_oldest(const std::string& folder, const std::string& ending, uint64_t max_bytes) {
+  struct Entry {
+    fs::file_time_type time;
+    uint64_t bytes;
+    fs::path path;
+  };
+  std::vector<Entry> entries;
+  uint64_t bytes = 0;
+  std::error_code failed;
+  for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
+    if (it->path().extension() != ending) continue;
+    std::error_code gone;  // another process may have removed it
+    const uint64_t size = it->file_size(gone);
+    const fs::file_time_type time = it->last_write_time(gone);
+    if (gone) continue;
+    entries.push_back({time, size, it->path()});
+    bytes += size;
+  }
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.time < b.time; });
+  for (const Entry& entry : entries) {
+    if (bytes <= max_bytes) return;
+    fs::remove(entry.path, failed);
+    bytes -= entry.bytes;
+  }
+}
+
+}  // namespace
+
+uint64_t content_hash(std::string_view bytes, uint64_t seed) {
+  uint64_t hash = seed;
+  const auto step = [&](uint64_t word) {
+    hash = (hash ^ word) * 0x0000'0100'0000'01b3;
+    hash ^= hash >> 32;
+  };
+  for (; bytes.size() >= 8; bytes.remove_prefix(8)) {
+    uint64_t word;
+    std::memcpy(&word, bytes.data(), 8);
+    step(word);
+  }
+  for (const char c : bytes) step(uint8_t(c));
+  return hash;
+}
+
+std::string FileStore::file_of(const std::string& key) const {
+  return fmt::format("{}/{:016x}{}", options_.folder, content_hash(options_.build + '\0' + key), options_.ending);
+}
+
+std::optional<std::string> FileStore::find(const std::string& given) {
+  if (options_.folder.empty()) return std::nullopt;
+  const std::string path = file_of(given), key = options_.build + '\0' + given;
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  if (!in) return std::nullopt;
+  const auto bytes = uint64_t(in.tellg());
+  in.seekg(0);
+  Header header;
+  std::string found_key, value;
+  const bool begins = bytes >= sizeof header && in.read(reinterpret_cast<char*>(&header), sizeof header) &&
+                      std::memcmp(header.magic, Header{}.magic, sizeof header.magic) == 0;
+  const uint64_t rest = bytes - std::min<uint64_t>(bytes, sizeof header);
+  if (begins && header.key_bytes <= rest && header.value_bytes == rest - header.key_bytes) {
+    found_key.resize(header.key_bytes);
+    value.resize(header.value_bytes);
+    in.read(found_key.data(), std::streamsize(found_key.size()));
+    in.read(value.data(), std::streamsize(value.size()));
+  }
+  if (!begins || !in || header_of(found_key, value).hash != header.hash) {
+    ++damaged_;
+    return std::nullopt;
+  }
+  if (found_key != key) return std::nullopt;
+  std::error_code failed;
+  fs::last_write_time(path, fs::file_time_type::clock::now(), failed);
+  return value;
+}
+
+void FileStore::store(const std::string& given, std::string_view value) {
+  if (options_.folder.empty()) return;
+  std::error_code failed;
+  fs::create_directories(options_.folder, failed);
+  const std::string path = file_of(given), key = options_.build + '\0' + given;
+  const std::string temporary = fmt::format("{}.{}.{:x}", path, ::getpid(), reinterpret_cast<uintptr_t>(this));
+  {
+    std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
+    const Header header = header_of(key, value);
+    out.write(reinterpret_cast<const char*>(&header), sizeof header);
+    out << key << value;
+    out.flush();
+    if (!out) {
+      out.close();
+      fs::remove(temporary, failed);
+      return;
+    }
+  }
+  fs::rename(temporary, path, failed);
+  if (failed) fs::remove(temporary, failed);
+  sweep(key.size() + value.size());
+}
+
+// The folder is looked through now and then only: it may exceed the limit by an eighth for each process.
+void FileStore::sweep(uint64_t written) {
+  written_bytes_ += written;
+  if (swept_ && written_bytes_ < options_.max_bytes / 8) return;
+  swept_ = true;
+  written_bytes_ = 0;
+  remove_oldest(options_.folder, options_.ending, options_.max_bytes);
+}
+
+}  // namespace glint

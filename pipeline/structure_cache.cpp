@@ -1,0 +1,66 @@
+// Keys of geometry, and structures as values.
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/structure_cache.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <type_traits>
+
+namespace glint::pipeline {
+namespace {
+
+template <class T, size_t N>
+std::string_view bytes_of(std::span<T, N> values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};
+}
+
+uint64_t primitives_of(const rt::BottomLevel& input) {
+  uint64_t count = 0;
+  for (const rt::Geometry& g : input.geometries)
+    count += !g.aabbs.empty() ? g.aabbs.size() : (g.indices.empty() ? g.positions.size() / g.stride : g.indices.size()) / 3;
+  return count;
+}
+
+// Sizes and flags in words, contents in two hashes of 64 bits that start apart.
+std::string key_of(const rt::BottomLevel& input, const rt::BuildOptions& options) {
+  std::string key = fmt::format("{} {}", options.format.name, options.pair_triangles);
+  for (const ParamInfo& p : options.format.params) key += fmt::format(" {}={}", p.key, p.value);
+  uint64_t first = content_hash("first"), second = content_hash("second");
+  for (const rt::Geometry& g : input.geometries) {
+    key += fmt::format(" [{} {} {} {} {}{}]", g.positions.size(), g.stride, g.indices.size(), g.aabbs.size(), int(g.opaque), int(g.no_duplicate_any_hit));
+    for (const std::string_view part : {bytes_of(g.positions), bytes_of(g.indices), bytes_of(g.aabbs), bytes_of(std::span<const float>(g.transform))}) {
+      first = content_hash(part, first);
+      second = content_hash(part, second);
+    }
+  }
+  return key + fmt::format(" {:016x}{:016x}", first, second);
+}
+
+static_assert(std::is_trivially_copyable_v<rt::StructureInfo>);
+
+}  // namespace
+
+rt::EncodedBottom StructureCache::encode(const std::string& name, const rt::BottomLevel& input, const rt::BuildOptions& options) {
+  if (primitives_of(input) < least_primitives_) {
+    ++counts_.built;
+    return rt::encode_bottom(name, input, options);
+  }
+  const std::string key = key_of(input, options);
+  rt::EncodedBottom out;
+  if (const std::optional<std::string> value = files_.find(key); value && value->size() >= sizeof out.info) {
+    std::memcpy(&out.info, value->data(), sizeof out.info);
+    out.bytes.resize(value->size() - sizeof out.info);
+    std::memcpy(out.bytes.data(), value->data() + sizeof out.info, out.bytes.size());
+    ++counts_.found;
+    return out;
+  }
+  out = rt::encode_bottom(name, input, options);
+  std::string value(reinterpret_cast<const char*>(&out.info), sizeof out.info);
+  value.append(reinterpret_cast<const char*>(out.bytes.data()), out.bytes.size());
+  files_.store(key, value);
+  ++counts_.built;
+  return out;
+}
+
+}  // namespace glint::pipeline

@@ -1,0 +1,37 @@
+// Bottom-level structures built before, found again by the geometry they were built of.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "base/file_store.h"
+#include "rtunit/build.h"
+
+namespace glint::pipeline {
+
+// One file a structure, in a folder that any number of processes may share (base/file_store.h). Small structures are
+// built each time: that is no slower than reading them. Not for several threads at a time.
+class StructureCache {
+ public:
+  struct Options {
+    std::string folder;                      // empty: nothing is kept
+    std::string build;                       // of the builder: structures of another one are not found
+    uint64_t max_bytes = uint64_t{6} << 30;  // of the folder: all of LumiBench is 5 GB
+    uint64_t least_primitives = 16384;       // built in about 10 ms
+  };
+  struct Counts {
+    uint64_t found = 0, built = 0;
+  };
+  explicit StructureCache(const Options& options)
+      : least_primitives_(options.least_primitives), files_({options.folder, ".bvh", options.build, options.max_bytes}) {}
+
+  // As rt::encode_bottom, to the byte.
+  rt::EncodedBottom encode(const std::string& name, const rt::BottomLevel& input, const rt::BuildOptions& options);
+  const Counts& counts() const { return counts_; }
+
+ private:
+  const uint64_t least_primitives_;
+  FileStore files_;
+  Counts counts_;
+};
+
+}  // namespace glint::pipeline

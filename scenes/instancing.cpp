@@ -1,0 +1,206 @@
+// Affine copies: candidates by a hash of what must be equal, then the matrix by least squares.
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/instancing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <unordered_map>
+
+#include "scenes/mesh.h"
+
+namespace glint::scenes {
+namespace {
+
+using Row = std::array<double, 3>;
+using Matrix = std::array<Row, 3>;
+
+constexpr double kTolerance = 1e-5;      // of the copy's largest extent: files have five to seven digits
+constexpr double kFloatSteps = 8;        // of the largest coordinate, for copies far from the origin
+constexpr double kNormalCosine = 0.995;  // files round normals to three or four digits
+constexpr double kFlat = 1e-9;           // a determinant below this, of a matrix of trace 1, is of a flat body
+
+Row centre_of(const Model& model) {
+  Row sum{};
+  for (const Vertex& v : model.vertices)
+    for (size_t i = 0; i < 3; ++i) sum[i] += double(v.position[i]);
+  for (double& x : sum) x /= double(model.vertices.size());
+  return sum;
+}
+
+Row offset(const Vertex& v, const Row& centre) {
+  return {double(v.position[0]) - centre[0], double(v.position[1]) - centre[1], double(v.position[2]) - centre[2]};
+}
+
+void add_outer(Matrix& m, const Row& a, const Row& b, double weight = 1) {
+  for (size_t r = 0; r < 3; ++r)
+    for (size_t c = 0; c < 3; ++c) m[r][c] += weight * a[r] * b[c];
+}
+
+Row cross(const Row& a, const Row& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+double dot(const Row& a, const Row& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+double trace(const Matrix& m) { return m[0][0] + m[1][1] + m[2][2]; }
+double determinant(const Matrix& m) { return dot(m[0], cross(m[1], m[2])); }
+
+Matrix inverse(const Matrix& m) {
+  const Row columns[3] = {cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])};
+  const double det = dot(m[0], columns[0]);
+  Matrix out;
+  for (size_t r = 0; r < 3; ++r)
+    for (size_t c = 0; c < 3; ++c) out[r][c] = columns[c][r] / det;
+  return out;
+}
+
+Matrix product(const Matrix& a, const Matrix& b) {
+  Matrix out{};
+  for (size_t r = 0; r < 3; ++r)
+    for (size_t c = 0; c < 3; ++c)
+      for (size_t k = 0; k < 3; ++k) out[r][c] += a[r][k] * b[k][c];
+  return out;
+}
+
+// Unit normal of a triangle, on the side of its first vertex's normal: a mirrored copy winds the other way.
+Row plane_normal(const Model& model, size_t triangle) {
+  const auto vertex = [&](size_t i) { return model.vertices[model.indices[3 * triangle + i]]; };
+  const Row a = offset(vertex(0), Row{}), b = offset(vertex(1), Row{}), c = offset(vertex(2), Row{});
+  const Row n = cross({b[0] - a[0], b[1] - a[1], b[2] - a[2]}, {c[0] - a[0], c[1] - a[1], c[2] - a[2]});
+  const Vec3 shading = vertex(0).normal;
+  const double side = dot(n, {double(shading[0]), double(shading[1]), double(shading[2])}) < 0 ? -1 : 1;
+  const double length = side * std::sqrt(dot(n, n));
+  return length != 0 ? Row{n[0] / length, n[1] / length, n[2] / length} : Row{};
+}
+
+size_t largest_triangle(const Model& model) {
+  size_t best = 0;
+  double area = -1;
+  for (size_t t = 0; t < model.indices.size() / 3; ++t) {
+    const auto corner = [&](size_t i) { return model.vertices[model.indices[3 * t + i]].position; };
+    const Vec3 n = scenes::cross(corner(1) - corner(0), corner(2) - corner(0));
+    if (const auto size = double(scenes::dot(n, n)); size > area) area = size, best = t;
+  }
+  return best;
+}
+
+// The linear part that fits best: D * C^-1 with C = sum p p^T and D = sum q p^T about the centres. A flat body leaves one
+// direction open: its normal goes to the copy's.
+std::optional<Matrix> linear_part(const Model& from, const Model& to, const Row& from_centre, const Row& to_centre) {
+  Matrix c{}, d{};
+  for (size_t i = 0; i < from.vertices.size(); ++i) {
+    const Row p = offset(from.vertices[i], from_centre), q = offset(to.vertices[i], to_centre);
+    add_outer(c, p, p);
+    add_outer(d, q, p);
+  }
+  const double scale = trace(c);
+  if (!(scale > 0)) return {};
+  if (determinant(c) < kFlat * scale * scale * scale) {
+    const size_t triangle = largest_triangle(from);
+    const Row n = plane_normal(from, triangle);
+    add_outer(c, n, n, scale);
+    add_outer(d, plane_normal(to, triangle), n, scale);
+  }
+  if (determinant(c) < kFlat * scale * scale * scale) return {};
+  return product(d, inverse(c));
+}
+
+bool moves_onto(const Model& from, const Model& to, const Affine& m) {
+  const Bounds box = bounds(to);
+  float extent = 0, largest = 0;
+  for (size_t i = 0; i < 3; ++i) {
+    extent = std::max(extent, box.upper[i] - box.lower[i]);
+    largest = std::max({largest, std::fabs(box.upper[i]), std::fabs(box.lower[i])});
+  }
+  const double tolerance = kTolerance * double(extent) + kFloatSteps * 0x1p-24 * double(largest);
+  for (size_t i = 0; i < from.vertices.size(); ++i)
+    for (size_t r = 0; r < 3; ++r) {
+      double x = m[4 * r + 3];
+      for (size_t k = 0; k < 3; ++k) x += double(m[4 * r + k]) * double(from.vertices[i].position[k]);
+      if (!(std::fabs(x - double(to.vertices[i].position[r])) <= tolerance)) return false;
+    }
+  return true;
+}
+
+bool normals_follow(const Model& from, const Model& to, const Matrix& m) {
+  const Matrix back = inverse(m);
+  for (size_t i = 0; i < from.vertices.size(); ++i) {
+    const Vec3 &n = from.vertices[i].normal, &other = to.vertices[i].normal;
+    Row turned{}, wanted{double(other[0]), double(other[1]), double(other[2])};
+    for (size_t r = 0; r < 3; ++r)
+      for (size_t k = 0; k < 3; ++k) turned[r] += back[k][r] * double(n[k]);
+    const double lengths = std::sqrt(dot(turned, turned) * dot(wanted, wanted));
+    if (lengths > 0 && dot(turned, wanted) < kNormalCosine * lengths) return false;
+  }
+  return true;
+}
+
+bool equal(const Material& a, const Material& b) {
+  return a.diffuse == b.diffuse && a.texture == b.texture && a.fuzziness == b.fuzziness &&
+         a.refraction_index == b.refraction_index && a.model == b.model;
+}
+
+// What a copy shares with its original bit for bit, but for positions and normals.
+bool same_but_moved(const Scene& scene, const Model& a, const Model& b) {
+  return a.vertices.size() == b.vertices.size() && a.indices == b.indices &&
+         std::equal(a.vertices.begin(), a.vertices.end(), b.vertices.begin(), [&](const Vertex& v, const Vertex& w) {
+           return v.texture_coordinate == w.texture_coordinate &&
+                  equal(scene.materials[size_t(v.material)], scene.materials[size_t(w.material)]);
+         });
+}
+
+uint64_t shape_hash(const Model& model) {
+  uint64_t hash = model.vertices.size();
+  const auto add = [&hash](uint64_t word) { hash = std::rotl((hash ^ word) * 0x9e3779b97f4a7c15, 29); };
+  for (const uint32_t index : model.indices) add(index);
+  for (const Vertex& v : model.vertices) add(std::bit_cast<uint64_t>(v.texture_coordinate));
+  return hash;
+}
+
+}  // namespace
+
+std::optional<Affine> affine_between(const Model& from, const Model& to) {
+  if (from.vertices.empty() || from.vertices.size() != to.vertices.size() || from.indices.empty()) return {};
+  const Row p = centre_of(from), q = centre_of(to);
+  const std::optional<Matrix> linear = linear_part(from, to, p, q);
+  if (!linear || determinant(*linear) == 0 || !std::isfinite(determinant(*linear))) return {};
+  Affine out;
+  for (size_t r = 0; r < 3; ++r) {
+    for (size_t c = 0; c < 3; ++c) out[4 * r + c] = float((*linear)[r][c]);
+    out[4 * r + 3] = float(q[r] - dot((*linear)[r], p));
+  }
+  if (!moves_onto(from, to, out) || !normals_follow(from, to, *linear)) return {};
+  return out;
+}
+
+void share_copies(Scene& scene) {
+  if (!scene.instances.empty()) return;
+  std::vector<Model> kept;
+  std::vector<Instance> instances;
+  std::unordered_map<uint64_t, std::vector<uint32_t>> alike;  // indices into `kept`
+  for (Model& model : scene.models) {
+    std::vector<uint32_t>* bucket = model.is_procedural() ? nullptr : &alike[shape_hash(model)];
+    std::optional<Affine> matrix;
+    uint32_t original = 0;
+    for (size_t i = 0; bucket && i < bucket->size() && !matrix; ++i) {
+      original = (*bucket)[i];
+      if (same_but_moved(scene, kept[original], model)) matrix = affine_between(kept[original], model);
+    }
+    if (matrix) {
+      instances.push_back({original, *matrix});
+      continue;
+    }
+    instances.push_back({uint32_t(kept.size()), kIdentity});
+    if (bucket) bucket->push_back(uint32_t(kept.size()));
+    kept.push_back(std::move(model));
+  }
+  const size_t before = scene.models.size();
+  scene.models = std::move(kept);
+  if (scene.models.size() == before) return;
+  scene.instances = std::move(instances);
+  scene.note += fmt::format(" {} of {} models are instances of others.", before - scene.models.size(), before);
+}
+
+}  // namespace glint::scenes
