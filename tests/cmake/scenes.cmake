@@ -1,5 +1,6 @@
 # Scenes, and the reference renderer that checks pictures of them.
-add_library(glint_reference STATIC reference/embree_intersector.cpp reference/reference.cpp reference/shapes.cpp)
+add_library(glint_reference STATIC reference/embree_intersector.cpp reference/reference.cpp reference/shapes.cpp
+  reference/surface.cpp reference/texture.cpp)
 add_library(glint::reference ALIAS glint_reference)
 target_link_libraries(glint_reference PUBLIC glint::scenes PRIVATE embree glint_warnings)
 target_include_directories(glint_reference PUBLIC ${PROJECT_SOURCE_DIR})

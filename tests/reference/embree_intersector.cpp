@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "base/check.h"
-#include "tests/reference/intersector.h"
+#include "tests/reference/surface.h"
 #include "tests/support/embree.h"
 
 namespace glint::reference {
@@ -16,11 +16,13 @@ struct Query {
   test::EmbreeContext context;  // first: Embree hands this part to the callbacks
   Ray ray;
   Hit best;
+  const scenes::Scene* scene;
+  bool passes(const Hit& hit) const { return !ray.opaque && is_hole(*scene, hit); }
 };
 
 class EmbreeIntersector final : public Intersector {
  public:
-  EmbreeIntersector(const scenes::Scene& scene, bool exact) : device_(rtcNewDevice(nullptr)) {
+  EmbreeIntersector(const scenes::Scene& scene, bool exact) : scene_(scene), device_(rtcNewDevice(nullptr)) {
     GLINT_CHECK(device_ != nullptr, "Embree cannot start: error {}", int(rtcGetDeviceError(nullptr)));
     tree_ = rtcNewScene(device_);
     rtcSetSceneFlags(tree_, RTC_SCENE_FLAG_ROBUST);
@@ -44,6 +46,7 @@ class EmbreeIntersector final : public Intersector {
     Query query;
     test::start(query.context);
     query.ray = ray;
+    query.scene = &scene_;
     RTCRayHit rh{};
     rh.ray.org_x = ray.origin.x, rh.ray.org_y = ray.origin.y, rh.ray.org_z = ray.origin.z;
     rh.ray.dir_x = ray.direction.x, rh.ray.dir_y = ray.direction.y, rh.ray.dir_z = ray.direction.z;
@@ -68,6 +71,7 @@ class EmbreeIntersector final : public Intersector {
     void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12,
                                             model.indices.size() / 3);
     std::memcpy(indices, model.indices.data(), model.indices.size() * 4);
+    if (scene_.alpha_test) rtcSetGeometryIntersectFilterFunction(geometry, leave_holes);
     return geometry;
   }
 
@@ -79,6 +83,12 @@ class EmbreeIntersector final : public Intersector {
     rtcSetGeometryBoundsFunction(geometry, bound, nullptr);
     rtcSetGeometryIntersectFunction(geometry, visit);
     return geometry;
+  }
+
+  static void leave_holes(const RTCFilterFunctionNArguments* args) {
+    const auto& query = *reinterpret_cast<const Query*>(args->context);
+    const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
+    if (query.passes({hit.geomID, hit.primID, 0, hit.u, hit.v})) args->valid[0] = 0;
   }
 
   static void bound(const RTCBoundsFunctionArguments* args) {
@@ -117,6 +127,7 @@ class EmbreeIntersector final : public Intersector {
       const auto corner = [&](size_t k) -> Vec { return model.vertices[model.indices[3 * args->primID + k]].position; };
       if (!meets_triangle(query.ray, corner(0), corner(1), corner(2), hit)) return;
       if (!(query.ray.t_min < hit.t && hit.t < query.ray.t_max)) return;
+      if (query.passes(hit)) return;
     }
     const bool found = rh.hit.geomID != RTC_INVALID_GEOMETRY_ID;
     const bool first_of_equals = found && (hit.model < rh.hit.geomID ||
@@ -128,6 +139,7 @@ class EmbreeIntersector final : public Intersector {
     query.best = hit;
   }
 
+  const scenes::Scene& scene_;
   RTCDevice device_;
   RTCScene tree_ = nullptr;
 };

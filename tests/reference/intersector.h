@@ -12,6 +12,7 @@ namespace glint::reference {
 struct Ray {
   Vec origin{}, direction{};
   float t_min = 0, t_max = 0;  // in lengths of `direction`
+  bool opaque = true;          // false: passes where a triangle's texture has a hole
 };
 
 struct Hit {

@@ -3,6 +3,7 @@
 #include "tests/reference/reference.h"
 
 #include "base/check.h"
+#include "tests/reference/surface.h"
 
 namespace glint::reference {
 
@@ -26,6 +27,8 @@ float random_float(uint32_t& state) {
 }
 
 namespace {
+
+constexpr float kPi = 3.1415926535897932f;
 
 struct Payload {
   Vec color;
@@ -52,13 +55,14 @@ Vec transform(const scenes::Mat4& m, const Vec& v, float w) {
   return {row(0), row(1), row(2)};
 }
 
-void scatter(Payload& ray, const Material& material, const Vec& ray_direction, const Vec& normal, float distance) {
-  GLINT_CHECK(material.texture < 0, "the reference renders no textures, material has {}", material.texture);
+// `texel`: the texture's colour where the ray hit. Lights have none.
+void scatter(Payload& ray, const Material& material, const Vec& texel, const Vec& ray_direction, const Vec& normal,
+             float distance) {
   const Vec diffuse{material.diffuse[0], material.diffuse[1], material.diffuse[2]};
   const Vec d = normalize(ray_direction);
   const float projection = dot(d, normal);
   ray.distance = distance;
-  ray.color = diffuse;
+  ray.color = material.model == MaterialModel::DiffuseLight ? diffuse : diffuse * texel;
   switch (material.model) {
     case MaterialModel::Lambertian:
       ray.scatter = normal + draw_in_unit_sphere(ray.random_state);
@@ -82,7 +86,7 @@ void scatter(Payload& ray, const Material& material, const Vec& ray_direction, c
         r0 = r0 * r0;
         probability = r0 + (1.0f - r0) * std::exp2(5.0f * std::log2(1.0f - cosine));
       }
-      ray.color = Vec(1);
+      ray.color = texel;
       ray.scatter = random_float(ray.random_state) < probability ? reflect(d, normal) : refracted;
       ray.goes_on = true;
       return;
@@ -154,6 +158,7 @@ class Renderer {
 
   Vec trace_path(Ray ray) {
     Vec throughput(1);
+    ray.opaque = !scene_.alpha_test;  // shadow and occlusion rays are opaque in every scene
     for (uint32_t b = 0; b < uniforms_.bounces; ++b) {
       trace(ray);
       throughput = throughput * ray_.color;
@@ -226,19 +231,19 @@ class Renderer {
   void hit_sphere(const Ray& ray, const Hit& hit) {
     const scenes::Model& model = scene_.models[hit.model];
     const Vec normal = (ray.origin + ray.direction * hit.t - model.center) / Vec(model.radius);
-    scatter(ray_, scene_.materials[size_t(model.vertices[model.indices[0]].material)], ray.direction, normal, hit.t);
+    const Material& material = scene_.materials[size_t(model.vertices[model.indices[0]].material)];
+    const float u = (std::atan2(normal.x, normal.z) + kPi) / (2 * kPi), v = 1 - (std::asin(normal.y) + kPi / 2) / kPi;
+    scatter(ray_, material, texture_color(scene_, material, u, v), ray.direction, normal, hit.t);
     ray_.normal = normal;
   }
 
   void hit_triangle(const Ray& ray, const Hit& hit) {
-    const scenes::Model& model = scene_.models[hit.model];
-    const scenes::Vertex* corner[3];
-    for (size_t k = 0; k < 3; ++k) corner[k] = &model.vertices[model.indices[3 * hit.primitive + k]];
-    Vec normal = normalize(Vec(corner[0]->normal) * (1.0f - hit.u - hit.v) + Vec(corner[1]->normal) * hit.u +
-                           Vec(corner[2]->normal) * hit.v);
+    const Surface surface = surface_of(scene_, hit);
     const bool keep_point = workload_ != Workload::PathTracing;
-    if (keep_point && dot(ray.direction, normal) > 0) normal = -normal;
-    scatter(ray_, scene_.materials[size_t(corner[0]->material)], ray.direction, normal, hit.t);
+    const bool turn = keep_point && dot(ray.direction, surface.normal) > 0;
+    const Vec normal = turn ? -surface.normal : surface.normal;
+    const Vec texel = texture_color(scene_, *surface.material, surface.u, surface.v);
+    scatter(ray_, *surface.material, texel, ray.direction, normal, hit.t);
     if (!keep_point) return;
     ray_.scatter = ray.origin + ray.direction * hit.t;
     ray_.normal = normal;
@@ -256,6 +261,7 @@ class Renderer {
 
 ReferenceResult render(const scenes::Scene& scene, Workload workload, const scenes::RenderParams& params,
                        Intersector& intersector) {
+  GLINT_CHECK(scene.instances.empty(), "the reference renders models in world coordinates, not {} instances", scene.instances.size());
   return Renderer(scene, workload, params, intersector).run();
 }
 

@@ -19,9 +19,9 @@ struct ReferenceResult {
   uint64_t rays = 0;         // traced, over all pixels
 };
 
-// Renders in float, in the order in which the shaders compute. Materials must have no textures. Rays that may end
-// at their first hit get the closest one: for ambient occlusion, whose next ray depends on the blocker's normal,
-// a machine may therefore differ in single pixels.
+// Renders in float, in the order in which the shaders compute. The scene must have no instances (surface.h: flattened).
+// Rays that may end at their first hit get the closest one: for ambient occlusion, whose next ray depends on the
+// blocker's normal, a machine may therefore differ in single pixels.
 ReferenceResult render(const scenes::Scene& scene, scenes::Workload workload, const scenes::RenderParams& params,
                        Intersector& intersector);
 
