@@ -1,0 +1,63 @@
+// The frame of a figure: title, how to read it, chart, its numbers as table and CSV, the drawing as SVG.
+// SPDX-License-Identifier: Apache-2.0
+import { BarChart, LineChart } from "echarts/charts";
+import { AxisPointerComponent, GridComponent, LegendComponent, TitleComponent, TooltipComponent } from "echarts/components";
+import * as echarts from "echarts/core";
+import { SVGRenderer } from "echarts/renderers";
+
+import { csv, download, h } from "./dom.js";
+import { number } from "./format.js";
+import { onSchemeChange, theme } from "./theme.js";
+
+echarts.use([BarChart, LineChart, AxisPointerComponent, GridComponent, LegendComponent, TitleComponent, TooltipComponent, SVGRenderer]);
+
+const kMaxTableRows = 80; // longer ones are in the CSV only
+const kExportWidth = 720;
+
+// chart: {option(theme, width), height(theme, width), columns, rows} of kinds/.
+export function figure({ id, title, note, wide }, chart) {
+  const canvas = h("div", { class: "canvas" });
+  const element = h("figure", { id, class: wide ? "wide" : null }, h("h3", {}, title), note ? h("p", { class: "note" }, note) : null, canvas, h("figcaption", {}, ...tools(id, chart)));
+  let drawn = null;
+  const draw = () => {
+    const t = theme(), width = canvas.clientWidth;
+    if (!width) return;
+    const height = Math.round(chart.height(t, width));
+    canvas.style.height = `${height}px`;
+    if (drawn) drawn.dispose();
+    drawn = echarts.init(canvas, null, { renderer: "svg", width, height });
+    drawn.setOption(chart.option(t, width));
+  };
+  let last = 0;
+  new ResizeObserver(() => {
+    if (canvas.clientWidth === last) return;
+    last = canvas.clientWidth;
+    requestAnimationFrame(draw); // a chart changes the page's height, and so must not within the observer
+  }).observe(canvas);
+  onSchemeChange(draw);
+  return element;
+}
+
+function tools(id, chart) {
+  const table = chart.rows.length <= kMaxTableRows ? h("details", { class: "numbers" }, h("summary", {}, "Table"), h("div", { class: "scroll" }, dataTable(chart))) : null;
+  return [
+    table,
+    h("button", { type: "button", onclick: () => download(`${id}.csv`, "text/csv", csv(chart.columns, chart.rows)) }, "CSV"),
+    h("button", { type: "button", onclick: () => download(`${id}.svg`, "image/svg+xml", svg(chart)) }, "SVG"),
+  ];
+}
+
+function dataTable(chart) {
+  const cell = (value, i) => (i === 0 ? h("th", { scope: "row" }, String(value)) : h("td", { class: "n", "data-value": typeof value === "number" ? value : null }, typeof value === "number" || value === null ? number(value) : String(value)));
+  return h("table", {}, h("thead", {}, h("tr", {}, chart.columns.map((name, i) => h("th", { scope: "col", class: i ? "n" : null }, name)))), h("tbody", {}, chart.rows.map((row) => h("tr", {}, row.map(cell)))));
+}
+
+// Always in the light scheme: it is for papers.
+function svg(chart) {
+  const t = theme("light"), height = Math.round(chart.height(t, kExportWidth));
+  const drawing = echarts.init(null, null, { renderer: "svg", ssr: true, width: kExportWidth, height });
+  drawing.setOption(chart.option(t, kExportWidth));
+  const text = drawing.renderToSVGString();
+  drawing.dispose();
+  return text;
+}

@@ -1,0 +1,29 @@
+// Figures: use of the DRAM's data bus (LumiBench, Figure 12), and what its clocks went into.
+// SPDX-License-Identifier: Apache-2.0
+import { percent } from "../format.js";
+import { stacked } from "../kinds/stacked.js";
+import { measures, runRows } from "./shared.js";
+
+const kParts = [["data", "data", "green"], ["column_wait", "waits for a column", "sky"], ["row_wait", "waits for a row", "orange"], ["turnaround", "turns the bus", "pink"], ["refresh", "refresh", "red"], ["idle", "idle", "pale"]];
+
+export const use = {
+  info: { id: "dram", title: "DRAM utilisation and efficiency", note: "Utilisation: clocks with data of all. Efficiency: of those in which the channel had work. Row locality: requests whose row was open." },
+  make: (runs) =>
+    measures(
+      runs,
+      [
+        { name: "utilisation", colour: "blue", value: (run) => run.metric("dram_util") },
+        { name: "efficiency", colour: "orange", value: (run) => run.metric("dram_eff") },
+        { name: "row locality", colour: "green", value: (run) => run.metric("row_locality") },
+      ],
+      { format: (value) => percent(value), axis: (value) => percent(value, 0), max: 1 },
+    ),
+};
+
+export const clocks = {
+  info: { id: "dram-clocks", wide: true, title: "Clocks of the DRAM channels", note: "All channels, from launch to end." },
+  make: (runs) =>
+    runs.some((run) => run.sum("gpu.memory.partition[*].dram.clocks"))
+      ? stacked({ rows: runRows(runs), parts: kParts.map(([key, name, colour]) => ({ name, colour, values: runs.map((run) => run.sum(`gpu.memory.partition[*].dram.use::${key}`) ?? 0) })), unit: "clocks" })
+      : null,
+};

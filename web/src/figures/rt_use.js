@@ -1,0 +1,19 @@
+// Figure: how full the RT unit and the warps were (LumiBench, Figure 9).
+// SPDX-License-Identifier: Apache-2.0
+import { percent } from "../format.js";
+import { measures } from "./shared.js";
+
+export const info = {
+  id: "rt-use",
+  title: "RT-unit occupancy and efficiency, SIMT efficiency",
+  note: "Occupancy: warp slots of the unit in use while it has any. Efficiency: lanes of its warps with a ray in flight. SIMT: lanes that execute an instruction.",
+};
+
+export function make(runs) {
+  const list = [
+    { name: "RT-unit occupancy", colour: "blue", value: (run) => run.metric("rt_occupancy") },
+    { name: "RT-unit efficiency", colour: "orange", value: (run) => run.metric("rt_efficiency") },
+    { name: "SIMT efficiency", colour: "green", value: (run) => run.metric("simt_efficiency") },
+  ];
+  return measures(runs, list, { format: (value) => percent(value), axis: (value) => percent(value, 0), max: 1 });
+}

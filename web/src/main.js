@@ -1,0 +1,61 @@
+// The page: reads the document that `glint report` embedded and puts its sections in order.
+// SPDX-License-Identifier: Apache-2.0
+import { h } from "./dom.js";
+import { figure } from "./figure.js";
+import * as caches from "./figures/caches.js";
+import * as cpiStack from "./figures/cpi_stack.js";
+import * as dram from "./figures/dram.js";
+import * as fetchMix from "./figures/fetch_mix.js";
+import * as instructionMix from "./figures/instruction_mix.js";
+import * as ipc from "./figures/ipc.js";
+import * as memoryLatency from "./figures/memory_latency.js";
+import * as opLatency from "./figures/op_latency.js";
+import * as ops from "./figures/ops.js";
+import * as rayHistograms from "./figures/ray_histograms.js";
+import * as rtCycles from "./figures/rt_cycles.js";
+import * as rtUse from "./figures/rt_use.js";
+import * as series from "./figures/series.js";
+import * as stages from "./figures/stages.js";
+import * as traversal from "./figures/traversal.js";
+import { labelRuns, Run } from "./model.js";
+import { bounds } from "./sections/bounds.js";
+import { deltas, means } from "./sections/compare.js";
+import { keys } from "./sections/keys.js";
+import { overview, structure } from "./sections/overview.js";
+import { source } from "./sections/source.js";
+import { stalls } from "./sections/stalls.js";
+
+const data = JSON.parse(document.getElementById("data").textContent);
+const docs = { ...data.stat_docs, keys: data.key_docs };
+const runs = labelRuns(data.runs.map((run, index) => new Run(run, index, docs)));
+
+// The figures that these runs have data for.
+const figures = (...list) => {
+  const drawn = list.map(({ info, make }) => [info, make(runs)]).filter(([, chart]) => chart).map(([info, chart]) => figure({ ...info, note: typeof info.note === "function" ? info.note(runs) : info.note }, chart));
+  return drawn.length ? h("div", { class: "figures" }, drawn) : null;
+};
+const missing = (what, option) => (runs.some((run) => run.data[what]) ? null : h("p", { class: "note" }, "Not recorded: run with ", h("code", {}, option), "."));
+
+function section(id, title, lead, ...content) {
+  const known = content.flat().filter(Boolean);
+  return known.length ? h("section", { id }, h("h2", {}, title), lead ? h("p", { class: "lead" }, lead) : null, known) : null;
+}
+
+const sections = [
+  overview(runs),
+  section("comparison", "Comparison", null, means(runs), figures(ipc), deltas(runs, data.metric_docs)),
+  section("bounds", "How near to the limits", "Each resource against the most it could do in the time the run took. The highest is the one to look at first.", bounds(runs)),
+  section("stalls", "Where the time goes", "The largest reasons why a scheduler issued nothing, as shares of all scheduler cycles, with the keys that bear on them.", stalls(runs), figures(cpiStack)),
+  section("instructions", "Instructions", null, figures(instructionMix, stages, ops, opLatency), missing("profile", "--profile")),
+  section("rays", "Rays and RT units", null, figures(rtUse, traversal, rtCycles, fetchMix, rayHistograms.nodes, rayHistograms.latency)),
+  section("memory", "Memory", null, figures(memoryLatency.stages, caches.l1, caches.l2, memoryLatency.spread, dram.use, dram.clocks)),
+  section("time", "Over time", null, figures(series), missing("series", "--sample CYCLES")),
+  section("source", "Source lines", "Where the cycles of schedulers went, line by line: at the instruction that issued, or at the one whose warp was nearest to issue.", source(runs) ?? missing("profile", "--profile")),
+  section("structure", "Scene and structures", null, structure(runs)),
+];
+
+document.getElementById("figures").append(...sections.filter(Boolean));
+document.getElementById("all-keys").append(keys(runs, data.key_docs));
+document.getElementById("contents").append(h("a", { href: "#overview", class: "brand" }, "Glint"), ...[...document.querySelectorAll("section > h2")].map((title) => h("a", { href: `#${title.parentElement.id}` }, title.textContent)));
+document.getElementById("footer").append(`Glint ${data.version}. `, ...runs.map((run) => h("p", {}, h("code", {}, run.data.run.command.join(" ")), ` · ${run.facts.git} · ${run.facts.compiler} · ${run.facts.started}`)));
+document.documentElement.dataset.ready = "yes"; // for tests: all of the above has run

@@ -1,0 +1,65 @@
+// Several runs: which configuration is faster on the whole, and which metrics changed most.
+// SPDX-License-Identifier: Apache-2.0
+import { csv, download, h } from "../dom.js";
+import { change, number } from "../format.js";
+import { geometricMean } from "../model.js";
+
+const kShown = 25; // rows before the rest is folded away
+const kOfTheHost = "sim_rate"; // says nothing of the machine that is simulated
+
+// Speed-up of each configuration over the first, over the workloads that both have.
+export function means(runs) {
+  const configs = [...new Set(runs.map((run) => run.configLabel))];
+  if (configs.length < 2) return null;
+  const of = (config, workload) => runs.find((run) => run.configLabel === config && run.workload === workload);
+  const rows = configs.map((config) => {
+    const pairs = runs.filter((run) => run.configLabel === config).map((run) => [of(configs[0], run.workload), run]).filter(([base]) => base);
+    return { config, workloads: pairs.length, speedup: geometricMean(pairs.map(([base, run]) => base.seconds / run.seconds)), ipc: geometricMean(pairs.map(([, run]) => run.ipc)) };
+  });
+  const head = ["Configuration", "Workloads", "Speed-up", "IPC"];
+  return h(
+    "div",
+    { class: "scroll" },
+    h("table", { class: "facts", id: "means" }, h("caption", {}, `Geometric means over the workloads shared with ${configs[0]}; time counts, not cycles`), h("thead", {}, h("tr", {}, head.map((name, i) => h("th", { scope: "col", class: i ? "n" : null }, name)))),
+      h("tbody", {}, rows.map((row) => h("tr", {}, h("th", { scope: "row" }, row.config), h("td", { class: "n" }, number(row.workloads)), h("td", { class: "n", "data-value": row.speedup }, row.speedup === null ? "–" : `${row.speedup.toFixed(3)}×`), h("td", { class: "n", "data-value": row.ipc }, row.ipc === null ? "–" : row.ipc.toFixed(3)))))),
+  );
+}
+
+// What each run is held against: the first run of its workload; without such runs, the first of all.
+function pairsOf(runs) {
+  const first = (run) => runs.find((one) => one.workload === run.workload && one.size === run.size && one.facts.samples === run.facts.samples);
+  const pairs = runs.map((run) => [first(run), run]).filter(([base, run]) => base !== run);
+  return pairs.length ? pairs : runs.slice(1).map((run) => [runs[0], run]);
+}
+
+function changeOf(base, run, name) {
+  const [was, is] = [base.metric(name), run.metric(name)];
+  return was === null || is === null ? null : was === is ? 1 : is / was;
+}
+
+// Metrics by the largest change of any pair.
+export function deltas(runs, docs) {
+  if (runs.length < 2) return null;
+  const pairs = pairsOf(runs);
+  const bases = [...new Set(pairs.map(([base]) => base))];
+  const one = bases.length === 1 ? bases[0] : null;
+  const rows = docs
+    .filter((doc) => doc.known && doc.name !== kOfTheHost)
+    .map((doc) => {
+      const ratios = pairs.map(([base, run]) => changeOf(base, run, doc.name));
+      return { doc, ratios, size: Math.max(0, ...ratios.map((r) => (r === null ? 0 : Math.abs(Math.log(Math.abs(r)))))) };
+    })
+    .filter((row) => row.ratios.some((r) => r !== null))
+    .sort((a, b) => b.size - a.size);
+  const tone = (r) => (r === null || r === 1 ? "n same" : "n moved");
+  const value = (run, doc) => h("td", { class: "n", "data-value": run.metric(doc.name) }, number(run.metric(doc.name)));
+  const line = ({ doc, ratios }, i) =>
+    h("tr", { class: i >= kShown ? "folded" : null }, h("th", { scope: "row", title: doc.doc }, h("code", {}, doc.name)), h("td", { class: "u" }, doc.unit), one ? value(one, doc) : null, pairs.map(([, run], k) => [value(run, doc), h("td", { class: tone(ratios[k]) }, ratios[k] === Infinity ? "new" : change(ratios[k]))]).flat());
+  const head = h("tr", {}, h("th", { scope: "col" }, "Metric"), h("th", { scope: "col" }, "Unit"), one ? h("th", { scope: "col", class: "n" }, one.label) : null, pairs.map(([base, run]) => h("th", { scope: "col", class: "n", colspan: 2 }, run.label, one ? null : h("small", {}, `against ${base.label}`))));
+  const table = h("table", { class: pairs.length === 1 ? "deltas pair" : "deltas" }, h("thead", {}, head), h("tbody", {}, rows.map(line)));
+  const columns = ["metric", "unit", ...pairs.flatMap(([base, run]) => [base.label, run.label, "ratio"])];
+  const save = () => download("changes.csv", "text/csv", csv(columns, rows.map(({ doc, ratios }) => [doc.name, doc.unit, ...pairs.flatMap(([base, run], k) => [base.metric(doc.name), run.metric(doc.name), ratios[k]])])));
+  const unfold = h("button", { type: "button", onclick: () => { table.classList.add("whole"); unfold.remove(); } }, `All ${rows.length} metrics`);
+  const note = one ? `Metrics by their relative change against ${one.label}.` : "Metrics by their relative change, each run against the first of its workload.";
+  return h("figure", { id: "deltas", class: "wide" }, h("h3", {}, "What changed most"), h("p", { class: "note" }, note), h("div", { class: "scroll" }, table), h("figcaption", {}, rows.length > kShown ? unfold : null, h("button", { type: "button", onclick: save }, "CSV")));
+}

@@ -1,0 +1,96 @@
+// The head of the page: which run, its picture, its key numbers.
+// SPDX-License-Identifier: Apache-2.0
+import { h } from "../dom.js";
+import { bytes, duration, number, percent, short } from "../format.js";
+import { ratio } from "../model.js";
+import { runColour } from "../theme.js";
+
+// name, value, what it is, the statistic behind it. The value of a key number carries the exact one for machines.
+const kNumbers = [
+  { name: "Cycles", value: (run) => run.cycles, text: number, sub: (run) => `${duration(run.seconds)} at ${number(run.config("clock_mhz"))} MHz`, stat: "gpu.cycles" },
+  { name: "IPC", value: (run) => run.ipc, text: (v) => v?.toFixed(2) ?? "–", sub: (run) => `${number(run.sum("gpu.core[*].instructions"))} warp instructions`, stat: "gpu.core[*].instructions / gpu.cycles" },
+  { name: "SIMT efficiency", value: (run) => run.metric("simt_efficiency"), text: (v) => percent(v), sub: () => "of 32 lanes execute", stat: "simt_efficiency" },
+  { name: "Rays", value: (run) => run.metric("rays_total"), text: number, sub: (run) => `${short(run.metric("rays_total") / run.seconds)} rays/s`, stat: "gpu.rt_unit[*].rt.rays", rays: true },
+  { name: "Nodes a ray", value: (run) => run.metric("avg_nodes_per_ray"), text: (v) => v?.toFixed(1) ?? "–", sub: (run) => `depth ${number(run.metric("bvh_depth"))}, at most ${number(run.metric("max_nodes_per_ray"))}`, stat: "avg_nodes_per_ray", rays: true },
+  { name: "RT-unit occupancy", value: (run) => run.metric("rt_occupancy"), text: (v) => percent(v), sub: (run) => `of ${run.config("rt.warps")} warp slots a unit`, stat: "rt_occupancy", rays: true },
+  { name: "L1 hits", value: (run) => hits(run, "core[*].l1"), text: (v) => percent(v), sub: (run) => `${short(run.metric("l1d_accesses"))} accesses`, stat: "l1 hits / reads" },
+  { name: "L2 hits", value: (run) => hits(run, "partition[*].l2"), text: (v) => percent(v), sub: (run) => `${short(run.metric("l2_accesses"))} accesses`, stat: "l2 hits / reads" },
+  { name: "DRAM utilisation", value: (run) => run.metric("dram_util"), text: (v) => percent(v), sub: (run) => `of ${short(run.facts.memory_peaks?.dram_bytes_per_second ?? null)}B/s`, stat: "dram_util" },
+];
+
+function hits(run, cache) {
+  const all = () => true;
+  return ratio(run.part(`gpu.memory.${cache}.hits`, all), run.part(`gpu.memory.${cache}.reads`, all));
+}
+
+function about(run) {
+  const { facts } = run;
+  const words = [facts.config.name, run.size, facts.samples ? `${facts.samples} spp` : ""];
+  const changed = Object.keys(run.changes).length;
+  if (changed) words.push(`${changed} ${changed === 1 ? "key" : "keys"} changed`);
+  return words.filter(Boolean).join(" · ");
+}
+
+const numbersOf = (runs) => kNumbers.filter((one) => !one.rays || runs.some((run) => run.metric("rays_total")));
+
+function single(run) {
+  const { facts } = run;
+  const picture = run.data.picture ? h("img", { class: "picture", src: run.data.picture, alt: `Picture of ${run.workload}` }) : null;
+  const numbers = numbersOf([run]).map((one) => h("div", { class: "number" }, h("dt", {}, one.name), h("dd", { "data-stat": one.stat, "data-value": one.value(run) }, one.text(one.value(run))), h("dd", { class: "sub" }, one.sub(run))));
+  const details = [facts.scene.note, facts.residency ? `${facts.residency.warps} warps fit a core, limited by ${facts.residency.limit}.` : ""].filter(Boolean).join(" ");
+  return [
+    h("header", { class: "hero" }, h("p", { class: "kicker" }, "Glint report"), h("h1", {}, run.workload), h("p", { class: "about" }, about(run))),
+    h("div", { class: picture ? "key with-picture" : "key" }, picture, h("dl", { class: "numbers" }, numbers)),
+    details ? h("p", { class: "note" }, details) : null,
+  ];
+}
+
+function several(runs) {
+  const numbers = numbersOf(runs);
+  const best = (one) => Math.max(...runs.map((run) => one.value(run) ?? -Infinity));
+  const row = (run) =>
+    h(
+      "tr",
+      {},
+      h("td", { class: "thumb" }, run.data.picture ? h("img", { src: run.data.picture, alt: "" }) : null),
+      h("th", { scope: "row", title: run.data.directory }, h("span", { class: "dot", style: `background:var(--${runColour(run.index)})` }), run.label, h("small", {}, about(run))),
+      numbers.map((one) => h("td", { class: "n", "data-stat": one.stat, "data-value": one.value(run), "data-best": one.value(run) === best(one) }, one.text(one.value(run)))),
+    );
+  return [
+    h("header", { class: "hero" }, h("p", { class: "kicker" }, "Glint report"), h("h1", {}, `${runs.length} runs`), h("p", { class: "about" }, [...new Set(runs.map((run) => run.workload))].join(", "))),
+    h("div", { class: "scroll" }, h("table", { class: "runs" }, h("thead", {}, h("tr", {}, h("th", {}), h("th", { scope: "col" }, "Run"), numbers.map((one) => h("th", { scope: "col", class: "n" }, one.name)))), h("tbody", {}, runs.map(row)))),
+  ];
+}
+
+export function overview(runs) {
+  return h("section", { id: "overview" }, runs.length === 1 ? single(runs[0]) : several(runs));
+}
+
+// Scene and structures: one column a run.
+const kFacts = [
+  ["Triangles", (run) => number(run.metric("triangles"))],
+  ["Procedural primitives", (run) => number(run.metric("procedurals"))],
+  ["Bottom-level structures", (run) => number(run.metric("blas_count"))],
+  ["Instances", (run) => number(run.metric("instances"))],
+  ["Size of all structures", (run) => bytes(run.metric("bvh_bytes"))],
+  ["Depth of the top level", (run) => number(run.metric("tlas_depth"))],
+  ["Deepest path, both levels", (run) => number(run.metric("bvh_depth"))],
+  ["Node format", (run) => String(run.config("bvh.format") ?? "–")],
+  ["Internal nodes of those visited", (run) => percent(run.metric("%internal") / 100)],
+  ["Instance leaves", (run) => percent(run.metric("%tlas_leaf") / 100)],
+  ["Primitive leaves", (run) => percent(run.metric("%leaf") / 100)],
+  ["Rays for the closest hit", (run) => number(run.metric("rays_closest"))],
+  ["Rays for any hit", (run) => number(run.metric("rays_any"))],
+  ["Box tests", (run) => number(run.metric("box_tests"))],
+  ["Triangle tests", (run) => number(run.metric("tri_tests"))],
+  ["Closest-hit shaders", (run) => number(run.metric("n_chit"))],
+  ["Miss shaders", (run) => number(run.metric("n_miss"))],
+  ["Any-hit shaders", (run) => number(run.metric("n_anyhit"))],
+  ["Intersection shaders", (run) => number(run.metric("n_intersection"))],
+];
+
+export function structure(runs) {
+  if (!runs.some((run) => run.facts.structures)) return null;
+  const head = runs.length > 1 ? h("thead", {}, h("tr", {}, h("th", {}), runs.map((run) => h("th", { scope: "col", class: "n" }, run.label)))) : null;
+  return h("div", { class: "scroll" }, h("table", { class: "facts" }, head, h("tbody", {}, kFacts.map(([name, text]) => h("tr", {}, h("th", { scope: "row" }, name), runs.map((run) => h("td", { class: "n" }, text(run))))))));
+}
