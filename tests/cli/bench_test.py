@@ -88,7 +88,7 @@ class Bench(BenchTest):
         self.glint(0, "run", "WKND_PT", *SMALL, "--out", "out")
         lines = [line.split() for line in self.glint(0, "stats", "out", "--format", "metrics").stdout.splitlines()]
         self.assertEqual(len(lines), 87)
-        self.assertEqual({line[0] for line in lines if line[1] == "-"}, {"rt_store_q_max", "rt_store_cycles", "acc_structure", "acc_prim_leaf"})
+        self.assertEqual({line[0] for line in lines if line[1] == "-"}, {"rt_store_q_max", "rt_store_cycles"})
         peer = self.glint(0, "stats", "out", "--format", "vulkan-sim").stdout
         self.assertRegex(peer, r"(?m)^rt_avg_nodes_per_ray = \d")
         missing = re.findall(r"(?m)^# (\S+): nothing to divide", peer)
