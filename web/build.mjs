@@ -16,6 +16,9 @@ ${read("node_modules/echarts/NOTICE").trim()}
 Contains ZRender ${version("zrender")} (BSD 3-Clause):
 ${read("node_modules/zrender/LICENSE").trim()}
 
+Contains parts of d3 (BSD 3-Clause), as ECharts says:
+${read("node_modules/echarts/licenses/LICENSE-d3").trim()}
+
 Contains tslib ${version("tslib")} (0BSD): Copyright (c) Microsoft Corporation.
 */`;
 

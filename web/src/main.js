@@ -24,14 +24,20 @@ import { keys } from "./sections/keys.js";
 import { overview, structure } from "./sections/overview.js";
 import { source } from "./sections/source.js";
 import { stalls } from "./sections/stalls.js";
+import { kMaxColours } from "./theme.js";
 
 const data = JSON.parse(document.getElementById("data").textContent);
 const docs = { ...data.stat_docs, keys: data.key_docs };
 const runs = labelRuns(data.runs.map((run, index) => new Run(run, index, docs)));
 
-// The figures that these runs have data for.
+// The figures that these runs have data for. Where a run is a colour, only so many runs as there are colours.
 const figures = (...list) => {
-  const drawn = list.map(({ info, make }) => [info, make(runs)]).filter(([, chart]) => chart).map(([info, chart]) => figure({ ...info, note: typeof info.note === "function" ? info.note(runs) : info.note }, chart));
+  const drawn = list.map(({ info, make }) => {
+    const shown = info.coloured ? runs.slice(0, kMaxColours) : runs;
+    const chart = make(shown);
+    const note = [typeof info.note === "function" ? info.note(shown) : info.note, shown.length < runs.length ? `The first ${shown.length} runs.` : ""].join(" ");
+    return chart ? figure({ ...info, note }, chart) : null;
+  }).filter(Boolean);
   return drawn.length ? h("div", { class: "figures" }, drawn) : null;
 };
 const missing = (what, option) => (runs.some((run) => run.data[what]) ? null : h("p", { class: "note" }, "Not recorded: run with ", h("code", {}, option), "."));

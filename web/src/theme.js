@@ -12,6 +12,7 @@ const kSchemes = {
 const kFont = 'system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
 
 const kRunColours = ["blue", "orange", "green", "pink", "sky", "red", "yellow", "dark"];
+export const kMaxColours = kRunColours.length;
 export const runColour = (index) => kRunColours[index % kRunColours.length];
 
 const darkScheme = window.matchMedia("(prefers-color-scheme: dark)");

@@ -30,7 +30,7 @@ export const stages = {
 };
 
 export const spread = {
-  info: { id: "miss-latency", title: "Latency of L1 misses", note: (runs) => (runs.length > 1 ? "Share of the reads that did not hit." : "Share of the reads that each level answered.") },
+  info: { id: "miss-latency", coloured: true, title: "Latency of L1 misses", note: (runs) => (runs.length > 1 ? "Share of the reads that did not hit." : "Share of the reads that each level answered.") },
   make: (runs) => {
     const one = runs.length === 1;
     const series = one

@@ -7,7 +7,7 @@ import { runColour } from "../theme.js";
 const kShown = 12;
 
 export const info = {
-  id: "op-latency",
+  id: "op-latency", coloured: true,
   title: "Latency by op",
   note: "Mean cycles from issue to completion of accesses that went to the L1 and of traces, those with the largest sum first.",
 };

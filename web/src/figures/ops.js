@@ -7,7 +7,7 @@ import { runColour } from "../theme.js";
 const kShown = 12;
 
 export const info = {
-  id: "ops",
+  id: "ops", coloured: true,
   title: "Instructions by op",
   note: (runs) =>
     runs.filter((run) => run.data.profile).length > 1

@@ -6,6 +6,7 @@ import { ratio } from "../model.js";
 import { runColour } from "../theme.js";
 
 const kSectorBytes = 32;
+const kMaxBars = 4; // runs; more are rows of a table
 
 function starts(run, tests, unit) {
   const cycles = run.sum("gpu.rt_unit[*].rt.unit_cycles");
@@ -29,8 +30,16 @@ const kBounds = [
 
 export function bounds(runs) {
   const rows = kBounds.map(([name, doc, value]) => ({ name, doc, values: runs.map(value) })).filter((row) => row.values.some((value) => value > 0));
+  if (runs.length > kMaxBars) return table(runs, rows);
   const most = Math.max(...rows.flatMap((row) => row.values));
   const bar = (value, run) =>
     h("div", { class: "bar" }, h("span", { class: "track" }, h("span", { class: runs.length === 1 && value === most ? "fill most" : "fill", style: `width:${Math.min(100, 100 * (value ?? 0)).toFixed(2)}%;${runs.length > 1 ? `background:var(--${runColour(run.index)})` : ""}` })), h("span", { class: "n", "data-value": value }, percent(value)));
   return h("div", { class: "bounds" }, rows.map((row) => h("div", { class: "bound" }, h("div", { class: "what" }, h("b", {}, row.name), h("small", {}, row.doc)), h("div", { class: "bars" }, runs.map((run, i) => bar(row.values[i], run))))));
+}
+
+// A row a run; the nearer to the limit, the darker.
+function table(runs, rows) {
+  const cell = (value) => h("td", { class: "n", "data-value": value, style: `background:color-mix(in srgb, var(--orange) ${Math.round(70 * Math.min(1, value ?? 0))}%, transparent)` }, percent(value));
+  const head = h("tr", {}, h("th", { scope: "col" }, "Run"), rows.map((row) => h("th", { scope: "col", class: "n", title: row.doc }, row.name)));
+  return h("div", { class: "scroll" }, h("table", { class: "shaded" }, h("thead", {}, head), h("tbody", {}, runs.map((run, i) => h("tr", {}, h("th", { scope: "row" }, run.label), rows.map((row) => cell(row.values[i])))))));
 }

@@ -11,9 +11,10 @@ const kOfTheHost = "sim_rate"; // says nothing of the machine that is simulated
 export function means(runs) {
   const configs = [...new Set(runs.map((run) => run.configLabel))];
   if (configs.length < 2) return null;
+  const workloads = [...new Set(runs.map((run) => run.workload))];
   const of = (config, workload) => runs.find((run) => run.configLabel === config && run.workload === workload);
   const rows = configs.map((config) => {
-    const pairs = runs.filter((run) => run.configLabel === config).map((run) => [of(configs[0], run.workload), run]).filter(([base]) => base);
+    const pairs = workloads.map((workload) => [of(configs[0], workload), of(config, workload)]).filter(([base, run]) => base && run);
     return { config, workloads: pairs.length, speedup: geometricMean(pairs.map(([base, run]) => base.seconds / run.seconds)), ipc: geometricMean(pairs.map(([, run]) => run.ipc)) };
   });
   const head = ["Configuration", "Workloads", "Speed-up", "IPC"];

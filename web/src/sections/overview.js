@@ -33,9 +33,18 @@ function about(run) {
 
 const numbersOf = (runs) => kNumbers.filter((one) => !one.rays || runs.some((run) => run.metric("rays_total")));
 
+const kPictureWidth = 288; // as in report.css
+
+// Small pictures grow by whole factors, so that every pixel is a square.
+function pictureOf(run) {
+  if (!run.data.picture) return null;
+  const factor = Math.floor(kPictureWidth / run.facts.width);
+  return h("img", { class: factor ? "picture pixels" : "picture", style: factor ? `width:${factor * run.facts.width}px` : null, src: run.data.picture, alt: `Picture of ${run.workload}` });
+}
+
 function single(run) {
   const { facts } = run;
-  const picture = run.data.picture ? h("img", { class: "picture", src: run.data.picture, alt: `Picture of ${run.workload}` }) : null;
+  const picture = pictureOf(run);
   const numbers = numbersOf([run]).map((one) => h("div", { class: "number" }, h("dt", {}, one.name), h("dd", { "data-stat": one.stat, "data-value": one.value(run) }, one.text(one.value(run))), h("dd", { class: "sub" }, one.sub(run))));
   const details = [facts.scene.note, facts.residency ? `${facts.residency.warps} warps fit a core, limited by ${facts.residency.limit}.` : ""].filter(Boolean).join(" ");
   return [
