@@ -32,6 +32,7 @@ CoreCell::CoreCell(const Params& params, const Context& context)
       scoreboards_(num_slots_),
       front_(num_slots_),
       outstanding_(num_slots_),
+      stored_(num_slots_),
       fence_(num_slots_),
       home_(num_slots_),
       warps_per_block_(executor_.warps_per_block()),
@@ -39,6 +40,7 @@ CoreCell::CoreCell(const Params& params, const Context& context)
       line_(num_slots_),
       waits_for_line_(num_slots_),
       constant_(num_slots_),
+      sequence_(num_slots_),
       rays_issued_(num_slots_),
       rays_pc_(num_slots_),
       stats_(context.parent, context.name),
@@ -110,10 +112,12 @@ void CoreCell::launch_warp(Resident& home, uint32_t warp_in_block, Cycle ready) 
   executor_.start(warps_[slot], home.block, warp_in_block, seat_);
   home_[slot] = &home;
   fence_[slot] = 0;
+  stored_[slot] = false;
   scoreboards_[slot].reset();
   line_[slot] = InstructionFetch::kNone;
   waits_for_line_[slot] = false;
   front_[slot] = {ready, Stall::Dispatch};
+  sequence_[slot] = {params_.prologue.instructions + (world_.shared_bytes > 0 ? params_.prologue.shared_instructions : 0)};
   scheduler.resident |= uint64_t{1} << local;
   scheduler.age[local] = num_launched_++;
   ++num_resident_;

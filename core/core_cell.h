@@ -126,6 +126,9 @@ class CoreCell final : public Cell {
   void read_banks(SchedulerState& scheduler, uint32_t pc, Cycle now);
   Scoreboard::Ready operands_ready(uint32_t slot, const IssueRow& row) const;
   void issue(SchedulerState& scheduler, uint32_t local, Cycle now);
+  void start_sequence(uint32_t slot, const IssueRow& row, uint32_t pc, Cycle now);
+  void issue_rest(SchedulerState& scheduler, uint32_t slot, Cycle now);
+  void refresh_sequence(SchedulerState& scheduler, uint32_t slot);
   void count(const IssueRow& row, const Issued& issued);
   void count_access(const isa::OpRow& op);
   bool start_access(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now);
@@ -171,6 +174,7 @@ class CoreCell final : public Cell {
   std::vector<Scoreboard> scoreboards_;
   std::vector<Scoreboard::Ready> front_;   // a slot: before this the warp issues nothing, whatever the registers
   std::vector<uint32_t> outstanding_;      // a slot: accesses in flight
+  std::vector<uint8_t> stored_;            // a slot: whether there was a store to global memory since the last fence among cores
   std::vector<Cycle> fence_;               // a slot: latency of the fence that waits for them; 0: none
   std::vector<Resident*> home_;            // a slot: the block of its warp
   std::vector<std::unique_ptr<Resident>> residents_;
@@ -184,6 +188,12 @@ class CoreCell final : public Cell {
     Cycle issued = 0, latency = 0;         // of a hit
   };
   std::vector<ConstantLoad> constant_;     // a slot: its last one
+  static constexpr uint32_t kPrologue = ~0u;
+  struct Sequence {
+    uint32_t left = 0, pc = kPrologue;     // instructions still to issue; of the op that they make up
+    Cycle step = 1, last = 1;              // cycles between them; from the last one to the result
+  };
+  std::vector<Sequence> sequence_;         // a slot
   Cycle now_ = 0;                          // of the present step or launch
   Cycle block_start_ = 0;                  // of the block launched last
   Cycle barrier_free_ = 0;                 // of the core's barrier unit

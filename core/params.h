@@ -85,6 +85,7 @@ struct LsuParams {
   bool bank_conflicts = false;
   // Same paper, table 2: the registers of a load may be overwritten 11 cycles after it, of one from shared memory 9.
   uint32_t war_latency = 11, shared_war_latency = 9;
+  uint32_t atomic_latency = 0;     // an H200: 204; 0: what other parts take is unpublished
   static constexpr auto params() {
     return std::tuple{
         param(&LsuParams::queue, "queue", "instruction",
@@ -100,7 +101,9 @@ struct LsuParams {
             "An access to global memory takes a cycle for each different word in the fullest of 32 banks of 4 bytes."),
         param(&LsuParams::war_latency, "war_latency", "cycle",
             "From a memory instruction to the first that may overwrite its sources, if it does not wait in its queue; 0: they are read at issue.", 0, 1000),
-        param(&LsuParams::shared_war_latency, "shared_war_latency", "cycle", "The same of shared memory.", 0, 1000)};
+        param(&LsuParams::shared_war_latency, "shared_war_latency", "cycle", "The same of shared memory.", 0, 1000),
+        param(&LsuParams::atomic_latency, "atomic_latency", "cycle",
+            "Longer than a load that an atomic on global memory takes to its registers.", 0, 10000)};
   }
 };
 
@@ -150,10 +153,24 @@ struct SharedParams {
 // have been answered or taken by the L1, whose queue keeps their order, and then for this time.
 struct FenceParams {
   uint32_t block = 36, gpu = 289, system = 1055;
+  uint32_t acknowledgement = 0;  // an H200: 286; 0: stores are done when they have left their core
   static constexpr auto params() {
     return std::tuple{param(&FenceParams::block, "block", "cycle", "membar.cta, after the warp's last access.", 1, 60000),
                       param(&FenceParams::gpu, "gpu", "cycle", "membar.gl, after the warp's last access.", 1, 60000),
-                      param(&FenceParams::system, "system", "cycle", "membar.sys, after the warp's last access.", 1, 60000)};
+                      param(&FenceParams::system, "system", "cycle", "membar.sys, after the warp's last access.", 1, 60000),
+                      param(&FenceParams::acknowledgement, "acknowledgement", "cycle", "Longer that membar.gl takes behind a store to global memory.", 0, 60000)};
+  }
+};
+
+// Instructions that hardware executes before a kernel's own. An H200 has 2 (stack pointer and descriptor of global memory,
+// read from constants) and 3 more in kernels with shared memory (where its window lies): so the executed instructions of
+// five kernels of 19 to 155 come out exactly. 0 here: shaders of other parts have what they need in their code.
+struct PrologueParams {
+  uint32_t instructions = 0, shared_instructions = 0;
+  static constexpr auto params() {
+    return std::tuple{
+        param(&PrologueParams::instructions, "instructions", "instruction", "Issue slots of each warp before its first instruction.", 0, 1000),
+        param(&PrologueParams::shared_instructions, "shared_instructions", "instruction", "More of them where the launch has shared memory.", 0, 1000)};
   }
 };
 
@@ -179,6 +196,8 @@ struct Params {
   TextureParams texture;
   SharedParams shared;
   FenceParams fence;
+  PrologueParams prologue;
+  bool ends_when_written = false;  // hardware: true; false: the launch ends when its last write has left its core
   uint32_t launch_latency = 5000;  // Vulkan-Sim, -gpgpu_kernel_launch_latency
   uint32_t warp_launch_latency = 0;
   uint32_t block_interval = 1;     // GPGPU-Sim and Accel-Sim: a core takes one block a cycle (issue_block2core)
@@ -206,8 +225,10 @@ struct Params {
         section(&Params::texture, "texture", "Texture unit."),
         section(&Params::shared, "shared", "Shared memory: 32 banks of 4 bytes."),
         section(&Params::fence, "fence", "Memory fences."),
+        section(&Params::prologue, "prologue", "What each warp executes before its first instruction."),
         param(&Params::launch_latency, "launch_latency", "cycle",
             "From the launch to the first instruction.", 0, 1'000'000),
+        flag(&Params::ends_when_written, "ends_when_written", "The launch ends when its last write is in the L2, not when it has left its core."),
         param(&Params::warp_launch_latency, "warp_launch_latency", "cycle",
             "From taking a warp slot to the first instruction.", 0, 100'000),
         param(&Params::block_interval, "block_interval", "cycle", "Between two blocks that start on a core.", 0, 10'000),

@@ -91,6 +91,7 @@ void CoreCell::read_banks(SchedulerState& scheduler, uint32_t pc, Cycle now) {
 
 void CoreCell::issue(SchedulerState& scheduler, uint32_t local, Cycle now) {
   const uint32_t slot = local * params_.schedulers + scheduler.index;
+  if (sequence_[slot].left > 0) return issue_rest(scheduler, slot, now);
   WarpContext& warp = warps_[slot];
   const IssueRow& row = table_.row(warp.simt.pc);
   const Issued issued = executor_.execute(warp, now);
@@ -101,7 +102,7 @@ void CoreCell::issue(SchedulerState& scheduler, uint32_t local, Cycle now) {
   ++progress_;
   count(row, issued);
   if (profile_) profile_->issue(scheduler.index, issued.pc, num_lanes(issued.lanes));
-  if (row.pipe != Pipe::Memory) scheduler.pipe_free[size_t(row.pipe)] = now + row.interval;
+  if (row.pipe != Pipe::Memory) scheduler.occupy(row.pipe, now, row.interval);
   if (params_.register_file.banks) read_banks(scheduler, issued.pc, now);
   const Cycle done = now + row.latency;
   front_[slot] = {now + 1, Stall::RawFixed};
@@ -111,8 +112,9 @@ void CoreCell::issue(SchedulerState& scheduler, uint32_t local, Cycle now) {
         start_constant(scheduler, slot, row, issued, now);
         break;
       }
-      scoreboards_[slot].set(table_.defs(row), {done, row.wait}, row.alternates ? Pipe::Count : row.pipe);
       stats_.latency.add(row.klass, row.latency);
+      if (row.is_sequence) start_sequence(slot, row, issued.pc, now);
+      else scoreboards_[slot].set(table_.defs(row), {done, row.wait}, row.alternates ? Pipe::Count : row.pipe);
       break;
     case Finish::Control:
       front_[slot] = {done, row.wait};
@@ -169,10 +171,13 @@ void CoreCell::pass_barrier(const Block& block, Cycle at) {
 }
 
 // A fence among cores lasts until they see what came before it, however short its latency.
+// Model: one of the whole system takes longer than any acknowledgement anyway.
 void CoreCell::start_fence(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now) {
   ++stats_.fences;
   const bool waits = outstanding_[slot] > 0, among_cores = isa::FenceScope(issued.row->detail) > isa::FenceScope::Block;
-  const Cycle latency = std::max<Cycle>(row.latency, among_cores && turn_ ? turn_end(now) - now : 0);
+  const bool acknowledged = stored_[slot] && isa::FenceScope(issued.row->detail) == isa::FenceScope::Gpu;
+  const Cycle latency = std::max<Cycle>(row.latency + (acknowledged ? params_.fence.acknowledgement : 0), among_cores && turn_ ? turn_end(now) - now : 0);
+  stored_[slot] = stored_[slot] && !among_cores;
   fence_[slot] = waits ? latency : 0;
   front_[slot] = {waits ? kNever : now + latency, Stall::Fence};
 }
@@ -265,6 +270,7 @@ void CoreCell::refresh(uint32_t slot) {
   if (code_ && code_->fetch) come_to_line(slot);
   SchedulerState& scheduler = scheduler_of(slot);
   const uint32_t local = slot / params_.schedulers;
+  if (sequence_[slot].left > 0) return refresh_sequence(scheduler, slot);
   const IssueRow& row = table_.row(warps_[slot].simt.pc);
   const Scoreboard::Ready ready = operands_ready(slot, row);
   scheduler.ready_at[local] = ready.at;

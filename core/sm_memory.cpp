@@ -47,6 +47,7 @@ bool CoreCell::start_access(uint32_t slot, const IssueRow& row, const Issued& is
   collect_lines(access, issued);
   // red: nobody waits for an answer.
   access.write |= issued.row->effect == Effect::Atomic && row.num_defs == 0;
+  stored_[slot] |= access.write && !access.lines.lines().empty();
   if (row.finish == Finish::Memory && war_latency(access) > 0) scoreboards_[slot].hold(table_.sources(row));
   ++outstanding_[slot];
   if (row.finish == Finish::CallRecord)
@@ -139,7 +140,8 @@ void CoreCell::complete(uint32_t access_id, Cycle now) {
     // The branch itself was resolved long ago, or now.
     front_[slot] = {std::max(now, access.issued + row.latency), Stall::Call};
   } else if (!access.write) {
-    scoreboards_[slot].set(table_.defs(row), {std::max(now, access.late_until), row.wait});
+    const Cycle late = access.traffic == mem::Traffic::ShaderAtomic && !access.lines.lines().empty() ? params_.lsu.atomic_latency : 0;
+    scoreboards_[slot].set(table_.defs(row), {std::max(now + late, access.late_until), row.wait});
   }
   lsu_.release(access_id);
   --outstanding_[slot];

@@ -21,7 +21,8 @@ struct SchedulerState {
   std::array<Pipe, kMaxWarpsPerScheduler> pipe{};           // of its next instruction
   uint64_t needs_lsu = 0, needs_tex = 0, needs_rt = 0;                     // its next instruction goes through that door
   std::array<uint64_t, kMaxWarpsPerScheduler> age{};        // launch number
-  std::array<Cycle, kNumPipes> pipe_free{};
+  std::array<Cycle, kNumPipes> pipe_free{};                 // first cycle in which another instruction can go there
+  std::array<Cycle, kNumPipes> pipe_busy{};                 // the same to parts of a cycle
   std::array<Cycle, kMaxRegisterBanks> bank_free{};         // of the register file: its port
 
   // Until `sleep_until` no warp can issue and the reason stays, unless something wakes the scheduler, or a door that
@@ -34,6 +35,14 @@ struct SchedulerState {
   std::unique_ptr<IssueScheduler> policy;
 
   void wake() { sleep_until = 0; }
+  // An instruction goes to a pipe that is free. Intervals that are no whole cycles are kept on average: one begins where
+  // the last one ended, within the cycle, if the pipe has not been idle since.
+  void occupy(Pipe at, Cycle now, Cycle parts) {
+    constexpr Cycle kParts = OpTime::kParts;
+    Cycle& busy = pipe_busy[size_t(at)];
+    busy = (pipe_free[size_t(at)] == now ? busy : now * kParts) + parts;
+    pipe_free[size_t(at)] = (busy + kParts - 1) / kParts;
+  }
 };
 
 }  // namespace glint::core

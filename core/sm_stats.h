@@ -30,6 +30,8 @@ struct CoreStats : stats::Group {
   stats::Counter blocks{this, "blocks", "block", "Blocks launched on this core."};
   stats::Counter warps{this, "warps", "warp", "Warps launched on this core."};
   stats::Counter instructions{this, "instructions", "instruction", "Warp instructions issued."};
+  stats::Counter sequence_slots{this, "sequence_slots", "instruction",
+      "Further instructions of the part where one of the ISA stands for several, and those before a kernel's own."};
   stats::Counter lane_instructions{this, "lane_instructions", "instruction", "Lanes that executed them, summed."};
   stats::Counter lane_slots{this, "lane_slots", "lane", "32 for each warp instruction."};
   stats::Ratio ipc{this, "ipc", "instruction/cycle", instructions, cycles, "Warp instructions issued a cycle."};

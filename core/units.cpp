@@ -105,8 +105,9 @@ Stall wait_of(const isa::OpRow& row, Finish finish) {
 void take_time(IssueRow& row, const OpTime& time) {
   if (time.pipe != Unit::Count) row.pipe = pipe_of(time.pipe);
   row.latency = uint16_t(time.latency);
-  row.interval = uint16_t(time.interval);
+  row.interval = uint16_t(time.interval * OpTime::kParts);
   row.alternates = time.alternates;
+  row.is_sequence = time.issues > 1;
 }
 
 }  // namespace
@@ -160,9 +161,10 @@ IssueTable::IssueTable(const Image& image, const Params& params) {
     row.wait = wait_of(op, row.finish);
     row.is_conditional = op.effect == Effect::Branch && inst.guard != isa::kNoGuard;
     row.latency = row.finish == Finish::Fence ? fence_latency(op, params.fence) : uint16_t(unit.latency);
-    row.interval = uint16_t(unit.interval);
-    if (row.finish == Finish::Fixed)
-      if (const OpTime* time = op_times->find(op.name)) take_time(row, *time);
+    row.interval = uint16_t(unit.interval * OpTime::kParts);
+    const OpTime* time = row.finish == Finish::Fixed ? op_times->find(op.name) : nullptr;
+    if (time) take_time(row, *time);
+    issues_.push_back(uint8_t(time ? time->issues : 1));
     row.is_texture = row.finish == Finish::Memory && op.unit == Unit::Tex;
     rows_.push_back(row);
     if (params.register_file.banks) count_bank_reads(row, params.register_file);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/op_times.h"
 #include "core/params.h"
 #include "core/stall.h"
 #include "isa/op_row.h"
@@ -44,8 +45,9 @@ struct IssueRow {
   bool is_guarded : 1 = false;      // the last source is its guard
   bool alternates : 1 = false;      // OpTime::alternates
   bool is_texture : 1 = false;      // through the texture unit
+  bool is_sequence : 1 = false;     // IssueTable::issues() is more than 1
   uint16_t latency = 1;
-  uint16_t interval = 1;        // of the pipe
+  uint16_t interval = OpTime::kParts;  // of the pipe, in parts of a cycle
 };
 static_assert(sizeof(IssueRow) == 16);
 
@@ -67,6 +69,8 @@ class IssueTable {
   std::span<const uint16_t> defs(const IssueRow& row) const {
     return {registers_.data() + row.first_use + row.num_uses - row.num_defs, row.num_defs};
   }
+  // Instructions of the part that the one at `pc` stands for, where it is a sequence.
+  uint32_t issues(uint32_t pc) const { return issues_[pc]; }
   // Registers that an instruction of fixed latency reads from each bank of the register file, at most the window's cycles.
   // Empty where there are no banks.
   using BankReads = std::array<uint8_t, kMaxRegisterBanks>;
@@ -77,6 +81,7 @@ class IssueTable {
 
   std::vector<IssueRow> rows_;
   std::vector<BankReads> bank_reads_;
+  std::vector<uint8_t> issues_;
   std::vector<uint16_t> registers_;
 };
 

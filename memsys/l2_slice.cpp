@@ -100,13 +100,24 @@ void L2Slice::serve(Cycle now) {
   // Not sooner than any message: a window may be as long as the shortest of them.
   if (!links_.credits.empty()) links_.credits[packet.core]->send(index_, now + 1 + links_.reply_latency[packet.core], {uint16_t(index_)});
   busy_until_ = now + service_cycles(packet);
+  if (packet.write) written_until_ = busy_until_;
   links_.requests->pop();
 }
 
 Cycle L2Slice::service_cycles(const Packet& packet) const {
   const Cycle sectors = num_sectors(packet.sectors);
   if (is_atomic(packet)) return sectors * params_.atomic_interval;
-  return sector_cycles(packet.sectors);
+  return packet.write && params_.partial_interval ? write_cycles(packet) : sector_cycles(packet.sectors);
+}
+
+// Of a sector written in part, the slice reads what it does not write.
+Cycle L2Slice::write_cycles(const Packet& packet) const {
+  uint8_t partial = 0;
+  for (uint32_t i = 0; i < line_bytes_ / kSectorBytes; ++i) {
+    const WordMask whole = words_of_sector(i, line_bytes_);
+    if (packet.sectors >> i & 1 && (packet.words & whole) != whole) partial |= uint8_t(1u << i);
+  }
+  return sector_cycles(uint8_t(packet.sectors & ~partial)) + num_sectors(partial) * params_.partial_interval;
 }
 
 // Reads, and atomics, which need what they change.

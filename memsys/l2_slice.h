@@ -81,6 +81,7 @@ class L2Slice {
   uint64_t sectors_replied() const { return sectors_replied_; }
   uint64_t progress() const { return packets_received_ + replies_sent_; }
   bool finished() const;
+  Cycle written_until() const { return written_until_; }  // end of the last write or red
   std::string describe(bool dram_works) const;
 
  private:
@@ -101,6 +102,7 @@ class L2Slice {
   void answer_present(Cycle now, const Packet& packet, uint8_t missing);
   Reply reply_to(const Packet& packet, uint8_t sectors) const;
   Cycle service_cycles(const Packet& packet) const;
+  Cycle write_cycles(const Packet& packet) const;
   Cycle sector_cycles(uint8_t sectors) const { return (num_sectors(sectors) + params_.sectors_per_cycle - 1) / params_.sectors_per_cycle; }
   void queue_for_dram(Cycle ready, Address line, uint8_t sectors, bool write);
   void evict(Cycle now, const TagArray::Line& victim);
@@ -125,6 +127,7 @@ class L2Slice {
   Ring<HitReply> hit_replies_;
   Ring<ToDram> to_dram_;
   Cycle busy_until_ = 0;
+  Cycle written_until_ = 0;
   Cycle accounted_ = 0;
   SliceCycle blocked_ = SliceCycle::Count;  // why the head could not be served; Count: it was not tried
   uint64_t packets_received_ = 0, sectors_requested_ = 0, sectors_replied_ = 0, replies_sent_ = 0;

@@ -128,4 +128,11 @@ void MemorySystem::check_conserved() const {
   GLINT_CHECK_EQ(received, uint64_t{0});
 }
 
+Cycle MemorySystem::written_until() const {
+  Cycle end = 0;
+  for (const auto& partition : partitions_)
+    for (uint32_t i = 0; i < partition->num_slices(); ++i) end = std::max(end, partition->slice(i).written_until());
+  return end;
+}
+
 }  // namespace glint::mem

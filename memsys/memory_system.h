@@ -25,6 +25,7 @@ class MemorySystem {
   const Partition& partition(uint32_t index) const { return *partitions_[index]; }
   Partition& partition(uint32_t index) { return *partitions_[index]; }
   uint32_t num_cores() const { return uint32_t(l1s_.size()); }
+  Cycle written_until() const;            // end of the last write that reached a slice of the L2
   uint32_t num_partitions() const { return uint32_t(partitions_.size()); }
   const PartitionMap& map() const { return map_; }
 

@@ -23,7 +23,7 @@ std::vector<Balance> of_core(const core::CoreCell& core, uint64_t cycles, uint32
   const core::CoreStats& s = core.stats();
   Ledger ledger(s.name());
   ledger.equal("attributed issue slots = schedulers x cycles", s.stalls.total(), cycles * schedulers);
-  ledger.equal("slots that issued = instructions", s.stalls.count(core::Stall::Issued), s.instructions.value());
+  ledger.equal("slots that issued = instructions", s.stalls.count(core::Stall::Issued), s.instructions.value() + s.sequence_slots.value());
   uint64_t by_stage = 0;
   for (const core::StageStats* stage : s.stage) by_stage += stage->instructions.total();
   ledger.equal("instructions by stage = instructions", by_stage, s.instructions.value());

@@ -77,6 +77,7 @@ Cycle TimingMachine::run(const std::function<void(uint64_t, uint64_t)>& progress
   if (fault) throw Error(Exit::Fault, passed().with(*fault));
   Cycle end = 0;
   for (const auto& core : cores_) end = std::max(end, core->active_until());
+  if (params_.core.ends_when_written) end = std::min(std::max(end, memory_.written_until()), quiet);
   for (auto& core : cores_) core->finish(quiet);
   for (auto& unit : rt_units_) unit->finish(quiet);
   memory_.finish(quiet);

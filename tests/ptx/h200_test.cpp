@@ -80,7 +80,10 @@ class Runs {
     pipeline::TimingMachine machine(gpu_, kernel.world().world, false);
     const double cycles = double(machine.run({}));
     double instructions = 0;
-    for (uint32_t i = 0; i < machine.num_cores(); ++i) instructions += double(machine.core(i).stats().instructions.value());
+    for (uint32_t i = 0; i < machine.num_cores(); ++i) {
+      const core::CoreStats& stats = machine.core(i).stats();
+      instructions += double(stats.instructions.value() + stats.sequence_slots.value());
+    }
     const Counters& real = counters_.at(launch.empty() ? name : launch);
     const double error = cycles / real.cycles - 1;
     std::printf("%-22s cycles %8.0f of %8.0f %+6.1f %%   instructions %9.0f of %9.0f %+6.1f %%\n", (launch.empty() ? name : launch).c_str(), cycles, real.cycles,

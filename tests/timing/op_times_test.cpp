@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/op_times.h"
 
+#include <cmath>
 #include <functional>
 
 #include "isa/op_row.h"
@@ -46,6 +47,9 @@ TEST_CASE("every entry of a table of op times names an op and has times") {
       CHECK(is_first);
       CHECK(time.latency >= 1);
       CHECK(time.interval >= 1);
+      CHECK(time.interval * OpTime::kParts == std::floor(time.interval * OpTime::kParts));
+      CHECK(time.issues >= 1);
+      CHECK(time.issues <= time.latency);
     }
   }
 }
@@ -78,6 +82,88 @@ TEST_CASE("a predicate guards later than it selects") {
           c.add("setp.lt.u32", {0, reg(1), reg(2)});
           c.add("add.u32", {reg(1), reg(1), reg(3)}, 0, 0);
         }) == 10 * (13 + 5));
+}
+
+TEST_CASE("an interval of two cycles and three quarters is kept on average, to the cycle, and is not saved up") {
+  const auto products = [](int n) {
+    Code code;
+    for (int i = 0; i < n; ++i) code.add("mul.wide.u32", {reg(2 * i + 8), reg(0), reg(1)});
+    code.add("exit");
+    return OneCore(code, hopper_params(), {}).run();
+  };
+  // The last of n begins at (n - 1) * 2.75, rounded up.
+  const Cycle begin[] = {0, 3, 6, 9, 11, 14, 17, 20, 22};
+  for (int n = 2; n <= 9; ++n) CHECK(products(n) - products(1) == begin[n - 1]);
+
+  Code late;  // a chain between them: the pipe was idle, so the last two are three cycles apart again
+  late.add("mul.wide.u32", {reg(8), reg(0), reg(1)});
+  late.add("prmt.b32", {reg(4), reg(0), reg(1), reg(2)});
+  late.add("prmt.b32", {reg(5), reg(4), reg(1), reg(2)});
+  late.add("mul.wide.u32", {reg(10), reg(5), reg(1)});
+  late.add("mul.wide.u32", {reg(12), reg(0), reg(1)});
+  late.add("exit");
+  CHECK(OneCore(late, hopper_params(), {}).run() - products(1) == 1 + 4 + 5 + 3);
+}
+
+TEST_CASE("a sequence takes an issue slot for each of its instructions and ends after the op's latency") {
+  CHECK(chain(hopper_params(), [](Code& c) { c.add("div.u32", {reg(1), reg(1), reg(2)}); }) == 10 * 124 + 1);  // the last add
+
+  Code code;
+  code.add("div.u32", {reg(1), reg(2), reg(3)});
+  code.add("exit");
+  OneCore one(code, hopper_params(), {});
+  const Cycle end = one.run();
+  CHECK(one.stats().instructions.value() == 2);
+  CHECK(one.stats().sequence_slots.value() == 16);
+  CHECK(one.stats().stalls.count(Stall::Issued) == 18);
+  // The exit issues behind the last of them, 16 steps of 124 / 17 cycles after the first.
+  Code empty;
+  empty.add("exit");
+  CHECK(end - OneCore(empty, hopper_params(), {}).run() == 16 * 7 + 1);
+}
+
+TEST_CASE("the slots of a sequence are taken from the other warps of its scheduler") {
+  const auto run = [](int warps) {
+    Params params = hopper_params();
+    params.schedulers = 1;
+    Code code;
+    code.add("bfi.b32", {reg(1), reg(2), reg(3), reg(4), reg(5)});
+    code.add("exit");
+    OneCore one(code, params, {.num_warps = uint32_t(warps), .no_skip = warps % 2 == 0});
+    one.run();
+    return one.stats().stalls.count(Stall::Issued);
+  };
+  CHECK(run(1) == 5);
+  CHECK(run(4) == 20);
+}
+
+TEST_CASE("a kernel's own instructions begin behind its prologue, which is longer with shared memory") {
+  Code code;
+  code.add("exit");
+  const auto run = [&](uint32_t instructions, uint32_t shared_instructions, uint32_t shared_bytes) {
+    Params params = hopper_params();
+    params.prologue = {instructions, shared_instructions};
+    return OneCore(code, params, {.block_threads = 32, .shared_bytes = shared_bytes}).run();
+  };
+  CHECK(run(2, 3, 0) - run(0, 0, 0) == 2);
+  CHECK(run(2, 3, 64) - run(0, 0, 64) == 5);
+}
+
+TEST_CASE("sequences and prologues end in the same cycle with and without skipping") {
+  const auto run = [](bool no_skip) {
+    Params params = hopper_params();
+    params.prologue = {2, 3};
+    Code code;
+    for (int i = 0; i < 4; ++i) {
+      code.add("div.s32", {reg(1), reg(2), reg(3)});
+      code.add("mad.wide.u32", {reg(4), reg(1), reg(3), reg(4)});
+    }
+    code.add("exit");
+    OneCore one(code, params, {.num_warps = 24, .no_skip = no_skip});
+    const Cycle end = one.run();
+    return std::pair(end, one.stats().stalls.count(Stall::RawSfu));
+  };
+  CHECK(run(true) == run(false));
 }
 
 }  // namespace glint::core
