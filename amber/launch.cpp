@@ -12,6 +12,7 @@
 #include "pipeline/binding_table.h"
 #include "pipeline/description/modules.h"
 #include "pipeline/render.h"
+#include "pipeline/software_traversal.h"
 #include "pipeline/unbound.h"
 
 namespace glint::amber {
@@ -22,13 +23,14 @@ constexpr uint32_t kCallableDepth = 8;
 
 class Launch {
  public:
-  Launch(Script& script, const Command& command, const std::vector<CompiledShader>& shaders, const rt::BuildOptions& bvh)
-      : script_(script), command_(command), pipeline_(script.pipelines.at(command.pipeline)), shaders_(shaders), bvh_(bvh) {
+  Launch(Script& script, const Command& command, const std::vector<CompiledShader>& shaders, const LaunchOptions& options)
+      : script_(script), command_(command), pipeline_(script.pipelines.at(command.pipeline)), shaders_(shaders), bvh_(options.gpu.bvh) {
     world_.memory = &memory_;
     world_.constant_bank.resize(isa::kConstantBankBytes);
     world_.robust_images = world_.robust_buffers = pipeline_.is_robust || script.features.count("robustBufferAccess") != 0;
     std::vector<isa::Program> programs;
     for (const CompiledShader& shader : shaders) programs.push_back(shader.program);
+    pipeline::add_traversal(programs, options.gpu, options.cache);
     image_ = core::link(programs);
     world_.image = &image_;
     plan_parts();
@@ -36,6 +38,7 @@ class Launch {
     for (const CompiledShader& shader : shaders) pipeline::mark_unbound(world_, shader.reflection.bindings, bound_);
     if (pipeline_.is_ray_tracing) set_ray_tracing();
     else set_compute();
+    pipeline::place_records(world_, stack_need_);
   }
 
   Launched run(const LaunchOptions& options) {
@@ -86,6 +89,7 @@ class Launch {
   const Pipeline& pipeline_;
   const std::vector<CompiledShader>& shaders_;
   const rt::BuildOptions& bvh_;
+  uint32_t stack_need_ = 0;  // of the deepest structure
   mem::AddressSpace memory_;
   core::Image image_;
   core::World world_;
@@ -319,7 +323,9 @@ Address Launch::build(const std::string& top_level) {
     instances.push_back(description);
     instances.back().bottom = known->second;
   }
-  return it->second = rt::build_top(memory_, "top level " + top_level, instances, bottoms, bvh_).address;
+  const rt::StructureInfo top = rt::build_top(memory_, "top level " + top_level, instances, bottoms, bvh_);
+  stack_need_ = std::max(stack_need_, top.stack_need);
+  return it->second = top.address;
 }
 
 void Launch::bind_structures(const Binding& binding) {
@@ -339,7 +345,7 @@ void Launch::set_push_constants(const Binding& binding) {
 
 Launched launch(Script& script, const Command& command, const std::vector<CompiledShader>& shaders, const LaunchOptions& options) {
   if (command.size[0] == 0 || command.size[1] == 0 || command.size[2] == 0) return {};  // Vulkan: does nothing
-  return Launch(script, command, shaders, options.gpu.bvh).run(options);
+  return Launch(script, command, shaders, options).run(options);
 }
 
 }  // namespace glint::amber

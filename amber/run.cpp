@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "amber/expect.h"
+#include "pipeline/software_traversal.h"
 
 namespace glint::amber {
 namespace {
@@ -47,7 +48,7 @@ class Runner {
   void launch_pipeline(const Command& command) {
     auto found = compiled_.find(command.pipeline);
     if (found == compiled_.end())
-      found = compiled_.emplace(command.pipeline, compile(script_, script_.pipelines.at(command.pipeline), options_.gpu.compiler, options_.cache)).first;
+      found = compiled_.emplace(command.pipeline, compile(script_, script_.pipelines.at(command.pipeline), pipeline::compiler_for(options_.gpu), options_.cache)).first;
     try {
       const Launched launched = launch(script_, command, found->second, options_);
       keep_prints();

@@ -67,6 +67,7 @@ Issued Executor::execute(WarpContext& warp, Cycle now) {
       issued.lanes = warp.regs.exec;
       break;
   }
+  if (warp.waiting_for_rays && world_.traversal.shader != kNoShader && ok) walk_in_code(warp, pc);
   issued.finished = warp.simt.finished();
   if (ok && issued.finished) [[unlikely]]
     ok = end_warp(warp);

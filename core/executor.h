@@ -73,7 +73,8 @@ class Executor {
   const isa::OpRow& next_row(const WarpContext& warp) const { return *world_.image->rows[warp.simt.pc]; }
 
   // Runs one instruction to its end, but rt.trace, rt.resume and rq.proceed: those leave `warp.waiting_for_rays` set, the
-  // machine traverses warp.rays[lane] for the lanes that are Traversing, then calls finish_rays.
+  // machine traverses warp.rays[lane] for the lanes that are Traversing, then calls finish_rays. With World::traversal they
+  // call its program instead, like a shader, and no lane that waits is Traversing.
   // A bar.* that has to wait leaves `warp.waiting_at_barrier` set: the warp may be executed again when another warp of
   // its block has come or ended, and cleared it.
   Issued execute(WarpContext& warp, Cycle now);
@@ -167,6 +168,9 @@ class Executor {
   bool begin_queries(WarpContext& warp, const isa::Inst& inst, rt::RayState* states);
   void decide_queries(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, rt::RayState* states);
   bool call(WarpContext& warp, isa::Effect effect);
+  void walk_in_code(WarpContext& warp, uint32_t pc);
+  void take_walked_rays(WarpContext& warp);
+  uint32_t record_of_rays(const WarpContext& warp) const;
   rt::CandidateTable* table_of(TraceFrame& frame, int lane) const;
   void present_candidates(WarpContext& warp, LaneMask gathered) const;
   void count_candidates(WarpContext& warp);

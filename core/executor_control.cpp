@@ -135,6 +135,7 @@ void Executor::resume_if_empty(WarpContext& warp) {
   warp.depth = call.depth;
   warp.callables = call.callables;
   if (warp.simt.active == 0) return;
+  if (call.is_traversal) take_walked_rays(warp);
   fill_specials(warp, warp.simt.active, world_.image->shaders[call.shader]);
 }
 

@@ -12,6 +12,7 @@
 #include "core/fault.h"
 #include "core/image_view.h"
 #include "core/print_log.h"
+#include "core/traversal_record.h"
 #include "core/warp_layout.h"
 #include "isa/message.h"
 #include "isa/op_row.h"
@@ -107,7 +108,8 @@ struct World {
   uint32_t dynamic_shared_bytes = 0;       // the part of it that the launch asked for, not the program
   std::shared_ptr<const rt::AnyHitMode> any_hit;  // null: immediate
   bool nearest_first_hit = true;           // rt::TraversalRules::end_at_first_hit is its opposite
-  uint32_t local_bytes = 0;                // stack a lane
+  TraversalCode traversal;                 // without: the RT unit walks rays
+  uint32_t local_bytes = 0;                // stack a lane, and what `traversal` needs
   uint32_t max_trace_depth = 1;            // nested rt.trace (Vulkan's recursion depth)
   uint32_t max_callable_depth = 31;        // nested executeCallableEXT. Choice: Vulkan only limits the stack's bytes
 };

@@ -27,6 +27,7 @@ class SimtStack {
     uint32_t shader = 0;  // Call: the caller's shader
     uint32_t callables = 0;    // Call: callable depth to return to
     bool is_function = false;  // Call: of a function of the same shader, not of another shader
+    bool is_traversal = false; // Call: of the program that walks rays
   };
 
   uint32_t pc = 0;
@@ -45,6 +46,9 @@ class SimtStack {
                  bool is_function = false) {
     entries_.push_back({Kind::Call, return_pc, arrived, depth, shader, callables, is_function});
   }
+
+  // The call pushed last is of the program that walks rays.
+  void mark_traversal() { entries_.back().is_traversal = true; }
 
   // Lanes reach the join at `join_pc`: they wait in its entry. The caller then leaves the running set.
   // False when no enclosing ssy names the place: a malformed program.

@@ -66,6 +66,7 @@ struct WarpContext {
   LaneMask ray_lanes = 0;             // that it handed over
   rt::RayState* rays = nullptr;       // one a lane, in `frames` or `queries`
   isa::Slot ray_answer = 0;           // predicate it writes
+  LaneMask walking = 0;               // of ray_lanes: those whose rays World::traversal walks
 
   bool waiting_at_barrier = false;    // executes nothing until another warp of the block has opened the barrier
   uint32_t barrier = 0, barrier_pc = 0;  // then: which one, and the instruction that waits

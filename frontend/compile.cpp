@@ -19,6 +19,7 @@ std::string key_of(const std::vector<uint32_t>& spirv, const std::string& name, 
   key.put(options.max_registers);
   key.put(options.schedule);
   key.put(options.contract);
+  key.put(options.queries_call);
   key.put(spirv);
   return key.take();
 }

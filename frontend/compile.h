@@ -26,6 +26,7 @@ struct BackendOptions {
   uint32_t max_registers = 64;  // 32-bit registers a thread; fewer spill to local memory
   bool schedule = true;         // latency-aware list scheduling
   bool contract = false;        // a * b + c becomes one fma where GLSL does not say `precise`
+  bool queries_call = false;    // rq.proceed is a call that keeps no register: rays are walked in code
 };
 
 // Stage from the file's ending: .rgen .rint .rahit .rchit .rmiss .rcall .comp; empty when unknown.

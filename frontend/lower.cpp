@@ -10,6 +10,7 @@
 #include "frontend/compile.h"
 #include "frontend/debug_print.h"
 #include "frontend/lower_typed.h"
+#include "frontend/query_calls.h"
 #include "frontend/spirv.h"
 
 namespace glint::frontend {
@@ -313,7 +314,9 @@ VirtualProgram lower_to_virtual(const std::vector<uint32_t>& spirv, const std::s
 
 isa::Program lower(const std::vector<uint32_t>& spirv, const std::string& name,
                    const BackendOptions& options, const std::string& entry_point) {
-  return assemble(lower_to_virtual(spirv, name, entry_point, options.contract), options);
+  VirtualProgram program = lower_to_virtual(spirv, name, entry_point, options.contract);
+  if (options.queries_call) make_queries_calls(program);
+  return assemble(std::move(program), options);
 }
 
 }  // namespace glint::frontend

@@ -17,6 +17,7 @@ struct CompilerParams {
   uint32_t max_registers = 64;
   bool schedule = true;
   bool contract = false;
+  bool queries_call = false;  // no key: what GpuParams::rt.unit asks of code with ray queries
   static constexpr auto params() {
     return std::tuple{
         param(&CompilerParams::max_registers, "max_registers", "register", "32-bit registers a thread; more spill to local memory.", 8, 255),

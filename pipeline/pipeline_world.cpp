@@ -12,6 +12,7 @@
 #include "pipeline/description/data.h"
 #include "pipeline/description/mesh.h"
 #include "pipeline/description/pictures.h"
+#include "pipeline/software_traversal.h"
 
 namespace glint::pipeline {
 namespace {
@@ -32,7 +33,7 @@ std::string title(const std::string& name, const Slot& slot) {
 }  // namespace
 
 PipelineWorld::PipelineWorld(const PipelineDescription& description, const GpuParams& gpu)
-    : description_(description), modules_(description_, gpu.compiler) {
+    : description_(description), modules_(description_, compiler_for(gpu)) {
   warnings = modules_.warnings;
   check_pipeline(description_, modules_, warnings);
   world.memory = &memory_;
@@ -40,7 +41,7 @@ PipelineWorld::PipelineWorld(const PipelineDescription& description, const GpuPa
   world.nearest_first_hit = gpu.rt.nearest_first_hit;
   world.any_hit = gpu.rt.any_hit.make({});
   world.layout = gpu.core.layout.make({});
-  link();
+  link(gpu);
   set_launch();
   upload_buffers();
   upload_images();
@@ -53,9 +54,10 @@ PipelineWorld::PipelineWorld(const PipelineDescription& description, const GpuPa
   errors_.throw_if_errors();
 }
 
-void PipelineWorld::link() {
+void PipelineWorld::link(const GpuParams& gpu) {
   std::vector<isa::Program> programs;
   for (const ShaderModule& module : modules_.all()) programs.push_back(module.program);
+  add_traversal(programs, gpu, description_.shaders.empty() ? nullptr : description_.shaders[0].glsl.cache);
   image_ = core::link(programs);
   world.image = &image_;
   const bool nested = traces_from(modules_, isa::Stage::ClosestHit) || traces_from(modules_, isa::Stage::Miss);
@@ -208,6 +210,7 @@ void PipelineWorld::build_structures(const GpuParams& gpu) {
     structures.bottom_depth = std::max(structures.bottom_depth, bottoms.back().depth);
   }
   structures.bottom_levels = bottoms.size();
+  uint32_t stack_need = 0;
   for (const TopLevelDescription& description : description_.top_levels) {
     std::vector<rt::Instance> instances;
     for (const InstanceDescription& d : description.instances) {
@@ -217,11 +220,13 @@ void PipelineWorld::build_structures(const GpuParams& gpu) {
       instances.push_back(instance);
     }
     const rt::StructureInfo top = rt::build_top(memory_, title(description.name, description.slot), instances, bottoms, gpu.bvh);
+    stack_need = std::max(stack_need, top.stack_need);
     structures.bytes += top.bytes;
     structures.instances += instances.size();
     structures.top_depth = std::max(structures.top_depth, top.depth);
     if (description.slot.is_bound()) bind_table(description.slot, description.slot.element, top.address, top.bytes);
   }
+  place_records(world, stack_need);
 }
 
 uint32_t PipelineWorld::group_index(const GroupDescription& group, TableInput& input, bool is_hit) {

@@ -33,7 +33,7 @@ class PipelineWorld {
   const core::ImageView& image(size_t index) const { return world.images[image_handle_[index]]; }
 
  private:
-  void link();
+  void link(const GpuParams& gpu);
   void set_launch();
   void upload_buffers();
   void upload_images();

@@ -10,6 +10,7 @@
 
 #include "base/check.h"
 #include "pipeline/binding_table.h"
+#include "pipeline/software_traversal.h"
 #include "pipeline/structure_cache.h"
 
 namespace glint::pipeline {
@@ -38,7 +39,7 @@ WorkloadShaders compile_workload(const RenderJob& job) {
   frontend::GlslOptions glsl = job.glsl;
   if (job.scene.alpha_test) glsl.defines.emplace_back("GLINT_ALPHA_TEST", "1");
   if (!job.scene.instances.empty()) glsl.defines.emplace_back("GLINT_INSTANCES", "1");
-  const frontend::BackendOptions backend{job.gpu.compiler.max_registers, job.gpu.compiler.schedule, job.gpu.compiler.contract};
+  const frontend::BackendOptions backend{job.gpu.compiler.max_registers, job.gpu.compiler.schedule, job.gpu.compiler.contract, compiler_for(job.gpu).queries_call};
   auto compile = [&](const char* file) {
     out.programs.push_back(frontend::compile_file(job.shader_dir + "/" + file, glsl, backend, out.warnings));
     return uint32_t(out.programs.size() - 1);
@@ -70,7 +71,8 @@ SceneWorld::SceneWorld(const RenderJob& job) {
 }
 
 void SceneWorld::link_shaders(const RenderJob& job) {
-  const WorkloadShaders shaders = compile_workload(job);
+  WorkloadShaders shaders = compile_workload(job);
+  add_traversal(shaders.programs, job.gpu, job.glsl.cache);
   warnings = shaders.warnings.messages();
   image_ = core::link(shaders.programs);
   world.image = &image_;
@@ -176,6 +178,7 @@ void SceneWorld::build_structures(const RenderJob& job) {
   structures.top_depth = top.depth;
   structures.bottom_levels = bottoms.size();
   structures.instances = instances.size();
+  place_records(world, top.stack_need);
   bind(kTopLevel, top.address, top.bytes);
 }
 

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "base/params.h"
 #include "base/registry.h"
@@ -25,7 +28,12 @@ struct PipelineParams {
   }
 };
 
+// Who walks rays.
+inline constexpr std::string_view kHardware = "hardware", kSoftware = "software";
+inline std::vector<std::string> unit_names() { return {std::string(kHardware), std::string(kSoftware)}; }
+
 struct Params {
+  std::string unit{kHardware};
   uint32_t warps = 4;              // Vulkan-Sim 2.0, -gpgpu_rt_max_warps, both shipped configurations
   uint32_t requests_per_cycle = 1; // Vulkan-Sim: one request a cycle
   uint32_t request_bytes = 64;     // Choice: a node in one request; Vulkan-Sim sends 32
@@ -49,6 +57,7 @@ struct Params {
   Shortcuts shortcuts;
   static constexpr auto params() {
     return std::tuple{
+        choice(&Params::unit, "unit", "Who walks rays: the RT unit of the keys below, or the core's own code, as ordinary instructions (shaders/traversal).", &unit_names),
         param(&Params::warps, "warps", "warp", "Warps in the unit's buffer.", 1, 64),
         param(&Params::requests_per_cycle, "requests_per_cycle", "request", "Requests sent to the L1 a cycle.", 1, 16),
         param(&Params::request_bytes, "request_bytes", "B", "Largest request; a multiple of the 32 B sector.", 32, 128),

@@ -37,6 +37,7 @@ struct Hit {
   uint32_t custom_index = 0;       // 24 bits
   uint32_t sbt_record = 0;         // the instance's shader-binding-table offset, 24 bits
   Address instance_leaf = 0;       // virtual address of the instance's record: holds the transforms
+  Address triangle_leaf = 0;       // of the leaf with the triangle's corners; 0: the hit is on no triangle
   bool valid() const { return instance != kNoHit; }
 };
 

@@ -191,6 +191,7 @@ void visit_triangles(RayState& s, const std::byte* bytes, const StackEntry& entr
     s.hits_in_interval += inside;
     if (!inside || !wins(s, found.t, s.instance, leaf.geometry, leaf.primitive[i])) continue;
     s.candidate = candidate_of(s, leaf.geometry, leaf.primitive[i]);
+    s.candidate.triangle_leaf = s.base + Address(block_of(entry.node)) * kBlockBytes;
     s.candidate.t = found.t;
     s.candidate.u = found.u;
     s.candidate.v = found.v;
@@ -290,7 +291,7 @@ void go_on(RayState& s) {
     }
   }
   s.status = RayStatus::Traversing;
-  settle(s);
+  if (!s.rules.in_code) settle(s);
 }
 
 // The accepted candidate becomes the hit; the ray goes on, or ends when it asked for any hit.

@@ -13,6 +13,7 @@
 #include "isa/verify.h"
 #include "pipeline/binding_table.h"
 #include "pipeline/functional_machine.h"
+#include "pipeline/software_traversal.h"
 #include "pipeline/timing_machine.h"
 #include "rtunit/build.h"
 
@@ -130,7 +131,7 @@ std::string lab_file(const std::string& file) { return std::string(GLINT_SOURCE_
 
 isa::Program compile_lab(const std::string& file, const frontend::GlslOptions& glsl, const LabOptions& options) {
   Diagnostics diagnostics;
-  isa::Program program = frontend::compile_file(lab_file(file), glsl, {options.max_registers, options.schedule}, diagnostics);
+  isa::Program program = frontend::compile_file(lab_file(file), glsl, {options.max_registers, options.schedule, false, options.software}, diagnostics);
   isa::verify(program, diagnostics);
   diagnostics.throw_if_errors();
   if (!diagnostics.messages().empty()) throw UserError(file + ": " + diagnostics.messages().front());
@@ -147,6 +148,12 @@ std::vector<uint32_t> RayLab::run(const LabOptions& options) {
   world.max_trace_depth = max_trace_depth;
   world.any_hit = Registry<rt::AnyHitMode>::instance().entry(options.any_hit).make_default({});
   const pipeline::TableInput table = make_table(*this, shaders_, shaders, options);
+  pipeline::GpuParams gpu;
+  gpu.cores = 2;
+  gpu.core.instruction_budget = kBudget;
+  gpu.compiler.max_registers = options.max_registers;
+  gpu.rt.unit = options.software ? rt::kSoftware : rt::kHardware;
+  pipeline::add_traversal(shaders.programs, gpu, shaders_.glsl.cache);
   const core::Image linked = core::link(shaders.programs);
   world.image = &linked;
   pipeline::build_binding_table(world, memory, table);
@@ -154,6 +161,7 @@ std::vector<uint32_t> RayLab::run(const LabOptions& options) {
   world.local_bytes = pipeline::stack_bytes(linked, max_trace_depth, max_callable_depth);
 
   const rt::StructureInfo top = scene(memory, {options.node_format});
+  pipeline::place_records(world, top.stack_need);
   bind(world, 0, 0, top.address, top.bytes);
   const Address structure_words = memory.allocate("the top level's address", 8);
   memory.write(structure_words, &top.address, 8);
@@ -179,9 +187,6 @@ std::vector<uint32_t> RayLab::run(const LabOptions& options) {
 
   world.on_fault = options.on_fault;
   if (options.timing) {
-    pipeline::GpuParams gpu;
-    gpu.cores = 2;
-    gpu.core.instruction_budget = kBudget;
     pipeline::TimingMachine machine(gpu, world, false);
     machine.run({});
     faults = machine.passed();
@@ -206,16 +211,22 @@ const std::vector<LabOptions>& all_lab_options() {
     out.node_format = node_format;
     return out;
   };
+  const auto in_code = [](uint32_t registers, bool timing) {
+    LabOptions out{registers, true, timing};
+    out.software = true;
+    return out;
+  };
   static const std::vector<LabOptions> kAll = {{16, true, false}, {32, true, false}, {64, true, false},
                                                {64, false, false}, {255, true, false}, {16, true, true}, {64, true, true},
                                                {32, true, false, "deferred"}, {64, true, true, "deferred"},
-                                               in_format("bvh2", false), in_format("bvh4", true), in_format("bvh8", false)};
+                                               in_format("bvh2", false), in_format("bvh4", true), in_format("bvh8", false),
+                                               in_code(16, false), in_code(64, true)};
   return kAll;
 }
 
 std::string to_string(const LabOptions& options) {
   return fmt::format("{} registers, {}, {} machine, {} any-hit, {}", options.max_registers, options.schedule ? "scheduled" : "in order",
-                     options.timing ? "timing" : "functional", options.any_hit, options.node_format);
+                     options.timing ? "timing" : "functional", options.any_hit, options.node_format) + (options.software ? ", rays in code" : "");
 }
 
 }  // namespace glint::test

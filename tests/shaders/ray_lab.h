@@ -31,6 +31,7 @@ struct LabOptions {
   const char* any_hit = "immediate";
   core::OnFault on_fault = core::OnFault::Stop;
   const char* node_format = "bvh6";
+  bool software = false;  // rays are walked in code
 };
 
 // The scene, seen from above along -z. Lanes (x, y) of a launch of kWidth x kHeight shoot at (x + 1/2, y + 1/2):

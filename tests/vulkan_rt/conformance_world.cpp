@@ -9,6 +9,7 @@
 #include "frontend/compile.h"
 #include "isa/verify.h"
 #include "pipeline/functional_machine.h"
+#include "pipeline/software_traversal.h"
 #include "pipeline/timing_machine.h"
 #include "rtunit/build.h"
 
@@ -60,6 +61,7 @@ class Host {
     world.constant_bank.resize(isa::kConstantBankBytes);
     world.max_trace_depth = kMaxTraceDepth;
     const rt::StructureInfo top = build_scene(r, memory, format);
+    stack_need_ = top.stack_need;
     bind(kTopLevel, top.address, top.bytes);
     upload(kVertices, "vertices", r.vertices);
     upload(kSpheres, "spheres", r.spheres);
@@ -111,14 +113,17 @@ class Host {
     }
   }
 
-  void run(bool timing) {
+  void run(bool timing, bool software = false) {
+    pipeline::GpuParams gpu;
+    gpu.cores = 2;
+    gpu.rt.unit = software ? rt::kSoftware : rt::kHardware;
+    pipeline::add_traversal(programs_, gpu, nullptr);
     image_ = core::link(programs_);
     world.image = &image_;
     pipeline::build_binding_table(world, memory, table);
     world.local_bytes = pipeline::stack_bytes(image_, world.max_trace_depth, world.max_callable_depth);
+    pipeline::place_records(world, stack_need_);
     if (timing) {
-      pipeline::GpuParams gpu;
-      gpu.cores = 2;
       pipeline::TimingMachine(gpu, world, false).run({});
     } else {
       pipeline::run_functional(world, kBudget, {});
@@ -127,6 +132,7 @@ class Host {
 
  private:
   const Recording& recording_;
+  uint32_t stack_need_ = 0;
   std::vector<isa::Program> programs_;
   std::map<std::string, uint32_t> shader_of_;
   core::Image image_;
@@ -156,7 +162,7 @@ const std::vector<RecordData>& hit_records() {
   return kRecords;
 }
 
-std::vector<Record> run_mode(const Recording& r, const Mode& mode, const std::string& any_hit, bool timing, const std::string& format) {
+std::vector<Record> run_mode(const Recording& r, const Mode& mode, const std::string& any_hit, bool timing, const std::string& format, bool software) {
   Host host(r, format);
   host.world.any_hit = Registry<rt::AnyHitMode>::instance().entry(any_hit).make_default({});
   host.table.raygen = {host.general("rec.rgen"), {}};
@@ -175,7 +181,7 @@ std::vector<Record> run_mode(const Recording& r, const Mode& mode, const std::st
                              mode.pattern * r.rays_per_pattern, 0, mode.callable, 0};
   std::memcpy(host.world.constant_bank.data() + isa::kPushConstantOffset, push, sizeof push);
   host.world.launch_size = {count, 1, 1};
-  host.run(timing);
+  host.run(timing, software);
   const auto records = host.memory.view<Record>(out, count);
   return {records.begin() + first, records.end()};
 }

@@ -19,8 +19,9 @@ struct RecordData {  // struct SbtData of shaders/common.glsl
 const std::vector<RecordData>& hit_records();
 
 // Compiles the set's shaders, as they are, and runs a mode with structures of a node format; one record a ray.
+// `software`: rays are walked in code.
 std::vector<Record> run_mode(const Recording& recording, const Mode& mode, const std::string& any_hit, bool timing = false,
-                             const std::string& format = "bvh6");
+                             const std::string& format = "bvh6", bool software = false);
 
 // The picture, RGBA, `size` x `size`. The records' data may be given.
 std::vector<float> run_image(const Recording& recording, uint32_t size, const std::vector<RecordData>& records = hit_records());
