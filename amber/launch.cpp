@@ -274,6 +274,7 @@ core::ImageView Launch::view_of(const Binding& binding, const Buffer& buffer, si
   view.width = buffer.size[0] && !is_texels ? buffer.size[0] : uint32_t(buffer.elements);
   view.height = is_texels ? 1 : std::max(1u, buffer.size[1]), view.depth = is_texels ? 1 : std::max(1u, buffer.size[2]);
   view.levels = is_texels ? 1 : buffer.levels;
+  view.samples = view.layers = buffer.samples;
   const uint32_t dimensions = buffer.dimensions ? buffer.dimensions : 2;
   const frontend::Binding* use = reflected(binding);
   view.shape = use ? use->shape : is_texels ? isa::ImageShape::Buffer : dimensions == 1 ? isa::ImageShape::D1 : dimensions == 2 ? isa::ImageShape::D2 : isa::ImageShape::D3;

@@ -77,7 +77,7 @@ void parse_attribute(Parsing& p, const std::string& name, Buffer& buffer, Conten
   else if (name == "DEPTH") buffer.size[2] = uint32_t(p.tokens.integer("the depth", 1, 65536));
   else if (name == "MIP_LEVELS") buffer.levels = uint32_t(p.tokens.integer("the number of levels", 1, 17));
   else if (name == "DIM_1D" || name == "DIM_2D" || name == "DIM_3D") buffer.dimensions = uint32_t(name[4] - '0');
-  else if (name == "SAMPLES") { if (p.tokens.integer("the number of samples", 1, 64) != 1) p.unsupported("images of several samples"); }
+  else if (name == "SAMPLES") buffer.samples = uint32_t(p.tokens.integer("the number of samples", 1, 64));
   else if (name == "FILL") contents.kind = name, contents.values = {p.tokens.word("the value")};
   else if (name == "DATA") contents.kind = name, parse_data(p, contents);
   else if (name == "FILE") contents.kind = name, parse_file(p, contents);
@@ -140,7 +140,9 @@ void make(Parsing& p, Buffer& buffer, const Contents& contents) {
   if (buffer.elements == 0 && contents.kind.empty() && buffer.type.is_packed) p.unsupported("graphics: buffers as large as a framebuffer");
   if (buffer.elements == 0) p.wrong(fmt::format("'{}' has no size", buffer.name));
   if (buffer.size[0] && buffer.elements < texels_of(buffer, 0)) p.wrong(fmt::format("'{}' has {} texels and SIZE {}", buffer.name, texels_of(buffer, 0), buffer.elements));
-  uint64_t texels = buffer.elements;
+  if (buffer.samples > 1 && (buffer.levels > 1 || buffer.dimensions != 2)) p.wrong(fmt::format("'{}' has several samples and is not DIM_2D with one level", buffer.name));
+  if (buffer.samples > 1 && contents.kind != "" && contents.kind != "FILL") p.unsupported("contents of images of several samples, but FILL");
+  uint64_t texels = buffer.elements *= buffer.samples;
   for (uint32_t level = 1; level < buffer.levels; ++level) texels += texels_of(buffer, level);
   if (texels > kMostBytes / buffer.layout.stride) p.wrong(fmt::format("'{}' has more than {} bytes", buffer.name, kMostBytes));
   buffer.bytes.resize(texels * buffer.layout.stride);

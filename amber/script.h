@@ -34,7 +34,7 @@ struct Buffer {
   bool is_image = false;
   uint32_t dimensions = 0;          // of an image
   std::array<uint32_t, 3> size{0, 0, 0};  // texels; of buffers with WIDTH too
-  uint32_t levels = 1;
+  uint32_t levels = 1, samples = 1;
   uint64_t elements = 0;
   std::vector<std::byte> bytes;
   SourceLocation where;

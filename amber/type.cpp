@@ -38,6 +38,9 @@ std::optional<Scalar> channel_scalar(int bits, const std::string& numeric) {
   }
 }
 
+// Texels of 64 bits are two channels of 32.
+constexpr auto kHalves = core::TexelFormat::Rg32Uint;
+
 // Vulkan's names of formats without VK_FORMAT_.
 std::optional<Type> format_named(const std::string& name) {
   Type type;
@@ -59,13 +62,14 @@ std::optional<Type> format_named(const std::string& name) {
   for (char c : numeric == "SFLOAT" ? std::string("FLOAT") : numeric) lower += char(std::tolower(c));
   type.scalar = *channel_scalar(bits, numeric);
   type.rows = uint32_t(channels.size());
-  type.format = texel_format(fmt::format("{}{}_{}", channels, bits, lower));
+  type.format = bits == 64 && channels == "r" && !is_float(type.scalar) ? kHalves : texel_format(fmt::format("{}{}_{}", channels, bits, lower));
   return type;
 }
 
 // The format whose texels are such numbers: an image of vec4<float> holds R32G32B32A32_SFLOAT.
 std::optional<core::TexelFormat> format_like(const Type& type) {
   if (type.columns != 1 || type.rows == 3) return std::nullopt;
+  if (type.rows == 1 && (type.scalar == Scalar::I64 || type.scalar == Scalar::U64)) return kHalves;
   const char* channels = type.rows == 1 ? "r" : type.rows == 2 ? "rg" : "rgba";
   const bool is_signed = type.scalar == Scalar::I8 || type.scalar == Scalar::I16 || type.scalar == Scalar::I32;
   return texel_format(fmt::format("{}{}_{}", channels, bytes_of(type.scalar) * 8, is_float(type.scalar) ? "float" : is_signed ? "sint" : "uint"));

@@ -160,6 +160,7 @@ class Executor {
   std::optional<uint32_t> shared_number(WarpContext& warp, isa::Slot operand, std::string_view what);
   bool run_hit_object(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
   bool run_time(WarpContext& warp, const isa::Inst& inst, bool set);
+  bool run_corner(WarpContext& warp, const isa::Inst& inst);
   bool make_hit(WarpContext& warp, const isa::Inst& inst, bool has_stride, int lane, HitObject& object);
   bool open_trace(WarpContext& warp, const isa::Inst& inst, size_t payload_operand);
   bool begin_hit_object(WarpContext& warp, const isa::Inst& inst);

@@ -89,6 +89,7 @@ bool Executor::run_hit_object(WarpContext& warp, const isa::Inst& inst, const is
   const auto op = HitObjectOp(row.detail);
   LaneMask lanes = warp.regs.exec;
   if (op == HitObjectOp::SetTime || op == HitObjectOp::GetTime) return run_time(warp, inst, op == HitObjectOp::SetTime);
+  if (op == HitObjectOp::Corner) return run_corner(warp, inst);
   if (lanes && op == HitObjectOp::Record && warp.depth == 0)
     return fail(warp, std::countr_zero(lanes), "keeps the hit of a trace, and none is open");
   const uint32_t level = warp.depth - (op == HitObjectOp::Record ? 1 : 0);
@@ -125,7 +126,8 @@ bool Executor::run_hit_object(WarpContext& warp, const isa::Inst& inst, const is
         warp.regs.write(inst.operand[0])[lane] = hit_object_value(object, read_word(warp.regs, inst, 2, lane));
         break;
       case HitObjectOp::SetTime:
-      case HitObjectOp::GetTime: break;  // above
+      case HitObjectOp::GetTime:
+      case HitObjectOp::Corner: break;  // above
       case HitObjectOp::Attributes: store_attributes(warp, read_word(warp.regs, inst, 1, lane), lane, object); break;
     }
   }
@@ -142,6 +144,22 @@ bool Executor::run_time(WarpContext& warp, const isa::Inst& inst, bool set) {
     uint32_t* const to = warp.regs.write(inst.operand[0]);
     for_each_lane(warp.regs.exec, [&](int lane) { to[lane] = warp.depth == 0 ? 0 : warp.frame().time[size_t(lane)]; });
   }
+  ++warp.simt.pc;
+  return true;
+}
+
+// Model: read from the leaf that the RT unit tested, at no cost; hardware fetches it again.
+bool Executor::run_corner(WarpContext& warp, const isa::Inst& inst) {
+  const isa::Stage stage = world_.image->shaders[world_.image->shader_of[warp.simt.pc]].stage;
+  const uint32_t* const number = warp.regs.read(inst.operand[1]);
+  std::array<uint32_t, kLanes> values{};
+  for_each_lane(warp.depth == 0 ? 0 : warp.regs.exec, [&](int lane) {
+    const rt::RayState& state = warp.frame().ray[size_t(lane)];
+    const rt::Hit& hit = stage == isa::Stage::AnyHit ? state.candidate : state.committed;
+    values[size_t(lane)] = as_bits(corner_of(hit, number[lane], *world_.memory));
+  });
+  uint32_t* const to = warp.regs.write(inst.operand[0]);
+  for_each_lane(warp.regs.exec, [&](int lane) { to[lane] = values[size_t(lane)]; });
   ++warp.simt.pc;
   return true;
 }

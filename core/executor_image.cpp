@@ -40,6 +40,11 @@ class Lane {
   Lane(const isa::Warp& warp, const isa::Inst& inst, int lane) : warp_(warp), inst_(inst), lane_(lane) {}
   uint32_t word(size_t slot) const { return warp_.read(inst_.operand[slot])[lane_]; }
   int32_t integer(size_t slot) const { return int32_t(word(slot)); }
+  // An atomic's operand: a pair of registers where it changes 64 bits.
+  uint64_t bits(size_t slot, const isa::OpRow& row) const {
+    const uint64_t high = row.memory.bytes == 8 ? warp_.read(isa::Slot(inst_.operand[slot] + 1))[lane_] : 0;
+    return word(slot) | high << 32;
+  }
   float number(size_t slot) const { return std::bit_cast<float>(word(slot)); }
 
  private:
@@ -91,9 +96,9 @@ uint32_t answer(const isa::ImageAccess& op, const ImageView& image, const Sample
     case isa::ImageQuery::Width: return image.extent(0, level);
     case isa::ImageQuery::Height: return image.extent(1, level);
     case isa::ImageQuery::Depth: return image.extent(2, level);
-    case isa::ImageQuery::ArraySize: return isa::is_cube(image.shape) ? image.layers / 6 : image.layers;
+    case isa::ImageQuery::ArraySize: return image.layers / (isa::is_cube(image.shape) ? 6 : image.samples);
     case isa::ImageQuery::NumMipmapLevels: return image.levels;
-    case isa::ImageQuery::NumSamples: return 1;
+    case isa::ImageQuery::NumSamples: return image.samples;
     case isa::ImageQuery::NormalizedCoords: return sampler.unnormalized ? 0 : 1;
     case isa::ImageQuery::ChannelDataType: return info_of(image.format).opencl_type;
     case isa::ImageQuery::ChannelOrder: return info_of(image.format).opencl_order;
@@ -279,7 +284,8 @@ std::byte* Executor::find_texel(WarpContext& warp, const isa::Inst& inst, const 
   const auto refuse = [&](const auto& what) -> std::byte* { return let_pass(warp, lane, FaultKind::Image, what), nullptr; };
   if (!whole && place.at[0] % bytes != 0)
     return refuse([&] { return fmt::format("accesses {} bytes at byte {} of a row of image '{}'", bytes, place.at[0], image->name); });
-  if (row.atomic && whole && (info_of(image->format).bits != 32 || info_of(image->format).channels != 1))
+  // Texels of 64 bits are two channels of 32: their low half and their high one.
+  if (row.atomic && whole && (info_of(image->format).bits != 32 || image->texel_bytes() != row.memory.bytes))
     return refuse([&] { return fmt::format("atomic on image '{}', whose format is {}", image->name, info_of(image->format).name); });
   if (!place.is_inside()) [[unlikely]] {
     if (op.outside == isa::ImageOutside::Clamp && place.end[0] > 0) {
@@ -326,12 +332,15 @@ bool Executor::surface(WarpContext& warp, const isa::Inst& inst, const isa::OpRo
       return;
     }
     if (row.effect == isa::Effect::SurfaceAtomic) {
-      const uint32_t swap = slots.data + 1 < end ? operands.word(slots.data + 1) : 0;
+      const uint64_t operand = operands.bits(slots.data, row), swap = slots.data + 1 < end ? operands.bits(slots.data + 1, row) : 0;
       if (at) {
-        std::memcpy(words.data(), at, 4);
-        const auto kept = uint32_t(row.atomic(words[0], operands.word(slots.data), swap));
-        std::memcpy(at, &kept, 4);
+        uint64_t old = 0;
+        std::memcpy(&old, at, row.memory.bytes);
+        const uint64_t kept = row.atomic(old, operand, swap);
+        std::memcpy(at, &kept, row.memory.bytes);
+        words[0] = uint32_t(old), words[1] = uint32_t(old >> 32);
       }
+      if (row.memory.bytes == 8) warp.regs.write(isa::Slot(inst.operand[0] + 1))[lane] = words[1];
     } else if (at) {
       words = load_texel(row, format_of(lane), at);
     }
@@ -363,8 +372,8 @@ void Executor::surface_seen(WarpContext& warp, const isa::Inst& inst, const isa:
       store_texel(row, format_of(lane), words, scratch.data());
       view_->store(at, scratch.data(), bytes_of(lane));
     } else if (row.effect == isa::Effect::SurfaceAtomic && at) {
-      const uint32_t swap = num_data(row) > 1 ? operands.word(slots.data + 1) : 0;
-      view_->modify({at, row.atomic, operands.word(slots.data), swap, 4, to(0, lane)});
+      const uint64_t swap = num_data(row) > 1 ? operands.bits(slots.data + 1, row) : 0;
+      view_->modify({at, row.atomic, operands.bits(slots.data, row), swap, row.memory.bytes, to(0, lane)});
     } else if (row.effect == isa::Effect::SurfaceLoad && at && is_late_) {
       view_->load(MemoryView::LoadTexel{at, &row, format_of(lane), {to(0, lane), to(1, lane), to(2, lane), to(3, lane)}});
     } else {

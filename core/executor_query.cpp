@@ -50,6 +50,7 @@ uint32_t query_value(const RayState& state, uint16_t detail, const mem::AddressS
   const int field = detail & ~isa::kCommitted;
   const rt::Hit& hit = committed ? state.committed : state.candidate;
   if (field >= int(Query::Tmin)) return ray_value(state.ray, field - int(Query::Tmin));
+  if (field >= int(Query::Corner)) return as_bits(corner_of(hit, uint32_t(field - int(Query::Corner)), memory));
   if (field >= int(Query::ObjectOrigin)) return instance_value(state, hit, field, memory);
   switch (Query(field)) {
     case Query::Type: return kind_of_hit(state, committed);

@@ -40,6 +40,7 @@ struct ImageView {
   std::string name;
   isa::ImageShape shape = isa::ImageShape::D2;
   uint32_t depth = 1, layers = 1, levels = 1;
+  uint32_t samples = 1;               // of a texel: that many layers each
   Sampler sampler{};
   bool is_bound = true;               // if not, its use is a fault and `name` says where it would be
 

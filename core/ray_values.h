@@ -5,9 +5,11 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include "isa/inst.h"
 #include "isa/warp.h"
+#include "memsys/address_space.h"
 #include "rtunit/ray.h"
 #include "rtunit/structure.h"
 
@@ -44,6 +46,18 @@ inline float object_point(const rt::InstanceLeaf& leaf, const std::array<float, 
 inline float object_direction(const rt::InstanceLeaf& leaf, const std::array<float, 3>& x, size_t axis) {
   const float* m = leaf.world_to_object.data() + 4 * axis;
   return m[0] * x[0] + m[1] * x[1] + m[2] * x[2];
+}
+
+// Coordinate `number` of the corners of the triangle that was hit: x, y, z of the first, of the second, of the third.
+// Choice: 0 where there is no triangle; Vulkan leaves it undefined.
+inline float corner_of(const rt::Hit& hit, uint32_t number, const mem::AddressSpace& memory) {
+  const std::byte* const bytes = hit.triangle_leaf ? memory.find(hit.triangle_leaf, sizeof(rt::TriangleLeaf)) : nullptr;
+  if (!bytes || number >= 9) return 0;
+  rt::TriangleLeaf leaf;
+  std::memcpy(&leaf, bytes, sizeof leaf);
+  const bool second = leaf.count > 1 && leaf.primitive[1] == hit.primitive;
+  const uint32_t corner = number / 3;
+  return leaf.vertex[second ? leaf.second >> 2 * corner & 3 : corner][number % 3];
 }
 
 }  // namespace glint::core

@@ -14,6 +14,8 @@
 
 #include "frontend/cache.h"
 #include "frontend/compile.h"
+#include "frontend/known_positions.h"
+#include "frontend/newer_glsl.h"
 #include "frontend/program_bytes.h"
 #include "frontend/spirv.h"
 
@@ -58,9 +60,11 @@ Lookup look_up(const std::string& path, const std::optional<std::string>& text) 
 // Looks next to the including file first, then in the include directories in order.
 class Includer final : public glslang::TShader::Includer {
  public:
-  explicit Includer(const std::vector<std::string>& dirs) : dirs_(dirs) {}
+  Includer(const std::vector<std::string>& dirs, isa::Stage stage) : dirs_(dirs), stage_(stage) {}
 
   IncludeResult* includeLocal(const char* header, const char* includer, size_t) override {
+    if (const std::string_view text = text_of_extension(header, stage_); !text.empty())
+      return new IncludeResult(header, text.data(), text.size(), nullptr);
     return load(fs::path(includer).parent_path() / header);
   }
   IncludeResult* includeSystem(const char* header, const char*, size_t) override {
@@ -79,12 +83,14 @@ class Includer final : public glslang::TShader::Includer {
     lookups_.push_back(look_up(path.string(), text));
     if (!text) return nullptr;
     blank_version(*text);
+    say_extensions_anew(*text);
     texts_.push_back(std::make_unique<std::string>(std::move(*text)));
     return new IncludeResult(path.lexically_normal().string(), texts_.back()->data(), texts_.back()->size(),
                              nullptr);
   }
 
   const std::vector<std::string>& dirs_;
+  const isa::Stage stage_;
   std::vector<std::unique_ptr<std::string>> texts_;
   std::vector<Lookup> lookups_;
 };
@@ -212,6 +218,7 @@ std::vector<uint32_t> generate(glslang::TShader& shader, EShLanguage language, E
   std::vector<uint32_t> words;
   spv::SpvBuildLogger log;
   glslang::GlslangToSpv(*program.getIntermediate(language), words, &log, &options);
+  words = with_known_positions(std::move(words));
   refuse_unknown_capabilities(words, path);
   const std::string invalid = validate_spirv(words);
   if (!invalid.empty()) throw UserError({path, 0, 0}, "glslang made invalid SPIR-V\n" + invalid);
@@ -237,8 +244,10 @@ std::vector<uint32_t> glsl_text_to_spirv(const std::string& source, const std::s
   static const Process process;  // thread-safe since C++11
   const EShLanguage language = language_of(stage);
   glslang::TShader shader(language);
-  const char* text = source.c_str();
-  const int length = int(source.size());
+  std::string main = source;
+  say_extensions_anew(main);
+  const char* text = main.c_str();
+  const int length = int(main.size());
   const char* name = path.c_str();
   shader.setStringsWithLengthsAndNames(&text, &length, &name, 1);
   const std::string before = preamble(options);
@@ -250,7 +259,7 @@ std::vector<uint32_t> glsl_text_to_spirv(const std::string& source, const std::s
   // imports.
   shader.setEnhancedMsgs();
   const auto messages = EShMessages(EShMsgSpvRules | EShMsgVulkanRules | EShMsgDebugInfo | EShMsgEnhanced);
-  Includer includer(options.include_dirs);
+  Includer includer(options.include_dirs, stage);
   if (!shader.parse(GetDefaultResources(), kDefaultGlslVersion, ENoProfile, false, false, messages, includer))
     throw UserError(in_our_form(shader.getInfoLog(), path, options));
   std::vector<uint32_t> words = generate(shader, language, messages, path, options);

@@ -110,7 +110,7 @@ void compare_exchange(Lowering& l, const Instruction& inst, const LoweringRow&) 
 void atomic_load(Lowering& l, const Instruction& inst, const LoweringRow&) {
   Pointer p = l.pointer(inst.operands[0]);
   if (p.place == Place::Texel)
-    return l.set(inst.result, {change(l, p, Part::Uint32, "or.b32", {Operand::value(0)})});
+    return l.set(inst.result, {change(l, p, l.part_of(inst.type), "or.b32", {Operand::value(0)})});
   p.is_volatile = true;
   l.set(inst.result, l.load(p));
 }
@@ -119,7 +119,7 @@ void atomic_store(Lowering& l, const Instruction& inst, const LoweringRow&) {
   Pointer p = l.pointer(inst.operands[0]);
   const Operand value = l.scalar(inst.operands[3]);
   if (p.place == Place::Texel) {
-    change(l, p, Part::Uint32, "exch.b32", {value});
+    change(l, p, l.part_of(l.type_of(inst.operands[3])), "exch.b32", {value});
     return;
   }
   p.is_volatile = true;

@@ -30,7 +30,7 @@ Operands integer_place(Emitter& e, const Geometry& geometry, const Operand& hand
 
 // SPIR-V's image operands, from the mask at `at` on.
 struct ImageOperands {
-  std::optional<Id> bias, lod, offset, offsets;
+  std::optional<Id> bias, lod, offset, offsets, sample;
   std::optional<std::pair<Id, Id>> gradients;
 };
 ImageOperands image_operands(const Instruction& inst, size_t at);

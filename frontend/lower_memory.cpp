@@ -48,11 +48,11 @@ Operands slice(Lowering& l, const Pointer& p, const Operands& parts) {
   const uint32_t count = l.layout().num_parts(p.type);
   Operands result;
   for (uint32_t i = 0; i < count; ++i) {
-    Operand part = parts.at(size_t(p.displacement) + i);
+    const size_t first = size_t(p.displacement) + i;
+    Operand part = parts.at(first);
     if (!is_constant(p.part_index, 0))
-      for (uint32_t at = 1; at < parts.size(); ++at)
-        part = l.emit().select(l.emit().value("setp.eq.u32", {p.part_index, Operand::value(at)}), parts[at],
-                               part);
+      for (uint32_t at = 1; first + at < parts.size(); ++at)
+        part = l.emit().select(l.emit().value("setp.eq.u32", {p.part_index, Operand::value(at)}), parts[first + at], part);
     result.push_back(part);
   }
   return result;

@@ -202,13 +202,14 @@ void step_memory(Lowering& l, Pointer* p, Id index) {
 // Built-ins and attribute pairs: displacement counts parts.
 void step_parts(Lowering& l, Pointer* p, Id index) {
   const auto constant = l.module().constant_u32(index);
-  if (constant)
+  const Id element = l.layout().member_type(p->type, constant.value_or(0));
+  if (constant) {
     p->displacement += l.layout().first_part(p->type, *constant);
-  else if (l.module().type(p->type).kind == Type::Kind::Vector && p->displacement == 0)
-    p->part_index = l.scalar(index);
-  else
-    l.unsupported("dynamic index into a built-in matrix");
-  p->type = l.layout().member_type(p->type, constant.value_or(0));
+  } else {
+    const Operand parts = Operand::value(l.layout().num_parts(element));
+    p->part_index = l.emit().value("mad.lo.u32", {l.word(index), parts, p->part_index});
+  }
+  p->type = element;
 }
 
 uint32_t flat_count(const Module& module, Id type) {

@@ -1,5 +1,6 @@
 // Ray queries (SPV_KHR_ray_query): one ISA op an instruction, or one a scalar of its result.
 // SPDX-License-Identifier: Apache-2.0
+#include "frontend/known_positions.h"
 #include "frontend/lower.h"
 #include "frontend/spirv.h"
 
@@ -34,7 +35,7 @@ void generate(Lowering& l, const Instruction& inst, const LoweringRow& row) {
 
 // ".candidate" or ".committed", by the constant of SPIR-V's Intersection operand.
 std::string suffix(const Lowering& l, const Instruction& inst) {
-  return l.module().constant_u32(inst.operands[1]).value_or(0) ? ".committed" : ".candidate";
+  return l.module().constant_u32(inst.operands[1]).value_or(0) % kPositionsOfIntersection ? ".committed" : ".candidate";
 }
 
 // A scalar of a hit, and one of the ray itself.
@@ -73,10 +74,16 @@ void vector_of_ray(Lowering& l, const Instruction& inst, const LoweringRow& row)
   l.set(inst.result, vector(l, std::string(row.name32), "", query(l, inst)));
 }
 
-// mat4x3 in GLSL: four columns of three rows; the ISA counts row by row.
+// mat4x3 in GLSL: four columns of three rows; the ISA counts row by row. Corners of triangles come as the first three
+// columns of such a matrix (known_positions.h).
 void matrix_of_hit(Lowering& l, const Instruction& inst, const LoweringRow& row) {
   const Operand which = query(l, inst);
   Operands parts;
+  if (l.module().constant_u32(inst.operands[1]).value_or(0) >= kPositionsOfIntersection) {
+    for (int number = 0; number < 12; ++number)
+      parts.push_back(number < 9 ? l.emit().fresh("rq.corner." + std::to_string(number) + suffix(l, inst), {which}) : Operand::value(0));
+    return l.set(inst.result, std::move(parts));
+  }
   for (int column = 0; column < 4; ++column)
     for (int r = 0; r < 3; ++r)
       parts.push_back(

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include "frontend/known_positions.h"
 #include "frontend/lower.h"
 #include "frontend/spirv.h"
 
@@ -159,6 +160,11 @@ void lower_trace(Lowering& l, std::span<const uint32_t> arguments, const Pointer
 
 Operands Lowering::load_builtin(spv::BuiltIn builtin, Id type) {
   if (const std::optional<Operands> parts = load_compute_builtin(builtin)) return *parts;
+  if (builtin == kHitTriangleVertexPositions) {
+    Operands parts;
+    for (uint32_t number = 0; number < 9; ++number) parts.push_back(emitter_.fresh("rt.corner", {Operand::value(number)}));
+    return parts;
+  }
   switch (builtin) {
     case spv::BuiltIn::LaunchIdKHR:
       return vector(Special::LaunchX, 3);

@@ -57,6 +57,10 @@ std::optional<Sample> sample_of(Lowering& l, const Instruction& inst, size_t num
   const auto geometry = geometry_of(l, type, false);
   const std::string_view suffix = texel_suffix(l, type);
   if (!geometry || suffix.empty()) return std::nullopt;
+  if (bytes_of(l.part_of(image_type(l, type).element)) == 8) {
+    l.unsupported("samples of texels of 64 bits");
+    return std::nullopt;
+  }
   Sample s{*geometry, suffix, {}, std::nullopt, image_operands(inst, num_fixed)};
   Operands at = l.value(inst.operands[1]);
   if (has_reference(inst.op)) s.reference = l.scalar(inst.operands[2]);

@@ -8,6 +8,7 @@
 
 #include "base/check.h"
 #include "base/diagnostics.h"
+#include "frontend/known_positions.h"
 
 namespace glint::frontend {
 namespace {
@@ -177,6 +178,9 @@ void Parser::decorate(std::span<const uint32_t> args) {
       break;
     case spv::Decoration::BuiltIn:
       d.builtin = spv::BuiltIn(args[2]);
+      break;
+    case spv::Decoration::Location:
+      if (spv::BuiltIn(args[2]) == kHitTriangleVertexPositions) d.builtin = kHitTriangleVertexPositions;
       break;
     case spv::Decoration::Volatile:
       d.is_volatile = true;

@@ -79,6 +79,8 @@ std::string_view format_name(spv::ImageFormat format) {
     case Rgba16ui: return "rgba16ui";
     case Rgba8ui: return "rgba8ui";
     case R32ui: return "r32ui";
+    case R64ui:
+    case R64i: return "rg32ui";  // its halves
     case Rgb10a2ui: return "rgb10_a2ui";
     case Rg32ui: return "rg32ui";
     case Rg16ui: return "rg16ui";
@@ -94,9 +96,10 @@ void reflect_image(const Module& module, Id type, Binding& binding) {
   if (image->kind == Type::Kind::SampledImage) image = &module.type(image->element);
   if (image->kind != Type::Kind::Image) return;
   binding.shape = shape_of(*image);
+  binding.multisampled = image->is_multisampled;
   const Type& texel = module.type(image->element);
   binding.format = format_name(image->format);
-  binding.texel = texel.kind == Type::Kind::Float ? "f32" : texel.is_signed ? "s32" : "u32";
+  binding.texel = texel.kind == Type::Kind::Float ? "f32" : texel.is_signed && texel.width == 32 ? "s32" : "u32";
 }
 
 Binding binding_of(const Module& module, const Variable& variable, const Decorations& d) {
@@ -115,6 +118,18 @@ Binding binding_of(const Module& module, const Variable& variable, const Decorat
   return binding;
 }
 
+// Empty of payloads so large that no list of their scalars helps.
+std::string scalars_of(Layout& layout, Id type) {
+  constexpr uint32_t kMostBytes = 4096;
+  std::string out;
+  if (layout.size(type) > kMostBytes) return out;
+  for (const Leaf& leaf : layout.leaves(type, {}, 0)) {
+    out += is_float(leaf.part) ? 'f' : leaf.part == Part::Bool ? 'b' : 'i';
+    out += char('0' + bytes_of(leaf.part));
+  }
+  return out;
+}
+
 }  // namespace
 
 Reflection reflect(const std::vector<uint32_t>& spirv, const std::string& name) {
@@ -130,9 +145,11 @@ Reflection reflect(const std::vector<uint32_t>& spirv, const std::string& name) 
     switch (variable.storage) {
       case Storage::IncomingRayPayloadKHR:
         result.incoming_payload_bytes = std::max(result.incoming_payload_bytes, bytes);
+        result.incoming_payload = scalars_of(layout, module.type(variable.type).element);
         break;
       case Storage::RayPayloadKHR:
         result.largest_payload_bytes = std::max(result.largest_payload_bytes, bytes);
+        result.handed_payloads.push_back(scalars_of(layout, module.type(variable.type).element));
         break;
       case Storage::HitAttributeKHR:
         result.attribute_bytes = std::max(result.attribute_bytes, bytes);

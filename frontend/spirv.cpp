@@ -12,6 +12,7 @@
 #include <spirv/unified1/spirv.hpp11>
 
 #include "frontend/compile.h"
+#include "frontend/known_positions.h"
 
 namespace glint::frontend {
 
@@ -104,6 +105,7 @@ std::vector<uint32_t> read_spirv(const std::string& path) {
   } else {
     std::memcpy(words.data(), bytes.data(), bytes.size());
   }
+  words = with_known_positions(std::move(words));
   refuse_unknown_capabilities(words, path);
   const std::string invalid = validate_spirv(words);
   if (!invalid.empty()) throw UserError({path, 0, 0}, "invalid SPIR-V\n" + invalid);

@@ -6,7 +6,7 @@
 namespace glint::isa {
 
 // OpRow::detail of a row of the family.
-enum class HitObjectOp : uint16_t { Record, Empty, Miss, Hit, HitAtRecord, Value, Attributes, SetTime, GetTime };
+enum class HitObjectOp : uint16_t { Record, Empty, Miss, Hit, HitAtRecord, Value, Attributes, SetTime, GetTime, Corner };
 
 // SPV_NV_shader_invocation_reorder's getters: ho.value's last operand.
 enum class HitObjectValue : uint32_t {

@@ -17,7 +17,8 @@ enum class Query : uint8_t {
   ObjectDirection = ObjectOrigin + 3,
   ObjectToWorld = ObjectDirection + 3,  // row-major 3x4: 12 of these
   WorldToObject = ObjectToWorld + 12,
-  Tmin = WorldToObject + 12,            // of the ray
+  Corner = WorldToObject + 12,          // of the triangle: x, y, z of the first, of the second, of the third
+  Tmin = Corner + 9,                    // of the ray
   Flags, Origin, Direction = Origin + 3,
   Count = Direction + 3
 };

@@ -104,6 +104,7 @@ class Verifier {
       case Effect::HitObject:
         if (HitObjectOp(row_->detail) == HitObjectOp::GetTime)
           return only({Stage::Intersection, Stage::AnyHit, Stage::ClosestHit, Stage::Miss});
+        if (HitObjectOp(row_->detail) == HitObjectOp::Corner) return only({Stage::AnyHit, Stage::ClosestHit});
         return only({Stage::RayGeneration, Stage::ClosestHit, Stage::Miss});
       case Effect::CallCallable:
         return only({Stage::RayGeneration, Stage::ClosestHit, Stage::Miss, Stage::Callable});

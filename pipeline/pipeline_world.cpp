@@ -162,6 +162,8 @@ void PipelineWorld::upload_images() {
   for (size_t i : in_order(slots)) {
     const ImageDescription& d = description_.images[i];
     const BindingUse* use = use_of(d.slot);
+    if (use && d.samples > 1 && !use->binding.multisampled)
+      throw UserError(d.where, fmt::format("image '{}' has {} samples a texel; the shader's has one", d.name, d.samples));
     Picture picture = make_picture(d, use ? use->binding.shape : isa::ImageShape::D2, use ? use->binding.texel : "", world.launch_size,
                                    use ? use->binding.format : "");
     picture.view.base = memory_.allocate(title(d.name, d.slot), picture.texels.size());

@@ -43,6 +43,8 @@ constexpr OpRow kRows[] = {
            "Stores the 64 bytes of an object's attributes: object, local address."),
     object("rt.time.set", HitObjectOp::SetTime, {Src32}, "Gives the next ray or made-up hit its time, which is 0 otherwise."),
     object("rt.time.get", HitObjectOp::GetTime, {Dst32}, "The time of the innermost trace's ray."),
+    object("rt.corner", HitObjectOp::Corner, {Dst32, Src32},
+           "Coordinate of a corner of the triangle whose hit shader runs, in object space: 0 to 2 x, y, z of the first, then of the others."),
 };
 
 }  // namespace

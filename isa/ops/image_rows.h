@@ -41,7 +41,7 @@ template <int kSlot>
 }
 
 constexpr Handler handler_of(const Operands& operands) {
-  const int first = operands.kind[0] == DstVec4 ? 4 : operands.kind[0] == DstVec2 ? 2 : operands.kind[0] == Dst32 ? 1 : 0;
+  const int first = operands.kind[0] == DstVec4 ? 4 : operands.kind[0] == DstVec2 ? 2 : operands.kind[0] == Dst32 || operands.kind[0] == Dst64 ? 1 : 0;
   return first == 4   ? &form_image_access<4>
          : first == 2 ? &form_image_access<2>
          : first == 1 ? &form_image_access<1>

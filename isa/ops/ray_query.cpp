@@ -64,10 +64,9 @@ constexpr auto decimal() {
     return Text<3>(text);
   }
 }
-// The 12 elements of a row-major 3x4 matrix.
-template <Text kName>
-constexpr std::array<OpRow, 24> matrix_of_both(Query field, std::string_view doc) {
-  std::array<OpRow, 24> out;
+template <Text kName, int kCount = 12>
+constexpr std::array<OpRow, 2 * kCount> numbers_of_both(Query field, std::string_view doc) {
+  std::array<OpRow, 2 * kCount> out;
   const auto element = [&]<int kElement>(std::integral_constant<int, kElement>) {
     const auto rows = of_both<Joined<kName, ".", decimal<kElement>()>::kAsText>(field, kElement, doc);
     out[2 * kElement] = rows[0];
@@ -75,7 +74,7 @@ constexpr std::array<OpRow, 24> matrix_of_both(Query field, std::string_view doc
   };
   [&]<int... kElement>(std::integer_sequence<int, kElement...>) {
     (element(std::integral_constant<int, kElement>{}), ...);
-  }(std::make_integer_sequence<int, 12>{});
+  }(std::make_integer_sequence<int, kCount>{});
   return out;
 }
 
@@ -95,8 +94,9 @@ constexpr auto kRows = joined_rows(
     of_both<"object.direction.x">(Query::ObjectDirection, 0, "Direction of the ray in object space."),
     of_both<"object.direction.y">(Query::ObjectDirection, 1, "Direction of the ray in object space."),
     of_both<"object.direction.z">(Query::ObjectDirection, 2, "Direction of the ray in object space."),
-    matrix_of_both<"object_to_world">(Query::ObjectToWorld, "Element of the instance's transform, row-major 3x4."),
-    matrix_of_both<"world_to_object">(Query::WorldToObject, "Element of the inverse transform, row-major 3x4."));
+    numbers_of_both<"object_to_world">(Query::ObjectToWorld, "Element of the instance's transform, row-major 3x4."),
+    numbers_of_both<"world_to_object">(Query::WorldToObject, "Element of the inverse transform, row-major 3x4."),
+    numbers_of_both<"corner", 9>(Query::Corner, "Coordinate of a corner of the triangle in object space: x, y, z of the first, then of the others."));
 
 }  // namespace
 

@@ -146,6 +146,25 @@ constexpr auto atomics() {
                                  Rmw::MaxS32, Rmw::And, Rmw::Or, Rmw::Xor, Rmw::Exch, Rmw::Cas>()...);
 }
 
+constexpr uint64_t swap_if_equal(uint64_t old, uint64_t expected, uint64_t swap) { return old == expected ? swap : old; }
+
+// Texels of 64 bits: others than this one are loops of it.
+template <ImageShape kShape>
+constexpr OpRow wide_atomic_row() {
+  OperandList operands;
+  operands.add(Dst64).add_place(kShape).add(Src64, 2);
+  OpRow row = image_op(joined<"suatom.p.cas", shape_text<kShape>(), ".b64.trap">, Effect::SurfaceAtomic,
+                       access_of<ImageOutside::Trap>(ImageRequest::Texel, kShape), operands.list,
+                       "Changes a texel of 64 bits to the last operand where it equals the one before and gives its old value.");
+  row.memory = {Space::Global, 8, 1, false};
+  row.atomic = &swap_if_equal;
+  return row;
+}
+template <ImageShape... kShapes>
+constexpr std::array<OpRow, sizeof...(kShapes)> wide_atomics() {
+  return {wide_atomic_row<kShapes>()...};
+}
+
 // sured.b: as suatom, with x in bytes and without a result.
 template <ImageOutside kOutside, ImageShape kShape, Rmw kRmw>
 constexpr OpRow reduction_row() {
@@ -185,7 +204,7 @@ constexpr std::array kQueries = {
 constexpr auto kRows = joined_rows(
     accesses_of<ImageOutside::Trap, D1, D2, D3, A1d, A2d>(), accesses_of<ImageOutside::Clamp, D1, D2, D3, A1d, A2d>(),
     accesses_of<ImageOutside::Zero, D1, D2, D3, A1d, A2d>(), texel_rows<ImageOutside::Trap, Buffer>(),
-    atomics<Buffer, D1, D2, D3, A1d, A2d>(), reductions<ImageOutside::Trap, D1, D2, D3>(),
+    atomics<Buffer, D1, D2, D3, A1d, A2d>(), wide_atomics<Buffer, D1, D2, D3, A1d, A2d>(), reductions<ImageOutside::Trap, D1, D2, D3>(),
     reductions<ImageOutside::Clamp, D1, D2, D3>(), reductions<ImageOutside::Zero, D1, D2, D3>(), kQueries);
 
 }  // namespace

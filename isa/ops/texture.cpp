@@ -147,7 +147,7 @@ constexpr std::array kQueries = {
     query("txq.level.depth.b32", ImageQuery::Depth, "Depth of a level: handle, level.", ImageLod::Level),
     query("txq.array_size.b32", ImageQuery::ArraySize, "Layers of a texture; of cubes, how many cubes."),
     query("txq.num_mipmap_levels.b32", ImageQuery::NumMipmapLevels, "Levels of a texture."),
-    query("txq.num_samples.b32", ImageQuery::NumSamples, "Samples of a texel: always 1."),
+    query("txq.num_samples.b32", ImageQuery::NumSamples, "Samples of a texel."),
     query("txq.normalized_coords.b32", ImageQuery::NormalizedCoords, "1 when coordinates run from 0 to 1, 0 when they count texels."),
     query("txq.channel_data_type.b32", ImageQuery::ChannelDataType, "OpenCL's number of the channels' type, 0 if it has none."),
     query("txq.channel_order.b32", ImageQuery::ChannelOrder, "OpenCL's number of the channels' order."),

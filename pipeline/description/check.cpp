@@ -5,8 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-
-#include "isa/text.h"
+#include <set>
 
 #include "isa/text.h"
 
@@ -64,10 +63,23 @@ class Check {
     for (const auto& record : d_.hit.records) check_hit(record);
     for (const auto& group : d_.groups) check_hit_group(group);
     note_large_payloads();
+    for (const auto& buffer : d_.buffers) check_saves(buffer.saves);
+    for (const auto& image : d_.images) check_saves(image.saves);
     errors_.throw_if_errors();
   }
 
  private:
+  // Files of the run directory that something else writes.
+  void check_saves(const std::vector<Save>& saves) {
+    static const std::vector<std::string> kOwn{"config.toml", "run.json", "stats.txt", "stats.json", "stats.csv", "printf.txt", "profile.csv", "profile.folded", "series.csv"};
+    for (const Save& save : saves) {
+      if (std::find(kOwn.begin(), kOwn.end(), save.file) != kOwn.end())
+        errors_.error(save.where, fmt::format("the run itself writes '{}'", save.file), "save under another name");
+      else if (!saved_.insert(save.file).second)
+        errors_.error(save.where, fmt::format("'{}' is saved twice", save.file), "save under another name");
+    }
+  }
+
   void check_binding(uint32_t set, uint32_t binding, const BindingUse& use) {
     std::vector<const Given*> here;
     for (const Given& g : given_)
@@ -143,12 +155,37 @@ class Check {
       if (module.reflection.incoming_payload_bytes > largest)
         warnings_.push_back(fmt::format("{}: note: the shader reads a payload of {} bytes; the largest that any shader here hands to a trace has {}",
                                         module.path, module.reflection.incoming_payload_bytes, largest));
+      else note_other_payload(module);
+  }
+
+  // Where no trace of these shaders can hand over what a shader reads, scalar for scalar.
+  void note_other_payload(const ShaderModule& module) {
+    const std::string& read = module.reflection.incoming_payload;
+    size_t agree = 0;  // letters of the payload that comes nearest
+    std::string nearest;
+    bool fits = read.empty();
+    for (const ShaderModule& caller : modules_.all())
+      for (const std::string& handed : caller.reflection.handed_payloads) {
+        const size_t end = std::min(read.size(), handed.size());
+        const size_t same = size_t(std::mismatch(read.begin(), read.begin() + long(end), handed.begin()).first - read.begin());
+        fits |= same == end;
+        if (nearest.empty() || same > agree) agree = same, nearest = handed;
+      }
+    if (fits || nearest.empty()) return;
+    const size_t scalar = agree / 2;
+    warnings_.push_back(fmt::format("{}: note: scalar {} of the payload that the shader reads is {}; the most alike that a shader here hands to a trace has {} there",
+                                    module.path, scalar + 1, name_of_scalar(read.substr(2 * scalar, 2)), name_of_scalar(nearest.substr(2 * scalar, 2))));
+  }
+  static std::string name_of_scalar(const std::string& scalar) {
+    const int bits = 8 * (scalar[1] - '0');
+    return scalar[0] == 'b' ? "a bool" : fmt::format("{} of {} bits", scalar[0] == 'f' ? "a float" : "an integer", bits);
   }
 
   const PipelineDescription& d_;
   const Modules& modules_;
   const std::vector<Given> given_;
   std::vector<std::string>& warnings_;
+  std::set<std::string> saved_;
   Diagnostics errors_;
 };
 

@@ -235,11 +235,13 @@ class Writer {
         case BindingKind::StorageImage:
           write_slot("image", b, name, element);
           line("size = [{}]", size_text(b, kSide, kSide));
-          line("save = {}", quoted(fmt::format("{}{}.png", name, element ? fmt::format("{}", element) : "")));
+          if (b.multisampled) line("samples = 4");
+          else line("save = {}", quoted(fmt::format("{}{}.png", name, element ? fmt::format("{}", element) : "")));
           break;
         case BindingKind::SampledImage:
           write_slot("image", b, name, element);
           line("init = \"checker\"  # or file = \"picture.png\"\nsize = [{}]", size_text(b, 64, 64));
+          if (b.multisampled) line("samples = 4");
           if (b.texel == "f32") line("format = \"rgba8_unorm\"");
           line("filter = \"linear\"\nwrap = \"repeat\"");
           break;

@@ -68,7 +68,7 @@ struct ImageDescription {
   std::vector<std::string> files;  // one a layer
   std::optional<core::TexelFormat> format;
   std::array<uint32_t, 3> size{0, 0, 0};  // zeros: the file's, or the launch's
-  uint32_t layers = 1;
+  uint32_t layers = 1, samples = 1;
   bool mipmaps = false;
   std::string init = "zero";  // zero, value, checker, random, data
   std::array<double, 4> value{0, 0, 0, 0};

@@ -105,10 +105,11 @@ void check_format(const ImageDescription& image, const core::FormatInfo& info, c
 void check_shape(const ImageDescription& image, const core::ImageView& view) {
   const bool is_flat = view.depth == 1, is_line = view.height == 1 && is_flat;
   const char* wrong = nullptr;
+  if (view.samples > 1 && (isa::num_coordinates(view.shape) != 2 || image.mipmaps)) wrong = "has several samples: it is 2D and has no mipmaps";
   if (view.shape != ImageShape::D3 && !is_flat) wrong = "is not 3D: its depth must be 1";
   if ((view.shape == ImageShape::D1 || view.shape == ImageShape::A1d || view.shape == ImageShape::Buffer) && !is_line) wrong = "is 1D: its height must be 1";
   if (isa::is_cube(view.shape) && (view.width != view.height || view.layers % 6)) wrong = "is a cube: as wide as high, and six layers";
-  if (!isa::has_layers(view.shape) && !isa::is_cube(view.shape) && view.layers != 1) wrong = "is no array: it has one layer";
+  if (!isa::has_layers(view.shape) && !isa::is_cube(view.shape) && view.layers != view.samples) wrong = "is no array: it has one layer";
   if (wrong) throw UserError(image.where, fmt::format("image '{}' is {} x {} x {} with {} layers; the shader's {}", image.name, view.width, view.height, view.depth, view.layers, wrong));
 }
 
@@ -124,7 +125,7 @@ Picture make_picture(const ImageDescription& image, ImageShape shape, const std:
   view.format = image.format.value_or(!image.files.empty() && !is_hdr && texel != "u32" && texel != "s32" ? TexelFormat::Rgba8Unorm : plain);
   const core::FormatInfo& info = core::info_of(view.format);
   check_format(image, info, texel);
-  view.name = image.name, view.shape = shape, view.sampler = image.sampler, view.layers = image.layers;
+  view.name = image.name, view.shape = shape, view.sampler = image.sampler, view.layers = image.layers * image.samples, view.samples = image.samples;
   if (isa::is_cube(shape) && image.files.empty() && image.layers == 1) view.layers = 6;
 
   std::vector<Texel> level;

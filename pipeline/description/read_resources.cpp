@@ -83,6 +83,7 @@ ImageDescription read_image(Reading& r, const Value& value) {
   if (!size.empty()) out.size = {1, 1, 1};
   std::copy(size.begin(), size.end(), out.size.begin());
   out.layers = uint32_t(t.integer("layers", std::max<int64_t>(1, int64_t(out.files.size())), 1, 2048));
+  out.samples = uint32_t(t.integer("samples", 1, 1, 64));
   out.mipmaps = t.flag("mipmaps", false);
   const bool has_data = t.take("data") != nullptr;
   out.data = t.numbers("data");

@@ -31,6 +31,7 @@ layout(shaderRecordEXT) buffer Record { float tag; } record;
 void main() { payload = vec4(gl_HitTEXT, gl_HitKindEXT, gl_InstanceID * 100 + gl_GeometryIndexEXT * 10 + gl_PrimitiveID, record.tag); }
 """,
     "drop.rahit": HEAD + "layout(location = 0) rayPayloadInEXT vec4 payload;\nvoid main() { payload.x = -5.0; ignoreIntersectionEXT; }\n",
+    "numbers.rchit": HEAD + "layout(location = 0) rayPayloadInEXT Mixed { vec2 first; uvec2 last; } payload;\nvoid main() { payload.last.x = 1u; }\n",
     "large.rchit": HEAD + "layout(location = 0) rayPayloadInEXT vec4 payload[2];\nvoid main() { payload[1] = vec4(1.0); }\n",
 }
 DOWN = ((0, 0, 1), (0, 0, -1))  # meets the triangle at 1
@@ -144,6 +145,9 @@ class Rays(RulesTest):
     def test_a_payload_that_no_trace_hands_over_is_told(self):
         self.shoot(hits='[[hit]]\nclosest_hit = "probe.rchit"\ndata = { tag = 7 }\n[[hit]]\nclosest_hit = "large.rchit"\n')
         self.assertIn("large.rchit: note: the shader reads a payload of 32 bytes; the largest that any shader here hands to a trace has 16", self.log.stderr)
+        self.shoot(hits='[[hit]]\nclosest_hit = "probe.rchit"\ndata = { tag = 7 }\n[[hit]]\nclosest_hit = "numbers.rchit"\n')
+        self.assertIn("numbers.rchit: note: scalar 3 of the payload that the shader reads is an integer of 32 bits; the most alike that a shader here "
+                      "hands to a trace has a float of 32 bits there", self.log.stderr)
         self.shoot()
         self.assertNotIn("payload", self.log.stderr)
 

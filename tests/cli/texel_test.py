@@ -79,6 +79,33 @@ save = "out.csv"
 """
 
 
+SAMPLES = """#version 460
+layout(local_size_x = 2, local_size_y = 2) in;
+layout(set = 0, binding = 0, r32f) uniform image2DMS many;
+layout(set = 0, binding = 1) buffer Out { float o[]; };
+void main() {
+  const ivec2 at = ivec2(gl_LocalInvocationID.xy);
+  o[gl_LocalInvocationIndex] = imageLoad(many, at, 1).x + float(imageSamples(many)) * 100.0;
+}
+"""
+SAMPLES_FILE = """[compute]
+shader = "samples.comp"
+[launch]
+groups = 1
+[[image]]
+binding = 0
+size = [2, 2]
+samples = 2
+data = [1, 2, 3, 4, 5, 6, 7, 8]
+format = "r32_float"
+[[buffer]]
+binding = 1
+type = "f32"
+count = 4
+save = "out.csv"
+"""
+
+
 class Texels(GlintTest):
     def setUp(self):
         super().setUp()
@@ -94,6 +121,16 @@ class Texels(GlintTest):
     def test_images_of_every_shape_hold_the_texels_of_the_file_far_up_in_their_sets(self):
         self.run_text(0, [], LOOK_FILE)
         self.assertEqual([float(v) for v in (self.folder / "out/out.csv").read_text().split()[1:]], [40, 3, 6, 4.5, 7, 10, 9])
+
+    def test_samples_of_a_texel_are_layers_and_only_where_the_shader_has_them(self):
+        self.write("samples.comp", SAMPLES)
+        self.run_text(0, [], SAMPLES_FILE)
+        self.assertEqual([float(v) for v in (self.folder / "out/out.csv").read_text().split()[1:]], [205, 206, 207, 208])
+        self.refused("size = [1, 1]\nlayers = 6", "size = [1, 1]\nlayers = 6\nsamples = 2", "image 'image_3_201'", "samples a texel; the shader's has one")
+
+    def test_files_that_the_run_writes_itself_or_that_are_saved_twice_are_refused(self):
+        self.refused('"out.csv"', '"stats.csv"', "p.toml:", "the run itself writes 'stats.csv'")
+        self.refused('"out.csv"', '["a.csv", "a.csv"]', "p.toml:", "'a.csv' is saved twice")
 
     def test_texels_that_do_not_fill_their_image_are_refused_with_both_numbers(self):
         self.refused("[1, 2, 3, 4.5]", "[1, 2, 3]", "image 'image_3_202' has 3 numbers", "want 4")

@@ -1,0 +1,6 @@
+// What the hit shaders tell.
+// SPDX-License-Identifier: Apache-2.0
+struct Seen {
+  vec3 corners[3];
+  vec2 candidate;
+};
