@@ -76,6 +76,9 @@ int main_of(int argc, char** argv) {
   add_run(app, session);
   add_bench(app, session);
   add_stats(app, session);
+  add_report(app, session);
+  add_compare(app, session);
+  add_imgdiff(app, session);
   add_annotate(app, session);
   add_init(app, session);
   add_compile(app, session);

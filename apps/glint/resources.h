@@ -18,6 +18,8 @@ class Resources {
 
   // The folder of a built-in shader set; `folder` as in shaders/.
   std::string shader_dir(const std::string& folder) const { return root_ + "/shaders/" + folder; }
+  // A part of the HTML report, as web/ builds it.
+  std::string web_file(const std::string& name) const { return root_ + "/web/dist/" + name; }
 
  private:
   std::string root_;

@@ -29,6 +29,9 @@ struct Session {
 void add_run(CLI::App& app, Session& session);
 void add_bench(CLI::App& app, Session& session);
 void add_stats(CLI::App& app, Session& session);
+void add_report(CLI::App& app, Session& session);
+void add_compare(CLI::App& app, Session& session);
+void add_imgdiff(CLI::App& app, Session& session);
 void add_annotate(CLI::App& app, Session& session);
 void add_init(CLI::App& app, Session& session);
 void add_compile(CLI::App& app, Session& session);

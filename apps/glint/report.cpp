@@ -1,0 +1,64 @@
+// `glint report RUN...`: one HTML page of finished runs.
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/glint/config.h"
+#include "apps/glint/session.h"
+#include "report/config_file.h"
+#include "report/page.h"
+#include "report/page_data.h"
+#include "report/run_record.h"
+
+namespace glint::app {
+namespace {
+
+// The preset or file that a run's configuration began with, as it is today.
+report::PageRun page_run(const Resources& resources, const std::string& directory) {
+  report::PageRun run{.directory = directory, .preset = {}, .preset_note = {}};
+  const std::string path = directory + "/run.json";
+  if (!std::filesystem::exists(path)) return run;  // page_data() says what is wrong
+  report::RunRecord facts;
+  facts.add_facts(read_file(path), path);
+  const std::string name = facts.text("config.name");
+  try {
+    run.preset = report::config_file(describe_params(read_config(resources, name, {})), name);
+  } catch (const UserError&) {
+    run.preset_note = fmt::format("what differs from the preset is unknown: '{}' cannot be read from here", name);
+  }
+  return run;
+}
+
+Exit write_report(const Session& session, const std::vector<std::string>& directories, const std::string& out) {
+  std::vector<report::PageRun> runs;
+  for (const std::string& directory : directories) runs.push_back(page_run(session.resources, directory));
+  const nlohmann::ordered_json data = report::page_data(runs, GLINT_VERSION);
+  const auto web = [&](const char* name) { return read_file(session.resources.web_file(name)); };
+  const std::string page = report::page(data, {.frame = web("report.html"), .style = web("report.css"), .script = web("report.js")});
+  const std::string path = !out.empty() ? out : directories.size() == 1 ? directories[0] + "/report.html" : "report.html";
+  write_output(path, page);
+  if (path != "-") fmt::print("{}\n", path);
+  return Exit::Ok;
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, Session& session) {
+  struct Options {
+    std::vector<std::string> runs;
+    std::string out;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("report", "Write a page of figures about finished runs");
+  command->add_option("RUN", options->runs, "Run directories; with several, figures stand side by side and changes are against the first")->required();
+  command->add_option("-o,--out", options->out, "File, or - (default: report.html in the run directory; with several runs, here)");
+  command->callback([&session, options] {
+    session.action = [&session, options] { return write_report(session, options->runs, options->out); };
+  });
+}
+
+}  // namespace glint::app

@@ -1,0 +1,22 @@
+// Everything that `glint report` shows of some runs, as one JSON document: what the page's script draws.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace glint::report {
+
+// A run to show. The preset is what the run's configuration began with, as config_file() writes it.
+struct PageRun {
+  std::string directory;
+  std::string preset;       // "" = unknown
+  std::string preset_note;  // then why
+};
+
+// {"schema", "version", "runs", "stat_docs", "metric_docs", "key_docs"}; docs/report.md has the fields. Files of a run that
+// are optional (picture, series, profile) are left out where there are none. UserError, naming the run, where it was not
+// finished, is not of the timing machine, or was written by another version of Glint.
+nlohmann::ordered_json page_data(const std::vector<PageRun>& runs, const std::string& version);
+
+}  // namespace glint::report

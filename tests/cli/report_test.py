@@ -1,0 +1,305 @@
+# `glint report`: the page is whole, loads nothing from elsewhere, and shows the numbers of stats.json, in a real browser too.
+# SPDX-License-Identifier: Apache-2.0
+"""usage: report_test.py GLINT SOURCE_DIR SUITE...; the suite Browser needs Chromium and says so where there is none."""
+import csv
+import html.parser
+import json
+import math
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import glint_case
+from glint_case import GLINT, ROOT, GlintTest
+
+SMALL = ["--size", "16x16", "--spp", "1"]
+
+
+def leaves(tree, path=""):
+    """(pattern, instance, value) of every number of stats.json; a histogram is one value."""
+    for name, child in tree.items():
+        here = f"{path}.{name}" if path else name
+        if not isinstance(child, dict):
+            continue
+        if "value" in child and "unit" in child:
+            found = re.findall(r"\[(\d+)\]", here)
+            pattern, instance = re.sub(r"\[\d+\]", "[*]", here), int(found[0]) if found else 0
+            parts = child["value"].items() if isinstance(child["value"], dict) else [("", child["value"])]
+            for part, value in parts:
+                yield f"{pattern}::{part}" if part else pattern, instance, value
+        else:
+            yield from leaves(child, here)
+
+
+def trimmed(bins):
+    while bins and bins[-1] == 0:
+        bins = bins[:-1]
+    return bins
+
+
+class Elements(html.parser.HTMLParser):
+    """Attributes and text of elements, in order."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.found, self.open = [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        self.found.append([tag, dict(attributes), ""])
+        if tag not in ("meta", "img", "br", "link", "input"):
+            self.open.append(self.found[-1])
+
+    def handle_endtag(self, tag):
+        while self.open and self.open.pop()[0] != tag:
+            pass
+
+    def handle_data(self, data):
+        for element in self.open:
+            element[2] += data
+
+    def having(self, attribute):
+        return [(tag, attributes, text) for tag, attributes, text in self.found if attribute in attributes]
+
+
+class ReportTest(GlintTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.shared = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.shared.cleanup)
+
+        def run(out, *options):
+            subprocess.run([GLINT, "run", *options, *SMALL, "--out", out], cwd=cls.shared.name, check=True, capture_output=True)
+
+        run("wknd", "WKND", "--shader", "pt", "--profile", "--sample", "1000")
+        run("slow", "WKND", "--shader", "pt", "--set", "rt.box.latency=40")
+
+    def setUp(self):
+        super().setUp()
+        self.runs = {name: f"{self.shared.name}/{name}" for name in ("wknd", "slow")}
+
+    def report(self, *names):
+        done = self.glint("report", *[self.runs[name] for name in names], "-o", "report.html")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return (self.folder / "report.html").read_text()
+
+    def document(self, page):
+        return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.S).group(1))
+
+    def stats(self, name):
+        return json.loads(pathlib.Path(self.runs[name], "stats.json").read_text())
+
+    def total(self, name, pattern):
+        return sum(value for path, _, value in leaves(self.stats(name)) if path == pattern)
+
+
+class Page(ReportTest):
+    def test_every_number_of_stats_json_is_in_the_page(self):
+        run = self.document(self.report("wknd"))["runs"][0]
+        count = 0
+        for path, instance, value in leaves(self.stats("wknd")):
+            there = run["stats"][path]
+            there = there if there == 0 else there[instance]
+            self.assertEqual(trimmed(value) if isinstance(value, list) else value, there if there != 0 or not isinstance(value, list) else [], path)
+            count += 1
+        self.assertGreater(count, 3000)
+        series = list(csv.DictReader(pathlib.Path(self.runs["wknd"], "series.csv").read_text().splitlines()))
+        self.assertEqual(run["series"]["ipc"], [float(row["ipc"]) for row in series])
+        self.assertEqual(sum(op["issues"] for op in run["profile"]["ops"]), self.total("wknd", "gpu.core[*].instructions"))
+
+    def test_the_page_loads_nothing_and_stays_small(self):
+        page = self.report("wknd")
+        elements = Elements(page)
+        for tag, attributes, _ in elements.found:
+            for name in ("src", "href", "data", "poster", "srcset", "action"):
+                if name in attributes:
+                    self.assertRegex(attributes[name], r"^(data:|#)", f"<{tag} {name}>")
+        self.assertFalse([tag for tag, _, _ in elements.found if tag in ("link", "iframe", "object", "embed")])
+        style = "".join(text for tag, _, text in elements.found if tag == "style")
+        self.assertNotRegex(style, r"@import|url\(")
+        policy = [attributes["content"] for tag, attributes, _ in elements.found if attributes.get("http-equiv") == "Content-Security-Policy"]
+        self.assertEqual(len(policy), 1)
+        self.assertIn("default-src 'none'", policy[0])
+        pictures = sum(len(attributes["src"]) for tag, attributes, _ in elements.found if tag == "img")
+        self.assertLess(len(page.encode()) - pictures, 1_000_000)
+        self.assertIn("Apache ECharts", page)
+        self.assertIn("Redistribution and use in source and binary forms", page)
+
+    def test_tables_without_script_have_every_metric_as_stats_gives_it(self):
+        page = self.report("wknd", "slow")
+        static = page[: page.index('id="data"')]
+        rows = dict(re.findall(r'<tr><th scope="row"><code>([^<]+)</code></th>(<td.*?)</tr>', static[static.index('class="metrics"'):]))
+        for column, name in enumerate(("wknd", "slow")):
+            lines = self.glint("stats", self.runs[name], "--format", "metrics").stdout.splitlines()
+            self.assertEqual(len(lines), 87)
+            for metric, value in (line.split()[:2] for line in lines):
+                if value == "-":
+                    continue
+                shown = re.findall(r'<td class="n">(.*?)</td>', rows[metric])[column]
+                plain = float(shown.replace("\u202f", "").replace("−", "-"))
+                self.assertAlmostEqual(plain, float(value), delta=abs(float(value)) * 6e-4 + 1e-12, msg=metric)
+
+    def test_what_differs_from_the_preset_is_told(self):
+        document = self.document(self.report("wknd", "slow"))
+        self.assertEqual(document["runs"][0]["preset"]["changes"], {})
+        self.assertEqual(document["runs"][1]["preset"]["changes"], {"rt.box.latency": 13})
+        self.assertEqual(document["runs"][1]["config"]["rt.box.latency"], 40)
+
+    def test_keys_that_stalls_name_exist(self):
+        keys = set(self.document(self.report("wknd"))["runs"][0]["config"])
+        text = (ROOT / "web/src/sections/stalls.js").read_text()
+        named = set(re.findall(r'"((?:core|memory|rt|compiler)\.[\w.]+)"', text))
+        self.assertGreater(len(named), 20)
+        self.assertEqual(named - keys, set())
+        reasons = set(re.findall(r"^  (\w+): \[\"", text, re.M))
+        slots = {path.split("::")[1] for path, _, _ in leaves(self.stats("wknd")) if "issue_slots::" in path}
+        self.assertEqual(slots - reasons, {"issued"})
+
+    def test_the_file_goes_where_it_is_asked_to(self):
+        copy = self.folder / "copy"
+        shutil.copytree(self.runs["wknd"], copy)
+        self.assertEqual(self.glint("report", "copy").stdout.strip(), "copy/report.html")
+        self.assertTrue((copy / "report.html").exists())
+        self.assertEqual(self.glint("report", "copy", self.runs["slow"]).stdout.strip(), "report.html")
+        self.assertTrue(self.glint("report", "copy", "-o", "-").stdout.startswith("<!doctype html>"))
+
+    def test_bad_input_is_refused_with_a_reason(self):
+        copy = self.folder / "copy"
+        shutil.copytree(self.runs["wknd"], copy)
+        self.expect(2, ["no run directory", "nowhere"], "report", "nowhere")
+        (self.folder / "empty").mkdir()
+        self.expect(2, ["run.json", "no such file"], "report", "empty")
+        run_json = (copy / "run.json").read_text()
+        self.write("copy/run.json", run_json.replace('"schema": 1', '"schema": 0'))
+        self.expect(2, ["schema 0, expected 1", "another version"], "report", "copy")
+        self.write("copy/run.json", run_json.replace('"exit": 0', '"exit": 5, "message": "stuck"'))
+        self.expect(2, ["the run failed: stuck"], "report", "copy")
+        self.write("copy/run.json", run_json.replace('"mode": "timing"', '"mode": "functional"'))
+        self.expect(2, ["--mode timing"], "report", "copy")
+        self.write("copy/run.json", run_json[:200])
+        self.expect(2, ["copy/run.json", "JSON"], "report", "copy")
+        self.write("copy/run.json", run_json)
+        self.write("copy/stats.json", (copy / "stats.json").read_text()[:1000])
+        self.expect(2, ["copy/stats.json", "JSON"], "report", "copy")
+        (copy / "stats.json").unlink()
+        self.expect(2, ["copy/stats.json", "not finished"], "report", "copy")
+
+
+class Compare(ReportTest):
+    def test_compare_lists_what_changed_and_fails_on_a_condition(self):
+        was, now = self.runs["wknd"], self.runs["slow"]
+        cycles = [self.total(name, "gpu.cycles") for name in ("wknd", "slow")]
+        change = 100 * (cycles[1] / cycles[0] - 1)
+        done = self.glint("compare", was, now)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        row = next(line.split() for line in done.stdout.splitlines() if line.startswith("cycles "))
+        self.assertEqual([float(value) for value in row[1:3]], cycles)
+        self.assertAlmostEqual(float(row[3]), change, delta=0.006)
+        self.assertNotIn("\nrays_total", done.stdout)
+        self.assertIn("\nrays_total", self.glint("compare", was, now, "--all").stdout)
+        self.assertEqual(self.glint("compare", was, now, "--fail-on", f"cycles<{change - 0.1:.3f}%").returncode, 0)
+        self.expect(1, ["failed: cycles<"], "compare", was, now, "--fail-on", "ipc<-99%", "--fail-on", f"cycles<{change + 0.1:.3f}%")
+        self.assertIn("are equal", self.glint("compare", was, was).stdout)
+
+    def test_compare_refuses_what_it_cannot_read(self):
+        run = self.runs["wknd"]
+        self.expect(2, ["METRIC<-2%"], "compare", run, run, "--fail-on", "ipc")
+        self.expect(2, ["did you mean 'ipc'"], "compare", run, run, "--fail-on", "ipcs<1%")
+        self.expect(2, ["nowhere"], "compare", run, "nowhere")
+
+    def test_imgdiff_measures_pictures_and_draws_the_difference(self):
+        same = self.glint("imgdiff", self.runs["wknd"], self.runs["slow"], "--min-psnr", "200")
+        self.assertEqual(same.returncode, 0, same.stderr)
+        self.assertRegex(same.stdout, r"PSNR +inf")
+        done = self.glint("run", "WKND", "--shader", "pt", *SMALL, "--seed", "2", "--mode", "functional", "--out", "other")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.expect(1, ["PSNR below 200"], "imgdiff", self.runs["wknd"], "other", "--min-psnr", "200")
+        self.assertEqual(self.glint("imgdiff", self.runs["wknd"], "other/image.png", "-o", "diff.png").returncode, 0)
+        self.assertEqual((self.folder / "diff.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        self.expect(2, ["16x16", "8x8"], "imgdiff", self.runs["wknd"], self.small())
+        self.expect(2, ["stats.csv"], "imgdiff", f"{self.runs['wknd']}/stats.csv", self.runs["slow"])
+
+    def small(self):
+        (self.folder / "small.pfm").write_bytes(b"PF\n8 8\n-1.0\n" + bytes(8 * 8 * 12))
+        return "small.pfm"
+
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+
+
+class Browser(ReportTest):
+    def load(self, *names):
+        """The page's document after its script has run, and what the console said."""
+        self.report(*names)
+        done = subprocess.run(
+            [CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={self.folder}/profile", "--enable-logging=stderr", "--window-size=1280,900",
+             "--virtual-time-budget=20000", "--dump-dom", f"file://{self.folder}/report.html"],
+            capture_output=True, text=True, timeout=280)
+        console = [line for line in done.stderr.splitlines() if "CONSOLE" in line]
+        self.assertIn('data-ready="yes"', done.stdout, "the script did not end:\n" + "\n".join(console))
+        self.assertEqual(console, [])
+        return Elements(done.stdout), done.stdout
+
+    def test_one_run_shows_the_numbers_of_stats_json(self):
+        page, text = self.load("wknd")
+        shown = {attributes["data-stat"]: (attributes["data-value"], words) for _, attributes, words in page.having("data-stat")}
+        cycles = self.total("wknd", "gpu.cycles")
+        self.assertEqual(float(shown["gpu.cycles"][0]), cycles)
+        self.assertEqual(int(shown["gpu.cycles"][1].replace("\u202f", "")), cycles)
+        self.assertEqual(float(shown["gpu.rt_unit[*].rt.rays"][0]), self.total("wknd", "gpu.rt_unit[*].rt.rays"))
+        stalls = {path: sum(v for p, _, v in leaves(self.stats("wknd")) if p == path) for path in shown if "issue_slots" in path}
+        self.assertEqual(len(stalls), 3)
+        for path, value in stalls.items():
+            self.assertEqual(float(shown[path][0]), value, path)
+        all_waits = sorted((self.total("wknd", p) for p in {p for p, _, _ in leaves(self.stats("wknd")) if "issue_slots::" in p and not p.endswith("::issued")}), reverse=True)
+        self.assertEqual(sorted(stalls.values(), reverse=True), all_waits[:3])
+        self.tables_equal_stats(text, "wknd")
+
+    def tables_equal_stats(self, text, name):
+        """Tables of figures have the sums of stats.json, and every figure has a drawing."""
+        figures = {re.search(r'id="([\w-]+)"', head).group(1): body for head, body in re.findall(r'<figure ([^>]*id="[^>]*)>(.*?)</figure>', text, re.S)}
+        for expected in ("cpi-stack", "instruction-mix", "stages", "ops", "op-latency", "rt-use", "traversal", "rt-cycles", "fetch-mix", "ray-nodes", "l1", "l2", "miss-stages", "dram", "dram-clocks", "series"):
+            self.assertRegex(figures[expected], r"<svg.*<path", expected)
+        rows = dict(re.findall(r'<tr><th scope="row">([^<]*)</th><td class="n" data-value="([^"]*)"', figures["cpi-stack"]))
+        self.assertEqual(len(rows), 23)
+        for reason, value in rows.items():
+            self.assertEqual(float(value), self.total(name, f"gpu.core[*].issue_slots::{reason}"), reason)
+        mix = re.search(r"by latency</th>(.*?)</tr>", figures["instruction-mix"], re.S).group(1)
+        values = [float(value) for value in re.findall(r'data-value="([^"]*)"', mix)]
+        classes = [self.total(name, f"gpu.core[*].latency_by_class::{part}") for part in ("alu", "sfu", "mem", "tex", "ctrl", "rt")]
+        self.assertEqual(values, [*classes, sum(classes)])
+
+    def test_several_runs_stand_side_by_side_and_the_largest_change_comes_first(self):
+        page, text = self.load("wknd", "slow")
+        shown = [(attributes["data-stat"], float(attributes["data-value"])) for tag, attributes, _ in page.having("data-stat") if tag == "td"]
+        self.assertEqual([value for stat, value in shown if stat == "gpu.cycles"], [self.total("wknd", "gpu.cycles"), self.total("slow", "gpu.cycles")])
+        means = re.search(r'<table class="facts" id="means">(.*?)</table>', text, re.S).group(1)
+        ratio = self.total("wknd", "gpu.cycles") / self.total("slow", "gpu.cycles")
+        self.assertAlmostEqual(float(re.findall(r'data-value="([^"]*)"', means)[2]), ratio, places=9)
+        deltas = re.search(r'<table class="deltas pair">(.*?)</table>', text, re.S).group(1)
+        pairs = [[float(value) if value else None for value in re.findall(r'data-value="([^"]*)"', row)] for row in re.findall(r"<tr.*?</tr>", deltas, re.S)[1:]]
+        self.assertGreater(len(pairs), 60)
+        distance = [math.inf if (a == 0) != (b == 0) else abs(math.log(b / a)) if a else 0 for a, b in pairs]
+        for before, after in zip(distance, distance[1:]):
+            self.assertGreaterEqual(before * (1 + 1e-9), after)
+        self.assertGreater(distance[0], 0)
+        self.assertIn("rt.box.latency=40", text)
+
+    def test_a_kernel_without_picture_and_rays_is_shown_too(self):
+        done = self.glint("run", ROOT / "shaders/kernels/saxpy.toml", "--out", "saxpy")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.runs["saxpy"] = f"{self.folder}/saxpy"
+        page, text = self.load("saxpy")
+        self.assertIn("saxpy", text)
+        self.assertNotIn("NaN", re.sub(r"<script.*?</script>", "", text, flags=re.S))
+
+
+if __name__ == "__main__":
+    if "Browser" in sys.argv[3:] and not CHROMIUM:
+        print("SKIPPED: no Chromium here (`apt-get install chromium`); the report was not looked at in a browser")
+        sys.exit(77)
+    glint_case.main()

@@ -1,0 +1,108 @@
+// The report's document and the comparison of runs, from texts.
+// SPDX-License-Identifier: Apache-2.0
+#include "report/page.h"
+
+#include <nlohmann/json.hpp>
+
+#include "base/diagnostics.h"
+#include "report/base64.h"
+#include "report/compare.h"
+#include "report/config_rows.h"
+#include "report/page_stats.h"
+#include "tests/support/catch.h"
+
+using namespace glint;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+report::RunRecord run(const std::string& cycles, const std::string& lanes) {
+  report::RunRecord out;
+  out.add_stats("path,value,unit,doc\ngpu.cycles," + cycles + ",cycle,\ngpu.core[0].lane_instructions," + lanes + ",instruction,\n", "stats.csv");
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("base64 pads as RFC 4648 shows") {
+  CHECK(report::base64("") == "");
+  CHECK(report::base64("f") == "Zg==");
+  CHECK(report::base64("fo") == "Zm8=");
+  CHECK(report::base64("foobar") == "Zm9vYmFy");
+  CHECK(report::base64("\xff\xfe") == "//4=");
+}
+
+TEST_CASE("a configuration file reads back with units and strings, whatever stands in a comment") {
+  const auto rows = report::config_rows("# title = 1\ncores = 8  # [core] Cores = many. (1 to 256)\n\n[core.units]\nissue = \"g#to\"  # Which # warp.\n");
+
+  REQUIRE(rows.size() == 2);
+  CHECK(rows[0].key == "cores");
+  CHECK(rows[0].value == "8");
+  CHECK(rows[0].unit == "core");
+  CHECK(rows[0].doc == "Cores = many. (1 to 256)");
+  CHECK(rows[1].key == "core.units.issue");
+  CHECK(rows[1].value == "g#to");
+  CHECK(rows[1].unit == "");
+}
+
+TEST_CASE("only keys with another value than the preset's are changes") {
+  const auto changes = report::config_changes(report::config_rows("a = 1\nb = 2\nc = 3\n"), report::config_rows("a = 1\nb = 5\n"));
+
+  REQUIRE(changes.size() == 2);
+  CHECK(changes[0].row.key == "b");
+  CHECK(changes[0].preset == "5");
+  CHECK(changes[1].row.key == "c");
+  CHECK(changes[1].preset == "");
+}
+
+TEST_CASE("instances of a unit stand side by side, and what is zero everywhere is one zero") {
+  const Json stats = Json::parse(R"({"gpu": {"core[0]": {"hits": {"value": {"a": 1, "b": 0}, "unit": "x", "doc": "d"}, "late": {"value": [1, 0, 2, 0], "unit": "y", "doc": "e"}},
+                                              "core[1]": {"hits": {"value": {"a": 0, "b": 0}, "unit": "x", "doc": "d"}, "late": {"value": [0, 0, 0, 0], "unit": "y", "doc": "e"}}}})");
+  Json docs = Json::object();
+
+  const Json out = report::page_stats(stats, docs);
+
+  CHECK(out["gpu.core[*].hits::a"] == Json({1, 0}));
+  CHECK(out["gpu.core[*].hits::b"] == 0);
+  CHECK(out["gpu.core[*].late"] == Json::parse("[[1, 0, 2], []]"));
+  CHECK(docs["gpu.core[*].hits"] == Json({{"unit", "x"}, {"doc", "d"}}));
+}
+
+TEST_CASE("changes are relative to the first run, and the largest comes first") {
+  const auto changes = report::changes(run("1000", "3000"), run("900", "3000"));
+
+  const auto of = [&](const std::string& name) { return *std::find_if(changes.begin(), changes.end(), [&](const auto& c) { return c.metric->name == name; }); };
+  CHECK(*of("cycles").relative == Approx(-0.1));
+  CHECK(*of("ipc").relative == Approx(1.0 / 9));
+  CHECK(*of("insn").relative == 0);
+  CHECK(changes.front().metric->name != "insn");
+  CHECK(changes.back().metric->name != "ipc");
+}
+
+TEST_CASE("a condition holds on one side of its bound only") {
+  const auto changes = report::changes(run("1000", "3000"), run("900", "3000"));
+
+  CHECK(report::holds(report::parse_condition("cycles<-9%"), changes));
+  CHECK_FALSE(report::holds(report::parse_condition("cycles<-11%"), changes));
+  CHECK(report::holds(report::parse_condition("ipc>+11%"), changes));
+  CHECK_FALSE(report::holds(report::parse_condition("ipc>12%"), changes));
+  CHECK_FALSE(report::holds(report::parse_condition("insn<0%"), changes));
+  CHECK_THROWS_AS(report::holds(report::parse_condition("dram_util<0%"), changes), UserError);
+}
+
+TEST_CASE("a condition that is none is refused with the form that is expected") {
+  for (const char* text : {"ipc", "ipc<2", "<2%", "ipc<x%", "ipc<%", "ipcc<2%"}) CHECK_THROWS_AS(report::parse_condition(text), UserError);
+}
+
+TEST_CASE("no text of a run can end the page's script") {
+  const Json data = Json::parse(R"({"runs": [{"directory": "</script><b>", "run": {"scene": {"name": "<i>"}, "shader": "s", "config": {"name": "c"}}, "metrics": {}, "config": {},
+                                              "preset": {"known": true, "note": "", "changes": {}}}], "metric_docs": [], "key_docs": {}})");
+  const report::PageParts parts{.frame = "<!--title--><!--style--><!--noscript--><!--changes--><!--metrics--><!--data--><!--script-->", .style = "", .script = "run()"};
+
+  const std::string page = report::page(data, parts);
+
+  CHECK(page.find("</script><b>") == std::string::npos);
+  CHECK(page.find("<i>") == std::string::npos);
+  CHECK(page.find("\\u003c/script>") != std::string::npos);
+  CHECK_THROWS_AS(report::page(data, {.frame = "", .style = "", .script = ""}), UserError);
+}
