@@ -9,6 +9,7 @@
 
 #include "frontend/backend/liveness.h"
 #include "frontend/ptx/machine.h"
+#include "frontend/ptx/unroll.h"
 
 namespace glint::frontend::ptx {
 
@@ -46,7 +47,10 @@ VirtualProgram Lowering::run() {
         error(entry_.place, fmt::format("label '{}' is branched to but stands nowhere", draft_.blocks[next].name));
   if (errors_.has_errors()) return std::move(program_);
   if (options_.contract) contract(draft_, free_, program_);
-  if (options_.shape) exit_at_branches(draft_);
+  if (options_.shape) {
+    unroll_countdowns(draft_, program_);
+    exit_at_branches(draft_);
+  }
   add_reconvergence(draft_);
   program_.blocks = lay_out(std::move(draft_));
   zero_what_nobody_wrote(program_);

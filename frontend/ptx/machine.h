@@ -9,7 +9,7 @@ namespace glint::frontend::ptx {
 void exit_at_branches(Draft& draft);
 
 // Results stay bit for bit what they were. Source: counts of executed instructions of fourteen kernels on an H200, and
-// the machine instructions of single ops (docs/validation.md). Loops are not unrolled, which it does too.
+// the machine instructions of single ops (docs/validation.md). Loops: unroll.h.
 //   predicates  setp p, a, b; and.pred q, p, r              -> setp.and q, a, b, r; or.pred as well
 //   products    mul.wide x, a, b; add y, x, c; add z, x, d  -> mad.wide y, a, b, c; mad.wide z, a, b, d; mul.lo, shl as well
 //   loads       ld.shared of 2 or 4 words that follow each other at a place known to be aligned -> one of a vector

@@ -196,6 +196,24 @@ TEST_CASE("a product that only sums read becomes part of each of them") {
   CHECK(count(shaped("shl.b32 %r1,%lane,5;add.s32 %r2,%r1,3;add.s32 %r3,%r1,%lane;xor.b32 %out,%r2,%r3;\n"), "shl.b32") == 0);
 }
 
+TEST_CASE("a loop of one block that counts down runs four turns at a time, and any number of them") {
+  // Lanes count from different numbers of steps of 3; the pointer steps by 8, what it is added to stays.
+  const auto body = [](const std::string& start, const std::string& more = "") {
+    return "mul.lo.u32 %r1,%lane,3;" + start + "mov.u64 %rd1,0;mul.wide.u32 %rd2,%lane,16;mov.u32 %r2,7;\n"
+           "LOOP: add.s64 %rd3,%rd1,%rd2;cvt.u32.u64 %r3,%rd3;add.s64 %rd1,%rd1,8;add.s64 %rd4,%rd1,%rd2;cvt.u32.u64 %r4,%rd4;\n"
+           "mad.lo.u32 %r2,%r2,5,%r3;xor.b32 %r2,%r2,%r4;" + more + "add.s32 %r1,%r1,-3;setp.ne.s32 %p1,%r1,0;@%p1 bra LOOP;\n"
+           "cvt.u32.u64 %r5,%rd1;add.u32 %out,%r2,%r5;add.u32 %out,%out,%r1;\n";
+  };
+  const std::string some = shaped(body("add.u32 %r1,%r1,3;"));
+  CHECK(count(some, "mad.lo.u32 %r") >= 5);
+  CHECK(count(some, "setp.gt.s32") == 2);
+  shaped(body("mov.u32 %r1,12;"));
+  shaped(body("mov.u32 %r1,15;"));
+  // Not where lanes read each other, or what ends the loop is read behind it.
+  CHECK(count(shaped(body("mov.u32 %r1,30;", "shfl.sync.bfly.b32 %r2,%r2,1,31,-1;")), "setp.gt.s32") == 0);
+  CHECK(count(shaped(body("mov.u32 %r1,30;") + "@%p1 add.u32 %out,%out,1;\n"), "setp.gt.s32") == 0);
+}
+
 TEST_CASE("words of shared memory are loaded together where their place is known to be aligned") {
   const std::string room = ".shared .align 16 .b8 room[4096];\n";
   const auto body = [](int stride, const std::string& between = "") {

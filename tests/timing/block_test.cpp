@@ -124,6 +124,51 @@ TEST_CASE("global atomics travel to the memory as such, and only those with a re
   }
 }
 
+TEST_CASE("the result of an atomic on global memory comes later than a load's by the atomics' latency") {
+  const auto run = [](bool atomic, uint32_t latency) {
+    Code code;
+    mem::AddressSpace sizes;
+    const isa::Slot at = code.constant64(sizes.allocate("buffer", 4096)), one = code.constant(1);
+    if (atomic)
+      code.add("atom.global.add.u32", {reg(4), at, one});
+    else
+      code.add("ld.global.b32", {reg(4), at});
+    code.add("add.u32", {reg(5), reg(4), reg(4)});
+    code.add("exit");
+    Params params = quick_params();
+    params.lsu.atomic_latency = latency;
+    OneCore core(code, params, {});
+    core.memory.allocate("buffer", 4096);
+    return core.run();
+  };
+
+  CHECK(run(true, 204) - run(true, 0) == 204);
+  CHECK(run(false, 204) == run(false, 0));
+  CHECK(run(true, 0) == run(false, 0));
+}
+
+TEST_CASE("a fence of the GPU waits for the acknowledgement of a store since the last one, others do not") {
+  const auto run = [](std::string_view fence, bool store, uint32_t acknowledgement) {
+    Code code;
+    mem::AddressSpace sizes;
+    const isa::Slot at = code.constant64(sizes.allocate("buffer", 4096));
+    if (store) code.add("st.global.b32", {at, reg(4)});
+    code.add(fence);
+    code.add(fence);
+    code.add("exit");
+    Params params = quick_params();
+    params.fence.acknowledgement = acknowledgement;
+    OneCore core(code, params, {});
+    core.memory.allocate("buffer", 4096);
+    return core.run();
+  };
+
+  CHECK(run("membar.gl", true, 285) - run("membar.gl", true, 0) == 285);
+  CHECK(run("membar.gl", false, 285) == run("membar.gl", false, 0));
+  CHECK(run("membar.sys", true, 285) == run("membar.sys", true, 0));
+  CHECK(run("membar.cta", true, 285) == run("membar.cta", true, 0));
+}
+
 TEST_CASE("a fence waits for the warp's accesses and then for its scope's time") {
   const auto run = [](std::string_view fence, bool access) {
     Code code;

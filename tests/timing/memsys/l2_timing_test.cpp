@@ -159,6 +159,27 @@ TEST_CASE("writes that together cover a sector make it whole, and one word less 
   }
 }
 
+TEST_CASE("a sector written in part takes the slice for its interval, a whole one for a cycle") {
+  const auto run = [](uint32_t interval, WordMask words) {
+    Params params = bare();
+    params.l2.partial_interval = interval;
+    MemoryRig rig(params);
+    const std::vector<Address> lines = lines_of(rig.memory().map(), 0, 2);
+    rig.read_latency(lines[1], 1, true);
+    const Cycle start = rig.now();
+    const size_t before = rig.answers().size();
+    REQUIRE(rig.l1().access(start, Client::Lsu, write(lines[0], 1, words)));
+    REQUIRE(rig.l1().access(start + 1, Client::Lsu, read(lines[1], 7)));
+    rig.drain();
+    return std::pair(rig.answers().at(before).at - start, rig.memory().written_until() - start);
+  };
+  const auto whole = run(0, 0xff), part = run(9, 0x7f);
+  CHECK(run(9, 0xff) == whole);
+  CHECK(run(0, 0x7f) == whole);
+  CHECK(part.second - whole.second == 9 - 1);  // the write's end, and with it a launch's
+  CHECK(part.first - whole.first == 9 - 1);    // the read behind it
+}
+
 TEST_CASE("without masks a write covers its sectors, whatever its words") {
   MemoryRig rig(bare());
   REQUIRE(rig.l1().access(rig.now(), Client::Lsu, write(kLine, 1, 0x01)));

@@ -1,0 +1,206 @@
+// Copies loop bodies with registers of their own.
+// SPDX-License-Identifier: Apache-2.0
+#include "frontend/ptx/unroll.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "frontend/backend/slots.h"
+
+namespace glint::frontend::ptx {
+namespace {
+
+using Operand = VirtualOperand;
+
+constexpr int64_t kTurns = 4;
+constexpr size_t kMostCode = 64;  // instructions of a body: Choice, longer ones gain little
+
+// One loop: its block, and what its registers are in the copies.
+class Countdown {
+ public:
+  Countdown(Draft& draft, VirtualProgram& program, BlockId at) : draft_(draft), program_(program), at_(at) {}
+
+  bool run() {
+    const DraftBlock& block = draft_.blocks[at_];
+    if (block.end != DraftBlock::End::Branch || block.taken != at_ || block.next == at_ || block.negate || block.code.size() > kMostCode) return false;
+    if (!std::all_of(block.code.begin(), block.code.end(), is_a_lane_s_own)) return false;
+    find_definitions(block);
+    if (!find_counter(block)) return false;
+    append();
+    return true;
+  }
+
+ private:
+  // Lanes of a warp may be in different copies, where they were in one turn.
+  static bool is_a_lane_s_own(const VirtualInst& inst) {
+    return is_pure(inst) && !is_guarded(inst) && row_of(inst).unit != isa::Unit::Shuffle && row_of(inst).name != "activemask.b32";
+  }
+
+  void find_definitions(const DraftBlock& block) {
+    for (const VirtualInst& inst : block.code) for_each_def(inst, [&](VirtualRegister r) { ++definitions_[r]; });
+    std::set<VirtualRegister> written;
+    for (const VirtualInst& inst : block.code) {
+      for_each_use(inst, [&](VirtualRegister r) {
+        if (definitions_.contains(r) && !written.contains(r)) kept_.insert(r);
+      });
+      for_each_def(inst, [&](VirtualRegister r) { written.insert(r); });
+      if (const auto step = step_of(inst)) steps_[inst.operands[0].reg] = *step;
+    }
+    for (BlockId b = 0; b < draft_.blocks.size(); ++b) {
+      if (b == at_) continue;
+      for (const VirtualInst& inst : draft_.blocks[b].code)
+        for_each_use(inst, [&](VirtualRegister r) { if (definitions_.contains(r)) kept_.insert(r); });
+      if (definitions_.contains(draft_.blocks[b].condition)) kept_.insert(draft_.blocks[b].condition);
+    }
+  }
+
+  // The constant that the instruction adds to a register which nothing else changes.
+  std::optional<int64_t> step_of(const VirtualInst& inst) const {
+    const bool narrow = inst.op == ops_.add_s32 || inst.op == ops_.add_u32, wide = inst.op == ops_.add_s64 || inst.op == ops_.add_u64;
+    if (!narrow && !wide) return std::nullopt;
+    const Operand &to = inst.operands[0], &from = inst.operands[1], &by = inst.operands[2];
+    if (!is_register(from) || from.reg != to.reg || !is_constant(by) || definitions_.at(to.reg) != 1) return std::nullopt;
+    const int64_t step = narrow ? int64_t{int32_t(uint32_t(by.constant))} : int64_t(by.constant);
+    constexpr int64_t kMost = 1 << 24;
+    return step > -kMost && step < kMost ? std::optional(step) : std::nullopt;
+  }
+
+  // The last test: `setp.ne.s32 p, r, 0` behind r's step down.
+  bool find_counter(const DraftBlock& block) {
+    if (block.code.empty() || kept_.contains(block.condition)) return false;
+    const VirtualInst& test = block.code.back();
+    if (test.op != setp_ne_s32_ || test.operands[0].reg != block.condition || definitions_[block.condition] != 1) return false;
+    const Operand &value = test.operands[1], &end = test.operands[2];
+    if (!is_register(value) || !steps_.contains(value.reg) || steps_[value.reg] >= 0 || !is_constant(end) || end.constant != 0) return false;
+    counter_ = value.reg;
+    return program_.registers[counter_] == RegisterClass::B32;
+  }
+
+  static Operand constant_of(int64_t value, bool wide) { return Operand::value(wide ? uint64_t(value) : uint64_t(uint32_t(value))); }
+  bool is_wide(VirtualRegister r) const { return program_.registers[r] == RegisterClass::B64; }
+  Operand now(const Operand& o) const {
+    if (!is_register(o)) return o;
+    const auto found = names_.find(o.reg);
+    return found == names_.end() ? o : Operand::of(found->second);
+  }
+
+  void copy_body(int64_t turn, std::vector<VirtualInst>& out) {
+    const bool last = turn == kTurns - 1;
+    const std::vector<VirtualInst> code = draft_.blocks[at_].code;
+    for (size_t i = 0; i + 1 < code.size(); ++i) {  // without the test
+      VirtualInst inst = code[i];
+      if (const auto step = step_of(inst)) {
+        const VirtualRegister from = inst.operands[0].reg;
+        inst.operands[2] = constant_of((turn + 1) * *step, is_wide(from));
+        stepped_[from] = turn + 1;
+      } else if (!take_from_first(inst, turn, i)) {
+        for_each_slot(row_of(inst), [&](size_t slot, isa::OperandKind kind) {
+          if (!isa::is_destination(kind)) inst.operands[slot] = now(inst.operands[slot]);
+        });
+      }
+      std::vector<VirtualRegister> to;
+      for_each_slot(row_of(inst), [&](size_t slot, isa::OperandKind kind) {
+        Operand& o = inst.operands[slot];
+        if (!isa::is_destination(kind) || !is_register(o)) return;
+        if (last && kept_.contains(o.reg)) {
+          names_.erase(o.reg);
+          return;
+        }
+        const VirtualRegister fresh = program_.new_register(program_.registers[o.reg]);
+        names_[o.reg] = fresh;
+        o = Operand::of(fresh);
+      });
+      if (turn == 0 && !inst.operands.empty()) first_[i] = inst.operands[0];
+      out.push_back(std::move(inst));
+    }
+  }
+
+  // A sum of a stepping register and one that stays: what the first turn had, and the steps since.
+  bool take_from_first(VirtualInst& inst, int64_t turn, size_t i) const {
+    const bool wide = inst.op == ops_.add_s64 || inst.op == ops_.add_u64;
+    if (turn == 0 || (!wide && inst.op != ops_.add_s32 && inst.op != ops_.add_u32) || kept_.contains(inst.operands[0].reg)) return false;
+    for (size_t k : {size_t{1}, size_t{2}}) {
+      const Operand &moving = inst.operands[k], &other = inst.operands[3 - k];
+      if (!is_register(moving) || !steps_.contains(moving.reg) || !is_register(other) || definitions_.contains(other.reg)) continue;
+      // Both turns read it before its step, or both behind it.
+      const int64_t behind = stepped_.contains(moving.reg) && stepped_.at(moving.reg) > turn;
+      if (behind != int64_t{is_behind(i, moving.reg)}) return false;
+      inst.operands = {inst.operands[0], first_.at(i), constant_of(turn * steps_.at(moving.reg), wide)};
+      return true;
+    }
+    return false;
+  }
+  bool is_behind(size_t i, VirtualRegister r) const {
+    const std::vector<VirtualInst>& code = draft_.blocks[at_].code;
+    return std::any_of(code.begin(), code.begin() + std::ptrdiff_t(i), [&](const VirtualInst& inst) { return step_of(inst) && inst.operands[0].reg == r; });
+  }
+
+  BlockId add_block(std::vector<VirtualInst> code, BlockId next) {
+    DraftBlock block;
+    block.name = draft_.blocks[at_].name + "_by_" + std::to_string(draft_.blocks.size() - first_block_);
+    block.line = draft_.blocks[at_].line;
+    block.code = std::move(code);
+    block.end = DraftBlock::End::Goto;
+    block.next = next;
+    draft_.blocks.push_back(std::move(block));
+    layout_.push_back(BlockId(draft_.blocks.size() - 1));
+    return layout_.back();
+  }
+  void end_in_test(BlockId at, uint16_t op, int64_t bound, bool negate, BlockId taken) {
+    DraftBlock& block = draft_.blocks[at];
+    block.end = DraftBlock::End::Branch;
+    block.condition = program_.new_register(RegisterClass::Predicate);
+    block.code.push_back(make_inst(op, {Operand::of(block.condition), Operand::of(counter_), constant_of(bound, false)}, block.line));
+    block.negate = negate;
+    block.taken = taken;
+  }
+
+  // Puts the copies in front of the loop, and their tests around them. Model: a block each, so that loads stay in their turn: an
+  // H200 waits for memory once in each of the four (k_matmul, docs/validation.md), not once for all.
+  void append() {
+    const int64_t least = -steps_[counter_] * (kTurns - 1);
+    first_block_ = BlockId(draft_.blocks.size());
+    const BlockId body = first_block_ + 1, rest = body + BlockId(kTurns);
+    end_in_test(add_block({}, body), setp_gt_s32_, least, true, at_);
+    for (int64_t turn = 0; turn < kTurns; ++turn) {
+      std::vector<VirtualInst> code;
+      copy_body(turn, code);
+      add_block(std::move(code), body + BlockId(turn) + 1);
+    }
+    end_in_test(rest - 1, setp_gt_s32_, least, false, body);
+    end_in_test(add_block({}, at_), setp_ne_s32_, 0, true, draft_.blocks[at_].next);
+    for (BlockId b = 0; b < first_block_; ++b) {
+      DraftBlock& block = draft_.blocks[b];
+      if (b == at_ || block.end == DraftBlock::End::Exit) continue;
+      if (block.next == at_) block.next = first_block_;
+      if (block.end == DraftBlock::End::Branch && block.taken == at_) block.taken = first_block_;
+    }
+    draft_.layout.insert(std::find(draft_.layout.begin(), draft_.layout.end(), at_), layout_.begin(), layout_.end());
+  }
+
+  Draft& draft_;
+  VirtualProgram& program_;
+  const BlockId at_;
+  const Ops ops_;
+  const uint16_t setp_ne_s32_ = isa::op_index("setp.ne.s32"), setp_gt_s32_ = isa::op_index("setp.gt.s32");
+  VirtualRegister counter_ = kNoRegister;
+  std::map<VirtualRegister, int> definitions_;         // in the loop
+  std::set<VirtualRegister> kept_;                     // of those, what a turn takes from the last one or others read
+  std::map<VirtualRegister, int64_t> steps_, stepped_; // what a turn adds; turns of it done in the copies so far
+  std::map<VirtualRegister, VirtualRegister> names_;   // at the present place of the copies
+  std::map<size_t, Operand> first_;                    // what the first turn's instruction gave
+  BlockId first_block_ = kNoBlock;                     // of those that are new
+  std::vector<BlockId> layout_;                        // these
+};
+
+}  // namespace
+
+void unroll_countdowns(Draft& draft, VirtualProgram& program) {
+  const std::vector<BlockId> layout = draft.layout;
+  for (BlockId b : layout) Countdown(draft, program, b).run();
+}
+
+}  // namespace glint::frontend::ptx
