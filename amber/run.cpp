@@ -56,8 +56,8 @@ class Runner {
       if (!launched.faults.empty()) outcome_.faults.push_back(fmt::format("{}: {}", command.where.to_string(), launched.faults.to_string()));
     } catch (const Error& error) {
       keep_prints();
-      if (error.exit() != Exit::Fault) throw;
-      throw Error(Exit::Fault, fmt::format("{}: {}", command.where.to_string(), error.what()));
+      if (error.exit() != Exit::Fault && error.exit() != Exit::Stuck) throw;
+      throw Error(error.exit(), fmt::format("{}: {}", command.where.to_string(), error.what()));
     }
     ++outcome_.launches;
   }

@@ -3,8 +3,10 @@
 #include "core/core_cell.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <bit>
 
 #include "base/check.h"
 #include "base/num_lanes.h"
@@ -201,19 +203,38 @@ void CoreCell::finish(Cycle end) {
 
 std::string CoreCell::describe_stall() const {
   std::string out = fmt::format("{}: {} of {} warp slots in use\n", stats_.name(), num_resident_, num_slots_);
+  std::vector<std::pair<std::string, std::vector<uint64_t>>> groups;  // what is said of warps, and of which
   for (uint32_t slot = 0; slot < num_slots_; ++slot) {
-    const SchedulerState& scheduler = schedulers_[slot % params_.schedulers];
-    const uint32_t local = slot / params_.schedulers;
-    if (!(scheduler.resident >> local & 1)) continue;
-    const WarpContext& warp = warps_[slot];
-    const Cycle ready = scheduler.ready_at[local];
-    out += fmt::format("  slot {}, warp {}: at {}, waits for {} {}, {} accesses in flight\n", slot, warp.warp_index,
-                       warp.simt.finished() ? "its end" : world_.image->place_of(warp.simt.pc),
-                       name_of(scheduler.wait[local]),
-                       ready == kNever ? std::string("without a known end") : fmt::format("until cycle {}", ready),
-                       outstanding_[slot]);
+    if (!(schedulers_[slot % params_.schedulers].resident >> slot / params_.schedulers & 1)) continue;
+    std::string text = describe_warp(slot);
+    const auto same = std::find_if(groups.begin(), groups.end(), [&](const auto& group) { return group.first == text; });
+    if (same == groups.end()) groups.push_back({std::move(text), {warps_[slot].warp_index}});
+    else same->second.push_back(warps_[slot].warp_index);
   }
+  for (const auto& [text, warps] : groups) out += fmt::format("  warp{} {}: {}\n", warps.size() > 1 ? "s" : "", fmt::join(warps, ", "), text);
   return out + l1_.describe() + rt_.describe();
+}
+
+// Where the warp is, what it waits for, and whom: the warps of its block, or whoever writes what it read last.
+std::string CoreCell::describe_warp(uint32_t slot) const {
+  const SchedulerState& scheduler = schedulers_[slot % params_.schedulers];
+  const uint32_t local = slot / params_.schedulers;
+  const WarpContext& warp = warps_[slot];
+  const Cycle ready = scheduler.ready_at[local];
+  std::string out = fmt::format("at {}, waits for {} {}, {} accesses in flight", warp.simt.finished() ? "its end" : world_.image->place_of(warp.simt.pc),
+                                name_of(scheduler.wait[local]), ready == kNever ? std::string("without a known end") : fmt::format("until cycle {}", ready),
+                                outstanding_[slot]);
+  if (warp.waiting_at_barrier) {
+    std::vector<uint64_t> missing;
+    const Block& block = home_[slot]->block;
+    for (uint32_t w = 0; w < block.num_warps(); ++w)
+      if ((block.live() & ~block.waiting()) >> w & 1) missing.push_back(block.warps[w]->warp_index);
+    out += fmt::format(", at barrier {} for warps {}", warp.barrier, fmt::join(missing, ", "));
+  } else if (!warp.simt.finished() && warp.simt.active != 0) {
+    const Address address = warp.regs.access.address[size_t(std::countr_zero(warp.simt.active))];
+    if (world_.memory->find(address, 1)) out += ", last access: " + whereabouts(*world_.memory, address, 1);
+  }
+  return out;
 }
 
 }  // namespace glint::core

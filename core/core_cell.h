@@ -22,6 +22,7 @@
 #include "core/sm_stats.h"
 #include "core/units.h"
 #include "memsys/l1_port.h"
+#include "memsys/latency.h"
 #include "rtunit/rt_port.h"
 
 namespace glint::core {
@@ -76,6 +77,9 @@ class CoreCell final : public Cell {
     return num_resident_ == 0 && lsu_.idle() && (!code_ || code_->cache.idle()) && l1_.next_event(accounted_) == kNever;  // last writes have left
   }
   uint64_t progress() const override { return progress_; }
+  // Grows when a warp begins, ends or is handed to the RT unit, and with what Executor::changes() counts: what warps that
+  // spin for ever do not.
+  uint64_t changes() const { return num_launched_ - num_resident_ + num_launched_ + stats_.rt_warps.value() + executor_.changes(); }
   std::string describe_stall() const override;
 
   // The first fault of a warp here; the cell does nothing from then on.
@@ -98,6 +102,8 @@ class CoreCell final : public Cell {
   // Warp instructions and lanes by op, indexed as isa::op_table().
   const std::vector<uint64_t>& op_counts() const { return op_counts_; }
   const std::vector<uint64_t>& op_lanes() const { return op_lanes_; }
+  // Of every warp instruction that waits for memory, from its issue to its last sector.
+  const mem::Latencies& latencies() const { return latencies_; }
 
  private:
   // A block that is here: until all of its warps' accesses have ended.
@@ -119,6 +125,7 @@ class CoreCell final : public Cell {
   void account_until(Cycle now);
   SchedulerState& scheduler_of(uint32_t slot) { return schedulers_[slot % params_.schedulers]; }
   void run_scheduler(SchedulerState& scheduler, Cycle now);
+  std::string describe_warp(uint32_t slot) const;
   Stall reason_of(const SchedulerState& scheduler, size_t warp, Cycle now) const;
   uint32_t blamed_pc(const SchedulerState& scheduler, Cycle now) const;
   uint64_t find_ready(SchedulerState& scheduler, Cycle now);
@@ -207,6 +214,7 @@ class CoreCell final : public Cell {
   std::unique_ptr<CodeStats> code_stats_;  // null where instructions and constants are always there, as is:
   std::unique_ptr<Code> code_;
   std::vector<uint64_t> op_counts_, op_lanes_;
+  mem::Latencies latencies_;
   std::unique_ptr<Profile> profile_;       // null: not asked for
   IntervalSampler sampler_;
 };

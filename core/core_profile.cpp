@@ -12,7 +12,9 @@ void CoreCell::start_profile() { profile_ = std::make_unique<Profile>(world_.ima
 Stall CoreCell::reason_of(const SchedulerState& scheduler, size_t i, Cycle now) const {
   if (scheduler.ready_at[i] > now) return scheduler.wait[i];
   if (scheduler.pipe_free[size_t(scheduler.pipe[i])] > now) return Stall::MathThrottle;
-  return scheduler.needs_rt >> i & 1 ? Stall::RtFull : Stall::LsuThrottle;
+  if (scheduler.needs_rt >> i & 1 && scheduler.watches_rt) return Stall::RtFull;
+  if (scheduler.needs_tex >> i & 1 && !lsu_.can_take(scheduler.index, true)) return Stall::TexThrottle;
+  return scheduler.needs_lsu >> i & 1 && !lsu_.can_take(scheduler.index) ? Stall::LsuThrottle : Stall::RegisterBanks;
 }
 
 // The warp that gave the scheduler its reason: of several the one that can go on first, then the oldest. As in

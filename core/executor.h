@@ -101,6 +101,8 @@ class Executor {
   void use(MemoryView* view) { view_ = view; }
   // Whether the last load or atomic writes its registers only when the view is committed.
   bool is_late() const { return is_late_; }
+  // Grows with every store outside of a view and every atomic there that has changed something: shared memory, mostly.
+  uint64_t changes() const { return changes_; }
 
   const World& world() const { return world_; }
 
@@ -203,6 +205,7 @@ class Executor {
   std::array<uint64_t, size_t(isa::Stage::Compute) + 1> called_lanes_{};
   std::array<LaneMask, size_t(isa::Space::Generic) + 1> lanes_in_{};
   MemoryView* view_ = nullptr;
+  uint64_t changes_ = 0;
   bool is_late_ = false;
   std::optional<Fault> fault_;
   FaultLog passed_;

@@ -118,7 +118,7 @@ bool Executor::fail_stuck(const Block& block) {
                         at.second, world_.image->place_of(at.first));
   const bool ended = uint32_t(std::popcount(block.live())) < block.num_warps();
   what += ended ? "the others have ended" : "no other is left";
-  fault_ = Fault{std::move(what), world_.image->place_of(first->barrier_pc), launch_id(world_, first->warp_index, 0)};
+  fault_ = Fault{std::move(what), world_.image->place_of(first->barrier_pc), launch_id(world_, first->warp_index, 0), true};
   return false;
 }
 

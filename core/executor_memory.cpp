@@ -145,6 +145,7 @@ bool Executor::move_data(WarpContext& warp, const isa::Inst& inst, const isa::Op
   if (!locate(warp, row, space, inside, at)) return false;
   const bool seen = view_ && space == Space::Global;
   if (row.effect == Effect::Store) {
+    changes_ += !seen;
     seen ? store_seen(warp, inst, row, inside, at) : store_rows(warp, inst, row.memory, inside, at);
     return true;
   }
@@ -176,6 +177,7 @@ bool Executor::modify(WarpContext& warp, const isa::Inst& inst, const isa::OpRow
     const uint64_t c = has_second ? read_operand(warp.regs, inst.operand[first + 1], lane, bytes) : space == Space::Global;
     const uint64_t value = row.atomic(old, b, c);
     std::memcpy(at[size_t(lane)], &value, bytes);
+    changes_ += value != old;
     if (!returns) return;
     uint32_t* const to = warp.regs.write(inst.operand[0]);
     to[lane] = uint32_t(old);

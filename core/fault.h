@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/diagnostics.h"
 #include "memsys/address_space.h"
 
 namespace glint::core {
@@ -35,7 +36,9 @@ struct Fault {
   std::string what;       // "reads 4 bytes 16 bytes past the end of 'binding 4 (Vertices)'"
   std::string place;      // shader, GLSL file and line, instruction
   std::array<uint32_t, 3> launch_id{};
+  bool is_deadlock = false;  // warps wait for each other for ever
   std::string to_string() const;
+  Exit exit() const { return is_deadlock ? Exit::Stuck : Exit::Fault; }
 };
 
 // Faults that were let pass, by instruction and kind. What it holds does not depend on the order in which warps run.

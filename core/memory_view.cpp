@@ -32,14 +32,17 @@ uint32_t widened(const MemoryView::Load& load) {
   return load.bytes == 1 ? uint32_t(int32_t(int8_t(value))) : uint32_t(int32_t(int16_t(value)));
 }
 
-void run_modify(const MemoryView::Modify& op) {
+// Whether the value has changed.
+bool run_modify(const MemoryView::Modify& op) {
   uint64_t old = 0;
   std::memcpy(&old, op.at, op.bytes);
   const uint64_t value = op.function(old, op.b, op.c);
   std::memcpy(op.at, &value, op.bytes);
-  if (!op.to) return;
-  op.to[0] = uint32_t(old);
-  if (op.bytes == 8) op.to[kLanes] = uint32_t(old >> 32);
+  if (op.to) {
+    op.to[0] = uint32_t(old);
+    if (op.bytes == 8) op.to[kLanes] = uint32_t(old >> 32);
+  }
+  return value != old;
 }
 
 }  // namespace
@@ -137,10 +140,14 @@ const std::byte* MemoryView::read(const std::byte* at, uint32_t bytes, std::span
   return own ? scratch.data() : at;
 }
 
-void MemoryView::run(const Batch& batch) const {
+bool MemoryView::run(const Batch& batch) const {
+  bool changed = false;
   for (uint32_t i = batch.first; i < batch.end; ++i) switch (batch.kind) {
-      case Kind::Store: std::memcpy(stores_[i].at, stores_[i].data.data(), stores_[i].bytes); break;
-      case Kind::Modify: run_modify(modifies_[i]); break;
+      case Kind::Store:
+        changed = changed || std::memcmp(stores_[i].at, stores_[i].data.data(), stores_[i].bytes) != 0;
+        std::memcpy(stores_[i].at, stores_[i].data.data(), stores_[i].bytes);
+        break;
+      case Kind::Modify: changed |= run_modify(modifies_[i]); break;
       case Kind::Load: *loads_[i].to = widened(loads_[i]); break;
       case Kind::LoadTexel: {
         const Words words = load_texel(*texels_[i].row, texels_[i].format, texels_[i].at);
@@ -149,6 +156,7 @@ void MemoryView::run(const Batch& batch) const {
         break;
       }
     }
+  return changed;
 }
 
 void MemoryView::clear() {
@@ -166,7 +174,8 @@ void MemoryView::clear() {
 }
 
 // The views are few and their batches are in order: the earliest of all is at one of their heads.
-void MemoryView::commit(std::span<MemoryView* const> views) {
+bool MemoryView::commit(std::span<MemoryView* const> views) {
+  bool changed = false;
   for (;;) {
     MemoryView* earliest = nullptr;
     for (MemoryView* view : views) {
@@ -174,10 +183,11 @@ void MemoryView::commit(std::span<MemoryView* const> views) {
       if (!earliest || view->batches_[view->next_].at < earliest->batches_[earliest->next_].at) earliest = view;
     }
     if (!earliest) break;
-    earliest->run(earliest->batches_[earliest->next_++]);
+    changed |= earliest->run(earliest->batches_[earliest->next_++]);
   }
   for (MemoryView* view : views)
     if (!view->batches_.empty()) view->clear();
+  return changed;
 }
 
 }  // namespace glint::core

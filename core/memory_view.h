@@ -60,8 +60,8 @@ class MemoryView {
   // Where the bytes can be read: at their place, or in `scratch`, where this core has written some of them.
   const std::byte* read(const std::byte* at, uint32_t bytes, std::span<std::byte, kWidest> scratch) const;
 
-  // Ends the turn for all cores of the machine. `views` in the order of the cores.
-  static void commit(std::span<MemoryView* const> views);
+  // Ends the turn for all cores of the machine. `views` in the order of the cores. Whether any byte of memory has changed.
+  static bool commit(std::span<MemoryView* const> views);
 
  private:
   struct Line {
@@ -86,7 +86,7 @@ class MemoryView {
   Line& line_of(std::byte* place);
   const Line* find(const std::byte* place) const;
   void grow();
-  void run(const Batch& batch) const;
+  bool run(const Batch& batch) const;
   void clear();
 
   Cycle now_ = 0;

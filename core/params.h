@@ -203,6 +203,8 @@ struct Params {
   uint32_t block_interval = 1;     // GPGPU-Sim and Accel-Sim: a core takes one block a cycle (issue_block2core)
   PolicyChoice<WarpLayout> layout{"linear"};
   uint64_t instruction_budget = 100'000'000;
+  // Choice: 15 ms of a GPU; nothing but warps that spin is known to do so little for so long.
+  uint64_t livelock_budget = 20'000'000;
   static constexpr auto params() {
     return std::tuple{
         param(&Params::warps, "warps", "warp", "Resident warps of a core, registers permitting.", 1, kMaxWarps),
@@ -234,7 +236,9 @@ struct Params {
         param(&Params::block_interval, "block_interval", "cycle", "Between two blocks that start on a core.", 0, 10'000),
         policy(&Params::layout, "warp_layout", "Which threads of a launch form a warp, and the order in which warps and blocks start."),
         param(&Params::instruction_budget, "instruction_budget", "instruction",
-            "Instructions after which a warp is held to have no end.", 1, uint64_t{1} << 40)};
+            "Instructions after which a warp is held to have no end.", 1, uint64_t{1} << 40),
+        param(&Params::livelock_budget, "livelock_budget", "cycle",
+            "After so long in which no warp and no ray has ended and nothing in memory has changed, the machine is held to spin for ever; 0: never.", 0, uint64_t{1} << 40)};
   }
 };
 

@@ -136,6 +136,7 @@ void CoreCell::complete(uint32_t access_id, Cycle now) {
   const IssueRow& row = table_.row(access.pc);
   stats_.latency.add(row.klass, now - access.issued);
   if (profile_) profile_->end(access.pc, now - access.issued);
+  if (!access.write && !access.lines.lines().empty()) latencies_.add(access.traffic, now - access.issued);
   if (row.finish == Finish::CallRecord) {
     // The branch itself was resolved long ago, or now.
     front_[slot] = {std::max(now, access.issued + row.latency), Stall::Call};

@@ -62,6 +62,7 @@ bool L1Cache::read(Cycle now, Client client, const Request& request) {
   uint8_t fetched = 0;
   if (missing == 0) {
     answers_[size_t(client)].hits.push({now + params_.hit_latency, order_, request.token});
+    latencies_.add(request.traffic, params_.hit_latency);
   } else {
     uint32_t entry = mshr_.find(request.line);
     if (entry == kNone && mshr_.full()) return refuse(Refusal::MshrFull);
@@ -80,7 +81,7 @@ bool L1Cache::read(Cycle now, Client client, const Request& request) {
     }
     passing_[entry] &= uint8_t{passes_l1(request.traffic)};
     mshr_.expect(entry, fetched);
-    mshr_.add(entry, {now, order_, request.token, missing, client});
+    mshr_.add(entry, {now, order_, request.token, missing, client, request.traffic});
     if (fetched) {
       queue_packet(now + params_.miss_latency, {.line = request.line, .sectors = fetched, .traffic = request.traffic});
       sectors_requested_ += num_sectors(fetched);
@@ -127,7 +128,8 @@ bool L1Cache::pass_atomic(Cycle now, Client client, const Request& request) {
   const uint32_t slot = tags_.find(request.line);
   if (slot != kNone) tags_.drop(slot, request.sectors);
   queue_packet(now + params_.miss_latency, {.line = request.line, .sectors = request.sectors, .write = request.write,
-                                            .traffic = request.traffic, .token = request.token, .client = client, .order = order_});
+                                            .traffic = request.traffic, .token = request.token, .client = client, .order = order_,
+                                            .stamps = {.accepted = uint32_t(now)}});
   if (request.write) {
     stats_.writes.add(request.traffic);
     return true;
@@ -252,10 +254,12 @@ bool L1Cache::fill(Cycle now) {
   links_.replies->pop();
   fill_not_before_ = now + 1;
   if (is_kept) filled_cycle_ = now, filled_bank_ = bank_of(reply.line);
-  if (reply.is_atomic)
+  if (reply.is_atomic) {
     answers_[size_t(reply.client)].fills.push({now, reply.order, reply.token});
-  else
+    latencies_.add(Traffic::ShaderAtomic, uint32_t(now) - reply.stamps.accepted);
+  } else {
     answer_waiters(now, reply);
+  }
   return true;
 }
 
@@ -278,19 +282,20 @@ void L1Cache::answer_waiters(Cycle now, const Reply& reply) {
     waiter.missing &= uint8_t(~reply.sectors);
     if (waiter.missing) return false;
     answers_[size_t(waiter.client)].fills.push({now, waiter.order, waiter.token});
-    count_miss(waiter.accepted, now, reply.stamps);
+    count_miss(waiter, now, reply.stamps);
     return true;
   });
 }
 
-void L1Cache::count_miss(Cycle accepted, Cycle now, const Stamps& stamps) {
-  const Cycle latency = now - accepted;
+void L1Cache::count_miss(const Waiter& waiter, Cycle now, const Stamps& stamps) {
+  const Cycle latency = now - waiter.accepted;
   const bool from_dram = stamps.end[size_t(Stage::DramService)] != stamps.end[size_t(Stage::L2Service)];
   stats_.miss_latency.add(latency);
   (from_dram ? stats_.dram_latency : stats_.l2_latency).add(latency);
   ++stats_.timed_misses;
   stats_.miss_cycles += latency;
-  add_stages(stats_.miss_stages, accepted, now, stamps);
+  add_stages(stats_.miss_stages, waiter.accepted, now, stamps);
+  latencies_.add(waiter.traffic, latency);
 }
 
 Cycle L1Cache::next_event(Cycle now) const {

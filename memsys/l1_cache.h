@@ -9,6 +9,7 @@
 #include "memsys/cache_stats.h"
 #include "memsys/fan_in.h"
 #include "memsys/l1_port.h"
+#include "memsys/latency.h"
 #include "memsys/mshr.h"
 #include "memsys/packet.h"
 #include "memsys/params.h"
@@ -62,6 +63,8 @@ class L1Cache final : public L1Port {
   std::string describe() const override;
 
   const L1Stats& stats() const { return stats_; }
+  // Of every read, from its acceptance until it can be popped.
+  const Latencies& latencies() const { return latencies_; }
   // Holds nothing and waits for nothing; popped tokens equal accepted reads.
   bool drained() const;
   uint64_t packets_sent() const { return packets_sent_; }
@@ -78,6 +81,7 @@ class L1Cache final : public L1Port {
     Token token = 0;
     uint8_t missing = 0;
     Client client = Client::Lsu;
+    Traffic traffic = Traffic::ShaderGlobal;
   };
   struct Completion {
     Cycle ready = 0;
@@ -113,7 +117,7 @@ class L1Cache final : public L1Port {
   void hold(Cycle now, Address line, uint32_t slot);
   bool place(Cycle now, const Reply& reply);
   void answer_waiters(Cycle now, const Reply& reply);
-  void count_miss(Cycle accepted, Cycle now, const Stamps& stamps);
+  void count_miss(const Waiter& waiter, Cycle now, const Stamps& stamps);
 
   const L1Params params_;
   const uint32_t line_bytes_;
@@ -123,6 +127,7 @@ class L1Cache final : public L1Port {
   const L1Links links_;
   std::vector<uint32_t> credits_left_;  // by slice
   L1Stats stats_;
+  Latencies latencies_;
   TagArray tags_;
   Mshr<Waiter> mshr_;
   std::vector<uint8_t> passing_;  // an MSHR: its line is of instructions or constants, and is not kept

@@ -37,6 +37,7 @@ MemorySystem::MemorySystem(const Params& params, uint32_t num_cores, double core
     L1Links links{requests, {}, replies_[c].get(), credits_.empty() ? nullptr : credits_[c].get()};
     for (uint32_t s = 0; s < params.num_slices(); ++s) links.request_latency.push_back(params.noc.request_latency + far_latency(params, num_cores, c, s));
     l1s_.push_back(std::make_unique<L1Cache>(params, uint16_t(c), map_, std::move(links), core_groups_[c].get()));
+    load_latency_.add(l1s_.back()->latencies());
   }
   for (uint32_t p = 0; p < params.dram.channels; ++p) {
     std::vector<SliceLinks> links;
@@ -103,11 +104,13 @@ void MemorySystem::check_drained() const {
 // What went down came through: nothing is counted twice or lost between two levels.
 void MemorySystem::check_conserved() const {
   uint64_t sent = 0, received = 0;  // bytes
+  uint64_t timed = load_latency_.total();  // reads
   for (const auto& l1 : l1s_) {
     const L1Stats& s = l1->stats();
     GLINT_CHECK_EQ(s.reads.total(), s.hits.total() + s.pending_hits.total() + s.misses.total());
     sent += s.request_bytes.value();
     received += s.reply_bytes.value();
+    timed -= s.reads.total();
   }
   for (const auto& partition : partitions_) {
     uint64_t fetched = 0, written = 0;
@@ -124,6 +127,7 @@ void MemorySystem::check_conserved() const {
     GLINT_CHECK_EQ(written, dram.writes.value());
     GLINT_CHECK_EQ(dram.requests.value(), dram.reads.value() + dram.writes.value());
   }
+  GLINT_CHECK_EQ(timed, uint64_t{0});
   GLINT_CHECK_EQ(sent, uint64_t{0});
   GLINT_CHECK_EQ(received, uint64_t{0});
 }

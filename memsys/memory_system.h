@@ -9,6 +9,7 @@
 #include "memsys/address_map.h"
 #include "memsys/fan_in.h"
 #include "memsys/l1_cache.h"
+#include "memsys/latency.h"
 #include "memsys/params.h"
 #include "memsys/partition.h"
 
@@ -44,6 +45,7 @@ class MemorySystem {
   stats::Group group_;
   stats::Value imbalance_{&group_, "dram_imbalance", "ratio", [this] { return imbalance(); },
                           "Data clocks of the busiest channel over the mean of all: 1 is even."};
+  LatencyStats load_latency_{&group_, "load_latency", "Reads answered by the L1s, atomics included, from their acceptance on, by traffic class."};
   PartitionMap map_;
   Cycle shortest_latency_;
   std::vector<std::unique_ptr<FanIn<Packet>>> requests_;  // by slice

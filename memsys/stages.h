@@ -33,6 +33,7 @@ constexpr std::string_view name_of(Stage stage) {
 // When each stage but the last ended. Modulo 2^32: only differences are used, and no miss takes that long.
 struct Stamps {
   std::array<uint32_t, size_t(Stage::Count) - 1> end{};
+  uint32_t accepted = 0;  // of an atomic by its L1; other reads wait there, and each knows its own
   void set(Stage stage, Cycle cycle) { end[size_t(stage)] = uint32_t(cycle); }
   // From `stage` on up to the reply, all ended at `cycle`: the read goes no further down.
   void set_rest(Stage stage, Cycle cycle) { std::fill(end.begin() + int(stage), end.end(), uint32_t(cycle)); }

@@ -51,7 +51,7 @@ class Runner {
     const uint64_t end = warp.instructions + kQuantum;
     for (bool finished = false; !finished && !warp.waiting_at_barrier && warp.instructions < end;) {
       const core::Issued issued = executor.execute(warp, 0);
-      if (executor.fault()) throw Error(Exit::Fault, executor.passed().with(*executor.fault()));
+      if (executor.fault()) throw Error(executor.fault()->exit(), executor.passed().with(*executor.fault()));
       ClassCounts& by_class = counts.by_class[size_t(issued.row->klass)];
       ++by_class.instructions;
       by_class.lanes += num_lanes(issued.lanes);

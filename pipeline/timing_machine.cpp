@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/check_params.h"
 #include "pipeline/conservation.h"
 #include "pipeline/functional_machine.h"
 
@@ -13,10 +14,10 @@ namespace {
 // Checked before anything is built from them.
 const GpuParams& checked(const GpuParams& params, const core::World& world) {
   Diagnostics diagnostics;
+  check(params, diagnostics);
   core::check(params.core, world.image->num_registers, diagnostics);
   const auto& block = world.block_size;
   core::check_block(params.core, world.image->num_registers, uint64_t(block[0]) * block[1] * block[2], world.shared_bytes, diagnostics);
-  mem::check(params.memory, diagnostics, "memory.");
   diagnostics.throw_if_errors();
   return params;
 }
@@ -31,6 +32,7 @@ TimingMachine::TimingMachine(const GpuParams& params, const core::World& world, 
     : params_(checked(params, world)),
       world_(world),
       memory_(params_.memory, params_.cores, params_.clock_mhz, &root_),
+      watch_(params_.core.livelock_budget),
       engine_({.turn = memory_.shortest_latency(), .no_skip = no_skip, .threads = host.threads, .window = host.window, .homes = host.homes}) {
   const Cycle turn = params_.cores > 1 ? memory_.shortest_latency() : 0;
   const auto reserve = [&](uint64_t bytes) { return bytes ? world.memory->reserve(bytes) : Address{0}; };
@@ -47,6 +49,7 @@ TimingMachine::TimingMachine(const GpuParams& params, const core::World& world, 
     const Address local = world.memory->reserve(core::CoreCell::local_bytes(params_.core, world));
     cores_.push_back(std::make_unique<core::CoreCell>(
         params_.core, core::CoreCell::Context{world, memory_.l1(i), *rt_units_.back(), local, &root_, name, no_skip, i, params_.cores, params_.clock_mhz, rt.tables.base, code, constants, turn}));
+    access_latency_.add(cores_.back()->latencies());
     engine_.add(*cores_.back());
     if (core::MemoryView* view = cores_.back()->view()) views_.push_back(view);
   }
@@ -62,10 +65,15 @@ Cycle TimingMachine::run(const std::function<void(uint64_t, uint64_t)>& progress
   core::Dispatcher dispatcher(params_.core, executor.num_blocks(), cores);
   const core::Fault* fault = nullptr;
   const Cycle quiet = engine_.run([&](Cycle now) {
-    core::MemoryView::commit(views_);
+    watch_.look(now, core::MemoryView::commit(views_), [&] {
+      uint64_t changes = 0;
+      for (const auto& core : cores_) changes += core->changes();
+      return changes;
+    });
     for (const auto& core : cores_)
       if (!fault && core->fault()) fault = &*core->fault();
     if (fault) return EngineLoop::Next::Stop;
+    if (watch_.is_over(now)) throw_livelock(now);
     dispatcher.dispatch(now);
     if (progress) {
       uint64_t ended = uint64_t{dispatcher.num_dispatched()} * executor.warps_per_block();
@@ -74,7 +82,7 @@ Cycle TimingMachine::run(const std::function<void(uint64_t, uint64_t)>& progress
     }
     return dispatcher.done() ? EngineLoop::Next::NothingMore : EngineLoop::Next::Continue;
   });
-  if (fault) throw Error(Exit::Fault, passed().with(*fault));
+  if (fault) throw Error(fault->exit(), passed().with(*fault));
   Cycle end = 0;
   for (const auto& core : cores_) end = std::max(end, core->active_until());
   if (params_.core.ends_when_written) end = std::min(std::max(end, memory_.written_until()), quiet);
@@ -89,6 +97,15 @@ Cycle TimingMachine::run(const std::function<void(uint64_t, uint64_t)>& progress
   const core::FaultLog faults = passed();
   for (size_t kind = 0; kind < size_t(core::FaultKind::Count); ++kind) root_.faults.add(core::FaultKind(kind), faults.count(core::FaultKind(kind)));
   return end;
+}
+
+// Warps that go on for ever and nothing comes of it: spin locks, mostly, whose holder waits in vain.
+void TimingMachine::throw_livelock(Cycle now) const {
+  std::string message = fmt::format("the machine is stuck at cycle {}: warps run, but since cycle {} none has ended, no ray has and nothing in memory has changed\n",
+                                    now, watch_.since());
+  for (const auto& core : cores_)
+    if (!core->finished()) message += core->describe_stall();
+  throw Error(Exit::Stuck, message + "note: core.livelock_budget says how long that may last; 0: for ever");
 }
 
 core::FaultLog TimingMachine::passed() const {

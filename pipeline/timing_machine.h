@@ -10,6 +10,7 @@
 #include "core/sm_dispatcher.h"
 #include "memsys/memory_system.h"
 #include "pipeline/engine_loop.h"
+#include "pipeline/livelock_watch.h"
 #include "pipeline/render.h"
 #include "rtunit/rt_unit.h"
 
@@ -50,6 +51,8 @@ class TimingMachine {
   uint32_t num_cores() const { return uint32_t(cores_.size()); }
 
  private:
+  [[noreturn]] void throw_livelock(Cycle now) const;
+
   struct Root : stats::Group {
     Root() : Group(nullptr, "gpu") {}
     stats::Counter cycles{this, "cycles", "cycle", "From the launch until the last core was done: the launch's time."};
@@ -61,11 +64,14 @@ class TimingMachine {
   const GpuParams params_;
   const core::World& world_;
   Root root_;
+  mem::LatencyStats access_latency_{&root_, "access_latency",
+                                    "Warp instructions that read memory through the L1, from their issue to their last sector, by traffic class."};
   mem::MemorySystem memory_;
   std::vector<std::unique_ptr<stats::Group>> rt_groups_;
   std::vector<std::unique_ptr<rt::RtUnit>> rt_units_;
   std::vector<std::unique_ptr<core::CoreCell>> cores_;
   std::vector<core::MemoryView*> views_;  // of all cores; none when there is one core
+  LivelockWatch watch_;
   EngineLoop engine_;
 };
 

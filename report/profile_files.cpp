@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <map>
+#include <set>
 
 #include "base/diagnostics.h"
 #include "report/csv_field.h"
@@ -113,11 +114,16 @@ std::string profile_csv(const ProfileTable& profile) {
   return out;
 }
 
-std::string profile_folded(const ProfileTable& profile) {
+std::string profile_folded(const ProfileTable& profile, const CallTree::TextOf& text_of) {
+  std::map<std::pair<std::string, std::string>, std::set<std::string>> files;  // of each shader
+  for (const ProfileRow& row : profile.rows)
+    if (row.line) files[{row.stage, row.shader}].insert(row.file);
+  std::map<std::pair<std::string, std::string>, CallTree> trees;
+  for (const auto& [shader, names] : files) trees.emplace(shader, CallTree({names.begin(), names.end()}, text_of));
   std::map<std::string, uint64_t> stacks;  // sorted: the same text for the same profile
   for (const ProfileRow& row : profile.rows) {
     const std::string frames = row.shader.empty() ? "gpu"
-                               : row.line         ? fmt::format("{};{}:{}", row.stage, row.file, row.line)
+                               : row.line         ? fmt::format("{};{}", row.stage, fmt::join(trees.at({row.stage, row.shader}).frames(row.file, row.line), ";"))
                                                   : fmt::format("{};{}", row.stage, row.shader);
     for (size_t i = 0; i < row.slots.size(); ++i)
       if (row.slots[i]) stacks[frames + ";" + profile.reasons[i]] += row.slots[i];

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/profile_table.h"
+#include "report/call_tree.h"
 
 namespace glint::report {
 
@@ -14,8 +15,9 @@ std::vector<ProfileRow> by_line(const ProfileTable& profile);
 // profile.csv: a row an instruction, then a row a source line, one for cycles without a warp; told apart by the first column.
 std::string profile_csv(const ProfileTable& profile);
 
-// profile.folded: "stage;file:line;reason cycles", a line for each that is not zero: what flame graph tools read.
-std::string profile_folded(const ProfileTable& profile);
+// profile.folded: "stage;main;file:line;function;file:line;reason cycles", a line for each that is not zero: what flame
+// graph tools read. Calls are those of call_tree.h; without `text_of`, or where it knows no text, the line stands alone.
+std::string profile_folded(const ProfileTable& profile, const CallTree::TextOf& text_of = [](const std::string&) { return std::nullopt; });
 
 // series.csv: a row an interval.
 std::string series_csv(const SeriesTable& series);

@@ -9,15 +9,46 @@
 #include "base/config.h"
 #include "base/diagnostics.h"
 #include "memsys/peak.h"
+#include "pipeline/check_params.h"
 
 namespace glint::app {
 namespace {
 
-// What is impossible is the machine's to refuse, when one is built.
+// Where the user has set a key; nowhere if it has its default.
+SourceLocation place_of(const Config& config, std::string key) {
+  Diagnostics ignored;
+  ConfigTable table = config.root(ignored);
+  for (size_t dot; (dot = key.find('.')) != std::string::npos; key = key.substr(dot + 1)) table = table.take_table(key.substr(0, dot));
+  return table.has(key) ? table.where(key) : SourceLocation{};
+}
+
+// The place of the first key that the message quotes and the user has set.
+SourceLocation place_of_quoted(const Config& config, const std::string& message) {
+  for (size_t open = message.find('\''); open != std::string::npos;) {
+    const size_t close = message.find('\'', open + 1);
+    if (close == std::string::npos) break;
+    const SourceLocation place = place_of(config, message.substr(open + 1, close - open - 1));
+    if (!place.file.empty()) return place;
+    open = message.find('\'', close + 1);
+  }
+  return {};
+}
+
+// What is impossible, each with the place of a key that makes it so.
+void refuse_impossible(const Config& config, const pipeline::GpuParams& params) {
+  Diagnostics diagnostics;
+  pipeline::check(params, diagnostics);
+  if (!diagnostics.has_errors()) return;
+  std::string out;
+  for (const std::string& message : diagnostics.messages()) {
+    const std::string place = place_of_quoted(config, message).to_string();
+    out += (out.empty() ? "" : "\n") + (place.empty() ? "" : place + ": ") + message;
+  }
+  throw UserError(out);
+}
+
 void print_warnings(const pipeline::GpuParams& params) {
   Diagnostics diagnostics;
-  mem::check(params.memory, diagnostics);
-  if (diagnostics.has_errors()) return;
   mem::warn(params.memory, params.cores, params.clock_mhz, diagnostics, "memory.");
   for (const std::string& message : diagnostics.messages()) fmt::print(stderr, "{}\n", message);
 }
@@ -34,6 +65,7 @@ pipeline::GpuParams read_config(const Resources& resources, const std::string& n
   pipeline::GpuParams params;
   read_params(root, params);
   diagnostics.throw_if_errors();
+  refuse_impossible(config, params);
   print_warnings(params);
   return params;
 }

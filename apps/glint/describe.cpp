@@ -1,4 +1,4 @@
-// `glint describe KEY`: what a configuration key means, its value in a preset, unit and range.
+// `glint describe NAME`: what a configuration key means, its value in a preset, unit and range; or what a statistic counts.
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -6,6 +6,7 @@
 
 #include "apps/glint/config.h"
 #include "apps/glint/session.h"
+#include "apps/glint/stat_list.h"
 #include "base/params.h"
 #include "memsys/peak.h"
 
@@ -31,6 +32,29 @@ void print_markdown(const std::vector<ParamInfo>& infos) {
     fmt::print("| `{}` | {} | {} | {} | {} |\n", info.key, info.value, info.unit, info.range, info.doc);
 }
 
+// "gpu.core[3].issue_slots::raw_fixed" -> "gpu.core[*].issue_slots"
+std::string as_listed(const std::string& path) {
+  std::string out;
+  for (const char c : path.substr(0, path.find("::"))) {
+    if (!out.empty() && out.back() == '*' && c != ']') continue;  // a number's further digits
+    out += !out.empty() && out.back() == '[' ? '*' : c;
+  }
+  return out;
+}
+
+// Statistics of that path, or below it; false when there are none. `names` gets all paths.
+bool print_stats(const std::string& wanted, std::vector<std::string>& names) {
+  const std::string path = as_listed(wanted);
+  bool any = false;
+  for (const report::StatRow& row : all_stats()) {
+    names.push_back(row.path);
+    if (row.path != path && row.path.rfind(path + ".", 0) != 0) continue;
+    fmt::print("{}\n  {}\n  unit   {}\n", row.path, row.doc, row.unit);
+    any = true;
+  }
+  return any;
+}
+
 Exit describe(const Session& session, const Options& options) {
   const pipeline::GpuParams params = read_config(session.resources, options.config, options.settings);
   std::vector<ParamInfo> found;
@@ -41,10 +65,11 @@ Exit describe(const Session& session, const Options& options) {
     if (options.key.empty() || info.key == options.key || inside) found.push_back(info);
   }
   if (found.empty()) {
+    if (print_stats(options.key, names)) return Exit::Ok;
     const std::string guess = nearest(options.key, names);
     throw UserError(
-        {}, fmt::format("no configuration key '{}'", options.key),
-        guess.empty() ? "'glint describe' lists all keys" : fmt::format("did you mean '{}'?", guess));
+        {}, fmt::format("no configuration key or statistic '{}'", options.key),
+        guess.empty() ? "'glint describe' lists all keys, 'glint list stats' all statistics" : fmt::format("did you mean '{}'?", guess));
   }
   if (options.markdown)
     print_markdown(found);
@@ -60,9 +85,9 @@ Exit describe(const Session& session, const Options& options) {
 
 void add_describe(CLI::App& app, Session& session) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("describe", "Explain configuration keys");
-  command->add_option("KEY", options->key,
-                      "A key or the beginning of keys: core.warps, core, rt (default: all)");
+  CLI::App* command = app.add_subcommand("describe", "Explain configuration keys and statistics");
+  command->add_option("NAME", options->key,
+                      "A key or the beginning of keys: core.warps, core, rt; or a statistic: gpu.core[0].ipc (default: all keys)");
   command->add_option("--config", options->config, "Preset or TOML file whose values are shown")
       ->capture_default_str();
   command->add_option("--set", options->settings, "Overrides, as for run")->type_name("KEY=VALUE");

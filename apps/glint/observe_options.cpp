@@ -3,11 +3,23 @@
 #include "apps/glint/observe_options.h"
 
 #include <CLI/CLI.hpp>
+#include <fstream>
+#include <iterator>
+#include <optional>
 
 #include "base/diagnostics.h"
 #include "report/profile_files.h"
 
 namespace glint::app {
+namespace {
+
+std::optional<std::string> text_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return std::nullopt;
+  return std::string{std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace
 
 void add_observe_options(CLI::App& command, pipeline::Observation& observe) {
   command.add_flag("--profile", observe.profile, "Count by instruction and source line: profile.csv, profile.folded; 'glint annotate' shows it");
@@ -26,7 +38,7 @@ std::vector<std::string> write_observation(const pipeline::Observation& observe,
   std::vector<std::string> lines;
   if (observe.profile) {
     directory.write("profile.csv", report::profile_csv(result.profile));
-    directory.write("profile.folded", report::profile_folded(result.profile));
+    directory.write("profile.folded", report::profile_folded(result.profile, text_of));
     lines.push_back("profile    " + directory.path_of("profile.csv") + " (glint annotate " + directory.path() + ")");
   }
   if (observe.sample) {

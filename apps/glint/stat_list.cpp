@@ -8,13 +8,11 @@
 #include "isa/program.h"
 #include "pipeline/params.h"
 #include "pipeline/timing_machine.h"
-#include "report/stat_rows.h"
 #include "report/table.h"
 
 namespace glint::app {
-namespace {
 
-std::vector<report::StatRow> rows() {
+std::vector<report::StatRow> all_stats() {
   isa::Program program;
   program.name = "empty.rgen";
   program.stage = isa::Stage::RayGeneration;
@@ -33,17 +31,15 @@ std::vector<report::StatRow> rows() {
   return report::stat_names(pipeline::TimingMachine(params, world, false).root());
 }
 
-}  // namespace
-
 std::string stat_list() {
   std::vector<std::vector<std::string>> cells;
-  for (const report::StatRow& row : rows()) cells.push_back({row.path, row.unit, row.doc});
+  for (const report::StatRow& row : all_stats()) cells.push_back({row.path, row.unit, row.doc});
   return report::table(cells, "");
 }
 
 std::string stat_list_markdown() {
   std::string out = "| statistic | unit | meaning |\n|---|---|---|\n";
-  for (const report::StatRow& row : rows())
+  for (const report::StatRow& row : all_stats())
     out += fmt::format("| `{}` | {} | {} |\n", row.path, row.unit, row.doc);
   return out;
 }

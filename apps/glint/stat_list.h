@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
+#include <vector>
+
+#include "report/stat_rows.h"
 
 namespace glint::app {
 
+std::vector<report::StatRow> all_stats();  // an instance's number reads [*]; no values
 std::string stat_list();           // aligned columns
 std::string stat_list_markdown();  // the table of docs/stats.md
 

@@ -105,6 +105,51 @@ TEST_CASE("a written row is not closed before its write recovery") {
   CHECK(rig.run()[2] == 9000 + kEdge + 4 + kData + 17 + 16 + 15 + 14 + kData);
 }
 
+TEST_CASE("a row that was read is not closed before tRTP, and a short tRC does not close it before tRAS") {
+  DramParams params = plain();
+  params.ras = 20, params.rc = 30;  // less than tRAS + tRP
+  DramRig rig(params);
+  rig.read_alone(0, 1);
+  rig.add(9000, 0, 1, false, 1);
+  rig.add(9000, 0, 2, false, 2);
+  CHECK(rig.run()[2] == 9000 + kEdge + 5 + 16 + 15 + 14 + kData);
+  rig.idle_until(20'000);
+  rig.add(20'000, 1, 1, false, 3);
+  rig.add(20'000, 1, 2, false, 4);
+  CHECK(rig.run()[4] == 20'000 + kEdge + 20 + 16 + 15 + 14 + kData);  // tRCD + tRTP are over at the same time
+}
+
+TEST_CASE("a bank is not closed before tRAS where tRC is shorter than tRAS and tRP") {
+  DramParams params = plain();
+  params.rc = 30;
+  DramRig rig(params);
+  rig.add(0, 0, 1, false, 1);
+  rig.add(0, 0, 2, false, 2);
+  CHECK(rig.run()[2] == kEdge + 30 + 16 + 15 + 14 + kData);
+}
+
+TEST_CASE("a row that is opened for a write takes the write's tRCD") {
+  DramRig rig(plain());
+  rig.add(0, 0, 1, true);
+  rig.add(0, 0, 1, false, 2);
+  CHECK(rig.run()[2] == kEdge + 9 + 4 + kData + 10 + 14 + kData);
+}
+
+TEST_CASE("an activate keeps other activates and precharges off the command bus for its clocks") {
+  DramParams params = plain();
+  params.dual_command_bus = true;
+  params.activate_clocks = 6;
+  DramRig rig(params);
+  rig.add(0, 0, 1, false, 1);
+  rig.add(0, 1, 1, false, 2);
+  auto at = rig.run();
+  CHECK(at[2] - at[1] == 6);  // tRRD is 5
+  rig.idle_until(9000);
+  rig.add(9000, 2, 1, false, 3);  // opens its row, and then bank 0 closes one
+  rig.add(9000, 0, 2, false, 4);
+  CHECK(rig.run()[4] == 9000 + kEdge + 6 + 16 + 15 + 14 + kData);
+}
+
 TEST_CASE("FR-FCFS serves a younger row hit first and FCFS does not") {
   const auto order = [](const char* scheduler) {
     DramParams params = plain();

@@ -116,6 +116,77 @@ TEST_CASE("the request port sends one request a cycle, more when it has more por
   }
 }
 
+TEST_CASE("as many answers are taken a cycle as the unit has ports for them") {
+  const Scene scene;
+  for (uint32_t ports : {1u, 2u, 3u}) {
+    std::vector<WarpRays> warps(1);
+    for (size_t lane = 0; lane < 6; ++lane) warps[0][lane] = scene.ray(3);
+    Params params;
+    params.coalescing.name = "each_lane";
+    params.requests_per_cycle = 8;
+    params.responses_per_cycle = ports;
+    params.box.units = 32;
+    mem::FixedLatencyMemory l1(20);
+    RtUnit unit(params, {scene.memory, l1});
+    std::vector<Cycle> starts;  // of the root's tests
+    unit.node_visited().listen([&](const NodeVisited& visit) {
+      if (visit.node.address == scene.top.address + 64) starts.push_back(visit.cycle);
+    });
+    launch(unit, l1, warps, false);
+    REQUIRE(starts.size() == 6);
+    for (size_t i = 0; i < 6; ++i) CHECK(starts[i] == 21 + i / ports);
+  }
+}
+
+TEST_CASE("the buffer holds as many warps as it says, and as many are given back a cycle as it says") {
+  const Scene scene;
+  for (uint32_t retires : {1u, 2u}) {
+    std::vector<WarpRays> warps(4);
+    for (WarpRays& warp : warps) warp[0] = scene.ray(3);
+    Params params;
+    params.coalescing.name = "across_warps";  // all four go in step
+    params.warps = 4;
+    params.retires_per_cycle = retires;
+    params.box.units = params.triangle.units = params.transform.units = 32;
+    mem::FixedLatencyMemory l1(20);
+    RtUnit unit(params, {scene.memory, l1});
+    for (uint32_t w = 0; w < 4; ++w) {
+      REQUIRE(unit.can_accept());
+      unit.submit(0, w, 1, warps[w].data());
+    }
+    CHECK_FALSE(unit.can_accept());
+    std::vector<Cycle> ends;
+    for (Cycle now = 1; ends.size() < 4; ++now) {
+      REQUIRE(now < 100'000);
+      unit.tick(now);
+      while (unit.pop_completion(now)) ends.push_back(now);
+    }
+    for (size_t i = 0; i < 4; ++i) CHECK(ends[i] == ends[0] + i / retires);
+    CHECK(unit.can_accept());
+  }
+}
+
+TEST_CASE("a leaf of two triangles takes two starts of the pipeline, one of one takes one") {
+  const auto last = [](bool pair) {
+    mem::AddressSpace memory;
+    Positions positions{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}};
+    if (pair) positions.insert(positions.end(), {{-1, -1, 0}, {1, 1, 0}, {-1, 1, 0}});
+    const StructureInfo top = single(memory, triangles(positions), {"bvh6", true});
+    RayState ray = ray_of(top.address, {0.5f, 0.2f, -5}, {0, 0, 1}, 0, 100);
+    REQUIRE(begin(ray, memory));
+    auto warps = one_lane(ray);
+    Params params;
+    params.triangle = {37, 3, 1};
+    params.stack.name = "full";
+    mem::FixedLatencyMemory l1(20);
+    RtUnit unit(params, {memory, l1});
+    const Launch done = launch(unit, l1, warps, false);
+    REQUIRE(unit.stats().triangle_leaves.value() == 1);
+    return done.last_completion;
+  };
+  CHECK(last(true) == last(false) + 3);
+}
+
 TEST_CASE("a refused request is tried again until it is taken, and the cycles are counted") {
   const Scene scene;
   class Stubborn final : public mem::L1Port {  // takes a request in every eighth cycle only

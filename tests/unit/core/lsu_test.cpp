@@ -64,6 +64,19 @@ TEST_CASE("an unloaded load takes the unit's latency and the memory's") {
   CHECK(completions(lsu, 1) == std::vector<Cycle>{12 + kMemoryLatency});
 }
 
+TEST_CASE("a line of three sectors keeps the door for as many cycles as the unit needs for them") {
+  for (const auto& [sectors, cycles] : {std::pair{1u, 3u}, {2u, 2u}, {3u, 1u}, {4u, 1u}}) {
+    mem::FixedLatencyMemory memory(kMemoryLatency);
+    Params params;
+    params.lsu.sectors_per_cycle = sectors;
+    Lsu lsu(params, memory);
+
+    take(lsu, 0, 0, 2, false, false, 96);
+
+    CHECK(completions(lsu, 1) == std::vector<Cycle>{12 + cycles + kMemoryLatency});
+  }
+}
+
 TEST_CASE("accesses of one scheduler leave its queue at the interval of its address generation") {
   mem::FixedLatencyMemory memory(kMemoryLatency);
   Params params;

@@ -1,0 +1,90 @@
+// How long reads take under the load of a run: counts by traffic class and latency, and the percentiles that follow.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/stats.h"
+#include "base/types.h"
+#include "memsys/request.h"
+
+namespace glint::mem {
+
+// Latencies by traffic class, in buckets: one a cycle below 16, then eight an octave, so that a bucket is at most an eighth of
+// its lower end wide. The last takes all from 983,040 cycles on.
+class Latencies {
+ public:
+  static constexpr uint32_t kExact = 16, kOctaves = 16, kSteps = 8, kBuckets = kExact + kOctaves * kSteps;
+  static constexpr uint32_t bucket_of(Cycle latency) {
+    if (latency < kExact) return uint32_t(latency);
+    const auto octave = uint32_t(std::bit_width(latency)) - 5;
+    return octave < kOctaves ? kExact + octave * kSteps + uint32_t(latency >> (octave + 1) & (kSteps - 1)) : kBuckets - 1;
+  }
+  static constexpr Cycle low_of(uint32_t bucket) {
+    if (bucket < kExact) return bucket;
+    const uint32_t octave = (bucket - kExact) / kSteps, step = (bucket - kExact) % kSteps;
+    return Cycle{kSteps + step} << (octave + 1);
+  }
+
+  void add(Traffic traffic, Cycle latency) {
+    OfClass& of = classes_[size_t(traffic)];
+    ++of.counts[bucket_of(latency)];
+    of.cycles += latency;
+  }
+  uint64_t count(Traffic traffic, uint32_t bucket) const { return classes_[size_t(traffic)].counts[bucket]; }
+  uint64_t cycles(Traffic traffic) const { return classes_[size_t(traffic)].cycles; }
+
+ private:
+  struct OfClass {
+    std::array<uint64_t, kBuckets> counts{};
+    uint64_t cycles = 0;
+  };
+  std::array<OfClass, size_t(Traffic::Count)> classes_{};
+};
+
+// The sum of several of them as statistics. All `parts` are added before anything is read.
+class LatencyStats : public stats::Group {
+ public:
+  // `what`: the interval that is measured, for the documentation: "From a read's acceptance ...".
+  LatencyStats(stats::Group* parent, std::string name, const char* what);
+  void add(const Latencies& part) { parts_.push_back(&part); }
+
+  uint64_t reads(Traffic traffic) const;
+  uint64_t total() const;
+  // The last cycle of the bucket by which `of_100` of 100 reads were over; 0 without reads.
+  uint64_t percentile(Traffic traffic, uint32_t of_100) const;
+
+ private:
+  // A number a traffic class; classes without reads are left out.
+  class ByTraffic final : public stats::BreakdownBase {
+   public:
+    ByTraffic(LatencyStats* of, std::string_view name, std::string_view unit, std::string_view doc, uint64_t (*read)(const LatencyStats&, Traffic))
+        : BreakdownBase(of, name, unit, doc), of_(*of), read_(read) {}
+    std::vector<std::pair<std::string_view, uint64_t>> parts() const override;
+
+   private:
+    const LatencyStats& of_;
+    uint64_t (*read_)(const LatencyStats&, Traffic);
+  };
+  // Reads by class and bucket, "rt_node:64-71"; empty ones are left out.
+  class Buckets final : public stats::BreakdownBase {
+   public:
+    Buckets(LatencyStats* of, std::string_view doc);
+    std::vector<std::pair<std::string_view, uint64_t>> parts() const override;
+
+   private:
+    const LatencyStats& of_;
+    std::vector<std::string> names_;  // by class, then bucket
+  };
+  uint64_t count(Traffic traffic, uint32_t bucket) const;
+
+  std::vector<const Latencies*> parts_;
+  ByTraffic reads_, cycles_, p50_, p90_, p99_;
+  Buckets buckets_;
+};
+
+}  // namespace glint::mem

@@ -1,0 +1,194 @@
+// Limits of L1, network and L2 that show in one cycle or byte only.
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/catch.h"
+#include "tests/support/memory_rig.h"
+
+using namespace glint;
+using namespace glint::mem;
+
+namespace {
+
+constexpr Address kLine = 128 * 1000;
+constexpr Cycle kL2Hit = 160;
+
+Request request(Address line, uint8_t sectors, Token token, bool write, Traffic traffic) { return {line, sectors, write, traffic, token}; }
+Request read(Address line, Token token, uint8_t sectors = 1) { return request(line, sectors, token, false, Traffic::RtNode); }
+Request atomic(Address line, Token token, uint8_t sectors = 1) { return request(line, sectors, token, false, Traffic::ShaderAtomic); }
+
+Params bare() {
+  Params p;
+  p.l1.fill_takes_access = p.l2.fill_takes_service = p.l2.write_masks = false;
+  p.noc.credits = 0;
+  p.dram.refresh = "none";
+  return p;
+}
+
+// From the request to its token, of sectors that the L2 holds.
+Cycle l2_latency(const Params& params, const Request& request) {
+  MemoryRig rig(params);
+  rig.read_latency(kLine, 0b1111, true);
+  const Cycle start = rig.now();
+  REQUIRE(rig.l1().access(start, Client::Lsu, request));
+  rig.drain();
+  return rig.answers().back().at - start;
+}
+
+// When each token came, from the start on; all are asked for in the first cycle, token i by core i.
+std::vector<Cycle> together(const Params& params, const std::vector<Request>& requests) {
+  MemoryRig rig(params, uint32_t(requests.size()));
+  for (uint32_t core = 0; core < requests.size(); ++core) REQUIRE(rig.l1(core).access(0, Client::Lsu, requests[core]));
+  rig.drain();
+  std::vector<Cycle> at(requests.size());
+  for (const Answered& a : rig.answers()) at[a.token] = a.at;
+  return at;
+}
+
+}  // namespace
+
+TEST_CASE("writes and atomics leave the L1 at its miss latency, as reads do") {
+  for (const Request& what : {read(kLine, 1), atomic(kLine, 1), request(kLine, 1, 0, true, Traffic::ShaderGlobal)}) {
+    MemoryRig rig(bare());
+    REQUIRE(rig.l1().access(0, Client::Lsu, what));
+    CHECK(rig.l1().next_event(0) == bare().l1.miss_latency);
+  }
+}
+
+TEST_CASE("a port is as wide as it says, to the byte") {
+  const auto narrower = [](uint32_t NocParams::*port, const Request& request) {
+    Params wide = bare();
+    for (uint32_t NocParams::*p : {&NocParams::core_request_bytes, &NocParams::core_reply_bytes, &NocParams::partition_request_bytes,
+                                   &NocParams::partition_reply_bytes})
+      wide.noc.*p = 400;
+    wide.noc.*port = 72;  // two sectors and a header
+    Params narrow = wide;
+    narrow.noc.*port = 71;
+    CHECK(l2_latency(wide, request) == l2_latency([&] { Params p = wide; p.noc.*port = 400; return p; }(), request));
+    return l2_latency(narrow, request) - l2_latency(wide, request);
+  };
+  CHECK(narrower(&NocParams::core_reply_bytes, read(kLine, 1, 0b11)) == 1);
+  CHECK(narrower(&NocParams::partition_reply_bytes, read(kLine, 1, 0b11)) == 1);
+  CHECK(narrower(&NocParams::core_request_bytes, atomic(kLine, 1, 0b11)) == 1);
+  CHECK(narrower(&NocParams::partition_request_bytes, atomic(kLine, 1, 0b11)) == 1);
+}
+
+TEST_CASE("an atomic takes its interval of the slice for each sector") {
+  Params params = bare();
+  CHECK(l2_latency(params, atomic(kLine, 1)) == kL2Hit + 2 - 1);
+  params.l2.atomic_interval = 5;
+  CHECK(l2_latency(params, atomic(kLine, 1)) == kL2Hit + 5 - 1);
+  // A packet of two sectors, and its reply, take a cycle more of each 40-byte port.
+  CHECK(l2_latency(params, atomic(kLine, 1, 0b11)) == kL2Hit + 2 * 5 - 1 + 2);
+}
+
+TEST_CASE("a credit is back after the way back, not a cycle before") {
+  Params params = bare();
+  params.noc.credits = 1;
+  params.hash = "none";
+  params.dram.channels = 1;
+  MemoryRig rig(params);
+  rig.set_window(1);  // messages are seen when they come
+  for (Address i = 0; i < 2; ++i) rig.read_latency(i * 128, 1, true);
+  const Cycle start = rig.now();
+  REQUIRE(rig.l1().access(start, Client::Lsu, read(0, 0)));
+  REQUIRE(rig.l1().access(start + 1, Client::Lsu, read(128, 1)));
+  rig.drain();
+  CHECK(rig.answers().back().at - start == (20 + 49) + 49 + 49 + 42 + 49);
+}
+
+TEST_CASE("a dirty line that is evicted goes to DRAM after the way there") {
+  for (const uint32_t way : {1u, 100u, 37u}) {
+    Params params = bare();
+    params.dram.channels = 1, params.dram.latency = way;
+    params.l2.slice_size = 128, params.l2.ways = 1;
+    MemoryRig rig(params);
+    rig.set_window(1);
+    rig.read_latency(0, 1, true);
+    const Cycle start = rig.now();
+    REQUIRE(rig.l1().access(start, Client::Lsu, request(128, 1, 0, true, Traffic::ShaderGlobal)));
+    Cycle seen = 0;
+    rig.run([&](uint32_t, Cycle now) {
+      if (!seen && rig.memory().partition(0).dram().stats().requests.value() == 1) seen = now;
+      return seen || now > start + 10'000 ? kNever : now + 1;
+    });
+    CHECK(seen == start + 20 + 49 + way + 1);  // served, on its way, and the cycle after
+  }
+}
+
+TEST_CASE("a slice whose MSHRs are in use serves no further miss until one has come back") {
+  const auto later = [](uint32_t entries) {
+    Params params = bare();
+    params.dram.channels = 1, params.l2.mshr_entries = entries;
+    const std::vector<Cycle> at = together(params, {read(0, 0), read(128, 1)});
+    return at[1] - at[0];
+  };
+  CHECK(later(2) < 20);
+  CHECK(later(1) > 100);
+}
+
+TEST_CASE("an MSHR of a slice merges up to its limit, the first read included") {
+  const auto later = [](uint32_t merges) {
+    Params params = bare();
+    params.dram.channels = 1, params.l2.mshr_merges = merges;
+    const std::vector<Cycle> at = together(params, {read(0, 0), read(0, 1), read(0, 2)});
+    return at[2] - at[0];
+  };
+  CHECK(later(3) <= 2);
+  CHECK(later(2) >= 42);  // served again after the fill: the slice's latency
+}
+
+TEST_CASE("the way to DRAM holds as many sectors as it says") {
+  const auto blocked = [](uint32_t places) {
+    Params params = bare();
+    params.dram.channels = 1, params.l2.dram_queue = places;
+    MemoryRig rig(params, 3);
+    for (uint32_t core = 0; core < 3; ++core) REQUIRE(rig.l1(core).access(0, Client::Lsu, read(core * 128, core, 0b1111)));
+    rig.drain();
+    return rig.memory().partition(0).slice(0).stats().cycles.count(SliceCycle::QueueFull) > 0;
+  };
+  CHECK_FALSE(blocked(12));
+  CHECK(blocked(11));
+}
+
+TEST_CASE("latencies of reads are counted by class and bucket, and percentiles are the upper ends of buckets") {
+  for (Cycle latency = 0; latency < 5000; ++latency) {
+    const uint32_t bucket = Latencies::bucket_of(latency);
+    CHECK(Latencies::low_of(bucket) <= latency);
+    CHECK(latency < Latencies::low_of(bucket + 1));
+    if (latency >= 16) CHECK(8 * (Latencies::low_of(bucket + 1) - Latencies::low_of(bucket)) <= Latencies::low_of(bucket));
+  }
+  CHECK(Latencies::bucket_of(~Cycle{0} >> 1) == Latencies::kBuckets - 1);
+  stats::Group root(nullptr, "test");
+  LatencyStats stats(&root, "latency", "Reads.");
+  Latencies a, b;
+  stats.add(a), stats.add(b);
+  for (Cycle i = 0; i < 90; ++i) a.add(Traffic::RtNode, 20);
+  for (Cycle i = 0; i < 9; ++i) b.add(Traffic::RtNode, 160);
+  b.add(Traffic::RtNode, 1000);
+  CHECK(stats.reads(Traffic::RtNode) == 100);
+  CHECK(stats.reads(Traffic::ShaderGlobal) == 0);
+  CHECK(stats.percentile(Traffic::RtNode, 50) == 21);   // 20 and 21
+  CHECK(stats.percentile(Traffic::RtNode, 90) == 21);
+  CHECK(stats.percentile(Traffic::RtNode, 91) == 175);  // 160 to 175
+  CHECK(stats.percentile(Traffic::RtNode, 99) == 175);
+  CHECK(stats.percentile(Traffic::RtNode, 100) == 1023);
+  CHECK(stats.percentile(Traffic::ShaderGlobal, 50) == 0);
+}
+
+TEST_CASE("the L1 times hits, misses, merged reads and atomics, each under its class") {
+  MemoryRig rig(bare());
+  rig.read_latency(kLine, 1, true);
+  const Cycle start = rig.now();
+  REQUIRE(rig.l1().access(start, Client::Lsu, read(kLine, 1)));
+  REQUIRE(rig.l1().access(start + 10, Client::Lsu, request(kLine, 1, 2, false, Traffic::ShaderGlobal)));  // merges
+  rig.drain();
+  REQUIRE(rig.l1().access(rig.now(), Client::Lsu, request(kLine, 1, 3, false, Traffic::ShaderLocal)));    // hits
+  rig.drain();
+  REQUIRE(rig.l1().access(rig.now(), Client::Lsu, atomic(kLine, 4)));
+  rig.drain();
+  const Latencies& latencies = rig.l1().latencies();
+  CHECK(latencies.cycles(Traffic::RtNode) == kL2Hit);
+  CHECK(latencies.cycles(Traffic::ShaderGlobal) == kL2Hit - 10);
+  CHECK(latencies.cycles(Traffic::ShaderLocal) == 20);
+  CHECK(latencies.cycles(Traffic::ShaderAtomic) == kL2Hit + 1);
+  rig.memory().check_drained();
+}
