@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
@@ -42,13 +43,28 @@ std::string title_of(const Json& run) {
   return shader.empty() || shader == scene ? scene : scene + " " + shader;
 }
 
-// A value with thin spaces between thousands, whole numbers without a point.
+// Text of a description, in which words between backquotes are code.
+std::string prose(std::string_view text) {
+  std::string out;
+  bool in_code = false;
+  for (const char c : escaped(text)) {
+    if (c != '`') {
+      out += c;
+      continue;
+    }
+    out += in_code ? "</code>" : "<code>";
+    in_code = !in_code;
+  }
+  return in_code ? escaped(text) : out;
+}
+
+// A value with thin spaces between thousands, whole from 1000 on, four digits below.
 std::string shown(const Json& value) {
   if (value.is_null()) return "–";
   if (value.is_string()) return escaped(value.get<std::string>());
   if (value.is_boolean()) return value.get<bool>() ? "true" : "false";
   const double number = value.get<double>();
-  if (std::floor(number) != number || std::abs(number) > 9e15) return fmt::format("{:.4g}", number);
+  if ((std::floor(number) != number && std::abs(number) < 1000) || std::abs(number) > 9e15) return fmt::format("{:.4g}", number);
   const std::string digits = fmt::format("{:.0f}", std::abs(number));
   std::string out = number < 0 ? "−" : "";
   for (size_t i = 0; i < digits.size(); ++i) {
@@ -58,11 +74,18 @@ std::string shown(const Json& value) {
   return out;
 }
 
+// "ship8" of "out/ship8/"
+std::string folder_of(const Json& run) {
+  const std::filesystem::path path = run["directory"].get<std::string>();
+  return (path.has_filename() ? path : path.parent_path()).filename().string();
+}
+
 std::string header_row(const Json& runs, std::string_view first) {
   std::string out = fmt::format("<thead><tr><th scope=\"col\">{}</th>", first);
+  if (runs.size() == 1) return out + "<th scope=\"col\" class=\"n\">Value</th>";
   for (const Json& run : runs)
-    out += fmt::format("<th scope=\"col\" class=\"n\" title=\"{}\">{}<small>{}</small></th>", escaped(run["directory"].get<std::string>()), escaped(title_of(run)),
-                       escaped(run["run"]["config"].value("name", "")));
+    out += fmt::format("<th scope=\"col\" class=\"n\" title=\"{}\">{}<small>{}</small><small>{}</small></th>", escaped(run["directory"].get<std::string>()), escaped(title_of(run)),
+                       escaped(run["run"]["config"].value("name", "")), escaped(folder_of(run)));
   return out;
 }
 
@@ -79,7 +102,7 @@ std::string metrics_table(const Json& data) {
     }
     out += fmt::format("<tr><th scope=\"row\"><code>{}</code></th>", escaped(name));
     for (const Json& run : runs) out += fmt::format("<td class=\"n\">{}</td>", shown(run["metrics"][name]));
-    out += fmt::format("<td class=\"u\">{}</td><td class=\"doc\">{}</td></tr>\n", escaped(unit), escaped(doc));
+    out += fmt::format("<td class=\"u\">{}</td><td class=\"doc\">{}</td></tr>\n", escaped(unit), prose(doc));
   }
   return out + "</table></div>";
 }
@@ -101,7 +124,7 @@ std::string config_table(const Json& data) {
       is_changed = true;
       cells += fmt::format("<td class=\"n changed\">{}<small>preset {}</small></td>", shown(value), shown(changes[key]));
     }
-    if (is_changed) rows += fmt::format("<tr><th scope=\"row\"><code>{}</code></th>{}<td class=\"u\">{}</td><td class=\"doc\">{}</td></tr>\n", escaped(key), cells, escaped(doc["unit"].get<std::string>()), escaped(doc["doc"].get<std::string>()));
+    if (is_changed) rows += fmt::format("<tr><th scope=\"row\"><code>{}</code></th>{}<td class=\"u\">{}</td><td class=\"doc\">{}</td></tr>\n", escaped(key), cells, escaped(doc["unit"].get<std::string>()), prose(doc["doc"].get<std::string>()));
   }
   std::string out;
   for (const Json& run : runs) {

@@ -232,9 +232,10 @@ CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shuti
 
 
 class Browser(ReportTest):
-    def load(self, *names):
-        """The page's document after its script has run, and what the console said."""
-        self.report(*names)
+    def load(self, *names, script=""):
+        """The page's document after its script has run, and then `script`; the console must have said nothing."""
+        page = self.report(*names)
+        self.write("report.html", page.replace("</body>", f"<script>{script}</script></body>"))
         done = subprocess.run(
             [CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={self.folder}/profile", "--enable-logging=stderr", "--window-size=1280,900",
              "--virtual-time-budget=20000", "--dump-dom", f"file://{self.folder}/report.html"],
@@ -288,6 +289,29 @@ class Browser(ReportTest):
             self.assertGreaterEqual(before * (1 + 1e-9), after)
         self.assertGreater(distance[0], 0)
         self.assertIn("rt.box.latency=40", text)
+
+    def test_every_figure_hands_out_its_numbers_and_its_drawing(self):
+        keep = """
+          const kept = {}, name = Object.getOwnPropertyDescriptor(HTMLAnchorElement.prototype, "download");
+          let last = null;
+          URL.createObjectURL = (blob) => { last = blob; return "#"; };
+          HTMLAnchorElement.prototype.click = function () { last.text().then((text) => { kept[this.download] = text; show(); }); };
+          const show = () => { document.body.dataset.kept = JSON.stringify(kept); };
+          document.querySelectorAll("figcaption button").forEach((button) => button.click());"""
+        page, _ = self.load("wknd", script=keep)
+        files = json.loads(next(attributes["data-kept"] for tag, attributes, _ in page.found if tag == "body"))
+        figures = [attributes["id"] for tag, attributes, _ in page.found if tag == "figure" and "id" in attributes]
+        self.assertGreater(len(figures), 15)
+        self.assertEqual(set(files), {f"{figure}.{kind}" for figure in figures for kind in ("csv", "svg")})
+        for name, text in files.items():
+            if name.endswith(".svg"):
+                self.assertRegex(text, r'^<svg width="720" height="\d+" xmlns="http://www.w3.org/2000/svg"', name)
+                self.assertIn("<path", text, name)
+            else:
+                rows = list(csv.reader(text.splitlines()))
+                self.assertEqual({len(row) for row in rows}, {len(rows[0])}, name)
+        series = list(csv.reader(files["series.csv"].splitlines()))
+        self.assertEqual(len(series) - 1, len(pathlib.Path(self.runs["wknd"], "series.csv").read_text().splitlines()) - 1)
 
     def test_a_kernel_without_picture_and_rays_is_shown_too(self):
         done = self.glint("run", ROOT / "shaders/kernels/saxpy.toml", "--out", "saxpy")

@@ -10,6 +10,7 @@ export const info = {
 };
 
 export function make(runs) {
+  if (!runs.some((run) => run.metric("rt_occupancy") !== null)) return null;
   const list = [
     { name: "RT-unit occupancy", colour: "blue", value: (run) => run.metric("rt_occupancy") },
     { name: "RT-unit efficiency", colour: "orange", value: (run) => run.metric("rt_efficiency") },

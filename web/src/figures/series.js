@@ -16,7 +16,7 @@ export const info = { id: "series", coloured: true, wide: true, title: "The run 
 
 export function make(runs) {
   const sampled = runs.filter((run) => run.data.series?.cycle?.length);
-  const panels = kPanels.filter(({ column }) => sampled.length && sampled.every((run) => run.data.series[column]));
+  const panels = kPanels.filter(({ column }) => sampled.length && sampled.every((run) => run.data.series[column]) && sampled.some((run) => run.data.series[column].some((value) => value > 0)));
   if (!panels.length) return null;
   return lines({
     panels: panels.map(({ column, ...panel }) => ({ ...panel, series: sampled.map((run) => ({ name: run.label, colour: runColour(run.index), x: run.data.series.cycle, y: run.data.series[column] })) })),
