@@ -263,7 +263,7 @@ class Browser(ReportTest):
     def tables_equal_stats(self, text, name):
         """Tables of figures have the sums of stats.json, and every figure has a drawing."""
         figures = {re.search(r'id="([\w-]+)"', head).group(1): body for head, body in re.findall(r'<figure ([^>]*id="[^>]*)>(.*?)</figure>', text, re.S)}
-        for expected in ("cpi-stack", "instruction-mix", "stages", "ops", "op-latency", "rt-use", "traversal", "rt-cycles", "fetch-mix", "ray-nodes", "l1", "l2", "miss-stages", "dram", "dram-clocks", "series"):
+        for expected in ("cpi-stack", "instruction-mix", "stages", "stage-cycles", "ops", "op-latency", "rt-use", "traversal", "rt-cycles", "fetch-mix", "ray-nodes", "l1", "l2", "miss-stages", "dram", "dram-clocks", "series"):
             self.assertRegex(figures[expected], r"<svg.*<path", expected)
         rows = dict(re.findall(r'<tr><th scope="row">([^<]*)</th><td class="n" data-value="([^"]*)"', figures["cpi-stack"]))
         self.assertEqual(len(rows), 23)

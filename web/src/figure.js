@@ -16,7 +16,7 @@ const kExportWidth = 720;
 
 // chart: {option(theme, width), height(theme, width), columns, rows} of kinds/.
 export function figure({ id, title, note, wide }, chart) {
-  const canvas = h("div", { class: "canvas" });
+  const canvas = h("div", { class: "canvas", role: "img", "aria-label": title });
   const element = h("figure", { id, class: wide ? "wide" : null }, h("h3", {}, title), note ? h("p", { class: "note" }, note) : null, canvas, h("figcaption", {}, ...tools(id, chart)));
   let drawn = null;
   const draw = () => {

@@ -15,6 +15,7 @@ import * as rayHistograms from "./figures/ray_histograms.js";
 import * as rtCycles from "./figures/rt_cycles.js";
 import * as rtUse from "./figures/rt_use.js";
 import * as series from "./figures/series.js";
+import * as stageCycles from "./figures/stage_cycles.js";
 import * as stages from "./figures/stages.js";
 import * as traversal from "./figures/traversal.js";
 import { labelRuns, Run } from "./model.js";
@@ -52,7 +53,7 @@ const sections = [
   section("comparison", "Comparison", null, means(runs), figures(ipc), deltas(runs, data.metric_docs)),
   section("bounds", "How near to the limits", "Each resource against the most it could do in the time the run took. The highest is the one to look at first.", bounds(runs)),
   section("stalls", "Where the time goes", "The largest reasons why a scheduler issued nothing, as shares of all scheduler cycles, with the keys that bear on them.", stalls(runs), figures(cpiStack)),
-  section("instructions", "Instructions", null, figures(instructionMix, stages, ops, opLatency), missing("profile", "--profile")),
+  section("instructions", "Instructions", null, figures(instructionMix, stages, stageCycles, ops, opLatency), missing("profile", "--profile")),
   section("rays", "Rays and RT units", null, figures(rtUse, traversal, rtCycles, fetchMix, rayHistograms.nodes, rayHistograms.latency)),
   section("memory", "Memory", null, figures(memoryLatency.stages, caches.l1, caches.l2, memoryLatency.spread, dram.use, dram.clocks)),
   section("time", "Over time", null, figures(series), missing("series", "--sample CYCLES")),

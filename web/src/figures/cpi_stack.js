@@ -5,7 +5,8 @@ import { stacked } from "../kinds/stacked.js";
 import { runRows } from "./shared.js";
 
 const kSlots = "gpu.core[*].issue_slots";
-const kGroups = [
+// Reasons of core/stall.h that belong together.
+export const kGroups = [
   { name: "issued", colour: "green", of: ["issued"] },
   { name: "pipe busy", colour: "blue", of: ["math_pipe_throttle", "register_banks", "lsu_throttle", "tex_throttle"] },
   { name: "result of fixed latency", colour: "sky", of: ["raw_fixed", "raw_sfu", "const", "branch", "operand_read"] },

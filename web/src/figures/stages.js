@@ -11,7 +11,7 @@ export const info = {
   id: "stages",
   wide: true,
   title: "Instructions by shader stage",
-  note: "Share of a run’s warp instructions. Latency is not counted by stage.",
+  note: "Share of a run’s warp instructions.",
 };
 
 export function make(runs) {
