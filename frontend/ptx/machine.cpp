@@ -3,6 +3,7 @@
 #include "frontend/ptx/machine.h"
 
 #include <algorithm>
+#include <map>
 #include <string>
 
 #include "frontend/backend/slots.h"
@@ -204,7 +205,56 @@ void exit_at_branches(Draft& draft) {
   }
 }
 
+namespace {
+
+// -(a * b) is (-a) * b, to the bit.
+void negate_factors(VirtualProgram& program) {
+  const uint16_t neg = isa::op_index("neg.f32"), mul = isa::op_index("mul.rn.f32");
+  struct Home {
+    uint32_t definitions = 0, uses = 0;
+    BlockId block = kNoBlock;
+    const VirtualInst* inst = nullptr;
+  };
+  std::vector<Home> homes(program.registers.size());
+  for (BlockId b = 0; b < program.blocks.size(); ++b)
+    for (const VirtualInst& inst : program.blocks[b].code) {
+      for_each_def(inst, [&](VirtualRegister r) { homes[r] = {homes[r].definitions + (is_guarded(inst) ? 2 : 1), homes[r].uses, b, &inst}; });
+      for_each_use(inst, [&](VirtualRegister r) { ++homes[r].uses; });
+    }
+  const auto is_stable = [&](const Operand& o) { return is_constant(o) || (is_register(o) && homes[o.reg].definitions == 1); };
+  std::map<VirtualRegister, VirtualRegister> negated;
+  for (BlockId b = 0; b < program.blocks.size(); ++b)
+    for (VirtualInst& inst : program.blocks[b].code) {
+      if (!is_real(inst) || inst.op != neg || is_guarded(inst) || !is_stable(inst.operands[1]) || !is_register(inst.operands[1])) continue;
+      const Home& product = homes[inst.operands[1].reg];
+      if (product.uses != 1 || !is_real(*product.inst) || product.inst->op != mul) continue;
+      const std::vector<Operand> factors(product.inst->operands.begin() + 1, product.inst->operands.end());
+      if (!is_stable(factors[0]) || !is_stable(factors[1])) continue;
+      for (size_t k : {size_t{0}, size_t{1}}) {
+        if (!is_register(factors[k]) || homes[factors[k].reg].block == b) continue;
+        const auto [found, is_new] = negated.try_emplace(factors[k].reg, kNoRegister);
+        if (is_new) found->second = program.new_register(RegisterClass::B32);
+        inst.op = mul;
+        inst.operands = {inst.operands[0], Operand::of(found->second), factors[1 - k]};
+        break;
+      }
+    }
+  for (VirtualBlock& block : program.blocks)
+    for (size_t i = 0; i < block.code.size(); ++i) {
+      std::vector<VirtualInst> behind;
+      for_each_def(block.code[i], [&](VirtualRegister r) {
+        if (const auto found = negated.find(r); found != negated.end())
+          behind.push_back(make_inst(neg, {Operand::of(found->second), Operand::of(r)}, block.code[i].line));
+      });
+      block.code.insert(block.code.begin() + std::ptrdiff_t(i) + 1, behind.begin(), behind.end());
+      i += behind.size();
+    }
+}
+
+}  // namespace
+
 void shape_for_machine(VirtualProgram& program) {
+  negate_factors(program);
   Shaping(program).spread_products();
   Shaping(program).run();
 }

@@ -214,6 +214,15 @@ TEST_CASE("a loop of one block that counts down runs four turns at a time, and a
   CHECK(count(shaped(body("mov.u32 %r1,30;") + "@%p1 add.u32 %out,%out,1;\n"), "setp.gt.s32") == 0);
 }
 
+TEST_CASE("the negation of a product becomes that of a factor from elsewhere, to the bit") {
+  const std::string text = shaped(
+      "cvt.rn.f32.u32 %f6,%lane;sub.rn.f32 %f1,%f6,0f40A00000;mov.u32 %r1,0;mov.u32 %r2,0;\n"
+      "LOOP: cvt.rn.f32.u32 %f7,%r1;sub.rn.f32 %f2,%f7,0f40000000;mul.f32 %f3,%f1,%f2;mul.f32 %f4,%f2,%f2;sub.f32 %f5,%f4,%f3;mov.b32 %r3,%f5;\n"
+      "mad.lo.u32 %r2,%r2,31,%r3;add.u32 %r1,%r1,1;setp.lt.u32 %p1,%r1,5;@%p1 bra LOOP;\nmov.u32 %out,%r2;\n");
+  CHECK(count(text, "neg.f32") == 1);
+  CHECK(text.find("neg.f32") < text.find("mul.rn.f32"));
+}
+
 TEST_CASE("words of shared memory are loaded together where their place is known to be aligned") {
   const std::string room = ".shared .align 16 .b8 room[4096];\n";
   const auto body = [](int stride, const std::string& between = "") {
