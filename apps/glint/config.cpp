@@ -14,20 +14,20 @@
 namespace glint::app {
 namespace {
 
-// Where the user has set a key; nowhere if it has its default.
-SourceLocation place_of(const Config& config, std::string key) {
+// Where the user has set a key, or (`table_too`) its table; nowhere if it has its default.
+SourceLocation place_of(const Config& config, std::string key, bool table_too) {
   Diagnostics ignored;
   ConfigTable table = config.root(ignored);
   for (size_t dot; (dot = key.find('.')) != std::string::npos; key = key.substr(dot + 1)) table = table.take_table(key.substr(0, dot));
-  return table.has(key) ? table.where(key) : SourceLocation{};
+  return table_too || table.has(key) ? table.where(key) : SourceLocation{};
 }
 
-// The place of the first key that the message quotes and the user has set.
-SourceLocation place_of_quoted(const Config& config, const std::string& message) {
+// The place of the first key that the message quotes and the user has set, or of whose table something is set.
+SourceLocation place_of_quoted(const Config& config, const std::string& message, bool table_too) {
   for (size_t open = message.find('\''); open != std::string::npos;) {
     const size_t close = message.find('\'', open + 1);
     if (close == std::string::npos) break;
-    const SourceLocation place = place_of(config, message.substr(open + 1, close - open - 1));
+    const SourceLocation place = place_of(config, message.substr(open + 1, close - open - 1), table_too);
     if (!place.file.empty()) return place;
     open = message.find('\'', close + 1);
   }
@@ -41,7 +41,8 @@ void refuse_impossible(const Config& config, const pipeline::GpuParams& params) 
   if (!diagnostics.has_errors()) return;
   std::string out;
   for (const std::string& message : diagnostics.messages()) {
-    const std::string place = place_of_quoted(config, message).to_string();
+    std::string place = place_of_quoted(config, message, false).to_string();
+    if (place.empty()) place = place_of_quoted(config, message, true).to_string();
     out += (out.empty() ? "" : "\n") + (place.empty() ? "" : place + ": ") + message;
   }
   throw UserError(out);
