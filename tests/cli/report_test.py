@@ -149,6 +149,25 @@ class Page(ReportTest):
         self.assertEqual(document["runs"][1]["preset"]["changes"], {"rt.box.latency": 13})
         self.assertEqual(document["runs"][1]["config"]["rt.box.latency"], 40)
 
+    def test_a_configuration_that_is_gone_is_said_to_be_unknown(self):
+        self.write("mine.toml", (ROOT / "configs/mobile.toml").read_text())
+        done = self.glint("run", "WKND", "--shader", "pt", *SMALL, "--config", "mine.toml", "--out", "mine")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.runs["mine"] = "mine"
+        self.assertTrue(self.document(self.report("mine"))["runs"][0]["preset"]["known"])
+        (self.folder / "mine.toml").unlink()
+        page = self.report("mine")
+        self.assertFalse(self.document(page)["runs"][0]["preset"]["known"])
+        self.assertIn("what differs from the preset is unknown", page[: page.index('id="data"')])
+
+    def test_the_built_page_is_that_of_the_sources(self):
+        for name in ("report.html", "report.css"):
+            self.assertEqual((ROOT / "web/dist" / name).read_bytes(), (ROOT / "web/src" / name).read_bytes(), "run `npm run build` in web/")
+        script = (ROOT / "web/dist/report.js").read_text()
+        for module in (ROOT / "web/src").rglob("*.js"):
+            for text in re.findall(r'(?:title|note): "([^"]{12,})"', module.read_text()):
+                self.assertIn(text, script, f"{module}: run `npm run build` in web/")
+
     def test_keys_that_stalls_name_exist(self):
         keys = set(self.document(self.report("wknd"))["runs"][0]["config"])
         text = (ROOT / "web/src/sections/stalls.js").read_text()

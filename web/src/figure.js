@@ -19,22 +19,25 @@ export function figure({ id, title, note, wide }, chart) {
   const canvas = h("div", { class: "canvas", role: "img", "aria-label": title });
   const element = h("figure", { id, class: wide ? "wide" : null }, h("h3", {}, title), note ? h("p", { class: "note" }, note) : null, canvas, h("figcaption", {}, ...tools(id, chart)));
   let drawn = null;
-  const draw = () => {
-    const t = theme(), width = canvas.clientWidth;
+  const draw = (scheme) => {
+    const t = theme(scheme), width = canvas.clientWidth;
     if (!width) return;
     const height = Math.round(chart.height(t, width));
     canvas.style.height = `${height}px`;
     if (drawn) drawn.dispose();
     drawn = echarts.init(canvas, null, { renderer: "svg", width, height });
     drawn.setOption(chart.option(t, width));
+    canvas.querySelector("svg")?.setAttribute("viewBox", `0 0 ${width} ${height}`); // so that print can scale it
   };
   let last = 0;
   new ResizeObserver(() => {
     if (canvas.clientWidth === last) return;
     last = canvas.clientWidth;
-    requestAnimationFrame(draw); // a chart changes the page's height, and so must not within the observer
+    requestAnimationFrame(() => draw()); // a chart changes the page's height, and so must not within the observer
   }).observe(canvas);
-  onSchemeChange(draw);
+  onSchemeChange(() => draw());
+  window.addEventListener("beforeprint", () => draw("light"));
+  window.addEventListener("afterprint", () => draw());
   return element;
 }
 
