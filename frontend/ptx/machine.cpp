@@ -207,6 +207,14 @@ void exit_at_branches(Draft& draft) {
 
 namespace {
 
+// Whether a branch back, in the order of the layout, goes round `inside` and not round `outside`.
+bool is_out_of_loop(const VirtualProgram& program, BlockId outside, BlockId inside) {
+  for (BlockId last = inside; last < program.blocks.size(); ++last)
+    for (BlockId first : program.blocks[last].successors)
+      if (first <= inside && (outside < first || outside > last)) return true;
+  return false;
+}
+
 // -(a * b) is (-a) * b, to the bit.
 void negate_factors(VirtualProgram& program) {
   const uint16_t neg = isa::op_index("neg.f32"), mul = isa::op_index("mul.rn.f32");
@@ -231,7 +239,7 @@ void negate_factors(VirtualProgram& program) {
       const std::vector<Operand> factors(product.inst->operands.begin() + 1, product.inst->operands.end());
       if (!is_stable(factors[0]) || !is_stable(factors[1])) continue;
       for (size_t k : {size_t{0}, size_t{1}}) {
-        if (!is_register(factors[k]) || homes[factors[k].reg].block == b) continue;
+        if (!is_register(factors[k]) || !is_out_of_loop(program, homes[factors[k].reg].block, b)) continue;
         const auto [found, is_new] = negated.try_emplace(factors[k].reg, kNoRegister);
         if (is_new) found->second = program.new_register(RegisterClass::B32);
         inst.op = mul;
