@@ -1,6 +1,6 @@
 // Rays that code walks: the call of the traversal program, and what its record says before and after.
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
+#include <bit>
 #include <cstring>
 
 #include "base/check.h"
@@ -135,8 +135,8 @@ void Executor::walk_in_code(WarpContext& warp, uint32_t pc) {
     Record record(warp, at, lane);
     if (state.stack_size > 0) put_ray(record, state, world_.traversal.stack_entries);  // as begin() has left it
     put_hit(record, kHit, state.ray, state.committed, *world_.memory);
+    warp.regs.bank[2][size_t(isa::Special::Payload) * kLanes + size_t(lane)] = at;
   });
-  std::fill_n(warp.regs.bank[2] + size_t(isa::Special::Payload) * kLanes, kLanes, at);
   called_lanes_[size_t(code.stage)] += uint64_t(std::popcount(travelling));
   SimtStack& simt = warp.simt;
   simt.push_call(simt.pc, simt.active & ~travelling, warp.depth, world_.image->shader_of[pc], warp.callables);
