@@ -137,17 +137,38 @@ bool normals_follow(const Model& from, const Model& to, const Matrix& m) {
   return true;
 }
 
-bool equal(const Material& a, const Material& b) {
-  return a.diffuse == b.diffuse && a.texture == b.texture && a.fuzziness == b.fuzziness &&
-         a.refraction_index == b.refraction_index && a.model == b.model;
+// The first texture with each one's texels: files name the same picture more than once.
+std::vector<int32_t> first_alike(const std::vector<Texture>& textures) {
+  const auto alike = [&](const Texture& a, const Texture& b) {
+    return a.width == b.width && a.height == b.height && a.srgb == b.srgb && a.repeat == b.repeat && a.rgba == b.rgba;
+  };
+  std::vector<int32_t> first(textures.size());
+  for (size_t i = 0; i < textures.size(); ++i)
+    first[i] = int32_t(std::find_if(textures.begin(), textures.begin() + ptrdiff_t(i), [&](const Texture& t) { return alike(t, textures[i]); }) - textures.begin());
+  return first;
+}
+
+// The number of each material's first equal.
+std::vector<size_t> first_equal(const Scene& scene) {
+  const std::vector<int32_t> textures = first_alike(scene.textures);
+  const auto texture_of = [&](const Material& m) { return m.texture < 0 ? m.texture : textures[size_t(m.texture)]; };
+  const auto equal = [&](const Material& a, const Material& b) {
+    return a.diffuse == b.diffuse && texture_of(a) == texture_of(b) && a.fuzziness == b.fuzziness &&
+           a.refraction_index == b.refraction_index && a.model == b.model;
+  };
+  std::vector<size_t> first(scene.materials.size());
+  for (size_t i = 0; i < first.size(); ++i) {
+    const auto end = scene.materials.begin() + ptrdiff_t(i);
+    first[i] = size_t(std::find_if(scene.materials.begin(), end, [&](const Material& m) { return equal(m, *end); }) - scene.materials.begin());
+  }
+  return first;
 }
 
 // What a copy shares with its original bit for bit, but for positions and normals.
-bool same_but_moved(const Scene& scene, const Model& a, const Model& b) {
+bool same_but_moved(const std::vector<size_t>& materials, const Model& a, const Model& b) {
   return a.vertices.size() == b.vertices.size() && a.indices == b.indices &&
          std::equal(a.vertices.begin(), a.vertices.end(), b.vertices.begin(), [&](const Vertex& v, const Vertex& w) {
-           return v.texture_coordinate == w.texture_coordinate &&
-                  equal(scene.materials[size_t(v.material)], scene.materials[size_t(w.material)]);
+           return v.texture_coordinate == w.texture_coordinate && materials[size_t(v.material)] == materials[size_t(w.material)];
          });
 }
 
@@ -177,6 +198,7 @@ std::optional<Affine> affine_between(const Model& from, const Model& to) {
 
 void share_copies(Scene& scene) {
   if (!scene.instances.empty()) return;
+  const std::vector<size_t> materials = first_equal(scene);
   std::vector<Model> kept;
   std::vector<Instance> instances;
   std::unordered_map<uint64_t, std::vector<uint32_t>> alike;  // indices into `kept`
@@ -186,7 +208,7 @@ void share_copies(Scene& scene) {
     uint32_t original = 0;
     for (size_t i = 0; bucket && i < bucket->size() && !matrix; ++i) {
       original = (*bucket)[i];
-      if (same_but_moved(scene, kept[original], model)) matrix = affine_between(kept[original], model);
+      if (same_but_moved(materials, kept[original], model)) matrix = affine_between(kept[original], model);
     }
     if (matrix) {
       instances.push_back({original, *matrix});

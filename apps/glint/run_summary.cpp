@@ -20,10 +20,10 @@ class Sums {
   uint64_t count(const std::string& pattern) const {
     return uint64_t(report::stat_sum(root_, pattern).value_or(0.0));
   }
-  std::optional<double> ratio(const std::string& above, const std::string& below, double scale = 1) const {
+  std::optional<double> ratio(const std::string& above, const std::string& below) const {
     const std::optional<double> a = report::stat_sum(root_, above), b = report::stat_sum(root_, below);
     if (!a || !b || *b == 0) return std::nullopt;
-    return *a / (*b * scale);
+    return *a / *b;
   }
   report::HitRate hits(const std::string& cache, const std::string& traffic) const {
     return {count(cache + ".hits::" + traffic), count(cache + ".reads::" + traffic)};
@@ -50,7 +50,8 @@ report::TimingSummary timing_of(const pipeline::RenderJob& job, const pipeline::
   out.l2 = {one.hits + several.hits, one.accesses + several.accesses};
   out.dram_utilisation = sums.ratio(dram + ".busy_clocks", dram + ".clocks");
   out.dram_efficiency = sums.ratio(dram + ".busy_clocks", dram + ".active_clocks");
-  out.rt_occupancy = sums.ratio(rt + ".warp_cycles", rt + ".unit_cycles", job.gpu.rt.warps);
+  if (const double busy = double(sums.count(rt + ".unit_cycles") - sums.count(rt + ".cycles::idle")); busy > 0)
+    out.rt_occupancy = double(sums.count(rt + ".warp_cycles")) / (busy * job.gpu.rt.warps);
   out.rt_efficiency = sums.ratio(rt + ".ray_cycles", rt + ".lane_slots");
   return out;
 }

@@ -99,3 +99,20 @@ TEST_CASE("a scene without copies stays as it is") {
   CHECK(scene.instances.empty());
   CHECK(scene.hash() == hash);
 }
+
+TEST_CASE("textures count as equal by their texels, not by their number") {
+  const auto stored_models = [](uint8_t third_texel) {
+    Scene scene = scene_of({pyramid(), moved(pyramid(), kMatrix), moved(pyramid(), kMatrix)});
+    const auto texture = [](uint8_t texel) { return Texture{"t", 1, 1, {texel, 0, 0, 255}}; };
+    scene.textures = {texture(1), texture(1), texture(third_texel)};
+    for (size_t i = 0; i < 3; ++i) {
+      scene.materials[i] = scene.materials[0];
+      scene.materials[i].texture = int32_t(i);
+      for (Vertex& v : scene.models[i].vertices) v.material = int32_t(i);
+    }
+    share_copies(scene);
+    return scene.models.size();
+  };
+  CHECK(stored_models(1) == 1);
+  CHECK(stored_models(2) == 2);
+}
