@@ -58,8 +58,8 @@ double shared_throughput(uint32_t stride, const std::string& width, const pipeli
   kernel.variables = kShared;
   kernel.threads = 1024;
   kernel.turns = 4;
-  kernel.before = fmt::format("mov.u32 %r1,%laneid;mul.lo.u32 %r1,%r1,{};and.b32 %r1,%r1,16383;mov.u32 %r2,room;add.u32 %r1,%r1,%r2;cvt.u64.u32 %rd1,%r1;\n", stride);
-  kernel.body = width == "v4" ? "ld.shared.v4.u32 {%r4,%r5,%r6,%r7},[%rd1];lop3.b32 %r8,%r8,%r4,%r7,0x96;\n" : width == "v2" ? "ld.shared.v2.u32 {%r4,%r5},[%rd1];lop3.b32 %r8,%r8,%r4,%r5,0x96;\n" : "ld.shared.u32 %r4,[%rd1];xor.b32 %r8,%r8,%r4;\n";
+  kernel.before = fmt::format("mov.u32 %r1,%laneid;mul.lo.u32 %r1,%r1,{};and.b32 %r1,%r1,16383;mov.u32 %r2,room;add.u32 %r1,%r1,%r2;\n", stride);
+  kernel.body = width == "v4" ? "ld.shared.v4.u32 {%r4,%r5,%r6,%r7},[%r1];lop3.b32 %r8,%r8,%r4,%r7,0x96;\n" : width == "v2" ? "ld.shared.v2.u32 {%r4,%r5},[%r1];lop3.b32 %r8,%r8,%r4,%r5,0x96;\n" : "ld.shared.u32 %r4,[%r1];xor.b32 %r8,%r8,%r4;\n";
   kernel.after = "st.global.u32 [%rd0],%r8;\n";
   return cycles_per_body(kernel, 8, 24, with_one_core(gpu)) / 32;
 }
@@ -87,7 +87,6 @@ double l1_latency(uint32_t stride, const pipeline::GpuParams& gpu) {
 }
 
 // GB/s of all cores over `bytes` (a power of two), each word once a pass.
-// Reads only: a launch ends when the last write has left its core, not when it is in memory.
 double stream(uint64_t bytes, bool warm, const pipeline::GpuParams& gpu) {
   MicroKernel kernel;
   kernel.bytes = bytes;
@@ -105,6 +104,32 @@ double stream(uint64_t bytes, bool warm, const pipeline::GpuParams& gpu) {
   const uint32_t few = warm ? turns : std::max(turns / 2, 1u), many = warm ? turns * 3 : few * 2;
   const double cycles = cycles_per_turn(kernel, few, many, gpu);
   return double(threads * 16 * loads) / cycles * gpu.clock_mhz * 1e-3;
+}
+
+// GB/s of writes back to DRAM: what the L2 holds when the launch ends stays there, so both lengths are more than it does.
+double write_stream(const pipeline::GpuParams& gpu) {
+  constexpr uint32_t kFew = 96, kMany = 160;  // MB
+  MicroKernel kernel;
+  kernel.bytes = uint64_t{kMany} << 20;
+  kernel.threads = 1024;
+  kernel.blocks = gpu.cores * 2;
+  const uint64_t threads = uint64_t{kernel.blocks} * kernel.threads;
+  kernel.before = "mov.u32 %r1,%ctaid.x;mov.u32 %r2,%tid.x;mad.lo.u32 %r1,%r1,1024,%r2;mad.wide.u32 %rd2,%r1,16,%rd0;\n";
+  kernel.body = fmt::format("st.global.v4.u32 [%rd2],{{%r1,%r1,%r1,%r1}};add.s64 %rd2,%rd2,{};\n", threads * 16);
+  const auto turns = [&](uint32_t megabytes) { return uint32_t((uint64_t{megabytes} << 20) / (threads * 16)); };
+  return double(threads * 16) / cycles_per_turn(kernel, turns(kFew), turns(kMany), gpu) * gpu.clock_mhz * 1e-3;
+}
+
+// G lane operations a second of red.global.add.u32, by all cores; `place`: from %r1, the thread's number, to its word's offset.
+double red_throughput(const std::string& place, const pipeline::GpuParams& gpu) {
+  MicroKernel kernel;
+  kernel.threads = 1024;
+  kernel.blocks = gpu.cores * 2;
+  const uint64_t threads = uint64_t{kernel.blocks} * kernel.threads;
+  kernel.bytes = threads * 4;
+  kernel.before = "mov.u32 %r1,%ctaid.x;mov.u32 %r2,%tid.x;mad.lo.u32 %r1,%r1,1024,%r2;\n" + place + "mad.wide.u32 %rd1,%r1,4,%rd0;\n";
+  kernel.body = "red.global.add.u32 [%rd1],%r2;\n";
+  return double(threads) / cycles_per_body(kernel, 8, 24, gpu) * gpu.clock_mhz * 1e-3;
 }
 
 double atomic(const std::string& op, uint32_t lanes, uint32_t stride, const pipeline::GpuParams& gpu) {
@@ -133,7 +158,7 @@ void add_chases(std::vector<MicroBench>& out) {
   for (uint32_t bytes : {1024u})
     out.push_back({"shared", "ld.shared chase", fmt::format("bytes={}", bytes), "cycle", [](const auto& gpu) { return shared_chase(8, gpu); }});
   out.push_back({"const", "ld.const chase", "bytes=1024;stride=4", "cycle", [](const auto& gpu) {
-                   return chain("mov.u64 %rd2,table;mov.u64 %rd1,%rd2;\n", "ld.const.u32 %r4,[%rd1];mad.wide.u32 %rd1,%r4,4,%rd2;\n", "st.global.u64 [%rd0],%rd1;\n", gpu,
+                   return chain("mov.u32 %r2,table;mov.u32 %r1,%r2;\n", "ld.const.u32 %r4,[%r1];mad.lo.u32 %r1,%r4,4,%r2;\n", "st.global.u32 [%rd0],%r1;\n", gpu,
                                 ".const .align 8 .b8 table[256];\n");
                  }});
 }
@@ -157,12 +182,17 @@ void add_bandwidths(std::vector<MicroBench>& out) {
   }
   out.push_back({"bw", "L2 read 8MiB x128", "", "GB/s", [](const auto& gpu) { return stream(8 << 20, true, gpu); }});
   out.push_back({"bw", "DRAM read 8GiB", "", "GB/s", [](const auto& gpu) { return stream(64 << 20, false, gpu); }});
+  out.push_back({"bw", "DRAM write 8GiB", "", "GB/s", write_stream});
 }
 
 void add_atomics(std::vector<MicroBench>& out) {
   for (const char* op : {"atom.global.add.u32", "atom.global.cas.b32", "atom.global.add.f32", "atom.shared.add.u32", "atom.shared.cas.b32"})
     for (const auto& [lanes, stride] : {std::pair{1u, 0u}, {32u, 0u}, {32u, 4u}})
       out.push_back({"atomic", op, fmt::format("lanes={};lanestride={}", lanes, stride), "cycle", [op, l = lanes, s = stride](const auto& gpu) { return atomic(op, l, s, gpu); }});
+  const std::pair<const char*, const char*> places[] = {
+      {"every thread own word", ""}, {"lanes contiguous, all warps same line", "and.b32 %r1,%r1,31;\n"}, {"one address per block", "mov.u32 %r1,%ctaid.x;\n"}};
+  for (const auto& [name, place] : places)
+    out.push_back({"atomic_thr", name + std::string(",red.global.add.u32"), " 2x1024 thr/SM", "Gop/s", [p = std::string(place)](const auto& gpu) { return red_throughput(p, gpu); }});
 }
 
 }  // namespace

@@ -134,22 +134,32 @@ double throughput_of(const Step& step, const pipeline::GpuParams& gpu) {
   return double(kernel.unroll) * kernel.threads / cycles_per_turn(kernel, 4, 12, with_one_core(gpu));
 }
 
-// Two kinds of instructions that do not depend on each other: which pipes they share.
+// Two kinds of instructions that do not depend on each other, four chains of each: which pipes they share. # is the chain.
 struct Mix {
-  std::string_view name, text;
+  std::string_view name, text, results;
 };
 constexpr Mix kMixes[] = {
-    {"FFMA + IMAD", "fma.rn.f32 %f1,%f1,%f2,%f3;mad.lo.s32 %r1,%r1,%r2,%r3;"},
-    {"FFMA + DFMA", "fma.rn.f32 %f1,%f1,%f2,%f3;fma.rn.f64 %d1,%d1,%d2,%d3;"},
-    {"IMAD + LOP3", "mad.lo.s32 %r1,%r1,%r2,%r3;lop3.b32 %r4,%r4,%r2,%r3,0x1b;"},
-    {"FFMA + MUFU", "fma.rn.f32 %f1,%f1,%f2,%f3;ex2.approx.ftz.f32 %f4,%f4;"},
+    {"FFMA + IMAD", "fma.rn.f32 %f1#,%f1#,%f2,%f3;mad.lo.s32 %r1#,%r1#,%r2,%r3;", "fr"},
+    {"FFMA + DFMA", "fma.rn.f32 %f1#,%f1#,%f2,%f3;fma.rn.f64 %d1#,%d1#,%d2,%d3;", "fd"},
+    {"IMAD + LOP3", "mad.lo.s32 %r1#,%r1#,%r2,%r3;lop3.b32 %r2#,%r2#,%r2,%r3,0x1b;", "rs"},
+    {"FFMA + MUFU", "fma.rn.f32 %f1#,%f1#,%f2,%f3;ex2.approx.ftz.f32 %f2#,%f2#;", "fg"},
 };
+constexpr int kChains = 4;
+
+std::string chains_of(std::string_view text) {
+  std::string out;
+  for (int i = 0; i < kChains; ++i)
+    for (char c : text) out += c == '#' ? std::to_string(i) : std::string(1, c);
+  return out + "\n";
+}
 
 double mix_of(const Mix& mix, const pipeline::GpuParams& gpu) {
-  MicroKernel kernel = chain_of({mix.name, 'f', mix.text});
-  kernel.after += "st.global.f64 [%rd0+8],%d1;st.global.b32 [%rd0],%r1;st.global.b32 [%rd0],%r4;st.global.f32 [%rd0],%f4;\n";
+  const std::string body = chains_of(mix.text);
+  MicroKernel kernel = chain_of({mix.name, 'f', body});
+  for (char kind : mix.results)
+    kernel.after += chains_of(kind == 'd' ? "st.global.f64 [%rd0],%d1#;" : kind == 'f' ? "st.global.f32 [%rd0],%f1#;" : kind == 'g' ? "st.global.f32 [%rd0],%f2#;" : kind == 'r' ? "st.global.b32 [%rd0],%r1#;" : "st.global.b32 [%rd0],%r2#;");
   kernel.threads = 1024;
-  return 2.0 * 32 * 32 / cycles_per_body(kernel, 32, 64, with_one_core(gpu)) / 32;
+  return 2.0 * kChains * 32 / cycles_per_body(kernel, 8, 16, with_one_core(gpu));
 }
 
 }  // namespace
