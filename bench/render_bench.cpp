@@ -1,7 +1,9 @@
-// How fast the machines run whole frames: warp instructions a second of both, node visits, simulated cycles.
+// How fast the machines run whole frames and arithmetic: warp instructions a second, node visits, simulated cycles.
 // SPDX-License-Identifier: Apache-2.0
 #include <benchmark/benchmark.h>
 
+#include "pipeline/description/defaults.h"
+#include "pipeline/pipeline_world.h"
 #include "tests/support/small_jobs.h"
 
 using namespace glint;
@@ -27,6 +29,24 @@ void run_frame(benchmark::State& state, const char* scene, pipeline::Workload wo
   state.counters["warp_instructions"] = instructions / double(state.iterations());
   if (timing) state.counters["cycles"] = cycles / double(state.iterations());
 }
+
+// 65,536 threads that only calculate, on one thread of the host.
+void run_arithmetic(benchmark::State& state, bool timing) {
+  const std::string shader = std::string(GLINT_SOURCE_DIR) + "/bench/arithmetic.comp";
+  const pipeline::PipelineDescription description = pipeline::parse_pipeline(pipeline::default_description({shader}, "/"), "/arithmetic.toml");
+  const pipeline::GpuParams gpu = test::preset("mobile");
+  double instructions = 0, seconds = 0;
+  for (auto _ : state) {
+    pipeline::PipelineWorld world(description, gpu);
+    const pipeline::RenderResult result = pipeline::run_pipeline(world, gpu, timing, false, 1, {});
+    state.SetIterationTime(result.wall_seconds);
+    instructions += double(result.warp_instructions);
+    seconds += result.wall_seconds;
+  }
+  state.counters["warp_instructions/s"] = instructions / seconds;
+}
+BENCHMARK_CAPTURE(run_arithmetic, functional, false)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(run_arithmetic, timing, true)->UseManualTime()->Unit(benchmark::kMillisecond);
 
 #define GLINT_FRAME(scene, workload)                                                                                  \
   BENCHMARK_CAPTURE(run_frame, scene##_##workload##_functional, #scene, pipeline::Workload::workload, false)         \
