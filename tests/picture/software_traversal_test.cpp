@@ -9,7 +9,7 @@ using pipeline::Workload;
 
 namespace {
 
-constexpr uint32_t kSize = 24;
+constexpr uint32_t kSize = 16;
 
 pipeline::RenderResult picture(const std::string& scene, Workload workload, std::string_view unit, bool timing, bool no_skip = false, uint32_t threads = 1) {
   pipeline::RenderJob job = test::small_job(scene, workload, kSize, 1);
