@@ -35,7 +35,7 @@ constexpr OpTime kTimes[] = {
     {"not.b64", 4, 4, Unit::Int, false, 2}, {"selp.b64", 4, 4, Unit::Int, false, 2},
     {"shl.b64", 6, 2, Unit::Int, false, 2}, {"shr.*64", 5, 4, Unit::Int, false, 2}, {"setp.*.f64", 8, 2},
     {"setp.*64", 8, 3.5, Unit::Int, false, 2},
-    {"bfe.*32", 8, 7.5, Unit::Int, false, 3}, {"bfi.b32", 8, 9, Unit::Int, false, 4}, {"clz.b32", 23, 8, Unit::Count, false, 2},
+    {"abs.s32", 4, 2.625}, {"bfe.*32", 8, 7.5, Unit::Int, false, 3}, {"bfi.b32", 8, 9, Unit::Int, false, 4}, {"clz.b32", 23, 8, Unit::Count, false, 2},
     // Integer division and remainder: sequences.
     {"div.s32", 131, 33, Unit::Count, false, 23}, {"div.u32", 124, 29, Unit::Count, false, 17},
     {"rem.s32", 132, 30, Unit::Count, false, 20}, {"rem.u32", 126, 28, Unit::Count, false, 16},
@@ -48,7 +48,7 @@ constexpr OpTime kTimes[] = {
     // Sequences around the special-function unit.
     {"div.rn*.f32", 57, 17, Unit::Count, false, 10}, {"rcp.rn*.f32", 77, 12, Unit::Count, false, 10},
     {"sqrt.rn*.f32", 55, 11, Unit::Count, false, 11},
-    {"rcp.approx.f32", 41, 8.5, Unit::Count, false, 7}, {"rsqrt.approx.f32", 39, 8, Unit::Count, false, 4},
+    {"rcp.approx.f32", 41, 8, Unit::Count, false, 7}, {"rsqrt.approx.f32", 39, 8, Unit::Count, false, 4},
     {"lg2.approx.f32", 39, 8, Unit::Count, false, 4}, {"sqrt.approx.f32", 39, 8, Unit::Count, false, 4},
     {"sin.approx*", 23, 8, Unit::Count, false, 2}, {"cos.approx*", 23, 8, Unit::Count, false, 2},
     {"div.approx*", 23, 8, Unit::Count, false, 2}, {"div.full*", 40, 8, Unit::Count, false, 7},  // rcp and mul
@@ -61,7 +61,7 @@ constexpr OpTime kTimes[] = {
     {"cvt.rn.f16.f32", 4, 2, Unit::Int}, {"cvt.f32.f16", 4, 1, Unit::Fp32},
     {"cvt.f64.f32", 18, 8.5, Unit::Sfu}, {"cvt.rn.f32.f64", 18, 8.5, Unit::Sfu},
     // Across lanes.
-    {"vote.*", 13, 2, Unit::Int}, {"match.*", 28, 8}, {"shfl.sync.up.*", 24, 3.75}, {"shfl.sync.down.*", 24, 3.75}, {"redux.*", 44, 8, Unit::Count, false, 2},
+    {"vote.*", 13, 2, Unit::Int}, {"match.*", 28, 8}, {"shfl.sync.up.*", 24, 4}, {"shfl.sync.down.*", 24, 4}, {"redux.*", 44, 8, Unit::Count, false, 2},
 };
 
 class Hopper final : public OpTimes {
