@@ -7,18 +7,10 @@
 #include "rtunit/candidate_table.h"
 #include "rtunit/ray.h"
 #include "rtunit/ray_path.h"
+#include "rtunit/ray_stack.h"
 #include "rtunit/traversal_rules.h"
 
 namespace glint::rt {
-
-// build_top() proves that no ray can need more. How many of them are on chip is the stack model's (rtunit/stack_model.h).
-inline constexpr int kStackEntries = 192;
-
-// One node still to be visited: where it is and where the ray enters it.
-struct StackEntry {
-  uint32_t node;  // NodeRef (rtunit/structure.h): block from the base of the structure being walked, and kind
-  float t_enter;
-};
 
 // A space that is being walked: the ray in its coordinates and what the tests derive from it.
 struct RaySpace {
@@ -27,7 +19,7 @@ struct RaySpace {
   std::array<uint8_t, 3> axis{0, 1, 2};  // kx, ky, kz: kz is the largest component of the direction
 };
 
-// Plain data: may be copied. The functions live in rtunit/traversal.h.
+// Data: may be copied. The functions live in rtunit/traversal.h.
 struct RayState {
   Ray ray;
   RayStatus status = RayStatus::Idle;
@@ -59,7 +51,7 @@ struct RayState {
   uint32_t nodes_visited = 0, box_tests = 0, triangle_tests = 0, leaves_visited = 0, instances_visited = 0;
   uint32_t hits_in_interval = 0;         // triangles met within the ray, nearer than the hit so far or not
 
-  std::array<StackEntry, kStackEntries> stack;  // left uninitialised: only entries below stack_size mean anything
+  RayStack stack;  // entries below stack_size
 };
 
 // The ray ended with entries left that nobody looks at any more.

@@ -86,7 +86,7 @@ void push(RayState& s, NodeRef node, float t_enter) {
     return break_off(s);  // only a structure that a shader has overwritten is that deep
   if (s.path) [[unlikely]]
     s.path->parent[size_t(s.stack_size)] = s.path->depth;
-  s.stack[size_t(s.stack_size++)] = {node, t_enter};
+  s.stack.set(size_t(s.stack_size++), {node, t_enter});
   if (s.stack_size > s.stack_peak) s.stack_peak = s.stack_size;
 }
 

@@ -1,0 +1,45 @@
+// The stack of one ray: nodes still to be visited.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace glint::rt {
+
+// build_top() proves that no ray can need more. How many of them are on chip is the stack model's (rtunit/stack_model.h).
+inline constexpr int kStackEntries = 192;
+
+// One node still to be visited: where it is and where the ray enters it.
+struct StackEntry {
+  uint32_t node;  // NodeRef (rtunit/structure.h): block from the base of the structure being walked, and kind
+  float t_enter;
+};
+
+// Only entries that were set mean anything. What lies deeper than most rays ever go is apart, made when a ray first needs it
+// and then kept: a resident thread stays below 1 KB of the host's memory, and no ray waits for the heap twice.
+class RayStack {
+ public:
+  const StackEntry& operator[](size_t i) const { return i < kNear ? near_[i] : deep_[i - kNear]; }
+  void set(size_t i, const StackEntry& entry) {
+    if (i < kNear) [[likely]]
+      near_[i] = entry;
+    else
+      set_deep(i - kNear, entry);
+  }
+
+ private:
+  // Choice: of LumiBench's scenes SHIP needs 16, WKND 10, PARK 31 in one ray of fifty.
+  static constexpr size_t kNear = 16;
+
+  void set_deep(size_t i, const StackEntry& entry) {
+    if (i >= deep_.size()) deep_.resize(2 * i + 8);
+    deep_[i] = entry;
+  }
+
+  std::array<StackEntry, kNear> near_;  // left uninitialised
+  std::vector<StackEntry> deep_;
+};
+
+}  // namespace glint::rt
