@@ -87,7 +87,7 @@ struct L2Params {
   uint32_t mshr_merges = 4;
   uint32_t dram_queue = 64;          // Vulkan-Sim: dram_partition_queues
   uint32_t atomic_interval = 2;      // Choice: unpublished; an H200 does 1.4 G lane atomics a second on one word
-  uint32_t partial_interval = 0;     // an H200: 4 a sector, found with the transpose of its calibration kernels; 0: as whole ones
+  uint32_t partial_interval = 0;     // an H200: 2.5 for one sector of a line, 1.6 each for four (docs/validation.md); 0: as whole ones
   bool write_masks = true;           // GPGPU-Sim: byte masks, a sector is fetched when it is read
   bool fill_takes_service = true;    // Choice: arrays of one port; unpublished
 

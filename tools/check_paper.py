@@ -7,6 +7,7 @@ Words of the paper stand for bounds that are written out with each statement; no
 import argparse
 import csv
 import math
+import pathlib
 
 SUBSET = ["SPNZA_AO", "BUNNY_AO", "WKND_PT", "SHIP_SH", "ROBOT_SH", "BATH_PT", "PARK_PT", "CHSNT_PT"]  # Table 2
 
@@ -102,9 +103,30 @@ def _(t, **_):
     return True, text
 
 
-@statement(4, "IPC and L1D miss rate become stable after fluctuating at first")
-def _(t, **_):
-    raise Missing("needs a series in time: glint run --sample")
+def drift(rows, value, weight):
+    """How far the mean of all that has passed still is from the last one, as a fraction: at most in the first quarter, and in the second half."""
+    rows = [row for row in rows if row["instructions"] > 0]
+    total = weights = 0.0
+    means = []
+    for row in rows:
+        total += row[value] * row[weight]
+        weights += row[weight]
+        means.append(total / weights if weights else 0.0)
+    if len(means) < 16 or means[-1] == 0:
+        raise Missing("the series has too few samples: glint run --sample with fewer cycles")
+    off = [abs(mean / means[-1] - 1) for mean in means]
+    return max(off[:len(off) // 4]), max(off[len(off) // 2:])
+
+
+@statement(4, "IPC and L1D miss rate become stable after fluctuating at first (the mean of what has passed: within 10 % of the last "
+              "in the second half, farther off in the first quarter)")
+def _(t, series=None, **_):
+    if not series:
+        raise Missing("needs --series, the series.csv of a run with --sample")
+    found = {(name, what): drift(rows, what, weight) for name, rows in series.items()
+             for what, weight in (("ipc", "cycles"), ("l1d_miss_rate", "l1d_reads"))}
+    text = ", ".join(f"{name} {what} {percent(first)} then {percent(later)}" for (name, what), (first, later) in found.items())
+    return all(later <= 0.1 < first for first, later in found.values()), text
 
 
 @statement(4, "SHIP_SH has a higher L1D miss rate at 1920x1080 than at 128x128")
@@ -337,17 +359,27 @@ def evaluate(table, **others):
     return out
 
 
+def read_series(path):
+    with open(path, newline="") as file:
+        rows = [{key: float(value) if value else 0.0 for key, value in row.items()} for row in csv.DictReader(file)]
+    for before, row in zip([{"cycle": 0.0}] + rows, rows):
+        row["cycles"] = row["cycle"] - before["cycle"]
+    return rows
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("metrics", help="metrics.csv of `glint bench` on mobile")
     parser.add_argument("--desktop", help="the same on desktop")
     parser.add_argument("--large", help="of SHIP_SH at 1920x1080")
     parser.add_argument("--bandwidth", help="of PARTY_PT with twice the DRAM bandwidth")
+    parser.add_argument("--series", nargs="+", default=[], metavar="RUN", help="run directories of PARK_PT, BUNNY_AO and SHIP_SH with --sample")
     parser.add_argument("--markdown", action="store_true", help="print a table for docs")
     arguments = parser.parse_args()
     table = Table.read(arguments.metrics)
     others = {name: Table.read(path) for name in ("desktop", "large", "bandwidth") if (path := getattr(arguments, name))}
-    results = evaluate(table, **others)
+    series = {pathlib.Path(run).name: read_series(pathlib.Path(run) / "series.csv") for run in arguments.series}
+    results = evaluate(table, series=series, **others)
     if arguments.markdown:
         print("| item | statement | verdict | our figures |\n|---|---|---|---|")
     for item, text, verdict, figures in results:

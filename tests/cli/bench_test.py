@@ -171,6 +171,14 @@ class Paper(unittest.TestCase):
         self.assertEqual(self.verdicts(self.table(), "IPC is higher on desktop"), ["cannot be judged"])
         self.assertEqual(self.verdicts(self.table(), "IPC is higher on desktop", desktop=self.table()), ["does not hold"])
 
+    def test_a_series_is_stable_when_its_means_stop_moving(self):
+        def series(late):
+            ipc = [0.0, 9.0, 1.0] + [4.0] * 20 + [late] * 20
+            return {"SHIP_SH": [{"cycles": 100.0, "instructions": 100 * x, "ipc": x, "l1d_reads": 10.0, "l1d_miss_rate": x / 10} for x in ipc]}
+        for late, verdict in ((4.0, "holds"), (12.0, "does not hold")):
+            self.assertEqual(self.verdicts(self.table(), "become stable", series=series(late)), [verdict])
+        self.assertEqual(self.verdicts(self.table(), "become stable"), ["cannot be judged"])
+
     def test_misses_of_the_shaders_follow_from_the_rates(self):
         cells = {"acc_internal": "80", "acc_instance_leaf": "0", "acc_quad_leaf": "20", "acc_proc_leaf": "0", "rt_miss_rate": "0.25",
                  "l1d_miss_rate": "0.125", "l1d_shader_miss_rate": "0.0833333333333333333"}  # 300 shader reads, 25 of them misses
