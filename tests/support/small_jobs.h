@@ -3,8 +3,8 @@
 #pragma once
 #include <string>
 
-#include "base/config.h"
 #include "pipeline/render.h"
+#include "tests/support/preset.h"
 
 namespace glint::test {
 
@@ -15,18 +15,6 @@ inline const char* shader_folder(pipeline::Workload workload) {
     case pipeline::Workload::AmbientOcclusion: return "ambient_occlusion";
   }
   return "";
-}
-
-// The parameters of a preset in configs/.
-inline pipeline::GpuParams preset(const std::string& name) {
-  Config config;
-  config.add_file(std::string(GLINT_SOURCE_DIR) + "/configs/" + name + ".toml");
-  Diagnostics diagnostics;
-  ConfigTable table = config.root(diagnostics);
-  pipeline::GpuParams params;
-  read_params(table, params);
-  diagnostics.throw_if_errors();
-  return params;
 }
 
 // `size` x `size` pixels of a built-in scene on a small GPU of two cores.

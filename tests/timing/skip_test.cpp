@@ -1,34 +1,12 @@
 // A mixture of everything on a core: stepping and skipping are equal, every cycle has a reason.
 // SPDX-License-Identifier: Apache-2.0
-#include <bit>
-
 #include "tests/support/catch.h"
-#include "tests/unit/core/one_core.h"
+#include "tests/timing/core_programs.h"
 
 namespace glint::core {
 namespace {
 
 using isa::Special;
-
-// %rd2 = base + lane * stride: 4 cycles, at cycle 0.
-void add_address(Code& code, Address base, uint32_t stride) {
-  code.add("mad.wide.u32", {reg(2), special(Special::LaneId), code.constant(stride), code.constant64(base)});
-}
-
-// rt.trace of one ray a lane into `structure`.
-void add_trace(Code& code, isa::Slot structure) {
-  const isa::Slot zero = code.constant(0), one = code.constant(std::bit_cast<uint32_t>(1.0f));
-  code.add("rt.trace", {0, structure, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, one, one, zero, zero});
-}
-
-// A top level that rays may enter; the RT unit of these tests does not read it.
-Address allocate_structure(mem::AddressSpace& memory) {
-  const Address at = memory.allocate("structure", 4096);
-  rt::StructureHeader header;
-  header.level = 1;
-  memory.write(at, &header, sizeof header);
-  return at;
-}
 
 // Loops over loads, stores, transcendentals, local memory and rays.
 void add_mixture(Code& code, Address buffer, Address structure) {

@@ -3,6 +3,7 @@
 #include "core/lsu.h"
 #include "tests/support/catch.h"
 #include "tests/unit/core/image_lab.h"
+#include "tests/unit/core/lsu_rig.h"
 #include "tests/unit/core/one_core.h"
 
 namespace glint::core {
@@ -24,19 +25,6 @@ void take(Lsu& lsu, uint32_t scheduler, Cycle now, bool texture, uint32_t lines 
   access.write = false;
   access.samples = samples;
   for (uint32_t i = 0; i < lines; ++i) access.lines.add(4096 + 128 * i, 128);
-}
-
-std::vector<Cycle> completions(Lsu& lsu, Cycle from) {
-  std::vector<Cycle> out;
-  for (Cycle now = from; !lsu.idle(); ++now) {
-    REQUIRE(now < from + 10'000);
-    lsu.tick(now);
-    for (uint32_t id : lsu.completed()) {
-      out.push_back(now);
-      lsu.release(id);
-    }
-  }
-  return out;
 }
 
 }  // namespace

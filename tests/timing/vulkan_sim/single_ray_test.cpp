@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.h"
 #include "tests/support/rt_launch.h"
-#include "tests/timing/vulkan_sim/preset.h"
+#include "tests/support/preset.h"
 
 namespace glint::rt::test {
 namespace {

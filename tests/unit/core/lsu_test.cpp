@@ -7,6 +7,7 @@
 
 #include "tests/support/catch.h"
 #include "tests/support/fixed_latency_memory.h"
+#include "tests/unit/core/lsu_rig.h"
 
 namespace glint::core {
 namespace {
@@ -35,20 +36,6 @@ void take(Lsu& lsu, uint32_t scheduler, Cycle now, uint32_t lines, bool write = 
   access.write = write;
   access.texture = texture;
   for (uint32_t i = 0; i < lines; ++i) access.lines.add(4096 + 128 * i, bytes);
-}
-
-// Cycles in which accesses complete, until the unit is idle.
-std::vector<Cycle> completions(Lsu& lsu, Cycle from) {
-  std::vector<Cycle> out;
-  for (Cycle now = from; !lsu.idle(); ++now) {
-    REQUIRE(now < from + 10'000);
-    lsu.tick(now);
-    for (uint32_t id : lsu.completed()) {
-      out.push_back(now);
-      lsu.release(id);
-    }
-  }
-  return out;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 namespace glint::test {
 
+// The parameters of a preset in configs/.
 inline pipeline::GpuParams preset(const std::string& name) {
   Config config;
   config.add_file(std::string(GLINT_SOURCE_DIR) + "/configs/" + name + ".toml");

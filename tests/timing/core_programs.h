@@ -1,0 +1,30 @@
+// Pieces of programs that tests of a core's cycles share.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <bit>
+
+#include "tests/unit/core/one_core.h"
+
+namespace glint::core {
+
+// %rd2 = base + lane * stride: 4 cycles, at cycle 0.
+inline void add_address(Code& code, Address base, uint32_t stride) {
+  code.add("mad.wide.u32", {reg(2), special(isa::Special::LaneId), code.constant(stride), code.constant64(base)});
+}
+
+// rt.trace of one ray a lane into `structure`.
+inline void add_trace(Code& code, isa::Slot structure) {
+  const isa::Slot zero = code.constant(0), one = code.constant(std::bit_cast<uint32_t>(1.0f));
+  code.add("rt.trace", {0, structure, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, one, one, zero, zero});
+}
+
+// A top level that rays may enter; the RT unit of these tests does not read it.
+inline Address allocate_structure(mem::AddressSpace& memory) {
+  const Address at = memory.allocate("structure", 4096);
+  rt::StructureHeader header;
+  header.level = 1;
+  memory.write(at, &header, sizeof header);
+  return at;
+}
+
+}  // namespace glint::core
