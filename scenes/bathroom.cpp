@@ -53,6 +53,7 @@ void room(Model& model, int32_t wood, int32_t light, int32_t mirror, int32_t wal
   for (int row = 0; row < 40; ++row)  // floor boards
     for (int board = 0; board < 4; ++board)
       add_rounded_box(model, {{4.25f, 0, 0}, {0, 0.1f, 0}, {0, 0, deep / 80}, {-12.75f + 8.5f * float(board), -0.1f, kBack + deep * (float(row) + 0.5f) / 40}}, 150, wood, 0.1f);
+  add_quad(model, {-kX, -0.1f, kBack}, {0, 0, deep}, {2 * kX, 0, 0}, wood);  // below them: their corners are round
   add_patch(model, 3000, 1, wall, [=](float u, float v) -> Vec3 { return {kX * (2 * u - 1), kY * v, kBack}; });
   add_patch(model, 3000, 1, wall, [=](float u, float v) -> Vec3 { return {-kX, kY * v, kFront - deep * u}; });
   add_patch(model, 3000, 1, wall, [=](float u, float v) -> Vec3 { return {kX, kY * v, kBack + deep * u}; });
