@@ -7,6 +7,7 @@
 
 #include "memsys/dram_channel.h"
 #include "memsys/memory_system.h"
+#include "tests/support/memory_rig.h"
 
 namespace {
 
@@ -53,34 +54,25 @@ std::vector<Address> random_lines(uint32_t count) {
   return lines;
 }
 
-// As the presets: without what the defaults of the code have beyond them.
-Params preset() {
-  Params p;
-  p.l1.fill_takes_access = p.l2.fill_takes_service = p.l2.write_masks = false;
-  p.noc.credits = 0;
-  p.dram.refresh = "none";
-  return p;
-}
-
-void l1_hits(benchmark::State& state) { run(state, preset(), random_lines(128)); }
-void l2_hits(benchmark::State& state) { run(state, preset(), random_lines(3000)); }
-void dram_random(benchmark::State& state) { run(state, preset(), random_lines(1 << 20)); }
+void l1_hits(benchmark::State& state) { run(state, bare(), random_lines(128)); }
+void l2_hits(benchmark::State& state) { run(state, bare(), random_lines(3000)); }
+void dram_random(benchmark::State& state) { run(state, bare(), random_lines(1 << 20)); }
 void dram_random_defaults(benchmark::State& state) { run(state, {}, random_lines(1 << 20)); }
 void dram_random_simple(benchmark::State& state) {
-  Params p = preset();
+  Params p = bare();
   p.dram.model = PolicyChoice<DramModel>("simple");
   run(state, p, random_lines(1 << 20));
 }
 void dram_stream(benchmark::State& state) {
   std::vector<Address> lines(1 << 16);
   for (size_t i = 0; i < lines.size(); ++i) lines[i] = i * 128;
-  run(state, preset(), lines);
+  run(state, bare(), lines);
 }
 
 // One channel by itself, its queue kept full of random sectors.
 void dram_channel_random(benchmark::State& state) {
   stats::Group root(nullptr, "bench");
-  const DramParams params = preset().dram;
+  const DramParams params = bare().dram;
   DramChannel channel({params, 256, 1365.0, &root});
   std::mt19937_64 random(1);
   uint64_t requests = 0;

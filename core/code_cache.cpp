@@ -79,7 +79,7 @@ void CodeCache::send(Cycle now) {
 void CodeCache::take_fills(Cycle now) {
   while (const auto token = l1_.pop(now, mem::Client::Code)) {
     Missing& missing = missing_[*token];
-    if (tags_.find(missing.line) == mem::TagArray::kNone) tags_.insert(missing.line).valid = 1;
+    tags_.keep(missing.line);
     fills_.push({now + back_, missing.clients, missing.line});
     missing.clients = 0;
     --num_missing_;

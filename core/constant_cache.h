@@ -27,7 +27,7 @@ class ConstantCache {
   void arrive(Address line, Served&& served) {
     for (size_t i = waits_.size(); i-- > 0;) {
       if (outer(waits_[i].line) != line) continue;
-      keep(waits_[i].line);
+      tags_.keep(waits_[i].line);
       const uint32_t slot = waits_[i].slot;
       waits_[i] = waits_.back();
       waits_.pop_back();
@@ -44,9 +44,6 @@ class ConstantCache {
   };
   Address outer(Address line) const { return line & ~Address{cache_.line_bytes() - 1}; }
   void want(uint32_t slot, Address line, Cycle now);
-  void keep(Address line) {
-    if (tags_.find(line) == mem::TagArray::kNone) tags_.insert(line).valid = 1;
-  }
 
   const uint32_t line_bytes_, client_;
   const Address base_;

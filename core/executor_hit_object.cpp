@@ -188,8 +188,8 @@ bool Executor::make_hit(WarpContext& warp, const isa::Inst& inst, bool has_strid
   hit.instance = leaf.instance;
   hit.geometry = value(kGeometry);
   hit.primitive = value(kPrimitive);
-  hit.custom_index = leaf.custom_index_and_mask & 0xff'ffff;
-  hit.sbt_record = leaf.sbt_offset_and_flags & 0xff'ffff;
+  hit.custom_index = leaf.custom_index();
+  hit.sbt_record = leaf.sbt_offset();
   hit.instance_leaf = at;
   object.ray.sbt_offset = value(kOffset) & 15;
   object.ray.sbt_stride = has_stride ? value(kStride) & 15 : 0;

@@ -66,8 +66,8 @@ bool get_hit(Record& record, uint32_t word, const rt::Ray& ray, const mem::Addre
   hit.primitive = record[word + 5];
   hit.triangle_leaf = leaf_of_block(record[word + 7], leaf.structure);
   hit.instance = leaf.instance;
-  hit.custom_index = leaf.custom_index_and_mask & 0xff'ffff;
-  hit.sbt_record = leaf.sbt_offset_and_flags & 0xff'ffff;
+  hit.custom_index = leaf.custom_index();
+  hit.sbt_record = leaf.sbt_offset();
   return true;
 }
 

@@ -28,27 +28,19 @@ bool InstructionFetch::come_to(uint32_t scheduler, uint32_t line, Cycle now) {
     l0.tags.touch(slot);
     return true;
   }
+  // Out of the stream go the line and those before it; all of them when it is not there.
   const auto first = l0.ahead.begin(), last = first + l0.num_ahead;
-  const bool in_stream = std::any_of(first, last, [line](const Ahead& ahead) { return ahead.line == line; });
-  const bool here = in_stream && take_ahead(l0, line);
-  if (!in_stream) l0.num_ahead = 0;
+  const auto found = std::find_if(first, last, [line](const Ahead& ahead) { return ahead.line == line; });
+  const bool here = found != last && found->here;
+  l0.num_ahead = found == last ? 0 : uint32_t(std::move(found + 1, last, first) - first);
   if (here) {
     ++stats_.prefetch_hits;
-    keep(l0, line);
+    l0.tags.keep(address_of(line));
   } else {
     ++stats_.misses;
     ask(l0, scheduler, line, true, now);
   }
   run_ahead(l0, scheduler, line, now);
-  return here;
-}
-
-// Takes the line out of the stream, with those before it; true when it has come.
-bool InstructionFetch::take_ahead(L0& l0, uint32_t line) {
-  const auto first = l0.ahead.begin(), last = first + l0.num_ahead;
-  const auto found = std::find_if(first, last, [line](const Ahead& ahead) { return ahead.line == line; });
-  const bool here = found->here;
-  l0.num_ahead = uint32_t(std::move(found + 1, last, first) - first);
   return here;
 }
 
@@ -85,7 +77,7 @@ uint32_t InstructionFetch::arrive(uint32_t scheduler, Address address) {
   l0.in_flight.pop_back();
   for (uint32_t i = 0; i < l0.num_ahead; ++i) l0.ahead[i].here |= l0.ahead[i].line == line;
   if (!wanted) return kNone;
-  keep(l0, line);
+  l0.tags.keep(address_of(line));
   return line;
 }
 

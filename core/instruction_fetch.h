@@ -45,12 +45,8 @@ class InstructionFetch {
   };
 
   Address address_of(uint32_t line) const { return base_ + Address{line} * cache_.line_bytes(); }
-  bool take_ahead(L0& l0, uint32_t line);
   void run_ahead(L0& l0, uint32_t scheduler, uint32_t line, Cycle now);
   void ask(L0& l0, uint32_t scheduler, uint32_t line, bool wanted, Cycle now);
-  void keep(L0& l0, uint32_t line) {
-    if (l0.tags.find(address_of(line)) == mem::TagArray::kNone) l0.tags.insert(address_of(line)).valid = 1;
-  }
 
   const uint32_t prefetch_, per_line_, num_lines_;
   const Address base_;

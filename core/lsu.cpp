@@ -123,14 +123,14 @@ void Lsu::send(Cycle now) {
   const uint32_t first = next_pipe_;
   for (uint32_t i = 0; i < 2; ++i) {
     const uint32_t p = (first + i) % 2;
-    if (now < door_of(p) || pipes_[p].count == 0 || accesses_[pipes_[p].front()].ready > now) continue;
+    if (now < door_free_[door_of(p)] || pipes_[p].count == 0 || accesses_[pipes_[p].front()].ready > now) continue;
     if (send_line(now, p)) next_pipe_ = 1 - p;
   }
 }
 
 bool Lsu::send_line(Cycle now, size_t p) {
   Pipe& pipe = pipes_[p];
-  Cycle& door_free = door_of(p);
+  Cycle& door_free = door_free_[door_of(p)];
   const uint32_t id = pipe.front();
   MemoryAccess& access = accesses_[id];
   const auto lines = access.lines.lines();
@@ -159,7 +159,7 @@ bool Lsu::send_line(Cycle now, size_t p) {
 Cycle Lsu::next_event(Cycle now) const {
   Cycle next = kNever;
   for (size_t p = 0; p < pipes_.size(); ++p) {
-    const Cycle door = p == kShared ? 0 : door_free_[own_door_ && p == 1];
+    const Cycle door = p == kShared ? 0 : door_free_[door_of(p)];
     if (pipes_[p].count > 0) next = std::min(next, std::max(accesses_[pipes_[p].front()].ready, door));
   }
   for (const Group& group : groups_)

@@ -93,7 +93,7 @@ class Lsu {
   void accept(Group& group, Cycle now);
   void enter(uint32_t id, Pipe& pipe, Cycle now);
   void send(Cycle now);
-  Cycle& door_of(size_t pipe) { return door_free_[own_door_ && pipe == 1]; }
+  size_t door_of(size_t pipe) const { return own_door_ && pipe == 1; }
   Cycle texture_cycles(const MemoryAccess& access) const;
   bool send_line(Cycle now, size_t pipe);
   void finish_shared(Cycle now);

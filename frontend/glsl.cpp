@@ -63,8 +63,7 @@ class Includer final : public glslang::TShader::Includer {
   Includer(const std::vector<std::string>& dirs, isa::Stage stage) : dirs_(dirs), stage_(stage) {}
 
   IncludeResult* includeLocal(const char* header, const char* includer, size_t) override {
-    if (const std::string_view text = text_of_extension(header, stage_); !text.empty())
-      return new IncludeResult(header, text.data(), text.size(), nullptr);
+    if (std::string text = text_of_extension(header, stage_); !text.empty()) return keep(header, std::move(text));
     return load(fs::path(includer).parent_path() / header);
   }
   IncludeResult* includeSystem(const char* header, const char*, size_t) override {
@@ -78,15 +77,18 @@ class Includer final : public glslang::TShader::Includer {
 
  private:
   // The texts live as long as the includer: glslang names them in messages after it has released them.
+  IncludeResult* keep(const std::string& name, std::string text) {
+    texts_.push_back(std::make_unique<std::string>(std::move(text)));
+    return new IncludeResult(name, texts_.back()->data(), texts_.back()->size(), nullptr);
+  }
+
   IncludeResult* load(const fs::path& path) {
     std::optional<std::string> text = read_text(path);
     lookups_.push_back(look_up(path.string(), text));
     if (!text) return nullptr;
     blank_version(*text);
     say_extensions_anew(*text);
-    texts_.push_back(std::make_unique<std::string>(std::move(*text)));
-    return new IncludeResult(path.lexically_normal().string(), texts_.back()->data(), texts_.back()->size(),
-                             nullptr);
+    return keep(path.lexically_normal().string(), std::move(*text));
   }
 
   const std::vector<std::string>& dirs_;

@@ -69,16 +69,12 @@ vec3[3] glint_positions_of(spirv_by_reference rayQueryEXT query, int intersectio
 #define rayQueryGetIntersectionTriangleVertexPositionsEXT(query, committed, positions) positions = glint_positions_of(query, int(committed))
 #endif
 )";
+// In hit shaders besides.
 constexpr std::string_view kPositionsOfHits = R"(
-#extension GL_EXT_spirv_intrinsics : enable
-#extension GL_EXT_ray_query : enable
 #ifndef GLINT_HIT_POSITIONS
 #define GLINT_HIT_POSITIONS
 spirv_decorate(extensions = ["SPV_KHR_ray_tracing_position_fetch"], capabilities = [5336], 11, 5335) in vec3 glint_positions[3];
 #define gl_HitTriangleVertexPositionsEXT glint_positions
-spirv_instruction(extensions = ["SPV_KHR_ray_tracing_position_fetch"], capabilities = [5391], id = 5340)
-vec3[3] glint_positions_of(spirv_by_reference rayQueryEXT query, int intersection);
-#define rayQueryGetIntersectionTriangleVertexPositionsEXT(query, committed, positions) positions = glint_positions_of(query, int(committed))
 #endif
 )";
 
@@ -122,7 +118,7 @@ constexpr std::string_view kInvocationReorder = R"(
 )";
 
 struct Extension {
-  std::string_view name, text, text_of_hit_shaders;
+  std::string_view name, text, more_of_hit_shaders;
 };
 constexpr Extension kExtensions[] = {
     {"GL_EXT_expect_assume", kExpectAssume, {}},
@@ -170,13 +166,13 @@ void say_extensions_anew(std::string& text) {
   }
 }
 
-std::string_view text_of_extension(std::string_view header, isa::Stage stage) {
+std::string text_of_extension(std::string_view header, isa::Stage stage) {
   if (!header.starts_with(kPrefix)) return {};
   header.remove_prefix(kPrefix.size());
   const auto* const found = std::find_if(std::begin(kExtensions), std::end(kExtensions), [&](const Extension& e) { return e.name == header; });
   if (found == std::end(kExtensions)) return {};
   const bool is_hit_shader = stage == isa::Stage::AnyHit || stage == isa::Stage::ClosestHit;
-  return is_hit_shader && !found->text_of_hit_shaders.empty() ? found->text_of_hit_shaders : found->text;
+  return std::string(found->text) + std::string(is_hit_shader ? found->more_of_hit_shaders : "");
 }
 
 }  // namespace glint::frontend

@@ -12,6 +12,6 @@ namespace glint::frontend {
 void say_extensions_anew(std::string& text);
 
 // What such an `#include` line names; empty for every other header.
-std::string_view text_of_extension(std::string_view header, isa::Stage stage);
+std::string text_of_extension(std::string_view header, isa::Stage stage);
 
 }  // namespace glint::frontend

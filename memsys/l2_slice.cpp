@@ -112,12 +112,8 @@ Cycle L2Slice::service_cycles(const Packet& packet) const {
 
 // Of a sector written in part, the slice reads what it does not write.
 Cycle L2Slice::write_cycles(const Packet& packet) const {
-  uint8_t partial = 0;
-  for (uint32_t i = 0; i < line_bytes_ / kSectorBytes; ++i) {
-    const WordMask whole = words_of_sector(i, line_bytes_);
-    if (packet.sectors >> i & 1 && (packet.words & whole) != whole) partial |= uint8_t(1u << i);
-  }
-  return sector_cycles(uint8_t(packet.sectors & ~partial)) + num_sectors(partial) * params_.partial_interval;
+  const uint8_t covered = covered_sectors(packet, line_bytes_);
+  return sector_cycles(covered) + num_sectors(uint8_t(packet.sectors & ~covered)) * params_.partial_interval;
 }
 
 // Reads, and atomics, which need what they change.

@@ -53,8 +53,9 @@ struct Request {
   // without an answer.
 };
 
-// The sectors of a write that it covers.
-constexpr uint8_t covered_sectors(const Request& request, uint32_t line_bytes) {
+// The sectors of a write (a Request or what becomes of it) that it covers.
+template <class Write>
+constexpr uint8_t covered_sectors(const Write& request, uint32_t line_bytes) {
   if (request.words == kAllWords) return request.sectors;
   uint8_t out = 0;
   for (uint32_t i = 0; i < line_bytes / kSectorBytes; ++i)

@@ -60,6 +60,11 @@ class TagArray {
     return line;
   }
 
+  // Makes a line whose sectors count as one present, if it is not.
+  void keep(Address address) {
+    if (find(address) == kNone) insert(address).valid = 1;
+  }
+
   // The sectors are there no more; the line neither when none is left.
   void drop(uint32_t slot, uint8_t sectors) {
     Line& line = lines_[slot];

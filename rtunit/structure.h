@@ -77,6 +77,11 @@ struct InstanceLeaf {
   std::array<float, 12> object_to_world{};
   uint32_t instance = 0;                   // index in the build input (gl_InstanceID)
   uint32_t pad[3]{};
+
+  uint32_t custom_index() const { return custom_index_and_mask & 0xff'ffff; }
+  uint32_t mask() const { return custom_index_and_mask >> 24; }
+  uint32_t sbt_offset() const { return sbt_offset_and_flags & 0xff'ffff; }
+  uint32_t flags() const { return sbt_offset_and_flags >> 24; }
 };
 static_assert(sizeof(InstanceLeaf) == leaf_bytes(NodeKind::Instance));
 

@@ -124,7 +124,7 @@ void visit_instance(RayState& s, const std::byte* bytes, const StackEntry& entry
   InstanceLeaf leaf;
   std::memcpy(&leaf, bytes, sizeof leaf);
   ++s.instances_visited;
-  if ((leaf.custom_index_and_mask >> 24 & s.ray.cull_mask) == 0) return;
+  if ((leaf.mask() & s.ray.cull_mask) == 0) return;
   const auto& m = leaf.world_to_object;
   const auto& o = s.ray.origin;
   const auto& d = s.ray.direction;
@@ -137,9 +137,9 @@ void visit_instance(RayState& s, const std::byte* bytes, const StackEntry& entry
   s.instance_leaf = s.base + Address(block_of(entry.node)) * kBlockBytes;
   s.base = leaf.structure;
   s.instance = leaf.instance;
-  s.instance_flags = leaf.sbt_offset_and_flags >> 24;
-  s.instance_custom_index = leaf.custom_index_and_mask & 0xff'ffff;
-  s.instance_sbt_record = leaf.sbt_offset_and_flags & 0xff'ffff;
+  s.instance_flags = leaf.flags();
+  s.instance_custom_index = leaf.custom_index();
+  s.instance_sbt_record = leaf.sbt_offset();
   s.bottom_stack_base = s.stack_size;
   push(s, node_ref(kRootBlock, NodeKind::Internal), entry.t_enter);
 }

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "frontend/backend/def_use.h"
 #include "frontend/backend/liveness.h"
 
 namespace glint::frontend {
@@ -20,17 +21,7 @@ bool is_fixed(isa::Special s) {
 class Sweep {
  public:
   Sweep(VirtualProgram& program, const Ops& ops)
-      : program_(program), ops_(ops), definitions_(program.registers.size()), uses_(program.registers.size()),
-        definition_(program.registers.size()) {
-    for (VirtualBlock& block : program.blocks)
-      for (VirtualInst& inst : block.code) {
-        for_each_def(inst, [&](VirtualRegister r) {
-          ++definitions_[r];
-          definition_[r] = is_guarded(inst) ? nullptr : &inst;
-        });
-        for_each_use(inst, [&](VirtualRegister r) { ++uses_[r]; });
-      }
-  }
+      : program_(program), ops_(ops), registers_(program) {}
 
   bool run() {
     const std::vector<bool> enters_inside = enters_in_region(program_);
@@ -52,11 +43,7 @@ class Sweep {
   }
 
  private:
-  // The one definition of a register, or nothing when it has several or a guarded one.
-  const VirtualInst* definition(const Operand& o) const {
-    if (!is_register(o) || definitions_[o.reg] != 1) return nullptr;
-    return definition_[o.reg];
-  }
+  const VirtualInst* definition(const Operand& o) const { return registers_.definition(o); }
   // True when the operand means the same at every place that its user's definition reaches.
   bool is_stable(const Operand& o) const {
     return is_constant(o) || definition(o) != nullptr || (o.kind == Operand::Kind::Special && is_fixed(o.special));
@@ -72,11 +59,11 @@ class Sweep {
       for_each_def(*between, [&](VirtualRegister r) { changes |= r == o.reg; });
     return !changes;
   }
-  bool is_used_once(const Operand& o) const { return is_register(o) && uses_[o.reg] == 1; }
+  bool is_used_once(const Operand& o) const { return registers_.is_used_once(o); }
 
   void replace(Operand& operand, const Operand& by) {
-    if (is_register(operand)) --uses_[operand.reg];
-    if (is_register(by)) ++uses_[by.reg];
+    if (is_register(operand)) --registers_.uses[operand.reg];
+    if (is_register(by)) ++registers_.uses[by.reg];
     operand = by;
     changed_ = true;
   }
@@ -87,9 +74,9 @@ class Sweep {
     if (!source || (source->op != ops_.not_pred && source->op != ops_.mov_pred) || !is_register(source->operands[1]) ||
         !is_stable(source->operands[1]))
       return;
-    --uses_[inst.guard];
+    --registers_.uses[inst.guard];
     inst.guard = source->operands[1].reg;
-    ++uses_[inst.guard];
+    ++registers_.uses[inst.guard];
     inst.guard_negate ^= source->op == ops_.not_pred;
     changed_ = true;
   }
@@ -156,11 +143,11 @@ class Sweep {
 
   // Rewrites the instruction to `op` with these sources behind its destination.
   void become(VirtualInst& inst, uint16_t op, const std::vector<Operand>& sources) {
-    for_each_use(inst, [&](VirtualRegister r) { --uses_[r]; });
+    for_each_use(inst, [&](VirtualRegister r) { --registers_.uses[r]; });
     inst.op = op;
     inst.operands.resize(1);
     inst.operands.insert(inst.operands.end(), sources.begin(), sources.end());
-    for_each_use(inst, [&](VirtualRegister r) { ++uses_[r]; });
+    for_each_use(inst, [&](VirtualRegister r) { ++registers_.uses[r]; });
     changed_ = true;
   }
 
@@ -222,8 +209,7 @@ class Sweep {
 
   VirtualProgram& program_;
   const Ops& ops_;
-  std::vector<uint32_t> definitions_, uses_;
-  std::vector<VirtualInst*> definition_;
+  DefUse registers_;
   const VirtualBlock* block_ = nullptr;  // that the sweep is in
   bool inside_region_ = false, changed_ = false;
 };

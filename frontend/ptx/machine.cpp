@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "frontend/backend/slots.h"
+#include "frontend/backend/def_use.h"
 
 namespace glint::frontend::ptx {
 namespace {
@@ -18,19 +18,9 @@ uint64_t lowest_bit(uint64_t value) { return value & (~value + 1); }
 class Shaping {
  public:
   explicit Shaping(VirtualProgram& program)
-      : program_(program), definitions_(program.registers.size()), uses_(program.registers.size()), users_(program.registers.size()),
-        definition_(program.registers.size()) {
+      : program_(program), registers_(program), users_(program.registers.size()) {
     for (VirtualBlock& block : program.blocks)
-      for (VirtualInst& inst : block.code) {
-        for_each_def(inst, [&](VirtualRegister r) {
-          ++definitions_[r];
-          definition_[r] = is_guarded(inst) ? nullptr : &inst;
-        });
-        for_each_use(inst, [&](VirtualRegister r) {
-          ++uses_[r];
-          users_[r].push_back(&inst);
-        });
-      }
+      for (VirtualInst& inst : block.code) for_each_use(inst, [&](VirtualRegister r) { users_[r].push_back(&inst); });
   }
 
   void run() {
@@ -41,13 +31,13 @@ class Shaping {
     for (VirtualBlock& block : program_.blocks) std::erase_if(block.code, [&](const VirtualInst& inst) { return is_merged(inst); });
   }
   void spread_products() {
-    for (VirtualRegister r = 0; r < definitions_.size(); ++r)
-      if (definitions_[r] == 1 && definition_[r]) spread(*definition_[r], r);
+    for (VirtualRegister r = 0; r < registers_.last.size(); ++r)
+      if (VirtualInst* const product = registers_.definition(Operand::of(r))) spread(*product, r);
   }
 
  private:
   // The one definition, which then comes before every use, with operands that hold the same value there.
-  VirtualInst* definition(const Operand& o) const { return is_register(o) && definitions_[o.reg] == 1 ? definition_[o.reg] : nullptr; }
+  VirtualInst* definition(const Operand& o) const { return registers_.definition(o); }
   bool is_stable(const Operand& o) const { return is_constant(o) || definition(o); }
   bool is_unchanged(const VirtualBlock& block, const Operand& o, const VirtualInst& from, const VirtualInst& to) const {
     if (is_stable(o)) return true;
@@ -64,7 +54,7 @@ class Shaping {
     for (size_t k : {size_t{2}, size_t{1}}) {
       const Operand test = inst.operands[k], other = inst.operands[3 - k];
       const VirtualInst* setp = definition(test);
-      if (!setp || uses_[test.reg] != 1 || setp->operands.size() != 3 || !is_register(other)) continue;
+      if (!setp || registers_.uses[test.reg] != 1 || setp->operands.size() != 3 || !is_register(other)) continue;
       const std::string name(row_of(*setp).name);
       const size_t type = name.rfind('.');
       if (!name.starts_with("setp.")) continue;
@@ -77,17 +67,17 @@ class Shaping {
   }
 
   VirtualRegister new_predicate() {
-    definitions_.push_back(1);
-    uses_.push_back(0);
+    registers_.definitions.push_back(1);
+    registers_.uses.push_back(0);
+    registers_.last.push_back(nullptr);
     users_.emplace_back();
-    definition_.push_back(nullptr);
     return program_.new_register(RegisterClass::Predicate);
   }
 
   // A product that only sums read, and more than one of them: the backend fuses those that one reads.
   void spread(const VirtualInst& product, VirtualRegister r) {
     const uint16_t mad = fused(product);
-    if (mad == 0 || uses_[r] < 2) return;
+    if (mad == 0 || registers_.uses[r] < 2) return;
     const Operand a = product.operands[1];
     const Operand b = product.op == ops_.shl_b32 ? Operand::value(uint64_t{1} << product.operands[2].constant) : product.operands[2];
     if (!is_stable(a) || !is_stable(b)) return;
@@ -182,9 +172,8 @@ class Shaping {
   const uint16_t and_pred_ = isa::op_index("and.pred"), or_pred_ = isa::op_index("or.pred"), mad_lo_s32_ = isa::op_index("mad.lo.s32");
   const uint16_t load_shared_ = isa::op_index("ld.shared.b32");
   const uint16_t load_shared_v2_ = isa::op_index("ld.shared.v2.b32"), load_shared_v4_ = isa::op_index("ld.shared.v4.b32");
-  std::vector<uint32_t> definitions_, uses_;
+  DefUse registers_;
   std::vector<std::vector<VirtualInst*>> users_;
-  std::vector<VirtualInst*> definition_;
 };
 
 }  // namespace

@@ -7,27 +7,6 @@
 namespace glint::rt::test {
 namespace {
 
-// Triangles that need shaders and others, boxes, instances that overlap.
-Scene crowd(uint64_t seed) {
-  Random random{seed};
-  Scene out;
-  BottomScene& all = out.bottoms.emplace_back();
-  all.add_triangles(soup(random, 120, 10, 4), true);
-  all.add_triangles(soup(random, 60, 10, 4), false);
-  std::vector<Bounds> boxes;
-  for (int i = 0; i < 20; ++i) {
-    const auto p = random.point(10);
-    boxes.push_back({p, {p[0] + 1, p[1] + 2, p[2] + 1}});
-  }
-  all.add_boxes(boxes, false);
-  for (int i = 0; i < 12; ++i) {
-    Instance instance;
-    instance.transform = random_transform(random, i % 2 ? 0.7f : -0.9f, 6);
-    out.instances.push_back(instance);
-  }
-  return out;
-}
-
 struct Rays {
   std::vector<WarpRays> warps{2};
   std::vector<std::array<CandidateTable, kLanes>> tables{2};
@@ -85,7 +64,7 @@ TEST_CASE("with every combination of policies each ray finds the same hit, and s
   std::vector<std::unique_ptr<BuiltScene>> built;
   std::vector<Scene> scenes;
   for (const std::string& format : Registry<NodeFormat>::names()) {
-    scenes.push_back(crowd(built.size()));
+    scenes.push_back(crowd(built.size(), 60));
     built.push_back(std::make_unique<BuiltScene>(scenes.back(), format));
   }
   for (const Params& params : combinations()) {

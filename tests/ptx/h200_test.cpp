@@ -6,10 +6,10 @@
 #include <cstdio>
 #include <map>
 
-#include "base/config.h"
 #include "pipeline/run_stats.h"
 #include "tests/ptx/calibration.h"
 #include "tests/ptx/launcher.h"
+#include "tests/support/preset.h"
 
 using namespace glint;
 
@@ -55,21 +55,10 @@ std::map<std::string, Counters> read_counters(const std::filesystem::path& path)
   return out;
 }
 
-pipeline::GpuParams h200() {
-  Config config;
-  config.add_file(std::string(GLINT_SOURCE_DIR) + "/configs/h200.toml");
-  Diagnostics diagnostics;
-  ConfigTable root = config.root(diagnostics);
-  pipeline::GpuParams params;
-  read_params(root, params);
-  diagnostics.throw_if_errors();
-  return params;
-}
-
 class Runs {
  public:
   explicit Runs(const std::filesystem::path& folder)
-      : recorded(folder), text_(read_file(folder / "valid.ptx")), counters_(read_counters(folder / "../valid_ncu_summary.csv")), gpu_(h200()) {}
+      : recorded(folder), text_(read_file(folder / "valid.ptx")), counters_(read_counters(folder / "../valid_ncu_summary.csv")), gpu_(test::preset("h200")) {}
 
   template <class Arguments>
   void run(const std::string& name, const pipeline::KernelGrid& grid, const Arguments& arguments, const std::string& launch = {}) {

@@ -10,6 +10,15 @@
 
 namespace glint::mem {
 
+// The struct's defaults without what the presets leave off too: a test turns on what it is about.
+inline Params bare() {
+  Params p;
+  p.l1.fill_takes_access = p.l2.fill_takes_service = p.l2.write_masks = false;
+  p.noc.credits = 0;
+  p.dram.refresh = "none";
+  return p;
+}
+
 // One token that came back.
 struct Answered {
   Cycle at = 0;

@@ -166,4 +166,25 @@ class BruteForce {
   std::vector<InstanceLeaf> leaves_;
 };
 
+// `closed` triangles that need shaders and twice as many others, boxes, instances that overlap.
+inline Scene crowd(uint64_t seed, uint32_t closed) {
+  Random random{seed};
+  Scene out;
+  BottomScene& all = out.bottoms.emplace_back();
+  all.add_triangles(soup(random, 2 * closed, 10, 4), true);
+  all.add_triangles(soup(random, closed, 10, 4), false);
+  std::vector<Bounds> boxes;
+  for (int i = 0; i < 20; ++i) {
+    const auto p = random.point(10);
+    boxes.push_back({p, {p[0] + 1, p[1] + 2, p[2] + 1}});
+  }
+  all.add_boxes(boxes, false);
+  for (int i = 0; i < 12; ++i) {
+    Instance instance;
+    instance.transform = random_transform(random, i % 2 ? 0.7f : -0.9f, 6);
+    out.instances.push_back(instance);
+  }
+  return out;
+}
+
 }  // namespace glint::rt::test

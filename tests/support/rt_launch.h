@@ -42,6 +42,12 @@ inline void run_to_end(RayState& state, const mem::AddressSpace& memory) {
   }
 }
 
+inline std::vector<WarpRays> one_lane(const RayState& ray) {
+  std::vector<WarpRays> out(1);
+  out[0][5] = ray;
+  return out;
+}
+
 struct Launch {
   Cycle last_completion = 0;
   std::vector<Cycle> completion;  // of each warp, the last one

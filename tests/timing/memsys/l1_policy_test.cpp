@@ -14,14 +14,6 @@ Request read(Address line, Token token, uint8_t sectors = 1) { return {line, sec
 Request write(Address line, uint8_t sectors = 1, Traffic traffic = Traffic::ShaderGlobal, WordMask words = kAllWords) {
   return {line, sectors, true, traffic, 0, words};
 }
-Params bare() {
-  Params p;
-  p.l1.fill_takes_access = p.l2.fill_takes_service = p.l2.write_masks = false;
-  p.noc.credits = 0;
-  p.dram.refresh = "none";
-  return p;
-}
-
 }  // namespace
 
 TEST_CASE("a fill keeps its bank from an access in its cycle, and neither another bank nor the next cycle") {

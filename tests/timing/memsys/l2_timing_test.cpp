@@ -17,15 +17,6 @@ constexpr Cycle kL2Hit = 160;
 Request read(Address line, Token token, uint8_t sectors = 1) { return {line, sectors, false, Traffic::RtNode, token}; }
 Request write(Address line, uint8_t sectors, WordMask words) { return {line, sectors, true, Traffic::ShaderGlobal, 0, words}; }
 
-// As before the mechanisms under test, which each test then turns on.
-Params bare() {
-  Params p;
-  p.l1.fill_takes_access = p.l2.fill_takes_service = p.l2.write_masks = false;
-  p.noc.credits = 0;
-  p.dram.refresh = "none";
-  return p;
-}
-
 // Lines of one slice, a partition's first.
 std::vector<Address> lines_of(const PartitionMap& map, uint32_t slice, uint32_t count) {
   std::vector<Address> out;

@@ -15,14 +15,6 @@ Request request(Address line, uint8_t sectors, Token token, bool write, Traffic 
 Request read(Address line, Token token, uint8_t sectors = 1) { return request(line, sectors, token, false, Traffic::RtNode); }
 Request atomic(Address line, Token token, uint8_t sectors = 1) { return request(line, sectors, token, false, Traffic::ShaderAtomic); }
 
-Params bare() {
-  Params p;
-  p.l1.fill_takes_access = p.l2.fill_takes_service = p.l2.write_masks = false;
-  p.noc.credits = 0;
-  p.dram.refresh = "none";
-  return p;
-}
-
 // From the request to its token, of sectors that the L2 holds.
 Cycle l2_latency(const Params& params, const Request& request) {
   MemoryRig rig(params);

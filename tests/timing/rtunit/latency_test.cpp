@@ -23,12 +23,6 @@ struct Scene {
   }
 };
 
-std::vector<WarpRays> one_lane(const RayState& ray) {
-  std::vector<WarpRays> out(1);
-  out[0][5] = ray;
-  return out;
-}
-
 TEST_CASE("a lone ray takes its fetches and tests in sequence, and two cycles to enter and leave") {
   const Scene scene;
   for (uint64_t seed = 1; seed < 20; ++seed) {

@@ -42,12 +42,6 @@ struct Scene {
   }
 };
 
-std::vector<WarpRays> one_lane(const RayState& ray) {
-  std::vector<WarpRays> out(1);
-  out[0][5] = ray;
-  return out;
-}
-
 // Cycles from a ray's first request to the end of its last test, all hits: a record of n requests whose test takes L
 // keeps the ray for n + L - 1 cycles, as the test begins with the last request and the next request goes out when it ends.
 Cycle sum_of_records(const RtStats& s) {

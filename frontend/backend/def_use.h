@@ -1,0 +1,32 @@
+// Where a program's registers are written and read, for passes over values that are written once.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "frontend/backend/slots.h"
+
+namespace glint::frontend {
+
+// By register. Holds as long as instructions change in place only; a pass that changes operands keeps the counts.
+struct DefUse {
+  explicit DefUse(VirtualProgram& program) : definitions(program.registers.size()), uses(program.registers.size()), last(program.registers.size()) {
+    for (VirtualBlock& block : program.blocks)
+      for (VirtualInst& inst : block.code) {
+        for_each_def(inst, [&](VirtualRegister r) {
+          ++definitions[r];
+          last[r] = is_guarded(inst) ? nullptr : &inst;
+        });
+        for_each_use(inst, [&](VirtualRegister r) { ++uses[r]; });
+      }
+  }
+
+  // The one definition of a register; nothing when it has several or a guarded one, and of what is no register.
+  VirtualInst* definition(const VirtualOperand& o) const { return is_register(o) && definitions[o.reg] == 1 ? last[o.reg] : nullptr; }
+  bool is_used_once(const VirtualOperand& o) const { return is_register(o) && uses[o.reg] == 1; }
+
+  std::vector<uint32_t> definitions, uses;
+  std::vector<VirtualInst*> last;  // definition; null: guarded, or none
+};
+
+}  // namespace glint::frontend
