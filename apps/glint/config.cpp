@@ -54,10 +54,8 @@ void print_warnings(const pipeline::GpuParams& params) {
   for (const std::string& message : diagnostics.messages()) fmt::print(stderr, "{}\n", message);
 }
 
-}  // namespace
-
-pipeline::GpuParams read_config(const Resources& resources, const std::string& name_or_path,
-                                const std::vector<std::string>& settings) {
+pipeline::GpuParams read_quietly(const Resources& resources, const std::string& name_or_path,
+                                 const std::vector<std::string>& settings) {
   Config config;
   config.add_file(resources.config_path(name_or_path));
   for (const std::string& setting : settings) config.add_setting(setting);
@@ -67,6 +65,18 @@ pipeline::GpuParams read_config(const Resources& resources, const std::string& n
   read_params(root, params);
   diagnostics.throw_if_errors();
   refuse_impossible(config, params);
+  return params;
+}
+
+}  // namespace
+
+pipeline::GpuParams read_preset(const Resources& resources, const std::string& name_or_path) {
+  return read_quietly(resources, name_or_path, {});
+}
+
+pipeline::GpuParams read_config(const Resources& resources, const std::string& name_or_path,
+                                const std::vector<std::string>& settings) {
+  const pipeline::GpuParams params = read_quietly(resources, name_or_path, settings);
   print_warnings(params);
   return params;
 }

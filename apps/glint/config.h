@@ -9,8 +9,12 @@
 
 namespace glint::app {
 
-// Preset or file first, then the settings in order. UserError lists everything that is wrong.
+// Preset or file first, then the settings in order. UserError lists everything that is wrong; what is odd about the
+// machine that comes of it is said on stderr.
 pipeline::GpuParams read_config(const Resources& resources, const std::string& name_or_path,
                                 const std::vector<std::string>& settings);
+
+// A preset as it stands, to be listed or compared with: nothing is said about it.
+pipeline::GpuParams read_preset(const Resources& resources, const std::string& name_or_path);
 
 }  // namespace glint::app

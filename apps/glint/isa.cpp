@@ -20,7 +20,7 @@ struct Options {
 
 isa::PresetTimes times_of(const Resources& resources, const std::string& preset) {
   isa::PresetTimes out{preset, {}};
-  const auto units = read_config(resources, preset, {}).core.units.by_unit();
+  const auto units = read_preset(resources, preset).core.units.by_unit();
   for (size_t i = 0; i < units.size(); ++i) out.unit[i] = {units[i].latency, units[i].interval};
   return out;
 }

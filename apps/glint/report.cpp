@@ -26,7 +26,7 @@ report::PageRun page_run(const Resources& resources, const std::string& director
   facts.add_facts(read_file(path), path);
   const std::string name = facts.text("config.name");
   try {
-    run.preset = report::config_file(describe_params(read_config(resources, name, {})), name);
+    run.preset = report::config_file(describe_params(read_preset(resources, name)), name);
   } catch (const UserError&) {
     run.preset_note = fmt::format("what differs from the preset is unknown: '{}' cannot be read from here", name);
   }

@@ -1,8 +1,9 @@
-// Limits of a core that show in one cycle only: room for blocks, exits at barriers, predicated accesses, turns of global banks.
+// Limits of a core that show in one cycle only: room for blocks, exits at barriers, accesses of no lane, records of calls, banks.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/timing_machine.h"
 #include "tests/support/catch.h"
 #include "tests/support/small_jobs.h"
+#include "tests/timing/core_programs.h"
 #include "tests/unit/core/one_core.h"
 #include "tests/unit/core/text_launch.h"
 
@@ -22,6 +23,25 @@ Cycle two_loads(const Params& params, uint32_t stride) {
   OneCore core(code, params, {});
   REQUIRE(core.memory.allocate("buffer", 1 << 16) == base);
   return core.run();
+}
+
+// One warp whose lanes call the callable shaders of `num_called` records of 32 B; all return at once.
+Cycle call_of_callables(const Params& params, uint32_t num_called, Cycle& waited) {
+  Code caller;
+  caller.add("min.u32", {reg(4), special(isa::Special::LaneId), caller.constant(num_called - 1)});
+  caller.add("call.sbt.callable", {reg(4), special(isa::Special::Payload)});
+  caller.add("exit");
+  Code callee;
+  callee.add("ret");
+  callee.program().stage = isa::Stage::Callable;
+  OneCore core(caller, params, {});
+  core.image = link({caller.program(), callee.program()});
+  core.world.callable.assign(num_called, 1);
+  core.world.table.callable.base = core.memory.allocate("records", num_called * kHandleBytes);
+  const Cycle end = core.run();
+  CHECK(core.stats().binding_reads.value() == 1);
+  waited = stall(core, Stall::Call);
+  return end;
 }
 
 // Cycles of a launch of one block of one warp on a machine of `cores` cores.
@@ -60,6 +80,23 @@ TEST_CASE("an access of no lane takes an issue slot and nothing else") {
   };
   CHECK(run(false) == 2);
   CHECK(run(true) == 4 + 2);  // the comparison, the load, the exit
+}
+
+TEST_CASE("a called shader begins when its record is there, or its branch resolved if that is later") {
+  Params params = quick_params();
+  const Cycle branch = params.units.branch.latency;
+  Cycle waited = 0;
+  // the index, the unit's 12 and the memory's 20, the return, which is a branch, the exit
+  const Cycle one = call_of_callables(params, 1, waited);
+  CHECK(one == 4 + 12 + 20 + branch + 1);
+  CHECK(waited == 12 + 20 - 1);
+  // four records are a line, whose sectors hold the door for two cycles; then comes the line of the fifth
+  CHECK(call_of_callables(params, 4, waited) == one);
+  CHECK(call_of_callables(params, 5, waited) == one + 2);
+  params.units.branch.latency = 12 + 20;
+  CHECK(call_of_callables(params, 1, waited) == one + 12 + 20 - branch);
+  params.units.branch.latency = 12 + 20 + 1;
+  CHECK(call_of_callables(params, 1, waited) == one + 2 * (12 + 20 + 1 - branch) - (12 + 20 - branch));
 }
 
 TEST_CASE("the last warp's exit opens a barrier for the others, 13 cycles later") {

@@ -7,6 +7,8 @@
 
 namespace glint::core {
 
+inline uint64_t stall(const OneCore& core, Stall reason) { return core.stats().stalls.count(reason); }
+
 // %rd2 = base + lane * stride: 4 cycles, at cycle 0.
 inline void add_address(Code& code, Address base, uint32_t stride) {
   code.add("mad.wide.u32", {reg(2), special(isa::Special::LaneId), code.constant(stride), code.constant64(base)});

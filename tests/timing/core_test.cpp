@@ -8,8 +8,6 @@ namespace {
 
 using isa::Special;
 
-uint64_t stall(const OneCore& core, Stall reason) { return core.stats().stalls.count(reason); }
-
 }  // namespace
 
 TEST_CASE("a dependent chain issues once a latency") {
