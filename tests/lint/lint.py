@@ -88,7 +88,7 @@ def sizes(root):
 def headers(root):
     """Each source begins with a sentence and the licence; headers are guarded."""
     problems = []
-    for path in files(root, SOURCE_FOLDERS + ["tests", "shaders"], (".h", ".cpp", ".py", ".sh", ".glsl", ".rgen", ".rchit", ".rahit", ".rint", ".rmiss")):
+    for path in files(root, SOURCE_FOLDERS + ["tests", "shaders", "python"], (".h", ".cpp", ".py", ".sh", ".glsl", ".rgen", ".rchit", ".rahit", ".rint", ".rmiss")):
         name = str(path.relative_to(root))
         lines = path.read_text().splitlines()
         # A sentence may take several comment lines; a shader's #version must come first.
@@ -106,7 +106,7 @@ def headers(root):
 def readmes(root):
     """Every folder of sources explains itself in at most 40 lines."""
     problems = []
-    for folder in LIBRARIES + ["apps/glint", "configs", "shaders"]:
+    for folder in LIBRARIES + ["apps/glint", "configs", "shaders", "python"]:
         readme = root / folder / "README.md"
         if not readme.exists():
             problems.append(f"{folder}: no README.md")
@@ -119,7 +119,7 @@ def doc_paths(root):
     """Paths that the docs name exist. A path is a `code` word with a slash in which only its folder must be ours."""
     tops = {p.name for p in root.iterdir()} - {"build", "out"}
     problems = []
-    for path in sorted(list(root.glob("*.md")) + list((root / "docs").glob("*.md")) + [root / f / "README.md" for f in LIBRARIES + ["apps/glint", "configs", "shaders"]]):
+    for path in sorted(list(root.glob("*.md")) + list((root / "docs").glob("*.md")) + [root / f / "README.md" for f in LIBRARIES + ["apps/glint", "configs", "shaders", "python"]]):
         if not path.exists():
             continue
         for number, line in enumerate(path.read_text().splitlines(), 1):

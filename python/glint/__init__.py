@@ -1,0 +1,33 @@
+# Glint's runs in Python: read them, compare them, draw them, start them.
+# SPDX-License-Identifier: Apache-2.0
+"""Reads what `glint` leaves. Only the standard library is needed; numpy, pandas and matplotlib where used.
+
+    >>> import glint
+    >>> run = glint.run("SHIP_SH", out="out/ship", size=(64, 64))      # or glint.Run("out/ship")
+    >>> run.stats["gpu.cycles"], run.stats.sum("core.instructions"), run.metrics["rt_occupancy"]
+    >>> glint.plot.instruction_mix([run]).savefig("mix.pdf")           # `glint.plot` needs matplotlib
+"""
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+from .collection import Bench, Runs, Sweep
+from .comparison import Change, compare, speedup
+from .errors import CommandFailed, GlintError, IncompleteRun, MissingFile, MissingPackage, SchemaError, UnknownName
+from .images import read_image
+from .launch import find_glint, run, sweep
+from .derived import Metric, metrics
+from .run_directory import Run, labels
+from .statistics import Histogram, Stat, Stats
+from .table import Table
+
+__all__ = ["Bench", "Change", "CommandFailed", "GlintError", "Histogram", "IncompleteRun", "Metric", "MissingFile", "MissingPackage",
+           "Run", "Runs", "SchemaError", "Stat", "Stats", "Sweep", "Table", "UnknownName", "compare", "find_glint", "labels",
+           "metrics", "plot", "read_image", "run", "speedup", "sweep"]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "plot":  # imports matplotlib
+        return importlib.import_module(".plot", __name__)
+    raise AttributeError(f"module 'glint' has no attribute '{name}'")

@@ -1,0 +1,111 @@
+# The 87 metrics of a run: formulas over its statistics, computed here as `glint stats --format metrics` does.
+# SPDX-License-Identifier: Apache-2.0
+"""`metrics.csv` beside this file is what `glint list metrics` says (generated; a test compares the values)."""
+from __future__ import annotations
+
+import ast
+import csv
+import dataclasses
+import functools
+import operator
+import pathlib
+import re
+from collections.abc import Mapping
+from typing import Any, Callable, Iterator
+
+from .errors import UnknownName
+from .patterns import near
+
+
+@dataclasses.dataclass(frozen=True)
+class Metric:
+    """A metric's name, unit, meaning and formula (docs/metrics.md)."""
+    name: str
+    unit: str
+    doc: str
+    formula: str
+
+
+@functools.lru_cache(maxsize=1)
+def metrics() -> dict[str, Metric]:
+    """All metrics by name, in the order of `metrics.csv` of `glint bench`."""
+    path = pathlib.Path(__file__).with_name("metrics.csv")
+    with open(path, newline="", encoding="utf-8") as file:
+        return {row["name"]: Metric(row["name"], row["unit"], row["meaning"], row["formula"]) for row in csv.DictReader(file)}
+
+
+class Metrics(Mapping[str, "float | None"]):
+    """The metrics of one run by name; None where the run has nothing to divide by (no rays, no texture reads)."""
+
+    def __init__(self, run: Any):
+        self._run = run
+        self._known: dict[str, float | None] = {}
+
+    def __getitem__(self, name: str) -> float | None:
+        if name not in metrics():
+            raise UnknownName(f"no metric '{name}'{near(name, metrics())} 'glint list metrics' shows all")
+        if name not in self._known:
+            formula = metrics()[name].formula
+            self._known[name] = evaluate(formula, self._run) if formula else None
+        return self._known[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(metrics())
+
+    def __len__(self) -> int:
+        return len(metrics())
+
+    def about(self, name: str) -> Metric:
+        """Unit, meaning and formula; UnknownName without such a metric."""
+        self[name]
+        return metrics()[name]
+
+
+_OPERATORS: dict[type, Callable[[float, float], float]] = {
+    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv}
+_CALL = re.compile(r"(sum|max|mean|run|config)\(([^()]*)\)")
+
+
+def evaluate(formula: str, run: Any) -> float | None:
+    """A formula of docs/metrics.md over a run; None where a name is not there or something is divided by zero.
+
+    ValueError where the text is no formula.
+    """
+    looked_up: list[float | None] = []
+
+    def look_up(match: re.Match[str]) -> str:
+        looked_up.append(_look_up(match[1], match[2], run))
+        return f"v[{len(looked_up) - 1}]"
+
+    tree = ast.parse(_CALL.sub(look_up, formula), mode="eval").body
+    return _value(tree, looked_up, formula)
+
+
+def _look_up(function: str, name: str, run: Any) -> float | None:
+    if function == "run":
+        return _number(run.info.get(name))
+    if function == "config":
+        return _number(run.config.get(name))
+    values = run.stats.values(name)
+    if not values:
+        return None
+    if function == "max":
+        return float(max(values))
+    return sum(values) / (len(values) if function == "mean" else 1)
+
+
+def _number(value: Any) -> float | None:
+    return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else None
+
+
+def _value(node: ast.expr, looked_up: list[float | None], formula: str) -> float | None:
+    if isinstance(node, ast.Constant) and isinstance(node.value, (int, float)):
+        return float(node.value)
+    if isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Constant):
+        return looked_up[node.slice.value]
+    if isinstance(node, ast.BinOp) and type(node.op) in _OPERATORS:
+        left, right = _value(node.left, looked_up, formula), _value(node.right, looked_up, formula)
+        if left is None or right is None or (isinstance(node.op, ast.Div) and right == 0):
+            return None
+        return _OPERATORS[type(node.op)](left, right)
+    raise ValueError(f"'{formula}' is no formula")

@@ -1,0 +1,54 @@
+# Pictures and maps of a run: PFM and NPY read here, PNG by matplotlib.
+# SPDX-License-Identifier: Apache-2.0
+"""Arrays have shape (height, width, channels) or (height, width), row 0 at the top."""
+from __future__ import annotations
+
+import pathlib
+from typing import Any
+
+from .errors import MissingFile, SchemaError
+from .optional import require
+
+
+def read_image(path: str | pathlib.Path) -> Any:
+    """A picture as a numpy array: PFM float32 as the shader wrote it; PNG the same in [0, 1] and 255 steps; NPY as it is.
+
+    Raises MissingFile, SchemaError (damaged or of another kind), MissingPackage (numpy; matplotlib for PNG).
+    """
+    path = pathlib.Path(path)
+    if not path.is_file():
+        raise MissingFile(f"{path}: there is no such picture")
+    if path.suffix == ".pfm":
+        return _read_pfm(path)
+    if path.suffix == ".npy":
+        return read_map(path)
+    if path.suffix == ".png":
+        return require("matplotlib.image", "reading PNG").imread(path)[..., :3]
+    raise SchemaError(f"{path}: pictures are .pfm, .png or .npy")
+
+
+def read_map(path: pathlib.Path) -> Any:
+    """A NumPy file as an array; SchemaError where it is none."""
+    numpy = require("numpy", "reading maps")
+    try:
+        return numpy.load(path, allow_pickle=False)
+    except (ValueError, EOFError) as error:
+        raise SchemaError(f"{path}: no NumPy file: {error}") from error
+
+
+def _read_pfm(path: pathlib.Path) -> Any:
+    numpy = require("numpy", "reading pictures")
+    with open(path, "rb") as file:
+        try:
+            kind = file.readline().strip()
+            width, height = (int(word) for word in file.readline().split())
+            scale = float(file.readline())
+            channels = {b"PF": 3, b"Pf": 1}[kind]
+        except (KeyError, ValueError) as error:
+            raise SchemaError(f"{path}: no PFM picture") from error
+        data = file.read()
+    if len(data) != width * height * channels * 4:
+        raise SchemaError(f"{path}: {len(data)} bytes of pixels, {width * height * channels * 4} expected: it was cut short")
+    values = numpy.frombuffer(data, "<f4" if scale < 0 else ">f4").astype(numpy.float32)
+    shape = (height, width, 3) if channels == 3 else (height, width)
+    return values.reshape(shape)[::-1].copy()  # PFM begins with the lowest row

@@ -1,0 +1,47 @@
+# Which runs a figure is of: one, a list, or a folder of runs; and what they must have.
+# SPDX-License-Identifier: Apache-2.0
+"""Helpers of all figures of runs."""
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Iterable, Sequence
+
+from ..errors import GlintError
+from ..run_directory import Run, labels
+
+Chosen = Run | Iterable[Run] | Mapping[str, Run]
+
+
+def chosen(runs: Chosen) -> list[Run]:
+    """A list of the runs; GlintError for none, and for functional ones, which have no cycles."""
+    found = [runs] if isinstance(runs, Run) else list(runs.values()) if isinstance(runs, Mapping) else list(runs)
+    if not found:
+        raise GlintError("a figure needs at least one run")
+    for run in found:
+        if run.info["mode"] != "timing":
+            raise GlintError(f"{run.directory}: a functional run has no cycles to draw: run it with --mode timing")
+    return found
+
+
+def with_rays(runs: Chosen) -> list[Run]:
+    """The runs that traced rays in RT units; GlintError without any."""
+    found = [run for run in chosen(runs) if run.metrics["rt_occupancy"] is not None]
+    if not found:
+        raise GlintError("none of the runs has rays in RT units (kernels, compute shaders and rt.unit = \"software\" have none)")
+    return found
+
+
+def names(runs: Sequence[Run]) -> list[str]:
+    """A name for each run: of what differs, or the workload of a single one."""
+    return labels(list(runs))
+
+
+def rows_of(runs: Sequence[Run], kinds: Sequence[str]) -> list[tuple[str, Run, str]]:
+    """(label, run, kind) of every pair, kind by kind."""
+    several = len(runs) > 1
+    return [(f"{name}, {kind}" if several else kind, run, kind) for kind in kinds for name, run in zip(names(runs), runs)]
+
+
+def total(run: Run, pattern: str) -> Any:
+    """The sum of what matches; 0 where the run has no such statistic."""
+    return sum(run.stats.values(pattern))

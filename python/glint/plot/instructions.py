@@ -1,0 +1,101 @@
+# Figures of instructions and of schedulers' cycles: mix, stages, CPI stack, ops.
+# SPDX-License-Identifier: Apache-2.0
+"""What was executed, and what the cycles of schedulers went into."""
+from __future__ import annotations
+
+from typing import Any
+
+from ..run_directory import Run
+from .chosen import Chosen, chosen, names, rows_of, total
+from .kinds import Part, ranked, stacked
+from .style import run_colour
+
+_CLASSES = [("alu", "ALU", "blue"), ("sfu", "SFU", "sky"), ("mem", "memory", "orange"), ("tex", "texture", "yellow"),
+            ("ctrl", "control", "grey"), ("rt", "ray tracing", "red")]
+_STAGES = {"raygen": "ray generation", "intersection": "intersection", "any_hit": "any hit", "closest_hit": "closest hit",
+           "miss": "miss", "callable": "callable", "compute": "compute"}
+# Reasons of docs/profiling.md that belong together, as in the report's CPI stack.
+REASONS: list[tuple[str, str, tuple[str, ...]]] = [
+    ("issued", "green", ("issued",)),
+    ("pipe busy", "blue", ("math_pipe_throttle", "register_banks", "lsu_throttle", "tex_throttle")),
+    ("fixed latency", "sky", ("raw_fixed", "raw_sfu", "const", "branch", "operand_read")),
+    ("memory", "orange", ("long_scoreboard", "local_memory", "shared_memory", "texture", "call", "membar")),
+    ("in the RT unit", "pink", ("rt_wait",)),
+    ("RT unit full", "red", ("rt_full",)),
+    ("fetch, barrier", "yellow", ("no_instruction", "barrier")),
+    ("launch, drain", "grey", ("dispatch", "drain")),
+    ("no warp", "pale", ("no_warp",)),
+]
+
+
+def instruction_mix(runs: Chosen) -> Any:
+    """Warp instructions by class, by count and by latency from issue to completion (LumiBench, Figure 8)."""
+    paths = {"by count": "core.instructions_by_class", "by latency": "core.latency_by_class"}
+    rows = rows_of(chosen(runs), list(paths))
+    parts = [Part(name, colour, [total(run, f"{paths[kind]}::{key}") for _, run, kind in rows]) for key, name, colour in _CLASSES]
+    return stacked([label for label, _, _ in rows], parts, "share of instructions or of their latency (%)")
+
+
+def stages(runs: Chosen) -> Any:
+    """Warp instructions of each shader stage by class; a bar is as long as the stage's share of the run's instructions."""
+    found = chosen(runs)
+    used = [key for key in _STAGES if any(total(run, f"core.{key}.instructions::*") for run in found)]
+    rows = [row for row in rows_of(found, used) if total(row[1], f"core.{row[2]}.instructions::*")]
+    parts = [Part(name, colour, [total(run, f"core.{stage}.instructions::{key}") for _, run, stage in rows]) for key, name, colour in _CLASSES]
+    scale = [100 * total(run, f"core.{stage}.instructions::*") / total(run, "core.instructions") for _, run, stage in rows]
+    return stacked([label.replace(stage, _STAGES[stage]) for label, _, stage in rows], parts, "share of warp instructions (%)", scale=scale)
+
+
+def cpi_stack(runs: Chosen) -> Any:
+    """Scheduler cycles for each warp instruction, by what they went into."""
+    found = chosen(runs)
+    slots = [run.stats.parts("core.issue_slots") for run in found]
+    parts = [Part(name, colour, [sum(slot.get(reason, 0) for reason in of) for slot in slots]) for name, colour, of in REASONS]
+    scale = [sum(slot.values()) / (total(run, "core.instructions") or 1) for slot, run in zip(slots, found)]
+    return stacked(names(found), parts, "scheduler cycles / warp instruction", scale=scale)
+
+
+def stage_cycles(runs: Chosen) -> Any:
+    """Scheduler cycles charged to each shader stage, by what they went into. Needs `--profile`."""
+    rows, cycles = [], []
+    for label, run in zip(names(chosen(runs)), chosen(runs)):
+        by_stage = _by(run, "stage")
+        for stage, row in by_stage.items():
+            rows.append(f"{label}, {stage}".replace("_", " ") if len(chosen(runs)) > 1 else stage.replace("_", " "))
+            cycles.append((row, total(run, "core.issue_slots::*")))
+    parts = [Part(name, colour, [sum(row.get(reason, 0) for reason in of) for row, _ in cycles]) for name, colour, of in REASONS]
+    scale = [100 * row["cycles"] / (slots or 1) for row, slots in cycles]
+    return stacked(rows, parts, "share of scheduler cycles (%)", scale=scale)
+
+
+def ops(runs: Chosen, top: int = 12) -> Any:
+    """The ops with most scheduler cycles, as shares. Needs `--profile`."""
+    return _op_bars(runs, top, lambda row, whole: row["cycles"] / whole, "share of scheduler cycles (%)", percent=True)
+
+
+def op_latency(runs: Chosen, top: int = 12) -> Any:
+    """Mean cycles from issue to completion of accesses that went to the L1 and of traces. Needs `--profile`."""
+    return _op_bars(runs, top, lambda row, whole: row["latency"] / row["ended"] if row["ended"] else None, "cycles", percent=False)
+
+
+def _op_bars(runs: Chosen, top: int, value: Any, label: str, percent: bool) -> Any:
+    found = chosen(runs)
+    tables = [_by(run, "op") for run in found]
+    weigh = "cycles" if percent else "latency"
+    known = {op for table in tables for op, row in table.items() if percent or row["ended"]}
+    shown = sorted(known, key=lambda op: (-max(table.get(op, {}).get(weigh, 0) for table in tables), op))[:top]
+    wholes = [sum(row["cycles"] for row in table.values()) or 1 for table in tables]
+    series = [Part(name, run_colour(i), [value(table[op], whole) if op in table else None for op in shown])
+              for i, (name, table, whole) in enumerate(zip(names(found), tables, wholes))]
+    return ranked(shown, series, label, percent=percent)
+
+
+def _by(run: Run, column: str) -> dict[str, dict[str, int]]:
+    """Rows of the profile's instructions, summed by a column."""
+    sums: dict[str, dict[str, int]] = {}
+    for row in run.profile.where(by="instruction"):
+        into = sums.setdefault(row[column], {})
+        for name, value in row.items():
+            if isinstance(value, (int, float)) and name not in ("line", "index"):
+                into[name] = into.get(name, 0) + value
+    return sums

@@ -1,0 +1,131 @@
+# The few kinds of charts that all figures are: stacked bars, grouped bars, lines in panels, histograms.
+# SPDX-License-Identifier: Apache-2.0
+"""Each function draws into axes that it is given; numbers come as they are, shares are computed here."""
+from __future__ import annotations
+
+import dataclasses
+from typing import Any, Sequence
+
+from .style import COLOURS, COLUMN, legend, new_figure, run_colour, styled
+
+
+MOST_GROUPS = 24  # groups that a column's width has room for; a whole suite takes both columns
+
+
+@dataclasses.dataclass(frozen=True)
+class Part:
+    """A colour of stacked bars: its value in each row."""
+    name: str
+    colour: str
+    values: Sequence[float]
+
+
+def stacked(rows: Sequence[str], parts: Sequence[Part], x_label: str, share: bool = True, width: float = COLUMN,
+            scale: Sequence[float] | None = None) -> Any:
+    """Horizontal stacked bars, the first row at the top; with `share` each adds up to 100 %, `scale` gives other lengths."""
+    used = [part for part in parts if any(part.values)]
+    totals = [sum(part.values[i] for part in used) for i in range(len(rows))]
+    lengths = scale if scale is not None else [100.0] * len(rows) if share else totals
+    with styled():
+        many = len(rows) > 24  # a whole suite: smaller rows and type
+        figure, axes = new_figure(0.36 + (0.1 if many else 0.17) * max(2, len(rows)), width=width)
+        left, handles = [0.0] * len(rows), []
+        for part in used:
+            values = [length * value / total if total else 0.0 for value, total, length in zip(part.values, totals, lengths)]
+            handles.append(axes.barh(range(len(rows)), values, 0.72, left, color=COLOURS[part.colour], linewidth=0))
+            left = [a + b for a, b in zip(left, values)]
+        axes.set_yticks(range(len(rows)), rows)
+        axes.tick_params(axis="y", length=0, labelsize=5 if many else None)
+        axes.set_ylim(len(rows) - 0.4, -0.6)
+        axes.set_xlim(0, (max(lengths, default=1) or 1) * 1.001)
+        axes.set_xlabel(x_label)
+        axes.grid(axis="x", color=COLOURS["pale"], linewidth=0.4)
+        legend(figure, handles, [part.name for part in used])
+        return figure
+
+
+def grouped(groups: Sequence[str], series: Sequence[Part], y_label: str, axes: Any = None, percent: bool = False, top: float | None = None) -> Any:
+    """Vertical bars side by side, a group a label; None leaves a gap. Without `axes` a figure of its own, with a legend."""
+    with styled():
+        figure, own = (None, axes) if axes is not None else new_figure(1.5, width=COLUMN if len(groups) <= MOST_GROUPS else 2.1 * COLUMN)
+        wide = 0.8 / max(1, len(series))
+        factor = 100 if percent else 1
+        handles = []
+        for index, one in enumerate(series):
+            places = [place - 0.4 + wide * (index + 0.5) for place in range(len(groups))]
+            values = [factor * value if value is not None else 0 for value in one.values]
+            handles.append(own.bar(places, values, wide * 0.94, color=COLOURS.get(one.colour, one.colour), linewidth=0))
+        if len(groups) < 3:  # one run makes no wall of colour
+            own.set_xlim(-1.1, len(groups) + 0.1)
+        crowded = len(groups) * max((len(group) for group in groups), default=1) > 48
+        own.set_xticks(range(len(groups)), groups, rotation=90 if crowded else 0)
+        own.tick_params(axis="x", length=0)
+        own.set_ylabel(y_label)
+        own.set_ylim(0, top)
+        own.grid(axis="y", color=COLOURS["pale"], linewidth=0.4)
+        if figure is not None and len(series) > 1:
+            legend(figure, handles, [one.name for one in series])
+        return figure if figure is not None else handles
+
+
+def ranked(rows: Sequence[str], series: Sequence[Part], x_label: str, percent: bool = False) -> Any:
+    """Horizontal bars, a row a label and a bar a series in it, the first row at the top."""
+    with styled():
+        thick = 0.8 / max(1, len(series))
+        figure, axes = new_figure(0.36 + max(0.14, 0.08 * len(series)) * max(2, len(rows)))
+        handles = []
+        for index, one in enumerate(series):
+            places = [place - 0.4 + thick * (index + 0.5) for place in range(len(rows))]
+            values = [(100 if percent else 1) * value if value is not None else 0 for value in one.values]
+            handles.append(axes.barh(places, values, thick * 0.94, color=COLOURS.get(one.colour, one.colour), linewidth=0))
+        axes.set_yticks(range(len(rows)), rows)
+        axes.tick_params(axis="y", length=0)
+        axes.set_ylim(len(rows) - 0.4, -0.6)
+        axes.set_xlabel(x_label)
+        axes.grid(axis="x", color=COLOURS["pale"], linewidth=0.4)
+        if len(series) > 1:
+            legend(figure, handles, [one.name for one in series])
+        return figure
+
+
+def lines(panels: Sequence[tuple[str, Sequence[tuple[str, Sequence[float], Sequence[float]]]]], x_label: str) -> Any:
+    """Panels above each other, (label, [(name, x, y), ...]) each; a step holds until its x, as of intervals."""
+    with styled():
+        figure, axes = new_figure(0.55 + 0.72 * len(panels), rows=len(panels), sharex=True, squeeze=False)
+        handles = []
+        for panel, (label, series) in zip(axes[:, 0], panels):
+            handles = [panel.step(x, y, where="pre", color=run_colour(i))[0] for i, (_, x, y) in enumerate(series)]
+            panel.set_ylabel(label)
+            panel.set_ylim(bottom=0)
+            panel.grid(color=COLOURS["pale"], linewidth=0.4)
+        figure.align_ylabels(axes[:, 0])
+        axes[-1, 0].set_xlabel(x_label)
+        axes[-1, 0].set_xlim(left=0)
+        names = [name for name, _, _ in panels[0][1]] if panels else []
+        if len(names) > 1:
+            legend(figure, handles, names)
+        return figure
+
+
+def histogram(series: Sequence[tuple[str, str, Any]], x_label: str, y_label: str) -> Any:
+    """(name, colour, statistics.Histogram) each, as shares of its own sum; bins beyond 99.5 % of all are cut off."""
+    with styled():
+        figure, axes = new_figure(1.5)
+        handles, right = [], 0.0
+        for _, colour, one in series:
+            total = sum(one.counts) or 1
+            handles.append(axes.stairs([100 * count / total for count in one.counts], one.edges, color=COLOURS.get(colour, colour), linewidth=0.9))
+            seen = 0.0
+            for edge, count in zip(one.edges[1:], one.counts):
+                seen += count
+                if seen >= 0.995 * total:
+                    right = max(right, edge)
+                    break
+        axes.set_xlim(0, right or None)
+        axes.set_ylim(bottom=0)
+        axes.set_xlabel(x_label)
+        axes.set_ylabel(y_label)
+        axes.grid(axis="y", color=COLOURS["pale"], linewidth=0.4)
+        if len(series) > 1:
+            legend(figure, handles, [name for name, _, _ in series])
+        return figure

@@ -1,0 +1,80 @@
+# Figures of rays, RT units and acceleration structures.
+# SPDX-License-Identifier: Apache-2.0
+"""How full RT units were, what rays visited and what was fetched for them."""
+from __future__ import annotations
+
+from typing import Any
+
+from .chosen import Chosen, chosen, names, total, with_rays
+from .kinds import Part, grouped, histogram, stacked
+from .style import COLOURS, COLUMN, legend, new_figure, run_colour, styled
+
+_FETCHES = [("rt_node", "internal nodes", "blue"), ("rt_instance", "instances", "orange"), ("rt_triangle", "triangles", "green"),
+            ("rt_procedural", "procedurals", "pink"), ("rt_table", "candidate tables", "yellow"), ("rt_stack", "stacks", "grey")]
+_CYCLES = [("node_request", "sends a request", "green"), ("test_busy", "waits for a test unit", "blue"), ("test_latency", "tests in flight", "sky"),
+           ("waiting_memory", "waits for memory", "orange"), ("l1_refused", "refused by the L1", "red"), ("mshr_full", "no entry free", "pink"),
+           ("handover", "hand-over", "yellow"), ("idle", "idle", "pale")]
+
+
+def geometry(runs: Chosen) -> Any:
+    """Structures, depth, triangles and cycles of each scene (LumiBench, Figure 7)."""
+    found = chosen(runs)
+    panels = [("bottom levels", "blue", lambda run: run.info.get("structures.bottom_levels")),
+              ("instances", "sky", lambda run: run.info.get("structures.instances")),
+              ("depth", "green", lambda run: run.metrics["bvh_depth"]),
+              ("triangles", "orange", lambda run: run.info.get("structures.triangles")),
+              ("cycles", "red", lambda run: run.cycles)]
+    with styled():
+        figure, axes = new_figure(0.55 + 0.62 * len(panels), rows=len(panels), sharex=True)
+        for panel, (label, colour, value) in zip(axes, panels):
+            values = [value(run) or 0 for run in found]
+            grouped(names(found), [Part(label, colour, values)], label, axes=panel)
+            if min(values) > 0 and max(values) > 30 * min(values):
+                panel.set_yscale("log")
+                panel.set_ylim(bottom=min(values) / 3)
+        figure.align_ylabels(axes)
+        return figure
+
+
+def rt_use(runs: Chosen) -> Any:
+    """RT-unit occupancy and efficiency, SIMT efficiency (LumiBench, Figure 9)."""
+    found = with_rays(runs)
+    metrics = [("RT-unit occupancy", "blue", "rt_occupancy"), ("RT-unit efficiency", "orange", "rt_efficiency"), ("SIMT efficiency", "green", "simt_efficiency")]
+    return grouped(names(found), [Part(name, colour, [run.metrics[metric] for run in found]) for name, colour, metric in metrics], "%", percent=True, top=100)
+
+
+def traversal(runs: Chosen) -> Any:
+    """Nodes that a ray visits for each level of the structure (LumiBench, Figure 10); the line is one straight way down."""
+    found = with_rays(runs)
+    with styled():
+        figure, axes = new_figure(1.6)
+        grouped(names(found), [Part("traversal ratio", "blue", [run.metrics["traversal_ratio"] for run in found])], "nodes / ray / depth", axes=axes)
+        axes.axhline(1, color=COLOURS["dark"], linewidth=0.6, linestyle="--")
+        return figure
+
+
+def rt_cycles(runs: Chosen) -> Any:
+    """What the cycles of the RT units went into."""
+    found = with_rays(runs)
+    return stacked(names(found), [Part(name, colour, [total(run, f"rt.cycles::{key}") for run in found]) for key, name, colour in _CYCLES], "share of the RT units' cycles (%)")
+
+
+def fetch_mix(runs: Chosen) -> Any:
+    """What RT units read, by read requests that the L1 took (LumiBench, Figure 13)."""
+    found = with_rays(runs)
+    return stacked(names(found), [Part(name, colour, [total(run, f"l1.reads::{key}") for run in found]) for key, name, colour in _FETCHES], "share of the RT units' reads (%)")
+
+
+def ray_nodes(runs: Chosen) -> Any:
+    """Nodes visited by a ray: shares of finished rays by bins."""
+    return _ray_histogram(runs, "rt.ray_nodes", "nodes visited by a ray")
+
+
+def ray_latency(runs: Chosen) -> Any:
+    """Cycles from a ray's acceptance by the RT unit to its stop: shares of rays by bins."""
+    return _ray_histogram(runs, "rt.ray_latency", "cycles of a ray in the RT unit")
+
+
+def _ray_histogram(runs: Chosen, path: str, label: str) -> Any:
+    found = with_rays(runs)
+    return histogram([(name, run_colour(i), run.stats.histogram(path)) for i, (name, run) in enumerate(zip(names(found), found))], label, "share of rays (%)")

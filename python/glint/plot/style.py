@@ -1,0 +1,65 @@
+# How figures look: one column of a two-column paper, Okabe and Ito's colours, small sans-serif type.
+# SPDX-License-Identifier: Apache-2.0
+"""Sizes and colours of all figures, and saving them."""
+from __future__ import annotations
+
+import contextlib
+import pathlib
+from typing import Any, Iterator, Sequence
+
+from ..optional import require
+
+COLUMN = 3.3  # inches: the width of a column of IEEE and ACM papers, a little less
+# Okabe and Ito (2008), "Color Universal Design"; grey, pale and dark are neutral.
+COLOURS = {"blue": "#0072B2", "sky": "#56B4E9", "green": "#009E73", "orange": "#E69F00", "red": "#D55E00", "pink": "#CC79A7",
+           "yellow": "#F0E442", "grey": "#8A929C", "pale": "#D3D7DC", "dark": "#454C55"}
+RUN_COLOURS = ["blue", "orange", "green", "pink", "sky", "red", "yellow", "dark"]
+_SETTINGS = {
+    "font.size": 7, "axes.titlesize": 7, "axes.labelsize": 7, "xtick.labelsize": 6.5, "ytick.labelsize": 6.5, "legend.fontsize": 6.5,
+    "axes.linewidth": 0.5, "xtick.major.width": 0.5, "ytick.major.width": 0.5, "xtick.major.size": 2, "ytick.major.size": 2,
+    "axes.spines.top": False, "axes.spines.right": False, "axes.axisbelow": True, "legend.frameon": False,
+    "legend.handlelength": 0.9, "legend.handleheight": 0.9, "legend.columnspacing": 0.9, "legend.handletextpad": 0.4,
+    "lines.linewidth": 0.9, "pdf.fonttype": 42, "svg.fonttype": "none", "savefig.dpi": 300,
+}  # fonttype 42: text stays text, which publishers ask for
+
+
+def run_colour(index: int) -> str:
+    """The colour of the index-th run or series; they repeat after eight."""
+    return COLOURS[RUN_COLOURS[index % len(RUN_COLOURS)]]
+
+
+@contextlib.contextmanager
+def styled() -> Iterator[None]:
+    """The settings of this package, for figures made within."""
+    with require("matplotlib", "glint.plot").rc_context(_SETTINGS):
+        yield
+
+
+def new_figure(height: float, rows: int = 1, columns: int = 1, width: float = COLUMN, **options: Any) -> tuple[Any, Any]:
+    """A figure of `width` x `height` inches, and its axes (an array with several)."""
+    figure = require("matplotlib.figure", "glint.plot").Figure(figsize=(width, height), layout="constrained", dpi=150)
+    figure.get_layout_engine().set(w_pad=0.02, h_pad=0.02)
+    return figure, figure.subplots(rows, columns, **options)
+
+
+def legend(figure: Any, handles: Sequence[Any], names: Sequence[str]) -> None:
+    """A legend above the axes, as many columns as the width has room for; the figure grows by its height."""
+    room = max(1, int(figure.get_figwidth() * 20 / (max((len(name) for name in names), default=1) + 4)))
+    columns = min(len(names), room)
+    lines = -(-len(names) // columns)
+    columns = -(-len(names) // lines)  # lines of like length
+    extra = 0.04 + 0.135 * lines
+    height = figure.get_figheight() + extra
+    figure.set_figheight(height)
+    figure.get_layout_engine().set(rect=(0, 0, 1, 1 - extra / height))
+    figure.legend(handles, names, loc="upper center", ncols=columns, borderaxespad=0, borderpad=0.2, labelspacing=0.25)
+
+
+def save(figure: Any, path: str | pathlib.Path) -> pathlib.Path:
+    """Writes .pdf, .svg or .png, the same bytes each time; makes the folder. Gives the path."""
+    path = pathlib.Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    dates = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}  # a date would change the bytes
+    with require("matplotlib", "glint.plot").rc_context({**_SETTINGS, "svg.hashsalt": "glint"}):
+        figure.savefig(path, metadata=dates.get(path.suffix))
+    return path

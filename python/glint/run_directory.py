@@ -1,0 +1,179 @@
+# One finished run: what its directory holds, read when it is asked for.
+# SPDX-License-Identifier: Apache-2.0
+"""`Run(directory)`: statistics, metrics, configuration, picture, time series, profile and maps of a run."""
+from __future__ import annotations
+
+import functools
+import json
+import pathlib
+import tomllib
+from typing import Any
+
+from .errors import IncompleteRun, MissingFile, SchemaError, UnknownName
+from .images import read_image, read_map
+from .derived import Metrics
+from .patterns import near
+from .statistics import Stats
+from .table import Table
+
+SCHEMA = 1  # of run.json, as report/run_directory.cpp writes it
+
+
+class Facts(dict[str, Any]):
+    """Values by dotted name ("scene.triangles"); a missing name is an UnknownName with near ones."""
+
+    def __missing__(self, name: str) -> Any:
+        raise UnknownName(f"there is no '{name}'{near(name, self)}")
+
+
+class Run:
+    """A run directory of `glint run` or of one workload of `glint bench`.
+
+    Args:
+        directory: the folder.
+        partial: take runs that ended with an error too; statistics are then there only if the run left them.
+
+    Raises:
+        MissingFile: no run.json (no run directory, or a run that was killed) or no stats.json.
+        IncompleteRun: the run ended with an error, which the message repeats.
+        SchemaError: another schema, or a damaged file.
+    """
+
+    def __init__(self, directory: str | pathlib.Path, partial: bool = False):
+        self.directory = pathlib.Path(directory)
+        record = self.directory / "run.json"
+        if not self.directory.is_dir():
+            raise MissingFile(f"{self.directory}: there is no such folder")
+        if not record.is_file():
+            raise MissingFile(f"{self.directory}: no run.json: no run directory, or a run that was stopped before its end")
+        tree = _json(record)
+        if tree.get("schema") != SCHEMA:
+            raise SchemaError(f"{record}: schema {tree.get('schema')}, this package reads {SCHEMA}: use the package of that Glint")
+        self.info = Facts(_flat(tree))
+        if not partial and self.info.get("exit", 0) != 0:
+            raise IncompleteRun(f"{self.directory}: the run ended with exit code {self.info['exit']}: {self.info.get('message', '')}")
+
+    def __repr__(self) -> str:
+        return f"Run('{self.directory}': {self.workload}, {self.info['mode']} on {self.config_name})"
+
+    @property
+    def workload(self) -> str:
+        """Scene and shader, e.g. "SHIP_SH"; of pipelines and kernels their name."""
+        scene, shader = self.info.get("scene.name", ""), self.info.get("shader", "")
+        return f"{scene}_{shader.upper()}" if shader and shader != scene else scene or self.directory.name
+
+    @property
+    def config_name(self) -> str:
+        """Name of the preset or configuration file."""
+        return str(self.info.get("config.name", ""))
+
+    @functools.cached_property
+    def stats(self) -> Stats:
+        """All statistics, by dotted path."""
+        return Stats.from_tree(_json(self.file("stats.json", "every run that ends well")))
+
+    @functools.cached_property
+    def metrics(self) -> Metrics:
+        """The metrics of docs/metrics.md, by name; None where the run has none."""
+        return Metrics(self)
+
+    @functools.cached_property
+    def config(self) -> Facts:
+        """Every configuration key as it was in the run, by dotted name."""
+        path = self.file("config.toml", "every run")
+        try:
+            return Facts(_flat(tomllib.loads(path.read_text(encoding="utf-8"))))
+        except tomllib.TOMLDecodeError as error:
+            raise SchemaError(f"{path}: {error}") from error
+
+    @property
+    def cycles(self) -> int:
+        """Time of the launch in core clocks; UnknownName for a functional run, which has none."""
+        if self.info["mode"] != "timing":
+            raise UnknownName(f"{self.directory}: a functional run has no cycles: run it with --mode timing")
+        return self.stats["gpu.cycles"]
+
+    @property
+    def seconds(self) -> float:
+        """Time of the launch on the simulated GPU."""
+        return self.cycles / (self.config["clock_mhz"] * 1e6)
+
+    @property
+    def ipc(self) -> float:
+        """Warp instructions a cycle of the whole GPU, as `glint run` prints it (the metric `ipc` counts lanes)."""
+        return self.stats.sum("gpu.core[*].instructions") / self.cycles if self.cycles else 0.0
+
+    @functools.cached_property
+    def image(self) -> Any:
+        """The picture as the shader wrote it: float32 array of shape (height, width, 3)."""
+        return read_image(self.file("image.pfm", "runs of scenes"))
+
+    @functools.cached_property
+    def series(self) -> Table:
+        """The run over time: a row an interval (docs/profiling.md); `.frame()` is a DataFrame."""
+        return Table.read(self.file("series.csv", "`glint run --sample CYCLES`"), needs=("cycle", "ipc"))
+
+    @functools.cached_property
+    def profile(self) -> Table:
+        """Cycles by instruction and by source line (docs/profiling.md)."""
+        return Table.read(self.file("profile.csv", "`glint run --profile`"), needs=("by", "stage", "line", "op", "issues", "cycles"))
+
+    @functools.cached_property
+    def folded(self) -> dict[str, int]:
+        """Cycles by call stack, frames separated by ';', as flame graphs take them."""
+        lines = self.file("profile.folded", "`glint run --profile`").read_text(encoding="utf-8").splitlines()
+        return {stack: int(cycles) for stack, _, cycles in (line.rpartition(" ") for line in lines)}
+
+    @property
+    def map_names(self) -> list[str]:
+        """Maps of cost by pixel that the run left in `heat/`; [] without."""
+        return sorted(path.stem for path in (self.directory / "heat").glob("*.npy"))
+
+    def map(self, name: str) -> Any:
+        """A map of cost by pixel: array of shape (height, width)."""
+        if name not in self.map_names:
+            raise MissingFile(f"{self.directory}: no map '{name}'; it has: {', '.join(self.map_names) or 'none'} (docs/profiling.md)")
+        return read_map(self.directory / "heat" / f"{name}.npy")
+
+    def file(self, name: str, written_by: str = "the run") -> pathlib.Path:
+        """The path of a file of the run; MissingFile, which says what writes it, where it is not there."""
+        path = self.directory / name
+        if not path.is_file():
+            raise MissingFile(f"{self.directory}: no {name}: written by {written_by}")
+        return path
+
+
+def labels(runs: list[Run]) -> list[str]:
+    """Short names that tell runs apart: of what differs between them."""
+    keys = [key for key in runs[0].config if len({str(run.config.get(key)) for run in runs}) > 1][:2] if runs else []
+    facts = [lambda run: run.workload, lambda run: run.config_name,
+             lambda run: f"{run.info.get('width')}x{run.info.get('height')}", lambda run: f"{run.info.get('samples')} spp"]
+    by_config = len({run.config_name for run in runs}) > 1
+    used = [fact for fact in facts if len({fact(run) for run in runs}) > 1]
+    names = []
+    for run in runs:
+        words = [fact(run) for fact in used]
+        if not by_config:  # keys of two presets differ in dozens
+            words += [f"{key}={run.config.get(key)}" for key in keys]
+        names.append(" ".join(words) or run.workload)
+    return [name if names.count(name) == 1 else f"{name} {run.directory.name}" for name, run in zip(names, runs)]
+
+
+def _json(path: pathlib.Path) -> dict[str, Any]:
+    try:
+        tree = json.loads(path.read_text(encoding="utf-8"))
+    except (json.JSONDecodeError, UnicodeDecodeError) as error:
+        raise SchemaError(f"{path}: no JSON, or cut short: {error}") from error
+    if not isinstance(tree, dict):
+        raise SchemaError(f"{path}: no JSON object")
+    return tree
+
+
+def _flat(tree: dict[str, Any], prefix: str = "") -> dict[str, Any]:
+    out: dict[str, Any] = {}
+    for name, value in tree.items():
+        if isinstance(value, dict):
+            out.update(_flat(value, f"{prefix}{name}."))
+        else:
+            out[prefix + name] = value
+    return out

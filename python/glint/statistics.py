@@ -1,0 +1,155 @@
+# The statistics of one run: a flat table by dotted path, with units, meanings, sums over instances.
+# SPDX-License-Identifier: Apache-2.0
+"""Statistics as `stats.json` of a run directory has them (docs/stats.md lists all)."""
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from typing import Any, Iterator
+
+from .errors import SchemaError, UnknownName
+from .patterns import compiled, near
+
+Number = int | float
+
+
+@dataclasses.dataclass(frozen=True)
+class Stat:
+    """One statistic.
+
+    Attributes:
+        path: dotted path, e.g. "gpu.core[3].instructions".
+        value: a number; {part: number} of a breakdown; a list of counts of a histogram.
+        unit: e.g. "cycle".
+        doc: what it counts, a sentence.
+        bins: of a histogram {"low", "high", "step"} in the statistic's unit, else None.
+    """
+    path: str
+    value: Number | dict[str, Number] | list[Number]
+    unit: str
+    doc: str
+    bins: dict[str, Number] | None = None
+
+
+@dataclasses.dataclass(frozen=True)
+class Histogram:
+    """Counts over all instances: `counts[i]` values in [edges[i], edges[i + 1]), the last one open upwards."""
+    edges: list[Number]
+    counts: list[Number]
+    unit: str
+
+
+class Stats(Mapping[str, Any]):
+    """Statistics by path. `stats["gpu.cycles"]` and `stats["gpu.core[0].issue_slots::issued"]` are values;
+    `about`, `select`, `sum`, `parts` and `histogram` take patterns, in which `*` stands for anything but '.', and
+    `core.`, `rt.`, `l1.`, `l2.`, `dram.` at the beginning for those of all instances."""
+
+    def __init__(self, stats: dict[str, Stat]):
+        self._stats = stats
+        self._paths: list[str] | None = None  # with parts, made when a pattern is first looked for
+        self._found: dict[str, list[tuple[str, Any]]] = {}
+
+    @classmethod
+    def from_tree(cls, tree: dict[str, Any]) -> Stats:
+        """From the tree in stats.json; SchemaError where it is none."""
+        stats: dict[str, Stat] = {}
+        _gather(tree, "", stats)
+        if not stats:
+            raise SchemaError("stats.json holds no statistics: it was not written by this version of Glint")
+        return cls(stats)
+
+    def __getitem__(self, path: str) -> Any:
+        if path in self._stats:
+            return self._stats[path].value
+        name, separator, part = path.partition("::")
+        value = self._stats[name].value if separator and name in self._stats else None
+        if isinstance(value, dict) and part in value:
+            return value[part]
+        if isinstance(value, dict):
+            raise UnknownName(f"'{name}' has no part '{part}': it has {', '.join(value)}")
+        hint = " ('*' is for select, sum, parts and histogram)" if "*" in path else ""
+        raise UnknownName(f"no statistic '{path}'{near(path, self._stats)}{hint}")
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._stats)
+
+    def __len__(self) -> int:
+        return len(self._stats)
+
+    def about(self, path: str) -> Stat:
+        """The statistic with unit and meaning; of a pattern the first that matches. UnknownName without any."""
+        if path in self._stats:
+            return self._stats[path]
+        for stat in self.select(path).values():
+            return stat
+        raise UnknownName(f"no statistic '{path}'{near(path, self._stats)}")
+
+    def select(self, pattern: str) -> dict[str, Stat]:
+        """All statistics whose whole path matches, in the order of the file; {} without any."""
+        match = compiled(pattern.partition("::")[0]).fullmatch
+        return {path: stat for path, stat in self._stats.items() if match(path)}
+
+    def values(self, pattern: str | None = None) -> Any:
+        """Without a pattern: all values, as of any mapping. With one: the numbers that match, parts (`::`) included."""
+        return super().values() if pattern is None else [value for _, value in self._numbers(pattern)]
+
+    def has(self, pattern: str) -> bool:
+        """Whether a number matches."""
+        return bool(self._numbers(pattern))
+
+    def sum(self, pattern: str) -> Number:
+        """The sum of all numbers that match: over instances and, with `::*`, over parts. UnknownName without any."""
+        found = self._numbers(pattern)
+        if not found:
+            raise UnknownName(f"no statistic '{pattern}'{near(pattern, self._stats)}")
+        return sum(value for _, value in found)
+
+    def parts(self, pattern: str) -> dict[str, Number]:
+        """The parts of a breakdown, summed over the instances that match, in order; UnknownName without any."""
+        total: dict[str, Number] = {}
+        for stat in self.select(pattern).values():
+            if isinstance(stat.value, dict):
+                for part, value in stat.value.items():
+                    total[part] = total.get(part, 0) + value
+        if not total and not any(isinstance(stat.value, dict) for stat in self.select(pattern).values()):
+            raise UnknownName(f"no breakdown '{pattern}'{near(pattern, self._stats)}")
+        return total
+
+    def histogram(self, pattern: str) -> Histogram:
+        """A histogram, summed over the instances that match; UnknownName without any."""
+        found = [stat for stat in self.select(pattern).values() if isinstance(stat.value, list) and stat.bins]
+        if not found:
+            raise UnknownName(f"no histogram '{pattern}'{near(pattern, self._stats)}")
+        bins = found[0].bins or {}
+        counts: list[Number] = [0] * max(len(stat.value) for stat in found)  # type: ignore[arg-type]
+        for stat in found:
+            for index, count in enumerate(stat.value):  # type: ignore[arg-type]
+                counts[index] += count
+        edges = [bins["low"] + index * bins["step"] for index in range(len(counts) + 1)]
+        return Histogram(edges, counts, found[0].unit)
+
+    def rows(self) -> Iterator[tuple[str, Number, str, str]]:
+        """(path, value, unit, meaning) of every number; parts as `path::part`, without histograms."""
+        for stat in self._stats.values():
+            if isinstance(stat.value, dict):
+                for part, value in stat.value.items():
+                    yield f"{stat.path}::{part}", value, stat.unit, stat.doc
+            elif not isinstance(stat.value, list):
+                yield stat.path, stat.value, stat.unit, stat.doc
+
+    def _numbers(self, pattern: str) -> list[tuple[str, Any]]:
+        if pattern not in self._found:
+            if self._paths is None:
+                self._paths = [path for path, *_ in self.rows()]
+            match = compiled(pattern).fullmatch
+            self._found[pattern] = [(path, self[path]) for path in self._paths if match(path)]
+        return self._found[pattern]
+
+
+def _gather(tree: dict[str, Any], prefix: str, out: dict[str, Stat]) -> None:
+    for name, node in tree.items():
+        path = f"{prefix}.{name}" if prefix else name
+        if isinstance(node, dict) and "value" in node and "unit" in node:
+            out[path] = Stat(path, node["value"], node["unit"], node.get("doc", ""), node.get("bins"))
+        elif isinstance(node, dict):
+            _gather(node, path, out)

@@ -1,0 +1,73 @@
+# A table read from a CSV file: columns of numbers and text, without pandas; with it, a DataFrame.
+# SPDX-License-Identifier: Apache-2.0
+"""Series, profiles, metrics and the files of `glint characterize` are such tables."""
+from __future__ import annotations
+
+import csv
+import pathlib
+from typing import Any, Iterator
+
+from .errors import SchemaError, UnknownName
+from .optional import require
+from .patterns import near
+
+
+class Table:
+    """Columns by name; a cell is an int, a float, a string, or None where it is empty.
+
+    Attributes:
+        columns: names, in order.
+    """
+
+    def __init__(self, columns: list[str], rows: list[list[Any]]):
+        self.columns = columns
+        self._rows = rows
+
+    @classmethod
+    def read(cls, path: pathlib.Path, needs: tuple[str, ...] = ()) -> Table:
+        """Reads a CSV file with a header line; SchemaError when a column of `needs` is missing or a row is cut short."""
+        with open(path, newline="", encoding="utf-8") as file:
+            lines = list(csv.reader(file))
+        if not lines:
+            raise SchemaError(f"{path}: empty")
+        header = lines[0]
+        for number, line in enumerate(lines[1:], 2):
+            if len(line) != len(header):
+                raise SchemaError(f"{path}:{number}: {len(line)} fields, {len(header)} expected: the file is damaged or was cut short")
+        missing = [name for name in needs if name not in header]
+        if missing:
+            raise SchemaError(f"{path}: no column {', '.join(missing)}: written by another version of Glint")
+        return cls(header, [[_cell(text) for text in line] for line in lines[1:]])
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        return (dict(zip(self.columns, row)) for row in self._rows)
+
+    def __getitem__(self, column: str) -> list[Any]:
+        """A column as a list; UnknownName where there is none."""
+        if column not in self.columns:
+            raise UnknownName(f"no column '{column}'{near(column, self.columns)} There are: {', '.join(self.columns)}")
+        at = self.columns.index(column)
+        return [row[at] for row in self._rows]
+
+    def where(self, **equal: Any) -> Table:
+        """The rows in which each named column has the given value."""
+        at = {self.columns.index(name): value for name, value in equal.items()}
+        return Table(self.columns, [row for row in self._rows if all(row[i] == value for i, value in at.items())])
+
+    def frame(self) -> Any:
+        """A pandas.DataFrame; MissingPackage without pandas."""
+        return require("pandas", "Table.frame()").DataFrame(self._rows, columns=self.columns)
+
+
+def _cell(text: str) -> Any:
+    if text == "":
+        return None
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            pass
+    return text

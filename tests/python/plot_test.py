@@ -1,0 +1,68 @@
+# The figures of the Python package: every one is drawn, a column wide, and shows the numbers of the statistics.
+# SPDX-License-Identifier: Apache-2.0
+"""usage: plot_test.py GLINT SOURCE_DIR; needs matplotlib, numpy and pandas, and says so where they are not."""
+import python_case
+from python_case import PythonTest
+
+python_case.need("matplotlib", "numpy", "pandas")
+
+
+class Figures(PythonTest):
+    def widths(self, figure):
+        """Lengths of all bars, row by row."""
+        rows = {}
+        for bar in figure.axes[0].patches:
+            rows.setdefault(round(bar.get_y() + bar.get_height() / 2, 3), []).append(bar.get_width())
+        return [rows[place] for place in sorted(rows)]
+
+    def test_every_figure_is_drawn_for_one_run_and_for_several(self):
+        plot = self.glint.plot
+        for name, figure in plot.FIGURES.items():
+            for suffix, runs in (("one.pdf", self.ship), ("two.svg", [self.ship, self.wknd])):
+                with self.subTest(figure=name, runs=suffix):
+                    drawn = figure(runs)
+                    self.assertAlmostEqual(drawn.get_figwidth(), 3.3)
+                    self.assertGreater(plot.save(drawn, self.folder / f"{name}_{suffix}").stat().st_size, 3000)
+        for figure in (plot.series, plot.ops, plot.op_latency, plot.stage_cycles, plot.picture):
+            self.assertGreater(plot.save(figure(self.ship), self.folder / f"{figure.__name__}.pdf").stat().st_size, 3000)
+
+    def test_bars_are_the_shares_of_the_statistics(self):
+        count, latency = self.widths(self.glint.plot.instruction_mix(self.ship))
+        self.assertAlmostEqual(count[0], self.ship.metrics["ins_alu%"])
+        self.assertAlmostEqual(latency[-1], self.ship.metrics["lat_rt%"])
+        self.assertAlmostEqual(sum(count), 100)
+
+    def test_a_cpi_stack_adds_up_to_the_cycles_of_an_instruction(self):
+        stats = self.ship.stats
+        stack = self.widths(self.glint.plot.cpi_stack(self.ship))[0]
+        self.assertAlmostEqual(sum(stack), stats.sum("core.issue_slots::*") / stats.sum("core.instructions"))
+        self.assertAlmostEqual(stack[0], 1.0)  # the cycle that issues
+
+    def test_stages_of_a_miss_add_up_to_its_latency(self):
+        self.assertAlmostEqual(sum(self.widths(self.glint.plot.miss_stages(self.wknd))[0]), self.wknd.metrics["avg_mf_latency"])
+
+    def test_reads_of_all_askers_are_all_reads(self):
+        self.assertAlmostEqual(sum(map(sum, self.widths(self.glint.plot.l1_reads(self.ship)))), 100)
+
+    def test_the_same_figure_has_the_same_bytes(self):
+        save, dram = self.glint.plot.save, self.glint.plot.dram
+        for suffix in ("pdf", "svg", "png"):
+            first, second = (save(dram(self.ship), self.folder / f"{i}.{suffix}").read_bytes() for i in (1, 2))
+            self.assertEqual(first, second, suffix)
+
+    def test_what_cannot_be_drawn_is_refused_with_a_reason(self):
+        plot, Error = self.glint.plot, self.glint.GlintError
+        self.assertRaisesRegex(Error, "at least one run", plot.dram, [])
+        self.assertRaisesRegex(Error, "--sample", plot.series, self.wknd)
+        self.assertRaisesRegex(Error, "--profile", plot.ops, self.wknd)
+
+    def test_frames_and_pictures_have_the_shapes_that_are_documented(self):
+        self.assertEqual(self.ship.image.shape, (16, 16, 3))
+        png = self.glint.read_image(self.ship.directory / "image.png")
+        self.assertLess(abs(self.ship.image.clip(0, 1) - png).max(), 1 / 255)
+        frame = self.ship.series.frame()
+        self.assertEqual((list(frame.columns)[:2], len(frame)), (["cycle", "ipc"], len(self.ship.series)))
+
+
+if __name__ == "__main__":
+    python_case.main()
