@@ -3,17 +3,21 @@
 // Nesting. Let P1 lie in S(P2). If S(P1) and S(P2) overlap, S(P1) is added to S(P2): its blocks are post-dominated by
 // P1, so also by P2, and edges out of it still lead into S(P2). After that any two sets are nested or disjoint: of two
 // that share a block, the one whose P comes first on the way to the end lies in the other.
+//
+// Loops. A branch of which both ways stay in a loop is looked at within one turn of it: ways out of the loop do not count,
+// and what leads back to the head leads to one new block, the turn's end. So lanes that went on to the next turn wait there
+// for those that are still in this one. Source: counts of executed loads of a traversal loop on an H200 (docs/validation.md).
+// Lanes that leave the loop leave S(P) without its join, and wait at the join of a region around the loop: `is_sound`.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <map>
 #include <set>
 
 #include "frontend/ptx/draft.h"
+#include "frontend/ptx/flow_graph.h"
 
 namespace glint::frontend::ptx {
 namespace {
-
-using Blocks = std::set<BlockId>;
 
 VirtualInst steer(const char* op, BlockId target = kNoBlock) {
   VirtualInst inst;
@@ -26,12 +30,27 @@ class Reconvergence {
  public:
   explicit Reconvergence(Draft& draft) : draft_(draft), end_(BlockId(draft.blocks.size())) {}
 
-  void run() {
+  // Heads of the loops in which lanes part and meet nowhere before the turn's end, which so needs a block.
+  std::vector<Loop> loops_without_end() {
     find_edges();
-    find_post_dominators();
-    find_regions();
+    std::vector<Loop> out;
+    for (Loop& loop : natural_loops(next_, draft_.layout.front())) {
+      const Edges turn = edges_of_turn(loop);
+      const std::vector<BlockId> post = immediate_dominators(reversed(turn), end_);
+      const bool needs = std::any_of(loop.body.begin(), loop.body.end(), [&](BlockId b) { return parts_lanes(b, turn) && post[b] == end_; });
+      if (needs) out.push_back(std::move(loop));
+    }
+    return out;
+  }
+
+  // With `in_turns`, false and nothing done when the regions would not be sound.
+  bool run(bool in_turns) {
+    find_edges();
+    find_regions(in_turns);
     nest_regions();
+    if (in_turns && !is_sound()) return false;
     insert();
+    return true;
   }
 
  private:
@@ -92,67 +111,72 @@ class Reconvergence {
     return found;
   }
 
-  // K. Cooper, T. Harvey, K. Kennedy, "A simple, fast dominance algorithm" (2001), on the reversed graph.
-  void find_post_dominators() {
-    std::vector<BlockId> postorder;  // of the reversed graph from the virtual end
-    std::vector<std::vector<BlockId>> before(size_t{end_} + 1);
-    for (BlockId b : draft_.layout)
-      for (BlockId n : next_[b]) before[n].push_back(b);
-    std::vector<uint32_t> number(size_t{end_} + 1, 0);
-    std::vector<std::pair<BlockId, size_t>> stack{{end_, 0}};
-    std::vector<bool> seen(size_t{end_} + 1);
-    seen[end_] = true;
-    while (!stack.empty()) {
-      auto& [b, at] = stack.back();
-      if (at == before[b].size()) {
-        number[b] = uint32_t(postorder.size());
-        postorder.push_back(b);
-        stack.pop_back();
-      } else if (const BlockId n = before[b][at++]; !seen[n]) {
-        seen[n] = true;
-        stack.emplace_back(n, 0);
-      }
-    }
-    post_.assign(size_t{end_} + 1, kNoBlock);
-    post_[end_] = end_;
-    for (bool changed = true; changed;) {
-      changed = false;
-      for (size_t i = postorder.size() - 1; i-- > 0;) {
-        const BlockId b = postorder[i];
-        BlockId meet = kNoBlock;
-        for (BlockId n : next_[b]) {
-          if (post_[n] == kNoBlock) continue;
-          if (meet == kNoBlock) meet = n;
-          for (BlockId other = n; meet != other;) {
-            while (number[meet] < number[other]) meet = post_[meet];
-            while (number[other] < number[meet]) other = post_[other];
-          }
-        }
-        if (meet == kNoBlock || post_[b] == meet) continue;
-        post_[b] = meet;
-        changed = true;
-      }
-    }
-  }
-
-  bool parts_lanes(BlockId b) const {
+  bool parts_lanes(BlockId b, const Edges& edges) const {
     const DraftBlock& x = draft_.blocks[b];
-    return reachable_[b] && x.end == DraftBlock::End::Branch && !x.uniform && next_[b].size() == 2 && x.taken != x.next;
+    return reachable_[b] && x.end == DraftBlock::End::Branch && !x.uniform && x.taken != x.next && edges[b].size() == 2;
   }
 
-  void find_regions() {
-    for (BlockId b : draft_.layout) {
-      if (!parts_lanes(b) || post_[b] == end_) continue;
-      const BlockId meet = post_[b];
-      Blocks& region = regions_[meet];
-      std::vector<BlockId> work{b};
-      while (!work.empty()) {
-        const BlockId at = work.back();
-        work.pop_back();
-        if (at == meet || at == end_ || !region.insert(at).second) continue;
-        work.insert(work.end(), next_[at].begin(), next_[at].end());
+  // Within the loop: its head, reached again, is the virtual end.
+  Edges edges_of_turn(const Loop& loop) const {
+    Edges turn(next_.size());
+    for (BlockId b : loop.body)
+      for (BlockId n : next_[b])
+        if (loop.body.contains(n)) turn[b].push_back(n == loop.head ? end_ : n);
+    return turn;
+  }
+
+  void find_regions(bool in_turns) {
+    std::vector<bool> done(size_t{end_} + 1);
+    const auto find = [&](const Edges& edges) {
+      const std::vector<BlockId> post = immediate_dominators(reversed(edges), end_);
+      for (BlockId b : draft_.layout) {
+        if (done[b] || !parts_lanes(b, edges)) continue;
+        done[b] = true;
+        if (post[b] == end_) continue;
+        Blocks& region = regions_[post[b]];
+        std::vector<BlockId> work{b};
+        while (!work.empty()) {
+          const BlockId at = work.back();
+          work.pop_back();
+          if (at == post[b] || at == end_ || !region.insert(at).second) continue;
+          work.insert(work.end(), edges[at].begin(), edges[at].end());
+        }
       }
+    };
+    if (in_turns)
+      for (const Loop& loop : natural_loops(next_, draft_.layout.front())) find(edges_of_turn(loop));
+    find(next_);
+  }
+
+  // Whether any two regions are nested or disjoint, and lanes that leave one by another way than its meeting place
+  // come to one around it before they could come back.
+  bool is_sound() {
+    for (const auto& [p, s] : regions_) {
+      if (s.contains(p)) return false;
+      for (const auto& [other, t] : regions_)
+        if (overlap(s, t) && !std::includes(s.begin(), s.end(), t.begin(), t.end()) && !std::includes(t.begin(), t.end(), s.begin(), s.end())) return false;
+      if (comes_back(p, s)) return false;
     }
+    return true;
+  }
+  bool comes_back(BlockId meet, const Blocks& region) {
+    std::set<BlockId> seen;
+    std::vector<BlockId> work;
+    const auto follow = [&](BlockId b) {
+      for (BlockId n : block(b).successors()) {
+        const auto around = regions_.find(n);
+        const bool waits = around != regions_.end() && around->second.contains(b) && std::includes(around->second.begin(), around->second.end(), region.begin(), region.end());
+        if (!waits && !(region.contains(b) && region.contains(n))) work.push_back(n);
+      }
+    };
+    for (BlockId b : region) follow(b);
+    while (!work.empty()) {
+      const BlockId b = work.back();
+      work.pop_back();
+      if (b == meet || region.contains(b)) return true;
+      if (seen.insert(b).second) follow(b);
+    }
+    return false;
   }
 
   static bool overlap(const Blocks& a, const Blocks& b) {
@@ -268,17 +292,41 @@ class Reconvergence {
 
   Draft& draft_;
   const BlockId end_;                          // the virtual end
-  std::vector<std::vector<BlockId>> next_;     // edges that count
+  Edges next_;                                 // edges that count
   std::vector<bool> reachable_;
-  std::vector<BlockId> post_;                  // immediate post-dominator
   std::map<BlockId, Blocks> regions_;          // S(P) by P
   std::map<BlockId, BlockId> joins_;           // join block of P
   std::map<BlockId, std::vector<BlockId>> at_end_, on_edge_;  // ssys that a block pushes before it ends
   std::map<BlockId, std::vector<BlockId>> behind_;  // new blocks, by the block behind which they lie
 };
 
+// All branches back to the loop's head go to a new block, which goes there.
+void end_turns(Draft& draft, const Loop& loop) {
+  const auto turn_end = BlockId(draft.blocks.size());
+  DraftBlock block;
+  block.name = draft.blocks[loop.head].name.empty() ? "" : draft.blocks[loop.head].name + "_again";
+  block.line = draft.blocks[loop.head].line;
+  block.end = DraftBlock::End::Goto;
+  block.next = loop.head;
+  const auto in_layout = [&](BlockId b) { return std::find(draft.layout.begin(), draft.layout.end(), b); };
+  auto last = draft.layout.begin();
+  for (BlockId b : loop.body) {
+    DraftBlock& from = draft.blocks[b];
+    if (from.end != DraftBlock::End::Exit && from.next == loop.head) from.next = turn_end;
+    if (from.end == DraftBlock::End::Branch && from.taken == loop.head) from.taken = turn_end;
+    last = std::max(last, in_layout(b));
+  }
+  draft.layout.insert(last + 1, turn_end);
+  draft.blocks.push_back(std::move(block));
+}
+
 }  // namespace
 
-void add_reconvergence(Draft& draft) { Reconvergence(draft).run(); }
+void add_reconvergence(Draft& draft) {
+  Draft with_ends = draft;
+  for (const Loop& loop : Reconvergence(draft).loops_without_end()) end_turns(with_ends, loop);
+  if (Reconvergence(with_ends).run(true)) draft = std::move(with_ends);
+  else Reconvergence(draft).run(false);
+}
 
 }  // namespace glint::frontend::ptx

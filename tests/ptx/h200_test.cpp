@@ -18,7 +18,7 @@ namespace {
 using Words = std::vector<uint32_t>;
 
 struct Counters {
-  double cycles = 0, instructions = 0;
+  double cycles = 0, instructions = 0, global_loads = 0;
 };
 
 // By kernel; several launches of one kernel get " 2" and so on behind the name.
@@ -50,7 +50,7 @@ std::map<std::string, Counters> read_counters(const std::filesystem::path& path)
     };
     std::string name = cells[0].substr(0, cells[0].find('('));
     while (out.contains(name)) name += " again";
-    out[name] = {number("sm__cycles_elapsed.max"), number("smsp__inst_executed.sum")};
+    out[name] = {number("sm__cycles_elapsed.max"), number("smsp__inst_executed.sum"), number("l1tex__t_requests_pipe_lsu_mem_global_op_ld.sum")};
   }
   return out;
 }
@@ -68,16 +68,20 @@ class Runs {
     kernel.set_arguments();
     pipeline::TimingMachine machine(gpu_, kernel.world().world, false);
     const double cycles = double(machine.run({}));
-    double instructions = 0;
+    double instructions = 0, global_loads = 0;
     for (uint32_t i = 0; i < machine.num_cores(); ++i) {
       const core::CoreStats& stats = machine.core(i).stats();
       instructions += double(stats.instructions.value() + stats.sequence_slots.value());
+      global_loads += double(stats.global_loads.value());
     }
     const Counters& real = counters_.at(launch.empty() ? name : launch);
     const double error = cycles / real.cycles - 1;
     std::printf("%-22s cycles %8.0f of %8.0f %+6.1f %%   instructions %9.0f of %9.0f %+6.1f %%\n", (launch.empty() ? name : launch).c_str(), cycles, real.cycles,
                 100 * error, instructions, real.instructions, 100 * (instructions / real.instructions - 1));
     std::fflush(stdout);
+    INFO(name);
+    CHECK(std::abs(instructions / real.instructions - 1) <= 0.05);
+    CHECK(global_loads == real.global_loads);  // warps' loads: lanes part and meet where they did
     sum_ += std::abs(error);
     ++count_;
   }
