@@ -48,7 +48,7 @@ VirtualProgram Lowering::run() {
   if (errors_.has_errors()) return std::move(program_);
   if (options_.contract) contract(draft_, free_, program_);
   if (options_.shape) {
-    unroll_countdowns(draft_, program_);
+    unroll_loops(draft_, program_);
     exit_at_branches(draft_);
   }
   add_reconvergence(draft_);

@@ -3,6 +3,7 @@
 #include "frontend/ptx/unroll.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
@@ -15,28 +16,33 @@ namespace {
 
 using Operand = VirtualOperand;
 
-constexpr int64_t kTurns = 4;
+constexpr int64_t kTurns = 4;     // at a time; of the rest, two
 constexpr size_t kMostCode = 64;  // instructions of a body: Choice, longer ones gain little
 
 // One loop: its block, and what its registers are in the copies.
-class Countdown {
+class CountedLoop {
  public:
-  Countdown(Draft& draft, VirtualProgram& program, BlockId at) : draft_(draft), program_(program), at_(at) {}
+  CountedLoop(Draft& draft, VirtualProgram& program, BlockId at) : draft_(draft), program_(program), at_(at) {}
 
   bool run() {
     const DraftBlock& block = draft_.blocks[at_];
     if (block.end != DraftBlock::End::Branch || block.taken != at_ || block.next == at_ || block.negate || block.code.size() > kMostCode) return false;
-    if (!std::all_of(block.code.begin(), block.code.end(), is_a_lane_s_own)) return false;
+    const auto all = [&](bool (*holds)(const VirtualInst&)) { return std::all_of(block.code.begin(), block.code.end(), holds); };
+    if (!all(can_be_copied)) return false;
     find_definitions(block);
-    if (!find_counter(block)) return false;
+    if (!find_counter(block) || (!all(is_a_lane_s_own) && !lanes_count_together())) return false;
     append();
     return true;
   }
 
  private:
-  // Lanes of a warp may be in different copies, where they were in one turn.
+  static bool can_be_copied(const VirtualInst& inst) {
+    if (!is_real(inst) || is_guarded(inst)) return false;
+    return is_movable(inst) || row_of(inst).effect == isa::Effect::Barrier || row_of(inst).effect == isa::Effect::Fence;
+  }
+  // Else lanes of a warp may be in different copies, where they were in one turn.
   static bool is_a_lane_s_own(const VirtualInst& inst) {
-    return is_pure(inst) && !is_guarded(inst) && row_of(inst).unit != isa::Unit::Shuffle && row_of(inst).name != "activemask.b32";
+    return is_pure(inst) && row_of(inst).unit != isa::Unit::Shuffle && row_of(inst).name != "activemask.b32";
   }
 
   void find_definitions(const DraftBlock& block) {
@@ -68,15 +74,47 @@ class Countdown {
     return step > -kMost && step < kMost ? std::optional(step) : std::nullopt;
   }
 
-  // The last test: `setp.ne.s32 p, r, 0` behind r's step down.
+  // The last test: `setp.ne.s32 p, r, 0` behind r's step down, or `setp.lt.s32 p, r, bound` behind its step up.
   bool find_counter(const DraftBlock& block) {
     if (block.code.empty() || kept_.contains(block.condition)) return false;
     const VirtualInst& test = block.code.back();
-    if (test.op != setp_ne_s32_ || test.operands[0].reg != block.condition || definitions_[block.condition] != 1) return false;
+    if ((test.op != setp_ne_s32_ && test.op != setp_lt_s32_) || test.operands[0].reg != block.condition || definitions_[block.condition] != 1) return false;
     const Operand &value = test.operands[1], &end = test.operands[2];
-    if (!is_register(value) || !steps_.contains(value.reg) || steps_[value.reg] >= 0 || !is_constant(end) || end.constant != 0) return false;
+    if (!is_register(value) || !steps_.contains(value.reg) || program_.registers[value.reg] != RegisterClass::B32) return false;
     counter_ = value.reg;
-    return program_.registers[counter_] == RegisterClass::B32;
+    end_ = end;
+    counts_up_ = test.op == setp_lt_s32_;
+    if (counts_up_) return steps_[counter_] > 0 && (is_constant(end) || (is_register(end) && !definitions_.contains(end.reg)));
+    return steps_[counter_] < 0 && is_constant(end) && end.constant == 0;
+  }
+
+  // All lanes that are in the loop are in the same turn, and leave it together.
+  bool lanes_count_together() const { return is_uniform(Operand::of(counter_), true) && is_uniform(end_, false); }
+  // One value for all lanes: the constants, what is computed once from such, and the counter that starts with one.
+  bool is_uniform(const Operand& o, bool is_counter, int depth = 0) const {
+    constexpr int kDeepest = 8;
+    if (is_constant(o)) return true;
+    if (o.kind == Operand::Kind::Special) return o.special >= isa::Special::NtidX && o.special <= isa::Special::NctaidZ;
+    if (!is_register(o) || depth == kDeepest) return false;
+    const VirtualInst* source = nullptr;
+    for (BlockId b = 0; b < draft_.blocks.size(); ++b)
+      for (const VirtualInst& inst : draft_.blocks[b].code) {
+        bool writes = false;
+        for_each_def(inst, [&](VirtualRegister r) { writes |= r == o.reg; });
+        if (!writes || (is_counter && b == at_)) continue;
+        if (source || is_guarded(inst)) return false;
+        source = &inst;
+      }
+    if (!source) return false;
+    const isa::OpRow& row = row_of(*source);
+    const bool reads_constants = row.effect == isa::Effect::Load && (row.name.starts_with("ld.const") || row.name.starts_with("ld.param"));
+    if (row.effect != isa::Effect::None && !reads_constants) return false;
+    if (row.unit == isa::Unit::Shuffle || row.name == "activemask.b32") return false;
+    bool uniform = true;
+    for_each_slot(row, [&](size_t slot, isa::OperandKind kind) {
+      if (!isa::is_destination(kind)) uniform = uniform && is_uniform(source->operands[slot], false, depth + 1);
+    });
+    return uniform;
   }
 
   static Operand constant_of(int64_t value, bool wide) { return Operand::value(wide ? uint64_t(value) : uint64_t(uint32_t(value))); }
@@ -87,8 +125,7 @@ class Countdown {
     return found == names_.end() ? o : Operand::of(found->second);
   }
 
-  void copy_body(int64_t turn, std::vector<VirtualInst>& out) {
-    const bool last = turn == kTurns - 1;
+  void copy_body(int64_t turn, bool last, std::vector<VirtualInst>& out) {
     const std::vector<VirtualInst> code = draft_.blocks[at_].code;
     for (size_t i = 0; i + 1 < code.size(); ++i) {  // without the test
       VirtualInst inst = code[i];
@@ -149,29 +186,56 @@ class Countdown {
     layout_.push_back(BlockId(draft_.blocks.size() - 1));
     return layout_.back();
   }
-  void end_in_test(BlockId at, uint16_t op, int64_t bound, bool negate, BlockId taken) {
+  // Goes to `taken` when the counter lasts for `turns` more turns; with `negate`, when it does not.
+  void end_in_test(BlockId at, int64_t turns, bool negate, BlockId taken) {
     DraftBlock& block = draft_.blocks[at];
     block.end = DraftBlock::End::Branch;
     block.condition = program_.new_register(RegisterClass::Predicate);
-    block.code.push_back(make_inst(op, {Operand::of(block.condition), Operand::of(counter_), constant_of(bound, false)}, block.line));
+    const uint16_t op = counts_up_ ? setp_lt_s32_ : turns > 1 ? setp_gt_s32_ : setp_ne_s32_;
+    block.code.push_back(make_inst(op, {Operand::of(block.condition), Operand::of(counter_), limit(turns)}, block.line));
     block.negate = negate;
     block.taken = taken;
   }
-
-  // Puts the copies in front of the loop, and their tests around them. Model: a block each, so that loads stay in their turn: an
-  // H200 waits for memory once in each of the four (k_matmul, docs/validation.md), not once for all.
-  void append() {
-    const int64_t least = -steps_[counter_] * (kTurns - 1);
-    first_block_ = BlockId(draft_.blocks.size());
-    const BlockId body = first_block_ + 1, rest = body + BlockId(kTurns);
-    end_in_test(add_block({}, body), setp_gt_s32_, least, true, at_);
-    for (int64_t turn = 0; turn < kTurns; ++turn) {
-      std::vector<VirtualInst> code;
-      copy_body(turn, code);
-      add_block(std::move(code), body + BlockId(turn) + 1);
+  // Where the counter must be before or beyond for that many turns. Saturated: a bound that no counter can be below.
+  Operand limit(int64_t turns) {
+    const int64_t way = steps_[counter_] * (turns - 1);
+    if (!counts_up_) return constant_of(-way, false);
+    if (turns == 1) return end_;
+    if (is_constant(end_)) return constant_of(std::max<int64_t>(int64_t{int32_t(uint32_t(end_.constant))} - way, INT32_MIN), false);
+    const auto [found, is_new] = limits_.try_emplace(turns, kNoRegister);
+    if (is_new) {
+      found->second = program_.new_register(RegisterClass::B32);
+      std::vector<VirtualInst>& code = draft_.blocks[first_block_].code;
+      code.insert(code.begin(), make_inst(sub_sat_s32_, {Operand::of(found->second), end_, constant_of(way, false)}, draft_.blocks[at_].line));
     }
-    end_in_test(rest - 1, setp_gt_s32_, least, false, body);
-    end_in_test(add_block({}, at_), setp_ne_s32_, 0, true, draft_.blocks[at_].next);
+    return Operand::of(found->second);
+  }
+
+  // Model: a block each, so that loads stay in their turn: an H200 waits for memory once in each of the four (k_matmul,
+  // docs/validation.md), not once for all. Returns the first; the last goes to `next`, or to the block behind it.
+  BlockId add_turns(int64_t turns, BlockId next = kNoBlock) {
+    stepped_.clear(), names_.clear(), first_.clear();
+    const auto body = BlockId(draft_.blocks.size());
+    for (int64_t turn = 0; turn < turns; ++turn) {
+      std::vector<VirtualInst> code;
+      copy_body(turn, turn + 1 == turns, code);
+      add_block(std::move(code), turn + 1 == turns && next != kNoBlock ? next : body + BlockId(turn) + 1);
+    }
+    return body;
+  }
+
+  // Puts the copies in front of the loop, and their tests around them: fours, then two, then the loop itself. The first turn
+  // runs whatever the counter is.
+  void append() {
+    first_block_ = BlockId(draft_.blocks.size());
+    const BlockId entry = add_block({}, first_block_ + 1);
+    const BlockId fours = add_turns(kTurns), few = add_block({}, kNoBlock), two = add_turns(2), rest = add_block({}, at_), short_entry = add_block({}, at_);
+    draft_.blocks[few].next = two;
+    end_in_test(entry, kTurns, true, short_entry);
+    end_in_test(few - 1, kTurns, false, fours);
+    end_in_test(few, 2, true, rest);
+    end_in_test(rest, 1, true, draft_.blocks[at_].next);
+    end_in_test(short_entry, 2, false, two);
     for (BlockId b = 0; b < first_block_; ++b) {
       DraftBlock& block = draft_.blocks[b];
       if (b == at_ || block.end == DraftBlock::End::Exit) continue;
@@ -186,7 +250,11 @@ class Countdown {
   const BlockId at_;
   const Ops ops_;
   const uint16_t setp_ne_s32_ = isa::op_index("setp.ne.s32"), setp_gt_s32_ = isa::op_index("setp.gt.s32");
+  const uint16_t setp_lt_s32_ = isa::op_index("setp.lt.s32"), sub_sat_s32_ = isa::op_index("sub.sat.s32");
   VirtualRegister counter_ = kNoRegister;
+  Operand end_;                                        // what the counter runs to
+  bool counts_up_ = false;
+  std::map<int64_t, VirtualRegister> limits_;          // by turns, where the end is in a register
   std::map<VirtualRegister, int> definitions_;         // in the loop
   std::set<VirtualRegister> kept_;                     // of those, what a turn takes from the last one or others read
   std::map<VirtualRegister, int64_t> steps_, stepped_; // what a turn adds; turns of it done in the copies so far
@@ -198,9 +266,9 @@ class Countdown {
 
 }  // namespace
 
-void unroll_countdowns(Draft& draft, VirtualProgram& program) {
+void unroll_loops(Draft& draft, VirtualProgram& program) {
   const std::vector<BlockId> layout = draft.layout;
-  for (BlockId b : layout) Countdown(draft, program, b).run();
+  for (BlockId b : layout) CountedLoop(draft, program, b).run();
 }
 
 }  // namespace glint::frontend::ptx

@@ -80,7 +80,7 @@ class Runs {
                 100 * error, instructions, real.instructions, 100 * (instructions / real.instructions - 1));
     std::fflush(stdout);
     INFO(name);
-    CHECK(std::abs(instructions / real.instructions - 1) <= 0.07);
+    CHECK(std::abs(instructions / real.instructions - 1) <= 0.05);
     CHECK(global_loads == real.global_loads);  // warps' loads: lanes part and meet where they did
     sum_ += std::abs(error);
     ++count_;

@@ -206,12 +206,31 @@ TEST_CASE("a loop of one block that counts down runs four turns at a time, and a
   };
   const std::string some = shaped(body("add.u32 %r1,%r1,3;"));
   CHECK(count(some, "mad.lo.u32 %r") >= 5);
-  CHECK(count(some, "setp.gt.s32") == 2);
+  CHECK(count(some, "setp.gt.s32") == 4);  // for four and for two, each before and behind
   shaped(body("mov.u32 %r1,12;"));
   shaped(body("mov.u32 %r1,15;"));
   // Not where lanes read each other, or what ends the loop is read behind it.
   CHECK(count(shaped(body("mov.u32 %r1,30;", "shfl.sync.bfly.b32 %r2,%r2,1,31,-1;")), "setp.gt.s32") == 0);
   CHECK(count(shaped(body("mov.u32 %r1,30;") + "@%p1 add.u32 %out,%out,1;\n"), "setp.gt.s32") == 0);
+}
+
+TEST_CASE("a loop of one block that counts up to a bound runs four turns at a time, and any number of them, also where the bound less four turns has no name") {
+  // %r1 from `start` by 3 up to `bound`; each lane's turns are seen in %r2.
+  const auto body = [](const std::string& start, const std::string& bound, const std::string& more = "") {
+    return start + bound + "mov.u32 %r2,7;\nLOOP: mad.lo.u32 %r2,%r2,5,%r1;" + more + "add.s32 %r1,%r1,3;setp.lt.s32 %p1,%r1,%r6;@%p1 bra LOOP;\nadd.u32 %out,%r2,%r1;\n";
+  };
+  const std::string by_lane = "mov.u32 %r6,%lane;", from_2 = "mov.u32 %r1,2;";
+  for (const std::string& text : {shaped(body(from_2, by_lane)), shaped(body("mov.u32 %r1,%lane;", "mov.u32 %r6,40;"))}) {
+    CHECK(count(text, "mad.lo.u32 %r") >= 7);
+    CHECK(count(text, "setp.lt.s32") == 6);  // 4, 4, 2, 2, 1 and the loop's own
+  }
+  for (const char* start : {"mov.u32 %r1,-2147483648;", "mov.u32 %r1,2147483640;", "mov.u32 %r1,0;"})
+    shaped(body(start, "add.u32 %r6,%lane,-2147483648;"));
+  // Waiting for the block: only where all lanes count alike.
+  const std::string waits = "bar.sync 0;";
+  CHECK(count(shaped(body(from_2, "mov.u32 %r6,%ntid.x;", waits)), "setp.lt.s32") == 6);
+  CHECK(count(shaped(body(from_2, "shr.u32 %r6,%lane,5;add.u32 %r6,%r6,40;", waits)), "setp.lt.s32") == 1);
+  CHECK(count(shaped(body("shr.u32 %r1,%lane,5;", "mov.u32 %r6,%ntid.x;", waits)), "setp.lt.s32") == 1);
 }
 
 TEST_CASE("the negation of a product becomes that of a factor from elsewhere, to the bit") {
