@@ -65,9 +65,10 @@ constexpr Section<Owner, T> section(T Owner::*field, std::string_view name, std:
   return {field, name, doc};
 }
 
-// One described key: what `glint describe` and docs/config.md show.
+// One described key: what `glint describe` and docs/config.md show. `needs`: the choice of policy that gives it a meaning, where
+// another is made; such a key counts for nothing and belongs in no resolved configuration.
 struct ParamInfo {
-  std::string key, unit, doc, value, range;
+  std::string key, unit, doc, value, range, needs = {};
 };
 
 template <class Owner, class T>

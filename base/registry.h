@@ -23,6 +23,7 @@ struct PolicyChoice {
   std::string name;
   Make maker;                     // empty: the policy's default parameters
   std::vector<ParamInfo> params;  // the policy's parameters as read
+  std::map<std::string, std::vector<ParamInfo>> others;  // those of the policies not chosen
 
   PolicyChoice(const char* default_name) : name(default_name) {}  // NOLINT: reads as a default value
   std::unique_ptr<Interface> make(typename Interface::Context context) const;
@@ -104,13 +105,19 @@ constexpr PolicyParam<Owner, Interface> policy(PolicyChoice<Interface> Owner::*f
 template <class Owner, class Interface>
 void read_param(ConfigTable& table, Owner& out, const PolicyParam<Owner, Interface>& p) {
   PolicyChoice<Interface>& choice = out.*p.field;
-  choice.name = table.take_name(p.name, choice.name, Registry<Interface>::names());
+  PolicyChoice<Interface> chosen(table.take_name(p.name, choice.name, Registry<Interface>::names()).c_str());
   for (const auto& [name, entry] : Registry<Interface>::instance().entries()) {
     ConfigTable params = table.take_table(name);  // the tables of policies not chosen are checked too
-    PolicyChoice<Interface> read(choice.name.c_str());
+    PolicyChoice<Interface> read("");
     entry.read(params, read);
-    if (name == choice.name) choice = read;
+    if (name == chosen.name) {
+      chosen.maker = read.maker;
+      chosen.params = read.params;
+    } else {
+      chosen.others.emplace(name, read.params);
+    }
   }
+  choice = chosen;
 }
 
 template <class Owner, class Interface>
@@ -120,10 +127,16 @@ void describe_param(std::vector<ParamInfo>& out, const std::string& prefix, cons
   std::string range;
   for (const std::string& name : Registry<Interface>::names()) range += (range.empty() ? "" : ", ") + name;
   out.push_back({prefix + std::string(p.name), "", std::string(p.doc), config_text(choice.name), range});
-  for (ParamInfo info : choice.params) {
-    info.key = prefix + choice.name + "." + info.key;
-    out.push_back(std::move(info));
-  }
+  const auto add = [&](const std::string& policy, const std::vector<ParamInfo>& params, const std::string& needs) {
+    for (ParamInfo info : params) {
+      info.key = prefix + policy + "." + info.key;
+      info.needs = needs;
+      out.push_back(std::move(info));
+    }
+  };
+  add(choice.name, choice.params, "");
+  for (const auto& [name, params] : choice.others)
+    add(name, params, prefix + std::string(p.name) + " = " + config_text(name));
 }
 
 }  // namespace glint

@@ -16,6 +16,7 @@ struct Table {
 std::vector<Table> tables_of(const std::vector<ParamInfo>& params) {
   std::vector<Table> tables{{"", {}}};  // keys without a table must come first in TOML
   for (const ParamInfo& param : params) {
+    if (!param.needs.empty()) continue;
     const size_t dot = param.key.rfind('.');
     const std::string name = dot == std::string::npos ? "" : param.key.substr(0, dot);
     auto table = std::find_if(tables.begin(), tables.end(), [&](const Table& t) { return t.name == name; });
@@ -53,7 +54,8 @@ std::string config_file(const std::vector<ParamInfo>& params, const std::string&
 
 std::string config_key_values(const std::vector<ParamInfo>& params) {
   std::string out;
-  for (const ParamInfo& param : params) out += param.key + "=" + param.value + "\n";
+  for (const ParamInfo& param : params)
+    if (param.needs.empty()) out += param.key + "=" + param.value + "\n";
   return out;
 }
 

@@ -24,12 +24,14 @@ void print(const ParamInfo& info) {
   fmt::print("  {}\n", info.doc);
   if (!info.unit.empty()) fmt::print("  unit   {}\n", info.unit);
   if (!info.range.empty()) fmt::print("  range  {}\n", info.range);
+  if (!info.needs.empty()) fmt::print("  needs  {}\n", info.needs);
 }
 
 void print_markdown(const std::vector<ParamInfo>& infos) {
   fmt::print("| key | value | unit | range | meaning |\n|---|---|---|---|---|\n");
   for (const ParamInfo& info : infos)
-    fmt::print("| `{}` | {} | {} | {} | {} |\n", info.key, info.value, info.unit, info.range, info.doc);
+    fmt::print("| `{}` | {} | {} | {} | {}{} |\n", info.key, info.value, info.unit, info.range, info.doc,
+               info.needs.empty() ? "" : fmt::format(" Needs `{}`.", info.needs));
 }
 
 // "gpu.core[3].issue_slots::raw_fixed" -> "gpu.core[*].issue_slots"

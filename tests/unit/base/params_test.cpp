@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/params.h"
 
+#include <algorithm>
+
 #include "base/registry.h"
 #include "tests/support/catch.h"
 
@@ -119,6 +121,16 @@ TEST_CASE("descriptions carry dotted keys, present values, units and ranges in d
   CHECK(infos[3].value == "\"dog\"");
   CHECK(infos[3].range == "dog, snail");
   CHECK(infos[4].key == "x.dog.factor");
+}
+
+TEST_CASE("keys of a policy that is not chosen are described as they were read, with the choice that they need") {
+  Diagnostics diagnostics;
+  const auto infos = describe_params(read("animal = \"snail\"\n[dog]\nfactor = 4\n", diagnostics), "x.");
+
+  const auto dog = std::find_if(infos.begin(), infos.end(), [](const ParamInfo& info) { return info.key == "x.dog.factor"; });
+  REQUIRE(dog != infos.end());
+  CHECK(dog->value == "4");
+  CHECK(dog->needs == "x.animal = \"dog\"");
 }
 
 TEST_CASE("registered names are sorted whatever the order of registration") {
