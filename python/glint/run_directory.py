@@ -105,12 +105,12 @@ class Run:
 
     @functools.cached_property
     def image(self) -> Any:
-        """The picture as the shader wrote it: float32 array of shape (height, width, 3)."""
+        """The picture as the shader wrote it, a float32 array of shape (height, width, 3)."""
         return read_image(self.file("image.pfm", "runs of scenes"))
 
     @functools.cached_property
     def series(self) -> Table:
-        """The run over time: a row an interval (docs/profiling.md); `.frame()` is a DataFrame."""
+        """The run over time, a row an interval (docs/profiling.md)."""
         return Table.read(self.file("series.csv", "`glint run --sample CYCLES`"), needs=("cycle", "ipc"))
 
     @functools.cached_property
@@ -130,7 +130,7 @@ class Run:
         return sorted(path.stem for path in (self.directory / "heat").glob("*.npy"))
 
     def map(self, name: str) -> Any:
-        """A map of cost by pixel: array of shape (height, width)."""
+        """A map of cost by pixel, an array of shape (height, width)."""
         if name not in self.map_names:
             raise MissingFile(f"{self.directory}: no map '{name}'; it has: {', '.join(self.map_names) or 'none'} (docs/profiling.md)")
         return read_map(self.directory / "heat" / f"{name}.npy")

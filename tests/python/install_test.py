@@ -9,9 +9,9 @@ import tempfile
 cmake, build = sys.argv[1:3]
 with tempfile.TemporaryDirectory() as folder:
     subprocess.run([cmake, "--install", build, "--prefix", folder, "--component", "python"], check=True, capture_output=True)
-    package = next(pathlib.Path(folder).glob("lib/python3/dist-packages/glint"), None)
+    package = next(pathlib.Path(folder).glob("lib/python*/dist-packages/glint"), None)
     if package is None:
-        sys.exit(f"no lib/python3/dist-packages/glint in {[str(path) for path in pathlib.Path(folder).rglob('*')][:20]}")
+        sys.exit(f"no lib/python*/dist-packages/glint in {[str(path) for path in pathlib.Path(folder).rglob('*')][:20]}")
     code = "import glint, sys; print(len(glint.metrics()), glint.__file__)"
     done = subprocess.run([sys.executable, "-B", "-c", code], env={"PYTHONPATH": str(package.parent)}, capture_output=True, text=True)
     source = pathlib.Path(__file__).resolve().parents[2] / "python/glint"

@@ -1,0 +1,92 @@
+# The reference pages that the command itself tells: commands and options, policies, presets, keys, statistics, ops.
+# SPDX-License-Identifier: Apache-2.0
+"""Writes pages into the site's copy of docs/; what is generated and committed is written anew, so that it fits the command."""
+import pathlib
+import re
+import subprocess
+
+
+def _run(glint, *words):
+    return subprocess.run([glint, *words], capture_output=True, text=True, check=True).stdout
+
+
+def write(glint: str, root: pathlib.Path, source: pathlib.Path) -> None:
+    """All generated pages. `root` is the project, `source` the site's copy of docs/."""
+    import update_golden
+    for name, text in update_golden.generated(glint):
+        if name.startswith("docs/"):
+            path = source / pathlib.Path(name).relative_to("docs")
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text)
+    (source / "reference").mkdir(exist_ok=True)
+    for name, text in {"commands": commands(glint), "policies": policies(glint), "presets": presets(glint, root), "python": python()}.items():
+        (source / f"reference/{name}.md").write_text(text)
+    _link_instructions(source)
+
+
+def commands(glint: str) -> str:
+    """Every command's own help."""
+    top = _run(glint, "--help")
+    names = re.findall(r"^  (\w+) {2,}\S", top.split("Subcommands:")[1], re.M)
+    pages = ["# Commands\n\nWhat `glint COMMAND --help` prints. Exit codes: [errors](../errors.md). Asked-for data goes to stdout, all else to stderr.\n",
+             f"```text\n{top.strip()}\n```\n"]
+    for name in names:
+        help_text = _run(glint, name, "--help").strip()
+        summary, _, rest = help_text.partition("\n")
+        pages.append(f"## {name}\n\n{summary}.\n\n```text\n{rest.strip()}\n```\n")
+    return "\n".join(pages)
+
+
+def policies(glint: str) -> str:
+    """What can be chosen by name, by key."""
+    by_key: dict[str, list[tuple[str, str]]] = {}
+    folders: dict[str, str] = {}
+    for line in _run(glint, "list", "policies").splitlines():
+        folder, key, name, doc = re.split(r" {2,}", line.strip(), maxsplit=3)
+        by_key.setdefault(key, []).append((name, doc))
+        folders[key] = folder
+    text = ["# Policies\n\nWhat the configuration chooses by name. Each is one file of the folder; [how to add one](../howto/policy.md). `glint list policies` prints them.\n"]
+    for key, rows in by_key.items():
+        title = f"`{key}`" if not key.startswith("(") else "Statistics files"
+        text.append(f"## {title}\n\nFolder `{folders[key]}`.\n\n| name | what it does |\n|---|---|")
+        text += [f"| `{name}` | {doc} |" for name, doc in rows] + [""]
+    return "\n".join(text)
+
+
+def presets(glint: str, root: pathlib.Path) -> str:
+    """The presets side by side: every key in which two of them differ."""
+    names = [line.split()[0] for line in _run(glint, "list", "configs").splitlines()]
+    values = {name: _values(_run(glint, "describe", "--markdown", "--config", name)) for name in names}
+    differ = [key for key in values[names[0]] if len({values[name].get(key) for name in names}) > 1]
+    text = [f"# Presets\n\nThe {len(differ)} of {len(values[names[0]])} keys in which the presets differ; each number's source stands in its file in `configs/`.\n", "| preset | what it is |\n|---|---|"]
+    text += [f"| `{line.split()[0]}` | {line.split(maxsplit=1)[1]} |" for line in _run(glint, "list", "configs").splitlines()]
+    text.append(f"\n| key | {' | '.join(names)} |\n|---|{'---|' * len(names)}")
+    text += [f"| `{key}` | {' | '.join(values[name].get(key, '') for name in names)} |" for key in differ]
+    return "\n".join(text) + "\n"
+
+
+def _values(markdown: str) -> dict[str, str]:
+    """Key and value of the rows of `glint describe --markdown`."""
+    rows = (line.split("|") for line in markdown.splitlines() if line.startswith("| `"))
+    return {row[1].strip(" `"): row[2].strip() for row in rows}
+
+
+def python() -> str:
+    """The Python package, from its docstrings."""
+    text = ["# Python package\n\nGenerated from the package; the [guide](../python.md) comes first.\n"]
+    parts = {"Runs": "run_directory", "Statistics": "statistics", "Metrics": "derived", "Tables": "table", "Folders of runs": "collection", "Comparison": "comparison",
+             "Starting runs": "launch", "Pictures": "images", "Errors": "errors"}
+    for title, module in parts.items():
+        text.append(f"## {title}\n\n```{{eval-rst}}\n.. automodule:: glint.{module}\n   :members:\n   :undoc-members:\n```\n")
+    text.append("## Figures\n\n```{eval-rst}\n.. automodule:: glint.plot.style\n   :members: save\n```\n")
+    for module in ("instructions", "rays", "memory", "overview"):
+        text.append(f"```{{eval-rst}}\n.. automodule:: glint.plot.{module}\n   :members:\n```\n")
+    return "\n".join(text)
+
+
+def _link_instructions(source: pathlib.Path) -> None:
+    """The tables of ops by preset are files to load, not pages."""
+    names = sorted(path.name for path in (source / "instructions").glob("*.csv"))
+    if names:
+        with open(source / "isa.md", "a", encoding="utf-8") as page:
+            page.write("\n## Times by preset\n\nUnit, latency and interval of every op, as CSV: " + ", ".join(f"{{download}}`{name} <instructions/{name}>`" for name in names) + ".\n")

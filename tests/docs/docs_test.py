@@ -1,0 +1,176 @@
+# Every command, program and policy that the documentation shows, run as a reader would.
+# SPDX-License-Identifier: Apache-2.0
+"""usage: docs_test.py GLINT SOURCE_DIR [Commands|Programs|Inline|Policy|Files]
+
+Commands of a page run in order in a copy of the tree; what is reduced or not run is said in workplace.py and printed."""
+import os
+import pathlib
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import python_case  # noqa: E402
+from python_case import GLINT, ROOT  # noqa: E402
+
+import pages  # noqa: E402
+import workplace  # noqa: E402
+
+PAGES = pages.pages(ROOT)
+
+
+class DocsTest(unittest.TestCase):
+    def place(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        path = pathlib.Path(folder.name)
+        self.environment = workplace.make(ROOT, GLINT, path, sys.executable)
+        return path
+
+    def shell(self, where, script, place):
+        done = subprocess.run(["bash", "-euo", "pipefail", "-c", script], cwd=where, env=self.environment, capture_output=True, text=True, timeout=240)
+        self.assertEqual(done.returncode, 0, f"{place}: exit code {done.returncode}\n{script}\n{done.stdout[-1500:]}\n{done.stderr[-1500:]}")
+
+    def fixture(self, where, page):
+        if page in workplace.FIXTURES:
+            self.shell(where, workplace.FIXTURES[page], f"fixture of {page}")
+
+
+class Commands(DocsTest):
+    def test_every_command_block_of_every_page_works(self):
+        ran = 0
+        for path in PAGES:
+            blocks = [block for block in pages.blocks(ROOT, path) if block.kind == "shell"]
+            if not blocks:
+                continue
+            page = blocks[0].page
+            with self.subTest(page=page):
+                where = self.place()
+                self.fixture(where, page)
+                for block in blocks:
+                    if page == "docs/howto/policy.md":
+                        continue  # needs the command with the policy in it: Policy
+                    self.shell(where, block.text, block.place)
+                    ran += 1
+                log = where / ".commands/log"
+                for line in log.read_text().splitlines() if log.exists() else []:
+                    if not line.startswith("as written"):
+                        print(f"{page}: {line}")
+        print(f"{ran} blocks ran")
+        self.assertGreater(ran, 20)
+
+
+class Programs(DocsTest):
+    def test_every_python_block_of_every_page_works(self):
+        python_case.need("matplotlib", "numpy", "pandas")
+        ran = 0
+        for path in PAGES:
+            blocks = [block for block in pages.blocks(ROOT, path) if block.kind in ("python", "shell")]
+            if not any(block.kind == "python" for block in blocks):
+                continue
+            with self.subTest(page=blocks[0].page):
+                where = self.place()
+                self.fixture(where, blocks[0].page)
+                for block in blocks:  # commands first made what the programs read
+                    if block.kind == "shell":
+                        self.shell(where, block.text, block.place)
+                        continue
+                    script = where / "block.py"
+                    script.write_text(block.text)
+                    self.shell(where, f"{sys.executable} block.py", block.place)
+                    ran += 1
+        print(f"{ran} blocks ran")
+        self.assertGreater(ran, 5)
+
+
+class Inline(DocsTest):
+    def test_inline_commands_name_commands_and_options_that_there_are(self):
+        seen, wrong = 0, []
+        helps = {}
+        for path in PAGES:
+            for place, text in pages.inline(ROOT, path):
+                seen += 1
+                wrong += [f"{place}: {text}: {fault}" for fault in self.faults(text, helps)]
+        self.assertEqual(wrong, [])
+        self.assertGreater(seen, 40)
+
+    def faults(self, text, helps):
+        try:
+            words = shlex.split(text)
+        except ValueError:
+            words = text.split()
+        if len(words) < 2 or words[1].isupper() or words[1].startswith("-"):
+            return []  # `glint COMMAND --help`
+        if words[1] not in helps:
+            done = subprocess.run([GLINT, words[1], "--help"], capture_output=True, text=True, check=False)
+            helps[words[1]] = done.stdout if done.returncode == 0 else None
+        known = helps[words[1]]
+        if known is None:
+            return [f"no command {words[1]}"]
+        options = [word.split("=")[0] for word in words[2:] if re.match(r"--[a-z]", word)]
+        return [f"no option {option}" for option in options if not re.search(rf"(?<![\w-]){re.escape(option)}(?![\w-])", known)]
+
+    def test_keys_of_the_migration_page_are_keys_of_the_configuration(self):
+        text = (ROOT / "docs/vulkan_sim.md").read_text().split("## Options")[1].split("## Numbers")[0]
+        cells = [line.split("|")[2] for line in text.splitlines() if line.startswith("| `-")]
+        keys = [key for cell in cells for key in re.findall(r"`([a-z0-9_.]+)(?: = [^`]*)?`", cell)]
+        described = subprocess.run([GLINT, "describe", "--markdown", "--config", "vulkan-sim-mobile"], capture_output=True, text=True, check=True).stdout
+        self.assertGreater(len(keys), 50)
+        self.assertEqual([key for key in keys if f"| `{key}` |" not in described], [])
+
+
+class Policy(DocsTest):
+    def test_the_policy_of_the_page_can_be_linked_and_chosen(self):
+        build = GLINT.parents[2]
+        ninja = shutil.which("ninja")
+        if not ninja or not (build / "build.ninja").exists():
+            print("SKIPPED: docs/howto/policy.md: the command does not lie in a build by ninja")
+            sys.exit(python_case.SKIPPED)
+        blocks = pages.blocks(ROOT, ROOT / "docs/howto/policy.md")
+        where = self.place()
+        source = where / "youngest.cpp"
+        source.write_text(next(block.text for block in blocks if block.kind == "cpp"))
+        listed = subprocess.run([ninja, "-C", build, "-t", "commands", "apps/glint/glint"], capture_output=True, text=True, check=True).stdout.splitlines()
+        neighbour = next(line for line in listed if "/core/schedulers/oldest.cpp" in line)
+        compile_it = re.sub(r"-o \S+ ", f"-o {where}/youngest.o ", re.sub(r"\S+/core/schedulers/oldest\.cpp", str(source), re.sub(r"-M[DFT]+( \S+\.(o|d))?", "", neighbour)))
+        link_it = re.sub(r" -o \S*apps/glint/glint ", f" {where}/youngest.o -o {where}/glint-youngest ", listed[-1])
+        for command in (compile_it, link_it):
+            done = subprocess.run(command, shell=True, cwd=build, capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, 0, f"{command}\n{done.stderr[-2000:]}")
+        tools = where / ".commands/glint"
+        tools.write_text(tools.read_text().replace(str(GLINT), f"{where}/glint-youngest"))
+        for block in blocks:
+            if block.kind == "shell":
+                self.shell(where, block.text, block.place)
+        out = subprocess.run([where / "glint-youngest", "list", "policies"], capture_output=True, text=True, check=True).stdout
+        self.assertRegex(out, r"core\.issue +youngest +The ready warp that was launched last")
+        self.assertIn('issue = "youngest"', (where / "out/youngest/config.toml").read_text())
+
+
+class Files(DocsTest):
+    def test_every_file_of_a_run_stands_on_the_page_of_files(self):
+        where = self.place()
+        self.shell(where, "glint run SHIP --shader sh --profile --sample 1000 --out out/all && glint report out/all && glint bench SHIP --out out/bench", "files")
+        pages_text = "".join((ROOT / f"docs/{name}.md").read_text() for name in ("files", "profiling", "report"))
+        for folder in ("all", "bench", "bench/SHIP_SH"):
+            for path in (where / "out" / folder).iterdir():
+                if path.is_file():
+                    self.assertIn(f"`{path.name}`", pages_text, f"{path} is not documented")
+
+    def test_every_key_of_run_json_stands_on_the_page_of_files(self):
+        where = self.place()
+        self.shell(where, "glint run SHIP --shader sh --out out/all", "run.json")
+        import json
+        text = (ROOT / "docs/files.md").read_text()
+        missing = [key for key in json.loads((where / "out/all/run.json").read_text()) if f"`{key}`" not in text]
+        self.assertEqual(missing, [])
+
+
+if __name__ == "__main__":
+    os.environ.pop("NO_COLOR", None)
+    python_case.main()

@@ -1,0 +1,61 @@
+# The documentation site is built offline, without a warning or a broken link, and opens in a browser from disk.
+# SPDX-License-Identifier: Apache-2.0
+"""usage: site_test.py GLINT SOURCE_DIR; exit status 77, said loudly, where Sphinx, MyST and furo are not installed."""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
+import python_case  # noqa: E402
+from python_case import GLINT, ROOT  # noqa: E402
+
+python_case.need("sphinx", "myst_parser", "furo", "matplotlib")
+
+
+class Site(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.html = pathlib.Path(folder.name) / "html"
+        command = [sys.executable, ROOT / "docs/build", "--glint", GLINT, "--out", folder.name, "--links"]
+        cls.done = subprocess.run(command, capture_output=True, text=True, check=False)
+
+    def test_the_site_builds_without_a_warning_and_without_a_broken_link(self):
+        self.assertEqual(self.done.returncode, 0, self.done.stdout + self.done.stderr)
+        pages = {path.stem for path in self.html.glob("*.html")}
+        self.assertLessEqual({path.stem for path in (ROOT / "docs").glob("*.md")} - {"README"}, pages)
+
+    def test_nothing_is_asked_of_a_network(self):
+        for path in [*self.html.rglob("*.html"), *self.html.rglob("*.css")]:
+            text = path.read_text(encoding="utf-8")
+            loaded = re.findall(r"<(?:script|img|link)[^>]*(?:src|href)=\"(https?:[^\"]*)", text) + re.findall(r"url\(['\"]?((?:https?:)?//?[^)'\"]*)", text)
+            self.assertEqual([link for link in loaded if not link.startswith("https://schema")], [], path.name)
+
+    def test_a_browser_opens_pages_from_disk_without_an_error_light_and_dark(self):
+        chromium = shutil.which("chromium")
+        if not chromium:
+            print("SKIPPED: no chromium: pages were not opened")
+            return
+        backgrounds = set()
+        for scheme in ("0", "1"):  # Blink's numbers of dark and light
+            probe = self.html / f"probe{scheme}.html"
+            script = "<script>addEventListener('load',()=>{document.body.dataset.ground=getComputedStyle(document.body).backgroundColor;document.querySelector('.theme-toggle').click();document.body.dataset.toggled=document.body.dataset.theme})</script>"
+            probe.write_text((self.html / "concepts.html").read_text(encoding="utf-8").replace("</body>", script + "</body>"), encoding="utf-8")
+            with tempfile.TemporaryDirectory() as profile:
+                done = subprocess.run([chromium, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={profile}", "--enable-logging=stderr",
+                                       f"--blink-settings=preferredColorScheme={scheme}", "--dump-dom", probe.as_uri()], capture_output=True, text=True, timeout=120, check=False)
+            self.assertNotRegex(done.stderr, r"CONSOLE.*(Error|error)")
+            backgrounds.add(re.search(r'data-ground="([^"]+)"', done.stdout)[1])
+            self.assertRegex(done.stdout, r'data-toggled="(light|dark)"')
+        self.assertEqual(len(backgrounds), 2)
+
+
+if __name__ == "__main__":
+    os.environ.pop("GLINT_DOCS_PYTHON", None)
+    python_case.main()
