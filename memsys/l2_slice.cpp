@@ -10,12 +10,17 @@
 namespace glint::mem {
 namespace {
 
+// Of a cycle, at the nearest.
+Cycle parts_of(double cycles, Cycle parts) { return Cycle(cycles * double(parts) + 0.5); }
+
 uint32_t num_ways(uint64_t size, uint32_t ways, uint32_t line) { return ways ? ways : uint32_t(size / line); }
 
 }  // namespace
 
 L2Slice::L2Slice(const Params& params, uint32_t index, const PartitionMap& map, SliceLinks links, stats::Group* parent, const std::string& name)
     : params_(params.l2),
+      visit_parts_(parts_of(params.l2.write_visit, kParts)),
+      partial_parts_(parts_of(params.l2.partial_interval, kParts)),
       line_bytes_(params.line),
       atom_sectors_(std::max(params.dram.atom_bytes(), kSectorBytes) / kSectorBytes),
       index_(index),
@@ -66,7 +71,10 @@ void L2Slice::fill(Cycle now, const DramReturn& data) {
   TagArray::Line& filled = slot == kNone ? tags_.insert(line) : tags_.line(slot);
   if (!words_.empty()) stats_.completed_sectors += num_sectors(sectors & filled.dirty & uint8_t(~filled.valid));
   filled.valid |= sectors;
-  if (params_.fill_takes_service) busy_until_ = std::max(busy_until_, now) + sector_cycles(sectors);
+  if (params_.fill_takes_service) {
+    busy_until_ = std::max(busy_until_, now) + sector_cycles(sectors);
+    busy_parts_ = busy_until_ * kParts;
+  }
   mshr_.arrive(mshr_.find(line), sectors, [&](Waiter& waiter) {
     Packet& packet = waiter.packet;
     packet.stamps.set(Stage::DramQueue, data.command);
@@ -99,21 +107,29 @@ void L2Slice::serve(Cycle now) {
   ++packets_received_;
   // Not sooner than any message: a window may be as long as the shortest of them.
   if (!links_.credits.empty()) links_.credits[packet.core]->send(index_, now + 1 + links_.reply_latency[packet.core], {uint16_t(index_)});
-  busy_until_ = now + service_cycles(packet);
+  occupy(now, packet);
   if (packet.write) written_until_ = busy_until_;
   links_.requests->pop();
 }
 
 Cycle L2Slice::service_cycles(const Packet& packet) const {
-  const Cycle sectors = num_sectors(packet.sectors);
-  if (is_atomic(packet)) return sectors * params_.atomic_interval;
-  return packet.write && params_.partial_interval ? write_cycles(packet) : sector_cycles(packet.sectors);
+  return is_atomic(packet) ? Cycle{num_sectors(packet.sectors)} * params_.atomic_interval : sector_cycles(packet.sectors);
+}
+
+// Writes may take parts of cycles, which are kept: one begins where the last packet ended, if it has waited for that.
+void L2Slice::occupy(Cycle now, const Packet& packet) {
+  const bool is_write = packet.write && !is_atomic(packet);
+  const Cycle parts = is_write && visit_parts_ + partial_parts_ ? write_parts(packet) : service_cycles(packet) * kParts;
+  busy_parts_ = (busy_until_ == now ? busy_parts_ : now * kParts) + parts;
+  busy_until_ = (busy_parts_ + kParts - 1) / kParts;
 }
 
 // Of a sector written in part, the slice reads what it does not write.
-Cycle L2Slice::write_cycles(const Packet& packet) const {
+Cycle L2Slice::write_parts(const Packet& packet) const {
   const uint8_t covered = covered_sectors(packet, line_bytes_);
-  return sector_cycles(covered) + num_sectors(uint8_t(packet.sectors & ~covered)) * params_.partial_interval;
+  if (visit_parts_ == 0) return sector_cycles(covered) * kParts + num_sectors(uint8_t(packet.sectors & ~covered)) * partial_parts_;
+  const auto part = uint8_t(partial_parts_ ? packet.sectors & ~covered : 0);
+  return visit_parts_ + num_sectors(uint8_t(packet.sectors & ~part)) * kParts + num_sectors(part) * partial_parts_;
 }
 
 // Reads, and atomics, which need what they change.

@@ -102,7 +102,8 @@ class L2Slice {
   void answer_present(Cycle now, const Packet& packet, uint8_t missing);
   Reply reply_to(const Packet& packet, uint8_t sectors) const;
   Cycle service_cycles(const Packet& packet) const;
-  Cycle write_cycles(const Packet& packet) const;
+  Cycle write_parts(const Packet& packet) const;
+  void occupy(Cycle now, const Packet& packet);
   Cycle sector_cycles(uint8_t sectors) const { return (num_sectors(sectors) + params_.sectors_per_cycle - 1) / params_.sectors_per_cycle; }
   void queue_for_dram(Cycle ready, Address line, uint8_t sectors, bool write);
   void evict(Cycle now, const TagArray::Line& victim);
@@ -112,7 +113,10 @@ class L2Slice {
   bool dram_room(uint32_t requests) const { return to_dram_.size() + requests <= params_.dram_queue; }
   SliceCycle reason(bool dram_works) const;
 
+  static constexpr Cycle kParts = 16;  // of a cycle
+
   const L2Params params_;
+  const Cycle visit_parts_, partial_parts_;
   const uint32_t line_bytes_, atom_sectors_;
   const uint32_t index_;
   const Cycle dram_latency_;
@@ -127,6 +131,7 @@ class L2Slice {
   Ring<HitReply> hit_replies_;
   Ring<ToDram> to_dram_;
   Cycle busy_until_ = 0;
+  Cycle busy_parts_ = 0;  // the same to parts of a cycle
   Cycle written_until_ = 0;
   Cycle accounted_ = 0;
   SliceCycle blocked_ = SliceCycle::Count;  // why the head could not be served; Count: it was not tried

@@ -171,6 +171,30 @@ TEST_CASE("a sector written in part takes the slice for its interval, a whole on
   CHECK(part.first - whole.first == 9 - 1);    // the read behind it
 }
 
+TEST_CASE("a write takes the slice for its visit and its sectors, in sixteenths of a cycle that add up over those that wait") {
+  // Writes that come a cycle apart and wait for each other: when the last has been served.
+  const auto end = [](uint32_t writes, uint8_t sectors, WordMask words) {
+    Params params = bare();
+    params.l2.write_visit = 1.25;
+    params.l2.partial_interval = 1.3125;
+    MemoryRig rig(params);
+    const std::vector<Address> lines = lines_of(rig.memory().map(), 0, writes);
+    const Cycle start = rig.now();
+    for (uint32_t i = 0; i < writes; ++i) REQUIRE(rig.l1().access(start + i, Client::Lsu, write(lines[i], sectors, words)));
+    rig.drain();
+    return rig.memory().written_until() - start;
+  };
+  const auto cost = [&](uint32_t writes, uint8_t sectors, WordMask words, Cycle one) { return end(writes, sectors, words) - end(1, sectors, words) + one; };
+  // 16 writes of one sector in part: 16 x (1.25 + 1.3125) = 41; 2: 5.125, 3: 7.6875, rounded up once.
+  CHECK(cost(16, 1, 0x01, 3) == 41);
+  CHECK(cost(2, 1, 0x01, 3) == 6);
+  CHECK(cost(3, 1, 0x01, 3) == 8);
+  // A whole sector takes 1.25 + 1, a line 5.25, four in part 1.25 + 4 x 1.3125.
+  CHECK(cost(4, 1, 0xff, 3) == 9);
+  CHECK(cost(4, 0xf, kAllWords, 6) == 21);
+  CHECK(cost(2, 0xf, 0x0101'0101, 7) == 13);
+}
+
 TEST_CASE("without masks a write covers its sectors, whatever its words") {
   MemoryRig rig(bare());
   REQUIRE(rig.l1().access(rig.now(), Client::Lsu, write(kLine, 1, 0x01)));
