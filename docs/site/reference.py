@@ -74,12 +74,12 @@ def _values(markdown: str) -> dict[str, str]:
 def python() -> str:
     """The Python package, from its docstrings."""
     text = ["# Python package\n\nGenerated from the package; the [guide](../python.md) comes first.\n"]
-    parts = {"Runs": "run_directory", "Statistics": "statistics", "Metrics": "derived", "Tables": "table", "Folders of runs": "collection", "Comparison": "comparison",
+    parts = {"Runs": "run_directory", "Statistics": "statistics", "Metrics": "derived", "Tables": "table", "Folders of runs": "collection", "Comparison": "comparison", "Characterisation": "characterization",
              "Starting runs": "launch", "Pictures": "images", "Errors": "errors"}
     for title, module in parts.items():
         text.append(f"## {title}\n\n```{{eval-rst}}\n.. automodule:: glint.{module}\n   :members:\n   :undoc-members:\n```\n")
     text.append("## Figures\n\n```{eval-rst}\n.. automodule:: glint.plot.style\n   :members: save\n```\n")
-    for module in ("instructions", "rays", "memory", "overview"):
+    for module in ("instructions", "rays", "memory", "overview", "suite"):
         text.append(f"```{{eval-rst}}\n.. automodule:: glint.plot.{module}\n   :members:\n```\n")
     return "\n".join(text)
 

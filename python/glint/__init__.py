@@ -12,6 +12,7 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
+from .characterization import Characterization
 from .collection import Bench, Runs, Sweep
 from .comparison import Change, compare, speedup
 from .errors import CommandFailed, GlintError, IncompleteRun, MissingFile, MissingPackage, SchemaError, UnknownName
@@ -22,7 +23,7 @@ from .run_directory import Run, labels
 from .statistics import Histogram, Stat, Stats
 from .table import Table
 
-__all__ = ["Bench", "Change", "CommandFailed", "GlintError", "Histogram", "IncompleteRun", "Metric", "MissingFile", "MissingPackage",
+__all__ = ["Bench", "Change", "Characterization", "CommandFailed", "GlintError", "Histogram", "IncompleteRun", "Metric", "MissingFile", "MissingPackage",
            "Run", "Runs", "SchemaError", "Stat", "Stats", "Sweep", "Table", "UnknownName", "compare", "find_glint", "labels",
            "metrics", "plot", "read_image", "run", "speedup", "sweep"]
 

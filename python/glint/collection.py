@@ -6,6 +6,7 @@ from __future__ import annotations
 import functools
 import json
 import pathlib
+import re
 from collections.abc import Mapping
 from typing import Any, Iterable, Iterator
 
@@ -17,7 +18,7 @@ from .table import Table
 
 
 class Runs(Mapping[str, Run]):
-    """The complete runs of a folder by name, in the order of the names.
+    """The complete runs of a folder by name, in the order of the names (numbers in them by value).
 
     Attributes:
         directory: the folder.
@@ -30,7 +31,7 @@ class Runs(Mapping[str, Run]):
         self._runs: dict[str, Run] = {}
         if not self.directory.is_dir():
             raise MissingFile(f"{self.directory}: there is no such folder")
-        for record in sorted(self.directory.glob("**/run.json")):
+        for record in sorted(self.directory.glob("**/run.json"), key=_natural):
             name = str(record.parent.relative_to(self.directory))
             try:
                 self._runs[name] = Run(record.parent)
@@ -92,6 +93,11 @@ class Sweep(Runs):
     def point(self, name: str) -> dict[str, Any]:
         run = self[name]
         return {**super().point(name), **{key: run.config.get(key) for key in self.axes if key != "config"}}
+
+
+def _natural(path: pathlib.Path) -> list[Any]:
+    """Sorts numbers in names by their value: rt.warps=4 before rt.warps=16."""
+    return [(int(part), "") if part.isdigit() else (-1, part) for part in re.split(r"(\d+)", str(path))]
 
 
 def _number(run: Run, name: str) -> Any:

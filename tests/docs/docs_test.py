@@ -25,11 +25,11 @@ PAGES = pages.pages(ROOT)
 
 
 class DocsTest(unittest.TestCase):
-    def place(self):
+    def place(self, page=""):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         path = pathlib.Path(folder.name)
-        self.environment = workplace.make(ROOT, GLINT, path, sys.executable)
+        self.environment = workplace.make(ROOT, GLINT, path, sys.executable, page)
         return path
 
     def shell(self, where, script, place):
@@ -50,7 +50,7 @@ class Commands(DocsTest):
                 continue
             page = blocks[0].page
             with self.subTest(page=page):
-                where = self.place()
+                where = self.place(page)
                 self.fixture(where, page)
                 for block in blocks:
                     if page == "docs/howto/policy.md":
@@ -74,7 +74,7 @@ class Programs(DocsTest):
             if not any(block.kind == "python" for block in blocks):
                 continue
             with self.subTest(page=blocks[0].page):
-                where = self.place()
+                where = self.place(blocks[0].page)
                 self.fixture(where, blocks[0].page)
                 for block in blocks:  # commands first made what the programs read
                     if block.kind == "shell":

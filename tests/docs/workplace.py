@@ -10,6 +10,8 @@ import subprocess
 # THE RULE OF REDUCTION, for `glint run` of scenes and `glint bench`; everything else runs as it is written.
 SIZE, SAMPLES = "16x16", "1"
 BENCH = ["WKND_PT", "SHIP_SH"]  # instead of more than two workloads
+BENCH_OF = {  # pages whose commands need a suite to look at: the quick scenes
+    "docs/characterization.md": [f"{scene}_{shader}" for scene in ("WKND", "SHIP", "REF") for shader in ("PT", "SH", "AO")]}
 SLOW_SCENES = {"PARK_PT": "PARTY_PT", "ROBOT_SH": "SHIP_SH"}  # scenes of millions of triangles, by one that stands in
 KERNEL_ONLY = ["--only", "L1"]  # `glint microbench` without --only
 
@@ -26,6 +28,7 @@ FIXTURES = {
     "docs/python.md": "true",
     "docs/howto/cite.md": "glint run SHIP --shader sh --out out/ship",
     "docs/howto/policy.md": "true",  # the page's C++ block is compiled into a command of its own: docs_test.py
+    "docs/characterization.md": "glint bench --config desktop --out out/bench-desktop",
     "docs/profiling.md": "glint run SHIP --shader sh --profile --sample 1000 --out out/ship",
 }
 WRAPPER = """#!/bin/sh
@@ -36,7 +39,7 @@ exec "{python}" -B "{here}/not_run.py" {name} "{root}" "{glint}" "$@"
 """
 
 
-def make(root: pathlib.Path, glint: pathlib.Path, folder: pathlib.Path, python: str) -> dict[str, str]:
+def make(root: pathlib.Path, glint: pathlib.Path, folder: pathlib.Path, python: str, page: str = "") -> dict[str, str]:
     """Fills `folder` as the project's root would look after ./demo; gives the environment of its commands."""
     for path in root.iterdir():
         if path.name not in ("build", "out", ".git", "configs", "shaders", "demo", "check"):
@@ -54,13 +57,15 @@ def make(root: pathlib.Path, glint: pathlib.Path, folder: pathlib.Path, python: 
     built.mkdir(parents=True)
     (built / "glint").symlink_to(tools / "glint")
     (folder / "out").mkdir()
+    rows = [[f"W{i}", *((i * 37 + j * 101 + i * i * j) % 97 for j in range(10))] for i in range(12)]  # any table will do
+    (folder / "mine.csv").write_text("\n".join(",".join(map(str, row)) for row in [["workload", *(f"m{j}" for j in range(10))], *rows]) + "\n")
     for path in (root / "examples/hello_triangle").glob("hello.r*"):
         shutil.copy(path, folder / "shaders")  # docs/pipelines.md: "shaders/*.r*"
     for name, text in {"teapot.obj": OBJ, "car.obj": OBJ, "car.gltf": GLTF}.items():
         (folder / name).write_text(text)
     subprocess.run([python, "-c", GLB, str(folder / "car.gltf"), str(folder / "car.glb")], check=True)
     return {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}", "PYTHONPATH": str(root / "python"), "GLINT": str(tools / "glint"),
-            "PYTHONDONTWRITEBYTECODE": "1", "GLINT_DOCS_LOG": str(tools / "log")}
+            "PYTHONDONTWRITEBYTECODE": "1", "GLINT_DOCS_LOG": str(tools / "log"), "GLINT_DOCS_BENCH": " ".join(BENCH_OF.get(page, BENCH))}
 
 
 # A binary glTF file from a text one.

@@ -64,5 +64,42 @@ class Figures(PythonTest):
         self.assertEqual((list(frame.columns)[:2], len(frame)), (["cycle", "ipc"], len(self.ship.series)))
 
 
+TABLES = {
+    "eigenvalues": "component,eigenvalue,share,cumulative,kept\nPC1,2,0.7,0.7,1\nPC2,0.9,0.3,1,0\n",
+    "scores": "workload,PC1,PC2\nA_PT,0,0\nB_PT,1,0\nC_PT,5,1\nD_PT,9,2\n",
+    "linkage": "first,second,distance,leaves\n0,1,1,2\n2,3,4,2\n4,5,7,4\n",
+    "leaves": "position,row,workload,cluster\n0,0,A_PT,1\n1,1,B_PT,1\n2,2,C_PT,2\n3,3,D_PT,2\n",
+    "subset": "cluster,workload,distance_to_centre\n1,A_PT,0\n2,D_PT,1\n",
+    "kiviat": "workload,ipc,dram_util,rays\nA_PT,0,0.5,1\nB_PT,1,0,0\nC_PT,0.2,1,0.3\nD_PT,0.1,0.2,0.3\n"}
+
+
+class Suites(PythonTest):
+    def setUp(self):
+        self.there = self.folder / "characterization"
+        self.there.mkdir(exist_ok=True)
+        for name, text in TABLES.items():
+            (self.there / f"{name}.csv").write_text(text)
+
+    def test_a_dendrogram_joins_at_the_distances_of_the_linkage(self):
+        axes = self.glint.plot.dendrogram(self.folder).axes[0]
+        self.assertEqual([max(line.get_xdata()) for line in axes.lines], [1, 4, 7])
+        self.assertEqual(list(axes.lines[2].get_ydata()), [0.5, 0.5, 2.5, 2.5])  # between the middles of both pairs
+        bold = [label.get_text() for label in axes.get_yticklabels() if label.get_fontweight() == "bold"]
+        self.assertEqual(bold, ["A_PT", "D_PT"])
+
+    def test_every_figure_of_a_suite_is_drawn(self):
+        plot = self.glint.plot
+        for figure in (plot.scree, plot.components, plot.dendrogram, plot.kiviat):
+            drawn = figure(self.glint.Characterization(self.folder))
+            self.assertAlmostEqual(drawn.get_figwidth(), 3.3)
+            self.assertGreater(plot.save(drawn, self.folder / f"{figure.__name__}.pdf").stat().st_size, 3000)
+        self.assertEqual(len([axis for axis in plot.kiviat(self.folder, ["A_PT", "B_PT", "C_PT"]).axes if axis.get_title()]), 3)
+
+    def test_a_linkage_that_does_not_fit_is_refused(self):
+        (self.there / "linkage.csv").write_text("first,second,distance,leaves\n0,1,1,2\n")
+        self.assertRaisesRegex(self.glint.SchemaError, "1 rows, 3 expected", self.glint.plot.dendrogram, self.folder)
+        self.assertRaisesRegex(self.glint.MissingFile, "glint characterize", self.glint.Characterization, self.folder / "nowhere")
+
+
 if __name__ == "__main__":
     python_case.main()

@@ -120,10 +120,10 @@ class Wrong(PythonTest):
 class Folders(PythonTest):
     def test_a_sweep_has_a_run_a_point_and_is_not_run_twice(self):
         lines = []
-        axes = {"rt.warps": [1, 4], "core.issue": ["gto", "lrr"]}
+        axes = {"rt.warps": [4, 16], "core.issue": ["gto", "lrr"]}
         sweep = self.glint.sweep("SHIP_SH", axes, out=self.folder / "sweep", progress=lines.append, **SMALL)
         self.assertEqual((len(sweep), len(lines)), (4, 4))
-        self.assertEqual([(row["rt.warps"], row["core.issue"]) for row in sweep.rows(["cycles"])], [(1, "gto"), (1, "lrr"), (4, "gto"), (4, "lrr")])
+        self.assertEqual([(row["rt.warps"], row["core.issue"]) for row in sweep.rows(["cycles"])], [(4, "gto"), (4, "lrr"), (16, "gto"), (16, "lrr")])
         again = self.glint.sweep("SHIP_SH", axes, out=self.folder / "sweep", progress=lines.append, **SMALL)
         self.assertEqual((len(again), len(lines)), (4, 4))
         self.glint.sweep("SHIP_SH", axes, out=self.folder / "sweep", progress=lines.append, **{**SMALL, "spp": 2})

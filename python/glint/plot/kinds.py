@@ -10,6 +10,7 @@ from .style import COLOURS, COLUMN, legend, new_figure, run_colour, styled
 
 
 MOST_GROUPS = 24  # groups that a column's width has room for; a whole suite takes both columns
+MOST_ROWS = 48  # rows that a page's height has room for
 
 
 @dataclasses.dataclass(frozen=True)
@@ -22,32 +23,43 @@ class Part:
 
 def stacked(rows: Sequence[str], parts: Sequence[Part], x_label: str, share: bool = True, width: float = COLUMN,
             scale: Sequence[float] | None = None) -> Any:
-    """Horizontal stacked bars, the first row at the top; with `share` each adds up to 100 %, `scale` gives other lengths."""
+    """Horizontal stacked bars, the first row at the top; with `share` each adds up to 100 %, `scale` gives other lengths.
+
+    More rows than MOST_ROWS stand in two halves beside each other, over both columns of a page.
+    """
     used = [part for part in parts if any(part.values)]
     totals = [sum(part.values[i] for part in used) for i in range(len(rows))]
     lengths = scale if scale is not None else [100.0] * len(rows) if share else totals
+    halves = 2 if len(rows) > MOST_ROWS else 1
+    each = -(-len(rows) // halves)
     with styled():
-        many = len(rows) > 24  # a whole suite: smaller rows and type
-        figure, axes = new_figure(0.36 + (0.1 if many else 0.17) * max(2, len(rows)), width=width)
-        left, handles = [0.0] * len(rows), []
-        for part in used:
-            values = [length * value / total if total else 0.0 for value, total, length in zip(part.values, totals, lengths)]
-            handles.append(axes.barh(range(len(rows)), values, 0.72, left, color=COLOURS[part.colour], linewidth=0))
-            left = [a + b for a, b in zip(left, values)]
-        axes.set_yticks(range(len(rows)), rows)
-        axes.tick_params(axis="y", length=0, labelsize=5 if many else None)
-        axes.set_ylim(len(rows) - 0.4, -0.6)
-        axes.set_xlim(0, (max(lengths, default=1) or 1) * 1.001)
-        axes.set_xlabel(x_label)
-        axes.grid(axis="x", color=COLOURS["pale"], linewidth=0.4)
+        many = each > 24  # a whole suite: smaller rows and type
+        figure, axes = new_figure(0.36 + (0.1 if many else 0.17) * max(2, each), columns=halves, width=width if halves == 1 else 2.1 * COLUMN, squeeze=False)
+        for half in range(halves):
+            some = range(half * each, min(len(rows), (half + 1) * each))
+            left, handles = [0.0] * len(some), []
+            for part in used:
+                values = [lengths[i] * part.values[i] / totals[i] if totals[i] else 0.0 for i in some]
+                handles.append(axes[0, half].barh(range(len(some)), values, 0.72, left, color=COLOURS[part.colour], linewidth=0))
+                left = [a + b for a, b in zip(left, values)]
+            _rows_of_bars(axes[0, half], [rows[i] for i in some], max(lengths, default=1) or 1, x_label, many)
         legend(figure, handles, [part.name for part in used])
         return figure
+
+
+def _rows_of_bars(axes: Any, rows: Sequence[str], longest: float, x_label: str, many: bool) -> None:
+    axes.set_yticks(range(len(rows)), rows)
+    axes.tick_params(axis="y", length=0, labelsize=5 if many else None)
+    axes.set_ylim(len(rows) - 0.4, -0.6)
+    axes.set_xlim(0, longest * 1.001)
+    axes.set_xlabel(x_label)
+    axes.grid(axis="x", color=COLOURS["pale"], linewidth=0.4)
 
 
 def grouped(groups: Sequence[str], series: Sequence[Part], y_label: str, axes: Any = None, percent: bool = False, top: float | None = None) -> Any:
     """Vertical bars side by side, a group a label; None leaves a gap. Without `axes` a figure of its own, with a legend."""
     with styled():
-        figure, own = (None, axes) if axes is not None else new_figure(1.5, width=COLUMN if len(groups) <= MOST_GROUPS else 2.1 * COLUMN)
+        figure, own = (None, axes) if axes is not None else new_figure(1.5 if len(groups) <= MOST_GROUPS else 1.8, width=width_for(len(groups)))
         wide = 0.8 / max(1, len(series))
         factor = 100 if percent else 1
         handles = []
@@ -58,7 +70,7 @@ def grouped(groups: Sequence[str], series: Sequence[Part], y_label: str, axes: A
         if len(groups) < 3:  # one run makes no wall of colour
             own.set_xlim(-1.1, len(groups) + 0.1)
         crowded = len(groups) * max((len(group) for group in groups), default=1) > 48
-        own.set_xticks(range(len(groups)), groups, rotation=90 if crowded else 0)
+        own.set_xticks(range(len(groups)), groups, rotation=90 if crowded else 0, fontsize=5 if len(groups) > MOST_GROUPS else None)
         own.tick_params(axis="x", length=0)
         own.set_ylabel(y_label)
         own.set_ylim(0, top)
@@ -86,6 +98,11 @@ def ranked(rows: Sequence[str], series: Sequence[Part], x_label: str, percent: b
         if len(series) > 1:
             legend(figure, handles, [one.name for one in series])
         return figure
+
+
+def width_for(groups: int) -> float:
+    """Inches: a column, or both for a whole suite."""
+    return COLUMN if groups <= MOST_GROUPS else 2.1 * COLUMN
 
 
 def lines(panels: Sequence[tuple[str, Sequence[tuple[str, Sequence[float], Sequence[float]]]]], x_label: str) -> Any:

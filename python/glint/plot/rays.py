@@ -6,8 +6,8 @@ from __future__ import annotations
 from typing import Any
 
 from .chosen import Chosen, chosen, names, total, with_rays
-from .kinds import Part, grouped, histogram, stacked
-from .style import COLOURS, COLUMN, legend, new_figure, run_colour, styled
+from .kinds import Part, grouped, histogram, stacked, width_for
+from .style import COLOURS, new_figure, run_colour, styled
 
 _FETCHES = [("rt_node", "internal nodes", "blue"), ("rt_instance", "instances", "orange"), ("rt_triangle", "triangles", "green"),
             ("rt_procedural", "procedurals", "pink"), ("rt_table", "candidate tables", "yellow"), ("rt_stack", "stacks", "grey")]
@@ -19,19 +19,20 @@ _CYCLES = [("node_request", "sends a request", "green"), ("test_busy", "waits fo
 def geometry(runs: Chosen) -> Any:
     """Structures, depth, triangles and cycles of each scene (LumiBench, Figure 7)."""
     found = chosen(runs)
-    panels = [("bottom levels", "blue", lambda run: run.info.get("structures.bottom_levels")),
+    panels = [("bottom\nlevels", "blue", lambda run: run.info.get("structures.bottom_levels")),
               ("instances", "sky", lambda run: run.info.get("structures.instances")),
               ("depth", "green", lambda run: run.metrics["bvh_depth"]),
               ("triangles", "orange", lambda run: run.info.get("structures.triangles")),
               ("cycles", "red", lambda run: run.cycles)]
     with styled():
-        figure, axes = new_figure(0.55 + 0.62 * len(panels), rows=len(panels), sharex=True)
+        figure, axes = new_figure(0.55 + 0.62 * len(panels), rows=len(panels), sharex=True, width=width_for(len(found)))
         for panel, (label, colour, value) in zip(axes, panels):
             values = [value(run) or 0 for run in found]
             grouped(names(found), [Part(label, colour, values)], label, axes=panel)
-            if min(values) > 0 and max(values) > 30 * min(values):
+            some = [one for one in values if one > 0]
+            if some and max(some) > 30 * min(some):  # what is 0 has no bar
                 panel.set_yscale("log")
-                panel.set_ylim(bottom=min(values) / 3)
+                panel.set_ylim(min(some) / 3, max(some) * 2)
         figure.align_ylabels(axes)
         return figure
 
@@ -47,7 +48,7 @@ def traversal(runs: Chosen) -> Any:
     """Nodes that a ray visits for each level of the structure (LumiBench, Figure 10); the line is one straight way down."""
     found = with_rays(runs)
     with styled():
-        figure, axes = new_figure(1.6)
+        figure, axes = new_figure(1.5, width=width_for(len(found)))
         grouped(names(found), [Part("traversal ratio", "blue", [run.metrics["traversal_ratio"] for run in found])], "nodes / ray / depth", axes=axes)
         axes.axhline(1, color=COLOURS["dark"], linewidth=0.6, linestyle="--")
         return figure
