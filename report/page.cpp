@@ -9,33 +9,12 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "base/diagnostics.h"
+#include "report/page_parts.h"
 
 namespace glint::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&') out += "&amp;";
-    else if (c == '<') out += "&lt;";
-    else if (c == '>') out += "&gt;";
-    else if (c == '"') out += "&quot;";
-    else out += c;
-  }
-  return out;
-}
-
-// JSON in a <script> element: no "</script>" and no "<!--" can be in it.
-std::string script_json(const Json& data) {
-  const std::string text = data.dump(-1, ' ', false, Json::error_handler_t::replace);
-  std::string out;
-  out.reserve(text.size());
-  for (const char c : text) out += c == '<' ? std::string("\\u003c") : std::string(1, c);
-  return out;
-}
 
 std::string title_of(const Json& run) {
   const Json& facts = run["run"];
@@ -141,12 +120,6 @@ std::string pictures(const Json& data) {
     if (run.contains("picture"))
       out += fmt::format("<figure><img alt=\"\" src=\"{}\"><figcaption>{}</figcaption></figure>\n", run["picture"].get<std::string>(), escaped(title_of(run)));
   return out;
-}
-
-void place(std::string& page, std::string_view mark, const std::string& text) {
-  const size_t at = page.find(mark);
-  if (at == std::string::npos) throw UserError({"web/report.html"}, fmt::format("has no place {}", mark), "Glint's own files are incomplete: install it again");
-  page.replace(at, mark.size(), text);
 }
 
 }  // namespace

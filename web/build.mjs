@@ -23,7 +23,7 @@ Contains tslib ${version("tslib")} (0BSD): Copyright (c) Microsoft Corporation.
 */`;
 
 await build({
-  entryPoints: ["src/main.js"],
+  entryPoints: ["src/entry.js"],
   outfile: "dist/report.js",
   bundle: true,
   minify: true,
@@ -34,4 +34,4 @@ await build({
   banner: { js: banner },
 });
 copyFileSync("src/report.css", "dist/report.css");
-copyFileSync("src/report.html", "dist/report.html");
+for (const name of ["report.html", "characterization.html"]) copyFileSync(`src/${name}`, `dist/${name}`);

@@ -77,6 +77,7 @@ int main_of(int argc, char** argv) {
   add_bench(app, session);
   add_stats(app, session);
   add_report(app, session);
+  add_characterize(app, session);
   add_compare(app, session);
   add_imgdiff(app, session);
   add_annotate(app, session);

@@ -30,6 +30,7 @@ void add_run(CLI::App& app, Session& session);
 void add_bench(CLI::App& app, Session& session);
 void add_stats(CLI::App& app, Session& session);
 void add_report(CLI::App& app, Session& session);
+void add_characterize(CLI::App& app, Session& session);
 void add_compare(CLI::App& app, Session& session);
 void add_imgdiff(CLI::App& app, Session& session);
 void add_annotate(CLI::App& app, Session& session);

@@ -1,0 +1,52 @@
+// The diversity analysis of LumiBench (its section 3.4) over a table of metrics: all steps in order.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report/characterize/clustering.h"
+#include "report/characterize/feature_table.h"
+#include "report/characterize/metric_search.h"
+#include "report/characterize/principal_components.h"
+#include "report/characterize/subset.h"
+
+namespace glint::report {
+
+struct CharacterizationOptions {
+  Linkage linkage = Linkage::Average;
+  int clusters = 8;       // = workloads of the subset; cut to the number of workloads
+  SearchSettings search;  // for the representative metrics
+  std::vector<std::string> reference;  // names of a published subset to compare with; those that the table lacks are left out
+  std::string reference_name;          // whose it is
+};
+
+// A set of workloads that stands for all.
+struct Subset {
+  std::vector<int> rows;
+  double coverage_error = 0;  // coverage_error()
+  int clusters_met = 0;       // clusters that one of the rows is in
+};
+
+struct Characterization {
+  CharacterizationOptions options;
+  FeatureTable table;
+  PrincipalComponents components;
+  std::vector<Join> joins;
+  std::vector<int> leaves;         // rows, from left to right of the dendrogram
+  std::vector<int> cluster_of;     // of each row
+  double cut_low = 0, cut_high = 0;  // a line between these two distances crosses as many branches as there are clusters
+  double cophenetic = 0;
+  std::vector<Representative> chosen;  // by cluster
+  Subset subset, reference;        // `reference` is empty without options.reference
+  ChosenMetrics metrics;
+  Eigen::MatrixXd kiviat;          // workloads x chosen metrics, 0 = the least of all workloads, 1 = the most
+};
+
+// Errors as feature_table(). The same table and options give the same result on every machine, up to rounding.
+Characterization characterize(FeatureTable table, const CharacterizationOptions& options);
+
+// What a terminal shows: what was dropped, components, clusters with their representatives, metrics.
+std::string characterization_text(const Characterization& result);
+
+}  // namespace glint::report

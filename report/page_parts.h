@@ -1,0 +1,19 @@
+// What every page that Glint writes is put together with: escaping, embedded data, places in a frame.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+
+namespace glint::report {
+
+// Text as HTML shows it, also between quotes.
+std::string escaped(std::string_view text);
+
+// JSON for a <script> element: no "</script>" and no "<!--" can be in it.
+std::string script_json(const nlohmann::ordered_json& data);
+
+// Puts `text` where the frame says `mark`, the first time. UserError when it does not.
+void place(std::string& page, std::string_view mark, const std::string& text);
+
+}  // namespace glint::report
