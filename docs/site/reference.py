@@ -28,13 +28,39 @@ def commands(glint: str) -> str:
     """Every command's own help."""
     top = _run(glint, "--help")
     names = re.findall(r"^  (\w+) {2,}\S", top.split("Subcommands:")[1], re.M)
-    pages = ["# Commands\n\nWhat `glint COMMAND --help` prints. Exit codes: [errors](../errors.md). Asked-for data goes to stdout, all else to stderr.\n",
-             f"```text\n{top.strip()}\n```\n"]
+    pages = ["# Commands\n\nWhat `glint COMMAND --help` prints. Exit codes: [errors](../errors.md). Asked-for data goes to stdout, all else to stderr.\n", _help_tables(top.split("Usage:", 1)[1])]
     for name in names:
-        help_text = _run(glint, name, "--help").strip()
-        summary, _, rest = help_text.partition("\n")
-        pages.append(f"## {name}\n\n{summary}.\n\n```text\n{rest.strip()}\n```\n")
+        summary, _, rest = _run(glint, name, "--help").strip().partition("Usage:")
+        usage, _, rest = rest.partition("\n")
+        pages.append(f"## {name}\n\n{summary.strip()}.\n\n```text\n{usage.strip()}\n```\n\n{_help_tables(rest)}")
     return "\n".join(pages)
+
+
+def _help_tables(text: str) -> str:
+    """The sections of a help text (Options:, Positionals:) as tables of what is written and what it means."""
+    out, rows = [], []
+    for line in [*text.splitlines(), "end:"]:
+        entry = re.match(r"  (\S.*?)(?: {2,}(\S.*))?$", line)
+        if re.match(r"\S.*:$", line):
+            if rows:
+                out += ["| written | meaning |\n|---|---|"] + [f"| {_words(name)} | {_cell(meaning)} |" for name, meaning in rows] + [""]
+            rows = []
+            out += [f"**{line}**\n"] if line not in ("end:", "Options:") else []
+        elif entry:
+            rows.append((entry[1], entry[2] or ""))
+        elif rows and line.strip():  # a meaning that stands on the next line
+            rows[-1] = (rows[-1][0], f"{rows[-1][1]} {line.strip()}".strip())
+    return "\n".join(out)
+
+
+def _words(name: str) -> str:
+    """`--option`, then what it takes."""
+    option, _, takes = name.partition(" ")
+    return f"`{option}`" + (f" {_cell(takes)}" if takes else "")
+
+
+def _cell(text: str) -> str:
+    return re.sub(r"([|<*_\[{])", r"\\\1", text)
 
 
 def policies(glint: str) -> str:

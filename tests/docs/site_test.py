@@ -1,6 +1,7 @@
 # The documentation site is built offline, without a warning or a broken link, and opens in a browser from disk.
 # SPDX-License-Identifier: Apache-2.0
 """usage: site_test.py GLINT SOURCE_DIR; exit status 77, said loudly, where Sphinx, MyST and furo are not installed."""
+import html
 import os
 import pathlib
 import re
@@ -30,6 +31,20 @@ class Site(unittest.TestCase):
         self.assertEqual(self.done.returncode, 0, self.done.stdout + self.done.stderr)
         pages = {path.stem for path in self.html.glob("*.html")}
         self.assertLessEqual({path.stem for path in (ROOT / "docs").glob("*.md")} - {"README"}, pages)
+
+    def test_every_command_option_policy_and_preset_stands_in_the_reference(self):
+        shown = {name: html.unescape(re.sub(r"<[^>]+>", "", (self.html / f"reference/{name}.html").read_text(encoding="utf-8"))) for name in ("commands", "policies", "presets")}
+        listed = {what: [line.split() for line in self.glint("list", what).splitlines()] for what in ("policies", "configs")}
+        self.assertEqual([row[2] for row in listed["policies"] if row[2] not in shown["policies"]], [])
+        self.assertEqual([row[0] for row in listed["configs"] if row[0] not in shown["presets"]], [])
+        commands = re.findall(r"^  (\w+) {2,}\S", self.glint("--help").split("Subcommands:")[1], re.M)
+        self.assertGreater(len(commands), 12)
+        for command in commands:
+            options = re.findall(r"^  (?:-\w,)?(--[\w-]+)", self.glint(command, "--help"), re.M)
+            self.assertEqual([option for option in options if option not in shown["commands"]], [], command)
+
+    def glint(self, *words):
+        return subprocess.run([GLINT, *words], capture_output=True, text=True, check=True).stdout
 
     def test_nothing_is_asked_of_a_network(self):
         for path in [*self.html.rglob("*.html"), *self.html.rglob("*.css")]:
