@@ -25,23 +25,16 @@ def broken(folder: pathlib.Path) -> list[str]:
     for path in sorted(folder.rglob("*.html")):
         pages[path] = page = _Page()
         page.feed(path.read_text(encoding="utf-8"))
+    anchors = {path.resolve(): page.anchors for path, page in pages.items()}
     found = []
     for path, page in pages.items():
         for link in page.links:
             parts = urllib.parse.urlsplit(link)
-            if parts.scheme or parts.netloc or (not parts.path and not parts.fragment):
+            if parts.scheme or parts.netloc:
                 continue
             target = (path.parent / urllib.parse.unquote(parts.path)).resolve() if parts.path else path.resolve()
             if not target.exists():
                 found.append(f"{path.relative_to(folder)}: {link}: no such file")
-            elif parts.fragment and target in {one.resolve() for one in (target,)} and _anchors(pages, target) is not None \
-                    and urllib.parse.unquote(parts.fragment) not in _anchors(pages, target):
+            elif parts.fragment and target in anchors and urllib.parse.unquote(parts.fragment) not in anchors[target]:
                 found.append(f"{path.relative_to(folder)}: {link}: no such anchor")
     return found
-
-
-def _anchors(pages, target):
-    for path, page in pages.items():
-        if path.resolve() == target:
-            return page.anchors
-    return None  # no page: a picture, a table

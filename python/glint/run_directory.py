@@ -129,10 +129,17 @@ class Run:
         """Maps of cost by pixel that the run left in `heat/`; [] without."""
         return sorted(path.stem for path in (self.directory / "heat").glob("*.npy"))
 
+    def map_info(self, name: str) -> Facts:
+        """Unit, meaning, sum, smallest, mean, 99th percentile (p99) and largest of a map of cost, from `heat/maps.json`."""
+        for one in _json(self.file("heat/maps.json", "`glint run --heat`")).get("maps", []):
+            if one.get("name") == name:
+                return Facts(one)
+        raise UnknownName(f"{self.directory}: heat/maps.json has no '{name}'{near(name, self.map_names)}")
+
     def map(self, name: str) -> Any:
         """A map of cost by pixel, an array of shape (height, width)."""
         if name not in self.map_names:
-            raise MissingFile(f"{self.directory}: no map '{name}'; it has: {', '.join(self.map_names) or 'none'} (docs/profiling.md)")
+            raise MissingFile(f"{self.directory}: no map '{name}'; it has: {', '.join(self.map_names) or 'none, `glint run --heat` writes them'}")
         return read_map(self.directory / "heat" / f"{name}.npy")
 
     def file(self, name: str, written_by: str = "the run") -> pathlib.Path:

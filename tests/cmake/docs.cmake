@@ -1,7 +1,7 @@
 # The documentation: every command and program in it runs, and the site is built from it.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 if(TARGET glint)
-  foreach(suite Commands Programs Inline Policy Files)
+  foreach(suite Commands Programs Inline Policy Files Harness)
     add_test(NAME docs_${suite} COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/docs/docs_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR} ${suite})
   endforeach()
   add_test(NAME docs_site COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/docs/site_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR})

@@ -1,6 +1,6 @@
 # Every command, program and policy that the documentation shows, run as a reader would.
 # SPDX-License-Identifier: Apache-2.0
-"""usage: docs_test.py GLINT SOURCE_DIR [Commands|Programs|Inline|Policy|Files]
+"""usage: docs_test.py GLINT SOURCE_DIR [Commands|Programs|Inline|Policy|Files|Harness]
 
 Commands of a page run in order in a copy of the tree; what is reduced or not run is said in workplace.py and printed."""
 import os
@@ -150,6 +150,32 @@ class Policy(DocsTest):
         out = subprocess.run([where / "glint-youngest", "list", "policies"], capture_output=True, text=True, check=True).stdout
         self.assertRegex(out, r"core\.issue +youngest +The ready warp that was launched last")
         self.assertIn('issue = "youngest"', (where / "out/youngest/config.toml").read_text())
+
+
+class Harness(DocsTest):
+    """What these tests rest on would notice."""
+
+    def test_a_command_that_fails_is_noticed_wherever_it_stands_in_its_block(self):
+        where = self.place()
+        for script in ("glint run NOWHERE --out out/x\ntrue\n", "glint list scenes | grep NOWHERE\n", "cmake --preset nowhere\n", "glint run SHIP --nowhere\ntrue\n"):
+            with self.subTest(script=script), self.assertRaises(AssertionError):
+                self.shell(where, script, "harness")
+
+    def test_blocks_of_commands_are_found_with_and_without_a_mark(self):
+        where = self.place()
+        page = where / "page.md"
+        page.write_text("```\nglint list scenes\n```\n\n```console\n$ glint run \\\n  SHIP\nits output\n$ true\n```\n\n```\ngpu.cycles 12\n```\n\n`glint run A\n--b`\n")
+        found = [(block.kind, block.line, block.text) for block in pages.blocks(where, page)]
+        self.assertEqual(found, [("shell", 2, "glint list scenes\n"), ("shell", 6, "glint run \\\n  SHIP\ntrue\n"), ("other", 13, "gpu.cycles 12\n")])
+        self.assertEqual(pages.inline(where, page), [("page.md:16", "glint run A --b")])
+
+    def test_scenes_and_suites_are_reduced_and_nothing_else_is(self):
+        import reduced
+        os.environ["GLINT_DOCS_BENCH"] = "WKND_PT SHIP_SH"
+        for written, run in (("run SHIP --size 64x64 --spp 4 --out x", "run SHIP --out x --size 16x16 --spp 1"), ("run PARK_PT", "run PARTY_PT --size 16x16 --spp 1"),
+                             ("bench subset --out x", "bench WKND_PT SHIP_SH --out x --size 16x16 --spp 1"), ("bench SHIP_SH", "bench SHIP_SH --size 16x16 --spp 1"),
+                             ("run mine/pipeline.toml --size 64x64", None), ("run shaders/kernels/saxpy.toml", None), ("stats out/a", None), ("run --help", None)):
+            self.assertEqual(reduced.reduced(written.split()), (run or written).split())
 
 
 class Files(DocsTest):

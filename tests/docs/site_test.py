@@ -46,6 +46,13 @@ class Site(unittest.TestCase):
     def glint(self, *words):
         return subprocess.run([GLINT, *words], capture_output=True, text=True, check=True).stdout
 
+    def test_a_broken_link_would_be_noticed(self):
+        sys.path.insert(0, str(ROOT / "docs/site"))
+        import links
+        with tempfile.TemporaryDirectory() as folder:
+            (pathlib.Path(folder) / "a.html").write_text('<h1 id="top"></h1><a href="b.html"></a><a href="#top"></a><a href="#gone"></a><img src="a.png"><a href="https://x.org/y">')
+            self.assertEqual([line.split(": ")[1] for line in links.broken(pathlib.Path(folder))], ["b.html", "#gone", "a.png"])
+
     def test_nothing_is_asked_of_a_network(self):
         for path in [*self.html.rglob("*.html"), *self.html.rglob("*.css")]:
             text = path.read_text(encoding="utf-8")

@@ -50,6 +50,18 @@ class Figures(PythonTest):
             first, second = (save(dram(self.ship), self.folder / f"{i}.{suffix}").read_bytes() for i in (1, 2))
             self.assertEqual(first, second, suffix)
 
+    def test_a_map_of_cost_has_its_unit_and_the_scale_of_the_run(self):
+        import json
+        import numpy
+        heat = self.wknd.directory / "heat"
+        heat.mkdir(exist_ok=True)
+        numpy.save(heat / "nodes.npy", numpy.arange(256, dtype=numpy.uint32).reshape(16, 16))
+        (heat / "maps.json").write_text(json.dumps({"schema": 1, "maps": [{"name": "nodes", "unit": "node", "doc": "", "p99": 252.0, "max": 255.0}]}))
+        self.assertEqual((self.wknd.map_names, self.wknd.map("nodes").sum()), (["nodes"], 255 * 128))
+        figure = self.glint.plot.cost_map(self.wknd, "nodes")
+        self.assertEqual((figure.axes[0].images[0].get_clim(), figure.axes[1].get_ylabel()), ((0, 252), "nodes (node)"))
+        self.assertRaisesRegex(self.glint.MissingFile, "no map 'rays'; it has: nodes", self.glint.plot.cost_map, self.wknd, "rays")
+
     def test_what_cannot_be_drawn_is_refused_with_a_reason(self):
         plot, Error = self.glint.plot, self.glint.GlintError
         self.assertRaisesRegex(Error, "at least one run", plot.dram, [])

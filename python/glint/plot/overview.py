@@ -50,11 +50,11 @@ def picture(run: Run) -> Any:
 
 
 def cost_map(run: Run, name: str) -> Any:
-    """A map of cost by pixel with its scale; the maps of a run are `run.map_names`."""
-    values = run.map(name)
+    """A map of cost by pixel (`run.map_names`) with its scale: from 0 to the 99th percentile, as in the run's own pictures. Needs `--heat`."""
+    values, info = run.map(name), run.map_info(name)
     with styled():
         figure, axes = new_figure(0.4 + 2.7 * values.shape[0] / values.shape[1])
-        shown = axes.imshow(values, cmap="cividis", vmin=0, interpolation="nearest")  # even steps for every kind of colour vision
+        shown = axes.imshow(values, cmap="cividis", vmin=0, vmax=info["p99"] or info["max"] or 1, interpolation="nearest")  # even steps for every kind of colour vision
         axes.set_axis_off()
-        figure.colorbar(shown, ax=axes, label=name.replace("_", " "), shrink=0.9)
+        figure.colorbar(shown, ax=axes, label=f"{name.replace('_', ' ')} ({info['unit']})", shrink=0.9)
         return figure
