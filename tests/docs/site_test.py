@@ -34,7 +34,7 @@ class Site(unittest.TestCase):
 
     def test_every_command_option_policy_and_preset_stands_in_the_reference(self):
         shown = {name: html.unescape(re.sub(r"<[^>]+>", "", (self.html / f"reference/{name}.html").read_text(encoding="utf-8"))) for name in ("commands", "policies", "presets")}
-        listed = {what: [line.split() for line in self.glint("list", what).splitlines()] for what in ("policies", "configs")}
+        listed = {what: [re.split(r" {2,}", line) for line in self.glint("list", what).splitlines()] for what in ("policies", "configs")}
         self.assertEqual([row[2] for row in listed["policies"] if row[2] not in shown["policies"]], [])
         self.assertEqual([row[0] for row in listed["configs"] if row[0] not in shown["presets"]], [])
         commands = re.findall(r"^  (\w+) {2,}\S", self.glint("--help").split("Subcommands:")[1], re.M)
