@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "base/program_listing.h"
+
 namespace glint {
 
 // What is counted of an instruction, but for the cycles by reason.
@@ -36,6 +38,9 @@ struct ProfileRow : ProfileCounts {
   uint32_t line = 0;              // 0: unknown
   uint32_t index = 0;             // of the instruction in its shader
   std::string op;
+  uint32_t program = 0;           // of ProfileTable::programs
+  uint32_t spirv = 0;             // line of its SPIR-V, from 1; 0: unknown
+  uint32_t scope = 0;             // of its program's scopes, from 1; 0: unknown
   std::vector<uint64_t> slots;    // cycles of schedulers, by reason as in ProfileTable::reasons; the first is issuing
 
   // Adds what was counted and the cycles of each reason; the row stays whose it is.
@@ -55,6 +60,7 @@ struct ProfileRow : ProfileCounts {
 struct ProfileTable {
   std::vector<std::string> reasons;
   std::vector<ProfileRow> rows;   // in program order; the slots of all rows are the cycles of all schedulers
+  std::vector<ProgramListing> programs;  // what ran; empty when the profile comes from a file of its own
 };
 
 // One row an interval, `columns` long each.

@@ -62,6 +62,7 @@ void append(Image& image, const isa::Program& program, std::vector<uint32_t>& co
   image.files.insert(image.files.end(), program.files.begin(), program.files.end());
   image.num_registers = std::max(image.num_registers, program.num_registers);
   image.shaders.push_back(std::move(shader));
+  image.programs.push_back(program);
 }
 
 }  // namespace

@@ -54,6 +54,7 @@ struct Image {
   std::vector<std::string> files;
   std::vector<uint32_t> shader_of;         // one an instruction
   std::vector<Shader> shaders;
+  std::vector<isa::Program> programs;      // one a shader, as they were compiled: for listings
   Rows constants;
   uint32_t num_registers = 1;              // highest of all shaders
 

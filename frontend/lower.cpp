@@ -11,6 +11,7 @@
 #include "frontend/debug_print.h"
 #include "frontend/lower_typed.h"
 #include "frontend/query_calls.h"
+#include "frontend/source_lines.h"
 #include "frontend/spirv.h"
 
 namespace glint::frontend {
@@ -18,6 +19,7 @@ Lowering::Lowering(const Module& module, const std::string& name, const EntryPoi
     : module_(module), entry_(entry), contract_(contract), layout_(module), emitter_(program_) {
   program_.name = name;
   program_.files = module.files;
+  program_.scopes = module.scopes;
 }
 
 VirtualProgram Lowering::run() {
@@ -309,7 +311,10 @@ const LoweringRow* find_lowering_row(spv::Op op) {
 VirtualProgram lower_to_virtual(const std::vector<uint32_t>& spirv, const std::string& name,
                                 const std::string& entry_point, bool contract) {
   const Module module = Module::parse(spirv, name);
-  return Lowering(module, name, module.entry_point(entry_point, name), contract).run();
+  VirtualProgram program = Lowering(module, name, module.entry_point(entry_point, name), contract).run();
+  std::vector<std::string> texts = listing_of(spirv);
+  for (size_t i = 0; i < texts.size(); ++i) program.spirv.push_back({std::move(texts[i]), module.lines.at(i)});
+  return program;
 }
 
 isa::Program lower(const std::vector<uint32_t>& spirv, const std::string& name,

@@ -44,7 +44,8 @@ class Emitter {
   BlockId here() const { return here_; }
   bool is_open() const { return open_; }
   void set_line(isa::Line line) {
-    if (line.line != 0) line_ = line;
+    if (line.line == 0) line.file = line_.file, line.line = line_.line;
+    line_ = line;
   }
   isa::Line line() const { return line_; }
   // Renumbers the blocks into layout order, drops those never placed and branches to the next block.

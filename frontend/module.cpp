@@ -9,6 +9,7 @@
 #include "base/check.h"
 #include "base/diagnostics.h"
 #include "frontend/known_positions.h"
+#include "frontend/source_lines.h"
 
 namespace glint::frontend {
 namespace {
@@ -47,6 +48,9 @@ class Parser {
     }
     for (const auto& [mode, operands] : size_ids_) apply_local_size_id(mode, operands);
     apply_workgroup_size();
+    module_.files = std::move(source_.files);
+    module_.lines = std::move(source_.lines);
+    module_.scopes = std::move(source_.scopes);
     return std::move(module_);
   }
 
@@ -73,13 +77,13 @@ class Parser {
   std::string name_;
   Module module_;
   Function* function_ = nullptr;
-  isa::Line line_;
-  std::map<std::string, uint16_t> file_index_;
+  SourceLines source_;
   std::map<Id, Id> type_of_;
   std::vector<std::pair<Id, std::vector<uint32_t>>> size_ids_;
 };
 
 void Parser::instruction(std::span<const uint32_t> words) {
+  if (source_.read(words)) return;
   Instruction inst;
   inst.op = spv::Op(words[0] & 0xffff);
   bool has_result = false, has_type = false;
@@ -95,7 +99,6 @@ void Parser::instruction(std::span<const uint32_t> words) {
     case spv::Op::OpString:
       module_.strings[inst.result] = string_at(words.subspan(at));
       return;
-    case spv::Op::OpLine:
     case spv::Op::OpName:
     case spv::Op::OpMemberName:
       debug(inst.op, words.subspan(1));
@@ -109,7 +112,7 @@ void Parser::instruction(std::span<const uint32_t> words) {
     default:
       break;
   }
-  inst.line = line_;
+  inst.line = source_.line();
   if (function_)
     in_function(std::move(inst));
   else
@@ -119,16 +122,10 @@ void Parser::instruction(std::span<const uint32_t> words) {
 void Parser::debug(spv::Op op, std::span<const uint32_t> args) {
   if (op == spv::Op::OpName) {
     module_.names[args[0]] = string_at(args.subspan(1));
-  } else if (op == spv::Op::OpMemberName) {
+  } else {  // OpMemberName
     auto& members = module_.types[args[0]].members;
     if (members.size() <= args[1]) members.resize(args[1] + 1);
     members[args[1]].name = string_at(args.subspan(2));
-  } else {  // OpLine
-    const std::string file = module_.strings[args[0]];
-    auto [it, is_new] = file_index_.try_emplace(file, uint16_t(module_.files.size()));
-    if (is_new) module_.files.push_back(file);
-    // The line holds until the next OpLine, also in following blocks: glslang writes it only when it changes.
-    line_ = {it->second, args[1]};
   }
 }
 

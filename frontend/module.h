@@ -123,7 +123,10 @@ struct Module {
   std::map<Id, std::string> strings;  // OpString: names of files, formats of prints
   std::vector<EntryPoint> entry_points;
   std::vector<Function> functions;
-  std::vector<std::string> files;  // isa::Line::file indexes it
+  // What isa::Line::file, ::spirv and ::scope of instructions number.
+  std::vector<std::string> files;
+  std::vector<isa::Line> lines;
+  std::vector<isa::Scope> scopes;
 
   // Throws UserError when the words are not a well-formed module. The words should have been validated.
   static Module parse(const std::vector<uint32_t>& words, const std::string& name);

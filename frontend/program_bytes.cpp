@@ -22,6 +22,8 @@ void for_each_field(Program& p, const Visit& visit) {
   visit(p.local_size);
   visit(p.shared_bytes);
   visit(p.messages);
+  visit(p.scopes);
+  visit(p.spirv);
 }
 
 }  // namespace

@@ -32,6 +32,15 @@ class ByteWriter {
     put(label.first);
     put(label.second);
   }
+  void put(const isa::Scope& scope) {
+    put(scope.function);
+    put(scope.caller);
+    put(scope.call);
+  }
+  void put(const isa::SpirvLine& line) {
+    put(line.text);
+    put(line.line);
+  }
   std::string take() { return std::move(bytes_); }
 
  private:
@@ -68,6 +77,15 @@ class ByteReader {
   void get(std::pair<uint32_t, std::string>& label) {
     get(label.first);
     get(label.second);
+  }
+  void get(isa::Scope& scope) {
+    get(scope.function);
+    get(scope.caller);
+    get(scope.call);
+  }
+  void get(isa::SpirvLine& line) {
+    get(line.text);
+    get(line.line);
   }
   template <class T>
   T take() {

@@ -10,6 +10,7 @@
 #include "frontend/by_reference.h"
 #include "frontend/compile.h"
 #include "frontend/debug_print.h"
+#include "frontend/inline_scopes.h"
 #include "frontend/inlined_size.h"
 #include "frontend/module_repairs.h"
 #include "frontend/spirv.h"
@@ -18,12 +19,14 @@
 namespace glint::frontend {
 namespace {
 
+constexpr const char* kStripForeign = "--strip-nonsemantic";  // always first: imports of such sets make later passes skip the module
+
 // Left out on purpose: the passes behind -O that merge loads of volatile built-ins across
 // reportIntersectionEXT (redundancy elimination), contract a*b+c to Fma (simplify-instructions), fold sin and
 // cos with the host's libm (ccp) or remove divergence that hardware has (if-conversion).
 const std::vector<std::string>& pass_list() {
   static const std::vector<std::string> kPasses = {
-      "--strip-nonsemantic",  // imports of such sets make later passes skip the module
+      kStripForeign,
       "--freeze-spec-const",
       "--fold-spec-const-op-composite",
       "--wrap-opkill",
@@ -66,14 +69,14 @@ const std::vector<std::string>& pass_list() {
 
 // Constants alone, before lengths of arrays are looked at.
 const std::vector<std::string>& constants_only() {
-  static const std::vector<std::string> kPasses = {"--strip-nonsemantic", "--freeze-spec-const", "--fold-spec-const-op-composite"};
+  static const std::vector<std::string> kPasses = {kStripForeign, "--freeze-spec-const", "--fold-spec-const-op-composite"};
   return kPasses;
 }
 
 // When R1 makes a module that is not valid: functions inlined and nothing else.
 const std::vector<std::string>& inlining_only() {
   static const std::vector<std::string> kPasses = {
-      "--strip-nonsemantic",     "--freeze-spec-const",           "--fold-spec-const-op-composite",
+      kStripForeign,             "--freeze-spec-const",           "--fold-spec-const-op-composite",
       "--wrap-opkill",           "--merge-return",                "--inline-entry-points-exhaustive",
       "--eliminate-dead-functions"};
   return kPasses;
@@ -129,14 +132,25 @@ std::vector<uint32_t> after_passes(const std::vector<uint32_t>& spirv, const std
 }
 
 // The same; empty, too, when what the passes make is not valid.
-std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes,
-                                std::string* messages) {
-  std::vector<uint32_t> output = after_passes(with_known_prints(spirv), passes, messages);
+std::vector<uint32_t> valid_after_passes(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes, std::string* messages) {
+  std::vector<uint32_t> output = after_passes(spirv, passes, messages);
   if (output.empty()) return {};
-  output = with_debug_prints(output);
+  output = without_stray_lines(with_debug_prints(output));
   const std::string after = validate_spirv(output);
   *messages += after;
   return after.empty() ? output : std::vector<uint32_t>{};
+}
+
+// The same, of a module whose functions are marked, where they can be, so that what is inlined says where it was called.
+std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes, std::string* messages) {
+  const std::vector<uint32_t> input = with_plain_lines(with_known_prints(spirv));
+  if (const std::optional<std::vector<uint32_t>> marked = with_inline_scopes(input)) {
+    // What strips foreign sets strips the marks, too; and there are marks only where there are no such sets.
+    std::string of_marks;
+    std::vector<uint32_t> output = valid_after_passes(*marked, {passes.begin() + 1, passes.end()}, &of_marks);
+    if (!output.empty()) return output;
+  }
+  return valid_after_passes(input, passes, messages);
 }
 
 // Lengths that are 0 because nobody set a specialisation constant are 1 from here on.

@@ -59,6 +59,8 @@ struct VirtualProgram {
   std::vector<RegisterClass> registers;
   std::vector<VirtualBlock> blocks;     // in layout order; block 0 is the entry
   std::vector<std::string> files;
+  std::vector<isa::Scope> scopes;       // isa::Line::scope numbers them from 1
+  std::vector<isa::SpirvLine> spirv;    // and isa::Line::spirv these
   uint32_t local_bytes = 0;             // variables and payloads; spills and saves are placed after them
   uint32_t payload_bytes = 0, attribute_bytes = 0;
   std::array<uint32_t, 3> local_size{1, 1, 1};

@@ -15,7 +15,23 @@ enum class Stage : uint8_t { RayGeneration, Intersection, AnyHit, ClosestHit, Mi
 struct Line {
   uint16_t file = 0;
   uint32_t line = 0;
-  bool operator==(const Line&) const = default;
+  // Known to the compiler alone: no part of a program's text, and lines are equal without them.
+  uint32_t spirv = 0;  // row of Program::spirv, from 1; 0 = unknown
+  uint32_t scope = 0;  // row of Program::scopes, from 1; 0 = unknown
+  bool operator==(const Line& other) const { return file == other.file && line == other.line; }
+};
+
+// A function's body as it was inlined: one for each chain of calls that leads to it.
+struct Scope {
+  std::string function;
+  uint32_t caller = 0;  // row of Program::scopes, from 1 and below its own; 0 = none, the entry point
+  Line call;            // where the caller calls it
+};
+
+// An instruction of the SPIR-V module as it was lowered, and the source line it stands for.
+struct SpirvLine {
+  std::string text;
+  Line line;
 };
 
 // Constant-bank layout that compiler and pipeline agree on. Descriptor of (set, binding) at
@@ -46,6 +62,9 @@ struct Program {
   std::array<uint32_t, 3> local_size{1, 1, 1};  // compute: threads of a block
   uint32_t shared_bytes = 0;          // compute: shared memory of a block
   std::vector<std::string> messages;  // formats of print and print.part (isa/message.h)
+  // For people, from the compiler: not in the program's text, and not compared.
+  std::vector<Scope> scopes;
+  std::vector<SpirvLine> spirv;
 
   bool operator==(const Program&) const;  // code, constants, lines, header fields: "the identical program"
 };

@@ -27,8 +27,25 @@ ProfileRow row_of(const core::Image& image, uint32_t pc, size_t reasons) {
   row.line = line.line;
   row.index = pc - shader.entry;
   row.op = image.rows[pc]->name;
+  row.program = image.shader_of[pc];
+  row.spirv = line.spirv;
+  row.scope = line.scope;
   row.slots.resize(reasons);
   return row;
+}
+
+ProgramListing listing_of(const isa::Program& program) {
+  ProgramListing out;
+  out.shader = program.name;
+  out.stage = isa::name_of(program.stage);
+  out.files = program.files;
+  for (size_t i = 0; i < program.code.size(); ++i) {
+    const isa::Line& line = program.lines[i];
+    out.isa.push_back({isa::to_text(program, program.code[i]), line.file, line.line, line.spirv, line.scope});
+  }
+  for (const isa::SpirvLine& each : program.spirv) out.spirv.push_back({each.text, each.line.file, each.line.line, each.line.spirv, each.line.scope});
+  for (const isa::Scope& scope : program.scopes) out.scopes.push_back({scope.function, scope.caller, scope.call.file, scope.call.line});
+  return out;
 }
 
 // What `column` of all cells has grown by between two samples; the one before the first is all zeros.
@@ -79,6 +96,7 @@ ProfileTable profile_of(const TimingMachine& machine, const core::Image& image) 
   nowhere.slots.resize(reasons);
   for (uint32_t i = 0; i < machine.num_cores(); ++i) add(nowhere, machine.core(i).profile()->nowhere());
   table.rows.push_back(std::move(nowhere));
+  for (const isa::Program& program : image.programs) table.programs.push_back(listing_of(program));
   return table;
 }
 

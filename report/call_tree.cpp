@@ -107,6 +107,18 @@ const CallTree::Call* CallTree::only_call(const std::string& name) const {
   return &calls->second.front();
 }
 
+std::vector<std::string> frames_of(const ProgramListing& program, uint32_t scope, const std::string& file, uint32_t line) {
+  if (scope == 0 || scope > program.scopes.size()) return {};
+  std::vector<std::string> out{fmt::format("{}:{}", file, line)};
+  while (scope != 0 && scope <= program.scopes.size()) {
+    const ListedScope& row = program.scopes[scope - 1];
+    out.insert(out.begin(), row.function);
+    if (row.caller != 0) out.insert(out.begin(), fmt::format("{}:{}", row.file < program.files.size() ? program.files[row.file] : "?", row.line));
+    scope = row.caller < scope ? row.caller : 0;  // callers come first
+  }
+  return out;
+}
+
 std::vector<std::string> CallTree::frames(const std::string& file, uint32_t line) const {
   std::vector<std::string> out{fmt::format("{}:{}", file, line)};
   const Function* function = around(file, line);

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "base/program_listing.h"
+
 namespace glint::report {
 
 // The compiler inlines every function, and the instructions keep the line of the function's body alone. Who called follows
@@ -43,5 +45,9 @@ class CallTree {
   std::map<std::string, int> bodies_;
   std::map<std::string, std::vector<Call>> calls_;
 };
+
+// The frames of a line in scope `scope` of a program whose compiler kept its calls: as CallTree::frames(), for every chain of
+// calls by itself. Empty when the scope is unknown.
+std::vector<std::string> frames_of(const ProgramListing& program, uint32_t scope, const std::string& file, uint32_t line);
 
 }  // namespace glint::report

@@ -17,6 +17,7 @@
 #include "report/config_rows.h"
 #include "report/metrics.h"
 #include "report/page_profile.h"
+#include "report/page_source.h"
 #include "report/page_stats.h"
 #include "report/profile_files.h"
 
@@ -119,7 +120,11 @@ Json run_json(const PageRun& run, Json& stat_docs, Json& key_docs) {
   out["metrics"] = metrics_json(RunRecord::read(directory));
   add_config(run, *bytes_of(directory + "/config.toml"), out, key_docs);  // RunRecord has read it
   if (const auto csv = bytes_of(directory + "/series.csv")) out["series"] = columns_of(*csv, directory + "/series.csv");
-  if (const auto csv = bytes_of(directory + "/profile.csv")) out["profile"] = page_profile(parse_profile(*csv, directory + "/profile.csv"));
+  if (const auto csv = bytes_of(directory + "/profile.csv")) {
+    const ProfileTable profile = parse_profile(*csv, directory + "/profile.csv");
+    out["profile"] = page_profile(profile);
+    if (const auto source = bytes_of(directory + "/source.json")) out["source"] = page_source(profile, parse_source(*source, directory + "/source.json"));
+  }
   if (const auto png = bytes_of(directory + "/image.png")) out["picture"] = "data:image/png;base64," + base64(*png);
   return out;
 }

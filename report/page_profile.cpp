@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr size_t kMaxLines = 40;  // that the report shows
+constexpr size_t kMaxLines = 16;  // that the report shows: the rest is in its source view
 
 Json counts_of(const ProfileRow& row) {
   return {{"issues", row.issues}, {"lanes", row.lanes}, {"accesses", row.accesses}, {"sectors", row.sectors},

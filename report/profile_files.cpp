@@ -19,7 +19,7 @@ constexpr const char* kInstruction = "instruction";
 constexpr const char* kLine = "line";
 constexpr const char* kNone = "no_warp";
 // Before the reasons.
-const std::vector<std::string> kColumns = {"by", "stage", "shader", "file", "line", "index", "op", "issues", "lanes", "accesses", "requests", "sectors", "ended", "latency", "cycles"};
+const std::vector<std::string> kColumns = {"by", "stage", "shader", "program", "file", "line", "spirv", "index", "op", "issues", "lanes", "accesses", "requests", "sectors", "ended", "latency", "cycles"};
 
 std::string csv_line(const std::vector<std::string>& cells) {
   std::string out;
@@ -28,7 +28,7 @@ std::string csv_line(const std::vector<std::string>& cells) {
 }
 
 std::string row_text(const char* by, const ProfileRow& row) {
-  std::vector<std::string> cells{by, row.stage, row.shader, row.file, std::to_string(row.line), std::to_string(row.index), row.op};
+  std::vector<std::string> cells{by, row.stage, row.shader, std::to_string(row.program), row.file, std::to_string(row.line), std::to_string(row.spirv), std::to_string(row.index), row.op};
   for (const uint64_t n : {row.issues, row.lanes, row.accesses, row.requests, row.sectors, row.ended, row.latency, row.total()}) cells.push_back(std::to_string(n));
   for (const uint64_t n : row.slots) cells.push_back(std::to_string(n));
   return csv_line(cells);
@@ -79,11 +79,13 @@ ProfileRow row_of(const std::vector<std::string>& cells, const Numbers& numbers)
   ProfileRow row;
   row.stage = cells[1];
   row.shader = cells[2];
-  row.file = cells[3];
-  row.line = uint32_t(numbers.at(4));
-  row.index = uint32_t(numbers.at(5));
-  row.op = cells[6];
-  size_t column = 7;
+  row.program = uint32_t(numbers.at(3));
+  row.file = cells[4];
+  row.line = uint32_t(numbers.at(5));
+  row.spirv = uint32_t(numbers.at(6));
+  row.index = uint32_t(numbers.at(7));
+  row.op = cells[8];
+  size_t column = 9;
   for (uint64_t* to : {&row.issues, &row.lanes, &row.accesses, &row.requests, &row.sectors, &row.ended, &row.latency}) *to = numbers.at(column++);
   for (size_t i = kColumns.size(); i < cells.size(); ++i) row.slots.push_back(numbers.at(i));
   return row;
@@ -122,9 +124,10 @@ std::string profile_folded(const ProfileTable& profile, const CallTree::TextOf& 
   for (const auto& [shader, names] : files) trees.emplace(shader, CallTree({names.begin(), names.end()}, text_of));
   std::map<std::string, uint64_t> stacks;  // sorted: the same text for the same profile
   for (const ProfileRow& row : profile.rows) {
-    const std::string frames = row.shader.empty() ? "gpu"
-                               : row.line         ? fmt::format("{};{}", row.stage, fmt::join(trees.at({row.stage, row.shader}).frames(row.file, row.line), ";"))
-                                                  : fmt::format("{};{}", row.stage, row.shader);
+    std::vector<std::string> calls{row.shader};
+    if (row.line) calls = row.program < profile.programs.size() ? frames_of(profile.programs[row.program], row.scope, row.file, row.line) : std::vector<std::string>();
+    if (calls.empty()) calls = trees.at({row.stage, row.shader}).frames(row.file, row.line);
+    const std::string frames = row.shader.empty() ? "gpu" : fmt::format("{};{}", row.stage, fmt::join(calls, ";"));
     for (size_t i = 0; i < row.slots.size(); ++i)
       if (row.slots[i]) stacks[frames + ";" + profile.reasons[i]] += row.slots[i];
   }

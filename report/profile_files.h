@@ -16,7 +16,8 @@ std::vector<ProfileRow> by_line(const ProfileTable& profile);
 std::string profile_csv(const ProfileTable& profile);
 
 // profile.folded: "stage;main;file:line;function;file:line;reason cycles", a line for each that is not zero: what flame
-// graph tools read. Calls are those of call_tree.h; without `text_of`, or where it knows no text, the line stands alone.
+// graph tools read. Calls are those that the compiler kept; where it did not, those of CallTree; without `text_of`, or where it knows
+// no text, the line stands alone.
 std::string profile_folded(const ProfileTable& profile, const CallTree::TextOf& text_of = [](const std::string&) { return std::nullopt; });
 
 // series.csv: a row an interval.

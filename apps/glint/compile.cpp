@@ -10,6 +10,7 @@
 #include "apps/glint/resources.h"
 #include "apps/glint/session.h"
 #include "apps/glint/shader_options.h"
+#include "frontend/inline_scopes.h"
 #include "isa/text.h"
 
 namespace glint::app {
@@ -27,7 +28,7 @@ std::string text_of(const Options& options, const std::string& file, const front
   std::vector<uint32_t> words = frontend::spirv_of_file(file, glsl);
   if (options.emit == "simplified") words = frontend::simplify(std::move(words), file, warnings);
   if (options.emit == "spv") return {reinterpret_cast<const char*>(words.data()), words.size() * sizeof words[0]};
-  return frontend::disassemble_spirv(words);
+  return frontend::disassemble_spirv(frontend::with_plain_lines(words));
 }
 
 Exit compile(const Options& options) {

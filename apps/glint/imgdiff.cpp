@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "apps/glint/session.h"
+#include "report/flip.h"
 #include "report/image_compare.h"
 #include "report/image_files.h"
 
@@ -15,8 +16,8 @@ namespace glint::app {
 namespace {
 
 struct Options {
-  std::string a, b, out;
-  double min_psnr = 0;
+  std::string a, b, out, metric = "difference";
+  double min_psnr = 0, max_flip = 1, pixels_per_degree = report::kPixelsPerDegree;
 };
 
 // A run directory stands for its picture with all digits.
@@ -31,21 +32,26 @@ std::string png_of(const report::Picture& picture) {
   return report::png_bytes({picture.width, picture.height, rgba});
 }
 
+std::string measures(const report::Picture& a, const report::ImageDifference& d, const report::Flip& flip, double pixels_per_degree) {
+  const std::string ssim = std::isnan(d.ssim) ? "- (the picture is smaller than the window of 11x11)" : fmt::format("{:.6f}", d.ssim);
+  return report::table({{"pixels apart", report::with_thousands(d.pixels_apart), fmt::format("of {}", report::with_thousands(uint64_t(a.width) * a.height))},
+                        {"largest", fmt::format("{:.6g}", d.largest), "of any channel"},
+                        {"MSE", fmt::format("{:.6g}", d.mse), "mean over pixels and channels"},
+                        {"PSNR", std::isinf(d.psnr) ? "inf" : fmt::format("{:.2f}", d.psnr), "dB, peak 1"},
+                        {"SSIM", ssim, "of luminance"},
+                        {"FLIP", fmt::format("{:.6f}", flip.mean), fmt::format("mean, {:.6g} pixels per degree; 0: looks the same", pixels_per_degree)}},
+                       "<><");
+}
+
 Exit imgdiff(const Options& options) {
   const report::Picture a = report::read_picture(picture_of(options.a)), b = report::read_picture(picture_of(options.b));
   const report::ImageDifference d = report::difference(a, b);
-  const uint64_t pixels = uint64_t(a.width) * a.height;
-  const std::string ssim = std::isnan(d.ssim) ? "- (the picture is smaller than the window of 11x11)" : fmt::format("{:.6f}", d.ssim);
-  write_output("", report::table({{"pixels apart", report::with_thousands(d.pixels_apart), fmt::format("of {}", report::with_thousands(pixels))},
-                                  {"largest", fmt::format("{:.6g}", d.largest), "of any channel"},
-                                  {"MSE", fmt::format("{:.6g}", d.mse), "mean over pixels and channels"},
-                                  {"PSNR", std::isinf(d.psnr) ? "inf" : fmt::format("{:.2f}", d.psnr), "dB, peak 1"},
-                                  {"SSIM", ssim, "of luminance"}},
-                                 "<><"));
-  if (!options.out.empty()) write_output(options.out, png_of(report::difference_picture(a, b, d.largest)));
-  if (d.psnr >= options.min_psnr) return Exit::Ok;
-  fmt::print(stderr, "failed: PSNR below {} dB\n", options.min_psnr);
-  return Exit::Failure;
+  const report::Flip flip = report::flip(a, b, options.pixels_per_degree);
+  write_output("", measures(a, d, flip, options.pixels_per_degree));
+  if (!options.out.empty()) write_output(options.out, png_of(options.metric == "flip" ? report::flip_picture(a, flip) : report::difference_picture(a, b, d.largest)));
+  if (d.psnr < options.min_psnr) fmt::print(stderr, "failed: PSNR below {} dB\n", options.min_psnr);
+  if (flip.mean > options.max_flip) fmt::print(stderr, "failed: FLIP {:.6f} is above {}\n", flip.mean, options.max_flip);
+  return d.psnr < options.min_psnr || flip.mean > options.max_flip ? Exit::Failure : Exit::Ok;
 }
 
 }  // namespace
@@ -55,8 +61,15 @@ void add_imgdiff(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand("imgdiff", "Measure how far apart two pictures are");
   command->add_option("A", options->a, "PFM or PNG file, or a run directory (its image.pfm)")->required();
   command->add_option("B", options->b, "The other one")->required();
-  command->add_option("-o,--out", options->out, "PNG of the difference, the largest as white");
+  command->add_option("-o,--out", options->out, "PNG of the difference: --metric says of which");
+  command->add_option("--metric", options->metric, "What -o draws: the absolute difference, the largest as white; or the map of FLIP, 0 black and 1 white")
+      ->check(CLI::IsMember({"difference", "flip"}))
+      ->capture_default_str();
   command->add_option("--min-psnr", options->min_psnr, "[dB] Exit with 1 when PSNR is below this");
+  command->add_option("--max-flip", options->max_flip, "Exit with 1 when the mean of FLIP is above this")->check(CLI::Range(0.0, 1.0));
+  command->add_option("--ppd", options->pixels_per_degree, "Pixels per degree of sight, for FLIP: 67 is a monitor of 0.7 m with 3840 pixels, 0.7 m away")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
   command->callback([&session, options] { session.action = [options] { return imgdiff(*options); }; });
 }
 

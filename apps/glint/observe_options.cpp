@@ -9,6 +9,7 @@
 
 #include "base/diagnostics.h"
 #include "report/profile_files.h"
+#include "report/source_files.h"
 
 namespace glint::app {
 namespace {
@@ -22,7 +23,7 @@ std::optional<std::string> text_of(const std::string& path) {
 }  // namespace
 
 void add_observe_options(CLI::App& command, pipeline::Observation& observe) {
-  command.add_flag("--profile", observe.profile, "Count by instruction and source line: profile.csv, profile.folded; 'glint annotate' shows it");
+  command.add_flag("--profile", observe.profile, "Count by instruction and source line: profile.csv, profile.folded, source.json; 'glint annotate' shows it");
   command.add_option("--sample", observe.sample, "Write series.csv: IPC, RT warps, miss rates and DRAM use of every so many cycles")
       ->type_name("CYCLES")
       ->check(CLI::PositiveNumber);
@@ -39,6 +40,7 @@ std::vector<std::string> write_observation(const pipeline::Observation& observe,
   if (observe.profile) {
     directory.write("profile.csv", report::profile_csv(result.profile));
     directory.write("profile.folded", report::profile_folded(result.profile, text_of));
+    directory.write("source.json", report::source_json(report::source_map(result.profile.programs, text_of)));
     lines.push_back("profile    " + directory.path_of("profile.csv") + " (glint annotate " + directory.path() + ")");
   }
   if (observe.sample) {

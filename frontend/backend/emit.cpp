@@ -142,6 +142,8 @@ isa::Program emit(const VirtualProgram& program, const Allocation& allocation, c
   out.name = program.name;
   out.stage = program.stage;
   out.files = program.files;
+  out.scopes = program.scopes;
+  out.spirv = program.spirv;
   out.local_bytes = program.local_bytes;
   out.payload_bytes = program.payload_bytes;
   out.attribute_bytes = program.attribute_bytes;

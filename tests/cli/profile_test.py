@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """usage: profile_test.py GLINT SOURCE_DIR"""
 import csv
+import json
 import re
 
 import glint_case
@@ -42,6 +43,56 @@ class Profile(GlintTest):
         everything = self.glint(0, "annotate", "out").stdout
         shares = [float(x) for x in re.findall(r"(?m)^ \w+ +[\d ]+? +(\d+\.\d) %", everything)]
         self.assertAlmostEqual(sum(shares), 100.0, delta=1.0)
+
+    def figures(self, *options):
+        """The first column of `glint annotate`, added up."""
+        shown = self.glint(0, "annotate", "out", *options).stdout
+        # Lines that did not run have their number alone.
+        return sum(int(n.replace(" ", "")) for n in re.findall(r"(?m)^ *(\d{1,3}(?: \d{3})*)  +(?:\d+  |\d+$|\()", shown[shown.index("issues"):]))
+
+    def test_every_view_adds_up_to_the_statistics(self):
+        self.glint(0, "run", "WKND", *SMALL, "--shader", "pt", "--profile", "--out", "out")
+        issues = self.stats(r"gpu\.core\[\d+\]\.instructions")
+        rows = list(csv.DictReader((self.folder / "out/profile.csv").read_text().splitlines()))
+        self.assertEqual(self.figures("--view", "isa", "--measures", "issues"), issues)
+        self.assertEqual(self.figures("--view", "spirv", "--measures", "issues"), issues)
+        without_line = sum(int(r["issues"]) for r in rows if r["by"] == "instruction" and r["line"] == "0")
+        self.assertEqual(self.figures("--measures", "issues"), issues - without_line)
+        self.assertLess(without_line, issues / 100)
+        document = json.loads((self.folder / "out/source.json").read_text())
+        for row in rows:
+            if row["by"] != "instruction":
+                continue
+            program, index = document["programs"][int(row["program"])], int(row["index"])
+            self.assertEqual(program["shader"], row["shader"])
+            self.assertIn(row["op"], program["isa"]["text"][index])
+            self.assertEqual(program["isa"]["spirv"][index], int(row["spirv"]))
+            if row["spirv"] != "0":
+                self.assertEqual(program["spirv"]["line"][int(row["spirv"]) - 1], int(row["line"]))
+
+    def test_stacks_tell_apart_the_calls_of_a_function_that_has_several(self):
+        self.glint(0, "run", "WKND", *SMALL, "--shader", "pt", "--profile", "--out", "out")
+        callers = {}
+        for line in (self.folder / "out/profile.folded").read_text().splitlines():
+            frames = line.rsplit(" ", 1)[0].split(";")
+            if frames[0] == "gpu":
+                continue
+            self.assertEqual(frames[1], "main", line)
+            for call, function in zip(frames[2::2], frames[3::2]):
+                callers.setdefault(function, set()).add(call)
+        self.assertGreater(max(len(calls) for calls in callers.values()), 1, callers)
+
+    def test_views_of_spirv_and_of_everything_show_a_trace_below_its_line(self):
+        self.glint(0, "run", "WKND", *SMALL, "--shader", "pt", "--profile", "--out", "out")
+        everything = self.glint(0, "annotate", "out", "raygen.rgen", "--view", "all").stdout
+        self.assertNotIn("\x1b", everything)
+        self.assertRegex(everything, r"traceRayEXT[^\n]*\n(?:[^\n]*\n)*?[^\n]*OpTraceRayKHR[^\n]*\n(?:[^\n]*\n)*?[^\n]*rt\.trace")
+        waits = self.glint(0, "annotate", "out", "raygen.rgen", "--view", "spirv", "--measures", "rt_wait,issues").stdout
+        self.assertRegex(waits, r"(?m)^ +[1-9][\d ]* +\d[\d ]* +\d+  OpTraceRayKHR .* raygen\.rgen:\d+$")
+        self.assertIn("rt_wait", self.glint(2, "annotate", "out", "--measures", "heat").stderr)
+        (self.folder / "out/source.json").rename(self.folder / "out/away.json")
+        self.assertIn("traceRayEXT", self.glint(0, "annotate", "out", "raygen.rgen").stdout)  # from the file itself
+        self.assertIn("source.json", self.glint(2, "annotate", "out", "--view", "isa").stderr)
 
     def test_what_cannot_be_shown_is_refused_with_a_way_out(self):
         self.assertIn("--profile", self.glint(2, "annotate", "nowhere").stderr)

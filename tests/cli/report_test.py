@@ -239,6 +239,11 @@ class Compare(ReportTest):
         self.expect(1, ["PSNR below 200"], "imgdiff", self.runs["wknd"], "other", "--min-psnr", "200")
         self.assertEqual(self.glint("imgdiff", self.runs["wknd"], "other/image.png", "-o", "diff.png").returncode, 0)
         self.assertEqual((self.folder / "diff.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual(self.glint("imgdiff", self.runs["wknd"], "other/image.png", "-o", "flip.png", "--metric", "flip").returncode, 0)
+        self.assertNotEqual((self.folder / "flip.png").read_bytes(), (self.folder / "diff.png").read_bytes())
+        self.assertRegex(same.stdout, r"FLIP +0\.000000")
+        self.expect(1, ["FLIP 0.", "above 0.001"], "imgdiff", self.runs["wknd"], "other", "--max-flip", "0.001")
+        self.expect(2, ["--ppd"], "imgdiff", self.runs["wknd"], "other", "--ppd", "0")
         self.expect(2, ["16x16", "8x8"], "imgdiff", self.runs["wknd"], self.small())
         self.expect(2, ["stats.csv"], "imgdiff", f"{self.runs['wknd']}/stats.csv", self.runs["slow"])
 
@@ -292,6 +297,43 @@ class Browser(ReportTest):
         values = [float(value) for value in re.findall(r'data-value="([^"]*)"', mix)]
         classes = [self.total(name, f"gpu.core[*].latency_by_class::{part}") for part in ("alu", "sfu", "mem", "tex", "ctrl", "rt")]
         self.assertEqual(values, [*classes, sum(classes)])
+
+    def test_panes_of_the_source_view_have_the_instructions_of_stats_json_shader_by_shader(self):
+        walk = """
+          const sums = [], wait = () => document.documentElement.dataset.source === "yes" ? walk() : setTimeout(wait, 50);
+          const walk = () => {
+            const [program, , measure] = document.querySelectorAll(".picks select");
+            for (const option of program.options) {
+              program.value = option.value;
+              program.dispatchEvent(new Event("change"));
+              sums.push([...document.querySelectorAll(".pane")].map((pane) => ["cycles", "issues", "lanes", "sectors"].map((name) => Number(pane.dataset[name]))));
+            }
+            const list = document.querySelector(".pane.isa .lines"), press = (key) => list.dispatchEvent(new KeyboardEvent("keydown", { key }));
+            program.value = program.options[0].value;
+            program.dispatchEvent(new Event("change"));
+            measure.value = "2";
+            measure.dispatchEvent(new Event("change"));
+            press("End");
+            const last = document.querySelector(".pane.isa [aria-selected=true]").textContent;
+            press("ArrowUp"), press("ArrowUp");
+            const marked = [...document.querySelectorAll(".pane")].map((pane) => pane.querySelectorAll(".on").length);
+            document.body.dataset.kept = JSON.stringify({ sums, last, marked, count: document.querySelectorAll(".pane.isa [role=option]").length });
+          };
+          wait();"""
+        page, _ = self.load("wknd", script=walk)
+        kept = json.loads(next(attributes["data-kept"] for tag, attributes, _ in page.found if tag == "body"))
+        self.assertGreaterEqual(len(kept["sums"]), 4)
+        issued = self.total("wknd", "gpu.core[*].instructions")
+        profile = csv.DictReader(pathlib.Path(self.runs["wknd"], "profile.csv").read_text().splitlines())
+        slots = sum(v for p, _, v in leaves(self.stats("wknd")) if "issue_slots::" in p) - sum(int(row["cycles"]) for row in profile if row["by"] == "no_warp")
+        for pane in range(3):
+            cycles, issues, lanes, sectors = (sum(program[pane][i] for program in kept["sums"]) for i in range(4))
+            self.assertEqual(issues, issued)
+            self.assertEqual(cycles, slots)
+            self.assertEqual([lanes, sectors], [sum(program[2][i] for program in kept["sums"]) for i in (2, 3)])
+        self.assertRegex(kept["last"], rf"{kept['count'] - 1}\D")
+        self.assertEqual(kept["marked"][2], 1)
+        self.assertGreaterEqual(min(kept["marked"][:2]), 1)
 
     def test_several_runs_stand_side_by_side_and_the_largest_change_comes_first(self):
         page, text = self.load("wknd", "slow")

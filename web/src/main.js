@@ -57,7 +57,7 @@ const sections = [
   section("rays", "Rays and RT units", null, figures(rtUse, traversal, rtCycles, fetchMix, rayHistograms.nodes, rayHistograms.latency)),
   section("memory", "Memory", null, figures(memoryLatency.stages, caches.l1, caches.l2, memoryLatency.spread, dram.use, dram.clocks)),
   section("time", "Over time", null, figures(series), missing("series", "--sample CYCLES")),
-  section("source", "Source lines", "Where the cycles of schedulers went, line by line: at the instruction that issued, or at the one whose warp was nearest to issue.", source(runs) ?? missing("profile", "--profile")),
+  section("source", "Source", "Where the cycles of schedulers went, line by line: at the instruction that issued, or at the one whose warp was nearest to issue.", source(runs) ?? missing("profile", "--profile")),
   section("structure", "Scene and structures", null, structure(runs)),
 ];
 

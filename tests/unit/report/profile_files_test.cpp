@@ -67,20 +67,18 @@ TEST_CASE("folded stacks have each cycle once") {
         "raygen;x, \"y\".glsl:3;long_scoreboard 130\n");
 }
 
-TEST_CASE("annotated source shows each line's share of the cycles of instructions and what it waits for") {
-  const std::string text = annotate(sample(), "b.glsl", "void main() {\n}\n", {});
-  CHECK(text.find("b.glsl: 24.9 %") == 0);  // 50 of 201
-  CHECK(text.find("24.9 %       5   16.0        4  long_scoreboard 90.0 %     1  void main() {") != std::string::npos);
-  CHECK(text.find("    2  }") != std::string::npos);
+TEST_CASE("folded stacks follow the calls that the compiler kept, each chain by itself, and end where they are unknown") {
+  ProfileTable profile = sample();
+  profile.programs = {{"a.rgen", "raygen", {"a.rgen", "b.glsl"}, {}, {}, {{"main", 0, 0, 0}, {"shade", 1, 0, 7}, {"shade", 1, 0, 9}}}};
+  profile.rows[0].scope = 2, profile.rows[1].scope = 3, profile.rows[2].scope = 1;
+  const std::string folded = profile_folded(profile);
+  CHECK(folded.find("raygen;main;a.rgen:7;shade;x, \"y\".glsl:3;issued 10\n") != std::string::npos);
+  CHECK(folded.find("raygen;main;a.rgen:9;shade;x, \"y\".glsl:3;long_scoreboard 40\n") != std::string::npos);
+  CHECK(folded.find("raygen;main;b.glsl:1;issued 5\n") != std::string::npos);
+  CHECK(folded.find("raygen;a.rgen;issued 1\n") != std::string::npos);
 }
 
-TEST_CASE("without its source a file's lines with figures are shown, and no others") {
-  const std::string text = annotate(sample(), "x, \"y\".glsl", std::nullopt, {});
-  CHECK(text.find("74.6 %") != std::string::npos);  // 150 of 201
-  CHECK(std::count(text.begin(), text.end(), '\n') == 4);  // heading, columns, line 3, an empty one
-}
-
-TEST_CASE("files come with the costliest first, and the reasons add up to all cycles") {
+TEST_CASE("files and programs come with the costliest first, and the reasons add up to all cycles") {
   const std::vector<FileShare> files = files_of(sample());
   REQUIRE(files.size() == 2);
   CHECK(files[1].file == "b.glsl");
