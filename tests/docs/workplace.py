@@ -29,7 +29,7 @@ FIXTURES = {
     "docs/howto/cite.md": "glint run SHIP --shader sh --out out/ship",
     "docs/howto/policy.md": "true",  # the page's C++ block is compiled into a command of its own: docs_test.py
     "docs/characterization.md": "glint bench --config desktop --out out/bench-desktop",
-    "docs/profiling.md": "glint run SHIP --shader sh --profile --sample 1000 --out out/ship",
+    "docs/profiling.md": "glint run WKND --shader pt --profile --sample 1000 --out out",
 }
 WRAPPER = """#!/bin/sh
 exec "{python}" -B "{here}/reduced.py" "{glint}" "$@"
