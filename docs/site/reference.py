@@ -105,7 +105,7 @@ def python() -> str:
     for title, module in parts.items():
         text.append(f"## {title}\n\n```{{eval-rst}}\n.. automodule:: glint.{module}\n   :members:\n   :undoc-members:\n```\n")
     text.append("## Figures\n\n```{eval-rst}\n.. automodule:: glint.plot.style\n   :members: save\n```\n")
-    for module in ("instructions", "rays", "memory", "overview", "suite"):
+    for module in ("instructions", "rays", "memory", "overview", "suite", "models"):
         text.append(f"```{{eval-rst}}\n.. automodule:: glint.plot.{module}\n   :members:\n```\n")
     return "\n".join(text)
 

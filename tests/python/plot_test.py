@@ -107,6 +107,15 @@ class Suites(PythonTest):
             self.assertGreater(plot.save(drawn, self.folder / f"{figure.__name__}.pdf").stat().st_size, 3000)
         self.assertEqual(len([axis for axis in plot.kiviat(self.folder, ["A_PT", "B_PT", "C_PT"]).axes if axis.get_title()]), 3)
 
+    def test_predictions_stand_at_their_cycles_with_the_r_squared_of_the_regression(self):
+        (self.folder / "models.csv").write_text("workload,cycles,model:half,model:noise,input\nA,100,50,7,1\nB,200,100,3,1\nC,400,200,5,1\n")
+        figure = self.glint.plot.model_fit(self.folder)
+        self.assertEqual(figure.axes[0].collections[0].get_offsets().tolist(), [[100, 50], [200, 100], [400, 200]])
+        names = [text.get_text() for text in figure.legends[0].get_texts()]
+        self.assertEqual(names, ["half (R² 1.000)", "noise (R² 0.107)"])
+        self.assertRaisesRegex(self.glint.SchemaError, "no column cycles", self.glint.plot.model_fit, self.there / "kiviat.csv")
+        self.assertRaisesRegex(self.glint.SchemaError, "model:NAME", self.glint.plot.model_fit, self.glint.Table(["workload", "cycles"], [["A", 1]]))
+
     def test_a_linkage_that_does_not_fit_is_refused(self):
         (self.there / "linkage.csv").write_text("first,second,distance,leaves\n0,1,1,2\n")
         self.assertRaisesRegex(self.glint.SchemaError, "1 rows, 3 expected", self.glint.plot.dendrogram, self.folder)

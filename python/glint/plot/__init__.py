@@ -12,6 +12,7 @@ require("matplotlib", "glint.plot")
 
 from .instructions import cpi_stack, instruction_mix, op_latency, ops, stage_cycles, stages  # noqa: E402
 from .memory import dram, dram_clocks, l1_reads, l2_reads, miss_latency, miss_stages  # noqa: E402
+from .models import model_fit  # noqa: E402
 from .overview import cost_map, ipc, picture, series  # noqa: E402
 from .rays import fetch_mix, geometry, ray_latency, ray_nodes, rt_cycles, rt_use, traversal  # noqa: E402
 from .suite import components, dendrogram, kiviat, scree  # noqa: E402
@@ -22,5 +23,5 @@ FIGURES = {figure.__name__: figure for figure in (
     l1_reads, l2_reads, miss_stages, miss_latency, dram, dram_clocks, ipc)}
 
 __all__ = ["COLOURS", "COLUMN", "FIGURES", "components", "cost_map", "cpi_stack", "dendrogram", "dram", "dram_clocks", "fetch_mix", "geometry", "instruction_mix",
-           "ipc", "kiviat", "l1_reads", "l2_reads", "miss_latency", "miss_stages", "op_latency", "ops", "picture", "ray_latency", "ray_nodes",
+           "ipc", "kiviat", "l1_reads", "l2_reads", "miss_latency", "miss_stages", "model_fit", "op_latency", "ops", "picture", "ray_latency", "ray_nodes",
            "rt_cycles", "rt_use", "save", "scree", "series", "stage_cycles", "stages", "traversal"]

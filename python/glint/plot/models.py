@@ -1,0 +1,52 @@
+# Figure of analytical models: predicted against simulated cycles, workload by workload (LumiBench, Figure 15).
+# SPDX-License-Identifier: Apache-2.0
+"""From `models.csv`, a table of workloads with simulated cycles and a column `model:NAME` a model, as `glint model` writes it."""
+from __future__ import annotations
+
+import pathlib
+from typing import Any
+
+from ..errors import MissingFile, SchemaError
+from ..table import Table
+from .style import COLOURS, legend, new_figure, run_colour, styled
+
+_PREFIX = "model:"
+_MARKS = "osD^v"
+
+
+def correlation(predicted: list[float], simulated: list[float]) -> float:
+    """R squared of the linear regression of simulated on predicted cycles, as LumiBench gives it; 0 where one does not vary."""
+    count = len(predicted)
+    a, b = sum(predicted) / count, sum(simulated) / count
+    both = sum((x - a) * (y - b) for x, y in zip(predicted, simulated))
+    spread = sum((x - a) ** 2 for x in predicted) * sum((y - b) ** 2 for y in simulated)
+    return both * both / spread if spread else 0.0
+
+
+def model_fit(table: Table | str | pathlib.Path) -> Any:
+    """Predicted against simulated cycles with each model's R squared; on the line both are equal. Takes a table, `models.csv`, or its folder."""
+    if not isinstance(table, Table):
+        path = pathlib.Path(table)
+        path = path / "models.csv" if path.is_dir() else path
+        if not path.is_file():
+            raise MissingFile(f"{path}: there is no such table of models")
+        table = Table.read(path, needs=("workload", "cycles"))
+    models = [column for column in table.columns if column.startswith(_PREFIX)]
+    if not models or not len(table):
+        raise SchemaError(f"no column '{_PREFIX}NAME' or no row: no table of models")
+    cycles = table["cycles"]
+    with styled():
+        figure, axes = new_figure(2.6)
+        handles, names = [], []
+        for index, column in enumerate(models):
+            handles.append(axes.scatter(cycles, table[column], s=11, color=run_colour(index), marker=_MARKS[index % len(_MARKS)], linewidth=0))
+            names.append(f"{column.removeprefix(_PREFIX)} (R² {correlation(table[column], cycles):.3f})")
+        ends = [min(cycles), max(cycles)]
+        axes.plot(ends, ends, color=COLOURS["dark"], linewidth=0.6, linestyle="--")
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        axes.set_xlabel("simulated cycles")
+        axes.set_ylabel("predicted cycles")
+        axes.grid(color=COLOURS["pale"], linewidth=0.4)
+        legend(figure, handles, names)
+        return figure
