@@ -119,7 +119,7 @@ def doc_paths(root):
     """Paths that the docs name exist. A path is a `code` word with a slash in which only its folder must be ours."""
     tops = {p.name for p in root.iterdir()} - {"build", "out"}
     problems = []
-    for path in sorted(list(root.glob("*.md")) + list((root / "docs").glob("*.md")) + [root / f / "README.md" for f in LIBRARIES + ["apps/glint", "configs", "shaders", "python"]]):
+    for path in sorted(list(root.glob("*.md")) + list((root / "docs").glob("*.md")) + list((root / "docs/howto").glob("*.md")) + [root / f / "README.md" for f in LIBRARIES + ["apps/glint", "configs", "shaders", "python"]]):
         if not path.exists():
             continue
         for number, line in enumerate(path.read_text().splitlines(), 1):
