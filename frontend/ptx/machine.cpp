@@ -50,7 +50,8 @@ class Shaping {
   }
 
   void combine_predicates(const VirtualBlock& block, VirtualInst& inst) {
-    if (!is_real(inst) || (inst.op != and_pred_ && inst.op != or_pred_)) return;
+    const char* combined = is_real(inst) ? inst.op == and_pred_ ? ".and" : inst.op == or_pred_ ? ".or" : inst.op == xor_pred_ ? ".xor" : nullptr : nullptr;
+    if (!combined) return;
     for (size_t k : {size_t{2}, size_t{1}}) {
       const Operand test = inst.operands[k], other = inst.operands[3 - k];
       const VirtualInst* setp = definition(test);
@@ -58,7 +59,7 @@ class Shaping {
       const std::string name(row_of(*setp).name);
       const size_t type = name.rfind('.');
       if (!name.starts_with("setp.")) continue;
-      const int row = isa::find_op(name.substr(0, type) + (inst.op == and_pred_ ? ".and" : ".or") + name.substr(type));
+      const int row = isa::find_op(name.substr(0, type) + combined + name.substr(type));
       if (row < 0 || !is_unchanged(block, setp->operands[1], *setp, inst) || !is_unchanged(block, setp->operands[2], *setp, inst)) continue;
       inst.op = uint16_t(row);
       inst.operands = {inst.operands[0], Operand::of(new_predicate()), setp->operands[1], setp->operands[2], other};
@@ -169,7 +170,8 @@ class Shaping {
 
   VirtualProgram& program_;
   const Ops ops_;
-  const uint16_t and_pred_ = isa::op_index("and.pred"), or_pred_ = isa::op_index("or.pred"), mad_lo_s32_ = isa::op_index("mad.lo.s32");
+  const uint16_t and_pred_ = isa::op_index("and.pred"), or_pred_ = isa::op_index("or.pred"), xor_pred_ = isa::op_index("xor.pred");
+  const uint16_t mad_lo_s32_ = isa::op_index("mad.lo.s32");
   const uint16_t load_shared_ = isa::op_index("ld.shared.b32");
   const uint16_t load_shared_v2_ = isa::op_index("ld.shared.v2.b32"), load_shared_v4_ = isa::op_index("ld.shared.v4.b32");
   DefUse registers_;

@@ -10,7 +10,7 @@ void exit_at_branches(Draft& draft);
 
 // Results stay bit for bit what they were. Source: counts of executed instructions of fourteen kernels on an H200, and
 // the machine instructions of single ops (docs/validation.md). Loops: unroll.h.
-//   predicates  setp p, a, b; and.pred q, p, r              -> setp.and q, a, b, r; or.pred as well
+//   predicates  setp p, a, b; and.pred q, p, r              -> setp.and q, a, b, r; or.pred, xor.pred as well
 //   products    mul.wide x, a, b; add y, x, c; add z, x, d  -> mad.wide y, a, b, c; mad.wide z, a, b, d; mul.lo, shl as well
 //   negations   mul y, a, b; neg z, y -> mul z, na, b with neg na, a where a is computed, out of the loop that a comes into
 //   loads       ld.shared of 2 or 4 words that follow each other at a place known to be aligned -> one of a vector
