@@ -37,7 +37,7 @@ class Threads(GlintTest):
 
     def test_a_path_traced_frame_has_the_same_picture_statistics_series_and_profile(self):
         self.same_files(["WKND", "--shader", "pt", "--size", "24x16", "--spp", "1", "--profile", "--sample", "500"],
-                        ["image.png", "image.pfm", "stats.json", "stats.txt", "stats.csv", "series.csv", "profile.csv", "profile.folded", "config.toml"])
+                        ["image.png", "image.pfm", "stats.json", "stats.txt", "stats.csv", "series.csv", "profile.csv", "profile.folded", "source.json", "config.toml"])
 
     def test_compute_full_of_racing_atomics_has_the_same_buffers_and_statistics(self):
         self.write("atomics.comp", ATOMICS)
