@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "report/base64.h"
+#include "report/image_files.h"
 #include "report/page_parts.h"
 
 namespace glint::report {
@@ -122,6 +124,15 @@ std::string pictures(const Json& data) {
   return out;
 }
 
+// The script packed, under its notices, which stay readable, and what unpacks it.
+std::string script_of(const PageParts& parts) {
+  if (parts.unpack.empty()) return "<script>\n" + parts.script + "</script>";
+  const size_t end = parts.script.starts_with("/*!") ? parts.script.find("*/") + 2 : 0;
+  const std::string rest = parts.script.substr(end);
+  return fmt::format("<script>\n{}\n</script>\n<script type=\"text/plain\" id=\"packed\" data-bytes=\"{}\">{}</script>\n<script>\n{}</script>", parts.script.substr(0, end), rest.size(),
+                     base64(zlib_bytes(rest)), parts.unpack);
+}
+
 }  // namespace
 
 std::string page(const nlohmann::ordered_json& data, const PageParts& parts) {
@@ -134,7 +145,7 @@ std::string page(const nlohmann::ordered_json& data, const PageParts& parts) {
   place(out, "<!--noscript-->", fmt::format("<noscript><h1>{}</h1>\n{}<p class=\"note\">The figures need a browser that runs scripts. The tables below do not.</p></noscript>", escaped(title), pictures(data)));
   place(out, "<!--changes-->", config_table(data));
   place(out, "<!--metrics-->", metrics_table(data));
-  place(out, "<!--script-->", "<script>\n" + parts.script + "</script>");
+  place(out, "<!--script-->", script_of(parts));
   place(out, "<!--data-->", "<script type=\"application/json\" id=\"data\">" + script_json(data) + "</script>");
   return out;
 }

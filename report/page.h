@@ -10,6 +10,7 @@ namespace glint::report {
 struct PageParts {
   std::string frame;   // HTML with the places <!--style-->, <!--title-->, <!--noscript-->, <!--changes-->, <!--metrics-->, <!--data--> and <!--script-->
   std::string style, script;
+  std::string unpack = {};  // a script that unpacks the other and runs it; without it the script stands in the page as it is
 };
 
 // `data` is page_data(). UserError when the frame lacks a place.

@@ -38,7 +38,7 @@ Exit write_report(const Session& session, const std::vector<std::string>& direct
   for (const std::string& directory : directories) runs.push_back(page_run(session.resources, directory));
   const nlohmann::ordered_json data = report::page_data(runs, GLINT_VERSION);
   const auto web = [&](const char* name) { return read_file(session.resources.web_file(name)); };
-  const std::string page = report::page(data, {.frame = web("report.html"), .style = web("report.css"), .script = web("report.js")});
+  const std::string page = report::page(data, {.frame = web("report.html"), .style = web("report.css"), .script = web("report.js"), .unpack = web("unpack.js")});
   const std::string path = !out.empty() ? out : directories.size() == 1 ? directories[0] + "/report.html" : "report.html";
   write_output(path, page);
   if (path != "-") fmt::print("{}\n", path);

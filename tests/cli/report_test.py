@@ -1,6 +1,7 @@
 # `glint report`: the page is whole, loads nothing from elsewhere, and shows the numbers of stats.json, in a real browser too.
 # SPDX-License-Identifier: Apache-2.0
 """usage: report_test.py GLINT SOURCE_DIR SUITE...; the suite Browser needs Chromium and says so where there is none."""
+import base64
 import csv
 import html.parser
 import json
@@ -12,6 +13,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import zlib
 
 import glint_case
 from glint_case import GLINT, ROOT, GlintTest
@@ -297,6 +299,22 @@ class Browser(ReportTest):
         values = [float(value) for value in re.findall(r'data-value="([^"]*)"', mix)]
         classes = [self.total(name, f"gpu.core[*].latency_by_class::{part}") for part in ("alu", "sfu", "mem", "tex", "ctrl", "rt")]
         self.assertEqual(values, [*classes, sum(classes)])
+
+    def test_what_the_page_packs_is_unpacked_whatever_kind_of_blocks_it_has(self):
+        text = (ROOT / "docs/report.md").read_text() * 3 + "\u2013" * 300
+        kinds = {"stored": (0, zlib.Z_DEFAULT_STRATEGY), "fixed": (9, zlib.Z_FIXED), "dynamic": (9, zlib.Z_DEFAULT_STRATEGY), "fast": (1, zlib.Z_HUFFMAN_ONLY)}
+        packed = {}
+        for kind, (level, strategy) in kinds.items():
+            squeeze = zlib.compressobj(level, zlib.DEFLATED, 15, 9, strategy)
+            packed[kind] = base64.b64encode(squeeze.compress(text.encode()) + squeeze.flush()).decode()
+        unpack = (ROOT / "web/src/inflate.js").read_text().replace("export function", "function")
+        self.write("inflate.html", f"""<body><script>{unpack}
+          const packed = {json.dumps(packed)}, text = {json.dumps(text)}, size = {len(text.encode())};
+          for (const kind in packed) document.body.dataset[kind] = unpackText(packed[kind], size) === text;</script></body>""")
+        done = subprocess.run([CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={self.folder}/profile", "--dump-dom", f"file://{self.folder}/inflate.html"],
+                              capture_output=True, text=True, timeout=280)
+        for kind in kinds:
+            self.assertIn(f'data-{kind}="true"', done.stdout)
 
     def test_panes_of_the_source_view_have_the_instructions_of_stats_json_shader_by_shader(self):
         walk = """

@@ -1,12 +1,9 @@
 // What the source view draws of a run: its programs, what each line cost, and which lines belong together.
 // SPDX-License-Identifier: Apache-2.0
+import { unpackText } from "../inflate.js";
 
 // The text that report/page_source.h packed.
-export async function unpack({ packed }) {
-  const bytes = Uint8Array.from(atob(packed), (letter) => letter.charCodeAt(0));
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
-  return JSON.parse(await new Response(stream).text());
-}
+export const unpack = ({ packed, bytes }) => JSON.parse(unpackText(packed, bytes));
 
 const kCounts = ["issues", "lanes", "sectors", "accesses", "ended", "latency"]; // behind program and index, then pairs of reasons
 

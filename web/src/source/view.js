@@ -135,17 +135,16 @@ class View {
   }
 }
 
-// A place in the page where the view appears; `open(file, line)` leads there once it has.
+// A place in the page where the view appears once the page has it; `open(file, line)` leads there then.
 export function sourceView(source) {
   const place = h("div", { class: "view-place" });
   let view = null;
-  if (typeof DecompressionStream === "undefined") place.append(h("p", { class: "note" }, "This browser cannot unpack the source: use a newer one, or `glint annotate`."));
-  else
-    unpack(source).then((document_) => {
-      view = new View(document_);
-      place.append(view.element, flameGraph(document_, (file, line) => view.open(file, line)));
-      view.showProgram(); // in the page, so that panes have a height to scroll in
-      document.documentElement.dataset.source = "yes"; // for tests: all of the above has run
-    });
+  setTimeout(() => {
+    const unpacked = unpack(source);
+    view = new View(unpacked);
+    place.append(view.element, flameGraph(unpacked, (file, line) => view.open(file, line)));
+    view.showProgram(); // in the page, so that panes have a height to scroll in
+    document.documentElement.dataset.source = "yes"; // for tests: all of the above has run
+  });
   return { element: place, open: (file, line) => view?.open(file, line) };
 }
