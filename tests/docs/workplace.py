@@ -10,8 +10,8 @@ import subprocess
 # THE RULE OF REDUCTION, for `glint run` of scenes and `glint bench`; everything else runs as it is written.
 SIZE, SAMPLES = "16x16", "1"
 BENCH = ["WKND_PT", "SHIP_SH"]  # instead of more than two workloads
-BENCH_OF = {  # pages whose commands need a suite to look at: the quick scenes
-    "docs/characterization.md": [f"{scene}_{shader}" for scene in ("WKND", "SHIP", "REF") for shader in ("PT", "SH", "AO")]}
+QUICK_SUITE = [f"{scene}_{shader}" for scene in ("WKND", "SHIP", "REF") for shader in ("PT", "SH", "AO")]
+BENCH_OF = {"docs/characterization.md": QUICK_SUITE, "docs/modelling.md": QUICK_SUITE}  # pages whose commands need a suite to look at
 SLOW_SCENES = {"PARK_PT": "PARTY_PT", "ROBOT_SH": "SHIP_SH"}  # scenes of millions of triangles, by one that stands in
 KERNEL_ONLY = ["--only", "L1"]  # `glint microbench` without --only
 
@@ -29,6 +29,7 @@ FIXTURES = {
     "docs/howto/cite.md": "glint run SHIP --shader sh --out out/ship",
     "docs/howto/policy.md": "true",  # the page's C++ block is compiled into a command of its own: docs_test.py
     "docs/characterization.md": "glint bench --config desktop --out out/bench-desktop",
+    "docs/modelling.md": "glint run SHIP --shader sh --out out/ship",
     "docs/profiling.md": "glint run WKND --shader pt --profile --sample 1000 --out out",
 }
 WRAPPER = """#!/bin/sh
