@@ -102,6 +102,7 @@ std::string Annotator::file(const SourceFile& file) const {
 std::string Annotator::spirv(uint32_t number) const {
   const ProgramListing& program = map_.programs.at(number);
   const std::map<uint32_t, ProfileRow> costs = summed(profile_, number, [](const ProfileRow& row) { return row.spirv; });
+  if (program.spirv.empty()) return heading_of(number, "not compiled from SPIR-V") + "\n\n";
   Rows rows;
   bool in_function = false;  // what stands before is declared, not run
   for (uint32_t n = 1; n <= program.spirv.size(); ++n) {
@@ -132,8 +133,8 @@ void Annotator::add_below(Rows& rows, uint32_t program, const std::vector<uint32
   std::map<uint32_t, std::vector<uint32_t>> parts;
   for (const uint32_t i : instructions) parts[listing.isa[i].spirv].push_back(i);
   for (const auto& [spirv, made] : parts) {
-    const std::string text = spirv ? listing.spirv[spirv - 1].text : "(of no SPIR-V instruction)";
-    rows.push_back(joined(measures_.cells(spirv ? found(by_spirv, spirv) : nullptr), {spirv ? std::to_string(spirv) : "", "    " + text}));
+    if (spirv) rows.push_back(joined(measures_.cells(found(by_spirv, spirv)), {std::to_string(spirv), "    " + listing.spirv[spirv - 1].text}));
+    else if (!listing.spirv.empty()) rows.push_back(joined(measures_.cells(nullptr), {"", "    (of no SPIR-V instruction)"}));
     for (const uint32_t i : made) rows.push_back(joined(measures_.cells(found(by_index, i)), {std::to_string(i), "        " + listing.isa[i].text}));
   }
 }

@@ -76,6 +76,17 @@ TEST_CASE("the view of everything has the SPIR-V below its line and the ISA belo
   CHECK(text.find("exit;") == std::string::npos);  // of no line
 }
 
+TEST_CASE("a program that comes from no SPIR-V has its ISA below its lines, and says so where SPIR-V is asked for") {
+  ProgramListing kernel = program();
+  kernel.spirv.clear();
+  for (ListedLine& line : kernel.isa) line.spirv = 0;
+  const ProfileTable profiled = profile();
+  const SourceMap source = source_map({kernel}, text_of);
+  const Annotator annotator(profiled, source, {"issues"}, {});
+  CHECK(annotator.all(0).find("out_x = x;\n     2       1          mov.b32 %r4, %r1;") != std::string::npos);
+  CHECK(annotator.spirv(0).find("not compiled from SPIR-V") != std::string::npos);
+}
+
 TEST_CASE("a file whose text is not known shows the lines with figures, and no others") {
   const ProfileTable profiled = profile();
   const SourceMap source = source_map({program()}, [](const std::string&) { return std::nullopt; });

@@ -5,10 +5,13 @@ import { fill } from "./heat.js";
 
 const kPage = 20; // lines of Page Up and Page Down
 
+let panes = 0; // so far: names of lines are unique in a page with several views
+
 export class Pane {
   // `act`: {choose(kind, key), point(kind, key or null), leave(kind, step)}.
   constructor(kind, title, act) {
     this.kind = kind;
+    this.name = `pane-${panes++}`;
     this.act = act;
     this.lines = []; // {key, row, cell}
     this.heading = h("h3", {}, title);
@@ -28,7 +31,7 @@ export class Pane {
     this.byKey = new Map();
     this.lines = lines.map(({ key, number, text, title }, i) => {
       const cell = h("span", { class: "cost" });
-      const row = h("div", { role: "option", id: `${this.kind}-${i}`, "data-key": String(i), title }, cell, h("span", { class: "no" }, String(number)), h("code", {}, text || " "));
+      const row = h("div", { role: "option", id: `${this.name}-${i}`, "data-key": String(i), title }, cell, h("span", { class: "no" }, String(number)), h("code", {}, text || " "));
       this.byKey.set(key, i);
       return { key, row, cell };
     });
@@ -51,7 +54,7 @@ export class Pane {
     }
     const at = this.byKey?.get(chosen);
     if (at === undefined) this.list.removeAttribute("aria-activedescendant");
-    else this.list.setAttribute("aria-activedescendant", `${this.kind}-${at}`);
+    else this.list.setAttribute("aria-activedescendant", `${this.name}-${at}`);
   }
 
   // Brings the first of `keys` into view, if none of them is.

@@ -49,6 +49,9 @@ class View {
     const files = program.filesByCycles();
     this.pick.file.fill(files.map(([file, cycles]) => [file, `${base(this.source.files[file].path)} · ${percent(program.total.cycles ? cycles / program.total.cycles : 0)} of the shader`]));
     this.pick.file.box.disabled = !files.length;
+    const isSpirv = program.spirv.text.length > 0;
+    this.panes.spirv.element.hidden = !isSpirv;
+    this.panes.glsl.heading.textContent = isSpirv ? "GLSL" : "Source";
     const place = ({ file, line }, i) => (line[i] ? `${base(this.source.files[file[i]].path)}:${line[i]}` : "no source line");
     this.panes.spirv.show(program.spirv.text.map((text, i) => ({ key: program.spirv.first + i, number: program.spirv.first + i, text, title: place(program.spirv, i) })));
     this.panes.isa.show(program.isa.text.map((text, i) => ({ key: i, number: i, text, title: place(program.isa, i) })));
