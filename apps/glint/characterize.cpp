@@ -10,6 +10,7 @@
 #include "apps/glint/bench_tables.h"
 #include "apps/glint/session.h"
 #include "apps/glint/workloads.h"
+#include "report/analytical/model_table.h"
 #include "report/characterize/characterization.h"
 #include "report/characterize/characterization_files.h"
 #include "report/characterize/characterization_page.h"
@@ -25,9 +26,16 @@ struct Options {
   report::SearchSettings search;
 };
 
-void write_page(const Session& session, const report::Characterization& result, const std::string& source, const report::RunDirectory& directory) {
+// What `glint model` has left beside the metrics; null where it has not run.
+nlohmann::ordered_json models_beside(const std::string& metrics) {
+  const std::string path = (std::filesystem::path(metrics).parent_path() / "models.csv").string();
+  if (!std::filesystem::exists(path)) return nullptr;
+  return report::models_json(report::parse_models(read_file(path), path));
+}
+
+void write_page(const Session& session, const report::Characterization& result, const std::string& source, const std::string& metrics, const report::RunDirectory& directory) {
   const auto web = [&](const char* name) { return read_file(session.resources.web_file(name)); };
-  const nlohmann::ordered_json data = report::characterization_data(result, {.name = source, .version = GLINT_VERSION}, nullptr);
+  const nlohmann::ordered_json data = report::characterization_data(result, {.name = source, .version = GLINT_VERSION}, models_beside(metrics));
   directory.write("characterization.html", report::characterization_page(result, data, {.frame = web("characterization.html"), .style = web("report.css"), .script = web("report.js")}));
 }
 
@@ -60,7 +68,7 @@ Exit characterize(const Session& session, const Options& options) {
   if (out.empty()) out = (std::filesystem::path(metrics).parent_path() / "characterization").string();
   const report::RunDirectory directory(out);
   for (const auto& [name, content] : report::characterization_files(result)) directory.write(name, content);
-  write_page(session, result, options.input, directory);
+  write_page(session, result, options.input, metrics, directory);
   write_output("", report::characterization_text(result));
   for (const std::string& other : options.against) print_speed_ups(csv, metrics, other, result);
   fmt::print("\n{}\n", directory.path_of("characterization.html"));

@@ -81,6 +81,7 @@ int main_of(int argc, char** argv) {
   add_compare(app, session);
   add_imgdiff(app, session);
   add_annotate(app, session);
+  add_model(app, session);
   add_init(app, session);
   add_compile(app, session);
   add_asm(app, session);

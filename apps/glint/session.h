@@ -34,6 +34,7 @@ void add_characterize(CLI::App& app, Session& session);
 void add_compare(CLI::App& app, Session& session);
 void add_imgdiff(CLI::App& app, Session& session);
 void add_annotate(CLI::App& app, Session& session);
+void add_model(CLI::App& app, Session& session);
 void add_init(CLI::App& app, Session& session);
 void add_compile(CLI::App& app, Session& session);
 void add_asm(CLI::App& app, Session& session);

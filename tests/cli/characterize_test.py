@@ -86,18 +86,21 @@ class Tables(Characterize):
 
 class Browser(Characterize):
     def test_every_figure_is_drawn_and_the_console_says_nothing(self):
-        self.run_on(METRICS)
+        (self.folder / "suite").mkdir()
+        shutil.copy(METRICS, self.folder / "suite")
+        self.write("suite/models.csv", "workload,cycles,model:one,model:other,inputs\nA,1000,1500,900,1\nB,2000,1000,2500,2\nC,40000,41000,38000,3\n")
+        self.run_on("suite")
         done = subprocess.run([CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={self.folder}/profile", "--enable-logging=stderr", "--window-size=1280,900",
                                "--virtual-time-budget=20000", "--dump-dom", f"file://{self.folder}/out/characterization.html"], capture_output=True, text=True, timeout=280)
         console = [line for line in done.stderr.splitlines() if "CONSOLE" in line]
         self.assertIn('data-ready="yes"', done.stdout, "\n".join(console))
         self.assertEqual(console, [])
         figures = {re.search(r'id="([\w-]+)"', head).group(1): body for head, body in re.findall(r"<figure ([^>]*id=[^>]*)>(.*?)</figure>", done.stdout, re.S)}
-        self.assertEqual(set(figures), {"scree", "plane-1-2", "plane-3-4", "dendrogram", "kiviats"})
+        self.assertEqual(set(figures), {"scree", "plane-1-2", "plane-3-4", "dendrogram", "kiviats", "model-cycles", "model-errors"})
         for workload in (row["workload"] for row in self.table("scores.csv")):
             self.assertIn(f">{workload}</text>", figures["dendrogram"])
             self.assertIn(f">{workload}</text>", figures["kiviats"])
-        for name, least in (("scree", 20), ("plane-1-2", 46), ("plane-3-4", 46), ("dendrogram", 45), ("kiviats", 92)):
+        for name, least in (("scree", 20), ("plane-1-2", 46), ("plane-3-4", 46), ("dendrogram", 45), ("kiviats", 92), ("model-cycles", 6), ("model-errors", 6)):
             self.assertGreaterEqual(figures[name].count("<path"), least, name)
 
 

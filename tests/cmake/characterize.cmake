@@ -1,10 +1,13 @@
 # Characterisation of workloads and analytical models: against values of other libraries, and the command.
 find_package(nlohmann_json REQUIRED)
 glint_test(unit_characterize FOLDER unit/characterize LINKS glint::characterize nlohmann_json::nlohmann_json)
+glint_test(unit_analytical FOLDER unit/analytical LINKS glint::analytical nlohmann_json::nlohmann_json)
+glint_test(unit_interval FOLDER unit/interval LINKS glint::interval)
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 if(TARGET glint)
   foreach(suite Tables Browser)
     add_test(NAME cli_Characterize${suite} COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/characterize_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR} ${suite})
   endforeach()
+  add_test(NAME cli_Model COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/model_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR})
   set_tests_properties(cli_CharacterizeBrowser PROPERTIES SKIP_RETURN_CODE 77)
 endif()

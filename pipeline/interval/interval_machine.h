@@ -1,0 +1,76 @@
+// An interval model of the GPU: one functional pass that adds up, warp by warp, the time between waits and the time of the waits.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <queue>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/executor.h"
+#include "core/units.h"
+#include "pipeline/interval/memory_model.h"
+#include "pipeline/interval/ray_model.h"
+#include "pipeline/params.h"
+
+namespace glint::pipeline {
+
+// What the model says of a launch, and what of it comes from where.
+struct IntervalEstimate {
+  Cycle cycles = 0;  // predicted
+  uint64_t instructions = 0, lanes = 0;  // warp and lane instructions
+  RayModelCounts rays;                   // of all cores
+  std::array<CacheCounts, 2> l1;         // by Asker
+  CacheCounts l2;
+  uint64_t dram_sectors = 0;
+  // Work of the busiest resource of each kind, cycles: whatever overlaps, no run is shorter. The largest is the bound of throughput;
+  // what the prediction is longer is latency that nothing hides.
+  double issue = 0, rt_port = 0, rt_tests = 0, rt_slots = 0, l1_ports = 0, l2_slices = 0, dram_buses = 0;
+  // Name and cycles of each of these, in this order.
+  std::array<std::pair<std::string_view, double>, 7> bounds() const;
+};
+
+// Interval analysis (Karkhanis and Smith 2004; Genbrugge, Eyerman, Eeckhout 2010) for warps: from one trace of rays to the next a warp runs alone,
+// in order, against the latencies of its units and of a memory model with tags and bandwidths; its scheduler's issue slots bound what the
+// warps of a scheduler do together. Traces go through a model of the RT unit. Nothing is fitted: every number comes from the configuration.
+// Model: no memory queues, no pipes shared by the warps of a scheduler but for their work, no turns between blocks' launches.
+class IntervalMachine {
+ public:
+  // UnsupportedError, with all reasons, for launches with blocks of threads and configurations whose mechanisms the model lacks.
+  IntervalMachine(const GpuParams& params, const core::World& world);
+  ~IntervalMachine();
+
+  // Effects on memory are those of the functional machine. Error(Exit::Fault) as there.
+  IntervalEstimate run(const std::function<void(uint64_t done, uint64_t total)>& progress);
+
+ private:
+  struct Core;
+  struct Event {
+    Cycle at = 0;
+    uint32_t slot = 0;
+    bool finished = false;
+    bool operator>(const Event& other) const { return at != other.at ? at > other.at : slot > other.slot; }
+  };
+
+  bool launch(Core& core, uint32_t slot, Cycle at);
+  void run_interval(Core& core, uint32_t slot, Cycle at);
+  Cycle access(Core& core, uint32_t slot, const core::Issued& issued, const core::IssueRow& row, Cycle at);
+  Cycle next(const Core& core) const;
+  void advance(Core& core);
+  IntervalEstimate collect() const;
+
+  const GpuParams& params_;
+  const core::World& world_;
+  core::Executor executor_;
+  core::IssueTable table_;
+  MemoryModel memory_;
+  std::vector<std::unique_ptr<Core>> cores_;
+  uint32_t next_warp_ = 0, num_ended_ = 0;
+  Cycle end_ = 0;
+  IntervalEstimate estimate_;
+};
+
+}  // namespace glint::pipeline

@@ -1,0 +1,65 @@
+# `glint model`: predictions beside simulated cycles, with their inputs, and what it refuses.
+# SPDX-License-Identifier: Apache-2.0
+"""usage: model_test.py GLINT SOURCE_DIR"""
+import csv
+import json
+import shutil
+
+import glint_case
+from glint_case import GlintTest
+
+SMALL = ["--size", "16x16", "--spp", "1"]
+
+
+class Model(GlintTest):
+    def simulate(self, workload, out, *arguments):
+        done = self.glint("run", workload, *SMALL, "--out", out, *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads((self.folder / out / "stats.json").read_text())
+
+    def table(self, name):
+        with open(self.folder / name, newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_a_folder_of_runs_is_compared_workload_by_workload(self):
+        cycles = {name: self.simulate(name, f"suite/{name}")["gpu"]["cycles"]["value"] for name in ("WKND_SH", "SHIP_AO")}
+        done = self.glint("model", "suite", "--inputs")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        rows = self.table("suite/models.csv")
+        self.assertEqual({row["workload"]: float(row["cycles"]) for row in rows}, cycles)
+        for row in rows:
+            self.assertAlmostEqual(float(row["model:interval model"]) / float(row["cycles"]), 1, delta=0.3)
+            self.assertIn(row["equation"], ("22", "23", "24"))
+            self.assertIn(row["workload"], done.stdout)
+        for name in ("mwp", "cwp", "memory_latency", "bound: DRAM bus", "R2"):
+            self.assertIn(name, done.stdout)
+
+    def test_statistics_alone_need_no_scene(self):
+        self.simulate("WKND_SH", "one")
+        done = self.glint("model", "one", "--statistics-only", "-o", "-")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        header, row = done.stdout.splitlines()
+        self.assertIn("model:Hong and Kim", header)
+        self.assertNotIn("interval", header)
+        self.assertTrue(row.startswith("one,"))
+
+    def test_what_the_models_cannot_take_is_refused_with_the_reason(self):
+        self.expect(2, ["nowhere"], "model", "nowhere")
+        (self.folder / "empty").mkdir()
+        self.expect(2, ["no finished run"], "model", "empty")
+        self.simulate("WKND_SH", "functional", "--mode", "functional")
+        self.expect(2, ["functional", "timing machine"], "model", "functional")
+
+    def test_a_run_that_is_not_the_launch_of_its_run_json_is_refused(self):
+        self.simulate("WKND_SH", "one")
+        shutil.copytree(self.folder / "one", self.folder / "other")
+        facts = json.loads((self.folder / "one/run.json").read_text())
+        self.write("one/run.json", json.dumps({**facts, "samples": 2}))
+        self.expect(2, ["warp instructions", "run it again"], "model", "one")
+        facts["scene"]["hash"] = "0000000000000000"
+        self.write("other/run.json", json.dumps(facts))
+        self.expect(2, ["--assets"], "model", "other")
+
+
+if __name__ == "__main__":
+    glint_case.main()
