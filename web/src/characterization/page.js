@@ -45,7 +45,7 @@ const sections = [
   section("components", "Principal components", "Directions in which the workloads differ most, of all metrics standardised: independent of each other, the first with most of the variance.", figures(scree, scatter.first, scatter.second)),
   section("clusters", "Clusters", "Workloads that are near each other in these components join first; a branch ends where its two groups are that far apart.", figures(dendrogram)),
   section("kiviat", "Kiviat diagrams", "The metrics that tell the workloads apart best, each from the least of all workloads in the centre to the most at the rim.", kiviat.key(data), figures(kiviat)),
-  section("models", "Analytical models", "Cycles that a formula says, from statistics of a run, against the cycles of the simulated machine.", figures(model.scatter, model.errors)),
+  section("models", "Analytical models", "Cycles that models predict, against those of the simulated machine. Inputs: models.csv.", figures(model.scatter, model.errors)),
 ];
 document.getElementById("figures").append(...sections.filter(Boolean));
 document.getElementById("contents").append(h("a", { href: "#overview", class: "brand" }, "Glint"), ...[...document.querySelectorAll("section > h2")].map((title) => h("a", { href: `#${title.parentElement.id}` }, title.textContent)));

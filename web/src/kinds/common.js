@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // About what a text takes, in pixels: good enough to keep room for labels before anything is drawn.
-export const textWidth = (text, size = 12) => String(text).length * size * 0.58;
+export const textWidth = (text, size = 12) => (String(text).length * 0.58 + (String(text).match(/[A-Z]/g)?.length ?? 0) * 0.12) * size;
 
 export function base(t) {
   return {
