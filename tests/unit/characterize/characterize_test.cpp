@@ -201,7 +201,7 @@ TEST_CASE("Tables that cannot be compared are refused with the reason", "[charac
 
 TEST_CASE("Files hold what was computed, to the last bit", "[characterize]") {
   const FeatureTable table = feature_table("name,a,b,c\nX_PT,1,2,0.1\nY_SH,2,1,0.7\n\"Z,AO\",3,1,0.2\nW_PT,9,1,0.3\n", "t");
-  const Characterization result = characterize(table, {.clusters = 2, .search = {.count = 2}});
+  const Characterization result = characterize(table, {.clusters = 2, .search = {.count = 2}, .reference = {}, .reference_name = {}});
   for (const auto& [name, content] : characterization_files(result)) {
     if (name == "scores.csv") CHECK(content.find("\"Z,AO\",") != std::string::npos);
     if (name == "linkage.csv") CHECK(std::ranges::count(content, '\n') == 4);
