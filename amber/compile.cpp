@@ -127,7 +127,7 @@ CompiledShader compile(const Script& script, const Attachment& attachment, const
   Diagnostics notes;
   out.name = shader.name;
   out.reflection = frontend::reflect(words, title);
-  out.program = frontend::compile_module(words, title, attachment.entry, {compiler.max_registers, compiler.schedule, compiler.contract, compiler.queries_call}, notes, cache).program;
+  out.program = frontend::compile_module(words, title, attachment.entry, {compiler.max_registers, compiler.schedule, compiler.contract, compiler.queries_call, compiler.guard_latency}, notes, cache).program;
   if (out.program.stage != *attachment.stage)
     throw UserError({shader.path, 0, 0}, fmt::format("entry point '{}' of shader '{}' is of another stage", attachment.entry, title));
   return out;

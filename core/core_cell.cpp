@@ -62,6 +62,7 @@ CoreCell::CoreCell(const Params& params, const Context& context)
   for (uint32_t s = 0; s < params.schedulers; ++s) {
     schedulers_[s].index = s;
     schedulers_[s].policy = params.issue.make({warps_each});
+    schedulers_[s].has_latches = params.dispatch_latch;
   }
 }
 

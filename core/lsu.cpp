@@ -90,8 +90,8 @@ void Lsu::enter(uint32_t id, Pipe& pipe, Cycle now) {
   if (access.bank_turns > 1) access.ready += std::max<Cycle>(conflict_latency(access.bank_turns - 1), access.hold) - access.hold;
   if (access.passes > 0) {
     const Cycle more = shared_cycles(access) - 1;
-    if (&pipe == &pipes_[kShared]) access.ready = now - 1 + (access.atomic ? shared_.atomic_latency : shared_.latency);
-    access.ready += access.atomic ? more : conflict_latency(more);
+    if (&pipe == &pipes_[kShared]) access.ready = now - 1;
+    access.ready += shared_latency(access) - (&pipe == &pipes_[kShared] ? 0 : access.atomic ? shared_.atomic_latency : shared_.latency);
     pipe.free_at = now + 1 + more;
   }
   pipe.id[(pipe.head + pipe.count++) % pipe.id.size()] = id;
@@ -105,6 +105,16 @@ Cycle Lsu::texture_cycles(const MemoryAccess& access) const {
 
 Cycle Lsu::shared_cycles(const MemoryAccess& access) const {
   return access.atomic ? 1 + (access.passes - 1) * Cycle{shared_.atomic_pass} : access.passes;
+}
+
+// Model: turns of a compare-and-swap or a floating-point addition keep the unit no longer than those of an integer's: what they
+// take longer is between their accesses.
+Cycle Lsu::shared_latency(const MemoryAccess& access) const {
+  if (!access.atomic) return shared_.latency + conflict_latency(access.passes - 1);
+  const AtomicParams& own = access.atomic_kind == AtomicKind::Swap ? shared_.swap : shared_.float_add;
+  const bool is_own = access.atomic_kind != AtomicKind::Integer && own.latency > 0;
+  const AtomicParams times = is_own ? own : AtomicParams{shared_.atomic_latency, shared_.atomic_pass, shared_.atomic_hidden};
+  return times.latency + std::max((access.passes - 1) * times.pass, times.hidden) - times.hidden;
 }
 
 void Lsu::pop(Pipe& pipe) {

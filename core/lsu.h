@@ -26,6 +26,7 @@ struct MemoryAccess {
   bool texture = false;       // through the texture unit
   uint32_t samples = 0;       // then: of up to four texels
   bool atomic = false;        // one that shared memory does, if it is there
+  AtomicKind atomic_kind = AtomicKind::Integer;
   uint32_t bank_turns = 1;    // words of the fullest bank of the L1's array, where that counts
   uint32_t passes = 0;        // of shared memory; an access may go there and to lines (generic addresses)
   LineList lines;
@@ -104,6 +105,7 @@ class Lsu {
     return std::max<Cycle>(turns * shared_.conflict_turn, shared_.conflict_hidden) - shared_.conflict_hidden;
   }
   Cycle shared_cycles(const MemoryAccess& access) const;
+  Cycle shared_latency(const MemoryAccess& access) const;
 
   mem::L1Port& l1_;
   const LsuParams params_;

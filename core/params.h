@@ -132,18 +132,36 @@ struct RegisterFileParams {
   }
 };
 
+// Of atomics, by what shared memory takes for them.
+enum class AtomicKind : uint8_t { Integer, Swap, FloatAdd };
+
+// Times of atomics that take others than an addition of integers.
+struct AtomicParams {
+  uint32_t latency = 0, pass = 0, hidden = 0;
+  static constexpr auto params() {
+    return std::tuple{
+        param(&AtomicParams::latency, "latency", "cycle", "One lane, issue to dependent issue; 0: all times as those of atomic_latency.", 0, 10000),
+        param(&AtomicParams::pass, "pass", "cycle", "Latency of each further turn of lanes that meet in a bank.", 0, 1000),
+        param(&AtomicParams::hidden, "hidden", "cycle", "Of that, in all, what the latency of one lane hides.", 0, 1000)};
+  }
+};
+
 // Defaults: microbenchmarks of an H200, but for conflicts: there, n lanes in a bank take n cycles of the unit and 2n - 5
 // more of latency (a turn 2, hidden 3).
 struct SharedParams {
   uint32_t latency = 23;         // dependent loads
   uint32_t atomic_latency = 76;  // dependent atom.shared.add.u32; 126 when 32 lanes meet in a word
-  uint32_t atomic_pass = 2;
+  uint32_t atomic_pass = 2, atomic_hidden = 0;
+  AtomicParams swap, float_add;
   uint32_t conflict_turn = 1, conflict_hidden = 0;
   static constexpr auto params() {
     return std::tuple{
         param(&SharedParams::latency, "latency", "cycle", "A load without bank conflicts, issue to dependent issue.", 1, 1000),
         param(&SharedParams::atomic_latency, "atomic_latency", "cycle", "The same of an atomic.", 1, 1000),
         param(&SharedParams::atomic_pass, "atomic_pass", "cycle", "Each further turn of lanes that meet in a bank, for an atomic.", 1, 100),
+        param(&SharedParams::atomic_hidden, "atomic_hidden", "cycle", "Of those turns' latency, in all, what the latency of an atomic alone hides.", 0, 100),
+        section(&SharedParams::swap, "swap", "Compare-and-swap."),
+        section(&SharedParams::float_add, "float_add", "Floating-point addition: hardware loops over compare-and-swap."),
         param(&SharedParams::conflict_turn, "conflict_turn", "cycle", "Latency of each further turn of a load, also of global memory.", 0, 100),
         param(&SharedParams::conflict_hidden, "conflict_hidden", "cycle", "Of that, in all, what the latency without conflicts hides.", 0, 100)};
   }
@@ -188,6 +206,7 @@ struct Params {
   uint32_t pipe_crossing = 0, guard_delay = 0;
   // Results of fixed latency are written in the order of their ends: nothing checks them (MICRO 2025, section 4.1).
   bool write_order = false;
+  bool dispatch_latch = false;
   RegisterFileParams register_file;
   FetchParams fetch;
   ConstantParams constant;
@@ -219,6 +238,7 @@ struct Params {
         param(&Params::pipe_crossing, "pipe_crossing", "cycle", "Later that a result reaches another pipe than its own.", 0, 100),
         param(&Params::guard_delay, "guard_delay", "cycle", "Later that a predicate guards an instruction than it can be read.", 0, 100),
         flag(&Params::write_order, "write_order", "A result waits for earlier ones of its register, also where it would end after them anyway."),
+        flag(&Params::dispatch_latch, "dispatch_latch", "An instruction may issue to a busy pipe and wait in front of it, one a pipe; otherwise warps issue to free pipes only."),
         section(&Params::register_file, "register_file", "Register-file banks."),
         section(&Params::fetch, "fetch", "Instruction caches of the schedulers."),
         section(&Params::constant, "constant", "Constant cache."),

@@ -54,7 +54,7 @@ void CoreCell::take_code(Cycle now) {
 void CoreCell::start_constant(SchedulerState& scheduler, uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now) {
   const isa::Access& access = warps_[slot].regs.access;
   const Cycle turns = params_.constant.serial ? different_words(access, issued.lanes) : 1;
-  scheduler.occupy(row.pipe, now, turns * row.interval);
+  scheduler.take(row.pipe, now, turns * row.interval);
   constant_[slot] = {issued.pc, now, row.latency + (turns - 1) * row.interval / OpTime::kParts};
   const uint64_t offset = issued.row->memory.space == isa::Space::Param ? isa::kPushConstantOffset : 0;
   if (!code_ || !code_->constants || code_->constants->look_up(slot, access, issued.lanes, offset, now)) {

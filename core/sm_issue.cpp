@@ -102,9 +102,9 @@ void CoreCell::issue(SchedulerState& scheduler, uint32_t local, Cycle now) {
   ++progress_;
   count(row, issued);
   if (profile_) profile_->issue(scheduler.index, issued.pc, num_lanes(issued.lanes));
-  if (row.pipe != Pipe::Memory) scheduler.occupy(row.pipe, now, row.interval);
+  const Cycle late = row.pipe != Pipe::Memory ? scheduler.occupy(row.pipe, now, row.interval) : 0;
   if (params_.register_file.banks) read_banks(scheduler, issued.pc, now);
-  const Cycle done = now + row.latency;
+  const Cycle done = now + late + row.latency;
   front_[slot] = {now + 1, Stall::RawFixed};
   switch (row.finish) {
     case Finish::Fixed:
@@ -112,13 +112,13 @@ void CoreCell::issue(SchedulerState& scheduler, uint32_t local, Cycle now) {
         start_constant(scheduler, slot, row, issued, now);
         break;
       }
-      stats_.latency.add(row.klass, row.latency);
+      stats_.latency.add(row.klass, late + row.latency);
       if (row.is_sequence) start_sequence(slot, row, issued.pc, now);
       else scoreboards_[slot].set(table_.defs(row), {done, row.wait}, row.alternates ? Pipe::Count : row.pipe);
       break;
     case Finish::Control:
       front_[slot] = {done, row.wait};
-      stats_.latency.add(row.klass, row.latency);
+      stats_.latency.add(row.klass, late + row.latency);
       break;
     case Finish::Memory:
     case Finish::CallRecord:

@@ -44,6 +44,7 @@ bool CoreCell::start_access(uint32_t slot, const IssueRow& row, const Issued& is
   access.pc = issued.pc;
   if (executor_.is_late()) access.late_until = turn_end(now);
   access.write = issued.row->effect == Effect::Store || issued.row->effect == Effect::SurfaceStore;
+  access.atomic_kind = row.atomic;
   collect_lines(access, issued);
   // red: nobody waits for an answer.
   access.write |= issued.row->effect == Effect::Atomic && row.num_defs == 0;

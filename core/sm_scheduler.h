@@ -1,6 +1,7 @@
 // The issue state of one scheduler's warps, in flat arrays: what every cycle of a core looks at.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -33,11 +34,23 @@ struct SchedulerState {
   Stall reason = Stall::NoWarp;
 
   std::unique_ptr<IssueScheduler> policy;
+  bool has_latches = false;  // Params::dispatch_latch
 
   void wake() { sleep_until = 0; }
+  // An instruction issues to a pipe; how much later it enters. With latches that is when the pipe has finished what is in it,
+  // and the next one can issue when it has entered.
+  Cycle occupy(Pipe at, Cycle now, Cycle parts) {
+    constexpr Cycle kParts = OpTime::kParts;
+    if (!has_latches) return take(at, now, parts), 0;
+    Cycle& busy = pipe_busy[size_t(at)];
+    const Cycle start = std::max(busy, now * kParts);
+    busy = start + parts;
+    pipe_free[size_t(at)] = start / kParts + 1;
+    return start / kParts - now;
+  }
   // An instruction goes to a pipe that is free. Intervals that are no whole cycles are kept on average: one begins where
   // the last one ended, within the cycle, if the pipe has not been idle since.
-  void occupy(Pipe at, Cycle now, Cycle parts) {
+  void take(Pipe at, Cycle now, Cycle parts) {
     constexpr Cycle kParts = OpTime::kParts;
     Cycle& busy = pipe_busy[size_t(at)];
     busy = (pipe_free[size_t(at)] == now ? busy : now * kParts) + parts;

@@ -3,6 +3,7 @@
 #include "core/units.h"
 
 #include <algorithm>
+#include <string_view>
 
 #include "base/check.h"
 #include "isa/barrier.h"
@@ -102,6 +103,11 @@ Stall wait_of(const isa::OpRow& row, Finish finish) {
   return pipe_of(row.unit) == Pipe::Sfu ? Stall::RawSfu : Stall::RawFixed;
 }
 
+AtomicKind kind_of_atomic(std::string_view name) {
+  if (name.find(".cas.") != std::string_view::npos) return AtomicKind::Swap;
+  return name.find(".add.f") != std::string_view::npos || name.find(".add.rn.f") != std::string_view::npos ? AtomicKind::FloatAdd : AtomicKind::Integer;
+}
+
 void take_time(IssueRow& row, const OpTime& time) {
   if (time.pipe != Unit::Count) row.pipe = pipe_of(time.pipe);
   row.latency = uint16_t(time.latency);
@@ -165,6 +171,7 @@ IssueTable::IssueTable(const Image& image, const Params& params) {
     const OpTime* time = row.finish == Finish::Fixed ? op_times->find(op.name) : nullptr;
     if (time) take_time(row, *time);
     issues_.push_back(uint8_t(time ? time->issues : 1));
+    if (op.effect == Effect::Atomic) row.atomic = kind_of_atomic(op.name);
     row.is_texture = row.finish == Finish::Memory && op.unit == Unit::Tex;
     rows_.push_back(row);
     if (params.register_file.banks) count_bank_reads(row, params.register_file);

@@ -46,6 +46,7 @@ struct IssueRow {
   bool alternates : 1 = false;      // OpTime::alternates
   bool is_texture : 1 = false;      // through the texture unit
   bool is_sequence : 1 = false;     // IssueTable::issues() is more than 1
+  AtomicKind atomic : 2 = AtomicKind::Integer;
   uint16_t latency = 1;
   uint16_t interval = OpTime::kParts;  // of the pipe, in parts of a cycle
 };

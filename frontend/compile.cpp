@@ -20,6 +20,7 @@ std::string key_of(const std::vector<uint32_t>& spirv, const std::string& name, 
   key.put(options.schedule);
   key.put(options.contract);
   key.put(options.queries_call);
+  key.put(options.guard_latency);
   key.put(spirv);
   return key.take();
 }

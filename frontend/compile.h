@@ -27,6 +27,7 @@ struct BackendOptions {
   bool schedule = true;         // latency-aware list scheduling
   bool contract = false;        // a * b + c becomes one fma where GLSL does not say `precise`
   bool queries_call = false;    // rq.proceed is a call that keeps no register: rays are walked in code
+  uint32_t guard_latency = 0;   // cycles later that a predicate guards than it can be read: comparisons for branches come earlier
 };
 
 // Stage from the file's ending: .rgen .rint .rahit .rchit .rmiss .rcall .comp; empty when unknown.

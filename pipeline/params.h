@@ -17,12 +17,14 @@ struct CompilerParams {
   uint32_t max_registers = 64;
   bool schedule = true;
   bool contract = false;
+  uint32_t guard_latency = 0;
   bool queries_call = false;  // no key: what GpuParams::rt.unit asks of code with ray queries
   static constexpr auto params() {
     return std::tuple{
         param(&CompilerParams::max_registers, "max_registers", "register", "32-bit registers a thread; more spill to local memory.", 8, 255),
         flag(&CompilerParams::schedule, "schedule", "Reorders instructions within a block to hide latency."),
-        flag(&CompilerParams::contract, "contract", "GLSL's a * b + c becomes one fma, as drivers do, but where it is `precise`.")};
+        flag(&CompilerParams::contract, "contract", "GLSL's a * b + c becomes one fma, as drivers do, but where it is `precise`."),
+        param(&CompilerParams::guard_latency, "guard_latency", "cycle", "Later that a predicate guards than it can be read, as the order of instructions expects.", 0, 100)};
   }
 };
 

@@ -39,7 +39,7 @@ WorkloadShaders compile_workload(const RenderJob& job) {
   frontend::GlslOptions glsl = job.glsl;
   if (job.scene.alpha_test) glsl.defines.emplace_back("GLINT_ALPHA_TEST", "1");
   if (!job.scene.instances.empty()) glsl.defines.emplace_back("GLINT_INSTANCES", "1");
-  const frontend::BackendOptions backend{job.gpu.compiler.max_registers, job.gpu.compiler.schedule, job.gpu.compiler.contract, compiler_for(job.gpu).queries_call};
+  const frontend::BackendOptions backend{job.gpu.compiler.max_registers, job.gpu.compiler.schedule, job.gpu.compiler.contract, compiler_for(job.gpu).queries_call, job.gpu.compiler.guard_latency};
   auto compile = [&](const char* file) {
     out.programs.push_back(frontend::compile_file(job.shader_dir + "/" + file, glsl, backend, out.warnings));
     return uint32_t(out.programs.size() - 1);

@@ -27,7 +27,7 @@ std::string text_of(const MicroKernel& kernel) {
 }
 
 uint64_t cycles_of(const MicroKernel& kernel, const pipeline::GpuParams& gpu) {
-  const frontend::PtxOptions options{{gpu.compiler.max_registers, gpu.compiler.schedule}, true};
+  const frontend::PtxOptions options{{gpu.compiler.max_registers, gpu.compiler.schedule, false, false, gpu.compiler.guard_latency}, true};
   pipeline::KernelWorld world(frontend::compile_ptx(text_of(kernel), "microbench", "bench", options));
   const uint64_t bytes = std::max<uint64_t>(kernel.bytes, kernel.data.size() * 8);
   const Address data = world.memory().allocate("data", bytes);

@@ -102,7 +102,7 @@ Exit run_ptx(const Session& session, const KernelOptions& options) {
   if (options.max_instructions > 0) job.gpu.core.instruction_budget = options.max_instructions;
 
   const std::string text = read_text(launch.kernel);
-  const frontend::PtxOptions compiler{{job.gpu.compiler.max_registers, job.gpu.compiler.schedule}, launch.contract};
+  const frontend::PtxOptions compiler{{job.gpu.compiler.max_registers, job.gpu.compiler.schedule, false, false, job.gpu.compiler.guard_latency}, launch.contract};
   Launched launched(frontend::compile_ptx(text, launch.kernel, launch.entry, compiler));
   const std::string name = launched.world.kernel().program.name;
   launched.world.set_grid(launch.grid);

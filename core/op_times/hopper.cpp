@@ -33,8 +33,8 @@ constexpr OpTime kTimes[] = {
     {"sub.s64", 4, 1, Unit::Int, false, 2}, {"sub.u64", 4, 1, Unit::Int, false, 2},
     {"and.b64", 4, 4, Unit::Int, false, 2}, {"or.b64", 4, 4, Unit::Int, false, 2}, {"xor.b64", 4, 4, Unit::Int, false, 2},
     {"not.b64", 4, 4, Unit::Int, false, 2}, {"selp.b64", 4, 4, Unit::Int, false, 2},
-    {"shl.b64", 6, 2, Unit::Int, false, 2}, {"shr.*64", 5, 4, Unit::Int, false, 2}, {"setp.*.f64", 8, 2},
-    {"setp.*64", 8, 3.5, Unit::Int, false, 2},
+    {"shl.b64", 6, 2, Unit::Int, false, 2}, {"shr.*64", 5, 4, Unit::Int, false, 2}, {"setp.*.f64", 8, 4.8125},
+    {"setp.*64", 8, 4, Unit::Int, false, 2},
     {"abs.s32", 4, 2.625}, {"bfe.*32", 8, 7.5, Unit::Int, false, 3}, {"bfi.b32", 8, 9, Unit::Int, false, 4}, {"clz.b32", 23, 8, Unit::Count, false, 2},
     // Integer division and remainder: sequences.
     {"div.s32", 131, 33, Unit::Count, false, 23}, {"div.u32", 124, 29, Unit::Count, false, 17},
@@ -48,7 +48,7 @@ constexpr OpTime kTimes[] = {
     // Sequences around the special-function unit.
     {"div.rn*.f32", 57, 17, Unit::Count, false, 10}, {"rcp.rn*.f32", 77, 12, Unit::Count, false, 10},
     {"sqrt.rn*.f32", 55, 11, Unit::Count, false, 11},
-    {"rcp.approx.f32", 41, 8, Unit::Count, false, 7}, {"rsqrt.approx.f32", 39, 8, Unit::Count, false, 4},
+    {"rcp.approx.f32", 41, 8.5625, Unit::Count, false, 7}, {"rsqrt.approx.f32", 39, 8, Unit::Count, false, 4},
     {"lg2.approx.f32", 39, 8, Unit::Count, false, 4}, {"sqrt.approx.f32", 39, 8, Unit::Count, false, 4},
     {"sin.approx*", 23, 8, Unit::Count, false, 2}, {"cos.approx*", 23, 8, Unit::Count, false, 2},
     {"div.approx*", 23, 8, Unit::Count, false, 2}, {"div.full*", 40, 8, Unit::Count, false, 7},  // rcp and mul

@@ -14,7 +14,7 @@ isa::Program assemble(VirtualProgram program, const BackendOptions& options) {
   simplify_code(program, ops);
   convert_selections(program, ops);
   keep_predicates_across_calls(program, ops);
-  if (options.schedule) schedule(program, options.max_registers);
+  if (options.schedule) schedule(program, options.max_registers, options.guard_latency);
   Allocation allocation = allocate(program, options.max_registers, ops);
   expand_calls(program, allocation, ops);
   return emit(program, allocation, ops);

@@ -79,14 +79,16 @@ bool reads_clock(const VirtualInst& inst) {
 // One run of movable instructions.
 class Run {
  public:
-  Run(const VirtualProgram& program, std::vector<VirtualInst> code, RegisterSet live_out)
-      : program_(program), code_(std::move(code)), live_out_(std::move(live_out)), nodes_(code_.size()) {
+  // `behind`: the guard of what follows the run, kNoRegister without.
+  Run(const VirtualProgram& program, std::vector<VirtualInst> code, RegisterSet live_out, uint32_t guard_latency, VirtualRegister behind)
+      : program_(program), code_(std::move(code)), live_out_(std::move(live_out)), guard_latency_(guard_latency), nodes_(code_.size()) {
     LiveWalk walk(live_out_);
     for (size_t i = code_.size(); i-- > 0;) walk.step(code_[i]);
     live_in_ = walk.live();
     add_dependences();
     for (size_t i = code_.size(); i-- > 0;) {
       nodes_[i].height = latency_of(code_[i]);
+      for_each_def(code_[i], [&](VirtualRegister r) { nodes_[i].height += r == behind ? guard_latency_ : 0; });
       for (const Edge& edge : nodes_[i].after)
         nodes_[i].height = std::max(nodes_[i].height, edge.delay + nodes_[edge.to].height);
     }
@@ -129,7 +131,7 @@ class Run {
     for (size_t i = 0; i < code_.size(); ++i) {
       for_each_use(code_[i], [&](VirtualRegister r) {
         LastAccess& last = access(r);
-        for (size_t w : last.writers) depend(w, i, latency_of(code_[w]));
+        for (size_t w : last.writers) depend(w, i, latency_of(code_[w]) + (r == code_[i].guard ? guard_latency_ : 0));
         last.readers.push_back(i);
       });
       for_each_def(code_[i], [&](VirtualRegister r) {
@@ -282,12 +284,13 @@ class Run {
   const VirtualProgram& program_;
   std::vector<VirtualInst> code_;
   RegisterSet live_in_, live_out_;
+  const uint32_t guard_latency_;
   std::vector<Node> nodes_;
 };
 
 }  // namespace
 
-void schedule(VirtualProgram& program, uint32_t max_registers) {
+void schedule(VirtualProgram& program, uint32_t max_registers, uint32_t guard_latency) {
   // Room that allocation wants beyond the words that are live: the stack pointer, and gaps between pairs.
   constexpr uint32_t kReserve = 4;
   constexpr size_t kShortestRun = 3, kLongestRun = 2000;  // longer ones are cut: the search is quadratic
@@ -304,16 +307,18 @@ void schedule(VirtualProgram& program, uint32_t max_registers) {
       moves[i] = !inside && is_movable(code[i]) && !reads_clock(code[i]);
     }
     LiveWalk walk(liveness.out[b]);
+    VirtualRegister guard = kNoRegister;  // of the first guarded instruction behind
     for (size_t end = code.size(); end > 0;) {
       if (!moves[end - 1]) {
         walk.step(code[--end]);
+        if (is_guarded(code[end])) guard = code[end].guard;
         continue;
       }
       size_t begin = end;
       while (begin > 0 && moves[begin - 1] && end - begin < kLongestRun) --begin;
       if (end - begin >= kShortestRun) {
         const auto first = code.begin() + std::ptrdiff_t(begin), last = code.begin() + std::ptrdiff_t(end);
-        const std::vector<VirtualInst> ordered = Run(program, {first, last}, walk.live()).schedule(comfortable);
+        const std::vector<VirtualInst> ordered = Run(program, {first, last}, walk.live(), guard_latency, guard).schedule(comfortable);
         std::copy(ordered.begin(), ordered.end(), first);
       }
       while (end > begin) walk.step(code[--end]);

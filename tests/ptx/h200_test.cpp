@@ -62,7 +62,8 @@ class Runs {
 
   template <class Arguments>
   void run(const std::string& name, const pipeline::KernelGrid& grid, const Arguments& arguments, const std::string& launch = {}) {
-    Launcher kernel(text_, "valid.ptx", name);
+    const pipeline::CompilerParams& compiler = gpu_.compiler;
+    Launcher kernel(text_, "valid.ptx", name, {{compiler.max_registers, compiler.schedule, false, false, compiler.guard_latency}});
     arguments(kernel);
     kernel.world().set_grid(grid);
     kernel.set_arguments();

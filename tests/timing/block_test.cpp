@@ -16,16 +16,18 @@ void add_shared_address(Code& code, uint32_t stride) {
 }
 
 // Cycles of one warp that loads from shared memory at a stride and uses the value.
-Cycle load_cycles(uint32_t stride, std::string_view op = "ld.shared.b32") {
+Cycle load_cycles(uint32_t stride, std::string_view op = "ld.shared.b32", const Params& params = quick_params()) {
   Code code;
   add_shared_address(code, stride);
-  if (op.starts_with("atom"))
+  if (op.find(".cas.") != std::string_view::npos)
+    code.add(op, {reg(4), reg(2), reg(2), reg(2)});
+  else if (op.starts_with("atom"))
     code.add(op, {reg(4), reg(2), reg(2)});
   else
     code.add(op, {reg(4), reg(2)});
   code.add("add.u32", {reg(5), reg(4), reg(4)});
   code.add("exit");
-  OneCore core(code, quick_params(), {.num_warps = 1, .block_threads = 32, .shared_bytes = 8192});
+  OneCore core(code, params, {.num_warps = 1, .block_threads = 32, .shared_bytes = 8192});
   return core.run();
 }
 
@@ -82,6 +84,26 @@ TEST_CASE("atomics on shared memory take turns where lanes meet") {
   const Cycle base = 4 + 76 + 2;
   CHECK(load_cycles(4, "atom.shared.add.u32") == base);
   CHECK(load_cycles(0, "atom.shared.add.u32") == base + 31 * 2);
+}
+
+TEST_CASE("a compare-and-swap and a floating-point addition in shared memory have times of their own, of whose turns some are hidden") {
+  Params params = quick_params();
+  params.shared.atomic_hidden = 12;
+  params.shared.swap = {126, 4, 17};
+  params.shared.float_add = {195, 94, 0};
+  const auto cycles = [&](uint32_t stride, std::string_view op) { return load_cycles(stride, op, params) - (4 + 2); };
+
+  CHECK(cycles(4, "atom.shared.add.u32") == 76);
+  CHECK(cycles(0, "atom.shared.add.u32") == 76 + 31 * 2 - 12);
+  CHECK(cycles(32, "atom.shared.add.u32") == 76 + 7 * 2 - 12);  // 8 lanes a bank
+  CHECK(cycles(16, "atom.shared.add.u32") == 76);               // 4: three turns are hidden
+  CHECK(cycles(4, "atom.shared.cas.b32") == 126);
+  CHECK(cycles(0, "atom.shared.cas.b32") == 126 + 31 * 4 - 17);
+  CHECK(cycles(4, "atom.shared.add.f32") == 195);
+  CHECK(cycles(0, "atom.shared.add.f32") == 195 + 31 * 94);
+  params.shared.swap = params.shared.float_add = {};
+  CHECK(cycles(0, "atom.shared.cas.b32") == cycles(0, "atom.shared.add.u32"));
+  CHECK(cycles(0, "atom.shared.add.f32") == cycles(0, "atom.shared.add.u32"));
 }
 
 TEST_CASE("shared memory serves conflicting accesses at one pass a cycle") {

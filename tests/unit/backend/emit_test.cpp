@@ -105,6 +105,27 @@ TEST_CASE("Scheduling starts independent loads before the first use of any") {
   REQUIRE(std::count(names.begin(), first_add, "ld.global.b32") == 3);
 }
 
+TEST_CASE("Scheduling puts a comparison before longer chains when its predicate guards late") {
+  const auto place = [](uint32_t guard_latency) {
+    CodeBuilder code;
+    const Operand address = code.pair(), a = code.word(16), flag = code.fresh(RegisterClass::Predicate);
+    for (int i = 0; i < 8; ++i) {
+      const Operand product = code.fresh(RegisterClass::B32), sum = code.fresh(RegisterClass::B32);
+      code.add("mul.hi.u32", {product, a, Operand::value(uint64_t(3 + i))});
+      code.add("xor.b32", {sum, product, a});
+      code.add("st.local.b32", {Operand::stack_pointer(), sum}, 4 * i);
+    }
+    code.add("setp.lt.u32", {flag, a, Operand::value(5)});
+    code.add("st.global.b32", {address, a}).guard = flag.reg;
+    code.add("exit");
+    const Names names = names_of(code.assembled({.guard_latency = guard_latency}));
+    return std::count(names.begin(), std::find(names.begin(), names.end(), "setp.lt.u32"), "mul.hi.u32");
+  };
+
+  REQUIRE(place(0) == 8);
+  REQUIRE(place(9) == 0);
+}
+
 TEST_CASE("Scheduling keeps the order of a store and a load that may overlap") {
   CodeBuilder code;
   const Operand a = code.pair(), b = code.pair(8), value = code.fresh(RegisterClass::B32);
