@@ -93,8 +93,8 @@ class Search {
     while (out.size() < island.size()) out.push_back(child(parent(island), parent(island)));
     std::ranges::sort(out, is_better);
     // Twins are replaced by newcomers: otherwise an island soon holds one set many times.
-    const auto twins = std::ranges::unique(out, {}, &Individual::columns);
-    for (Individual& twin : twins) twin = judged(filled({}));
+    const auto twins = std::unique(out.begin(), out.end(), [](const Individual& a, const Individual& b) { return a.columns == b.columns; });
+    std::for_each(twins, out.end(), [&](Individual& twin) { twin = judged(filled({})); });
     std::ranges::sort(out, is_better);
     return out;
   }
