@@ -108,7 +108,7 @@ class Inline(DocsTest):
             return []  # `glint COMMAND --help`
         if words[1] not in helps:
             done = subprocess.run([GLINT, words[1], "--help"], capture_output=True, text=True, check=False)
-            helps[words[1]] = done.stdout if done.returncode == 0 else None
+            helps[words[1]] = done.stdout if f"Usage: glint {words[1]} " in done.stdout else None  # of unknown commands it is the general help
         known = helps[words[1]]
         if known is None:
             return [f"no command {words[1]}"]
