@@ -9,7 +9,7 @@
 
 namespace glint::core {
 
-void LineList::add(Address physical, uint32_t bytes) {
+void LineList::add(Address physical, uint32_t bytes, int lane) {
   const Address first = physical / mem::kSectorBytes;
   const Address last = (physical + bytes - 1) / mem::kSectorBytes;
   for (Address sector = first; sector <= last; ++sector) {
@@ -19,29 +19,31 @@ void LineList::add(Address physical, uint32_t bytes) {
     const uint64_t begin = (std::max(physical, address) - line + round_up) >> part_shift_;
     const uint64_t end = (std::min(physical + bytes, address + mem::kSectorBytes) - line) >> part_shift_;
     const uint64_t words = begin < end ? (uint64_t{1} << end) - (uint64_t{1} << begin) : 0;
-    add_sector(line, uint32_t((address & mask_) / mem::kSectorBytes), mem::WordMask(words));
+    add_sector(line, uint32_t((address & mask_) / mem::kSectorBytes), mem::WordMask(words), LaneMask{1} << lane);
   }
 }
 
-void LineList::add_sector(Address line, uint32_t sector, mem::WordMask words) {
+void LineList::add_sector(Address line, uint32_t sector, mem::WordMask words, LaneMask lanes) {
   const auto bit = uint8_t(1u << sector);
   // Neighbouring lanes mostly share a line, so the line hit last is tried first.
   if (count_ > 0 && lines_[last_].line == line) {
     lines_[last_].sectors |= bit;
     lines_[last_].words |= words;
+    lines_[last_].lanes |= lanes;
     return;
   }
   for (uint32_t i = count_; i-- > 0;) {
     if (lines_[i].line == line) {
       lines_[i].sectors |= bit;
       lines_[i].words |= words;
+      lines_[i].lanes |= lanes;
       last_ = i;
       return;
     }
   }
   GLINT_CHECK(count_ < kMaxLines, "an access of more than {} lines", kMaxLines);
   last_ = count_;
-  lines_[count_++] = {line, bit, words};
+  lines_[count_++] = {line, bit, words, lanes};
 }
 
 uint32_t LineList::num_sectors() const {
@@ -52,7 +54,7 @@ uint32_t LineList::num_sectors() const {
 
 void coalesce_global(LineList& out, const mem::AddressSpace& memory, const isa::Access& access, LaneMask lanes,
                      uint32_t bytes) {
-  for_each_lane(lanes, [&](int lane) { out.add(memory.physical(access.address[size_t(lane)]), bytes); });
+  for_each_lane(lanes, [&](int lane) { out.add(memory.physical(access.address[size_t(lane)]), bytes, lane); });
 }
 
 void coalesce_local(LineList& out, const LocalLayout& layout, uint32_t warp_slot, const isa::Access& access,
@@ -61,7 +63,7 @@ void coalesce_local(LineList& out, const LocalLayout& layout, uint32_t warp_slot
   for (uint32_t byte = 0; byte < bytes; byte += 4) {
     for_each_lane(lanes, [&](int lane) {
       const uint64_t word = (access.address[size_t(lane)] + byte) / 4;
-      out.add(layout.base + ((uint64_t{warp_slot} * layout.words + word) * kLanes + uint64_t(lane)) * 4, 4);
+      out.add(layout.base + ((uint64_t{warp_slot} * layout.words + word) * kLanes + uint64_t(lane)) * 4, 4, lane);
     });
   }
 }

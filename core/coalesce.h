@@ -22,6 +22,7 @@ struct LineSectors {
   Address line = 0;      // physical
   uint8_t sectors = 0;   // bit i: sector i
   mem::WordMask words = 0;  // which of its 32 parts are touched whole
+  LaneMask lanes = 0;    // that touch it
 };
 
 // The lines that one warp instruction touches, in the order of their first lane.
@@ -29,13 +30,13 @@ class LineList {
  public:
   explicit LineList(uint32_t line_bytes) : mask_(line_bytes - 1), part_shift_(uint32_t(std::countr_zero(line_bytes)) - 5) {}
   void clear() { count_ = last_ = 0; }
-  // Adds [physical, physical + bytes).
-  void add(Address physical, uint32_t bytes);
+  // Adds [physical, physical + bytes), which `lane` touches.
+  void add(Address physical, uint32_t bytes, int lane);
   std::span<const LineSectors> lines() const { return {lines_.data(), count_}; }
   uint32_t num_sectors() const;
 
  private:
-  void add_sector(Address line, uint32_t sector, mem::WordMask words);
+  void add_sector(Address line, uint32_t sector, mem::WordMask words, LaneMask lanes);
 
   Address mask_;         // line size - 1
   uint32_t part_shift_;  // of the 32 parts of a line

@@ -45,6 +45,7 @@ CoreCell::CoreCell(const Params& params, const Context& context)
       sequence_(num_slots_),
       rays_issued_(num_slots_),
       rays_pc_(num_slots_),
+      rays_lanes_(num_slots_),
       stats_(context.parent, context.name),
       op_counts_(isa::op_table().size()),
       op_lanes_(isa::op_table().size()) {
@@ -128,6 +129,7 @@ void CoreCell::launch_warp(Resident& home, uint32_t warp_in_block, Cycle ready) 
   stats_.stage[size_t(world_.image->shaders[world_.raygen].stage)]->invocations += num_lanes(warps_[slot].simt.active);
   ++progress_;
   refresh(slot);
+  for (CoreObserver* observer : observers_) observer->start_warp(now_, slot, warps_[slot]);
 }
 
 void CoreCell::advance(Cycle from, Cycle until) {

@@ -10,6 +10,7 @@
 #include "base/engine.h"
 #include "base/interval_sampler.h"
 #include "core/constant_cache.h"
+#include "core/core_observer.h"
 #include "core/executor.h"
 #include "core/instruction_fetch.h"
 #include "core/issue_scheduler.h"
@@ -98,6 +99,10 @@ class CoreCell final : public Cell {
   // Counts by instruction too, from before the first launch on; otherwise there is no profile.
   void start_profile();
   const Profile* profile() const { return profile_.get(); }
+  // Tells `observer`, which outlives the run, of all that happens from now on; before the first launch.
+  void observe(CoreObserver& observer);
+  // The lanes of access `access`, the token of its requests, that touch a line; `slot`: of their warp.
+  LaneMask readers_of(mem::Token access, Address line, uint32_t& slot) const;
   IntervalSampler& sampler() { return sampler_; }
   // Warp instructions and lanes by op, indexed as isa::op_table().
   const std::vector<uint64_t>& op_counts() const { return op_counts_; }
@@ -136,7 +141,7 @@ class CoreCell final : public Cell {
   void start_sequence(uint32_t slot, const IssueRow& row, uint32_t pc, Cycle now);
   void issue_rest(SchedulerState& scheduler, uint32_t slot, Cycle now);
   void refresh_sequence(SchedulerState& scheduler, uint32_t slot);
-  void count(const IssueRow& row, const Issued& issued);
+  void count(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now);
   void count_access(const isa::OpRow& op);
   bool start_access(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now);
   void collect_lines(MemoryAccess& access, const Issued& issued);
@@ -160,6 +165,7 @@ class CoreCell final : public Cell {
   void complete_rays(uint32_t slot, Cycle now);
   void retire(uint32_t slot);
   void free_slot(uint32_t slot);
+  void tell_select(const SchedulerState& scheduler, uint32_t slot, Cycle now) const;
   void refresh(uint32_t slot);
 
   const Params params_;
@@ -206,6 +212,7 @@ class CoreCell final : public Cell {
   Cycle barrier_free_ = 0;                 // of the core's barrier unit
   std::vector<Cycle> rays_issued_;         // a slot: when its rays were handed over
   std::vector<uint32_t> rays_pc_;
+  std::vector<LaneMask> rays_lanes_;
   uint32_t num_resident_ = 0;
   uint64_t num_launched_ = 0, progress_ = 0;
   Cycle accounted_ = 0;                    // every cycle before has been given to a reason
@@ -216,6 +223,7 @@ class CoreCell final : public Cell {
   std::vector<uint64_t> op_counts_, op_lanes_;
   mem::Latencies latencies_;
   std::unique_ptr<Profile> profile_;       // null: not asked for
+  std::vector<CoreObserver*> observers_;
   IntervalSampler sampler_;
 };
 

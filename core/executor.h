@@ -36,6 +36,13 @@ struct CandidateCounts {
   uint64_t gathered = 0, dropped = 0, overflows = 0;   // of ended traces (rtunit/candidate_table.h)
 };
 
+// Lanes of a warp that begin a shader because another called it.
+struct Called {
+  const WarpContext& warp;
+  isa::Stage stage;
+  LaneMask lanes;
+};
+
 // Where a machine has put a warp, as its program may ask: %warpid, %nwarpid, %smid, %nsmid.
 struct Seat {
   uint32_t slot = 0, slots = 1;  // of the core
@@ -51,6 +58,7 @@ struct Retired {
 class Executor {
  public:
   Probe<Retired> retired;
+  Probe<Called> called;
 
   // `clock_mhz` turns cycles into the time that programs read; 0: they read 0.
   explicit Executor(const World& world, double clock_mhz = 0.0);

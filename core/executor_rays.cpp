@@ -258,6 +258,7 @@ uint32_t Executor::call_by_shader(WarpContext& warp, const std::array<uint32_t, 
     callers &= ~same;
     const Shader& callee = world_.image->shaders[shader];
     called_lanes_[size_t(callee.stage)] += num_lanes(same);
+    called.fire([&] { return Called{warp, callee.stage, same}; });
     fill_specials(warp, same, callee);
     if (calls++ == 0) {
       simt.pc = callee.entry;

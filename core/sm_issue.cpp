@@ -91,6 +91,7 @@ void CoreCell::read_banks(SchedulerState& scheduler, uint32_t pc, Cycle now) {
 
 void CoreCell::issue(SchedulerState& scheduler, uint32_t local, Cycle now) {
   const uint32_t slot = local * params_.schedulers + scheduler.index;
+  if (!observers_.empty()) [[unlikely]] tell_select(scheduler, slot, now);
   if (sequence_[slot].left > 0) return issue_rest(scheduler, slot, now);
   WarpContext& warp = warps_[slot];
   const IssueRow& row = table_.row(warp.simt.pc);
@@ -100,8 +101,7 @@ void CoreCell::issue(SchedulerState& scheduler, uint32_t local, Cycle now) {
     return;
   }
   ++progress_;
-  count(row, issued);
-  if (profile_) profile_->issue(scheduler.index, issued.pc, num_lanes(issued.lanes));
+  count(slot, row, issued, now);
   const Cycle late = row.pipe != Pipe::Memory ? scheduler.occupy(row.pipe, now, row.interval) : 0;
   if (params_.register_file.banks) read_banks(scheduler, issued.pc, now);
   const Cycle done = now + late + row.latency;
@@ -182,8 +182,10 @@ void CoreCell::start_fence(uint32_t slot, const IssueRow& row, const Issued& iss
   front_[slot] = {waits ? kNever : now + latency, Stall::Fence};
 }
 
-void CoreCell::count(const IssueRow& row, const Issued& issued) {
+void CoreCell::count(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now) {
   const uint64_t lanes = num_lanes(issued.lanes);
+  if (profile_) profile_->issue(slot % params_.schedulers, issued.pc, lanes);
+  for (CoreObserver* observer : observers_) observer->issue(now, slot, issued);
   ++stats_.instructions;
   stats_.lane_instructions += lanes;
   stats_.lane_slots += uint64_t(kLanes);
@@ -211,6 +213,8 @@ void CoreCell::start_rays(uint32_t slot, const IssueRow& row, const Issued& issu
     });
   }
   if (travelling) {
+    for (CoreObserver* observer : observers_) observer->start_rays(slot, travelling, warp.rays);
+    rays_lanes_[slot] = travelling;
     rt_.submit(now, slot, travelling, warp.rays);
     front_[slot] = {kNever, Stall::RtWait};
     rays_issued_[slot] = now;
@@ -226,6 +230,7 @@ void CoreCell::start_rays(uint32_t slot, const IssueRow& row, const Issued& issu
 
 void CoreCell::complete_rays(uint32_t slot, Cycle now) {
   const IssueRow& row = table_.row(rays_pc_[slot]);
+  for (CoreObserver* observer : observers_) observer->end_rays(slot, rays_lanes_[slot], warps_[slot].rays);
   executor_.finish_rays(warps_[slot]);
   front_[slot] = {now + row.latency, Stall::RtWait};
   stats_.latency.add(row.klass, now + row.latency - rays_issued_[slot]);
@@ -250,6 +255,7 @@ void CoreCell::free_slot(uint32_t slot) {
   scheduler.wake();
   --num_resident_;
   if (--home_[slot]->warps == 0) --num_blocks_;
+  for (CoreObserver* observer : observers_) observer->end_warp(now_, slot);
 }
 
 Scoreboard::Ready CoreCell::operands_ready(uint32_t slot, const IssueRow& row) const {

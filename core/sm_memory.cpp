@@ -89,7 +89,7 @@ void CoreCell::collect_candidates(MemoryAccess& access, LaneMask lanes) {
   if (tables_.rows == 0) return;
   const TraceFrame& frame = warps_[access.slot].frame();
   for_each_lane(lanes, [&](int lane) {
-    access.lines.add(tables_.entry(access.slot, frame.ray[size_t(lane)].candidate_row, lane), rt::kTableEntryBytes);
+    access.lines.add(tables_.entry(access.slot, frame.ray[size_t(lane)].candidate_row, lane), rt::kTableEntryBytes, lane);
   });
   access.num_table_lines = uint32_t(access.lines.lines().size());
 }
@@ -117,7 +117,7 @@ void CoreCell::collect_texels(MemoryAccess& access, LaneMask lanes) {
   for (const auto& row : executor_.texels().rows())
     for_each_lane(lanes, [&](int lane) {
       const Address texel = row[size_t(lane)];
-      if (texel != TexelList::kNone) access.lines.add(world_.memory->physical(texel), 4);
+      if (texel != TexelList::kNone) access.lines.add(world_.memory->physical(texel), 4, lane);
     });
 }
 

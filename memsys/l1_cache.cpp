@@ -91,6 +91,7 @@ bool L1Cache::read(Cycle now, Client client, const Request& request) {
   ++order_;
   ++reads_accepted_;
   stats_.count_read(request.traffic, missing, fetched, request.line, seen_);
+  if (fetched) read_missed_.fire([&] { return ReadMissed{client, request}; });
   return true;
 }
 
@@ -140,6 +141,7 @@ bool L1Cache::pass_atomic(Cycle now, Client client, const Request& request) {
   stats_.reads.add(request.traffic);
   stats_.misses.add(request.traffic);
   stats_.sectors_fetched.add(request.traffic, num_sectors(request.sectors));
+  read_missed_.fire([&] { return ReadMissed{client, request}; });
   return true;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "base/probe.h"
 #include "base/stats.h"
 #include "memsys/address_map.h"
 #include "memsys/cache_stats.h"
@@ -35,6 +36,12 @@ struct L1Stats : CacheStats {
   stats::Breakdown<Stage> miss_stages{&group, "miss_stages", "cycle", "The sum of their latencies, by stage."};
 };
 
+// A read that was counted as a miss, told when the L1 takes it.
+struct ReadMissed {
+  Client client = Client::Lsu;
+  const Request& request;
+};
+
 // The network as one L1 sees it. All outlive the cache.
 struct L1Links {
   std::vector<FanIn<Packet>*> requests{};   // inbound sides, by slice
@@ -63,6 +70,7 @@ class L1Cache final : public L1Port {
   std::string describe() const override;
 
   const L1Stats& stats() const { return stats_; }
+  Probe<ReadMissed>& read_missed() { return read_missed_; }
   // Of every read, from its acceptance until it can be popped.
   const Latencies& latencies() const { return latencies_; }
   // Holds nothing and waits for nothing; popped tokens equal accepted reads.
@@ -127,6 +135,7 @@ class L1Cache final : public L1Port {
   const L1Links links_;
   std::vector<uint32_t> credits_left_;  // by slice
   L1Stats stats_;
+  Probe<ReadMissed> read_missed_;
   Latencies latencies_;
   TagArray tags_;
   Mshr<Waiter> mshr_;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/functional_machine.h"
 
+#include <memory>
+
 #include "base/num_lanes.h"
 #include "rtunit/traversal.h"
 
@@ -31,12 +33,20 @@ constexpr uint64_t kQuantum = 10'000;
 
 class Runner {
  public:
-  Runner(const core::World& world, uint64_t instruction_budget) : executor(world), world_(world), budget_(instruction_budget) {}
+  Runner(const core::World& world, uint64_t instruction_budget, core::LaunchCosts* costs)
+      : executor(world), world_(world), budget_(instruction_budget) {
+    if (!costs) return;
+    costs_ = std::make_unique<core::CostRecorder>(*costs, executor.warps_per_block());
+    executor.called.listen([this](const core::Called& called) { costs_->call(called.warp.warp_in_block, called.stage, called.lanes); });
+  }
 
   void run_block(uint32_t index) {
     warps_.resize(executor.warps_per_block());
     executor.start(block_, index);
-    for (uint32_t w = 0; w < warps_.size(); ++w) executor.start(warps_[w], block_, w);
+    for (uint32_t w = 0; w < warps_.size(); ++w) {
+      executor.start(warps_[w], block_, w);
+      if (costs_) costs_->start_warp(0, w, warps_[w]);
+    }
     // Round robin. A warp at a barrier waits for one that runs: the executor sees to it that there is one.
     while (block_.live() != 0)
       for (WarpContext& warp : warps_)
@@ -56,24 +66,35 @@ class Runner {
       ++by_class.instructions;
       by_class.lanes += num_lanes(issued.lanes);
       finished = issued.finished;
-      if (warp.waiting_for_rays) answer_rays(executor, warp, counts.rays);
+      if (costs_) costs_->issue(0, warp.warp_in_block, issued);
+      if (warp.waiting_for_rays) answer(warp);
+      if (finished && costs_) costs_->end_warp(0, warp.warp_in_block);
       if (warp.instructions > budget_) [[unlikely]]
         throw Error(Exit::Fault, executor.passed().with(core::no_end_in_sight(world_, warp, issued.pc, budget_)));
     }
+  }
+
+  void answer(WarpContext& warp) {
+    const LaneMask lanes = warp.ray_lanes;
+    const rt::RayState* rays = warp.rays;
+    if (costs_) costs_->start_rays(warp.warp_in_block, lanes, rays);
+    answer_rays(executor, warp, counts.rays);
+    if (costs_) costs_->end_rays(warp.warp_in_block, lanes, rays);
   }
 
   const core::World& world_;
   const uint64_t budget_;
   core::Block block_;
   std::vector<WarpContext> warps_;
+  std::unique_ptr<core::CostRecorder> costs_;  // null: not asked for
 };
 
 }  // namespace
 
 FunctionalCounts run_functional(const core::World& world, uint64_t instruction_budget,
                                 const std::function<void(uint64_t, uint64_t)>& progress,
-                                const Probe<core::Retired>::Listener& listener) {
-  Runner runner(world, instruction_budget);
+                                const Probe<core::Retired>::Listener& listener, core::LaunchCosts* costs) {
+  Runner runner(world, instruction_budget, costs);
   if (listener) runner.executor.retired.listen(listener);
   const uint32_t num_blocks = runner.executor.num_blocks(), warps = runner.executor.warps_per_block();
   for (uint32_t index = 0; index < num_blocks; ++index) {

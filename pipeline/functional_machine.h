@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 
+#include "core/cost_recorder.h"
 #include "pipeline/render.h"
 
 namespace glint::pipeline {
@@ -16,10 +17,10 @@ struct FunctionalCounts {
 };
 
 // Error(Exit::Fault) when a warp does something wrong or executes more than `instruction_budget` instructions.
-// `listener`, when given, hears of every retired instruction.
+// `listener`, when given, hears of every retired instruction; `costs` is filled in.
 FunctionalCounts run_functional(const core::World& world, uint64_t instruction_budget,
                                 const std::function<void(uint64_t done, uint64_t total)>& progress,
-                                const Probe<core::Retired>::Listener& listener = {});
+                                const Probe<core::Retired>::Listener& listener = {}, core::LaunchCosts* costs = nullptr);
 
 // Traverses the rays that `warp` waits for and answers them. Adds to `counts` what the traversal did.
 void answer_rays(core::Executor& executor, core::WarpContext& warp, RayCounts& counts);

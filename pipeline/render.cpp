@@ -5,6 +5,8 @@
 #include <chrono>
 
 #include "pipeline/functional_machine.h"
+#include "pipeline/run_costs.h"
+#include "pipeline/run_trace.h"
 #include "pipeline/run_stats.h"
 #include "pipeline/scene_world.h"
 #include "pipeline/timing_machine.h"
@@ -19,23 +21,28 @@ const stats::Group& RenderResult::statistics() const { return stats->root(); }
 RenderResult run_world(const core::World& world, const GpuParams& gpu, bool timing, bool no_skip, uint32_t threads,
                        const std::function<void(uint64_t, uint64_t)>& progress, const Observation& observation) {
   RenderResult result;
+  const auto costs = observation.heat ? std::make_unique<core::LaunchCosts>(world) : nullptr;
   const auto begin = std::chrono::steady_clock::now();
   if (timing) {
     auto machine = std::make_unique<TimingMachine>(gpu, world, no_skip, HostOptions{.threads = threads});
     observe(*machine, observation);
+    const auto cost_recorders = costs ? record_costs(*machine, *costs) : std::vector<std::unique_ptr<core::CostRecorder>>{};
+    const auto trace_recorders = observation.trace.wanted ? record_trace(*machine, *world.image, observation.trace) : std::vector<std::unique_ptr<core::TraceRecorder>>{};
     result.cycles = machine->run(progress);
     machine->collect(result);
     result.faults = machine->passed();
     if (observation.profile) result.profile = profile_of(*machine, *world.image);
     if (observation.sample) result.series = series_of(*machine, observation.sample);
+    if (observation.trace.wanted) result.trace = trace_of(*machine, *world.image, observation.trace, trace_recorders, observation.interval());
     result.stats = std::make_unique<RunStats>(std::move(machine));
   } else {
-    const FunctionalCounts counts = run_functional(world, gpu.core.instruction_budget, progress);
+    const FunctionalCounts counts = run_functional(world, gpu.core.instruction_budget, progress, {}, costs.get());
     std::copy(counts.by_class.begin(), counts.by_class.end(), result.by_class);
     result.rays = counts.rays;
     result.faults = counts.faults;
     result.stats = std::make_unique<RunStats>(counts);
   }
+  if (costs) result.costs = cost_maps(*costs, timing);
   result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   for (const ClassCounts& counts : result.by_class) {
     result.warp_instructions += counts.instructions;

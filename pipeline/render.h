@@ -8,8 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "base/cost_map.h"
 #include "base/profile_table.h"
 #include "base/stats.h"
+#include "base/trace_table.h"
 #include "core/executor.h"
 #include "frontend/compile.h"
 #include "pipeline/params.h"
@@ -37,7 +39,7 @@ struct RenderJob {
   // Told now and then how many of the launch's warps have ended.
   std::function<void(uint64_t done, uint64_t total)> progress;
   core::OnFault on_fault = core::OnFault::Stop;
-  Observation observe;              // of the timing machine
+  Observation observe;              // of the timing machine, but for `heat`
 };
 
 // Counted by either machine.
@@ -78,6 +80,8 @@ struct RenderResult {
   std::vector<std::string> warnings;  // of compiling the shaders
   ProfileTable profile;             // of the timing machine, if it was asked for
   SeriesTable series;
+  std::vector<CostMap> costs;       // if they were asked for
+  TraceTable trace;
   double wall_seconds = 0;          // of the run alone, without compiling and building
   std::unique_ptr<RunStats> stats;
   const stats::Group& statistics() const;  // root of the tree

@@ -10,11 +10,6 @@
 namespace glint::pipeline {
 namespace {
 
-// What is read of a core, with its L1 and RT unit, and of a partition.
-enum OfCore { kInstructions, kRtWarps, kL1Reads, kL1Hits };
-enum OfPartition { kL2Reads, kL2Hits, kDramBusy, kDramClocks };
-using Samples = std::vector<std::vector<uint64_t>>;
-
 void add(ProfileRow& row, const core::InstructionCounts& counts) { row.add(counts, counts.slots); }
 
 ProfileRow row_of(const core::Image& image, uint32_t pc, size_t reasons) {
@@ -48,32 +43,31 @@ ProgramListing listing_of(const isa::Program& program) {
   return out;
 }
 
-// What `column` of all cells has grown by between two samples; the one before the first is all zeros.
-double growth(const std::vector<const Samples*>& cells, size_t sample, size_t column) {
-  uint64_t sum = 0;
-  for (const Samples* cell : cells) sum += (*cell)[sample][column] - (sample ? (*cell)[sample - 1][column] : 0);
-  return double(sum);
-}
-
 double ratio(double a, double b) { return b > 0 ? a / b : 0.0; }
 
 }  // namespace
+
+double growth(const std::vector<const UnitSamples*>& units, size_t sample, size_t column) {
+  uint64_t sum = 0;
+  for (const UnitSamples* unit : units) sum += (*unit)[sample][column] - (sample ? (*unit)[sample - 1][column] : 0);
+  return double(sum);
+}
 
 void observe(TimingMachine& machine, const Observation& what) {
   for (uint32_t i = 0; i < machine.num_cores(); ++i) {
     core::CoreCell& core = machine.core(i);
     if (what.profile) core.start_profile();
-    if (what.sample == 0) continue;
+    if (what.interval() == 0) continue;
     const rt::RtUnit& rt = machine.rt_unit(i);
     const mem::L1Stats& l1 = machine.memory().l1(i).stats();
-    core.sampler().start(what.sample, [&core, &rt, &l1](Cycle at) -> std::vector<uint64_t> {
+    core.sampler().start(what.interval(), [&core, &rt, &l1](Cycle at) -> std::vector<uint64_t> {
       return {core.stats().instructions.value(), rt.warp_cycles_until(at), l1.reads.total(), l1.hits.total()};
     });
   }
-  if (what.sample == 0) return;
+  if (what.interval() == 0) return;
   for (uint32_t i = 0; i < machine.memory().num_partitions(); ++i) {
     mem::Partition& partition = machine.memory().partition(i);
-    partition.sampler().start(what.sample, [&partition](Cycle at) -> std::vector<uint64_t> {
+    partition.sampler().start(what.interval(), [&partition](Cycle at) -> std::vector<uint64_t> {
       const mem::DramModel& dram = partition.dram();
       const uint64_t reads = partition.sum([](const mem::L2Slice& slice) { return slice.stats().reads.total(); });
       const uint64_t hits = partition.sum([](const mem::L2Slice& slice) { return slice.stats().hits.total(); });
@@ -103,7 +97,7 @@ ProfileTable profile_of(const TimingMachine& machine, const core::Image& image) 
 SeriesTable series_of(TimingMachine& machine, Cycle interval) {
   SeriesTable table;
   table.columns = {"cycle", "ipc", "rt_warps", "l1d_miss_rate", "l2_miss_rate", "dram_use", "instructions", "l1d_reads", "l2_reads"};
-  std::vector<const Samples*> cores, partitions;
+  std::vector<const UnitSamples*> cores, partitions;
   for (uint32_t i = 0; i < machine.num_cores(); ++i) cores.push_back(&machine.core(i).sampler().samples());
   for (uint32_t i = 0; i < machine.memory().num_partitions(); ++i) partitions.push_back(&machine.memory().partition(i).sampler().samples());
   for (size_t s = 0; s < cores[0]->size(); ++s) {

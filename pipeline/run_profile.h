@@ -1,9 +1,12 @@
 // Watching a timing run: what each instruction cost, and how the machine was used as time went by.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <vector>
+
 #include "base/profile_table.h"
 #include "base/types.h"
 #include "core/image.h"
+#include "pipeline/trace_request.h"
 
 namespace glint::pipeline {
 
@@ -12,7 +15,20 @@ class TimingMachine;
 struct Observation {
   bool profile = false;  // by instruction
   Cycle sample = 0;      // interval of the time series, in cycles; 0: none
+  bool heat = false;     // maps of cost by pixel
+  TraceRequest trace{};
+
+  // Of counters, for the time series or the trace; 0: none.
+  Cycle interval() const { return sample || !trace.wanted ? sample : kTraceInterval; }
+  static constexpr Cycle kTraceInterval = 1000;
 };
+
+// What is sampled of a core, with its L1 and RT unit, and of a partition.
+enum OfCore : size_t { kInstructions, kRtWarps, kL1Reads, kL1Hits };
+enum OfPartition : size_t { kL2Reads, kL2Hits, kDramBusy, kDramClocks };
+using UnitSamples = std::vector<std::vector<uint64_t>>;
+// What `column` of all units has grown by between two samples; the one before the first is all zeros.
+double growth(const std::vector<const UnitSamples*>& units, size_t sample, size_t column);
 
 // Before the machine runs.
 void observe(TimingMachine& machine, const Observation& what);

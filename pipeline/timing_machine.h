@@ -46,6 +46,7 @@ class TimingMachine {
   const core::CoreCell& core(uint32_t index) const { return *cores_[index]; }
   core::CoreCell& core(uint32_t index) { return *cores_[index]; }
   const rt::RtUnit& rt_unit(uint32_t index) const { return *rt_units_[index]; }
+  rt::RtUnit& rt_unit(uint32_t index) { return *rt_units_[index]; }
   const mem::MemorySystem& memory() const { return memory_; }
   mem::MemorySystem& memory() { return memory_; }
   uint32_t num_cores() const { return uint32_t(cores_.size()); }

@@ -15,10 +15,13 @@
 #include "base/diagnostics.h"
 #include "report/base64.h"
 #include "report/config_rows.h"
+#include "report/heat_files.h"
 #include "report/metrics.h"
+#include "report/page_heat.h"
 #include "report/page_profile.h"
 #include "report/page_source.h"
 #include "report/page_stats.h"
+#include "report/page_timeline.h"
 #include "report/profile_files.h"
 
 namespace glint::report {
@@ -111,6 +114,12 @@ void add_config(const PageRun& run, const std::string& toml, Json& out, Json& do
     out["preset"]["changes"][change.row.key] = change.preset.empty() ? Json(nullptr) : number_or_text(change.preset);
 }
 
+void add_timeline(const PageRun& run, Json& out) {
+  const std::string path = run.directory + "/trace.json.gz";
+  if (std::filesystem::exists(path)) out["timeline"] = page_timeline(read_timeline(path, run.timeline.value_or(TimelineRequest{})));
+  else if (run.timeline) throw UserError({run.directory}, "the run has no trace, and so no timeline", "run it again with --trace");
+}
+
 Json run_json(const PageRun& run, Json& stat_docs, Json& key_docs) {
   const std::string& directory = run.directory;
   Json out = {{"directory", directory}, {"run", facts_of(directory)}};
@@ -125,6 +134,8 @@ Json run_json(const PageRun& run, Json& stat_docs, Json& key_docs) {
     out["profile"] = page_profile(profile);
     if (const auto source = bytes_of(directory + "/source.json")) out["source"] = page_source(profile, parse_source(*source, directory + "/source.json"));
   }
+  if (const std::vector<CostMap> maps = read_heat(directory); !maps.empty()) out["heat"] = page_heat(maps);
+  add_timeline(run, out);
   if (const auto png = bytes_of(directory + "/image.png")) out["picture"] = "data:image/png;base64," + base64(*png);
   return out;
 }
@@ -137,7 +148,7 @@ nlohmann::ordered_json page_data(const std::vector<PageRun>& runs, const std::st
   for (const MetricGroup& group : metric_groups())
     for (const Metric& metric : group.metrics)
       metric_docs.push_back({{"name", metric.name}, {"unit", metric.unit}, {"doc", metric.doc}, {"group", group.title}, {"paper", metric.paper}, {"known", !metric.formula.empty()}});
-  return {{"schema", 1}, {"version", version}, {"runs", std::move(list)}, {"stat_docs", std::move(stat_docs)}, {"metric_docs", std::move(metric_docs)}, {"key_docs", std::move(key_docs)}};
+  return {{"schema", 1}, {"version", version}, {"runs", std::move(list)}, {"stat_docs", std::move(stat_docs)}, {"metric_docs", std::move(metric_docs)}, {"key_docs", std::move(key_docs)}, {"heat_scale", page_heat_scale()}};
 }
 
 }  // namespace glint::report

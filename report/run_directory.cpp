@@ -23,7 +23,18 @@ RunDirectory::RunDirectory(std::string path) : path_(std::move(path)) {
     throw UserError({path_}, "cannot create the output folder", "give another one with --out");
 }
 
+void RunDirectory::remove(const std::string& name) const {
+  std::error_code error;
+  fs::remove_all(path_of(name), error);
+  if (error) throw UserError({path_of(name)}, "cannot remove what an earlier run left: " + error.message());
+}
+
 void RunDirectory::write(const std::string& name, const std::string& bytes) const {
+  if (name.find('/') != std::string::npos) {
+    std::error_code error;
+    fs::create_directories(fs::path(path_of(name)).parent_path(), error);
+    if (error) throw UserError({path_of(name)}, "cannot create its folder: " + error.message());
+  }
   // The process id keeps two runs into one folder from writing the same temporary file.
   const std::string target = path_of(name), temporary = fmt::format("{}.{}.tmp", target, ::getpid());
   {

@@ -61,7 +61,8 @@ class RunDirectory {
   const std::string& path() const { return path_; }
   std::string path_of(const std::string& name) const { return path_ + "/" + name; }
 
-  void write(const std::string& name, const std::string& bytes) const;
+  void write(const std::string& name, const std::string& bytes) const;  // "heat/rays.png": in a folder below it
+  void remove(const std::string& name) const;  // a file or folder that an earlier run left, if it is there
   void write_image(const ImageView& image) const;    // image.png, image.pfm
   void write_stats(const stats::Group& root) const;  // stats.<format> of every registered format
   void write_config(const std::vector<ParamInfo>& params, const std::string& title) const;  // config.toml

@@ -64,6 +64,7 @@ void RtUnit::submit(Cycle now, uint32_t warp_slot, LaneMask mask, RayState* stat
   ++stats_.warps;
   free->spills = 0;
   has_news_ = true;
+  warp_moved_.fire([&] { return WarpMoved{now, uint32_t(free - slots_.begin()), warp_slot, false, mask, states}; });
   for_each_lane(mask, [&](int lane) { admit(*free, uint32_t(free - slots_.begin()), lane, now); });
 }
 
@@ -174,8 +175,10 @@ Stall RtUnit::waiting_reason() const {
 // Gives finished warps back: those of earlier cycles, so a slot freed now is usable from now on.
 void RtUnit::retire(Cycle now) {
   for (uint32_t i = 0; i < params_.retires_per_cycle && !finished_.empty(); ++i) {
-    Slot& slot = slots_[finished_.front()];
+    const uint32_t index = finished_.front();
+    Slot& slot = slots_[index];
     finished_.pop();
+    warp_moved_.fire([&] { return WarpMoved{now, index, slot.warp, true, slot.mask, slot.states}; });
     completions_.push(slot.warp);
     stats_.warp_latency_sum += now - slot.arrived;
     slot.used = false;

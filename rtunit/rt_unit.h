@@ -26,6 +26,15 @@ struct NodeVisited {
   Fetch node;
 };
 
+// A warp takes a place in the warp buffer, or gives it free (`has_left`).
+struct WarpMoved {
+  Cycle cycle = 0;
+  uint32_t place = 0, warp_slot = 0;
+  bool has_left = false;
+  LaneMask lanes = 0;
+  const RayState* states = nullptr;
+};
+
 class RtUnit final : public RtPort {
  public:
   struct Context {
@@ -57,6 +66,16 @@ class RtUnit final : public RtPort {
   uint64_t warp_cycles_until(Cycle at) const { return stats_.warp_cycles.value() + (at - next_unaccounted_) * gap_warps_; }
   uint32_t num_resident() const { return num_resident_; }
   Probe<NodeVisited>& node_visited() { return node_visited_; }
+  Probe<WarpMoved>& warp_moved() { return warp_moved_; }
+  // Tells each(warp slot, lanes) of whom the read that is just being sent is for. `token` is that of its request.
+  template <class Each>
+  void for_each_reader(mem::Token token, Each&& each) const {
+    if (token != sending_) {  // a fill of a stack has no fetch yet
+      const StackOp& op = stack_ops_.front();
+      return each(slots_[op.slot].warp, LaneMask{1} << op.lane);
+    }
+    for (uint32_t i = token; i != kNone; i = fetches_[i].next) each(slots_[fetches_[i].slot].warp, fetches_[i].lanes);
+  }
 
  private:
   static constexpr uint32_t kNone = ~0u;
@@ -168,6 +187,7 @@ class RtUnit final : public RtPort {
   const TableLayout tables_;
   RtStats stats_;
   Probe<NodeVisited> node_visited_;
+  Probe<WarpMoved> warp_moved_;
   std::unique_ptr<RayScheduler> scheduler_;
   std::unique_ptr<Coalescer> coalescer_;
   std::unique_ptr<ChildOrder> child_order_;

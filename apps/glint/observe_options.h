@@ -9,17 +9,25 @@
 
 namespace CLI {
 class App;
+class Option;
 }
 
 namespace glint::app {
 
-// --profile and --sample.
+// --profile, --sample, --heat and --trace with its window and limit.
 void add_observe_options(CLI::App& command, pipeline::Observation& observe);
 
-// UserError when they were given for the functional machine, which has no cycles.
+// UserError when what needs cycles was given for the functional machine, which has none.
 void check_observation(const pipeline::Observation& observe, bool timing);
 
-// Writes profile.csv, profile.folded and series.csv as asked for; returns lines for the summary.
+// Whether any of it was asked for.
+bool observes(const pipeline::Observation& observe);
+
+// An option that takes "100:200" as cycles 100 to 200; an end that is left out is the run's.
+CLI::Option* add_cycle_window(CLI::App& command, const std::string& name, const std::string& doc, Cycle& begin, Cycle& end);
+
+// Writes the files that were asked for, and removes those that an earlier run left and this one has not; returns lines for
+// the summary. What a limit has cut off is said on stderr too.
 std::vector<std::string> write_observation(const pipeline::Observation& observe, const pipeline::RenderResult& result,
                                            const report::RunDirectory& directory);
 

@@ -10,6 +10,7 @@
 #include "pipeline/description/data.h"
 #include "pipeline/description/pictures.h"
 #include "report/image_files.h"
+#include "report/npy.h"
 
 namespace glint::app {
 namespace {
@@ -46,17 +47,6 @@ std::string number_text(const std::string& type, const std::byte* at) {
   return is_signed ? as<int64_t>(at) : as<uint64_t>(at);
 }
 
-// NumPy's format 1.0: magic, version, length of a header that ends at a multiple of 64 bytes.
-std::string npy(const std::string& dtype, const std::string& shape, std::string_view data) {
-  std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': {}, }}", dtype, shape);
-  header.append((64 - (10 + header.size() + 1) % 64) % 64, ' ');
-  header += '\n';
-  std::string out("\x93NUMPY\x01\x00", 8);
-  out += char(header.size() & 0xff);
-  out += char(header.size() >> 8);
-  return out + header + std::string(data);
-}
-
 std::string_view text_of(std::span<const std::byte> bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
 
 std::string ending_of(const std::string& file) { return std::filesystem::path(file).extension().string(); }
@@ -84,7 +74,7 @@ std::string buffer_file(const std::string& file, const std::string& named, std::
   const size_t each = pipeline::bytes_of_number(type), count = bytes.size() / each;
   if (ending == ".npy") {
     const char kind = type[0] == 's' ? 'i' : type[0];
-    return npy(fmt::format("{}{}{}", each == 1 ? '|' : '<', kind, each), fmt::format("({},)", count), text_of(bytes.first(count * each)));
+    return report::npy_bytes(fmt::format("{}{}{}", each == 1 ? '|' : '<', kind, each), fmt::format("({},)", count), text_of(bytes.first(count * each)));
   }
   if (ending != ".csv") return std::string(text_of(bytes));
   std::string out = "value\n";
@@ -99,7 +89,7 @@ std::string image_file(const std::string& file, const core::ImageView& view, std
   const uint32_t rows = view.height * view.depth * view.layers;
   if (ending == ".png") return report::png_bytes({view.width, rows, texels});
   if (ending == ".pfm") return report::pfm_bytes({view.width, rows, texels});
-  if (ending == ".npy") return npy("<f4", fmt::format("({}, {}, 4)", rows, view.width), text_of(std::as_bytes(std::span(texels))));
+  if (ending == ".npy") return report::npy_bytes("<f4", fmt::format("({}, {}, 4)", rows, view.width), text_of(std::as_bytes(std::span(texels))));
   std::string out = "x,y,red,green,blue,alpha\n";
   for (size_t i = 0; i + 4 <= texels.size(); i += 4)
     out += fmt::format("{},{},{},{},{},{}\n", i / 4 % view.width, i / 4 / view.width, texels[i], texels[i + 1], texels[i + 2], texels[i + 3]);

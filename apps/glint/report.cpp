@@ -6,8 +6,10 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "apps/glint/config.h"
+#include "apps/glint/observe_options.h"
 #include "apps/glint/session.h"
 #include "report/config_file.h"
 #include "report/page.h"
@@ -33,9 +35,13 @@ report::PageRun page_run(const Resources& resources, const std::string& director
   return run;
 }
 
-Exit write_report(const Session& session, const std::vector<std::string>& directories, const std::string& out) {
+Exit write_report(const Session& session, const std::vector<std::string>& directories, const std::string& out,
+                  const std::optional<report::TimelineRequest>& timeline) {
   std::vector<report::PageRun> runs;
-  for (const std::string& directory : directories) runs.push_back(page_run(session.resources, directory));
+  for (const std::string& directory : directories) {
+    runs.push_back(page_run(session.resources, directory));
+    runs.back().timeline = timeline;
+  }
   const nlohmann::ordered_json data = report::page_data(runs, GLINT_VERSION);
   const auto web = [&](const char* name) { return read_file(session.resources.web_file(name)); };
   const std::string page = report::page(data, {.frame = web("report.html"), .style = web("report.css"), .script = web("report.js"), .unpack = web("unpack.js")});
@@ -51,13 +57,19 @@ void add_report(CLI::App& app, Session& session) {
   struct Options {
     std::vector<std::string> runs;
     std::string out;
+    report::TimelineRequest timeline;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("report", "Write a page of figures about finished runs");
   command->add_option("RUN", options->runs, "Run directories; with several, figures stand side by side and changes are against the first")->required();
   command->add_option("-o,--out", options->out, "File, or - (default: report.html in the run directory; with several runs, here)");
-  command->callback([&session, options] {
-    session.action = [&session, options] { return write_report(session, options->runs, options->out); };
+  add_cycle_window(*command, "--timeline", "Cycles of the warp timeline, of a run with --trace (default: as many around the middle of the trace as stay readable)",
+                   options->timeline.begin, options->timeline.end);
+  command->add_option("--timeline-sm", options->timeline.core, "SM of the warp timeline")->capture_default_str();
+  command->callback([&session, options, command] {
+    std::optional<report::TimelineRequest> timeline;
+    if (command->count("--timeline") + command->count("--timeline-sm") > 0) timeline = options->timeline;
+    session.action = [&session, options, timeline] { return write_report(session, options->runs, options->out, timeline); };
   });
 }
 

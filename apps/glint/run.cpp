@@ -108,7 +108,7 @@ Exit run_scripts(const Session& session, const Options& options) {
 
 Exit run(const Session& session, const Options& options) {
   if (names_script(options.scene)) {
-    if (options.observe.profile || options.observe.sample) throw UserError({}, "--profile and --sample do not go with Amber scripts", "a script has no run directory");
+    if (observes(options.observe)) throw UserError({}, "--profile, --sample, --heat and --trace do not go with Amber scripts", "a script has no run directory");
     return run_scripts(session, options);
   }
   if (!options.more.empty()) throw UserError({}, fmt::format("'{}' is one too many", options.more[0]), "only Amber scripts run several at a time");

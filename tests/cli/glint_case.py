@@ -3,10 +3,12 @@
 """For scripts that are called with GLINT SOURCE_DIR [SUITE...]."""
 import os
 import pathlib
+import struct
 import subprocess
 import sys
 import tempfile
 import unittest
+import zlib
 
 GLINT, ROOT = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
 
@@ -36,6 +38,29 @@ class GlintTest(unittest.TestCase):
         for part in parts:
             self.assertIn(part, done.stderr)
         return done
+
+
+def read_png(path):
+    """Width, height and the bytes of an 8-bit RGB image (PNG specification: chunks and filters)."""
+    data, at, packed, width, height = path.read_bytes(), 8, b"", 0, 0
+    while at < len(data):
+        length, kind = struct.unpack(">I4s", data[at:at + 8])
+        body = data[at + 8:at + 8 + length]
+        at += 12 + length
+        if kind == b"IHDR":
+            width, height = struct.unpack(">II", body[:8])
+        if kind == b"IDAT":
+            packed += body
+    raw, stride, out, above = zlib.decompress(packed), width * 3, b"", bytes(width * 3)
+    for y in range(height):
+        method, row = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
+        for i in range(stride):
+            a, b, c = (row[i - 3] if i >= 3 else 0), above[i], (above[i - 3] if i >= 3 else 0)
+            pa, pb, pc = abs(b - c), abs(a - c), abs(a + b - 2 * c)
+            nearest = a if pa <= pb and pa <= pc else b if pb <= pc else c
+            row[i] = (row[i] + [0, a, b, (a + b) // 2, nearest][method]) & 255
+        out, above = out + bytes(row), bytes(row)
+    return width, height, out
 
 
 def main():

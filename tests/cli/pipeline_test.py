@@ -6,35 +6,11 @@ import json
 import shutil
 import struct
 import subprocess
-import zlib
 
 import glint_case
 from glint_case import ROOT, GlintTest
 
 PICTURES = ["mandelbrot", "hello_triangle", "spheres", "cutout", "materials", "ambient_occlusion"]
-
-
-def png(path):
-    """Width, height and the bytes of an 8-bit RGB image (PNG specification: chunks and filters)."""
-    data, at, packed, width, height = path.read_bytes(), 8, b"", 0, 0
-    while at < len(data):
-        length, kind = struct.unpack(">I4s", data[at:at + 8])
-        body = data[at + 8:at + 8 + length]
-        at += 12 + length
-        if kind == b"IHDR":
-            width, height = struct.unpack(">II", body[:8])
-        if kind == b"IDAT":
-            packed += body
-    raw, stride, out, above = zlib.decompress(packed), width * 3, b"", bytes(width * 3)
-    for y in range(height):
-        method, row = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
-        for i in range(stride):
-            a, b, c = (row[i - 3] if i >= 3 else 0), above[i], (above[i - 3] if i >= 3 else 0)
-            pa, pb, pc = abs(b - c), abs(a - c), abs(a + b - 2 * c)
-            nearest = a if pa <= pb and pa <= pc else b if pb <= pc else c
-            row[i] = (row[i] + [0, a, b, (a + b) // 2, nearest][method]) & 255
-        out, above = out + bytes(row), bytes(row)
-    return width, height, out
 
 
 def npy(path):
@@ -71,7 +47,7 @@ class Examples(PipelineTest):
                 with self.subTest(example=name, mode=mode):
                     done = self.glint("run", ROOT / "examples" / name / "pipeline.toml", "--mode", mode, "--out", name)
                     self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-                    self.assertEqual(png(self.folder / name / "picture.png"), png(ROOT / f"docs/images/example_{name}.png"))
+                    self.assertEqual(glint_case.read_png(self.folder / name / "picture.png"), glint_case.read_png(ROOT / f"docs/images/example_{name}.png"))
 
     def test_the_reduction_sums_blocks_of_256(self):
         sums = [sum(range(256 * i, 256 * i + 256)) for i in range(16)]
@@ -176,7 +152,7 @@ class Inputs(PipelineTest):
         picture = ROOT / "docs/images/example_hello_triangle.png"
         self.run_file(self.write("p.toml", f"[compute]\nshader = 'look.comp'\n[launch]\ngroups = [16, 16]\n[[image]]\nbinding = 0\nfile = '{picture}'\n"
                                            "filter = 'nearest'\n[[image]]\nbinding = 1\nsave = 'copy.png'\n"))
-        self.assertEqual(png(self.folder / "out/copy.png"), png(picture))
+        self.assertEqual(glint_case.read_png(self.folder / "out/copy.png"), glint_case.read_png(picture))
 
 
     def test_a_gltf_mesh_is_the_triangle_it_holds_moved_by_its_node(self):
@@ -196,7 +172,7 @@ class Inputs(PipelineTest):
             print("skipped: this Glint was built without libtinygltf-dev")
             return
         self.assertEqual(done.returncode, 0, done.stderr)
-        found, wanted = png(self.folder / "out/picture.png")[2], png(ROOT / "docs/images/example_hello_triangle.png")[2]
+        found, wanted = glint_case.read_png(self.folder / "out/picture.png")[2], glint_case.read_png(ROOT / "docs/images/example_hello_triangle.png")[2]
         self.assertLess(sum(abs(a - b) > 1 for a, b in zip(found, wanted)), 3 * 128)  # corners round differently: some edge pixels
 
 
@@ -206,7 +182,7 @@ class Defaults(PipelineTest):
         self.run_file("add.comp")
         self.run_file(ROOT / "examples/reduction/reduction.comp")
         self.run_file(ROOT / "examples/hello_triangle/hello.rgen")
-        width, height, pixels = png(self.folder / "out/picture.png")
+        width, height, pixels = glint_case.read_png(self.folder / "out/picture.png")
         self.assertEqual((width, height), (256, 256))
         self.assertGreater(len(set(pixels)), 50)  # the pyramid's faces mix colours
 

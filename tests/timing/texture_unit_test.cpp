@@ -24,7 +24,7 @@ void take(Lsu& lsu, uint32_t scheduler, Cycle now, bool texture, uint32_t lines 
   MemoryAccess& access = lsu.take(scheduler, now, texture);
   access.write = false;
   access.samples = samples;
-  for (uint32_t i = 0; i < lines; ++i) access.lines.add(4096 + 128 * i, 128);
+  for (uint32_t i = 0; i < lines; ++i) access.lines.add(4096 + 128 * i, 128, 0);
 }
 
 }  // namespace

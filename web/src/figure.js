@@ -1,6 +1,6 @@
 // The frame of a figure: title, how to read it, chart, its numbers as table and CSV, the drawing as SVG.
 // SPDX-License-Identifier: Apache-2.0
-import { BarChart, LineChart, RadarChart, ScatterChart } from "echarts/charts";
+import { BarChart, CustomChart, LineChart, RadarChart, ScatterChart } from "echarts/charts";
 import { AxisPointerComponent, GridComponent, LegendComponent, RadarComponent, TitleComponent, TooltipComponent } from "echarts/components";
 import * as echarts from "echarts/core";
 import { LabelLayout } from "echarts/features";
@@ -10,7 +10,7 @@ import { csv, download, h } from "./dom.js";
 import { number } from "./format.js";
 import { onSchemeChange, theme } from "./theme.js";
 
-echarts.use([BarChart, LineChart, RadarChart, ScatterChart, AxisPointerComponent, GridComponent, LegendComponent, RadarComponent, TitleComponent, TooltipComponent, LabelLayout, SVGRenderer]);
+echarts.use([BarChart, CustomChart, LineChart, RadarChart, ScatterChart, AxisPointerComponent, GridComponent, LegendComponent, RadarComponent, TitleComponent, TooltipComponent, LabelLayout, SVGRenderer]);
 
 const kMaxTableRows = 80; // longer ones are in the CSV only
 const kExportWidth = 720;

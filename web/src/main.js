@@ -17,10 +17,12 @@ import * as rtUse from "./figures/rt_use.js";
 import * as series from "./figures/series.js";
 import * as stageCycles from "./figures/stage_cycles.js";
 import * as stages from "./figures/stages.js";
+import { timeline } from "./figures/timeline.js";
 import * as traversal from "./figures/traversal.js";
 import { labelRuns, Run } from "./model.js";
 import { bounds } from "./sections/bounds.js";
 import { deltas, means } from "./sections/compare.js";
+import { heat } from "./sections/heat.js";
 import { keys } from "./sections/keys.js";
 import { overview, structure } from "./sections/overview.js";
 import { source } from "./sections/source.js";
@@ -41,7 +43,13 @@ const figures = (...list) => {
   }).filter(Boolean);
   return drawn.length ? h("div", { class: "figures" }, drawn) : null;
 };
-const missing = (what, option) => (runs.some((run) => run.data[what]) ? null : h("p", { class: "note" }, "Not recorded: run with ", h("code", {}, option), "."));
+// One a run that has a trace.
+function timelines() {
+  const drawn = runs.map((run) => timeline(run, run.index)).filter(Boolean);
+  return drawn.length ? h("div", { class: "figures" }, drawn.map(({ info, chart }) => figure(info, chart))) : null;
+}
+const kNames = { profile: "Profile", series: "Time series", timeline: "Warp timeline", heat: "Maps of cost" };
+const missing = (what, option) => (runs.some((run) => run.data[what]) ? null : h("p", { class: "note" }, `${kNames[what]} not recorded: run with `, h("code", {}, option), "."));
 
 function section(id, title, lead, ...content) {
   const known = content.flat().filter(Boolean);
@@ -56,7 +64,8 @@ const sections = [
   section("instructions", "Instructions", null, figures(instructionMix, stages, stageCycles, ops, opLatency), missing("profile", "--profile")),
   section("rays", "Rays and RT units", null, figures(rtUse, traversal, rtCycles, fetchMix, rayHistograms.nodes, rayHistograms.latency)),
   section("memory", "Memory", null, figures(memoryLatency.stages, caches.l1, caches.l2, memoryLatency.spread, dram.use, dram.clocks)),
-  section("time", "Over time", null, figures(series), missing("series", "--sample CYCLES")),
+  section("time", "Over time", null, figures(series) ?? missing("series", "--sample CYCLES"), timelines() ?? missing("timeline", "--trace")),
+  section("heat", "What each pixel cost", "Colours go in even steps from 0 to what 99 of 100 pixels do not exceed.", heat(runs, data.heat_scale) ?? missing("heat", "--heat")),
   section("source", "Source", "Where the cycles of schedulers went, line by line: at the instruction that issued, or at the one whose warp was nearest to issue.", source(runs) ?? missing("profile", "--profile")),
   section("structure", "Scene and structures", null, structure(runs)),
 ];

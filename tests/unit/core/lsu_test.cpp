@@ -35,7 +35,7 @@ void take(Lsu& lsu, uint32_t scheduler, Cycle now, uint32_t lines, bool write = 
   MemoryAccess& access = lsu.take(scheduler, now, texture);
   access.write = write;
   access.texture = texture;
-  for (uint32_t i = 0; i < lines; ++i) access.lines.add(4096 + 128 * i, bytes);
+  for (uint32_t i = 0; i < lines; ++i) access.lines.add(4096 + 128 * i, bytes, 0);
 }
 
 }  // namespace

@@ -1,0 +1,87 @@
+// Charging the lanes of a warp for what it does.
+// SPDX-License-Identifier: Apache-2.0
+#include "core/cost_recorder.h"
+
+#include <fmt/format.h>
+
+#include "base/diagnostics.h"
+#include "base/num_lanes.h"
+
+namespace glint::core {
+namespace {
+
+size_t num_threads(const World& world) {
+  const uint64_t threads = uint64_t{world.launch_size[0]} * world.launch_size[1] * world.launch_size[2];
+  if (threads > LaunchCosts::kMaxThreads)
+    throw UserError({}, fmt::format("a launch of {} threads is too large for maps of cost", threads),
+                    fmt::format("leave --heat out, or launch no more than {}", LaunchCosts::kMaxThreads));
+  return size_t(threads);
+}
+
+}  // namespace
+
+LaunchCosts::LaunchCosts(const World& world) : world_(world), threads_(num_threads(world)) {}
+
+void CostRecorder::start_warp(Cycle, uint32_t slot, const WarpContext& warp) {
+  slots_[slot] = {};
+  slots_[slot].warp_index = warp.warp_index;
+}
+
+void CostRecorder::issue(Cycle now, uint32_t slot, const Issued& issued) {
+  Slot& warp = slots_[slot];
+  for_each_lane(warp.last, [&](int lane) { warp.lane[size_t(lane)].active_cycles += uint32_t(now - warp.last_issue); });
+  warp.last_issue = now;
+  warp.last = issued.lanes;
+  for_each_lane(issued.lanes & ~warp.started, [&](int lane) { warp.first[size_t(lane)] = now; });
+  warp.started |= issued.lanes;
+  for_each_lane(issued.lanes, [&](int lane) {
+    ++warp.lane[size_t(lane)].instructions;
+    warp.end[size_t(lane)] = now;
+  });
+  // Choice: the slots of an instruction whose guard is false in all lanes go to those that came to it.
+  const LaneMask payers = issued.lanes ? issued.lanes : issued.active;
+  const double share = double(kLanes) / double(num_lanes(payers));
+  for_each_lane(payers, [&](int lane) { warp.lane[size_t(lane)].slots += share; });
+  warp.present |= payers;
+}
+
+void CostRecorder::call(uint32_t slot, isa::Stage stage, LaneMask lanes) {
+  if (stage != isa::Stage::AnyHit && stage != isa::Stage::Intersection) return;
+  const auto counter = stage == isa::Stage::AnyHit ? &ThreadCost::any_hit_calls : &ThreadCost::intersection_calls;
+  for_each_lane(lanes, [&](int lane) { ++(slots_[slot].lane[size_t(lane)].*counter); });
+}
+
+void CostRecorder::start_rays(uint32_t slot, LaneMask lanes, const rt::RayState* states) {
+  Slot& warp = slots_[slot];
+  for_each_lane(lanes, [&](int lane) {
+    const rt::RayState& state = states[lane];
+    if (state.nodes_visited == 0) ++warp.lane[size_t(lane)].rays;  // one that goes on has visited some
+    warp.nodes[size_t(lane)] = state.nodes_visited;
+    warp.triangle_tests[size_t(lane)] = state.triangle_tests;
+  });
+}
+
+void CostRecorder::end_rays(uint32_t slot, LaneMask lanes, const rt::RayState* states) {
+  Slot& warp = slots_[slot];
+  for_each_lane(lanes, [&](int lane) {
+    ThreadCost& cost = warp.lane[size_t(lane)];
+    cost.nodes += states[lane].nodes_visited - warp.nodes[size_t(lane)];
+    cost.triangle_tests += states[lane].triangle_tests - warp.triangle_tests[size_t(lane)];
+  });
+}
+
+void CostRecorder::miss(uint32_t slot, LaneMask lanes, int of) {
+  const double share = 1.0 / double(of);
+  for_each_lane(lanes, [&](int lane) { slots_[slot].lane[size_t(lane)].l1_misses += share; });
+}
+
+void CostRecorder::end_warp(Cycle, uint32_t slot) {
+  Slot& warp = slots_[slot];
+  for_each_lane(warp.present, [&](int lane) {
+    ThreadCost& cost = warp.lane[size_t(lane)];
+    cost.cycles = uint32_t(warp.end[size_t(lane)] - warp.first[size_t(lane)]);
+    costs_.at(launch_id(costs_.world(), warp.warp_index, lane)) = cost;
+  });
+}
+
+}  // namespace glint::core

@@ -1,0 +1,66 @@
+// Notes what the warps of one core do from cycle to cycle, as slices of a trace, within a window and a bound.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "base/trace_table.h"
+#include "core/core_observer.h"
+#include "rtunit/ray_state.h"
+
+namespace glint::core {
+
+// Slices are cut at the window's ends. When the bound is reached the window ends there: every slice before is kept.
+class TraceRecorder final : public CoreObserver {
+ public:
+  // Choice: what takes less than this many cycles is no wait of its own but part of running.
+  static constexpr Cycle kShortWait = 4;
+
+  // `room`: slices; at least least_room(). Nothing is allocated later.
+  TraceRecorder(const Image& image, uint32_t warp_slots, uint32_t rt_places, Cycle begin, Cycle end, uint64_t room);
+  // What all tracks may still add after the window has ended.
+  static uint64_t least_room(uint32_t warp_slots, uint32_t rt_places) { return uint64_t{6} * warp_slots + 2 * rt_places; }
+
+  void start_warp(Cycle now, uint32_t slot, const WarpContext& warp) override;
+  void select(Cycle now, uint32_t slot, Cycle ready, Stall wait, Stall door, uint32_t pc) override;
+  void issue(Cycle now, uint32_t slot, const Issued& issued) override;
+  void end_warp(Cycle now, uint32_t slot) override;
+  // A warp in a place of the RT unit's warp buffer.
+  void enter_rt(Cycle now, uint32_t place, uint32_t slot, LaneMask lanes, const rt::RayState* states);
+  void leave_rt(Cycle now, uint32_t place, LaneMask lanes, const rt::RayState* states);
+
+  Cycle end() const { return end_; }  // earlier than asked for where the bound was reached
+  // In order of their ends, but for those that were open then.
+  const std::vector<TraceSlice>& slices() const { return slices_; }
+
+  // TraceTable::states: "running", then the waits.
+  static std::vector<std::string> state_names();
+
+ private:
+  struct Slot {
+    uint32_t warp = 0, shader = 0;
+    Cycle begin = 0;          // of the warp
+    Cycle stage_begin = 0;
+    Cycle run_begin = 0;      // of the running state, which lasts up to `known`
+    Cycle known = 0;          // what was before is in a slice, or runs
+  };
+  struct Place {
+    Cycle begin = 0;
+    uint32_t slot = 0, nodes = 0, triangle_tests = 0;
+  };
+
+  void wait(uint32_t slot, Stall reason, Cycle until);
+  void enter_stage(uint32_t slot, uint32_t pc);
+  void end_run(uint32_t slot, Cycle at);
+  void add(const TraceSlice& slice);
+
+  const Image& image_;
+  const Cycle begin_;
+  Cycle end_;
+  const uint64_t room_;
+  std::vector<Slot> slots_;
+  std::vector<Place> places_;
+  std::vector<TraceSlice> slices_;
+};
+
+}  // namespace glint::core

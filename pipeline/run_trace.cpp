@@ -1,0 +1,119 @@
+// Wiring recorders to the units of a machine, and putting together what they noted.
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/run_trace.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/diagnostics.h"
+#include "pipeline/run_profile.h"
+#include "pipeline/timing_machine.h"
+
+namespace glint::pipeline {
+namespace {
+
+// Choice: counters may take a quarter of the limit, slices the rest.
+uint64_t counter_room(const TraceRequest& request) { return request.limit / 4; }
+
+// The slices of a core up to the end of the trace, each track from the outside in and from left to right.
+std::vector<TraceSlice> sorted(const std::vector<TraceSlice>& slices, Cycle end) {
+  std::vector<TraceSlice> out;
+  for (TraceSlice slice : slices) {
+    slice.end = std::min(slice.end, end);
+    if (slice.begin < slice.end) out.push_back(slice);
+  }
+  const auto key = [](const TraceSlice& s) { return std::tuple(s.kind == TraceKind::Rays, s.place, s.begin, s.kind); };
+  std::sort(out.begin(), out.end(), [&](const TraceSlice& a, const TraceSlice& b) { return key(a) < key(b); });
+  return out;
+}
+
+double ratio(double a, double b) { return b > 0 ? a / b : 0.0; }
+
+// A counter over the intervals of the window. `of`: its value in the interval of sample s, which has so many cycles.
+template <class Of>
+TraceCounter counter(TraceCounter::Of whose, uint32_t index, const char* name, const char* unit, const TraceTable& table, size_t samples, Cycle interval, Of&& of) {
+  TraceCounter out{whose, index, name, unit, {}};
+  for (size_t s = 0; s < samples; ++s) {
+    const Cycle begin = s * interval;
+    if (begin < table.begin || begin >= table.end) continue;
+    out.values.emplace_back(begin, of(s));
+  }
+  return out;
+}
+
+// Of all cores and channels together, then of each.
+std::vector<TraceCounter> counters_of(TimingMachine& machine, const TraceTable& table, Cycle interval) {
+  using Of = TraceCounter::Of;
+  std::vector<const UnitSamples*> cores, channels;
+  for (uint32_t i = 0; i < machine.num_cores(); ++i) cores.push_back(&machine.core(i).sampler().samples());
+  for (uint32_t i = 0; i < machine.memory().num_partitions(); ++i) channels.push_back(&machine.memory().partition(i).sampler().samples());
+  const size_t samples = cores[0]->size();
+  const Cycle last = machine.attributed_cycles();
+  const auto cycles = [=](size_t s) { return double(std::min<Cycle>((s + 1) * interval, last) - s * interval); };
+  std::vector<TraceCounter> out;
+  const auto of_cores = [&](Of whose, uint32_t index, const std::vector<const UnitSamples*>& which) {
+    const auto add = [&](const char* name, const char* unit, auto&& of) { out.push_back(counter(whose, index, name, unit, table, samples, interval, of)); };
+    add("IPC", "instruction/cycle", [=](size_t s) { return growth(which, s, kInstructions) / cycles(s); });
+    add("warps in RT", "warp", [=](size_t s) { return growth(which, s, kRtWarps) / cycles(s); });
+    add("L1 reads not hit", "fraction", [=](size_t s) { return 1.0 - ratio(growth(which, s, kL1Hits), growth(which, s, kL1Reads)) - (growth(which, s, kL1Reads) > 0 ? 0.0 : 1.0); });
+  };
+  const auto of_channels = [&](Of whose, uint32_t index, const std::vector<const UnitSamples*>& which) {
+    out.push_back(counter(whose, index, "DRAM use", "fraction", table, samples, interval, [=](size_t s) { return ratio(growth(which, s, kDramBusy), growth(which, s, kDramClocks)); }));
+  };
+  of_cores(Of::Gpu, 0, cores);
+  of_channels(Of::Gpu, 0, channels);
+  for (uint32_t i = 0; i < channels.size(); ++i) of_channels(Of::Channel, i, {channels[i]});
+  for (uint32_t i = 0; i < cores.size(); ++i) of_cores(Of::Core, i, {cores[i]});
+  return out;
+}
+
+// Leaves out what has no room, from the end.
+void keep_within(TraceTable& table, uint64_t room) {
+  uint64_t events = 0;
+  size_t kept = 0;
+  for (; kept < table.counters.size() && events + table.counters[kept].values.size() <= room; ++kept) events += table.counters[kept].values.size();
+  table.counters_left_out = uint32_t(table.counters.size() - kept);
+  table.counters.resize(kept);
+}
+
+}  // namespace
+
+std::vector<std::unique_ptr<core::TraceRecorder>> record_trace(TimingMachine& machine, const core::Image& image, const TraceRequest& request) {
+  std::vector<std::unique_ptr<core::TraceRecorder>> recorders;
+  const uint32_t cores = machine.num_cores(), places = machine.params().rt.warps, slots = machine.core(0).num_slots();
+  const uint64_t room = (request.limit - counter_room(request)) / cores, least = core::TraceRecorder::least_room(slots, places) + 1;
+  if (room < least)
+    throw UserError({}, fmt::format("--trace-limit {} is too small for the tracks of {} cores", request.limit, cores),
+                    fmt::format("give at least {}", least * cores * 4 / 3 + 4));
+  for (uint32_t i = 0; i < cores; ++i) {
+    recorders.push_back(std::make_unique<core::TraceRecorder>(image, slots, places, request.begin, request.end, room));
+    core::TraceRecorder& recorder = *recorders.back();
+    machine.core(i).observe(recorder);
+    machine.rt_unit(i).warp_moved().listen([&recorder](const rt::WarpMoved& moved) {
+      if (moved.has_left) recorder.leave_rt(moved.cycle, moved.place, moved.lanes, moved.states);
+      else recorder.enter_rt(moved.cycle, moved.place, moved.warp_slot, moved.lanes, moved.states);
+    });
+  }
+  return recorders;
+}
+
+TraceTable trace_of(TimingMachine& machine, const core::Image& image, const TraceRequest& request,
+                    const std::vector<std::unique_ptr<core::TraceRecorder>>& recorders, Cycle interval) {
+  TraceTable table;
+  table.begin = request.begin;
+  table.end = table.asked_end = std::max(request.begin, std::min(request.end, machine.attributed_cycles()));
+  table.limit = request.limit;
+  for (const auto& recorder : recorders) table.end = std::min(table.end, recorder->end());
+  for (const core::Shader& shader : image.shaders) {
+    table.shaders.push_back(shader.name);
+    table.stages.emplace_back(isa::name_of(shader.stage));
+  }
+  table.states = core::TraceRecorder::state_names();
+  for (const auto& recorder : recorders) table.cores.push_back(sorted(recorder->slices(), table.end));
+  table.counters = counters_of(machine, table, interval);
+  keep_within(table, counter_room(request));
+  return table;
+}
+
+}  // namespace glint::pipeline
