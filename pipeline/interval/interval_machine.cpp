@@ -122,7 +122,7 @@ Cycle IntervalMachine::access(Core& core, uint32_t slot, const core::Issued& iss
   if (row.is_texture) {
     for (const auto& texels : executor_.texels().rows())
       for_each_lane(issued.lanes, [&](int lane) {
-        if (texels[size_t(lane)] != core::TexelList::kNone) core.lines.add(world_.memory->physical(texels[size_t(lane)]), 4);
+        if (texels[size_t(lane)] != core::TexelList::kNone) core.lines.add(world_.memory->physical(texels[size_t(lane)]), 4, lane);
       });
   } else if (row.finish == Finish::CallRecord) {
     coalesce_global(core.lines, *world_.memory, addresses, issued.lanes, mem::kSectorBytes);
