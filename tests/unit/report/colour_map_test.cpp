@@ -27,7 +27,7 @@ std::array<double, 3> oklab(const ColourMap::Rgb& rgb) {
 }
 
 double apart(const ColourMap& map, int from, int to) {
-  const auto a = oklab(map.of(from / 16.0)), b = oklab(map.of(to / 16.0));
+  const auto a = oklab(map.of(from / 15.0)), b = oklab(map.of(to / 15.0));
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
@@ -36,7 +36,7 @@ double apart(const ColourMap& map, int from, int to) {
 TEST_CASE("equal differences of a value are equal differences of its colour") {
   const ColourMap map;
   double least = 10, most = 0;
-  for (int i = 0; i < 16; ++i) {
+  for (int i = 0; i < 15; ++i) {  // 17 of the 255 steps each
     least = std::min(least, apart(map, i, i + 1));
     most = std::max(most, apart(map, i, i + 1));
   }
