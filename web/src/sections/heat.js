@@ -4,6 +4,7 @@ import { h } from "../dom.js";
 import { number, short } from "../format.js";
 
 const kViewerWidth = 512; // as in report.css
+const kFirst = "active_cycles"; // the map shown first: lanes of a warp end together, so "cycles" shows warps rather than pixels
 
 const title = (map) => map.name.replaceAll("_", " ").replace("l1 ", "L1 ");
 const unitOf = (map) => (map.unit === "fraction" ? "fraction" : `${map.unit}s a pixel`);
@@ -42,7 +43,7 @@ function maps(run, scale, index) {
     about.replaceChildren(h("h3", {}, title(map)), h("p", { class: "note" }, map.doc), map.max > 0 ? legend(map, scale) : h("p", { class: "note" }, "Every pixel has 0."));
     rows.forEach((row) => row.classList.toggle("chosen", row.dataset.map === map.name));
   };
-  show(heat[0]);
+  show(heat.find((map) => map.name === kFirst) ?? heat[0]);
   const head = ["", "Map", "Min", "Mean", "99 %", "Max", "Unit"].map((name, i) => h("th", { scope: "col", class: i > 1 && i < 6 ? "n" : null }, name));
   return h("div", { class: "heat-run", id: `heat-${index}` }, element, h("div", {}, about, h("div", { class: "scroll" }, h("table", { class: "maps" }, h("thead", {}, h("tr", {}, head)), h("tbody", {}, rows)))));
 }
