@@ -16,9 +16,10 @@ enum class TraceKind : uint8_t {
   Stage,  // instructions of one shader. value: TraceTable::shaders
   State,  // value: TraceTable::states; 0 is running
   Rays,   // a warp's stay in the RT unit. value: rays; args: warp slot, nodes visited, triangle tests
+  Channel,  // a memory channel has requests. value: those that it took meanwhile
 };
 
-// Cycles [begin, end) of one core.
+// Cycles [begin, end) of one core or memory channel.
 struct TraceSlice {
   Cycle begin = 0, end = 0;
   uint32_t place = 0;  // warp slot, or place in the RT unit's warp buffer
@@ -41,7 +42,7 @@ struct TraceTable {
   uint64_t limit = 0;             // of events
   uint32_t counters_left_out = 0; // that had no room
   std::vector<std::string> shaders, stages, states;  // a stage for each shader
-  std::vector<std::vector<TraceSlice>> cores;
+  std::vector<std::vector<TraceSlice>> cores, channels;
   std::vector<TraceCounter> counters;
 
   bool is_cut() const { return end < asked_end; }

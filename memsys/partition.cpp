@@ -44,6 +44,10 @@ void Partition::step(Cycle now) {
     slice->send_ready_replies(now);
     slice->serve(now);
   }
+  if (dram_works() != worked_) {
+    worked_ = !worked_;
+    dram_turned_.fire([&] { return DramTurn{now, worked_, dram_->stats().requests.value()}; });
+  }
 }
 
 Cycle Partition::next_work() const {

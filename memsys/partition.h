@@ -7,12 +7,20 @@
 
 #include "base/engine.h"
 #include "base/interval_sampler.h"
+#include "base/probe.h"
 #include "base/stats.h"
 #include "memsys/dram_model.h"
 #include "memsys/l2_slice.h"
 #include "memsys/params.h"
 
 namespace glint::mem {
+
+// A memory channel has got its first request, or has none left and has answered all.
+struct DramTurn {
+  Cycle cycle = 0;
+  bool works = false;     // from this cycle on
+  uint64_t requests = 0;  // that it has taken since the launch
+};
 
 // Slices hand requests to DRAM in turn, each in order. Every cycle of each slice has one reason.
 class Partition final : public Cell {
@@ -29,6 +37,7 @@ class Partition final : public Cell {
   void finish(Cycle end);  // attributes the cycles up to the end of the run
   IntervalSampler& sampler() { return sampler_; }
   const DramModel& dram() const { return *dram_; }
+  Probe<DramTurn>& dram_turned() { return dram_turned_; }
   uint32_t num_slices() const { return uint32_t(slices_.size()); }
   const L2Slice& slice(uint32_t index) const { return *slices_[index]; }
   const L2Stats& stats() const { return slices_[0]->stats(); }  // of its first slice
@@ -53,6 +62,8 @@ class Partition final : public Cell {
   const std::unique_ptr<DramModel> dram_;
   std::vector<std::unique_ptr<L2Slice>> slices_;
   size_t turn_ = 0;  // the slice that may hand over first
+  bool worked_ = false;  // the channel, at the end of the last step
+  Probe<DramTurn> dram_turned_;
   IntervalSampler sampler_;
 };
 

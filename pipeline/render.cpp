@@ -27,7 +27,7 @@ RenderResult run_world(const core::World& world, const GpuParams& gpu, bool timi
     auto machine = std::make_unique<TimingMachine>(gpu, world, no_skip, HostOptions{.threads = threads});
     observe(*machine, observation);
     const auto cost_recorders = costs ? record_costs(*machine, *costs) : std::vector<std::unique_ptr<core::CostRecorder>>{};
-    const auto trace_recorders = observation.trace.wanted ? record_trace(*machine, *world.image, observation.trace) : std::vector<std::unique_ptr<core::TraceRecorder>>{};
+    const auto trace_recorders = observation.trace.wanted ? record_trace(*machine, *world.image, observation.trace) : TraceRecorders{};
     result.cycles = machine->run(progress);
     machine->collect(result);
     result.faults = machine->passed();

@@ -13,8 +13,9 @@
 namespace glint::pipeline {
 namespace {
 
-// Choice: counters may take a quarter of the limit, slices the rest.
+// Choice: counters may take a quarter of the limit, slices of memory channels an eighth, those of cores the rest.
 uint64_t counter_room(const TraceRequest& request) { return request.limit / 4; }
+uint64_t channel_room(const TraceRequest& request) { return request.limit / 8; }
 
 // The slices of a core up to the end of the trace, each track from the outside in and from left to right.
 std::vector<TraceSlice> sorted(const std::vector<TraceSlice>& slices, Cycle end) {
@@ -79,38 +80,48 @@ void keep_within(TraceTable& table, uint64_t room) {
 
 }  // namespace
 
-std::vector<std::unique_ptr<core::TraceRecorder>> record_trace(TimingMachine& machine, const core::Image& image, const TraceRequest& request) {
-  std::vector<std::unique_ptr<core::TraceRecorder>> recorders;
+TraceRecorders record_trace(TimingMachine& machine, const core::Image& image, const TraceRequest& request) {
+  TraceRecorders recorders;
   const uint32_t cores = machine.num_cores(), places = machine.params().rt.warps, slots = machine.core(0).num_slots();
-  const uint64_t room = (request.limit - counter_room(request)) / cores, least = core::TraceRecorder::least_room(slots, places) + 1;
+  const uint64_t room = (request.limit - counter_room(request) - channel_room(request)) / cores, least = core::TraceRecorder::least_room(slots, places) + 1;
   if (room < least)
     throw UserError({}, fmt::format("--trace-limit {} is too small for the tracks of {} cores", request.limit, cores),
-                    fmt::format("give at least {}", least * cores * 4 / 3 + 4));
+                    fmt::format("give at least {}", least * cores * 8 / 5 + 8));
   for (uint32_t i = 0; i < cores; ++i) {
-    recorders.push_back(std::make_unique<core::TraceRecorder>(image, slots, places, request.begin, request.end, room));
-    core::TraceRecorder& recorder = *recorders.back();
+    recorders.cores.push_back(std::make_unique<core::TraceRecorder>(image, slots, places, request.begin, request.end, room));
+    core::TraceRecorder& recorder = *recorders.cores.back();
     machine.core(i).observe(recorder);
     machine.rt_unit(i).warp_moved().listen([&recorder](const rt::WarpMoved& moved) {
       if (moved.has_left) recorder.leave_rt(moved.cycle, moved.place, moved.lanes, moved.states);
       else recorder.enter_rt(moved.cycle, moved.place, moved.warp_slot, moved.lanes, moved.states);
     });
   }
+  const uint32_t channels = machine.memory().num_partitions();
+  for (uint32_t i = 0; i < channels; ++i) {
+    recorders.channels.push_back(std::make_unique<ChannelRecorder>(i, request.begin, request.end, std::max<uint64_t>(channel_room(request) / channels, 1)));
+    machine.memory().partition(i).dram_turned().listen([&recorder = *recorders.channels.back()](const mem::DramTurn& to) { recorder.turn(to); });
+  }
   return recorders;
 }
 
 TraceTable trace_of(TimingMachine& machine, const core::Image& image, const TraceRequest& request,
-                    const std::vector<std::unique_ptr<core::TraceRecorder>>& recorders, Cycle interval) {
+                    const TraceRecorders& recorders, Cycle interval) {
   TraceTable table;
   table.begin = request.begin;
   table.end = table.asked_end = std::max(request.begin, std::min(request.end, machine.attributed_cycles()));
   table.limit = request.limit;
-  for (const auto& recorder : recorders) table.end = std::min(table.end, recorder->end());
+  for (const auto& recorder : recorders.cores) table.end = std::min(table.end, recorder->end());
+  for (const auto& recorder : recorders.channels) table.end = std::min(table.end, recorder->end());
   for (const core::Shader& shader : image.shaders) {
     table.shaders.push_back(shader.name);
     table.stages.emplace_back(isa::name_of(shader.stage));
   }
   table.states = core::TraceRecorder::state_names();
-  for (const auto& recorder : recorders) table.cores.push_back(sorted(recorder->slices(), table.end));
+  for (const auto& recorder : recorders.cores) table.cores.push_back(sorted(recorder->slices(), table.end));
+  for (uint32_t i = 0; i < recorders.channels.size(); ++i) {
+    recorders.channels[i]->finish(machine.attributed_cycles(), machine.memory().partition(i).dram().stats().requests.value());
+    table.channels.push_back(sorted(recorders.channels[i]->slices(), table.end));
+  }
   table.counters = counters_of(machine, table, interval);
   keep_within(table, counter_room(request));
   return table;

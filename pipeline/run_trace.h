@@ -7,18 +7,24 @@
 
 #include "base/trace_table.h"
 #include "core/trace_recorder.h"
+#include "pipeline/channel_recorder.h"
 #include "pipeline/trace_request.h"
 
 namespace glint::pipeline {
 
 class TimingMachine;
 
-// Before the run: watches its cores and RT units. Whoever calls keeps the recorders until the run is over. Each core has an
-// equal part of the limit less what counters may take. UserError where that is less than its tracks need.
-std::vector<std::unique_ptr<core::TraceRecorder>> record_trace(TimingMachine& machine, const core::Image& image, const TraceRequest& request);
+struct TraceRecorders {
+  std::vector<std::unique_ptr<core::TraceRecorder>> cores;
+  std::vector<std::unique_ptr<ChannelRecorder>> channels;
+};
 
-// After the run, whose counters were sampled every `interval` cycles. It ends for all cores where the first had no more room.
+// Before the run: watches its cores, RT units and memory channels. Whoever calls keeps the recorders until the run is over. Each core
+// has an equal part of the limit less what counters and channels may take. UserError where that is less than its tracks need.
+TraceRecorders record_trace(TimingMachine& machine, const core::Image& image, const TraceRequest& request);
+
+// After the run, whose counters were sampled every `interval` cycles. It ends for all where the first had no more room.
 TraceTable trace_of(TimingMachine& machine, const core::Image& image, const TraceRequest& request,
-                    const std::vector<std::unique_ptr<core::TraceRecorder>>& recorders, Cycle interval);
+                    const TraceRecorders& recorders, Cycle interval);
 
 }  // namespace glint::pipeline

@@ -22,6 +22,7 @@ class Writer {
     name_process(kGpuProcess, "GPU");
     for (uint32_t i = 0; i < trace_.cores.size(); ++i) write_core(i);
     name_process(memory(), "Memory");
+    for (uint32_t i = 0; i < trace_.channels.size(); ++i) write_channel(i);
     for (const TraceCounter& counter : trace_.counters) write_counter(counter);
     file_.add("\n]}\n");
     return file_.finish();
@@ -63,12 +64,19 @@ class Writer {
       event(fmt::format(R"({{"ph":"X","pid":{},"tid":{},"ts":{},"dur":{},{}}})", process, thread, slice.begin, slice.end - slice.begin, what(slice)));
     }
   }
+  void write_channel(uint32_t channel) {
+    if (trace_.channels[channel].empty()) return;
+    name_thread(memory(), kFirstWarpSlot + channel, fmt::format("channel {:02}", channel));
+    for (const TraceSlice& slice : trace_.channels[channel])
+      event(fmt::format(R"({{"ph":"X","pid":{},"tid":{},"ts":{},"dur":{},{}}})", memory(), kFirstWarpSlot + channel, slice.begin, slice.end - slice.begin, what(slice)));
+  }
   std::string what(const TraceSlice& slice) const {
     switch (slice.kind) {
       case TraceKind::Warp: return fmt::format(R"("cat":"warp","name":"warp {}","args":{{"warp":{}}})", slice.value, slice.value);
       case TraceKind::Stage:
         return fmt::format(R"("cat":"stage","name":{},"args":{{"shader":{}}})", quoted(trace_.stages[slice.value]), quoted(trace_.shaders[slice.value]));
       case TraceKind::State: return fmt::format(R"("cat":"state","name":"{}")", trace_.states[slice.value]);
+      case TraceKind::Channel: return fmt::format(R"("cat":"channel","name":"requests","args":{{"requests":{}}})", slice.value);
       case TraceKind::Rays: break;
     }
     return fmt::format(R"("cat":"rays","name":"rays","args":{{"rays":{},"warp_slot":{},"nodes":{},"triangle_tests":{}}})", slice.value, slice.args[0], slice.args[1],
@@ -92,6 +100,7 @@ class Writer {
 uint64_t num_events(const TraceTable& trace) {
   uint64_t events = 0;
   for (const auto& core : trace.cores) events += core.size();
+  for (const auto& channel : trace.channels) events += channel.size();
   for (const TraceCounter& counter : trace.counters) events += counter.values.size();
   return events;
 }

@@ -11,7 +11,7 @@
 namespace glint::report {
 
 // trace.json.gz: Chrome's trace event format, JSON object form, an event a line. A microsecond of it is a cycle. Processes:
-// 1 the GPU, 2 + i core i, then the memory; threads of a core: 1 + slot, and 1001 + place of the RT unit's warp buffer.
+// 1 the GPU, 2 + i core i, then the memory; threads of a core: 1 + slot, and 1001 + place of the RT unit's warp buffer; of the memory: 1 + channel.
 std::string trace_json_gz(const TraceTable& trace);
 
 // Events of slices and counters in it.

@@ -152,7 +152,7 @@ class Trace(CostTest):
         self.assertEqual(cycles["rays"], self.stats("out", r"gpu\.rt_unit\[\d+\]\.rt\.warp_latency_sum"))
         resident = self.stats("out", r"gpu\.core\[\d+\]\.resident_cycles")
         self.assertEqual([cycles["warp"], cycles["stage"], cycles["state"]], [resident] * 3)
-        order = {"warp": 0, "stage": 1, "state": 2, "rays": 0}
+        order = {"warp": 0, "stage": 1, "state": 2, "rays": 0, "channel": 0}
         for events in tracks.values():
             open_ = []
             for event in events:
@@ -168,6 +168,12 @@ class Trace(CostTest):
         traces = [event["args"] for event in self.slices("out") if event["cat"] == "rays"]
         self.assertEqual(sum(args["nodes"] for args in traces), self.stats("out", r"gpu\.rt_unit\[\d+\]\.rt\.nodes"))
         self.assertEqual(sum(args["rays"] for args in traces), self.stats("out", r"gpu\.core\[\d+\]\.rt_lanes"))
+
+    def test_requests_of_memory_channels_are_those_of_the_run_and_leave_gaps(self):
+        self.run_glint("out", "WKND", *SMALL, "--trace")
+        slices = [event for event in self.slices("out") if event["cat"] == "channel"]
+        self.assertEqual(sum(event["args"]["requests"] for event in slices), self.stats("out", r"gpu\.memory\.partition\[\d+\]\.dram\.requests"))
+        self.assertLess(sum(event["dur"] for event in slices), len({event["tid"] for event in slices}) * self.trace("out")["otherData"]["end"])
 
     def test_a_window_cuts_and_moves_nothing(self):
         self.run_glint("whole", "WKND", *SMALL, "--trace")
