@@ -188,6 +188,16 @@ class Page(ReportTest):
         self.assertEqual(self.glint("report", "copy", self.runs["slow"]).stdout.strip(), "report.html")
         self.assertTrue(self.glint("report", "copy", "-o", "-").stdout.startswith("<!doctype html>"))
 
+    def test_the_folder_of_a_bench_stands_for_its_runs(self):
+        for name in self.runs:
+            shutil.copytree(self.runs[name], self.folder / "suite" / name)
+        self.write("suite/metrics.csv", "workload\n")
+        self.assertEqual(self.glint("report", "suite").stdout.strip(), "suite/report.html")
+        page = self.document((self.folder / "suite/report.html").read_text())
+        self.assertEqual([run["metrics"]["cycles"] for run in page["runs"]], [self.total(name, "gpu.cycles") for name in sorted(self.runs)])
+        self.write("none/metrics.csv", "workload\n")
+        self.expect(2, ["none", "no run directory", "glint bench"], "report", "none")
+
     def test_bad_input_is_refused_with_a_reason(self):
         copy = self.folder / "copy"
         shutil.copytree(self.runs["wknd"], copy)

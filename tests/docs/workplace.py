@@ -24,7 +24,7 @@ GLTF = """{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"scene":0,"nodes":
 "bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}]}"""
 # Commands before a page's own, in a shell of their own; files that all pages may name are made in `make`.
 FIXTURES = {
-    "docs/report.md": "glint run SHIP --shader sh --set rt.warps=8 --out out/ship8",
+    "docs/report.md": "glint run SHIP --shader sh --set rt.warps=8 --out out/ship8 && glint bench SHIP --out out/bench-mobile",
     "docs/python.md": "true",
     "docs/howto/cite.md": "glint run SHIP --shader sh --out out/ship",
     "docs/howto/policy.md": "true",  # the page's C++ block is compiled into a command of its own: docs_test.py
