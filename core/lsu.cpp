@@ -90,8 +90,9 @@ void Lsu::enter(uint32_t id, Pipe& pipe, Cycle now) {
   if (access.bank_turns > 1) access.ready += std::max<Cycle>(conflict_latency(access.bank_turns - 1), access.hold) - access.hold;
   if (access.passes > 0) {
     const Cycle more = shared_cycles(access) - 1;
-    if (&pipe == &pipes_[kShared]) access.ready = now - 1;
-    access.ready += shared_latency(access) - (&pipe == &pipes_[kShared] ? 0 : access.atomic ? shared_.atomic_latency : shared_.latency);
+    const Cycle latency = shared_latency(access);
+    if (&pipe == &pipes_[kShared]) access.ready = now - 1 + latency;
+    else access.ready += latency - (access.atomic ? shared_.atomic_latency : shared_.latency);
     pipe.free_at = now + 1 + more;
   }
   pipe.id[(pipe.head + pipe.count++) % pipe.id.size()] = id;

@@ -18,16 +18,14 @@ class ChannelRecorder {
 
   void turn(const mem::DramTurn& to) {
     if (to.works) {
-      since_ = to;
-      // Its request is taken in the cycle in which it begins.
-      since_.requests = last_requests_;
+      since_ = to.cycle;
       if (slices_.size() == slices_.capacity()) end_ = std::min(end_, to.cycle);
-    } else if (since_.works) {
-      last_requests_ = to.requests;
-      if (since_.cycle < end_ && to.cycle > begin_)
-        slices_.push_back({std::max(since_.cycle, begin_), std::min(to.cycle, end_), channel_, TraceKind::Channel, uint32_t(to.requests - since_.requests), {}});
-      since_.works = false;
+    } else if (works_) {
+      if (since_ < end_ && to.cycle > begin_)
+        slices_.push_back({std::max(since_, begin_), std::min(to.cycle, end_), channel_, TraceKind::Channel, uint32_t(to.requests - told_), {}});
+      told_ = to.requests;
     }
+    works_ = to.works;
   }
   void finish(Cycle end, uint64_t requests) { turn({end, false, requests}); }
 
@@ -38,8 +36,9 @@ class ChannelRecorder {
   const uint32_t channel_;
   const Cycle begin_;
   Cycle end_;
-  mem::DramTurn since_;
-  uint64_t last_requests_ = 0;
+  bool works_ = false;
+  Cycle since_ = 0;    // when it works
+  uint64_t told_ = 0;  // requests in slices so far, or before the window
   std::vector<TraceSlice> slices_;
 };
 

@@ -49,8 +49,12 @@ class Shaping {
     return !changes;
   }
 
+  // What a comparison's name gets for the op that combines its result with another predicate; null: no such op.
+  const char* combination(uint16_t op) const { return op == and_pred_ ? ".and" : op == or_pred_ ? ".or" : op == xor_pred_ ? ".xor" : nullptr; }
+
   void combine_predicates(const VirtualBlock& block, VirtualInst& inst) {
-    const char* combined = is_real(inst) ? inst.op == and_pred_ ? ".and" : inst.op == or_pred_ ? ".or" : inst.op == xor_pred_ ? ".xor" : nullptr : nullptr;
+    if (!is_real(inst)) return;
+    const char* const combined = combination(inst.op);
     if (!combined) return;
     for (size_t k : {size_t{2}, size_t{1}}) {
       const Operand test = inst.operands[k], other = inst.operands[3 - k];

@@ -8,6 +8,7 @@ from typing import Any, Iterable, Sequence
 
 from ..errors import GlintError
 from ..run_directory import Run, labels
+from .kinds import Part, grouped
 
 Chosen = Run | Iterable[Run] | Mapping[str, Run]
 
@@ -45,3 +46,8 @@ def rows_of(runs: Sequence[Run], kinds: Sequence[str]) -> list[tuple[str, Run, s
 def total(run: Run, pattern: str) -> Any:
     """The sum of what matches; 0 where the run has no such statistic."""
     return sum(run.stats.values(pattern))
+
+
+def shares(runs: Sequence[Run], metrics: Sequence[tuple[str, str, str]]) -> Any:
+    """Bars of metrics that are fractions, a group a run; `metrics`: (name shown, colour, metric)."""
+    return grouped(names(runs), [Part(name, colour, [run.metrics[metric] for run in runs]) for name, colour, metric in metrics], "%", percent=True, top=100)

@@ -7,8 +7,8 @@ from typing import Any, Callable
 
 from ..errors import GlintError
 from ..run_directory import Run
-from .chosen import Chosen, chosen, names, rows_of, total
-from .kinds import Part, grouped, histogram, stacked
+from .chosen import Chosen, chosen, names, rows_of, shares, total
+from .kinds import Part, histogram, stacked
 from .style import run_colour
 
 _ASKED_BY: dict[str, Callable[[str], bool]] = {
@@ -52,9 +52,8 @@ def _reads(runs: Chosen, cache: str) -> Any:
 
 def dram(runs: Chosen) -> Any:
     """DRAM utilisation (clocks with data of all) and efficiency (of those with work), rows hit (LumiBench, Figure 12)."""
-    found = chosen(runs)
     metrics = [("utilisation", "blue", "dram_util"), ("efficiency", "orange", "dram_eff"), ("row locality", "green", "row_locality")]
-    return grouped(names(found), [Part(name, colour, [run.metrics[metric] for run in found]) for name, colour, metric in metrics], "%", percent=True, top=100)
+    return shares(chosen(runs), metrics)
 
 
 def dram_clocks(runs: Chosen) -> Any:

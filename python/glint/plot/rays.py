@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from .chosen import Chosen, chosen, names, total, with_rays
+from .chosen import Chosen, chosen, names, shares, total, with_rays
 from .kinds import Part, grouped, histogram, stacked, width_for
 from .style import COLOURS, new_figure, run_colour, styled
 
@@ -39,9 +39,8 @@ def geometry(runs: Chosen) -> Any:
 
 def rt_use(runs: Chosen) -> Any:
     """RT-unit occupancy and efficiency, SIMT efficiency (LumiBench, Figure 9)."""
-    found = with_rays(runs)
     metrics = [("RT-unit occupancy", "blue", "rt_occupancy"), ("RT-unit efficiency", "orange", "rt_efficiency"), ("SIMT efficiency", "green", "simt_efficiency")]
-    return grouped(names(found), [Part(name, colour, [run.metrics[metric] for run in found]) for name, colour, metric in metrics], "%", percent=True, top=100)
+    return shares(with_rays(runs), metrics)
 
 
 def traversal(runs: Chosen) -> Any:
