@@ -37,7 +37,23 @@ uint32_t latency_of(const VirtualInst& inst) {
   return 1;
 }
 
-uint32_t words_of(RegisterClass c) { return c == RegisterClass::B64 ? 2 : c == RegisterClass::B32 ? 1 : 0; }
+// How much of the register files values take: 32-bit registers and predicates.
+struct Pressure {
+  int words = 0, predicates = 0;
+  Pressure& operator+=(Pressure o) { return words += o.words, predicates += o.predicates, *this; }
+  Pressure& operator-=(Pressure o) { return words -= o.words, predicates -= o.predicates, *this; }
+  int sum() const { return words + predicates; }
+};
+
+Pressure pressure_of(RegisterClass c) {
+  return {c == RegisterClass::B64 ? 2 : c == RegisterClass::B32 ? 1 : 0, c == RegisterClass::Predicate ? 1 : 0};
+}
+Pressure larger(Pressure a, Pressure b) { return {std::max(a.words, b.words), std::max(a.predicates, b.predicates)}; }
+// Whether there is room for `growth` beside `now`; where nothing grows there always is.
+bool fits(Pressure now, Pressure growth, Pressure limit) {
+  return (growth.words <= 0 || now.words + growth.words <= limit.words) &&
+         (growth.predicates <= 0 || now.predicates + growth.predicates <= limit.predicates);
+}
 
 // A memory access as dependences see it.
 struct MemoryUse {
@@ -95,11 +111,13 @@ class Run {
   }
 
   // The new order; the old one when it needs fewer registers and the new one does not fit `comfortable`.
-  std::vector<VirtualInst> schedule(uint32_t comfortable) {
-    const uint32_t old_peak = peak(code_);
-    std::vector<VirtualInst> ordered = list_schedule(std::max(comfortable, 1u));
-    const uint32_t new_peak = peak(ordered);
-    return new_peak > comfortable && new_peak > old_peak ? std::move(code_) : std::move(ordered);
+  std::vector<VirtualInst> schedule(Pressure comfortable) {
+    const Pressure old_peak = peak(code_);
+    std::vector<VirtualInst> ordered = list_schedule(comfortable);
+    const Pressure new_peak = peak(ordered);
+    const bool is_worse = (new_peak.words > comfortable.words && new_peak.words > old_peak.words) ||
+                          (new_peak.predicates > comfortable.predicates && new_peak.predicates > old_peak.predicates);
+    return is_worse ? std::move(code_) : std::move(ordered);
   }
 
  private:
@@ -152,49 +170,51 @@ class Run {
     }
   }
 
-  // Most words of registers that are live at once.
-  uint32_t peak(const std::vector<VirtualInst>& code) const {
+  // Most registers that are live at once.
+  Pressure peak(const std::vector<VirtualInst>& code) const {
     RegisterSet live = live_out_;
-    uint32_t words = count(live), most = words;
+    Pressure now = count(live), most = now;
     for (size_t i = code.size(); i-- > 0;) {
-      uint32_t dead_results = 0;
-      for_each_def(code[i], [&](VirtualRegister r) { dead_results += live.contains(r) ? 0 : words_of(program_.registers[r]); });
-      most = std::max(most, words + dead_results);
+      Pressure with_dead_results = now;
+      for_each_def(code[i], [&](VirtualRegister r) { with_dead_results += live.contains(r) ? Pressure{} : pressure(r); });
+      most = larger(most, with_dead_results);
       if (!is_guarded(code[i]))
         for_each_def(code[i], [&](VirtualRegister r) {
           if (!live.contains(r)) return;
           live.erase(r);
-          words -= words_of(program_.registers[r]);
+          now -= pressure(r);
         });
       for_each_use(code[i], [&](VirtualRegister r) {
         if (live.contains(r)) return;
         live.insert(r);
-        words += words_of(program_.registers[r]);
+        now += pressure(r);
       });
-      most = std::max(most, words);
+      most = larger(most, now);
     }
     return most;
   }
 
-  uint32_t count(const RegisterSet& live) const {
-    uint32_t words = 0;
-    live.for_each([&](VirtualRegister r) { words += words_of(program_.registers[r]); });
-    return words;
+  Pressure pressure(VirtualRegister r) const { return pressure_of(program_.registers[r]); }
+
+  Pressure count(const RegisterSet& live) const {
+    Pressure all;
+    live.for_each([&](VirtualRegister r) { all += pressure(r); });
+    return all;
   }
 
-  // Words that become live less words that die when instruction `i` issues next.
-  int growth(size_t i, const RegisterSet& live, const std::vector<std::pair<VirtualRegister, uint32_t>>& uses_left) const {
-    int words = 0;
+  // What becomes live less what dies when instruction `i` issues next.
+  Pressure growth(size_t i, const RegisterSet& live, const std::vector<std::pair<VirtualRegister, uint32_t>>& uses_left) const {
+    Pressure more;
     for_each_def(code_[i], [&](VirtualRegister r) {
-      if (!live.contains(r)) words += int(words_of(program_.registers[r]));
+      if (!live.contains(r)) more += pressure(r);
     });
     std::vector<VirtualRegister> counted;
     for_each_use(code_[i], [&](VirtualRegister r) {
       if (std::find(counted.begin(), counted.end(), r) != counted.end()) return;
       counted.push_back(r);
-      if (live.contains(r) && !live_out_.contains(r) && uses_of(uses_left, r) == 1) words -= int(words_of(program_.registers[r]));
+      if (live.contains(r) && !live_out_.contains(r) && uses_of(uses_left, r) == 1) more -= pressure(r);
     });
-    return words;
+    return more;
   }
 
   // Instructions still to come that read `r`.
@@ -225,45 +245,44 @@ class Run {
     return uses;
   }
 
-  std::vector<VirtualInst> list_schedule(uint32_t comfortable) {
+  std::vector<VirtualInst> list_schedule(Pressure comfortable) {
     std::vector<std::pair<VirtualRegister, uint32_t>> uses_left = count_uses();
     RegisterSet live = live_in_;
-    int words = int(count(live));
+    Pressure now = count(live);
     std::vector<size_t> ready;
     for (size_t i = 0; i < nodes_.size(); ++i)
       if (nodes_[i].waits_for == 0) ready.push_back(i);
     std::vector<VirtualInst> out;
     for (uint32_t cycle = 0; !ready.empty(); ++cycle) {
       size_t best = 0;
-      int best_growth = growth(ready[0], live, uses_left);
+      Pressure best_growth = growth(ready[0], live, uses_left);
       for (size_t k = 1; k < ready.size(); ++k) {
-        const int candidate = growth(ready[k], live, uses_left);
-        if (!is_better(ready[k], candidate, ready[best], best_growth, cycle, words, int(comfortable))) continue;
+        const Pressure candidate = growth(ready[k], live, uses_left);
+        if (!is_better(ready[k], candidate, ready[best], best_growth, cycle, now, comfortable)) continue;
         best = k;
         best_growth = candidate;
       }
       const size_t chosen = ready[best];
       ready.erase(ready.begin() + std::ptrdiff_t(best));
       cycle = std::max(cycle, nodes_[chosen].earliest);
-      words += best_growth;
+      now += best_growth;
       issue(chosen, cycle, live, uses_left, ready);
       out.push_back(code_[chosen]);
     }
     return out;
   }
 
-  bool is_better(size_t a, int a_growth, size_t b, int b_growth, uint32_t cycle, int words, int comfortable) const {
-    const bool a_fits = words + a_growth <= comfortable || a_growth <= 0;
-    const bool b_fits = words + b_growth <= comfortable || b_growth <= 0;
+  bool is_better(size_t a, Pressure a_growth, size_t b, Pressure b_growth, uint32_t cycle, Pressure now, Pressure comfortable) const {
+    const bool a_fits = fits(now, a_growth, comfortable), b_fits = fits(now, b_growth, comfortable);
     if (a_fits != b_fits) return a_fits;
-    if (!a_fits || words >= comfortable) {  // no room: what frees most, else the old order
-      if (a_growth != b_growth) return a_growth < b_growth;
+    if (!a_fits || now.words >= comfortable.words) {  // no room: what frees most, else the old order
+      if (a_growth.sum() != b_growth.sum()) return a_growth.sum() < b_growth.sum();
       return a < b;
     }
     const uint32_t a_start = std::max(nodes_[a].earliest, cycle), b_start = std::max(nodes_[b].earliest, cycle);
     if (a_start != b_start) return a_start < b_start;
     if (nodes_[a].height != nodes_[b].height) return nodes_[a].height > nodes_[b].height;
-    if (a_growth != b_growth) return a_growth < b_growth;
+    if (a_growth.words != b_growth.words) return a_growth.words < b_growth.words;
     return a < b;
   }
 
@@ -291,10 +310,11 @@ class Run {
 }  // namespace
 
 void schedule(VirtualProgram& program, uint32_t max_registers, uint32_t guard_latency) {
-  // Room that allocation wants beyond the words that are live: the stack pointer, and gaps between pairs.
+  // Room that allocation wants beyond the words that are live: the stack pointer, gaps between pairs, what it spills through.
   constexpr uint32_t kReserve = 4;
   constexpr size_t kShortestRun = 3, kLongestRun = 2000;  // longer ones are cut: the search is quadratic
-  const uint32_t comfortable = max_registers > 2 * kReserve ? max_registers - kReserve : max_registers / 2;
+  const uint32_t words = max_registers > 2 * kReserve ? max_registers - kReserve : max_registers / 2;
+  const Pressure comfortable{int(std::max(words, 1u)), isa::kNumPredicates - 1};  // one predicate, the same
   const Liveness liveness = find_liveness(program);
   const std::vector<bool> enters_inside = enters_in_region(program);
   for (BlockId b = 0; b < program.blocks.size(); ++b) {

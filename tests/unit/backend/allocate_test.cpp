@@ -1,5 +1,7 @@
 // Register limits, pairs, coalescing and liveness.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "base/diagnostics.h"
 #include "frontend/backend/allocate.h"
 #include "frontend/backend/liveness.h"
@@ -52,6 +54,31 @@ TEST_CASE("An instruction that reads more values than there are registers is an 
   code.add("exit");
   REQUIRE_THROWS_AS(code.assembled({.max_registers = 17}), UserError);
   REQUIRE(code.assembled({.max_registers = 18}).num_registers == 18);  // 15 words, a pair, the stack pointer
+}
+
+TEST_CASE("Scheduling brings up no more comparisons than there are predicates to keep them in") {
+  constexpr int kChains = 12, kRounds = 4;
+  CodeBuilder code;
+  const Operand address = code.pair(), limit = code.word(8);
+  std::vector<Operand> words;
+  for (int i = 0; i < kChains; ++i) words.push_back(code.word(16 + 4 * i));
+  for (int step = 0; step < kChains * kRounds; ++step) {
+    const Operand flag = code.fresh(RegisterClass::Predicate), word = words[size_t(step % kChains)];
+    code.add("setp.lt.s32", {flag, word, limit});
+    code.add("selp.b32", {word, limit, word, flag});
+  }
+  for (int i = 0; i < kChains; ++i) code.add("st.global.b32", {address, words[size_t(i)]}, 4 * i);
+  code.add("exit");
+  const std::vector<std::string> names = names_of(code.assembled());
+  // A predicate that has to leave is a selection into a word and a comparison to bring it back.
+  REQUIRE(std::count(names.begin(), names.end(), "selp.b32") == kChains * kRounds);
+  REQUIRE(std::count(names.begin(), names.end(), "setp.ne.u32") == 0);
+  int live = 0, most = 0;
+  for (const std::string& name : names) {
+    live += name == "setp.lt.s32" ? 1 : name == "selp.b32" ? -1 : 0;
+    most = std::max(most, live);
+  }
+  REQUIRE(most == isa::kNumPredicates - 1);  // all but the one kept free, or latencies would not overlap
 }
 
 TEST_CASE("64-bit values lie in even pairs above the stack pointer") {
