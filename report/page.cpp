@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -12,6 +11,7 @@
 #include "report/base64.h"
 #include "report/image_files.h"
 #include "report/page_parts.h"
+#include "report/page_suite.h"
 
 namespace glint::report {
 namespace {
@@ -22,37 +22,6 @@ std::string title_of(const Json& run) {
   const Json& facts = run["run"];
   const std::string scene = facts["scene"].value("name", ""), shader = facts.value("shader", "");
   return shader.empty() || shader == scene ? scene : scene + " " + shader;
-}
-
-// Text of a description, in which words between backquotes are code.
-std::string prose(std::string_view text) {
-  std::string out;
-  bool in_code = false;
-  for (const char c : escaped(text)) {
-    if (c != '`') {
-      out += c;
-      continue;
-    }
-    out += in_code ? "</code>" : "<code>";
-    in_code = !in_code;
-  }
-  return in_code ? escaped(text) : out;
-}
-
-// A value with thin spaces between thousands, whole from 1000 on, four digits below.
-std::string shown(const Json& value) {
-  if (value.is_null()) return "–";
-  if (value.is_string()) return escaped(value.get<std::string>());
-  if (value.is_boolean()) return value.get<bool>() ? "true" : "false";
-  const double number = value.get<double>();
-  if ((std::floor(number) != number && std::abs(number) < 1000) || std::abs(number) > 9e15) return fmt::format("{:.4g}", number);
-  const std::string digits = fmt::format("{:.0f}", std::abs(number));
-  std::string out = number < 0 ? "−" : "";
-  for (size_t i = 0; i < digits.size(); ++i) {
-    if (i > 0 && (digits.size() - i) % 3 == 0) out += "\u202f";
-    out += digits[i];
-  }
-  return out;
 }
 
 // "ship8" of "out/ship8/"
@@ -116,6 +85,27 @@ std::string config_table(const Json& data) {
   return out + "<div class=\"scroll\"><table class=\"config\">" + header_row(runs, "Key") + "<th scope=\"col\">Unit</th><th scope=\"col\">Meaning</th></tr></thead><tbody>\n" + rows + "</tbody></table></div>\n";
 }
 
+std::string section(const char* id, const char* title, const char* lead, const std::string& content) {
+  return fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n<p class=\"lead\">{}</p>\n{}</section>\n", id, title, lead, content);
+}
+
+// What reads without script. The script adds its figures.
+std::string static_sections(const Json& data) {
+  std::string out = suite_sections(data);
+  if (data["runs"].empty()) return out;
+  return out + section("configuration", "Configuration", "Keys that differ from the preset the run names.", config_table(data) + "<div id=\"all-keys\"></div>\n") +
+         section("metrics", "All metrics", "The numbers that characterise a workload; a dash is a number that this run does not have.", metrics_table(data));
+}
+
+std::string page_title(const Json& data) {
+  const Json& runs = data["runs"];
+  if (!runs.empty()) return runs.size() == 1 ? title_of(runs[0]) : fmt::format("{} runs", runs.size());
+  for (const char* key : {"characterizations", "models"})
+    for (const Json& one : data.value(key, Json::array()))
+      if (one.contains("workloads")) return fmt::format("{} workloads", one["workloads"].size());
+  return "Suite";
+}
+
 std::string pictures(const Json& data) {
   std::string out;
   for (const Json& run : data["runs"])
@@ -136,15 +126,13 @@ std::string script_of(const PageParts& parts) {
 }  // namespace
 
 std::string page(const nlohmann::ordered_json& data, const PageParts& parts) {
-  const Json& runs = data["runs"];
-  const std::string title = runs.size() == 1 ? title_of(runs[0]) : fmt::format("{} runs", runs.size());
+  const std::string title = page_title(data);
   std::string out = parts.frame;
   // The script goes in last: no mark is searched in it.
   place(out, "<!--title-->", escaped(title) + " – Glint report");
   place(out, "<!--style-->", "<style>\n" + parts.style + "</style>");
   place(out, "<!--noscript-->", fmt::format("<noscript><h1>{}</h1>\n{}<p class=\"note\">The figures need a browser that runs scripts. The tables below do not.</p></noscript>", escaped(title), pictures(data)));
-  place(out, "<!--changes-->", config_table(data));
-  place(out, "<!--metrics-->", metrics_table(data));
+  place(out, "<!--sections-->", static_sections(data));
   place(out, "<!--script-->", script_of(parts));
   place(out, "<!--data-->", "<script type=\"application/json\" id=\"data\">" + script_json(data) + "</script>");
   return out;

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "base/diagnostics.h"
@@ -18,6 +19,35 @@ std::string escaped(std::string_view text) {
     else if (c == '>') out += "&gt;";
     else if (c == '"') out += "&quot;";
     else out += c;
+  }
+  return out;
+}
+
+std::string prose(std::string_view text) {
+  std::string out;
+  bool in_code = false;
+  for (const char c : escaped(text)) {
+    if (c != '`') {
+      out += c;
+      continue;
+    }
+    out += in_code ? "</code>" : "<code>";
+    in_code = !in_code;
+  }
+  return in_code ? escaped(text) : out;
+}
+
+std::string shown(const nlohmann::ordered_json& value) {
+  if (value.is_null()) return "–";
+  if (value.is_string()) return escaped(value.get<std::string>());
+  if (value.is_boolean()) return value.get<bool>() ? "true" : "false";
+  const double number = value.get<double>();
+  if ((std::floor(number) != number && std::abs(number) < 1000) || std::abs(number) > 9e15) return fmt::format("{:.4g}", number);
+  const std::string digits = fmt::format("{:.0f}", std::abs(number));
+  std::string out = number < 0 ? "−" : "";
+  for (size_t i = 0; i < digits.size(); ++i) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) out += "\u202f";
+    out += digits[i];
   }
   return out;
 }

@@ -10,6 +10,12 @@ namespace glint::report {
 // Text as HTML shows it, also between quotes.
 std::string escaped(std::string_view text);
 
+// Text of a description, in which words between backquotes are code.
+std::string prose(std::string_view text);
+
+// A number, text or truth value for a table: thin spaces between thousands, whole from 1000 on, four digits below; a dash for null.
+std::string shown(const nlohmann::ordered_json& value);
+
 // JSON for a <script> element: no "</script>" and no "<!--" can be in it.
 std::string script_json(const nlohmann::ordered_json& data);
 

@@ -23,7 +23,6 @@ Contains tslib ${version("tslib")} (0BSD): Copyright (c) Microsoft Corporation.
 */`;
 
 const options = { bundle: true, minify: true, format: "iife", target: "es2020", charset: "utf8", legalComments: "none" }; // the banner has them
-await build({ ...options, entryPoints: ["src/entry.js"], outfile: "dist/report.js", banner: { js: banner } });
+await build({ ...options, entryPoints: ["src/main.js"], outfile: "dist/report.js", banner: { js: banner } });
 await build({ ...options, entryPoints: ["src/unpack.js"], outfile: "dist/unpack.js" });
-copyFileSync("src/report.css", "dist/report.css");
-for (const name of ["report.html", "characterization.html"]) copyFileSync(`src/${name}`, `dist/${name}`);
+for (const name of ["report.html", "report.css"]) copyFileSync(`src/${name}`, `dist/${name}`);

@@ -10,10 +10,9 @@
 #include "apps/glint/bench_tables.h"
 #include "apps/glint/session.h"
 #include "apps/glint/workloads.h"
-#include "report/analytical/model_table.h"
 #include "report/characterize/characterization.h"
 #include "report/characterize/characterization_files.h"
-#include "report/characterize/characterization_page.h"
+#include "report/characterize/characterization_json.h"
 #include "report/run_directory.h"
 
 namespace glint::app {
@@ -25,19 +24,6 @@ struct Options {
   int clusters = 8;
   report::SearchSettings search;
 };
-
-// What `glint model` has left beside the metrics; null where it has not run.
-nlohmann::ordered_json models_beside(const std::string& metrics) {
-  const std::string path = (std::filesystem::path(metrics).parent_path() / "models.csv").string();
-  if (!std::filesystem::exists(path)) return nullptr;
-  return report::models_json(report::parse_models(read_file(path), path));
-}
-
-void write_page(const Session& session, const report::Characterization& result, const std::string& source, const std::string& metrics, const report::RunDirectory& directory) {
-  const auto web = [&](const char* name) { return read_file(session.resources.web_file(name)); };
-  const nlohmann::ordered_json data = report::characterization_data(result, {.name = source, .version = GLINT_VERSION}, models_beside(metrics));
-  directory.write("characterization.html", report::characterization_page(result, data, {.frame = web("characterization.html"), .style = web("report.css"), .script = web("report.js")}));
-}
 
 std::string range_text(const report::SpeedUps::Range& range) {
   return fmt::format("mean {:.3f}, from {:.3f} ({}) to {:.3f} ({})", range.mean, range.least, range.slowest, range.most, range.fastest);
@@ -58,20 +44,21 @@ void print_speed_ups(const std::string& csv, const std::string& metrics, const s
   fmt::print("  {}: {}; mean {:+.1f} %\n", result.options.reference_name, range_text(theirs.subset), 100 * theirs.error());
 }
 
-Exit characterize(const Session& session, const Options& options) {
+Exit characterize(const Options& options) {
   const std::string metrics = metrics_file(options.input), csv = read_file(metrics);
   report::CharacterizationOptions how{.linkage = report::linkage_of(options.linkage), .clusters = options.clusters, .search = options.search, .reference = {}, .reference_name = "the paper's subset"};
   for (const NamedWorkload& workload : lumibench())
     if (workload.in_subset) how.reference.push_back(workload.name());
   const report::Characterization result = report::characterize(report::feature_table(csv, metrics), how);
-  std::string out = options.out;
-  if (out.empty()) out = (std::filesystem::path(metrics).parent_path() / "characterization").string();
+  namespace fs = std::filesystem;
+  const bool default_place = options.out.empty();
+  const std::string out = default_place ? (fs::path(metrics).parent_path() / "characterization").string() : options.out;
   const report::RunDirectory directory(out);
   for (const auto& [name, content] : report::characterization_files(result)) directory.write(name, content);
-  write_page(session, result, options.input, metrics, directory);
+  directory.write("characterization.json", report::characterization_json(result, {.name = options.input, .version = GLINT_VERSION}).dump() + "\n");
   write_output("", report::characterization_text(result));
   for (const std::string& other : options.against) print_speed_ups(csv, metrics, other, result);
-  fmt::print("\n{}\n", directory.path_of("characterization.html"));
+  fmt::print("\n{}\n`glint report {}` draws it\n", directory.path_of("characterization.json"), default_place && fs::is_directory(options.input) ? options.input : out);
   return Exit::Ok;
 }
 
@@ -81,13 +68,13 @@ void add_characterize(CLI::App& app, Session& session) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("characterize", "Compare workloads: components, clusters, a subset that stands for all, the metrics that tell them apart");
   command->add_option("METRICS", options->input, "metrics.csv of `glint bench`, the folder that has it, or a table whose first column names workloads")->required();
-  command->add_option("-o,--out", options->out, "Folder of tables and characterization.html (default: characterization beside metrics.csv)")->type_name("DIR");
+  command->add_option("-o,--out", options->out, "Folder of tables and characterization.json (default: characterization beside metrics.csv)")->type_name("DIR");
   command->add_option("--linkage", options->linkage, "How far groups are apart")->check(CLI::IsMember({"single", "complete", "average", "ward"}))->capture_default_str();
   command->add_option("--clusters", options->clusters, "Clusters, and so workloads of the subset")->check(CLI::Range(1, 1000))->capture_default_str();
   command->add_option("--metrics", options->search.count, "Metrics to choose")->check(CLI::Range(1, 1000))->capture_default_str();
   command->add_option("--seed", options->search.seed, "Of the search for metrics")->capture_default_str();
   command->add_option("--against", options->against, "metrics.csv or folder of the same workloads on another configuration: does the subset tell the speed-up? Repeatable")->allow_extra_args(false);
-  command->callback([&session, options] { session.action = [&session, options] { return characterize(session, *options); }; });
+  command->callback([&session, options] { session.action = [options] { return characterize(*options); }; });
 }
 
 }  // namespace glint::app

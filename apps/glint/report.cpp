@@ -1,9 +1,8 @@
-// `glint report RUN...`: one HTML page of finished runs.
+// `glint report RUN...`: one HTML page of finished runs and of what is known of suites.
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -11,6 +10,7 @@
 
 #include "apps/glint/config.h"
 #include "apps/glint/observe_options.h"
+#include "apps/glint/report_inputs.h"
 #include "apps/glint/session.h"
 #include "report/config_file.h"
 #include "report/page.h"
@@ -36,37 +36,19 @@ report::PageRun page_run(const Resources& resources, const std::string& director
   return run;
 }
 
-// The folder of a `glint bench` stands for its runs, in order of their names.
-std::vector<std::string> run_directories(const std::vector<std::string>& named) {
-  namespace fs = std::filesystem;
-  std::vector<std::string> out;
-  for (const std::string& name : named) {
-    const fs::path folder(name);
-    if (fs::exists(folder / "run.json") || !fs::exists(folder / "metrics.csv")) {
-      out.push_back(name);
-      continue;
-    }
-    const size_t first = out.size();
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-      if (fs::exists(entry.path() / "run.json")) out.push_back(entry.path().string());
-    if (out.size() == first) throw UserError({name, 0, 0}, "it has metrics.csv and no run directory", "'glint bench' leaves both");
-    std::sort(out.begin() + std::ptrdiff_t(first), out.end());
-  }
-  return out;
-}
-
 Exit write_report(const Session& session, const std::vector<std::string>& named, const std::string& out,
                   const std::optional<report::TimelineRequest>& timeline) {
-  const std::vector<std::string> directories = run_directories(named);
+  const ReportInputs inputs = report_inputs(named);
   std::vector<report::PageRun> runs;
-  for (const std::string& directory : directories) {
+  for (const std::string& directory : inputs.runs) {
     runs.push_back(page_run(session.resources, directory));
     runs.back().timeline = timeline;
   }
-  const nlohmann::ordered_json data = report::page_data(runs, GLINT_VERSION);
+  nlohmann::ordered_json data = report::page_data(runs, GLINT_VERSION);
+  add_suites(inputs, data);
   const auto web = [&](const char* name) { return read_file(session.resources.web_file(name)); };
   const std::string page = report::page(data, {.frame = web("report.html"), .style = web("report.css"), .script = web("report.js"), .unpack = web("unpack.js")});
-  const std::string path = !out.empty() ? out : named.size() == 1 ? named[0] + "/report.html" : "report.html";
+  const std::string path = !out.empty() ? out : named.size() == 1 && std::filesystem::is_directory(named[0]) ? named[0] + "/report.html" : "report.html";
   write_output(path, page);
   if (path != "-") fmt::print("{}\n", path);
   return Exit::Ok;
@@ -82,7 +64,8 @@ void add_report(CLI::App& app, Session& session) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("report", "Write a page of figures about finished runs");
-  command->add_option("RUN", options->runs, "Run directories, or folders of `glint bench`; with several runs, figures stand side by side and changes are against the first")->required();
+  command->add_option("RUN", options->runs, "Run directories, or folders of `glint bench`, with what `glint characterize` and `glint model` have left there; folders and tables of these two alone. "
+                  "With several runs, figures stand side by side and changes are against the first")->required();
   command->add_option("-o,--out", options->out, "File, or - (default: report.html in the directory named; with several, here)");
   add_cycle_window(*command, "--timeline", "Cycles of the warp timeline, of a run with --trace (default: as many around the middle of the trace as stay readable)",
                    options->timeline.begin, options->timeline.end);

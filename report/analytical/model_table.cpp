@@ -113,7 +113,7 @@ nlohmann::ordered_json models_json(const ModelTable& models) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array(), workloads = nlohmann::ordered_json::array();
   for (size_t i = 0; i < models.models.size(); ++i) {
     const ModelScore score = models.score(i);
-    list.push_back({{"name", models.models[i]}, {"r2", score.r2}, {"mape", score.mean_error}});
+    list.push_back({{"name", models.models[i]}, {"r2", score.r2}, {"mape", score.mean_error}, {"ratio", score.ratio}, {"worst", score.worst}, {"worst_error", score.worst_error}});
   }
   for (const ModelRow& row : models.rows) workloads.push_back({{"name", row.workload}, {"cycles", row.cycles}, {"predicted", row.predicted}});
   return {{"models", std::move(list)}, {"workloads", std::move(workloads)}};

@@ -35,6 +35,6 @@ std::string model_text(const ModelTable& table);           // for a terminal
 std::string model_csv(const ModelTable& table);            // workload, cycles, a column a model and input
 // Reads model_csv() back. UserError where the text is none.
 ModelTable parse_models(const std::string& csv, const std::string& name);
-nlohmann::ordered_json models_json(const ModelTable& table);  // {"models": [{name, r2, mape}], "workloads": [{name, cycles, predicted}]}
+nlohmann::ordered_json models_json(const ModelTable& table);  // {"models": [{name, r2, mape, ratio, worst, worst_error}], "workloads": [{name, cycles, predicted}]}
 
 }  // namespace glint::report

@@ -5,7 +5,7 @@ glint_test(unit_analytical FOLDER unit/analytical LINKS glint::analytical nlohma
 glint_test(unit_interval FOLDER unit/interval LINKS glint::interval)
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 if(TARGET glint)
-  foreach(suite Tables Browser)
+  foreach(suite Tables Page Browser)
     add_test(NAME cli_Characterize${suite} COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/characterize_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR} ${suite})
   endforeach()
   add_test(NAME cli_Model COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/model_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR})

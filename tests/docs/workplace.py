@@ -11,7 +11,7 @@ import subprocess
 SIZE, SAMPLES = "16x16", "1"
 BENCH = ["WKND_PT", "SHIP_SH"]  # instead of more than two workloads
 QUICK_SUITE = [f"{scene}_{shader}" for scene in ("WKND", "SHIP", "REF") for shader in ("PT", "SH", "AO")]
-BENCH_OF = {"docs/characterization.md": QUICK_SUITE, "docs/modelling.md": QUICK_SUITE}  # pages whose commands need a suite to look at
+BENCH_OF = {f"docs/{name}.md": QUICK_SUITE for name in ("characterization", "modelling", "report")}  # pages whose commands need a suite to look at
 SLOW_SCENES = {"PARK_PT": "PARTY_PT", "ROBOT_SH": "SHIP_SH"}  # scenes of millions of triangles, by one that stands in
 KERNEL_ONLY = ["--only", "L1"]  # `glint microbench` without --only
 

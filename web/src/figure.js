@@ -15,10 +15,10 @@ echarts.use([BarChart, CustomChart, LineChart, RadarChart, ScatterChart, AxisPoi
 const kMaxTableRows = 80; // longer ones are in the CSV only
 const kExportWidth = 720;
 
-// chart: {option(theme, width), height(theme, width), columns, rows} of kinds/.
-export function figure({ id, title, note, wide }, chart) {
+// chart: {option(theme, width), height(theme, width), columns, rows} of kinds/. `before` is an element between the note and the chart.
+export function figure({ id, title, note, wide, before }, chart) {
   const canvas = h("div", { class: "canvas", role: "img", "aria-label": title });
-  const element = h("figure", { id, class: wide ? "wide" : null }, h("h3", {}, title), note ? h("p", { class: "note" }, note) : null, canvas, h("figcaption", {}, ...tools(id, chart)));
+  const element = h("figure", { id, class: wide ? "wide" : null }, h("h3", {}, title), note ? h("p", { class: "note" }, note) : null, before, canvas, h("figcaption", {}, ...tools(id, chart)));
   let drawn = null;
   const draw = (scheme) => {
     const t = theme(scheme), width = canvas.clientWidth;
@@ -40,6 +40,15 @@ export function figure({ id, title, note, wide }, chart) {
   window.addEventListener("beforeprint", () => draw("light"));
   window.addEventListener("afterprint", () => draw());
   return element;
+}
+
+// Those of a list of {info, make} that `data` has something for. `suffix` tells several of the same page apart.
+export function figures(list, data, suffix = "") {
+  const drawn = list.map(({ info, make }) => {
+    const chart = make(data);
+    return chart ? figure({ ...info, id: info.id + suffix, note: typeof info.note === "function" ? info.note(data) : info.note, before: info.before?.(data) }, chart) : null;
+  }).filter(Boolean);
+  return drawn.length ? h("div", { class: "figures" }, drawn) : null;
 }
 
 function tools(id, chart) {

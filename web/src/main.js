@@ -1,7 +1,7 @@
 // The page: reads the document that `glint report` embedded and puts its sections in order.
 // SPDX-License-Identifier: Apache-2.0
 import { h } from "./dom.js";
-import { figure } from "./figure.js";
+import { figure, figures as figuresOf } from "./figure.js";
 import * as caches from "./figures/caches.js";
 import * as cpiStack from "./figures/cpi_stack.js";
 import * as dram from "./figures/dram.js";
@@ -24,25 +24,23 @@ import { bounds } from "./sections/bounds.js";
 import { deltas, means } from "./sections/compare.js";
 import { heat } from "./sections/heat.js";
 import { keys } from "./sections/keys.js";
-import { overview, structure } from "./sections/overview.js";
+import { overview, overviewOfSuites, structure } from "./sections/overview.js";
 import { source } from "./sections/source.js";
 import { stalls } from "./sections/stalls.js";
+import { suites } from "./sections/suites.js";
 import { kMaxColours } from "./theme.js";
 
 const data = JSON.parse(document.getElementById("data").textContent);
 const docs = { ...data.stat_docs, keys: data.key_docs };
 const runs = labelRuns(data.runs.map((run, index) => new Run(run, index, docs)));
 
-// The figures that these runs have data for. Where a run is a colour, only so many runs as there are colours.
-const figures = (...list) => {
-  const drawn = list.map(({ info, make }) => {
-    const shown = info.coloured ? runs.slice(0, kMaxColours) : runs;
-    const chart = make(shown);
-    const note = [typeof info.note === "function" ? info.note(shown) : info.note, shown.length < runs.length ? `The first ${shown.length} runs.` : ""].join(" ");
-    return chart ? figure({ ...info, note }, chart) : null;
-  }).filter(Boolean);
-  return drawn.length ? h("div", { class: "figures" }, drawn) : null;
-};
+// Where a run is a colour, only so many runs as there are colours.
+function ofRuns({ info, make }) {
+  const shown = info.coloured ? runs.slice(0, kMaxColours) : runs;
+  const note = [typeof info.note === "function" ? info.note(shown) : info.note, shown.length < runs.length ? `The first ${shown.length} runs.` : ""].join(" ");
+  return { info: { ...info, note }, make: () => make(shown) };
+}
+const figures = (...list) => figuresOf(list.map(ofRuns), runs);
 // One a run that has a trace.
 function timelines() {
   const drawn = runs.map((run) => timeline(run, run.index)).filter(Boolean);
@@ -56,7 +54,7 @@ function section(id, title, lead, ...content) {
   return known.length ? h("section", { id }, h("h2", {}, title), lead ? h("p", { class: "lead" }, lead) : null, known) : null;
 }
 
-const sections = [
+const sections = runs.length === 0 ? [overviewOfSuites(data)] : [
   overview(runs),
   section("comparison", "Comparison", null, means(runs), figures(ipc), deltas(runs, data.metric_docs)),
   section("bounds", "How near to the limits", "Each resource against the most it could do in the time the run took. The highest is the one to look at first.", bounds(runs)),
@@ -71,7 +69,8 @@ const sections = [
 ];
 
 document.getElementById("figures").append(...sections.filter(Boolean));
-document.getElementById("all-keys").append(keys(runs, data.key_docs));
+document.getElementById("all-keys")?.append(keys(runs, data.key_docs)); // a page of suites alone has no place for them
+suites(data);
 document.getElementById("contents").append(h("a", { href: "#overview", class: "brand" }, "Glint"), ...[...document.querySelectorAll("section > h2")].map((title) => h("a", { href: `#${title.parentElement.id}` }, title.textContent)));
 document.getElementById("footer").append(`Glint ${data.version}. `, ...runs.map((run) => h("p", {}, h("code", {}, run.data.run.command.join(" ")), ` · ${run.facts.git} · ${run.facts.compiler} · ${run.facts.started}`)));
 document.documentElement.dataset.ready = "yes"; // for tests: all of the above has run

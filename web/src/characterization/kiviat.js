@@ -5,22 +5,23 @@ import { number } from "../format.js";
 import { base, tip } from "../kinds/common.js";
 import { clusterColour } from "./shared.js";
 
-const kCell = 138, kRadius = 44, kTitle = 20;
+const kCell = 138, kRow = 150, kRadius = 44, kTitle = 20;
 const across = (width) => Math.max(1, Math.floor(width / kCell));
 
-export const info = { id: "kiviats", wide: true, title: "All workloads", note: "In the order of the dendrogram, in the colour of the cluster; spokes are numbered as in the list above, clockwise from the top." };
-
 // What the spokes are, with what their ends stand for.
-export function key(data) {
-  return h("ol", { class: "note spokes" }, data.axes.map((axis) => h("li", {}, h("code", {}, axis.name), ` ${number(axis.least)} to ${number(axis.most)} ${axis.unit}`)));
-}
+const spokes = (data) => h("ol", { class: "note spokes" }, data.axes.map((axis) => h("li", {}, h("code", {}, axis.name), ` ${number(axis.least)} to ${number(axis.most)} ${axis.unit}`)));
+
+export const info = {
+  id: "kiviats", wide: true, title: "Kiviat diagrams", before: spokes,
+  note: "The metrics that tell the workloads apart best, each from the least of all workloads in the centre to the most at the rim. Workloads in the order of the dendrogram, in the colour of the cluster; spokes clockwise from the top:",
+};
 
 export function make(data) {
   const order = data.leaves.map((row) => data.workloads[row]);
   if (data.axes.length < 3) return null; // two spokes enclose no area
   const option = (t, width) => {
     const columns = across(width), step = width / columns;
-    const centre = (i) => [step * ((i % columns) + 0.5), kTitle + kCell * Math.floor(i / columns) + kCell / 2];
+    const centre = (i) => [step * ((i % columns) + 0.5), kTitle + kRow * Math.floor(i / columns) + kCell / 2];
     return {
       ...base(t),
       title: order.map((one, i) => ({ text: one.name, left: centre(i)[0], top: centre(i)[1] - kCell / 2 - 9, textAlign: "center", padding: 0, textStyle: { fontSize: 11, fontWeight: one.chosen ? 700 : 400, color: t.ink, fontFamily: t.font } })),
@@ -39,7 +40,7 @@ export function make(data) {
   };
   return {
     option,
-    height: (t, width) => kTitle + kCell * Math.ceil(order.length / across(width)),
+    height: (t, width) => kTitle + kRow * Math.ceil(order.length / across(width)),
     columns: ["workload", "cluster", ...data.axes.map((axis) => `${axis.name} (0 to 1)`)],
     rows: order.map((one) => [one.name, one.cluster + 1, ...one.kiviat]),
   };

@@ -4,11 +4,11 @@ import { number, percent, short } from "../format.js";
 import { bars } from "../kinds/bars.js";
 import { base, legend, tip, valueAxis } from "../kinds/common.js";
 
+const kLeastForR2 = 3; // a line through two points always fits
 const kHeight = 460, kColours = ["orange", "blue", "green", "pink"];
 
 function points(data) {
-  if (!data.models) return null;
-  const { models, workloads } = data.models;
+  const { models, workloads } = data;
   const all = workloads.flatMap((one) => [one.cycles, ...one.predicted]);
   const low = 10 ** Math.floor(Math.log10(Math.min(...all))), high = 10 ** Math.ceil(Math.log10(Math.max(...all)));
   const axis = (t, name) => ({ ...valueAxis(t, short), type: "log", min: low, max: high, name });
@@ -31,11 +31,11 @@ function points(data) {
 }
 
 export const scatter = {
-  info: { id: "model-cycles", title: "Predicted and simulated cycles", note: (data) => (data.models ? `${data.models.models.map((one) => `${one.name}: R² ${one.r2.toFixed(3)}, mean error ${percent(one.mape)}`).join("; ")}. On the dashed line both are equal.` : "") },
+  info: { id: "model-cycles", wide: true, title: "Predicted and simulated cycles", note: (data) => `${data.models.map((one) => `${one.name}: ${data.workloads.length < kLeastForR2 ? "" : `R² ${one.r2.toFixed(3)}, `}mean error ${percent(one.mape)}`).join("; ")}. On the dashed line both are equal.` },
   make: points,
 };
 
 export const errors = {
-  info: { id: "model-errors", title: "Error of each workload", note: "Size of the difference, of the simulated cycles." },
-  make: (data) => (data.models ? bars({ rows: data.models.workloads.map((one) => one.name), series: data.models.models.map((one, i) => ({ name: one.name, colour: kColours[i], values: data.models.workloads.map((each) => Math.abs(each.predicted[i] / each.cycles - 1)) })), format: (value) => percent(value, 0) }) : null),
+  info: { id: "model-errors", wide: true, title: "Error of each workload", note: "Size of the difference, of the simulated cycles." },
+  make: ({ models, workloads }) => bars({ rows: workloads.map((one) => one.name), series: models.map((one, i) => ({ name: one.name, colour: kColours[i], values: workloads.map((each) => Math.abs(each.predicted[i] / each.cycles - 1)) })), format: (value) => percent(value, 0) }),
 };

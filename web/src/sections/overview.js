@@ -75,6 +75,12 @@ export function overview(runs) {
   return h("section", { id: "overview" }, runs.length === 1 ? single(runs[0]) : several(runs));
 }
 
+// The head of a page without runs. Its title is the document's.
+export function overviewOfSuites(data) {
+  const sources = [...new Set([...data.characterizations, ...data.models].map((one) => one.source))];
+  return h("section", { id: "overview" }, h("header", { class: "hero" }, h("p", { class: "kicker" }, "Glint report"), h("h1", {}, document.title.split(" – ")[0]), h("p", { class: "about" }, sources.join(", "))));
+}
+
 // Scene and structures: one column a run.
 const kFacts = [
   ["Triangles", (run) => number(run.metric("triangles"))],
