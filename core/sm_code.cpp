@@ -68,7 +68,7 @@ void CoreCell::finish_constant(uint32_t slot, Cycle now) {
   const ConstantLoad& load = constant_[slot];
   const IssueRow& row = table_.row(load.pc);
   scoreboards_[slot].set(table_.defs(row), {now + load.latency, row.wait}, row.pipe);
-  stats_.latency.add(row.klass, now + load.latency - load.issued);
+  stats_.add_latency(row.stage, row.klass, now + load.latency - load.issued);
   if (now == load.issued) return;
   front_[slot] = {now, Stall::Const};
   ++progress_;

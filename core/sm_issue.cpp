@@ -112,19 +112,19 @@ void CoreCell::issue(SchedulerState& scheduler, uint32_t local, Cycle now) {
         start_constant(scheduler, slot, row, issued, now);
         break;
       }
-      stats_.latency.add(row.klass, late + row.latency);
+      stats_.add_latency(row.stage, row.klass, late + row.latency);
       if (row.is_sequence) start_sequence(slot, row, issued.pc, now);
       else scoreboards_[slot].set(table_.defs(row), {done, row.wait}, row.alternates ? Pipe::Count : row.pipe);
       break;
     case Finish::Control:
       front_[slot] = {done, row.wait};
-      stats_.latency.add(row.klass, late + row.latency);
+      stats_.add_latency(row.stage, row.klass, late + row.latency);
       break;
     case Finish::Memory:
     case Finish::CallRecord:
       if (!start_access(slot, row, issued, now)) {
         front_[slot].at = row.finish == Finish::Memory ? now + 1 : done;
-        stats_.latency.add(row.klass, front_[slot].at - now);
+        stats_.add_latency(row.stage, row.klass, front_[slot].at - now);
       }
       break;
     case Finish::Rays:
@@ -132,11 +132,11 @@ void CoreCell::issue(SchedulerState& scheduler, uint32_t local, Cycle now) {
       break;
     case Finish::Barrier:
       come_to_barrier(slot, now, row.latency);
-      stats_.latency.add(row.klass, row.latency);
+      stats_.add_latency(row.stage, row.klass, row.latency);
       break;
     case Finish::Fence:
       start_fence(slot, row, issued, now);
-      stats_.latency.add(row.klass, row.latency);
+      stats_.add_latency(row.stage, row.klass, row.latency);
       break;
   }
   // The end of a warp may complete a barrier for the others.
@@ -225,7 +225,7 @@ void CoreCell::start_rays(uint32_t slot, const IssueRow& row, const Issued& issu
   }
   if (warp.waiting_for_rays) executor_.finish_rays(warp);
   front_[slot] = {now + row.latency, Stall::RtWait};
-  stats_.latency.add(row.klass, row.latency);
+  stats_.add_latency(row.stage, row.klass, row.latency);
 }
 
 void CoreCell::complete_rays(uint32_t slot, Cycle now) {
@@ -233,7 +233,7 @@ void CoreCell::complete_rays(uint32_t slot, Cycle now) {
   for (CoreObserver* observer : observers_) observer->end_rays(slot, rays_lanes_[slot], warps_[slot].rays);
   executor_.finish_rays(warps_[slot]);
   front_[slot] = {now + row.latency, Stall::RtWait};
-  stats_.latency.add(row.klass, now + row.latency - rays_issued_[slot]);
+  stats_.add_latency(row.stage, row.klass, now + row.latency - rays_issued_[slot]);
   if (profile_) profile_->end(rays_pc_[slot], now + row.latency - rays_issued_[slot]);
   ++progress_;
   refresh(slot);

@@ -135,7 +135,7 @@ void CoreCell::complete(uint32_t access_id, Cycle now) {
   const MemoryAccess& access = lsu_.access(access_id);
   const uint32_t slot = access.slot;
   const IssueRow& row = table_.row(access.pc);
-  stats_.latency.add(row.klass, now - access.issued);
+  stats_.add_latency(row.stage, row.klass, now - access.issued);
   if (profile_) profile_->end(access.pc, now - access.issued);
   if (!access.write && !access.lines.lines().empty()) latencies_.add(access.traffic, now - access.issued);
   if (row.finish == Finish::CallRecord) {

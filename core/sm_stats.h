@@ -14,12 +14,14 @@ namespace glint::core {
 
 inline constexpr int kNumStages = int(isa::Stage::Compute) + 1;
 
-// Instructions of one shader stage, by class.
+// Instructions of one shader stage, by class. Each is of the stage whose code it stands in: a call counts at its caller, what the
+// callee executes at the callee.
 struct StageStats : stats::Group {
   StageStats(Group* parent, const char* name) : Group(parent, name) {}
   stats::Breakdown<isa::Class> instructions{this, "instructions", "instruction",
       "Warp instructions issued, by class."};
   stats::Breakdown<isa::Class> lanes{this, "lanes", "instruction", "Lane instructions, by class."};
+  stats::Breakdown<isa::Class> latency{this, "latency", "cycle", "Issue to completion, summed, by class."};
   stats::Counter invocations{this, "invocations", "lane", "Lanes that began a shader of the stage."};
 };
 
@@ -90,6 +92,12 @@ struct CoreStats : stats::Group {
   StageStats raygen{this, "raygen"}, intersection{this, "intersection"}, any_hit{this, "any_hit"},
       closest_hit{this, "closest_hit"}, miss{this, "miss"}, callable{this, "callable"}, compute{this, "compute"};
   std::array<StageStats*, kNumStages> stage{&raygen, &intersection, &any_hit, &closest_hit, &miss, &callable, &compute};
+
+  // An instruction of the stage and class took so long from issue to completion.
+  void add_latency(isa::Stage in, isa::Class klass, uint64_t duration) {
+    latency.add(klass, duration);
+    stage[size_t(in)]->latency.add(klass, duration);
+  }
 };
 
 }  // namespace glint::core

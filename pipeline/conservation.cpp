@@ -28,6 +28,11 @@ std::vector<Balance> of_core(const core::CoreCell& core, uint64_t cycles, uint32
   for (const core::StageStats* stage : s.stage) by_stage += stage->instructions.total();
   ledger.equal("instructions by stage = instructions", by_stage, s.instructions.value());
   ledger.equal("instructions by class = instructions", s.by_class.total(), s.instructions.value());
+  for (size_t i = 0; i < size_t(isa::Class::Count); ++i) {
+    uint64_t latency = 0;
+    for (const core::StageStats* stage : s.stage) latency += stage->latency.count(isa::Class(i));
+    ledger.equal(fmt::format("latency of {} by stage = latency", name_of(isa::Class(i))), latency, s.latency.count(isa::Class(i)));
+  }
   ledger.equal("warps left = none", core.num_resident(), 0);
   return std::move(ledger.rows);
 }

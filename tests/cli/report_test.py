@@ -309,6 +309,19 @@ class Browser(ReportTest):
         values = [float(value) for value in re.findall(r'data-value="([^"]*)"', mix)]
         classes = [self.total(name, f"gpu.core[*].latency_by_class::{part}") for part in ("alu", "sfu", "mem", "tex", "ctrl", "rt")]
         self.assertEqual(values, [*classes, sum(classes)])
+        self.stages_equal_stats(figures["stages"], name)
+
+    def stages_equal_stats(self, figure, name):
+        """Counts and latencies of every stage and class, and what they add up to."""
+        rows = {stage: [float(value) for value in re.findall(r'data-value="([^"]*)"', row)] for stage, row in re.findall(r'<tr><th scope="row">([^<]*)</th>(.*?)</tr>', figure, re.S)}
+        self.assertEqual(list(rows), ["ray generation", "intersection", "closest hit", "miss"])
+        for shown, stage in zip(rows, ("raygen", "intersection", "closest_hit", "miss")):
+            expected = []
+            for part in ("instructions", "latency"):
+                classes = [self.total(name, f"gpu.core[*].{stage}.{part}::{one}") for one in ("alu", "sfu", "mem", "tex", "ctrl", "rt")]
+                expected += [*classes, sum(classes)]
+            self.assertEqual(rows[shown], expected, stage)
+        self.assertEqual(sum(row[-1] for row in rows.values()), sum(value for path, _, value in leaves(self.stats(name)) if path.startswith("gpu.core[*].latency_by_class::")))
 
     def test_what_the_page_packs_is_unpacked_whatever_kind_of_blocks_it_has(self):
         text = (ROOT / "docs/report.md").read_text() * 3 + "\u2013" * 300

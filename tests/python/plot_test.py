@@ -8,10 +8,10 @@ python_case.need("matplotlib", "numpy", "pandas")
 
 
 class Figures(PythonTest):
-    def widths(self, figure):
+    def widths(self, figure, panel=0):
         """Lengths of all bars, row by row."""
         rows = {}
-        for bar in figure.axes[0].patches:
+        for bar in figure.axes[panel].patches:
             rows.setdefault(round(bar.get_y() + bar.get_height() / 2, 3), []).append(bar.get_width())
         return [rows[place] for place in sorted(rows)]
 
@@ -31,6 +31,17 @@ class Figures(PythonTest):
         self.assertAlmostEqual(count[0], self.ship.metrics["ins_alu%"])
         self.assertAlmostEqual(latency[-1], self.ship.metrics["lat_rt%"])
         self.assertAlmostEqual(sum(count), 100)
+
+    def test_bars_of_stages_are_their_shares_of_instructions_and_of_latency(self):
+        figure, stats = self.glint.plot.stages(self.wknd), self.wknd.stats
+        rows = [label.get_text() for label in figure.axes[0].get_yticklabels()]
+        self.assertEqual(rows, ["ray generation", "intersection", "closest hit", "miss"])
+        for panel, (part, whole) in enumerate((("instructions", "core.instructions"), ("latency", "core.latency_by_class::*"))):
+            bars = self.widths(figure, panel)
+            self.assertAlmostEqual(sum(map(sum, bars)), 100)
+            for row, stage in zip(bars, ("raygen", "intersection", "closest_hit", "miss")):
+                self.assertAlmostEqual(sum(row), 100 * stats.sum(f"core.{stage}.{part}::*") / stats.sum(whole))
+            self.assertAlmostEqual(bars[0][-1], 100 * stats.sum(f"core.raygen.{part}::rt") / stats.sum(whole))
 
     def test_a_cpi_stack_adds_up_to_the_cycles_of_an_instruction(self):
         stats = self.ship.stats

@@ -7,7 +7,7 @@ from typing import Any
 
 from ..run_directory import Run
 from .chosen import Chosen, chosen, names, rows_of, total
-from .kinds import Part, ranked, stacked
+from .kinds import Part, panels, ranked, stacked
 from .style import run_colour
 
 _CLASSES = [("alu", "ALU", "blue"), ("sfu", "SFU", "sky"), ("mem", "memory", "orange"), ("tex", "texture", "yellow"),
@@ -37,13 +37,15 @@ def instruction_mix(runs: Chosen) -> Any:
 
 
 def stages(runs: Chosen) -> Any:
-    """Warp instructions of each shader stage by class; a bar is as long as the stage's share of the run's instructions."""
+    """Each shader stage's share of a run's warp instructions, and of their latency from issue to completion, by class."""
     found = chosen(runs)
     used = [key for key in _STAGES if any(total(run, f"core.{key}.instructions::*") for run in found)]
     rows = [row for row in rows_of(found, used) if total(row[1], f"core.{row[2]}.instructions::*")]
-    parts = [Part(name, colour, [total(run, f"core.{stage}.instructions::{key}") for _, run, stage in rows]) for key, name, colour in _CLASSES]
-    scale = [100 * total(run, f"core.{stage}.instructions::*") / total(run, "core.instructions") for _, run, stage in rows]
-    return stacked([label.replace(stage, _STAGES[stage]) for label, _, stage in rows], parts, "share of warp instructions (%)", scale=scale)
+    measures = []
+    for name, part in (("by count", "instructions"), ("by latency", "latency")):
+        parts = [Part(label, colour, [total(run, f"core.{stage}.{part}::{key}") for _, run, stage in rows]) for key, label, colour in _CLASSES]
+        measures.append((name, parts, [sum(total(run, f"core.{stage}.{part}::*") for stage in _STAGES) for _, run, _ in rows]))
+    return panels([label.replace(stage, _STAGES[stage]) for label, _, stage in rows], measures, "share (%)")
 
 
 def cpi_stack(runs: Chosen) -> Any:

@@ -37,14 +37,43 @@ def stacked(rows: Sequence[str], parts: Sequence[Part], x_label: str, share: boo
         figure, axes = new_figure(0.36 + (0.1 if many else 0.17) * max(2, each), columns=halves, width=width if halves == 1 else 2.1 * COLUMN, squeeze=False)
         for half in range(halves):
             some = range(half * each, min(len(rows), (half + 1) * each))
-            left, handles = [0.0] * len(some), []
-            for part in used:
-                values = [lengths[i] * part.values[i] / totals[i] if totals[i] else 0.0 for i in some]
-                handles.append(axes[0, half].barh(range(len(some)), values, 0.72, left, color=COLOURS[part.colour], linewidth=0))
-                left = [a + b for a, b in zip(left, values)]
+            handles = _stack(axes[0, half], some, used, [length / all_of if all_of else 0.0 for length, all_of in zip(lengths, totals)])
             _rows_of_bars(axes[0, half], [rows[i] for i in some], max(lengths, default=1) or 1, x_label, many)
         legend(figure, handles, [part.name for part in used])
         return figure
+
+
+def panels(rows: Sequence[str], measures: Sequence[tuple[str, Sequence[Part], Sequence[float]]], x_label: str) -> Any:
+    """Horizontal stacked bars of several measures, (name, parts, wholes) each, in axes beside each other: as long as their share of the whole.
+
+    The parts of all measures have the same names and colours. More rows than MOST_ROWS stand in two halves, over both columns of a page.
+    """
+    shown = [i for i, part in enumerate(measures[0][1]) if any(any(parts[i].values) for _, parts, _ in measures)]
+    halves = 2 if len(rows) > MOST_ROWS else 1
+    each = -(-len(rows) // halves)
+    longest = max((100 * sum(part.values[i] for part in parts) / wholes[i] for _, parts, wholes in measures for i in range(len(rows)) if wholes[i]), default=1)
+    with styled():
+        many = each > 24
+        figure, axes = new_figure(0.5 + (0.1 if many else 0.17) * max(2, each), columns=halves * len(measures), width=halves * COLUMN * (1.05 if halves > 1 else 1), squeeze=False)
+        for half in range(halves):
+            some = range(half * each, min(len(rows), (half + 1) * each))
+            for index, (name, parts, wholes) in enumerate(measures):
+                own = axes[0, half * len(measures) + index]
+                handles = _stack(own, some, [parts[i] for i in shown], [100 / whole if whole else 0.0 for whole in wholes])
+                _rows_of_bars(own, [rows[i] if index == 0 else "" for i in some], longest, x_label, many)
+                own.set_title(name)
+        legend(figure, handles, [measures[0][1][i].name for i in shown])
+        return figure
+
+
+def _stack(axes: Any, rows: range, parts: Sequence[Part], factors: Sequence[float]) -> list[Any]:
+    """Draws the rows' bars, each value times the factor of its row; gives a handle a part."""
+    left, handles = [0.0] * len(rows), []
+    for part in parts:
+        values = [factors[i] * part.values[i] for i in rows]
+        handles.append(axes.barh(range(len(rows)), values, 0.72, left, color=COLOURS[part.colour], linewidth=0))
+        left = [a + b for a, b in zip(left, values)]
+    return handles
 
 
 def _rows_of_bars(axes: Any, rows: Sequence[str], longest: float, x_label: str, many: bool) -> None:
