@@ -17,6 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr size_t kLeastForR2 = 3;      // a line through two points always fits
+constexpr int kEigenvalues = 20;        // shown, as in the figure (web/src/characterization/scree.js); all are in the CSV
 constexpr double kStrongLoading = 0.7;  // a correlation that explains half of the variance
 
 std::string text_of(const Json& one, const char* key) { return escaped(one.at(key).get<std::string>()); }
@@ -88,6 +89,7 @@ std::string figure_tables(const Json& one) {
   for (const Json& value : one.at("eigenvalues")) total += value.get<double>();
   int i = 0;
   for (const Json& value : one.at("eigenvalues")) {
+    if (i == kEigenvalues) break;
     sum += value.get<double>();
     ++i;
     eigenvalues += row_head(fmt::format("PC{}", i)) + td(value) + fmt::format("<td class=\"n\">{}</td><td>{}</td></tr>\n", share(sum / total), i <= one.at("kept").get<int>() ? "kept" : "");

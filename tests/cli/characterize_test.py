@@ -132,7 +132,7 @@ class Page(Report):
             self.assertEqual([row[0] for row in rows], leaves)
             for row in rows:
                 self.same([plain(cell) for cell in row[skipped:]], values[row[0]])
-        self.same([plain(row[1]) for row in self.static_rows(page, "eigenvalues")], [float(row["eigenvalue"]) for row in self.table("eigenvalues.csv")])
+        self.same([plain(row[1]) for row in self.static_rows(page, "eigenvalues")], [float(row["eigenvalue"]) for row in self.table("eigenvalues.csv")][:20])
         self.same([plain(row[3]) for row in self.static_rows(page, "linkage")], [float(row["distance"]) for row in self.table("linkage.csv")])
         self.assertEqual([(row[0], row[1]) for row in self.static_rows(page, "subset")], [(row["cluster"], row["workload"]) for row in self.table("subset.csv")])
         self.assertEqual([row[1] for row in self.static_rows(page, "metrics_chosen")], [row["metric"] for row in self.table("metrics_chosen.csv")])
