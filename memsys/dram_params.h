@@ -88,8 +88,8 @@ struct DramParams {
         param(&DramParams::wtr_l, "wtr_l", "ns", "Last write data to read command, same bank group.", 0.0, 10000.0),
         choice(&DramParams::refresh, "refresh", "Whether rows are refreshed, and all banks at once or one after another.", &refresh_modes),
         param(&DramParams::refi, "refi", "ns", "From refresh to refresh of the same rows' turn: of all banks, or of each bank.", 1.0, 1e6),
-        param(&DramParams::rfc, "rfc", "ns", "Refresh of all banks to activate.", 0.0, 1e6),
-        param(&DramParams::rfc_bank, "rfc_bank", "ns", "Refresh of one bank to its activate.", 0.0, 1e6)};
+        param(&DramParams::rfc, "rfc", "ns", "Refresh of all banks to activate.", 0.0, 1e5),
+        param(&DramParams::rfc_bank, "rfc_bank", "ns", "Refresh of one bank to its activate.", 0.0, 1e5)};
   }
   uint32_t atom_bytes() const { return bus_bytes * burst; }  // of one column command
 };

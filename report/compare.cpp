@@ -51,6 +51,20 @@ std::vector<Change> changes(const RunRecord& before, const RunRecord& after) {
   return out;
 }
 
+std::string uncompared_text(const RunRecord& before, const RunRecord& after) {
+  const std::vector<MetricValue> was = metrics_of(before), is = metrics_of(after);
+  const auto line = [&](const std::vector<MetricValue>& one, const std::vector<MetricValue>& other, std::string_view run) {
+    std::string names;
+    size_t count = 0;
+    for (size_t i = 0; i < one.size(); ++i) {
+      if (!one[i].value || other[i].value || one[i].metric->name == kOfTheHost) continue;
+      names += fmt::format("{}{}", count++ ? ", " : "", one[i].metric->name);
+    }
+    return count ? fmt::format("{} metrics only {} has: {}\n", count, run, names) : "";
+  };
+  return line(was, is, "A") + line(is, was, "B");
+}
+
 Condition parse_condition(const std::string& text) {
   const size_t sign = text.find_first_of("<>");
   const std::string note = "expected METRIC<-2% or METRIC>5%: a change in percent";
@@ -60,7 +74,7 @@ Condition parse_condition(const std::string& text) {
   const char* last = text.data() + text.size() - 1;
   if (first < last && *first == '+') ++first;
   const auto [end, error] = std::from_chars(first, last, out.percent);
-  if (error != std::errc{} || end != last) throw UserError({}, fmt::format("'{}' is no condition", text), note);
+  if (error != std::errc{} || end != last || !std::isfinite(out.percent)) throw UserError({}, fmt::format("'{}' is no condition", text), note);
   const std::vector<std::string> names = metric_names();
   if (std::find(names.begin(), names.end(), out.metric) == names.end()) {
     const std::string guess = nearest(out.metric, names);

@@ -21,6 +21,9 @@ struct Change {
 // host (sim_rate) is left out.
 std::vector<Change> changes(const RunRecord& before, const RunRecord& after);
 
+// Names the metrics that only one of the runs has, A or B; "" when both have the same.
+std::string uncompared_text(const RunRecord& before, const RunRecord& after);
+
 // "METRIC<-2%" or "METRIC>5%": holds when the metric changed by less or more than so many percent of what it was.
 struct Condition {
   std::string text, metric;

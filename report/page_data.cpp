@@ -21,6 +21,7 @@
 #include "report/page_profile.h"
 #include "report/page_source.h"
 #include "report/page_stats.h"
+#include "report/run_directory.h"
 #include "report/page_timeline.h"
 #include "report/profile_files.h"
 
@@ -29,7 +30,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kRunSchema = 1;  // of run.json (RunDirectory::write_run)
 
 std::optional<std::string> bytes_of(const std::string& path) {
   std::ifstream in(path, std::ios::binary);

@@ -2,8 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/page_stats.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
+
+#include "base/diagnostics.h"
 
 namespace glint::report {
 namespace {
@@ -57,6 +62,8 @@ class Turner {
     }
   }
   void put(const std::string& path, size_t index, Json value) {
+    const bool is_known = value.is_number() || (value.is_array() && std::all_of(value.begin(), value.end(), [](const Json& v) { return v.is_number(); }));
+    if (!is_known) throw UserError({}, fmt::format("statistic '{}' has no number", path), "stats.json is damaged; run it again");
     Json& list = out_[path];
     if (list.is_null()) list = Json::array();
     while (list.size() <= index) list.push_back(0);

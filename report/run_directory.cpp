@@ -65,7 +65,7 @@ void RunDirectory::write_config(const std::vector<ParamInfo>& params, const std:
 
 void RunDirectory::write_run(const RunInfo& info) const {
   nlohmann::ordered_json json;
-  json["schema"] = 1;
+  json["schema"] = kRunSchema;
   json["command"] = info.command;
   json["version"] = info.version;
   json["git"] = info.git;

@@ -33,6 +33,8 @@ struct ResidencyInfo {
   std::string limit;
 };
 
+inline constexpr int kRunSchema = 1;  // of run.json
+
 // What run.json says besides schema and paths. The only file of a run that holds wall-clock times.
 struct RunInfo {
   std::vector<std::string> command;  // argv

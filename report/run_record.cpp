@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/run_record.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -10,6 +13,7 @@
 #include <string_view>
 
 #include "base/diagnostics.h"
+#include "report/run_directory.h"
 #include "report/stat_rows.h"
 
 namespace glint::report {
@@ -18,7 +22,7 @@ namespace {
 std::optional<double> number(std::string_view text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || text.empty()) return std::nullopt;
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
   return value;
 }
 
@@ -48,7 +52,10 @@ void flatten(const nlohmann::json& json, const std::string& name, std::map<std::
 
 RunRecord RunRecord::read(const std::string& directory) {
   RunRecord record;
-  record.add_facts(whole_file(directory + "/run.json"), directory + "/run.json");
+  const std::string facts = directory + "/run.json";
+  record.add_facts(whole_file(facts), facts);
+  if (const double schema = record.fact("schema").value_or(0); schema != kRunSchema)
+    throw UserError({facts}, fmt::format("schema {}, expected {}", schema, kRunSchema), "another version of Glint wrote it: run it again with this one");
   record.add_stats(whole_file(directory + "/stats.csv"), directory + "/stats.csv");
   record.add_config(whole_file(directory + "/config.toml"));
   return record;
@@ -62,7 +69,7 @@ void RunRecord::add_stats(const std::string& csv, const std::string& name) {
   for (int row = 2; std::getline(in, line); ++row) {
     const size_t first = line.find(','), second = line.find(',', first + 1);
     const std::optional<double> value = second == std::string::npos ? std::nullopt : number(std::string_view(line).substr(first + 1, second - first - 1));
-    if (!value) throw UserError({name, row}, "this row has no value");
+    if (!value) throw UserError({name, row}, "this row has no value, or none that is finite", "the file is damaged; run it again");
     stats_.emplace_back(line.substr(0, first), *value);
   }
 }

@@ -14,8 +14,9 @@ namespace {
 Exit compare(const std::string& before, const std::string& after, const std::vector<std::string>& fail_on, bool all) {
   std::vector<report::Condition> conditions;
   for (const std::string& text : fail_on) conditions.push_back(report::parse_condition(text));
-  const std::vector<report::Change> changes = report::changes(report::RunRecord::read(before), report::RunRecord::read(after));
-  write_output("", report::changes_text(changes, all));
+  const report::RunRecord was = report::RunRecord::read(before), is = report::RunRecord::read(after);
+  const std::vector<report::Change> changes = report::changes(was, is);
+  write_output("", report::changes_text(changes, all) + report::uncompared_text(was, is));
   Exit exit = Exit::Ok;
   for (const report::Condition& condition : conditions) {
     if (!report::holds(condition, changes)) continue;

@@ -20,7 +20,7 @@ class Simple final : public DramModel {
     double latency = 29.1;    // tRCD + CL of GDDR6-14000: a closed row
     double efficiency = 0.9;  // Choice: what refresh and turnarounds leave of streams, about
     static constexpr auto params() {
-      return std::tuple{param(&Params::latency, "latency", "ns", "From the beginning of a read's service to its first data.", 0.0, 1e6),
+      return std::tuple{param(&Params::latency, "latency", "ns", "From the beginning of a read's service to its first data.", 0.0, 1e5),
                         param(&Params::efficiency, "efficiency", "ratio", "Share of the data bus's peak bandwidth that can be had.", 0.01, 1.0)};
     }
   };

@@ -59,7 +59,8 @@ std::string names_of(const FeatureTable& table, const std::vector<int>& rows) {
 
 std::string components_text(const Characterization& result) {
   const PrincipalComponents& pca = result.components;
-  std::string out = fmt::format("\nComponents: {} with an eigenvalue above 1 have {} of the variance\n", pca.kept, percent(pca.explained()));
+  const std::string kept = pca.eigenvalues[0] > 1 ? fmt::format("{} with an eigenvalue above 1 have", pca.kept) : "none has an eigenvalue above 1; the first has";
+  std::string out = fmt::format("\nComponents: {} {} of the variance\n", kept, percent(pca.explained()));
   double sum = 0;
   std::vector<std::vector<std::string>> rows = {{"", "eigenvalue", "together", "loads most on"}};
   for (Eigen::Index i = 0; i < pca.kept; ++i) {

@@ -102,7 +102,11 @@ FeatureTable feature_table(const std::string& csv, const std::string& name) {
 }
 
 Eigen::MatrixXd standardised(const Eigen::MatrixXd& values) {
-  const Eigen::MatrixXd centred = values.rowwise() - values.colwise().mean();
+  // By powers of two, which round nothing: squares of the largest and the smallest doubles neither overflow nor vanish.
+  Eigen::MatrixXd scaled = values;
+  for (auto column : scaled.colwise())
+    column = column.unaryExpr([exponent = std::ilogb(column.cwiseAbs().maxCoeff())](double value) { return std::scalbn(value, -exponent); }).eval();
+  const Eigen::MatrixXd centred = scaled.rowwise() - scaled.colwise().mean();
   const Eigen::RowVectorXd deviation = (centred.colwise().squaredNorm() / double(values.rows())).cwiseSqrt();
   return centred.array().rowwise() / deviation.array();
 }

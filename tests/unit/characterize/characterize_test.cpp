@@ -86,6 +86,15 @@ TEST_CASE("Eigenvalues, loadings and scores are scikit-learn's", "[characterize]
   CHECK(difference(pca.scores, expected()["scores"]) < 1e-8);
 }
 
+TEST_CASE("Columns of the largest and the smallest doubles are standardised as others", "[characterize]") {
+  Eigen::MatrixXd values(4, 2);
+  values << 1, 8, 2, 6, 3, 7, 5, 1;
+  const Eigen::MatrixXd plain = standardised(values);
+  CHECK(plain == standardised(values * 0x1p1020));
+  CHECK(plain == standardised(values * 0x1p-1060));
+  CHECK(plain.colwise().squaredNorm().isApproxToConstant(4));
+}
+
 TEST_CASE("Trees, their leaves and their cuts are SciPy's with every linkage", "[characterize]") {
   const PrincipalComponents pca = principal_components(suite().standardised);
   for (const Linkage linkage : {Linkage::Single, Linkage::Complete, Linkage::Average, Linkage::Ward}) {

@@ -68,6 +68,25 @@ TEST_CASE("instances of a unit stand side by side, and what is zero everywhere i
   CHECK(docs["gpu.core[*].hits"] == Json({{"unit", "x"}, {"doc", "d"}}));
 }
 
+TEST_CASE("a statistic without a number is damage, in its table as in its tree") {
+  Json docs = Json::object();
+  for (const char* value : {"null", "\"x\"", "[1, null]", "{\"a\": true}"})
+    CHECK_THROWS_AS(report::page_stats(Json::parse(R"({"gpu": {"hits": {"value": )" + std::string(value) + R"(, "unit": "x", "doc": "d"}}})"), docs), UserError);
+  for (const char* value : {"nan", "inf", "", "12x"}) CHECK_THROWS_AS(run(value, "3000"), UserError);
+}
+
+TEST_CASE("metrics that only one run has are named") {
+  report::RunRecord cut;
+  cut.add_stats("path,value,unit,doc\ngpu.cycles,900,cycle,\n", "stats.csv");
+  const std::string text = report::uncompared_text(run("1000", "3000"), cut);
+
+  CHECK(text.find("metrics only A has: insn, ipc") != std::string::npos);
+  CHECK(text.find("only B") == std::string::npos);
+  CHECK(text.find("cycles") == std::string::npos);
+  CHECK(report::uncompared_text(cut, run("1000", "3000")).find("metrics only B has: insn, ipc") != std::string::npos);
+  CHECK(report::uncompared_text(cut, cut) == "");
+}
+
 TEST_CASE("changes are relative to the first run, and the largest comes first") {
   const auto changes = report::changes(run("1000", "3000"), run("900", "3000"));
 
@@ -91,7 +110,7 @@ TEST_CASE("a condition holds on one side of its bound only") {
 }
 
 TEST_CASE("a condition that is none is refused with the form that is expected") {
-  for (const char* text : {"ipc", "ipc<2", "<2%", "ipc<x%", "ipc<%", "ipcc<2%"}) CHECK_THROWS_AS(report::parse_condition(text), UserError);
+  for (const char* text : {"ipc", "ipc<2", "<2%", "ipc<x%", "ipc<%", "ipc<nan%", "ipc>inf%", "ipcc<2%"}) CHECK_THROWS_AS(report::parse_condition(text), UserError);
 }
 
 TEST_CASE("no text of a run can end the page's script") {
