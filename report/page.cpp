@@ -12,11 +12,14 @@
 #include "report/image_files.h"
 #include "report/page_parts.h"
 #include "report/page_suite.h"
+#include "report/page_tables.h"
 
 namespace glint::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr const char* kLastColumns = "<th scope=\"col\">Unit</th><th scope=\"col\">Meaning</th></tr></thead>\n";
 
 std::string title_of(const Json& run) {
   const Json& facts = run["run"];
@@ -41,7 +44,7 @@ std::string header_row(const Json& runs, std::string_view first) {
 
 std::string metrics_table(const Json& data) {
   const Json& runs = data["runs"];
-  std::string out = "<div class=\"scroll\"><table class=\"metrics\">" + header_row(runs, "Metric") + "<th scope=\"col\">Unit</th><th scope=\"col\">Meaning</th></tr></thead>\n";
+  std::string out = "<div class=\"scroll\"><table class=\"metrics\">" + header_row(runs, "Metric") + kLastColumns;
   std::string group;
   for (const Json& metric : data["metric_docs"]) {
     if (!metric["known"].get<bool>()) continue;
@@ -82,7 +85,7 @@ std::string config_table(const Json& data) {
     out += fmt::format("<p class=\"note\">{}: {}</p>\n", escaped(run["directory"].get<std::string>()), escaped(run["preset"]["note"].get<std::string>()));
   }
   if (rows.empty()) return out + "<p>Every key has its preset’s value.</p>\n";
-  return out + "<div class=\"scroll\"><table class=\"config\">" + header_row(runs, "Key") + "<th scope=\"col\">Unit</th><th scope=\"col\">Meaning</th></tr></thead><tbody>\n" + rows + "</tbody></table></div>\n";
+  return out + "<div class=\"scroll\"><table class=\"config\">" + header_row(runs, "Key") + kLastColumns + "<tbody>\n" + rows + "</tbody></table></div>\n";
 }
 
 std::string section(const char* id, const char* title, const char* lead, const std::string& content) {
@@ -94,7 +97,9 @@ std::string static_sections(const Json& data) {
   std::string out = suite_sections(data);
   if (data["runs"].empty()) return out;
   return out + section("configuration", "Configuration", "Keys that differ from the preset the run names.", config_table(data) + "<div id=\"all-keys\"></div>\n") +
-         section("metrics", "All metrics", "The numbers that characterise a workload; a dash is a number that this run does not have.", metrics_table(data));
+         section("metrics", "All metrics", "The numbers that characterise a workload; a dash is a number that this run does not have.", metrics_table(data)) +
+         "<noscript>\n" + section("numbers", "Numbers of the figures", "What the figures show where scripts run, summed over all instances of a unit. Figures of shares and rates are among the metrics above; series over time are in series.csv.",
+                                  figure_tables(data, header_row(data["runs"], "Statistic") + kLastColumns)) + "</noscript>\n";
 }
 
 std::string page_title(const Json& data) {

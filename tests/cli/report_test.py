@@ -145,6 +145,26 @@ class Page(ReportTest):
                 plain = float(shown.replace("\u202f", "").replace("−", "-"))
                 self.assertAlmostEqual(plain, float(value), delta=abs(float(value)) * 6e-4 + 1e-12, msg=metric)
 
+    def test_the_numbers_of_figures_read_without_script_too(self):
+        page = self.report("wknd", "slow")
+        there = re.search(r"<noscript>\n<section id=\"numbers\">(.*?)</noscript>", page, re.S).group(1)
+        groups = {stat: dict((name, [int(value.replace("\u202f", "")) for value in re.findall(r'<td class="n">(.*?)</td>', cells)])
+                             for name, cells in re.findall(r'<tr><th scope="row">(.*?)</th>(.*?)</tr>', rows, re.S))
+                  for stat, rows in re.findall(r'<tbody data-of="([^"]*)">(.*?)</tbody>', there, re.S)}
+        statistics = [{}, {}]
+        for sums, run in zip(statistics, ("wknd", "slow")):
+            for path, _, value in leaves(self.stats(run)):
+                sums[path] = [a + b for a, b in zip(sums.get(path, [0] * len(value)), value)] if isinstance(value, list) else sums.get(path, 0) + value
+        for stat in ("gpu.core[*].issue_slots", "gpu.core[*].raygen.instructions", "gpu.core[*].closest_hit.latency", "gpu.rt_unit[*].rt.cycles", "gpu.memory.core[*].l1.miss_stages"):
+            parts = sorted({path.split("::")[1] for path in statistics[0] if path.startswith(stat + "::")})
+            expected = {part: [sums[f"{stat}::{part}"] for sums in statistics] for part in parts}
+            self.assertEqual(groups[stat], {part: values for part, values in expected.items() if any(values)}, stat)
+        self.assertNotIn("gpu.core[*].any_hit.latency", groups)  # all 0
+        bins = [[value for value in sums["gpu.rt_unit[*].rt.ray_nodes"]] for sums in statistics]
+        self.assertEqual(list(groups["gpu.rt_unit[*].rt.ray_nodes"].values()), [list(pair) for pair in zip(*bins) if any(pair)])
+        profile = self.document(page)["runs"][0]["profile"]["ops"]
+        self.assertEqual(groups["profile: ops by latency"]["rt.trace"], [next(op["latency"] for op in profile if op["name"] == "rt.trace"), 0])
+
     def test_what_differs_from_the_preset_is_told(self):
         document = self.document(self.report("wknd", "slow"))
         self.assertEqual(document["runs"][0]["preset"]["changes"], {})
@@ -392,6 +412,21 @@ class Browser(ReportTest):
         self.assertGreater(distance[0], 0)
         self.assertIn("rt.box.latency=40", text)
 
+    def test_scenes_and_ops_of_several_runs_stand_beside_each_other(self):
+        done = self.glint("run", "CORNELL", "--shader", "pt", *SMALL, "--profile", "--out", "cornell")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.runs["cornell"] = f"{self.folder}/cornell"
+        page, text = self.load("wknd", "cornell")
+        metrics = [run["metrics"] for run in self.document(self.report("wknd", "cornell"))["runs"]]
+        figures = dict(re.findall(r'<figure id="([\w-]+)"[^>]*>(.*?)</figure>', text, re.S))
+        rows = {name: [float(value) for value in re.findall(r'data-value="([^"]*)"', cells)] for name, cells in re.findall(r'<th scope="row">([^<]*)</th>(.*?)</tr>', figures["geometry"], re.S)}
+        for name, metric in (("triangles", "triangles"), ("procedurals", "procedurals"), ("depth", "bvh_depth"), ("size (bytes)", "bvh_bytes"), ("cycles", "cycles")):
+            self.assertEqual(rows[name], [run[metric] for run in metrics], name)
+        for name in ("ops", "op-cycles", "op-latency", "geometry"):
+            self.assertRegex(figures[name], r"<svg.*<path", name)
+        _, text = self.load("wknd", "slow")
+        self.assertNotIn('<figure id="geometry"', text)  # one scene, the same structures
+
     def test_every_figure_hands_out_its_numbers_and_its_drawing(self):
         keep = """
           const kept = {}, name = Object.getOwnPropertyDescriptor(HTMLAnchorElement.prototype, "download");
@@ -404,7 +439,7 @@ class Browser(ReportTest):
         files = json.loads(next(attributes["data-kept"] for tag, attributes, _ in page.found if tag == "body"))
         figures = [attributes["id"] for tag, attributes, _ in page.found if tag == "figure" and "id" in attributes]
         self.assertGreater(len(figures), 15)
-        self.assertEqual(set(files), {f"{figure}.{kind}" for figure in figures for kind in ("csv", "svg")})
+        self.assertEqual(set(files), {f"{figure}.{kind}" for figure in figures for kind in ("csv", "svg")} | {"bounds.csv", "structure.csv"})
         for name, text in files.items():
             if name.endswith(".svg"):
                 self.assertRegex(text, r'^<svg width="720" height="\d+" xmlns="http://www.w3.org/2000/svg"', name)

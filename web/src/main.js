@@ -6,9 +6,11 @@ import * as caches from "./figures/caches.js";
 import * as cpiStack from "./figures/cpi_stack.js";
 import * as dram from "./figures/dram.js";
 import * as fetchMix from "./figures/fetch_mix.js";
+import * as geometry from "./figures/geometry.js";
 import * as instructionMix from "./figures/instruction_mix.js";
 import * as ipc from "./figures/ipc.js";
 import * as memoryLatency from "./figures/memory_latency.js";
+import * as opCycles from "./figures/op_cycles.js";
 import * as opLatency from "./figures/op_latency.js";
 import * as ops from "./figures/ops.js";
 import * as rayHistograms from "./figures/ray_histograms.js";
@@ -59,13 +61,13 @@ const sections = runs.length === 0 ? [overviewOfSuites(data)] : [
   section("comparison", "Comparison", null, means(runs), figures(ipc), deltas(runs, data.metric_docs)),
   section("bounds", "How near to the limits", "Each resource against the most it could do in the time the run took. The highest is the one to look at first.", bounds(runs)),
   section("stalls", "Where the time goes", "The largest reasons why a scheduler issued nothing, as shares of all scheduler cycles, with the keys that bear on them.", stalls(runs), figures(cpiStack)),
-  section("instructions", "Instructions", null, figures(instructionMix, stages, stageCycles, ops, opLatency), missing("profile", "--profile")),
+  section("instructions", "Instructions", null, figures(instructionMix, stages, stageCycles, ops, opCycles, opLatency), missing("profile", "--profile")),
   section("rays", "Rays and RT units", null, figures(rtUse, traversal, rtCycles, fetchMix, rayHistograms.nodes, rayHistograms.latency)),
   section("memory", "Memory", null, figures(memoryLatency.stages, caches.l1, caches.l2, memoryLatency.spread, dram.use, dram.clocks)),
   section("time", "Over time", null, figures(series) ?? missing("series", "--sample CYCLES"), timelines() ?? missing("timeline", "--trace")),
   section("heat", "What each pixel cost", "Colours go in even steps from 0 to what 99 of 100 pixels do not exceed.", heat(runs, data.heat_scale) ?? missing("heat", "--heat")),
   section("source", "Source", "Where the cycles of schedulers went, line by line: at the instruction that issued, or at the one whose warp was nearest to issue.", source(runs) ?? missing("profile", "--profile")),
-  section("structure", "Scene and structures", null, structure(runs)),
+  section("structure", "Scene and structures", null, figures(geometry), structure(runs)),
 ];
 
 document.getElementById("figures").append(...sections.filter(Boolean));

@@ -3,15 +3,16 @@
 import { number } from "../format.js";
 import { base, categoryAxis, legend, textWidth, tip, valueAxis } from "./common.js";
 
-// rows: labels. series: {name, colour, values: one a row, null = none}. format: of values. max: the axis' end.
+// rows: labels. series: {name, colour, values: one a row, null = none; labels: their texts, without it those of format}. max: the axis' end.
 export function bars({ rows, series, unit, format = number, max, axis = format }) {
   const thick = series.length > 3 ? 10 : series.length > 1 ? 13 : 16;
+  const text = (one, i) => one.labels?.[i] ?? format(one.values[i] ?? null);
   const names = series.length > 1 ? series.map((one) => one.name) : [];
 
   function option(t, width) {
     const left = Math.min(Math.max(...rows.map((row) => textWidth(row))) + 18, width * 0.42);
     const top = legend(t, names, width);
-    const longest = Math.max(...series.flatMap((one) => one.values.map((value) => textWidth(format(value)))));
+    const longest = Math.max(...series.flatMap((one) => rows.map((_, i) => textWidth(text(one, i)))));
     return {
       ...base(t),
       legend: top.option,
@@ -22,7 +23,7 @@ export function bars({ rows, series, unit, format = number, max, axis = format }
         ...base(t).tooltip,
         trigger: "axis",
         axisPointer: { type: "none" },
-        formatter: (items) => tip(rows[items[0].dataIndex], items.map((item) => [item.color, item.seriesName, format(item.value ?? null)])),
+        formatter: (items) => tip(rows[items[0].dataIndex], items.map((item) => [item.color, item.seriesName, text(series[item.seriesIndex], item.dataIndex)])),
       },
       series: series.map((one) => ({
         type: "bar",
@@ -32,7 +33,7 @@ export function bars({ rows, series, unit, format = number, max, axis = format }
         barGap: "15%",
         showBackground: max !== undefined && series.length === 1,
         backgroundStyle: { color: t.line },
-        label: { show: true, position: "right", fontSize: 11, color: t.ink, formatter: ({ value }) => format(value ?? null) },
+        label: { show: true, position: "right", fontSize: 11, color: t.ink, formatter: ({ dataIndex }) => text(one, dataIndex) },
         emphasis: { disabled: true },
         data: one.values,
       })),

@@ -1,6 +1,6 @@
 // How near each resource came to what it can do at best ("speed of light").
 // SPDX-License-Identifier: Apache-2.0
-import { h } from "../dom.js";
+import { csv, download, h } from "../dom.js";
 import { percent } from "../format.js";
 import { ratio } from "../model.js";
 import { runColour } from "../theme.js";
@@ -30,7 +30,11 @@ const kBounds = [
 
 export function bounds(runs) {
   const rows = kBounds.map(([name, doc, value]) => ({ name, doc, values: runs.map(value) })).filter((row) => row.values.some((value) => value > 0));
-  if (runs.length > kMaxBars) return table(runs, rows);
+  const save = () => download("bounds.csv", "text/csv", csv(["of its most", ...runs.map((run) => run.label)], rows.map((row) => [row.name, ...row.values])));
+  return [runs.length > kMaxBars ? table(runs, rows) : barsOf(runs, rows), h("figcaption", {}, h("button", { type: "button", onclick: save }, "CSV"))];
+}
+
+function barsOf(runs, rows) {
   const most = Math.max(...rows.flatMap((row) => row.values));
   const bar = (value, run) =>
     h("div", { class: "bar" }, h("span", { class: "track" }, h("span", { class: runs.length === 1 && value === most ? "fill most" : "fill", style: `width:${Math.min(100, 100 * (value ?? 0)).toFixed(2)}%;${runs.length > 1 ? `background:var(--${runColour(run.index)})` : ""}` })), h("span", { class: "n", "data-value": value }, percent(value)));

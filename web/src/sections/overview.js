@@ -1,6 +1,6 @@
 // The head of the page: which run, its picture, its key numbers.
 // SPDX-License-Identifier: Apache-2.0
-import { h } from "../dom.js";
+import { csv, download, h } from "../dom.js";
 import { bytes, duration, number, percent, short } from "../format.js";
 import { ratio } from "../model.js";
 import { runColour } from "../theme.js";
@@ -81,31 +81,34 @@ export function overviewOfSuites(data) {
   return h("section", { id: "overview" }, h("header", { class: "hero" }, h("p", { class: "kicker" }, "Glint report"), h("h1", {}, document.title.split(" – ")[0]), h("p", { class: "about" }, sources.join(", "))));
 }
 
-// Scene and structures: one column a run.
+// Scene and structures: one column a run. Name, value, how it is written.
 const kFacts = [
-  ["Triangles", (run) => number(run.metric("triangles"))],
-  ["Procedural primitives", (run) => number(run.metric("procedurals"))],
-  ["Bottom-level structures", (run) => number(run.metric("blas_count"))],
-  ["Instances", (run) => number(run.metric("instances"))],
-  ["Size of all structures", (run) => bytes(run.metric("bvh_bytes"))],
-  ["Depth of the top level", (run) => number(run.metric("tlas_depth"))],
-  ["Deepest path, both levels", (run) => number(run.metric("bvh_depth"))],
-  ["Node format", (run) => String(run.config("bvh.format") ?? "–")],
-  ["Internal nodes of those visited", (run) => percent(run.metric("%internal") / 100)],
-  ["Instance leaves", (run) => percent(run.metric("%tlas_leaf") / 100)],
-  ["Primitive leaves", (run) => percent(run.metric("%leaf") / 100)],
-  ["Rays for the closest hit", (run) => number(run.metric("rays_closest"))],
-  ["Rays for any hit", (run) => number(run.metric("rays_any"))],
-  ["Box tests", (run) => number(run.metric("box_tests"))],
-  ["Triangle tests", (run) => number(run.metric("tri_tests"))],
-  ["Closest-hit shaders", (run) => number(run.metric("n_chit"))],
-  ["Miss shaders", (run) => number(run.metric("n_miss"))],
-  ["Any-hit shaders", (run) => number(run.metric("n_anyhit"))],
-  ["Intersection shaders", (run) => number(run.metric("n_intersection"))],
+  ["Triangles", (run) => run.metric("triangles"), number],
+  ["Procedural primitives", (run) => run.metric("procedurals"), number],
+  ["Bottom-level structures", (run) => run.metric("blas_count"), number],
+  ["Instances", (run) => run.metric("instances"), number],
+  ["Size of all structures", (run) => run.metric("bvh_bytes"), bytes],
+  ["Depth of the top level", (run) => run.metric("tlas_depth"), number],
+  ["Deepest path, both levels", (run) => run.metric("bvh_depth"), number],
+  ["Node format", (run) => run.config("bvh.format") ?? "–", String],
+  ["Internal nodes of those visited", (run) => shareOf(run, "%internal"), percent],
+  ["Instance leaves", (run) => shareOf(run, "%tlas_leaf"), percent],
+  ["Primitive leaves", (run) => shareOf(run, "%leaf"), percent],
+  ["Rays for the closest hit", (run) => run.metric("rays_closest"), number],
+  ["Rays for any hit", (run) => run.metric("rays_any"), number],
+  ["Box tests", (run) => run.metric("box_tests"), number],
+  ["Triangle tests", (run) => run.metric("tri_tests"), number],
+  ["Closest-hit shaders", (run) => run.metric("n_chit"), number],
+  ["Miss shaders", (run) => run.metric("n_miss"), number],
+  ["Any-hit shaders", (run) => run.metric("n_anyhit"), number],
+  ["Intersection shaders", (run) => run.metric("n_intersection"), number],
 ];
+const shareOf = (run, metric) => (run.metric(metric) === null ? null : run.metric(metric) / 100);
 
 export function structure(runs) {
   if (!runs.some((run) => run.facts.structures)) return null;
   const head = runs.length > 1 ? h("thead", {}, h("tr", {}, h("th", {}), runs.map((run) => h("th", { scope: "col", class: "n" }, run.label)))) : null;
-  return h("div", { class: "scroll" }, h("table", { class: "facts" }, head, h("tbody", {}, kFacts.map(([name, text]) => h("tr", {}, h("th", { scope: "row" }, name), runs.map((run) => h("td", { class: "n" }, text(run))))))));
+  const rows = kFacts.map(([name, value, text]) => h("tr", {}, h("th", { scope: "row" }, name), runs.map((run) => h("td", { class: "n" }, text(value(run))))));
+  const save = () => download("structure.csv", "text/csv", csv(["", ...runs.map((run) => run.label)], kFacts.map(([name, value]) => [name, ...runs.map(value)])));
+  return [h("div", { class: "scroll" }, h("table", { class: "facts" }, head, h("tbody", {}, rows))), h("figcaption", {}, h("button", { type: "button", onclick: save }, "CSV"))];
 }

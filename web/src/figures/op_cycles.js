@@ -1,0 +1,11 @@
+// Figure: the ops that schedulers waited at, run by run. Needs profiles; of a single run it stands beside the counts (ops.js).
+// SPDX-License-Identifier: Apache-2.0
+import { opShares } from "./ops.js";
+
+export const info = {
+  id: "op-cycles", coloured: true,
+  title: "Scheduler cycles by op",
+  note: "Share of the scheduler cycles charged to the op: it issued, or its warp waited nearest to issue.",
+};
+
+export const make = (runs) => (runs.filter((run) => run.data.profile).length > 1 ? opShares(runs, ["cycles"]) : null);
