@@ -36,13 +36,15 @@ export function valueAxis(t, format, name) {
   };
 }
 
-export function categoryAxis(t, labels, width) {
+// Labels that `width` has no room for are cut; where rows are high enough for `twoLines`, what stands behind the last comma goes below.
+export function categoryAxis(t, labels, width, twoLines = false) {
+  const formatter = (label) => (twoLines && textWidth(label) > width ? label.replace(/, ([^,]*)$/, ",\n$1") : label);
   return {
     type: "category",
     data: labels,
     axisLine: { show: false },
     axisTick: { show: false },
-    axisLabel: { color: t.ink, fontSize: 12, width, overflow: "truncate", interval: 0 },
+    axisLabel: { color: t.ink, fontSize: 12, lineHeight: 14, width, overflow: "truncate", interval: 0, formatter },
   };
 }
 

@@ -59,7 +59,7 @@ export function panels({ rows, parts, panels: list }) {
       grid: all,
       xAxis: list.map((_, k) => ({ ...valueAxis(t, (value) => percent(value, 0)), gridIndex: k, min: 0, max: end, interval: step })),
       yAxis: list.map((_, k) => {
-        const axis = { ...categoryAxis(t, rows, all[0].left - 8), gridIndex: k, inverse: true };
+        const axis = { ...categoryAxis(t, rows, all[0].left - 8, true), gridIndex: k, inverse: true };
         return k && !isNarrow(width) ? { ...axis, axisLabel: { show: false } } : axis;
       }),
       tooltip: { ...base(t).tooltip, trigger: "axis", axisPointer: { type: "none" }, formatter: (items) => tooltip(t, items) },

@@ -25,7 +25,7 @@ export function stacked({ rows, parts, unit, whole, scale, scaleName, scaleForma
       legend: top.option,
       grid: { left, right: 12, top: top.height, bottom: scaleName ? 44 : 24 },
       xAxis: { ...valueAxis(t, (value) => (scale ? scaleFormat(value) : `${Math.round(100 * value)} %`), scaleName), min: 0, ...(scale ? {} : { max: 1, interval: 0.25 }) },
-      yAxis: { ...categoryAxis(t, rows, left - 8), inverse: true },
+      yAxis: { ...categoryAxis(t, rows, left - 8, true), inverse: true },
       tooltip: {
         ...base(t).tooltip,
         trigger: "axis",
