@@ -427,6 +427,25 @@ class Browser(ReportTest):
         _, text = self.load("wknd", "slow")
         self.assertNotIn('<figure id="geometry"', text)  # one scene, the same structures
 
+    def test_configurations_are_told_apart_by_every_key_and_compared_for_the_same_work_only(self):
+        """Copies of one run: three keys changed step by step, a run of another size, and the same run twice."""
+        keys = ["requests_per_cycle", "request_bytes", "retires_per_cycle"]
+        for copy, changed in {"one": 1, "two": 2, "three": 3, "large": 0, "again": 0}.items():
+            shutil.copytree(self.runs["wknd"], self.folder / copy)
+            config = (self.folder / copy / "config.toml").read_text()
+            for key in keys[:changed]:
+                config, count = re.subn(rf"(?m)^{key} *= *\S+", f"{key} = 16", config)
+                self.assertEqual(count, 1, key)
+            self.write(f"{copy}/config.toml", config)
+            self.runs[copy] = copy
+        run_json = (self.folder / "large/run.json").read_text()
+        self.write("large/run.json", re.sub(r'"width": \d+', '"width": 640', run_json))
+        _, text = self.load("wknd", "one", "two", "three", "large", "again")
+        rows = re.findall(r'<th scope="row">([^<]*)</th><td class="n">(\d+)</td>', re.search(r'<table class="facts" id="means">(.*?)</table>', text, re.S).group(1))
+        self.assertEqual(len(rows), 5)
+        self.assertEqual(len({name for name, _ in rows}), 5)
+        self.assertEqual([int(count) for _, count in rows].count(1), 4, rows)
+
     def test_every_figure_hands_out_its_numbers_and_its_drawing(self):
         keep = """
           const kept = {}, name = Object.getOwnPropertyDescriptor(HTMLAnchorElement.prototype, "download");

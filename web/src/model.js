@@ -1,7 +1,7 @@
 // A run as the figures see it: sums over the instances of a unit, parts of breakdowns, metrics, keys.
 // SPDX-License-Identifier: Apache-2.0
 
-const kKeysInLabel = 2; // more would not be read
+const kKeysInLabel = 2; // more are not read; more are shown only where fewer would not tell runs apart
 
 export class Run {
   constructor(data, index, docs) {
@@ -78,22 +78,46 @@ export function ratio(a, b) {
 }
 
 // Short names that tell the runs apart: of what differs between them, and no more than needed.
+//   label        of the run
+//   taskLabel    what ran: workload, size and samples
+//   configLabel  what it ran on: preset and changed keys; runs of one task have one each
 export function labelRuns(runs) {
   const differ = (of) => new Set(runs.map(of)).size > 1;
   const keys = [...new Set(runs.flatMap((run) => Object.keys(run.changes)))].filter((key) => differ((run) => run.config(key)));
+  const count = fewestKeys(runs, keys);
+  const presets = differ((run) => run.facts.config.name);
   for (const run of runs) {
-    const words = [];
-    if (runs.length === 1 || differ((r) => r.workload)) words.push(run.workload);
-    if (differ((r) => r.facts.config.name)) words.push(run.facts.config.name);
-    if (differ((r) => r.size)) words.push(run.size);
-    if (differ((r) => r.facts.samples)) words.push(`${run.facts.samples} spp`);
-    for (const key of keys.slice(0, kKeysInLabel)) words.push(`${key}=${run.config(key)}`);
-    run.label = words.join(" · ") || run.facts.config.name;
-    run.configLabel = [run.facts.config.name, ...keys.slice(0, kKeysInLabel).map((key) => `${key}=${run.config(key)}`)].join(" ");
+    const task = [];
+    if (differ((r) => r.size)) task.push(run.size);
+    if (differ((r) => r.facts.samples)) task.push(`${run.facts.samples} spp`);
+    const changed = keys.slice(0, count).filter((key) => key in run.changes).map((key) => `${key}=${run.config(key)}`);
+    run.taskLabel = [run.workload, ...task].join(" · ");
+    run.configLabel = [run.facts.config.name, ...changed].join(" ");
+    const workload = runs.length === 1 || differ((r) => r.workload) ? [run.workload] : [];
+    run.label = [...workload, ...(presets ? [run.facts.config.name] : []), ...task, ...changed].join(" · ") || run.facts.config.name;
   }
+  numberRepeats(runs, "configLabel", (run) => `${run.taskLabel} on ${run.configLabel}`);
   const seen = (label) => runs.filter((run) => run.label === label).length;
   for (const run of [...runs].reverse()) if (seen(run.label) > 1) run.label += ` · ${run.data.directory.replace(/\/+$/, "").split("/").pop()}`;
+  numberRepeats(runs, "label", (run) => run.label);
   return runs;
+}
+
+// As many of the keys as tell the same configurations apart as all of them do.
+function fewestKeys(runs, keys) {
+  const configs = (count) => new Set(runs.map((run) => [run.facts.config.name, ...keys.slice(0, count).map((key) => run.config(key))].join("\n"))).size;
+  let count = Math.min(kKeysInLabel, keys.length);
+  while (configs(count) < configs(keys.length)) ++count;
+  return count;
+}
+
+// Behind the name of the second and later runs that are alike by `of`: which it is of them.
+function numberRepeats(runs, name, of) {
+  const met = {};
+  const repeats = runs.map((run) => (met[of(run)] = (met[of(run)] ?? 0) + 1));
+  runs.forEach((run, i) => {
+    if (repeats[i] > 1) run[name] += ` (${repeats[i]})`;
+  });
 }
 
 export function geometricMean(values) {

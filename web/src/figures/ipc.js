@@ -8,7 +8,7 @@ export const info = { id: "ipc", wide: true, title: "IPC across configurations",
 
 export function make(runs) {
   if (runs.length < 2) return null;
-  const workloads = [...new Set(runs.map((run) => run.workload))], configs = [...new Set(runs.map((run) => run.configLabel))];
-  const of = (workload, config) => runs.find((run) => run.workload === workload && run.configLabel === config)?.ipc ?? null;
-  return bars({ rows: workloads, series: configs.map((config, i) => ({ name: config, colour: runColour(i), values: workloads.map((workload) => of(workload, config)) })), format: (value) => value?.toFixed(2) ?? "–", axis: number });
+  const tasks = [...new Set(runs.map((run) => run.taskLabel))], configs = [...new Set(runs.map((run) => run.configLabel))];
+  const of = (task, config) => runs.find((run) => run.taskLabel === task && run.configLabel === config)?.ipc ?? null;
+  return bars({ rows: tasks, series: configs.map((config, i) => ({ name: config, colour: runColour(i), values: tasks.map((task) => of(task, config)) })), format: (value) => value?.toFixed(2) ?? "–", axis: number });
 }

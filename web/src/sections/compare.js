@@ -5,16 +5,17 @@ import { change, number } from "../format.js";
 import { geometricMean } from "../model.js";
 
 const kShown = 25; // rows before the rest is folded away
+const kWide = 2; // pairs: with more, paper has room for the changes only
 const kOfTheHost = "sim_rate"; // says nothing of the machine that is simulated
 
 // Speed-up of each configuration over the first, over the workloads that both have.
 export function means(runs) {
   const configs = [...new Set(runs.map((run) => run.configLabel))];
   if (configs.length < 2) return null;
-  const workloads = [...new Set(runs.map((run) => run.workload))];
-  const of = (config, workload) => runs.find((run) => run.configLabel === config && run.workload === workload);
+  const tasks = [...new Set(runs.map((run) => run.taskLabel))];
+  const of = (config, task) => runs.find((run) => run.configLabel === config && run.taskLabel === task);
   const rows = configs.map((config) => {
-    const pairs = workloads.map((workload) => [of(configs[0], workload), of(config, workload)]).filter(([base, run]) => base && run);
+    const pairs = tasks.map((task) => [of(configs[0], task), of(config, task)]).filter(([base, run]) => base && run);
     return { config, workloads: pairs.length, speedup: geometricMean(pairs.map(([base, run]) => base.seconds / run.seconds)), ipc: geometricMean(pairs.map(([, run]) => run.ipc)) };
   });
   const head = ["Configuration", "Workloads", "Speed-up", "IPC"];
@@ -28,7 +29,7 @@ export function means(runs) {
 
 // What each run is held against: the first run of its workload; without such runs, the first of all.
 function pairsOf(runs) {
-  const first = (run) => runs.find((one) => one.workload === run.workload && one.size === run.size && one.facts.samples === run.facts.samples);
+  const first = (run) => runs.find((one) => one.taskLabel === run.taskLabel);
   const pairs = runs.map((run) => [first(run), run]).filter(([base, run]) => base !== run);
   return pairs.length ? pairs : runs.slice(1).map((run) => [runs[0], run]);
 }
@@ -53,11 +54,11 @@ export function deltas(runs, docs) {
     .filter((row) => row.ratios.some((r) => r !== null))
     .sort((a, b) => b.size - a.size);
   const tone = (r) => (r === null || r === 1 ? "n same" : "n moved");
-  const value = (run, doc) => h("td", { class: "n", "data-value": run.metric(doc.name) }, number(run.metric(doc.name)));
+  const value = (run, doc) => h("td", { class: "n value", "data-value": run.metric(doc.name) }, number(run.metric(doc.name)));
   const line = ({ doc, ratios }, i) =>
     h("tr", { class: i >= kShown ? "folded" : null }, h("th", { scope: "row", title: doc.doc }, h("code", {}, doc.name)), h("td", { class: "u" }, doc.unit), one ? value(one, doc) : null, pairs.map(([, run], k) => [value(run, doc), h("td", { class: tone(ratios[k]) }, ratios[k] === Infinity ? "new" : change(ratios[k]))]).flat());
-  const head = h("tr", {}, h("th", { scope: "col" }, "Metric"), h("th", { scope: "col" }, "Unit"), one ? h("th", { scope: "col", class: "n" }, one.label) : null, pairs.map(([base, run]) => h("th", { scope: "col", class: "n", colspan: 2 }, run.label, one ? null : h("small", {}, `against ${base.label}`))));
-  const table = h("table", { class: pairs.length === 1 ? "deltas pair" : "deltas" }, h("thead", {}, head), h("tbody", {}, rows.map(line)));
+  const head = h("tr", {}, h("th", { scope: "col" }, "Metric"), h("th", { scope: "col", class: "u" }, "Unit"), one ? h("th", { scope: "col", class: "n value" }, one.label) : null, pairs.map(([base, run]) => [h("td", { class: "value" }), h("th", { scope: "col", class: "n" }, run.label, one ? null : h("small", {}, `against ${base.label}`))]).flat());
+  const table = h("table", { class: pairs.length === 1 ? "deltas pair" : pairs.length > kWide ? "deltas wide" : "deltas" }, h("thead", {}, head), h("tbody", {}, rows.map(line)));
   const columns = ["metric", "unit", ...pairs.flatMap(([base, run]) => [base.label, run.label, "ratio"])];
   const save = () => download("changes.csv", "text/csv", csv(columns, rows.map(({ doc, ratios }) => [doc.name, doc.unit, ...pairs.flatMap(([base, run], k) => [base.metric(doc.name), run.metric(doc.name), ratios[k]])])));
   const unfold = h("button", { type: "button", onclick: () => { table.classList.add("whole"); unfold.remove(); } }, `All ${rows.length} metrics`);
