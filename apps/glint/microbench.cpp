@@ -1,12 +1,14 @@
 // `glint microbench`: latencies, throughputs and bandwidths of a configuration, measured by running code on it.
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fmt/format.h>
 #include <fstream>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "apps/glint/config.h"
 #include "apps/glint/microbench_kernel.h"
@@ -78,6 +80,18 @@ struct Sums {
   double error = 0;
 };
 
+using Skipped = std::map<std::string, std::vector<std::string>>;  // reason -> benchmarks
+
+// Measures; a benchmark that the configuration has no room for is put down in `skipped`.
+std::optional<double> measure(const MicroBench& bench, const pipeline::GpuParams& gpu, Skipped& skipped) {
+  try {
+    return bench.measure(gpu);
+  } catch (const UserError& error) {
+    skipped[error.what()].push_back(fmt::format("{} {}", bench.name, bench.param));
+    return std::nullopt;
+  }
+}
+
 std::vector<std::string> row_of(const MicroBench& bench, double value, const Reference& reference, std::map<std::string, Sums>& sums) {
   std::vector<std::string> cells{bench.group, bench.name, bench.param, fmt::format("{:.2f}", value), bench.unit};
   const auto at = reference.find(bench.group + "|" + bench.name + "|" + bench.param);
@@ -109,17 +123,22 @@ Exit microbench(const Session& session, const Options& options) {
   std::vector<std::vector<std::string>> rows{{"group", "name", "parameter", options.config, "unit"}};
   if (!options.compare.empty()) rows[0].insert(rows[0].end(), {"measured", "error"});
   std::map<std::string, Sums> sums;
+  Skipped skipped;
   for (const auto& list : {op_benchmarks(), memory_benchmarks(), flow_benchmarks()})
     for (const MicroBench& bench : list) {
       if (!wanted(bench, options.only)) continue;
       if (session.on_terminal) fmt::print(stderr, "\r\033[K{} {} {}", bench.group, bench.name, bench.param);
-      rows.push_back(row_of(bench, bench.measure(gpu), reference, sums));
+      const std::optional<double> value = measure(bench, gpu, skipped);
+      rows.push_back(value ? row_of(bench, *value, reference, sums) : std::vector<std::string>{bench.group, bench.name, bench.param, "-", bench.unit});
     }
   if (session.on_terminal) fmt::print(stderr, "\r\033[K");
   if (rows.size() == 1) throw UserError({}, "no benchmark has that in its group, name or parameter");
   fmt::print("{}", report::table(rows, "<<<><>>"));
   print_sums(sums);
-  return Exit::Ok;
+  for (const auto& [reason, names] : skipped)
+    fmt::print(stderr, "\n{} benchmarks (-) were not run, the first of them '{}':\n{}\n", names.size(), names.front(), reason);
+  const bool measured = std::any_of(rows.begin() + 1, rows.end(), [](const auto& row) { return row[3] != "-"; });
+  return measured ? Exit::Ok : Exit::UserInput;
 }
 
 }  // namespace

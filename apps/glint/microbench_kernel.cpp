@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/diagnostics.h"
 #include "pipeline/timing_machine.h"
 
@@ -54,6 +56,8 @@ double cycles_per_turn(MicroKernel kernel, uint32_t few, uint32_t many, const pi
   kernel.turns = many;
   return (double(cycles_of(kernel, gpu)) - double(less)) / double(many - few);
 }
+
+uint32_t full_block(const pipeline::GpuParams& gpu) { return 32 * std::min(32u, gpu.core.warps); }
 
 pipeline::GpuParams with_one_core(pipeline::GpuParams gpu) {
   gpu.cores = 1;

@@ -48,6 +48,9 @@ double cycles_per_turn(MicroKernel kernel, uint32_t few, uint32_t many, const pi
 // The machine with one core: for what does not share the memory.
 pipeline::GpuParams with_one_core(pipeline::GpuParams gpu);
 
+// Threads of a block that fills a core where its warps do not matter: 32 warps, or all that a core has.
+uint32_t full_block(const pipeline::GpuParams& gpu);
+
 std::vector<MicroBench> op_benchmarks();
 std::vector<MicroBench> memory_benchmarks();
 std::vector<MicroBench> flow_benchmarks();

@@ -86,16 +86,19 @@ double l1_latency(uint32_t stride, const pipeline::GpuParams& gpu) {
                "st.global.u64 [%rd0],%rd1;\n", gpu);
 }
 
+// %r1: the thread's number in the grid.
+const std::string kThread = "mov.u32 %r1,%ctaid.x;mov.u32 %r2,%ntid.x;mov.u32 %r3,%tid.x;mad.lo.u32 %r1,%r1,%r2,%r3;\n";
+
 // GB/s of all cores over `bytes` (a power of two), each word once a pass.
 double stream(uint64_t bytes, bool warm, const pipeline::GpuParams& gpu) {
   MicroKernel kernel;
   kernel.bytes = bytes;
-  kernel.threads = 1024;
+  kernel.threads = full_block(gpu);
   kernel.blocks = gpu.cores * 2;
   const uint64_t threads = uint64_t{kernel.blocks} * kernel.threads;
   const uint32_t loads = 4, turns = uint32_t(std::max<uint64_t>(bytes / (threads * 16 * loads), 1));
   // Turn t, load i of thread g: word g of the part (t * loads + i) of the buffer, each part as long as the grid.
-  kernel.before = fmt::format("mov.u32 %r1,%ctaid.x;mov.u32 %r2,%tid.x;mad.lo.u32 %r1,%r1,1024,%r2;mul.wide.u32 %rd2,%r1,16;mov.u64 %rd3,{};\n", bytes - 1);
+  kernel.before = kThread + fmt::format("mul.wide.u32 %rd2,%r1,16;mov.u64 %rd3,{};\n", bytes - 1);
   const std::string place = fmt::format("and.b64 %rd4,%rd2,%rd3;add.s64 %rd4,%rd4,%rd0;add.s64 %rd2,%rd2,{};\n", threads * 16);
   const std::string load = "ld.global.v4.u32 {%r2#,%r3#,%r4#,%r5#},[%rd4];\n";
   kernel.body = place + load;
@@ -106,15 +109,17 @@ double stream(uint64_t bytes, bool warm, const pipeline::GpuParams& gpu) {
   return double(threads * 16 * loads) / cycles * gpu.clock_mhz * 1e-3;
 }
 
-// GB/s of writes back to DRAM: what the L2 holds when the launch ends stays there, so both lengths are more than it does.
-double write_stream(const pipeline::GpuParams& gpu) {
+// GB/s of writes back to DRAM: what the L2 holds when the launch ends stays there, so both lengths are more than it does. The
+// launch ends when its writes are in the L2, whatever the configuration says: what waits in the network is not written yet.
+double write_stream(pipeline::GpuParams gpu) {
+  gpu.core.ends_when_written = true;
   constexpr uint32_t kFew = 96, kMany = 160;  // MB
   MicroKernel kernel;
   kernel.bytes = uint64_t{kMany} << 20;
-  kernel.threads = 1024;
+  kernel.threads = full_block(gpu);
   kernel.blocks = gpu.cores * 2;
   const uint64_t threads = uint64_t{kernel.blocks} * kernel.threads;
-  kernel.before = "mov.u32 %r1,%ctaid.x;mov.u32 %r2,%tid.x;mad.lo.u32 %r1,%r1,1024,%r2;mad.wide.u32 %rd2,%r1,16,%rd0;\n";
+  kernel.before = kThread + "mad.wide.u32 %rd2,%r1,16,%rd0;\n";
   kernel.body = fmt::format("st.global.v4.u32 [%rd2],{{%r1,%r1,%r1,%r1}};add.s64 %rd2,%rd2,{};\n", threads * 16);
   const auto turns = [&](uint32_t megabytes) { return uint32_t((uint64_t{megabytes} << 20) / (threads * 16)); };
   return double(threads * 16) / cycles_per_turn(kernel, turns(kFew), turns(kMany), gpu) * gpu.clock_mhz * 1e-3;
@@ -123,11 +128,11 @@ double write_stream(const pipeline::GpuParams& gpu) {
 // G lane operations a second of red.global.add.u32, by all cores; `place`: from %r1, the thread's number, to its word's offset.
 double red_throughput(const std::string& place, const pipeline::GpuParams& gpu) {
   MicroKernel kernel;
-  kernel.threads = 1024;
+  kernel.threads = full_block(gpu);
   kernel.blocks = gpu.cores * 2;
   const uint64_t threads = uint64_t{kernel.blocks} * kernel.threads;
   kernel.bytes = threads * 4;
-  kernel.before = "mov.u32 %r1,%ctaid.x;mov.u32 %r2,%tid.x;mad.lo.u32 %r1,%r1,1024,%r2;\n" + place + "mad.wide.u32 %rd1,%r1,4,%rd0;\n";
+  kernel.before = kThread + place + "mad.wide.u32 %rd1,%r1,4,%rd0;\n";
   kernel.body = "red.global.add.u32 [%rd1],%r2;\n";
   return double(threads) / cycles_per_body(kernel, 8, 24, gpu) * gpu.clock_mhz * 1e-3;
 }

@@ -162,7 +162,7 @@ double throughput_of(const Step& step, const pipeline::GpuParams& gpu) {
     kernel.after += store_of(step.kind, n);
     kernel.body += step_of_chain(step.text, chain) + "\n";
   }
-  kernel.threads = 1024;
+  kernel.threads = full_block(gpu);
   kernel.unroll = uint32_t(steps / chains);
   return double(steps) * kernel.threads / cycles_per_turn(kernel, 4, 12, with_one_core(gpu));
 }
@@ -191,7 +191,7 @@ double mix_of(const Mix& mix, const pipeline::GpuParams& gpu) {
   MicroKernel kernel = chain_of({mix.name, 'f', body});
   for (char kind : mix.results)
     kernel.after += chains_of(kind == 'd' ? "st.global.f64 [%rd0],%d1#;" : kind == 'f' ? "st.global.f32 [%rd0],%f1#;" : kind == 'g' ? "st.global.f32 [%rd0],%f2#;" : kind == 'r' ? "st.global.b32 [%rd0],%r1#;" : "st.global.b32 [%rd0],%r2#;");
-  kernel.threads = 1024;
+  kernel.threads = full_block(gpu);
   pipeline::GpuParams in_order = with_one_core(gpu);
   in_order.compiler.schedule = false;  // that would put the chains of one kind before those of the other
   return 2.0 * kChains * 32 / cycles_per_body(kernel, 8, 16, in_order);

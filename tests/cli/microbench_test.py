@@ -1,0 +1,46 @@
+# `glint microbench` on configurations other than the one it is compared with: what it measures is theirs, and what does not fit is said.
+# SPDX-License-Identifier: Apache-2.0
+"""usage: microbench_test.py GLINT SOURCE_DIR"""
+import glint_case
+from glint_case import GlintTest
+
+
+class Microbench(GlintTest):
+    def measure(self, *arguments):
+        """Values by name and parameter, None for '-'; and what stands on stderr."""
+        done = self.glint("microbench", *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        lines = done.stdout.splitlines()
+        value, unit = lines[0].index("parameter") + len("parameter"), len(lines[0].rstrip()) - len("unit")
+        return {" ".join(line[:value].split()): None if line[value:unit].strip() == "-" else float(line[value:unit]) for line in lines[1:]}, done.stderr
+
+    def test_writes_are_not_faster_than_the_memory_they_go_to(self):
+        channel = ["--config", "mobile", "--set", "memory.dram.model=simple", "--set", "cores=2", "--set", "memory.dram.channels=1", "--set", "memory.l2.slice_size=65536"]
+        values, _ = self.measure(*channel, "--only", "DRAM write")
+        self.assertLess(values["bw DRAM write 8GiB"], 14.0)  # 16 bits at 7 GT/s
+        self.assertGreater(values["bw DRAM write 8GiB"], 0.5 * 14.0)
+
+    def test_a_back_edge_costs_what_its_instructions_do_however_slow_the_loop_s_own_are(self):
+        for latency in (2, 10, 30):
+            values, _ = self.measure("--config", "mobile", "--set", f"core.units.branch.latency={latency}", "--set", "core.units.fp32.interval=1", "--only", "back edge")
+            fast = values["branch back edge of a loop"]
+            values, _ = self.measure("--config", "mobile", "--set", f"core.units.branch.latency={latency}", "--set", "core.units.fp32.interval=2", "--only", "back edge")
+            self.assertLessEqual(abs(values["branch back edge of a loop"] - fast), 4)
+            self.assertGreaterEqual(fast, latency)
+
+    def test_a_core_of_sixteen_warps_is_measured_but_for_what_needs_more(self):
+        values, said = self.measure("--config", "mobile", "--set", "core.warps=16", "--only", "fma.rn.f32", "--only", "bar.sync")
+        self.assertEqual(values["latency fma.rn.f32"], 4)
+        self.assertGreater(values["throughput fma.rn.f32"], 60)
+        self.assertGreater(values["bar bar.sync 0 warps=16"], values["bar bar.sync 0 warps=8"])
+        self.assertIsNone(values["bar bar.sync 0 warps=32"])
+        for part in ("1 benchmarks", "bar.sync 0 warps=32", "32 warps, and 16 fit"):
+            self.assertIn(part, said)
+
+    def test_measuring_nothing_is_an_error(self):
+        self.expect(2, ["no benchmark"], "microbench", "--only", "no such")
+        self.expect(2, ["shared memory, a core has 0", "core.shared_bytes"], "microbench", "--config", "mobile", "--set", "core.shared_bytes=0", "--only", "shared chase")
+
+
+if __name__ == "__main__":
+    glint_case.main()
