@@ -51,6 +51,26 @@ void GzipWriter::deflate_all(bool ends) {
   waiting_.clear();
 }
 
+std::string zlib_bytes(std::string_view text) {
+  std::string best;
+  for (const int strategy : {Z_DEFAULT_STRATEGY, Z_FILTERED}) {  // the second suits numbers: it takes no short repetitions
+    z_stream z{};
+    const int status = deflateInit2(&z, Z_BEST_COMPRESSION, Z_DEFLATED, MAX_WBITS, MAX_MEM_LEVEL, strategy);
+    GLINT_CHECK(status == Z_OK, "zlib cannot start: {}", status);
+    std::string out(deflateBound(&z, uLong(text.size())), '\0'), in(text);
+    z.next_in = reinterpret_cast<Bytef*>(in.data());
+    z.avail_in = uInt(in.size());
+    z.next_out = reinterpret_cast<Bytef*>(out.data());
+    z.avail_out = uInt(out.size());
+    const int end = deflate(&z, Z_FINISH);
+    GLINT_CHECK(end == Z_STREAM_END, "zlib has not finished: {}", end);
+    out.resize(z.total_out);
+    deflateEnd(&z);
+    if (best.empty() || out.size() < best.size()) best = std::move(out);
+  }
+  return best;
+}
+
 void read_gzip_lines(const std::string& path, const std::function<bool(std::string_view line)>& each) {
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
   if (!file) throw UserError({path}, "cannot read the file");

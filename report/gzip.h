@@ -1,4 +1,4 @@
-// Files in gzip's format (RFC 1952), written piece by piece and read line by line.
+// Files in gzip's format (RFC 1952), written piece by piece and read line by line, and packed text.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
@@ -26,5 +26,8 @@ class GzipWriter {
 // Calls `each` for every line of the file, without its end, until it answers false. UserError where the file cannot be read
 // or is damaged.
 void read_gzip_lines(const std::string& path, const std::function<bool(std::string_view line)>& each);
+
+// `text` as a zlib stream (RFC 1950), as small as zlib makes it.
+std::string zlib_bytes(std::string_view text);
 
 }  // namespace glint::report

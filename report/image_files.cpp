@@ -3,9 +3,7 @@
 #include "report/image_files.h"
 
 #include <bit>
-#include <cstdlib>
 #include <fmt/format.h>
-#include <memory>
 #include <vector>
 
 #include "base/check.h"
@@ -62,15 +60,6 @@ std::string pfm_bytes(const ImageView& image) {
         for (int shift = 0; shift < 32; shift += 8) out += char(bits >> shift & 0xff);
       }
   return out;
-}
-
-std::string zlib_bytes(std::string_view bytes) {
-  constexpr int kSearch = 32;  // candidates for a repetition
-  std::vector<unsigned char> in(bytes.begin(), bytes.end());
-  int size = 0;
-  const std::unique_ptr<unsigned char, decltype(&std::free)> packed(stbi_zlib_compress(in.data(), int(in.size()), &size, kSearch), &std::free);
-  GLINT_CHECK(packed != nullptr, "the encoder refused {} bytes", bytes.size());
-  return {reinterpret_cast<const char*>(packed.get()), size_t(size)};
 }
 
 }  // namespace glint::report

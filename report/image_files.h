@@ -20,7 +20,4 @@ std::string png_bytes(const ImageView& image);
 // "PF", three little-endian floats a pixel, bottom row first: values as they are, nothing clamped.
 std::string pfm_bytes(const ImageView& image);
 
-// `bytes` packed as a zlib stream (RFC 1950), as pixels in a PNG are.
-std::string zlib_bytes(std::string_view bytes);
-
 }  // namespace glint::report

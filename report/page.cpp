@@ -4,12 +4,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <vector>
 
-#include "report/base64.h"
-#include "report/image_files.h"
+#include "report/page_columns.h"
 #include "report/page_parts.h"
 #include "report/page_suite.h"
 #include "report/page_tables.h"
@@ -20,6 +22,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kLastColumns = "<th scope=\"col\">Unit</th><th scope=\"col\">Meaning</th></tr></thead>\n";
+constexpr std::string_view kKeyMetrics[] = {"cycles", "ipc", "simt_efficiency", "l1d_miss_rate", "l2_miss_rate", "dram_util", "rt_occupancy", "rt_efficiency", "rays_total", "avg_nodes_per_ray"};
 
 std::string title_of(const Json& run) {
   const Json& facts = run["run"];
@@ -42,7 +45,8 @@ std::string header_row(const Json& runs, std::string_view first) {
   return out;
 }
 
-std::string metrics_table(const Json& data) {
+// A table of all metrics, a column a run.
+std::string all_metrics(const Json& data) {
   const Json& runs = data["runs"];
   std::string out = "<div class=\"scroll\"><table class=\"metrics\">" + header_row(runs, "Metric") + kLastColumns;
   std::string group;
@@ -58,6 +62,30 @@ std::string metrics_table(const Json& data) {
     out += fmt::format("<td class=\"u\">{}</td><td class=\"doc\">{}</td></tr>\n", escaped(unit), prose(doc));
   }
   return out + "</table></div>";
+}
+
+// A table of the key figures, a row a run: with all metrics of many runs it would be an eighth of the page, and wider than any screen.
+std::string key_metrics(const Json& data) {
+  std::string head = "<th scope=\"col\">Run</th><th scope=\"col\">Folder</th>", rows;
+  std::vector<std::string> names;
+  for (const Json& metric : data["metric_docs"]) {
+    const std::string name = metric["name"], unit = metric["unit"], doc = metric["doc"];
+    if (std::find(std::begin(kKeyMetrics), std::end(kKeyMetrics), name) == std::end(kKeyMetrics)) continue;
+    names.push_back(name);
+    head += fmt::format("<th scope=\"col\" class=\"n\" title=\"{} ({})\"><code>{}</code></th>", escaped(doc), escaped(unit), escaped(name));
+  }
+  for (const Json& run : data["runs"]) {
+    rows += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td>", escaped(title_of(run)), escaped(folder_of(run)));
+    for (const std::string& name : names) rows += fmt::format("<td class=\"n\">{}</td>", shown(run["metrics"].value(name, Json())));
+    rows += "</tr>\n";
+  }
+  return fmt::format("<p class=\"note\">Without script this page has the key figures of its {} runs only, as docs/metrics.md has them. <code>glint stats RUN --format metrics</code> prints all {} metrics of one.</p>\n"
+                     "<div class=\"scroll\"><table class=\"metrics\"><thead><tr>{}</tr></thead><tbody>\n{}</tbody></table></div>", data["runs"].size(), data["metric_docs"].size(), head, rows);
+}
+
+// For readers without script, which draws the table of all metrics itself.
+std::string metrics_table(const Json& data) {
+  return "<div id=\"all-metrics\"></div>\n<noscript>" + (data["runs"].size() <= kMaxRunsInTables ? all_metrics(data) : key_metrics(data)) + "</noscript>\n";
 }
 
 // Every key that differs from a run's preset, with the value of each run.
@@ -111,21 +139,31 @@ std::string page_title(const Json& data) {
   return "Suite";
 }
 
+std::string spaced(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+std::string picture(size_t run, const std::string& map, const Json& source, const std::string& caption) {
+  return fmt::format("<figure><img alt=\"\" data-run=\"{}\" data-map=\"{}\" src=\"{}\"><figcaption>{}</figcaption></figure>\n", run, escaped(map), source.get<std::string>(), escaped(caption));
+}
+
+// Each once: the script takes them from here (web/src/document.js).
 std::string pictures(const Json& data) {
   std::string out;
-  for (const Json& run : data["runs"])
-    if (run.contains("picture"))
-      out += fmt::format("<figure><img alt=\"\" src=\"{}\"><figcaption>{}</figcaption></figure>\n", run["picture"].get<std::string>(), escaped(title_of(run)));
+  const Json& runs = data["runs"];
+  for (size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i].contains("picture")) out += picture(i, "", runs[i]["picture"], title_of(runs[i]));
+    for (const Json& map : runs[i].value("heat", Json::array()))
+      out += picture(i, map["name"], map["picture"], fmt::format("{}: {}, dark 0 to bright {} ({})", title_of(runs[i]), spaced(map["name"]), shown(map["top"]), map["unit"].get<std::string>()));
+  }
   return out;
 }
 
 // The script packed, under its notices, which stay readable, and what unpacks it.
 std::string script_of(const PageParts& parts) {
-  if (parts.unpack.empty()) return "<script>\n" + parts.script + "</script>";
   const size_t end = parts.script.starts_with("/*!") ? parts.script.find("*/") + 2 : 0;
-  const std::string rest = parts.script.substr(end);
-  return fmt::format("<script>\n{}\n</script>\n<script type=\"text/plain\" id=\"packed\" data-bytes=\"{}\">{}</script>\n<script>\n{}</script>", parts.script.substr(0, end), rest.size(),
-                     base64(zlib_bytes(rest)), parts.unpack);
+  return fmt::format("<script>\n{}\n</script>\n{}\n<script>\n{}</script>", parts.script.substr(0, end), packed_element("script", std::string_view(parts.script).substr(end)), parts.unpack);
 }
 
 }  // namespace
@@ -136,10 +174,10 @@ std::string page(const nlohmann::ordered_json& data, const PageParts& parts) {
   // The script goes in last: no mark is searched in it.
   place(out, "<!--title-->", escaped(title) + " – Glint report");
   place(out, "<!--style-->", "<style>\n" + parts.style + "</style>");
-  place(out, "<!--noscript-->", fmt::format("<noscript><h1>{}</h1>\n{}<p class=\"note\">The figures need a browser that runs scripts. The tables below do not.</p></noscript>", escaped(title), pictures(data)));
+  place(out, "<!--noscript-->", fmt::format("<noscript id=\"pictures\"><h1>{}</h1>\n{}<p class=\"note\">The figures need a browser that runs scripts. The tables below do not.</p></noscript>", escaped(title), pictures(data)));
   place(out, "<!--sections-->", static_sections(data));
   place(out, "<!--script-->", script_of(parts));
-  place(out, "<!--data-->", "<script type=\"application/json\" id=\"data\">" + script_json(data) + "</script>");
+  place(out, "<!--data-->", packed_element("data", page_columns(data).dump(-1, ' ', false, Json::error_handler_t::replace)));
   return out;
 }
 

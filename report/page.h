@@ -10,10 +10,10 @@ namespace glint::report {
 struct PageParts {
   std::string frame;   // HTML with the places <!--style-->, <!--title-->, <!--noscript-->, <!--sections-->, <!--data--> and <!--script-->
   std::string style, script;
-  std::string unpack = {};  // a script that unpacks the other and runs it; without it the script stands in the page as it is
+  std::string unpack;  // a script that unpacks the other and runs it
 };
 
-// `data` is page_data(), which may have "characterizations" and "models" (page_suite.h) added. UserError when the frame lacks a place.
+// `data` is page_data(), which may have "characterizations" and "models" (page_suite.h) added; the page holds it as page_columns() has it. UserError when the frame lacks a place.
 std::string page(const nlohmann::ordered_json& data, const PageParts& parts);
 
 }  // namespace glint::report

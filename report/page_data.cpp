@@ -148,7 +148,7 @@ nlohmann::ordered_json page_data(const std::vector<PageRun>& runs, const std::st
   for (const MetricGroup& group : metric_groups())
     for (const Metric& metric : group.metrics)
       metric_docs.push_back({{"name", metric.name}, {"unit", metric.unit}, {"doc", metric.doc}, {"group", group.title}, {"paper", metric.paper}, {"known", !metric.formula.empty()}});
-  return {{"schema", 1}, {"version", version}, {"runs", std::move(list)}, {"stat_docs", std::move(stat_docs)}, {"metric_docs", std::move(metric_docs)}, {"key_docs", std::move(key_docs)}, {"heat_scale", page_heat_scale()}};
+  return {{"schema", 2}, {"version", version}, {"runs", std::move(list)}, {"stat_docs", std::move(stat_docs)}, {"metric_docs", std::move(metric_docs)}, {"key_docs", std::move(key_docs)}, {"heat_scale", page_heat_scale()}};
 }
 
 }  // namespace glint::report

@@ -1,4 +1,4 @@
-// Escaping for HTML, and filling in a page's frame.
+// Escaping for HTML, packing, and filling in a page's frame.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/page_parts.h"
 
@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/diagnostics.h"
+#include "report/base64.h"
+#include "report/gzip.h"
 
 namespace glint::report {
 
@@ -52,12 +54,8 @@ std::string shown(const nlohmann::ordered_json& value) {
   return out;
 }
 
-std::string script_json(const nlohmann::ordered_json& data) {
-  const std::string text = data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-  std::string out;
-  out.reserve(text.size());
-  for (const char c : text) out += c == '<' ? std::string("\\u003c") : std::string(1, c);
-  return out;
+std::string packed_element(std::string_view id, std::string_view text) {
+  return fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>", id, base64(zlib_bytes(text)));
 }
 
 void place(std::string& page, std::string_view mark, const std::string& text) {

@@ -1,4 +1,4 @@
-// What every page that Glint writes is put together with: escaping, embedded data, places in a frame.
+// What every page that Glint writes is put together with: escaping, packed parts, places in a frame.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <nlohmann/json_fwd.hpp>
@@ -16,8 +16,8 @@ std::string prose(std::string_view text);
 // A number, text or truth value for a table: thin spaces between thousands, whole from 1000 on, four digits below; a dash for null.
 std::string shown(const nlohmann::ordered_json& value);
 
-// JSON for a <script> element: no "</script>" and no "<!--" can be in it.
-std::string script_json(const nlohmann::ordered_json& data);
+// A <script> of that id that no browser runs: `text` as base64 of a zlib stream. The page's own script unpacks it (web/src/packed.js).
+std::string packed_element(std::string_view id, std::string_view text);
 
 // Puts `text` where the frame says `mark`, the first time. UserError when it does not.
 void place(std::string& page, std::string_view mark, const std::string& text);

@@ -1,12 +1,10 @@
-// Packing listings and counts for the report.
+// Listings and counts for the report.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/page_source.h"
 
 #include <nlohmann/json.hpp>
 
 #include "base/diagnostics.h"
-#include "report/base64.h"
-#include "report/image_files.h"
 
 namespace glint::report {
 namespace {
@@ -65,9 +63,7 @@ Json page_source(const ProfileTable& profile, const SourceMap& map) {
       throw UserError({}, "profile.csv and source.json of the run do not belong together", "run it again with --profile");
     counts.push_back(counts_of(row));
   }
-  const Json document = {{"reasons", profile.reasons}, {"files", files}, {"programs", programs}, {"counts", counts}, {"no_warp", no_warp}};
-  const std::string text = document.dump(-1, ' ', false, Json::error_handler_t::replace);
-  return {{"bytes", text.size()}, {"packed", base64(zlib_bytes(text))}};
+  return {{"reasons", profile.reasons}, {"files", files}, {"programs", programs}, {"counts", counts}, {"no_warp", no_warp}};
 }
 
 }  // namespace glint::report

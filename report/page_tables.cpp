@@ -112,7 +112,7 @@ std::string figure_tables(const nlohmann::ordered_json& data, const std::string&
   const Json& runs = data["runs"];
   if (runs.size() > kMaxRunsInTables) return fmt::format("<p class=\"note\">Without script the numbers of figures are shown for {} runs at most; stats.csv of a run has all of them.</p>\n", kMaxRunsInTables);
   std::string groups;
-  const Json& docs = data["stat_docs"];
+  const Json& docs = data.at("stat_docs");
   for (const std::string_view one : kBreakdowns)
     if (const std::string path(one); docs.contains(path)) groups += group(path, docs[path]["unit"], docs[path]["doc"], parts_of(runs, path), runs.size());
   for (const std::string_view one : kHistograms)

@@ -200,13 +200,13 @@ class Page(Report):
 class Browser(Report):
     def load(self, *named):
         """The page after its script has run, with all files that its figures hand out."""
-        keep = """<script>
+        keep = """
           const kept = {}, show = () => { document.body.dataset.kept = JSON.stringify(kept); };
           let last = null;
           URL.createObjectURL = (blob) => { last = blob; return "#"; };
           HTMLAnchorElement.prototype.click = function () { last.text().then((text) => { kept[this.download] = text; show(); }); };
-          document.querySelectorAll("figcaption button").forEach((button) => button.click());</script></body>"""
-        self.write("page.html", self.page(*named).replace("</body>", keep))
+          document.querySelectorAll("figcaption button").forEach((button) => button.click());"""
+        self.write("page.html", glint_case.when_ready(self.page(*named), keep))
         done = subprocess.run([CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={self.folder}/profile", "--enable-logging=stderr", "--window-size=1280,900",
                                "--virtual-time-budget=20000", "--dump-dom", f"file://{self.folder}/page.html"], capture_output=True, text=True, timeout=280)
         console = [line for line in done.stderr.splitlines() if "CONSOLE" in line]

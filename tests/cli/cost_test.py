@@ -241,7 +241,7 @@ class WatchedRun(CostTest):
         done = self.glint("report", "out", *arguments)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.page = (self.folder / "out/report.html").read_text()
-        data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', self.page, re.S).group(1))
+        data = glint_case.page_document(self.page)
         return data["runs"][0], data
 
 
@@ -308,7 +308,7 @@ class Browser(WatchedRun):
         self.document()
         script = ("const c = document.querySelector('.heat-run'); const r = c.querySelector('input[type=range]'); r.value = 20; r.dispatchEvent(new Event('input'));"
                   "c.querySelector('tr[data-map=rays] button').click();")
-        self.write("page.html", self.page.replace("</body>", f"<script>{script}</script></body>"))
+        self.write("page.html", glint_case.when_ready(self.page, script))
         done = subprocess.run([CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={self.folder}/profile", "--enable-logging=stderr",
                                "--window-size=1280,900", "--virtual-time-budget=20000", "--dump-dom", f"file://{self.folder}/page.html"],
                               capture_output=True, text=True, timeout=280)

@@ -1,8 +1,11 @@
 # What all tests of the command share: the binary, a folder of one's own to run it in, and a look at what it says.
 # SPDX-License-Identifier: Apache-2.0
 """For scripts that are called with GLINT SOURCE_DIR [SUITE...]."""
+import base64
+import json
 import os
 import pathlib
+import re
 import struct
 import subprocess
 import sys
@@ -61,6 +64,40 @@ def read_png(path):
             row[i] = (row[i] + [0, a, b, (a + b) // 2, nearest][method]) & 255
         out, above = out + bytes(row), bytes(row)
     return width, height, out
+
+
+def page_document(page):
+    """What a report holds, packed, as its script reads it: statistics, metrics, configuration and pictures run by run (docs/report.md)."""
+    data = json.loads(zlib.decompress(base64.b64decode(re.search(r'<script type="text/plain" id="data">([^<]*)</script>', page).group(1))))
+    at = lambda column, i: column[0 if len(column) == 1 else i]
+    for i, run in enumerate(data["runs"]):
+        for name in ("stats", "metrics", "config"):
+            run[name] = {key: at(column, i) for key, column in data[name].items()}
+        stats = run["stats"] = {path: value for path, value in run["stats"].items() if value is not None}
+        for path, parts in data["quotients"].items():
+            if all(part in stats for part in parts):
+                stats[path] = quotient(*(stats[part] for part in parts))
+        run.get("source", {}).update(data["listings"][run["source"]["listing"]] if "source" in run else {})
+    for run, name, source in re.findall(r'<img alt="" data-run="(\d+)" data-map="([^"]*)" src="([^"]*)">', page):
+        owner = data["runs"][int(run)]
+        (next(one for one in owner["heat"] if one["name"] == name) if name else owner)["picture"] = source
+    return data
+
+
+def quotient(over, under):
+    """Instance by instance, 0 where the second is 0; the number 0 stands for 0 in all of them."""
+    if 0 in (over, under):
+        return 0
+    count = max(len(over), len(under))
+    pairs = zip(over * (count // len(over)), under * (count // len(under)))
+    out = [a / b if b else 0 for a, b in pairs]
+    return out if any(out) else 0
+
+
+def when_ready(page, script):
+    """The report with a script of a test in it, which runs after the page's own."""
+    wait = f'const go = () => {{ {script} }}; const wait = () => (document.documentElement.dataset.ready === "yes" ? go() : setTimeout(wait, 20)); wait();'
+    return page.replace("</body>", f"<script>(() => {{ {wait} }})();</script></body>")
 
 
 def main():

@@ -1,8 +1,8 @@
 # `glint report`: the page is whole, loads nothing from elsewhere, and shows the numbers of stats.json, in a real browser too.
 # SPDX-License-Identifier: Apache-2.0
 """usage: report_test.py GLINT SOURCE_DIR SUITE...; the suite Browser needs Chromium and says so where there is none."""
-import base64
 import csv
+import html
 import html.parser
 import json
 import math
@@ -13,7 +13,6 @@ import subprocess
 import sys
 import tempfile
 import unittest
-import zlib
 
 import glint_case
 from glint_case import GLINT, ROOT, GlintTest
@@ -90,10 +89,19 @@ class ReportTest(GlintTest):
         return (self.folder / "report.html").read_text()
 
     def document(self, page):
-        return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.S).group(1))
+        return glint_case.page_document(page)
 
     def stats(self, name):
         return json.loads(pathlib.Path(self.runs[name], "stats.json").read_text())
+
+    def equal_to_stats_json(self, stats, name):
+        """How many numbers there are; `stats`: of the page, path by path."""
+        count = 0
+        for path, instance, value in leaves(self.stats(name)):
+            there = stats[path] if stats[path] == 0 else stats[path][instance]
+            self.assertEqual(trimmed(value) if isinstance(value, list) else value, there if there != 0 or not isinstance(value, list) else [], path)
+            count += 1
+        return count
 
     def total(self, name, pattern):
         return sum(value for path, _, value in leaves(self.stats(name)) if path == pattern)
@@ -102,13 +110,7 @@ class ReportTest(GlintTest):
 class Page(ReportTest):
     def test_every_number_of_stats_json_is_in_the_page(self):
         run = self.document(self.report("wknd"))["runs"][0]
-        count = 0
-        for path, instance, value in leaves(self.stats("wknd")):
-            there = run["stats"][path]
-            there = there if there == 0 else there[instance]
-            self.assertEqual(trimmed(value) if isinstance(value, list) else value, there if there != 0 or not isinstance(value, list) else [], path)
-            count += 1
-        self.assertGreater(count, 3000)
+        self.assertGreater(self.equal_to_stats_json(run["stats"], "wknd"), 3000)
         series = list(csv.DictReader(pathlib.Path(self.runs["wknd"], "series.csv").read_text().splitlines()))
         self.assertEqual(run["series"]["ipc"], [float(row["ipc"]) for row in series])
         self.assertEqual(sum(op["issues"] for op in run["profile"]["ops"]), self.total("wknd", "gpu.core[*].instructions"))
@@ -291,7 +293,7 @@ class Browser(ReportTest):
     def load(self, *names, script=""):
         """The page's document after its script has run, and then `script`; the console must have said nothing."""
         page = self.report(*names)
-        self.write("report.html", page.replace("</body>", f"<script>{script}</script></body>"))
+        self.write("report.html", glint_case.when_ready(page, script))
         done = subprocess.run(
             [CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={self.folder}/profile", "--enable-logging=stderr", "--window-size=1280,900",
              "--virtual-time-budget=20000", "--dump-dom", f"file://{self.folder}/report.html"],
@@ -343,21 +345,25 @@ class Browser(ReportTest):
             self.assertEqual(rows[shown], expected, stage)
         self.assertEqual(sum(row[-1] for row in rows.values()), sum(value for path, _, value in leaves(self.stats(name)) if path.startswith("gpu.core[*].latency_by_class::")))
 
-    def test_what_the_page_packs_is_unpacked_whatever_kind_of_blocks_it_has(self):
-        text = (ROOT / "docs/report.md").read_text() * 3 + "\u2013" * 300
-        kinds = {"stored": (0, zlib.Z_DEFAULT_STRATEGY), "fixed": (9, zlib.Z_FIXED), "dynamic": (9, zlib.Z_DEFAULT_STRATEGY), "fast": (1, zlib.Z_HUFFMAN_ONLY)}
-        packed = {}
-        for kind, (level, strategy) in kinds.items():
-            squeeze = zlib.compressobj(level, zlib.DEFLATED, 15, 9, strategy)
-            packed[kind] = base64.b64encode(squeeze.compress(text.encode()) + squeeze.flush()).decode()
-        unpack = (ROOT / "web/src/inflate.js").read_text().replace("export function", "function")
-        self.write("inflate.html", f"""<body><script>{unpack}
-          const packed = {json.dumps(packed)}, text = {json.dumps(text)}, size = {len(text.encode())};
-          for (const kind in packed) document.body.dataset[kind] = unpackText(packed[kind], size) === text;</script></body>""")
-        done = subprocess.run([CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={self.folder}/profile", "--dump-dom", f"file://{self.folder}/inflate.html"],
-                              capture_output=True, text=True, timeout=280)
-        for kind in kinds:
-            self.assertIn(f'data-{kind}="true"', done.stdout)
+    def test_the_browser_reads_every_number_of_stats_json_whatever_the_page_holds_of_it(self):
+        for names in (("wknd",), ("wknd", "slow")):
+            read = "".join((ROOT / "web/src" / name).read_text() for name in ("packed.js", "document.js")).replace("export ", "").replace('import { unpacked } from "./packed.js";', "")
+            _, text = self.load(*names, script=f"{read} readDocument().then((data) => {{ document.body.dataset.kept = JSON.stringify(data.runs.map(({{ stats, metrics, config }}) => ({{ stats, metrics, config }}))); }});")
+            kept = json.loads(html.unescape(re.search(r'data-kept="([^"]*)"', text).group(1)))
+            for name, run in zip(names, kept):
+                self.assertGreater(self.equal_to_stats_json(run["stats"], name), 3000)
+                self.assertEqual(run["config"]["rt.box.latency"], 40 if name == "slow" else 13)
+                self.assertEqual(run["metrics"]["cycles"], self.total(name, "gpu.cycles"))
+
+    def test_a_damaged_page_and_an_old_browser_are_told(self):
+        page = self.report("wknd")
+        at = page.index('id="data">') + 1000
+        for name, text, told in (("damaged", page[:at] + ("A" * 40) + page[at + 40:], "This page is damaged"), ("old", page.replace("<head>", "<head><script>delete window.DecompressionStream</script>", 1), "2023 or later")):
+            self.write(f"{name}.html", text)
+            done = subprocess.run([CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={self.folder}/profile", "--virtual-time-budget=20000", "--dump-dom", f"file://{self.folder}/{name}.html"],
+                                  capture_output=True, text=True, timeout=280)
+            self.assertRegex(done.stdout, rf'<p class="note failed">[^<]*{told}', name)
+            self.assertNotIn('data-ready="yes"', done.stdout)
 
     def test_panes_of_the_source_view_have_the_instructions_of_stats_json_shader_by_shader(self):
         walk = """

@@ -1,5 +1,6 @@
-// The page: reads the document that `glint report` embedded and puts its sections in order.
+// The page: draws the document that `glint report` embedded and puts its sections in order.
 // SPDX-License-Identifier: Apache-2.0
+import { readDocument } from "./document.js";
 import { h } from "./dom.js";
 import { figure, figures as figuresOf } from "./figure.js";
 import * as caches from "./figures/caches.js";
@@ -22,57 +23,66 @@ import * as stages from "./figures/stages.js";
 import { timeline } from "./figures/timeline.js";
 import * as traversal from "./figures/traversal.js";
 import { labelRuns, Run } from "./model.js";
+import { failed } from "./packed.js";
 import { bounds } from "./sections/bounds.js";
 import { deltas, means } from "./sections/compare.js";
 import { heat } from "./sections/heat.js";
 import { keys } from "./sections/keys.js";
+import { metrics } from "./sections/metrics.js";
 import { overview, overviewOfSuites, structure } from "./sections/overview.js";
 import { source } from "./sections/source.js";
 import { stalls } from "./sections/stalls.js";
 import { suites } from "./sections/suites.js";
 import { kMaxColours } from "./theme.js";
 
-const data = JSON.parse(document.getElementById("data").textContent);
-const docs = { ...data.stat_docs, keys: data.key_docs };
-const runs = labelRuns(data.runs.map((run, index) => new Run(run, index, docs)));
-
 // Where a run is a colour, only so many runs as there are colours.
-function ofRuns({ info, make }) {
+function ofRuns({ info, make }, runs) {
   const shown = info.coloured ? runs.slice(0, kMaxColours) : runs;
   const note = [typeof info.note === "function" ? info.note(shown) : info.note, shown.length < runs.length ? `The first ${shown.length} runs.` : ""].join(" ");
   return { info: { ...info, note }, make: () => make(shown) };
 }
-const figures = (...list) => figuresOf(list.map(ofRuns), runs);
 // One a run that has a trace.
-function timelines() {
+function timelines(runs) {
   const drawn = runs.map((run) => timeline(run, run.index)).filter(Boolean);
   return drawn.length ? h("div", { class: "figures" }, drawn.map(({ info, chart }) => figure(info, chart))) : null;
 }
 const kNames = { profile: "Profile", series: "Time series", timeline: "Warp timeline", heat: "Maps of cost" };
-const missing = (what, option) => (runs.some((run) => run.data[what]) ? null : h("p", { class: "note" }, `${kNames[what]} not recorded: run with `, h("code", {}, option), "."));
+const missing = (runs, what, option) => (runs.some((run) => run.data[what]) ? null : h("p", { class: "note" }, `${kNames[what]} not recorded: run with `, h("code", {}, option), "."));
 
 function section(id, title, lead, ...content) {
   const known = content.flat().filter(Boolean);
   return known.length ? h("section", { id }, h("h2", {}, title), lead ? h("p", { class: "lead" }, lead) : null, known) : null;
 }
 
-const sections = runs.length === 0 ? [overviewOfSuites(data)] : [
-  overview(runs),
-  section("comparison", "Comparison", null, means(runs), figures(ipc), deltas(runs, data.metric_docs)),
-  section("bounds", "How near to the limits", "Each resource against the most it could do in the time the run took. The highest is the one to look at first.", bounds(runs)),
-  section("stalls", "Where the time goes", "The largest reasons why a scheduler issued nothing, as shares of all scheduler cycles, with the keys that bear on them.", stalls(runs), figures(cpiStack)),
-  section("instructions", "Instructions", null, figures(instructionMix, stages, stageCycles, ops, opCycles, opLatency), missing("profile", "--profile")),
-  section("rays", "Rays and RT units", null, figures(rtUse, traversal, rtCycles, fetchMix, rayHistograms.nodes, rayHistograms.latency)),
-  section("memory", "Memory", null, figures(memoryLatency.stages, caches.l1, caches.l2, memoryLatency.spread, dram.use, dram.clocks)),
-  section("time", "Over time", null, figures(series) ?? missing("series", "--sample CYCLES"), timelines() ?? missing("timeline", "--trace")),
-  section("heat", "What each pixel cost", "Colours go in even steps from 0 to what 99 of 100 pixels do not exceed.", heat(runs, data.heat_scale) ?? missing("heat", "--heat")),
-  section("source", "Source", "Where the cycles of schedulers went, line by line: at the instruction that issued, or at the one whose warp was nearest to issue.", source(runs) ?? missing("profile", "--profile")),
-  section("structure", "Scene and structures", null, figures(geometry), structure(runs)),
-];
+function sectionsOf(data, runs) {
+  if (runs.length === 0) return [overviewOfSuites(data)];
+  const figures = (...list) => figuresOf(list.map((one) => ofRuns(one, runs)), runs);
+  return [
+    overview(runs),
+    section("comparison", "Comparison", null, means(runs), figures(ipc), deltas(runs, data.metric_docs)),
+    section("bounds", "How near to the limits", "Each resource against the most it could do in the time the run took. The highest is the one to look at first.", bounds(runs)),
+    section("stalls", "Where the time goes", "The largest reasons why a scheduler issued nothing, as shares of all scheduler cycles, with the keys that bear on them.", stalls(runs), figures(cpiStack)),
+    section("instructions", "Instructions", null, figures(instructionMix, stages, stageCycles, ops, opCycles, opLatency), missing(runs, "profile", "--profile")),
+    section("rays", "Rays and RT units", null, figures(rtUse, traversal, rtCycles, fetchMix, rayHistograms.nodes, rayHistograms.latency)),
+    section("memory", "Memory", null, figures(memoryLatency.stages, caches.l1, caches.l2, memoryLatency.spread, dram.use, dram.clocks)),
+    section("time", "Over time", null, figures(series) ?? missing(runs, "series", "--sample CYCLES"), timelines(runs) ?? missing(runs, "timeline", "--trace")),
+    section("heat", "What each pixel cost", "Colours go in even steps from 0 to what 99 of 100 pixels do not exceed.", heat(runs, data.heat_scale) ?? missing(runs, "heat", "--heat")),
+    section("source", "Source", "Where the cycles of schedulers went, line by line: at the instruction that issued, or at the one whose warp was nearest to issue.", source(runs) ?? missing(runs, "profile", "--profile")),
+    section("structure", "Scene and structures", null, figures(geometry), structure(runs)),
+  ];
+}
 
-document.getElementById("figures").append(...sections.filter(Boolean));
-document.getElementById("all-keys")?.append(keys(runs, data.key_docs)); // a page of suites alone has no place for them
-suites(data);
-document.getElementById("contents").append(h("a", { href: "#overview", class: "brand" }, "Glint"), ...[...document.querySelectorAll("section > h2")].map((title) => h("a", { href: `#${title.parentElement.id}` }, title.textContent)));
-document.getElementById("footer").append(`Glint ${data.version}. `, ...runs.map((run) => h("p", {}, h("code", {}, run.data.run.command.join(" ")), ` · ${run.facts.git} · ${run.facts.compiler} · ${run.facts.started}`)));
-document.documentElement.dataset.ready = "yes"; // for tests: all of the above has run
+function draw(data) {
+  const docs = { ...data.stat_docs, keys: data.key_docs };
+  const runs = labelRuns(data.runs.map((run, index) => new Run(run, index, docs)));
+  document.getElementById("figures").append(...sectionsOf(data, runs).filter(Boolean));
+  document.getElementById("all-keys")?.append(keys(runs, data.key_docs)); // a page of suites alone has no place for them
+  document.getElementById("all-metrics")?.append(metrics(runs, data.metric_docs));
+  suites(data);
+  document.getElementById("contents").append(h("a", { href: "#overview", class: "brand" }, "Glint"), ...[...document.querySelectorAll("section > h2")].map((title) => h("a", { href: `#${title.parentElement.id}` }, title.textContent)));
+  document.getElementById("footer").append(`Glint ${data.version}. `, ...runs.map((run) => h("p", {}, h("code", {}, run.data.run.command.join(" ")), ` · ${run.facts.git} · ${run.facts.compiler} · ${run.facts.started}`)));
+  document.documentElement.dataset.ready = "yes"; // for tests: all of the above has run
+  document.getElementById(location.hash.slice(1))?.scrollIntoView(); // what the address names was not there when the browser looked
+}
+
+readDocument().then(draw).catch(failed);

@@ -10,6 +10,14 @@ export class Run {
     this.docs = docs;
     this.facts = data.run;
     this.label = ""; // set by labelRuns()
+    this.breakdowns = new Map(); // their keys by path, in order
+    for (const key of Object.keys(data.stats)) {
+      const end = key.indexOf("::");
+      if (end < 0) continue;
+      const path = key.slice(0, end), keys = this.breakdowns.get(path);
+      if (keys) keys.push(key);
+      else this.breakdowns.set(path, [key]);
+    }
   }
 
   // The values of a statistic, one an instance; [] where the run has none.
@@ -28,7 +36,7 @@ export class Run {
   // The parts of a breakdown by name, in order: {issued: 12, ...}.
   parts(path) {
     const out = {};
-    for (const key of Object.keys(this.data.stats)) if (key.startsWith(path + "::")) out[key.slice(path.length + 2)] = this.sum(key);
+    for (const key of this.breakdowns.get(path) ?? []) out[key.slice(path.length + 2)] = this.sum(key);
     return out;
   }
   // The sum of the parts that `wanted` takes.

@@ -1,8 +1,9 @@
 // Runs the page's script, which stands in it packed.
 // SPDX-License-Identifier: Apache-2.0
-import { unpackText } from "./inflate.js";
+import { failed, unpacked } from "./packed.js";
 
-const packed = document.getElementById("packed");
-const script = document.createElement("script");
-script.textContent = unpackText(packed.textContent, Number(packed.dataset.bytes));
-document.body.append(script);
+unpacked("script").then((text) => {
+  const script = document.createElement("script");
+  script.textContent = text;
+  document.body.append(script);
+}, failed);

@@ -130,7 +130,7 @@ TEST_CASE("a profile and a source document of two runs make no page") {
   ProfileTable other = profile();
   other.rows[1].index = 4;
   CHECK_THROWS_AS(page_source(other, map()), UserError);
-  CHECK(page_source(profile(), map())["bytes"].get<size_t>() > 300);
+  CHECK(page_source(profile(), map())["counts"].size() > 0);
 }
 
 }  // namespace glint::report

@@ -56,14 +56,15 @@ function single(run) {
 
 function several(runs) {
   const numbers = numbersOf(runs);
-  const best = (one) => Math.max(...runs.map((run) => one.value(run) ?? -Infinity));
-  const row = (run) =>
+  const values = numbers.map((one) => runs.map((run) => one.value(run)));
+  const best = values.map((column) => Math.max(...column.map((value) => value ?? -Infinity)));
+  const row = (run, i) =>
     h(
       "tr",
       {},
       h("td", { class: "thumb" }, run.data.picture ? h("img", { src: run.data.picture, alt: "" }) : null),
       h("th", { scope: "row", title: run.data.directory }, h("span", { class: "dot", style: `background:var(--${runColour(run.index)})` }), run.label, h("small", {}, about(run))),
-      numbers.map((one) => h("td", { class: "n", "data-stat": one.stat, "data-value": one.value(run), "data-best": one.value(run) === best(one) }, one.text(one.value(run)))),
+      numbers.map((one, k) => h("td", { class: "n", "data-stat": one.stat, "data-value": values[k][i], "data-best": values[k][i] === best[k] }, one.text(values[k][i]))),
     );
   return [
     h("header", { class: "hero" }, h("p", { class: "kicker" }, "Glint report"), h("h1", {}, `${runs.length} runs`), h("p", { class: "about" }, [...new Set(runs.map((run) => run.workload))].join(", "))),

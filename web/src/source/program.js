@@ -1,9 +1,5 @@
 // What the source view draws of a run: its programs, what each line cost, and which lines belong together.
 // SPDX-License-Identifier: Apache-2.0
-import { unpackText } from "../inflate.js";
-
-// The text that report/page_source.h packed.
-export const unpack = ({ packed, bytes }) => JSON.parse(unpackText(packed, bytes));
 
 const kCounts = ["issues", "lanes", "sectors", "accesses", "ended", "latency"]; // behind program and index, then pairs of reasons
 

@@ -5,7 +5,7 @@ import { number, percent } from "../format.js";
 import { flameGraph } from "./flame.js";
 import { kMeasures, legend, mostly } from "./heat.js";
 import { Pane } from "./pane.js";
-import { Program, unpack } from "./program.js";
+import { Program } from "./program.js";
 
 const kKinds = ["glsl", "spirv", "isa"];
 const base = (path) => path.split("/").pop();
@@ -143,9 +143,8 @@ export function sourceView(source) {
   const place = h("div", { class: "view-place" });
   let view = null;
   setTimeout(() => {
-    const unpacked = unpack(source);
-    view = new View(unpacked);
-    place.append(view.element, flameGraph(unpacked, (file, line) => view.open(file, line)));
+    view = new View(source);
+    place.append(view.element, flameGraph(source, (file, line) => view.open(file, line)));
     view.showProgram(); // in the page, so that panes have a height to scroll in
     document.documentElement.dataset.source = "yes"; // for tests: all of the above has run
   });

@@ -1,0 +1,53 @@
+// Reads the page's document: undoes what report/page_columns.h did, run by run, and hands each run its pictures.
+// SPDX-License-Identifier: Apache-2.0
+import { unpacked } from "./packed.js";
+
+// The value of run `index` in a column; one value stands for all runs.
+const at = (column, index) => (column.length === 1 ? column[0] : column[index]) ?? null;
+
+// Of each run what it has.
+function rows(columns, count) {
+  const out = Array.from({ length: count }, () => ({}));
+  for (const [name, column] of Object.entries(columns))
+    for (let i = 0; i < count; ++i) {
+      const value = at(column, i);
+      if (value !== null) out[i][name] = value;
+    }
+  return out;
+}
+
+// Instance by instance; the number 0 stands for 0 in all instances, here and in the result.
+function quotient(over, under) {
+  if (over === 0 || under === 0) return 0;
+  const size = Math.max(over.length, under.length);
+  const out = Array.from({ length: size }, (_, i) => {
+    const [a, b] = [at(over, i), at(under, i)];
+    return b === 0 ? 0 : a / b;
+  });
+  return out.some((value) => value !== 0) ? out : 0;
+}
+
+function addQuotients(stats, quotients) {
+  for (const [name, [over, under]] of Object.entries(quotients)) if (over in stats && under in stats) stats[name] = quotient(stats[over], stats[under]);
+}
+
+// The page has each picture once, where it is seen without script.
+function givePictures(runs) {
+  for (const [, run, map, source] of document.getElementById("pictures").textContent.matchAll(/<img alt="" data-run="(\d+)" data-map="([^"]*)" src="([^"]*)">/g)) {
+    const { [run]: owner } = runs;
+    if (map) owner.heat.find(({ name }) => name === map).picture = source;
+    else owner.picture = source;
+  }
+}
+
+export async function readDocument() {
+  const data = JSON.parse(await unpacked("data"));
+  const [stats, metrics, config] = [data.stats, data.metrics, data.config].map((columns) => rows(columns, data.runs.length));
+  data.runs.forEach((run, i) => {
+    addQuotients(stats[i], data.quotients);
+    Object.assign(run, { stats: stats[i], metrics: metrics[i], config: config[i] });
+    if (run.source) Object.assign(run.source, data.listings[run.source.listing]);
+  });
+  givePictures(data.runs);
+  return data;
+}
