@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "report/page_rows.h"
+
 namespace glint::report {
 namespace {
 
@@ -210,10 +212,13 @@ Json page_columns(const Json& data) {
     for (const auto& [name, columns] : turned) columns->add(i, runs[i].value(name, Json::object()));
     Json& run = list.emplace_back(Json::object());
     for (const auto& [name, value] : runs[i].items()) {
-      if (name == "heat") run[name] = without_pictures(value);
+      if (name == "timeline") run[name] = timeline_columns(value);
+      else if (name == "heat") run[name] = without_pictures(value);
       else if (name != "stats" && name != "metrics" && name != "config" && name != "picture") run[name] = value;
     }
-    if (run.contains("source")) share_listing(run["source"], listings);
+    if (!run.contains("source")) continue;
+    share_listing(run["source"], listings);
+    run["source"]["counts"] = count_columns(run["source"]["counts"]);
   }
   Json out = Json::object();
   for (const auto& [name, value] : data.items()) out[name] = name == "runs" ? std::move(list) : value;

@@ -5,6 +5,7 @@ import ast
 import base64
 import collections
 import gzip
+import html
 import json
 import math
 import pathlib
@@ -305,15 +306,20 @@ class Report(WatchedRun):
 
 class Browser(WatchedRun):
     def test_the_slider_uncovers_the_picture_and_a_click_changes_the_map(self):
-        self.document()
+        run, _ = self.document()
+        keep = f"{glint_case.reader()} readDocument().then(({{ runs: [run] }}) => {{ document.body.dataset.kept = JSON.stringify([run.timeline.slices, run.heat, run.picture]); }});"
         script = ("const c = document.querySelector('.heat-run'); const r = c.querySelector('input[type=range]'); r.value = 20; r.dispatchEvent(new Event('input'));"
                   "c.querySelector('tr[data-map=rays] button').click();")
-        self.write("page.html", glint_case.when_ready(self.page, script))
+        self.write("page.html", glint_case.when_ready(self.page, script + keep))
         done = subprocess.run([CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={self.folder}/profile", "--enable-logging=stderr",
                                "--window-size=1280,900", "--virtual-time-budget=20000", "--dump-dom", f"file://{self.folder}/page.html"],
                               capture_output=True, text=True, timeout=280)
         self.assertEqual([line for line in done.stderr.splitlines() if "CONSOLE" in line], [])
         self.assertIn('data-ready="yes"', done.stdout)
+        slices, heat, picture = json.loads(html.unescape(re.search(r'data-kept="([^"]*)"', done.stdout).group(1)))
+        self.assertEqual(sorted(slices), sorted(run["timeline"]["slices"]))
+        self.assertEqual([begin for _, _, begin, *_ in slices], sorted(begin for _, _, begin, *_ in slices))
+        self.assertEqual((heat, picture), (run["heat"], run["picture"]))
         over = re.search(r'<img class="over"[^>]*>', done.stdout).group(0)
         self.assertIn("inset(0px 0px 0px 20%)", over)
         self.assertIn('alt="Map of rays"', over)

@@ -77,11 +77,24 @@ def page_document(page):
         for path, parts in data["quotients"].items():
             if all(part in stats for part in parts):
                 stats[path] = quotient(*(stats[part] for part in parts))
-        run.get("source", {}).update(data["listings"][run["source"]["listing"]] if "source" in run else {})
+        if "timeline" in run:
+            run["timeline"]["slices"] = slices(run["timeline"]["slices"])
+        if "source" in run:
+            run["source"].update(data["listings"][run["source"]["listing"]])
     for run, name, source in re.findall(r'<img alt="" data-run="(\d+)" data-map="([^"]*)" src="([^"]*)">', page):
         owner = data["runs"][int(run)]
         (next(one for one in owner["heat"] if one["name"] == name) if name else owner)["picture"] = source
     return data
+
+
+def slices(columns):
+    """Rows of a timeline: begins are counted from the end of the one before, of the same kind and thread."""
+    rows, ends = [], {}
+    for thread, kind, gap, length, *rest in zip(*columns):
+        begin = ends.get((kind, thread), 0) + gap
+        ends[kind, thread] = begin + length
+        rows.append([thread, kind, begin, length, *(value for value in rest if value is not None)])
+    return rows
 
 
 def quotient(over, under):
@@ -92,6 +105,12 @@ def quotient(over, under):
     pairs = zip(over * (count // len(over)), under * (count // len(under)))
     out = [a / b if b else 0 for a, b in pairs]
     return out if any(out) else 0
+
+
+def reader():
+    """The page's own reader of its document, as a script: it has the function readDocument()."""
+    parts = [(ROOT / "web/src" / name).read_text() for name in ("packed.js", "document.js")]
+    return "".join(parts).replace("export ", "").replace('import { unpacked } from "./packed.js";', "")
 
 
 def when_ready(page, script):

@@ -130,6 +130,8 @@ class Page(ReportTest):
         self.assertIn("default-src 'none'", policy[0])
         pictures = sum(len(attributes["src"]) for tag, attributes, _ in elements.found if tag == "img")
         self.assertLess(len(page.encode()) - pictures, 1_000_000)
+        sources = [attributes["src"] for tag, attributes, _ in elements.found if tag == "img"]
+        self.assertEqual((len(sources), len(re.findall("data:image/png;base64,", page))), (1, 1))
         self.assertIn("Apache ECharts", page)
         self.assertIn("Redistribution and use in source and binary forms", page)
 
@@ -146,6 +148,22 @@ class Page(ReportTest):
                 shown = re.findall(r'<td class="n">(.*?)</td>', rows[metric])[column]
                 plain = float(shown.replace("\u202f", "").replace("−", "-"))
                 self.assertAlmostEqual(plain, float(value), delta=abs(float(value)) * 6e-4 + 1e-12, msg=metric)
+
+    def test_many_runs_have_their_key_metrics_without_script_and_weigh_little(self):
+        sizes = {}
+        for count in (1, 9, 46):
+            page = self.report(*["wknd", "slow"][:count], *["slow"] * (count - 2))
+            elements = Elements(page)
+            sizes[count] = len(page.encode()) - sum(len(attributes["src"]) for tag, attributes, _ in elements.found if tag == "img")
+            self.assertEqual("key figures of its" in page, count > 8)
+        self.assertLess(sizes[46], 1_000_000)
+        static = page[page.index('id="metrics"'):page.index('id="data"')]
+        names = re.findall(r"<code>([\w%]+)</code></th>", static)
+        rows = [[float(value.replace("\u202f", "").replace("−", "-")) for value in re.findall(r'<td class="n">(.*?)</td>', row)] for row in re.findall(r'<tr><th scope="row">.*?</tr>', static)]
+        self.assertEqual((len(names), len(rows)), (10, 46))
+        for row, run in zip(rows, self.document(page)["runs"]):
+            for name, value in zip(names, row):
+                self.assertAlmostEqual(value, run["metrics"][name], delta=abs(value) * 6e-4 + 1e-12, msg=name)
 
     def test_the_numbers_of_figures_read_without_script_too(self):
         page = self.report("wknd", "slow")
@@ -317,6 +335,12 @@ class Browser(ReportTest):
         all_waits = sorted((self.total("wknd", p) for p in {p for p, _, _ in leaves(self.stats("wknd")) if "issue_slots::" in p and not p.endswith("::issued")}), reverse=True)
         self.assertEqual(sorted(stalls.values(), reverse=True), all_waits[:3])
         self.tables_equal_stats(text, "wknd")
+        table = re.search(r'<div id="all-metrics">(.*?)</table>', text, re.S).group(1)
+        drawn = {name: float(value) for name, value in re.findall(r'<code>([^<]+)</code></th><td class="n" data-value="([^"]*)"', table)}
+        given = [line.split()[:2] for line in self.glint("stats", self.runs["wknd"], "--format", "metrics").stdout.splitlines()]
+        self.assertEqual(set(drawn), {name for name, value in given if value != "-"})
+        for name, value in ((name, float(value)) for name, value in given if value != "-"):
+            self.assertAlmostEqual(drawn[name], value, delta=abs(value) * 1e-5, msg=name)
 
     def tables_equal_stats(self, text, name):
         """Tables of figures have the sums of stats.json, and every figure has a drawing."""
@@ -347,8 +371,7 @@ class Browser(ReportTest):
 
     def test_the_browser_reads_every_number_of_stats_json_whatever_the_page_holds_of_it(self):
         for names in (("wknd",), ("wknd", "slow")):
-            read = "".join((ROOT / "web/src" / name).read_text() for name in ("packed.js", "document.js")).replace("export ", "").replace('import { unpacked } from "./packed.js";', "")
-            _, text = self.load(*names, script=f"{read} readDocument().then((data) => {{ document.body.dataset.kept = JSON.stringify(data.runs.map(({{ stats, metrics, config }}) => ({{ stats, metrics, config }}))); }});")
+            _, text = self.load(*names, script=f"{glint_case.reader()} readDocument().then((data) => {{ document.body.dataset.kept = JSON.stringify(data.runs.map(({{ stats, metrics, config }}) => ({{ stats, metrics, config }}))); }});")
             kept = json.loads(html.unescape(re.search(r'data-kept="([^"]*)"', text).group(1)))
             for name, run in zip(names, kept):
                 self.assertGreater(self.equal_to_stats_json(run["stats"], name), 3000)

@@ -31,6 +31,23 @@ function addQuotients(stats, quotients) {
   for (const [name, [over, under]] of Object.entries(quotients)) if (over in stats && under in stats) stats[name] = quotient(stats[over], stats[under]);
 }
 
+const turned = (columns) => (columns[0] ?? []).map((_, i) => columns.map((column) => column[i]));
+
+// Slices by their begin, those that others lie in first.
+function slicesOf({ slices, kinds }) {
+  const ends = {}, depths = kinds.map((name) => ({ warp: 0, stage: 1 })[name] ?? 2);
+  const rows = turned(slices).map(([thread, kind, gap, length, ...rest]) => {
+    const key = `${kind} ${thread}`, begin = (ends[key] ?? 0) + gap;
+    ends[key] = begin + length;
+    return [thread, kind, begin, length, ...rest.filter((value) => value !== null)];
+  });
+  return rows.sort((a, b) => a[2] - b[2] || depths[a[1]] - depths[b[1]]);
+}
+
+function sourceOf({ counts, ...rest }, listings) {
+  return { ...rest, ...listings[rest.listing], counts: turned(counts).map((row) => row.flat()) };
+}
+
 // The page has each picture once, where it is seen without script.
 function givePictures(runs) {
   for (const [, run, map, source] of document.getElementById("pictures").textContent.matchAll(/<img alt="" data-run="(\d+)" data-map="([^"]*)" src="([^"]*)">/g)) {
@@ -46,7 +63,8 @@ export async function readDocument() {
   data.runs.forEach((run, i) => {
     addQuotients(stats[i], data.quotients);
     Object.assign(run, { stats: stats[i], metrics: metrics[i], config: config[i] });
-    if (run.source) Object.assign(run.source, data.listings[run.source.listing]);
+    if (run.source) run.source = sourceOf(run.source, data.listings);
+    if (run.timeline) run.timeline.slices = slicesOf(run.timeline);
   });
   givePictures(data.runs);
   return data;

@@ -43,11 +43,12 @@ TEST_CASE("a run without a statistic does not get it from a quotient") {
 }
 
 TEST_CASE("listings of the same programs stand once, and pictures are left to the page") {
-  const Json out = columns_of(R"([{"picture": "data:", "heat": [{"name": "rays", "picture": "data:", "max": 2}], "source": {"files": [1], "programs": [2], "counts": [3]}},
-                                  {"source": {"files": [1], "programs": [2], "counts": [4]}}, {"source": {"files": [1], "programs": [5], "counts": [6]}}])");
+  const Json out = columns_of(R"([{"picture": "data:", "heat": [{"name": "rays", "picture": "data:", "max": 2}], "source": {"files": [1], "programs": [2], "counts": [[1, 2, 3, 4, 5, 6, 7, 8], [0, 9, 3, 4, 5, 6, 7, 8, 1, 20]]}},
+                                  {"source": {"files": [1], "programs": [2], "counts": []}}, {"source": {"files": [1], "programs": [5], "counts": []}}])");
 
   CHECK(out["listings"] == Json::parse(R"([{"files": [1], "programs": [2]}, {"files": [1], "programs": [5]}])"));
-  CHECK(out["runs"].dump() == R"([{"heat":[{"name":"rays","max":2}],"source":{"counts":[3],"listing":0}},{"source":{"counts":[4],"listing":0}},{"source":{"counts":[6],"listing":1}}])");
+  CHECK(out["runs"].dump() == R"([{"heat":[{"name":"rays","max":2}],"source":{"counts":[[1,0],[2,9],[3,3],[4,4],[5,5],[6,6],[7,7],[8,8],[[],[1,20]]],"listing":0}},)"
+                             R"({"source":{"counts":[[],[],[],[],[],[],[],[],[]],"listing":0}},{"source":{"counts":[[],[],[],[],[],[],[],[],[]],"listing":1}}])");
 }
 
 TEST_CASE("with too many numbers for a small page, counts are added up over instances, and shares of an instance are left out") {
@@ -62,4 +63,10 @@ TEST_CASE("with too many numbers for a small page, counts are added up over inst
   CHECK(few["count"][0].size() == 100'001);
   CHECK(few["share"] == Json::parse("[[0.5, 0.25]]"));
   CHECK(many.dump() == R"({"count":[[200002]],"one":[[0.5]],"bins":[[[2,2,3]]],"zero":[0],"total":[[7]],"more":[[100000]]})");
+}
+
+TEST_CASE("slices of a timeline stand by kind and thread, each behind the end of the one before") {
+  const Json out = columns_of(R"([{"timeline": {"begin": 5, "slices": [[1, 0, 0, 10, 3], [2, 0, 0, 4, 3], [2, 1, 1, 2, 5, 7], [2, 0, 6, 1, 4], [1, 1, 3, 2, 5, 8]]}}])");
+
+  CHECK(out["runs"][0]["timeline"].dump() == R"({"begin":5,"slices":[[1,2,2,1,2],[0,0,0,1,1],[0,0,2,3,1],[10,4,1,2,2],[3,3,4,5,5],[null,null,null,8,7]]})");
 }
