@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "base/diagnostics.h"
@@ -228,14 +229,17 @@ Flip flip(const Picture& a, const Picture& b, double ppd) {
   const double largest = std::pow(hyab(hunt_lab(xyz.of({0, 1, 0})), hunt_lab(xyz.of({0, 0, 1}))), kColorExponent);
   Flip out;
   double all = 0;
+  bool is_measured = true;
   for (size_t p = 0; p < x.lab.size(); ++p) {
     const double apart = std::max(std::abs(fx.edges[p] - fy.edges[p]), std::abs(fx.points[p] - fy.points[p]));
     const double feature_error = std::min(1.0, std::sqrt(apart / std::numbers::sqrt2));
-    const double error = std::pow(color_error(x.lab[p], y.lab[p], largest), 1 - feature_error);
+    const bool is_beyond = is_beyond_measure(a, b, p);
+    const double error = is_beyond ? 1.0 : std::pow(color_error(x.lab[p], y.lab[p], largest), 1 - feature_error);
+    is_measured &= !is_beyond;
     out.map.push_back(float(error));
     all += error;
   }
-  out.mean = out.map.empty() ? 0 : all / double(out.map.size());
+  out.mean = !is_measured ? std::numeric_limits<double>::quiet_NaN() : out.map.empty() ? 0 : all / double(out.map.size());
   return out;
 }
 

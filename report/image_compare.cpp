@@ -20,6 +20,28 @@ constexpr double kC1 = 0.01 * 0.01, kC2 = 0.03 * 0.03;  // (K1 L)^2 and (K2 L)^2
 
 double known(float value) { return std::isfinite(value) ? double(value) : 0.0; }
 
+// How the three channels from `first` differ.
+struct PixelPair {
+  bool is_same = true, is_beyond_measure = false, is_finite = true;
+  double squares = 0, largest = 0;  // of differences between finite values
+};
+
+PixelPair pair_of(const Picture& a, const Picture& b, size_t first) {
+  PixelPair out;
+  for (size_t c = first; c < first + 3; ++c) {
+    const float x = a.rgb[c], y = b.rgb[c];
+    const bool is_same = x == y || (std::isnan(x) && std::isnan(y)), is_finite = std::isfinite(x) && std::isfinite(y);
+    out.is_same &= is_same;
+    out.is_finite &= is_finite;
+    out.is_beyond_measure |= !is_same && !is_finite;
+    if (!is_finite) continue;
+    const double apart = std::abs(double(x) - double(y));
+    out.squares += apart * apart;
+    out.largest = std::max(out.largest, apart);
+  }
+  return out;
+}
+
 void check_sizes(const Picture& a, const Picture& b) {
   if (a.width == b.width && a.height == b.height) return;
   throw UserError({}, fmt::format("pictures of {}x{} and {}x{} pixels cannot be compared", a.width, a.height, b.width, b.height));
@@ -79,19 +101,23 @@ double ssim(const Picture& a, const Picture& b) {
 
 }  // namespace
 
+bool is_beyond_measure(const Picture& a, const Picture& b, size_t pixel) { return pair_of(a, b, 3 * pixel).is_beyond_measure; }
+
 ImageDifference difference(const Picture& a, const Picture& b) {
   check_sizes(a, b);
   ImageDifference out;
   double sum = 0;
   for (size_t i = 0; i < a.rgb.size(); i += 3) {
-    double most = 0;
-    for (size_t c = i; c < i + 3; ++c) {
-      const double apart = std::abs(known(a.rgb[c]) - known(b.rgb[c]));
-      sum += apart * apart;
-      most = std::max(most, apart);
-    }
-    out.pixels_apart += most > 0;
-    out.largest = std::max(out.largest, most);
+    const PixelPair pixel = pair_of(a, b, i);
+    sum += pixel.squares;
+    out.pixels_apart += !pixel.is_same;
+    out.pixels_not_finite += pixel.is_same && !pixel.is_finite;
+    if (pixel.is_beyond_measure && out.pixels_beyond_measure++ == 0) out.first_beyond_measure = i / 3;
+    out.largest = std::max(out.largest, pixel.largest);
+  }
+  if (out.pixels_beyond_measure > 0) {
+    out.mse = out.psnr = out.ssim = std::numeric_limits<double>::quiet_NaN();
+    return out;
   }
   out.mse = a.rgb.empty() ? 0 : sum / double(a.rgb.size());
   out.psnr = out.mse > 0 ? -10 * std::log10(out.mse) : std::numeric_limits<double>::infinity();
@@ -102,12 +128,15 @@ ImageDifference difference(const Picture& a, const Picture& b) {
 Picture difference_picture(const Picture& a, const Picture& b, double largest) {
   check_sizes(a, b);
   Picture out{a.width, a.height, std::vector<float>(a.rgb.size())};
-  for (size_t i = 0; i < a.rgb.size(); i += 3) {
-    double most = 0;
-    for (size_t c = i; c < i + 3; ++c) most = std::max(most, std::abs(known(a.rgb[c]) - known(b.rgb[c])));
-    std::fill_n(out.rgb.begin() + ptrdiff_t(i), 3, largest > 0 ? float(most / largest) : 0.0f);
-  }
+  for (size_t i = 0; i < a.rgb.size(); i += 3) std::fill_n(out.rgb.begin() + ptrdiff_t(i), 3, largest > 0 ? float(pair_of(a, b, i).largest / largest) : 0.0f);
+  mark_beyond_measure(a, b, out);
   return out;
+}
+
+void mark_beyond_measure(const Picture& a, const Picture& b, Picture& shown) {
+  constexpr float kMagenta[] = {1, 0, 1};
+  for (size_t i = 0; i < a.rgb.size(); i += 3)
+    if (is_beyond_measure(a, b, i / 3)) std::copy_n(kMagenta, 3, shown.rgb.begin() + ptrdiff_t(i));
 }
 
 }  // namespace glint::report

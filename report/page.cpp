@@ -3,6 +3,7 @@
 #include "report/page.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -88,6 +89,30 @@ std::string metrics_table(const Json& data) {
   return "<div id=\"all-metrics\"></div>\n<noscript>" + (data["runs"].size() <= kMaxRunsInTables ? all_metrics(data) : key_metrics(data)) + "</noscript>\n";
 }
 
+// "mobile, desktop": the presets that the runs' configurations are compared with.
+std::string presets_of(const Json& runs) {
+  std::vector<std::string> names;
+  for (const Json& run : runs)
+    if (const std::string name = run["preset"]["name"]; std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  return escaped(fmt::format("{}", fmt::join(names, ", ")));
+}
+
+std::string config_lead(const Json& runs) {
+  return fmt::format("Keys whose value is not that of {}{}.", runs.size() > 1 ? "the run’s preset: " : "", presets_of(runs));
+}
+
+// Of configurations that are no preset: which one they are compared with.
+std::string own_files(const Json& runs) {
+  std::string out;
+  for (const Json& run : runs) {
+    const std::string name = run["run"]["config"].value("name", ""), preset = run["preset"]["name"];
+    if (name == preset) continue;
+    out += fmt::format("<p class=\"note\">{}: configured by <code>{}</code>, which is no preset; the run’s copy of it is compared with {}.</p>\n", escaped(run["directory"].get<std::string>()), escaped(name),
+                       escaped(preset));
+  }
+  return out;
+}
+
 // Every key that differs from a run's preset, with the value of each run.
 std::string config_table(const Json& data) {
   const Json& runs = data["runs"];
@@ -103,16 +128,12 @@ std::string config_table(const Json& data) {
         continue;
       }
       is_changed = true;
-      cells += fmt::format("<td class=\"n changed\">{}<small>preset {}</small></td>", shown(value), shown(changes[key]));
+      cells += fmt::format("<td class=\"n changed\">{}<small>{} {}</small></td>", shown(value), escaped(run["preset"]["name"].get<std::string>()), shown(changes[key]));
     }
     if (is_changed) rows += fmt::format("<tr><th scope=\"row\"><code>{}</code></th>{}<td class=\"u\">{}</td><td class=\"doc\">{}</td></tr>\n", escaped(key), cells, escaped(doc["unit"].get<std::string>()), prose(doc["doc"].get<std::string>()));
   }
-  std::string out;
-  for (const Json& run : runs) {
-    if (run["preset"]["known"].get<bool>()) continue;
-    out += fmt::format("<p class=\"note\">{}: {}</p>\n", escaped(run["directory"].get<std::string>()), escaped(run["preset"]["note"].get<std::string>()));
-  }
-  if (rows.empty()) return out + "<p>Every key has its preset’s value.</p>\n";
+  const std::string out = own_files(runs);
+  if (rows.empty()) return out + fmt::format("<p>Every key has the value of {}{}.</p>\n", runs.size() > 1 ? "its run’s preset: " : "", presets_of(runs));
   return out + "<div class=\"scroll\"><table class=\"config\">" + header_row(runs, "Key") + kLastColumns + "<tbody>\n" + rows + "</tbody></table></div>\n";
 }
 
@@ -124,7 +145,7 @@ std::string section(const char* id, const char* title, const char* lead, const s
 std::string static_sections(const Json& data) {
   std::string out = suite_sections(data);
   if (data["runs"].empty()) return out;
-  return out + section("configuration", "Configuration", "Keys that differ from the preset the run names.", config_table(data) + "<div id=\"all-keys\"></div>\n") +
+  return out + section("configuration", "Configuration", config_lead(data["runs"]).c_str(), config_table(data) + "<div id=\"all-keys\"></div>\n") +
          section("metrics", "All metrics", "The numbers that characterise a workload; a dash is a number that this run does not have.", metrics_table(data)) +
          "<noscript>\n" + section("numbers", "Numbers of the figures", "What the figures show where scripts run, summed over all instances of a unit. Figures of shares and rates are among the metrics above; series over time are in series.csv.",
                                   figure_tables(data, header_row(data["runs"], "Statistic") + kLastColumns)) + "</noscript>\n";

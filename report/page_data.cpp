@@ -108,8 +108,7 @@ void add_config(const PageRun& run, const std::string& toml, Json& out, Json& do
     out["config"][row.key] = number_or_text(row.value);
     docs[row.key] = {{"unit", row.unit}, {"doc", row.doc}};
   }
-  out["preset"] = {{"known", !run.preset.empty()}, {"note", run.preset_note}, {"changes", Json::object()}};
-  if (run.preset.empty()) return;
+  out["preset"] = {{"name", run.preset_name}, {"changes", Json::object()}};
   for (const ConfigChange& change : config_changes(rows, config_rows(run.preset)))
     out["preset"]["changes"][change.row.key] = change.preset.empty() ? Json(nullptr) : number_or_text(change.preset);
 }

@@ -10,11 +10,10 @@
 
 namespace glint::report {
 
-// A run to show. The preset is what the run's configuration began with, as config_file() writes it.
+// A run to show, and the preset that its configuration is compared with, as config_file() writes it.
 struct PageRun {
   std::string directory;
-  std::string preset;       // "" = unknown
-  std::string preset_note;  // then why
+  std::string preset_name, preset;
   std::optional<TimelineRequest> timeline{};  // asked for; none: the middle of the trace's core 0, if there is a trace
 };
 

@@ -11,6 +11,7 @@
 #include "apps/glint/bench_plan.h"
 #include "apps/glint/bench_view.h"
 #include "apps/glint/frame_options.h"
+#include "apps/glint/number_range.h"
 #include "report/metrics.h"
 #include "report/run_directory.h"
 
@@ -163,7 +164,7 @@ void add_bench(CLI::App& app, Session& session) {
   command->add_option("NAMES", options->names, "lumibench (all 46, the default), subset (8), a scene, pt, sh, ao, or workloads: 'glint list workloads'");
   command->add_option("-j,--jobs", options->processes, "Processes at a time; 0: one for each processor")->check(CLI::Range(0u, 1024u))->capture_default_str();
   command->add_flag("--resume", options->resume, "Leave out what is complete: the same configuration, options, program and shaders");
-  command->add_option("--memory", options->memory, "GB that all may take together (default: what is available)")->check(CLI::PositiveNumber);
+  command->add_option("--memory", options->memory, "GB that all may take together (default: what is available)")->check(number_range(0.001, 1e6));
   command->add_option("--config", options->config, "Preset or TOML file")->capture_default_str();
   command->add_option("--set", options->settings, "Override of a key, repeatable: core.warps=16")->type_name("KEY=VALUE")->allow_extra_args(false);
   command->add_option("--mode", options->mode, "timing: cycle by cycle; functional: picture and counts only")

@@ -10,6 +10,7 @@
 #include "base/diagnostics.h"
 #include "memsys/peak.h"
 #include "pipeline/check_params.h"
+#include "report/config_file.h"
 
 namespace glint::app {
 namespace {
@@ -73,6 +74,8 @@ pipeline::GpuParams read_quietly(const Resources& resources, const std::string& 
 pipeline::GpuParams read_preset(const Resources& resources, const std::string& name_or_path) {
   return read_quietly(resources, name_or_path, {});
 }
+
+uint64_t config_hash(const pipeline::GpuParams& params) { return report::fnv1a(report::config_key_values(describe_params(params))); }
 
 pipeline::GpuParams read_config(const Resources& resources, const std::string& name_or_path,
                                 const std::vector<std::string>& settings) {

@@ -1,6 +1,7 @@
 // From --config and --set to the parameters of a GPU.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -16,5 +17,8 @@ pipeline::GpuParams read_config(const Resources& resources, const std::string& n
 
 // A preset as it stands, to be listed or compared with: nothing is said about it.
 pipeline::GpuParams read_preset(const Resources& resources, const std::string& name_or_path);
+
+// Of all keys and their values: names a configuration in run.json.
+uint64_t config_hash(const pipeline::GpuParams& params);
 
 }  // namespace glint::app

@@ -13,6 +13,8 @@
 #include <iterator>
 #include <optional>
 
+#include "pipeline/description/value.h"
+
 namespace glint::app {
 namespace {
 
@@ -113,10 +115,10 @@ class Reader {
   void size_of(const toml::table& table, const char* key, std::array<uint32_t, 3>& out) {
     const toml::node* node = table.get(key);
     if (!node) return;
-    const auto fail = [&] { errors_.error(where(*node), fmt::format("'{}' must be a number, or a list of up to three, from 1 on", key)); };
+    const auto fail = [&] { errors_.error(where(*node), fmt::format("'{}' must be a whole number, or a list of up to three, each from 1 to {}", key, pipeline::kMostOfAxis)); };
     const auto axis = [&](const toml::node& n, size_t i) {
       const auto value = n.is_integer() ? n.value<int64_t>() : std::nullopt;
-      if (value && *value >= 1 && *value <= 0x7fffffff) out[i] = uint32_t(*value);
+      if (value && *value >= 1 && *value <= pipeline::kMostOfAxis) out[i] = uint32_t(*value);
       else fail();
     };
     const toml::array* list = node->as_array();

@@ -88,6 +88,9 @@ double run_interval(const Session& session, const Options& options, const report
 
 report::ModelRow row_of(const Session& session, const Options& options, const std::string& workload, const std::string& directory) {
   const report::RunRecord run = report::RunRecord::read(directory);
+  if (!options.statistics_only && !run.fact("rays.bounces"))
+    throw UserError({directory}, fmt::format("this is a run of {} '{}': models take runs of scenes", run.text("scene.form") == "pipeline" ? "the pipeline" : "the kernel", run.text("scene.name")),
+                    "--statistics-only gives Hong and Kim's model alone, of any timing run that reads memory");
   report::ModelRow row{.workload = workload, .cycles = 0, .predicted = {}, .inputs = {}};
   const report::HongKimResult model = report::hong_kim(report::hong_kim_inputs(run, directory));
   for (const double cycles : run.values("gpu.cycles")) row.cycles += cycles;

@@ -32,17 +32,31 @@ std::string grouped(uint64_t number) {
   return out;
 }
 
-std::string write_trace(const TraceTable& trace, const report::RunDirectory& directory) {
+// The machine goes on after the run's last cycle until its writes are in memory; a trace may show that too.
+std::string shown_cycles(const TraceTable& trace, Cycle run_end) {
+  if (trace.end <= run_end || trace.begin >= run_end) return fmt::format("of cycles {} to {}", trace.begin, trace.end);
+  return fmt::format("of cycles {} to {}, and of writes on their way to memory until {}", trace.begin, run_end, trace.end);
+}
+
+void warn_of_cut(const TraceTable& trace, Cycle window_end, Cycle run_end) {
+  const Cycle wanted = trace.end < run_end ? std::min(trace.asked_end, run_end) : trace.asked_end;
+  const std::string rest = fmt::format("{}:{}", trace.end, window_end > trace.asked_end ? "" : std::to_string(window_end));
+  fmt::print(stderr, "warning: the trace ends at cycle {} instead of {}: more would be over the limit of {} events\nnote: --trace-limit raises it, --trace-window {} goes on from there\n",
+             trace.end, wanted, grouped(trace.limit), rest);
+}
+
+std::string write_trace(const TraceTable& trace, Cycle window_end, Cycle run_end, const report::RunDirectory& directory) {
   directory.write("trace.json.gz", report::trace_json_gz(trace));
+  if (trace.begin == trace.end && !trace.is_cut()) {
+    fmt::print(stderr, "warning: the trace is empty: the run ended at cycle {}, and the window begins at {}\nnote: a --trace-window that begins earlier has something to show\n", run_end, trace.begin);
+    return fmt::format("trace      {} (EMPTY: the run ended at cycle {}, before its window begins)", directory.path_of("trace.json.gz"), run_end);
+  }
   const std::string events = grouped(report::num_events(trace));
-  if (trace.is_cut())
-    fmt::print(stderr, "warning: the trace ends at cycle {} instead of {}: more would be over the limit of {} events\nnote: --trace-limit raises it, --trace-window {}:{} goes on from there\n",
-               trace.end, trace.asked_end, grouped(trace.limit), trace.end, trace.asked_end);
+  if (trace.is_cut()) warn_of_cut(trace, window_end, run_end);
   if (trace.counters_left_out)
     fmt::print(stderr, "warning: the trace is without {} counters of single units: they would take more than a quarter of {} events\nnote: --trace-limit raises it, --sample makes their intervals longer\n",
                trace.counters_left_out, grouped(trace.limit));
-  return fmt::format("trace      {} ({} events of cycles {} to {}{}; open it at ui.perfetto.dev)", directory.path_of("trace.json.gz"), events, trace.begin, trace.end,
-                     trace.is_cut() ? ", CUT at the limit" : "");
+  return fmt::format("trace      {} ({} events {}{}; open it at ui.perfetto.dev)", directory.path_of("trace.json.gz"), events, shown_cycles(trace, run_end), trace.is_cut() ? ", CUT at the limit" : "");
 }
 
 }  // namespace
@@ -105,7 +119,7 @@ std::vector<std::string> write_observation(const pipeline::Observation& observe,
     for (const auto& [name, bytes] : report::heat_files(result.costs)) directory.write(name, bytes);
     lines.push_back(fmt::format("heat       {} ({} maps, .png and .npy)", directory.path_of("heat"), result.costs.size()));
   }
-  if (observe.trace.wanted) lines.push_back(write_trace(result.trace, directory));
+  if (observe.trace.wanted) lines.push_back(write_trace(result.trace, observe.trace.end, result.cycles, directory));
   return lines;
 }
 

@@ -11,7 +11,6 @@
 #include "apps/glint/progress_pipe.h"
 #include "apps/glint/run_summary.h"
 #include "memsys/peak.h"
-#include "report/config_file.h"
 #include "report/progress.h"
 #include "report/stat_writer.h"
 
@@ -24,7 +23,7 @@ report::RunInfo new_run_info(const Session& session, const pipeline::GpuParams& 
   info.git = GLINT_GIT;
   info.compiler = __VERSION__;
   info.config = config;
-  info.config_hash = report::fnv1a(report::config_key_values(describe_params(gpu)));
+  info.config_hash = config_hash(gpu);
   info.mode = mode;
   const mem::Peak peak = mem::peak(gpu.memory, gpu.cores, gpu.clock_mhz);
   info.memory_peaks = {{"l1_bytes", double(peak.l1_bytes)},       {"l1_bytes_per_second", peak.l1_bandwidth},

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -20,19 +21,26 @@
 namespace glint::app {
 namespace {
 
-// The preset or file that a run's configuration began with, as it is today.
+constexpr const char* kDefaultPreset = "mobile";  // of --config
+
+// Glint's own preset to compare a run's configuration with: the one it names, else one that is the same, else the default.
+// A file of the user's is never read again: it may have changed since the run.
+std::string preset_of(const Resources& resources, const report::RunRecord& facts) {
+  const std::vector<std::string> presets = resources.config_names();
+  if (const std::string name = facts.text("config.name"); std::find(presets.begin(), presets.end(), name) != presets.end()) return name;
+  for (const std::string& preset : presets)
+    if (fmt::format("{:016x}", config_hash(read_preset(resources, preset))) == facts.text("config.hash")) return preset;
+  return kDefaultPreset;
+}
+
 report::PageRun page_run(const Resources& resources, const std::string& directory) {
-  report::PageRun run{.directory = directory, .preset = {}, .preset_note = {}};
+  report::PageRun run{.directory = directory, .preset_name = {}, .preset = {}};
   const std::string path = directory + "/run.json";
   if (!std::filesystem::exists(path)) return run;  // page_data() says what is wrong
   report::RunRecord facts;
   facts.add_facts(read_file(path), path);
-  const std::string name = facts.text("config.name");
-  try {
-    run.preset = report::config_file(describe_params(read_preset(resources, name)), name);
-  } catch (const UserError&) {
-    run.preset_note = fmt::format("what differs from the preset is unknown: '{}' cannot be read from here", name);
-  }
+  run.preset_name = preset_of(resources, facts);
+  run.preset = report::config_file(describe_params(read_preset(resources, run.preset_name)), run.preset_name);
   return run;
 }
 

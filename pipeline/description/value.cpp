@@ -172,13 +172,13 @@ std::vector<uint32_t> TableReader::sizes(const std::string& key, size_t most) {
   std::vector<uint32_t> out;
   bool good = value->kind == Value::Kind::Integer || (value->kind == Value::Kind::List && !value->list.empty() && value->list.size() <= most);
   const auto add = [&](const Value& v) {
-    good &= v.kind == Value::Kind::Integer && v.whole >= 1 && v.whole <= 0x7fff'ffff;
+    good &= v.kind == Value::Kind::Integer && v.whole >= 1 && v.whole <= kMostOfAxis;
     if (good) out.push_back(uint32_t(v.whole));
   };
   if (value->kind == Value::Kind::Integer) add(*value);
   for (const Value& each : value->list) add(each);
   if (good) return out;
-  errors_.error(value->where, fmt::format("'{}' must be a number, or a list of up to {}, from 1 on", key, most));
+  errors_.error(value->where, fmt::format("'{}' must be a whole number, or a list of up to {}, each from 1 to {}", key, most, kMostOfAxis));
   return {};
 }
 

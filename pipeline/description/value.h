@@ -28,6 +28,8 @@ struct Value {
   const Value* find(const std::string& key) const;  // null when absent
 };
 
+inline constexpr int64_t kMostOfAxis = 0x7fff'ffff;  // of a launch or a picture: CUDA's limit of a grid's x
+
 struct Entry {
   std::string key;
   Value value;
@@ -54,7 +56,7 @@ class TableReader {
   bool flag(const std::string& key, bool fallback);
   std::vector<std::string> texts(const std::string& key);            // a string or a list of them
   std::vector<double> numbers(const std::string& key);               // a number or a list, lists in lists flattened
-  std::vector<uint32_t> sizes(const std::string& key, size_t most);  // one number, or up to `most`, each at least 1
+  std::vector<uint32_t> sizes(const std::string& key, size_t most);  // one number, or up to `most`, each from 1 to kMostOfAxis
   std::vector<const Value*> tables(const std::string& key);          // [[key]] or [key]
   void finish();
   const SourceLocation& where() const { return table_.where; }

@@ -14,8 +14,12 @@ namespace {
 
 constexpr double kSectorBytes = 32;  // of a request to DRAM
 
+constexpr const char* kDramLatency = "sum(l1.miss_cycles) / sum(l1.timed_misses)";
+
 double value_of(const std::string& formula, const RunRecord& run, const std::string& name) {
   if (const std::optional<double> value = evaluate(formula, run)) return *value;
+  if (formula == kDramLatency && run.text("mode") == "timing")
+    throw UserError({name}, "none of this run's reads missed in the L1: there is no latency of memory to model", "Hong and Kim's model takes timing runs that read memory; all models take runs of scenes");
   throw UserError({name}, fmt::format("this run has no '{}'", formula), "the model needs a finished run of the timing machine: glint run --mode timing");
 }
 
@@ -32,7 +36,7 @@ HongKimInputs hong_kim_inputs(const RunRecord& run, const std::string& name) {
   const double memory = value("sum(core.instructions_by_class::mem) + sum(core.instructions_by_class::tex) + sum(rt.warps)");
   in.memory_instructions = memory / warps;
   in.accesses = value("sum(l1.reads::*) + sum(l1.writes::*)") / memory;
-  in.dram_latency = value("sum(l1.miss_cycles) / sum(l1.timed_misses)");
+  in.dram_latency = value(kDramLatency);
   in.miss_rate = value("sum(l1.misses::*) / sum(l1.reads::*)");
   in.departure_delay = 1 / value("config(memory.l1.ports)");
   in.issue_cycles = 1 / value("config(core.schedulers)");

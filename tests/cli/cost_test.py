@@ -192,13 +192,27 @@ class Trace(CostTest):
         done = self.run_glint("out", "WKND", *SMALL, "--trace", "--trace-limit", "4000")
         about = self.trace("out")["otherData"]
         self.assertTrue(about["cut"])
-        self.assertRegex(done.stderr, f"warning: the trace ends at cycle {about['end']} instead of {about['asked_end']}.*4 000 events")
+        cycles = self.stats("out", r"gpu\.cycles")
+        self.assertGreater(about["asked_end"], cycles)  # its writes arrive later
+        self.assertRegex(done.stderr, f"warning: the trace ends at cycle {about['end']} instead of {cycles:.0f}: .*4 000 events")
+        self.assertIn(f"--trace-window {about['end']}: goes on", done.stderr)
+        self.assertIn(f"of cycles 0 to {about['end']}, CUT at the limit", done.stdout)
         events = [event for event in self.trace("out")["traceEvents"] if event["ph"] != "M"]
         self.assertEqual(len(events), about["events"])
         self.assertLessEqual(len(events), 4000)
         # What is there is whole: the same slices as without a limit.
         self.run_glint("window", "WKND", *SMALL, "--trace", "--trace-window", f":{about['end']}")
         self.assertEqual(self.slices("out"), self.slices("window"))
+
+    def test_a_window_after_the_end_of_the_run_is_told_with_the_cycle_of_the_end(self):
+        done = self.run_glint("out", "WKND", *SMALL, "--trace", "--trace-window", "99999999:999999999")
+        end = f"the run ended at cycle {self.stats('out', r'gpu[.]cycles'):.0f}"
+        self.assertIn(f"warning: the trace is empty: {end}, and the window begins at 99999999", done.stderr)
+        self.assertIn(f"trace.json.gz (EMPTY: {end}", done.stdout)
+        self.assertEqual(self.slices("out"), [])
+        whole = self.run_glint("whole", "WKND", *SMALL, "--trace", "--trace-window", "1000:999999999")
+        self.assertNotIn("warning", whole.stderr)
+        self.assertRegex(whole.stdout, rf"events of cycles 1000 to {self.stats('whole', 'gpu[.]cycles'):.0f}, and of writes on their way to memory until \d+;")
 
     def test_every_way_to_run_gives_the_same_bytes_and_cycles(self):
         ways = {"one": ["--threads", "1"], "two": ["--threads", "2"], "four": ["--threads", "4"], "stepped": ["--no-skip"]}

@@ -1,6 +1,7 @@
 # `glint run` of PTX kernels: results on both machines, and what is said of mistakes. Runs the real binary.
 # SPDX-License-Identifier: Apache-2.0
 """usage: kernel_test.py GLINT SOURCE_DIR"""
+import re
 import struct
 
 import glint_case
@@ -27,6 +28,15 @@ class Kernels(GlintTest):
         self.write("bad.toml", 'kernel = "k.ptx"\ngird = 4\n[[argument]]\nu33 = 1\n[[argument]]\nbuffer = "b"\ninit = "iota"\n')
         self.expect(2, ["bad.toml:2:1: error: 'gird' is no key", "did you mean 'grid'?", "bad.toml:4:1: error: 'u33'",
                         "needs 'count'"], "run", "bad.toml")
+
+    def test_a_grid_that_is_too_large_is_refused_with_the_limit(self):
+        text = (KERNELS / "saxpy.toml").read_text()
+        self.write("saxpy.ptx", (KERNELS / "saxpy.ptx").read_text())
+        for grid in ("4000000000", "[1, 2147483648]", "0", "[]"):
+            changed = re.sub(r"(?m)^grid = .*$", f"grid = {grid}", text)
+            self.assertNotEqual(changed, text)
+            self.write("saxpy.toml", changed)
+            self.expect(2, ["saxpy.toml:", "'grid' must be a whole number, or a list of up to three, each from 1 to 2147483647"], "run", "saxpy.toml")
 
     def test_an_unknown_op_exits_with_3_and_names_its_place(self):
         text = (KERNELS / "saxpy.ptx").read_text().replace("fma.rn.f32", "fna.rn.f32")

@@ -6,7 +6,7 @@ import json
 import shutil
 
 import glint_case
-from glint_case import GlintTest
+from glint_case import ROOT, GlintTest
 
 SMALL = ["--size", "16x16", "--spp", "1"]
 
@@ -49,6 +49,19 @@ class Model(GlintTest):
         self.expect(2, ["no finished run"], "model", "empty")
         self.simulate("WKND_SH", "functional", "--mode", "functional")
         self.expect(2, ["functional", "timing machine"], "model", "functional")
+
+    def test_a_run_of_a_kernel_is_refused_as_no_run_of_a_scene(self):
+        done = self.glint("run", ROOT / "shaders/kernels/saxpy.toml", "--out", "saxpy")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.expect(2, ["the kernel 'saxpy': models take runs of scenes", "--statistics-only"], "model", "saxpy")
+        self.assertNotIn("needs a finished run of the timing machine", done.stderr)
+        self.assertEqual(self.glint("model", "saxpy", "--statistics-only").returncode, 0)
+        self.write("idle.ptx", ".version 7.0\n.target sm_70\n.address_size 64\n.visible .entry idle()\n{\n  ret;\n}\n")
+        self.write("idle.toml", 'kernel = "idle.ptx"\ngrid = 1\nblock = 32\n')
+        done = self.glint("run", "idle.toml", "--out", "idle")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.expect(2, ["idle"], "model", "idle", "--statistics-only")
+        self.assertNotIn("needs a finished run of the timing machine", done.stderr)
 
     def test_a_run_that_is_not_the_launch_of_its_run_json_is_refused(self):
         self.simulate("WKND_SH", "one")

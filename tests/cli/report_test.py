@@ -9,6 +9,7 @@ import math
 import pathlib
 import re
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
@@ -187,20 +188,33 @@ class Page(ReportTest):
 
     def test_what_differs_from_the_preset_is_told(self):
         document = self.document(self.report("wknd", "slow"))
-        self.assertEqual(document["runs"][0]["preset"]["changes"], {})
+        self.assertEqual(document["runs"][0]["preset"], {"name": "mobile", "changes": {}})
         self.assertEqual(document["runs"][1]["preset"]["changes"], {"rt.box.latency": 13})
         self.assertEqual(document["runs"][1]["config"]["rt.box.latency"], 40)
 
-    def test_a_configuration_that_is_gone_is_said_to_be_unknown(self):
-        self.write("mine.toml", (ROOT / "configs/mobile.toml").read_text())
-        done = self.glint("run", "WKND", "--shader", "pt", *SMALL, "--config", "mine.toml", "--out", "mine")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.runs["mine"] = "mine"
-        self.assertTrue(self.document(self.report("mine"))["runs"][0]["preset"]["known"])
-        (self.folder / "mine.toml").unlink()
-        page = self.report("mine")
-        self.assertFalse(self.document(page)["runs"][0]["preset"]["known"])
-        self.assertIn("what differs from the preset is unknown", page[: page.index('id="data"')])
+    def test_an_own_configuration_is_compared_as_the_run_kept_it_with_a_preset_that_is_named(self):
+        text = (ROOT / "configs/mobile.toml").read_text()
+        written = {"same.toml": (ROOT / "configs/desktop.toml").read_text(), "mine.toml": text.replace("cores = 8 ", "cores = 3 ")}
+        for name, content in written.items():
+            self.write(name, content)
+            self.runs[name] = f"run of {name}"
+            done = self.glint("run", "WKND", "--shader", "pt", *SMALL, "--config", name, "--out", self.runs[name])
+            self.assertEqual(done.returncode, 0, done.stderr)
+        changes = lambda name: self.document(self.report(name))["runs"][0]["preset"]
+        self.assertEqual(changes("same.toml"), {"name": "desktop", "changes": {}})
+        expected = {"name": "mobile", "changes": {"cores": 8}}
+        self.assertEqual(changes("mine.toml"), expected)
+        self.write("mine.toml", text.replace("cores = 8 ", "cores = 6 "))
+        self.assertEqual(changes("mine.toml"), expected)
+        for name in written:
+            (self.folder / name).unlink()
+        self.assertEqual(changes("mine.toml"), expected)
+        static = lambda *names: (page := self.report(*names))[: page.index('id="data"')]
+        self.assertRegex(static("mine.toml"), "configured by <code>mine.toml</code>, which is no preset; .* compared with mobile")
+        self.assertIn("3<small>mobile 8</small>", static("mine.toml"))
+        self.assertNotIn("Every key has", static("mine.toml"))
+        self.assertIn("Every key has the value of desktop.", static("same.toml"))
+        self.assertIn("Every key has the value of its run’s preset: mobile, desktop.", static("wknd", "same.toml"))
 
     def test_the_built_page_is_that_of_the_sources(self):
         for name in ("report.html", "report.css"):
@@ -298,6 +312,32 @@ class Compare(ReportTest):
         self.expect(2, ["--ppd"], "imgdiff", self.runs["wknd"], "other", "--ppd", "0")
         self.expect(2, ["16x16", "8x8"], "imgdiff", self.runs["wknd"], self.small())
         self.expect(2, ["stats.csv"], "imgdiff", f"{self.runs['wknd']}/stats.csv", self.runs["slow"])
+
+    def pfm(self, name, *pixels):
+        """Of 16 by 12 pixels: black but for the first ones."""
+        values = [channel for pixel in pixels for channel in pixel] + [0] * (576 - 3 * len(pixels))
+        (self.folder / name).write_bytes(b"PF\n16 12\n-1.0\n" + b"".join(struct.pack("<48f", *values[y * 48 : y * 48 + 48]) for y in reversed(range(12))))
+        return name
+
+    def test_imgdiff_passes_no_gate_with_a_broken_picture(self):
+        nan, inf = math.nan, math.inf
+        black, broken = self.pfm("black.pfm"), self.pfm("nan.pfm", *[(nan, nan, nan)] * 192)
+        gates = ["--min-psnr", "60", "--max-flip", "0.01"]
+        for options in ([], gates, ["-o", "d.png"], ["-o", "f.png", "--metric", "flip"]):
+            self.expect(1, ["failed: not finite", "192 of 192 pixels; the first at x 0, y 0 ", "nan nan nan in 'nan.pfm'"], "imgdiff", black, broken, *options)
+        one = self.pfm("one.pfm", *[(0, 0, 0)] * 18, (0, inf, 0))
+        done = self.expect(1, ["1 of 192 pixels; the first at x 2, y 1 from the top left: 0 inf 0 in 'one.pfm', 0 0 0 in 'black.pfm'"], "imgdiff", one, black, *gates)
+        for measure in ("MSE", "PSNR", "SSIM", "FLIP"):
+            self.assertRegex(done.stdout, f"{measure} +- ")
+        self.assertRegex(done.stdout, "pixels apart +1 +of 192\nnot finite +1 ")
+        self.expect(1, ["failed"], "imgdiff", one, self.pfm("other.pfm", *[(0, 0, 0)] * 18, (0, -inf, 0)))
+        self.expect(0, ["warning: not finite in both", "192 pixels"], "imgdiff", broken, broken, "--min-psnr", "inf")
+
+    def test_imgdiff_refuses_a_bound_that_cannot_fail(self):
+        black, grey = self.pfm("black.pfm"), self.pfm("grey.pfm", (0.5, 0.5, 0.5))
+        for option, value in (("--min-psnr", "nan"), ("--min-psnr", "-inf"), ("--max-flip", "nan"), ("--max-flip", "inf"), ("--max-flip", "2"), ("--ppd", "nan"), ("--min-psnr", "x")):
+            self.expect(2, [option, value], "imgdiff", black, grey, option, value)
+        self.expect(1, ["PSNR below inf"], "imgdiff", black, grey, "--min-psnr", "inf")
 
     def small(self):
         (self.folder / "small.pfm").write_bytes(b"PF\n8 8\n-1.0\n" + bytes(8 * 8 * 12))

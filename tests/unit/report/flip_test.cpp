@@ -89,12 +89,16 @@ TEST_CASE("FLIP of black and white is near its end, nearer than of greys, and no
   for (const float v : report::flip(noise(1), noise(2), 5).map) CHECK((v >= 0 && v <= 1));
 }
 
-TEST_CASE("FLIP sees less of fine noise from far away than from near, and takes what is not finite as black") {
+TEST_CASE("FLIP sees less of fine noise from far away than from near, and has no mean with what is not finite in one picture only") {
   CHECK(report::flip(noise(1), noise(2), 200).mean < report::flip(noise(1), noise(2), 20).mean);
   Picture broken = plain(0);
   broken.rgb[7] = std::nanf("");
   broken.rgb[8] = -INFINITY;
-  CHECK(report::flip(broken, plain(0)).mean == 0);
+  CHECK(report::flip(broken, broken).mean == 0);
+  const report::Flip beyond = report::flip(plain(0), broken);
+  CHECK(std::isnan(beyond.mean));
+  CHECK(beyond.map[2] == 1);
+  CHECK(beyond.map[1] == 0);
 }
 
 TEST_CASE("FLIP refuses pictures of two sizes and absurd viewing distances, and draws its map from dark to light") {

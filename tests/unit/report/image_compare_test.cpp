@@ -82,6 +82,35 @@ TEST_CASE("one channel of one pixel that is 0.5 off gives the error worked out b
   CHECK(shown.rgb[3 * 8] == 0.0f);
 }
 
+TEST_CASE("what is not finite in one picture only is apart and leaves no measure, and what is the same in both adds nothing") {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
+  const Picture black = plain(12, 11, 0);
+  Picture broken = black;
+  broken.rgb[3 * 5] = kNan;
+  broken.rgb[3 * 7 + 2] = kInf;
+  broken.rgb[3 * 9 + 1] = 0.5f;
+  for (const auto& [a, b] : {std::pair{black, broken}, std::pair{broken, black}}) {
+    const report::ImageDifference d = report::difference(a, b);
+    CHECK(d.pixels_apart == 3);
+    CHECK(d.pixels_beyond_measure == 2);
+    CHECK(d.first_beyond_measure == 5);
+    CHECK(d.largest == 0.5);
+    for (const double measure : {d.mse, d.psnr, d.ssim}) CHECK(std::isnan(measure));
+    const Picture shown = report::difference_picture(a, b, d.largest);
+    CHECK(std::vector(shown.rgb.begin() + 15, shown.rgb.begin() + 18) == std::vector{1.0f, 0.0f, 1.0f});
+    CHECK(shown.rgb[3 * 9] == 1.0f);
+  }
+  const report::ImageDifference same = report::difference(broken, broken);
+  CHECK(same.pixels_apart == 0);
+  CHECK(same.pixels_beyond_measure == 0);
+  CHECK(same.pixels_not_finite == 2);
+  CHECK(std::isinf(same.psnr));
+  CHECK(same.ssim == Approx(1).margin(1e-12));
+  Picture other = broken;
+  other.rgb[3 * 7 + 2] = -kInf;
+  CHECK(report::difference(broken, other).pixels_beyond_measure == 1);
+}
+
 TEST_CASE("structural similarity is that of the paper's definition") {
   const Picture a = noise(19, 14, 2);
   Picture b = noise(19, 14, 3);

@@ -114,14 +114,15 @@ TEST_CASE("a condition that is none is refused with the form that is expected") 
 }
 
 TEST_CASE("no text of a run can end the page's script") {
-  const Json data = Json::parse(R"({"runs": [{"directory": "</script><b>", "run": {"scene": {"name": "<i>"}, "shader": "s", "config": {"name": "c"}}, "metrics": {}, "config": {},
-                                              "preset": {"known": true, "note": "", "changes": {}}}], "metric_docs": [], "stat_docs": {}, "key_docs": {}})");
+  const Json data = Json::parse(R"({"runs": [{"directory": "</script><b>", "run": {"scene": {"name": "<i>"}, "shader": "s", "config": {"name": "c"}}, "stats": {}, "metrics": {}, "config": {},
+                                              "preset": {"name": "<u>", "changes": {}}}], "stat_docs": {}, "metric_docs": [], "key_docs": {}})");
   const report::PageParts parts{.frame = "<!--title--><!--style--><!--noscript--><!--sections--><!--data--><!--script-->", .style = "", .script = "run()", .unpack = ""};
 
   const std::string page = report::page(data, parts);
 
   CHECK(page.find("</script><b>") == std::string::npos);
   CHECK(page.find("<i>") == std::string::npos);
+  CHECK(page.find("<u>") == std::string::npos);
   CHECK_THROWS_AS(report::page(data, {.frame = "", .style = "", .script = "", .unpack = ""}), UserError);
 }
 
