@@ -106,9 +106,8 @@ std::string own_files(const Json& runs) {
   std::string out;
   for (const Json& run : runs) {
     const std::string name = run["run"]["config"].value("name", ""), preset = run["preset"]["name"];
-    if (name == preset) continue;
-    out += fmt::format("<p class=\"note\">{}: configured by <code>{}</code>, which is no preset; the run’s copy of it is compared with {}.</p>\n", escaped(run["directory"].get<std::string>()), escaped(name),
-                       escaped(preset));
+    const std::string line = fmt::format("<p class=\"note\"><code>{}</code> is no preset: the run’s own copy of it is compared with {}.</p>\n", escaped(name), escaped(preset));
+    if (name != preset && out.find(line) == std::string::npos) out += line;
   }
   return out;
 }

@@ -210,10 +210,11 @@ class Page(ReportTest):
             (self.folder / name).unlink()
         self.assertEqual(changes("mine.toml"), expected)
         static = lambda *names: (page := self.report(*names))[: page.index('id="data"')]
-        self.assertRegex(static("mine.toml"), "configured by <code>mine.toml</code>, which is no preset; .* compared with mobile")
+        self.assertRegex(static("mine.toml"), "<code>mine.toml</code> is no preset: .* compared with mobile")
         self.assertIn("3<small>mobile 8</small>", static("mine.toml"))
         self.assertNotIn("Every key has", static("mine.toml"))
         self.assertIn("Every key has the value of desktop.", static("same.toml"))
+        self.assertEqual(static("mine.toml", "mine.toml").count("is no preset"), 1)
         self.assertIn("Every key has the value of its run’s preset: mobile, desktop.", static("wknd", "same.toml"))
 
     def test_the_built_page_is_that_of_the_sources(self):
