@@ -17,9 +17,10 @@ from .collection import Bench, Runs, Sweep
 from .comparison import Change, compare, speedup
 from .errors import CommandFailed, GlintError, IncompleteRun, MissingFile, MissingPackage, SchemaError, UnknownName
 from .images import read_image
+from .labelling import labels
 from .launch import find_glint, run, sweep
 from .derived import Metric, metrics
-from .run_directory import Run, labels
+from .run_directory import Run
 from .statistics import Histogram, Stat, Stats
 from .table import Table
 
@@ -29,6 +30,6 @@ __all__ = ["Bench", "Change", "Characterization", "CommandFailed", "GlintError",
 
 
 def __getattr__(name: str) -> Any:
-    if name == "plot":  # imports matplotlib
+    if name == "plot":  # its functions import matplotlib
         return importlib.import_module(".plot", __name__)
     raise AttributeError(f"module 'glint' has no attribute '{name}'")

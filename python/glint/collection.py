@@ -4,21 +4,24 @@
 from __future__ import annotations
 
 import functools
-import json
 import pathlib
 import re
 from collections.abc import Mapping
 from typing import Any, Iterable, Iterator
 
-from .errors import GlintError, MissingFile
+from .documents import read_json
+from .errors import GlintError, MissingFile, SchemaError, UnknownName
 from .derived import metrics
 from .optional import require
+from .patterns import near
 from .run_directory import Run
 from .table import Table
 
 
 class Runs(Mapping[str, Run]):
     """The complete runs of a folder by name, in the order of the names (numbers in them by value).
+
+    Statistics and configuration of every run are read at once: a run that has no whole ones is among the failed.
 
     Attributes:
         directory: the folder.
@@ -31,16 +34,31 @@ class Runs(Mapping[str, Run]):
         self._runs: dict[str, Run] = {}
         if not self.directory.is_dir():
             raise MissingFile(f"{self.directory}: there is no such folder")
-        for record in sorted(self.directory.glob("**/run.json"), key=_natural):
+        found = sorted(self.directory.glob("**/run.json"), key=_natural)
+        for record in found:
             name = str(record.parent.relative_to(self.directory))
-            try:
-                self._runs[name] = Run(record.parent)
-            except GlintError as error:
-                self.failed[name] = str(error)
-        if not self._runs and not self.failed:
+            if self._takes(name):
+                self._read(name)
+        if not found:
             raise MissingFile(f"{self.directory}: holds no runs (folders with a run.json)")
 
+    def _takes(self, name: str) -> bool:
+        """Whether the run of this name belongs to these; all in the folder do."""
+        return True
+
+    def _read(self, name: str) -> None:
+        try:
+            run = Run(self.directory / name)
+            run.check()
+            self._runs[name] = run
+        except GlintError as error:
+            self.failed[name] = str(error)
+
     def __getitem__(self, name: str) -> Run:
+        """UnknownName (a KeyError) with near names, or with the reason for which the run failed."""
+        if name not in self._runs:
+            reason = f"'{name}' cannot be read: {self.failed[name]}" if name in self.failed else f"no run '{name}'{near(name, self._runs)}"
+            raise UnknownName(f"{self.directory}: {reason}")
         return self._runs[name]
 
     def __iter__(self) -> Iterator[str]:
@@ -69,7 +87,22 @@ class Runs(Mapping[str, Run]):
 
 
 class Bench(Runs):
-    """The folder of a `glint bench`: a run a workload, and the table that it wrote."""
+    """The folder of a `glint bench`: a run a workload, and the table that it wrote.
+
+    Its runs are the workloads of the table; all that the folder holds where a bench was stopped before it wrote one.
+
+    Attributes:
+        others: complete runs in the folder that the table does not have, of an earlier bench, by name.
+    """
+
+    def __init__(self, directory: str | pathlib.Path):
+        super().__init__(directory)
+        known = set(self.table["workload"]) if (self.directory / "metrics.csv").is_file() else set(self._runs)
+        self.others: list[str] = [name for name in self._runs if name not in known]
+        for name in self.others:
+            del self._runs[name]
+        for name in sorted(known - set(self._runs) - set(self.failed)):
+            self.failed[name] = "metrics.csv has it, and its folder is not there"
 
     @functools.cached_property
     def table(self) -> Table:
@@ -81,14 +114,39 @@ class Bench(Runs):
 
 
 class Sweep(Runs):
-    """The folder of a `glint.sweep(...)`; `rows()` and `frame()` have a column for each key that was swept."""
+    """The folder of a `glint.sweep(...)`; `rows()` and `frame()` have a column for each key that was swept.
+
+    Its runs are the points of the last sweep into the folder, in their order.
+
+    Attributes:
+        axes: values by key, as they were swept; {} of a folder without sweep.json, whose runs are all taken.
+        others: runs in the folder that are of earlier sweeps, by name.
+    """
 
     def __init__(self, directory: str | pathlib.Path):
-        super().__init__(directory)
         self.axes: dict[str, list[Any]] = {}
-        plan = self.directory / "sweep.json"
+        self.others: list[str] = []
+        self._names: list[str] | None = None
+        plan = pathlib.Path(directory) / "sweep.json"
         if plan.is_file():
-            self.axes = json.loads(plan.read_text(encoding="utf-8"))["axes"]
+            tree = read_json(plan)
+            axes, names = tree.get("axes"), tree.get("runs")  # no "runs" before there were any
+            if not isinstance(axes, dict) or not all(isinstance(values, list) for values in axes.values()):
+                raise SchemaError(f"{plan}: no axes: the file is damaged")
+            if names is not None and not (isinstance(names, list) and all(isinstance(name, str) for name in names)):
+                raise SchemaError(f"{plan}: 'runs' is no list of names: the file is damaged")
+            self.axes, self._names = axes, names
+        super().__init__(directory)
+        for name in self._names or []:
+            if name not in self._runs and name not in self.failed:
+                self.failed[name] = "this point has not been run: the sweep was stopped before"
+        self._runs = {name: self._runs[name] for name in self._names or self._runs if name in self._runs}
+
+    def _takes(self, name: str) -> bool:
+        if self._names is None or name in self._names:
+            return True
+        self.others.append(name)
+        return False
 
     def point(self, name: str) -> dict[str, Any]:
         run = self[name]

@@ -3,6 +3,7 @@
 """Arrays have shape (height, width, channels) or (height, width), row 0 at the top."""
 from __future__ import annotations
 
+import math
 import pathlib
 from typing import Any
 
@@ -12,6 +13,8 @@ from .optional import require
 
 def read_image(path: str | pathlib.Path) -> Any:
     """A picture as a numpy array: PFM float32 as the shader wrote it; PNG the same in [0, 1] and 255 steps; NPY as it is.
+
+    Colours give shape (height, width, 3), without transparency; grey gives (height, width).
 
     Raises MissingFile, SchemaError (damaged or of another kind), MissingPackage (numpy; matplotlib for PNG).
     """
@@ -23,7 +26,7 @@ def read_image(path: str | pathlib.Path) -> Any:
     if path.suffix == ".npy":
         return read_map(path)
     if path.suffix == ".png":
-        return require("matplotlib.image", "reading PNG").imread(path)[..., :3]
+        return _read_png(path)
     raise SchemaError(f"{path}: pictures are .pfm, .png or .npy")
 
 
@@ -36,6 +39,17 @@ def read_map(path: pathlib.Path) -> Any:
         raise SchemaError(f"{path}: no NumPy file: {error}") from error
 
 
+def _read_png(path: pathlib.Path) -> Any:
+    imread = require("matplotlib.image", "reading PNG").imread
+    try:
+        pixels = imread(path)
+    except (OSError, SyntaxError, ValueError) as error:  # Pillow's words for damaged files
+        raise SchemaError(f"{path}: no PNG picture, or cut short: {error}") from error
+    if pixels.ndim == 2:
+        return pixels
+    return pixels[..., 0] if pixels.shape[2] == 2 else pixels[..., :3]  # the last of two or four channels is transparency
+
+
 def _read_pfm(path: pathlib.Path) -> Any:
     numpy = require("numpy", "reading pictures")
     with open(path, "rb") as file:
@@ -46,6 +60,8 @@ def _read_pfm(path: pathlib.Path) -> Any:
             channels = {b"PF": 3, b"Pf": 1}[kind]
         except (KeyError, ValueError) as error:
             raise SchemaError(f"{path}: no PFM picture") from error
+        if width < 1 or height < 1 or scale == 0 or not math.isfinite(scale):
+            raise SchemaError(f"{path}: {width} by {height} pixels, scale {scale:g}: no PFM picture")
         data = file.read()
     if len(data) != width * height * channels * 4:
         raise SchemaError(f"{path}: {len(data)} bytes of pixels, {width * height * channels * 4} expected: it was cut short")

@@ -3,6 +3,7 @@
 """`run(...)` and `sweep(...)` start the command `glint` and read what it leaves."""
 from __future__ import annotations
 
+import hashlib
 import itertools
 import json
 import os
@@ -15,6 +16,7 @@ from .collection import Sweep
 from .errors import CommandFailed, GlintError
 from .run_directory import Run
 
+_LONGEST = 180  # characters of a point's folder; file systems take 255 bytes
 _IN_TREE = ("build/release/apps/glint/glint", "build/check/apps/glint/glint")
 
 
@@ -58,6 +60,7 @@ def run(scene: str | pathlib.Path, *, out: str | pathlib.Path, shader: str | Non
 
     Raises:
         CommandFailed: with exit code and message of the command.
+        TypeError: `options` that is one text instead of a list of words.
     """
     words = [find_glint(glint), "run", str(scene), "--config", str(config), "--out", str(out)]
     named = {"--shader": shader, "--spp": spp, "--mode": mode, "--sample": sample, "--size": "{}x{}".format(*size) if size else None}
@@ -65,53 +68,102 @@ def run(scene: str | pathlib.Path, *, out: str | pathlib.Path, shader: str | Non
         words += [option, str(value)] if value is not None else []
     for key, value in (set or {}).items():
         words += ["--set", f"{key}={_toml(value)}"]
-    _call(words + (["--profile"] if profile else []) + list(options))
+    _call(words + (["--profile"] if profile else []) + _words(options))
     return Run(out)
 
 
-def sweep(workloads: str | Iterable[str], axes: Mapping[str, Iterable[Any]], *, out: str | pathlib.Path,
+def sweep(workloads: str | pathlib.Path | Iterable[str | pathlib.Path], axes: Mapping[str, Iterable[Any]], *, out: str | pathlib.Path,
           progress: Callable[[str], None] | None = None, **options: Any) -> Sweep:
     """Runs every workload at every point of the axes, one after another, into a folder a point.
 
     Args:
         workloads: what `glint run` takes, one or several.
-        axes: values by configuration key, {"rt.warps": [4, 8]}; the key "config" sweeps presets.
-        out: the folder; points that are complete there, with the same command, are not run again.
+        axes: values by configuration key, {"rt.warps": [4, 8]}; the key "config" sweeps presets. NumPy's arrays are taken too.
+        out: the folder; points that are complete there, with the same command, are not run again, points of the same name and
+            another command are run anew. What earlier sweeps left there is kept and not given (`Sweep.others`).
         progress: called with a line before each point.
         options: those of `run`, for every point.
 
     Raises:
         CommandFailed: at the first point that fails; the points before it are kept.
+        TypeError: an axis that is no list of values.
     """
     folder = pathlib.Path(out)
     folder.mkdir(parents=True, exist_ok=True)
-    values = {key: list(axis) for key, axis in axes.items()}
-    names = [workloads] if isinstance(workloads, str) else list(workloads)
-    points = [(name, dict(zip(values, point))) for name in names for point in itertools.product(*values.values())]
-    (folder / "sweep.json").write_text(json.dumps({"workloads": names, "axes": values}, indent=2) + "\n", encoding="utf-8")
-    for index, (name, point) in enumerate(points, 1):
-        keys = {**dict(options.get("set") or {}), **{key: value for key, value in point.items() if key != "config"}}
-        more = {**options, "set": keys, **({"config": point["config"]} if "config" in point else {})}
-        there = folder / "-".join([pathlib.Path(name).stem, *(f"{key}={value}" for key, value in point.items())]).replace("/", "_")
-        wanted = json.dumps([name, {key: str(value) for key, value in more.items()}], sort_keys=True)
-        if _complete(there, wanted):
+    values = {key: _axis(key, axis) for key, axis in axes.items()}
+    names = [str(name) for name in ([workloads] if isinstance(workloads, (str, pathlib.PurePath)) else workloads)]
+    if "options" in options:
+        options["options"] = _words(options["options"])  # read once, used at every point
+    points = _points(names, values, options)
+    plan = {"workloads": names, "axes": values, "runs": list(points)}
+    (folder / "sweep.json").write_text(json.dumps(plan, indent=2) + "\n", encoding="utf-8")
+    for index, (there, (name, more, wanted)) in enumerate(points.items(), 1):
+        if _complete(folder / there, wanted):
             continue
         if progress:
-            progress(f"{index}/{len(points)} {there.name}")
-        run(name, out=there, **more)
-        (there / "point.json").write_text(wanted, encoding="utf-8")
+            progress(f"{index}/{len(points)} {there}")
+        run(name, out=folder / there, **more)
+        (folder / there / "point.json").write_text(wanted, encoding="utf-8")
     return Sweep(folder)
+
+
+def _points(names: list[str], values: Mapping[str, list[Any]], options: Mapping[str, Any]) -> dict[str, tuple[str, dict[str, Any], str]]:
+    """By folder, no two the same: workload, options of `run`, and both as text, of every different point."""
+    stems = [_stem(name, names) for name in names]
+    found: dict[str, tuple[str, dict[str, Any], str]] = {}
+    for (name, stem), *point in itertools.product(zip(names, stems), *([(key, value) for value in axis] for key, axis in values.items())):
+        keys = {**dict(options.get("set") or {}), **{key: value for key, value in point if key != "config"}}
+        more = {**options, "set": keys, **{key: value for key, value in point if key == "config"}}
+        wanted = json.dumps([name, {key: str(value) for key, value in more.items()}], sort_keys=True)
+        if any(wanted == known for _, _, known in found.values()):
+            continue  # named twice
+        there = "-".join([stem, *(f"{key}={value}" for key, value in point)]).replace("/", "_").replace("\\", "_")
+        if len(there) > _LONGEST or there in found:
+            there = f"{there[:_LONGEST]}-{hashlib.sha256(wanted.encode()).hexdigest()[:8]}"
+        found[there] = (name, more, wanted)
+    return found
+
+
+def _stem(name: str, names: Iterable[str]) -> str:
+    """The file's name without its ending; with as much of the folders before it as tells the workloads apart."""
+    paths = {pathlib.PurePath(other).with_suffix("").parts for other in names}
+    mine = pathlib.PurePath(name).with_suffix("").parts
+    for count in range(1, len(mine)):
+        if not any(other != mine and other[-count:] == mine[-count:] for other in paths):
+            return "_".join(mine[-count:])
+    return "_".join(part.strip("/") for part in mine if part.strip("/"))
+
+
+def _axis(key: str, values: Any) -> list[Any]:
+    """The values of an axis as numbers and texts of Python."""
+    if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
+        raise TypeError(f"axes['{key}'] is {values!r}: a list of values is needed, [{values!r}] for one")
+    return [_plain(value) for value in values]
+
+
+def _plain(value: Any) -> Any:
+    """NumPy's numbers as Python's, paths as texts."""
+    if isinstance(value, pathlib.PurePath):
+        return str(value)
+    return value.item() if hasattr(value, "item") else value
+
+
+def _words(options: Iterable[str]) -> list[str]:
+    if isinstance(options, str):
+        raise TypeError(f"options is the text {options!r}: a list of words is needed, {options.split()!r}")
+    return [str(word) for word in options]
 
 
 def _complete(directory: pathlib.Path, wanted: str) -> bool:
     try:
-        Run(directory)
+        Run(directory).check()
         return (directory / "point.json").read_text(encoding="utf-8") == wanted
     except (GlintError, OSError):
         return False
 
 
 def _toml(value: Any) -> str:
+    value = _plain(value)
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 

@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 import functools
-import json
 import pathlib
 import tomllib
 from typing import Any
 
+from .documents import flat, read_json, read_text
 from .errors import IncompleteRun, MissingFile, SchemaError, UnknownName
 from .images import read_image, read_map
 from .derived import Metrics
@@ -17,6 +17,8 @@ from .statistics import Stats
 from .table import Table
 
 SCHEMA = 1  # of run.json, as report/run_directory.cpp writes it
+SHADERS = ("pt", "sh", "ao")  # of scenes; pipelines and kernels list their own files
+_LAST_TABLE = "compiler"  # of config.toml: a file without it was cut short
 
 
 class Facts(dict[str, Any]):
@@ -46,21 +48,29 @@ class Run:
             raise MissingFile(f"{self.directory}: there is no such folder")
         if not record.is_file():
             raise MissingFile(f"{self.directory}: no run.json: no run directory, or a run that was stopped before its end")
-        tree = _json(record)
+        tree = read_json(record)
         if tree.get("schema") != SCHEMA:
             raise SchemaError(f"{record}: schema {tree.get('schema')}, this package reads {SCHEMA}: use the package of that Glint")
-        self.info = Facts(_flat(tree))
+        self.info = Facts(flat(tree))
         if not partial and self.info.get("exit", 0) != 0:
             raise IncompleteRun(f"{self.directory}: the run ended with exit code {self.info['exit']}: {self.info.get('message', '')}")
+        if not partial:
+            if "mode" not in self.info:
+                raise SchemaError(f"{record}: no 'mode': the file is damaged")
+            self.file("stats.json", "every run that ends well")
 
     def __repr__(self) -> str:
         return f"Run('{self.directory}': {self.workload}, {self.info['mode']} on {self.config_name})"
 
+    def check(self) -> None:
+        """Reads statistics and configuration; MissingFile, SchemaError where one is gone or damaged."""
+        self.stats, self.config  # noqa: B018 (kept once they are read)
+
     @property
     def workload(self) -> str:
         """Scene and shader, e.g. "SHIP_SH"; of pipelines and kernels their name."""
-        scene, shader = self.info.get("scene.name", ""), self.info.get("shader", "")
-        return f"{scene}_{shader.upper()}" if shader and shader != scene else scene or self.directory.name
+        scene, shader = str(self.info.get("scene.name", "")), str(self.info.get("shader", ""))
+        return f"{scene}_{shader.upper()}" if shader in SHADERS else scene or self.directory.name
 
     @property
     def config_name(self) -> str:
@@ -70,7 +80,11 @@ class Run:
     @functools.cached_property
     def stats(self) -> Stats:
         """All statistics, by dotted path."""
-        return Stats.from_tree(_json(self.file("stats.json", "every run that ends well")))
+        path = self.file("stats.json", "every run that ends well")
+        try:
+            return Stats.from_tree(read_json(path))
+        except SchemaError as error:
+            raise SchemaError(str(error) if str(path) in str(error) else f"{path}: {error}") from error
 
     @functools.cached_property
     def metrics(self) -> Metrics:
@@ -82,9 +96,12 @@ class Run:
         """Every configuration key as it was in the run, by dotted name."""
         path = self.file("config.toml", "every run")
         try:
-            return Facts(_flat(tomllib.loads(path.read_text(encoding="utf-8"))))
+            tree = tomllib.loads(read_text(path))
         except tomllib.TOMLDecodeError as error:
             raise SchemaError(f"{path}: {error}") from error
+        if _LAST_TABLE not in tree:
+            raise SchemaError(f"{path}: no [{_LAST_TABLE}], the last table of a whole file: it was cut short")
+        return Facts(flat(tree))
 
     @property
     def cycles(self) -> int:
@@ -111,18 +128,23 @@ class Run:
     @functools.cached_property
     def series(self) -> Table:
         """The run over time, a row an interval (docs/profiling.md)."""
-        return Table.read(self.file("series.csv", "`glint run --sample CYCLES`"), needs=("cycle", "ipc"))
+        return Table.read(self.file("series.csv", "`glint run --sample CYCLES`"), needs=("cycle", "ipc"), whole=True)
 
     @functools.cached_property
     def profile(self) -> Table:
         """Cycles by instruction and by source line (docs/profiling.md)."""
-        return Table.read(self.file("profile.csv", "`glint run --profile`"), needs=("by", "stage", "line", "op", "issues", "cycles"))
+        return Table.read(self.file("profile.csv", "`glint run --profile`"), needs=("by", "stage", "line", "op", "issues", "cycles"), whole=True)
 
     @functools.cached_property
     def folded(self) -> dict[str, int]:
         """Cycles by call stack, frames separated by ';', as flame graphs take them."""
-        lines = self.file("profile.folded", "`glint run --profile`").read_text(encoding="utf-8").splitlines()
-        return {stack: int(cycles) for stack, _, cycles in (line.rpartition(" ") for line in lines)}
+        path, stacks = self.file("profile.folded", "`glint run --profile`"), {}
+        for number, line in enumerate(read_text(path).splitlines(), 1):
+            stack, _, cycles = line.rpartition(" ")
+            if not stack or not cycles.isdecimal():
+                raise SchemaError(f"{path}:{number}: no stack with its cycles: the file is damaged or was cut short")
+            stacks[stack] = int(cycles)
+        return stacks
 
     @property
     def map_names(self) -> list[str]:
@@ -131,8 +153,15 @@ class Run:
 
     def map_info(self, name: str) -> Facts:
         """Unit, meaning, sum, smallest, mean, 99th percentile (p99) and largest of a map of cost, from `heat/maps.json`."""
-        for one in _json(self.file("heat/maps.json", "`glint run --heat`")).get("maps", []):
+        path = self.file("heat/maps.json", "`glint run --heat`")
+        maps = read_json(path).get("maps")
+        if not isinstance(maps, list) or not all(isinstance(one, dict) for one in maps):
+            raise SchemaError(f"{path}: no list of maps: the file is damaged, or of another version of Glint")
+        for one in maps:
             if one.get("name") == name:
+                missing = [fact for fact in ("unit", "p99", "max") if fact not in one]
+                if missing:
+                    raise SchemaError(f"{path}: '{name}' has no {', '.join(missing)}: the file is damaged, or of another version of Glint")
                 return Facts(one)
         raise UnknownName(f"{self.directory}: heat/maps.json has no '{name}'{near(name, self.map_names)}")
 
@@ -148,39 +177,3 @@ class Run:
         if not path.is_file():
             raise MissingFile(f"{self.directory}: no {name}: written by {written_by}")
         return path
-
-
-def labels(runs: list[Run]) -> list[str]:
-    """Short names that tell runs apart: of what differs between them."""
-    keys = [key for key in runs[0].config if len({str(run.config.get(key)) for run in runs}) > 1][:2] if runs else []
-    facts = [lambda run: run.workload, lambda run: run.config_name,
-             lambda run: f"{run.info.get('width')}x{run.info.get('height')}", lambda run: f"{run.info.get('samples')} spp"]
-    by_config = len({run.config_name for run in runs}) > 1
-    used = [fact for fact in facts if len({fact(run) for run in runs}) > 1]
-    names = []
-    for run in runs:
-        words = [fact(run) for fact in used]
-        if not by_config:  # keys of two presets differ in dozens
-            words += [f"{key}={run.config.get(key)}" for key in keys]
-        names.append(" ".join(words) or run.workload)
-    return [name if names.count(name) == 1 else f"{name} {run.directory.name}" for name, run in zip(names, runs)]
-
-
-def _json(path: pathlib.Path) -> dict[str, Any]:
-    try:
-        tree = json.loads(path.read_text(encoding="utf-8"))
-    except (json.JSONDecodeError, UnicodeDecodeError) as error:
-        raise SchemaError(f"{path}: no JSON, or cut short: {error}") from error
-    if not isinstance(tree, dict):
-        raise SchemaError(f"{path}: no JSON object")
-    return tree
-
-
-def _flat(tree: dict[str, Any], prefix: str = "") -> dict[str, Any]:
-    out: dict[str, Any] = {}
-    for name, value in tree.items():
-        if isinstance(value, dict):
-            out.update(_flat(value, f"{prefix}{name}."))
-        else:
-            out[prefix + name] = value
-    return out

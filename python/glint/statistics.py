@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Mapping
 from typing import Any, Iterator
 
@@ -51,7 +52,7 @@ class Stats(Mapping[str, Any]):
 
     @classmethod
     def from_tree(cls, tree: dict[str, Any]) -> Stats:
-        """From the tree in stats.json; SchemaError where it is none."""
+        """From the tree in stats.json; SchemaError where it is none, or where a value is no number."""
         stats: dict[str, Stat] = {}
         _gather(tree, "", stats)
         if not stats:
@@ -150,6 +151,14 @@ def _gather(tree: dict[str, Any], prefix: str, out: dict[str, Stat]) -> None:
     for name, node in tree.items():
         path = f"{prefix}.{name}" if prefix else name
         if isinstance(node, dict) and "value" in node and "unit" in node:
+            if not _is_value(node["value"]):
+                raise SchemaError(f"'{path}' is {node['value']!r:.40}, no number: the file is damaged")
             out[path] = Stat(path, node["value"], node["unit"], node.get("doc", ""), node.get("bins"))
         elif isinstance(node, dict):
             _gather(node, path, out)
+
+
+def _is_value(value: Any) -> bool:
+    """A number, or parts or bins of numbers; JSON's true, false, null and texts are none."""
+    many = value.values() if isinstance(value, dict) else value if isinstance(value, list) else (value,)
+    return all(type(one) in (int, float) and math.isfinite(one) for one in many)

@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 import csv
+import io
 import pathlib
 from typing import Any, Iterator
 
+from .documents import read_text
 from .errors import SchemaError, UnknownName
 from .optional import require
 from .patterns import near
@@ -24,12 +26,20 @@ class Table:
         self._rows = rows
 
     @classmethod
-    def read(cls, path: pathlib.Path, needs: tuple[str, ...] = ()) -> Table:
-        """Reads a CSV file with a header line; SchemaError when a column of `needs` is missing or a row is cut short."""
-        with open(path, newline="", encoding="utf-8") as file:
-            lines = list(csv.reader(file))
+    def read(cls, path: pathlib.Path, needs: tuple[str, ...] = (), whole: bool = False) -> Table:
+        """Reads a CSV file with a header line; SchemaError when a column of `needs` is missing or a row is cut short.
+
+        With `whole` the last line has to be ended too: numbers that were cut short are numbers.
+        """
+        text = read_text(path)
+        try:
+            lines = list(csv.reader(io.StringIO(text, newline="")))
+        except csv.Error as error:
+            raise SchemaError(f"{path}: no table: {error}") from error
         if not lines:
             raise SchemaError(f"{path}: empty")
+        if whole and not text.endswith("\n"):
+            raise SchemaError(f"{path}:{len(lines)}: the last line has no end: the file was cut short")
         header = lines[0]
         for number, line in enumerate(lines[1:], 2):
             if len(line) != len(header):
@@ -47,15 +57,18 @@ class Table:
 
     def __getitem__(self, column: str) -> list[Any]:
         """A column as a list; UnknownName where there is none."""
-        if column not in self.columns:
-            raise UnknownName(f"no column '{column}'{near(column, self.columns)} There are: {', '.join(self.columns)}")
-        at = self.columns.index(column)
+        at = self._index(column)
         return [row[at] for row in self._rows]
 
     def where(self, **equal: Any) -> Table:
-        """The rows in which each named column has the given value."""
-        at = {self.columns.index(name): value for name, value in equal.items()}
+        """The rows in which each named column has the given value; UnknownName where there is no such column."""
+        at = {self._index(name): value for name, value in equal.items()}
         return Table(self.columns, [row for row in self._rows if all(row[i] == value for i, value in at.items())])
+
+    def _index(self, column: str) -> int:
+        if column not in self.columns:
+            raise UnknownName(f"no column '{column}'{near(column, self.columns)} There are: {', '.join(self.columns)}")
+        return self.columns.index(column)
 
     def frame(self) -> Any:
         """A pandas.DataFrame; MissingPackage without pandas."""

@@ -3,20 +3,16 @@
 """Figures of runs. Each function takes a `Run`, a list of runs, or a folder of runs (`Bench`, `Sweep`), and gives a
 matplotlib Figure, 3.3 inches wide; `save(figure, "fig.pdf")` writes it. `FIGURES` names those that any timing run with rays has.
 
-Raises MissingPackage without matplotlib, MissingFile where a run lacks what a figure needs (the message names the
+Its functions, not the import, raise MissingPackage without matplotlib, MissingFile where a run lacks what a figure needs (the message names the
 option that writes it), GlintError for runs that have nothing to draw.
 """
-from ..optional import require
-
-require("matplotlib", "glint.plot")
-
-from .instructions import cpi_stack, instruction_mix, op_latency, ops, stage_cycles, stages  # noqa: E402
-from .memory import dram, dram_clocks, l1_reads, l2_reads, miss_latency, miss_stages  # noqa: E402
-from .models import model_fit  # noqa: E402
-from .overview import cost_map, ipc, picture, series  # noqa: E402
-from .rays import fetch_mix, geometry, ray_latency, ray_nodes, rt_cycles, rt_use, traversal  # noqa: E402
-from .suite import components, dendrogram, kiviat, scree  # noqa: E402
-from .style import COLOURS, COLUMN, save  # noqa: E402
+from .instructions import cpi_stack, instruction_mix, op_latency, ops, stage_cycles, stages
+from .memory import dram, dram_clocks, l1_reads, l2_reads, miss_latency, miss_stages
+from .models import model_fit
+from .overview import cost_map, ipc, picture, series
+from .rays import fetch_mix, geometry, ray_latency, ray_nodes, rt_cycles, rt_use, traversal
+from .suite import components, dendrogram, kiviat, scree
+from .style import COLOURS, COLUMN, save
 
 FIGURES = {figure.__name__: figure for figure in (
     geometry, instruction_mix, stages, cpi_stack, rt_use, traversal, rt_cycles, fetch_mix, ray_nodes, ray_latency,

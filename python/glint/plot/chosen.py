@@ -6,9 +6,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Iterable, Sequence
 
-from ..errors import GlintError
-from ..run_directory import Run, labels
-from .kinds import Part, grouped
+from ..errors import GlintError, SchemaError
+from ..labelling import labels
+from ..run_directory import Run
+from .kinds import Part, grouped, histogram, spread
+from .style import RUN_COLOURS, run_colour
 
 Chosen = Run | Iterable[Run] | Mapping[str, Run]
 
@@ -43,11 +45,27 @@ def rows_of(runs: Sequence[Run], kinds: Sequence[str]) -> list[tuple[str, Run, s
     return [(f"{name}, {kind}" if several else kind, run, kind) for kind in kinds for name, run in zip(names(runs), runs)]
 
 
+def at_most_eight(runs: Sequence[Run], figure: str) -> None:
+    """GlintError for more runs than there are colours."""
+    if len(runs) > len(RUN_COLOURS):
+        raise GlintError(f"{figure} has a colour a run, and there are {len(RUN_COLOURS)}: choose as many of the {len(runs)} runs")
+
+
 def total(run: Run, pattern: str) -> Any:
-    """The sum of what matches; 0 where the run has no such statistic."""
+    """The sum of what matches, 0 of a breakdown without such a part; SchemaError where the run has no such statistic."""
+    name = pattern.partition("::")[0]
+    if not run.stats.select(name):
+        raise SchemaError(f"{run.directory}: no statistic '{name}': another version of Glint wrote the run, run it again")
     return sum(run.stats.values(pattern))
 
 
 def shares(runs: Sequence[Run], metrics: Sequence[tuple[str, str, str]]) -> Any:
     """Bars of metrics that are fractions, a group a run; `metrics`: (name shown, colour, metric)."""
     return grouped(names(runs), [Part(name, colour, [run.metrics[metric] for run in runs]) for name, colour, metric in metrics], "%", percent=True, top=100)
+
+
+def spreads(runs: Sequence[Run], histograms: Sequence[Any], x_label: str, y_label: str) -> Any:
+    """Histograms of the runs as lines; of more runs than there are colours their quantiles, a row a run."""
+    if len(runs) > len(RUN_COLOURS):
+        return spread(names(runs), histograms, x_label)
+    return histogram([(name, run_colour(i), one) for i, (name, one) in enumerate(zip(names(runs), histograms))], x_label, y_label)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..run_directory import Run
-from .chosen import Chosen, chosen, names, rows_of, total
+from .chosen import Chosen, at_most_eight, chosen, names, rows_of, total
 from .kinds import Part, panels, ranked, stacked
 from .style import run_colour
 
@@ -82,6 +82,7 @@ def op_latency(runs: Chosen, top: int = 12) -> Any:
 
 def _op_bars(runs: Chosen, top: int, value: Any, label: str, percent: bool) -> Any:
     found = chosen(runs)
+    at_most_eight(found, "this figure")
     tables = [_by(run, "op") for run in found]
     weigh = "cycles" if percent else "latency"
     known = {op for table in tables for op, row in table.items() if percent or row["ended"]}

@@ -1,4 +1,4 @@
-# The few kinds of charts that all figures are: stacked bars, grouped bars, lines in panels, histograms.
+# The few kinds of charts that all figures are: stacked bars, grouped bars, lines in panels, histograms, spreads.
 # SPDX-License-Identifier: Apache-2.0
 """Each function draws into axes that it is given; numbers come as they are, shares are computed here."""
 from __future__ import annotations
@@ -7,10 +7,11 @@ import dataclasses
 from typing import Any, Sequence
 
 from .style import COLOURS, COLUMN, legend, new_figure, run_colour, styled
-
+from .text import Fitted, below_groups, fitted, wrapped
 
 MOST_GROUPS = 24  # groups that a column's width has room for; a whole suite takes both columns
 MOST_ROWS = 48  # rows that a page's height has room for
+_PAGE = 8.5  # inches that rows may take on it
 
 
 @dataclasses.dataclass(frozen=True)
@@ -22,48 +23,86 @@ class Part:
 
 
 def stacked(rows: Sequence[str], parts: Sequence[Part], x_label: str, share: bool = True, width: float = COLUMN,
-            scale: Sequence[float] | None = None) -> Any:
-    """Horizontal stacked bars, the first row at the top; with `share` each adds up to 100 %, `scale` gives other lengths.
+            scale: Sequence[float] | None = None, key: bool = True) -> Any:
+    """Horizontal stacked bars, the first row at the top; with `share` each adds up to 100 %, `scale` gives other lengths; `key`: with a legend.
 
-    More rows than MOST_ROWS stand in two halves beside each other, over both columns of a page.
+    More rows than a page has room for stand in two halves beside each other, over both columns of a page.
     """
     used = [part for part in parts if any(part.values)]
     totals = [sum(part.values[i] for part in used) for i in range(len(rows))]
     lengths = scale if scale is not None else [100.0] * len(rows) if share else totals
-    halves = 2 if len(rows) > MOST_ROWS else 1
-    each = -(-len(rows) // halves)
+    sheet = _Rows(rows, width)
     with styled():
-        many = each > 24  # a whole suite: smaller rows and type
-        figure, axes = new_figure(0.36 + (0.1 if many else 0.17) * max(2, each), columns=halves, width=width if halves == 1 else 2.1 * COLUMN, squeeze=False)
-        for half in range(halves):
-            some = range(half * each, min(len(rows), (half + 1) * each))
+        figure, axes = new_figure(0.36 + sheet.height, columns=sheet.halves, width=sheet.width, squeeze=False)
+        handles: list[Any] = []
+        for half in range(sheet.halves):
+            some = sheet.half(half)
             handles = _stack(axes[0, half], some, used, [length / all_of if all_of else 0.0 for length, all_of in zip(lengths, totals)])
-            _rows_of_bars(axes[0, half], [rows[i] for i in some], max(lengths, default=1) or 1, x_label, many)
-        legend(figure, handles, [part.name for part in used])
+            sheet.draw(axes[0, half], half, max(lengths, default=1) or 1, x_label)
+        if key:
+            legend(figure, handles, [part.name for part in used])
         return figure
 
 
 def panels(rows: Sequence[str], measures: Sequence[tuple[str, Sequence[Part], Sequence[float]]], x_label: str) -> Any:
     """Horizontal stacked bars of several measures, (name, parts, wholes) each, in axes beside each other: as long as their share of the whole.
 
-    The parts of all measures have the same names and colours. More rows than MOST_ROWS stand in two halves, over both columns of a page.
+    The parts of all measures have the same names and colours. More rows than a page has room for stand in two halves, over both columns of a page.
     """
     shown = [i for i, part in enumerate(measures[0][1]) if any(any(parts[i].values) for _, parts, _ in measures)]
-    halves = 2 if len(rows) > MOST_ROWS else 1
-    each = -(-len(rows) // halves)
     longest = max((100 * sum(part.values[i] for part in parts) / wholes[i] for _, parts, wholes in measures for i in range(len(rows)) if wholes[i]), default=1)
+    sheet = _Rows(rows, COLUMN, beside=len(measures))
     with styled():
-        many = each > 24
-        figure, axes = new_figure(0.5 + (0.1 if many else 0.17) * max(2, each), columns=halves * len(measures), width=halves * COLUMN * (1.05 if halves > 1 else 1), squeeze=False)
-        for half in range(halves):
-            some = range(half * each, min(len(rows), (half + 1) * each))
+        figure, axes = new_figure(0.5 + sheet.height, columns=sheet.halves * len(measures), width=sheet.width, squeeze=False)
+        handles: list[Any] = []
+        for half in range(sheet.halves):
+            some = sheet.half(half)
             for index, (name, parts, wholes) in enumerate(measures):
                 own = axes[0, half * len(measures) + index]
                 handles = _stack(own, some, [parts[i] for i in shown], [100 / whole if whole else 0.0 for whole in wholes])
-                _rows_of_bars(own, [rows[i] if index == 0 else "" for i in some], longest, x_label, many)
+                sheet.draw(own, half, longest, x_label, named=index == 0)
                 own.set_title(name)
         legend(figure, handles, [measures[0][1][i].name for i in shown])
         return figure
+
+
+class _Rows:
+    """Rows of horizontal bars: how their names are broken, how high they are, and into how many halves they go.
+
+    Attributes:
+        halves: 2 over both columns of a page, else 1.
+        width: inches of the figure.
+        height: inches of the rows.
+    """
+
+    def __init__(self, rows: Sequence[str], width: float, beside: int = 1):
+        self.count, self.beside = len(rows), beside
+        for self.halves in (1, 2):
+            self.width = width if self.halves == 1 else 2.1 * COLUMN
+            each = -(-len(rows) // self.halves)
+            self.many = each > MOST_GROUPS  # a whole suite: smaller rows and type
+            share = 0.42 if beside == 1 else 0.36
+            self.names = fitted(rows, share * self.width / self.halves, 5 if self.many else 6.5)
+            least, air = (0.1, 0.03) if self.many else (0.17, 0.07)
+            self.row = max(least, self.names.height + air)
+            self.height = self.row * max(2, each)
+            if each <= MOST_ROWS and self.height <= _PAGE:
+                break
+        self.each = each
+
+    def half(self, index: int) -> range:
+        return range(index * self.each, min(self.count, (index + 1) * self.each))
+
+    def draw(self, axes: Any, half: int, longest: float, x_label: str, named: bool = True) -> None:
+        """Names, scale and label of the axes of a half."""
+        some = self.half(half)
+        axes.set_yticks(range(len(some)), [self.names.texts[i] if named else "" for i in some])
+        axes.tick_params(axis="y", length=0, labelsize=self.names.size)
+        axes.set_ylim(max(len(some), self.each if self.halves > 1 else 0) - 0.4, -0.6)  # rows of both halves are alike
+        axes.set_xlim(0, longest * 1.001)
+        room = (self.width / self.halves - self.names.width - 0.2) / self.beside - 0.05
+        axes.set_xlabel("\n".join(wrapped(x_label, room, 7)))
+        axes.grid(axis="x", color=COLOURS["pale"], linewidth=0.4)
 
 
 def _stack(axes: Any, rows: range, parts: Sequence[Part], factors: Sequence[float]) -> list[Any]:
@@ -76,19 +115,11 @@ def _stack(axes: Any, rows: range, parts: Sequence[Part], factors: Sequence[floa
     return handles
 
 
-def _rows_of_bars(axes: Any, rows: Sequence[str], longest: float, x_label: str, many: bool) -> None:
-    axes.set_yticks(range(len(rows)), rows)
-    axes.tick_params(axis="y", length=0, labelsize=5 if many else None)
-    axes.set_ylim(len(rows) - 0.4, -0.6)
-    axes.set_xlim(0, longest * 1.001)
-    axes.set_xlabel(x_label)
-    axes.grid(axis="x", color=COLOURS["pale"], linewidth=0.4)
-
-
 def grouped(groups: Sequence[str], series: Sequence[Part], y_label: str, axes: Any = None, percent: bool = False, top: float | None = None) -> Any:
     """Vertical bars side by side, a group a label; None leaves a gap. Without `axes` a figure of its own, with a legend."""
     with styled():
-        figure, own = (None, axes) if axes is not None else new_figure(1.5 if len(groups) <= MOST_GROUPS else 1.8, width=width_for(len(groups)))
+        names = group_names(groups)
+        figure, own = (None, axes) if axes is not None else new_figure(1.4 + names.below, width=width_for(len(groups)))
         wide = 0.8 / max(1, len(series))
         factor = 100 if percent else 1
         handles = []
@@ -98,8 +129,9 @@ def grouped(groups: Sequence[str], series: Sequence[Part], y_label: str, axes: A
             handles.append(own.bar(places, values, wide * 0.94, color=COLOURS.get(one.colour, one.colour), linewidth=0))
         if len(groups) < 3:  # one run makes no wall of colour
             own.set_xlim(-1.1, len(groups) + 0.1)
-        crowded = len(groups) * max((len(group) for group in groups), default=1) > 48
-        own.set_xticks(range(len(groups)), groups, rotation=90 if crowded else 0, fontsize=5 if len(groups) > MOST_GROUPS else None)
+        else:
+            own.set_xlim(-0.6, len(groups) - 0.4)
+        own.set_xticks(range(len(groups)), names.texts, rotation=90 if names.upright else 0, fontsize=names.size)
         own.tick_params(axis="x", length=0)
         own.set_ylabel(y_label)
         own.set_ylim(0, top)
@@ -107,6 +139,12 @@ def grouped(groups: Sequence[str], series: Sequence[Part], y_label: str, axes: A
         if figure is not None and len(series) > 1:
             legend(figure, handles, [one.name for one in series])
         return figure if figure is not None else handles
+
+
+def group_names(groups: Sequence[str]) -> Fitted:
+    """The names of groups of bars as `grouped` sets them: a figure needs `below` inches for them."""
+    each = (width_for(len(groups)) - 0.55) / (len(groups) if len(groups) > 2 else len(groups) + 1.2)
+    return below_groups(groups, each, 5 if len(groups) > MOST_GROUPS else 6.5)
 
 
 def ranked(rows: Sequence[str], series: Sequence[Part], x_label: str, percent: bool = False) -> Any:
@@ -122,7 +160,7 @@ def ranked(rows: Sequence[str], series: Sequence[Part], x_label: str, percent: b
         axes.set_yticks(range(len(rows)), rows)
         axes.tick_params(axis="y", length=0)
         axes.set_ylim(len(rows) - 0.4, -0.6)
-        axes.set_xlabel(x_label)
+        axes.set_xlabel("\n".join(wrapped(x_label, COLUMN - 0.3 - fitted(rows, COLUMN, 6.5).width, 7)))
         axes.grid(axis="x", color=COLOURS["pale"], linewidth=0.4)
         if len(series) > 1:
             legend(figure, handles, [one.name for one in series])
@@ -175,3 +213,35 @@ def histogram(series: Sequence[tuple[str, str, Any]], x_label: str, y_label: str
         if len(series) > 1:
             legend(figure, handles, [name for name, _, _ in series])
         return figure
+
+
+def spread(rows: Sequence[str], histograms: Sequence[Any], x_label: str) -> Any:
+    """A row a histogram: a line from the 5th to the 95th percentile, a bar over the middle half, a mark at the median.
+
+    What lies in a histogram's last bin, which is open, is drawn within it.
+    """
+    sheet = _Rows(rows, COLUMN)
+    marks = [[quantile(one, share) for share in (0.05, 0.25, 0.5, 0.75, 0.95)] for one in histograms]
+    longest = max((mark[-1] for mark in marks), default=1) or 1
+    with styled():
+        figure, axes = new_figure(0.36 + sheet.height, columns=sheet.halves, width=sheet.width, squeeze=False)
+        handles: list[Any] = []
+        for half in range(sheet.halves):
+            own, some = axes[0, half], sheet.half(half)
+            outer = own.hlines(range(len(some)), [marks[i][0] for i in some], [marks[i][4] for i in some], color=COLOURS["grey"], linewidth=0.7)
+            inner = own.barh(range(len(some)), [marks[i][3] - marks[i][1] for i in some], 0.6, [marks[i][1] for i in some], color=COLOURS["sky"], linewidth=0)
+            middle = own.plot([marks[i][2] for i in some], range(len(some)), "|", color=COLOURS["dark"], markersize=60 * sheet.row * 0.6, markeredgewidth=0.9)[0]
+            handles = [outer, inner, middle]
+            sheet.draw(own, half, 1.02 * longest, x_label)
+        legend(figure, handles, ["5 to 95 %", "25 to 75 %", "median"])
+        return figure
+
+
+def quantile(histogram: Any, share: float) -> float:
+    """The value below which `share` of a histogram lies, as if its bins were filled evenly; 0 of an empty one."""
+    wanted, seen = share * sum(histogram.counts), 0.0
+    for low, high, count in zip(histogram.edges, histogram.edges[1:], histogram.counts):
+        if count and seen + count >= wanted:
+            return float(low + (high - low) * (wanted - seen) / count)
+        seen += count
+    return 0.0

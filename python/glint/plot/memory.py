@@ -7,9 +7,8 @@ from typing import Any, Callable
 
 from ..errors import GlintError
 from ..run_directory import Run
-from .chosen import Chosen, chosen, names, rows_of, shares, total
+from .chosen import Chosen, chosen, names, rows_of, shares, spreads, total
 from .kinds import Part, histogram, stacked
-from .style import run_colour
 
 _ASKED_BY: dict[str, Callable[[str], bool]] = {
     "RT unit": lambda name: name.startswith("rt_"), "shaders": lambda name: name.startswith("shader_"),
@@ -72,10 +71,9 @@ def miss_stages(runs: Chosen) -> Any:
 
 
 def miss_latency(runs: Chosen) -> Any:
-    """How the latencies of misses are spread: of one run by who answered, of several run by run."""
+    """How the latencies of misses are spread: of one run by who answered, of several run by run, of more than eight as quantiles."""
     found = chosen(runs)
-    if len(found) == 1:
-        series = [(name, colour, found[0].stats.histogram(f"l1.{key}")) for name, colour, key in (("L2 answered", "green", "l2_latency"), ("DRAM answered", "orange", "dram_latency"))]
-    else:
-        series = [(name, run_colour(i), run.stats.histogram("l1.miss_latency")) for i, (name, run) in enumerate(zip(names(found), found))]
+    if len(found) > 1:
+        return spreads(found, [run.stats.histogram("l1.miss_latency") for run in found], "cycles of an L1 miss", "share of misses (%)")
+    series = [(name, colour, found[0].stats.histogram(f"l1.{key}")) for name, colour, key in (("L2 answered", "green", "l2_latency"), ("DRAM answered", "orange", "dram_latency"))]
     return histogram(series, "cycles of an L1 miss", "share of misses (%)")

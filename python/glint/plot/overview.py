@@ -6,32 +6,31 @@ from __future__ import annotations
 from typing import Any
 
 from ..errors import GlintError
+from ..labelling import named
 from ..run_directory import Run
-from .chosen import Chosen, chosen, names
-from .kinds import Part, grouped, lines
-from .style import COLUMN, new_figure, run_colour, styled
+from .chosen import Chosen, at_most_eight, chosen, names
+from .kinds import Part, grouped, lines, stacked
+from .style import COLUMN, RUN_COLOURS, new_figure, run_colour, styled
 
 _PANELS = [("ipc", "IPC", 1), ("rt_warps", "RT warps", 1), ("l1d_miss_rate", "L1 misses (%)", 100), ("l2_miss_rate", "L2 misses (%)", 100), ("dram_use", "DRAM use (%)", 100)]
 
 
 def ipc(runs: Chosen) -> Any:
-    """Warp instructions a cycle by workload, a colour a configuration (LumiBench, Figure 14)."""
+    """Warp instructions a cycle, a bar a run: by workload, a colour a configuration (LumiBench, Figure 14); of more than eight a row a run."""
     found = chosen(runs)
-    keys = [key for key in found[0].config if len({str(run.config.get(key)) for run in found}) > 1]
-    presets = {run.config_name for run in found}
-
-    def configuration(run: Run) -> str:  # of presets their names; of one preset the first keys that differ
-        return run.config_name if len(presets) > 1 else " ".join(f"{key}={run.config.get(key)}" for key in keys[:2]) or run.config_name
-
-    workloads, configurations = (list(dict.fromkeys(one)) for one in ([run.workload for run in found], [configuration(run) for run in found]))
-    table = {(run.workload, configuration(run)): run.ipc for run in found}
-    series = [Part(name, run_colour(i), [table.get((workload, name)) for workload in workloads]) for i, name in enumerate(configurations)]
-    return grouped(workloads, series, "warp instructions / cycle")
+    names_of = named(found)
+    tasks, configurations = (list(dict.fromkeys(one)) for one in ([one.task for one in names_of], [one.config for one in names_of]))
+    if len(configurations) > len(RUN_COLOURS):  # a row a run
+        return stacked([one.label for one in names_of], [Part("IPC", "blue", [run.ipc for run in found])], "warp instructions / cycle", share=False, key=False)
+    table = {(one.task, one.config): run.ipc for one, run in zip(names_of, found)}  # a configuration's runs of a task are numbered
+    parts = [Part(name, run_colour(i), [table.get((task, name)) for task in tasks]) for i, name in enumerate(configurations)]
+    return grouped(tasks, parts, "warp instructions / cycle")
 
 
 def series(runs: Chosen) -> Any:
     """IPC, warps in RT units, miss rates and DRAM use over time (LumiBench, Figure 6). Needs `--sample CYCLES`."""
     found = chosen(runs)
+    at_most_eight(found, "series")
     panels = [(label, [(name, run.series["cycle"], [factor * value for value in run.series[column]]) for name, run in zip(names(found), found)])
               for column, label, factor in _PANELS if any(any(run.series[column]) for run in found)]
     if not panels:

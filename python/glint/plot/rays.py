@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from .chosen import Chosen, chosen, names, shares, total, with_rays
-from .kinds import Part, grouped, histogram, stacked, width_for
-from .style import COLOURS, new_figure, run_colour, styled
+from .chosen import Chosen, chosen, names, shares, spreads, total, with_rays
+from .kinds import Part, group_names, grouped, stacked, width_for
+from .style import COLOURS, new_figure, styled
 
 _FETCHES = [("rt_node", "internal nodes", "blue"), ("rt_instance", "instances", "orange"), ("rt_triangle", "triangles", "green"),
             ("rt_procedural", "procedurals", "pink"), ("rt_table", "candidate tables", "yellow"), ("rt_stack", "stacks", "grey")]
@@ -25,7 +25,7 @@ def geometry(runs: Chosen) -> Any:
               ("triangles", "orange", lambda run: run.info.get("structures.triangles")),
               ("cycles", "red", lambda run: run.cycles)]
     with styled():
-        figure, axes = new_figure(0.55 + 0.62 * len(panels), rows=len(panels), sharex=True, width=width_for(len(found)))
+        figure, axes = new_figure(0.45 + 0.62 * len(panels) + group_names(names(found)).below, rows=len(panels), sharex=True, width=width_for(len(found)))
         for panel, (label, colour, value) in zip(axes, panels):
             values = [value(run) or 0 for run in found]
             grouped(names(found), [Part(label, colour, values)], label, axes=panel)
@@ -47,7 +47,7 @@ def traversal(runs: Chosen) -> Any:
     """Nodes that a ray visits for each level of the structure (LumiBench, Figure 10); the line is one straight way down."""
     found = with_rays(runs)
     with styled():
-        figure, axes = new_figure(1.5, width=width_for(len(found)))
+        figure, axes = new_figure(1.4 + group_names(names(found)).below, width=width_for(len(found)))
         grouped(names(found), [Part("traversal ratio", "blue", [run.metrics["traversal_ratio"] for run in found])], "nodes / ray / depth", axes=axes)
         axes.axhline(1, color=COLOURS["dark"], linewidth=0.6, linestyle="--")
         return figure
@@ -66,15 +66,15 @@ def fetch_mix(runs: Chosen) -> Any:
 
 
 def ray_nodes(runs: Chosen) -> Any:
-    """Nodes visited by a ray: shares of finished rays by bins."""
+    """Nodes visited by a ray: shares of finished rays by bins; of more than eight runs quantiles, a row a run."""
     return _ray_histogram(runs, "rt.ray_nodes", "nodes visited by a ray")
 
 
 def ray_latency(runs: Chosen) -> Any:
-    """Cycles from a ray's acceptance by the RT unit to its stop: shares of rays by bins."""
+    """Cycles from a ray's acceptance by the RT unit to its stop: shares of rays by bins; of more than eight runs quantiles, a row a run."""
     return _ray_histogram(runs, "rt.ray_latency", "cycles of a ray in the RT unit")
 
 
 def _ray_histogram(runs: Chosen, path: str, label: str) -> Any:
     found = with_rays(runs)
-    return histogram([(name, run_colour(i), run.stats.histogram(path)) for i, (name, run) in enumerate(zip(names(found), found))], label, "share of rays (%)")
+    return spreads(found, [run.stats.histogram(path) for run in found], label, "share of rays (%)")

@@ -8,6 +8,7 @@ import pathlib
 from typing import Any, Iterator, Sequence
 
 from ..optional import require
+from .text import fitted, width_of
 
 COLUMN = 3.3  # inches: the width of a column of IEEE and ACM papers, a little less
 # Okabe and Ito (2008), "Color Universal Design"; grey, pale and dark are neutral.
@@ -44,15 +45,20 @@ def new_figure(height: float, rows: int = 1, columns: int = 1, width: float = CO
 
 def legend(figure: Any, handles: Sequence[Any], names: Sequence[str]) -> None:
     """A legend above the axes, as many columns as the width has room for; the figure grows by its height."""
-    room = max(1, int(figure.get_figwidth() * 20 / (max((len(name) for name in names), default=1) + 4)))
-    columns = min(len(names), room)
-    lines = -(-len(names) // columns)
-    columns = -(-len(names) // lines)  # lines of like length
-    extra = 0.04 + 0.135 * lines
+    size, beside = _SETTINGS["legend.fontsize"], 0.22  # inches: the colour, and the space between columns
+    room = figure.get_figwidth() - 0.1
+    found = fitted(names, room - beside, size)
+    widths = [max(width_of(line, size) for line in text.split("\n")) + beside for text in found.texts]
+    for rows in range(1, len(names) + 1):  # matplotlib fills column by column
+        columns = -(-len(names) // rows)
+        if sum(max(widths[at:at + rows]) for at in range(0, len(names), rows)) <= room:
+            break
+    heights = [(1.28 + 1.22 * text.count("\n")) * size / 72 for text in found.texts]  # a line with its spacing, and further lines
+    extra = 0.06 + max(sum(heights[at:at + rows]) for at in range(0, len(names), rows))
     height = figure.get_figheight() + extra
     figure.set_figheight(height)
     figure.get_layout_engine().set(rect=(0, 0, 1, 1 - extra / height))
-    figure.legend(handles, names, loc="upper center", ncols=columns, borderaxespad=0, borderpad=0.2, labelspacing=0.25)
+    figure.legend(handles, found.texts, loc="upper center", ncols=columns, borderaxespad=0, borderpad=0.2, labelspacing=0.25)
 
 
 def save(figure: Any, path: str | pathlib.Path) -> pathlib.Path:

@@ -1,0 +1,123 @@
+# Damaged runs, pictures and folders: each is refused with a GlintError that names the file, and spoils no other run.
+# SPDX-License-Identifier: Apache-2.0
+"""usage: damage_test.py GLINT SOURCE_DIR; what needs numpy and matplotlib is left out, loudly, where they are not."""
+import importlib.util
+import json
+import re
+import shutil
+import struct
+import zlib
+
+import python_case
+from python_case import PythonTest
+
+ARRAYS = all(importlib.util.find_spec(name) for name in ("numpy", "matplotlib"))
+
+
+def half(data):
+    return data[:len(data) // 2]
+
+
+def with_cycles(word):
+    return lambda data: re.sub(rb'("cycles": \{\s*"value": )\d+', rb"\g<1>" + word, data, count=1)
+
+
+def png(path, width, height, colour, rows):
+    """A PNG of 8 bits a channel: colour 0 is grey, 4 grey with transparency, 6 RGBA."""
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    data = b"".join(b"\0" + bytes(row) for row in rows)
+    header = struct.pack(">IIBBBBB", width, height, 8, colour, 0, 0, 0)
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(data)) + chunk(b"IEND", b""))
+    return path
+
+
+class Damaged(PythonTest):
+    def refused(self, file, change, read, words=None):
+        """That reading a run whose file was changed gives a SchemaError with the file's name."""
+        there = self.folder / "damaged"
+        shutil.rmtree(there, ignore_errors=True)
+        shutil.copytree(self.ship.directory, there)
+        (there / file).parent.mkdir(exist_ok=True)
+        (there / file).write_bytes(change((there / file).read_bytes() if (there / file).exists() else b""))
+        with self.subTest(file=file, words=words):
+            self.assertRaisesRegex(self.glint.SchemaError, words or re.escape(file), lambda: read(self.glint.Run(there)))
+
+    def test_statistics_that_are_no_numbers_are_refused(self):
+        for word in (b'"x"', b"null", b"true", b"NaN", b"Infinity", b"1e999"):
+            self.refused("stats.json", with_cycles(word), lambda run: run.cycles)
+
+    def test_texts_that_are_not_utf_8_are_refused(self):
+        for file, read in (("config.toml", lambda run: run.config), ("series.csv", lambda run: run.series), ("profile.folded", lambda run: run.folded),
+                           ("stats.json", lambda run: run.stats), ("run.json", lambda run: run)):
+            self.refused(file, lambda data: b"\xff\xfe" + data, read)
+
+    def test_a_configuration_that_was_cut_between_two_lines_is_refused(self):
+        self.refused("config.toml", lambda data: data[:data.index(b"[memory]")], lambda run: run.seconds, "cut short")
+        self.refused("config.toml", lambda data: b"", lambda run: run.seconds, "cut short")
+
+    def test_stacks_and_series_that_were_cut_are_refused(self):
+        self.refused("profile.folded", lambda data: data[:data.rindex(b" ")], lambda run: run.folded)
+        self.refused("profile.folded", lambda data: data + b"garbage\n", lambda run: run.folded)
+        self.refused("series.csv", lambda data: data[:-2], lambda run: run.series, "series.csv.*cut short")  # its last number is one still
+        self.refused("run.json", lambda data: b'{"schema": 1}', lambda run: run)
+
+    def test_lists_of_maps_that_are_none_are_refused(self):
+        for text in (b'{"maps": 3}', b'{"maps": [3]}', b'{"maps": [{"name": "nodes", "unit": "node"}]}', b"{"):
+            self.refused("heat/maps.json", lambda data, text=text: text, lambda run: run.map_info("nodes"))
+
+    def test_a_run_without_statistics_is_no_run(self):
+        there = self.folder / "bare"
+        shutil.copytree(self.ship.directory, there)
+        (there / "stats.json").unlink()
+        self.assertRaisesRegex(self.glint.MissingFile, "no stats.json", self.glint.Run, there)
+        self.assertEqual(self.glint.Run(there, partial=True).workload, "SHIP_SH")
+
+    def test_a_damaged_run_is_named_and_spoils_no_other(self):
+        there = self.folder / "many"
+        for name in ("good", "cut", "gone", "keys"):
+            shutil.copytree(self.ship.directory, there / name)
+        (there / "cut/stats.json").write_bytes(half((there / "cut/stats.json").read_bytes()))
+        (there / "gone/stats.json").unlink()
+        (there / "keys/config.toml").write_bytes(half((there / "keys/config.toml").read_bytes()))
+        runs = self.glint.Runs(there)
+        self.assertEqual((list(runs), sorted(runs.failed)), (["good"], ["cut", "gone", "keys"]))
+        self.assertEqual([row["cycles"] for row in runs.rows(["cycles"])], [self.ship.cycles])
+        self.assertRaisesRegex(self.glint.UnknownName, "'cut' cannot be read: .*stats.json", lambda: runs["cut"])
+        self.assertRaisesRegex(self.glint.UnknownName, "did you mean 'good'", lambda: runs["god"])
+
+    def test_a_plan_of_a_sweep_that_is_damaged_is_refused(self):
+        there = self.folder / "plan"
+        shutil.copytree(self.ship.directory, there / "a")
+        for text in ("{", "{}", '{"axes": 3}', '{"axes": {"rt.warps": 4}}', '{"axes": {}, "runs": 3}', "[]"):
+            (there / "sweep.json").write_text(text)
+            self.assertRaisesRegex(self.glint.SchemaError, "sweep.json", self.glint.Sweep, there)
+
+    def test_conditions_on_columns_that_are_not_there_are_answered_with_near_ones(self):
+        self.assertRaisesRegex(self.glint.UnknownName, "did you mean 'stage'", lambda: self.ship.profile.where(stag="raygen"))
+
+
+class Pictures(PythonTest):
+    def setUp(self):
+        if not ARRAYS:
+            print("SKIPPED: pictures: no numpy or matplotlib")
+            self.skipTest("no numpy or matplotlib")
+
+    def test_damaged_pictures_are_refused(self):
+        whole = (self.ship.directory / "image.png").read_bytes()
+        for name, data in (("cut.png", half(whole)), ("empty.png", b""), ("text.png", b"text"), ("negative.pfm", b"PF\n-4 -4\n-1\n" + bytes(192)),
+                           ("none.pfm", b"PF\n0 0\n-1\n"), ("scale.pfm", b"PF\n1 1\nnan\n" + bytes(12)), ("cut.npy", b"\x93NUMPY")):
+            (self.folder / name).write_bytes(data)
+            with self.subTest(picture=name):
+                self.assertRaisesRegex(self.glint.SchemaError, name, self.glint.read_image, self.folder / name)
+
+    def test_grey_pictures_keep_all_their_columns(self):
+        grey = self.glint.read_image(png(self.folder / "grey.png", 8, 2, 0, [range(8), range(8, 16)]))
+        self.assertEqual((grey.shape, round(float(grey[1, 7]) * 255)), ((2, 8), 15))
+        clear = self.glint.read_image(png(self.folder / "clear.png", 2, 1, 4, [[10, 255, 20, 0]]))
+        self.assertEqual((clear.shape[:2], round(float(clear[0, 0].max()) * 255)), ((1, 2), 10))
+        self.assertEqual(self.glint.read_image(png(self.folder / "rgba.png", 1, 1, 6, [[1, 2, 3, 4]])).shape, (1, 1, 3))
+
+
+if __name__ == "__main__":
+    python_case.main()

@@ -1,0 +1,150 @@
+# Sweeps and names of runs: every point has a folder and a name of its own, and only the points that were asked for come back.
+# SPDX-License-Identifier: Apache-2.0
+"""usage: sweep_test.py GLINT SOURCE_DIR; needs nothing but the standard library (with numpy, its arrays are axes too)."""
+import dataclasses
+import importlib.util
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+
+import python_case
+from python_case import GLINT, ROOT, SMALL, PythonTest
+
+TINY = {"size": (8, 8), "spp": 1, "glint": GLINT}
+
+
+class Number:
+    """What NumPy's numbers are to a sweep: `item()` gives Python's."""
+
+    def __init__(self, value):
+        self.value = value
+
+    def item(self):
+        return self.value
+
+
+class Sweeps(PythonTest):
+    def test_workloads_of_the_same_file_name_have_folders_of_their_own(self):
+        files = [ROOT / "examples/spheres/pipeline.toml", ROOT / "examples/hello_triangle/pipeline.toml"]
+        lines = []
+        for _ in range(2):
+            sweep = self.glint.sweep(files, {"core.warps": [8, 16]}, out=self.folder / "stems", progress=lines.append, glint=GLINT)
+            self.assertEqual([name.partition("-")[0] for name in sweep], ["spheres_pipeline"] * 2 + ["hello_triangle_pipeline"] * 2)
+        self.assertEqual(len(lines), 4)  # nothing was overwritten, so nothing ran again
+        self.assertEqual(len({run.info["scene.hash"] for run in sweep.values()}), 2)
+        names = self.glint.labels(list(sweep.values()))
+        self.assertEqual(len(set(names)), 4, names)
+
+    def test_only_the_points_that_were_asked_for_come_back(self):
+        there = self.folder / "used"
+        self.glint.sweep("WKND_SH", {"rt.warps": [1, 2]}, out=there, **TINY)
+        second = self.glint.sweep("WKND_SH", {"rt.warps": [4]}, out=there, **SMALL)
+        for sweep in (second, self.glint.Sweep(there)):
+            self.assertEqual([(row["rt.warps"], sweep[row["run"]].info["width"]) for row in sweep.rows(["cycles"])], [(4, 16)])
+            self.assertEqual(sweep.others, ["WKND_SH-rt.warps=1", "WKND_SH-rt.warps=2"])
+        shutil.rmtree(there / "WKND_SH-rt.warps=4")
+        self.assertRegex(self.glint.Sweep(there).failed["WKND_SH-rt.warps=4"], "not been run")
+
+    def test_points_come_in_the_order_of_the_axes_and_once_each(self):
+        sweep = self.glint.sweep("WKND_SH", {"rt.warps": [4, 1, 4]}, out=self.folder / "order", **TINY)
+        self.assertEqual([row["rt.warps"] for row in sweep.rows(["cycles"])], [4, 1])
+
+    def test_paths_numbers_of_numpy_and_iterators_are_taken(self):
+        path = self.folder / "own.toml"
+        shutil.copy(ROOT / "examples/mandelbrot/pipeline.toml", path)
+        shutil.copy(ROOT / "examples/mandelbrot/mandelbrot.comp", self.folder)
+        values = [Number(8), Number(16)]
+        if importlib.util.find_spec("numpy"):
+            import numpy
+            values = numpy.array([8, 16])
+        sweep = self.glint.sweep(path, {"core.warps": values}, out=self.folder / "odd", options=iter(["--sample", "500"]), glint=GLINT)
+        self.assertEqual([row["core.warps"] for row in sweep.rows(["cycles"])], [8, 16])
+        self.assertTrue(all(len(run.series) for run in sweep.values()))  # every point has the options
+        self.assertEqual(json.loads((self.folder / "odd/sweep.json").read_text())["axes"], {"core.warps": [8, 16]})
+
+    def test_texts_in_the_place_of_lists_are_refused(self):
+        self.assertRaisesRegex(TypeError, r"\['--heat'\]", self.glint.run, "WKND_SH", out=self.folder / "text", options="--heat", **TINY)
+        self.assertRaisesRegex(TypeError, r"\['gto'\]", self.glint.sweep, "WKND_SH", {"core.issue": "gto"}, out=self.folder / "text", **TINY)
+        self.assertRaisesRegex(TypeError, r"\[8\]", self.glint.sweep, "WKND_SH", {"core.warps": 8}, out=self.folder / "text", **TINY)
+
+    def test_a_bench_has_the_workloads_of_its_table_and_names_older_ones(self):
+        there = self.folder / "bench"
+        for workload in ("SHIP_SH", "WKND_SH"):
+            subprocess.run([GLINT, "bench", workload, "--size", "8x8", "--spp", "1", "--out", there], check=True, capture_output=True)
+        bench = self.glint.Bench(there)
+        self.assertEqual((list(bench), bench.others), (bench.table["workload"], ["SHIP_SH"]))
+
+
+class Fake:
+    """A run as names see it."""
+
+    def __init__(self, workload="SHIP_SH", config="mobile", directory="out/run", command=(), width=32, samples=1, shader="sh", scene="1", **keys):
+        self.workload, self.config_name, self.directory = workload, config, pathlib.Path(directory)
+        self.info = {"command": list(command), "width": width, "height": width, "samples": samples, "shader": shader, "scene.hash": scene}
+        self.config = {"core.warps": 32, "rt.warps": 4, "memory.l1.size": 65536, **{key.replace("__", "."): value for key, value in keys.items()}}
+
+
+class Names(PythonTest):
+    def named(self, *runs):
+        from glint.labelling import named
+        return [dataclasses.astuple(one) for one in named(runs)]
+
+    def test_three_keys_that_differ_are_all_in_the_names(self):
+        runs = [Fake(core__warps=a, rt__warps=b, memory__l1__size=c) for a in (16, 32) for b in (1, 4) for c in (4096, 65536)]
+        found = self.named(*runs)
+        self.assertEqual(found[0], ("core.warps=16 · rt.warps=1 · memory.l1.size=4096", "SHIP_SH", "mobile · core.warps=16 · rt.warps=1 · memory.l1.size=4096"))
+        for column in (0, 2):
+            self.assertEqual(len({one[column] for one in found}), 8)
+
+    def test_no_more_keys_are_shown_than_tell_apart(self):
+        found = self.named(*[Fake(core__warps=i, rt__warps=i, memory__l1__size=i) for i in (1, 2)])
+        self.assertEqual([one[0] for one in found], ["core.warps=1 · rt.warps=1", "core.warps=2 · rt.warps=2"])
+
+    def test_other_sizes_are_other_tasks(self):
+        found = self.named(Fake(width=32), Fake(width=64), Fake(width=64, samples=2))
+        self.assertEqual([one[1] for one in found], ["SHIP_SH · 32x32 · 1 spp", "SHIP_SH · 64x64 · 1 spp", "SHIP_SH · 64x64 · 2 spp"])
+        self.assertEqual({one[2] for one in found}, {"mobile"})
+
+    def test_a_changed_run_does_not_go_by_the_name_of_its_preset(self):
+        found = self.named(Fake(), Fake(rt__warps=1), Fake(config="desktop", rt__warps=8))
+        self.assertEqual([one[2] for one in found], ["mobile · rt.warps=4", "mobile · rt.warps=1", "desktop"])
+        alone = self.named(Fake(), Fake(config="desktop", rt__warps=1, command=["glint", "run", "SHIP", "--set", "rt.warps=1"]))
+        self.assertEqual([one[2] for one in alone], ["mobile", "desktop · rt.warps=1"])  # one run of each preset
+
+    def test_runs_of_everything_the_same_are_told_apart_by_their_folders_or_a_number(self):
+        found = self.named(Fake(directory="p/run"), Fake(directory="q/run"))
+        self.assertEqual([one[0] for one in found], ["SHIP_SH · p/run", "SHIP_SH · q/run"])
+        self.assertEqual([one[2] for one in found], ["mobile", "mobile (2)"])
+        self.assertEqual([one[0] for one in self.named(Fake(), Fake())], ["SHIP_SH · run", "SHIP_SH · run (2)"])
+
+    def test_pipelines_of_one_name_are_other_tasks(self):
+        self.assertEqual([one[1] for one in self.named(Fake("pipeline", shader="a.rgen a.rmiss", scene="1"), Fake("pipeline", shader="b.rgen", scene="2"))],
+                         ["pipeline · a.rgen", "pipeline · b.rgen"])
+        self.assertEqual([one[1] for one in self.named(Fake("pipeline", shader="a.rgen", scene="1"), Fake("pipeline", shader="a.rgen", scene="2"))],
+                         ["pipeline", "pipeline (2)"])
+
+    def test_a_pipeline_goes_by_its_name(self):
+        run = self.glint.run(ROOT / "examples/hello_triangle/pipeline.toml", out=self.folder / "pipeline", glint=GLINT)
+        self.assertEqual(run.workload, "pipeline")
+
+
+class WithoutPackages(PythonTest):
+    def test_everything_is_imported_without_matplotlib_and_what_needs_it_names_it(self):
+        code = """if True:
+            import sys
+            sys.modules["matplotlib"] = sys.modules["numpy"] = sys.modules["pandas"] = None
+            from glint import *
+            assert hasattr(__import__("glint"), "plot") and plot.FIGURES
+            try:
+                plot.ipc(Run(sys.argv[1]))
+            except MissingPackage as error:
+                print(error)"""
+        done = subprocess.run([sys.executable, "-c", code, self.ship.directory], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("python3-matplotlib", done.stdout)
+
+
+if __name__ == "__main__":
+    python_case.main()
