@@ -10,10 +10,12 @@ import os
 import pathlib
 import shutil
 import subprocess
+import warnings
 from typing import Any, Callable, Iterable, Mapping
 
 from .collection import Sweep
 from .errors import CommandFailed, GlintError
+from .fingerprint import Fingerprints
 from .run_directory import Run
 
 _LONGEST = 180  # characters of a point's folder; file systems take 255 bytes
@@ -67,7 +69,7 @@ def run(scene: str | pathlib.Path, *, out: str | pathlib.Path, shader: str | Non
     for option, value in named.items():
         words += [option, str(value)] if value is not None else []
     for key, value in (set or {}).items():
-        words += ["--set", f"{key}={_toml(value)}"]
+        words += ["--set", f"{key}={_toml(key, value)}"]
     _call(words + (["--profile"] if profile else []) + _words(options))
     return Run(out)
 
@@ -80,7 +82,8 @@ def sweep(workloads: str | pathlib.Path | Iterable[str | pathlib.Path], axes: Ma
         workloads: what `glint run` takes, one or several.
         axes: values by configuration key, {"rt.warps": [4, 8]}; the key "config" sweeps presets. NumPy's arrays are taken too.
         out: the folder; points that are complete there, with the same command, are not run again, points of the same name and
-            another command are run anew. What earlier sweeps left there is kept and not given (`Sweep.others`).
+            another command are run anew. The same command is one of the same program, values of the configuration, and contents of
+            the workload's file and of those that it names. What earlier sweeps left there is kept and not given (`Sweep.others`).
         progress: called with a line before each point.
         options: those of `run`, for every point.
 
@@ -97,14 +100,26 @@ def sweep(workloads: str | pathlib.Path | Iterable[str | pathlib.Path], axes: Ma
     points = _points(names, values, options)
     plan = {"workloads": names, "axes": values, "runs": list(points)}
     (folder / "sweep.json").write_text(json.dumps(plan, indent=2) + "\n", encoding="utf-8")
+    prints = Fingerprints(find_glint(options.get("glint")))
     for index, (there, (name, more, wanted)) in enumerate(points.items(), 1):
+        settings = {key: _toml(key, value) for key, value in more["set"].items()}
+        wanted = json.dumps([*json.loads(wanted), prints.of(name, str(more.get("config", "mobile")), settings)])
         if _complete(folder / there, wanted):
             continue
         if progress:
             progress(f"{index}/{len(points)} {there}")
         run(name, out=folder / there, **more)
         (folder / there / "point.json").write_text(wanted, encoding="utf-8")
-    return Sweep(folder)
+    found = Sweep(folder)
+    _warn_of_idle_keys(found)
+    return found
+
+
+def _warn_of_idle_keys(found: Sweep) -> None:
+    """A key of a policy that no run chose changes nothing, which equal numbers would not tell."""
+    for key in found.axes:
+        if key != "config" and found and not any(key in run.config for run in found.values()):
+            warnings.warn(f"'{key}' has no meaning with the policies of these runs, its values changed nothing: `glint describe {key}` tells what it needs", stacklevel=3)
 
 
 def _points(names: list[str], values: Mapping[str, list[Any]], options: Mapping[str, Any]) -> dict[str, tuple[str, dict[str, Any], str]]:
@@ -162,8 +177,10 @@ def _complete(directory: pathlib.Path, wanted: str) -> bool:
         return False
 
 
-def _toml(value: Any) -> str:
+def _toml(key: str, value: Any) -> str:
     value = _plain(value)
+    if value is None:
+        raise TypeError(f"'{key}' is None: leave the key out to keep what the configuration says")
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 

@@ -68,9 +68,11 @@ class Run:
 
     @property
     def workload(self) -> str:
-        """Scene and shader, e.g. "SHIP_SH"; of pipelines and kernels their name."""
+        """Scene and shader, e.g. "SHIP_SH"; of pipelines and kernels their file's name, of a pipeline.toml that of its first shader."""
         scene, shader = str(self.info.get("scene.name", "")), str(self.info.get("shader", ""))
-        return f"{scene}_{shader.upper()}" if shader in SHADERS else scene or self.directory.name
+        if shader in SHADERS:
+            return f"{scene}_{shader.upper()}"
+        return pathlib.PurePath(shader.split()[0]).stem if scene == "pipeline" and shader.split() else scene or self.directory.name
 
     @property
     def config_name(self) -> str:

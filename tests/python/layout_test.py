@@ -4,7 +4,7 @@
 import warnings
 
 import python_case
-from python_case import GLINT, PythonTest
+from python_case import GLINT, ROOT, PythonTest
 
 python_case.need("matplotlib", "numpy")
 
@@ -94,6 +94,18 @@ class Layout(PythonTest):
     def test_what_has_a_colour_a_run_is_refused_for_more_runs_than_colours(self):
         for figure in (self.glint.plot.ops, self.glint.plot.series):
             self.assertRaisesRegex(self.glint.GlintError, "colour a run.*choose", figure, [self.ship] * 9)
+
+    def test_a_series_begins_at_cycle_0(self):
+        line = self.glint.plot.series(self.ship).axes[0].lines[0]
+        self.assertEqual((line.get_xdata()[0], line.get_xdata()[1]), (0, self.ship.series["cycle"][0]))
+        self.assertEqual(list(line.get_ydata()), [self.ship.series["ipc"][0], *self.ship.series["ipc"]])
+
+    def test_what_a_pipeline_did_not_record_is_left_out_or_refused_and_not_drawn_as_0(self):
+        run = self.glint.run(ROOT / "examples/spheres/pipeline.toml", out=self.folder / "pipeline", glint=GLINT)
+        self.assertEqual([axes.get_ylabel() for axes in self.glint.plot.geometry(run).axes], ["cycles"])
+        self.assertRaisesRegex(self.glint.GlintError, "traversal ratio", self.glint.plot.traversal, run)
+        for name in ("geometry", "cpi_stack", "rt_use", "ipc"):
+            self.readable(self.glint.plot.FIGURES[name](run))
 
     def test_statistics_that_a_run_does_not_have_are_no_zeros(self):
         import json

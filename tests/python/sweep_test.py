@@ -5,6 +5,7 @@ import dataclasses
 import importlib.util
 import json
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -63,6 +64,42 @@ class Sweeps(PythonTest):
         self.assertEqual([row["core.warps"] for row in sweep.rows(["cycles"])], [8, 16])
         self.assertTrue(all(len(run.series) for run in sweep.values()))  # every point has the options
         self.assertEqual(json.loads((self.folder / "odd/sweep.json").read_text())["axes"], {"core.warps": [8, 16]})
+
+    def test_points_whose_files_or_configuration_changed_are_run_again(self):
+        project = self.folder / "project"
+        shutil.copytree(ROOT / "examples/mandelbrot", project)
+        config = project / "own.toml"
+        shutil.copy(ROOT / "configs/mobile.toml", config)
+        lines = []
+
+        def cycles(changes):
+            sweep = self.glint.sweep(project / "pipeline.toml", {"core.warps": [8]}, config=config, out=self.folder / "again", progress=lines.append, glint=GLINT)
+            self.assertEqual(len(lines), changes)
+            return next(iter(sweep.values())).cycles
+
+        first = cycles(1)
+        (project / "notes.txt").write_text("not read by anybody")
+        self.assertEqual(cycles(1), first)
+        config.write_text(re.sub(r"launch_latency = \d+", "launch_latency = 20000", config.read_text()))
+        self.assertGreater(cycles(2), first)
+        shader = project / "mandelbrot.comp"
+        shader.write_text(shader.read_text() + "// another text\n")
+        cycles(3)
+        cycles(3)
+
+    def test_files_that_a_file_names_are_found_through_others(self):
+        from glint.fingerprint import files_of
+        there = self.folder / "named"
+        (there / "sub").mkdir(parents=True)
+        for name, text in (("a.toml", 'mesh = "sub/b c.obj"'), ("sub/b c.obj", "mtllib d.mtl\n"), ("sub/d.mtl", "a.toml ../a.toml"), ("e.toml", "")):
+            (there / name).write_text(text)
+        self.assertEqual([path.name for path in files_of(there / "a.toml")], ["a.toml", "b c.obj", "d.mtl"])
+        self.assertEqual(files_of(pathlib.Path("SHIP_SH")), [])
+
+    def test_a_sweep_over_a_key_without_meaning_says_so(self):
+        with self.assertWarnsRegex(UserWarning, "memory.dram.simple.latency.*changed nothing"):
+            self.glint.sweep("WKND_SH", {"memory.dram.simple.latency": [50.0, 100.0]}, out=self.folder / "idle", set={"memory.dram.model": "banked"}, **TINY)
+        self.assertRaisesRegex(TypeError, "leave the key out", self.glint.run, "WKND_SH", out=self.folder / "none", set={"core.warps": None}, **TINY)
 
     def test_texts_in_the_place_of_lists_are_refused(self):
         self.assertRaisesRegex(TypeError, r"\['--heat'\]", self.glint.run, "WKND_SH", out=self.folder / "text", options="--heat", **TINY)
@@ -125,9 +162,9 @@ class Names(PythonTest):
         self.assertEqual([one[1] for one in self.named(Fake("pipeline", shader="a.rgen", scene="1"), Fake("pipeline", shader="a.rgen", scene="2"))],
                          ["pipeline", "pipeline (2)"])
 
-    def test_a_pipeline_goes_by_its_name(self):
+    def test_a_pipeline_goes_by_a_short_name(self):
         run = self.glint.run(ROOT / "examples/hello_triangle/pipeline.toml", out=self.folder / "pipeline", glint=GLINT)
-        self.assertEqual(run.workload, "pipeline")
+        self.assertEqual(run.workload, "hello")
 
 
 class WithoutPackages(PythonTest):

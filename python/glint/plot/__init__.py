@@ -1,7 +1,7 @@
 # Every figure of the report and of the LumiBench paper, for papers: a column wide, PDF, SVG or PNG.
 # SPDX-License-Identifier: Apache-2.0
 """Figures of runs. Each function takes a `Run`, a list of runs, or a folder of runs (`Bench`, `Sweep`), and gives a
-matplotlib Figure, 3.3 inches wide; `save(figure, "fig.pdf")` writes it. `FIGURES` names those that any timing run with rays has.
+matplotlib Figure, 3.3 inches wide; `save(figure, "fig.pdf")` writes it. `FIGURES` names those that any timing run of a scene has.
 
 Its functions, not the import, raise MissingPackage without matplotlib, MissingFile where a run lacks what a figure needs (the message names the
 option that writes it), GlintError for runs that have nothing to draw.

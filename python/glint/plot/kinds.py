@@ -173,12 +173,12 @@ def width_for(groups: int) -> float:
 
 
 def lines(panels: Sequence[tuple[str, Sequence[tuple[str, Sequence[float], Sequence[float]]]]], x_label: str) -> Any:
-    """Panels above each other, (label, [(name, x, y), ...]) each; a step holds until its x, as of intervals."""
+    """Panels above each other, (label, [(name, x, y), ...]) each; a step holds until its x, from 0 on, as of intervals."""
     with styled():
         figure, axes = new_figure(0.55 + 0.72 * len(panels), rows=len(panels), sharex=True, squeeze=False)
         handles = []
         for panel, (label, series) in zip(axes[:, 0], panels):
-            handles = [panel.step(x, y, where="pre", color=run_colour(i))[0] for i, (_, x, y) in enumerate(series)]
+            handles = [panel.step([0, *x], [*y[:1], *y], where="pre", color=run_colour(i))[0] for i, (_, x, y) in enumerate(series)]
             panel.set_ylabel(label)
             panel.set_ylim(bottom=0)
             panel.grid(color=COLOURS["pale"], linewidth=0.4)

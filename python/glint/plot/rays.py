@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from ..errors import GlintError
 from .chosen import Chosen, chosen, names, shares, spreads, total, with_rays
 from .kinds import Part, group_names, grouped, stacked, width_for
 from .style import COLOURS, new_figure, styled
@@ -24,16 +25,17 @@ def geometry(runs: Chosen) -> Any:
               ("depth", "green", lambda run: run.metrics["bvh_depth"]),
               ("triangles", "orange", lambda run: run.info.get("structures.triangles")),
               ("cycles", "red", lambda run: run.cycles)]
+    panels = [panel for panel in panels if any(panel[2](run) is not None for run in found)]  # runs of own pipelines do not record their structures
     with styled():
-        figure, axes = new_figure(0.45 + 0.62 * len(panels) + group_names(names(found)).below, rows=len(panels), sharex=True, width=width_for(len(found)))
-        for panel, (label, colour, value) in zip(axes, panels):
-            values = [value(run) or 0 for run in found]
+        figure, axes = new_figure(0.45 + 0.62 * len(panels) + group_names(names(found)).below, rows=len(panels), sharex=True, squeeze=False, width=width_for(len(found)))
+        for panel, (label, colour, value) in zip(axes[:, 0], panels):
+            values = [value(run) for run in found]
             grouped(names(found), [Part(label, colour, values)], label, axes=panel)
-            some = [one for one in values if one > 0]
+            some = [one for one in values if one]
             if some and max(some) > 30 * min(some):  # what is 0 has no bar
                 panel.set_yscale("log")
                 panel.set_ylim(min(some) / 3, max(some) * 2)
-        figure.align_ylabels(axes)
+        figure.align_ylabels(axes[:, 0])
         return figure
 
 
@@ -45,7 +47,9 @@ def rt_use(runs: Chosen) -> Any:
 
 def traversal(runs: Chosen) -> Any:
     """Nodes that a ray visits for each level of the structure (LumiBench, Figure 10); the line is one straight way down."""
-    found = with_rays(runs)
+    found = [run for run in with_rays(runs) if run.metrics["traversal_ratio"] is not None]
+    if not found:
+        raise GlintError("none of the runs has a traversal ratio: runs of own pipelines do not record the depth of their structures")
     with styled():
         figure, axes = new_figure(1.4 + group_names(names(found)).below, width=width_for(len(found)))
         grouped(names(found), [Part("traversal ratio", "blue", [run.metrics["traversal_ratio"] for run in found])], "nodes / ray / depth", axes=axes)

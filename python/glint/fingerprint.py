@@ -1,0 +1,69 @@
+# What a run depends on beyond its command line: the program, the configuration's values, the contents of its files.
+# SPDX-License-Identifier: Apache-2.0
+"""`Fingerprints` tell a sweep whether a complete point would come out the same today."""
+from __future__ import annotations
+
+import hashlib
+import pathlib
+import re
+import subprocess
+from typing import Any, Mapping
+
+from .errors import CommandFailed
+
+_NAMED = re.compile(rb'"([^"\n]{1,255})"|([\w./+-]+\.\w+)')  # files that a text may name: quoted, or a word with an ending
+_SCANNED = 16 << 20  # bytes; names of other files stand in texts, which are smaller
+
+
+class Fingerprints:
+    """Texts that differ where something differs that a run reads. Each file is read once."""
+
+    def __init__(self, program: str):
+        self._program = program
+        self._known: dict[str, str] = {"program": _hash(pathlib.Path(program))}
+
+    def of(self, workload: str, config: str, settings: Mapping[str, str]) -> str:
+        """Of a run; CommandFailed where the program refuses the configuration."""
+        keys = f"config {config} {sorted(settings.items())}"
+        if keys not in self._known:
+            self._known[keys] = self._configuration(config, settings)
+        if workload not in self._known:
+            self._known[workload] = " ".join(f"{path.name}:{_hash(path)}" for path in files_of(pathlib.Path(workload)))
+        text = " ".join((self._known["program"], self._known[keys], self._known[workload]))
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    def _configuration(self, config: str, settings: Mapping[str, str]) -> str:
+        words = [self._program, "describe", "--config", config]
+        for key, value in settings.items():
+            words += ["--set", f"{key}={value}"]
+        done = subprocess.run(words, capture_output=True, text=True, check=False)
+        if done.returncode:
+            raise CommandFailed(f"{' '.join(words)}\nended with exit code {done.returncode}: {done.stderr.strip()}", done.returncode, done.stderr)
+        return hashlib.sha256(done.stdout.encode()).hexdigest()
+
+
+def files_of(path: pathlib.Path) -> list[pathlib.Path]:
+    """A file and those that it names, and they in turn: a pipeline's shaders and meshes, their includes; [] of a scene's name."""
+    found: dict[pathlib.Path, None] = {}
+    left = [path] if path.is_file() else []
+    while left:
+        one = left.pop()
+        if one.resolve() in found:
+            continue
+        found[one.resolve()] = None
+        if one.stat().st_size <= _SCANNED:
+            names = {(quoted or word).decode("utf-8", "replace") for quoted, word in _NAMED.findall(one.read_bytes())}
+            left += [one.parent / name for name in sorted(names) if "\0" not in name and _is_file(one.parent / name)]
+    return sorted(found)
+
+
+def _is_file(path: pathlib.Path) -> bool:
+    try:
+        return path.is_file()
+    except OSError:  # a text that can be no name
+        return False
+
+
+def _hash(path: Any) -> str:
+    with open(path, "rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
