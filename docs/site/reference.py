@@ -4,6 +4,7 @@
 import pathlib
 import re
 import subprocess
+from typing import Any
 
 
 def _run(glint, *words):
@@ -97,17 +98,34 @@ def _values(markdown: str) -> dict[str, str]:
     return {row[1].strip(" `"): row[2].strip() for row in rows}
 
 
+# Public names of the package by section; a name of __all__ that no section has ends the build.
+_PYTHON = {
+    "Runs": ("Run", "Facts", "labels"), "Statistics": ("Stats", "Stat", "Histogram"), "Metrics": ("metrics", "Metric", "Metrics"), "Tables": ("Table",),
+    "Folders of runs": ("Runs", "Bench", "Sweep"), "Comparison": ("compare", "Change", "speedup"), "Characterisation": ("Characterization",),
+    "Starting runs": ("run", "sweep", "find_glint"), "Pictures": ("read_image",),
+    "Errors": ("GlintError", "MissingFile", "IncompleteRun", "SchemaError", "UnknownName", "MissingPackage", "CommandFailed")}
+
+
 def python() -> str:
-    """The Python package, from its docstrings."""
+    """The Python package, from its docstrings, by the names that users write."""
+    import glint
+    left = set(glint.__all__) - {"plot"} - {name for names in _PYTHON.values() for name in names}
+    if left:
+        raise SystemExit(f"error: docs/site/reference.py has no section for glint's {', '.join(sorted(left))}")
     text = ["# Python package\n\nGenerated from the package; the [guide](../python.md) comes first.\n"]
-    parts = {"Runs": "run_directory", "Statistics": "statistics", "Metrics": "derived", "Tables": "table", "Folders of runs": "collection", "Comparison": "comparison", "Characterisation": "characterization",
-             "Starting runs": "launch", "Pictures": "images", "Errors": "errors"}
-    for title, module in parts.items():
-        text.append(f"## {title}\n\n```{{eval-rst}}\n.. automodule:: glint.{module}\n   :members:\n   :undoc-members:\n```\n")
-    text.append("## Figures\n\n```{eval-rst}\n.. automodule:: glint.plot.style\n   :members: save\n```\n")
-    for module in ("instructions", "rays", "memory", "overview", "suite", "models"):
-        text.append(f"```{{eval-rst}}\n.. automodule:: glint.plot.{module}\n   :members:\n```\n")
-    return "\n".join(text)
+    text += [f"## {title}\n\n" + "".join(_documented(glint, "glint", name) for name in names) for title, names in _PYTHON.items()]
+    figures = sorted(glint.plot.__all__, key=lambda name: (name != "save", name.isupper(), name))
+    return "\n".join(text) + f"\n## Figures\n\n{glint.plot.__doc__}\n" + "".join(_documented(glint.plot, "glint.plot", name) for name in figures)
+
+
+def _documented(module: Any, path: str, name: str) -> str:
+    thing = getattr(module, name)
+    if name.isupper():
+        shown = ", ".join(f"`{key}`" for key in thing) if isinstance(thing, dict) else f"{thing} inches"
+        return f"`{path}.{name}`: {shown}.\n\n"
+    kind = "autoclass" if isinstance(thing, type) else "autofunction"
+    members = "   :members:\n   :undoc-members:\n" if kind == "autoclass" and not issubclass(thing, Exception) else ""
+    return f"```{{eval-rst}}\n.. {kind}:: {path}.{name}\n{members}```\n\n"
 
 
 def _link_instructions(source: pathlib.Path) -> None:

@@ -19,12 +19,12 @@ from .errors import CommandFailed, GlintError, IncompleteRun, MissingFile, Missi
 from .images import read_image
 from .labelling import labels
 from .launch import find_glint, run, sweep
-from .derived import Metric, metrics
-from .run_directory import Run
+from .derived import Metric, Metrics, metrics
+from .run_directory import Facts, Run
 from .statistics import Histogram, Stat, Stats
 from .table import Table
 
-__all__ = ["Bench", "Change", "Characterization", "CommandFailed", "GlintError", "Histogram", "IncompleteRun", "Metric", "MissingFile", "MissingPackage",
+__all__ = ["Bench", "Change", "Characterization", "CommandFailed", "Facts", "GlintError", "Histogram", "IncompleteRun", "Metric", "Metrics", "MissingFile", "MissingPackage",
            "Run", "Runs", "SchemaError", "Stat", "Stats", "Sweep", "Table", "UnknownName", "compare", "find_glint", "labels",
            "metrics", "plot", "read_image", "run", "speedup", "sweep"]
 

@@ -1,9 +1,10 @@
 # What changed from one run to another, metric by metric.
 # SPDX-License-Identifier: Apache-2.0
-"""`compare(a, b)`: the metrics that differ, the largest relative change first, as `glint compare` prints them."""
+"""`compare(a, b)`: the metrics that differ, the largest change first, as `glint compare` prints them."""
 from __future__ import annotations
 
 import dataclasses
+import math
 import pathlib
 
 from .derived import metrics
@@ -29,7 +30,8 @@ class Change:
 
 
 def compare(a: Run | str | pathlib.Path, b: Run | str | pathlib.Path, everything: bool = False) -> list[Change]:
-    """Metrics that both runs have and that changed (all with `everything`), the largest relative change first.
+    """Metrics that both runs have and that changed (all with `everything`), the largest change first, on a scale of ratios:
+    half as much and twice as much are alike; what was 0, or is now, comes before all.
 
     The speed of the host (`sim_rate`) is left out.
     """
@@ -41,7 +43,14 @@ def compare(a: Run | str | pathlib.Path, b: Run | str | pathlib.Path, everything
             continue
         relative = 0.0 if before == after else (after - before) / abs(before) if before else None
         changes.append(Change(name, metric.unit, before, after, relative))
-    return sorted(changes, key=lambda change: -abs(change.relative) if change.relative is not None else float("-inf"))
+    return sorted(changes, key=_distance, reverse=True)
+
+
+def _distance(change: Change) -> float:
+    if change.before == change.after:
+        return 0.0
+    ratio = change.after / change.before if change.before else 0.0
+    return abs(math.log(ratio)) if ratio > 0 else math.inf
 
 
 def speedup(before: list[Run], after: list[Run]) -> float:

@@ -43,6 +43,13 @@ class Site(unittest.TestCase):
             options = re.findall(r"^  (?:-\w,)?(--[\w-]+)", self.glint(command, "--help"), re.M)
             self.assertEqual([option for option in options if option not in shown["commands"]], [], command)
 
+    def test_the_python_reference_has_every_public_name_as_users_write_it(self):
+        import glint
+        shown = set(re.findall(r'id="(glint\.[\w.]+)"', (self.html / "reference/python.html").read_text(encoding="utf-8")))
+        public = {f"glint.{name}" for name in glint.__all__ if name != "plot"} | {f"glint.plot.{name}" for name in glint.plot.__all__ if not name.isupper()}
+        self.assertEqual(public - shown, set())
+        self.assertEqual({name for name in shown - public if name.rpartition(".")[0] not in public}, set())  # what is left are members
+
     def glint(self, *words):
         return subprocess.run([GLINT, *words], capture_output=True, text=True, check=True).stdout
 

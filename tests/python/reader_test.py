@@ -56,9 +56,7 @@ class Numbers(PythonTest):
         printed = [line.split()[0] for line in self.command("compare", self.ship.directory, other.directory).splitlines()]
         mine = self.glint.compare(self.ship, other)
         self.assertGreater(len(mine), 10)
-        self.assertEqual({change.metric for change in mine}, set(printed) & set(self.glint.metrics()))
-        sizes = [float("inf") if change.relative is None else abs(change.relative) for change in mine]
-        self.assertEqual(sizes, sorted(sizes, reverse=True))
+        self.assertEqual([change.metric for change in mine], [name for name in printed if name in self.glint.metrics()])
 
     def test_reading_imports_nothing_but_the_standard_library(self):
         code = "import sys, glint; r = glint.Run(sys.argv[1]); r.metrics['ipc']; r.series; r.profile; print(set(sys.modules) & {'numpy', 'pandas', 'matplotlib'})"
