@@ -43,7 +43,7 @@ void LineList::add_sector(Address line, uint32_t sector, mem::WordMask words, La
   }
   GLINT_CHECK(count_ < kMaxLines, "an access of more than {} lines", kMaxLines);
   last_ = count_;
-  lines_[count_++] = {line, bit, words, lanes};
+  lines_[count_++] = {line, bit, {}, words, lanes};
 }
 
 uint32_t LineList::num_sectors() const {
@@ -65,6 +65,31 @@ void coalesce_local(LineList& out, const LocalLayout& layout, uint32_t warp_slot
       const uint64_t word = (access.address[size_t(lane)] + byte) / 4;
       out.add(layout.base + ((uint64_t{warp_slot} * layout.words + word) * kLanes + uint64_t(lane)) * 4, 4, lane);
     });
+  }
+}
+
+void count_turns(LineList& lines, const mem::AddressSpace& memory, const isa::Access& access, uint32_t bytes, bool turns, bool returns) {
+  const auto is_one_word = [&](const LineSectors& line) {
+    const Address first = access.address[size_t(std::countr_zero(line.lanes))];
+    bool same = true;
+    for_each_lane(line.lanes, [&](int lane) { same &= access.address[size_t(lane)] == first; });
+    return same;
+  };
+  const uint32_t words = (1u << std::max(bytes / 4, 1u)) - 1;
+  for (size_t i = 0; i < lines.lines().size(); ++i) {
+    const LineSectors& line = lines.lines()[i];
+    if (turns && !returns && lines.lines().size() == 1 && is_one_word(line)) return lines.set_atomic(i, {1, 1});
+    std::array<uint32_t, 8> taken{};  // words of each sector that its latest turn has
+    uint8_t count = 0;
+    if (turns)
+      for_each_lane(line.lanes, [&](int lane) {
+        const Address offset = lines.offset(memory.physical(access.address[size_t(lane)]));
+        uint32_t& turn = taken[offset / mem::kSectorBytes];
+        const uint32_t wanted = words << (offset % mem::kSectorBytes / 4);
+        count += turn == 0 || (turn & wanted) != 0;
+        turn = turn & wanted ? wanted : turn | wanted;
+      });
+    lines.set_atomic(i, {uint8_t(std::popcount(line.lanes)), count});
   }
 }
 

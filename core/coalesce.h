@@ -21,6 +21,7 @@ inline constexpr uint32_t kMaxLines = kMaxTexels * kLanes;
 struct LineSectors {
   Address line = 0;      // physical
   uint8_t sectors = 0;   // bit i: sector i
+  mem::AtomicLanes atomic{};  // of an atomic, see count_turns()
   mem::WordMask words = 0;  // which of its 32 parts are touched whole
   LaneMask lanes = 0;    // that touch it
 };
@@ -34,6 +35,8 @@ class LineList {
   void add(Address physical, uint32_t bytes, int lane);
   std::span<const LineSectors> lines() const { return {lines_.data(), count_}; }
   uint32_t num_sectors() const;
+  void set_atomic(size_t line, mem::AtomicLanes atomic) { lines_[line].atomic = atomic; }
+  Address offset(Address physical) const { return physical & mask_; }  // in its line
 
  private:
   void add_sector(Address line, uint32_t sector, mem::WordMask words, LaneMask lanes);
@@ -57,6 +60,12 @@ void coalesce_global(LineList& out, const mem::AddressSpace& memory, const isa::
                      uint32_t bytes);
 void coalesce_local(LineList& out, const LocalLayout& layout, uint32_t warp_slot, const isa::Access& access,
                     LaneMask lanes, uint32_t bytes);
+
+// Fills in LineSectors::atomic of lines that coalesce_global() has made. A turn takes the lanes of a sector in order, up to the
+// first whose word it has already: so an H200's times go (docs/validation.md). Without `turns` each sector has one.
+// Model: lanes of a reduction (not `returns`) that all meet in one word are one lane: an assembler adds them up before, where it
+// knows their address to be the same; here it is enough that it is.
+void count_turns(LineList& lines, const mem::AddressSpace& memory, const isa::Access& access, uint32_t bytes, bool turns, bool returns);
 
 // Times that shared memory has to be read or written for a warp's access: the largest number of different words in one
 // bank (32 banks of 4 bytes; lanes that want one word share it), of atomics the largest number of lanes.

@@ -154,7 +154,7 @@ bool Lsu::send_line(Cycle now, size_t p) {
   for (uint32_t n = 0; n < params_.lines_per_cycle && access.num_sent < lines.size(); ++n) {
     const LineSectors& line = lines[access.num_sent];
     const mem::Traffic traffic = access.num_sent < access.num_table_lines ? mem::Traffic::RtTable : access.traffic;
-    if (!l1_.access(now, mem::Client::Lsu, {line.line, line.sectors, access.write, traffic, id, line.words})) break;
+    if (!l1_.access(now, mem::Client::Lsu, {line.line, line.sectors, access.write, traffic, id, line.words, line.atomic})) break;
     ++access.num_sent;
     cycles = std::max(cycles, (uint32_t(std::popcount(line.sectors)) + params_.sectors_per_cycle - 1) / params_.sectors_per_cycle);
   }

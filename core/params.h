@@ -86,6 +86,7 @@ struct LsuParams {
   // Same paper, table 2: the registers of a load may be overwritten 11 cycles after it, of one from shared memory 9.
   uint32_t war_latency = 11, shared_war_latency = 9;
   uint32_t atomic_latency = 0;     // an H200: 204; 0: what other parts take is unpublished
+  bool atomic_turns = false;       // an H200: true; as unpublished of others
   static constexpr auto params() {
     return std::tuple{
         param(&LsuParams::queue, "queue", "instruction",
@@ -103,7 +104,9 @@ struct LsuParams {
             "From a memory instruction to the first that may overwrite its sources, if it does not wait in its queue; 0: they are read at issue.", 0, 1000),
         param(&LsuParams::shared_war_latency, "shared_war_latency", "cycle", "The same of shared memory.", 0, 1000),
         param(&LsuParams::atomic_latency, "atomic_latency", "cycle",
-            "Longer than a load that an atomic on global memory takes to its registers.", 0, 10000)};
+            "Longer than a load that an atomic on global memory takes to its registers.", 0, 10000),
+        flag(&LsuParams::atomic_turns, "atomic_turns",
+            "Lanes of an atomic that meet in a word of global memory take turns there; otherwise each sector has one turn.")};
   }
 };
 

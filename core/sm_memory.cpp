@@ -44,10 +44,10 @@ bool CoreCell::start_access(uint32_t slot, const IssueRow& row, const Issued& is
   access.pc = issued.pc;
   if (executor_.is_late()) access.late_until = turn_end(now);
   access.write = issued.row->effect == Effect::Store || issued.row->effect == Effect::SurfaceStore;
-  access.atomic_kind = row.atomic;
-  collect_lines(access, issued);
   // red: nobody waits for an answer.
   access.write |= issued.row->effect == Effect::Atomic && row.num_defs == 0;
+  access.atomic_kind = row.atomic;
+  collect_lines(access, issued);
   stored_[slot] |= access.write && !access.lines.lines().empty();
   if (row.finish == Finish::Memory && war_latency(access) > 0) scoreboards_[slot].hold(table_.sources(row));
   ++outstanding_[slot];
@@ -110,6 +110,7 @@ void CoreCell::collect_memory(MemoryAccess& access, const Issued& issued) {
   if (params_.lsu.bank_conflicts && !is_atomic && in_global) access.bank_turns = shared_passes(addresses, in_global, bytes, false);
   coalesce_local(access.lines, local_, access.slot, addresses, executor_.lanes_in(Space::Local), bytes);
   coalesce_global(access.lines, *world_.memory, addresses, in_global, bytes);
+  if (is_atomic && in_global) count_turns(access.lines, *world_.memory, addresses, bytes, params_.lsu.atomic_turns, !access.write);
 }
 
 void CoreCell::collect_texels(MemoryAccess& access, LaneMask lanes) {

@@ -129,7 +129,7 @@ bool L1Cache::pass_atomic(Cycle now, Client client, const Request& request) {
   const uint32_t slot = tags_.find(request.line);
   if (slot != kNone) tags_.drop(slot, request.sectors);
   queue_packet(now + params_.miss_latency, {.line = request.line, .sectors = request.sectors, .write = request.write,
-                                            .traffic = request.traffic, .token = request.token, .client = client, .order = order_,
+                                            .traffic = request.traffic, .atomic = request.atomic, .token = request.token, .client = client, .order = order_,
                                             .stamps = {.accepted = uint32_t(now)}});
   if (request.write) {
     stats_.writes.add(request.traffic);

@@ -21,6 +21,7 @@ L2Slice::L2Slice(const Params& params, uint32_t index, const PartitionMap& map, 
     : params_(params.l2),
       visit_parts_(parts_of(params.l2.write_visit, kParts)),
       partial_parts_(parts_of(params.l2.partial_interval, kParts)),
+      lane_parts_(parts_of(params.l2.atomic_lane_interval, kParts)),
       line_bytes_(params.line),
       atom_sectors_(std::max(params.dram.atom_bytes(), kSectorBytes) / kSectorBytes),
       index_(index),
@@ -112,14 +113,15 @@ void L2Slice::serve(Cycle now) {
   links_.requests->pop();
 }
 
-Cycle L2Slice::service_cycles(const Packet& packet) const {
-  return is_atomic(packet) ? Cycle{num_sectors(packet.sectors)} * params_.atomic_interval : sector_cycles(packet.sectors);
+Cycle L2Slice::service_parts(const Packet& packet) const {
+  if (!is_atomic(packet)) return sector_cycles(packet.sectors) * kParts;
+  return Cycle{num_turns(packet)} * params_.atomic_interval * kParts + packet.atomic.lanes * lane_parts_;
 }
 
 // Writes may take parts of cycles, which are kept: one begins where the last packet ended, if it has waited for that.
 void L2Slice::occupy(Cycle now, const Packet& packet) {
   const bool is_write = packet.write && !is_atomic(packet);
-  const Cycle parts = is_write && visit_parts_ + partial_parts_ ? write_parts(packet) : service_cycles(packet) * kParts;
+  const Cycle parts = is_write && visit_parts_ + partial_parts_ ? write_parts(packet) : service_parts(packet);
   busy_parts_ = (busy_until_ == now ? busy_parts_ : now * kParts) + parts;
   busy_until_ = (busy_parts_ + kParts - 1) / kParts;
 }
@@ -160,7 +162,7 @@ bool L2Slice::read(Cycle now, const Packet& packet) {
 // Replies for what is here. An atomic waits for all of its sectors, and is done in one piece.
 // Model: the atomics of one line follow each other at the slice's pace, whether they wait for DRAM or not.
 void L2Slice::answer_present(Cycle now, const Packet& packet, uint8_t missing) {
-  const Cycle ready = now + service_cycles(packet) - 1 + params_.latency;
+  const Cycle ready = now + (service_parts(packet) + kParts - 1) / kParts - 1 + params_.latency;
   if (!is_atomic(packet)) {
     if (const uint8_t present = uint8_t(packet.sectors & ~missing)) {
       hit_replies_.push({ready, reply_to(packet, present), packet.core});

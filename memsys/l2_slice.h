@@ -101,7 +101,7 @@ class L2Slice {
   uint8_t whole_sectors(const Packet& packet, uint32_t slot, uint8_t valid);
   void answer_present(Cycle now, const Packet& packet, uint8_t missing);
   Reply reply_to(const Packet& packet, uint8_t sectors) const;
-  Cycle service_cycles(const Packet& packet) const;
+  Cycle service_parts(const Packet& packet) const;
   Cycle write_parts(const Packet& packet) const;
   void occupy(Cycle now, const Packet& packet);
   Cycle sector_cycles(uint8_t sectors) const { return (num_sectors(sectors) + params_.sectors_per_cycle - 1) / params_.sectors_per_cycle; }
@@ -116,7 +116,7 @@ class L2Slice {
   static constexpr Cycle kParts = 16;  // of a cycle
 
   const L2Params params_;
-  const Cycle visit_parts_, partial_parts_;
+  const Cycle visit_parts_, partial_parts_, lane_parts_;
   const uint32_t line_bytes_, atom_sectors_;
   const uint32_t index_;
   const Cycle dram_latency_;

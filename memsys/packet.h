@@ -19,6 +19,7 @@ struct Packet {
   bool write = false;
   Traffic traffic = Traffic::ShaderGlobal;
   WordMask words = kAllWords;  // of a write
+  AtomicLanes atomic{};
   Token token = 0;      // of an atomic, for its reply; its client and order of acceptance too
   Client client = Client::Lsu;
   uint64_t order = 0;
@@ -46,9 +47,11 @@ inline constexpr uint32_t kHeaderBytes = 8;
 
 constexpr uint32_t num_sectors(uint8_t mask) { return uint32_t(std::popcount(mask)); }
 constexpr bool is_atomic(const Packet& p) { return p.traffic == Traffic::ShaderAtomic; }
-// Writes and atomics carry data. Model: a sector's worth a sector, as many lanes as it may serve.
+// Turns of an atomic at its sectors.
+constexpr uint32_t num_turns(const Packet& p) { return std::max<uint32_t>(p.atomic.turns, num_sectors(p.sectors)); }
+// Writes and atomics carry data. Model: a sector's worth a sector and turn, as many lanes as it may serve.
 constexpr uint32_t bytes_of(const Packet& p) {
-  return kHeaderBytes + (p.write || is_atomic(p) ? num_sectors(p.sectors) * kSectorBytes : 0);
+  return kHeaderBytes + (is_atomic(p) ? num_turns(p) : p.write ? num_sectors(p.sectors) : 0) * kSectorBytes;
 }
 constexpr uint32_t bytes_of(const Reply& r) { return kHeaderBytes + num_sectors(r.sectors) * kSectorBytes; }
 

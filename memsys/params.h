@@ -86,7 +86,8 @@ struct L2Params {
   uint32_t mshr_entries = 192;       // Vulkan-Sim: A:192:4
   uint32_t mshr_merges = 4;
   uint32_t dram_queue = 64;          // Vulkan-Sim: dram_partition_queues
-  uint32_t atomic_interval = 2;      // Choice: unpublished; an H200 does 1.4 G lane atomics a second on one word
+  uint32_t atomic_interval = 2;      // Choice: unpublished; an H200: 2, and an eighth a lane (docs/validation.md)
+  double atomic_lane_interval = 0;
   double write_visit = 0;            // an H200: 1.25, beside a cycle a whole sector and 1.31 one in part (docs/validation.md)
   double partial_interval = 0;
   bool write_masks = true;           // GPGPU-Sim: byte masks, a sector is fetched when it is read
@@ -102,7 +103,8 @@ struct L2Params {
         param(&L2Params::mshr_entries, "mshr_entries", "line", "Lines that can be on the way.", 0, 1 << 16),
         param(&L2Params::mshr_merges, "mshr_merges", "request", "Reads that can wait for one line, the first included.", 0, 1 << 12),
         param(&L2Params::dram_queue, "dram_queue", "request", "Sector reads and writes between the slice and the DRAM scheduler.", 0, 1 << 16),
-        param(&L2Params::atomic_interval, "atomic_interval", "cycle", "Cycles of the slice for each sector of an atomic.", 1, 1000),
+        param(&L2Params::atomic_interval, "atomic_interval", "cycle", "Cycles of the slice for each sector of an atomic, and for each turn at it where lanes take turns.", 1, 1000),
+        param(&L2Params::atomic_lane_interval, "atomic_lane_interval", "cycle", "Cycles of the slice for each lane of an atomic beside, to a sixteenth.", 0.0, 1000.0),
         param(&L2Params::write_visit, "write_visit", "cycle", "Cycles of the slice for each write, beside its sectors', which then take a cycle each; 0: none, and sectors as read.", 0.0, 1000.0),
         param(&L2Params::partial_interval, "partial_interval", "cycle", "Cycles of the slice for each sector that a write covers in part, to a sixteenth; 0: those of a whole one.", 0.0, 1000.0),
         flag(&L2Params::write_masks, "write_masks", "A sector of which a part is written is fetched when it is read; otherwise each write covers its sectors."),

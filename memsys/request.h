@@ -42,6 +42,12 @@ constexpr WordMask words_of_sector(uint32_t sector, uint32_t line_bytes) {
   return (kAllWords >> (32 - words)) << (sector * words);
 }
 
+// Of an atomic: lanes of a warp that meet in a word of a sector take turns, each with the sector's worth of data.
+struct AtomicLanes {
+  uint8_t lanes = 0;
+  uint8_t turns = 0;        // of all its sectors together; 0: one each
+};
+
 struct Request {
   Address line = 0;         // physical, aligned to the L1 line size
   uint8_t sectors = 0;      // bit i: sector i of the line is wanted or written
@@ -49,6 +55,7 @@ struct Request {
   Traffic traffic = Traffic::ShaderGlobal;
   Token token = 0;          // reads: comes back once when all sectors are there. Writes: not answered.
   WordMask words = kAllWords;  // of a write: which words of the line it covers
+  AtomicLanes atomic{};
   // Traffic::ShaderAtomic: a "read" whose token comes back when the L2 has changed the sectors, or a "write" likewise
   // without an answer.
 };

@@ -72,6 +72,22 @@ TEST_CASE("an atomic takes its interval of the slice for each sector") {
   CHECK(l2_latency(params, atomic(kLine, 1, 0b11)) == kL2Hit + 2 * 5 - 1 + 2);
 }
 
+TEST_CASE("lanes of an atomic that take turns take the slice's time for each, and their own parts of it") {
+  Params params = bare();
+  params.l2.atomic_interval = 5;
+  Request turns = atomic(kLine, 1);
+  turns.atomic = {.lanes = 32, .turns = 3};
+  // Three sectors' worth of data on the way there: 104 bytes are two cycles more of the 40-byte port than 40 are.
+  CHECK(l2_latency(params, turns) == kL2Hit + 3 * 5 - 1 + 2);
+  params.l2.atomic_lane_interval = 0.125;
+  CHECK(l2_latency(params, turns) == kL2Hit + 3 * 5 + 4 - 1 + 2);
+  turns.atomic.lanes = 33;  // an eighth of a cycle more is a cycle
+  CHECK(l2_latency(params, turns) == kL2Hit + 3 * 5 + 5 - 1 + 2);
+  turns.atomic = {.lanes = 0, .turns = 1};  // never fewer than sectors
+  turns.sectors = 0b11;
+  CHECK(l2_latency(params, turns) == kL2Hit + 2 * 5 - 1 + 2);
+}
+
 TEST_CASE("a credit is back after the way back, not a cycle before") {
   Params params = bare();
   params.noc.credits = 1;

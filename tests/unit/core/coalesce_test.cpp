@@ -55,6 +55,31 @@ TEST_CASE_METHOD(Fixture, "lanes that are off ask for nothing") {
   CHECK(list.lines()[1].line == memory.physical(base) + 31 * 128);
 }
 
+TEST_CASE_METHOD(Fixture, "a turn of an atomic takes the lanes of a sector in order, up to a word that it has") {
+  const auto turns = [&](auto word, LaneMask lanes = kAllLanes, uint32_t bytes = 4, bool returns = true) {
+    for (size_t i = 0; i < kLanes; ++i) access.address[i] = base + 4 * word(i);
+    list.clear();
+    coalesce_global(list, memory, access, lanes, bytes);
+    count_turns(list, memory, access, bytes, true, returns);
+    return list.lines()[0].atomic;
+  };
+  CHECK(int(turns([](size_t i) { return i; }).turns) == 4);          // a sector each eight lanes
+  CHECK(int(turns([](size_t i) { return i * 8; }).turns) == 4);      // a line has four sectors of one lane
+  CHECK(int(turns([](size_t i) { return i * 8; }).lanes) == 4);
+  CHECK(int(turns([](size_t) { return 3; }).turns) == 32);
+  CHECK(int(turns([](size_t i) { return i % 2; }).turns) == 16);
+  CHECK(int(turns([](size_t i) { return i / 4; }).turns) == 25);     // 0, 0, 0, 0+1, 1, 1, 1+2, ...: but for the first of each
+  CHECK(int(turns([](size_t i) { return i % 8; }).turns) == 4);
+  CHECK(int(turns([](size_t i) { return i % 8 * 2; }, 0xff, 8).turns) == 2);  // two sectors of four
+  CHECK(int(turns([](size_t) { return 3; }, 0x101).turns) == 2);
+  CHECK(int(turns([](size_t) { return 3; }, kAllLanes, 4, false).turns) == 1);  // a reduction of one word
+  CHECK(int(turns([](size_t) { return 3; }, kAllLanes, 4, false).lanes) == 1);
+  CHECK(int(turns([](size_t i) { return i % 2; }, kAllLanes, 4, false).turns) == 16);
+  count_turns(list, memory, access, 4, false, true);
+  CHECK(int(list.lines()[0].atomic.turns) == 0);
+  CHECK(int(list.lines()[0].atomic.lanes) == 32);
+}
+
 TEST_CASE_METHOD(Fixture, "an access across a line's end touches both lines") {
   with_stride(0, 16, 0x1, 120);
 
