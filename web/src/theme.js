@@ -9,7 +9,7 @@ const kSchemes = {
     colours: { ...kColours, blue: "#2E8FCB", sky: "#7CC7F2", green: "#1DB58A", red: "#E2722A", grey: "#868E98", pale: "#3C434C", dark: "#B4BBC4" },
   },
 };
-const kFont = 'system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
+const kFont = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"; // single quotes: an exported SVG has it in an attribute, unescaped
 
 const kRunColours = ["blue", "orange", "green", "pink", "sky", "red", "yellow", "dark"];
 export const kMaxColours = kRunColours.length;
