@@ -50,7 +50,7 @@ class Run:
             raise MissingFile(f"{self.directory}: no run.json: no run directory, or a run that was stopped before its end")
         tree = read_json(record)
         if tree.get("schema") != SCHEMA:
-            raise SchemaError(f"{record}: schema {tree.get('schema')}, this package reads {SCHEMA}: use the package of that Glint")
+            raise SchemaError(f"{record}: schema {tree.get('schema')!r}, this package reads {SCHEMA}: use the package of that Glint")
         self.info = Facts(flat(tree))
         if not partial and self.info.get("exit", 0) != 0:
             raise IncompleteRun(f"{self.directory}: the run ended with exit code {self.info['exit']}: {self.info.get('message', '')}")
@@ -130,7 +130,13 @@ class Run:
     @functools.cached_property
     def series(self) -> Table:
         """The run over time, a row an interval (docs/profiling.md)."""
-        return Table.read(self.file("series.csv", "`glint run --sample CYCLES`"), needs=("cycle", "ipc"), whole=True)
+        path = self.file("series.csv", "`glint run --sample CYCLES`")
+        table = Table.read(path, needs=("cycle", "ipc"), whole=True)
+        ends, whole = table["cycle"][-1] if len(table) else 0, self.directory / "stats.json"
+        last = max([self.cycles, *self.stats.values("gpu.attributed_cycles")]) if whole.is_file() else 0
+        if not isinstance(ends, (int, float)) or ends < last:
+            raise SchemaError(f"{path}: ends at cycle {ends}, the run at {last}: the file is damaged or was cut short")
+        return table
 
     @functools.cached_property
     def profile(self) -> Table:

@@ -6,6 +6,7 @@ from __future__ import annotations
 import csv
 import io
 import pathlib
+import re
 from typing import Any, Iterator
 
 from .documents import read_text
@@ -13,9 +14,13 @@ from .errors import SchemaError, UnknownName
 from .optional import require
 from .patterns import near
 
+_NAMES = {"workload", "scene", "form", "shader", "config", "config_hash", "metric", "component", "by", "stage", "op", "file", "name", "run"}  # a workload may be called 001
+_INTEGER = re.compile(r"[+-]?[0-9]+")
+_FLOAT = re.compile(r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|inf|nan|-nan)")
+
 
 class Table:
-    """Columns by name; a cell is an int, a float, a string, or None where it is empty.
+    """Columns by name; a cell is an int, a float, a string, or None where it is empty. Columns of names hold strings.
 
     Attributes:
         columns: names, in order.
@@ -47,7 +52,8 @@ class Table:
         missing = [name for name in needs if name not in header]
         if missing:
             raise SchemaError(f"{path}: no column {', '.join(missing)}: written by another version of Glint")
-        return cls(header, [[_cell(text) for text in line] for line in lines[1:]])
+        reads = [_text if name in _NAMES else _cell for name in header]
+        return cls(header, [[read(cell) for read, cell in zip(reads, line)] for line in lines[1:]])
 
     def __len__(self) -> int:
         return len(self._rows)
@@ -75,12 +81,13 @@ class Table:
         return require("pandas", "Table.frame()").DataFrame(self._rows, columns=self.columns)
 
 
+def _text(text: str) -> str | None:
+    return text or None
+
+
 def _cell(text: str) -> Any:
-    if text == "":
-        return None
-    for kind in (int, float):
-        try:
-            return kind(text)
-        except ValueError:
-            pass
-    return text
+    if _INTEGER.fullmatch(text):
+        return int(text)
+    if _FLOAT.fullmatch(text):
+        return float(text)
+    return text or None

@@ -56,12 +56,12 @@ class Layout(PythonTest):
 
     def test_every_figure_of_every_choice_of_runs_can_be_read(self):
         kinds = ("geometry", "stages", "cpi_stack", "rt_use", "l1_reads", "ray_nodes", "ipc")  # of each kind of figure one
-        for choice, some in (("sweep", self.glint.plot.FIGURES), ("mixed", self.glint.plot.FIGURES), ("sizes", kinds), ("suite", kinds), ("ship", kinds)):
+        for choice, some in (("sweep", self.glint.plot.FIGURES), ("mixed", kinds), ("sizes", kinds), ("suite", kinds), ("ship", kinds)):
             for name in some:
                 figure = self.glint.plot.FIGURES[name]
                 with self.subTest(figure=name, runs=choice):
                     self.readable(figure(getattr(self, choice)))
-        for figure in (self.glint.plot.ops, self.glint.plot.op_latency, self.glint.plot.stage_cycles, self.glint.plot.series):
+        for figure in (self.glint.plot.ops, self.glint.plot.op_counts, self.glint.plot.op_latency, self.glint.plot.stage_cycles, self.glint.plot.series, self.glint.plot.limits):
             with self.subTest(figure=figure.__name__):
                 self.readable(figure(self.sweep))
 
@@ -99,6 +99,32 @@ class Layout(PythonTest):
         line = self.glint.plot.series(self.ship).axes[0].lines[0]
         self.assertEqual((line.get_xdata()[0], line.get_xdata()[1]), (0, self.ship.series["cycle"][0]))
         self.assertEqual(list(line.get_ydata()), [self.ship.series["ipc"][0], *self.ship.series["ipc"]])
+
+    def test_limits_are_the_shares_of_the_statistics(self):
+        figure = self.glint.plot.limits(self.ship)
+        self.readable(figure)
+        names = [label.get_text() for label in figure.axes[0].get_yticklabels()]
+        shares = dict(zip(names, (bar.get_width() for bar in figure.axes[0].patches)))
+        stats, config = self.ship.stats, self.ship.config
+        self.assertAlmostEqual(shares["issue slots"], 100 * stats.sum("core.instructions") / stats.sum("core.issue_slots::*"))
+        self.assertAlmostEqual(shares["DRAM"], 100 * self.ship.metrics["dram_util"])
+        tests = stats.sum("rt.triangle_tests") * config["rt.triangle.interval"] / config["rt.triangle.units"]
+        self.assertAlmostEqual(shares["RT unit: triangle tests"], 100 * tests / stats.sum("rt.unit_cycles"))
+        self.assertAlmostEqual(shares["L2 to L1"], 100 * 32 * stats.sum("l1.sectors_fetched::*") / self.ship.seconds / self.ship.info["memory_peaks.network_bytes_per_second"])
+        self.assertTrue(all(0 < share <= 100 for share in shares.values()), shares)
+
+    def test_changes_are_the_ratios_of_the_metrics(self):
+        before, after = self.sweep["WKND_SH-core.warps=16-rt.warps=1-memory.l1.size=4096"], self.sweep["WKND_SH-core.warps=16-rt.warps=4-memory.l1.size=65536"]
+        figure = self.glint.plot.changes(before, after)
+        self.readable(figure)
+        for label, bar in zip(figure.axes[0].get_yticklabels(), figure.axes[0].patches):
+            name = label.get_text().replace("\n", "")
+            self.assertAlmostEqual(1 + bar.get_width(), after.metrics[name] / before.metrics[name], msg=name)
+        self.assertRaisesRegex(self.glint.GlintError, "no metric changed", self.glint.plot.changes, before, before)
+
+    def test_counts_of_ops_are_shares_of_the_instructions(self):
+        figure = self.glint.plot.op_counts(self.ship, top=1000)
+        self.assertAlmostEqual(sum(bar.get_width() for bar in figure.axes[0].patches), 100)
 
     def test_what_a_pipeline_did_not_record_is_left_out_or_refused_and_not_drawn_as_0(self):
         run = self.glint.run(ROOT / "examples/spheres/pipeline.toml", out=self.folder / "pipeline", glint=GLINT)

@@ -124,8 +124,22 @@ class Suites(PythonTest):
         self.assertEqual(figure.axes[0].collections[0].get_offsets().tolist(), [[100, 50], [200, 100], [400, 200]])
         names = [text.get_text() for text in figure.legends[0].get_texts()]
         self.assertEqual(names, ["half (R² 1.000)", "noise (R² 0.107)"])
+        errors = self.glint.plot.model_errors(self.folder)
+        self.assertEqual([round(bar.get_width(), 6) for bar in errors.axes[0].patches], [-50, -50, -50, -93, -98.5, -98.75])
+        for cycles in ("nan", "-5", "x", ""):
+            (self.folder / "models.csv").write_text(f"workload,cycles,model:half\nA,{cycles},50\n")
+            self.assertRaisesRegex(self.glint.SchemaError, "cycles", self.glint.plot.model_fit, self.folder)
         self.assertRaisesRegex(self.glint.SchemaError, "no column cycles", self.glint.plot.model_fit, self.there / "kiviat.csv")
         self.assertRaisesRegex(self.glint.SchemaError, "model:NAME", self.glint.plot.model_fit, self.glint.Table(["workload", "cycles"], [["A", 1]]))
+
+    def test_workloads_whose_names_are_like_numbers_keep_them(self):
+        for name, text in TABLES.items():
+            (self.there / f"{name}.csv").write_text(text.replace("A_PT", "001").replace("B_PT", "nan").replace("C_PT", "1e3").replace("D_PT", "1_0"))
+        self.assertEqual(list(self.glint.Characterization(self.folder).clusters), ["001", "nan", "1e3", "1_0"])
+        for figure in (self.glint.plot.components, self.glint.plot.dendrogram, self.glint.plot.kiviat):
+            figure(self.folder)
+        self.assertRaisesRegex(self.glint.UnknownName, "no workload '002'", self.glint.plot.kiviat, self.folder, ["002"])
+        self.assertRaisesRegex(self.glint.GlintError, "at least one", self.glint.plot.kiviat, self.folder, [])
 
     def test_a_linkage_that_does_not_fit_is_refused(self):
         (self.there / "linkage.csv").write_text("first,second,distance,leaves\n0,1,1,2\n")

@@ -75,19 +75,23 @@ def ops(runs: Chosen, top: int = 12) -> Any:
     return _op_bars(runs, top, lambda row, whole: row["cycles"] / whole, "share of scheduler cycles (%)", percent=True)
 
 
+def op_counts(runs: Chosen, top: int = 12) -> Any:
+    """The ops that were issued most, as shares of warp instructions. Needs `--profile`."""
+    return _op_bars(runs, top, lambda row, whole: row["issues"] / whole, "share of warp instructions (%)", percent=True, weigh="issues")
+
+
 def op_latency(runs: Chosen, top: int = 12) -> Any:
     """Mean cycles from issue to completion of accesses that went to the L1 and of traces. Needs `--profile`."""
-    return _op_bars(runs, top, lambda row, whole: row["latency"] / row["ended"] if row["ended"] else None, "cycles", percent=False)
+    return _op_bars(runs, top, lambda row, whole: row["latency"] / row["ended"] if row["ended"] else None, "cycles", percent=False, weigh="latency")
 
 
-def _op_bars(runs: Chosen, top: int, value: Any, label: str, percent: bool) -> Any:
+def _op_bars(runs: Chosen, top: int, value: Any, label: str, percent: bool, weigh: str = "cycles") -> Any:
     found = chosen(runs)
     at_most_eight(found, "this figure")
     tables = [_by(run, "op") for run in found]
-    weigh = "cycles" if percent else "latency"
     known = {op for table in tables for op, row in table.items() if percent or row["ended"]}
     shown = sorted(known, key=lambda op: (-max(table.get(op, {}).get(weigh, 0) for table in tables), op))[:top]
-    wholes = [sum(row["cycles"] for row in table.values()) or 1 for table in tables]
+    wholes = [sum(row[weigh] for row in table.values()) or 1 for table in tables]
     series = [Part(name, run_colour(i), [value(table[op], whole) if op in table else None for op in shown])
               for i, (name, table, whole) in enumerate(zip(names(found), tables, wholes))]
     return ranked(shown, series, label, percent=percent)

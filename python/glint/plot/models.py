@@ -3,12 +3,14 @@
 """From `models.csv`, a table of workloads with simulated cycles and a column `model:NAME` a model, as `glint model` writes it."""
 from __future__ import annotations
 
+import math
 import pathlib
 from typing import Any
 
 from ..errors import MissingFile, SchemaError
 from ..table import Table
-from .style import COLOURS, legend, new_figure, run_colour, styled
+from .kinds import Part, ranked
+from .style import COLOURS, RUN_COLOURS, legend, new_figure, run_colour, styled
 
 _PREFIX = "model:"
 _MARKS = "osD^v"
@@ -23,8 +25,8 @@ def correlation(predicted: list[float], simulated: list[float]) -> float:
     return both * both / spread if spread else 0.0
 
 
-def model_fit(table: Table | str | pathlib.Path) -> Any:
-    """Predicted against simulated cycles with each model's R squared; on the line both are equal. Takes a table, `models.csv`, or its folder."""
+def _read(table: Table | str | pathlib.Path) -> tuple[Table, list[str]]:
+    """The table and its columns of models; rows have positive cycles."""
     if not isinstance(table, Table):
         path = pathlib.Path(table)
         path = path / "models.csv" if path.is_dir() else path
@@ -34,6 +36,15 @@ def model_fit(table: Table | str | pathlib.Path) -> Any:
     models = [column for column in table.columns if column.startswith(_PREFIX)]
     if not models or not len(table):
         raise SchemaError(f"no column '{_PREFIX}NAME' or no row: no table of models")
+    for column in ("cycles", *models):
+        if not all(isinstance(value, (int, float)) and math.isfinite(value) for value in table[column]) or (column == "cycles" and min(table[column]) <= 0):
+            raise SchemaError(f"a row has no number in '{column}', or cycles that are none: the table is damaged")
+    return table, models
+
+
+def model_fit(table: Table | str | pathlib.Path) -> Any:
+    """Predicted against simulated cycles with each model's R squared; on the line both are equal. Takes a table, `models.csv`, or its folder."""
+    table, models = _read(table)
     cycles = table["cycles"]
     with styled():
         figure, axes = new_figure(2.6)
@@ -50,3 +61,13 @@ def model_fit(table: Table | str | pathlib.Path) -> Any:
         axes.grid(color=COLOURS["pale"], linewidth=0.4)
         legend(figure, handles, names)
         return figure
+
+
+def model_errors(table: Table | str | pathlib.Path) -> Any:
+    """How far each model's cycles are from the simulated ones, workload by workload. Takes what `model_fit` does."""
+    table, models = _read(table)
+    if len(models) > len(RUN_COLOURS):
+        raise SchemaError(f"{len(models)} models, and there are {len(RUN_COLOURS)} colours")
+    parts = [Part(column.removeprefix(_PREFIX), run_colour(index), [predicted / cycles - 1 for predicted, cycles in zip(table[column], table["cycles"])])
+             for index, column in enumerate(models)]
+    return ranked(table["workload"], parts, "predicted - simulated (%)", percent=True)

@@ -8,6 +8,8 @@ import pathlib
 from typing import Any
 
 from ..characterization import Characterization
+from ..errors import GlintError, UnknownName
+from ..patterns import near
 from .style import COLOURS, COLUMN, legend, new_figure, run_colour, styled
 
 Suite = Characterization | str | pathlib.Path
@@ -90,6 +92,11 @@ def kiviat(suite: Suite, workloads: list[str] | None = None) -> Any:
     metrics = table.columns[1:]
     rows = {row["workload"]: [row[metric] for metric in metrics] for row in table}
     names = found.subset if workloads is None else workloads
+    for name in names:
+        if name not in rows:
+            raise UnknownName(f"no workload '{name}'{near(name, rows)}")
+    if not names:
+        raise GlintError("a Kiviat figure needs at least one workload")
     across = 4 if len(names) <= 12 else 8
     down = math.ceil(len(names) / across)
     width = COLUMN if across == 4 else 2.1 * COLUMN
