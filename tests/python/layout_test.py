@@ -88,6 +88,10 @@ class Layout(PythonTest):
         bar = figure.axes[0].patches[0]
         self.assertAlmostEqual(bar.get_x(), quantile(histogram, 0.25))
         self.assertAlmostEqual(bar.get_x() + bar.get_width(), quantile(histogram, 0.75))
+        from glint.plot.kinds import spread
+        open_ended = spread(["a", "b"], [self.glint.Histogram([0, 10, 20], counts, "cycle") for counts in ([9, 1], [99, 1])], "cycles")
+        self.assertEqual([list(line.get_ydata()) for line in open_ended.axes[0].lines if line.get_marker() == ">"], [[0]])  # 10 % lie beyond, 1 % does not
+        self.readable(open_ended)
         even = self.glint.Histogram([0, 10, 20, 30], [2, 0, 2], "node")
         self.assertEqual([quantile(even, share) for share in (0.25, 0.5, 0.75)], [5, 10, 25])
 

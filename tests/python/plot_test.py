@@ -78,6 +78,7 @@ class Figures(PythonTest):
         self.assertRaisesRegex(Error, "at least one run", plot.dram, [])
         self.assertRaisesRegex(Error, "--sample", plot.series, self.wknd)
         self.assertRaisesRegex(Error, "--profile", plot.ops, self.wknd)
+        self.assertRaisesRegex(Error, ".pdf, .svg or .png", plot.save, plot.dram(self.wknd), self.folder / "figure.xyz")
 
     def test_frames_and_pictures_have_the_shapes_that_are_documented(self):
         self.assertEqual(self.ship.image.shape, (16, 16, 3))

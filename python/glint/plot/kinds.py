@@ -218,11 +218,12 @@ def histogram(series: Sequence[tuple[str, str, Any]], x_label: str, y_label: str
 def spread(rows: Sequence[str], histograms: Sequence[Any], x_label: str) -> Any:
     """A row a histogram: a line from the 5th to the 95th percentile, a bar over the middle half, a mark at the median.
 
-    What lies in a histogram's last bin, which is open, is drawn within it.
+    A line that ends in the last bin, which is open, has an arrow at its end: the percentile is that or more.
     """
     sheet = _Rows(rows, COLUMN)
     marks = [[quantile(one, share) for share in (0.05, 0.25, 0.5, 0.75, 0.95)] for one in histograms]
     longest = max((mark[-1] for mark in marks), default=1) or 1
+    beyond = [sum(one.counts) > 0 and one.counts[-1] > 0.05 * sum(one.counts) for one in histograms]
     with styled():
         figure, axes = new_figure(0.36 + sheet.height, columns=sheet.halves, width=sheet.width, squeeze=False)
         handles: list[Any] = []
@@ -231,9 +232,11 @@ def spread(rows: Sequence[str], histograms: Sequence[Any], x_label: str) -> Any:
             outer = own.hlines(range(len(some)), [marks[i][0] for i in some], [marks[i][4] for i in some], color=COLOURS["grey"], linewidth=0.7)
             inner = own.barh(range(len(some)), [marks[i][3] - marks[i][1] for i in some], 0.6, [marks[i][1] for i in some], color=COLOURS["sky"], linewidth=0)
             middle = own.plot([marks[i][2] for i in some], range(len(some)), "|", color=COLOURS["dark"], markersize=60 * sheet.row * 0.6, markeredgewidth=0.9)[0]
-            handles = [outer, inner, middle]
+            ends = own.plot([marks[i][4] for i in some if beyond[i]], [place for place, i in enumerate(some) if beyond[i]], ">", color=COLOURS["grey"], markersize=2.5, linewidth=0)[0]
+            handles = [outer, inner, middle, ends]
             sheet.draw(own, half, 1.02 * longest, x_label)
-        legend(figure, handles, ["5 to 95 %", "25 to 75 %", "median"])
+        shown = 4 if any(beyond) else 3
+        legend(figure, handles[:shown], ["5 to 95 %", "25 to 75 %", "median", "or more"][:shown])
         return figure
 
 

@@ -7,6 +7,7 @@ import contextlib
 import pathlib
 from typing import Any, Iterator, Sequence
 
+from ..errors import GlintError
 from ..optional import require
 from .text import fitted, width_of
 
@@ -62,8 +63,10 @@ def legend(figure: Any, handles: Sequence[Any], names: Sequence[str]) -> None:
 
 
 def save(figure: Any, path: str | pathlib.Path) -> pathlib.Path:
-    """Writes .pdf, .svg or .png, the same bytes each time; makes the folder. Gives the path."""
+    """Writes .pdf, .svg or .png, the same bytes each time; makes the folder. Gives the path; GlintError for other endings."""
     path = pathlib.Path(path)
+    if path.suffix not in (".pdf", ".svg", ".png"):
+        raise GlintError(f"{path}: figures are .pdf, .svg or .png")
     path.parent.mkdir(parents=True, exist_ok=True)
     dates = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}  # a date would change the bytes
     with require("matplotlib", "glint.plot").rc_context({**_SETTINGS, "svg.hashsalt": "glint"}):
