@@ -25,6 +25,12 @@ double number(const std::string& text, const std::string& name, int row) {
   return value;
 }
 
+double cycles(const std::string& text, const std::string& name, int row) {
+  const double value = number(text, name, row);
+  if (!std::isfinite(value) || value <= 0) throw UserError({name, row}, fmt::format("'{}' are no cycles: they are finite and more than 0", text), "the table is damaged: run `glint model` again");
+  return value;
+}
+
 }  // namespace
 
 ModelScore ModelTable::score(size_t model) const {
@@ -96,13 +102,14 @@ ModelTable parse_models(const std::string& csv, const std::string& name) {
   ModelTable out;
   for (const std::string& column : read.columns)
     if (column.starts_with(kModelPrefix)) out.models.push_back(column.substr(kModelPrefix.size()));
+  if (out.models.empty()) throw UserError({name, 1}, fmt::format("no column '{}NAME'", kModelPrefix), "this is no table of models, or its first line is cut: `glint model -o` writes it");
+  if (read.rows.empty()) throw UserError({name, 1}, "no workload below the names of the columns", "the table is cut: run `glint model` again");
   for (size_t i = 0; i < read.rows.size(); ++i) {
     const auto& cells = read.rows[i];
-    ModelRow row{.workload = cells[0], .cycles = number(cells[1], name, int(i) + 2), .predicted = {}, .inputs = {}};
+    ModelRow row{.workload = cells[0], .cycles = cycles(cells[1], name, int(i) + 2), .predicted = {}, .inputs = {}};
     for (size_t j = 2; j < cells.size(); ++j) {
-      const double value = number(cells[j], name, int(i) + 2);
-      if (read.columns[j].starts_with(kModelPrefix)) row.predicted.push_back(value);
-      else row.inputs.emplace_back(read.columns[j], value);
+      if (read.columns[j].starts_with(kModelPrefix)) row.predicted.push_back(cycles(cells[j], name, int(i) + 2));
+      else row.inputs.emplace_back(read.columns[j], number(cells[j], name, int(i) + 2));
     }
     out.rows.push_back(std::move(row));
   }

@@ -348,6 +348,15 @@ class Compare(ReportTest):
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 
+# Presses all buttons below figures; data-kept of the body gets what they save.
+HAND_OUT = """
+  const kept = {};
+  let last = null;
+  URL.createObjectURL = (blob) => { last = blob; return "#"; };
+  HTMLAnchorElement.prototype.click = function () { last.text().then((text) => { kept[this.download] = text; show(); }); };
+  const show = () => { document.body.dataset.kept = JSON.stringify(kept); };
+  document.querySelectorAll("figcaption button").forEach((button) => button.click());"""
+
 
 class Browser(ReportTest):
     def load(self, *names, script=""):
@@ -517,15 +526,31 @@ class Browser(ReportTest):
         self.assertEqual(len({name for name, _ in rows}), 5)
         self.assertEqual([int(count) for _, count in rows].count(1), 4, rows)
 
+    def test_runs_without_work_in_common_are_held_against_each_other_only_if_they_are_few(self):
+        self.assertEqual(self.glint("run", "CORNELL", "--shader", "pt", *SMALL, "--out", "cornell").returncode, 0)
+        self.runs["cornell"] = "cornell"
+        for name in ("alpha", "beta", "kernel"):
+            shutil.copytree(self.runs["wknd"], self.folder / name)
+            facts = json.loads((self.folder / name / "run.json").read_text())
+            facts["scene"]["name"] = facts["shader"] = name
+            if name == "kernel":
+                facts.update(width=0, height=0, samples=0)
+            self.write(f"{name}/run.json", json.dumps(facts))
+            self.runs[name] = name
+        page, text = self.load("cornell", "wknd", "alpha", "kernel", script=HAND_OUT)
+        self.assertIn("Metrics by the factor by which they changed against CORNELL pt", text)
+        files = json.loads(next(attributes["data-kept"] for tag, attributes, _ in page.found if tag == "body"))
+        rows = {row[0]: row[2:5] for row in csv.reader(files["changes.csv"].splitlines()[1:])}
+        self.assertEqual(rows["proc_tests"], ["0", str(self.total("wknd", "gpu.rt_unit[*].rt.procedural_leaves")), ""])  # no "Infinity"
+        self.assertGreater(float(rows["cycles"][2]), 0)
+        self.assertIn(">kernel</text>", text)
+        self.assertNotIn("kernel ·", text)  # it has no size
+        _, text = self.load("cornell", "wknd", "alpha", "beta", "kernel")
+        self.assertIn('<figure id="ipc"', text)
+        self.assertNotIn("What changed most</h3>", text)
+
     def test_every_figure_hands_out_its_numbers_and_its_drawing(self):
-        keep = """
-          const kept = {}, name = Object.getOwnPropertyDescriptor(HTMLAnchorElement.prototype, "download");
-          let last = null;
-          URL.createObjectURL = (blob) => { last = blob; return "#"; };
-          HTMLAnchorElement.prototype.click = function () { last.text().then((text) => { kept[this.download] = text; show(); }); };
-          const show = () => { document.body.dataset.kept = JSON.stringify(kept); };
-          document.querySelectorAll("figcaption button").forEach((button) => button.click());"""
-        page, _ = self.load("wknd", script=keep)
+        page, _ = self.load("wknd", script=HAND_OUT)
         files = json.loads(next(attributes["data-kept"] for tag, attributes, _ in page.found if tag == "body"))
         figures = [attributes["id"] for tag, attributes, _ in page.found if tag == "figure" and "id" in attributes]
         self.assertGreater(len(figures), 15)

@@ -96,8 +96,8 @@ export function labelRuns(runs) {
   const presets = differ((run) => run.facts.config.name);
   for (const run of runs) {
     const task = [];
-    if (differ((r) => r.size)) task.push(run.size);
-    if (differ((r) => r.facts.samples)) task.push(`${run.facts.samples} spp`);
+    if (run.size && differ((r) => r.size)) task.push(run.size);
+    if (run.facts.samples && differ((r) => r.facts.samples)) task.push(`${run.facts.samples} spp`);
     const changed = keys.slice(0, count).filter((key) => key in run.changes).map((key) => `${key}=${run.config(key)}`);
     run.taskLabel = [run.workload, ...task].join(" · ");
     run.configLabel = [run.facts.config.name, ...changed].join(" ");

@@ -94,3 +94,17 @@ TEST_CASE("A table of models reads back as it was", "[analytical]") {
   CHECK(models_json(read) == models_json(table));
   CHECK_THROWS_WITH(parse_models("workload,ipc\nA,1\n", "x.csv"), Catch::Contains("x.csv:1") && Catch::Contains("no table of models"));
 }
+
+TEST_CASE("A table of models that lost its rows, or has a run without cycles, is refused with the line", "[analytical]") {
+  const auto refused = [](const std::string& rows, const char* line, const char* why) {
+    CHECK_THROWS_WITH(parse_models("workload,cycles,model:a,in\n" + rows, "x.csv"), Catch::Contains(line) && Catch::Contains(why));
+  };
+  refused("", "x.csv:1", "no workload");
+  for (const char* cycles : {"nan", "inf", "-5", "0"}) {
+    refused(std::string("A,100,90,0\nB,") + cycles + ",90,0\n", "x.csv:3", "are no cycles");
+    refused(std::string("A,100,") + cycles + ",0\n", "x.csv:2", "are no cycles");
+  }
+  refused("A,12x,90,0\n", "x.csv:2", "is no number");
+  CHECK_THROWS_WITH(parse_models("workload,cycles,mod\n", "x.csv"), Catch::Contains("x.csv:1") && Catch::Contains("model:"));
+  CHECK(parse_models("workload,cycles,model:a,in\nA,100,90,0\n", "x.csv").rows.size() == 1);
+}

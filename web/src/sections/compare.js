@@ -6,6 +6,7 @@ import { geometricMean } from "../model.js";
 
 const kShown = 25; // rows before the rest is folded away
 const kWide = 2; // pairs: with more, paper has room for the changes only
+const kFewRuns = 4; // that may be held against the first without any work in common
 const kOfTheHost = "sim_rate"; // says nothing of the machine that is simulated
 
 // Speed-up of each configuration over the first, over the workloads that both have.
@@ -27,11 +28,11 @@ export function means(runs) {
   );
 }
 
-// What each run is held against: the first run of its workload; without such runs, the first of all.
+// What each run is held against: the first run of its task; where no two have one, the first of all if they are few.
 function pairsOf(runs) {
   const first = (run) => runs.find((one) => one.taskLabel === run.taskLabel);
   const pairs = runs.map((run) => [first(run), run]).filter(([base, run]) => base !== run);
-  return pairs.length ? pairs : runs.slice(1).map((run) => [runs[0], run]);
+  return pairs.length || runs.length > kFewRuns ? pairs : runs.slice(1).map((run) => [runs[0], run]);
 }
 
 function changeOf(base, run, name) {
@@ -39,10 +40,10 @@ function changeOf(base, run, name) {
   return was === null || is === null ? null : was === is ? 1 : is / was;
 }
 
-// Metrics by the largest change of any pair.
+// Metrics by the largest change of any pair; null where there is nothing to compare.
 export function deltas(runs, docs) {
-  if (runs.length < 2) return null;
   const pairs = pairsOf(runs);
+  if (!pairs.length) return null;
   const bases = [...new Set(pairs.map(([base]) => base))];
   const one = bases.length === 1 ? bases[0] : null;
   const rows = docs
@@ -60,8 +61,8 @@ export function deltas(runs, docs) {
   const head = h("tr", {}, h("th", { scope: "col" }, "Metric"), h("th", { scope: "col", class: "u" }, "Unit"), one ? h("th", { scope: "col", class: "n value" }, one.label) : null, pairs.map(([base, run]) => [h("td", { class: "value" }), h("th", { scope: "col", class: "n" }, run.label, one ? null : h("small", {}, `against ${base.label}`))]).flat());
   const table = h("table", { class: pairs.length === 1 ? "deltas pair" : pairs.length > kWide ? "deltas wide" : "deltas" }, h("thead", {}, head), h("tbody", {}, rows.map(line)));
   const columns = ["metric", "unit", ...pairs.flatMap(([base, run]) => [base.label, run.label, "ratio"])];
-  const save = () => download("changes.csv", "text/csv", csv(columns, rows.map(({ doc, ratios }) => [doc.name, doc.unit, ...pairs.flatMap(([base, run], k) => [base.metric(doc.name), run.metric(doc.name), ratios[k]])])));
+  const save = () => download("changes.csv", "text/csv", csv(columns, rows.map(({ doc, ratios }) => [doc.name, doc.unit, ...pairs.flatMap(([base, run], k) => [base.metric(doc.name), run.metric(doc.name), Number.isFinite(ratios[k]) ? ratios[k] : null])])));
   const unfold = h("button", { type: "button", onclick: () => { table.classList.add("whole"); unfold.remove(); } }, `All ${rows.length} metrics`);
-  const note = one ? `Metrics by their relative change against ${one.label}.` : "Metrics by their relative change, each run against the first of its workload.";
+  const note = `Metrics by the factor by which they changed${one ? ` against ${one.label}` : ", each run against the first of its workload"}; changes from and to 0 come first.`;
   return h("figure", { id: "deltas", class: "wide" }, h("h3", {}, "What changed most"), h("p", { class: "note" }, note), h("div", { class: "scroll" }, table), h("figcaption", {}, rows.length > kShown ? unfold : null, h("button", { type: "button", onclick: save }, "CSV")));
 }
