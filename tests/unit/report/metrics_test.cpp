@@ -68,6 +68,13 @@ TEST_CASE("text that is no formula is refused") {
   }
 }
 
+// A meaning is read without the row before it: in tooltips, in tables of chosen metrics, in Python.
+bool stands_alone(std::string_view text) {
+  for (const char* reference : {"The same:", "The same of", "The same,", "As above", "Of them"})
+    if (text.find(reference) != std::string_view::npos) return false;
+  return true;
+}
+
 TEST_CASE("there are 35 metrics of the GPU, 29 of the RT unit and 23 of the scene, each name once, each with a formula or a reason") {
   std::set<std::string_view> names;
   std::vector<size_t> sizes;
@@ -77,6 +84,7 @@ TEST_CASE("there are 35 metrics of the GPU, 29 of the RT unit and 23 of the scen
       CAPTURE(metric.name);
       CHECK(names.insert(metric.name).second);
       CHECK((!metric.unit.empty() && !metric.doc.empty()));
+      CHECK(stands_alone(metric.doc));
       CHECK((!metric.formula.empty() || !metric.paper.empty()));
       if (!metric.formula.empty()) CHECK_NOTHROW(paths_in(std::string(metric.formula)));
     }
@@ -107,6 +115,7 @@ TEST_CASE("Vulkan-Sim's names are each once, and what has no value is a comment 
   for (const PeerStat& stat : vulkan_sim_stats()) {
     CAPTURE(stat.name);
     CHECK(names.insert(stat.name).second);
+    CHECK(stands_alone(stat.note));
     if (stat.formula.empty()) CHECK(!stat.note.empty());
     else CHECK_NOTHROW(paths_in(std::string(stat.formula)));
   }
