@@ -81,15 +81,24 @@ class Histogram final : public Stat {
  public:
   Histogram(Group* group, std::string_view name, std::string_view unit, Bins bins, std::string_view doc)
       : Stat(group, name, unit, doc), bins_(bins), counts_((bins.high - bins.low) / bins.step) {}
-  void add(uint64_t x) {
-    const uint64_t bin = x < bins_.low ? 0 : (x - bins_.low) / bins_.step;
-    ++counts_[bin < counts_.size() ? bin : counts_.size() - 1];
-  }
+  void add(uint64_t x) { ++counts_[bin_of(x)]; }
+  // Takes back an add() of the same value: what was counted goes on and is counted again at its end.
+  void remove(uint64_t x) { --counts_[bin_of(x)]; }
   const Bins& bins() const { return bins_; }
   const std::vector<uint64_t>& counts() const { return counts_; }
+  uint64_t total() const {
+    uint64_t sum = 0;
+    for (uint64_t n : counts_) sum += n;
+    return sum;
+  }
   void accept(Visitor& visitor) const override;
 
  private:
+  std::size_t bin_of(uint64_t x) const {
+    const uint64_t bin = x < bins_.low ? 0 : (x - bins_.low) / bins_.step;
+    return std::size_t(bin < counts_.size() ? bin : counts_.size() - 1);
+  }
+
   Bins bins_;
   std::vector<uint64_t> counts_;
 };

@@ -65,6 +65,8 @@ std::vector<Balance> of_rays(const core::CoreStats& core, const rt::RtUnit& unit
   ledger.equal("warps in = warps handed over", s.warps.value(), core.rt_warps.value());
   ledger.equal("rays in = rays handed over", s.rays.value() + s.resumed.value(), core.rt_lanes.value());
   ledger.equal("rays in = rays out", s.rays.value() + s.resumed.value(), s.finished.value() + s.suspended.value());
+  ledger.equal("rays by nodes = rays", s.ray_nodes.total(), s.rays.value());
+  ledger.equal("rays by time = rays", s.ray_latency.total(), s.rays.value());
   ledger.equal("warps left = none", unit.num_resident(), 0);
   return std::move(ledger.rows);
 }

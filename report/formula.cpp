@@ -28,6 +28,24 @@ constexpr std::pair<std::string_view, std::string_view> kUnits[] = {{"core.", "g
                                                                     {"l2.", "gpu.memory.partition[*].l2*."},
                                                                     {"dram.", "gpu.memory.partition[*].dram."}};
 
+// Choice: a metric means the same whichever machine counted it, so what a path is called in the functional machine's
+// statistics is looked up where the timing machine's are not there. A beginning that ends in "::" keeps the part.
+constexpr std::pair<std::string_view, std::string_view> kFunctional[] = {{"gpu.core[*].lane_instructions", "gpu.lanes::*"},
+                                                                         {"gpu.core[*].instructions", "gpu.instructions::*"},
+                                                                         {"gpu.core[*].instructions_by_class::", "gpu.instructions::"},
+                                                                         {"gpu.rt_unit[*].rt.rays", "gpu.rays"},
+                                                                         {"gpu.rt_unit[*].rt.nodes", "gpu.nodes"},
+                                                                         {"gpu.rt_unit[*].rt.box_tests", "gpu.box_tests"},
+                                                                         {"gpu.rt_unit[*].rt.triangle_tests", "gpu.triangle_tests"}};
+
+std::vector<double> functional_values(const RunRecord& run, std::string_view path) {
+  for (const auto& [timing, functional] : kFunctional) {
+    if (path == timing) return run.values(std::string(functional));
+    if (timing.ends_with("::") && path.starts_with(timing)) return run.values(std::string(functional) + std::string(path.substr(timing.size())));
+  }
+  return {};
+}
+
 std::string whole_path(const std::string& path) {
   for (const auto& [unit, prefix] : kUnits)
     if (path.rfind(unit, 0) == 0) return std::string(prefix) + path.substr(unit.size());
@@ -110,7 +128,8 @@ class Reader {
     if (!is_fact) paths.push_back(name);
     if (!run_) return std::nullopt;
     if (is_fact) return function == "run" ? run_->fact(name) : run_->config(name);
-    const std::vector<double> values = run_->values(name);
+    std::vector<double> values = run_->values(name);
+    if (values.empty()) values = functional_values(*run_, name);
     if (values.empty()) return std::nullopt;
     if (function == "max") return *std::max_element(values.begin(), values.end());
     const double sum = std::accumulate(values.begin(), values.end(), 0.0);
@@ -125,6 +144,11 @@ class Reader {
 }  // namespace
 
 std::optional<double> evaluate(const std::string& formula, const RunRecord& run) { return Reader(formula, &run).read_all(); }
+
+std::string why_absent(const RunRecord& run) {
+  return run.text("mode") == "functional" ? "counted by the timing machine only, or nothing to divide by"
+                                          : "nothing to divide by, or not counted in this run";
+}
 
 std::vector<std::string> paths_in(const std::string& formula) {
   Reader reader(formula, nullptr);

@@ -57,7 +57,7 @@ std::string metrics_text(const RunRecord& run) {
   std::vector<std::vector<std::string>> rows;
   for (const MetricValue& value : metrics_of(run)) {
     const Metric& metric = *value.metric;
-    const std::string why(metric.formula.empty() ? metric.paper : "nothing to divide by, or not counted in this run");
+    const std::string why = metric.formula.empty() ? std::string(metric.paper) : why_absent(run);
     rows.push_back({std::string(metric.name), value.value ? fmt::format("{:.6g}", *value.value) : "-", std::string(metric.unit),
                     value.value ? std::string(metric.doc) : why});
   }

@@ -116,7 +116,7 @@ std::string vulkan_sim_text(const RunRecord& run) {
   for (const PeerStat& stat : kStats) {
     const std::optional<double> value = stat.formula.empty() ? std::nullopt : evaluate(std::string(stat.formula), run);
     if (value) out += fmt::format("{} = {}\n", stat.name, *value);
-    else missing += fmt::format("# {}: {}\n", stat.name, stat.formula.empty() ? stat.note : "nothing to divide by, or not counted in this run");
+    else missing += fmt::format("# {}: {}\n", stat.name, stat.formula.empty() ? std::string(stat.note) : why_absent(run));
   }
   return out + missing;
 }

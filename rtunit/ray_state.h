@@ -49,6 +49,7 @@ struct RayState {
 
   // Counted by the traversal, for probes and statistics.
   uint32_t nodes_visited = 0, box_tests = 0, triangle_tests = 0, leaves_visited = 0, instances_visited = 0;
+  uint64_t unit_cycles = 0;              // in the RT unit, all stays together: the unit's, set from the first stay on
   uint32_t hits_in_interval = 0;         // triangles met within the ray, nearer than the hit so far or not
 
   RayStack stack;  // entries below stack_size

@@ -34,7 +34,7 @@ struct RtStats : stats::Group {
   stats::Counter rays{this, "rays", "ray", "Rays accepted for the first time."};
   stats::Counter first_hit_rays{this, "first_hit_rays", "ray", "Of them, those that may end at any hit: TerminateOnFirstHit."};
   stats::Counter resumed{this, "resumed_rays", "ray", "Rays accepted again after an intersection or any-hit shader."};
-  stats::Counter finished{this, "finished_rays", "ray", "Rays whose traversal ended in the unit."};
+  stats::Counter finished{this, "finished_rays", "ray", "Rays whose traversal ended in the unit; that of others ends in the shader that they were last given back for."};
   stats::Counter suspended{this, "suspended_rays", "ray", "Times a ray was given back to run a shader before its traversal had ended."};
 
   stats::Counter internal_nodes{this, "internal_nodes", "node", "Internal nodes visited."};
@@ -72,8 +72,8 @@ struct RtStats : stats::Group {
   stats::Ratio efficiency{this, "efficiency", "ray/lane", ray_cycles, lane_slots, "Share of resident lanes with a ray in flight."};
   stats::Counter warp_latency_sum{this, "warp_latency_sum", "cycle", "Sum over warps of the cycles from acceptance to return."};
   stats::Ratio warp_latency{this, "warp_latency", "cycle", warp_latency_sum, warps, "Mean cycles a warp is in the unit."};
-  stats::Histogram ray_latency{this, "ray_latency", "cycle", stats::linear(0, 20000, 500), "From a ray's acceptance to its stop."};
-  stats::Histogram ray_nodes{this, "ray_nodes", "node", stats::linear(0, 512, 8), "Nodes visited by finished rays."};
+  stats::Histogram ray_latency{this, "ray_latency", "cycle", stats::linear(0, 20000, 500), "Cycles of a ray in the unit, from acceptance to stop; of a ray that comes back, all its stays together. Each ray once."};
+  stats::Histogram ray_nodes{this, "ray_nodes", "node", stats::linear(0, 512, 8), "Nodes that a ray visited on its whole walk, wherever that ended. Each ray once."};
 
   uint32_t most_nodes = 0, deepest_stack = 0;
   stats::Value max_ray_nodes{this, "max_ray_nodes", "node", [this] { return double(most_nodes); }, "Most nodes that one ray visited."};

@@ -73,10 +73,13 @@ void RtUnit::admit(Slot& slot, uint32_t slot_index, int lane, Cycle now) {
   GLINT_DCHECK(state.status == RayStatus::Traversing, "lane {} has no ray to traverse", lane);
   if (state.nodes_visited == 0) {
     ++stats_.rays;
+    state.unit_cycles = 0;
     if (params_.shortcuts.fetch_headers) slot.headers |= LaneMask{1} << lane;
     if (state.ray.flags & ray_flag::kTerminateOnFirstHit) ++stats_.first_hit_rays;
   } else {
     ++stats_.resumed;
+    stats_.ray_nodes.remove(state.nodes_visited);  // as it was given back: its walk goes on
+    stats_.ray_latency.remove(state.unit_cycles);
   }
   state.rules.retest = params_.retest;
   state.rules.order = child_order_->for_rays();
@@ -233,17 +236,16 @@ Fetch RtUnit::next_read(Slot& slot, int lane) const {
 }
 
 void RtUnit::stop(Slot& slot, uint32_t slot_index, int lane, Cycle now) {
-  const RayState& state = slot.states[lane];
-  stats_.ray_latency.add(now - slot.arrived);
+  RayState& state = slot.states[lane];
+  // A shader that gets the ray may end its walk, so the ray is counted now; admit() takes that back if it returns.
+  state.unit_cycles += now - slot.arrived;
+  stats_.ray_latency.add(state.unit_cycles);
+  stats_.ray_nodes.add(state.nodes_visited);
+  stats_.most_nodes = std::max(stats_.most_nodes, state.nodes_visited);
+  stats_.deepest_stack = std::max(stats_.deepest_stack, uint32_t(state.stack_peak));
   const bool has_ended = state.status == RayStatus::Done || (state.status == RayStatus::Gathered && state.stack_size == 0);
-  if (has_ended) {
-    ++stats_.finished;
-    stats_.ray_nodes.add(state.nodes_visited);
-    stats_.most_nodes = std::max(stats_.most_nodes, state.nodes_visited);
-    stats_.deepest_stack = std::max(stats_.deepest_stack, uint32_t(state.stack_peak));
-  } else {
-    ++stats_.suspended;
-  }
+  if (has_ended) ++stats_.finished;
+  else ++stats_.suspended;
   --num_rays_;
   slot.stopped |= LaneMask{1} << lane;
   leave(slot_index, now);

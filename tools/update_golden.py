@@ -25,11 +25,11 @@ GENERATED = {
         "The names are LumiBench's groups (35 of the GPU, 29 of the RT unit, 23 of scene and shaders) in words of Vulkan-Sim; the paper does not list its own.\n"
         "A formula is what is computed: `sum(PATH)`, `max(PATH)` go over all statistics of docs/stats.md whose path matches; `core.`, `rt.`, `l1.`, `l2.` and\n"
         "`dram.` stand for those of all instances; `run(NAME)` is a number of `run.json`, `config(KEY)` a key. A cell is empty where Glint has no such\n"
-        "number, and where a run has nothing to divide by (no texture reads, no rays).",
+        "number, where a run has nothing to divide by (no texture reads, no rays), and, in functional runs, where only the timing machine counts.",
         ["list", "metrics", "--markdown"]),
     "docs/stats.md": (
         "Statistics",
-        "Every statistic of the timing machine, as `stats.txt`, `stats.csv` and `stats.json` of a run directory name it;\n"
+        "Every statistic of the timing machine and, last, those of the functional machine, as `stats.txt`, `stats.csv` and `stats.json` of a run directory name it;\n"
         "`[*]` is an instance's number. A breakdown has one value for each of its parts (`path::part`), a histogram one\n"
         "for each bin.",
         ["list", "stats", "--markdown"]),

@@ -4,9 +4,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/image.h"
 #include "isa/program.h"
 #include "pipeline/params.h"
+#include "pipeline/run_stats.h"
 #include "pipeline/timing_machine.h"
 #include "report/table.h"
 
@@ -28,7 +31,13 @@ std::vector<report::StatRow> all_stats() {
   world.raygen = 0;
   pipeline::GpuParams params;
   params.cores = 1;
-  return report::stat_names(pipeline::TimingMachine(params, world, false).root());
+  std::vector<report::StatRow> out = report::stat_names(pipeline::TimingMachine(params, world, false).root());
+  for (report::StatRow& row : report::stat_names(pipeline::RunStats(pipeline::FunctionalCounts{}).root())) {
+    if (std::ranges::any_of(out, [&](const report::StatRow& have) { return have.path == row.path; })) continue;
+    row.doc += " The functional machine's.";
+    out.push_back(std::move(row));
+  }
+  return out;
 }
 
 std::string stat_list() {

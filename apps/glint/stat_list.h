@@ -1,4 +1,4 @@
-// The statistics of the timing machine without a run: what there is, in which unit, and what it means.
+// The statistics of both machines without a run: what there is, in which unit, and what it means.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>

@@ -35,7 +35,7 @@ def metrics() -> dict[str, Metric]:
 
 
 class Metrics(Mapping[str, "float | None"]):
-    """The metrics of one run by name; None where the run has nothing to divide by (no rays, no texture reads)."""
+    """The metrics of one run by name; None where the run has nothing to divide by, or, functional, does not count it."""
 
     def __init__(self, run: Any):
         self._run = run
@@ -86,12 +86,23 @@ def _look_up(function: str, name: str, run: Any) -> float | None:
         return _number(run.info.get(name))
     if function == "config":
         return _number(run.config.get(name))
-    values = run.stats.values(name)
+    values = run.stats.values(name) or _functional_values(name, run)
     if not values:
         return None
     if function == "max":
         return float(max(values))
     return sum(values) / (len(values) if function == "mean" else 1)
+
+
+# What the functional machine's statistics call what the timing machine counts by core and RT unit, as report/formula.cpp has it.
+_FUNCTIONAL = {"core.lane_instructions": "gpu.lanes::*", "core.instructions": "gpu.instructions::*", "rt.rays": "gpu.rays", "rt.nodes": "gpu.nodes",
+               "rt.box_tests": "gpu.box_tests", "rt.triangle_tests": "gpu.triangle_tests"}
+_BY_CLASS = "core.instructions_by_class::"
+
+
+def _functional_values(name: str, run: Any) -> list[float]:
+    path = "gpu.instructions::" + name.removeprefix(_BY_CLASS) if name.startswith(_BY_CLASS) else _FUNCTIONAL.get(name)
+    return run.stats.values(path) if path else []
 
 
 def _number(value: Any) -> float | None:

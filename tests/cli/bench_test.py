@@ -96,6 +96,31 @@ class Bench(BenchTest):
         self.assertEqual(self.glint(0, "stats", "out").stdout, (self.folder / "out/stats.txt").read_text())
         self.glint(2, "stats", "nowhere", "--format", "metrics")
 
+    def test_spreads_of_nodes_and_times_have_each_ray_once(self):
+        self.glint(0, "run", "WKND_PT", *SMALL, "--out", "out")
+        with open(self.folder / "out/stats.csv", newline="") as file:
+            values = {row[0]: float(row[1]) for row in list(csv.reader(file))[1:]}
+        total = lambda end: sum(value for name, value in values.items() if end in name)
+        self.assertGreater(total(".rt.rays"), total(".rt.finished_rays"))
+        self.assertEqual(total(".rt.ray_nodes::"), total(".rt.rays"))
+        self.assertEqual(total(".rt.ray_latency::"), total(".rt.rays"))
+
+    def test_a_functional_run_gives_the_metrics_that_it_counts_and_says_who_counts_the_others(self):
+        rows = {}
+        for mode in ("timing", "functional"):
+            self.glint(0, "bench", "WKND_PT", *SMALL, "--mode", mode, "--out", mode)
+            with open(self.folder / mode / "metrics.csv", newline="") as file:
+                [rows[mode]] = csv.DictReader(file)
+        for name in ("insn", "w_icount", "simt_efficiency", "ins_alu%", "ins_rt%", "rays_total", "avg_nodes_per_ray", "box_tests", "tri_tests", "traversal_ratio"):
+            self.assertTrue(rows["functional"][name], name)
+            self.assertAlmostEqual(float(rows["functional"][name]), float(rows["timing"][name]), msg=name)
+        self.assertEqual((rows["functional"]["cycles"], rows["functional"]["l2_bw"]), ("", ""))
+        run = next(path.parent for path in (self.folder / "functional").glob("*/run.json"))
+        for kind in ("metrics", "vulkan-sim"):
+            text = self.glint(0, "stats", str(run), "--format", kind).stdout
+            self.assertIn("counted by the timing machine only", text)
+        self.assertIn("functional machine's", self.glint(0, "describe", "gpu.nodes_per_ray").stdout)
+
     def test_resume_leaves_out_what_is_complete_and_runs_again_what_another_configuration_left(self):
         def runs(*more):
             return re.findall(r"(?m)^ *\d+/\d+ (\w+)", self.glint(0, "bench", "SHIP_SH", "WKND_SH", *SMALL, "--out", "out", *more).stdout)

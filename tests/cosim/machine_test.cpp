@@ -37,6 +37,22 @@ TEST_CASE("rays that enter the RT units leave them") {
   }
 }
 
+TEST_CASE("each ray is in the spreads of nodes and times once, also those that a shader is the last to have") {
+  const pipeline::RenderJob job = test::small_job("WKND", pipeline::Workload::PathTracing, 8, 1);
+  pipeline::SceneWorld scene(job);
+  pipeline::TimingMachine machine(job.gpu, scene.world, false);
+
+  machine.run({});
+
+  for (uint32_t i = 0; i < machine.num_cores(); ++i) {
+    const rt::RtStats& stats = machine.rt_unit(i).stats();
+    REQUIRE(stats.finished.value() < stats.rays.value());
+    CHECK(stats.ray_nodes.total() == stats.rays.value());
+    CHECK(stats.ray_latency.total() == stats.rays.value());
+    CHECK(stats.most_nodes >= stats.nodes_per_ray.value());
+  }
+}
+
 TEST_CASE("skipping idle time changes no number of the whole machine") {
   const auto workload = GENERATE(pipeline::Workload::PathTracing, pipeline::Workload::AmbientOcclusion);
   const pipeline::RenderJob job = test::small_job("WKND", workload, 8, 1);

@@ -70,7 +70,7 @@ def fetch_mix(runs: Chosen) -> Any:
 
 
 def ray_nodes(runs: Chosen) -> Any:
-    """Nodes visited by a ray: shares of finished rays by bins; of more than eight runs quantiles, a row a run."""
+    """Nodes visited by a ray: shares of rays by bins; of more than eight runs quantiles, a row a run."""
     return _ray_histogram(runs, "rt.ray_nodes", "nodes visited by a ray")
 
 
