@@ -21,6 +21,7 @@ html_static_path = ["static"]
 html_css_files = ["glint.css"]
 html_show_sourcelink = False
 html_copy_source = False
+html_show_search_summary = False  # it would fetch every page found, which a browser refuses from disk
 smartquotes = False  # `--option` in a text stays as it is written
 html_last_updated_fmt = None  # the same input gives the same pages
 autodoc_typehints = "signature"

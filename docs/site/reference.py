@@ -88,7 +88,7 @@ def presets(glint: str, root: pathlib.Path) -> str:
     text = [f"# Presets\n\nThe {len(differ)} of {len(values[names[0]])} keys in which the presets differ; each number's source stands in its file in `configs/`.\n", "| preset | what it is |\n|---|---|"]
     text += [f"| `{line.split()[0]}` | {line.split(maxsplit=1)[1]} |" for line in _run(glint, "list", "configs").splitlines()]
     text.append(f"\n| key | {' | '.join(names)} |\n|---|{'---|' * len(names)}")
-    text += [f"| `{key}` | {' | '.join(values[name].get(key, '') for name in names)} |" for key in differ]
+    text += [f"| `{key}` | {' | '.join(values[name].get(key, '').replace('_', '_<wbr>') for name in names)} |" for key in differ]  # so that all columns fit
     return "\n".join(text) + "\n"
 
 

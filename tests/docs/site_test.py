@@ -66,23 +66,44 @@ class Site(unittest.TestCase):
             loaded = re.findall(r"<(?:script|img|link)[^>]*(?:src|href)=\"(https?:[^\"]*)", text) + re.findall(r"url\(['\"]?((?:https?:)?//?[^)'\"]*)", text)
             self.assertEqual([link for link in loaded if not link.startswith("https://schema")], [], path.name)
 
-    def test_a_browser_opens_pages_from_disk_without_an_error_light_and_dark(self):
+    def opened(self, address, *options):
+        """The page's document after its scripts; the console must have said nothing of errors. Skips where there is no Chromium."""
         chromium = shutil.which("chromium")
         if not chromium:
-            print("SKIPPED: no chromium: pages were not opened")
-            return
+            self.skipTest("no chromium: pages were not opened")
+        with tempfile.TemporaryDirectory() as profile:
+            done = subprocess.run([chromium, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={profile}", "--enable-logging=stderr", *options, "--dump-dom", address],
+                                  capture_output=True, text=True, timeout=120, check=False)
+        self.assertNotRegex(done.stderr, r"CONSOLE.*(Error|error)")
+        return done.stdout
+
+    def probe(self, page, script):
+        """The address of a copy of the page, beside it, with a script at its end."""
+        path = self.html / page
+        copy = path.with_name(f"probe_{path.name}")
+        copy.write_text(path.read_text(encoding="utf-8").replace("</body>", f"<script>{script}</script></body>"), encoding="utf-8")
+        return copy.as_uri()
+
+    def test_a_browser_opens_pages_from_disk_without_an_error_light_and_dark(self):
         backgrounds = set()
+        probe = self.probe("concepts.html", "addEventListener('load',()=>{document.body.dataset.ground=getComputedStyle(document.body).backgroundColor;document.querySelector('.theme-toggle').click();document.body.dataset.toggled=document.body.dataset.theme})")
         for scheme in ("0", "1"):  # Blink's numbers of dark and light
-            probe = self.html / f"probe{scheme}.html"
-            script = "<script>addEventListener('load',()=>{document.body.dataset.ground=getComputedStyle(document.body).backgroundColor;document.querySelector('.theme-toggle').click();document.body.dataset.toggled=document.body.dataset.theme})</script>"
-            probe.write_text((self.html / "concepts.html").read_text(encoding="utf-8").replace("</body>", script + "</body>"), encoding="utf-8")
-            with tempfile.TemporaryDirectory() as profile:
-                done = subprocess.run([chromium, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={profile}", "--enable-logging=stderr",
-                                       f"--blink-settings=preferredColorScheme={scheme}", "--dump-dom", probe.as_uri()], capture_output=True, text=True, timeout=120, check=False)
-            self.assertNotRegex(done.stderr, r"CONSOLE.*(Error|error)")
-            backgrounds.add(re.search(r'data-ground="([^"]+)"', done.stdout)[1])
-            self.assertRegex(done.stdout, r'data-toggled="(light|dark)"')
+            text = self.opened(probe, f"--blink-settings=preferredColorScheme={scheme}")
+            backgrounds.add(re.search(r'data-ground="([^"]+)"', text)[1])
+            self.assertRegex(text, r'data-toggled="(light|dark)"')
         self.assertEqual(len(backgrounds), 2)
+
+    def test_the_search_works_from_disk_without_an_error(self):
+        text = self.opened((self.html / "search.html").as_uri() + "?q=scoreboard", "--virtual-time-budget=10000")
+        self.assertGreater(len(re.findall(r"<li[^>]*><a href=", text.split('id="search-results"')[1])), 1)
+
+    def test_the_table_of_presets_shows_all_its_columns(self):
+        script = "addEventListener('load',()=>{document.body.dataset.wide=JSON.stringify([...document.querySelectorAll('.table-wrapper')].map((one)=>[one.scrollWidth,one.clientWidth]))})"
+        text = self.opened(self.probe("reference/presets.html", script), "--window-size=1300,1000")
+        widths = re.findall(r"\[(\d+),(\d+)\]", re.search(r'data-wide="([^"]+)"', text)[1])
+        self.assertEqual(len(widths), 2)
+        for needed, given in widths:
+            self.assertLessEqual(int(needed), int(given))
 
 
 if __name__ == "__main__":
