@@ -23,6 +23,30 @@ import workplace  # noqa: E402
 
 PAGES = pages.pages(ROOT)
 
+# Options of Vulkan-Sim 2.0.0, MOBILE/gpgpusim.config and SM75_RTX2060/gpgpusim.config, and what stands at its default beside them.
+SHIPPED = """
+    dram_bnk_indexing_policy dram_bnkgrp_indexing_policy dram_data_command_freq_ratio dram_latency dram_seperate_write_queue_enable dram_write_queue_size
+    enable_ptx_file_line_stats gpgpu_TB_launch_latency gpgpu_adaptive_cache_config gpgpu_cache:dl1 gpgpu_cache:dl2 gpgpu_cache:dl2_texture_only gpgpu_cache:il1
+    gpgpu_clock_domains gpgpu_coalesce_arch gpgpu_compute_capability_major gpgpu_compute_capability_minor gpgpu_const_cache:l1 gpgpu_deadlock_detect
+    gpgpu_dram_burst_length gpgpu_dram_buswidth gpgpu_dram_partition_queues gpgpu_dram_return_queue_size gpgpu_dram_scheduler gpgpu_dram_timing_opt
+    gpgpu_dual_issue_diff_exec_units gpgpu_enable_specialized_operand_collector gpgpu_flush_l1_cache gpgpu_flush_l2_cache gpgpu_frfcfs_dram_sched_queue_size
+    gpgpu_gmem_skip_L1D gpgpu_heap_size_limit gpgpu_inst_fetch_throughput gpgpu_kernel_launch_latency gpgpu_l1_banks gpgpu_l1_banks_byte_interleaving
+    gpgpu_l1_latency gpgpu_l2_rop_latency gpgpu_max_insn_issue_per_warp gpgpu_max_simulated_rt_kernels gpgpu_mem_addr_mapping gpgpu_mem_address_mask
+    gpgpu_memlatency_stat gpgpu_memory_partition_indexing gpgpu_n_cluster_ejection_buffer_size gpgpu_n_clusters gpgpu_n_cores_per_cluster
+    gpgpu_n_ldst_response_buffer_size gpgpu_n_mem gpgpu_n_mem_per_ctrlr gpgpu_n_sub_partition_per_mchannel gpgpu_num_dp_units gpgpu_num_int_units gpgpu_num_reg_banks
+    gpgpu_num_rt_core_units gpgpu_num_sched_per_core gpgpu_num_sfu_units gpgpu_num_sp_units gpgpu_num_tensor_core_units gpgpu_occupancy_sm_number
+    gpgpu_operand_collector_num_units_gen gpgpu_perf_sim_memcpy gpgpu_perfect_inst_const_cache gpgpu_perfect_mem gpgpu_pipeline_widths gpgpu_ptx_convert_to_ptxplus
+    gpgpu_ptx_force_max_capability gpgpu_ptx_instruction_classification gpgpu_ptx_save_converted_ptxplus gpgpu_ptx_sim_mode gpgpu_reg_file_port_throughput
+    gpgpu_registers_per_block gpgpu_rt_cache:l1 gpgpu_rt_coalesce_warps gpgpu_rt_coherence_engine gpgpu_rt_coherence_engine_config gpgpu_rt_disable_rt_cache
+    gpgpu_rt_intersection_latency gpgpu_rt_max_mshr gpgpu_rt_max_warps gpgpu_rt_perfect_mem gpgpu_rt_use_l1 gpgpu_runtime_pending_launch_count_limit
+    gpgpu_runtime_stat gpgpu_runtime_sync_depth_limit gpgpu_scheduler gpgpu_shader_core_pipeline gpgpu_shader_cta gpgpu_shader_registers
+    gpgpu_shmem_limited_broadcast gpgpu_shmem_num_banks gpgpu_shmem_per_block gpgpu_shmem_size gpgpu_shmem_sizeDefault gpgpu_shmem_warp_parts gpgpu_simd_model
+    gpgpu_simd_rec_size gpgpu_simd_rec_time_out gpgpu_simd_st_size gpgpu_smem_latency gpgpu_stack_size_limit gpgpu_sub_core_model gpgpu_tensor_core_avail
+    gpgpu_tex_cache:l1 icnt_arbiter_algo icnt_flit_size icnt_grant_cycles icnt_in_buffer_limit icnt_out_buffer_limit icnt_subnets network_mode
+    power_simulation_enabled power_trace_enabled ptx_opcode_initiation_dp ptx_opcode_initiation_fp ptx_opcode_initiation_int ptx_opcode_initiation_sfu
+    ptx_opcode_initiation_tensor ptx_opcode_latency_dp ptx_opcode_latency_fp ptx_opcode_latency_int ptx_opcode_latency_sfu ptx_opcode_latency_tesnor
+    steady_power_levels_enabled visualizer_enabled visualizer_outputfile"""
+
 
 class DocsTest(unittest.TestCase):
     def place(self, page=""):
@@ -114,6 +138,11 @@ class Inline(DocsTest):
             return [f"no command {words[1]}"]
         options = [word.split("=")[0] for word in words[2:] if re.match(r"--[a-z]", word)]
         return [f"no option {option}" for option in options if not re.search(rf"(?<![\w-]){re.escape(option)}(?![\w-])", known)]
+
+    def test_the_migration_page_has_every_option_of_the_shipped_configurations(self):
+        text = (ROOT / "docs/vulkan_sim.md").read_text()
+        named = [re.escape(name).replace(r"\*", r"\w*") for name in re.findall(r"`-([\w:*]+)", text)]
+        self.assertEqual([option for option in SHIPPED.split() if not any(re.fullmatch(name, option) for name in named)], [])
 
     def test_keys_of_the_migration_page_are_keys_of_the_configuration(self):
         text = (ROOT / "docs/vulkan_sim.md").read_text().split("## Options")[1].split("## Numbers")[0]
