@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "apps/glint/bench_tables.h"
 #include "apps/glint/session.h"
 #include "base/diagnostics.h"
 #include "report/analytical/model_table.h"
@@ -31,17 +32,9 @@ void add_characterization(const fs::path& file, const std::string& folder, Repor
   out.characterizations.push_back({folder, report::read_characterization(read_file(file.string()), file.string())});
 }
 
-std::vector<std::string> runs_below(const fs::path& folder) {
-  std::vector<std::string> out;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (fs::exists(entry.path() / "run.json")) out.push_back(entry.path().string());
-  std::ranges::sort(out);
-  return out;
-}
-
 void add_bench(const std::string& name, ReportInputs& out) {
   const fs::path folder(name);
-  const std::vector<std::string> runs = runs_below(folder);
+  const std::vector<std::string> runs = bench_runs(name);
   const auto missing = [&](const char* command) { return SuiteInput{name, {{"source", name}, {"missing", fmt::format("{} {}", command, name)}}}; };
   const bool has_models = fs::exists(folder / "models.csv"), has_characterization = fs::exists(folder / "characterization/characterization.json");
   if (runs.empty() && !has_models && !has_characterization) throw UserError({name, 0, 0}, "it has metrics.csv and no run directory", "'glint bench' leaves both");

@@ -121,6 +121,20 @@ class Bench(BenchTest):
             self.assertIn("counted by the timing machine only", text)
         self.assertIn("functional machine's", self.glint(0, "describe", "gpu.nodes_per_ray").stdout)
 
+    def test_report_and_model_take_the_runs_of_metrics_csv_and_name_the_others(self):
+        for workloads, size in ((("WKND_SH", "SHIP_SH"), "8x8"), (("REF_SH", "REF_AO"), "16x16")):
+            self.glint(0, "bench", *workloads, "--size", size, "--spp", "1", "--out", "b")
+        model = self.glint(0, "model", "b", "--statistics-only")
+        with open(self.folder / "b/models.csv", newline="") as file:
+            self.assertEqual([row["workload"] for row in csv.DictReader(file)], ["REF_AO", "REF_SH"])
+        report = self.glint(0, "report", "b", "-o", "page.html")
+        for done in (model, report):
+            self.assertRegex(done.stderr, "left out.*: SHIP_SH WKND_SH\n")
+        facts = json.loads((self.folder / "b/SHIP_SH/run.json").read_text())
+        (self.folder / "b/SHIP_SH/run.json").write_text(json.dumps(facts | {"exit": 4}))  # one that failed spoils nothing
+        self.glint(0, "report", "b", "-o", "page.html")
+        self.glint(0, "model", "b", "--statistics-only")
+
     def test_resume_leaves_out_what_is_complete_and_runs_again_what_another_configuration_left(self):
         def runs(*more):
             return re.findall(r"(?m)^ *\d+/\d+ (\w+)", self.glint(0, "bench", "SHIP_SH", "WKND_SH", *SMALL, "--out", "out", *more).stdout)
