@@ -16,12 +16,8 @@ namespace {
 
 constexpr std::string_view kOfTheHost = "sim_rate";
 
-// How far apart two values are on a scale of ratios; a value that came from 0 or went there is furthest.
-double distance(const Change& c) {
-  if (c.before == c.after) return 0;
-  if (c.before == 0 || c.after == 0) return std::numeric_limits<double>::infinity();
-  return std::abs(std::log(c.after / c.before));
-}
+// By which changes are sorted; a value that came from 0 is furthest.
+double distance(const Change& c) { return c.relative ? std::abs(*c.relative) : std::numeric_limits<double>::infinity(); }
 
 std::string relative_text(const Change& c) {
   if (!c.relative) return "new";

@@ -47,10 +47,7 @@ def compare(a: Run | str | pathlib.Path, b: Run | str | pathlib.Path, everything
 
 
 def _distance(change: Change) -> float:
-    if change.before == change.after:
-        return 0.0
-    ratio = change.after / change.before if change.before else 0.0
-    return abs(math.log(ratio)) if ratio > 0 else math.inf
+    return math.inf if change.relative is None else abs(change.relative)
 
 
 def speedup(before: list[Run], after: list[Run]) -> float:
