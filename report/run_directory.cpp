@@ -16,6 +16,48 @@
 namespace glint::report {
 namespace fs = std::filesystem;
 
+namespace {
+
+constexpr const char* kResults[] = {"image.png", "image.pfm", "printf.txt", "profile.csv", "profile.folded", "source.json", "series.csv", "heat", "trace.json.gz"};
+
+bool put(const std::string& path, const std::string& bytes) {
+  std::ofstream out(path, std::ios::binary | std::ios::trunc);
+  out.write(bytes.data(), std::streamsize(bytes.size()));
+  out.close();
+  return bool(out);
+}
+
+// What the run of that run.json has saved: names in its folder, whatever the file says.
+std::vector<std::string> saved_before(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  const nlohmann::json json = nlohmann::json::parse(in, nullptr, false);
+  std::vector<std::string> out;
+  if (!json.is_object() || !json.contains("saved") || !json["saved"].is_array()) return out;
+  for (const nlohmann::json& name : json["saved"])
+    if (name.is_string() && name != "." && name != ".." && !name.get<std::string>().empty() && name.get<std::string>().find('/') == std::string::npos) out.push_back(name);
+  return out;
+}
+
+}  // namespace
+
+void write_file(const std::string& path, const std::string& bytes) {
+  constexpr const char* kHint = "is the disk full, or the folder read-only?";
+  std::error_code error;
+  if (fs::exists(path, error) && !fs::is_regular_file(path, error)) {
+    if (!put(path, bytes)) throw UserError({path}, "cannot write the file", kHint);
+    return;
+  }
+  const std::string target = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error).string() : path;
+  // The process id keeps two processes from writing the same temporary file.
+  const std::string temporary = fmt::format("{}.{}.tmp", target, ::getpid());
+  const bool is_whole = put(temporary, bytes);
+  if (is_whole) fs::rename(temporary, target, error);
+  if (is_whole && !error) return;
+  std::error_code ignored;
+  fs::remove(temporary, ignored);
+  throw UserError({path}, "cannot write the file" + (is_whole ? ": " + error.message() : ""), kHint);
+}
+
 RunDirectory::RunDirectory(std::string path) : path_(std::move(path)) {
   std::error_code error;
   fs::create_directories(path_, error);
@@ -35,18 +77,16 @@ void RunDirectory::write(const std::string& name, const std::string& bytes) cons
     fs::create_directories(fs::path(path_of(name)).parent_path(), error);
     if (error) throw UserError({path_of(name)}, "cannot create its folder: " + error.message());
   }
-  // The process id keeps two runs into one folder from writing the same temporary file.
-  const std::string target = path_of(name), temporary = fmt::format("{}.{}.tmp", target, ::getpid());
-  {
-    std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
-    out.write(bytes.data(), std::streamsize(bytes.size()));
-    out.flush();
-    if (!out)
-      throw UserError({target}, "cannot write the file", "is the disk full, or the folder read-only?");
-  }
-  std::error_code error;
-  fs::rename(temporary, target, error);
-  if (error) throw UserError({target}, "cannot write the file: " + error.message());
+  write_file(path_of(name), bytes);
+}
+
+void RunDirectory::remove_results(const std::vector<std::string>& saved) const {
+  std::vector<std::string> names = saved_before(path_of("run.json"));
+  names.insert(names.end(), saved.begin(), saved.end());
+  for (const auto& [name, entry] : Registry<StatWriter>::instance().entries()) names.push_back("stats." + std::string(name));
+  names.insert(names.end(), std::begin(kResults), std::end(kResults));
+  remove("run.json");
+  for (const std::string& name : names) remove(name);
 }
 
 void RunDirectory::write_image(const ImageView& image) const {
@@ -95,6 +135,7 @@ void RunDirectory::write_run(const RunInfo& info) const {
   if (!info.faults.empty()) json["faults"] = nlohmann::ordered_json::array();
   for (const FaultInfo& fault : info.faults)
     json["faults"].push_back({{"kind", fault.kind}, {"place", fault.place}, {"what", fault.what}, {"launch_id", fault.launch_id}, {"count", fault.count}});
+  if (!info.saved.empty()) json["saved"] = info.saved;
   json["exit"] = info.exit;
   if (!info.message.empty()) json["message"] = info.message;
   using ErrorHandler = nlohmann::ordered_json::error_handler_t;

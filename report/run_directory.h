@@ -51,11 +51,16 @@ struct RunInfo {
   double wall_seconds = 0;
   std::string on_fault = "stop";
   std::vector<FaultInfo> faults;
+  std::vector<std::string> saved;  // files that a pipeline or a kernel was asked to keep
   int exit = 0;
   std::string message;  // of the error, when exit is not 0
 };
 
-// Writes through a temporary file and a rename, so that a reader never sees half a file.
+// Writes a file under another name and renames it: a reader never sees half a file, and nothing stays behind when it cannot
+// be written, which is a UserError. What is no regular file (a pipe, a device) is written to as it is.
+void write_file(const std::string& path, const std::string& bytes);
+
+// Files go through write_file(); run.json is written last: a directory with one is complete, or says what went wrong.
 // UserError when the folder or a file cannot be written.
 class RunDirectory {
  public:
@@ -65,6 +70,8 @@ class RunDirectory {
 
   void write(const std::string& name, const std::string& bytes) const;  // "heat/rays.png": in a folder below it
   void remove(const std::string& name) const;  // a file or folder that an earlier run left, if it is there
+  // All that an earlier run left but config.toml, run.json first; and `saved`. Files of other commands stay.
+  void remove_results(const std::vector<std::string>& saved) const;
   void write_image(const ImageView& image) const;    // image.png, image.pfm
   void write_stats(const stats::Group& root) const;  // stats.<format> of every registered format
   void write_config(const std::vector<ParamInfo>& params, const std::string& title) const;  // config.toml

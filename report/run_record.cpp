@@ -50,12 +50,20 @@ void flatten(const nlohmann::json& json, const std::string& name, std::map<std::
 
 }  // namespace
 
+void RunRecord::add_finished(const std::string& directory) {
+  const std::string file = directory + "/run.json";
+  add_facts(whole_file(file), file);
+  if (const double schema = fact("schema").value_or(0); schema != kRunSchema)
+    throw UserError({file}, fmt::format("schema {}, expected {}", schema, kRunSchema), "another version of Glint wrote it: run it again with this one");
+  if (const double exit = fact("exit").value_or(0); exit != 0)
+    throw UserError({file}, fmt::format("the run failed with exit code {}: {}", exit, text("message")), "it left no results: run it again");
+}
+
+void check_finished(const std::string& directory) { RunRecord().add_finished(directory); }
+
 RunRecord RunRecord::read(const std::string& directory) {
   RunRecord record;
-  const std::string facts = directory + "/run.json";
-  record.add_facts(whole_file(facts), facts);
-  if (const double schema = record.fact("schema").value_or(0); schema != kRunSchema)
-    throw UserError({facts}, fmt::format("schema {}, expected {}", schema, kRunSchema), "another version of Glint wrote it: run it again with this one");
+  record.add_finished(directory);
   record.add_stats(whole_file(directory + "/stats.csv"), directory + "/stats.csv");
   record.add_config(whole_file(directory + "/config.toml"));
   return record;

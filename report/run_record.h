@@ -9,6 +9,9 @@
 
 namespace glint::report {
 
+// UserError when run.json of a directory is absent, of another schema, or of a run that failed: with that run's message.
+void check_finished(const std::string& directory);
+
 class RunRecord {
  public:
   // UserError when a file is absent or is not what a run writes.
@@ -18,6 +21,7 @@ class RunRecord {
   void add_stats(const std::string& csv, const std::string& name);
   void add_facts(const std::string& json, const std::string& name);
   void add_config(const std::string& toml);
+  void add_finished(const std::string& directory);  // run.json of a directory; UserError as check_finished()
 
   // Values of all statistics whose path matches (path_matches()); empty when none does.
   std::vector<double> values(const std::string& pattern) const;

@@ -1,6 +1,7 @@
 // `glint annotate RUN [FILE]`: the programs of a profiled run, as GLSL, SPIR-V or ISA, with what each line cost.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/annotate.h"
+#include "report/run_record.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -90,6 +91,7 @@ std::string programs_text(const Options& options, const ProfileTable& profile, c
 
 Exit annotate(const Session& session, const Options& options) {
   const bool is_directory = std::filesystem::is_directory(options.run);
+  if (is_directory) report::check_finished(options.run);
   const ProfileTable profile = read_profile(is_directory ? options.run + "/profile.csv" : options.run);
   const std::string folder = is_directory ? options.run : std::filesystem::path(options.run).parent_path().string();
   const report::SourceMap map = read_source((folder.empty() ? "." : folder) + "/source.json", profile, options.view);

@@ -71,17 +71,16 @@ class Bench {
     }
     std::sort(needs.rbegin(), needs.rend());
     for (size_t i = 0; i < std::min<size_t>(needs.size(), limits_.processes); ++i) together += needs[i];
-    fmt::print("{} workloads{}: {}, {} spp, {} on {}, {} at a time, into {}\n", plan_.tasks.size(),
+    print_output("{} workloads{}: {}, {} spp, {} on {}, {} at a time, into {}\n", plan_.tasks.size(),
                options_.resume ? fmt::format(", {} of them complete", plan_.tasks.size() - chosen_.size()) : "", options_.size, options_.frame.samples, options_.mode,
                options_.config, limits_.processes, plan_.directory);
     if (chosen_.empty()) return;
-    fmt::print("memory, estimated: {} for {}, {} for the largest together; limit {}\n", gigabytes(largest), name, gigabytes(together),
+    print_output("memory, estimated: {} for {}, {} for the largest together; limit {}\n", gigabytes(largest), name, gigabytes(together),
                limits_.memory ? gigabytes(limits_.memory) : "not known");
     if (limits_.memory && largest > limits_.memory)
       fmt::print(stderr, "warning: {} may not fit into {}; it runs alone\n", name, gigabytes(limits_.memory));
     else if (limits_.memory && together > limits_.memory)
-      fmt::print("fewer run together when they would not fit\n");
-    std::fflush(stdout);
+      print_output("fewer run together when they would not fit\n");
   }
 
   bool run_chosen(const report::RunDirectory& directory) {
@@ -141,7 +140,7 @@ class Bench {
     }
     const std::string table = summary_table(rows());
     directory.write("summary.txt", table);
-    fmt::print("\n{}\n{} of {} workloads complete, metrics in {}\n", table, done, plan_.tasks.size(), directory.path_of("metrics.csv"));
+    print_output("\n{}\n{} of {} workloads complete, metrics in {}\n", table, done, plan_.tasks.size(), directory.path_of("metrics.csv"));
     if (failed) fmt::print(stderr, "error: {} failed:{}\n  note: log.txt in the directory of each says why\n", failed, names);
     if (!whole) fmt::print(stderr, "error: interrupted\n  note: the same command with --resume goes on from here\n");
     return failed || !whole ? Exit::Failure : Exit::Ok;

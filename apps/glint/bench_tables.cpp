@@ -54,7 +54,7 @@ std::vector<std::pair<std::string, std::string>> finished_runs(const std::string
   const auto is_run = [](const fs::path& path) { return fs::exists(path / "run.json") && fs::exists(path / "stats.csv"); };
   const auto name_of = [](const fs::path& path) { return (path.has_filename() ? path : path.parent_path()).filename().string(); };
   if (!fs::is_directory(folder)) throw UserError({}, fmt::format("'{}' is no folder", folder), "`glint run --out DIR` and `glint bench --out DIR` make some");
-  if (is_run(folder)) return {{name_of(fs::absolute(folder)), folder}};
+  if (fs::exists(fs::path(folder) / "run.json")) return {{name_of(fs::absolute(folder)), folder}};
   std::vector<std::pair<std::string, std::string>> out;
   for (const std::string& run : bench_runs(folder))
     if (is_run(run)) out.emplace_back(name_of(run), run);

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <fmt/format.h>
 
+#include "apps/glint/resources.h"
 #include "report/formula.h"
 #include "report/metrics.h"
 
@@ -47,31 +48,30 @@ void BenchView::ended(const BenchTask& task, const Process& process, const std::
   const bool is_well = process.state == Process::State::Done;
   if (!is_well) ++failed_;
   const std::string head = fmt::format("{:>2}/{} {:<{}}", ended_, total_, task.workload.name(), kNameWidth);
-  if (is_well) fmt::print("{} {}  {:>11}  {}\n", head, figures, report::seconds(process.seconds), gigabytes(process.peak_bytes));
-  else fmt::print("{} {}\n", head, figures);
-  std::fflush(stdout);
+  if (is_well) print_output("{} {}  {:>11}  {}\n", head, figures, report::seconds(process.seconds), gigabytes(process.peak_bytes));
+  else print_output("{} {}\n", head, figures);
 }
 
 void BenchView::draw(const ProcessPool& pool, const std::vector<std::string>& names) {
   if (!is_live_) return;
   clear();
+  std::string lines;
   for (const size_t index : pool.running()) {
     const Process& process = pool.processes()[index];
-    fmt::print(" {:<{}} {:<9} [{}] {:3.0f} %  {}\n", names[index], kNameWidth, process.phase, report::bar(process.progress, kBarWidth, terminal_),
-               100 * process.progress, report::seconds(process.seconds));
+    lines += fmt::format(" {:<{}} {:<9} [{}] {:3.0f} %  {}\n", names[index], kNameWidth, process.phase, report::bar(process.progress, kBarWidth, terminal_),
+                         100 * process.progress, report::seconds(process.seconds));
     ++drawn_;
   }
   const double left = pool.time_left();
-  fmt::print(" {} of {} ended{}  {}{}\n", ended_, total_, failed_ ? fmt::format(", {} failed", failed_) : "", report::seconds(pool.elapsed()),
+  print_output("{} {} of {} ended{}  {}{}\n", lines, ended_, total_, failed_ ? fmt::format(", {} failed", failed_) : "", report::seconds(pool.elapsed()),
              left < 0 ? "" : "  ETA " + report::seconds(left));
   ++drawn_;
-  std::fflush(stdout);
 }
 
 // Up by the lines drawn, then erase to the end of the screen (ECMA-48: CUU, ED).
 void BenchView::clear() {
   if (drawn_ == 0) return;
-  fmt::print("\x1b[{}A\x1b[J", drawn_);
+  print_output("\x1b[{}A\x1b[J", drawn_);
   drawn_ = 0;
 }
 

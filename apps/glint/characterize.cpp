@@ -38,10 +38,10 @@ void print_speed_ups(const std::string& csv, const std::string& metrics, const s
     return out;
   };
   const report::SpeedUps ours = report::speed_ups(csv, metrics, after, path, names(result.subset.rows));
-  fmt::print("\nSpeed-up from {} to {} (geometric means)\n  all workloads:    {}\n  representatives:  {}; mean {:+.1f} %\n", metrics, path, range_text(ours.all), range_text(ours.subset), 100 * ours.error());
+  print_output("\nSpeed-up from {} to {} (geometric means)\n  all workloads:    {}\n  representatives:  {}; mean {:+.1f} %\n", metrics, path, range_text(ours.all), range_text(ours.subset), 100 * ours.error());
   if (result.reference.rows.empty()) return;
   const report::SpeedUps theirs = report::speed_ups(csv, metrics, after, path, names(result.reference.rows));
-  fmt::print("  {}: {}; mean {:+.1f} %\n", result.options.reference_name, range_text(theirs.subset), 100 * theirs.error());
+  print_output("  {}: {}; mean {:+.1f} %\n", result.options.reference_name, range_text(theirs.subset), 100 * theirs.error());
 }
 
 Exit characterize(const Options& options) {
@@ -58,7 +58,7 @@ Exit characterize(const Options& options) {
   directory.write("characterization.json", report::characterization_json(result, {.name = options.input, .version = GLINT_VERSION}).dump() + "\n");
   write_output("", report::characterization_text(result));
   for (const std::string& other : options.against) print_speed_ups(csv, metrics, other, result);
-  fmt::print("\n{}\n`glint report {}` draws it\n", directory.path_of("characterization.json"), default_place && fs::is_directory(options.input) ? options.input : out);
+  print_output("\n{}\n`glint report {}` draws it\n", directory.path_of("characterization.json"), default_place && fs::is_directory(options.input) ? options.input : out);
   return Exit::Ok;
 }
 

@@ -1,4 +1,4 @@
-// `glint describe NAME`: what a configuration key means, its value in a preset, unit and range; or what a statistic counts.
+// `glint describe NAME`: what a configuration key means, its value in a preset, unit and range; or what a statistic or a metric counts.
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -9,6 +9,7 @@
 #include "apps/glint/stat_list.h"
 #include "base/params.h"
 #include "memsys/peak.h"
+#include "report/metrics.h"
 
 namespace glint::app {
 namespace {
@@ -20,17 +21,17 @@ struct Options {
 };
 
 void print(const ParamInfo& info) {
-  fmt::print("{} = {}\n", info.key, info.value);
-  fmt::print("  {}\n", info.doc);
-  if (!info.unit.empty()) fmt::print("  unit   {}\n", info.unit);
-  if (!info.range.empty()) fmt::print("  range  {}\n", info.range);
-  if (!info.needs.empty()) fmt::print("  needs  {}\n", info.needs);
+  print_output("{} = {}\n", info.key, info.value);
+  print_output("  {}\n", info.doc);
+  if (!info.unit.empty()) print_output("  unit   {}\n", info.unit);
+  if (!info.range.empty()) print_output("  range  {}\n", info.range);
+  if (!info.needs.empty()) print_output("  needs  {}\n", info.needs);
 }
 
 void print_markdown(const std::vector<ParamInfo>& infos) {
-  fmt::print("| key | value | unit | range | meaning |\n|---|---|---|---|---|\n");
+  print_output("| key | value | unit | range | meaning |\n|---|---|---|---|---|\n");
   for (const ParamInfo& info : infos)
-    fmt::print("| `{}` | {} | {} | {} | {}{} |\n", info.key, info.value, info.unit, info.range, info.doc,
+    print_output("| `{}` | {} | {} | {} | {}{} |\n", info.key, info.value, info.unit, info.range, info.doc,
                info.needs.empty() ? "" : fmt::format(" Needs `{}`.", info.needs));
 }
 
@@ -51,10 +52,24 @@ bool print_stats(const std::string& wanted, std::vector<std::string>& names) {
   for (const report::StatRow& row : all_stats()) {
     names.push_back(row.path);
     if (row.path != path && row.path.rfind(path + ".", 0) != 0) continue;
-    fmt::print("{}\n  {}\n  unit   {}\n", row.path, row.doc, row.unit);
+    print_output("{}\n  {}\n  unit   {}\n", row.path, row.doc, row.unit);
     any = true;
   }
   return any;
+}
+
+// A metric of metrics.csv of that name; false when there is none. `names` gets all names.
+bool print_metric(const std::string& wanted, std::vector<std::string>& names) {
+  for (const report::MetricGroup& group : report::metric_groups())
+    for (const report::Metric& metric : group.metrics) {
+      names.emplace_back(metric.name);
+      if (metric.name != wanted) continue;
+      print_output("{} (a metric: `glint stats RUN --format metrics`, metrics.csv)\n  {}\n  unit     {}\n  formula  {}\n", metric.name, metric.doc, metric.unit,
+                   metric.formula.empty() ? "none: Glint cannot give it" : metric.formula);
+      if (!metric.paper.empty()) print_output("  paper    {}\n", metric.paper);
+      return true;
+    }
+  return false;
 }
 
 Exit describe(const Session& session, const Options& options) {
@@ -67,11 +82,11 @@ Exit describe(const Session& session, const Options& options) {
     if (options.key.empty() || info.key == options.key || inside) found.push_back(info);
   }
   if (found.empty()) {
-    if (print_stats(options.key, names)) return Exit::Ok;
+    if (print_stats(options.key, names) || print_metric(options.key, names)) return Exit::Ok;
     const std::string guess = nearest(options.key, names);
     throw UserError(
-        {}, fmt::format("no configuration key or statistic '{}'", options.key),
-        guess.empty() ? "'glint describe' lists all keys, 'glint list stats' all statistics" : fmt::format("did you mean '{}'?", guess));
+        {}, fmt::format("no configuration key, statistic or metric '{}'", options.key),
+        guess.empty() ? "'glint describe' lists all keys, 'glint list stats' all statistics, 'glint list metrics' all metrics" : fmt::format("did you mean '{}'?", guess));
   }
   if (options.markdown)
     print_markdown(found);
@@ -79,7 +94,7 @@ Exit describe(const Session& session, const Options& options) {
     for (const ParamInfo& info : found) print(info);
   const bool has_memory = options.key.empty() || options.key == "memory";
   if (has_memory && !options.markdown)
-    fmt::print("at best: {}\n", mem::peak(params.memory, params.cores, params.clock_mhz).to_string());
+    print_output("at best: {}\n", mem::peak(params.memory, params.cores, params.clock_mhz).to_string());
   return Exit::Ok;
 }
 
@@ -87,9 +102,9 @@ Exit describe(const Session& session, const Options& options) {
 
 void add_describe(CLI::App& app, Session& session) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("describe", "Explain configuration keys and statistics");
+  CLI::App* command = app.add_subcommand("describe", "Explain configuration keys, statistics and metrics");
   command->add_option("NAME", options->key,
-                      "A key or the beginning of keys: core.warps, core, rt; or a statistic: gpu.core[0].ipc (default: all keys)");
+                      "A key or the beginning of keys: core.warps, core, rt; or a statistic: gpu.core[0].ipc; or a metric: simt_efficiency (default: all keys)");
   command->add_option("--config", options->config, "Preset or TOML file whose values are shown")
       ->capture_default_str();
   command->add_option("--set", options->settings, "Overrides, as for run")->type_name("KEY=VALUE");

@@ -13,6 +13,7 @@
 #include "report/flip.h"
 #include "report/image_compare.h"
 #include "report/image_files.h"
+#include "report/run_record.h"
 
 namespace glint::app {
 namespace {
@@ -25,7 +26,9 @@ struct Options {
 // A run directory stands for its picture with all digits.
 std::string picture_of(const std::string& path) {
   std::error_code error;
-  return std::filesystem::is_directory(path, error) ? path + "/image.pfm" : path;
+  if (!std::filesystem::is_directory(path, error)) return path;
+  if (std::filesystem::exists(path + "/run.json", error) || !std::filesystem::exists(path + "/image.pfm", error)) report::check_finished(path);
+  return path + "/image.pfm";
 }
 
 std::string png_of(const report::Picture& picture) {

@@ -31,11 +31,24 @@ std::vector<isa::PresetTimes> all_presets(const Resources& resources) {
   return out;
 }
 
+// Of presets that load; why another does not is told on stderr.
+std::vector<isa::PresetTimes> sound_presets(const Resources& resources) {
+  std::vector<isa::PresetTimes> out;
+  for (const std::string& name : resources.config_names()) {
+    try {
+      out.push_back(times_of(resources, name));
+    } catch (const Error& error) {
+      fmt::print(stderr, "warning: preset '{}' is left out: {}\n", name, error.what());
+    }
+  }
+  return out;
+}
+
 std::string text_of(const Resources& resources, const Options& options) {
   if (!options.table.empty()) return isa::instruction_table(times_of(resources, options.table));
   if (!options.page.empty()) return isa::reference_page(options.page, all_presets(resources));
   if (options.index) return isa::reference_index(all_presets(resources));
-  if (!options.op.empty()) return isa::describe_op(options.op, all_presets(resources));
+  if (!options.op.empty()) return isa::describe_op(options.op, sound_presets(resources));
   if (!options.pages) return isa::list_ops();
   std::string names;
   for (const isa::Family& family : isa::families()) names += isa::page_name(family.name) + "\n";

@@ -3,9 +3,12 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <new>
+#include <sstream>
 #include <string>
+#include <system_error>
 #include <unistd.h>
 
 #include "apps/glint/session.h"
@@ -37,8 +40,20 @@ void look_at_terminal(Session& session) {
       session.on_terminal && !(no_colour && *no_colour) && kind && std::string(kind) != "dumb";
 }
 
+// A descriptor that is closed would be given to the next file that is opened, and what is printed would go there: writes to
+// stdout fail instead, and those to stderr go nowhere.
+void keep_descriptors() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(descriptor, F_GETFD) == -1) ::open("/dev/null", descriptor == STDERR_FILENO ? O_WRONLY : O_RDONLY);
+}
+
 int report_parse_error(const CLI::App& app, const CLI::ParseError& error, const Session& session) {
-  if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+  if (error.get_exit_code() == 0) {  // --help, --version
+    std::ostringstream out;
+    app.exit(error, out, out);
+    write_output("", out.str());
+    return int(Exit::Ok);
+  }
   fmt::print(stderr, "error: {}\n", error.what());
   const std::string hint = suggestion(app, session.arguments);
   fmt::print(stderr, "  note: {}\n",
@@ -48,12 +63,7 @@ int report_parse_error(const CLI::App& app, const CLI::ParseError& error, const 
 
 int run_action(const Session& session) {
   try {
-    const Exit exit = session.action();
-    if (std::fflush(stdout) != 0) {
-      fmt::print(stderr, "error: cannot write to standard output\n");
-      return int(Exit::Failure);
-    }
-    return int(exit);
+    return int(session.action());
   } catch (const Error& error) {
     fmt::print(stderr, "{}{}\n",
                std::string(error.what()).find("error: ") == std::string::npos ? "error: " : "", error.what());
@@ -97,9 +107,23 @@ int main_of(int argc, char** argv) {
   return run_action(session);
 }
 
+// What the machine refuses anywhere: stderr that takes no more, a thread that cannot be started, a folder that cannot be read.
+int guarded_main(int argc, char** argv) {
+  try {
+    keep_descriptors();
+    return main_of(argc, argv);
+  } catch (const OutputError& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return int(error.exit());
+  } catch (const std::system_error& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return int(Exit::Failure);
+  }
+}
+
 }  // namespace
 }  // namespace glint::app
 
 int main(int argc, char** argv) {
-  return glint::app::main_of(argc, argv);
+  return glint::app::guarded_main(argc, argv);
 }

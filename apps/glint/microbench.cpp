@@ -113,7 +113,7 @@ void print_sums(const std::map<std::string, Sums>& sums) {
     rows.push_back({group, std::to_string(sum.compared), std::to_string(sum.within5), std::to_string(sum.within10),
                     fmt::format("{:.1f} %", 100 * sum.error / sum.compared)});
   if (sums.empty()) return;
-  fmt::print("\n{}", report::table(rows, "<>>>>"));
+  print_output("\n{}", report::table(rows, "<>>>>"));
 }
 
 Exit microbench(const Session& session, const Options& options) {
@@ -133,7 +133,7 @@ Exit microbench(const Session& session, const Options& options) {
     }
   if (session.on_terminal) fmt::print(stderr, "\r\033[K");
   if (rows.size() == 1) throw UserError({}, "no benchmark has that in its group, name or parameter");
-  fmt::print("{}", report::table(rows, "<<<><>>"));
+  print_output("{}", report::table(rows, "<<<><>>"));
   print_sums(sums);
   for (const auto& [reason, names] : skipped)
     fmt::print(stderr, "\n{} benchmarks (-) were not run, the first of them '{}':\n{}\n", names.size(), names.front(), reason);

@@ -127,7 +127,7 @@ Exit model(const Session& session, const Options& options) {
   write_output(out, report::model_csv(models));
   if (out == "-") return Exit::Ok;
   write_output("", report::model_text(models) + (options.inputs ? inputs_text(models) : ""));
-  fmt::print("\n{}\n`glint report {}` draws it\n", out, options.out.empty() && options.runs.size() == 1 ? options.runs[0] : out);
+  print_output("\n{}\n`glint report {}` draws it\n", out, options.out.empty() && options.runs.size() == 1 ? options.runs[0] : out);
   return Exit::Ok;
 }
 

@@ -104,7 +104,6 @@ void check_observation(const pipeline::Observation& observe, bool timing) {
 std::vector<std::string> write_observation(const pipeline::Observation& observe, const pipeline::RenderResult& result,
                                            const report::RunDirectory& directory) {
   std::vector<std::string> lines;
-  for (const char* name : {"profile.csv", "profile.folded", "source.json", "series.csv", "heat", "trace.json.gz"}) directory.remove(name);
   if (observe.profile) {
     directory.write("profile.csv", report::profile_csv(result.profile));
     directory.write("profile.folded", report::profile_folded(result.profile, text_of));

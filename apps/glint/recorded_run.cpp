@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <new>
 
 #include "apps/glint/config.h"
 #include "apps/glint/progress_pipe.h"
@@ -34,33 +35,62 @@ report::RunInfo new_run_info(const Session& session, const pipeline::GpuParams& 
   return info;
 }
 
+namespace {
+
+// What of the result stands in run.json.
+void add_result(const pipeline::RenderResult& result, report::RunInfo& info) {
+  for (const core::FaultLog::Entry& fault : result.faults.in_order())
+    info.faults.push_back({std::string(core::name_of(fault.kind)), fault.first.place, fault.first.what, fault.first.launch_id, fault.count});
+  if (result.residency.warps > 0) info.residency = {result.residency.warps, result.residency.blocks, std::string(name_of(result.residency.limit))};
+}
+
+void keep_prints(const std::string& printed, const report::RunDirectory& directory) {
+  if (printed.empty()) return;
+  fmt::print(stderr, "{}", printed);
+  directory.write("printf.txt", printed);
+}
+
+}  // namespace
+
+void begin_directory(const report::RunDirectory& directory, const report::RunInfo& info, const pipeline::GpuParams& gpu, const std::string& title) {
+  directory.remove_results(info.saved);
+  directory.write_config(describe_params(gpu), "Resolved configuration of: " + title);
+}
+
 pipeline::RenderResult run_recorded(const Session& session, const std::string& what, const report::RunDirectory& directory,
-                                    report::RunInfo& info, const std::function<pipeline::RenderResult(const ShowProgress&)>& run, core::PrintLog* prints) {
+                                    report::RunInfo& info, const std::function<pipeline::RenderResult(const ShowProgress&)>& run,
+                                    const std::function<void(const pipeline::RenderResult&)>& keep, core::PrintLog* prints) {
   report::Progress progress(session.on_terminal ? stdout : nullptr, what, session.terminal);
   ProgressPipe pipe(session.progress_descriptor, what);
   const auto start = std::chrono::steady_clock::now();
-  const auto finish = [&](Exit exit, const std::string& message) {
-    info.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const auto stop_watch = [&] { info.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  const auto fail = [&](Exit exit, const std::string& message) {
+    if (info.wall_seconds == 0) stop_watch();
     info.exit = int(exit);
     info.message = message;
-    if (const std::string printed = prints ? prints->take() : ""; !printed.empty()) {
-      fmt::print(stderr, "{}", printed);
-      directory.write("printf.txt", printed);
+    try {  // of two errors the first is told; a full disk has room again once the results are gone
+      directory.remove_results(info.saved);
+      keep_prints(prints ? prints->take() : "", directory);
+      directory.write_run(info);
+    } catch (const Error&) {
     }
-    directory.write_run(info);
   };
   try {
     pipeline::RenderResult result = run([&](uint64_t done, uint64_t total) {
       progress.update(done, total);
       pipe.update(done, total);
     });
-    for (const core::FaultLog::Entry& fault : result.faults.in_order())
-      info.faults.push_back({std::string(core::name_of(fault.kind)), fault.first.place, fault.first.what, fault.first.launch_id, fault.count});
-    if (result.residency.warps > 0) info.residency = {result.residency.warps, result.residency.blocks, std::string(name_of(result.residency.limit))};
-    finish(Exit::Ok, "");
+    stop_watch();
+    add_result(result, info);
+    keep_prints(prints ? prints->take() : "", directory);
+    keep(result);
+    directory.write_run(info);
     return result;
   } catch (const Error& error) {
-    finish(error.exit(), error.what());
+    fail(error.exit(), error.what());
+    throw;
+  } catch (const std::bad_alloc&) {
+    fail(Exit::Failure, "out of memory");
     throw;
   }
 }

@@ -58,7 +58,7 @@ Exit write_report(const Session& session, const std::vector<std::string>& named,
   const std::string page = report::page(data, {.frame = web("report.html"), .style = web("report.css"), .script = web("report.js"), .unpack = web("unpack.js")});
   const std::string path = !out.empty() ? out : named.size() == 1 && std::filesystem::is_directory(named[0]) ? named[0] + "/report.html" : "report.html";
   write_output(path, page);
-  if (path != "-") fmt::print("{}\n", path);
+  if (path != "-") print_output("{}\n", path);
   return Exit::Ok;
 }
 

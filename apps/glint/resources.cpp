@@ -10,6 +10,7 @@
 #include <iterator>
 
 #include "base/diagnostics.h"
+#include "report/run_directory.h"
 
 namespace glint::app {
 namespace fs = std::filesystem;
@@ -64,14 +65,9 @@ std::string read_file(const std::string& path) {
 }
 
 void write_output(const std::string& path, const std::string& bytes) {
-  if (path.empty() || path == "-") {
-    std::fwrite(bytes.data(), 1, bytes.size(), stdout);
-    return;
-  }
-  std::ofstream out(path, std::ios::binary);
-  out.write(bytes.data(), std::streamsize(bytes.size()));
-  out.flush();
-  if (!out) throw UserError({path}, "cannot write the file");
+  if (!path.empty() && path != "-") return report::write_file(path, bytes);
+  const bool is_written = std::fwrite(bytes.data(), 1, bytes.size(), stdout) == bytes.size();
+  if (std::fflush(stdout) != 0 || !is_written) throw OutputError();
 }
 
 }  // namespace glint::app

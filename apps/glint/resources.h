@@ -1,8 +1,13 @@
 // Where presets and shaders lie: beside an installed executable, or in the source tree of a built one.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <fmt/format.h>
+
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "base/diagnostics.h"
 
 namespace glint::app {
 
@@ -27,7 +32,20 @@ class Resources {
 
 // Whole file as bytes. UserError when it cannot be read.
 std::string read_file(const std::string& path);
-// Writes to `path`, or to stdout when it is empty or "-". UserError when it cannot be written.
+// Standard output that takes no more: a full disk, a closed descriptor.
+class OutputError : public Error {
+ public:
+  OutputError() : Error(Exit::Failure, "cannot write to standard output") {}
+};
+
+// Writes to `path` (report::write_file()), or to stdout when it is empty or "-": the one way to it, so that no loss goes
+// unnoticed. UserError when the file cannot be written, OutputError when stdout cannot.
 void write_output(const std::string& path, const std::string& bytes);
+
+// To stdout, as fmt::print().
+template <class... Args>
+void print_output(fmt::format_string<Args...> text, Args&&... args) {
+  write_output("", fmt::format(text, std::forward<Args>(args)...));
+}
 
 }  // namespace glint::app

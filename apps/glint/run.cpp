@@ -130,19 +130,20 @@ Exit run(const Session& session, const Options& options) {
                           : options.out);
   report::RunInfo info = describe_run(session, options, job);
   info.on_fault = core::name_of(options.on_fault);
-  directory.write_config(describe_params(job.gpu), "Resolved configuration of: " + title_of(job, options));
+  begin_directory(directory, info, job.gpu, title_of(job, options));
+  std::vector<std::string> files = {"picture    " + directory.path_of("image.png"), "statistics " + directory.path_of("stats.txt")};
   const pipeline::RenderResult result = run_recorded(session, "rendering", directory, info, [&](const ShowProgress& progress) {
     job.progress = progress;
     pipeline::RenderResult rendered = pipeline::render(job);
     const pipeline::StructureCounts& made = rendered.structures;
     info.structures = {made.bytes, made.triangles, made.procedurals, made.bottom_levels, made.instances, made.top_depth, made.bottom_depth};
     return rendered;
+  }, [&](const pipeline::RenderResult& rendered) {
+    directory.write_image({rendered.width, rendered.height, rendered.rgba});
+    directory.write_stats(rendered.statistics());
+    for (std::string& line : write_observation(job.observe, rendered, directory)) files.push_back(std::move(line));
   }, &prints);
   for (const std::string& warning : result.warnings) fmt::print(stderr, "{}\n", warning);
-  directory.write_image({result.width, result.height, result.rgba});
-  directory.write_stats(result.statistics());
-  std::vector<std::string> files = write_observation(job.observe, result, directory);
-  files.insert(files.begin(), {"picture    " + directory.path_of("image.png"), "statistics " + directory.path_of("stats.txt")});
   print_result(session, options.json, job, result, title_of(job, options), std::move(files));
   return Exit::Ok;
 }
@@ -192,6 +193,8 @@ void add_run(CLI::App& app, Session& session) {
   command->add_option("--size", options->size, "Image size in pixels")->type_name("WxH")->capture_default_str();
   add_frame_options(*command, options->frame);
   command->add_option("--progress-fd", session.progress_descriptor, "Descriptor to write the progress to")->group("");  // for `bench`
+  for (CLI::Option* option : command->get_options())  // a script's own options are overridden by those that it is given
+    if (!option->get_positional() && option->get_items_expected_max() == 1) option->take_last();
   command->callback(
       [&session, options, command] {
         options->config_given = command->count("--config") > 0;

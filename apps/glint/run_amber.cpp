@@ -33,9 +33,9 @@ Exit run_amber(const Session& session, const AmberOptions& options) {
     for (const std::string& faults : outcome.faults) fmt::print(stderr, "{}\n", faults);
     if (outcome.verdict != amber::Verdict::Passed) fmt::print(stderr, "{}\n", outcome.message);
     if (options.scripts.size() == 1) exit = outcome.exit;
-    if (options.timing && outcome.verdict == amber::Verdict::Passed) fmt::print("{}: {} cycles\n", path, outcome.cycles);
+    if (options.timing && outcome.verdict == amber::Verdict::Passed) print_output("{}: {} cycles\n", path, outcome.cycles);
   }
-  fmt::print("{} passed, {} failed, {} unsupported\n", counts[0], counts[1], counts[2]);
+  print_output("{} passed, {} failed, {} unsupported\n", counts[0], counts[1], counts[2]);
   if (options.scripts.size() > 1) exit = counts[1] ? Exit::Failure : counts[2] ? Exit::Unsupported : Exit::Ok;
   return exit;
 }

@@ -90,6 +90,10 @@ report::RunInfo describe_run(const Session& session, const pipeline::PipelineWor
     if (allocation.data) everything.append(reinterpret_cast<const char*>(allocation.data), size_t(allocation.bytes));
   info.scene_hash = report::fnv1a(everything);
   for (const pipeline::ShaderModule& module : world.modules().all()) info.shader += (info.shader.empty() ? "" : " ") + module.name;
+  for (const auto& image : world.description().images)
+    for (const pipeline::Save& save : image.saves) info.saved.push_back(save.file);
+  for (const auto& buffer : world.description().buffers)
+    for (const pipeline::Save& save : buffer.saves) info.saved.push_back(save.file);
   info.width = world.world.launch_size[0];
   info.height = world.world.launch_size[1];
   return info;
@@ -131,14 +135,16 @@ Exit run_pipeline(const Session& session, const PipelineOptions& options) {
   const report::RunDirectory directory(options.out.empty() ? fmt::format("out/{}-{}", description.name, mode) : options.out);
   report::RunInfo info = describe_run(session, world, job.gpu, config, mode);
   info.on_fault = core::name_of(options.on_fault);
-  directory.write_config(describe_params(job.gpu), "Resolved configuration of: " + title);
+  begin_directory(directory, info, job.gpu, title);
+  std::vector<std::string> files;
   const pipeline::RenderResult result = run_recorded(session, "running", directory, info, [&](const ShowProgress& progress) {
     return pipeline::run_pipeline(world, job.gpu, job.timing, job.no_skip, options.threads, progress, options.observe);
+  }, [&](const pipeline::RenderResult& ended) {
+    directory.write_stats(ended.statistics());
+    files = keep(world, directory);
+    files.push_back("statistics " + directory.path_of("stats.txt"));
+    for (std::string& line : write_observation(options.observe, ended, directory)) files.push_back(std::move(line));
   }, &prints);
-  directory.write_stats(result.statistics());
-  std::vector<std::string> files = keep(world, directory);
-  files.push_back("statistics " + directory.path_of("stats.txt"));
-  for (std::string& line : write_observation(options.observe, result, directory)) files.push_back(std::move(line));
   print_result(session, options.json, job, result, title, std::move(files));
   return Exit::Ok;
 }

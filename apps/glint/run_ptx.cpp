@@ -116,14 +116,18 @@ Exit run_ptx(const Session& session, const KernelOptions& options) {
   const report::RunDirectory directory(options.out.empty() ? fmt::format("out/{}-{}", name, options.mode) : options.out);
   report::RunInfo info = describe_run(session, options, job.gpu, name, text);
   info.on_fault = core::name_of(options.on_fault);
-  directory.write_config(describe_params(job.gpu), "Resolved configuration of: " + title);
+  for (const LaunchArgument& argument : launch.arguments)
+    if (argument.is_buffer && argument.save) info.saved.push_back(argument.name + ".bin");
+  begin_directory(directory, info, job.gpu, title);
+  std::vector<std::string> files;
   const pipeline::RenderResult result = run_recorded(session, "running", directory, info, [&](const ShowProgress& progress) {
     return pipeline::run_world(launched.world.world, job.gpu, options.mode == "timing", options.no_skip, options.threads, progress, options.observe);
+  }, [&](const pipeline::RenderResult& ended) {
+    directory.write_stats(ended.statistics());
+    files = keep_buffers(launched, launch, directory);
+    files.push_back("statistics " + directory.path_of("stats.txt"));
+    for (std::string& line : write_observation(options.observe, ended, directory)) files.push_back(std::move(line));
   });
-  directory.write_stats(result.statistics());
-  std::vector<std::string> files = keep_buffers(launched, launch, directory);
-  files.push_back("statistics " + directory.path_of("stats.txt"));
-  for (std::string& line : write_observation(options.observe, result, directory)) files.push_back(std::move(line));
   print_result(session, options.json, job, result, title, std::move(files));
   return Exit::Ok;
 }

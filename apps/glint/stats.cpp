@@ -18,6 +18,7 @@ Exit stats(const std::string& run, const std::string& format) {
   } else if (format == "vulkan-sim") {
     write_output("", report::vulkan_sim_text(report::RunRecord::read(run)));
   } else {
+    report::check_finished(run);
     const std::string path = run + "/stats." + format;
     if (!std::filesystem::exists(path)) throw UserError({path}, "there is no such file", "is this the directory of a finished run?");
     write_output("", read_file(path));

@@ -1,0 +1,140 @@
+# What is left when a run or a write fails: nothing old, nothing half, and never exit code 0. Runs the real binary.
+# SPDX-License-Identifier: Apache-2.0
+"""usage: outputs_test.py GLINT SOURCE_DIR"""
+import json
+import os
+import resource
+import shutil
+import subprocess
+
+import glint_case
+from glint_case import GLINT, ROOT, GlintTest
+
+RUN = ["run", "WKND", "--size", "8x8", "--spp", "1"]
+KERNEL = {
+    "k.ptx": ".version 7.0\n.target sm_70\n.address_size 64\n.visible .entry k(.param .u64 p)\n{\n.reg .u64 %rd<2>;\n"
+             "ld.param.u64 %rd1, [p];\nst.global.u32 [%rd1+OFFSET], 7;\nret;\n}\n",
+    "k.toml": 'kernel = "k.ptx"\ngrid = [1]\nblock = [1]\n[[argument]]\nbuffer = "kept"\ntype = "u32"\ncount = 4\nsave = true\n'}
+
+
+class Outputs(GlintTest):
+    def ok(self, *arguments):
+        done = self.glint(*arguments)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return done
+
+    def left(self, folder):
+        return sorted(path.name for path in (self.folder / folder).iterdir())
+
+    def limited(self, most, *arguments):
+        """Runs glint where no file can grow beyond `most` bytes, as on a full disk (Python ignores SIGXFSZ, and the child with it)."""
+        return subprocess.run([GLINT, *arguments], capture_output=True, text=True, cwd=self.folder, timeout=300, restore_signals=False,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most)))
+
+    def test_a_run_that_fails_leaves_nothing_of_an_earlier_one_and_every_reader_refuses_it(self):
+        self.ok(*RUN, "--profile", "--heat", "--sample", "1000", "--trace", "--out", "run")
+        shutil.copytree(self.folder / "run", self.folder / "base")
+        self.expect(4, ["no end in sight"], *RUN, "--max-instructions", "50", "--out", "run")
+        self.assertEqual(self.left("run"), ["config.toml", "run.json"])
+        readers = [["compare", "base", "run", "--fail-on", "cycles>1%"], ["imgdiff", "base", "run"], ["annotate", "run"], ["model", "run"], ["report", "run"],
+                   *(["stats", "run", "--format", form] for form in ("txt", "csv", "json", "metrics", "vulkan-sim"))]
+        shutil.copytree(self.folder / "base", self.folder / "run", dirs_exist_ok=True, ignore=lambda *_: ["run.json"])  # as older versions left it
+        for reader in readers:
+            with self.subTest(reader=reader):
+                self.expect(2, ["run.json", "the run failed", "no end in sight"], *reader)
+
+    def test_files_that_a_kernel_saved_are_gone_when_the_next_one_fails(self):
+        for name, text in KERNEL.items():
+            self.write(name, text.replace("OFFSET", "0"))
+        self.ok("run", "k.toml", "--out", "run")
+        self.assertEqual(json.loads((self.folder / "run/run.json").read_text())["saved"], ["kept.bin"])
+        self.ok("run", "k.toml", "--out", "run")
+        self.assertIn("kept.bin", self.left("run"))
+        self.write("k.ptx", KERNEL["k.ptx"].replace("OFFSET", "1048576"))
+        self.expect(4, ["k.ptx"], "run", "k.toml", "--out", "run")
+        self.assertEqual(self.left("run"), ["config.toml", "run.json"])
+
+    def test_a_full_disk_leaves_run_json_with_the_error_and_no_result_old_or_half(self):
+        self.ok(*RUN, "--out", "run")
+        config, stats = ((self.folder / "run" / name).stat().st_size for name in ("config.toml", "stats.csv"))
+        self.assertLess(config + 5000, stats)
+        done = self.limited(stats - 1000, *RUN, "--out", "run")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(self.left("run"), ["config.toml", "run.json"])
+        facts = json.loads((self.folder / "run/run.json").read_text())
+        self.assertEqual(facts["exit"], 2)
+        self.assertIn("cannot write the file", facts["message"])
+
+    def test_a_file_that_cannot_be_written_keeps_what_it_was_and_leaves_no_temporary_one(self):
+        self.ok(*RUN, "--out", "run")
+        self.write("page/page.html", "before")
+        done = self.limited(20000, "report", "run", "-o", "page/page.html")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual((self.folder / "page/page.html").read_text(), "before")
+        self.assertEqual(self.left("page"), ["page.html"])
+
+    def test_output_goes_through_a_link_to_the_file_that_it_names(self):
+        self.write("there/isa.txt", "before")
+        (self.folder / "link").symlink_to("there/isa.txt")
+        shader = next((ROOT / "shaders/path_tracing").glob("*.rmiss"))
+        self.ok("compile", shader, "-o", "link")
+        self.assertTrue((self.folder / "link").is_symlink())
+        self.assertNotEqual((self.folder / "there/isa.txt").read_text(), "before")
+
+    def test_stdout_that_takes_no_more_ends_every_command_with_1(self):
+        self.ok(*RUN, "--profile", "--out", "run")
+        shader = next((ROOT / "shaders/path_tracing").glob("*.rmiss"))
+        (self.folder / "run.isa").write_text(self.ok("compile", shader).stdout)
+        commands = [[*RUN, "--out", "other"], [*RUN, "--json", "--out", "other"], ["describe"], ["describe", "--markdown"], ["describe", "rt"], ["describe", "gpu.cycles"],
+                    ["describe", "ipc"], *(["stats", "run", "--format", form] for form in ("txt", "csv", "json", "metrics", "vulkan-sim")),
+                    *(["list", what] for what in ("scenes", "shaders", "workloads", "configs", "policies", "ops", "stats", "metrics")), ["list", "stats", "--markdown"],
+                    ["annotate", "run"], ["isa"], ["isa", "fma"], ["isa", "--table", "mobile"], ["isa", "--index"], ["compile", shader], ["asm", "run.isa"],
+                    ["report", "run"], ["report", "run", "-o", "-"], ["compare", "run", "run"], ["imgdiff", "run", "run"], ["model", "run", "--statistics-only"],
+                    ["model", "run", "--statistics-only", "-o", "-"], ["bench", "WKND_SH", "--size", "8x8", "--out", "bench"], ["--help"], ["run", "--help"], ["--version"]]
+        for command in commands:
+            for redirection in (">/dev/full", ">&-"):
+                with self.subTest(command=command, redirection=redirection):
+                    done = subprocess.run(["sh", "-c", f'exec "$0" "$@" {redirection}', str(GLINT), *map(str, command)], stderr=subprocess.PIPE, text=True, cwd=self.folder, timeout=300)
+                    self.assertEqual(done.returncode, 1, done.stderr)
+                    self.assertIn("error: cannot write to standard output", done.stderr)
+
+    def test_stderr_that_takes_no_more_never_ends_in_an_abort(self):
+        for redirection, code in (("2>/dev/full", (1, 2)), ("2>&-", (2,))):
+            done = subprocess.run(["sh", "-c", f'exec "$0" "$@" {redirection}', str(GLINT), "run", "WKNDD"], cwd=self.folder, timeout=300)
+            self.assertIn(done.returncode, code)
+
+    def test_of_an_option_given_twice_the_last_one_counts(self):
+        """As the command of ./demo is called with options of one's own."""
+        line = next(line for line in (ROOT / "demo").read_text().splitlines() if "/glint run " in line and not line.startswith("step"))
+        arguments = line.split()[1:-1]
+        self.assertIn("--size", arguments)
+        self.ok(*arguments, "--size", "8x8", "--spp", "1", "--shader", "sh", "--config", "desktop", "--set", "rt.warps=2", "--set", "core.warps=4", "--out", "mine")
+        facts = json.loads((self.folder / "mine/run.json").read_text())
+        self.assertEqual([facts[key] for key in ("width", "height", "samples", "shader")] + [facts["config"]["name"]], [8, 8, 1, "sh", "desktop"])
+        config = (self.folder / "mine/config.toml").read_text().split("[rt")[0]
+        self.assertRegex(config, r"(?m)^warps = 4\b")
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_one_broken_preset_costs_isa_its_column_only(self):
+        root = self.folder / "installed"
+        (root / "bin").mkdir(parents=True)
+        (root / "share/glint").mkdir(parents=True)
+        shutil.copytree(ROOT / "configs", root / "share/glint/configs")
+        (root / "share/glint/shaders").symlink_to(ROOT / "shaders")
+        os.link(GLINT, root / "bin/glint") if os.stat(GLINT).st_dev == os.stat(root).st_dev else shutil.copy(GLINT, root / "bin/glint")
+        (root / "share/glint/configs/broken.toml").write_text("core.warpz = 3\n")
+        done = subprocess.run([root / "bin/glint", "isa", "fma.rn.f32"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout, self.ok("isa", "fma.rn.f32").stdout)
+        self.assertIn("preset 'broken' is left out", done.stderr)
+        self.assertIn("core.warpz", done.stderr)
+
+    def test_describe_explains_a_metric(self):
+        out = self.ok("describe", "simt_efficiency").stdout
+        self.assertRegex(out, r"simt_efficiency \(a metric")
+        self.assertRegex(out, r"formula +\S*\w+")
+        self.expect(2, ["did you mean 'simt_efficiency'?"], "describe", "simt_eficiency")
+
+
+if __name__ == "__main__":
+    glint_case.main()
