@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kResults[] = {"image.png", "image.pfm", "printf.txt", "profile.csv", "profile.folded", "source.json", "series.csv", "heat", "trace.json.gz"};
+constexpr const char* kResults[] = {"image.png", "image.pfm", "printf.txt", "profile.csv", "profile.folded", "source.json", "series.csv", "trace.json.gz"};
+constexpr const char* kFolder = "heat";  // the one folder of a run
 
 bool put(const std::string& path, const std::string& bytes) {
   std::ofstream out(path, std::ios::binary | std::ios::trunc);
@@ -67,6 +68,8 @@ RunDirectory::RunDirectory(std::string path) : path_(std::move(path)) {
 
 void RunDirectory::remove(const std::string& name) const {
   std::error_code error;
+  if (name != kFolder && fs::is_directory(fs::symlink_status(path_of(name), error)))
+    throw UserError({path_of(name)}, "a folder stands where a run has a file", "move it away, or give another folder with --out");
   fs::remove_all(path_of(name), error);
   if (error) throw UserError({path_of(name)}, "cannot remove what an earlier run left: " + error.message());
 }
@@ -85,6 +88,7 @@ void RunDirectory::remove_results(const std::vector<std::string>& saved) const {
   names.insert(names.end(), saved.begin(), saved.end());
   for (const auto& [name, entry] : Registry<StatWriter>::instance().entries()) names.push_back("stats." + std::string(name));
   names.insert(names.end(), std::begin(kResults), std::end(kResults));
+  names.push_back(kFolder);
   remove("run.json");
   for (const std::string& name : names) remove(name);
 }
