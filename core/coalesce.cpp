@@ -69,27 +69,27 @@ void coalesce_local(LineList& out, const LocalLayout& layout, uint32_t warp_slot
 }
 
 void count_turns(LineList& lines, const mem::AddressSpace& memory, const isa::Access& access, uint32_t bytes, bool turns, bool returns) {
+  const auto address = [&](int lane) { return access.address[size_t(lane)]; };
   const auto is_one_word = [&](const LineSectors& line) {
-    const Address first = access.address[size_t(std::countr_zero(line.lanes))];
     bool same = true;
-    for_each_lane(line.lanes, [&](int lane) { same &= access.address[size_t(lane)] == first; });
+    for_each_lane(line.lanes, [&](int lane) { same &= address(lane) == address(std::countr_zero(line.lanes)); });
     return same;
   };
+  if (turns && !returns && lines.lines().size() == 1 && is_one_word(lines.lines()[0])) return lines.set_atomic(0, {1, 1});
   const uint32_t words = (1u << std::max(bytes / 4, 1u)) - 1;
   for (size_t i = 0; i < lines.lines().size(); ++i) {
-    const LineSectors& line = lines.lines()[i];
-    if (turns && !returns && lines.lines().size() == 1 && is_one_word(line)) return lines.set_atomic(i, {1, 1});
+    const LaneMask lanes = lines.lines()[i].lanes;
     std::array<uint32_t, 8> taken{};  // words of each sector that its latest turn has
     uint8_t count = 0;
-    if (turns)
-      for_each_lane(line.lanes, [&](int lane) {
-        const Address offset = lines.offset(memory.physical(access.address[size_t(lane)]));
-        uint32_t& turn = taken[offset / mem::kSectorBytes];
-        const uint32_t wanted = words << (offset % mem::kSectorBytes / 4);
-        count += turn == 0 || (turn & wanted) != 0;
-        turn = turn & wanted ? wanted : turn | wanted;
-      });
-    lines.set_atomic(i, {uint8_t(std::popcount(line.lanes)), count});
+    for_each_lane(turns ? lanes : 0, [&](int lane) {
+      const Address offset = lines.offset(memory.physical(address(lane)));
+      uint32_t& turn = taken[offset / mem::kSectorBytes];
+      const uint32_t wanted = words << (offset % mem::kSectorBytes / 4);
+      const bool is_new = turn == 0 || (turn & wanted) != 0;
+      count += is_new;
+      turn = is_new ? wanted : turn | wanted;
+    });
+    lines.set_atomic(i, {uint8_t(std::popcount(lanes)), count});
   }
 }
 

@@ -1,7 +1,11 @@
-// A field of comma-separated values.
+// A field of comma-separated values: written, and read as a number.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <charconv>
+#include <cmath>
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace glint::report {
 
@@ -11,6 +15,14 @@ inline std::string csv_field(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
   return out + "\"";
+}
+
+// The whole text as a number; nullopt when it is none, or none that is finite.
+inline std::optional<double> finite_number(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
 }
 
 }  // namespace glint::report

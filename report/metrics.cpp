@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "report/csv_field.h"
 #include "report/formula.h"
 #include "report/table.h"
 
@@ -15,14 +16,6 @@ constexpr std::pair<std::string_view, std::string_view> kIdentity[] = {
     {"scene", "scene.name"}, {"form", "scene.form"}, {"shader", "shader"}, {"config", "config.name"}, {"config_hash", "config.hash"}};
 constexpr std::pair<std::string_view, std::string_view> kNumbers[] = {
     {"fraction", "scene.fraction"}, {"width", "width"}, {"height", "height"}, {"samples", "samples"}};
-
-// RFC 4180, as stats.csv.
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
 
 std::string cell(std::optional<double> value) { return value ? fmt::format("{}", *value) : ""; }
 
@@ -46,8 +39,8 @@ std::string metrics_header() {
 }
 
 std::string metrics_row(const std::string& workload, const RunRecord& run) {
-  std::string out = field(workload);
-  for (const auto& [column, name] : kIdentity) out += "," + field(run.text(std::string(name)));
+  std::string out = csv_field(workload);
+  for (const auto& [column, name] : kIdentity) out += "," + csv_field(run.text(std::string(name)));
   for (const auto& [column, name] : kNumbers) out += "," + cell(run.fact(std::string(name)));
   for (const MetricValue& value : metrics_of(run)) out += "," + cell(value.value);
   return out + "\n";

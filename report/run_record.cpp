@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -13,18 +11,12 @@
 #include <string_view>
 
 #include "base/diagnostics.h"
+#include "report/csv_field.h"
 #include "report/run_directory.h"
 #include "report/stat_rows.h"
 
 namespace glint::report {
 namespace {
-
-std::optional<double> number(std::string_view text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
@@ -76,7 +68,7 @@ void RunRecord::add_stats(const std::string& csv, const std::string& name) {
   if (!std::getline(in, line) || line.rfind("path,value,", 0) != 0) throw UserError({name, 1}, "this is no table of statistics", "expected the header path,value,unit,doc");
   for (int row = 2; std::getline(in, line); ++row) {
     const size_t first = line.find(','), second = line.find(',', first + 1);
-    const std::optional<double> value = second == std::string::npos ? std::nullopt : number(std::string_view(line).substr(first + 1, second - first - 1));
+    const std::optional<double> value = second == std::string::npos ? std::nullopt : finite_number(std::string_view(line).substr(first + 1, second - first - 1));
     if (!value) throw UserError({name, row}, "this row has no value, or none that is finite", "the file is damaged; run it again");
     stats_.emplace_back(line.substr(0, first), *value);
   }
@@ -98,7 +90,7 @@ void RunRecord::add_config(const std::string& toml) {
     if (text.size() > 2 && text.front() == '[' && text.back() == ']') {
       table = std::string(text.substr(1, text.size() - 2)) + ".";
     } else if (equals != std::string_view::npos) {
-      if (const auto value = number(trimmed(text.substr(equals + 1)))) config_[table + std::string(trimmed(text.substr(0, equals)))] = *value;
+      if (const auto value = finite_number(trimmed(text.substr(equals + 1)))) config_[table + std::string(trimmed(text.substr(0, equals)))] = *value;
     }
   }
 }

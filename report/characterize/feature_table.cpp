@@ -5,13 +5,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <set>
 #include <string_view>
 
 #include "base/diagnostics.h"
+#include "report/csv_field.h"
 #include "report/csv_table.h"
 
 namespace glint::report {
@@ -21,13 +21,6 @@ constexpr Eigen::Index kFewestWorkloads = 3, kFewestMetrics = 2;
 // Which run it was (metrics_header()), not how it behaved.
 constexpr std::string_view kIdentity[] = {"scene", "form", "shader", "config", "config_hash", "fraction", "width", "height", "samples"};
 constexpr std::string_view kHostSpeed = "sim_rate";
-
-std::optional<double> number(const std::string& text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
 
 struct Column {
   std::vector<double> values;
@@ -39,7 +32,7 @@ Column read_column(const CsvTable& table, size_t index) {
   size_t num_empty = 0;
   for (const std::vector<std::string>& row : table.rows) {
     const std::string& cell = row[index];
-    const std::optional<double> value = number(cell);
+    const std::optional<double> value = finite_number(cell);
     num_empty += cell.empty();
     if (!value && !cell.empty()) {
       out.why = fmt::format("'{}' is no number", cell);
