@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "amber/compile.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstring>
+#include <fmt/format.h>
 
 #include "frontend/compile.h"
 #include "frontend/specialize.h"
@@ -14,16 +13,19 @@
 namespace glint::amber {
 namespace {
 
-// SPIR-V's version in the form of a module's second word, of a target environment as the SPIR-V tools name it. A shader
-// without one begins at spv1.0.
+// SPIR-V's version in the form of a module's second word, of a target environment as the SPIR-V tools name
+// it. A shader without one begins at spv1.0.
 uint32_t version_of(const Shader& shader) {
   const std::map<std::string, uint32_t> versions{
-      {"", 0x1'0000},          {"spv1.0", 0x1'0000},        {"spv1.1", 0x1'0100},    {"spv1.2", 0x1'0200},    {"spv1.3", 0x1'0300},
-      {"spv1.4", 0x1'0400},    {"spv1.5", 0x1'0500},        {"spv1.6", 0x1'0600},    {"vulkan1.0", 0x1'0000}, {"vulkan1.1", 0x1'0300},
-      {"vulkan1.1spv1.4", 0x1'0400}, {"vulkan1.2", 0x1'0500}, {"vulkan1.3", 0x1'0600}};
+      {"", 0x1'0000},          {"spv1.0", 0x1'0000},          {"spv1.1", 0x1'0100},
+      {"spv1.2", 0x1'0200},    {"spv1.3", 0x1'0300},          {"spv1.4", 0x1'0400},
+      {"spv1.5", 0x1'0500},    {"spv1.6", 0x1'0600},          {"vulkan1.0", 0x1'0000},
+      {"vulkan1.1", 0x1'0300}, {"vulkan1.1spv1.4", 0x1'0400}, {"vulkan1.2", 0x1'0500},
+      {"vulkan1.3", 0x1'0600}};
   const auto found = versions.find(shader.target_env);
   if (found == versions.end())
-    throw UnsupportedError(fmt::format("{}: unsupported: target environment '{}' of shader '{}'", shader.path, shader.target_env, shader.name));
+    throw UnsupportedError(fmt::format("{}: unsupported: target environment '{}' of shader '{}'", shader.path,
+                                       shader.target_env, shader.name));
   return found->second;
 }
 
@@ -32,12 +34,15 @@ std::vector<uint32_t> from_hex(const Shader& shader) {
   std::string text = shader.text;
   std::replace(text.begin(), text.end(), ',', ' ');
   const char* blank = " \t\r\n";
-  for (size_t at = text.find_first_not_of(blank); at != std::string::npos; at = text.find_first_not_of(blank, at)) {
+  for (size_t at = text.find_first_not_of(blank); at != std::string::npos;
+       at = text.find_first_not_of(blank, at)) {
     const size_t end = std::min(text.find_first_of(blank, at), text.size());
     const std::string word = text.substr(at, end - at);
     char* rest = nullptr;
     const uint64_t value = std::strtoull(word.c_str(), &rest, 16);
-    if (*rest || value > 0xffff'ffff) throw UserError({shader.path, 0, 0}, fmt::format("shader '{}': '{}' is no word of 32 bits", shader.name, word));
+    if (*rest || value > 0xffff'ffff)
+      throw UserError({shader.path, 0, 0},
+                      fmt::format("shader '{}': '{}' is no word of 32 bits", shader.name, word));
     words.push_back(uint32_t(value));
     at = end;
   }
@@ -55,14 +60,17 @@ void add_attachments(const Script& script, const Pipeline& pipeline, std::vector
       if (!is_new(name)) continue;
       Attachment attachment;
       attachment.shader = name, attachment.stage = script.shaders.at(name).stage;
-      if (!attachment.stage) throw UserError(pipeline.where, fmt::format("'{}' is a multi shader: ATTACH must give its TYPE", name));
+      if (!attachment.stage)
+        throw UserError(pipeline.where,
+                        fmt::format("'{}' is a multi shader: ATTACH must give its TYPE", name));
       out.push_back(attachment);
     }
-  for (const std::string& library : pipeline.libraries) add_attachments(script, script.pipelines.at(library), out);
+  for (const std::string& library : pipeline.libraries)
+    add_attachments(script, script.pipelines.at(library), out);
 }
 
-// Choice: text that is invalid in the version of its TARGET_ENV but valid in a later one is of that version. Scripts
-// leave out TARGET_ENV and ask for VK_KHR_spirv_1_4, or use what a device's Vulkan brings along.
+// Choice: text that is invalid in the version of its TARGET_ENV but valid in a later one is of that version.
+// Scripts leave out TARGET_ENV and ask for VK_KHR_spirv_1_4, or use what a device's Vulkan brings along.
 std::string why_invalid(std::vector<uint32_t>& words) {
   const std::string first = frontend::validate_spirv(words);
   if (first.empty()) return first;
@@ -80,7 +88,8 @@ std::string why_invalid(std::vector<uint32_t>& words) {
 
 namespace {
 
-std::vector<uint32_t> assemble_or_compile(const Shader& shader, isa::Stage stage, frontend::ShaderCache* cache) {
+std::vector<uint32_t> assemble_or_compile(const Shader& shader, isa::Stage stage,
+                                          frontend::ShaderCache* cache) {
   std::vector<uint32_t> words;
   switch (shader.language) {
     case Language::Glsl: {
@@ -88,13 +97,16 @@ std::vector<uint32_t> assemble_or_compile(const Shader& shader, isa::Stage stage
       options.cache = cache;
       return frontend::glsl_text_to_spirv(shader.text, shader.path, stage, options);
     }
-    case Language::SpirvHex: return from_hex(shader);
+    case Language::SpirvHex:
+      return from_hex(shader);
     case Language::SpirvBinary:
-      if (shader.text.size() % 4) throw UserError({shader.path, 0, 0}, "not a SPIR-V module: it does not consist of words");
+      if (shader.text.size() % 4)
+        throw UserError({shader.path, 0, 0}, "not a SPIR-V module: it does not consist of words");
       words.resize(shader.text.size() / 4);
       std::memcpy(words.data(), shader.text.data(), shader.text.size());
       return words;
-    case Language::SpirvText: break;
+    case Language::SpirvText:
+      break;
   }
   const uint32_t version = version_of(shader);
   words = frontend::assemble_spirv(shader.text, shader.path);
@@ -111,29 +123,39 @@ std::vector<uint32_t> spirv_of(const Shader& shader, isa::Stage stage, frontend:
     // Newer than the assembler and the GLSL compiler that Glint was built with: no mistake of the script.
     const std::string message = error.what();
     for (const char* unknown : {"Invalid capability '", "Invalid Opcode name '", "extension not supported: "})
-      if (message.find(unknown) != std::string::npos) throw UnsupportedError(fmt::format("{}: unsupported: shader '{}'\n{}", shader.path, shader.name, message));
+      if (message.find(unknown) != std::string::npos)
+        throw UnsupportedError(
+            fmt::format("{}: unsupported: shader '{}'\n{}", shader.path, shader.name, message));
     throw;
   }
 }
 
-CompiledShader compile(const Script& script, const Attachment& attachment, const pipeline::CompilerParams& compiler, frontend::ShaderCache* cache) {
+CompiledShader compile(const Script& script, const Attachment& attachment,
+                       const pipeline::CompilerParams& compiler, frontend::ShaderCache* cache) {
   const Shader& shader = script.shaders.at(attachment.shader);
   std::vector<uint32_t> words = spirv_of(shader, *attachment.stage, cache);
   const std::string title = shader.name;
   const std::string invalid = words.size() < 5 ? "too short to hold a header" : why_invalid(words);
-  if (!invalid.empty()) throw UserError({shader.path, 0, 0}, fmt::format("shader '{}' is invalid SPIR-V\n{}", title, invalid));
+  if (!invalid.empty())
+    throw UserError({shader.path, 0, 0}, fmt::format("shader '{}' is invalid SPIR-V\n{}", title, invalid));
   words = frontend::specialize(std::move(words), attachment.constants);
   CompiledShader out;
   Diagnostics notes;
   out.name = shader.name;
   out.reflection = frontend::reflect(words, title);
-  out.program = frontend::compile_module(words, title, attachment.entry, {compiler.max_registers, compiler.schedule, compiler.contract, compiler.queries_call, compiler.guard_latency}, notes, cache).program;
+  out.program = frontend::compile_module(words, title, attachment.entry,
+                                         {compiler.max_registers, compiler.schedule, compiler.contract,
+                                          compiler.queries_call, compiler.guard_latency},
+                                         notes, cache)
+                    .program;
   if (out.program.stage != *attachment.stage)
-    throw UserError({shader.path, 0, 0}, fmt::format("entry point '{}' of shader '{}' is of another stage", attachment.entry, title));
+    throw UserError({shader.path, 0, 0}, fmt::format("entry point '{}' of shader '{}' is of another stage",
+                                                     attachment.entry, title));
   return out;
 }
 
-std::vector<CompiledShader> compile(const Script& script, const Pipeline& pipeline, const pipeline::CompilerParams& compiler, frontend::ShaderCache* cache) {
+std::vector<CompiledShader> compile(const Script& script, const Pipeline& pipeline,
+                                    const pipeline::CompilerParams& compiler, frontend::ShaderCache* cache) {
   std::vector<Attachment> attachments;
   add_attachments(script, pipeline, attachments);
   std::vector<CompiledShader> out;
@@ -141,7 +163,8 @@ std::vector<CompiledShader> compile(const Script& script, const Pipeline& pipeli
   return out;
 }
 
-std::vector<std::pair<std::string, std::vector<std::string>>> all_groups(const Script& script, const Pipeline& pipeline) {
+std::vector<std::pair<std::string, std::vector<std::string>>> all_groups(const Script& script,
+                                                                         const Pipeline& pipeline) {
   auto out = pipeline.groups;
   for (const std::string& library : pipeline.libraries)
     for (const auto& group : all_groups(script, script.pipelines.at(library))) out.push_back(group);

@@ -17,17 +17,20 @@ struct CompiledShader {
 };
 
 // SPIR-V words, not yet validated. UserError when the text is wrong.
-std::vector<uint32_t> spirv_of(const Shader& shader, isa::Stage stage, frontend::ShaderCache* cache = nullptr);
+std::vector<uint32_t> spirv_of(const Shader& shader, isa::Stage stage,
+                               frontend::ShaderCache* cache = nullptr);
 
 // UserError and UnsupportedError as frontend::lower().
-CompiledShader compile(const Script& script, const Attachment& attachment, const pipeline::CompilerParams& compiler,
-                       frontend::ShaderCache* cache = nullptr);
+CompiledShader compile(const Script& script, const Attachment& attachment,
+                       const pipeline::CompilerParams& compiler, frontend::ShaderCache* cache = nullptr);
 
 // Every shader of a pipeline and of the libraries that it uses.
-std::vector<CompiledShader> compile(const Script& script, const Pipeline& pipeline, const pipeline::CompilerParams& compiler,
+std::vector<CompiledShader> compile(const Script& script, const Pipeline& pipeline,
+                                    const pipeline::CompilerParams& compiler,
                                     frontend::ShaderCache* cache = nullptr);
 
 // Groups of a pipeline and of its libraries, by name.
-std::vector<std::pair<std::string, std::vector<std::string>>> all_groups(const Script& script, const Pipeline& pipeline);
+std::vector<std::pair<std::string, std::vector<std::string>>> all_groups(const Script& script,
+                                                                         const Pipeline& pipeline);
 
 }  // namespace glint::amber

@@ -2,18 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "amber/expect.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <fmt/format.h>
 
 namespace glint::amber {
 namespace {
 
-// Amber's verifier: floats are equal when they differ by at most this many percent. About one and a half units of the last place of a
-// 32-bit float.
+// Amber's verifier: floats are equal when they differ by at most this many percent. About one and a half
+// units of the last place of a 32-bit float.
 constexpr double kEqualPercent = 0.000009;
 
 bool is_near(double found, double expected, double tolerance, bool is_percent) {
@@ -28,29 +27,42 @@ const char* sign_of(Comparator comparator) {
 
 bool holds(Comparator comparator, bool is_equal, bool is_less) {
   switch (comparator) {
-    case Comparator::Eq: return is_equal;
-    case Comparator::Ne: return !is_equal;
-    case Comparator::Lt: return is_less;
-    case Comparator::Le: return is_less || is_equal;
-    case Comparator::Gt: return !is_less && !is_equal;
-    default: return !is_less || is_equal;
+    case Comparator::Eq:
+      return is_equal;
+    case Comparator::Ne:
+      return !is_equal;
+    case Comparator::Lt:
+      return is_less;
+    case Comparator::Le:
+      return is_less || is_equal;
+    case Comparator::Gt:
+      return !is_less && !is_equal;
+    default:
+      return !is_less || is_equal;
   }
 }
 
 class Check {
  public:
   Check(const Script& script, const Command& command)
-      : expect_(command.expect), where_(command.where), buffer_(script.buffers.at(expect_.buffer)),
+      : expect_(command.expect),
+        where_(command.where),
+        buffer_(script.buffers.at(expect_.buffer)),
         other_(expect_.other.empty() ? nullptr : &script.buffers.at(expect_.other)) {}
 
   std::string run() const {
     switch (expect_.comparator) {
       case Comparator::Rgb:
-      case Comparator::Rgba: return colours();
-      case Comparator::Buffer: return same();
-      case Comparator::Rmse: return root_mean_square();
-      case Comparator::Histogram: return histograms();
-      default: return values();
+      case Comparator::Rgba:
+        return colours();
+      case Comparator::Buffer:
+        return same();
+      case Comparator::Rmse:
+        return root_mean_square();
+      case Comparator::Histogram:
+        return histograms();
+      default:
+        return values();
     }
   }
 
@@ -69,14 +81,19 @@ class Check {
     const Layout& layout = expect_.as ? *expect_.as : buffer_.layout;
     uint64_t element = expect_.as ? expect_.x : expect_.x / layout.stride * layout.stride;
     size_t slot = expect_.as ? 0 : slot_at(expect_.x - element);
-    const uint64_t shift = expect_.x - element - layout.slots[slot].offset;  // of data that lie across elements
+    const uint64_t shift =
+        expect_.x - element - layout.slots[slot].offset;  // of data that lie across elements
     for (size_t i = 0; i < expect_.values.size(); ++i) {
       const Slot& at = layout.slots[slot];
       const uint64_t offset = element + shift + at.offset;
-      if (offset + bytes_of(at.scalar) > buffer_.bytes.size()) wrong(fmt::format("byte {} is past the end of buffer '{}' ({} bytes)", offset, buffer_.name, buffer_.bytes.size()));
+      if (offset + bytes_of(at.scalar) > buffer_.bytes.size())
+        wrong(fmt::format("byte {} is past the end of buffer '{}' ({} bytes)", offset, buffer_.name,
+                          buffer_.bytes.size()));
       if (!is_as_expected(at.scalar, buffer_.bytes.data() + offset, expect_.values[i], slot % 4))
-        return fmt::format("buffer '{}' at byte {} (value {}): expected {} {}{}, found {}", buffer_.name, offset, i, sign_of(expect_.comparator), expect_.values[i],
-                           expect_.tolerances.empty() ? "" : " within the tolerance", show(at.scalar, buffer_.bytes.data() + offset));
+        return fmt::format("buffer '{}' at byte {} (value {}): expected {} {}{}, found {}", buffer_.name,
+                           offset, i, sign_of(expect_.comparator), expect_.values[i],
+                           expect_.tolerances.empty() ? "" : " within the tolerance",
+                           show(at.scalar, buffer_.bytes.data() + offset));
       if (++slot == layout.slots.size()) slot = 0, element += layout.stride;
     }
     return {};
@@ -123,42 +140,53 @@ class Check {
     }
     const core::Words words = core::decode(*buffer_.type.format, at);
     for (size_t c = 0; c < 4; ++c)
-      out[c] = info.numeric == core::Numeric::Uint ? double(words[c]) : info.numeric == core::Numeric::Sint ? double(int32_t(words[c])) : double(std::bit_cast<float>(words[c]) * 255.0f);
+      out[c] = info.numeric == core::Numeric::Uint   ? double(words[c])
+               : info.numeric == core::Numeric::Sint ? double(int32_t(words[c]))
+                                                     : double(std::bit_cast<float>(words[c]) * 255.0f);
     return out;
   }
 
   std::string colours() const {
     if (!buffer_.type.format) wrong(fmt::format("'{}' has no texels", buffer_.name));
     if (!buffer_.size[0]) wrong(fmt::format("'{}' has no width", buffer_.name));
-    if (uint64_t{expect_.x} + expect_.width > buffer_.size[0] || uint64_t{expect_.y} + expect_.height > std::max(1u, buffer_.size[1]))
-      wrong(fmt::format("the rectangle is not inside of '{}' ({} x {})", buffer_.name, buffer_.size[0], buffer_.size[1]));
+    if (uint64_t{expect_.x} + expect_.width > buffer_.size[0] ||
+        uint64_t{expect_.y} + expect_.height > std::max(1u, buffer_.size[1]))
+      wrong(fmt::format("the rectangle is not inside of '{}' ({} x {})", buffer_.name, buffer_.size[0],
+                        buffer_.size[1]));
     for (uint32_t y = expect_.y; y < expect_.y + expect_.height; ++y)
       for (uint32_t x = expect_.x; x < expect_.x + expect_.width; ++x) {
         const std::array<double, 4> found = colour_at(x, y);
         for (size_t c = 0; c < expect_.values.size(); ++c) {
           double expected = 0;
           parse_real(expect_.values[c], expected);
-          const auto [tolerance, is_percent] = expect_.tolerances.empty() ? std::pair(0.5, false) : tolerance_of(c);
+          const auto [tolerance, is_percent] =
+              expect_.tolerances.empty() ? std::pair(0.5, false) : tolerance_of(c);
           if (!is_near(found[c], expected, tolerance, is_percent))
-            return fmt::format("'{}' at {}, {}: expected {}, found {:g} {:g} {:g} {:g}", buffer_.name, x, y, fmt::join(expect_.values, " "), found[0], found[1], found[2], found[3]);
+            return fmt::format("'{}' at {}, {}: expected {}, found {:g} {:g} {:g} {:g}", buffer_.name, x, y,
+                               fmt::join(expect_.values, " "), found[0], found[1], found[2], found[3]);
         }
       }
     return {};
   }
 
   void check_alike() const {
-    if (buffer_.bytes.size() != other_->bytes.size() || buffer_.layout.slots.size() != other_->layout.slots.size() || buffer_.layout.stride != other_->layout.stride)
-      wrong(fmt::format("buffers '{}' and '{}' are not alike: {} and {} bytes", buffer_.name, other_->name, buffer_.bytes.size(), other_->bytes.size()));
+    if (buffer_.bytes.size() != other_->bytes.size() ||
+        buffer_.layout.slots.size() != other_->layout.slots.size() ||
+        buffer_.layout.stride != other_->layout.stride)
+      wrong(fmt::format("buffers '{}' and '{}' are not alike: {} and {} bytes", buffer_.name, other_->name,
+                        buffer_.bytes.size(), other_->bytes.size()));
   }
 
   // Calls with the scalar, its bytes in both buffers, its offset and its number in the element.
   template <class F>
   void each_value(const F& call) const {
     check_alike();
-    for (uint64_t element = 0; element + buffer_.layout.stride <= buffer_.bytes.size(); element += buffer_.layout.stride)
+    for (uint64_t element = 0; element + buffer_.layout.stride <= buffer_.bytes.size();
+         element += buffer_.layout.stride)
       for (size_t i = 0; i < buffer_.layout.slots.size(); ++i) {
         const uint64_t offset = element + buffer_.layout.slots[i].offset;
-        call(buffer_.layout.slots[i].scalar, buffer_.bytes.data() + offset, other_->bytes.data() + offset, offset, i);
+        call(buffer_.layout.slots[i].scalar, buffer_.bytes.data() + offset, other_->bytes.data() + offset,
+             offset, i);
       }
   }
 
@@ -167,7 +195,9 @@ class Check {
     uint64_t wrong_values = 0;
     each_value([&](Scalar scalar, const std::byte* a, const std::byte* b, uint64_t offset, size_t) {
       if (std::memcmp(a, b, bytes_of(scalar)) == 0) return;
-      if (wrong_values++ == 0) out = fmt::format("buffers '{}' and '{}' differ at byte {}: {} and {}", buffer_.name, other_->name, offset, show(scalar, a), show(scalar, b));
+      if (wrong_values++ == 0)
+        out = fmt::format("buffers '{}' and '{}' differ at byte {}: {} and {}", buffer_.name, other_->name,
+                          offset, show(scalar, a), show(scalar, b));
     });
     return wrong_values > 1 ? fmt::format("{}; {} values differ", out, wrong_values) : out;
   }
@@ -186,11 +216,12 @@ class Check {
     });
     const double found = std::sqrt(sum / double(count));
     if (found <= only_tolerance()) return {};
-    return fmt::format("buffers '{}' and '{}': expected a root mean square error of at most {}, found {}", buffer_.name, other_->name, only_tolerance(), found);
+    return fmt::format("buffers '{}' and '{}': expected a root mean square error of at most {}, found {}",
+                       buffer_.name, other_->name, only_tolerance(), found);
   }
 
-  // Earth mover's distance of the histograms of each channel of bytes: the work of moving one into the other, in parts
-  // of all texels and of the range. The channel with the largest counts.
+  // Earth mover's distance of the histograms of each channel of bytes: the work of moving one into the other,
+  // in parts of all texels and of the range. The channel with the largest counts.
   std::string histograms() const {
     std::array<std::array<int64_t, 256>, 4> bins{};
     each_value([&](Scalar scalar, const std::byte* a, const std::byte* b, uint64_t, size_t i) {
@@ -204,7 +235,8 @@ class Check {
       found = std::max(found, double(work) / double(buffer_.elements) / 256);
     }
     if (found <= only_tolerance()) return {};
-    return fmt::format("buffers '{}' and '{}': expected a distance of histograms of at most {}, found {}", buffer_.name, other_->name, only_tolerance(), found);
+    return fmt::format("buffers '{}' and '{}': expected a distance of histograms of at most {}, found {}",
+                       buffer_.name, other_->name, only_tolerance(), found);
   }
 
   const Expectation& expect_;
@@ -215,6 +247,8 @@ class Check {
 
 }  // namespace
 
-std::string check(const Script& script, const Command& command) { return Check(script, command).run(); }
+std::string check(const Script& script, const Command& command) {
+  return Check(script, command).run();
+}
 
 }  // namespace glint::amber

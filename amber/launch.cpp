@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "amber/launch.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstring>
+#include <fmt/format.h>
 
 #include "core/block.h"
 #include "isa/descriptors.h"
@@ -23,11 +22,17 @@ constexpr uint32_t kCallableDepth = 8;
 
 class Launch {
  public:
-  Launch(Script& script, const Command& command, const std::vector<CompiledShader>& shaders, const LaunchOptions& options)
-      : script_(script), command_(command), pipeline_(script.pipelines.at(command.pipeline)), shaders_(shaders), bvh_(options.gpu.bvh) {
+  Launch(Script& script, const Command& command, const std::vector<CompiledShader>& shaders,
+         const LaunchOptions& options)
+      : script_(script),
+        command_(command),
+        pipeline_(script.pipelines.at(command.pipeline)),
+        shaders_(shaders),
+        bvh_(options.gpu.bvh) {
     world_.memory = &memory_;
     world_.constant_bank.resize(isa::kConstantBankBytes);
-    world_.robust_images = world_.robust_buffers = pipeline_.is_robust || script.features.count("robustBufferAccess") != 0;
+    world_.robust_images = world_.robust_buffers =
+        pipeline_.is_robust || script.features.count("robustBufferAccess") != 0;
     std::vector<isa::Program> programs;
     for (const CompiledShader& shader : shaders) programs.push_back(shader.program);
     pipeline::add_traversal(programs, options.gpu, options.cache);
@@ -35,9 +40,12 @@ class Launch {
     world_.image = &image_;
     plan_parts();
     for (const Binding& binding : pipeline_.bindings) bind(binding);
-    for (const CompiledShader& shader : shaders) pipeline::mark_unbound(world_, shader.reflection.bindings, bound_);
-    if (pipeline_.is_ray_tracing) set_ray_tracing();
-    else set_compute();
+    for (const CompiledShader& shader : shaders)
+      pipeline::mark_unbound(world_, shader.reflection.bindings, bound_);
+    if (pipeline_.is_ray_tracing)
+      set_ray_tracing();
+    else
+      set_compute();
     pipeline::place_records(world_, stack_need_);
   }
 
@@ -47,7 +55,8 @@ class Launch {
     world_.nearest_first_hit = options.gpu.rt.nearest_first_hit;
     world_.any_hit = options.gpu.rt.any_hit.make({});
     world_.layout = options.gpu.core.layout.make({});
-    const pipeline::RenderResult result = pipeline::run_world(world_, options.gpu, options.timing, options.no_skip, options.threads, {});
+    const pipeline::RenderResult result =
+        pipeline::run_world(world_, options.gpu, options.timing, options.no_skip, options.threads, {});
     for (const auto& [name, parts] : parts_)
       for (const Part& part : parts)
         if (part.address && part.end > part.first) {
@@ -58,7 +67,8 @@ class Launch {
   }
 
  private:
-  // Bytes of a buffer that lie in memory as an allocation of their own, so that what is past them is past its end.
+  // Bytes of a buffer that lie in memory as an allocation of their own, so that what is past them is past its
+  // end.
   struct Part {
     uint64_t first = 0, end = 0;
     Address address = 0;  // 0: not yet in memory
@@ -95,15 +105,17 @@ class Launch {
   core::World world_;
   std::set<pipeline::BindingPlace> bound_;
   std::map<std::string, std::vector<Part>> parts_;  // of buffers that something binds
-  std::map<std::string, Address> structures_;  // of top levels
+  std::map<std::string, Address> structures_;       // of top levels
 };
 
 void Launch::set_compute() {
-  if (shaders_.empty()) throw UserError(pipeline_.where, fmt::format("pipeline '{}' has no shader", pipeline_.name));
+  if (shaders_.empty())
+    throw UserError(pipeline_.where, fmt::format("pipeline '{}' has no shader", pipeline_.name));
   const isa::Program& program = shaders_[0].program;
   const auto& size = program.local_size;
   if (uint64_t{size[0]} * size[1] * size[2] > core::kMaxBlockThreads)
-    throw UserError(pipeline_.where, fmt::format("blocks of {} x {} x {} threads: at most {} can be", size[0], size[1], size[2], core::kMaxBlockThreads));
+    throw UserError(pipeline_.where, fmt::format("blocks of {} x {} x {} threads: at most {} can be", size[0],
+                                                 size[1], size[2], core::kMaxBlockThreads));
   world_.raygen = 0;
   world_.local_bytes = pipeline::stack_bytes(image_, 1, 0);
   core::set_blocks(world_, command_.size, size, program.shared_bytes);
@@ -114,16 +126,20 @@ pipeline::TableRecord Launch::record(const std::string& group, pipeline::TableIn
     if (name != group) continue;
     pipeline::ShaderGroup made;
     for (const std::string& shader : shaders) {
-      const auto found = std::find_if(shaders_.begin(), shaders_.end(), [&](const CompiledShader& s) { return s.name == shader; });
+      const auto found = std::find_if(shaders_.begin(), shaders_.end(),
+                                      [&](const CompiledShader& s) { return s.name == shader; });
       const auto index = uint32_t(found - shaders_.begin());
       const isa::Stage stage = found->program.stage;
-      (stage == isa::Stage::ClosestHit ? made.hit.closest_hit : stage == isa::Stage::AnyHit ? made.hit.any_hit
-       : stage == isa::Stage::Intersection ? made.hit.intersection : made.general) = index;
+      (stage == isa::Stage::ClosestHit     ? made.hit.closest_hit
+       : stage == isa::Stage::AnyHit       ? made.hit.any_hit
+       : stage == isa::Stage::Intersection ? made.hit.intersection
+                                           : made.general) = index;
     }
     input.groups.push_back(made);
     return {uint32_t(input.groups.size() - 1), {}};
   }
-  throw UserError(pipeline_.where, fmt::format("pipeline '{}' has no shader group '{}'", pipeline_.name, group));
+  throw UserError(pipeline_.where,
+                  fmt::format("pipeline '{}' has no shader group '{}'", pipeline_.name, group));
 }
 
 std::vector<pipeline::TableRecord> Launch::records(const std::string& table, pipeline::TableInput& input) {
@@ -160,11 +176,16 @@ void Launch::bind(const Binding& binding) {
   check_kind(binding);
   switch (binding.kind) {
     case BindKind::Uniform:
-    case BindKind::Storage: return bind_buffers(binding);
-    case BindKind::Sampler: return bind_samplers(binding);
-    case BindKind::Structure: return bind_structures(binding);
-    case BindKind::PushConstants: return set_push_constants(binding);
-    default: return bind_images(binding);
+    case BindKind::Storage:
+      return bind_buffers(binding);
+    case BindKind::Sampler:
+      return bind_samplers(binding);
+    case BindKind::Structure:
+      return bind_structures(binding);
+    case BindKind::PushConstants:
+      return set_push_constants(binding);
+    default:
+      return bind_images(binding);
   }
 }
 
@@ -172,7 +193,8 @@ const frontend::Binding* Launch::reflected(const Binding& binding) const {
   const frontend::Binding* out = nullptr;
   for (const CompiledShader& shader : shaders_)
     for (const frontend::Binding& each : shader.reflection.bindings)
-      if (each.set == binding.set && each.binding == binding.binding && (!out || each.count > out->count)) out = &each;
+      if (each.set == binding.set && each.binding == binding.binding && (!out || each.count > out->count))
+        out = &each;
   return out;
 }
 
@@ -185,24 +207,32 @@ void Launch::write_descriptor(const Binding& binding, uint64_t first, uint64_t s
 void Launch::write_descriptors(const Binding& binding, std::vector<std::array<uint64_t, 2>> all) {
   const frontend::Binding* use = reflected(binding);
   if (!use || use->count == 1) return write_descriptor(binding, all[0][0], all[0][1]);
-  if (all.size() < use->count) all.resize(use->count, {isa::unbound_address(binding.set, binding.binding), 0});
-  const Address table = memory_.allocate(fmt::format("descriptors of set {} binding {}", binding.set, binding.binding), all.size() * isa::kDescriptorBytes);
+  if (all.size() < use->count)
+    all.resize(use->count, {isa::unbound_address(binding.set, binding.binding), 0});
+  const Address table =
+      memory_.allocate(fmt::format("descriptors of set {} binding {}", binding.set, binding.binding),
+                       all.size() * isa::kDescriptorBytes);
   memory_.write(table, all.data(), all.size() * isa::kDescriptorBytes);
   write_descriptor(binding, table, all.size());
 }
 
-// Scripts may bind anything to anything; what the shader would not take is a mistake of the script. Aliases of other kinds
-// at one place are none.
+// Scripts may bind anything to anything; what the shader would not take is a mistake of the script. Aliases
+// of other kinds at one place are none.
 void Launch::check_kind(const Binding& binding) const {
   using frontend::BindingKind;
   const auto takes = [&](BindingKind kind) {
     switch (binding.kind) {
       case BindKind::Uniform:
-      case BindKind::Storage: return kind == BindingKind::UniformBuffer || kind == BindingKind::StorageBuffer;
-      case BindKind::Sampler: return kind == BindingKind::Sampler;
-      case BindKind::Structure: return kind == BindingKind::AccelerationStructure;
-      case BindKind::PushConstants: return true;
-      default: return kind == BindingKind::SampledImage || kind == BindingKind::StorageImage;
+      case BindKind::Storage:
+        return kind == BindingKind::UniformBuffer || kind == BindingKind::StorageBuffer;
+      case BindKind::Sampler:
+        return kind == BindingKind::Sampler;
+      case BindKind::Structure:
+        return kind == BindingKind::AccelerationStructure;
+      case BindKind::PushConstants:
+        return true;
+      default:
+        return kind == BindingKind::SampledImage || kind == BindingKind::StorageImage;
     }
   };
   const frontend::Binding* other = nullptr;
@@ -213,21 +243,26 @@ void Launch::check_kind(const Binding& binding) const {
       other = &each;
     }
   if (other && !binding.names.empty())
-    throw UserError(binding.where, fmt::format("set {} binding {}: the shader declares the {} '{}', and '{}' is none", binding.set, binding.binding,
-                                               pipeline::name_of(other->kind), other->name, binding.names[0]));
+    throw UserError(
+        binding.where,
+        fmt::format("set {} binding {}: the shader declares the {} '{}', and '{}' is none", binding.set,
+                    binding.binding, pipeline::name_of(other->kind), other->name, binding.names[0]));
 }
 
-// A buffer is uploaded in the parts that descriptors name, so that an access past the range of one is a fault.
-// Choice: where parts overlap, all of the buffer is one: shaders may see a byte through both.
+// A buffer is uploaded in the parts that descriptors name, so that an access past the range of one is a
+// fault. Choice: where parts overlap, all of the buffer is one: shaders may see a byte through both.
 void Launch::plan_parts() {
   for (const Binding& binding : pipeline_.bindings) {
-    if (binding.kind == BindKind::Sampler || binding.kind == BindKind::Structure || binding.kind == BindKind::PushConstants) continue;
+    if (binding.kind == BindKind::Sampler || binding.kind == BindKind::Structure ||
+        binding.kind == BindKind::PushConstants)
+      continue;
     const bool has_range = binding.kind == BindKind::Uniform || binding.kind == BindKind::Storage;
     for (size_t i = 0; i < binding.names.size(); ++i) {
       Part part;
       part.end = script_.buffers.at(binding.names[i]).bytes.size();
       if (has_range && i < binding.offsets.size()) part.first = std::min(binding.offsets[i], part.end);
-      if (has_range && i < binding.ranges.size()) part.end = part.first + std::min(binding.ranges[i], part.end - part.first);
+      if (has_range && i < binding.ranges.size())
+        part.end = part.first + std::min(binding.ranges[i], part.end - part.first);
       std::vector<Part>& parts = parts_[binding.names[i]];
       const auto is_same = [&](const Part& p) { return p.first == part.first && p.end == part.end; };
       if (std::none_of(parts.begin(), parts.end(), is_same)) parts.push_back(part);
@@ -236,17 +271,21 @@ void Launch::plan_parts() {
   for (auto& [name, parts] : parts_) {
     std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.first < b.first; });
     const auto overlap = [](const Part& a, const Part& b) { return b.first < a.end; };
-    if (std::adjacent_find(parts.begin(), parts.end(), overlap) != parts.end()) parts = {{0, script_.buffers.at(name).bytes.size(), 0}};
+    if (std::adjacent_find(parts.begin(), parts.end(), overlap) != parts.end())
+      parts = {{0, script_.buffers.at(name).bytes.size(), 0}};
   }
 }
 
 // Where byte `offset` of a buffer is.
 Address Launch::upload(const Buffer& buffer, uint64_t offset) {
   std::vector<Part>& parts = parts_.at(buffer.name);
-  Part& part = *std::prev(std::upper_bound(parts.begin(), parts.end(), offset, [](uint64_t at, const Part& p) { return at < p.first; }));
+  Part& part = *std::prev(std::upper_bound(parts.begin(), parts.end(), offset,
+                                           [](uint64_t at, const Part& p) { return at < p.first; }));
   const uint64_t bytes = part.end - part.first;
   if (!part.address) {
-    const std::string title = bytes == buffer.bytes.size() ? buffer.name : fmt::format("{}, bytes {} to {}", buffer.name, part.first, part.end);
+    const std::string title = bytes == buffer.bytes.size()
+                                  ? buffer.name
+                                  : fmt::format("{}, bytes {} to {}", buffer.name, part.first, part.end);
     part.address = memory_.allocate(title, std::max<uint64_t>(bytes, 4));
     if (bytes) memory_.write(part.address, buffer.bytes.data() + part.first, bytes);
   }
@@ -258,31 +297,44 @@ void Launch::bind_buffers(const Binding& binding) {
   for (size_t i = 0; i < binding.names.size(); ++i) {
     const Buffer& buffer = script_.buffers.at(binding.names[i]);
     const uint64_t offset = i < binding.offsets.size() ? binding.offsets[i] : 0;
-    if (offset >= buffer.bytes.size()) throw UserError(binding.where, fmt::format("the offset {} is past the end of buffer '{}' ({} bytes)", offset, buffer.name, buffer.bytes.size()));
+    if (offset >= buffer.bytes.size())
+      throw UserError(binding.where, fmt::format("the offset {} is past the end of buffer '{}' ({} bytes)",
+                                                 offset, buffer.name, buffer.bytes.size()));
     const uint64_t rest = buffer.bytes.size() - offset;
-    all.push_back({upload(buffer, offset), i < binding.ranges.size() ? std::min(rest, binding.ranges[i]) : rest});
+    all.push_back(
+        {upload(buffer, offset), i < binding.ranges.size() ? std::min(rest, binding.ranges[i]) : rest});
   }
   write_descriptors(binding, all);
 }
 
 core::ImageView Launch::view_of(const Binding& binding, const Buffer& buffer, size_t element) {
   const bool is_texels = binding.kind == BindKind::UniformTexels || binding.kind == BindKind::StorageTexels;
-  if (!buffer.type.format) throw UnsupportedError(fmt::format("{}: unsupported: images of {}", binding.where.to_string(), buffer.type.name));
-  if (buffer.layout.stride != core::info_of(*buffer.type.format).bytes) throw UnsupportedError(fmt::format("{}: unsupported: texels with gaps", binding.where.to_string()));
+  if (!buffer.type.format)
+    throw UnsupportedError(
+        fmt::format("{}: unsupported: images of {}", binding.where.to_string(), buffer.type.name));
+  if (buffer.layout.stride != core::info_of(*buffer.type.format).bytes)
+    throw UnsupportedError(fmt::format("{}: unsupported: texels with gaps", binding.where.to_string()));
   core::ImageView view;
   view.name = buffer.name, view.format = *buffer.type.format;
   view.width = buffer.size[0] && !is_texels ? buffer.size[0] : uint32_t(buffer.elements);
-  view.height = is_texels ? 1 : std::max(1u, buffer.size[1]), view.depth = is_texels ? 1 : std::max(1u, buffer.size[2]);
+  view.height = is_texels ? 1 : std::max(1u, buffer.size[1]),
+  view.depth = is_texels ? 1 : std::max(1u, buffer.size[2]);
   view.levels = is_texels ? 1 : buffer.levels;
   view.samples = view.layers = buffer.samples;
   const uint32_t dimensions = buffer.dimensions ? buffer.dimensions : 2;
   const frontend::Binding* use = reflected(binding);
-  view.shape = use ? use->shape : is_texels ? isa::ImageShape::Buffer : dimensions == 1 ? isa::ImageShape::D1 : dimensions == 2 ? isa::ImageShape::D2 : isa::ImageShape::D3;
+  view.shape = use               ? use->shape
+               : is_texels       ? isa::ImageShape::Buffer
+               : dimensions == 1 ? isa::ImageShape::D1
+               : dimensions == 2 ? isa::ImageShape::D2
+                                 : isa::ImageShape::D3;
   view.base = upload(buffer, 0) + (element < binding.offsets.size() ? binding.offsets[element] : 0);
-  if (binding.base_level >= view.levels) throw UserError(binding.where, fmt::format("'{}' has {} levels", buffer.name, view.levels));
+  if (binding.base_level >= view.levels)
+    throw UserError(binding.where, fmt::format("'{}' has {} levels", buffer.name, view.levels));
   const core::ImageView whole = view;
   view.base += whole.bytes_before_level(binding.base_level);
-  view.width = whole.extent(0, binding.base_level), view.height = whole.extent(1, binding.base_level), view.depth = whole.extent(2, binding.base_level);
+  view.width = whole.extent(0, binding.base_level), view.height = whole.extent(1, binding.base_level),
+  view.depth = whole.extent(2, binding.base_level);
   view.levels -= binding.base_level;
   if (element < binding.samplers.size()) view.sampler = script_.samplers.at(binding.samplers[element]);
   return view;
@@ -291,7 +343,8 @@ core::ImageView Launch::view_of(const Binding& binding, const Buffer& buffer, si
 // Images of an array have consecutive numbers.
 void Launch::bind_images(const Binding& binding) {
   write_descriptor(binding, world_.images.size(), binding.names.size());
-  for (size_t i = 0; i < binding.names.size(); ++i) world_.images.push_back(view_of(binding, script_.buffers.at(binding.names[i]), i));
+  for (size_t i = 0; i < binding.names.size(); ++i)
+    world_.images.push_back(view_of(binding, script_.buffers.at(binding.names[i]), i));
   pipeline::mark_rest_unbound(world_, reflected(binding), binding.names.size());
 }
 
@@ -338,14 +391,19 @@ void Launch::bind_structures(const Binding& binding) {
 void Launch::set_push_constants(const Binding& binding) {
   const Buffer& buffer = script_.buffers.at(binding.names[0]);
   const uint64_t room = isa::kConstantBankBytes - isa::kPushConstantOffset;
-  if (buffer.bytes.size() > room) throw UserError(binding.where, fmt::format("{} bytes of push constants: there is room for {}", buffer.bytes.size(), room));
-  std::memcpy(world_.constant_bank.data() + isa::kPushConstantOffset, buffer.bytes.data(), buffer.bytes.size());
+  if (buffer.bytes.size() > room)
+    throw UserError(binding.where, fmt::format("{} bytes of push constants: there is room for {}",
+                                               buffer.bytes.size(), room));
+  std::memcpy(world_.constant_bank.data() + isa::kPushConstantOffset, buffer.bytes.data(),
+              buffer.bytes.size());
 }
 
 }  // namespace
 
-Launched launch(Script& script, const Command& command, const std::vector<CompiledShader>& shaders, const LaunchOptions& options) {
-  if (command.size[0] == 0 || command.size[1] == 0 || command.size[2] == 0) return {};  // Vulkan: does nothing
+Launched launch(Script& script, const Command& command, const std::vector<CompiledShader>& shaders,
+                const LaunchOptions& options) {
+  if (command.size[0] == 0 || command.size[1] == 0 || command.size[2] == 0)
+    return {};  // Vulkan: does nothing
   return Launch(script, command, shaders, options).run(options);
 }
 

@@ -13,16 +13,17 @@ struct LaunchOptions {
   bool no_skip = false;  // of the timing machine
   uint32_t threads = 1;  // of the host, for it
   core::OnFault on_fault = core::OnFault::Stop;
-  core::PrintLog* prints = nullptr;         // null: what shaders print is left out
-  frontend::ShaderCache* cache = nullptr;   // null: shaders are compiled anew
+  core::PrintLog* prints = nullptr;        // null: what shaders print is left out
+  frontend::ShaderCache* cache = nullptr;  // null: shaders are compiled anew
 };
 
-// Runs `command` with shaders of its pipeline and leaves the buffers of `script` as they are afterwards. Errors
-// as pipeline::render().
+// Runs `command` with shaders of its pipeline and leaves the buffers of `script` as they are afterwards.
+// Errors as pipeline::render().
 struct Launched {
   uint64_t cycles = 0;    // 0 without timing
   core::FaultLog faults;  // that were let pass
 };
-Launched launch(Script& script, const Command& command, const std::vector<CompiledShader>& shaders, const LaunchOptions& options);
+Launched launch(Script& script, const Command& command, const std::vector<CompiledShader>& shaders,
+                const LaunchOptions& options);
 
 }  // namespace glint::amber

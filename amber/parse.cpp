@@ -12,22 +12,35 @@ namespace {
 std::string read_text(const std::string& path, const SourceLocation& where) {
   std::error_code failed;
   std::ifstream in(path, std::ios::binary);
-  if (!in || !std::filesystem::is_regular_file(path, failed)) throw UserError(where, fmt::format("cannot read '{}'", path));
+  if (!in || !std::filesystem::is_regular_file(path, failed))
+    throw UserError(where, fmt::format("cannot read '{}'", path));
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
 bool parse_declaration(Parsing& p, const std::string& name) {
-  if (name == "SHADER") parse_shader(p);
-  else if (name == "VIRTUAL_FILE") parse_virtual_file(p);
-  else if (name == "DEVICE_FEATURE" || name == "DEVICE_EXTENSION" || name == "INSTANCE_EXTENSION" || name == "DEVICE_PROPERTY") parse_device(p, name);
-  else if (name == "STRUCT") parse_struct(p);
-  else if (name == "BUFFER") parse_buffer(p, false);
-  else if (name == "IMAGE") parse_buffer(p, true);
-  else if (name == "SAMPLER") parse_sampler(p);
-  else if (name == "ACCELERATION_STRUCTURE") parse_structure(p);
-  else if (name == "PIPELINE") parse_pipeline(p);
-  else if (name == "DERIVE_PIPELINE") parse_derived_pipeline(p);
-  else return false;
+  if (name == "SHADER")
+    parse_shader(p);
+  else if (name == "VIRTUAL_FILE")
+    parse_virtual_file(p);
+  else if (name == "DEVICE_FEATURE" || name == "DEVICE_EXTENSION" || name == "INSTANCE_EXTENSION" ||
+           name == "DEVICE_PROPERTY")
+    parse_device(p, name);
+  else if (name == "STRUCT")
+    parse_struct(p);
+  else if (name == "BUFFER")
+    parse_buffer(p, false);
+  else if (name == "IMAGE")
+    parse_buffer(p, true);
+  else if (name == "SAMPLER")
+    parse_sampler(p);
+  else if (name == "ACCELERATION_STRUCTURE")
+    parse_structure(p);
+  else if (name == "PIPELINE")
+    parse_pipeline(p);
+  else if (name == "DERIVE_PIPELINE")
+    parse_derived_pipeline(p);
+  else
+    return false;
   return true;
 }
 
@@ -61,14 +74,19 @@ Script parse_script(const std::string& text, const std::string& path) {
     return script;
   }
   Parsing p{Tokens(text, path), script};
-  for (Token token = p.tokens.next_after_line_ends(); token.is_word(); token = p.tokens.next_after_line_ends()) {
-    if (token.text == "SET") parse_engine_data(p);
-    else if (!parse_declaration(p, token.text) && !parse_command(p, token.text, script.commands)) p.unsupported("command " + token.text);
+  for (Token token = p.tokens.next_after_line_ends(); token.is_word();
+       token = p.tokens.next_after_line_ends()) {
+    if (token.text == "SET")
+      parse_engine_data(p);
+    else if (!parse_declaration(p, token.text) && !parse_command(p, token.text, script.commands))
+      p.unsupported("command " + token.text);
     p.tokens.end_line();
   }
   return script;
 }
 
-Script read_script(const std::string& path) { return parse_script(read_text(path, {}), path); }
+Script read_script(const std::string& path) {
+  return parse_script(read_text(path, {}), path);
+}
 
 }  // namespace glint::amber

@@ -6,10 +6,17 @@ namespace glint::amber {
 namespace {
 
 std::optional<Comparator> comparator_named(const std::string& name) {
-  const std::map<std::string, Comparator> names{
-      {"EQ", Comparator::Eq}, {"NE", Comparator::Ne}, {"LT", Comparator::Lt}, {"LE", Comparator::Le}, {"GT", Comparator::Gt}, {"GE", Comparator::Ge},
-      {"EQ_RGB", Comparator::Rgb}, {"EQ_RGBA", Comparator::Rgba}, {"EQ_BUFFER", Comparator::Buffer}, {"RMSE_BUFFER", Comparator::Rmse},
-      {"EQ_HISTOGRAM_EMD_BUFFER", Comparator::Histogram}};
+  const std::map<std::string, Comparator> names{{"EQ", Comparator::Eq},
+                                                {"NE", Comparator::Ne},
+                                                {"LT", Comparator::Lt},
+                                                {"LE", Comparator::Le},
+                                                {"GT", Comparator::Gt},
+                                                {"GE", Comparator::Ge},
+                                                {"EQ_RGB", Comparator::Rgb},
+                                                {"EQ_RGBA", Comparator::Rgba},
+                                                {"EQ_BUFFER", Comparator::Buffer},
+                                                {"RMSE_BUFFER", Comparator::Rmse},
+                                                {"EQ_HISTOGRAM_EMD_BUFFER", Comparator::Histogram}};
   const auto found = names.find(name);
   return found == names.end() ? std::nullopt : std::optional(found->second);
 }
@@ -26,21 +33,26 @@ void parse_run(Parsing& p, Command& command) {
   const auto table = [&](const char* kind, std::string& to) {
     if (!p.tokens.accept(kind)) return;
     to = p.tokens.word("the table");
-    if (!pipeline.tables.count(to)) p.wrong(fmt::format("pipeline '{}' has no shader binding table '{}'", pipeline.name, to));
+    if (!pipeline.tables.count(to))
+      p.wrong(fmt::format("pipeline '{}' has no shader binding table '{}'", pipeline.name, to));
   };
   while (p.tokens.peek().is_word() && !is_number(p.tokens.peek())) {
     const std::string next = p.tokens.peek().text;
     if (next.rfind("DRAW_", 0) == 0) p.unsupported("graphics: " + next);
-    if (!pipeline.is_ray_tracing || (next != "RAYGEN" && next != "MISS" && next != "HIT" && next != "CALL")) p.unsupported("RUN " + next);
-    table("RAYGEN", command.raygen), table("MISS", command.miss), table("HIT", command.hit), table("CALL", command.callable);
+    if (!pipeline.is_ray_tracing || (next != "RAYGEN" && next != "MISS" && next != "HIT" && next != "CALL"))
+      p.unsupported("RUN " + next);
+    table("RAYGEN", command.raygen), table("MISS", command.miss), table("HIT", command.hit),
+        table("CALL", command.callable);
   }
   if (pipeline.is_ray_tracing && command.raygen.empty()) p.wrong("RAYGEN is missing");
   for (uint32_t& each : command.size) each = p.tokens.number("the size");
 }
 
 void parse_tolerances(Parsing& p, Expectation& expect) {
-  while (p.tokens.peek().is_word() && !comparator_named(p.tokens.peek().text)) expect.tolerances.push_back(parse_tolerance(p));
-  if (expect.tolerances.empty() || expect.tolerances.size() > 4) p.wrong("a tolerance has one to four numbers");
+  while (p.tokens.peek().is_word() && !comparator_named(p.tokens.peek().text))
+    expect.tolerances.push_back(parse_tolerance(p));
+  if (expect.tolerances.empty() || expect.tolerances.size() > 4)
+    p.wrong("a tolerance has one to four numbers");
 }
 
 void parse_expect(Parsing& p, Command& command) {
@@ -59,17 +71,20 @@ void parse_expect(Parsing& p, Command& command) {
       parse_tolerances(p, expect);
     } else if (const std::optional<Comparator> comparator = comparator_named(word)) {
       expect.comparator = *comparator, has_comparator = true;
-      if (*comparator == Comparator::Buffer || *comparator == Comparator::Rmse || *comparator == Comparator::Histogram) {
+      if (*comparator == Comparator::Buffer || *comparator == Comparator::Rmse ||
+          *comparator == Comparator::Histogram) {
         expect.other = p.tokens.word("the other buffer");
         p.find(p.script.buffers, expect.other, "buffer");
       } else {
         while (is_number(p.tokens.peek())) expect.values.push_back(p.tokens.next().text);
       }
-    } else p.unsupported("EXPECT " + word);
+    } else
+      p.unsupported("EXPECT " + word);
   }
   if (!has_comparator) p.wrong("a comparison is missing");
   const bool is_colour = expect.comparator == Comparator::Rgb || expect.comparator == Comparator::Rgba;
-  if (is_colour && expect.values.size() != (expect.comparator == Comparator::Rgb ? 3 : 4)) p.wrong("a colour has three or four numbers");
+  if (is_colour && expect.values.size() != (expect.comparator == Comparator::Rgb ? 3 : 4))
+    p.wrong("a colour has three or four numbers");
   if (is_colour && expect.width == 0) p.wrong("SIZE is missing");
   if (expect.other.empty() && expect.values.empty()) p.wrong("the values are missing");
 }
@@ -92,7 +107,8 @@ void parse_copy(Parsing& p, Command& command) {
   const Buffer& from = p.find(p.script.buffers, command.from, "buffer");
   const Buffer& to = p.find(p.script.buffers, command.to, "buffer");
   if (command.from == command.to) p.wrong("a buffer is copied to itself");
-  if (from.type.name != to.type.name) p.wrong(fmt::format("'{}' holds {}, '{}' {}", from.name, from.type.name, to.name, to.type.name));
+  if (from.type.name != to.type.name)
+    p.wrong(fmt::format("'{}' holds {}, '{}' {}", from.name, from.type.name, to.name, to.type.name));
 }
 
 }  // namespace
@@ -109,12 +125,18 @@ std::pair<double, bool> parse_tolerance(Parsing& p) {
 bool parse_command(Parsing& p, const std::string& name, std::vector<Command>& to) {
   Command command;
   command.where = p.tokens.here();
-  if (name == "RUN") command.kind = Command::Kind::Run, parse_run(p, command);
-  else if (name == "EXPECT") command.kind = Command::Kind::Expect, parse_expect(p, command);
-  else if (name == "COPY") command.kind = Command::Kind::Copy, parse_copy(p, command);
-  else if (name == "REPEAT") command.kind = Command::Kind::Repeat, parse_repeat(p, command);
-  else if (name.rfind("CLEAR", 0) == 0) p.unsupported("graphics: " + name);
-  else return false;
+  if (name == "RUN")
+    command.kind = Command::Kind::Run, parse_run(p, command);
+  else if (name == "EXPECT")
+    command.kind = Command::Kind::Expect, parse_expect(p, command);
+  else if (name == "COPY")
+    command.kind = Command::Kind::Copy, parse_copy(p, command);
+  else if (name == "REPEAT")
+    command.kind = Command::Kind::Repeat, parse_repeat(p, command);
+  else if (name.rfind("CLEAR", 0) == 0)
+    p.unsupported("graphics: " + name);
+  else
+    return false;
   to.push_back(std::move(command));
   return true;
 }

@@ -14,10 +14,12 @@ constexpr int64_t kSubgroupSize = 32;  // threads of a warp
 void parse_constant(Parsing& p, Attachment& attachment) {
   const uint32_t id = p.tokens.number("the constant's number");
   if (!p.tokens.accept("AS")) p.wrong("AS is missing");
-  const std::string name = p.tokens.word("the constant's type"), value = p.tokens.word("the constant's value");
+  const std::string name = p.tokens.word("the constant's type"),
+                    value = p.tokens.word("the constant's value");
   const std::optional<Type> type = type_named(name);
   std::byte bytes[8]{};
-  if (!type || type->rows != 1 || type->columns != 1 || !put(type->scalar, value, bytes)) p.wrong(fmt::format("'{}' is no {}", value, name));
+  if (!type || type->rows != 1 || type->columns != 1 || !put(type->scalar, value, bytes))
+    p.wrong(fmt::format("'{}' is no {}", value, name));
   uint64_t bits = 0;
   std::memcpy(&bits, bytes, sizeof bits);
   attachment.constants[id] = bits;
@@ -30,13 +32,18 @@ void parse_attach(Parsing& p, Pipeline& pipeline) {
   attachment.stage = shader.stage;
   while (p.tokens.peek().is_word()) {
     const std::string name = p.tokens.next().text;
-    if (name == "TYPE") attachment.stage = stage_named(p, p.tokens.word("the type"));
-    else if (name == "ENTRY_POINT") attachment.entry = p.tokens.word("the entry point");
-    else if (name == "SPECIALIZE") parse_constant(p, attachment);
-    else p.unsupported("ATTACH " + name);
+    if (name == "TYPE")
+      attachment.stage = stage_named(p, p.tokens.word("the type"));
+    else if (name == "ENTRY_POINT")
+      attachment.entry = p.tokens.word("the entry point");
+    else if (name == "SPECIALIZE")
+      parse_constant(p, attachment);
+    else
+      p.unsupported("ATTACH " + name);
   }
   if (!attachment.stage) p.wrong(fmt::format("'{}' is a multi shader: TYPE is missing", attachment.shader));
-  if ((*attachment.stage == isa::Stage::Compute) == pipeline.is_ray_tracing) p.wrong(fmt::format("'{}' is no shader for this kind of pipeline", attachment.shader));
+  if ((*attachment.stage == isa::Stage::Compute) == pipeline.is_ray_tracing)
+    p.wrong(fmt::format("'{}' is no shader for this kind of pipeline", attachment.shader));
   if (!pipeline.is_ray_tracing && !pipeline.shaders.empty()) p.wrong("a compute pipeline has one shader");
   pipeline.shaders.push_back(attachment);
 }
@@ -52,24 +59,32 @@ void parse_subgroup(Parsing& p) {
     } else if (name != "REQUIRED_SIZE") {
       p.unsupported("SUBGROUP " + name);
     } else if (value != "MIN" && value != "MAX" && (!parse_integer(value, size) || size != kSubgroupSize)) {
-      p.unsupported(fmt::format("SUBGROUP REQUIRED_SIZE {}: subgroups have {} threads", value, kSubgroupSize));
+      p.unsupported(
+          fmt::format("SUBGROUP REQUIRED_SIZE {}: subgroups have {} threads", value, kSubgroupSize));
     }
   }
   if (!token.is_word()) p.wrong("END is missing");
 }
 
 BindKind kind_named(Parsing& p, const std::string& name) {
-  const std::map<std::string, BindKind> kinds{
-      {"uniform", BindKind::Uniform}, {"uniform_dynamic", BindKind::Uniform}, {"storage", BindKind::Storage}, {"storage_dynamic", BindKind::Storage},
-      {"uniform_texel_buffer", BindKind::UniformTexels}, {"storage_texel_buffer", BindKind::StorageTexels}, {"storage_image", BindKind::StorageImage},
-      {"sampled_image", BindKind::SampledImage}, {"combined_image_sampler", BindKind::CombinedImage}, {"push_constant", BindKind::PushConstants}};
+  const std::map<std::string, BindKind> kinds{{"uniform", BindKind::Uniform},
+                                              {"uniform_dynamic", BindKind::Uniform},
+                                              {"storage", BindKind::Storage},
+                                              {"storage_dynamic", BindKind::Storage},
+                                              {"uniform_texel_buffer", BindKind::UniformTexels},
+                                              {"storage_texel_buffer", BindKind::StorageTexels},
+                                              {"storage_image", BindKind::StorageImage},
+                                              {"sampled_image", BindKind::SampledImage},
+                                              {"combined_image_sampler", BindKind::CombinedImage},
+                                              {"push_constant", BindKind::PushConstants}};
   if (const auto found = kinds.find(name); found != kinds.end()) return found->second;
   if (name == "color" || name == "depth_stencil" || name == "resolve") p.unsupported("graphics: attachments");
   p.unsupported("BIND BUFFER AS " + name);
 }
 
 bool is_attribute(const std::string& word) {
-  for (const char* name : {"AS", "DESCRIPTOR_SET", "BINDING", "OFFSET", "DESCRIPTOR_OFFSET", "DESCRIPTOR_RANGE", "BASE_MIP_LEVEL", "SAMPLER", "KERNEL"})
+  for (const char* name : {"AS", "DESCRIPTOR_SET", "BINDING", "OFFSET", "DESCRIPTOR_OFFSET",
+                           "DESCRIPTOR_RANGE", "BASE_MIP_LEVEL", "SAMPLER", "KERNEL"})
     if (word == name) return true;
   return false;
 }
@@ -87,16 +102,25 @@ void parse_bytes(Parsing& p, std::vector<uint64_t>& to) {
 void parse_bind_attributes(Parsing& p, Binding& binding, bool& has_kind) {
   while (p.tokens.peek().is_word()) {
     const std::string name = p.tokens.next().text;
-    if (name == "AS") binding.kind = kind_named(p, p.tokens.word("what it is bound as")), has_kind = true;
-    else if (name == "DESCRIPTOR_SET") binding.set = uint32_t(p.tokens.integer("the set", 0, isa::kMaxSets - 1));
-    else if (name == "BINDING") binding.binding = uint32_t(p.tokens.integer("the binding", 0, isa::kMaxBindings - 1));
-    else if (name == "OFFSET" || name == "DESCRIPTOR_OFFSET") parse_bytes(p, binding.offsets);
-    else if (name == "DESCRIPTOR_RANGE") parse_bytes(p, binding.ranges);
-    else if (name == "BASE_MIP_LEVEL") binding.base_level = p.tokens.number("the level");
-    else if (name == "KERNEL") p.unsupported("OpenCL: arguments of kernels");
+    if (name == "AS")
+      binding.kind = kind_named(p, p.tokens.word("what it is bound as")), has_kind = true;
+    else if (name == "DESCRIPTOR_SET")
+      binding.set = uint32_t(p.tokens.integer("the set", 0, isa::kMaxSets - 1));
+    else if (name == "BINDING")
+      binding.binding = uint32_t(p.tokens.integer("the binding", 0, isa::kMaxBindings - 1));
+    else if (name == "OFFSET" || name == "DESCRIPTOR_OFFSET")
+      parse_bytes(p, binding.offsets);
+    else if (name == "DESCRIPTOR_RANGE")
+      parse_bytes(p, binding.ranges);
+    else if (name == "BASE_MIP_LEVEL")
+      binding.base_level = p.tokens.number("the level");
+    else if (name == "KERNEL")
+      p.unsupported("OpenCL: arguments of kernels");
     else if (name == "SAMPLER")
-      while (p.tokens.peek().is_word() && !is_attribute(p.tokens.peek().text)) binding.samplers.push_back(p.tokens.next().text);
-    else p.unsupported("BIND " + name);
+      while (p.tokens.peek().is_word() && !is_attribute(p.tokens.peek().text))
+        binding.samplers.push_back(p.tokens.next().text);
+    else
+      p.unsupported("BIND " + name);
   }
 }
 
@@ -105,7 +129,8 @@ void parse_bind(Parsing& p, Pipeline& pipeline) {
   binding.where = p.tokens.here();
   const std::string what = p.tokens.word("what is bound");
   const bool is_sampler = what.rfind("SAMPLER", 0) == 0, is_structure = what == "ACCELERATION_STRUCTURE";
-  if (!is_structure && what != "BUFFER" && what != "IMAGE" && what != "SAMPLER" && what != "BUFFER_ARRAY" && what != "IMAGE_ARRAY" && what != "SAMPLER_ARRAY")
+  if (!is_structure && what != "BUFFER" && what != "IMAGE" && what != "SAMPLER" && what != "BUFFER_ARRAY" &&
+      what != "IMAGE_ARRAY" && what != "SAMPLER_ARRAY")
     p.unsupported("BIND " + what);
   const bool is_array = what.ends_with("_ARRAY");
   do binding.names.push_back(p.tokens.word("a name"));
@@ -113,25 +138,32 @@ void parse_bind(Parsing& p, Pipeline& pipeline) {
   bool has_kind = is_sampler || is_structure;
   if (has_kind) binding.kind = is_sampler ? BindKind::Sampler : BindKind::Structure;
   for (const std::string& name : binding.names) {
-    if (is_sampler) p.find(p.script.samplers, name, "sampler");
-    else if (is_structure) p.find(p.script.top_levels, name, "top level");
-    else p.find(p.script.buffers, name, "buffer");
+    if (is_sampler)
+      p.find(p.script.samplers, name, "sampler");
+    else if (is_structure)
+      p.find(p.script.top_levels, name, "top level");
+    else
+      p.find(p.script.buffers, name, "buffer");
   }
   parse_bind_attributes(p, binding, has_kind);
   if (!has_kind) p.unsupported("BIND BUFFER without AS");
   for (const std::string& name : binding.samplers) p.find(p.script.samplers, name, "sampler");
-  if (binding.kind == BindKind::CombinedImage && binding.samplers.size() != binding.names.size()) p.wrong("each combined image needs one SAMPLER");
+  if (binding.kind == BindKind::CombinedImage && binding.samplers.size() != binding.names.size())
+    p.wrong("each combined image needs one SAMPLER");
   std::erase_if(pipeline.bindings, [&](const Binding& other) {  // what a derived pipeline binds anew
-    return other.kind == BindKind::PushConstants || binding.kind == BindKind::PushConstants ? other.kind == binding.kind
-                                                                                           : other.set == binding.set && other.binding == binding.binding;
+    return other.kind == BindKind::PushConstants || binding.kind == BindKind::PushConstants
+               ? other.kind == binding.kind
+               : other.set == binding.set && other.binding == binding.binding;
   });
   pipeline.bindings.push_back(binding);
 }
 
 void parse_table(Parsing& p, Pipeline& pipeline) {
-  std::vector<std::string>& table = p.declare(pipeline.tables, p.tokens.word("the table's name"), "shader binding table");
+  std::vector<std::string>& table =
+      p.declare(pipeline.tables, p.tokens.word("the table's name"), "shader binding table");
   Token token = p.tokens.next_after_line_ends();
-  for (; token.is_word() && token.text != "END"; token = p.tokens.next_after_line_ends()) table.push_back(token.text);
+  for (; token.is_word() && token.text != "END"; token = p.tokens.next_after_line_ends())
+    table.push_back(token.text);
   if (!token.is_word()) p.wrong("END is missing");
 }
 
@@ -142,7 +174,8 @@ void parse_group(Parsing& p, Pipeline& pipeline) {
   std::vector<std::string> shaders;
   while (p.tokens.peek().is_word()) {
     shaders.push_back(p.tokens.next().text);
-    if (p.find(p.script.shaders, shaders.back(), "shader").stage == isa::Stage::Compute) p.wrong("a compute shader in a group");
+    if (p.find(p.script.shaders, shaders.back(), "shader").stage == isa::Stage::Compute)
+      p.wrong("a compute shader in a group");
   }
   if (shaders.empty()) p.wrong(fmt::format("group '{}' has no shader", name));
   pipeline.groups.emplace_back(name, shaders);
@@ -157,22 +190,29 @@ std::vector<std::string> parse_list(Parsing& p) {
     return out;
   }
   Token token = p.tokens.next_after_line_ends();
-  for (; token.is_word() && token.text != "END"; token = p.tokens.next_after_line_ends()) out.push_back(token.text);
+  for (; token.is_word() && token.text != "END"; token = p.tokens.next_after_line_ends())
+    out.push_back(token.text);
   if (!token.is_word()) p.wrong("END is missing");
   return out;
 }
 
 bool parse_ray_tracing_line(Parsing& p, const std::string& name, Pipeline& pipeline) {
-  if (name == "SHADER_GROUP") parse_group(p, pipeline);
-  else if (name == "SHADER_BINDING_TABLE") parse_table(p, pipeline);
-  else if (name == "MAX_RAY_PAYLOAD_SIZE" || name == "MAX_RAY_HIT_ATTRIBUTE_SIZE") p.tokens.number("the size");  // what the shaders have counts
-  else if (name == "MAX_RAY_RECURSION_DEPTH") pipeline.max_trace_depth = uint32_t(p.tokens.integer("the depth", 0, 31));
+  if (name == "SHADER_GROUP")
+    parse_group(p, pipeline);
+  else if (name == "SHADER_BINDING_TABLE")
+    parse_table(p, pipeline);
+  else if (name == "MAX_RAY_PAYLOAD_SIZE" || name == "MAX_RAY_HIT_ATTRIBUTE_SIZE")
+    p.tokens.number("the size");  // what the shaders have counts
+  else if (name == "MAX_RAY_RECURSION_DEPTH")
+    pipeline.max_trace_depth = uint32_t(p.tokens.integer("the depth", 0, 31));
   else if (name == "FLAGS") {
     for (const std::string& flag : parse_list(p))
       if (flag != "LIBRARY") p.unsupported("pipeline flag " + flag);
   } else if (name == "USE_LIBRARY") {
-    for (const std::string& library : parse_list(p)) p.find(p.script.pipelines, library, "pipeline"), pipeline.libraries.push_back(library);
-  } else return false;
+    for (const std::string& library : parse_list(p))
+      p.find(p.script.pipelines, library, "pipeline"), pipeline.libraries.push_back(library);
+  } else
+    return false;
   return true;
 }
 
@@ -180,7 +220,8 @@ bool parse_ray_tracing_line(Parsing& p, const std::string& name, Pipeline& pipel
 void parse_optimization(Parsing& p, Pipeline& pipeline) {
   int unused = 0;
   p.find(p.script.shaders, p.tokens.word("the shader"), "shader");
-  if (p.tokens.raw_until_end(unused).find("graphics-robust-access") != std::string::npos) pipeline.is_robust = true;
+  if (p.tokens.raw_until_end(unused).find("graphics-robust-access") != std::string::npos)
+    pipeline.is_robust = true;
 }
 
 void parse_body(Parsing& p, Pipeline& pipeline) {
@@ -188,14 +229,22 @@ void parse_body(Parsing& p, Pipeline& pipeline) {
   for (; token.is_word() && token.text != "END"; token = p.tokens.next_after_line_ends()) {
     const std::string& name = token.text;
     int unused = 0;
-    if (name == "ATTACH") parse_attach(p, pipeline);
-    else if (name == "BIND") parse_bind(p, pipeline);
-    else if (name == "SUBGROUP") parse_subgroup(p);
-    else if (name == "COMPILE_OPTIONS") p.tokens.word("the shader"), p.tokens.raw_until_end(unused);
-    else if (name == "SHADER_OPTIMIZATION") parse_optimization(p, pipeline);
-    else if (name == "FRAMEBUFFER_SIZE") p.tokens.number("the width"), p.tokens.number("the height");
-    else if (name == "SET") p.unsupported("OpenCL: SET KERNEL");
-    else if (!pipeline.is_ray_tracing || !parse_ray_tracing_line(p, name, pipeline)) p.unsupported("in a pipeline: " + name);
+    if (name == "ATTACH")
+      parse_attach(p, pipeline);
+    else if (name == "BIND")
+      parse_bind(p, pipeline);
+    else if (name == "SUBGROUP")
+      parse_subgroup(p);
+    else if (name == "COMPILE_OPTIONS")
+      p.tokens.word("the shader"), p.tokens.raw_until_end(unused);
+    else if (name == "SHADER_OPTIMIZATION")
+      parse_optimization(p, pipeline);
+    else if (name == "FRAMEBUFFER_SIZE")
+      p.tokens.number("the width"), p.tokens.number("the height");
+    else if (name == "SET")
+      p.unsupported("OpenCL: SET KERNEL");
+    else if (!pipeline.is_ray_tracing || !parse_ray_tracing_line(p, name, pipeline))
+      p.unsupported("in a pipeline: " + name);
     p.tokens.end_line();
   }
   if (!token.is_word()) p.wrong("END is missing");

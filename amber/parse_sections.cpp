@@ -1,5 +1,5 @@
-// Scripts in sections, Amber's older language (VkScript): its compute commands, as buffers and commands of a Script.
-// SPDX-License-Identifier: Apache-2.0
+// Scripts in sections, Amber's older language (VkScript): its compute commands, as buffers and commands of a
+// Script. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstring>
 #include <regex>
@@ -35,16 +35,23 @@ std::vector<Section> split(const std::string& script) {
 // "u16vec3", "mat2x4", "int8_t" in Amber's names.
 std::optional<Type> type_of(const std::string& name) {
   std::smatch m;
-  if (std::regex_match(name, m, std::regex("(u?int(?:8|16|64))_t|float16_t"))) return type_named(m[1].matched ? m[1].str() : "float16");
+  if (std::regex_match(name, m, std::regex("(u?int(?:8|16|64))_t|float16_t")))
+    return type_named(m[1].matched ? m[1].str() : "float16");
   if (name == "int" || name == "uint") return type_named(name + "32");
   if (name == "float" || name == "double") return type_named(name);
-  if (!std::regex_match(name, m, std::regex("(|d|f16|[iu](?:|8|16|64))(vec|mat)([234])(x[234])?"))) return std::nullopt;
+  if (!std::regex_match(name, m, std::regex("(|d|f16|[iu](?:|8|16|64))(vec|mat)([234])(x[234])?")))
+    return std::nullopt;
   const std::string prefix = m[1].str(), size = m[3].str();
   const bool is_integer = prefix[0] == 'i' || prefix[0] == 'u';
   const std::string bits = is_integer && prefix.size() > 1 ? prefix.substr(1) : "32";
-  const std::string scalar = prefix.empty() ? "float" : prefix == "d" ? "double" : prefix == "f16" ? "float16" : (prefix[0] == 'u' ? "uint" : "int") + bits;
+  const std::string scalar = prefix.empty()    ? "float"
+                             : prefix == "d"   ? "double"
+                             : prefix == "f16" ? "float16"
+                                               : (prefix[0] == 'u' ? "uint" : "int") + bits;
   if (m[2] == "vec") return m[4].matched ? std::nullopt : type_named("vec" + size + "<" + scalar + ">");
-  return is_integer ? std::nullopt : type_named("mat" + size + (m[4].matched ? m[4].str() : "x" + size) + "<" + scalar + ">");
+  return is_integer
+             ? std::nullopt
+             : type_named("mat" + size + (m[4].matched ? m[4].str() : "x" + size) + "<" + scalar + ">");
 }
 
 Layout parse_type(Parsing& p, bool std140) {
@@ -60,8 +67,8 @@ std::string parse_place(Parsing& p) {
   const size_t colon = text.find(':');
   int64_t set = 0, binding = 0;
   const bool is_good = (colon == std::string::npos || parse_integer(text.substr(0, colon), set)) &&
-                       parse_integer(colon == std::string::npos ? text : text.substr(colon + 1), binding) && set >= 0 && set < isa::kMaxSets &&
-                       binding >= 0 && binding < isa::kMaxBindings;
+                       parse_integer(colon == std::string::npos ? text : text.substr(colon + 1), binding) &&
+                       set >= 0 && set < isa::kMaxSets && binding >= 0 && binding < isa::kMaxBindings;
   if (!is_good) p.wrong(fmt::format("'{}' is no binding", text));
   return fmt::format("{}:{}", set, binding);
 }
@@ -83,39 +90,52 @@ class Sections {
  private:
   void add_shader(const Section& section) {
     Parsing p{Tokens(section.text, path_), script_};
-    const std::map<std::string, Language> languages{
-        {"compute shader", Language::Glsl}, {"compute shader spirv", Language::SpirvText}, {"compute shader spirv hex", Language::SpirvHex}};
+    const std::map<std::string, Language> languages{{"compute shader", Language::Glsl},
+                                                    {"compute shader spirv", Language::SpirvText},
+                                                    {"compute shader spirv hex", Language::SpirvHex}};
     for (const char* quiet : {"require", "test", "comment"})
       if (section.title == quiet) return;
     const auto language = languages.find(section.title);
-    if (language == languages.end()) p.unsupported(fmt::format("graphics or unknown: section [{}]", section.title));
+    if (language == languages.end())
+      p.unsupported(fmt::format("graphics or unknown: section [{}]", section.title));
     Shader& shader = p.declare(script_.shaders, "compute", "shader");
-    shader.name = "compute", shader.stage = isa::Stage::Compute, shader.language = language->second, shader.path = path_;
+    shader.name = "compute", shader.stage = isa::Stage::Compute, shader.language = language->second,
+    shader.path = path_;
     const size_t lines = section.text.find_first_not_of('\n');
     const std::string text = lines == std::string::npos ? "" : section.text.substr(lines);
     shader.text = shader.language == Language::SpirvHex ? text : at_line(text, int(lines) + 1);
   }
 
   void parse_lines(Parsing& p, bool is_test) {
-    for (Token token = p.tokens.next_after_line_ends(); token.is_word(); token = p.tokens.next_after_line_ends()) {
-      if (is_test) parse_test(p, token.text);
-      else if (token.text == "fence_timeout") p.tokens.number("the time");
-      else if (token.text == "framebuffer" || token.text == "depthstencil" || token.text == "fbsize") p.unsupported("graphics: " + token.text);
-      else script_.features.insert(token.text);
+    for (Token token = p.tokens.next_after_line_ends(); token.is_word();
+         token = p.tokens.next_after_line_ends()) {
+      if (is_test)
+        parse_test(p, token.text);
+      else if (token.text == "fence_timeout")
+        p.tokens.number("the time");
+      else if (token.text == "framebuffer" || token.text == "depthstencil" || token.text == "fbsize")
+        p.unsupported("graphics: " + token.text);
+      else
+        script_.features.insert(token.text);
       p.tokens.end_line();
     }
   }
 
   void parse_test(Parsing& p, const std::string& name) {
-    if (name == "compute") parse_compute(p);
-    else if (name == "ssbo") parse_storage(p);
-    else if (name == "uniform") parse_uniform(p);
-    else if (name == "probe" && p.tokens.accept("ssbo")) parse_probe(p);
+    if (name == "compute")
+      parse_compute(p);
+    else if (name == "ssbo")
+      parse_storage(p);
+    else if (name == "uniform")
+      parse_uniform(p);
+    else if (name == "probe" && p.tokens.accept("ssbo"))
+      parse_probe(p);
     else if (name == "tolerance") {
       tolerances_.clear();
       while (p.tokens.peek().is_word()) tolerances_.push_back(parse_tolerance(p));
       if (tolerances_.empty() || tolerances_.size() > 4) p.wrong("a tolerance has one to four numbers");
-    } else p.unsupported("graphics or unknown: " + name);
+    } else
+      p.unsupported("graphics or unknown: " + name);
   }
 
   Command& add(Parsing& p, Command::Kind kind) {
@@ -151,7 +171,9 @@ class Sections {
       Binding& binding = bindings_[name];
       binding.kind = kind, binding.names = {name}, binding.where = out.where;
       const size_t colon = name.find(':');
-      if (colon != std::string::npos) binding.set = uint32_t(std::stoul(name)), binding.binding = uint32_t(std::stoul(name.substr(colon + 1)));
+      if (colon != std::string::npos)
+        binding.set = uint32_t(std::stoul(name)),
+        binding.binding = uint32_t(std::stoul(name.substr(colon + 1)));
     }
     if (bindings_[name].kind != kind) p.wrong(fmt::format("buffer {} is of another kind", name));
     if (out.bytes.size() < bytes) out.bytes.resize(bytes);
@@ -171,7 +193,8 @@ class Sections {
       const size_t at = count / each * layout.stride + slot.offset;
       command.bytes.resize(std::max(command.bytes.size(), at + bytes_of(slot.scalar)));
       const std::string text = p.tokens.next().text;
-      if (!put(slot.scalar, text, command.bytes.data() + at)) p.wrong(fmt::format("'{}' is no number of this type", text));
+      if (!put(slot.scalar, text, command.bytes.data() + at))
+        p.wrong(fmt::format("'{}' is no number of this type", text));
     }
     if (count == 0 || count % each) p.wrong(fmt::format("{} values: the type needs {} each", count, each));
     buffer(p, name, kind, uint64_t{command.offset} + command.bytes.size());
@@ -190,8 +213,9 @@ class Sections {
   }
 
   void parse_probe(Parsing& p) {
-    const std::map<std::string, Comparator> signs{{"==", Comparator::Eq}, {"!=", Comparator::Ne}, {"<", Comparator::Lt}, {"<=", Comparator::Le},
-                                                  {">", Comparator::Gt},  {">=", Comparator::Ge}, {"~=", Comparator::Eq}};
+    const std::map<std::string, Comparator> signs{
+        {"==", Comparator::Eq}, {"!=", Comparator::Ne}, {"<", Comparator::Lt}, {"<=", Comparator::Le},
+        {">", Comparator::Gt},  {">=", Comparator::Ge}, {"~=", Comparator::Eq}};
     Command& command = add(p, Command::Kind::Expect);
     Expectation& expect = command.expect;
     expect.as = parse_type(p, false);
@@ -216,8 +240,12 @@ class Sections {
 
 }  // namespace
 
-bool has_sections(const std::string& text) { return !split(text).empty(); }
+bool has_sections(const std::string& text) {
+  return !split(text).empty();
+}
 
-void parse_sections(Script& script, const std::string& text) { Sections(script, script.path).run(split(text)); }
+void parse_sections(Script& script, const std::string& text) {
+  Sections(script, script.path).run(split(text));
+}
 
 }  // namespace glint::amber

@@ -7,11 +7,11 @@
 namespace glint::amber {
 namespace {
 
-// What shaders need of a device they say themselves, and the compiler refuses by name what it lacks: scripts name many
-// features without need. These alone change what a launch does, and nothing else would tell.
+// What shaders need of a device they say themselves, and the compiler refuses by name what it lacks: scripts
+// name many features without need. These alone change what a launch does, and nothing else would tell.
 bool is_lacking(const std::string& name) {
-  for (const char* part : {"sparse", "nullDescriptor", "protectedMemory", "robustBufferAccess2", "robustImageAccess2",
-                           "RoundingModeRTZ", "DenormFlushToZero"})
+  for (const char* part : {"sparse", "nullDescriptor", "protectedMemory", "robustBufferAccess2",
+                           "robustImageAccess2", "RoundingModeRTZ", "DenormFlushToZero"})
     if (name.find(part) != std::string::npos) return true;
   return false;
 }
@@ -30,18 +30,22 @@ Language language_named(Parsing& p, const std::string& name) {
 // GLSL ES wants #version before anything else.
 std::string at_line(const std::string& text, int first_line) {
   const size_t end = text.find('\n');
-  const bool is_es = text.rfind("#version", 0) == 0 && end != std::string::npos && text.substr(0, end).find(" es") != std::string::npos;
-  if (is_es) return fmt::format("{}\n#line {}\n{}", text.substr(0, end), first_line + 1, text.substr(end + 1));
+  const bool is_es = text.rfind("#version", 0) == 0 && end != std::string::npos &&
+                     text.substr(0, end).find(" es") != std::string::npos;
+  if (is_es)
+    return fmt::format("{}\n#line {}\n{}", text.substr(0, end), first_line + 1, text.substr(end + 1));
   return std::string(size_t(first_line - 1), '\n') + text;
 }
 
 isa::Stage stage_named(Parsing& p, const std::string& name) {
-  const std::map<std::string, isa::Stage> stages{{"compute", isa::Stage::Compute}, {"ray_generation", isa::Stage::RayGeneration},
-                                                 {"any_hit", isa::Stage::AnyHit}, {"closest_hit", isa::Stage::ClosestHit},
-                                                 {"miss", isa::Stage::Miss}, {"intersection", isa::Stage::Intersection},
-                                                 {"callable", isa::Stage::Callable}};
+  const std::map<std::string, isa::Stage> stages{
+      {"compute", isa::Stage::Compute},  {"ray_generation", isa::Stage::RayGeneration},
+      {"any_hit", isa::Stage::AnyHit},   {"closest_hit", isa::Stage::ClosestHit},
+      {"miss", isa::Stage::Miss},        {"intersection", isa::Stage::Intersection},
+      {"callable", isa::Stage::Callable}};
   if (const auto found = stages.find(name); found != stages.end()) return found->second;
-  for (const char* graphics : {"vertex", "fragment", "geometry", "tessellation_evaluation", "tessellation_control", "mesh", "task"})
+  for (const char* graphics :
+       {"vertex", "fragment", "geometry", "tessellation_evaluation", "tessellation_control", "mesh", "task"})
     if (name == graphics) p.unsupported(fmt::format("graphics: {} shaders", name));
   p.wrong(fmt::format("there is no shader type '{}'", name));
 }

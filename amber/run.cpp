@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "amber/run.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 
 #include "amber/expect.h"
 #include "pipeline/software_traversal.h"
@@ -14,7 +13,8 @@ namespace {
 
 class Runner {
  public:
-  Runner(Script& script, const LaunchOptions& options, Outcome& outcome) : script_(script), options_(options), outcome_(outcome) {}
+  Runner(Script& script, const LaunchOptions& options, Outcome& outcome)
+      : script_(script), options_(options), outcome_(outcome) {}
 
   // False: an expectation does not hold.
   bool run(const std::vector<Command>& commands) {
@@ -26,16 +26,20 @@ class Runner {
  private:
   bool run(const Command& command) {
     switch (command.kind) {
-      case Command::Kind::Run: return launch_pipeline(command), true;
-      case Command::Kind::Copy: return copy(command), true;
+      case Command::Kind::Run:
+        return launch_pipeline(command), true;
+      case Command::Kind::Copy:
+        return copy(command), true;
       case Command::Kind::Write:
-        std::copy(command.bytes.begin(), command.bytes.end(), script_.buffers.at(command.to).bytes.begin() + std::ptrdiff_t(command.offset));
+        std::copy(command.bytes.begin(), command.bytes.end(),
+                  script_.buffers.at(command.to).bytes.begin() + std::ptrdiff_t(command.offset));
         return true;
       case Command::Kind::Repeat:
         for (uint32_t i = 0; i < command.count; ++i)
           if (!run(command.body)) return false;
         return true;
-      case Command::Kind::Expect: break;
+      case Command::Kind::Expect:
+        break;
     }
     ++outcome_.expectations;
     const std::string difference = check(script_, command);
@@ -48,12 +52,17 @@ class Runner {
   void launch_pipeline(const Command& command) {
     auto found = compiled_.find(command.pipeline);
     if (found == compiled_.end())
-      found = compiled_.emplace(command.pipeline, compile(script_, script_.pipelines.at(command.pipeline), pipeline::compiler_for(options_.gpu), options_.cache)).first;
+      found = compiled_
+                  .emplace(command.pipeline, compile(script_, script_.pipelines.at(command.pipeline),
+                                                     pipeline::compiler_for(options_.gpu), options_.cache))
+                  .first;
     try {
       const Launched launched = launch(script_, command, found->second, options_);
       keep_prints();
       outcome_.cycles += launched.cycles;
-      if (!launched.faults.empty()) outcome_.faults.push_back(fmt::format("{}: {}", command.where.to_string(), launched.faults.to_string()));
+      if (!launched.faults.empty())
+        outcome_.faults.push_back(
+            fmt::format("{}: {}", command.where.to_string(), launched.faults.to_string()));
     } catch (const Error& error) {
       keep_prints();
       if (error.exit() != Exit::Fault && error.exit() != Exit::Stuck) throw;

@@ -12,11 +12,11 @@ enum class Verdict : uint8_t { Passed, Failed, Unsupported };
 
 struct Outcome {
   Verdict verdict = Verdict::Passed;
-  Exit exit = Exit::Ok;    // Failure: an expectation does not hold; else the kind of error
-  std::string message;     // with file and line; empty when passed
+  Exit exit = Exit::Ok;             // Failure: an expectation does not hold; else the kind of error
+  std::string message;              // with file and line; empty when passed
   std::vector<std::string> faults;  // of each launch, what OnFault::Warn let pass
-  std::string printed;     // by the shaders of all launches, one launch after the other
-  uint64_t cycles = 0;     // of all launches, of the timing machine
+  std::string printed;              // by the shaders of all launches, one launch after the other
+  uint64_t cycles = 0;              // of all launches, of the timing machine
   uint32_t launches = 0, expectations = 0;
 };
 

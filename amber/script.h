@@ -22,9 +22,9 @@ struct Shader {
   std::string name;
   std::optional<isa::Stage> stage;  // none: several, each ATTACH says which
   Language language = Language::Glsl;
-  std::string text;                 // with empty lines before it, so that its lines are the script's
-  std::string target_env;           // empty: spv1.0 for SPIR-V
-  std::string path;                 // of the file that the lines count in
+  std::string text;        // with empty lines before it, so that its lines are the script's
+  std::string target_env;  // empty: spv1.0 for SPIR-V
+  std::string path;        // of the file that the lines count in
 };
 
 struct Buffer {
@@ -32,7 +32,7 @@ struct Buffer {
   Type type;
   Layout layout;
   bool is_image = false;
-  uint32_t dimensions = 0;          // of an image
+  uint32_t dimensions = 0;                // of an image
   std::array<uint32_t, 3> size{0, 0, 0};  // texels; of buffers with WIDTH too
   uint32_t levels = 1, samples = 1;
   uint64_t elements = 0;
@@ -60,22 +60,31 @@ struct Attachment {
 };
 
 enum class BindKind : uint8_t {
-  Uniform, Storage, UniformTexels, StorageTexels, StorageImage, SampledImage, CombinedImage, Sampler, Structure, PushConstants
+  Uniform,
+  Storage,
+  UniformTexels,
+  StorageTexels,
+  StorageImage,
+  SampledImage,
+  CombinedImage,
+  Sampler,
+  Structure,
+  PushConstants
 };
 
 struct Binding {
   BindKind kind = BindKind::Storage;
   std::vector<std::string> names, samplers;  // more than one: an array of descriptors
   uint32_t set = 0, binding = 0, base_level = 0;
-  std::vector<uint64_t> offsets, ranges;     // bytes, one a name or none
+  std::vector<uint64_t> offsets, ranges;  // bytes, one a name or none
   SourceLocation where;
 };
 
 struct Pipeline {
   std::string name;
   bool is_ray_tracing = false;
-  bool is_robust = false;                    // accesses outside of buffers and images are no faults
-  std::vector<Attachment> shaders;           // one of a compute pipeline
+  bool is_robust = false;           // accesses outside of buffers and images are no faults
+  std::vector<Attachment> shaders;  // one of a compute pipeline
   std::vector<std::pair<std::string, std::vector<std::string>>> groups;
   std::map<std::string, std::vector<std::string>> tables;  // of groups
   std::vector<std::string> libraries;
@@ -89,8 +98,8 @@ enum class Comparator : uint8_t { Eq, Ne, Lt, Le, Gt, Ge, Rgb, Rgba, Buffer, Rms
 struct Expectation {
   std::string buffer, other;
   Comparator comparator = Comparator::Eq;
-  uint32_t x = 0, y = 0, width = 0, height = 0;   // x: bytes, but of pixels in pixels
-  std::optional<Layout> as;                       // of the values, from x on; else the buffer's
+  uint32_t x = 0, y = 0, width = 0, height = 0;     // x: bytes, but of pixels in pixels
+  std::optional<Layout> as;                         // of the values, from x on; else the buffer's
   std::vector<std::pair<double, bool>> tolerances;  // with whether it counts percent
   std::vector<std::string> values;
 };
@@ -98,14 +107,14 @@ struct Expectation {
 struct Command {
   enum class Kind : uint8_t { Run, Expect, Copy, Write, Repeat } kind = Kind::Run;
   SourceLocation where;
-  std::string pipeline;                        // Run
+  std::string pipeline;  // Run
   std::array<uint32_t, 3> size{1, 1, 1};
-  std::string raygen, miss, hit, callable;     // tables
+  std::string raygen, miss, hit, callable;  // tables
   Expectation expect;
-  std::string from, to;                        // Copy; Write: to
-  uint32_t offset = 0;                         // Write
-  std::vector<std::byte> bytes;                // Write
-  uint32_t count = 1;                          // Repeat
+  std::string from, to;          // Copy; Write: to
+  uint32_t offset = 0;           // Write
+  std::vector<std::byte> bytes;  // Write
+  uint32_t count = 1;            // Repeat
   std::vector<Command> body;
 };
 
@@ -123,8 +132,8 @@ struct Script {
   std::vector<Command> commands;
 };
 
-// Language: docs/amber.md. UserError with file and line where the script is wrong; UnsupportedError with file, line and
-// the name of what Glint lacks.
+// Language: docs/amber.md. UserError with file and line where the script is wrong; UnsupportedError with
+// file, line and the name of what Glint lacks.
 Script parse_script(const std::string& text, const std::string& path);
 Script read_script(const std::string& path);
 

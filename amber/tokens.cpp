@@ -2,16 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "amber/tokens.h"
 
-#include <fmt/format.h>
-
 #include <cstring>
+#include <fmt/format.h>
 
 #include "amber/type.h"
 
 namespace glint::amber {
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r';
+}
 
 }  // namespace
 
@@ -19,11 +20,13 @@ Token Tokens::next() {
   for (;;) {
     while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
     if (at_ >= text_.size()) return {Token::Kind::EndOfText, "", line_};
-    if (text_[at_] == '#') at_ = std::min(text_.find('\n', at_), text_.size());
+    if (text_[at_] == '#')
+      at_ = std::min(text_.find('\n', at_), text_.size());
     else if (text_[at_] == '\\') {  // up to and with the line's end
       at_ = std::min(text_.find('\n', at_), text_.size());
       if (at_ < text_.size()) ++at_, ++line_;
-    } else break;
+    } else
+      break;
   }
   if (text_[at_] == '\n') return ++at_, Token{Token::Kind::EndOfLine, "", line_++};
   Token token{Token::Kind::Word, "", line_};
@@ -68,16 +71,20 @@ int64_t Tokens::integer(const char* what, int64_t least, int64_t most) {
   const std::string text = word(what);
   int64_t value = 0;
   if (!parse_integer(text, value) || value < least || value > most)
-    throw UserError(here(), fmt::format("{} is '{}', expected an integer from {} to {}", what, text, least, most));
+    throw UserError(here(),
+                    fmt::format("{} is '{}', expected an integer from {} to {}", what, text, least, most));
   return value;
 }
 
-uint32_t Tokens::number(const char* what) { return uint32_t(integer(what, 0, 0xffff'ffff)); }
+uint32_t Tokens::number(const char* what) {
+  return uint32_t(integer(what, 0, 0xffff'ffff));
+}
 
 double Tokens::real(const char* what) {
   const std::string text = word(what);
   double value = 0;
-  if (!parse_real(text, value)) throw UserError(here(), fmt::format("{} is '{}', expected a number", what, text));
+  if (!parse_real(text, value))
+    throw UserError(here(), fmt::format("{} is '{}', expected a number", what, text));
   return value;
 }
 
@@ -96,7 +103,8 @@ std::string Tokens::raw_until_end(int& first_line) {
     size_t word = at_;
     while (word < text_.size() && is_blank(text_[word])) ++word;
     const size_t line_end = std::min(text_.find('\n', at_), text_.size());
-    const bool is_end = text_.compare(word, 3, "END") == 0 && (word + 3 >= text_.size() || std::strchr(" \t\r\n#", text_[word + 3]));
+    const bool is_end = text_.compare(word, 3, "END") == 0 &&
+                        (word + 3 >= text_.size() || std::strchr(" \t\r\n#", text_[word + 3]));
     if (is_end) {
       at_ = word + 3;
       return text_.substr(begin, line_begin - begin);

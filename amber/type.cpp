@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "amber/type.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <fmt/format.h>
 #include <map>
 #include <regex>
 
@@ -15,9 +14,9 @@ namespace {
 
 const std::map<std::string, Scalar>& scalar_names() {
   static const std::map<std::string, Scalar> names{
-      {"int8", Scalar::I8},   {"uint8", Scalar::U8},   {"int16", Scalar::I16},     {"uint16", Scalar::U16}, {"float16", Scalar::F16},
-      {"int32", Scalar::I32}, {"uint32", Scalar::U32}, {"float", Scalar::F32},     {"int64", Scalar::I64},  {"uint64", Scalar::U64},
-      {"double", Scalar::F64}};
+      {"int8", Scalar::I8},     {"uint8", Scalar::U8},   {"int16", Scalar::I16},  {"uint16", Scalar::U16},
+      {"float16", Scalar::F16}, {"int32", Scalar::I32},  {"uint32", Scalar::U32}, {"float", Scalar::F32},
+      {"int64", Scalar::I64},   {"uint64", Scalar::U64}, {"double", Scalar::F64}};
   return names;
 }
 
@@ -30,11 +29,16 @@ std::optional<core::TexelFormat> texel_format(const std::string& glint_name) {
 std::optional<Scalar> channel_scalar(int bits, const std::string& numeric) {
   const bool is_signed = numeric == "SINT" || numeric == "SNORM" || numeric == "SSCALED";
   switch (bits) {
-    case 8: return is_signed ? Scalar::I8 : Scalar::U8;
-    case 16: return numeric == "SFLOAT" ? Scalar::F16 : is_signed ? Scalar::I16 : Scalar::U16;
-    case 32: return numeric == "SFLOAT" ? Scalar::F32 : is_signed ? Scalar::I32 : Scalar::U32;
-    case 64: return numeric == "SFLOAT" ? Scalar::F64 : is_signed ? Scalar::I64 : Scalar::U64;
-    default: return std::nullopt;
+    case 8:
+      return is_signed ? Scalar::I8 : Scalar::U8;
+    case 16:
+      return numeric == "SFLOAT" ? Scalar::F16 : is_signed ? Scalar::I16 : Scalar::U16;
+    case 32:
+      return numeric == "SFLOAT" ? Scalar::F32 : is_signed ? Scalar::I32 : Scalar::U32;
+    case 64:
+      return numeric == "SFLOAT" ? Scalar::F64 : is_signed ? Scalar::I64 : Scalar::U64;
+    default:
+      return std::nullopt;
   }
 }
 
@@ -46,23 +50,32 @@ std::optional<Type> format_named(const std::string& name) {
   Type type;
   type.name = name, type.is_packed = true;
   std::smatch m;
-  if (std::regex_match(name, m, std::regex("A8B8G8R8_(UNORM|SNORM|UINT|SINT|SRGB)_PACK32"))) return format_named("R8G8B8A8_" + m[1].str());
-  const std::map<std::string, std::string> packed{{"A2B10G10R10_UNORM_PACK32", "rgb10a2_unorm"}, {"A2B10G10R10_UINT_PACK32", "rgb10a2_uint"},
-                                                  {"B10G11R11_UFLOAT_PACK32", "r11g11b10_float"}, {"E5B9G9R9_UFLOAT_PACK32", "rgb9e5_float"}};
+  if (std::regex_match(name, m, std::regex("A8B8G8R8_(UNORM|SNORM|UINT|SINT|SRGB)_PACK32")))
+    return format_named("R8G8B8A8_" + m[1].str());
+  const std::map<std::string, std::string> packed{{"A2B10G10R10_UNORM_PACK32", "rgb10a2_unorm"},
+                                                  {"A2B10G10R10_UINT_PACK32", "rgb10a2_uint"},
+                                                  {"B10G11R11_UFLOAT_PACK32", "r11g11b10_float"},
+                                                  {"E5B9G9R9_UFLOAT_PACK32", "rgb9e5_float"}};
   if (const auto found = packed.find(name); found != packed.end()) {
     type.scalar = Scalar::U32, type.format = texel_format(found->second);
     return type;
   }
-  if (!std::regex_match(name, m, std::regex("((?:[RGBA](?:8|16|32|64))+)_(UNORM|SNORM|UINT|SINT|SFLOAT|SRGB|SSCALED|USCALED)"))) return std::nullopt;
+  if (!std::regex_match(
+          name, m,
+          std::regex("((?:[RGBA](?:8|16|32|64))+)_(UNORM|SNORM|UINT|SINT|SFLOAT|SRGB|SSCALED|USCALED)")))
+    return std::nullopt;
   std::string channels, lower;
   int bits = 0;
   const std::string list = m[1].str(), numeric = m[2].str();
   const std::regex channel("([RGBA])(\\d+)");
-  for (std::sregex_iterator it(list.begin(), list.end(), channel), end; it != end; ++it) channels += char(std::tolower((*it)[1].str()[0])), bits = std::stoi((*it)[2].str());
+  for (std::sregex_iterator it(list.begin(), list.end(), channel), end; it != end; ++it)
+    channels += char(std::tolower((*it)[1].str()[0])), bits = std::stoi((*it)[2].str());
   for (char c : numeric == "SFLOAT" ? std::string("FLOAT") : numeric) lower += char(std::tolower(c));
   type.scalar = *channel_scalar(bits, numeric);
   type.rows = uint32_t(channels.size());
-  type.format = bits == 64 && channels == "r" && !is_float(type.scalar) ? kHalves : texel_format(fmt::format("{}{}_{}", channels, bits, lower));
+  type.format = bits == 64 && channels == "r" && !is_float(type.scalar)
+                    ? kHalves
+                    : texel_format(fmt::format("{}{}_{}", channels, bits, lower));
   return type;
 }
 
@@ -71,11 +84,17 @@ std::optional<core::TexelFormat> format_like(const Type& type) {
   if (type.columns != 1 || type.rows == 3) return std::nullopt;
   if (type.rows == 1 && (type.scalar == Scalar::I64 || type.scalar == Scalar::U64)) return kHalves;
   const char* channels = type.rows == 1 ? "r" : type.rows == 2 ? "rg" : "rgba";
-  const bool is_signed = type.scalar == Scalar::I8 || type.scalar == Scalar::I16 || type.scalar == Scalar::I32;
-  return texel_format(fmt::format("{}{}_{}", channels, bytes_of(type.scalar) * 8, is_float(type.scalar) ? "float" : is_signed ? "sint" : "uint"));
+  const bool is_signed =
+      type.scalar == Scalar::I8 || type.scalar == Scalar::I16 || type.scalar == Scalar::I32;
+  return texel_format(fmt::format("{}{}_{}", channels, bytes_of(type.scalar) * 8,
+                                  is_float(type.scalar) ? "float"
+                                  : is_signed           ? "sint"
+                                                        : "uint"));
 }
 
-uint32_t round_up(uint32_t value, uint32_t to) { return (value + to - 1) / to * to; }
+uint32_t round_up(uint32_t value, uint32_t to) {
+  return (value + to - 1) / to * to;
+}
 
 // Khronos GLSL 4.60 specification, 7.6.2.2 "Standard Uniform Block Layout", rules 1 to 10.
 class LayoutMaker {
@@ -86,7 +105,8 @@ class LayoutMaker {
     if (t.is_packed) return bytes_of(t.scalar);
     if (!t.is_struct()) return t.columns > 1 ? aggregate(vector_alignment(t)) : vector_alignment(t);
     uint32_t largest = 1;
-    for (const Member& m : t.members) largest = std::max(largest, m.count ? aggregate(alignment(*m.type)) : alignment(*m.type));
+    for (const Member& m : t.members)
+      largest = std::max(largest, m.count ? aggregate(alignment(*m.type)) : alignment(*m.type));
     return aggregate(largest);
   }
   uint32_t size(const Type& t, std::optional<uint32_t> matrix_stride = {}) const {
@@ -102,7 +122,8 @@ class LayoutMaker {
     }
     const uint32_t stride = matrix_stride.value_or(alignment(t));
     for (uint32_t c = 0; c < t.columns; ++c)
-      for (uint32_t r = 0; r < t.rows; ++r) out.slots.push_back({at + c * stride + r * bytes_of(t.scalar), t.scalar});
+      for (uint32_t r = 0; r < t.rows; ++r)
+        out.slots.push_back({at + c * stride + r * bytes_of(t.scalar), t.scalar});
   }
   Layout out;
 
@@ -118,7 +139,8 @@ class LayoutMaker {
   uint32_t walk(const Type& t, const F& call) const {
     uint32_t end = 0;
     for (const Member& m : t.members) {
-      const uint32_t begin = m.offset.value_or(round_up(end, m.count ? aggregate(alignment(*m.type)) : alignment(*m.type)));
+      const uint32_t begin =
+          m.offset.value_or(round_up(end, m.count ? aggregate(alignment(*m.type)) : alignment(*m.type)));
       const uint32_t stride = m.count ? array_stride(m) : 0;
       for (uint32_t i = 0; i < m.count.value_or(1); ++i) call(m, begin + i * stride);
       const bool is_padded = !m.count && std140_ && m.type->is_struct();
@@ -147,7 +169,8 @@ std::optional<Type> type_named(const std::string& name) {
   std::smatch m;
   if (const auto found = scalars.find(name); found != scalars.end()) {
     type.scalar = found->second;
-  } else if (std::regex_match(name, m, std::regex("(?:vec([234])|mat([234])x([234]))<(\\w+)>")) && scalars.count(m[4].str())) {
+  } else if (std::regex_match(name, m, std::regex("(?:vec([234])|mat([234])x([234]))<(\\w+)>")) &&
+             scalars.count(m[4].str())) {
     type.scalar = scalars.at(m[4].str());
     type.rows = uint32_t(std::stoi(m[1].matched ? m[1].str() : m[3].str()));
     if (m[2].matched) type.columns = uint32_t(std::stoi(m[2].str()));
@@ -158,12 +181,13 @@ std::optional<Type> type_named(const std::string& name) {
   return type;
 }
 
-// Choice: elements of a buffer of scalars or vectors follow each other as in std430 in both layouts, a vector of three
-// with room for a fourth: as the reference implementation does.
+// Choice: elements of a buffer of scalars or vectors follow each other as in std430 in both layouts, a vector
+// of three with room for a fourth: as the reference implementation does.
 Layout lay_out(const Type& type, bool std140) {
   LayoutMaker maker(std140);
   maker.add(type, 0);
-  maker.out.stride = type.is_packed || type.stride ? maker.size(type) : round_up(maker.size(type), maker.alignment(type));
+  maker.out.stride =
+      type.is_packed || type.stride ? maker.size(type) : round_up(maker.size(type), maker.alignment(type));
   return maker.out;
 }
 
@@ -188,15 +212,21 @@ bool parse_real(const std::string& text, double& out) {
 void put_real(Scalar scalar, double value, std::byte* at) {
   const float single = float(value);
   const uint16_t half = core::to_half(single);
-  if (scalar == Scalar::F64) std::memcpy(at, &value, 8);
-  else if (scalar == Scalar::F32) std::memcpy(at, &single, 4);
-  else if (scalar == Scalar::F16) std::memcpy(at, &half, 2);
-  else put_integer(scalar, int64_t(value), at);
+  if (scalar == Scalar::F64)
+    std::memcpy(at, &value, 8);
+  else if (scalar == Scalar::F32)
+    std::memcpy(at, &single, 4);
+  else if (scalar == Scalar::F16)
+    std::memcpy(at, &half, 2);
+  else
+    put_integer(scalar, int64_t(value), at);
 }
 
 void put_integer(Scalar scalar, int64_t value, std::byte* at) {
-  if (is_float(scalar)) put_real(scalar, double(value), at);
-  else std::memcpy(at, &value, bytes_of(scalar));  // little-endian hosts, as all that Glint runs on
+  if (is_float(scalar))
+    put_real(scalar, double(value), at);
+  else
+    std::memcpy(at, &value, bytes_of(scalar));  // little-endian hosts, as all that Glint runs on
 }
 
 bool put(Scalar scalar, const std::string& text, std::byte* at) {
@@ -231,7 +261,9 @@ double get_real(Scalar scalar, const std::byte* at) {
 }
 
 std::string show(Scalar scalar, const std::byte* at) {
-  if (is_float(scalar)) return scalar == Scalar::F64 ? fmt::format("{}", get_real(scalar, at)) : fmt::format("{}", float(get_real(scalar, at)));
+  if (is_float(scalar))
+    return scalar == Scalar::F64 ? fmt::format("{}", get_real(scalar, at))
+                                 : fmt::format("{}", float(get_real(scalar, at)));
   const uint64_t bits = get_bits(scalar, at);
   return scalar == Scalar::U64 ? fmt::format("{}", bits) : fmt::format("{}", int64_t(bits));
 }

@@ -14,7 +14,9 @@ namespace glint::amber {
 
 enum class Scalar : uint8_t { I8, U8, I16, U16, F16, I32, U32, F32, I64, U64, F64 };
 uint32_t bytes_of(Scalar scalar);
-inline bool is_float(Scalar s) { return s == Scalar::F16 || s == Scalar::F32 || s == Scalar::F64; }
+inline bool is_float(Scalar s) {
+  return s == Scalar::F16 || s == Scalar::F32 || s == Scalar::F64;
+}
 
 struct Type;
 struct Member {
@@ -28,16 +30,16 @@ struct Member {
 struct Type {
   Scalar scalar = Scalar::I32;
   uint32_t rows = 1, columns = 1;
-  bool is_packed = false;                    // of a format: three channels take no room of a fourth
-  std::optional<core::TexelFormat> format;   // of texels: of formats, and of scalars and vectors like one
+  bool is_packed = false;                   // of a format: three channels take no room of a fourth
+  std::optional<core::TexelFormat> format;  // of texels: of formats, and of scalars and vectors like one
   std::string name;
   std::vector<Member> members;
-  std::optional<uint32_t> stride;            // of a struct
+  std::optional<uint32_t> stride;  // of a struct
   bool is_struct() const { return !members.empty(); }
 };
 
-// "int32", "vec3<float>", "mat2x4<float>" (columns by rows), "R8G8B8A8_UNORM". None: no such type; a format that
-// simulated textures lack is a type without `format`.
+// "int32", "vec3<float>", "mat2x4<float>" (columns by rows), "R8G8B8A8_UNORM". None: no such type; a format
+// that simulated textures lack is a type without `format`.
 std::optional<Type> type_named(const std::string& name);
 
 struct Slot {
@@ -56,10 +58,10 @@ Layout lay_out(const Type& type, bool std140);
 bool put(Scalar scalar, const std::string& text, std::byte* at);
 void put_real(Scalar scalar, double value, std::byte* at);
 void put_integer(Scalar scalar, int64_t value, std::byte* at);  // the low bits
-bool parse_integer(const std::string& text, int64_t& out);  // 64 bits; unsigned ones wrap
+bool parse_integer(const std::string& text, int64_t& out);      // 64 bits; unsigned ones wrap
 bool parse_real(const std::string& text, double& out);
 double get_real(Scalar scalar, const std::byte* at);
-uint64_t get_bits(Scalar scalar, const std::byte* at);      // of integers, sign-extended
+uint64_t get_bits(Scalar scalar, const std::byte* at);  // of integers, sign-extended
 std::string show(Scalar scalar, const std::byte* at);
 
 }  // namespace glint::amber

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <fmt/format.h>
-
 #include <string>
 
 namespace glint {
@@ -12,18 +11,18 @@ namespace glint {
 }  // namespace glint
 
 #define GLINT_PANIC(...) ::glint::check_failed(__FILE__, __LINE__, fmt::format(__VA_ARGS__))
-#define GLINT_CHECK(condition, ...)                                                                    \
-  do {                                                                                                 \
-    if (!(condition)) [[unlikely]]                                                                     \
+#define GLINT_CHECK(condition, ...)                                                                       \
+  do {                                                                                                    \
+    if (!(condition)) [[unlikely]]                                                                        \
       ::glint::check_failed(__FILE__, __LINE__, std::string(#condition ": ") + fmt::format(__VA_ARGS__)); \
   } while (0)
-#define GLINT_CHECK_COMPARE(a, op, b)                                                                  \
-  do {                                                                                                 \
-    const auto glint_a = (a);                                                                          \
-    const auto glint_b = (b);                                                                          \
-    if (!(glint_a op glint_b)) [[unlikely]]                                                            \
-      ::glint::check_failed(__FILE__, __LINE__,                                                        \
-                            fmt::format("{} {} {}: {} against {}", #a, #op, #b, glint_a, glint_b));    \
+#define GLINT_CHECK_COMPARE(a, op, b)                                                               \
+  do {                                                                                              \
+    const auto glint_a = (a);                                                                       \
+    const auto glint_b = (b);                                                                       \
+    if (!(glint_a op glint_b)) [[unlikely]]                                                         \
+      ::glint::check_failed(__FILE__, __LINE__,                                                     \
+                            fmt::format("{} {} {}: {} against {}", #a, #op, #b, glint_a, glint_b)); \
   } while (0)
 #define GLINT_CHECK_EQ(a, b) GLINT_CHECK_COMPARE(a, ==, b)
 #define GLINT_CHECK_LE(a, b) GLINT_CHECK_COMPARE(a, <=, b)

@@ -5,15 +5,14 @@
 #include <fmt/format.h>
 
 #define TOML_EXCEPTIONS 1
-#include <toml++/toml.h>
-
 #include <set>
+#include <toml++/toml.h>
 
 namespace glint {
 
 struct ConfigTable::State {
-  std::string path;      // dotted, "" for the root
-  toml::table table;     // a copy: what is left is what nobody has taken
+  std::string path;   // dotted, "" for the root
+  toml::table table;  // a copy: what is left is what nobody has taken
   std::set<std::string> known;
   SourceLocation place;
   Diagnostics* diagnostics = nullptr;
@@ -76,7 +75,8 @@ toml::table parse(const std::string& text, const std::string& name) {
 
 }  // namespace
 
-Config::Config() : layers_(std::make_unique<Layers>()) {}
+Config::Config() : layers_(std::make_unique<Layers>()) {
+}
 Config::~Config() = default;
 Config::Config(Config&&) noexcept = default;
 
@@ -85,12 +85,15 @@ void Config::add_file(const std::string& path) {
     merge(layers_->merged, toml::parse_file(path));
   } catch (const toml::parse_error& error) {
     const toml::source_position at = error.source().begin;
-    if (at.line == 0) throw UserError({path}, "cannot read the configuration file", "give a TOML file or a preset's name");
+    if (at.line == 0)
+      throw UserError({path}, "cannot read the configuration file", "give a TOML file or a preset's name");
     throw UserError({path, int(at.line), int(at.column)}, std::string(error.description()));
   }
 }
 
-void Config::add_text(const std::string& name, const std::string& text) { merge(layers_->merged, parse(text, name)); }
+void Config::add_text(const std::string& name, const std::string& text) {
+  merge(layers_->merged, parse(text, name));
+}
 
 void Config::add_setting(const std::string& key_value) {
   const std::string name = "--set " + key_value;
@@ -115,7 +118,9 @@ ConfigTable Config::root(Diagnostics& diagnostics) const {
   return ConfigTable(std::move(state));
 }
 
-bool ConfigTable::has(std::string_view key) const { return state_->table.contains(key); }
+bool ConfigTable::has(std::string_view key) const {
+  return state_->table.contains(key);
+}
 
 SourceLocation ConfigTable::where(std::string_view key) const {
   return has(key) ? location(state_->table, key) : state_->place;
@@ -126,8 +131,9 @@ bool ConfigTable::take_bool(std::string_view key, bool fallback) {
   const toml::node* node = state_->table.get(key);
   if (!node) return fallback;
   if (const auto value = node->value_exact<bool>()) return *value;
-  state_->diagnostics->error(location(state_->table, key), fmt::format("'{}' is {}, expected true or false",
-                                                          dotted(state_->path, key), type_name(*node)));
+  state_->diagnostics->error(
+      location(state_->table, key),
+      fmt::format("'{}' is {}, expected true or false", dotted(state_->path, key), type_name(*node)));
   return fallback;
 }
 
@@ -139,18 +145,21 @@ int64_t ConfigTable::take_integer(std::string_view key, int64_t fallback, int64_
   const std::string name = dotted(state_->path, key);
   const auto value = node->value_exact<int64_t>();
   if (!value) {
-    state_->diagnostics->error(location(state_->table, key), fmt::format("'{}' is {}, expected an integer{}{}", name,
-                                                            type_name(*node), unit.empty() ? "" : " in ", unit));
+    state_->diagnostics->error(location(state_->table, key),
+                               fmt::format("'{}' is {}, expected an integer{}{}", name, type_name(*node),
+                                           unit.empty() ? "" : " in ", unit));
     return fallback;
   }
   if (*value < min || *value > max) {
-    state_->diagnostics->error(location(state_->table, key), fmt::format("'{}' is {}, expected {} to {} {}", name, *value, min, max, unit));
+    state_->diagnostics->error(location(state_->table, key),
+                               fmt::format("'{}' is {}, expected {} to {} {}", name, *value, min, max, unit));
     return fallback;
   }
   return *value;
 }
 
-double ConfigTable::take_number(std::string_view key, double fallback, double min, double max, std::string_view unit) {
+double ConfigTable::take_number(std::string_view key, double fallback, double min, double max,
+                                std::string_view unit) {
   state_->known.emplace(key);
   const toml::node* node = state_->table.get(key);
   if (!node) return fallback;
@@ -158,12 +167,14 @@ double ConfigTable::take_number(std::string_view key, double fallback, double mi
   const auto value = node->is_integer() ? std::optional<double>(double(*node->value_exact<int64_t>()))
                                         : node->value_exact<double>();
   if (!value) {
-    state_->diagnostics->error(location(state_->table, key), fmt::format("'{}' is {}, expected a number{}{}", name, type_name(*node),
-                                                            unit.empty() ? "" : " in ", unit));
+    state_->diagnostics->error(location(state_->table, key),
+                               fmt::format("'{}' is {}, expected a number{}{}", name, type_name(*node),
+                                           unit.empty() ? "" : " in ", unit));
     return fallback;
   }
   if (!(*value >= min && *value <= max)) {
-    state_->diagnostics->error(location(state_->table, key), fmt::format("'{}' is {}, expected {} to {} {}", name, *value, min, max, unit));
+    state_->diagnostics->error(location(state_->table, key),
+                               fmt::format("'{}' is {}, expected {} to {} {}", name, *value, min, max, unit));
     return fallback;
   }
   return *value;
@@ -174,8 +185,9 @@ std::string ConfigTable::take_string(std::string_view key, const std::string& fa
   const toml::node* node = state_->table.get(key);
   if (!node) return fallback;
   if (const auto value = node->value_exact<std::string>()) return *value;
-  state_->diagnostics->error(location(state_->table, key),
-                             fmt::format("'{}' is {}, expected a string", dotted(state_->path, key), type_name(*node)));
+  state_->diagnostics->error(
+      location(state_->table, key),
+      fmt::format("'{}' is {}, expected a string", dotted(state_->path, key), type_name(*node)));
   return fallback;
 }
 
@@ -186,8 +198,8 @@ std::string ConfigTable::take_name(std::string_view key, const std::string& fall
     if (name == value) return value;
   const std::string guess = nearest(value, names);
   state_->diagnostics->error(where(key),
-                             fmt::format("'{}' is \"{}\", expected one of: {}", dotted(state_->path, key), value,
-                                         fmt::join(names, ", ")),
+                             fmt::format("'{}' is \"{}\", expected one of: {}", dotted(state_->path, key),
+                                         value, fmt::join(names, ", ")),
                              guess.empty() ? "" : fmt::format("did you mean \"{}\"?", guess));
   return fallback;
 }
@@ -203,7 +215,8 @@ ConfigTable ConfigTable::take_table(std::string_view key) {
     if (const toml::table* table = node->as_table())
       sub->table = *table;
     else
-      state_->diagnostics->error(sub->place, fmt::format("'{}' is {}, expected a table", sub->path, type_name(*node)),
+      state_->diagnostics->error(sub->place,
+                                 fmt::format("'{}' is {}, expected a table", sub->path, type_name(*node)),
                                  fmt::format("write [{}] and its keys below", sub->path));
   }
   return ConfigTable(std::move(sub));
@@ -221,9 +234,15 @@ void ConfigTable::reject_the_rest() {
   }
 }
 
-std::string config_text(bool value) { return value ? "true" : "false"; }
-std::string config_text(int64_t value) { return fmt::format("{}", value); }
-std::string config_text(const std::string& value) { return fmt::format("\"{}\"", value); }
+std::string config_text(bool value) {
+  return value ? "true" : "false";
+}
+std::string config_text(int64_t value) {
+  return fmt::format("{}", value);
+}
+std::string config_text(const std::string& value) {
+  return fmt::format("\"{}\"", value);
+}
 std::string config_text(double value) {
   std::string text = fmt::format("{}", value);
   if (text.find_first_of(".en") == std::string::npos) text += ".0";

@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/diagnostics.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <fmt/format.h>
 #include <numeric>
 
 #include "base/check.h"
@@ -49,7 +48,8 @@ std::string SourceLocation::to_string() const {
 }
 
 UserError::UserError(const SourceLocation& where, const std::string& what, const std::string& note)
-    : Error(Exit::UserInput, format_message(where, "error", what, note)) {}
+    : Error(Exit::UserInput, format_message(where, "error", what, note)) {
+}
 
 void Diagnostics::error(const SourceLocation& where, const std::string& what, const std::string& note) {
   messages_.push_back(format_message(where, "error", what, note));
@@ -76,7 +76,8 @@ std::string nearest(const std::string& word, const std::vector<std::string>& can
 }
 
 void check_failed(const char* file, int line, const std::string& what) {
-  std::fprintf(stderr, "%s:%d: internal error: %s\nThis is a bug in Glint: please report it with the command line.\n",
+  std::fprintf(stderr,
+               "%s:%d: internal error: %s\nThis is a bug in Glint: please report it with the command line.\n",
                file, line, what.c_str());
   std::abort();
 }

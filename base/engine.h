@@ -1,4 +1,5 @@
-// Simulated time: cells that advance on their own for a window, and channels of timestamped messages between them.
+// Simulated time: cells that advance on their own for a window, and channels of timestamped messages between
+// them.
 //
 // The window is no longer than the shortest channel latency, so what a cell needs in a window was sent before
 // it: cells may advance in any order or in parallel and the result is the same (docs/architecture.md, D6).
@@ -17,11 +18,12 @@ namespace glint {
 class ChannelBase {
  public:
   virtual ~ChannelBase() = default;
-  virtual void deliver() = 0;               // what was sent in the last window becomes visible
-  virtual Cycle next_arrival() const = 0;   // of delivered and undelivered messages; kNever when empty
+  virtual void deliver() = 0;              // what was sent in the last window becomes visible
+  virtual Cycle next_arrival() const = 0;  // of delivered and undelivered messages; kNever when empty
 };
 
-// Messages from one cell to one other, in order of arrival time. send() is the producer's, the rest the consumer's.
+// Messages from one cell to one other, in order of arrival time. send() is the producer's, the rest the
+// consumer's.
 template <class Message>
 class Channel final : public ChannelBase {
  public:
@@ -66,8 +68,8 @@ class Cell {
   virtual void advance(Cycle from, Cycle until) = 0;
   // Earliest cycle >= `from` at which it has work without new messages; kNever when idle.
   virtual Cycle next_event(Cycle from) const = 0;
-  virtual bool finished() const = 0;        // holds no work at all
-  virtual uint64_t progress() const = 0;    // grows whenever anything moved: the watchdog reads it
+  virtual bool finished() const = 0;      // holds no work at all
+  virtual uint64_t progress() const = 0;  // grows whenever anything moved: the watchdog reads it
   virtual std::string describe_stall() const = 0;
 };
 

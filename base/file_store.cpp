@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/file_store.h"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
+#include <unistd.h>
 #include <vector>
 
 namespace glint {
@@ -73,7 +72,8 @@ uint64_t content_hash(std::string_view bytes, uint64_t seed) {
 }
 
 std::string FileStore::file_of(const std::string& key) const {
-  return fmt::format("{}/{:016x}{}", options_.folder, content_hash(options_.build + '\0' + key), options_.ending);
+  return fmt::format("{}/{:016x}{}", options_.folder, content_hash(options_.build + '\0' + key),
+                     options_.ending);
 }
 
 std::optional<std::string> FileStore::find(const std::string& given) {
@@ -109,7 +109,8 @@ void FileStore::store(const std::string& given, std::string_view value) {
   std::error_code failed;
   fs::create_directories(options_.folder, failed);
   const std::string path = file_of(given), key = options_.build + '\0' + given;
-  const std::string temporary = fmt::format("{}.{}.{:x}", path, ::getpid(), reinterpret_cast<uintptr_t>(this));
+  const std::string temporary =
+      fmt::format("{}.{}.{:x}", path, ::getpid(), reinterpret_cast<uintptr_t>(this));
   {
     std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
     const Header header = header_of(key, value);

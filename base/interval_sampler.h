@@ -1,5 +1,5 @@
-// Reads a cell's counters every so many cycles of simulated time, whatever windows or skipping its cell runs in.
-// SPDX-License-Identifier: Apache-2.0
+// Reads a cell's counters every so many cycles of simulated time, whatever windows or skipping its cell runs
+// in. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
 #include <utility>
@@ -9,8 +9,9 @@
 
 namespace glint {
 
-// Off until start(). The cell calls reach(now) before it changes anything in cycle `now`: what changes only in such
-// cycles was the same in all cycles since the last, so a sample at a cycle that was skipped is exact too.
+// Off until start(). The cell calls reach(now) before it changes anything in cycle `now`: what changes only
+// in such cycles was the same in all cycles since the last, so a sample at a cycle that was skipped is exact
+// too.
 class IntervalSampler {
  public:
   // The counters as they are at the start of cycle `at`. Always the same number of them.
@@ -22,9 +23,9 @@ class IntervalSampler {
   }
   void reach(Cycle now) {
     while (now >= next_) [[unlikely]] {
-      samples_.push_back(read_(next_));
-      next_ += interval_;
-    }
+        samples_.push_back(read_(next_));
+        next_ += interval_;
+      }
   }
   // The end of the run: a last sample, unless one was just taken.
   void finish(Cycle end) {

@@ -32,8 +32,9 @@ struct Param {
 };
 // A factory, not aggregate deduction: clang 14 has no CTAD for aggregates.
 template <class Owner, class T>
-constexpr Param<Owner, T> param(T Owner::*field, std::string_view name, std::string_view unit, std::string_view doc,
-                                std::type_identity_t<T> min, std::type_identity_t<T> max) {
+constexpr Param<Owner, T> param(T Owner::*field, std::string_view name, std::string_view unit,
+                                std::string_view doc, std::type_identity_t<T> min,
+                                std::type_identity_t<T> max) {
   return {field, name, unit, doc, min, max};
 }
 template <class Owner>
@@ -65,8 +66,9 @@ constexpr Section<Owner, T> section(T Owner::*field, std::string_view name, std:
   return {field, name, doc};
 }
 
-// One described key: what `glint describe` and docs/config.md show. `needs`: the choice of policy that gives it a meaning, where
-// another is made; such a key counts for nothing and belongs in no resolved configuration.
+// One described key: what `glint describe` and docs/config.md show. `needs`: the choice of policy that gives
+// it a meaning, where another is made; such a key counts for nothing and belongs in no resolved
+// configuration.
 struct ParamInfo {
   std::string key, unit, doc, value, range, needs = {};
 };
@@ -78,7 +80,8 @@ void read_param(ConfigTable& table, Owner& out, const Param<Owner, T>& p) {
   else if constexpr (std::is_floating_point_v<T>)
     out.*p.field = T(table.take_number(p.name, double(out.*p.field), double(p.min), double(p.max), p.unit));
   else
-    out.*p.field = T(table.take_integer(p.name, int64_t(out.*p.field), int64_t(p.min), int64_t(p.max), p.unit));
+    out.*p.field =
+        T(table.take_integer(p.name, int64_t(out.*p.field), int64_t(p.min), int64_t(p.max), p.unit));
 }
 template <class Owner>
 void read_param(ConfigTable& table, Owner& out, const Choice<Owner>& c) {
@@ -88,19 +91,23 @@ template <class Owner, class T>
 void read_param(ConfigTable& table, Owner& out, const Section<Owner, T>& s);
 
 template <class Owner, class T>
-void describe_param(std::vector<ParamInfo>& out, const std::string& prefix, const Owner& o, const Param<Owner, T>& p) {
-  ParamInfo info{prefix + std::string(p.name), std::string(p.unit), std::string(p.doc), config_text(o.*p.field), ""};
+void describe_param(std::vector<ParamInfo>& out, const std::string& prefix, const Owner& o,
+                    const Param<Owner, T>& p) {
+  ParamInfo info{prefix + std::string(p.name), std::string(p.unit), std::string(p.doc),
+                 config_text(o.*p.field), ""};
   if constexpr (!std::is_same_v<T, bool>) info.range = config_text(p.min) + " to " + config_text(p.max);
   out.push_back(std::move(info));
 }
 template <class Owner>
-void describe_param(std::vector<ParamInfo>& out, const std::string& prefix, const Owner& o, const Choice<Owner>& c) {
+void describe_param(std::vector<ParamInfo>& out, const std::string& prefix, const Owner& o,
+                    const Choice<Owner>& c) {
   std::string range;
   for (const std::string& name : c.names()) range += (range.empty() ? "" : ", ") + name;
   out.push_back({prefix + std::string(c.name), "", std::string(c.doc), config_text(o.*c.field), range});
 }
 template <class Owner, class T>
-void describe_param(std::vector<ParamInfo>& out, const std::string& prefix, const Owner& o, const Section<Owner, T>& s);
+void describe_param(std::vector<ParamInfo>& out, const std::string& prefix, const Owner& o,
+                    const Section<Owner, T>& s);
 
 // read_param and describe_param are found by argument-dependent lookup: registry.h adds `policy`.
 
@@ -126,8 +133,10 @@ void read_param(ConfigTable& table, Owner& out, const Section<Owner, T>& s) {
   read_params(sub, out.*s.field);
 }
 template <class Owner, class T>
-void describe_param(std::vector<ParamInfo>& out, const std::string& prefix, const Owner& o, const Section<Owner, T>& s) {
-  for (ParamInfo& info : describe_params(o.*s.field, prefix + std::string(s.name) + ".")) out.push_back(std::move(info));
+void describe_param(std::vector<ParamInfo>& out, const std::string& prefix, const Owner& o,
+                    const Section<Owner, T>& s) {
+  for (ParamInfo& info : describe_params(o.*s.field, prefix + std::string(s.name) + "."))
+    out.push_back(std::move(info));
 }
 
 }  // namespace glint

@@ -14,7 +14,8 @@ class Probe {
 
   template <class Make>
   void fire(Make&& make) const {  // `make` builds the event, and runs only when somebody listens
-    if (listeners_.empty()) [[likely]] return;
+    if (listeners_.empty()) [[likely]]
+      return;
     const Event event = make();
     for (const Listener& listener : listeners_) listener(event);
   }

@@ -1,5 +1,5 @@
-// A shader as the compiler left it, for people: ISA, the SPIR-V it was lowered from, and which line belongs to which.
-// SPDX-License-Identifier: Apache-2.0
+// A shader as the compiler left it, for people: ISA, the SPIR-V it was lowered from, and which line belongs
+// to which. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <string>
@@ -26,9 +26,9 @@ struct ListedScope {
 
 struct ProgramListing {
   std::string shader, stage;
-  std::vector<std::string> files;    // paths, as the compiler was given them
-  std::vector<ListedLine> isa;       // one an instruction
-  std::vector<ListedLine> spirv;     // one an instruction, after optimisation; empty when unknown
+  std::vector<std::string> files;  // paths, as the compiler was given them
+  std::vector<ListedLine> isa;     // one an instruction
+  std::vector<ListedLine> spirv;   // one an instruction, after optimisation; empty when unknown
   std::vector<ListedScope> scopes;
 };
 

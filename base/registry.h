@@ -21,8 +21,8 @@ template <class Interface>
 struct PolicyChoice {
   using Make = std::function<std::unique_ptr<Interface>(typename Interface::Context)>;
   std::string name;
-  Make maker;                     // empty: the policy's default parameters
-  std::vector<ParamInfo> params;  // the policy's parameters as read
+  Make maker;                                            // empty: the policy's default parameters
+  std::vector<ParamInfo> params;                         // the policy's parameters as read
   std::map<std::string, std::vector<ParamInfo>> others;  // those of the policies not chosen
 
   PolicyChoice(const char* default_name) : name(default_name) {}  // NOLINT: reads as a default value
@@ -127,7 +127,8 @@ void describe_param(std::vector<ParamInfo>& out, const std::string& prefix, cons
   std::string range;
   for (const std::string& name : Registry<Interface>::names()) range += (range.empty() ? "" : ", ") + name;
   out.push_back({prefix + std::string(p.name), "", std::string(p.doc), config_text(choice.name), range});
-  const auto add = [&](const std::string& policy, const std::vector<ParamInfo>& params, const std::string& needs) {
+  const auto add = [&](const std::string& policy, const std::vector<ParamInfo>& params,
+                       const std::string& needs) {
     for (ParamInfo info : params) {
       info.key = prefix + policy + "." + info.key;
       info.needs = needs;

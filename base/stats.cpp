@@ -8,11 +8,21 @@ Stat::Stat(Group* group, std::string_view name, std::string_view unit, std::stri
     : name_(name), unit_(unit), doc_(doc) {
   group->stats_.push_back(this);
 }
-void Counter::accept(Visitor& visitor) const { visitor.visit(*this); }
-void Ratio::accept(Visitor& visitor) const { visitor.visit(*this); }
-void Value::accept(Visitor& visitor) const { visitor.visit(*this); }
-void Histogram::accept(Visitor& visitor) const { visitor.visit(*this); }
-void BreakdownBase::accept(Visitor& visitor) const { visitor.visit(*this); }
+void Counter::accept(Visitor& visitor) const {
+  visitor.visit(*this);
+}
+void Ratio::accept(Visitor& visitor) const {
+  visitor.visit(*this);
+}
+void Value::accept(Visitor& visitor) const {
+  visitor.visit(*this);
+}
+void Histogram::accept(Visitor& visitor) const {
+  visitor.visit(*this);
+}
+void BreakdownBase::accept(Visitor& visitor) const {
+  visitor.visit(*this);
+}
 
 Group::Group(Group* parent, std::string name) : name_(std::move(name)) {
   if (parent) parent->children_.push_back(this);

@@ -1,8 +1,8 @@
 // Statistics: declared once as members, visited by every writer.
 //
 // A stat is a member with name, unit and sentence; it registers with its Group, and the tree of groups is the
-// tree of instances. Ratios are computed when read. No format knows a unit of hardware, no unit knows a format.
-// SPDX-License-Identifier: Apache-2.0
+// tree of instances. Ratios are computed when read. No format knows a unit of hardware, no unit knows a
+// format. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstdint>
@@ -38,8 +38,14 @@ class Stat {
 class Counter final : public Stat {
  public:
   using Stat::Stat;
-  Counter& operator++() { ++value_; return *this; }
-  Counter& operator+=(uint64_t n) { value_ += n; return *this; }
+  Counter& operator++() {
+    ++value_;
+    return *this;
+  }
+  Counter& operator+=(uint64_t n) {
+    value_ += n;
+    return *this;
+  }
   uint64_t value() const { return value_; }
   void accept(Visitor& visitor) const override;
 
@@ -50,8 +56,8 @@ class Counter final : public Stat {
 // A quotient of two counters, computed when read: it can never disagree with its parts.
 class Ratio final : public Stat {
  public:
-  Ratio(Group* group, std::string_view name, std::string_view unit, const Counter& num,
-        const Counter& den, std::string_view doc)
+  Ratio(Group* group, std::string_view name, std::string_view unit, const Counter& num, const Counter& den,
+        std::string_view doc)
       : Stat(group, name, unit, doc), num_(num), den_(den) {}
   double value() const { return den_.value() ? double(num_.value()) / double(den_.value()) : 0.0; }
   void accept(Visitor& visitor) const override;
@@ -64,7 +70,8 @@ class Ratio final : public Stat {
 // A value computed when read from anything else the unit holds (a sum over instances, a peak).
 class Value final : public Stat {
  public:
-  Value(Group* group, std::string_view name, std::string_view unit, std::function<double()> read, std::string_view doc)
+  Value(Group* group, std::string_view name, std::string_view unit, std::function<double()> read,
+        std::string_view doc)
       : Stat(group, name, unit, doc), read_(std::move(read)) {}
   double value() const { return read_(); }
   void accept(Visitor& visitor) const override;
@@ -74,8 +81,12 @@ class Value final : public Stat {
 };
 
 // Equal-width bins over [low, high); below and above fall into the first and last bin.
-struct Bins { uint64_t low, high, step; };
-constexpr Bins linear(uint64_t low, uint64_t high, uint64_t step) { return {low, high, step}; }
+struct Bins {
+  uint64_t low, high, step;
+};
+constexpr Bins linear(uint64_t low, uint64_t high, uint64_t step) {
+  return {low, high, step};
+}
 
 class Histogram final : public Stat {
  public:

@@ -10,12 +10,13 @@
 
 namespace glint {
 
-// What a slice is of. On the track of a warp slot a Warp holds Stages, and a Stage holds States, without gaps.
+// What a slice is of. On the track of a warp slot a Warp holds Stages, and a Stage holds States, without
+// gaps.
 enum class TraceKind : uint8_t {
-  Warp,   // holds a warp slot. value: its number in the launch
-  Stage,  // instructions of one shader. value: TraceTable::shaders
-  State,  // value: TraceTable::states; 0 is running
-  Rays,   // a warp's stay in the RT unit. value: rays; args: warp slot, nodes visited, triangle tests
+  Warp,     // holds a warp slot. value: its number in the launch
+  Stage,    // instructions of one shader. value: TraceTable::shaders
+  State,    // value: TraceTable::states; 0 is running
+  Rays,     // a warp's stay in the RT unit. value: rays; args: warp slot, nodes visited, triangle tests
   Channel,  // a memory channel has requests. value: those that it took meanwhile
 };
 
@@ -37,10 +38,10 @@ struct TraceCounter {
 };
 
 struct TraceTable {
-  Cycle begin = 0, end = 0;       // what it shows
-  Cycle asked_end = 0;            // it was to show; later than `end` where the limit ended it
-  uint64_t limit = 0;             // of events
-  uint32_t counters_left_out = 0; // that had no room
+  Cycle begin = 0, end = 0;        // what it shows
+  Cycle asked_end = 0;             // it was to show; later than `end` where the limit ended it
+  uint64_t limit = 0;              // of events
+  uint32_t counters_left_out = 0;  // that had no room
   std::vector<std::string> shaders, stages, states;  // a stage for each shader
   std::vector<std::vector<TraceSlice>> cores, channels;
   std::vector<TraceCounter> counters;

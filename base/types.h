@@ -10,9 +10,9 @@ using Cycle = uint64_t;     // core clock cycles since launch
 using Address = uint64_t;   // virtual address in simulated memory (memsys/address_space.h)
 using LaneMask = uint32_t;  // bit i = lane i of a warp
 
-inline constexpr int kLanes = 32;                        // lanes of a warp
-inline constexpr LaneMask kAllLanes = 0xffff'ffff;       // every lane of a warp
-inline constexpr Cycle kNever = ~Cycle{0};               // "no event is scheduled"
+inline constexpr int kLanes = 32;                   // lanes of a warp
+inline constexpr LaneMask kAllLanes = 0xffff'ffff;  // every lane of a warp
+inline constexpr Cycle kNever = ~Cycle{0};          // "no event is scheduled"
 
 // Calls `visit(lane)` for each set bit, lowest lane first.
 template <class Visit>

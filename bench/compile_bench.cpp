@@ -1,13 +1,12 @@
-// How long compiling all shaders of the LumiBench workloads takes: a fresh process, again, and from the cache.
-// SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-#include <unistd.h>
-
+// How long compiling all shaders of the LumiBench workloads takes: a fresh process, again, and from the
+// cache. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <fmt/format.h>
 #include <string>
+#include <unistd.h>
 #include <vector>
 
 #include "base/diagnostics.h"
@@ -34,7 +33,8 @@ double milliseconds_since(std::chrono::steady_clock::time_point start) {
 }
 
 // Where the time goes is printed for the passes without a cache.
-double compile_all(const std::vector<std::string>& shaders, const std::string& title, frontend::ShaderCache* cache) {
+double compile_all(const std::vector<std::string>& shaders, const std::string& title,
+                   frontend::ShaderCache* cache) {
   frontend::GlslOptions glsl;
   glsl.cache = cache;
   Diagnostics warnings;
@@ -58,7 +58,8 @@ double compile_all(const std::vector<std::string>& shaders, const std::string& t
     lower += milliseconds_since(end);
   }
   const double all = milliseconds_since(start);
-  fmt::print("{:<24}{:7.1f} ms   GLSL {:6.1f} (first {:5.1f})   simplify {:6.1f}   lower {:6.1f}\n", title, all, parse, first, simplify, lower);
+  fmt::print("{:<24}{:7.1f} ms   GLSL {:6.1f} (first {:5.1f})   simplify {:6.1f}   lower {:6.1f}\n", title,
+             all, parse, first, simplify, lower);
   return all;
 }
 

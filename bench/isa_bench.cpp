@@ -1,10 +1,9 @@
-// How long the handler of every value op takes for a warp, on every SIMD path of this machine, the slowest first.
-// SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
+// How long the handler of every value op takes for a warp, on every SIMD path of this machine, the slowest
+// first. SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <fmt/format.h>
 #include <string>
 #include <vector>
 
@@ -19,7 +18,8 @@ namespace {
 constexpr double kLimit = 25.0;  // ns a warp on the widest path: the aim for every op that is not exempt
 constexpr int kRows = 64;        // of each bank
 
-// Operands of moderate size and some extremes: handlers without branches do not care, the others should show it.
+// Operands of moderate size and some extremes: handlers without branches do not care, the others should show
+// it.
 class Registers {
  public:
   Registers() {
@@ -54,7 +54,8 @@ class Registers {
 Inst inst_of(const OpRow& row) {
   Inst inst;
   int slot = 0;
-  Slot source = 0, destination = 44, predicate = 0;  // not 4 KiB apart: loads behind stores at the same offset wait
+  Slot source = 0, destination = 44,
+       predicate = 0;  // not 4 KiB apart: loads behind stores at the same offset wait
   for (const OperandKind kind : row.operands.view())
     for (const int end = slot + slots_of(kind); slot < end; ++slot) {
       const bool is_predicate = kind == OperandKind::DstPred || kind == OperandKind::SrcPred;
@@ -75,7 +76,8 @@ double nanoseconds(const OpRow& row, Registers& registers) {
   for (int run = 0; run < 12; ++run) {
     const auto start = std::chrono::steady_clock::now();
     for (int i = 0; i < calls; ++i) row.run(warp, inst);
-    const double ns = std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count();
+    const double ns =
+        std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count();
     best = std::min(best, ns / calls);
     calls = std::clamp(int(20'000 / (ns / calls + 0.1)), 16, 4096);  // 20 microseconds a run
   }
@@ -119,8 +121,10 @@ std::vector<Measured> measure(const Options& options) {
   // Processors run slower for seconds at a time: what looks slow is measured again, after all others.
   for (int again = 0; again < 3; ++again)
     for (Measured& m : out)
-      if (m.ns.back() > kLimit) m.ns.back() = std::min(m.ns.back(), nanoseconds(op_table(paths().back())[m.op], registers));
-  std::stable_sort(out.begin(), out.end(), [](const Measured& a, const Measured& b) { return a.ns.back() > b.ns.back(); });
+      if (m.ns.back() > kLimit)
+        m.ns.back() = std::min(m.ns.back(), nanoseconds(op_table(paths().back())[m.op], registers));
+  std::stable_sort(out.begin(), out.end(),
+                   [](const Measured& a, const Measured& b) { return a.ns.back() > b.ns.back(); });
   return out;
 }
 
@@ -139,8 +143,8 @@ void print(const std::vector<Measured>& all, const Options& options) {
     for (const double ns : m.ns) fmt::print(" {:>9.1f}", ns);
     fmt::print("{}\n", is_slow ? "  over the limit" : m.ns.back() > kLimit ? "  exempt" : "");
   }
-  fmt::print("{} ops, {} over {} ns on {} (exempt: double-precision division, roots, special functions)\n", all.size(), slow,
-             kLimit, name_of(paths().back()));
+  fmt::print("{} ops, {} over {} ns on {} (exempt: double-precision division, roots, special functions)\n",
+             all.size(), slow, kLimit, name_of(paths().back()));
 }
 
 }  // namespace

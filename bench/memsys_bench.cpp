@@ -1,7 +1,6 @@
 // How fast the memory system simulates: accesses a second of host time, by where they are served.
 // SPDX-License-Identifier: Apache-2.0
 #include <benchmark/benchmark.h>
-
 #include <random>
 #include <vector>
 
@@ -30,7 +29,8 @@ void run(benchmark::State& state, const Params& params, const std::vector<Addres
       for (ChannelBase* channel : channels) channel->deliver();
       for (Cycle c = now; c < now + window; ++c) {
         l1.tick(c);
-        while (l1.pop(c, Client::RtUnit)) {}
+        while (l1.pop(c, Client::RtUnit)) {
+        }
         if (l1.access(c, Client::RtUnit, {lines[next], 1, false, Traffic::RtNode, 0})) {
           ++accepted;
           if (++next == lines.size()) next = 0;
@@ -41,7 +41,8 @@ void run(benchmark::State& state, const Params& params, const std::vector<Addres
     }
   }
   uint64_t dram = 0;
-  for (uint32_t p = 0; p < memory.num_partitions(); ++p) dram += memory.partition(p).dram().stats().reads.value();
+  for (uint32_t p = 0; p < memory.num_partitions(); ++p)
+    dram += memory.partition(p).dram().stats().reads.value();
   state.counters["accesses/s"] = benchmark::Counter(double(accepted), benchmark::Counter::kIsRate);
   state.counters["dram/s"] = benchmark::Counter(double(dram), benchmark::Counter::kIsRate);
   state.counters["cycles/s"] = benchmark::Counter(double(now), benchmark::Counter::kIsRate);
@@ -54,10 +55,18 @@ std::vector<Address> random_lines(uint32_t count) {
   return lines;
 }
 
-void l1_hits(benchmark::State& state) { run(state, bare(), random_lines(128)); }
-void l2_hits(benchmark::State& state) { run(state, bare(), random_lines(3000)); }
-void dram_random(benchmark::State& state) { run(state, bare(), random_lines(1 << 20)); }
-void dram_random_defaults(benchmark::State& state) { run(state, {}, random_lines(1 << 20)); }
+void l1_hits(benchmark::State& state) {
+  run(state, bare(), random_lines(128));
+}
+void l2_hits(benchmark::State& state) {
+  run(state, bare(), random_lines(3000));
+}
+void dram_random(benchmark::State& state) {
+  run(state, bare(), random_lines(1 << 20));
+}
+void dram_random_defaults(benchmark::State& state) {
+  run(state, {}, random_lines(1 << 20));
+}
 void dram_random_simple(benchmark::State& state) {
   Params p = bare();
   p.dram.model = PolicyChoice<DramModel>("simple");

@@ -1,5 +1,5 @@
-// How fast the machines run whole frames and arithmetic: warp instructions a second, node visits, simulated cycles.
-// SPDX-License-Identifier: Apache-2.0
+// How fast the machines run whole frames and arithmetic: warp instructions a second, node visits, simulated
+// cycles. SPDX-License-Identifier: Apache-2.0
 #include <benchmark/benchmark.h>
 
 #include "pipeline/description/defaults.h"
@@ -33,7 +33,8 @@ void run_frame(benchmark::State& state, const char* scene, pipeline::Workload wo
 // 65,536 threads that only calculate, on one thread of the host.
 void run_arithmetic(benchmark::State& state, bool timing) {
   const std::string shader = std::string(GLINT_SOURCE_DIR) + "/bench/arithmetic.comp";
-  const pipeline::PipelineDescription description = pipeline::parse_pipeline(pipeline::default_description({shader}, "/"), "/arithmetic.toml");
+  const pipeline::PipelineDescription description =
+      pipeline::parse_pipeline(pipeline::default_description({shader}, "/"), "/arithmetic.toml");
   const pipeline::GpuParams gpu = test::preset("mobile");
   double instructions = 0, seconds = 0;
   for (auto _ : state) {
@@ -48,12 +49,12 @@ void run_arithmetic(benchmark::State& state, bool timing) {
 BENCHMARK_CAPTURE(run_arithmetic, functional, false)->UseManualTime()->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(run_arithmetic, timing, true)->UseManualTime()->Unit(benchmark::kMillisecond);
 
-#define GLINT_FRAME(scene, workload)                                                                                  \
-  BENCHMARK_CAPTURE(run_frame, scene##_##workload##_functional, #scene, pipeline::Workload::workload, false)         \
-      ->UseManualTime()                                                                                               \
-      ->Unit(benchmark::kMillisecond);                                                                                \
-  BENCHMARK_CAPTURE(run_frame, scene##_##workload##_timing, #scene, pipeline::Workload::workload, true)              \
-      ->UseManualTime()                                                                                               \
+#define GLINT_FRAME(scene, workload)                                                                         \
+  BENCHMARK_CAPTURE(run_frame, scene##_##workload##_functional, #scene, pipeline::Workload::workload, false) \
+      ->UseManualTime()                                                                                      \
+      ->Unit(benchmark::kMillisecond);                                                                       \
+  BENCHMARK_CAPTURE(run_frame, scene##_##workload##_timing, #scene, pipeline::Workload::workload, true)      \
+      ->UseManualTime()                                                                                      \
       ->Unit(benchmark::kMillisecond)
 GLINT_FRAME(WKND, PathTracing);
 GLINT_FRAME(SHIP, Shadow);

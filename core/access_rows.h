@@ -1,5 +1,5 @@
-// The registers of a load, a store or an atomic: which rows it fills or reads, and what a lane's part of them is.
-// SPDX-License-Identifier: Apache-2.0
+// The registers of a load, a store or an atomic: which rows it fills or reads, and what a lane's part of them
+// is. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstddef>
@@ -23,9 +23,13 @@ inline uint32_t narrow(const std::byte* from, const isa::Memory& shape) {
 }
 
 // Registers that an access fills or reads a lane: one a part, two for parts of 8 bytes.
-inline uint32_t rows_of(const isa::Memory& shape) { return shape.bytes == 8 ? 2u * shape.count : shape.count; }
+inline uint32_t rows_of(const isa::Memory& shape) {
+  return shape.bytes == 8 ? 2u * shape.count : shape.count;
+}
 // Bytes of each in memory.
-inline uint32_t row_bytes(const isa::Memory& shape) { return shape.bytes == 8 ? 4u : shape.bytes; }
+inline uint32_t row_bytes(const isa::Memory& shape) {
+  return shape.bytes == 8 ? 4u : shape.bytes;
+}
 // Register row of row `row`: a pair for 64-bit values, any registers for vectors.
 inline isa::Slot slot_of(const isa::Inst& inst, const isa::Memory& shape, size_t first, uint32_t row) {
   return shape.bytes == 8 ? isa::Slot(inst.operand[first] + row) : inst.operand[first + row];

@@ -18,24 +18,24 @@ inline constexpr uint32_t kMaxBlockWarps = kMaxBlockThreads / uint32_t(kLanes);
 
 using WarpMask = uint32_t;  // bit i = warp i of a block
 
-// One barrier between two completions. Arrivals are counted in warps: PTX asks for thread counts that are multiples of
-// a warp, and a warp arrives as a whole.
+// One barrier between two completions. Arrivals are counted in warps: PTX asks for thread counts that are
+// multiples of a warp, and a warp arrives as a whole.
 struct Barrier {
-  uint32_t expected = 0;   // warps; 0: all of the block that have not ended
+  uint32_t expected = 0;  // warps; 0: all of the block that have not ended
   uint32_t arrived = 0;
-  WarpMask waiting = 0;    // those of them that wait
-  uint32_t count = 0;      // bar.red: threads whose predicate is true
-  uint32_t threads = 0;    // bar.red: threads that gave one
+  WarpMask waiting = 0;  // those of them that wait
+  uint32_t count = 0;    // bar.red: threads whose predicate is true
+  uint32_t threads = 0;  // bar.red: threads that gave one
 };
 
-// Choice: ended warps take part in nothing any more, so that a barrier of all threads waits for the others only.
-// PTX leaves it open; the hardware does so.
+// Choice: ended warps take part in nothing any more, so that a barrier of all threads waits for the others
+// only. PTX leaves it open; the hardware does so.
 class Block {
  public:
   void start(uint32_t index, std::array<uint32_t, 3> id, uint32_t num_warps, uint32_t shared_bytes);
 
-  // Warp `warp` comes to barrier `barrier`, which is to see `expected` warps. False when the warps that are there
-  // already expect another number.
+  // Warp `warp` comes to barrier `barrier`, which is to see `expected` warps. False when the warps that are
+  // there already expect another number.
   bool arrive(uint32_t barrier, uint32_t warp, uint32_t expected, bool waits);
   // Counts threads for bar.red, after arrive().
   void contribute(uint32_t barrier, uint32_t threads, uint32_t with_true);

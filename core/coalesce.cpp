@@ -19,7 +19,8 @@ void LineList::add(Address physical, uint32_t bytes, int lane) {
     const uint64_t begin = (std::max(physical, address) - line + round_up) >> part_shift_;
     const uint64_t end = (std::min(physical + bytes, address + mem::kSectorBytes) - line) >> part_shift_;
     const uint64_t words = begin < end ? (uint64_t{1} << end) - (uint64_t{1} << begin) : 0;
-    add_sector(line, uint32_t((address & mask_) / mem::kSectorBytes), mem::WordMask(words), LaneMask{1} << lane);
+    add_sector(line, uint32_t((address & mask_) / mem::kSectorBytes), mem::WordMask(words),
+               LaneMask{1} << lane);
   }
 }
 
@@ -52,9 +53,10 @@ uint32_t LineList::num_sectors() const {
   return sum;
 }
 
-void coalesce_global(LineList& out, const mem::AddressSpace& memory, const isa::Access& access, LaneMask lanes,
-                     uint32_t bytes) {
-  for_each_lane(lanes, [&](int lane) { out.add(memory.physical(access.address[size_t(lane)]), bytes, lane); });
+void coalesce_global(LineList& out, const mem::AddressSpace& memory, const isa::Access& access,
+                     LaneMask lanes, uint32_t bytes) {
+  for_each_lane(lanes,
+                [&](int lane) { out.add(memory.physical(access.address[size_t(lane)]), bytes, lane); });
 }
 
 void coalesce_local(LineList& out, const LocalLayout& layout, uint32_t warp_slot, const isa::Access& access,
@@ -63,19 +65,23 @@ void coalesce_local(LineList& out, const LocalLayout& layout, uint32_t warp_slot
   for (uint32_t byte = 0; byte < bytes; byte += 4) {
     for_each_lane(lanes, [&](int lane) {
       const uint64_t word = (access.address[size_t(lane)] + byte) / 4;
-      out.add(layout.base + ((uint64_t{warp_slot} * layout.words + word) * kLanes + uint64_t(lane)) * 4, 4, lane);
+      out.add(layout.base + ((uint64_t{warp_slot} * layout.words + word) * kLanes + uint64_t(lane)) * 4, 4,
+              lane);
     });
   }
 }
 
-void count_turns(LineList& lines, const mem::AddressSpace& memory, const isa::Access& access, uint32_t bytes, bool turns, bool returns) {
+void count_turns(LineList& lines, const mem::AddressSpace& memory, const isa::Access& access, uint32_t bytes,
+                 bool turns, bool returns) {
   const auto address = [&](int lane) { return access.address[size_t(lane)]; };
   const auto is_one_word = [&](const LineSectors& line) {
     bool same = true;
-    for_each_lane(line.lanes, [&](int lane) { same &= address(lane) == address(std::countr_zero(line.lanes)); });
+    for_each_lane(line.lanes,
+                  [&](int lane) { same &= address(lane) == address(std::countr_zero(line.lanes)); });
     return same;
   };
-  if (turns && !returns && lines.lines().size() == 1 && is_one_word(lines.lines()[0])) return lines.set_atomic(0, {1, 1});
+  if (turns && !returns && lines.lines().size() == 1 && is_one_word(lines.lines()[0]))
+    return lines.set_atomic(0, {1, 1});
   const uint32_t words = (1u << std::max(bytes / 4, 1u)) - 1;
   for (size_t i = 0; i < lines.lines().size(); ++i) {
     const LaneMask lanes = lines.lines()[i].lanes;

@@ -19,17 +19,18 @@ namespace glint::core {
 inline constexpr uint32_t kMaxLines = kMaxTexels * kLanes;
 
 struct LineSectors {
-  Address line = 0;      // physical
-  uint8_t sectors = 0;   // bit i: sector i
+  Address line = 0;           // physical
+  uint8_t sectors = 0;        // bit i: sector i
   mem::AtomicLanes atomic{};  // of an atomic, see count_turns()
-  mem::WordMask words = 0;  // which of its 32 parts are touched whole
-  LaneMask lanes = 0;    // that touch it
+  mem::WordMask words = 0;    // which of its 32 parts are touched whole
+  LaneMask lanes = 0;         // that touch it
 };
 
 // The lines that one warp instruction touches, in the order of their first lane.
 class LineList {
  public:
-  explicit LineList(uint32_t line_bytes) : mask_(line_bytes - 1), part_shift_(uint32_t(std::countr_zero(line_bytes)) - 5) {}
+  explicit LineList(uint32_t line_bytes)
+      : mask_(line_bytes - 1), part_shift_(uint32_t(std::countr_zero(line_bytes)) - 5) {}
   void clear() { count_ = last_ = 0; }
   // Adds [physical, physical + bytes), which `lane` touches.
   void add(Address physical, uint32_t bytes, int lane);
@@ -50,25 +51,29 @@ class LineList {
 // Where the lanes' stacks lie in physical memory: word w of lane l of warp slot s at
 // base + ((s * words + w) * 32 + l) * 4, so that lanes at the same offset share lines.
 struct LocalLayout {
-  Address base = 0;      // physical, of this core
-  uint32_t words = 0;    // a lane
+  Address base = 0;    // physical, of this core
+  uint32_t words = 0;  // a lane
   uint64_t bytes_per_warp() const { return uint64_t{words} * kLanes * 4; }
 };
 
-// Loads and stores: `access.address` of `lanes`. Virtual addresses must be valid (the executor has checked them).
-void coalesce_global(LineList& out, const mem::AddressSpace& memory, const isa::Access& access, LaneMask lanes,
-                     uint32_t bytes);
+// Loads and stores: `access.address` of `lanes`. Virtual addresses must be valid (the executor has checked
+// them).
+void coalesce_global(LineList& out, const mem::AddressSpace& memory, const isa::Access& access,
+                     LaneMask lanes, uint32_t bytes);
 void coalesce_local(LineList& out, const LocalLayout& layout, uint32_t warp_slot, const isa::Access& access,
                     LaneMask lanes, uint32_t bytes);
 
-// Fills in LineSectors::atomic of lines that coalesce_global() has made. A turn takes the lanes of a sector in order, up to the
-// first whose word it has already: so an H200's times go (docs/validation.md). Without `turns` each sector has one.
-// Model: lanes of a reduction (not `returns`) that all meet in one word are one lane: an assembler adds them up before, where it
-// knows their address to be the same; here it is enough that it is.
-void count_turns(LineList& lines, const mem::AddressSpace& memory, const isa::Access& access, uint32_t bytes, bool turns, bool returns);
+// Fills in LineSectors::atomic of lines that coalesce_global() has made. A turn takes the lanes of a sector
+// in order, up to the first whose word it has already: so an H200's times go (docs/validation.md). Without
+// `turns` each sector has one. Model: lanes of a reduction (not `returns`) that all meet in one word are one
+// lane: an assembler adds them up before, where it knows their address to be the same; here it is enough that
+// it is.
+void count_turns(LineList& lines, const mem::AddressSpace& memory, const isa::Access& access, uint32_t bytes,
+                 bool turns, bool returns);
 
-// Times that shared memory has to be read or written for a warp's access: the largest number of different words in one
-// bank (32 banks of 4 bytes; lanes that want one word share it), of atomics the largest number of lanes.
+// Times that shared memory has to be read or written for a warp's access: the largest number of different
+// words in one bank (32 banks of 4 bytes; lanes that want one word share it), of atomics the largest number
+// of lanes.
 uint32_t shared_passes(const isa::Access& access, LaneMask lanes, uint32_t bytes, bool is_atomic);
 
 }  // namespace glint::core

@@ -15,8 +15,16 @@ mem::TagArray make_tags(uint32_t size, uint32_t ways, uint32_t line) {
 }
 
 CodeCache::CodeCache(const CodeCacheParams& params, uint32_t most, mem::L1Port& l1, CodeStats& stats)
-    : there_(params.latency / 2), back_(params.latency - params.latency / 2), line_bytes_(l1.line_bytes()), l1_(l1), stats_(stats),
-      tags_(make_tags(params.size, params.ways, line_bytes_)), asked_(most), hits_(most), fills_(most), missing_(most) {
+    : there_(params.latency / 2),
+      back_(params.latency - params.latency / 2),
+      line_bytes_(l1.line_bytes()),
+      l1_(l1),
+      stats_(stats),
+      tags_(make_tags(params.size, params.ways, line_bytes_)),
+      asked_(most),
+      hits_(most),
+      fills_(most),
+      missing_(most) {
   answers_.reserve(size_t{most} * kMaxClients);
 }
 
@@ -70,7 +78,9 @@ void CodeCache::send(Cycle now) {
   const auto sectors = uint8_t((1u << line_bytes_ / mem::kSectorBytes) - 1);
   for (Missing& missing : missing_) {
     if (!missing.clients || missing.sent || missing.send_at > now) continue;
-    if (!l1_.access(now, mem::Client::Code, {missing.line, sectors, false, missing.traffic, mem::Token(&missing - missing_.data())})) return;
+    if (!l1_.access(now, mem::Client::Code,
+                    {missing.line, sectors, false, missing.traffic, mem::Token(&missing - missing_.data())}))
+      return;
     missing.sent = true;
     --num_unsent_;
   }
@@ -88,7 +98,8 @@ void CodeCache::take_fills(Cycle now) {
 
 void CodeCache::answer(mem::Ring<Timed>& from, Cycle now) {
   for (; !from.empty() && from.front().at <= now; from.pop())
-    for (uint32_t rest = from.front().clients; rest; rest &= rest - 1) answers_.push_back({uint32_t(std::countr_zero(rest)), from.front().line});
+    for (uint32_t rest = from.front().clients; rest; rest &= rest - 1)
+      answers_.push_back({uint32_t(std::countr_zero(rest)), from.front().line});
 }
 
 Cycle CodeCache::next_event(Cycle now) const {

@@ -1,5 +1,5 @@
-// The cache of a core behind its instruction and constant caches (level 1.5): misses go to the L2 through the core's port.
-// SPDX-License-Identifier: Apache-2.0
+// The cache of a core behind its instruction and constant caches (level 1.5): misses go to the L2 through the
+// core's port. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <span>
@@ -29,7 +29,8 @@ class CodeCache {
   CodeCache(const CodeCacheParams& params, uint32_t most, mem::L1Port& l1, CodeStats& stats);
 
   void ask(uint32_t client, Address line, mem::Traffic traffic, Cycle now);
-  // Advances to `now`; afterwards answers() holds the lines that come in this cycle, each once a client that waits.
+  // Advances to `now`; afterwards answers() holds the lines that come in this cycle, each once a client that
+  // waits.
   void tick(Cycle now);
   std::span<const Answer> answers() const { return answers_; }
   Cycle next_event(Cycle now) const;  // answers of the L1 are the L1's events
@@ -46,7 +47,7 @@ class CodeCache {
   struct Missing {
     Address line = 0;
     Cycle send_at = 0;
-    uint32_t clients = 0;   // bit a client; 0: the entry is free
+    uint32_t clients = 0;  // bit a client; 0: the entry is free
     bool sent = false;
     mem::Traffic traffic = mem::Traffic::Instruction;
   };

@@ -9,7 +9,8 @@ struct CodeStats : stats::Group {
   explicit CodeStats(Group* parent) : Group(parent, "code") {}
 
   stats::Counter lines{this, "lines", "line", "Instruction lines that warps came to."};
-  stats::Counter misses{this, "misses", "line", "Of them, those that had to wait: neither in the L0 nor in the stream buffer."};
+  stats::Counter misses{this, "misses", "line",
+                        "Of them, those that had to wait: neither in the L0 nor in the stream buffer."};
   stats::Counter prefetch_hits{this, "prefetch_hits", "line", "Of them, those that the stream buffer had."};
   stats::Counter prefetches{this, "prefetches", "line", "Lines that stream buffers asked for."};
   stats::Counter constant_lines{this, "constant_lines", "line", "Lines that constant loads looked up."};

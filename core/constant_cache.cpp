@@ -16,13 +16,20 @@ uint32_t different_words(const isa::Access& access, LaneMask lanes) {
   return std::max(count, 1u);
 }
 
-ConstantCache::ConstantCache(const ConstantParams& params, Address base, uint64_t bytes, uint32_t client, CodeCache& cache, CodeStats& stats)
-    : line_bytes_(std::min(params.line, cache.line_bytes())), client_(client), base_(base), bytes_(bytes), cache_(cache), stats_(stats),
+ConstantCache::ConstantCache(const ConstantParams& params, Address base, uint64_t bytes, uint32_t client,
+                             CodeCache& cache, CodeStats& stats)
+    : line_bytes_(std::min(params.line, cache.line_bytes())),
+      client_(client),
+      base_(base),
+      bytes_(bytes),
+      cache_(cache),
+      stats_(stats),
       tags_(make_tags(params.size, params.ways, line_bytes_)) {
   waits_.reserve(kMost);
 }
 
-bool ConstantCache::look_up(uint32_t slot, const isa::Access& access, LaneMask lanes, uint64_t offset, Cycle now) {
+bool ConstantCache::look_up(uint32_t slot, const isa::Access& access, LaneMask lanes, uint64_t offset,
+                            Cycle now) {
   Address last = ~Address{0};
   for_each_lane(lanes, [&](int lane) {
     const uint64_t at = offset + access.address[size_t(lane)];

@@ -17,10 +17,11 @@ uint32_t different_words(const isa::Access& access, LaneMask lanes);
 class ConstantCache {
  public:
   // `base`: physical address of the constant bank, of `bytes`; `client`: its number in the cache behind.
-  ConstantCache(const ConstantParams& params, Address base, uint64_t bytes, uint32_t client, CodeCache& cache, CodeStats& stats);
+  ConstantCache(const ConstantParams& params, Address base, uint64_t bytes, uint32_t client, CodeCache& cache,
+                CodeStats& stats);
 
-  // Looks up the lines at `offset + access.address` of the lanes: none is longer than the line it is in, all are aligned.
-  // False: the warp of `slot` waits, until arrive().
+  // Looks up the lines at `offset + access.address` of the lanes: none is longer than the line it is in, all
+  // are aligned. False: the warp of `slot` waits, until arrive().
   bool look_up(uint32_t slot, const isa::Access& access, LaneMask lanes, uint64_t offset, Cycle now);
   // A line from the cache behind; `served` is called with each slot that waits for nothing any more.
   template <class Served>
@@ -51,8 +52,8 @@ class ConstantCache {
   CodeCache& cache_;
   CodeStats& stats_;
   mem::TagArray tags_;
-  std::vector<Wait> waits_;                 // reserved once
-  std::array<uint32_t, 64> missing_{};      // a slot: lines it waits for
+  std::vector<Wait> waits_;             // reserved once
+  std::array<uint32_t, 64> missing_{};  // a slot: lines it waits for
 };
 
 }  // namespace glint::core

@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/core_cell.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <bit>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/check.h"
 #include "base/num_lanes.h"
@@ -83,7 +82,8 @@ uint64_t CoreCell::table_bytes(const Params& params, const World& world) {
 }
 
 LaunchNeeds CoreCell::needs_of(const World& world) {
-  return {world.image->num_registers, core::warps_per_block(world), world.shared_bytes, world.block_size[0] != 0};
+  return {world.image->num_registers, core::warps_per_block(world), world.shared_bytes,
+          world.block_size[0] != 0};
 }
 
 bool CoreCell::has_room() const {
@@ -99,7 +99,8 @@ void CoreCell::launch(Cycle now, uint32_t block_index, Cycle ready) {
   now_ = now;
   if (stats_.blocks.value() > 0) ready = std::max(ready, block_start_ + params_.block_interval);
   block_start_ = ready;
-  Resident& home = **std::find_if(residents_.begin(), residents_.end(), [](const auto& r) { return r->warps == 0; });
+  Resident& home =
+      **std::find_if(residents_.begin(), residents_.end(), [](const auto& r) { return r->warps == 0; });
   executor_.start(home.block, block_index);
   home.warps = warps_per_block_;
   ++num_blocks_;
@@ -121,12 +122,14 @@ void CoreCell::launch_warp(Resident& home, uint32_t warp_in_block, Cycle ready) 
   line_[slot] = InstructionFetch::kNone;
   waits_for_line_[slot] = false;
   front_[slot] = {ready, Stall::Dispatch};
-  sequence_[slot] = {params_.prologue.instructions + (world_.shared_bytes > 0 ? params_.prologue.shared_instructions : 0)};
+  sequence_[slot] = {params_.prologue.instructions +
+                     (world_.shared_bytes > 0 ? params_.prologue.shared_instructions : 0)};
   scheduler.resident |= uint64_t{1} << local;
   scheduler.age[local] = num_launched_++;
   ++num_resident_;
   ++stats_.warps;
-  stats_.stage[size_t(world_.image->shaders[world_.raygen].stage)]->invocations += num_lanes(warps_[slot].simt.active);
+  stats_.stage[size_t(world_.image->shaders[world_.raygen].stage)]->invocations +=
+      num_lanes(warps_[slot].simt.active);
   ++progress_;
   refresh(slot);
   for (CoreObserver* observer : observers_) observer->start_warp(now_, slot, warps_[slot]);
@@ -167,7 +170,8 @@ void CoreCell::step(Cycle now) {
   for (uint32_t id : lsu_.completed()) complete(id, now);
   while (const auto slot = rt_.pop_completion(now)) complete_rays(*slot, now);
   for (SchedulerState& scheduler : schedulers_) {
-    const bool door = scheduler.watches_rt || (scheduler.watches_lsu && scheduler.lsu_vacated != lsu_.num_vacated());
+    const bool door =
+        scheduler.watches_rt || (scheduler.watches_lsu && scheduler.lsu_vacated != lsu_.num_vacated());
     if (now < scheduler.sleep_until && !door && !no_skip_) continue;
     run_scheduler(scheduler, now);
     if (fault_) break;
@@ -196,7 +200,8 @@ void CoreCell::finish(Cycle end) {
   account_until(end);
   sampler_.finish(end);
   const CandidateCounts& counts = executor_.candidates();
-  for (int stage = 0; stage < kNumStages; ++stage) stats_.stage[size_t(stage)]->invocations += executor_.called_lanes(isa::Stage(stage));
+  for (int stage = 0; stage < kNumStages; ++stage)
+    stats_.stage[size_t(stage)]->invocations += executor_.called_lanes(isa::Stage(stage));
   stats_.candidate_calls += counts.calls;
   stats_.candidate_lanes += counts.lanes;
   stats_.candidates_gathered += counts.gathered;
@@ -210,23 +215,30 @@ std::string CoreCell::describe_stall() const {
   for (uint32_t slot = 0; slot < num_slots_; ++slot) {
     if (!(schedulers_[slot % params_.schedulers].resident >> slot / params_.schedulers & 1)) continue;
     std::string text = describe_warp(slot);
-    const auto same = std::find_if(groups.begin(), groups.end(), [&](const auto& group) { return group.first == text; });
-    if (same == groups.end()) groups.push_back({std::move(text), {warps_[slot].warp_index}});
-    else same->second.push_back(warps_[slot].warp_index);
+    const auto same =
+        std::find_if(groups.begin(), groups.end(), [&](const auto& group) { return group.first == text; });
+    if (same == groups.end())
+      groups.push_back({std::move(text), {warps_[slot].warp_index}});
+    else
+      same->second.push_back(warps_[slot].warp_index);
   }
-  for (const auto& [text, warps] : groups) out += fmt::format("  warp{} {}: {}\n", warps.size() > 1 ? "s" : "", fmt::join(warps, ", "), text);
+  for (const auto& [text, warps] : groups)
+    out += fmt::format("  warp{} {}: {}\n", warps.size() > 1 ? "s" : "", fmt::join(warps, ", "), text);
   return out + l1_.describe() + rt_.describe();
 }
 
-// Where the warp is, what it waits for, and whom: the warps of its block, or whoever writes what it read last.
+// Where the warp is, what it waits for, and whom: the warps of its block, or whoever writes what it read
+// last.
 std::string CoreCell::describe_warp(uint32_t slot) const {
   const SchedulerState& scheduler = schedulers_[slot % params_.schedulers];
   const uint32_t local = slot / params_.schedulers;
   const WarpContext& warp = warps_[slot];
   const Cycle ready = scheduler.ready_at[local];
-  std::string out = fmt::format("at {}, waits for {} {}, {} accesses in flight", warp.simt.finished() ? "its end" : world_.image->place_of(warp.simt.pc),
-                                name_of(scheduler.wait[local]), ready == kNever ? std::string("without a known end") : fmt::format("until cycle {}", ready),
-                                outstanding_[slot]);
+  std::string out = fmt::format(
+      "at {}, waits for {} {}, {} accesses in flight",
+      warp.simt.finished() ? "its end" : world_.image->place_of(warp.simt.pc), name_of(scheduler.wait[local]),
+      ready == kNever ? std::string("without a known end") : fmt::format("until cycle {}", ready),
+      outstanding_[slot]);
   if (warp.waiting_at_barrier) {
     std::vector<uint64_t> missing;
     const Block& block = home_[slot]->block;

@@ -35,17 +35,19 @@ class CoreCell final : public Cell {
  public:
   struct Context {
     const World& world;
-    mem::L1Port& l1;               // ticked here; its next_event covers what it waits for
-    rt::RtPort& rt;                // ticked here
-    Address local_physical = 0;    // of local_bytes() bytes: the stacks of this core's lanes
+    mem::L1Port& l1;             // ticked here; its next_event covers what it waits for
+    rt::RtPort& rt;              // ticked here
+    Address local_physical = 0;  // of local_bytes() bytes: the stacks of this core's lanes
     stats::Group* parent = nullptr;
-    std::string name = "core";     // of its statistics: "core[3]"
-    bool no_skip = false;          // steps every cycle: slow, for checking
+    std::string name = "core";  // of its statistics: "core[3]"
+    bool no_skip = false;       // steps every cycle: slow, for checking
     uint32_t index = 0, cores = 1;
-    double clock_mhz = 0.0;        // 0: programs read no time
-    Address tables = 0;            // physical, of table_bytes() bytes: the candidates of its rays
-    Address code = 0, constants = 0;  // physical: the image's instructions, the constant bank; if their caches are not perfect
-    Cycle turn = 0;                // after which other cores see what this one has written; 0: there are none
+    double clock_mhz = 0.0;  // 0: programs read no time
+    Address tables = 0;      // physical, of table_bytes() bytes: the candidates of its rays
+    Address code = 0,
+            constants =
+                0;   // physical: the image's instructions, the constant bank; if their caches are not perfect
+    Cycle turn = 0;  // after which other cores see what this one has written; 0: there are none
   };
   // Program and parameters must have passed check().
   CoreCell(const Params& params, const Context& context);
@@ -64,23 +66,28 @@ class CoreCell final : public Cell {
   uint32_t num_slots() const { return num_slots_; }
   uint32_t num_resident() const { return num_resident_; }
   // Room for a whole block: warp slots, shared memory, and a block's place.
-  // Model: a warp's slot and registers are free when the warp has ended; hardware keeps them until the block has.
+  // Model: a warp's slot and registers are free when the warp has ended; hardware keeps them until the block
+  // has.
   bool has_room() const;
   // Blocks and warps that fit at a time, and what limits them.
   static LaunchNeeds needs_of(const World& world);
-  // Puts block `block_index` of the launch into the lowest free slots; its first instructions can issue at `ready`.
+  // Puts block `block_index` of the launch into the lowest free slots; its first instructions can issue at
+  // `ready`.
   void launch(Cycle now, uint32_t block_index, Cycle ready);
 
   // Cell.
   void advance(Cycle from, Cycle until) override;
   Cycle next_event(Cycle from) const override;
   bool finished() const override {
-    return num_resident_ == 0 && lsu_.idle() && (!code_ || code_->cache.idle()) && l1_.next_event(accounted_) == kNever;  // last writes have left
+    return num_resident_ == 0 && lsu_.idle() && (!code_ || code_->cache.idle()) &&
+           l1_.next_event(accounted_) == kNever;  // last writes have left
   }
   uint64_t progress() const override { return progress_; }
-  // Grows when a warp begins, ends or is handed to the RT unit, and with what Executor::changes() counts: what warps that
-  // spin for ever do not.
-  uint64_t changes() const { return num_launched_ - num_resident_ + num_launched_ + stats_.rt_warps.value() + executor_.changes(); }
+  // Grows when a warp begins, ends or is handed to the RT unit, and with what Executor::changes() counts:
+  // what warps that spin for ever do not.
+  uint64_t changes() const {
+    return num_launched_ - num_resident_ + num_launched_ + stats_.rt_warps.value() + executor_.changes();
+  }
   std::string describe_stall() const override;
 
   // The first fault of a warp here; the cell does nothing from then on.
@@ -159,7 +166,8 @@ class CoreCell final : public Cell {
     return access.lines.lines().empty() ? params_.lsu.shared_war_latency : params_.lsu.war_latency;
   }
   void finish_constant(uint32_t slot, Cycle now);
-  void start_constant(SchedulerState& scheduler, uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now);
+  void start_constant(SchedulerState& scheduler, uint32_t slot, const IssueRow& row, const Issued& issued,
+                      Cycle now);
   void come_to_line(uint32_t slot);
   void take_code(Cycle now);
   void complete_rays(uint32_t slot, Cycle now);
@@ -185,44 +193,46 @@ class CoreCell final : public Cell {
   std::vector<SchedulerState> schedulers_;
   std::vector<WarpContext> warps_;
   std::vector<Scoreboard> scoreboards_;
-  std::vector<Scoreboard::Ready> front_;   // a slot: before this the warp issues nothing, whatever the registers
-  std::vector<uint32_t> outstanding_;      // a slot: accesses in flight
-  std::vector<uint8_t> stored_;            // a slot: whether there was a store to global memory since the last fence among cores
-  std::vector<Cycle> fence_;               // a slot: latency of the fence that waits for them; 0: none
-  std::vector<Resident*> home_;            // a slot: the block of its warp
+  std::vector<Scoreboard::Ready>
+      front_;                          // a slot: before this the warp issues nothing, whatever the registers
+  std::vector<uint32_t> outstanding_;  // a slot: accesses in flight
+  std::vector<uint8_t>
+      stored_;  // a slot: whether there was a store to global memory since the last fence among cores
+  std::vector<Cycle> fence_;     // a slot: latency of the fence that waits for them; 0: none
+  std::vector<Resident*> home_;  // a slot: the block of its warp
   std::vector<std::unique_ptr<Resident>> residents_;
   const uint32_t warps_per_block_;
-  Seat seat_;                              // of the warp launched last
-  uint32_t num_blocks_ = 0;                // resident
-  std::vector<uint32_t> line_;             // a slot: line of instructions that the warp is in or waits for
+  Seat seat_;                   // of the warp launched last
+  uint32_t num_blocks_ = 0;     // resident
+  std::vector<uint32_t> line_;  // a slot: line of instructions that the warp is in or waits for
   std::vector<uint8_t> waits_for_line_;
   struct ConstantLoad {
     uint32_t pc = 0;
-    Cycle issued = 0, latency = 0;         // of a hit
+    Cycle issued = 0, latency = 0;  // of a hit
   };
-  std::vector<ConstantLoad> constant_;     // a slot: its last one
+  std::vector<ConstantLoad> constant_;  // a slot: its last one
   static constexpr uint32_t kPrologue = ~0u;
   struct Sequence {
-    uint32_t left = 0, pc = kPrologue;     // instructions still to issue; of the op that they make up
-    Cycle step = 1, last = 1;              // cycles between them; from the last one to the result
+    uint32_t left = 0, pc = kPrologue;  // instructions still to issue; of the op that they make up
+    Cycle step = 1, last = 1;           // cycles between them; from the last one to the result
   };
-  std::vector<Sequence> sequence_;         // a slot
-  Cycle now_ = 0;                          // of the present step or launch
-  Cycle block_start_ = 0;                  // of the block launched last
-  Cycle barrier_free_ = 0;                 // of the core's barrier unit
-  std::vector<Cycle> rays_issued_;         // a slot: when its rays were handed over
+  std::vector<Sequence> sequence_;  // a slot
+  Cycle now_ = 0;                   // of the present step or launch
+  Cycle block_start_ = 0;           // of the block launched last
+  Cycle barrier_free_ = 0;          // of the core's barrier unit
+  std::vector<Cycle> rays_issued_;  // a slot: when its rays were handed over
   std::vector<uint32_t> rays_pc_;
   std::vector<LaneMask> rays_lanes_;
   uint32_t num_resident_ = 0;
   uint64_t num_launched_ = 0, progress_ = 0;
-  Cycle accounted_ = 0;                    // every cycle before has been given to a reason
+  Cycle accounted_ = 0;  // every cycle before has been given to a reason
   std::optional<Fault> fault_;
   CoreStats stats_;
   std::unique_ptr<CodeStats> code_stats_;  // null where instructions and constants are always there, as is:
   std::unique_ptr<Code> code_;
   std::vector<uint64_t> op_counts_, op_lanes_;
   mem::Latencies latencies_;
-  std::unique_ptr<Profile> profile_;       // null: not asked for
+  std::unique_ptr<Profile> profile_;  // null: not asked for
   std::vector<CoreObserver*> observers_;
   IntervalSampler sampler_;
 };

@@ -10,8 +10,10 @@
 namespace glint::core {
 
 // Contract:
-//  - events of a slot come in order of time: start_warp, then issues and rays, then end_warp; after it the slot may start another.
-//  - select() comes before issue() of the same cycle; an issue slot of a sequence (docs/core.md) has a select() only.
+//  - events of a slot come in order of time: start_warp, then issues and rays, then end_warp; after it the
+//  slot may start another.
+//  - select() comes before issue() of the same cycle; an issue slot of a sequence (docs/core.md) has a
+//  select() only.
 //  - every start_rays() has one end_rays() with the same lanes, before the warp's next issue.
 //  - an observer reads: what it hears changes no cycle, and it allocates nothing.
 class CoreObserver {
@@ -19,9 +21,10 @@ class CoreObserver {
   virtual ~CoreObserver() = default;
   // The warp holds the slot from cycle `now` on.
   virtual void start_warp(Cycle /*now*/, uint32_t /*slot*/, const WarpContext&) {}
-  // The instruction at `pc` of the warp is about to issue. It waited for `wait` until `ready`, and from then on for its turn at `door`
-  // (Stall::Issued: at the scheduler, or a pipe).
-  virtual void select(Cycle /*now*/, uint32_t /*slot*/, Cycle /*ready*/, Stall /*wait*/, Stall /*door*/, uint32_t /*pc*/) {}
+  // The instruction at `pc` of the warp is about to issue. It waited for `wait` until `ready`, and from then
+  // on for its turn at `door` (Stall::Issued: at the scheduler, or a pipe).
+  virtual void select(Cycle /*now*/, uint32_t /*slot*/, Cycle /*ready*/, Stall /*wait*/, Stall /*door*/,
+                      uint32_t /*pc*/) {}
   // It was executed.
   virtual void issue(Cycle /*now*/, uint32_t /*slot*/, const Issued&) {}
   // Lanes begin a shader of that stage, called by another.

@@ -20,7 +20,8 @@ size_t num_threads(const World& world) {
 
 }  // namespace
 
-LaunchCosts::LaunchCosts(const World& world) : world_(world), threads_(num_threads(world)) {}
+LaunchCosts::LaunchCosts(const World& world) : world_(world), threads_(num_threads(world)) {
+}
 
 void CostRecorder::start_warp(Cycle, uint32_t slot, const WarpContext& warp) {
   slots_[slot] = {};
@@ -29,7 +30,8 @@ void CostRecorder::start_warp(Cycle, uint32_t slot, const WarpContext& warp) {
 
 void CostRecorder::issue(Cycle now, uint32_t slot, const Issued& issued) {
   Slot& warp = slots_[slot];
-  for_each_lane(warp.last, [&](int lane) { warp.lane[size_t(lane)].active_cycles += uint32_t(now - warp.last_issue); });
+  for_each_lane(warp.last,
+                [&](int lane) { warp.lane[size_t(lane)].active_cycles += uint32_t(now - warp.last_issue); });
   warp.last_issue = now;
   warp.last = issued.lanes;
   for_each_lane(issued.lanes & ~warp.started, [&](int lane) { warp.first[size_t(lane)] = now; });
@@ -47,7 +49,8 @@ void CostRecorder::issue(Cycle now, uint32_t slot, const Issued& issued) {
 
 void CostRecorder::call(uint32_t slot, isa::Stage stage, LaneMask lanes) {
   if (stage != isa::Stage::AnyHit && stage != isa::Stage::Intersection) return;
-  const auto counter = stage == isa::Stage::AnyHit ? &ThreadCost::any_hit_calls : &ThreadCost::intersection_calls;
+  const auto counter =
+      stage == isa::Stage::AnyHit ? &ThreadCost::any_hit_calls : &ThreadCost::intersection_calls;
   for_each_lane(lanes, [&](int lane) { ++(slots_[slot].lane[size_t(lane)].*counter); });
 }
 

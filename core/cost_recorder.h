@@ -1,5 +1,5 @@
-// What each thread of a launch cost: time, instructions, idle slots, rays and misses, kept only when asked for.
-// SPDX-License-Identifier: Apache-2.0
+// What each thread of a launch cost: time, instructions, idle slots, rays and misses, kept only when asked
+// for. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstdint>
@@ -11,19 +11,22 @@ namespace glint::core {
 
 // Of one thread (launch index). Sums over all threads are statistics of the run where one is named.
 struct ThreadCost {
-  uint32_t cycles = 0;              // from the thread's first instruction to its last
-  uint32_t active_cycles = 0;       // of them, those after an instruction that it executed, up to the next of its warp
+  uint32_t cycles = 0;  // from the thread's first instruction to its last
+  uint32_t active_cycles =
+      0;  // of them, those after an instruction that it executed, up to the next of its warp
   uint32_t instructions = 0;        // that it executed: core.lane_instructions
   uint32_t rays = 0;                // rt_unit.rays
   uint32_t nodes = 0;               // rt_unit.nodes
   uint32_t triangle_tests = 0;      // rt_unit.triangle_tests
   uint32_t any_hit_calls = 0;       // core.any_hit.invocations
   uint32_t intersection_calls = 0;  // core.intersection.invocations
-  double slots = 0;                 // lane slots, 32 for each instruction, shared among those that execute it: core.lane_slots
-  double l1_misses = 0;             // l1.misses but of instructions and constants, each shared among the lanes it is for
+  double slots =
+      0;  // lane slots, 32 for each instruction, shared among those that execute it: core.lane_slots
+  double l1_misses = 0;  // l1.misses but of instructions and constants, each shared among the lanes it is for
 };
 
-// All threads of a launch, z slowest. Cores write to the threads that they run only, so that several may at a time.
+// All threads of a launch, z slowest. Cores write to the threads that they run only, so that several may at a
+// time.
 class LaunchCosts {
  public:
   // UserError where the launch has more threads than kMaxThreads.
@@ -33,7 +36,9 @@ class LaunchCosts {
   const World& world() const { return world_; }
   uint32_t width() const { return world_.launch_size[0]; }
   uint32_t height() const { return world_.launch_size[1]; }
-  ThreadCost& at(const std::array<uint32_t, 3>& id) { return threads_[(size_t{id[2]} * height() + id[1]) * width() + id[0]]; }
+  ThreadCost& at(const std::array<uint32_t, 3>& id) {
+    return threads_[(size_t{id[2]} * height() + id[1]) * width() + id[0]];
+  }
   const std::vector<ThreadCost>& threads() const { return threads_; }
 
  private:
@@ -58,7 +63,8 @@ class CostRecorder final : public CoreObserver {
  private:
   struct Slot {
     uint32_t warp_index = 0;
-    LaneMask present = 0, started = 0, last = 0;  // lanes that came to an instruction; have executed one; executed the last one
+    LaneMask present = 0, started = 0,
+             last = 0;  // lanes that came to an instruction; have executed one; executed the last one
     Cycle last_issue = 0;
     std::array<Cycle, kLanes> first{}, end{};
     std::array<uint32_t, kLanes> nodes{}, triangle_tests{};  // of the rays under way, when they started

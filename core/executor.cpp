@@ -31,12 +31,16 @@ Issued Executor::execute(WarpContext& warp, Cycle now) {
       break;
     case Effect::Load:
     case Effect::Store:
-    case Effect::Atomic: ok = run_memory(warp, inst, row); break;
+    case Effect::Atomic:
+      ok = run_memory(warp, inst, row);
+      break;
     case Effect::Texture:
     case Effect::SurfaceLoad:
     case Effect::SurfaceStore:
     case Effect::SurfaceAtomic:
-    case Effect::ImageQuery: ok = run_image(warp, inst, row); break;
+    case Effect::ImageQuery:
+      ok = run_image(warp, inst, row);
+      break;
     case Effect::Branch:
     case Effect::PushReconvergence:
     case Effect::Join:
@@ -47,13 +51,23 @@ Issued Executor::execute(WarpContext& warp, Cycle now) {
     case Effect::Trap:
     case Effect::Fence:
     case Effect::Ignore:
-    case Effect::Terminate: ok = run_control(warp, inst, row); break;
+    case Effect::Terminate:
+      ok = run_control(warp, inst, row);
+      break;
     case Effect::Print:
-    case Effect::PrintPart: ok = run_print(warp, inst, row); break;
-    case Effect::Barrier: ok = run_barrier(warp, inst, row); break;
-    case Effect::HitObject: ok = run_hit_object(warp, inst, row); break;
+    case Effect::PrintPart:
+      ok = run_print(warp, inst, row);
+      break;
+    case Effect::Barrier:
+      ok = run_barrier(warp, inst, row);
+      break;
+    case Effect::HitObject:
+      ok = run_hit_object(warp, inst, row);
+      break;
     case Effect::Query:
-    case Effect::QueryProceed: ok = run_query(warp, inst, row); break;
+    case Effect::QueryProceed:
+      ok = run_query(warp, inst, row);
+      break;
     case Effect::CallCandidate:
     case Effect::CallAnyHit:
     case Effect::CallHit:

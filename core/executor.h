@@ -22,18 +22,18 @@ struct Issued {
   uint32_t pc = 0;
   const isa::Inst* inst = nullptr;
   const isa::OpRow* row = nullptr;
-  LaneMask lanes = 0;      // that executed it (active and guard)
-  LaneMask active = 0;     // that were running
+  LaneMask lanes = 0;   // that executed it (active and guard)
+  LaneMask active = 0;  // that were running
   // Loads, stores, texture and surface ops: the addresses are in warp.regs.access until the next execute().
   // Texture and surface ops touched texels(). Shader calls:
   // address[lane] is the binding-table record of each lane that called, `lanes` those lanes.
-  bool finished = false;   // the warp has ended
+  bool finished = false;  // the warp has ended
 };
 
 // What intersection and any-hit shaders had to do.
 struct CandidateCounts {
-  uint64_t calls = 0, lanes = 0;                       // of such shaders: one a warp and shader
-  uint64_t gathered = 0, dropped = 0, overflows = 0;   // of ended traces (rtunit/candidate_table.h)
+  uint64_t calls = 0, lanes = 0;                      // of such shaders: one a warp and shader
+  uint64_t gathered = 0, dropped = 0, overflows = 0;  // of ended traces (rtunit/candidate_table.h)
 };
 
 // Lanes of a warp that begin a shader because another called it.
@@ -67,11 +67,11 @@ class Executor {
   uint32_t warps_per_block() const;  // 1 in a launch without blocks
   uint32_t num_warps() const { return num_blocks() * warps_per_block(); }
 
-  // Empties `block` for block `index` of the launch: zeroed shared memory, no warp has arrived anywhere. Blocks are
-  // numbered x fastest, if the layout does not say otherwise.
+  // Empties `block` for block `index` of the launch: zeroed shared memory, no warp has arrived anywhere.
+  // Blocks are numbered x fastest, if the layout does not say otherwise.
   void start(Block& block, uint32_t index) const;
-  // Puts a warp of the block into `warp`, at the entry of the ray generation (or compute) shader. Neither may move
-  // until the warp has ended.
+  // Puts a warp of the block into `warp`, at the entry of the ray generation (or compute) shader. Neither may
+  // move until the warp has ended.
   void start(WarpContext& warp, Block& block, uint32_t warp_in_block, const Seat& seat = {}) const;
   // In a launch without blocks: puts warp `warp_index` into `warp`, as a block of its own.
   void start(WarpContext& warp, uint32_t warp_index) const;
@@ -80,11 +80,11 @@ class Executor {
   const isa::Inst& next(const WarpContext& warp) const { return world_.image->code[warp.simt.pc]; }
   const isa::OpRow& next_row(const WarpContext& warp) const { return *world_.image->rows[warp.simt.pc]; }
 
-  // Runs one instruction to its end, but rt.trace, rt.resume and rq.proceed: those leave `warp.waiting_for_rays` set, the
-  // machine traverses warp.rays[lane] for the lanes that are Traversing, then calls finish_rays. With World::traversal they
-  // call its program instead, like a shader, and no lane that waits is Traversing.
-  // A bar.* that has to wait leaves `warp.waiting_at_barrier` set: the warp may be executed again when another warp of
-  // its block has come or ended, and cleared it.
+  // Runs one instruction to its end, but rt.trace, rt.resume and rq.proceed: those leave
+  // `warp.waiting_for_rays` set, the machine traverses warp.rays[lane] for the lanes that are Traversing,
+  // then calls finish_rays. With World::traversal they call its program instead, like a shader, and no lane
+  // that waits is Traversing. A bar.* that has to wait leaves `warp.waiting_at_barrier` set: the warp may be
+  // executed again when another warp of its block has come or ended, and cleared it.
   Issued execute(WarpContext& warp, Cycle now);
   // Writes the answer predicate of the waiting rt.trace or rt.resume.
   void finish_rays(WarpContext& warp) const;
@@ -101,15 +101,17 @@ class Executor {
   // Of the last texture or surface op; empty when it needed no memory.
   const TexelList& texels() const { return texels_; }
 
-  // Of the last load, store or atomic: the lanes whose access went to that space. Their Access::address is then an
-  // address of the space, of generic accesses too. Without lanes whose access was let pass and went nowhere.
+  // Of the last load, store or atomic: the lanes whose access went to that space. Their Access::address is
+  // then an address of the space, of generic accesses too. Without lanes whose access was let pass and went
+  // nowhere.
   LaneMask lanes_in(isa::Space space) const { return lanes_in_[size_t(space)]; }
 
   // Global memory is reached through `view` from now on; without one, effects on it happen at once.
   void use(MemoryView* view) { view_ = view; }
   // Whether the last load or atomic writes its registers only when the view is committed.
   bool is_late() const { return is_late_; }
-  // Grows with every store outside of a view and every atomic there that has changed something: shared memory, mostly.
+  // Grows with every store outside of a view and every atomic there that has changed something: shared
+  // memory, mostly.
   uint64_t changes() const { return changes_; }
 
   const World& world() const { return world_; }
@@ -132,20 +134,30 @@ class Executor {
   void open_barrier(Block& block, uint32_t barrier);
   bool fail_stuck(const Block& block);
 
-  bool access(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space, LaneMask lanes);
-  bool locate(WarpContext& warp, const isa::OpRow& row, isa::Space space, LaneMask& lanes, std::array<std::byte*, kLanes>& at);
-  bool move_data(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space, LaneMask lanes);
-  bool modify(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space, LaneMask lanes);
-  // The same of global memory seen through view_ (executor_view.cpp). `at`: where each of the lanes' data lies.
+  bool access(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space,
+              LaneMask lanes);
+  bool locate(WarpContext& warp, const isa::OpRow& row, isa::Space space, LaneMask& lanes,
+              std::array<std::byte*, kLanes>& at);
+  bool move_data(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space,
+                 LaneMask lanes);
+  bool modify(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space,
+              LaneMask lanes);
+  // The same of global memory seen through view_ (executor_view.cpp). `at`: where each of the lanes' data
+  // lies.
   using Places = std::array<std::byte*, kLanes>;
-  void load_seen(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes, const Places& at);
-  void store_seen(const WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes, const Places& at);
+  void load_seen(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes,
+                 const Places& at);
+  void store_seen(const WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes,
+                  const Places& at);
   void surface_seen(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, const Places& place);
-  void modify_seen(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes, const Places& at);
+  void modify_seen(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes,
+                   const Places& at);
   bool access_local(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes);
-  bool refuse(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space, LaneMask lanes, const std::string& why);
+  bool refuse(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space,
+              LaneMask lanes, const std::string& why);
   bool check_local(WarpContext& warp, const isa::OpRow& row, LaneMask& lanes);
-  bool load_constant(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space, LaneMask lanes);
+  bool load_constant(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space,
+                     LaneMask lanes);
   bool texture(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
   bool query_image(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
   bool surface(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
@@ -156,10 +168,12 @@ class Executor {
   bool report(WarpContext& warp, const isa::Inst& inst);
   bool call_callable(WarpContext& warp, const isa::Inst& inst);
   // Number of shaders called.
-  uint32_t call_by_shader(WarpContext& warp, const std::array<uint32_t, kLanes>& target, LaneMask callers, bool is_callable);
+  uint32_t call_by_shader(WarpContext& warp, const std::array<uint32_t, kLanes>& target, LaneMask callers,
+                          bool is_callable);
   // The objects, one a lane, that the executing lanes name alike; null after a fault. `what`: in its message.
   template <class Object>
-  Object* find_numbered(WarpContext& warp, Numbered<Object>& objects, isa::Slot operand, uint32_t level, std::string_view what) {
+  Object* find_numbered(WarpContext& warp, Numbered<Object>& objects, isa::Slot operand, uint32_t level,
+                        std::string_view what) {
     const std::optional<uint32_t> number = shared_number(warp, operand, what);
     if (!number) return nullptr;
     const size_t place = size_t(level) * kMaxNumbered + *number;
@@ -198,8 +212,10 @@ class Executor {
   bool fail(WarpContext& warp, int lane, std::string what);
   // False: a fault, as fail(). True: noted, and the lane goes on without effect.
   bool let_pass(WarpContext& warp, int lane, FaultKind kind, const std::function<std::string()>& what);
-  // Of a record outside of its region, which then calls nothing; of what is no structure, which then is missed.
-  bool let_pass_record(WarpContext& warp, int lane, std::string_view region, uint32_t record, size_t records, const std::string& how = {});
+  // Of a record outside of its region, which then calls nothing; of what is no structure, which then is
+  // missed.
+  bool let_pass_record(WarpContext& warp, int lane, std::string_view region, uint32_t record, size_t records,
+                       const std::string& how = {});
   bool let_pass_hit_record(WarpContext& warp, int lane, const rt::Ray& ray, const rt::Hit& hit);
   void call_nothing(WarpContext& warp, int lane, rt::RayState& state, isa::Effect effect);
   bool let_pass_structure(WarpContext& warp, int lane, std::string_view verb, Address structure);
@@ -223,8 +239,8 @@ class Executor {
 // The fault of a warp that has run for longer than any real one, at the instruction `pc`.
 Fault no_end_in_sight(const World& world, const WarpContext& warp, uint32_t pc, uint64_t instruction_budget);
 
-// Launch coordinates of a lane of a warp, as World::layout has them; in a launch with blocks x runs fastest within the block.
-// A lane without a thread is outside of the launch.
+// Launch coordinates of a lane of a warp, as World::layout has them; in a launch with blocks x runs fastest
+// within the block. A lane without a thread is outside of the launch.
 std::array<uint32_t, 3> launch_id(const World& world, uint32_t warp_index, int lane);
 uint32_t warps_per_block(const World& world);
 

@@ -14,9 +14,12 @@ bool Executor::run_control(WarpContext& warp, const isa::Inst& inst, const isa::
   const LaneMask exec = warp.regs.exec;
   const uint32_t target = uint32_t(inst.imm);
   switch (row.effect) {
-    case Effect::Branch: return branch(warp, target);
-    case Effect::BranchIndexed: return branch_indexed(warp, inst);
-    case Effect::Call: return call_function(warp, target);
+    case Effect::Branch:
+      return branch(warp, target);
+    case Effect::BranchIndexed:
+      return branch_indexed(warp, inst);
+    case Effect::Call:
+      return call_function(warp, target);
     case Effect::PushReconvergence:
       simt.push_reconvergence(target);
       ++simt.pc;
@@ -36,12 +39,14 @@ bool Executor::run_control(WarpContext& warp, const isa::Inst& inst, const isa::
       return true;
     case Effect::Return:
     case Effect::Ignore:
-    case Effect::Terminate: return return_from(warp, row.effect);
+    case Effect::Terminate:
+      return return_from(warp, row.effect);
     case Effect::Fence:
       // Every access has its effect when it is executed, in one order for all: nothing to wait for but time.
       ++simt.pc;
       return true;
-    default: GLINT_PANIC("{} is not a control effect", row.name);
+    default:
+      GLINT_PANIC("{} is not a control effect", row.name);
   }
 }
 
@@ -54,11 +59,13 @@ bool Executor::branch(WarpContext& warp, uint32_t target) {
     ++simt.pc;
   } else if (world_.image->target_is_join[simt.pc]) {
     // Lanes that go to a join wait there at once: a loop's exits never grow the stack.
-    if (!simt.arrive(target, exec)) return fail(warp, std::countr_zero(exec), "branches to a join without its ssy");
+    if (!simt.arrive(target, exec))
+      return fail(warp, std::countr_zero(exec), "branches to a join without its ssy");
     simt.active = stay;
     ++simt.pc;
   } else if (world_.image->rows[simt.pc + 1]->effect == Effect::Join) {
-    if (!simt.arrive(simt.pc + 1, stay)) return fail(warp, std::countr_zero(stay), "falls into a join without its ssy");
+    if (!simt.arrive(simt.pc + 1, stay))
+      return fail(warp, std::countr_zero(stay), "falls into a join without its ssy");
     simt.active = exec;
     simt.pc = target;
   } else {
@@ -69,7 +76,8 @@ bool Executor::branch(WarpContext& warp, uint32_t target) {
   return true;
 }
 
-// Lanes with one index go together, those of the lowest lane first; lanes that the guard leaves out go before all.
+// Lanes with one index go together, those of the lowest lane first; lanes that the guard leaves out go before
+// all.
 bool Executor::branch_indexed(WarpContext& warp, const isa::Inst& inst) {
   SimtStack& simt = warp.simt;
   const uint32_t* const index = warp.regs.read(inst.operand[0]);
@@ -103,14 +111,15 @@ bool Executor::call_function(WarpContext& warp, uint32_t target) {
   const uint32_t back = simt.pc + 1;
   if (exec == 0) return simt.pc = back, true;
   if (simt.depth() >= kMaxNesting) return fail(warp, std::countr_zero(exec), "calls are nested without end");
-  simt.push_call(back, simt.active & ~exec, warp.depth, world_.image->shader_of[simt.pc], warp.callables, true);
+  simt.push_call(back, simt.active & ~exec, warp.depth, world_.image->shader_of[simt.pc], warp.callables,
+                 true);
   simt.active = exec;
   simt.pc = target;
   return true;
 }
 
-// ret goes back to the innermost call; out of a shader, it decides what the stage has to decide. rt.ignore and
-// rt.terminate leave the shader, out of all functions.
+// ret goes back to the innermost call; out of a shader, it decides what the stage has to decide. rt.ignore
+// and rt.terminate leave the shader, out of all functions.
 bool Executor::return_from(WarpContext& warp, Effect effect) {
   SimtStack& simt = warp.simt;
   const LaneMask exec = warp.regs.exec;

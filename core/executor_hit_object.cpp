@@ -1,14 +1,12 @@
 // Hit objects: ho.*, what a ray found or a shader made up, kept until its shader is executed.
 // SPDX-License-Identifier: Apache-2.0
-#include "isa/hit_object.h"
-
-#include <fmt/format.h>
-
 #include <cstring>
+#include <fmt/format.h>
 #include <utility>
 
 #include "core/executor.h"
 #include "core/ray_values.h"
+#include "isa/hit_object.h"
 #include "rtunit/node_format.h"
 #include "rtunit/structure.h"
 
@@ -43,8 +41,8 @@ void store_attributes(WarpContext& warp, uint32_t address, int lane, const HitOb
 }
 
 // Address of the leaf of an instance below the node at `block`; 0 when there is none.
-Address find_instance(const mem::AddressSpace& memory, const rt::NodeFormat& format, Address structure, uint32_t block,
-                      uint32_t instance) {
+Address find_instance(const mem::AddressSpace& memory, const rt::NodeFormat& format, Address structure,
+                      uint32_t block, uint32_t instance) {
   std::vector<rt::DecodedChild> children(format.width());
   const auto* node = memory.find(structure + Address(block) * rt::kBlockBytes, format.node_bytes());
   if (!node) return 0;
@@ -53,7 +51,8 @@ Address find_instance(const mem::AddressSpace& memory, const rt::NodeFormat& for
     const uint32_t at = rt::block_of(children[i].node);
     if (rt::kind_of(children[i].node) == rt::NodeKind::Internal) {
       if (const Address found = find_instance(memory, format, structure, at, instance)) return found;
-    } else if (const auto* leaf = memory.find(structure + Address(at) * rt::kBlockBytes, sizeof(rt::InstanceLeaf))) {
+    } else if (const auto* leaf =
+                   memory.find(structure + Address(at) * rt::kBlockBytes, sizeof(rt::InstanceLeaf))) {
       rt::InstanceLeaf read;
       std::memcpy(&read, leaf, sizeof read);
       if (read.instance == instance) return structure + Address(at) * rt::kBlockBytes;
@@ -68,8 +67,11 @@ Address find_instance(const mem::AddressSpace& memory, Address structure, uint32
   const auto* bytes = memory.find(structure, sizeof header);
   if (!bytes) return 0;
   std::memcpy(&header, bytes, sizeof header);
-  if (header.magic != rt::StructureHeader::kMagic || header.level != 1 || header.format >= uint8_t(rt::FormatId::Count)) return 0;
-  return find_instance(memory, *rt::make_format(rt::FormatId(header.format)), structure, rt::kRootBlock, instance);
+  if (header.magic != rt::StructureHeader::kMagic || header.level != 1 ||
+      header.format >= uint8_t(rt::FormatId::Count))
+    return 0;
+  return find_instance(memory, *rt::make_format(rt::FormatId(header.format)), structure, rt::kRootBlock,
+                       instance);
 }
 
 }  // namespace
@@ -80,21 +82,24 @@ std::optional<uint32_t> Executor::shared_number(WarpContext& warp, isa::Slot ope
   bool same = true;
   for_each_lane(warp.regs.exec, [&](int lane) { same &= number[lane] == number[first]; });
   if (same && number[first] < kMaxNumbered) return number[first];
-  fail(warp, first, same ? fmt::format("uses {} {}: a shader has at most {}", what, number[first], kMaxNumbered)
-                         : fmt::format("the lanes of a warp use more than one {} at once", what));
+  fail(warp, first,
+       same ? fmt::format("uses {} {}: a shader has at most {}", what, number[first], kMaxNumbered)
+            : fmt::format("the lanes of a warp use more than one {} at once", what));
   return std::nullopt;
 }
 
 bool Executor::run_hit_object(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
   const auto op = HitObjectOp(row.detail);
   LaneMask lanes = warp.regs.exec;
-  if (op == HitObjectOp::SetTime || op == HitObjectOp::GetTime) return run_time(warp, inst, op == HitObjectOp::SetTime);
+  if (op == HitObjectOp::SetTime || op == HitObjectOp::GetTime)
+    return run_time(warp, inst, op == HitObjectOp::SetTime);
   if (op == HitObjectOp::Corner) return run_corner(warp, inst);
   if (lanes && op == HitObjectOp::Record && warp.depth == 0)
     return fail(warp, std::countr_zero(lanes), "keeps the hit of a trace, and none is open");
   const uint32_t level = warp.depth - (op == HitObjectOp::Record ? 1 : 0);
   const isa::Slot number = inst.operand[op == HitObjectOp::Value ? 1 : 0];
-  HitObject* const objects = lanes ? find_numbered(warp, warp.hit_objects, number, level, "hit object") : nullptr;
+  HitObject* const objects =
+      lanes ? find_numbered(warp, warp.hit_objects, number, level, "hit object") : nullptr;
   if (lanes && !objects) return false;
   for (; lanes; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
@@ -105,17 +110,29 @@ bool Executor::run_hit_object(WarpContext& warp, const isa::Inst& inst, const is
         if (state.broken && !let_pass_broken(warp, lane, state)) [[unlikely]]
           return false;
         const bool hit = state.committed.valid();
-        object = {hit ? HitObject::Type::Hit : HitObject::Type::Miss, state.ray, state.committed,
-                  hit ? hit_record(state.ray, state.committed) : state.ray.miss_index, {}, warp.frame().time[size_t(lane)]};
+        object = {hit ? HitObject::Type::Hit : HitObject::Type::Miss,
+                  state.ray,
+                  state.committed,
+                  hit ? hit_record(state.ray, state.committed) : state.ray.miss_index,
+                  {},
+                  warp.frame().time[size_t(lane)]};
         if (state.committed.kind >= rt::kHitKindFront)
           object.attributes = {as_bits(state.committed.u), as_bits(state.committed.v)};
         else
-          load_attributes(warp, warp.frame().attributes[size_t(lane)] + (state.attribute_slot ? kAttributeBytes : 0), lane, object);
+          load_attributes(
+              warp, warp.frame().attributes[size_t(lane)] + (state.attribute_slot ? kAttributeBytes : 0),
+              lane, object);
         break;
       }
-      case HitObjectOp::Empty: object = {}; break;
+      case HitObjectOp::Empty:
+        object = {};
+        break;
       case HitObjectOp::Miss:
-        object = {HitObject::Type::Miss, ray_of(warp, inst, kMissRay, lane), {}, read_word(warp.regs, inst, kMissIndex, lane) & 0xffff, {},
+        object = {HitObject::Type::Miss,
+                  ray_of(warp, inst, kMissRay, lane),
+                  {},
+                  read_word(warp.regs, inst, kMissIndex, lane) & 0xffff,
+                  {},
                   std::exchange(warp.next_time[size_t(lane)], 0)};
         break;
       case HitObjectOp::Hit:
@@ -123,12 +140,16 @@ bool Executor::run_hit_object(WarpContext& warp, const isa::Inst& inst, const is
         if (!make_hit(warp, inst, op == HitObjectOp::Hit, lane, object)) return false;
         break;
       case HitObjectOp::Value:
-        warp.regs.write(inst.operand[0])[lane] = hit_object_value(object, read_word(warp.regs, inst, 2, lane));
+        warp.regs.write(inst.operand[0])[lane] =
+            hit_object_value(object, read_word(warp.regs, inst, 2, lane));
         break;
       case HitObjectOp::SetTime:
       case HitObjectOp::GetTime:
-      case HitObjectOp::Corner: break;  // above
-      case HitObjectOp::Attributes: store_attributes(warp, read_word(warp.regs, inst, 1, lane), lane, object); break;
+      case HitObjectOp::Corner:
+        break;  // above
+      case HitObjectOp::Attributes:
+        store_attributes(warp, read_word(warp.regs, inst, 1, lane), lane, object);
+        break;
     }
   }
   ++warp.simt.pc;
@@ -142,7 +163,8 @@ bool Executor::run_time(WarpContext& warp, const isa::Inst& inst, bool set) {
     for_each_lane(warp.regs.exec, [&](int lane) { warp.next_time[size_t(lane)] = from[lane]; });
   } else {
     uint32_t* const to = warp.regs.write(inst.operand[0]);
-    for_each_lane(warp.regs.exec, [&](int lane) { to[lane] = warp.depth == 0 ? 0 : warp.frame().time[size_t(lane)]; });
+    for_each_lane(warp.regs.exec,
+                  [&](int lane) { to[lane] = warp.depth == 0 ? 0 : warp.frame().time[size_t(lane)]; });
   }
   ++warp.simt.pc;
   return true;
@@ -164,20 +186,26 @@ bool Executor::run_corner(WarpContext& warp, const isa::Inst& inst) {
   return true;
 }
 
-bool Executor::make_hit(WarpContext& warp, const isa::Inst& inst, bool has_stride, int lane, HitObject& object) {
+bool Executor::make_hit(WarpContext& warp, const isa::Inst& inst, bool has_stride, int lane,
+                        HitObject& object) {
   const auto value = [&](size_t operand) { return read_word(warp.regs, inst, operand, lane); };
   const Address structure = read_address(warp.regs, inst, kStructure, lane);
   const Address at = find_instance(*world_.memory, structure, value(kInstance));
   if (at == 0) {
     object = {};
     return let_pass(warp, lane, FaultKind::Structure, [&] {
-      return fmt::format("makes a hit object of instance {}, which {:#x} does not hold: {}", value(kInstance), structure,
-                         whereabouts(*world_.memory, structure, 1));
+      return fmt::format("makes a hit object of instance {}, which {:#x} does not hold: {}", value(kInstance),
+                         structure, whereabouts(*world_.memory, structure, 1));
     });
   }
   const rt::InstanceLeaf& leaf = world_.memory->view<rt::InstanceLeaf>(at, 1)[0];
   const size_t ray = kOffset + (has_stride ? 2 : 1);
-  object = {HitObject::Type::Hit, ray_of(warp, inst, ray, lane), {}, 0, {}, std::exchange(warp.next_time[size_t(lane)], 0)};
+  object = {HitObject::Type::Hit,
+            ray_of(warp, inst, ray, lane),
+            {},
+            0,
+            {},
+            std::exchange(warp.next_time[size_t(lane)], 0)};
   object.ray.structure = structure;
   load_attributes(warp, value(ray + kRayOperands), lane, object);
   rt::Hit& hit = object.hit;
@@ -204,7 +232,9 @@ uint32_t Executor::hit_object_value(const HitObject& object, uint32_t value) con
   const rt::Ray& ray = object.ray;
   if (value == uint32_t(V::Type)) return uint32_t(object.type);
   if (empty || value >= uint32_t(V::Count)) return 0;
-  const auto within = [&](V first, uint32_t count) { return value >= uint32_t(first) && value - uint32_t(first) < count; };
+  const auto within = [&](V first, uint32_t count) {
+    return value >= uint32_t(first) && value - uint32_t(first) < count;
+  };
   const auto element = [&](V first) { return size_t(value - uint32_t(first)); };
   if (within(V::Origin, 3)) return as_bits(ray.origin[element(V::Origin)]);
   if (within(V::Direction, 3)) return as_bits(ray.direction[element(V::Direction)]);
@@ -219,22 +249,29 @@ uint32_t Executor::hit_object_value(const HitObject& object, uint32_t value) con
   if (!hit) return 0;
   const rt::InstanceLeaf& leaf = world_.memory->view<rt::InstanceLeaf>(object.hit.instance_leaf, 1)[0];
   if (within(V::ObjectOrigin, 3)) return as_bits(object_point(leaf, ray.origin, element(V::ObjectOrigin)));
-  if (within(V::ObjectDirection, 3)) return as_bits(object_direction(leaf, ray.direction, element(V::ObjectDirection)));
+  if (within(V::ObjectDirection, 3))
+    return as_bits(object_direction(leaf, ray.direction, element(V::ObjectDirection)));
   if (within(V::ObjectToWorld, 12)) return as_bits(leaf.object_to_world[element(V::ObjectToWorld)]);
   if (within(V::WorldToObject, 12)) return as_bits(leaf.world_to_object[element(V::WorldToObject)]);
   switch (V(value)) {
-    case V::Kind: return object.hit.kind;
-    case V::Primitive: return object.hit.primitive;
-    case V::Geometry: return object.hit.geometry;
-    case V::Instance: return object.hit.instance;
-    default: return object.hit.custom_index;
+    case V::Kind:
+      return object.hit.kind;
+    case V::Primitive:
+      return object.hit.primitive;
+    case V::Geometry:
+      return object.hit.geometry;
+    case V::Instance:
+      return object.hit.instance;
+    default:
+      return object.hit.custom_index;
   }
 }
 
 // Opens a trace whose rays have already found what the objects hold.
 bool Executor::begin_hit_object(WarpContext& warp, const isa::Inst& inst) {
   LaneMask lanes = warp.regs.exec;
-  HitObject* const objects = lanes ? find_numbered(warp, warp.hit_objects, inst.operand[0], warp.depth, "hit object") : nullptr;
+  HitObject* const objects =
+      lanes ? find_numbered(warp, warp.hit_objects, inst.operand[0], warp.depth, "hit object") : nullptr;
   if (lanes && !objects) return false;
   if (!open_trace(warp, inst, 1)) return false;
   for (; lanes; lanes &= lanes - 1) {

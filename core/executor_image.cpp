@@ -1,9 +1,8 @@
 // Textures and storage images: what an image op does for the lanes of a warp, with every access checked.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstring>
+#include <fmt/format.h>
 
 #include "base/check.h"
 #include "core/executor.h"
@@ -53,7 +52,8 @@ class Lane {
   int lane_;
 };
 
-SampleRequest request_of(const isa::ImageAccess& op, const Slots& slots, const Lane& lane, const ImageView& image) {
+SampleRequest request_of(const isa::ImageAccess& op, const Slots& slots, const Lane& lane,
+                         const ImageView& image) {
   SampleRequest request;
   request.shape = op.shape;
   const auto count = size_t(isa::num_coordinates(op.shape));
@@ -93,37 +93,50 @@ std::string_view name_of(ImageShape shape) {
 
 uint32_t answer(const isa::ImageAccess& op, const ImageView& image, const Sampler& sampler, uint32_t level) {
   switch (op.query) {
-    case isa::ImageQuery::Width: return image.extent(0, level);
-    case isa::ImageQuery::Height: return image.extent(1, level);
-    case isa::ImageQuery::Depth: return image.extent(2, level);
-    case isa::ImageQuery::ArraySize: return image.layers / (isa::is_cube(image.shape) ? 6 : image.samples);
-    case isa::ImageQuery::NumMipmapLevels: return image.levels;
-    case isa::ImageQuery::NumSamples: return image.samples;
-    case isa::ImageQuery::NormalizedCoords: return sampler.unnormalized ? 0 : 1;
-    case isa::ImageQuery::ChannelDataType: return info_of(image.format).opencl_type;
-    case isa::ImageQuery::ChannelOrder: return info_of(image.format).opencl_order;
+    case isa::ImageQuery::Width:
+      return image.extent(0, level);
+    case isa::ImageQuery::Height:
+      return image.extent(1, level);
+    case isa::ImageQuery::Depth:
+      return image.extent(2, level);
+    case isa::ImageQuery::ArraySize:
+      return image.layers / (isa::is_cube(image.shape) ? 6 : image.samples);
+    case isa::ImageQuery::NumMipmapLevels:
+      return image.levels;
+    case isa::ImageQuery::NumSamples:
+      return image.samples;
+    case isa::ImageQuery::NormalizedCoords:
+      return sampler.unnormalized ? 0 : 1;
+    case isa::ImageQuery::ChannelDataType:
+      return info_of(image.format).opencl_type;
+    case isa::ImageQuery::ChannelOrder:
+      return info_of(image.format).opencl_order;
   }
   GLINT_PANIC("image query {}", int(op.query));
 }
 
-// A texel that an integer coordinate names: x, y, z, and layer, and how much there is of each. Byte accesses count x
-// in bytes.
+// A texel that an integer coordinate names: x, y, z, and layer, and how much there is of each. Byte accesses
+// count x in bytes.
 struct Place {
   std::array<int64_t, 4> at{}, end{};
   uint32_t level = 0;
-  TexelIndex index() const { return {uint32_t(at[0]), uint32_t(at[1]), uint32_t(at[2]), uint32_t(at[3]), level}; }
+  TexelIndex index() const {
+    return {uint32_t(at[0]), uint32_t(at[1]), uint32_t(at[2]), uint32_t(at[3]), level};
+  }
   bool is_inside() const {
     for (size_t i = 0; i < 4; ++i)
       if (at[i] < 0 || at[i] >= end[i]) return false;
     return true;
   }
 };
-Place place_of(const isa::ImageAccess& op, const Slots& slots, const Lane& lane, const ImageView& image, uint32_t bytes) {
+Place place_of(const isa::ImageAccess& op, const Slots& slots, const Lane& lane, const ImageView& image,
+               uint32_t bytes) {
   Place place;
   const bool has_level = op.lod == isa::ImageLod::Level;
   const int64_t level = has_level ? lane.integer(slots.level) : 0;
   for (int axis = 0; axis < 3; ++axis) {
-    place.at[size_t(axis)] = axis < isa::num_coordinates(op.shape) ? lane.integer(slots.at + size_t(axis)) : 0;
+    place.at[size_t(axis)] =
+        axis < isa::num_coordinates(op.shape) ? lane.integer(slots.at + size_t(axis)) : 0;
     place.end[size_t(axis)] = level < 0 || level >= image.levels ? 0 : image.extent(axis, uint32_t(level));
   }
   if (op.request == ImageRequest::Bytes) place.end[0] = place.end[0] * image.texel_bytes() - (bytes - 1);
@@ -134,9 +147,10 @@ Place place_of(const isa::ImageAccess& op, const Slots& slots, const Lane& lane,
 }
 
 std::string outside(const Place& place, const ImageView& image) {
-  return fmt::format("({}, {}, {}) of layer {}, level {}, of image '{}', which is {}x{}x{} with {} layers, {} levels",
-                     place.at[0], place.at[1], place.at[2], place.at[3], int32_t(place.level), image.name, image.width,
-                     image.height, image.depth, image.layers, image.levels);
+  return fmt::format(
+      "({}, {}, {}) of layer {}, level {}, of image '{}', which is {}x{}x{} with {} layers, {} levels",
+      place.at[0], place.at[1], place.at[2], place.at[3], int32_t(place.level), image.name, image.width,
+      image.height, image.depth, image.layers, image.levels);
 }
 
 // Words that a surface op stores, or takes besides its place.
@@ -163,11 +177,12 @@ Words load_texel(const isa::OpRow& row, TexelFormat format, const std::byte* at)
 // Null: nothing is there, let pass (`fault()` is then not set) or not.
 const ImageView* Executor::find_image(WarpContext& warp, const isa::OpRow& row, int lane) {
   const uint64_t handle = warp.regs.access.address[size_t(lane)];
-  const uint64_t number = handle % (1u << isa::kHandleSamplerShift), sampler = handle >> isa::kHandleSamplerShift;
+  const uint64_t number = handle % (1u << isa::kHandleSamplerShift),
+                 sampler = handle >> isa::kHandleSamplerShift;
   if (number >= world_.images.size() || sampler > world_.samplers.size()) [[unlikely]] {
     let_pass(warp, lane, FaultKind::Image, [&] {
-      return fmt::format("uses image {} with sampler {}: {} images and {} samplers are bound", number, sampler, world_.images.size(),
-                         world_.samplers.size());
+      return fmt::format("uses image {} with sampler {}: {} images and {} samplers are bound", number,
+                         sampler, world_.images.size(), world_.samplers.size());
     });
     return nullptr;
   }
@@ -175,12 +190,14 @@ const ImageView* Executor::find_image(WarpContext& warp, const isa::OpRow& row, 
   const bool filters = row.image.request == ImageRequest::Sample || row.image.request == ImageRequest::Gather;
   const std::string& unbound = !image.is_bound ? image.name : find_sampler(image, handle).unbound;
   if (!image.is_bound || (filters && !unbound.empty())) [[unlikely]] {
-    let_pass(warp, lane, FaultKind::Image, [&] { return fmt::format("uses {}, to which nothing is bound", unbound); });
+    let_pass(warp, lane, FaultKind::Image,
+             [&] { return fmt::format("uses {}, to which nothing is bound", unbound); });
     return nullptr;
   }
   if (row.image.request != ImageRequest::Query && !fits(row.image, image.shape)) [[unlikely]] {
     let_pass(warp, lane, FaultKind::Image, [&] {
-      return fmt::format("uses image '{}', which is {}, as {}", image.name, name_of(image.shape), name_of(row.image.shape));
+      return fmt::format("uses image '{}', which is {}, as {}", image.name, name_of(image.shape),
+                         name_of(row.image.shape));
     });
     return nullptr;
   }
@@ -200,11 +217,18 @@ bool Executor::run_image(WarpContext& warp, const isa::Inst& inst, const isa::Op
   switch (row.image.request) {
     case ImageRequest::Sample:
     case ImageRequest::Gather:
-    case ImageRequest::Fetch: ok = texture(warp, inst, row); break;
-    case ImageRequest::Query: ok = query_image(warp, inst, row); break;
+    case ImageRequest::Fetch:
+      ok = texture(warp, inst, row);
+      break;
+    case ImageRequest::Query:
+      ok = query_image(warp, inst, row);
+      break;
     case ImageRequest::Texel:
-    case ImageRequest::Bytes: ok = surface(warp, inst, row); break;
-    case ImageRequest::None: GLINT_PANIC("{} is not an image op", row.name);
+    case ImageRequest::Bytes:
+      ok = surface(warp, inst, row);
+      break;
+    case ImageRequest::None:
+      GLINT_PANIC("{} is not an image op", row.name);
   }
   if (ok) ++warp.simt.pc;
   return ok;
@@ -223,8 +247,8 @@ bool Executor::texture(WarpContext& warp, const isa::Inst& inst, const isa::OpRo
     if (!image) continue;
     if (is_integer(info_of(image->format)) == op.is_float) [[unlikely]] {
       if (!pass(lane, [&] {
-            return fmt::format("reads {} from image '{}', whose format is {}", op.is_float ? "floats" : "integers", image->name,
-                               info_of(image->format).name);
+            return fmt::format("reads {} from image '{}', whose format is {}",
+                               op.is_float ? "floats" : "integers", image->name, info_of(image->format).name);
           }))
         return false;
       continue;
@@ -239,10 +263,13 @@ bool Executor::texture(WarpContext& warp, const isa::Inst& inst, const isa::OpRo
         return false;
     } else {
       const SampleRequest request = request_of(op, slots, operands, *image);
-      out = op.request == ImageRequest::Gather ? reader.gather(request, op.component) : reader.sample(request);
+      out =
+          op.request == ImageRequest::Gather ? reader.gather(request, op.component) : reader.sample(request);
     }
     if (reader.error()) [[unlikely]] {
-      if (!pass(lane, [&] { return fmt::format("samples image '{}', which {}", image->name, reader.error()); })) return false;
+      if (!pass(lane,
+                [&] { return fmt::format("samples image '{}', which {}", image->name, reader.error()); }))
+        return false;
       out = {};
       continue;
     }
@@ -281,12 +308,20 @@ std::byte* Executor::find_texel(WarpContext& warp, const isa::Inst& inst, const 
   const bool whole = op.request == ImageRequest::Texel;
   const uint32_t bytes = whole ? image->texel_bytes() : uint32_t(row.memory.bytes * row.memory.count);
   Place place = place_of(op, Slots(row), Lane(warp.regs, inst, lane), *image, bytes);
-  const auto refuse = [&](const auto& what) -> std::byte* { return let_pass(warp, lane, FaultKind::Image, what), nullptr; };
+  const auto refuse = [&](const auto& what) -> std::byte* {
+    return let_pass(warp, lane, FaultKind::Image, what), nullptr;
+  };
   if (!whole && place.at[0] % bytes != 0)
-    return refuse([&] { return fmt::format("accesses {} bytes at byte {} of a row of image '{}'", bytes, place.at[0], image->name); });
+    return refuse([&] {
+      return fmt::format("accesses {} bytes at byte {} of a row of image '{}'", bytes, place.at[0],
+                         image->name);
+    });
   // Texels of 64 bits are two channels of 32: their low half and their high one.
   if (row.atomic && whole && (info_of(image->format).bits != 32 || image->texel_bytes() != row.memory.bytes))
-    return refuse([&] { return fmt::format("atomic on image '{}', whose format is {}", image->name, info_of(image->format).name); });
+    return refuse([&] {
+      return fmt::format("atomic on image '{}', whose format is {}", image->name,
+                         info_of(image->format).name);
+    });
   if (!place.is_inside()) [[unlikely]] {
     if (op.outside == isa::ImageOutside::Clamp && place.end[0] > 0) {
       for (size_t i = 0; i < 4; ++i) place.at[i] = std::clamp<int64_t>(place.at[i], 0, place.end[i] - 1);
@@ -303,7 +338,9 @@ std::byte* Executor::find_texel(WarpContext& warp, const isa::Inst& inst, const 
   if (!whole) index.x = 0;
   const Address at = image->address_of(index) + skipped;
   std::byte* const memory = world_.memory->find(at, bytes);
-  if (!memory) return refuse([&] { return fmt::format("image '{}' is smaller in memory than its size says", image->name); });
+  if (!memory)
+    return refuse(
+        [&] { return fmt::format("image '{}' is smaller in memory than its size says", image->name); });
   texels_.add(lane, {&at, 1});
   return memory;
 }
@@ -321,7 +358,8 @@ bool Executor::surface(WarpContext& warp, const isa::Inst& inst, const isa::OpRo
     return world_.images[warp.regs.access.address[size_t(lane)] % (1u << isa::kHandleSamplerShift)].format;
   };
   if (view_) return surface_seen(warp, inst, row, place), true;
-  // Lane by lane: atomics take turns; of stores to one texel the highest lane's stays. Choice: PTX leaves it open.
+  // Lane by lane: atomics take turns; of stores to one texel the highest lane's stays. Choice: PTX leaves it
+  // open.
   for_each_lane(warp.regs.exec, [&](int lane) {
     const Lane operands(warp.regs, inst, lane);
     std::byte* const at = place[size_t(lane)];
@@ -332,7 +370,8 @@ bool Executor::surface(WarpContext& warp, const isa::Inst& inst, const isa::OpRo
       return;
     }
     if (row.effect == isa::Effect::SurfaceAtomic) {
-      const uint64_t operand = operands.bits(slots.data, row), swap = slots.data + 1 < end ? operands.bits(slots.data + 1, row) : 0;
+      const uint64_t operand = operands.bits(slots.data, row),
+                     swap = slots.data + 1 < end ? operands.bits(slots.data + 1, row) : 0;
       if (at) {
         uint64_t old = 0;
         std::memcpy(&old, at, row.memory.bytes);
@@ -350,18 +389,24 @@ bool Executor::surface(WarpContext& warp, const isa::Inst& inst, const isa::OpRo
 }
 
 // surface() where the image is seen through view_. A lane without a place loads 0.
-void Executor::surface_seen(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, const Places& place) {
+void Executor::surface_seen(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row,
+                            const Places& place) {
   const Slots slots(row);
   const auto format_of = [&](int lane) {
     return world_.images[warp.regs.access.address[size_t(lane)] % (1u << isa::kHandleSamplerShift)].format;
   };
   const auto bytes_of = [&](int lane) {
-    return row.image.request == ImageRequest::Texel ? uint32_t(info_of(format_of(lane)).bytes) : uint32_t(row.memory.bytes * row.memory.count);
+    return row.image.request == ImageRequest::Texel ? uint32_t(info_of(format_of(lane)).bytes)
+                                                    : uint32_t(row.memory.bytes * row.memory.count);
   };
-  const auto to = [&](size_t c, int lane) { return c < slots.results ? warp.regs.write(inst.operand[c]) + lane : nullptr; };
+  const auto to = [&](size_t c, int lane) {
+    return c < slots.results ? warp.regs.write(inst.operand[c]) + lane : nullptr;
+  };
   is_late_ = row.effect == isa::Effect::SurfaceAtomic && slots.results > 0;
   if (row.effect == isa::Effect::SurfaceLoad)
-    for_each_lane(warp.regs.exec, [&](int lane) { is_late_ |= place[size_t(lane)] && view_->waits(place[size_t(lane)], bytes_of(lane)); });
+    for_each_lane(warp.regs.exec, [&](int lane) {
+      is_late_ |= place[size_t(lane)] && view_->waits(place[size_t(lane)], bytes_of(lane));
+    });
   for_each_lane(warp.regs.exec, [&](int lane) {
     const Lane operands(warp.regs, inst, lane);
     std::byte* const at = place[size_t(lane)];
@@ -375,9 +420,11 @@ void Executor::surface_seen(WarpContext& warp, const isa::Inst& inst, const isa:
       const uint64_t swap = num_data(row) > 1 ? operands.bits(slots.data + 1, row) : 0;
       view_->modify({at, row.atomic, operands.bits(slots.data, row), swap, row.memory.bytes, to(0, lane)});
     } else if (row.effect == isa::Effect::SurfaceLoad && at && is_late_) {
-      view_->load(MemoryView::LoadTexel{at, &row, format_of(lane), {to(0, lane), to(1, lane), to(2, lane), to(3, lane)}});
+      view_->load(MemoryView::LoadTexel{
+          at, &row, format_of(lane), {to(0, lane), to(1, lane), to(2, lane), to(3, lane)}});
     } else {
-      const Words words = at ? load_texel(row, format_of(lane), view_->read(at, bytes_of(lane), scratch)) : Words{};
+      const Words words =
+          at ? load_texel(row, format_of(lane), view_->read(at, bytes_of(lane), scratch)) : Words{};
       for (size_t c = 0; c < slots.results; ++c) *to(c, lane) = words[c];
     }
   });

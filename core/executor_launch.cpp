@@ -11,13 +11,18 @@ using isa::Special;
 
 namespace {
 
-uint64_t product(const std::array<uint32_t, 3>& size) { return uint64_t(size[0]) * size[1] * size[2]; }
-
-std::array<uint32_t, 3> coordinates(uint64_t index, const std::array<uint32_t, 3>& size) {
-  return {uint32_t(index % size[0]), uint32_t(index / size[0] % size[1]), uint32_t(index / size[0] / size[1])};
+uint64_t product(const std::array<uint32_t, 3>& size) {
+  return uint64_t(size[0]) * size[1] * size[2];
 }
 
-bool has_blocks(const World& world) { return world.block_size[0] != 0; }
+std::array<uint32_t, 3> coordinates(uint64_t index, const std::array<uint32_t, 3>& size) {
+  return {uint32_t(index % size[0]), uint32_t(index / size[0] % size[1]),
+          uint32_t(index / size[0] / size[1])};
+}
+
+bool has_blocks(const World& world) {
+  return world.block_size[0] != 0;
+}
 
 std::array<uint32_t, 3> grid_size(const World& world) {
   std::array<uint32_t, 3> grid;
@@ -74,7 +79,8 @@ std::array<uint32_t, 3> launch_id(const World& world, uint32_t warp_index, int l
     return {column * tiles.width + x, row * tiles.height + y, warp_index / layer};
   }
   const uint32_t warps = warps_per_block(world);
-  const uint64_t thread = uint64_t(has_blocks(world) ? warp_index % warps : warp_index) * kLanes + uint64_t(lane);
+  const uint64_t thread =
+      uint64_t(has_blocks(world) ? warp_index % warps : warp_index) * kLanes + uint64_t(lane);
   if (!has_blocks(world)) return coordinates(thread, world.launch_size);
   const std::array<uint32_t, 3> block = block_id(world, warp_index / warps);
   std::array<uint32_t, 3> id = coordinates(thread, world.block_size);
@@ -84,20 +90,27 @@ std::array<uint32_t, 3> launch_id(const World& world, uint32_t warp_index, int l
 
 Executor::Executor(const World& world, double clock_mhz)
     : world_(world),
-      reads_clock_(std::any_of(world.image->shaders.begin(), world.image->shaders.end(), [](const Shader& shader) {
-        return shader.specials_used[size_t(Special::Clock)] || shader.specials_used[size_t(Special::ClockHi)] ||
-               shader.specials_used[size_t(Special::GlobalTimerLo)] || shader.specials_used[size_t(Special::GlobalTimerHi)];
-      })),
+      reads_clock_(std::any_of(world.image->shaders.begin(), world.image->shaders.end(),
+                               [](const Shader& shader) {
+                                 return shader.specials_used[size_t(Special::Clock)] ||
+                                        shader.specials_used[size_t(Special::ClockHi)] ||
+                                        shader.specials_used[size_t(Special::GlobalTimerLo)] ||
+                                        shader.specials_used[size_t(Special::GlobalTimerHi)];
+                               })),
       clock_mhz_(clock_mhz),
       table_rows_(world.any_hit ? world.any_hit->table_rows() : 0) {
-  GLINT_CHECK(warps_per_block() <= kMaxBlockWarps, "a block of {} threads: check() reports this", product(world.block_size));
+  GLINT_CHECK(warps_per_block() <= kMaxBlockWarps, "a block of {} threads: check() reports this",
+              product(world.block_size));
 }
 
-uint32_t Executor::warps_per_block() const { return core::warps_per_block(world_); }
+uint32_t Executor::warps_per_block() const {
+  return core::warps_per_block(world_);
+}
 
 uint32_t Executor::num_blocks() const {
   if (has_blocks(world_)) return uint32_t(product(grid_size(world_)));
-  if (const Tiles tiles = tiles_of(world_); tiles.width) return tiles.columns * tiles.rows * world_.launch_size[2];
+  if (const Tiles tiles = tiles_of(world_); tiles.width)
+    return tiles.columns * tiles.rows * world_.launch_size[2];
   return uint32_t((product(world_.launch_size) + kLanes - 1) / kLanes);
 }
 
@@ -143,9 +156,13 @@ void Executor::start(WarpContext& warp, Block& block, uint32_t warp_in_block, co
 
 void Executor::fill_launch_specials(WarpContext& warp, const Seat& seat) const {
   const bool blocks = has_blocks(world_);
-  const std::array<uint32_t, 3> size = blocks ? world_.block_size : std::array<uint32_t, 3>{uint32_t(kLanes), 1, 1};
-  const std::array<uint32_t, 3> grid = blocks ? grid_size(world_) : std::array<uint32_t, 3>{num_blocks(), 1, 1};
-  const auto set = [&](Special s, size_t lane, uint32_t value) { warp.regs.bank[2][size_t(s) * kLanes + lane] = value; };
+  const std::array<uint32_t, 3> size =
+      blocks ? world_.block_size : std::array<uint32_t, 3>{uint32_t(kLanes), 1, 1};
+  const std::array<uint32_t, 3> grid =
+      blocks ? grid_size(world_) : std::array<uint32_t, 3>{num_blocks(), 1, 1};
+  const auto set = [&](Special s, size_t lane, uint32_t value) {
+    warp.regs.bank[2][size_t(s) * kLanes + lane] = value;
+  };
   const auto axis_of = [](Special x, size_t axis) { return Special(size_t(x) + axis); };
   for (size_t lane = 0; lane < size_t(kLanes); ++lane) {
     const auto id = launch_id(world_, warp.warp_index, int(lane));
@@ -177,7 +194,9 @@ void Executor::fill_launch_specials(WarpContext& warp, const Seat& seat) const {
 }
 
 void Executor::fill_clock(WarpContext& warp, Cycle now) const {
-  const auto set = [&](Special s, uint64_t value) { std::fill_n(warp.regs.bank[2] + size_t(s) * kLanes, kLanes, uint32_t(value)); };
+  const auto set = [&](Special s, uint64_t value) {
+    std::fill_n(warp.regs.bank[2] + size_t(s) * kLanes, kLanes, uint32_t(value));
+  };
   const uint64_t nanoseconds = clock_mhz_ > 0.0 ? uint64_t(double(now) * 1000.0 / clock_mhz_) : 0;
   set(Special::Clock, now);
   set(Special::ClockHi, now >> 32);

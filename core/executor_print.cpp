@@ -10,7 +10,8 @@ bool Executor::run_print(WarpContext& warp, const isa::Inst& inst, const isa::Op
   if (!world_.prints || warp.regs.exec == 0) return true;
   const bool ends = row.effect == isa::Effect::Print;
   // Every lane has the same number: it is a constant (isa/verify.h).
-  const isa::ParsedMessage& message = world_.image->shaders[world_.image->shader_of[pc]].messages[warp.regs.read(inst.operand[0])[0]];
+  const isa::ParsedMessage& message =
+      world_.image->shaders[world_.image->shader_of[pc]].messages[warp.regs.read(inst.operand[0])[0]];
   for_each_lane(warp.regs.exec, [&](int lane) {
     const auto id = launch_id(world_, warp.warp_index, lane);
     const uint64_t thread = (uint64_t{id[2]} * world_.launch_size[1] + id[1]) * world_.launch_size[0] + id[0];

@@ -21,19 +21,27 @@ struct Seen {
 };
 Seen seen_by(Stage stage, const rt::RayState& state) {
   switch (stage) {
-    case Stage::AnyHit: return {state.candidate, state.candidate.t, true};
-    case Stage::Intersection: return {state.candidate, state.committed.t, true};
-    case Stage::Miss: return {state.committed, state.ray.t_max, false};
+    case Stage::AnyHit:
+      return {state.candidate, state.candidate.t, true};
+    case Stage::Intersection:
+      return {state.candidate, state.committed.t, true};
+    case Stage::Miss:
+      return {state.committed, state.ray.t_max, false};
     case Stage::ClosestHit:
     case Stage::RayGeneration:
     case Stage::Callable:
-    case Stage::Compute: break;
+    case Stage::Compute:
+      break;
   }
   return {state.committed, state.committed.t, false};
 }
 
-void set(WarpContext& warp, size_t lane, Special s, uint32_t value) { warp.regs.bank[2][size_t(s) * kLanes + lane] = value; }
-void set_float(WarpContext& warp, size_t lane, Special s, float value) { set(warp, lane, s, std::bit_cast<uint32_t>(value)); }
+void set(WarpContext& warp, size_t lane, Special s, uint32_t value) {
+  warp.regs.bank[2][size_t(s) * kLanes + lane] = value;
+}
+void set_float(WarpContext& warp, size_t lane, Special s, float value) {
+  set(warp, lane, s, std::bit_cast<uint32_t>(value));
+}
 void set_floats(WarpContext& warp, size_t lane, Special first, const float* from, int count) {
   for (int k = 0; k < count; ++k) set_float(warp, lane, Special(int(first) + k), from[k]);
 }
@@ -53,8 +61,10 @@ void set_matrices(WarpContext& warp, size_t lane, const rt::InstanceLeaf& leaf, 
   set_floats(warp, lane, Special::ObjectToWorld0, leaf.object_to_world.data(), 12);
   set_floats(warp, lane, Special::WorldToObject0, leaf.world_to_object.data(), 12);
   for (size_t axis = 0; axis < 3; ++axis) {
-    set_float(warp, lane, Special(size_t(Special::ObjectOriginX) + axis), object_point(leaf, ray.origin, axis));
-    set_float(warp, lane, Special(size_t(Special::ObjectDirectionX) + axis), object_direction(leaf, ray.direction, axis));
+    set_float(warp, lane, Special(size_t(Special::ObjectOriginX) + axis),
+              object_point(leaf, ray.origin, axis));
+    set_float(warp, lane, Special(size_t(Special::ObjectDirectionX) + axis),
+              object_direction(leaf, ray.direction, axis));
   }
 }
 
@@ -82,16 +92,18 @@ void Executor::fill_ray_specials(WarpContext& warp, int lane, const Shader& shad
   const rt::RayState& state = frame.ray[i];
   const Seen seen = seen_by(shader.stage, state);
   set(warp, i, Special::Payload, frame.payload[i]);
-  const uint32_t attributes = frame.attributes[i] + (seen.candidate_attributes != state.attribute_slot ? kAttributeBytes : 0);
+  const uint32_t attributes =
+      frame.attributes[i] + (seen.candidate_attributes != state.attribute_slot ? kAttributeBytes : 0);
   set(warp, i, Special::Attribute, attributes);
-  set_record(warp, i, shader.stage == Stage::Miss ? world_.table.miss.address(state.ray.miss_index)
-                                                  : world_.table.hit.address(hit_record(state.ray, seen.hit)));
+  set_record(warp, i,
+             shader.stage == Stage::Miss ? world_.table.miss.address(state.ray.miss_index)
+                                         : world_.table.hit.address(hit_record(state.ray, seen.hit)));
   set_float(warp, i, Special::HitT, seen.t);
   set(warp, i, Special::HitKind, seen.hit.kind);
   set_float(warp, i, Special::HitU, seen.hit.u);
   set_float(warp, i, Special::HitV, seen.hit.v);
-  // Model: the first two words of an intersection shader's attributes come where a triangle's weights come, so that a
-  // hit shader with a pair of floats serves both.
+  // Model: the first two words of an intersection shader's attributes come where a triangle's weights come,
+  // so that a hit shader with a pair of floats serves both.
   if (seen.hit.valid() && seen.hit.kind < rt::kHitKindFront) {
     set(warp, i, Special::HitU, local_word(warp, attributes, i));
     set(warp, i, Special::HitV, local_word(warp, attributes + 4, i));

@@ -1,7 +1,6 @@
 // Rays and shader calls: rt.*, call.sbt.*, and the values that called shaders see.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-
 #include <utility>
 
 #include "base/check.h"
@@ -20,7 +19,15 @@ using rt::RayStatus;
 namespace {
 
 // A rt.trace's operands after the answer predicate and the structure.
-enum TraceOperand : size_t { kFlags = 2, kMask, kSbtOffset, kSbtStride, kMiss, kRay, kPayload = kRay + kRayOperands };
+enum TraceOperand : size_t {
+  kFlags = 2,
+  kMask,
+  kSbtOffset,
+  kSbtStride,
+  kMiss,
+  kRay,
+  kPayload = kRay + kRayOperands
+};
 
 void set_ray(const isa::Warp& regs, const isa::Inst& inst, int lane, rt::Ray& ray) {
   const auto value = [&](size_t operand) { return read_word(regs, inst, operand, lane); };
@@ -29,12 +36,13 @@ void set_ray(const isa::Warp& regs, const isa::Inst& inst, int lane, rt::Ray& ra
   ray.cull_mask = value(kMask) & 0xff;
   ray.sbt_offset = value(kSbtOffset) & 15;  // SPV_KHR_ray_tracing: only the 4 low bits count
   ray.sbt_stride = value(kSbtStride) & 15;
-  ray.miss_index = value(kMiss) & 0xffff;   // and 16 here
+  ray.miss_index = value(kMiss) & 0xffff;  // and 16 here
   read_ray(regs, inst, kRay, lane, ray);
 }
 
 bool needs_shader(const rt::RayState& state) {
-  return state.status == RayStatus::NeedsIntersection || state.status == RayStatus::NeedsAnyHit || state.status == RayStatus::Gathered;
+  return state.status == RayStatus::NeedsIntersection || state.status == RayStatus::NeedsAnyHit ||
+         state.status == RayStatus::Gathered;
 }
 
 }  // namespace
@@ -46,17 +54,21 @@ bool Executor::run_rays(WarpContext& warp, const isa::Inst& inst, const isa::OpR
     return fail(warp, std::countr_zero(warp.simt.active), fmt::format("runs {} outside a trace", row.name));
   switch (row.effect) {
     case Effect::Trace:
-      return isa::TraceKind(row.detail) == isa::TraceKind::Ray ? trace(warp, inst) : begin_hit_object(warp, inst);
+      return isa::TraceKind(row.detail) == isa::TraceKind::Ray ? trace(warp, inst)
+                                                               : begin_hit_object(warp, inst);
     case Effect::Resume:
       warp.waiting_for_rays = exec != 0;
       warp.rays = warp.frame().ray.data();
       warp.ray_lanes = exec;
       warp.ray_answer = inst.operand[0];
       break;
-    case Effect::Report: return report(warp, inst);
+    case Effect::Report:
+      return report(warp, inst);
     case Effect::Accepted: {
       LaneMask accepted = 0;
-      for_each_lane(exec, [&](int lane) { accepted |= LaneMask{warp.frame().ray[size_t(lane)].report_accepted} << lane; });
+      for_each_lane(exec, [&](int lane) {
+        accepted |= LaneMask{warp.frame().ray[size_t(lane)].report_accepted} << lane;
+      });
       LaneMask& predicate = warp.regs.predicate[inst.operand[0]];
       predicate = (predicate & ~exec) | accepted;
       break;
@@ -66,8 +78,10 @@ bool Executor::run_rays(WarpContext& warp, const isa::Inst& inst, const isa::OpR
       --warp.depth;
       fill_specials(warp, warp.simt.active, world_.image->shaders[world_.image->shader_of[warp.simt.pc]]);
       break;
-    case Effect::CallCallable: return call_callable(warp, inst);
-    default: return call(warp, row.effect);
+    case Effect::CallCallable:
+      return call_callable(warp, inst);
+    default:
+      return call(warp, row.effect);
   }
   ++warp.simt.pc;
   return true;
@@ -76,8 +90,9 @@ bool Executor::run_rays(WarpContext& warp, const isa::Inst& inst, const isa::OpR
 // Opens a level with the payloads and attributes of its lanes; no ray travels yet.
 bool Executor::open_trace(WarpContext& warp, const isa::Inst& inst, size_t payload_operand) {
   if (warp.depth == world_.max_trace_depth)
-    return fail(warp, std::countr_zero(warp.regs.exec), fmt::format("traces a ray at depth {}: the pipeline allows {} nested traces",
-                                                                    warp.depth + 1, world_.max_trace_depth));
+    return fail(warp, std::countr_zero(warp.regs.exec),
+                fmt::format("traces a ray at depth {}: the pipeline allows {} nested traces", warp.depth + 1,
+                            world_.max_trace_depth));
   if (warp.frames.size() == warp.depth) warp.frames.push_back(std::make_unique<TraceFrame>());
   TraceFrame& frame = *warp.frames[warp.depth];
   for_each_lane(warp.regs.exec, [&](int lane) {
@@ -99,7 +114,8 @@ bool Executor::trace(WarpContext& warp, const isa::Inst& inst) {
     set_ray(warp.regs, inst, lane, state.ray);
     state.rules.end_at_first_hit = !world_.nearest_first_hit;
     state.table = table_of(frame, lane);
-    if (!rt::begin(state, *world_.memory) && !let_pass_structure(warp, lane, "traces a ray into", state.ray.structure)) [[unlikely]] {
+    if (!rt::begin(state, *world_.memory) &&
+        !let_pass_structure(warp, lane, "traces a ray into", state.ray.structure)) [[unlikely]] {
       --warp.depth;
       return false;
     }
@@ -172,7 +188,8 @@ bool Executor::call_targets(WarpContext& warp, Effect effect, std::array<uint32_
       target[i] = kNoShader;
       continue;
     }
-    if (state.status == RayStatus::Gathered && effect != Effect::CallHit) {  // runs nothing this time, reads no record
+    if (state.status == RayStatus::Gathered &&
+        effect != Effect::CallHit) {  // runs nothing this time, reads no record
       target[i] = kNoShader;
       warp.regs.exec &= ~(LaneMask{1} << lane);
       continue;
@@ -180,10 +197,13 @@ bool Executor::call_targets(WarpContext& warp, Effect effect, std::array<uint32_
     const bool hit = effect != Effect::CallHit || state.committed.valid();
     uint32_t record = world_.table.miss.number(state.ray.miss_index);
     const HitGroup* group = nullptr;
-    if (hit) group = hit_group(state.ray, effect == Effect::CallHit ? state.committed : state.candidate, record);
+    if (hit)
+      group = hit_group(state.ray, effect == Effect::CallHit ? state.committed : state.candidate, record);
     if (hit ? !group : record >= world_.miss.size()) [[unlikely]] {
-      const bool passes = hit ? let_pass_hit_record(warp, lane, state.ray, effect == Effect::CallHit ? state.committed : state.candidate)
-                              : let_pass_record(warp, lane, "miss", record, world_.miss.size());
+      const bool passes =
+          hit ? let_pass_hit_record(warp, lane, state.ray,
+                                    effect == Effect::CallHit ? state.committed : state.candidate)
+              : let_pass_record(warp, lane, "miss", record, world_.miss.size());
       if (!passes) return false;
       call_nothing(warp, lane, state, effect);
       target[i] = kNoShader;
@@ -209,7 +229,8 @@ bool Executor::call(WarpContext& warp, Effect effect) {
   std::array<uint32_t, kLanes> target;
   if (!call_targets(warp, effect, target)) return false;
   LaneMask callers = 0;
-  for_each_lane(warp.regs.exec, [&](int lane) { callers |= LaneMask{target[size_t(lane)] != kNoShader} << lane; });
+  for_each_lane(warp.regs.exec,
+                [&](int lane) { callers |= LaneMask{target[size_t(lane)] != kNoShader} << lane; });
   const uint32_t calls = call_by_shader(warp, target, callers, false);
   if (effect != Effect::CallHit) {
     candidates_.calls += calls;
@@ -220,9 +241,11 @@ bool Executor::call(WarpContext& warp, Effect effect) {
 
 bool Executor::call_callable(WarpContext& warp, const isa::Inst& inst) {
   if (warp.callables == world_.max_callable_depth)
-    return fail(warp, std::countr_zero(warp.regs.exec), fmt::format("calls a callable shader at depth {}: the pipeline allows {}",
-                                                                    warp.callables + 1, world_.max_callable_depth));
-  if (warp.callable_frames.size() == warp.callables) warp.callable_frames.push_back(std::make_unique<CallableFrame>());
+    return fail(warp, std::countr_zero(warp.regs.exec),
+                fmt::format("calls a callable shader at depth {}: the pipeline allows {}", warp.callables + 1,
+                            world_.max_callable_depth));
+  if (warp.callable_frames.size() == warp.callables)
+    warp.callable_frames.push_back(std::make_unique<CallableFrame>());
   CallableFrame& frame = *warp.callable_frames[warp.callables];
   std::array<uint32_t, kLanes> target;
   LaneMask callers = 0;
@@ -242,8 +265,10 @@ bool Executor::call_callable(WarpContext& warp, const isa::Inst& inst) {
   return true;
 }
 
-// Runs the shader of each calling lane, one path a distinct shader, in the order of the lowest lane that calls it.
-uint32_t Executor::call_by_shader(WarpContext& warp, const std::array<uint32_t, kLanes>& target, LaneMask callers, bool is_callable) {
+// Runs the shader of each calling lane, one path a distinct shader, in the order of the lowest lane that
+// calls it.
+uint32_t Executor::call_by_shader(WarpContext& warp, const std::array<uint32_t, kLanes>& target,
+                                  LaneMask callers, bool is_callable) {
   SimtStack& simt = warp.simt;
   const uint32_t caller = world_.image->shader_of[simt.pc];
   ++simt.pc;

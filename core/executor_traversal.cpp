@@ -15,7 +15,8 @@ namespace {
 // A lane's record.
 class Record {
  public:
-  Record(WarpContext& warp, uint32_t address, int lane) : words_(&warp.local[size_t(address / 4) * kLanes + size_t(lane)]) {}
+  Record(WarpContext& warp, uint32_t address, int lane)
+      : words_(&warp.local[size_t(address / 4) * kLanes + size_t(lane)]) {}
 
   uint32_t& operator[](uint32_t word) { return words_[size_t(word) * kLanes]; }
   float real(uint32_t word) { return as_float((*this)[word]); }
@@ -35,11 +36,17 @@ bool read_leaf(const mem::AddressSpace& memory, Address address, rt::InstanceLea
   return bytes != nullptr;
 }
 
-// Leaves are named by their blocks: of the instance in the ray's structure, of the triangle in the instance's.
-uint32_t block_of_leaf(Address leaf, Address structure) { return leaf ? uint32_t((leaf - structure) / rt::kBlockBytes) : 0; }
-Address leaf_of_block(uint32_t block, Address structure) { return block ? structure + Address(block) * rt::kBlockBytes : 0; }
+// Leaves are named by their blocks: of the instance in the ray's structure, of the triangle in the
+// instance's.
+uint32_t block_of_leaf(Address leaf, Address structure) {
+  return leaf ? uint32_t((leaf - structure) / rt::kBlockBytes) : 0;
+}
+Address leaf_of_block(uint32_t block, Address structure) {
+  return block ? structure + Address(block) * rt::kBlockBytes : 0;
+}
 
-void put_hit(Record& record, uint32_t word, const rt::Ray& ray, const rt::Hit& hit, const mem::AddressSpace& memory) {
+void put_hit(Record& record, uint32_t word, const rt::Ray& ray, const rt::Hit& hit,
+             const mem::AddressSpace& memory) {
   record.set(word, hit.t);
   record.set(word + 1, hit.u);
   record.set(word + 2, hit.v);
@@ -48,11 +55,14 @@ void put_hit(Record& record, uint32_t word, const rt::Ray& ray, const rt::Hit& h
   record[word + 5] = hit.primitive;
   record[word + 6] = block_of_leaf(hit.instance_leaf, ray.structure);
   rt::InstanceLeaf leaf;
-  record[word + 7] = hit.triangle_leaf && read_leaf(memory, hit.instance_leaf, leaf) ? block_of_leaf(hit.triangle_leaf, leaf.structure) : 0;
+  record[word + 7] = hit.triangle_leaf && read_leaf(memory, hit.instance_leaf, leaf)
+                         ? block_of_leaf(hit.triangle_leaf, leaf.structure)
+                         : 0;
 }
 
 // False when the record names a leaf that is none.
-bool get_hit(Record& record, uint32_t word, const rt::Ray& ray, const mem::AddressSpace& memory, rt::Hit& hit) {
+bool get_hit(Record& record, uint32_t word, const rt::Ray& ray, const mem::AddressSpace& memory,
+             rt::Hit& hit) {
   hit = rt::Hit{};
   hit.t = record.real(word);
   hit.instance_leaf = leaf_of_block(record[word + 6], ray.structure);
@@ -97,10 +107,13 @@ void put_ray(Record record, rt::RayState& state, uint32_t stack_entries) {
 
 void take_ray(Record record, rt::RayState& state, const mem::AddressSpace& memory) {
   const auto status = WalkStatus(record[kStatus]);
-  if (status > WalkStatus::NeedsIntersectionOpaque || !get_hit(record, kHit, state.ray, memory, state.committed)) return rt::break_off(state);
+  if (status > WalkStatus::NeedsIntersectionOpaque ||
+      !get_hit(record, kHit, state.ray, memory, state.committed))
+    return rt::break_off(state);
   state.status = rt::RayStatus::Done;
   if (status == WalkStatus::Done) return;
-  if (!get_hit(record, kCandidate, state.ray, memory, state.candidate) || !state.candidate.valid()) return rt::break_off(state);
+  if (!get_hit(record, kCandidate, state.ray, memory, state.candidate) || !state.candidate.valid())
+    return rt::break_off(state);
   state.candidate_procedural = status != WalkStatus::NeedsAnyHit;
   state.candidate_opaque = status == WalkStatus::NeedsIntersectionOpaque;
   state.status = state.candidate_procedural ? rt::RayStatus::NeedsIntersection : rt::RayStatus::NeedsAnyHit;
@@ -121,19 +134,22 @@ uint32_t Executor::record_of_rays(const WarpContext& warp) const {
   return code.first_record + index * code.record_bytes();
 }
 
-// The rays of rt.trace, rt.resume or rq.proceed at `pc`: calls the traversal program for those that travel. Without any, they
-// wait on, and the machine finishes them.
-// Model: the ray goes to its record, and the verdict of an any-hit shader, without instructions of their own.
+// The rays of rt.trace, rt.resume or rq.proceed at `pc`: calls the traversal program for those that travel.
+// Without any, they wait on, and the machine finishes them. Model: the ray goes to its record, and the
+// verdict of an any-hit shader, without instructions of their own.
 void Executor::walk_in_code(WarpContext& warp, uint32_t pc) {
   LaneMask travelling = 0;
-  for_each_lane(warp.ray_lanes, [&](int lane) { travelling |= LaneMask{warp.rays[lane].status == rt::RayStatus::Traversing} << lane; });
+  for_each_lane(warp.ray_lanes, [&](int lane) {
+    travelling |= LaneMask{warp.rays[lane].status == rt::RayStatus::Traversing} << lane;
+  });
   if (!travelling) return;
   const Shader& code = world_.image->shaders[world_.traversal.shader];
   const uint32_t at = record_of_rays(warp);
   for_each_lane(travelling, [&](int lane) {
     rt::RayState& state = warp.rays[lane];
     Record record(warp, at, lane);
-    if (state.stack_size > 0) put_ray(record, state, world_.traversal.stack_entries);  // as begin() has left it
+    if (state.stack_size > 0)
+      put_ray(record, state, world_.traversal.stack_entries);  // as begin() has left it
     put_hit(record, kHit, state.ray, state.committed, *world_.memory);
     warp.regs.bank[2][size_t(isa::Special::Payload) * kLanes + size_t(lane)] = at;
   });
@@ -149,7 +165,8 @@ void Executor::walk_in_code(WarpContext& warp, uint32_t pc) {
 
 void Executor::take_walked_rays(WarpContext& warp) {
   const uint32_t at = record_of_rays(warp);
-  for_each_lane(warp.walking, [&](int lane) { take_ray(Record(warp, at, lane), warp.rays[lane], *world_.memory); });
+  for_each_lane(warp.walking,
+                [&](int lane) { take_ray(Record(warp, at, lane), warp.rays[lane], *world_.memory); });
   finish_rays(warp);
 }
 

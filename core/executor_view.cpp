@@ -5,14 +5,17 @@
 
 namespace glint::core {
 
-void Executor::load_seen(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes, const Places& at) {
+void Executor::load_seen(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes,
+                         const Places& at) {
   const isa::Memory& shape = row.memory;
   const uint32_t bytes = shape.bytes * shape.count, part = row_bytes(shape);
   for_each_lane(lanes, [&](int lane) { is_late_ |= view_->waits(at[size_t(lane)], bytes); });
   if (!is_late_) {
     std::array<std::array<std::byte, MemoryView::kWidest>, kLanes> scratch;
     std::array<const std::byte*, kLanes> from;
-    for_each_lane(lanes, [&](int lane) { from[size_t(lane)] = view_->read(at[size_t(lane)], bytes, scratch[size_t(lane)]); });
+    for_each_lane(lanes, [&](int lane) {
+      from[size_t(lane)] = view_->read(at[size_t(lane)], bytes, scratch[size_t(lane)]);
+    });
     return load_rows(warp, inst, shape, lanes, from);
   }
   for (uint32_t r = 0; r < rows_of(shape); ++r) {
@@ -24,7 +27,8 @@ void Executor::load_seen(WarpContext& warp, const isa::Inst& inst, const isa::Op
 }
 
 // Lanes in the same order as without a view.
-void Executor::store_seen(const WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes, const Places& at) {
+void Executor::store_seen(const WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row,
+                          LaneMask lanes, const Places& at) {
   const isa::Memory& shape = row.memory;
   const uint32_t part = row_bytes(shape);
   std::array<std::byte, MemoryView::kWidest> data;
@@ -35,15 +39,18 @@ void Executor::store_seen(const WarpContext& warp, const isa::Inst& inst, const 
   });
 }
 
-void Executor::modify_seen(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes, const Places& at) {
+void Executor::modify_seen(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes,
+                           const Places& at) {
   const uint32_t bytes = row.memory.bytes;
   is_late_ = isa::is_destination(row.operands.kind[0]);
   const size_t first = is_late_ ? 2 : 1;
   const bool has_second = row.operands.count > first + 1;
   for_each_lane(lanes, [&](int lane) {
     const uint64_t b = read_operand(warp.regs, inst.operand[first], lane, bytes);
-    const uint64_t c = has_second ? read_operand(warp.regs, inst.operand[first + 1], lane, bytes) : 1;  // 1: in global memory
-    view_->modify({at[size_t(lane)], row.atomic, b, c, uint8_t(bytes), is_late_ ? warp.regs.write(inst.operand[0]) + lane : nullptr});
+    const uint64_t c = has_second ? read_operand(warp.regs, inst.operand[first + 1], lane, bytes)
+                                  : 1;  // 1: in global memory
+    view_->modify({at[size_t(lane)], row.atomic, b, c, uint8_t(bytes),
+                   is_late_ ? warp.regs.write(inst.operand[0]) + lane : nullptr});
   });
 }
 

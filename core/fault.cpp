@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/fault.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 #include <tuple>
 
 #include "isa/descriptors.h"
@@ -18,14 +17,16 @@ std::string_view name_of(FaultKind kind) {
 }
 
 std::string Fault::to_string() const {
-  return fmt::format("{}: fault: {}\n  note: launch id ({}, {}, {})", place, what, launch_id[0], launch_id[1], launch_id[2]);
+  return fmt::format("{}: fault: {}\n  note: launch id ({}, {}, {})", place, what, launch_id[0], launch_id[1],
+                     launch_id[2]);
 }
 
 std::string FaultLog::Entry::to_string() const {
   return first.to_string() + (count > 1 ? fmt::format(", the first of {} times", count) : "");
 }
 
-void FaultLog::note(uint32_t pc, FaultKind kind, uint64_t launch_index, const std::function<Fault()>& describe) {
+void FaultLog::note(uint32_t pc, FaultKind kind, uint64_t launch_index,
+                    const std::function<Fault()>& describe) {
   const auto [it, is_new] = entries_.try_emplace({pc, kind});
   Entry& entry = it->second;
   ++entry.count;
@@ -70,10 +71,13 @@ std::string FaultLog::to_string() const {
     out += entry.to_string() + "\n";
     times += entry.count;
   }
-  return out + fmt::format("warning: faults let pass: {}, at {} places; loads gave 0, stores were dropped", times, entries_.size());
+  return out + fmt::format("warning: faults let pass: {}, at {} places; loads gave 0, stores were dropped",
+                           times, entries_.size());
 }
 
-std::string FaultLog::with(const Fault& last) const { return empty() ? last.to_string() : to_string() + "\n" + last.to_string(); }
+std::string FaultLog::with(const Fault& last) const {
+  return empty() ? last.to_string() : to_string() + "\n" + last.to_string();
+}
 
 std::string whereabouts(const mem::AddressSpace& memory, Address address, uint64_t bytes) {
   const uint64_t offset = address & ((uint64_t{1} << mem::AddressSpace::kShift) - 1);
@@ -81,7 +85,8 @@ std::string whereabouts(const mem::AddressSpace& memory, Address address, uint64
     const auto& object = memory.allocations()[size_t(address >> mem::AddressSpace::kShift)];
     return fmt::format("byte {} of '{}' ({} bytes)", offset, object.name, object.bytes);
   }
-  if (const auto place = isa::unbound_place(address)) return fmt::format("set {} binding {}, to which nothing is bound", place->set, place->binding);
+  if (const auto place = isa::unbound_place(address))
+    return fmt::format("set {} binding {}, to which nothing is bound", place->set, place->binding);
   return memory.explain(address, bytes);
 }
 

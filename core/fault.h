@@ -15,33 +15,39 @@
 
 namespace glint::core {
 
-// Stop: the first fault ends the run. Warn: what FaultKind names is noted and goes on, as docs/errors.md says.
+// Stop: the first fault ends the run. Warn: what FaultKind names is noted and goes on, as docs/errors.md
+// says.
 enum class OnFault : uint8_t { Stop, Warn };
-constexpr std::string_view name_of(OnFault on_fault) { return on_fault == OnFault::Stop ? "stop" : "warn"; }
+constexpr std::string_view name_of(OnFault on_fault) {
+  return on_fault == OnFault::Stop ? "stop" : "warn";
+}
 
-// What can be let pass. Everything else ends a run: a stack that overflows, a program without end, broken control flow.
+// What can be let pass. Everything else ends a run: a stack that overflows, a program without end, broken
+// control flow.
 enum class FaultKind : uint8_t {
   OutOfBounds,  // of buffers, shared, local and constant memory; stores where only loads can be
   Misaligned,
-  Image,        // no such image, another kind of image, a texel outside
-  Record,       // outside of the binding table
-  Structure,    // no acceleration structure, or an overwritten one
+  Image,      // no such image, another kind of image, a texel outside
+  Record,     // outside of the binding table
+  Structure,  // no acceleration structure, or an overwritten one
   Count
 };
 std::string_view name_of(FaultKind kind);
-inline constexpr std::string_view kFaultsDoc = "Times that a lane did something wrong and `--on-fault warn` let it pass, by kind.";
+inline constexpr std::string_view kFaultsDoc =
+    "Times that a lane did something wrong and `--on-fault warn` let it pass, by kind.";
 
 // A mistake of the simulated program.
 struct Fault {
-  std::string what;       // "reads 4 bytes 16 bytes past the end of 'binding 4 (Vertices)'"
-  std::string place;      // shader, GLSL file and line, instruction
+  std::string what;   // "reads 4 bytes 16 bytes past the end of 'binding 4 (Vertices)'"
+  std::string place;  // shader, GLSL file and line, instruction
   std::array<uint32_t, 3> launch_id{};
   bool is_deadlock = false;  // warps wait for each other for ever
   std::string to_string() const;
   Exit exit() const { return is_deadlock ? Exit::Stuck : Exit::Fault; }
 };
 
-// Faults that were let pass, by instruction and kind. What it holds does not depend on the order in which warps run.
+// Faults that were let pass, by instruction and kind. What it holds does not depend on the order in which
+// warps run.
 class FaultLog {
  public:
   struct Entry {
@@ -68,7 +74,8 @@ class FaultLog {
   std::map<std::pair<uint32_t, FaultKind>, Entry> entries_;
 };
 
-// "byte 64 of 'Vertices' (1200 bytes)", or how far outside of which allocation an address is, or that nobody bound it.
+// "byte 64 of 'Vertices' (1200 bytes)", or how far outside of which allocation an address is, or that nobody
+// bound it.
 std::string whereabouts(const mem::AddressSpace& memory, Address address, uint64_t bytes);
 
 }  // namespace glint::core

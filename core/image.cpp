@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/image.h"
 
-#include <fmt/format.h>
-
 #include <cstdlib>
 #include <cstring>
+#include <fmt/format.h>
 
 #include "base/check.h"
 
@@ -73,7 +72,8 @@ Image link(const std::vector<isa::Program>& programs) {
   for (const isa::Program& program : programs) append(image, program, constants);
   for (size_t i = 0; i < image.code.size(); ++i) {
     const bool branch = image.rows[i]->effect == isa::Effect::Branch;
-    image.target_is_join.push_back(branch && image.rows[size_t(image.code[i].imm)]->effect == isa::Effect::Join);
+    image.target_is_join.push_back(branch &&
+                                   image.rows[size_t(image.code[i].imm)]->effect == isa::Effect::Join);
   }
   image.constants = allocate_rows(constants.size());
   uint32_t* const table = image.constants.get();
@@ -82,8 +82,8 @@ Image link(const std::vector<isa::Program>& programs) {
   return image;
 }
 
-void set_blocks(World& world, std::array<uint32_t, 3> grid, std::array<uint32_t, 3> block, uint32_t static_bytes,
-                uint32_t dynamic_bytes) {
+void set_blocks(World& world, std::array<uint32_t, 3> grid, std::array<uint32_t, 3> block,
+                uint32_t static_bytes, uint32_t dynamic_bytes) {
   world.block_size = block;
   for (size_t axis = 0; axis < 3; ++axis) world.launch_size[axis] = grid[axis] * block[axis];
   world.shared_bytes = static_bytes + dynamic_bytes;
@@ -107,8 +107,9 @@ std::string Image::place_of(uint32_t pc) const {
   const isa::Line& line = lines[pc];
   const Shader& shader = shaders[shader_of[pc]];
   const std::string file = line.file < files.size() ? files[line.file] : shader.name;
-  return line.line ? fmt::format("{}:{} (instruction {}: {})", file, line.line, pc - shader.entry, rows[pc]->name)
-                   : fmt::format("{} (instruction {}: {})", file, pc - shader.entry, rows[pc]->name);
+  return line.line
+             ? fmt::format("{}:{} (instruction {}: {})", file, line.line, pc - shader.entry, rows[pc]->name)
+             : fmt::format("{} (instruction {}: {})", file, pc - shader.entry, rows[pc]->name);
 }
 
 }  // namespace glint::core

@@ -8,18 +8,25 @@
 
 namespace glint::core {
 
-InstructionFetch::InstructionFetch(const FetchParams& params, uint32_t schedulers, Address base, size_t num_instructions, CodeCache& cache,
-                                   CodeStats& stats)
-    : prefetch_(params.prefetch), per_line_(cache.line_bytes() / kInstructionBytes),
-      num_lines_(uint32_t((num_instructions + per_line_ - 1) / per_line_)), base_(base), cache_(cache), stats_(stats) {
+InstructionFetch::InstructionFetch(const FetchParams& params, uint32_t schedulers, Address base,
+                                   size_t num_instructions, CodeCache& cache, CodeStats& stats)
+    : prefetch_(params.prefetch),
+      per_line_(cache.line_bytes() / kInstructionBytes),
+      num_lines_(uint32_t((num_instructions + per_line_ - 1) / per_line_)),
+      base_(base),
+      cache_(cache),
+      stats_(stats) {
   for (uint32_t s = 0; s < schedulers; ++s) {
     l0_.emplace_back(make_tags(params.size, params.ways, cache.line_bytes()));
     l0_.back().in_flight.reserve(most_in_flight(1));
   }
 }
 
-// A stream that is given up leaves its lines on the way: at most as many again for each warp that gives one up.
-uint32_t InstructionFetch::most_in_flight(uint32_t schedulers) { return schedulers * (kMaxWarps + 2 * kMaxPrefetch); }
+// A stream that is given up leaves its lines on the way: at most as many again for each warp that gives one
+// up.
+uint32_t InstructionFetch::most_in_flight(uint32_t schedulers) {
+  return schedulers * (kMaxWarps + 2 * kMaxPrefetch);
+}
 
 bool InstructionFetch::come_to(uint32_t scheduler, uint32_t line, Cycle now) {
   L0& l0 = l0_[scheduler];
@@ -71,7 +78,8 @@ void InstructionFetch::ask(L0& l0, uint32_t scheduler, uint32_t line, bool wante
 uint32_t InstructionFetch::arrive(uint32_t scheduler, Address address) {
   L0& l0 = l0_[scheduler];
   const auto line = uint32_t((address - base_) / cache_.line_bytes());
-  const auto flight = std::find_if(l0.in_flight.begin(), l0.in_flight.end(), [line](const InFlight& f) { return f.line == line; });
+  const auto flight = std::find_if(l0.in_flight.begin(), l0.in_flight.end(),
+                                   [line](const InFlight& f) { return f.line == line; });
   const bool wanted = flight->wanted;
   *flight = l0.in_flight.back();
   l0.in_flight.pop_back();

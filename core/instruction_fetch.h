@@ -10,15 +10,18 @@
 namespace glint::core {
 
 // A warp asks for a line when it comes to it, and waits when it is not there.
-// Model: a warp keeps the line that it is in, whatever its L0 drops (hardware buffers three instructions a warp); a fetch
-// of one cycle is hidden, and the target of a branch is known when the branch issues.
+// Model: a warp keeps the line that it is in, whatever its L0 drops (hardware buffers three instructions a
+// warp); a fetch of one cycle is hidden, and the target of a branch is known when the branch issues.
 class InstructionFetch {
  public:
-  // `base`: physical address of instruction 0; `num_instructions` of the image: nothing is fetched past its end.
-  InstructionFetch(const FetchParams& params, uint32_t schedulers, Address base, size_t num_instructions, CodeCache& cache, CodeStats& stats);
+  // `base`: physical address of instruction 0; `num_instructions` of the image: nothing is fetched past its
+  // end.
+  InstructionFetch(const FetchParams& params, uint32_t schedulers, Address base, size_t num_instructions,
+                   CodeCache& cache, CodeStats& stats);
 
   uint32_t line_of(uint32_t pc) const { return pc / per_line_; }
-  // Whether a warp of the scheduler can go on at once in `line`. If not it has been asked for, and arrive() will tell.
+  // Whether a warp of the scheduler can go on at once in `line`. If not it has been asked for, and arrive()
+  // will tell.
   bool come_to(uint32_t scheduler, uint32_t line, Cycle now);
   // An answer of the cache for the scheduler: the line if a warp waits for it, else kNone.
   uint32_t arrive(uint32_t scheduler, Address address);
@@ -33,7 +36,7 @@ class InstructionFetch {
   };
   struct InFlight {
     uint32_t line = 0;
-    bool wanted = false;   // by a warp
+    bool wanted = false;  // by a warp
   };
   // Model: the stream buffer follows the last miss; hardware's replacement among streams is not published.
   struct L0 {

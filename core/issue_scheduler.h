@@ -14,21 +14,22 @@ inline constexpr uint32_t kMaxWarpsPerScheduler = 64;  // bits of IssueView::rea
 
 // What a scheduler sees of its warps in one cycle. Warps are numbered locally, from 0.
 struct IssueView {
-  uint64_t ready = 0;              // bit i: warp i can issue this cycle; at least one bit is set
-  std::span<const uint64_t> age;   // launch number of each warp: smaller is older; unique among resident warps
+  uint64_t ready = 0;             // bit i: warp i can issue this cycle; at least one bit is set
+  std::span<const uint64_t> age;  // launch number of each warp: smaller is older; unique among resident warps
   Cycle now = 0;
 };
 
 // Contract (tests/contract/issue_scheduler_test.cpp):
 //  - pick() returns the number of a set bit of `ready`.
-//  - the pick is a function of the views so far and the policy's own state: the same views give the same picks.
+//  - the pick is a function of the views so far and the policy's own state: the same views give the same
+//  picks.
 //  - no ready warp starves: when a picked warp is not ready for as many picks as there are warps, every warp
 //    that stays ready is picked. (A greedy policy may stay with one warp for as long as that warp is ready.)
 //  - pick() is called only in cycles with a ready warp, so a policy must not count calls as cycles.
 class IssueScheduler {
  public:
   struct Context {
-    uint32_t num_warps = 1;        // local warps: 1 to kMaxWarpsPerScheduler
+    uint32_t num_warps = 1;  // local warps: 1 to kMaxWarpsPerScheduler
   };
   virtual ~IssueScheduler() = default;
   virtual uint32_t pick(const IssueView& view) = 0;

@@ -10,9 +10,16 @@
 namespace glint::core {
 
 Lsu::Lsu(const Params& params, mem::L1Port& l1)
-    : l1_(l1), params_(params.lsu), shared_(params.shared), lsu_unit_(params.units.lsu), tex_unit_(params.units.tex),
-      num_queues_(params.schedulers), samples_per_cycle_(params.texture.samples_per_cycle), own_queue_(params.texture.queue > 0),
-      own_door_(params.texture.own_door), accesses_(params.lsu.accesses, MemoryAccess(l1.line_bytes())) {
+    : l1_(l1),
+      params_(params.lsu),
+      shared_(params.shared),
+      lsu_unit_(params.units.lsu),
+      tex_unit_(params.units.tex),
+      num_queues_(params.schedulers),
+      samples_per_cycle_(params.texture.samples_per_cycle),
+      own_queue_(params.texture.queue > 0),
+      own_door_(params.texture.own_door),
+      accesses_(params.lsu.accesses, MemoryAccess(l1.line_bytes())) {
   groups_[0].capacity = params.lsu.queue;
   groups_[1].capacity = params.texture.queue;
   for (Pipe& pipe : pipes_) pipe.id.resize(accesses_.size());
@@ -85,14 +92,18 @@ void Lsu::enter(uint32_t id, Pipe& pipe, Cycle now) {
     pipe.free_at = now + std::max<Cycle>(tex_unit_.interval, cycles);
     access.ready += std::max<Cycle>(cycles, 1) - 1;
   }
-  const uint32_t tag_cycles = uint32_t(access.lines.lines().size() + params_.lines_per_cycle - 1) / params_.lines_per_cycle;
+  const uint32_t tag_cycles =
+      uint32_t(access.lines.lines().size() + params_.lines_per_cycle - 1) / params_.lines_per_cycle;
   access.hold = access.bank_turns > tag_cycles ? access.bank_turns - tag_cycles : 0;
-  if (access.bank_turns > 1) access.ready += std::max<Cycle>(conflict_latency(access.bank_turns - 1), access.hold) - access.hold;
+  if (access.bank_turns > 1)
+    access.ready += std::max<Cycle>(conflict_latency(access.bank_turns - 1), access.hold) - access.hold;
   if (access.passes > 0) {
     const Cycle more = shared_cycles(access) - 1;
     const Cycle latency = shared_latency(access);
-    if (&pipe == &pipes_[kShared]) access.ready = now - 1 + latency;
-    else access.ready += latency - (access.atomic ? shared_.atomic_latency : shared_.latency);
+    if (&pipe == &pipes_[kShared])
+      access.ready = now - 1 + latency;
+    else
+      access.ready += latency - (access.atomic ? shared_.atomic_latency : shared_.latency);
     pipe.free_at = now + 1 + more;
   }
   pipe.id[(pipe.head + pipe.count++) % pipe.id.size()] = id;
@@ -108,13 +119,14 @@ Cycle Lsu::shared_cycles(const MemoryAccess& access) const {
   return access.atomic ? 1 + (access.passes - 1) * Cycle{shared_.atomic_pass} : access.passes;
 }
 
-// Model: turns of a compare-and-swap or a floating-point addition keep the unit no longer than those of an integer's: what they
-// take longer is between their accesses.
+// Model: turns of a compare-and-swap or a floating-point addition keep the unit no longer than those of an
+// integer's: what they take longer is between their accesses.
 Cycle Lsu::shared_latency(const MemoryAccess& access) const {
   if (!access.atomic) return shared_.latency + conflict_latency(access.passes - 1);
   const AtomicParams& own = access.atomic_kind == AtomicKind::Swap ? shared_.swap : shared_.float_add;
   const bool is_own = access.atomic_kind != AtomicKind::Integer && own.latency > 0;
-  const AtomicParams times = is_own ? own : AtomicParams{shared_.atomic_latency, shared_.atomic_pass, shared_.atomic_hidden};
+  const AtomicParams times =
+      is_own ? own : AtomicParams{shared_.atomic_latency, shared_.atomic_pass, shared_.atomic_hidden};
   return times.latency + std::max((access.passes - 1) * times.pass, times.hidden) - times.hidden;
 }
 
@@ -125,7 +137,8 @@ void Lsu::pop(Pipe& pipe) {
 
 void Lsu::finish_shared(Cycle now) {
   Pipe& pipe = pipes_[kShared];
-  for (; pipe.count > 0 && accesses_[pipe.front()].ready <= now; pop(pipe)) completed_.push_back(pipe.front());
+  for (; pipe.count > 0 && accesses_[pipe.front()].ready <= now; pop(pipe))
+    completed_.push_back(pipe.front());
 }
 
 // Lines of one access a cycle and door; the pipe not served last goes first.
@@ -134,7 +147,8 @@ void Lsu::send(Cycle now) {
   const uint32_t first = next_pipe_;
   for (uint32_t i = 0; i < 2; ++i) {
     const uint32_t p = (first + i) % 2;
-    if (now < door_free_[door_of(p)] || pipes_[p].count == 0 || accesses_[pipes_[p].front()].ready > now) continue;
+    if (now < door_free_[door_of(p)] || pipes_[p].count == 0 || accesses_[pipes_[p].front()].ready > now)
+      continue;
     if (send_line(now, p)) next_pipe_ = 1 - p;
   }
 }
@@ -153,10 +167,14 @@ bool Lsu::send_line(Cycle now, size_t p) {
   uint32_t cycles = 0;
   for (uint32_t n = 0; n < params_.lines_per_cycle && access.num_sent < lines.size(); ++n) {
     const LineSectors& line = lines[access.num_sent];
-    const mem::Traffic traffic = access.num_sent < access.num_table_lines ? mem::Traffic::RtTable : access.traffic;
-    if (!l1_.access(now, mem::Client::Lsu, {line.line, line.sectors, access.write, traffic, id, line.words, line.atomic})) break;
+    const mem::Traffic traffic =
+        access.num_sent < access.num_table_lines ? mem::Traffic::RtTable : access.traffic;
+    if (!l1_.access(now, mem::Client::Lsu,
+                    {line.line, line.sectors, access.write, traffic, id, line.words, line.atomic}))
+      break;
     ++access.num_sent;
-    cycles = std::max(cycles, (uint32_t(std::popcount(line.sectors)) + params_.sectors_per_cycle - 1) / params_.sectors_per_cycle);
+    cycles = std::max(cycles, (uint32_t(std::popcount(line.sectors)) + params_.sectors_per_cycle - 1) /
+                                  params_.sectors_per_cycle);
   }
   if (cycles == 0) return false;
   door_free = now + cycles;
@@ -178,7 +196,8 @@ Cycle Lsu::next_event(Cycle now) const {
       const Queue& queue = group.queues[q];
       if (queue.count == 0) continue;
       const MemoryAccess& access = accesses_[queue.id[queue.head]];
-      next = std::min(next, std::max({queue.free_at, access.issued + 1, group.accept_at, pipes_[pipe_of(access)].free_at}));
+      next = std::min(next, std::max({queue.free_at, access.issued + 1, group.accept_at,
+                                      pipes_[pipe_of(access)].free_at}));
     }
   return next == kNever ? kNever : std::max(next, now + 1);
 }

@@ -1,5 +1,5 @@
-// The load-store unit of a core: takes warp accesses from the schedulers' queues, sends their lines to the L1.
-// SPDX-License-Identifier: Apache-2.0
+// The load-store unit of a core: takes warp accesses from the schedulers' queues, sends their lines to the
+// L1. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <array>
@@ -17,26 +17,26 @@ namespace glint::core {
 // A warp's access between issue and completion.
 struct MemoryAccess {
   explicit MemoryAccess(uint32_t line_bytes) : lines(line_bytes) {}
-  uint32_t slot = 0;          // warp slot
+  uint32_t slot = 0;  // warp slot
   uint32_t pc = 0;
   Cycle issued = 0;
-  Cycle late_until = 0;       // registers that it fills are not written before
+  Cycle late_until = 0;  // registers that it fills are not written before
   mem::Traffic traffic = mem::Traffic::ShaderGlobal;
   bool write = false;
-  bool texture = false;       // through the texture unit
-  uint32_t samples = 0;       // then: of up to four texels
-  bool atomic = false;        // one that shared memory does, if it is there
+  bool texture = false;  // through the texture unit
+  uint32_t samples = 0;  // then: of up to four texels
+  bool atomic = false;   // one that shared memory does, if it is there
   AtomicKind atomic_kind = AtomicKind::Integer;
-  uint32_t bank_turns = 1;    // words of the fullest bank of the L1's array, where that counts
-  uint32_t passes = 0;        // of shared memory; an access may go there and to lines (generic addresses)
+  uint32_t bank_turns = 1;  // words of the fullest bank of the L1's array, where that counts
+  uint32_t passes = 0;      // of shared memory; an access may go there and to lines (generic addresses)
   LineList lines;
   uint32_t num_table_lines = 0;  // the first of them: candidates that the called shaders see
 
  private:
   friend class Lsu;
   uint32_t num_sent = 0, num_answers = 0;
-  Cycle hold = 0;             // of the L1's array before its first line, for words that meet in a bank
-  Cycle ready = 0;            // in the pipe: when its first line can go to the L1
+  Cycle hold = 0;   // of the L1's array before its first line, for words that meet in a bank
+  Cycle ready = 0;  // in the pipe: when its first line can go to the L1
 };
 
 // Queue of each scheduler -> (accept_interval) -> load-store pipe -> lines_per_cycle -> L1,
@@ -76,14 +76,14 @@ class Lsu {
   struct Queue {
     std::array<uint32_t, kMaxQueue> id{};
     uint32_t head = 0, count = 0;
-    Cycle free_at = 0;        // of this scheduler's address generation
+    Cycle free_at = 0;  // of this scheduler's address generation
   };
-  struct Group {              // queues that one unit takes from in turn
+  struct Group {  // queues that one unit takes from in turn
     std::array<Queue, kMaxSchedulers> queues{};
     uint32_t capacity = 0, next = 0;
     Cycle accept_at = 0;
   };
-  struct Pipe {               // accesses in order, as a ring
+  struct Pipe {  // accesses in order, as a ring
     std::vector<uint32_t> id;
     uint32_t head = 0, count = 0;
     Cycle free_at = 0;
@@ -99,7 +99,9 @@ class Lsu {
   bool send_line(Cycle now, size_t pipe);
   void finish_shared(Cycle now);
   void pop(Pipe& pipe);
-  static size_t pipe_of(const MemoryAccess& access) { return access.lines.lines().empty() ? kShared : access.texture; }
+  static size_t pipe_of(const MemoryAccess& access) {
+    return access.lines.lines().empty() ? kShared : access.texture;
+  }
   // Latency of `turns` further turns of the banks.
   Cycle conflict_latency(Cycle turns) const {
     return std::max<Cycle>(turns * shared_.conflict_turn, shared_.conflict_hidden) - shared_.conflict_hidden;

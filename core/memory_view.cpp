@@ -11,15 +11,22 @@ namespace {
 std::byte* line_start(const std::byte* at) {
   return reinterpret_cast<std::byte*>(reinterpret_cast<uintptr_t>(at) & ~uintptr_t{MemoryView::kLine - 1});
 }
-uint32_t offset_in_line(const std::byte* at) { return uint32_t(reinterpret_cast<uintptr_t>(at) & (MemoryView::kLine - 1)); }
-size_t hash_of(const std::byte* line) { return size_t((reinterpret_cast<uintptr_t>(line) / MemoryView::kLine) * 0x9e3779b97f4a7c15ull >> 20); }
-uint64_t mask_of(uint32_t offset, uint32_t bytes) { return (bytes >= 64 ? ~uint64_t{0} : (uint64_t{1} << bytes) - 1) << offset; }
+uint32_t offset_in_line(const std::byte* at) {
+  return uint32_t(reinterpret_cast<uintptr_t>(at) & (MemoryView::kLine - 1));
+}
+size_t hash_of(const std::byte* line) {
+  return size_t((reinterpret_cast<uintptr_t>(line) / MemoryView::kLine) * 0x9e3779b97f4a7c15ull >> 20);
+}
+uint64_t mask_of(uint32_t offset, uint32_t bytes) {
+  return (bytes >= 64 ? ~uint64_t{0} : (uint64_t{1} << bytes) - 1) << offset;
+}
 
 // Calls visit(line, offset, done, count) for the parts of [at, at + bytes) that lie in one line each.
 template <class Visit>
 void for_each_part(const std::byte* at, uint32_t bytes, Visit&& visit) {
   for (uint32_t done = 0; done < bytes;) {
-    const uint32_t offset = offset_in_line(at + done), count = std::min(bytes - done, MemoryView::kLine - offset);
+    const uint32_t offset = offset_in_line(at + done),
+                   count = std::min(bytes - done, MemoryView::kLine - offset);
     visit(line_start(at + done), offset, done, count);
     done += count;
   }
@@ -47,7 +54,9 @@ bool run_modify(const MemoryView::Modify& op) {
 
 }  // namespace
 
-void MemoryView::begin(Cycle now) { now_ = now; }
+void MemoryView::begin(Cycle now) {
+  now_ = now;
+}
 
 void MemoryView::note(Kind kind, size_t count) {
   if (!batches_.empty() && batches_.back().at == now_ && batches_.back().kind == kind)
@@ -105,8 +114,9 @@ void MemoryView::store(std::byte* at, const void* from, uint32_t bytes) {
 }
 
 void MemoryView::modify(const Modify& modify) {
-  for_each_part(modify.at, modify.bytes,
-                [&](std::byte* place, uint32_t offset, uint32_t, uint32_t count) { line_of(place).waits |= mask_of(offset, count); });
+  for_each_part(modify.at, modify.bytes, [&](std::byte* place, uint32_t offset, uint32_t, uint32_t count) {
+    line_of(place).waits |= mask_of(offset, count);
+  });
   modifies_.push_back(modify);
   note(Kind::Modify, modifies_.size());
 }
@@ -130,7 +140,8 @@ bool MemoryView::waits(const std::byte* at, uint32_t bytes) const {
   return any;
 }
 
-const std::byte* MemoryView::read(const std::byte* at, uint32_t bytes, std::span<std::byte, kWidest> scratch) const {
+const std::byte* MemoryView::read(const std::byte* at, uint32_t bytes,
+                                  std::span<std::byte, kWidest> scratch) const {
   bool own = false;
   for_each_part(at, bytes, [&](std::byte* place, uint32_t offset, uint32_t done, uint32_t count) {
     const Line* const line = find(place);
@@ -147,8 +158,12 @@ bool MemoryView::run(const Batch& batch) const {
         changed = changed || std::memcmp(stores_[i].at, stores_[i].data.data(), stores_[i].bytes) != 0;
         std::memcpy(stores_[i].at, stores_[i].data.data(), stores_[i].bytes);
         break;
-      case Kind::Modify: changed |= run_modify(modifies_[i]); break;
-      case Kind::Load: *loads_[i].to = widened(loads_[i]); break;
+      case Kind::Modify:
+        changed |= run_modify(modifies_[i]);
+        break;
+      case Kind::Load:
+        *loads_[i].to = widened(loads_[i]);
+        break;
       case Kind::LoadTexel: {
         const Words words = load_texel(*texels_[i].row, texels_[i].format, texels_[i].at);
         for (size_t c = 0; c < words.size(); ++c)
@@ -180,7 +195,8 @@ bool MemoryView::commit(std::span<MemoryView* const> views) {
     MemoryView* earliest = nullptr;
     for (MemoryView* view : views) {
       if (view->next_ == view->batches_.size()) continue;
-      if (!earliest || view->batches_[view->next_].at < earliest->batches_[earliest->next_].at) earliest = view;
+      if (!earliest || view->batches_[view->next_].at < earliest->batches_[earliest->next_].at)
+        earliest = view;
     }
     if (!earliest) break;
     changed |= earliest->run(earliest->batches_[earliest->next_++]);

@@ -11,15 +11,16 @@
 
 namespace glint::core {
 
-// Units give one latency and interval to all their ops; a real part takes longer for some of them, or runs them on
-// another pipe, or makes a sequence of instructions of one.
+// Units give one latency and interval to all their ops; a real part takes longer for some of them, or runs
+// them on another pipe, or makes a sequence of instructions of one.
 struct OpTime {
-  std::string_view name;   // of an op; one '*' stands for any text
-  uint32_t latency = 1;    // cycles from issue to issue of a dependent instruction
-  double interval = 1;     // cycles from issue to the next issue on the pipe, on average: a multiple of 1 / kParts
+  std::string_view name;  // of an op; one '*' stands for any text
+  uint32_t latency = 1;   // cycles from issue to issue of a dependent instruction
+  double interval =
+      1;  // cycles from issue to the next issue on the pipe, on average: a multiple of 1 / kParts
   isa::Unit pipe = isa::Unit::Count;  // the unit on whose pipe it runs; Count: on its own
   bool alternates = false;            // between pipes, so that `latency` has their crossing in it
-  uint32_t issues = 1;     // instructions of the part that make up the op: issue slots, spread over the latency
+  uint32_t issues = 1;  // instructions of the part that make up the op: issue slots, spread over the latency
 
   static constexpr uint32_t kParts = 16;  // of a cycle
 };

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/params.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 
 #include "core/block.h"
 
@@ -34,26 +33,32 @@ Residency residency(const Params& params, const LaunchNeeds& needs) {
       {Limit::Registers, params.registers / registers_per_warp(needs.registers) / needs.warps},
       {Limit::Blocks, needs.has_blocks ? params.blocks : kMaxWarps},
       {Limit::SharedMemory, needs.shared_bytes ? params.shared_bytes / needs.shared_bytes : kMaxWarps}};
-  const auto least = *std::min_element(std::begin(fits), std::end(fits), [](const auto& a, const auto& b) { return a.second < b.second; });
+  const auto least = *std::min_element(std::begin(fits), std::end(fits),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
   return {least.first, least.second, least.second * needs.warps};
 }
 
 void check(const Params& params, uint32_t num_registers, Diagnostics& diagnostics) {
   if (occupancy(params, num_registers) > 0) return;
-  diagnostics.error({}, fmt::format("a warp of this pipeline needs {} registers ({} a lane), a core has {}",
-                                    registers_per_warp(num_registers), num_registers, params.registers),
+  diagnostics.error({},
+                    fmt::format("a warp of this pipeline needs {} registers ({} a lane), a core has {}",
+                                registers_per_warp(num_registers), num_registers, params.registers),
                     fmt::format("set core.registers to {} or more", registers_per_warp(num_registers)));
 }
 
-void check_block(const Params& params, uint32_t num_registers, uint64_t threads, uint32_t shared_bytes, Diagnostics& diagnostics) {
+void check_block(const Params& params, uint32_t num_registers, uint64_t threads, uint32_t shared_bytes,
+                 Diagnostics& diagnostics) {
   if (threads > kMaxBlockThreads)
-    diagnostics.error({}, fmt::format("a block of {} threads, expected at most {}", threads, kMaxBlockThreads));
+    diagnostics.error({},
+                      fmt::format("a block of {} threads, expected at most {}", threads, kMaxBlockThreads));
   const uint64_t warps = (threads + kLanes - 1) / kLanes, fit = occupancy(params, num_registers);
   if (fit > 0 && warps > fit)
     diagnostics.error({}, fmt::format("a block has {} warps, and {} fit into a core", warps, fit),
                       "core.warps and core.registers limit them");
   if (shared_bytes > params.shared_bytes)
-    diagnostics.error({}, fmt::format("a block needs {} bytes of shared memory, a core has {}", shared_bytes, params.shared_bytes),
+    diagnostics.error({},
+                      fmt::format("a block needs {} bytes of shared memory, a core has {}", shared_bytes,
+                                  params.shared_bytes),
                       fmt::format("set core.shared_bytes to {} or more", shared_bytes));
 }
 

@@ -3,12 +3,12 @@
 #include "core/print_log.h"
 
 #include <fmt/format.h>
-
 #include <iterator>
 
 namespace glint::core {
 
-// Once the log is full it stays so, and the last of its threads only comes nearer: a line that has no room now will never.
+// Once the log is full it stays so, and the last of its threads only comes nearer: a line that has no room
+// now will never.
 bool PrintLog::has_room(uint64_t thread) const {
   return kept_ < limit_ || (!lines_.empty() && thread < std::prev(lines_.end())->first);
 }

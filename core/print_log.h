@@ -9,8 +9,8 @@
 
 namespace glint::core {
 
-// Keeps the first `limit` lines in that order and counts the others. Any number of threads may add at once: what is kept
-// does not depend on who comes first, as long as each launch id adds its own lines in order.
+// Keeps the first `limit` lines in that order and counts the others. Any number of threads may add at once:
+// what is kept does not depend on who comes first, as long as each launch id adds its own lines in order.
 class PrintLog {
  public:
   explicit PrintLog(uint64_t limit = 1000) : limit_(limit) {}

@@ -15,13 +15,15 @@ struct InstructionCounts : ProfileCounts {
   std::array<uint64_t, size_t(Stall::Count)> slots{};  // cycles of schedulers
 };
 
-// Every cycle of a scheduler goes to the instruction that it issued or, when it issued none, to the one that the warp
-// nearest to issue waits at. So the slots of all instructions add up to the core's issue slots, reason by reason.
+// Every cycle of a scheduler goes to the instruction that it issued or, when it issued none, to the one that
+// the warp nearest to issue waits at. So the slots of all instructions add up to the core's issue slots,
+// reason by reason.
 class Profile {
  public:
   static constexpr uint32_t kNowhere = ~0u;  // no warp was there
 
-  Profile(size_t num_instructions, uint32_t schedulers) : counts_(num_instructions + 1), at_(schedulers, kNowhere) {}
+  Profile(size_t num_instructions, uint32_t schedulers)
+      : counts_(num_instructions + 1), at_(schedulers, kNowhere) {}
 
   // The scheduler's cycles are this instruction's from now on.
   void point(uint32_t scheduler, uint32_t pc) { at_[scheduler] = pc; }

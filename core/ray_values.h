@@ -15,15 +15,20 @@
 
 namespace glint::core {
 
-inline float as_float(uint32_t bits) { return std::bit_cast<float>(bits); }
-inline uint32_t as_bits(float x) { return std::bit_cast<uint32_t>(x); }
+inline float as_float(uint32_t bits) {
+  return std::bit_cast<float>(bits);
+}
+inline uint32_t as_bits(float x) {
+  return std::bit_cast<uint32_t>(x);
+}
 
 // A lane's value of an operand of 32 bits, and of one of 64.
 inline uint32_t read_word(const isa::Warp& regs, const isa::Inst& inst, size_t operand, int lane) {
   return regs.read(inst.operand[operand])[lane];
 }
 inline Address read_address(const isa::Warp& regs, const isa::Inst& inst, size_t operand, int lane) {
-  return read_word(regs, inst, operand, lane) | Address(regs.read(isa::Slot(inst.operand[operand] + 1))[lane]) << 32;
+  return read_word(regs, inst, operand, lane) | Address(regs.read(isa::Slot(inst.operand[operand] + 1))[lane])
+                                                    << 32;
 }
 
 // Eight operands from `first` on: origin, tmin, direction, tmax.
@@ -48,10 +53,11 @@ inline float object_direction(const rt::InstanceLeaf& leaf, const std::array<flo
   return m[0] * x[0] + m[1] * x[1] + m[2] * x[2];
 }
 
-// Coordinate `number` of the corners of the triangle that was hit: x, y, z of the first, of the second, of the third.
-// Choice: 0 where there is no triangle; Vulkan leaves it undefined.
+// Coordinate `number` of the corners of the triangle that was hit: x, y, z of the first, of the second, of
+// the third. Choice: 0 where there is no triangle; Vulkan leaves it undefined.
 inline float corner_of(const rt::Hit& hit, uint32_t number, const mem::AddressSpace& memory) {
-  const std::byte* const bytes = hit.triangle_leaf ? memory.find(hit.triangle_leaf, sizeof(rt::TriangleLeaf)) : nullptr;
+  const std::byte* const bytes =
+      hit.triangle_leaf ? memory.find(hit.triangle_leaf, sizeof(rt::TriangleLeaf)) : nullptr;
   if (!bytes || number >= 9) return 0;
   rt::TriangleLeaf leaf;
   std::memcpy(&leaf, bytes, sizeof leaf);

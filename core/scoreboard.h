@@ -11,16 +11,16 @@
 
 namespace glint::core {
 
-// An instruction issues when its sources are ready (read after write) and its destinations are too (write after
-// write: results of one register arrive in order). Write after read needs no check but for memory instructions, which
-// read their registers when they leave their queue.
-// Model: hardware of this kind leaves fixed latencies to stall counts that the compiler sets, and counts variable
-// ones in six counters a warp; a ready time a register gives the same cycles when those are set well.
+// An instruction issues when its sources are ready (read after write) and its destinations are too (write
+// after write: results of one register arrive in order). Write after read needs no check but for memory
+// instructions, which read their registers when they leave their queue. Model: hardware of this kind leaves
+// fixed latencies to stall counts that the compiler sets, and counts variable ones in six counters a warp; a
+// ready time a register gives the same cycles when those are set well.
 class Scoreboard {
  public:
   struct Ready {
-    Cycle at = 0;                     // kNever: when an access or the RT unit answers
-    Stall wait = Stall::RawFixed;     // what the last of the registers waits for
+    Cycle at = 0;                  // kNever: when an access or the RT unit answers
+    Stall wait = Stall::RawFixed;  // what the last of the registers waits for
   };
 
   void reset() {
@@ -36,9 +36,10 @@ class Scoreboard {
       if (ready_[r] > start.at) start = {ready_[r], wait_[r]};
     return start;
   }
-  // The same where results reach other pipes `crossing` cycles later than their own, and guards `guard` cycles later; and
-  // where the instruction's own results may come `slack` cycles after those it waits for.
-  Ready ready(std::span<const uint16_t> registers, Ready start, const IssueRow& row, Cycle crossing, Cycle guard, Cycle slack) const {
+  // The same where results reach other pipes `crossing` cycles later than their own, and guards `guard`
+  // cycles later; and where the instruction's own results may come `slack` cycles after those it waits for.
+  Ready ready(std::span<const uint16_t> registers, Ready start, const IssueRow& row, Cycle crossing,
+              Cycle guard, Cycle slack) const {
     const size_t guard_at = row.is_guarded ? size_t(row.num_uses - row.num_defs - 1) : registers.size();
     for (size_t i = 0; i < registers.size(); ++i) {
       const uint16_t r = registers[i];
@@ -51,9 +52,10 @@ class Scoreboard {
     }
     return start;
   }
-  // The same for an instruction whose results come `latency` cycles after its issue: earlier ones of its registers need only
-  // come before them.
-  Ready ready_in_order(std::span<const uint16_t> sources, std::span<const uint16_t> results, Ready start, Cycle latency) const {
+  // The same for an instruction whose results come `latency` cycles after its issue: earlier ones of its
+  // registers need only come before them.
+  Ready ready_in_order(std::span<const uint16_t> sources, std::span<const uint16_t> results, Ready start,
+                       Cycle latency) const {
     start = ready(sources, start);
     for (uint16_t r : results) {
       const Cycle at = before(ready_[r], latency - 1);
@@ -89,7 +91,9 @@ class Scoreboard {
   }
 
  private:
-  static Cycle before(Cycle at, Cycle cycles) { return at == kNever ? kNever : std::max(at, cycles) - cycles; }
+  static Cycle before(Cycle at, Cycle cycles) {
+    return at == kNever ? kNever : std::max(at, cycles) - cycles;
+  }
 
   std::array<Cycle, kScoreboardEntries> ready_{};
   std::array<Stall, kScoreboardEntries> wait_{};

@@ -23,11 +23,11 @@ class SimtStack {
     Kind kind;
     uint32_t pc;
     LaneMask lanes;
-    uint32_t depth = 0;   // Call: trace depth to return to
-    uint32_t shader = 0;  // Call: the caller's shader
-    uint32_t callables = 0;    // Call: callable depth to return to
-    bool is_function = false;  // Call: of a function of the same shader, not of another shader
-    bool is_traversal = false; // Call: of the program that walks rays
+    uint32_t depth = 0;         // Call: trace depth to return to
+    uint32_t shader = 0;        // Call: the caller's shader
+    uint32_t callables = 0;     // Call: callable depth to return to
+    bool is_function = false;   // Call: of a function of the same shader, not of another shader
+    bool is_traversal = false;  // Call: of the program that walks rays
   };
 
   uint32_t pc = 0;
@@ -42,8 +42,8 @@ class SimtStack {
 
   void push_reconvergence(uint32_t join_pc) { entries_.push_back({Kind::Join, join_pc, 0}); }
   void push_path(uint32_t path_pc, LaneMask lanes) { entries_.push_back({Kind::Path, path_pc, lanes}); }
-  void push_call(uint32_t return_pc, LaneMask arrived, uint32_t depth, uint32_t shader, uint32_t callables = 0,
-                 bool is_function = false) {
+  void push_call(uint32_t return_pc, LaneMask arrived, uint32_t depth, uint32_t shader,
+                 uint32_t callables = 0, bool is_function = false) {
     entries_.push_back({Kind::Call, return_pc, arrived, depth, shader, callables, is_function});
   }
 
@@ -68,7 +68,8 @@ class SimtStack {
       if (entries_[i].kind == Kind::Call && !(of_shader && entries_[i].is_function)) return &entries_[i];
     return nullptr;
   }
-  // Lanes return to the innermost call, or to that of the shader, out of all functions. False when nobody called.
+  // Lanes return to the innermost call, or to that of the shader, out of all functions. False when nobody
+  // called.
   bool arrive_return(LaneMask lanes, bool of_shader = false) {
     const Entry* call = innermost_call(of_shader);
     if (!call) return false;

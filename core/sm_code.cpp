@@ -10,11 +10,15 @@ constexpr uint32_t kConstantClient = kMaxSchedulers;  // of the cache behind; th
 }  // namespace
 
 CoreCell::Code::Code(const Params& params, const Context& context, CodeStats& stats)
-    : cache(params.code_cache, InstructionFetch::most_in_flight(params.schedulers) + ConstantCache::kMost, context.l1, stats) {
+    : cache(params.code_cache, InstructionFetch::most_in_flight(params.schedulers) + ConstantCache::kMost,
+            context.l1, stats) {
   if (!params.fetch.perfect)
-    fetch = std::make_unique<InstructionFetch>(params.fetch, params.schedulers, context.code, context.world.image->code.size(), cache, stats);
+    fetch = std::make_unique<InstructionFetch>(params.fetch, params.schedulers, context.code,
+                                               context.world.image->code.size(), cache, stats);
   if (!params.constant.perfect)
-    constants = std::make_unique<ConstantCache>(params.constant, context.constants, context.world.constant_bank.size(), kConstantClient, cache, stats);
+    constants =
+        std::make_unique<ConstantCache>(params.constant, context.constants,
+                                        context.world.constant_bank.size(), kConstantClient, cache, stats);
 }
 
 uint64_t CoreCell::code_bytes(const Params& params, const World& world) {
@@ -51,7 +55,8 @@ void CoreCell::take_code(Cycle now) {
 }
 
 // A load that misses waits in front of its warp, and is looked up again when its lines have come.
-void CoreCell::start_constant(SchedulerState& scheduler, uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now) {
+void CoreCell::start_constant(SchedulerState& scheduler, uint32_t slot, const IssueRow& row,
+                              const Issued& issued, Cycle now) {
   const isa::Access& access = warps_[slot].regs.access;
   const Cycle turns = params_.constant.serial ? different_words(access, issued.lanes) : 1;
   scheduler.take(row.pipe, now, turns * row.interval);

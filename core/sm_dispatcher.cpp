@@ -10,7 +10,8 @@ Dispatcher::Dispatcher(const Params& params, uint32_t num_blocks, std::vector<Co
     : launch_latency_(params.launch_latency),
       warp_launch_latency_(params.warp_launch_latency),
       num_blocks_(num_blocks),
-      cores_(std::move(cores)) {}
+      cores_(std::move(cores)) {
+}
 
 void Dispatcher::dispatch(Cycle now) {
   const Cycle ready = std::max(now, launch_latency_) + warp_launch_latency_;

@@ -10,9 +10,10 @@
 
 namespace glint::core {
 
-// Acts between windows only, one block a core in turn, cores in their fixed order: so the assignment is a function of the
-// model and not of how cells are run. Room that becomes free in a window is filled at the window's end.
-// Model: hardware would fill it some cycles earlier or later; windows are shorter than a memory access.
+// Acts between windows only, one block a core in turn, cores in their fixed order: so the assignment is a
+// function of the model and not of how cells are run. Room that becomes free in a window is filled at the
+// window's end. Model: hardware would fill it some cycles earlier or later; windows are shorter than a memory
+// access.
 class Dispatcher {
  public:
   Dispatcher(const Params& params, uint32_t num_blocks, std::vector<CoreCell*> cores);

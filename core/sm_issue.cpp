@@ -42,7 +42,8 @@ uint64_t CoreCell::find_ready(SchedulerState& scheduler, Cycle now) {
   }
   const uint64_t at_lsu = free & scheduler.needs_lsu, at_rt = free & scheduler.needs_rt;
   const uint64_t at_tex = free & scheduler.needs_tex;
-  const bool lsu_full = at_lsu && !lsu_.can_take(scheduler.index), tex_full = at_tex && !lsu_.can_take(scheduler.index, true);
+  const bool lsu_full = at_lsu && !lsu_.can_take(scheduler.index),
+             tex_full = at_tex && !lsu_.can_take(scheduler.index, true);
   scheduler.watches_lsu = lsu_full || tex_full;
   scheduler.watches_rt = at_rt && !rt_.can_accept();
   scheduler.lsu_vacated = lsu_.num_vacated();
@@ -68,14 +69,20 @@ uint64_t CoreCell::find_ready(SchedulerState& scheduler, Cycle now) {
   return free;
 }
 
-// An instruction reads its registers in the window that begins with its issue, one a bank and cycle, after those of others.
-uint64_t CoreCell::leave_out_bank_conflicts(SchedulerState& scheduler, uint64_t free, Cycle now, Cycle& next) const {
+// An instruction reads its registers in the window that begins with its issue, one a bank and cycle, after
+// those of others.
+uint64_t CoreCell::leave_out_bank_conflicts(SchedulerState& scheduler, uint64_t free, Cycle now,
+                                            Cycle& next) const {
   for (uint64_t rest = free; rest; rest &= rest - 1) {
     const auto local = uint32_t(std::countr_zero(rest));
-    const IssueTable::BankReads& reads = table_.bank_reads(warps_[local * params_.schedulers + scheduler.index].simt.pc);
+    const IssueTable::BankReads& reads =
+        table_.bank_reads(warps_[local * params_.schedulers + scheduler.index].simt.pc);
     Cycle at = now;
     for (size_t bank = 0; bank < reads.size(); ++bank)
-      if (reads[bank]) at = std::max(at, std::max<Cycle>(scheduler.bank_free[bank] + reads[bank], params_.register_file.window) - params_.register_file.window);
+      if (reads[bank])
+        at = std::max(at,
+                      std::max<Cycle>(scheduler.bank_free[bank] + reads[bank], params_.register_file.window) -
+                          params_.register_file.window);
     if (at == now) continue;
     free &= ~(uint64_t{1} << local);
     next = std::min(next, at);
@@ -91,7 +98,8 @@ void CoreCell::read_banks(SchedulerState& scheduler, uint32_t pc, Cycle now) {
 
 void CoreCell::issue(SchedulerState& scheduler, uint32_t local, Cycle now) {
   const uint32_t slot = local * params_.schedulers + scheduler.index;
-  if (!observers_.empty()) [[unlikely]] tell_select(scheduler, slot, now);
+  if (!observers_.empty()) [[unlikely]]
+    tell_select(scheduler, slot, now);
   if (sequence_[slot].left > 0) return issue_rest(scheduler, slot, now);
   WarpContext& warp = warps_[slot];
   const IssueRow& row = table_.row(warp.simt.pc);
@@ -113,8 +121,10 @@ void CoreCell::issue(SchedulerState& scheduler, uint32_t local, Cycle now) {
         break;
       }
       stats_.add_latency(row.stage, row.klass, late + row.latency);
-      if (row.is_sequence) start_sequence(slot, row, issued.pc, now);
-      else scoreboards_[slot].set(table_.defs(row), {done, row.wait}, row.alternates ? Pipe::Count : row.pipe);
+      if (row.is_sequence)
+        start_sequence(slot, row, issued.pc, now);
+      else
+        scoreboards_[slot].set(table_.defs(row), {done, row.wait}, row.alternates ? Pipe::Count : row.pipe);
       break;
     case Finish::Control:
       front_[slot] = {done, row.wait};
@@ -174,9 +184,11 @@ void CoreCell::pass_barrier(const Block& block, Cycle at) {
 // Model: one of the whole system takes longer than any acknowledgement anyway.
 void CoreCell::start_fence(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now) {
   ++stats_.fences;
-  const bool waits = outstanding_[slot] > 0, among_cores = isa::FenceScope(issued.row->detail) > isa::FenceScope::Block;
+  const bool waits = outstanding_[slot] > 0,
+             among_cores = isa::FenceScope(issued.row->detail) > isa::FenceScope::Block;
   const bool acknowledged = stored_[slot] && isa::FenceScope(issued.row->detail) == isa::FenceScope::Gpu;
-  const Cycle latency = std::max<Cycle>(row.latency + (acknowledged ? params_.fence.acknowledgement : 0), among_cores && turn_ ? turn_end(now) - now : 0);
+  const Cycle latency = std::max<Cycle>(row.latency + (acknowledged ? params_.fence.acknowledgement : 0),
+                                        among_cores && turn_ ? turn_end(now) - now : 0);
   stored_[slot] = stored_[slot] && !among_cores;
   fence_[slot] = waits ? latency : 0;
   front_[slot] = {waits ? kNever : now + latency, Stall::Fence};
@@ -263,8 +275,10 @@ Scoreboard::Ready CoreCell::operands_ready(uint32_t slot, const IssueRow& row) c
   const Cycle crossing = params_.pipe_crossing, guard = params_.guard_delay;
   const Cycle slack = row.finish == Finish::Fixed && !params_.write_order ? row.latency - 1 : 0;
   const auto uses = table_.uses(row);
-  Scoreboard::Ready ready = crossing + guard > 0 ? board.ready(uses, front_[slot], row, crossing, guard, slack)
-                            : slack > 0 ? board.ready_in_order(uses.first(uses.size() - row.num_defs), table_.defs(row), front_[slot], row.latency)
+  Scoreboard::Ready ready = crossing + guard > 0
+                                ? board.ready(uses, front_[slot], row, crossing, guard, slack)
+                            : slack > 0 ? board.ready_in_order(uses.first(uses.size() - row.num_defs),
+                                                               table_.defs(row), front_[slot], row.latency)
                                         : board.ready(uses, front_[slot]);
   if (holds_operands_) ready = board.unread(table_.defs(row), ready);
   if (waits_for_line_[slot] && ready.at != kNever) ready = {kNever, Stall::NoInstruction};

@@ -83,34 +83,39 @@ void CoreCell::collect_lines(MemoryAccess& access, const Issued& issued) {
 }
 
 // The entries of the candidates whose shaders are called.
-// Model: one read for all of a warp's lanes, with their records of the binding table; what the shaders then read of a
-// candidate is in registers. Tables of nested traces share their place: an outer one is empty by then.
+// Model: one read for all of a warp's lanes, with their records of the binding table; what the shaders then
+// read of a candidate is in registers. Tables of nested traces share their place: an outer one is empty by
+// then.
 void CoreCell::collect_candidates(MemoryAccess& access, LaneMask lanes) {
   if (tables_.rows == 0) return;
   const TraceFrame& frame = warps_[access.slot].frame();
   for_each_lane(lanes, [&](int lane) {
-    access.lines.add(tables_.entry(access.slot, frame.ray[size_t(lane)].candidate_row, lane), rt::kTableEntryBytes, lane);
+    access.lines.add(tables_.entry(access.slot, frame.ray[size_t(lane)].candidate_row, lane),
+                     rt::kTableEntryBytes, lane);
   });
   access.num_table_lines = uint32_t(access.lines.lines().size());
 }
 
-// Loads, stores and atomics. Model: lanes of a generic access that are in local memory travel as global traffic, and
-// those in the constant bank take no time of their own.
+// Loads, stores and atomics. Model: lanes of a generic access that are in local memory travel as global
+// traffic, and those in the constant bank take no time of their own.
 void CoreCell::collect_memory(MemoryAccess& access, const Issued& issued) {
   using isa::Space;
   const isa::Access& addresses = warps_[access.slot].regs.access;
   const auto bytes = uint32_t(issued.row->memory.bytes * issued.row->memory.count);
   const bool is_atomic = issued.row->effect == Effect::Atomic;
-  access.traffic = is_atomic                                        ? mem::Traffic::ShaderAtomic
+  access.traffic = is_atomic                                  ? mem::Traffic::ShaderAtomic
                    : issued.row->memory.space == Space::Local ? mem::Traffic::ShaderLocal
                                                               : mem::Traffic::ShaderGlobal;
   access.atomic = is_atomic;
-  if (const LaneMask lanes = executor_.lanes_in(Space::Shared)) access.passes = shared_passes(addresses, lanes, bytes, is_atomic);
+  if (const LaneMask lanes = executor_.lanes_in(Space::Shared))
+    access.passes = shared_passes(addresses, lanes, bytes, is_atomic);
   const LaneMask in_global = executor_.lanes_in(Space::Global);
-  if (params_.lsu.bank_conflicts && !is_atomic && in_global) access.bank_turns = shared_passes(addresses, in_global, bytes, false);
+  if (params_.lsu.bank_conflicts && !is_atomic && in_global)
+    access.bank_turns = shared_passes(addresses, in_global, bytes, false);
   coalesce_local(access.lines, local_, access.slot, addresses, executor_.lanes_in(Space::Local), bytes);
   coalesce_global(access.lines, *world_.memory, addresses, in_global, bytes);
-  if (is_atomic && in_global) count_turns(access.lines, *world_.memory, addresses, bytes, params_.lsu.atomic_turns, !access.write);
+  if (is_atomic && in_global)
+    count_turns(access.lines, *world_.memory, addresses, bytes, params_.lsu.atomic_turns, !access.write);
 }
 
 void CoreCell::collect_texels(MemoryAccess& access, LaneMask lanes) {
@@ -143,7 +148,9 @@ void CoreCell::complete(uint32_t access_id, Cycle now) {
     // The branch itself was resolved long ago, or now.
     front_[slot] = {std::max(now, access.issued + row.latency), Stall::Call};
   } else if (!access.write) {
-    const Cycle late = access.traffic == mem::Traffic::ShaderAtomic && !access.lines.lines().empty() ? params_.lsu.atomic_latency : 0;
+    const Cycle late = access.traffic == mem::Traffic::ShaderAtomic && !access.lines.lines().empty()
+                           ? params_.lsu.atomic_latency
+                           : 0;
     scoreboards_[slot].set(table_.defs(row), {std::max(now + late, access.late_until), row.wait});
   }
   lsu_.release(access_id);

@@ -1,15 +1,16 @@
-// Instructions that hardware makes of one of the ISA's, or puts before a kernel: each takes an issue slot of its warp.
-// SPDX-License-Identifier: Apache-2.0
+// Instructions that hardware makes of one of the ISA's, or puts before a kernel: each takes an issue slot of
+// its warp. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
 #include "core/core_cell.h"
 
 namespace glint::core {
 
-// The effect has happened and the pipe is taken; the rest of the sequence follows in even steps, its result comes behind the
-// last. Model: only the first instruction takes a pipe, for the interval of the whole; what follows in the warp does not
-// issue in between, where an assembler would mix the two. One that had to wait for its slot does not hold up the next beyond
-// its own step: sequences have slack between their long operations.
+// The effect has happened and the pipe is taken; the rest of the sequence follows in even steps, its result
+// comes behind the last. Model: only the first instruction takes a pipe, for the interval of the whole; what
+// follows in the warp does not issue in between, where an assembler would mix the two. One that had to wait
+// for its slot does not hold up the next beyond its own step: sequences have slack between their long
+// operations.
 void CoreCell::start_sequence(uint32_t slot, const IssueRow& row, uint32_t pc, Cycle now) {
   const uint32_t issues = table_.issues(pc);
   const Cycle step = std::max<Cycle>(row.latency / issues, 1);
@@ -29,7 +30,8 @@ void CoreCell::issue_rest(SchedulerState& scheduler, uint32_t slot, Cycle now) {
     front_[slot] = {now + 1, Stall::RawFixed};
     if (!is_prologue) {
       const IssueRow& row = table_.row(rest.pc);
-      scoreboards_[slot].set(table_.defs(row), {std::max(now + 1, due + rest.last), row.wait}, row.alternates ? Pipe::Count : row.pipe);
+      scoreboards_[slot].set(table_.defs(row), {std::max(now + 1, due + rest.last), row.wait},
+                             row.alternates ? Pipe::Count : row.pipe);
     }
   }
   refresh(slot);

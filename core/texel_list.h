@@ -12,8 +12,8 @@ namespace glint::core {
 // The most texels of one lane: a linear filter in three dimensions of two levels.
 inline constexpr uint32_t kMaxTexels = 16;
 
-// Virtual addresses, row by row: the first texel of each lane, then the second of each that has one. A texel is
-// aligned to its size, so it lies in one sector.
+// Virtual addresses, row by row: the first texel of each lane, then the second of each that has one. A texel
+// is aligned to its size, so it lies in one sector.
 class TexelList {
  public:
   static constexpr Address kNone = 0;  // no allocation holds address 0

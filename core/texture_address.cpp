@@ -10,11 +10,15 @@
 namespace glint::core {
 namespace {
 
-int64_t modulo(int64_t a, int64_t n) { return ((a % n) + n) % n; }
-int64_t mirror(int64_t a) { return a >= 0 ? a : -(1 + a); }
+int64_t modulo(int64_t a, int64_t n) {
+  return ((a % n) + n) % n;
+}
+int64_t mirror(int64_t a) {
+  return a >= 0 ? a : -(1 + a);
+}
 
-// Axes of a face: which component of a direction is s, t and r, and its sign there (Vulkan, table "Cube map face and
-// coordinate selection").
+// Axes of a face: which component of a direction is s, t and r, and its sign there (Vulkan, table "Cube map
+// face and coordinate selection").
 struct Face {
   uint8_t s, t, r;
   float sign_s, sign_t, sign_r;
@@ -46,11 +50,16 @@ double log2_of(double x) {
 
 int64_t wrap(Wrap mode, int64_t i, int64_t size) {
   switch (mode) {
-    case Wrap::Repeat: return modulo(i, size);
-    case Wrap::MirroredRepeat: return size - 1 - mirror(modulo(i, 2 * size) - size);
-    case Wrap::ClampToEdge: return std::clamp<int64_t>(i, 0, size - 1);
-    case Wrap::ClampToBorder: return i < 0 || i >= size ? kBorder : i;
-    case Wrap::MirrorClampToEdge: return std::min(mirror(i), size - 1);
+    case Wrap::Repeat:
+      return modulo(i, size);
+    case Wrap::MirroredRepeat:
+      return size - 1 - mirror(modulo(i, 2 * size) - size);
+    case Wrap::ClampToEdge:
+      return std::clamp<int64_t>(i, 0, size - 1);
+    case Wrap::ClampToBorder:
+      return i < 0 || i >= size ? kBorder : i;
+    case Wrap::MirrorClampToEdge:
+      return std::min(mirror(i), size - 1);
   }
   return kBorder;
 }
@@ -72,7 +81,8 @@ CubePoint cube_point(const std::array<float, 3>& direction) {
 
 CubeTexel across_edge(uint32_t face, int64_t x, int64_t y, int64_t size) {
   const Face& f = kFaces[face];
-  // A point just past the edge: the direction to it meets the neighbour's row at that edge, next to the same texel.
+  // A point just past the edge: the direction to it meets the neighbour's row at that edge, next to the same
+  // texel.
   const auto middle = [&](int64_t i) {
     if (i < 0 || i >= size) return std::copysign(1.0f + 0x1p-20f, float(i));
     return float(2 * i + 1) / float(size) - 1.0f;
@@ -82,7 +92,9 @@ CubeTexel across_edge(uint32_t face, int64_t x, int64_t y, int64_t size) {
   direction[f.t] = f.sign_t * middle(y);
   direction[f.r] = f.sign_r;
   const CubePoint point = cube_point(direction);
-  const auto texel = [&](float s) { return std::clamp<int64_t>(int64_t(std::floor(s * float(size))), 0, size - 1); };
+  const auto texel = [&](float s) {
+    return std::clamp<int64_t>(int64_t(std::floor(s * float(size))), 0, size - 1);
+  };
   return {point.face, texel(point.s), texel(point.t)};
 }
 

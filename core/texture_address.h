@@ -13,8 +13,8 @@ inline constexpr int64_t kBorder = -1;
 // The texel of an axis of `size` texels that index `i` stands for, or kBorder.
 int64_t wrap(Wrap mode, int64_t i, int64_t size);
 
-// A coordinate in texels as a number whose floor is a moderate integer. Choice: NaN counts as 0 (Vulkan leaves it
-// undefined).
+// A coordinate in texels as a number whose floor is a moderate integer. Choice: NaN counts as 0 (Vulkan
+// leaves it undefined).
 double tame(Wrap mode, float x, uint32_t size);
 
 // Where a direction meets the cube: face, and coordinates on it, 0 to 1.
@@ -24,8 +24,8 @@ struct CubePoint {
 };
 CubePoint cube_point(const std::array<float, 3>& direction);
 
-// The texel of a neighbouring face that stands for texel (x, y) outside of `face`, whose sides have `size` texels.
-// Not for corners, where three faces meet.
+// The texel of a neighbouring face that stands for texel (x, y) outside of `face`, whose sides have `size`
+// texels. Not for corners, where three faces meet.
 struct CubeTexel {
   uint32_t face;
   int64_t x, y;

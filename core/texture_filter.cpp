@@ -11,7 +11,9 @@
 namespace glint::core {
 namespace {
 
-float float_of(uint32_t bits) { return std::bit_cast<float>(bits); }
+float float_of(uint32_t bits) {
+  return std::bit_cast<float>(bits);
+}
 
 Words mixed(const Words& a, const Words& b, float weight) {
   if (weight == 0.0f) return a;
@@ -23,14 +25,22 @@ Words mixed(const Words& a, const Words& b, float weight) {
 
 bool holds(Comparison comparison, float reference, float texel) {
   switch (comparison) {
-    case Comparison::Never: return false;
-    case Comparison::Less: return reference < texel;
-    case Comparison::Equal: return reference == texel;
-    case Comparison::LessOrEqual: return reference <= texel;
-    case Comparison::Greater: return reference > texel;
-    case Comparison::NotEqual: return reference != texel;
-    case Comparison::GreaterOrEqual: return reference >= texel;
-    case Comparison::Always: return true;
+    case Comparison::Never:
+      return false;
+    case Comparison::Less:
+      return reference < texel;
+    case Comparison::Equal:
+      return reference == texel;
+    case Comparison::LessOrEqual:
+      return reference <= texel;
+    case Comparison::Greater:
+      return reference > texel;
+    case Comparison::NotEqual:
+      return reference != texel;
+    case Comparison::GreaterOrEqual:
+      return reference >= texel;
+    case Comparison::Always:
+      return true;
   }
   return false;
 }
@@ -69,8 +79,8 @@ TexelReader::Place TexelReader::place_of(const SampleRequest& request) const {
   return place;
 }
 
-TexelReader::Axis TexelReader::axis_of(const SampleRequest& request, const Place& place, int axis, uint32_t level,
-                                       bool linear) const {
+TexelReader::Axis TexelReader::axis_of(const SampleRequest& request, const Place& place, int axis,
+                                       uint32_t level, bool linear) const {
   const uint32_t size = image_.extent(axis, level);
   const auto n = size_t(axis);
   const Wrap mode = place.is_cube ? Wrap::ClampToEdge : sampler_.wrap[n];
@@ -90,9 +100,11 @@ TexelReader::Axis TexelReader::axis_of(const SampleRequest& request, const Place
 
 Words TexelReader::compared(const SampleRequest& request, Words texel) const {
   if (!request.compare) return texel;
-  const float reference =
-      is_normalized(info_of(image_.format)) ? std::min(std::max(request.reference, 0.0f), 1.0f) : request.reference;
-  return {std::bit_cast<uint32_t>(holds(sampler_.compare, reference, float_of(texel[0])) ? 1.0f : 0.0f), 0, 0, 0};
+  const float reference = is_normalized(info_of(image_.format))
+                              ? std::min(std::max(request.reference, 0.0f), 1.0f)
+                              : request.reference;
+  return {std::bit_cast<uint32_t>(holds(sampler_.compare, reference, float_of(texel[0])) ? 1.0f : 0.0f), 0, 0,
+          0};
 }
 
 Words TexelReader::fetch(const TexelIndex& at) {
@@ -106,7 +118,8 @@ Words TexelReader::fetch(const TexelIndex& at) {
   return decode(image_.format, from);
 }
 
-Words TexelReader::read(const SampleRequest& request, const Place& place, uint32_t level, std::array<int64_t, 3> at) {
+Words TexelReader::read(const SampleRequest& request, const Place& place, uint32_t level,
+                        std::array<int64_t, 3> at) {
   uint32_t layer = place.layer;
   const int64_t size = image_.extent(0, level);
   if (place.is_cube && (at[0] < 0 || at[1] < 0 || at[0] >= size || at[1] >= size)) {
@@ -126,15 +139,16 @@ void TexelReader::read_block(const SampleRequest& request, const Place& place, u
   size_t corner = 8;
   for (size_t k = 0; k < size_t{1} << place.axes; ++k) {
     std::array<int64_t, 3> at{};
-    for (size_t axis = 0; axis < size_t(place.axes); ++axis) at[axis] = k >> axis & 1 ? axes[axis].second : axes[axis].first;
+    for (size_t axis = 0; axis < size_t(place.axes); ++axis)
+      at[axis] = k >> axis & 1 ? axes[axis].second : axes[axis].first;
     if (place.is_cube && is_outside(at[0]) && is_outside(at[1]))
       corner = k;
     else
       out[k] = read(request, place, level, at);
   }
   if (corner == 8) return;
-  // Where three faces meet there is no fourth texel: the average of the three (Vulkan, "Cube Map Edge Handling"), of
-  // integers a neighbour.
+  // Where three faces meet there is no fourth texel: the average of the three (Vulkan, "Cube Map Edge
+  // Handling"), of integers a neighbour.
   if (is_integer(info_of(image_.format))) {
     out[corner] = out[corner ^ 1];
     return;
@@ -150,7 +164,8 @@ void TexelReader::read_block(const SampleRequest& request, const Place& place, u
 Words TexelReader::filter(const SampleRequest& request, const Place& place, uint32_t level, Filter filter) {
   const bool linear = filter == Filter::Linear;
   std::array<Axis, 3> axes{};
-  for (int axis = 0; axis < place.axes; ++axis) axes[size_t(axis)] = axis_of(request, place, axis, level, linear);
+  for (int axis = 0; axis < place.axes; ++axis)
+    axes[size_t(axis)] = axis_of(request, place, axis, level, linear);
   if (!linear) return read(request, place, level, {axes[0].first, axes[1].first, axes[2].first});
   std::array<Words, 8> texel;
   read_block(request, place, level, axes, texel);

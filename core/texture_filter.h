@@ -13,15 +13,16 @@ namespace glint::core {
 
 struct SampleRequest {
   isa::ImageShape shape = isa::ImageShape::D2;
-  std::array<float, 3> at{};         // normalised coordinates, or the direction from the middle of a cube
-  int32_t layer = 0;                 // clamped to the layers there are
-  float lod = 0.0f;                  // before the sampler's bias and limits
-  std::array<int32_t, 3> offset{};   // texels
+  std::array<float, 3> at{};        // normalised coordinates, or the direction from the middle of a cube
+  int32_t layer = 0;                // clamped to the layers there are
+  float lod = 0.0f;                 // before the sampler's bias and limits
+  std::array<int32_t, 3> offset{};  // texels
   bool compare = false;
   float reference = 0.0f;
 };
 
-// One request to one image. After a mistake of the program, error() says what it is and the result means nothing.
+// One request to one image. After a mistake of the program, error() says what it is and the result means
+// nothing.
 class TexelReader {
  public:
   TexelReader(const ImageView& image, const Sampler& sampler, const mem::AddressSpace& memory)
@@ -46,15 +47,15 @@ class TexelReader {
   struct Place {
     std::array<float, 3> at;
     uint32_t layer;
-    int axes;      // that are filtered: 1 to 3
+    int axes;  // that are filtered: 1 to 3
     bool is_cube;
   };
   Place place_of(const SampleRequest& request) const;
   Axis axis_of(const SampleRequest& request, const Place& place, int axis, uint32_t level, bool linear) const;
   Words filter(const SampleRequest& request, const Place& place, uint32_t level, Filter filter);
   // The texels of a linear filter: bit 0 of the index is x, bit 1 y, bit 2 z.
-  void read_block(const SampleRequest& request, const Place& place, uint32_t level, const std::array<Axis, 3>& axes,
-                  std::array<Words, 8>& out);
+  void read_block(const SampleRequest& request, const Place& place, uint32_t level,
+                  const std::array<Axis, 3>& axes, std::array<Words, 8>& out);
   Words read(const SampleRequest& request, const Place& place, uint32_t level, std::array<int64_t, 3> at);
   Words compared(const SampleRequest& request, Words texel) const;
 

@@ -1,5 +1,5 @@
-// Conversions of texels, after the Vulkan specification's chapters "Fixed-Point Data Conversions" and "Numbers".
-// SPDX-License-Identifier: Apache-2.0
+// Conversions of texels, after the Vulkan specification's chapters "Fixed-Point Data Conversions" and
+// "Numbers". SPDX-License-Identifier: Apache-2.0
 #include "core/texture_format.h"
 
 #include <algorithm>
@@ -20,33 +20,58 @@ constexpr uint16_t kR = 0x10b0, kRg = 0x10b2, kRgb = 0x10b4, kRgba = 0x10b5, kBg
                    kSbgra = 0x10c2;
 
 constexpr FormatInfo kFormats[] = {
-    {"r8_unorm", 1, 1, 8, Unorm, 0x10d2, kR},          {"r8_snorm", 1, 1, 8, Snorm, 0x10d0, kR},
-    {"r8_uint", 1, 1, 8, Uint, 0x10da, kR},            {"r8_sint", 1, 1, 8, Sint, 0x10d7, kR},
-    {"rg8_unorm", 2, 2, 8, Unorm, 0x10d2, kRg},        {"rg8_snorm", 2, 2, 8, Snorm, 0x10d0, kRg},
-    {"rg8_uint", 2, 2, 8, Uint, 0x10da, kRg},          {"rg8_sint", 2, 2, 8, Sint, 0x10d7, kRg},
-    {"rgba8_unorm", 4, 4, 8, Unorm, 0x10d2, kRgba},    {"rgba8_snorm", 4, 4, 8, Snorm, 0x10d0, kRgba},
-    {"rgba8_uint", 4, 4, 8, Uint, 0x10da, kRgba},      {"rgba8_sint", 4, 4, 8, Sint, 0x10d7, kRgba},
-    {"rgba8_srgb", 4, 4, 8, Srgb, 0x10d2, kSrgba},     {"bgra8_unorm", 4, 4, 8, Unorm, 0x10d2, kBgra},
-    {"bgra8_srgb", 4, 4, 8, Srgb, 0x10d2, kSbgra},     {"r16_unorm", 2, 1, 16, Unorm, 0x10d3, kR},
-    {"r16_snorm", 2, 1, 16, Snorm, 0x10d1, kR},        {"r16_uint", 2, 1, 16, Uint, 0x10db, kR},
-    {"r16_sint", 2, 1, 16, Sint, 0x10d8, kR},          {"r16_float", 2, 1, 16, Float, 0x10dd, kR},
-    {"rg16_unorm", 4, 2, 16, Unorm, 0x10d3, kRg},      {"rg16_snorm", 4, 2, 16, Snorm, 0x10d1, kRg},
-    {"rg16_uint", 4, 2, 16, Uint, 0x10db, kRg},        {"rg16_sint", 4, 2, 16, Sint, 0x10d8, kRg},
-    {"rg16_float", 4, 2, 16, Float, 0x10dd, kRg},      {"rgba16_unorm", 8, 4, 16, Unorm, 0x10d3, kRgba},
-    {"rgba16_snorm", 8, 4, 16, Snorm, 0x10d1, kRgba},  {"rgba16_uint", 8, 4, 16, Uint, 0x10db, kRgba},
-    {"rgba16_sint", 8, 4, 16, Sint, 0x10d8, kRgba},    {"rgba16_float", 8, 4, 16, Float, 0x10dd, kRgba},
-    {"r32_uint", 4, 1, 32, Uint, 0x10dc, kR},          {"r32_sint", 4, 1, 32, Sint, 0x10d9, kR},
-    {"r32_float", 4, 1, 32, Float, 0x10de, kR},        {"rg32_uint", 8, 2, 32, Uint, 0x10dc, kRg},
-    {"rg32_sint", 8, 2, 32, Sint, 0x10d9, kRg},        {"rg32_float", 8, 2, 32, Float, 0x10de, kRg},
-    {"rgba32_uint", 16, 4, 32, Uint, 0x10dc, kRgba},   {"rgba32_sint", 16, 4, 32, Sint, 0x10d9, kRgba},
-    {"rgba32_float", 16, 4, 32, Float, 0x10de, kRgba}, {"r11g11b10_float", 4, 3, 0, Float, 0, kRgb},
-    {"rgb10a2_unorm", 4, 4, 0, Unorm, 0x10e0, kRgba},  {"rgb10a2_uint", 4, 4, 0, Uint, 0, kRgba},
+    {"r8_unorm", 1, 1, 8, Unorm, 0x10d2, kR},
+    {"r8_snorm", 1, 1, 8, Snorm, 0x10d0, kR},
+    {"r8_uint", 1, 1, 8, Uint, 0x10da, kR},
+    {"r8_sint", 1, 1, 8, Sint, 0x10d7, kR},
+    {"rg8_unorm", 2, 2, 8, Unorm, 0x10d2, kRg},
+    {"rg8_snorm", 2, 2, 8, Snorm, 0x10d0, kRg},
+    {"rg8_uint", 2, 2, 8, Uint, 0x10da, kRg},
+    {"rg8_sint", 2, 2, 8, Sint, 0x10d7, kRg},
+    {"rgba8_unorm", 4, 4, 8, Unorm, 0x10d2, kRgba},
+    {"rgba8_snorm", 4, 4, 8, Snorm, 0x10d0, kRgba},
+    {"rgba8_uint", 4, 4, 8, Uint, 0x10da, kRgba},
+    {"rgba8_sint", 4, 4, 8, Sint, 0x10d7, kRgba},
+    {"rgba8_srgb", 4, 4, 8, Srgb, 0x10d2, kSrgba},
+    {"bgra8_unorm", 4, 4, 8, Unorm, 0x10d2, kBgra},
+    {"bgra8_srgb", 4, 4, 8, Srgb, 0x10d2, kSbgra},
+    {"r16_unorm", 2, 1, 16, Unorm, 0x10d3, kR},
+    {"r16_snorm", 2, 1, 16, Snorm, 0x10d1, kR},
+    {"r16_uint", 2, 1, 16, Uint, 0x10db, kR},
+    {"r16_sint", 2, 1, 16, Sint, 0x10d8, kR},
+    {"r16_float", 2, 1, 16, Float, 0x10dd, kR},
+    {"rg16_unorm", 4, 2, 16, Unorm, 0x10d3, kRg},
+    {"rg16_snorm", 4, 2, 16, Snorm, 0x10d1, kRg},
+    {"rg16_uint", 4, 2, 16, Uint, 0x10db, kRg},
+    {"rg16_sint", 4, 2, 16, Sint, 0x10d8, kRg},
+    {"rg16_float", 4, 2, 16, Float, 0x10dd, kRg},
+    {"rgba16_unorm", 8, 4, 16, Unorm, 0x10d3, kRgba},
+    {"rgba16_snorm", 8, 4, 16, Snorm, 0x10d1, kRgba},
+    {"rgba16_uint", 8, 4, 16, Uint, 0x10db, kRgba},
+    {"rgba16_sint", 8, 4, 16, Sint, 0x10d8, kRgba},
+    {"rgba16_float", 8, 4, 16, Float, 0x10dd, kRgba},
+    {"r32_uint", 4, 1, 32, Uint, 0x10dc, kR},
+    {"r32_sint", 4, 1, 32, Sint, 0x10d9, kR},
+    {"r32_float", 4, 1, 32, Float, 0x10de, kR},
+    {"rg32_uint", 8, 2, 32, Uint, 0x10dc, kRg},
+    {"rg32_sint", 8, 2, 32, Sint, 0x10d9, kRg},
+    {"rg32_float", 8, 2, 32, Float, 0x10de, kRg},
+    {"rgba32_uint", 16, 4, 32, Uint, 0x10dc, kRgba},
+    {"rgba32_sint", 16, 4, 32, Sint, 0x10d9, kRgba},
+    {"rgba32_float", 16, 4, 32, Float, 0x10de, kRgba},
+    {"r11g11b10_float", 4, 3, 0, Float, 0, kRgb},
+    {"rgb10a2_unorm", 4, 4, 0, Unorm, 0x10e0, kRgba},
+    {"rgb10a2_uint", 4, 4, 0, Uint, 0, kRgba},
     {"rgb9e5_float", 4, 3, 0, Float, 0, kRgb},
 };
 static_assert(std::size(kFormats) == size_t(F::Count));
 
-uint32_t bits_of(float x) { return std::bit_cast<uint32_t>(x); }
-float float_of(uint32_t bits) { return std::bit_cast<float>(bits); }
+uint32_t bits_of(float x) {
+  return std::bit_cast<uint32_t>(x);
+}
+float float_of(uint32_t bits) {
+  return std::bit_cast<float>(bits);
+}
 
 // Floats of 5 exponent bits, bias 15, without sign: halves, and the channels of 11 and 10 bits.
 constexpr int kBias = 15;
@@ -79,10 +104,13 @@ constexpr int kSharedBits = 9;
 uint32_t to_shared_exponent(const Words& words) {
   constexpr double kLargest = 65408.0;  // (2^9 - 1) / 2^9 * 2^16
   std::array<double, 3> c;
-  for (size_t i = 0; i < 3; ++i) c[i] = float_of(words[i]) > 0.0f ? std::min(double(float_of(words[i])), kLargest) : 0.0;
+  for (size_t i = 0; i < 3; ++i)
+    c[i] = float_of(words[i]) > 0.0f ? std::min(double(float_of(words[i])), kLargest) : 0.0;
   const double highest = std::max({c[0], c[1], c[2]});
   int exponent = std::max(highest > 0.0 ? std::ilogb(highest) : -16, -kBias - 1) + 1 + kBias;
-  const auto scaled = [&](double x) { return uint32_t(std::floor(std::ldexp(x, kBias + kSharedBits - exponent) + 0.5)); };
+  const auto scaled = [&](double x) {
+    return uint32_t(std::floor(std::ldexp(x, kBias + kSharedBits - exponent) + 0.5));
+  };
   if (scaled(highest) == 1u << kSharedBits) ++exponent;
   return scaled(c[0]) | scaled(c[1]) << 9 | scaled(c[2]) << 18 | uint32_t(exponent) << 27;
 }
@@ -99,18 +127,26 @@ float from_srgb(uint8_t byte) {
   }();
   return table[byte];
 }
-double to_srgb(double x) { return x <= 0.0031308 ? x * 12.92 : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055; }
+double to_srgb(double x) {
+  return x <= 0.0031308 ? x * 12.92 : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
+}
 
 uint32_t decode_channel(uint32_t bits, int width, Numeric numeric, bool is_alpha) {
   const auto as_signed = int32_t(bits << (32 - width)) >> (32 - width);
   const uint32_t highest = width == 32 ? ~0u : (1u << width) - 1;
   switch (numeric) {
-    case Uint: return bits;
-    case Sint: return uint32_t(as_signed);
-    case Float: return width == 32 ? bits : bits_of(from_half(uint16_t(bits)));
-    case Unorm: return bits_of(float(bits) / float(highest));
-    case Snorm: return bits_of(std::max(float(as_signed) / float(highest >> 1), -1.0f));
-    case Srgb: return bits_of(is_alpha ? float(bits) / 255.0f : from_srgb(uint8_t(bits)));
+    case Uint:
+      return bits;
+    case Sint:
+      return uint32_t(as_signed);
+    case Float:
+      return width == 32 ? bits : bits_of(from_half(uint16_t(bits)));
+    case Unorm:
+      return bits_of(float(bits) / float(highest));
+    case Snorm:
+      return bits_of(std::max(float(as_signed) / float(highest >> 1), -1.0f));
+    case Srgb:
+      return bits_of(is_alpha ? float(bits) / 255.0f : from_srgb(uint8_t(bits)));
   }
   return 0;
 }
@@ -127,11 +163,16 @@ uint32_t encode_channel(uint32_t word, int width, Numeric numeric, bool is_alpha
   const float x = float_of(word);
   const int32_t highest = int32_t(1u << (width - 1)) - 1;
   switch (numeric) {
-    case Uint: return std::min(word, (1u << width) - 1);
-    case Sint: return uint32_t(std::clamp(int32_t(word), -highest - 1, highest));
-    case Float: return to_half(x);
-    case Unorm: return to_unorm(x, width);
-    case Srgb: return to_unorm(x, width, !is_alpha);
+    case Uint:
+      return std::min(word, (1u << width) - 1);
+    case Sint:
+      return uint32_t(std::clamp(int32_t(word), -highest - 1, highest));
+    case Float:
+      return to_half(x);
+    case Unorm:
+      return to_unorm(x, width);
+    case Srgb:
+      return to_unorm(x, width, !is_alpha);
     case Snorm: {
       const double clamped = std::isnan(x) ? 0.0 : std::clamp(double(x), -1.0, 1.0);
       return uint32_t(int32_t(std::nearbyint(clamped * double(highest))));
@@ -147,17 +188,20 @@ Words decode_packed(F format, uint32_t bits) {
     case F::R11g11b10Float:
       return {bits_of(from_small(field(0, 11), 6)), bits_of(from_small(field(11, 11), 6)),
               bits_of(from_small(field(22, 10), 5)), bits_of(1.0f)};
-    case F::Rgb10a2Uint: return {field(0, 10), field(10, 10), field(20, 10), field(30, 2)};
+    case F::Rgb10a2Uint:
+      return {field(0, 10), field(10, 10), field(20, 10), field(30, 2)};
     case F::Rgb10a2Unorm:
       return {bits_of(float(field(0, 10)) / 1023.0f), bits_of(float(field(10, 10)) / 1023.0f),
               bits_of(float(field(20, 10)) / 1023.0f), bits_of(float(field(30, 2)) / 3.0f)};
     case F::Rgb9e5Float: {
       Words words{0, 0, 0, bits_of(1.0f)};
       for (int i = 0; i < 3; ++i)
-        words[size_t(i)] = bits_of(std::ldexp(float(field(9 * i, 9)), int(field(27, 5)) - kBias - kSharedBits));
+        words[size_t(i)] =
+            bits_of(std::ldexp(float(field(9 * i, 9)), int(field(27, 5)) - kBias - kSharedBits));
       return words;
     }
-    default: GLINT_PANIC("format {} is not packed", info_of(format).name);
+    default:
+      GLINT_PANIC("format {} is not packed", info_of(format).name);
   }
 }
 
@@ -167,20 +211,27 @@ uint32_t encode_packed(F format, const Words& w) {
       return to_unsigned_small(float_of(w[0]), 6) | to_unsigned_small(float_of(w[1]), 6) << 11 |
              to_unsigned_small(float_of(w[2]), 5) << 22;
     case F::Rgb10a2Uint:
-      return std::min(w[0], 1023u) | std::min(w[1], 1023u) << 10 | std::min(w[2], 1023u) << 20 | std::min(w[3], 3u) << 30;
+      return std::min(w[0], 1023u) | std::min(w[1], 1023u) << 10 | std::min(w[2], 1023u) << 20 |
+             std::min(w[3], 3u) << 30;
     case F::Rgb10a2Unorm:
-      return to_unorm(float_of(w[0]), 10) | to_unorm(float_of(w[1]), 10) << 10 | to_unorm(float_of(w[2]), 10) << 20 |
-             to_unorm(float_of(w[3]), 2) << 30;
-    case F::Rgb9e5Float: return to_shared_exponent(w);
-    default: GLINT_PANIC("format {} is not packed", info_of(format).name);
+      return to_unorm(float_of(w[0]), 10) | to_unorm(float_of(w[1]), 10) << 10 |
+             to_unorm(float_of(w[2]), 10) << 20 | to_unorm(float_of(w[3]), 2) << 30;
+    case F::Rgb9e5Float:
+      return to_shared_exponent(w);
+    default:
+      GLINT_PANIC("format {} is not packed", info_of(format).name);
   }
 }
 
-bool is_bgra(F format) { return format == F::Bgra8Unorm || format == F::Bgra8Srgb; }
+bool is_bgra(F format) {
+  return format == F::Bgra8Unorm || format == F::Bgra8Srgb;
+}
 
 }  // namespace
 
-const FormatInfo& info_of(TexelFormat format) { return kFormats[size_t(format)]; }
+const FormatInfo& info_of(TexelFormat format) {
+  return kFormats[size_t(format)];
+}
 
 float from_half(uint16_t bits) {
   const float magnitude = from_small(bits & 0x7fffu, 10);

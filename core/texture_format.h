@@ -10,35 +10,71 @@ namespace glint::core {
 
 // Named by Vulkan's channels and bits. In the order of the table in texture_format.cpp.
 enum class TexelFormat : uint8_t {
-  R8Unorm, R8Snorm, R8Uint, R8Sint,
-  Rg8Unorm, Rg8Snorm, Rg8Uint, Rg8Sint,
-  Rgba8Unorm, Rgba8Snorm, Rgba8Uint, Rgba8Sint,
-  Rgba8Srgb, Bgra8Unorm, Bgra8Srgb,
-  R16Unorm, R16Snorm, R16Uint, R16Sint, R16Float,
-  Rg16Unorm, Rg16Snorm, Rg16Uint, Rg16Sint, Rg16Float,
-  Rgba16Unorm, Rgba16Snorm, Rgba16Uint, Rgba16Sint, Rgba16Float,
-  R32Uint, R32Sint, R32Float,
-  Rg32Uint, Rg32Sint, Rg32Float,
-  Rgba32Uint, Rgba32Sint, Rgba32Float,
-  R11g11b10Float, Rgb10a2Unorm, Rgb10a2Uint, Rgb9e5Float,
+  R8Unorm,
+  R8Snorm,
+  R8Uint,
+  R8Sint,
+  Rg8Unorm,
+  Rg8Snorm,
+  Rg8Uint,
+  Rg8Sint,
+  Rgba8Unorm,
+  Rgba8Snorm,
+  Rgba8Uint,
+  Rgba8Sint,
+  Rgba8Srgb,
+  Bgra8Unorm,
+  Bgra8Srgb,
+  R16Unorm,
+  R16Snorm,
+  R16Uint,
+  R16Sint,
+  R16Float,
+  Rg16Unorm,
+  Rg16Snorm,
+  Rg16Uint,
+  Rg16Sint,
+  Rg16Float,
+  Rgba16Unorm,
+  Rgba16Snorm,
+  Rgba16Uint,
+  Rgba16Sint,
+  Rgba16Float,
+  R32Uint,
+  R32Sint,
+  R32Float,
+  Rg32Uint,
+  Rg32Sint,
+  Rg32Float,
+  Rgba32Uint,
+  Rgba32Sint,
+  Rgba32Float,
+  R11g11b10Float,
+  Rgb10a2Unorm,
+  Rgb10a2Uint,
+  Rgb9e5Float,
   Count
 };
 
 enum class Numeric : uint8_t { Unorm, Snorm, Uint, Sint, Float, Srgb };
 
 struct FormatInfo {
-  std::string_view name;   // "rgba8_unorm"
-  uint8_t bytes;           // of a texel: 1, 2, 4, 8 or 16
+  std::string_view name;  // "rgba8_unorm"
+  uint8_t bytes;          // of a texel: 1, 2, 4, 8 or 16
   uint8_t channels;
-  uint8_t bits;            // of a channel; 0: channels differ, by hand
+  uint8_t bits;  // of a channel; 0: channels differ, by hand
   Numeric numeric;
-  uint16_t opencl_type;    // cl.h: CL_UNORM_INT8 and so on, which PTX's queries answer; 0: there is none
+  uint16_t opencl_type;  // cl.h: CL_UNORM_INT8 and so on, which PTX's queries answer; 0: there is none
   uint16_t opencl_order;
 };
 const FormatInfo& info_of(TexelFormat format);
-inline bool is_integer(const FormatInfo& info) { return info.numeric == Numeric::Uint || info.numeric == Numeric::Sint; }
+inline bool is_integer(const FormatInfo& info) {
+  return info.numeric == Numeric::Uint || info.numeric == Numeric::Sint;
+}
 // Texels that lie between 0 and 1, or -1 and 1.
-inline bool is_normalized(const FormatInfo& info) { return !is_integer(info) && info.numeric != Numeric::Float; }
+inline bool is_normalized(const FormatInfo& info) {
+  return !is_integer(info) && info.numeric != Numeric::Float;
+}
 
 // Red, green, blue, alpha: bits of floats, or integers where the format has them.
 using Words = std::array<uint32_t, 4>;

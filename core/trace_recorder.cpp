@@ -21,8 +21,10 @@ bool is_part_of_running(Stall reason) {
     case Stall::RawFixed:
     case Stall::OperandRead:
     case Stall::RawSfu:
-    case Stall::Branch: return true;
-    default: return false;
+    case Stall::Branch:
+      return true;
+    default:
+      return false;
   }
 }
 
@@ -42,12 +44,19 @@ RayTotals totals_of(LaneMask lanes, const rt::RayState* states) {
 
 std::vector<std::string> TraceRecorder::state_names() {
   std::vector<std::string> names;
-  for (size_t i = 0; i < size_t(Stall::Count); ++i) names.emplace_back(i == kRunning ? "running" : name_of(Stall(i)));
+  for (size_t i = 0; i < size_t(Stall::Count); ++i)
+    names.emplace_back(i == kRunning ? "running" : name_of(Stall(i)));
   return names;
 }
 
-TraceRecorder::TraceRecorder(const Image& image, uint32_t warp_slots, uint32_t rt_places, Cycle begin, Cycle end, uint64_t room)
-    : image_(image), begin_(begin), end_(end), room_(room - least_room(warp_slots, rt_places)), slots_(warp_slots), places_(rt_places) {
+TraceRecorder::TraceRecorder(const Image& image, uint32_t warp_slots, uint32_t rt_places, Cycle begin,
+                             Cycle end, uint64_t room)
+    : image_(image),
+      begin_(begin),
+      end_(end),
+      room_(room - least_room(warp_slots, rt_places)),
+      slots_(warp_slots),
+      places_(rt_places) {
   static_assert(size_t(Stall::Issued) == kRunning);
   GLINT_CHECK(room >= least_room(warp_slots, rt_places), "room for {} slices", room);
   slices_.reserve(room);
@@ -94,7 +103,9 @@ void TraceRecorder::end_run(uint32_t slot, Cycle at) {
   warp.run_begin = at;
 }
 
-void TraceRecorder::issue(Cycle now, uint32_t slot, const Issued&) { slots_[slot].known = now + 1; }
+void TraceRecorder::issue(Cycle now, uint32_t slot, const Issued&) {
+  slots_[slot].known = now + 1;
+}
 
 void TraceRecorder::end_warp(Cycle now, uint32_t slot) {
   Slot& warp = slots_[slot];
@@ -104,7 +115,8 @@ void TraceRecorder::end_warp(Cycle now, uint32_t slot) {
   add({warp.begin, now, slot, TraceKind::Warp, warp.warp, {}});
 }
 
-void TraceRecorder::enter_rt(Cycle now, uint32_t place, uint32_t slot, LaneMask lanes, const rt::RayState* states) {
+void TraceRecorder::enter_rt(Cycle now, uint32_t place, uint32_t slot, LaneMask lanes,
+                             const rt::RayState* states) {
   const RayTotals before = totals_of(lanes, states);
   places_[place] = {now, slot, before.nodes, before.triangle_tests};
 }
@@ -112,7 +124,12 @@ void TraceRecorder::enter_rt(Cycle now, uint32_t place, uint32_t slot, LaneMask 
 void TraceRecorder::leave_rt(Cycle now, uint32_t place, LaneMask lanes, const rt::RayState* states) {
   const Place& at = places_[place];
   const RayTotals after = totals_of(lanes, states);
-  add({at.begin, now, place, TraceKind::Rays, num_lanes(lanes), {at.slot, after.nodes - at.nodes, after.triangle_tests - at.triangle_tests}});
+  add({at.begin,
+       now,
+       place,
+       TraceKind::Rays,
+       num_lanes(lanes),
+       {at.slot, after.nodes - at.nodes, after.triangle_tests - at.triangle_tests}});
 }
 
 void TraceRecorder::add(const TraceSlice& slice) {

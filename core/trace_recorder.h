@@ -10,16 +10,20 @@
 
 namespace glint::core {
 
-// Slices are cut at the window's ends. When the bound is reached the window ends there: every slice before is kept.
+// Slices are cut at the window's ends. When the bound is reached the window ends there: every slice before is
+// kept.
 class TraceRecorder final : public CoreObserver {
  public:
   // Choice: what takes less than this many cycles is no wait of its own but part of running.
   static constexpr Cycle kShortWait = 4;
 
   // `room`: slices; at least least_room(). Nothing is allocated later.
-  TraceRecorder(const Image& image, uint32_t warp_slots, uint32_t rt_places, Cycle begin, Cycle end, uint64_t room);
+  TraceRecorder(const Image& image, uint32_t warp_slots, uint32_t rt_places, Cycle begin, Cycle end,
+                uint64_t room);
   // What all tracks may still add after the window has ended.
-  static uint64_t least_room(uint32_t warp_slots, uint32_t rt_places) { return uint64_t{6} * warp_slots + 2 * rt_places; }
+  static uint64_t least_room(uint32_t warp_slots, uint32_t rt_places) {
+    return uint64_t{6} * warp_slots + 2 * rt_places;
+  }
 
   void start_warp(Cycle now, uint32_t slot, const WarpContext& warp) override;
   void select(Cycle now, uint32_t slot, Cycle ready, Stall wait, Stall door, uint32_t pc) override;
@@ -39,10 +43,10 @@ class TraceRecorder final : public CoreObserver {
  private:
   struct Slot {
     uint32_t warp = 0, shader = 0;
-    Cycle begin = 0;          // of the warp
+    Cycle begin = 0;  // of the warp
     Cycle stage_begin = 0;
-    Cycle run_begin = 0;      // of the running state, which lasts up to `known`
-    Cycle known = 0;          // what was before is in a slice, or runs
+    Cycle run_begin = 0;  // of the running state, which lasts up to `known`
+    Cycle known = 0;      // what was before is in a slice, or runs
   };
   struct Place {
     Cycle begin = 0;

@@ -18,7 +18,8 @@ using isa::Unit;
 // Appends the scoreboard entries of one operand. Constants and specials are always ready.
 void add_operand(std::vector<uint16_t>& out, OperandKind kind, const isa::Slot* slot) {
   const bool predicate = kind == OperandKind::DstPred || kind == OperandKind::SrcPred;
-  const bool pair = kind == OperandKind::Dst64 || kind == OperandKind::Src64 || kind == OperandKind::Address64;
+  const bool pair =
+      kind == OperandKind::Dst64 || kind == OperandKind::Src64 || kind == OperandKind::Address64;
   for (int i = 0; i < isa::slots_of(kind); ++i) {
     if (predicate) {
       out.push_back(uint16_t(kFirstPredicate + slot[i]));
@@ -29,7 +30,8 @@ void add_operand(std::vector<uint16_t>& out, OperandKind kind, const isa::Slot* 
   }
 }
 
-void add_operands(std::vector<uint16_t>& out, const isa::OpRow& row, const isa::Inst& inst, bool destinations) {
+void add_operands(std::vector<uint16_t>& out, const isa::OpRow& row, const isa::Inst& inst,
+                  bool destinations) {
   int slot = 0;
   for (OperandKind kind : row.operands.view()) {
     if (isa::is_destination(kind) == destinations) add_operand(out, kind, &inst.operand[slot]);
@@ -42,18 +44,22 @@ Finish finish_of(const isa::OpRow& row) {
     case Effect::Load:
     case Effect::Store:
     case Effect::Atomic:
-      return row.memory.space == isa::Space::Const || row.memory.space == isa::Space::Param ? Finish::Fixed : Finish::Memory;
+      return row.memory.space == isa::Space::Const || row.memory.space == isa::Space::Param ? Finish::Fixed
+                                                                                            : Finish::Memory;
     case Effect::Texture:
     case Effect::SurfaceLoad:
     case Effect::SurfaceStore:
-    case Effect::SurfaceAtomic: return Finish::Memory;
+    case Effect::SurfaceAtomic:
+      return Finish::Memory;
     case Effect::Trace:
     case Effect::QueryProceed:
-    case Effect::Resume: return Finish::Rays;
+    case Effect::Resume:
+      return Finish::Rays;
     case Effect::CallCandidate:
     case Effect::CallAnyHit:
     case Effect::CallCallable:
-    case Effect::CallHit: return Finish::CallRecord;
+    case Effect::CallHit:
+      return Finish::CallRecord;
     case Effect::Branch:
     case Effect::Join:
     case Effect::Exit:
@@ -62,10 +68,13 @@ Finish finish_of(const isa::OpRow& row) {
     case Effect::Call:
     case Effect::Trap:
     case Effect::Ignore:
-    case Effect::Terminate: return Finish::Control;
-    case Effect::Barrier: return Finish::Barrier;
+    case Effect::Terminate:
+      return Finish::Control;
+    case Effect::Barrier:
+      return Finish::Barrier;
     // Lanes of a warp see each other's accesses in order anyway.
-    case Effect::Fence: return isa::FenceScope(row.detail) == isa::FenceScope::Warp ? Finish::Control : Finish::Fence;
+    case Effect::Fence:
+      return isa::FenceScope(row.detail) == isa::FenceScope::Warp ? Finish::Control : Finish::Fence;
     // ssy only notes a place; the next instruction is the next one.
     case Effect::PushReconvergence:
     case Effect::None:
@@ -76,14 +85,17 @@ Finish finish_of(const isa::OpRow& row) {
     case Effect::Accepted:
     case Effect::Print:
     case Effect::PrintPart:
-    case Effect::EndTrace: return Finish::Fixed;
+    case Effect::EndTrace:
+      return Finish::Fixed;
   }
   GLINT_PANIC("effect {} of '{}'", int(row.effect), row.name);
 }
 
 uint16_t fence_latency(const isa::OpRow& row, const FenceParams& params) {
   const auto scope = isa::FenceScope(row.detail);
-  return uint16_t(scope == isa::FenceScope::Block ? params.block : scope == isa::FenceScope::Gpu ? params.gpu : params.system);
+  return uint16_t(scope == isa::FenceScope::Block ? params.block
+                  : scope == isa::FenceScope::Gpu ? params.gpu
+                                                  : params.system);
 }
 
 Stall wait_of(const isa::OpRow& row, Finish finish) {
@@ -105,7 +117,9 @@ Stall wait_of(const isa::OpRow& row, Finish finish) {
 
 AtomicKind kind_of_atomic(std::string_view name) {
   if (name.find(".cas.") != std::string_view::npos) return AtomicKind::Swap;
-  return name.find(".add.f") != std::string_view::npos || name.find(".add.rn.f") != std::string_view::npos ? AtomicKind::FloatAdd : AtomicKind::Integer;
+  return name.find(".add.f") != std::string_view::npos || name.find(".add.rn.f") != std::string_view::npos
+             ? AtomicKind::FloatAdd
+             : AtomicKind::Integer;
 }
 
 void take_time(IssueRow& row, const OpTime& time) {
@@ -122,22 +136,31 @@ Pipe pipe_of(Unit unit) {
   switch (unit) {
     case Unit::Int:
     case Unit::Move:
-    case Unit::Predicate: return Pipe::Int;
+    case Unit::Predicate:
+      return Pipe::Int;
     case Unit::Fp16:
-    case Unit::Fp32: return Pipe::Fp32;
+    case Unit::Fp32:
+      return Pipe::Fp32;
     case Unit::Fp64Div:
-    case Unit::Fp64: return Pipe::Fp64;
+    case Unit::Fp64:
+      return Pipe::Fp64;
     case Unit::Shuffle:
     case Unit::Sfu:
     case Unit::IntDiv:
-    case Unit::FpDiv: return Pipe::Sfu;
-    case Unit::Const: return Pipe::Const;
+    case Unit::FpDiv:
+      return Pipe::Sfu;
+    case Unit::Const:
+      return Pipe::Const;
     case Unit::Barrier:
-    case Unit::Branch: return Pipe::Branch;
-    case Unit::RtUnit: return Pipe::RtUnit;
+    case Unit::Branch:
+      return Pipe::Branch;
+    case Unit::RtUnit:
+      return Pipe::RtUnit;
     case Unit::Lsu:
-    case Unit::Tex: return Pipe::Memory;
-    case Unit::Count: break;
+    case Unit::Tex:
+      return Pipe::Memory;
+    case Unit::Count:
+      break;
   }
   GLINT_PANIC("unit {}", int(unit));
 }
@@ -154,8 +177,7 @@ IssueTable::IssueTable(const Image& image, const Params& params) {
     row.first_use = uint32_t(registers_.size());
     add_operands(registers_, op, inst, false);
     row.is_guarded = inst.guard != isa::kNoGuard;
-    if (row.is_guarded)
-      registers_.push_back(uint16_t(kFirstPredicate + (inst.guard & ~isa::kGuardNegate)));
+    if (row.is_guarded) registers_.push_back(uint16_t(kFirstPredicate + (inst.guard & ~isa::kGuardNegate)));
     const size_t first_def = registers_.size();
     add_operands(registers_, op, inst, true);
     row.num_uses = uint8_t(registers_.size() - row.first_use);

@@ -14,9 +14,9 @@
 
 namespace glint::core {
 
-// Model: each scheduler has one pipe of each kind, as a Turing sub-core has; int, move and predicate share the
-// integer pipe; divisions run on the special-function pipe. Memory is the door to the units that all schedulers share
-// (load-store, texture): it is limited by a queue (core/lsu.h), not by an interval.
+// Model: each scheduler has one pipe of each kind, as a Turing sub-core has; int, move and predicate share
+// the integer pipe; divisions run on the special-function pipe. Memory is the door to the units that all
+// schedulers share (load-store, texture): it is limited by a queue (core/lsu.h), not by an interval.
 enum class Pipe : uint8_t { Int, Fp32, Fp64, Sfu, Const, Branch, RtUnit, Memory, Count };
 inline constexpr int kNumPipes = int(Pipe::Count);
 Pipe pipe_of(isa::Unit unit);
@@ -33,14 +33,14 @@ enum class Finish : uint8_t {
 };
 
 struct IssueRow {
-  uint32_t first_use = 0;       // of IssueTable's list: registers to be ready, the destinations last
-  uint8_t num_uses = 0;         // with the destinations
+  uint32_t first_use = 0;  // of IssueTable's list: registers to be ready, the destinations last
+  uint8_t num_uses = 0;    // with the destinations
   uint8_t num_defs = 0;
   Pipe pipe = Pipe::Int;
   Finish finish = Finish::Fixed;
   isa::Class klass = isa::Class::Alu;
   isa::Stage stage = isa::Stage::Compute;
-  Stall wait = Stall::RawFixed; // what a dependent instruction waits for
+  Stall wait = Stall::RawFixed;     // what a dependent instruction waits for
   bool is_conditional : 1 = false;  // a guarded branch
   bool is_guarded : 1 = false;      // the last source is its guard
   bool alternates : 1 = false;      // OpTime::alternates
@@ -62,7 +62,9 @@ class IssueTable {
   IssueTable(const Image& image, const Params& params);
   const IssueRow& row(uint32_t pc) const { return rows_[pc]; }
   // Sources, guard and destinations: all have to be ready before issue.
-  std::span<const uint16_t> uses(const IssueRow& row) const { return {registers_.data() + row.first_use, row.num_uses}; }
+  std::span<const uint16_t> uses(const IssueRow& row) const {
+    return {registers_.data() + row.first_use, row.num_uses};
+  }
   // Registers that a memory instruction reads when it leaves its queue: the sources without the guard.
   std::span<const uint16_t> sources(const IssueRow& row) const {
     return {registers_.data() + row.first_use, size_t(row.num_uses - row.num_defs - row.is_guarded)};
@@ -72,8 +74,8 @@ class IssueTable {
   }
   // Instructions of the part that the one at `pc` stands for, where it is a sequence.
   uint32_t issues(uint32_t pc) const { return issues_[pc]; }
-  // Registers that an instruction of fixed latency reads from each bank of the register file, at most the window's cycles.
-  // Empty where there are no banks.
+  // Registers that an instruction of fixed latency reads from each bank of the register file, at most the
+  // window's cycles. Empty where there are no banks.
   using BankReads = std::array<uint8_t, kMaxRegisterBanks>;
   const BankReads& bank_reads(uint32_t pc) const { return bank_reads_[pc]; }
 

@@ -11,13 +11,16 @@
 namespace glint::core {
 
 // Contract (tests/contract/warp_layout_test.cpp):
-//  - tile() has kLanes places, or is {0, 0}: warps are then kLanes consecutive launch indices, whatever the launch's width.
+//  - tile() has kLanes places, or is {0, 0}: warps are then kLanes consecutive launch indices, whatever the
+//  launch's width.
 //  - lane_place() gives each lane another place of the tile.
 //  - nth() gives each n below columns * rows another place of that grid.
-//  - all three are functions of their arguments only: results of a launch never depend on when they are asked.
-// Tiles apply to launches without blocks. Model: the warps of a block are its consecutive threads under every layout, as
-// PTX has it and drivers do for Vulkan; of a launch with blocks the layout only orders the blocks.
-// Choice: a launch of fewer rows than a tile is high is laid out by consecutive launch indices, so that its warps are full.
+//  - all three are functions of their arguments only: results of a launch never depend on when they are
+//  asked.
+// Tiles apply to launches without blocks. Model: the warps of a block are its consecutive threads under every
+// layout, as PTX has it and drivers do for Vulkan; of a launch with blocks the layout only orders the blocks.
+// Choice: a launch of fewer rows than a tile is high is laid out by consecutive launch indices, so that its
+// warps are full.
 class WarpLayout {
  public:
   struct Context {};

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/block_type.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 
 #include "frontend/lower_layout.h"
 
@@ -15,17 +14,29 @@ constexpr uint32_t kAddressBytes = 8;
 
 std::string name_of_number(Part part) {
   switch (part) {
-    case Part::Bool: case Part::Uint32: return "u32";
-    case Part::Int32: return "s32";
-    case Part::Float32: return "f32";
-    case Part::Int64: return "s64";
-    case Part::Uint64: return "u64";
-    case Part::Float64: return "f64";
-    case Part::Int8: return "s8";
-    case Part::Uint8: return "u8";
-    case Part::Int16: return "s16";
-    case Part::Uint16: return "u16";
-    case Part::Float16: return "f16";
+    case Part::Bool:
+    case Part::Uint32:
+      return "u32";
+    case Part::Int32:
+      return "s32";
+    case Part::Float32:
+      return "f32";
+    case Part::Int64:
+      return "s64";
+    case Part::Uint64:
+      return "u64";
+    case Part::Float64:
+      return "f64";
+    case Part::Int8:
+      return "s8";
+    case Part::Uint8:
+      return "u8";
+    case Part::Int16:
+      return "s16";
+    case Part::Uint16:
+      return "u16";
+    case Part::Float16:
+      return "f16";
   }
   return "u32";
 }
@@ -38,10 +49,13 @@ class Walk {
     const Type& type = module_.type(id);
     using Kind = Type::Kind;
     switch (type.kind) {
-      case Kind::Struct: return of_struct(id);
+      case Kind::Struct:
+        return of_struct(id);
       case Kind::Array:
-      case Kind::RuntimeArray: return of_array(id, matrix);
-      default: return of_numbers(id, matrix);
+      case Kind::RuntimeArray:
+        return of_array(id, matrix);
+      default:
+        return of_numbers(id, matrix);
     }
   }
 
@@ -52,7 +66,8 @@ class Walk {
     out.kind = BlockType::Kind::Struct;
     uint32_t next = 0;
     for (uint32_t i = 0; i < type.members.size(); ++i) {
-      BlockMember member{type.members[i].name, type.members[i].offset.value_or(next), of(type.members[i].type, layout_.member_matrix(id, i, {}))};
+      BlockMember member{type.members[i].name, type.members[i].offset.value_or(next),
+                         of(type.members[i].type, layout_.member_matrix(id, i, {}))};
       if (member.name.empty()) member.name = fmt::format("member{}", i);
       next = member.offset + member.type.bytes;
       out.bytes = std::max(out.bytes, next);
@@ -93,10 +108,12 @@ class Walk {
   Layout layout_;
 };
 
-void describe(const BlockType& type, const std::string& name, uint32_t offset, std::vector<std::string>& out) {
+void describe(const BlockType& type, const std::string& name, uint32_t offset,
+              std::vector<std::string>& out) {
   if (type.kind == BlockType::Kind::Struct) {
     for (const BlockMember& member : type.members)
-      describe(member.type, name.empty() ? member.name : name + "." + member.name, offset + member.offset, out);
+      describe(member.type, name.empty() ? member.name : name + "." + member.name, offset + member.offset,
+               out);
   } else if (type.kind == BlockType::Kind::Array) {
     const std::string of = name + (type.count ? fmt::format("[{}]", type.count) : "[]");
     describe(type.element[0], of, offset, out);
@@ -107,7 +124,9 @@ void describe(const BlockType& type, const std::string& name, uint32_t offset, s
 
 }  // namespace
 
-BlockType block_type(const Module& module, Id type) { return Walk(module).of(type, {}); }
+BlockType block_type(const Module& module, Id type) {
+  return Walk(module).of(type, {});
+}
 
 std::vector<std::string> describe_members(const BlockType& block) {
   std::vector<std::string> out;

@@ -14,12 +14,12 @@ struct BlockMember;
 struct BlockType {
   enum class Kind : uint8_t { Numbers, Array, Struct } kind = Kind::Numbers;
   // Numbers: a scalar, vector or matrix (column after column).
-  std::string number;             // "f32", "u8", "s64", "f16"; addresses are "u64"
-  std::vector<uint32_t> offsets;  // bytes, one a number
-  uint32_t count = 0, stride = 0; // Array: elements (0: a runtime array) and bytes from one to the next
-  uint32_t bytes = 0;             // static size; a runtime array has none
-  std::vector<BlockType> element;     // Array: one
-  std::vector<BlockMember> members;   // Struct
+  std::string number;                // "f32", "u8", "s64", "f16"; addresses are "u64"
+  std::vector<uint32_t> offsets;     // bytes, one a number
+  uint32_t count = 0, stride = 0;    // Array: elements (0: a runtime array) and bytes from one to the next
+  uint32_t bytes = 0;                // static size; a runtime array has none
+  std::vector<BlockType> element;    // Array: one
+  std::vector<BlockMember> members;  // Struct
 };
 
 struct BlockMember {

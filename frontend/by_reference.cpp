@@ -48,9 +48,11 @@ class Copies {
   void count_uses() {
     std::set<uint32_t> local_pointers;
     for (const Code& c : code_) {
-      if (c.op == spv::Op::OpTypePointer && spv::StorageClass(c[2]) == spv::StorageClass::Function) local_pointers.insert(c[1]);
+      if (c.op == spv::Op::OpTypePointer && spv::StorageClass(c[2]) == spv::StorageClass::Function)
+        local_pointers.insert(c[1]);
       const bool is_local = c.op == spv::Op::OpVariable || c.op == spv::Op::OpFunctionParameter;
-      if (is_local && local_pointers.count(c[1])) locals_[c[2]] = c.op == spv::Op::OpVariable && c.words.size() == 4;
+      if (is_local && local_pointers.count(c[1]))
+        locals_[c[2]] = c.op == spv::Op::OpVariable && c.words.size() == 4;
       if (c.op == spv::Op::OpName || c.op == spv::Op::OpMemberName || c.op == spv::Op::OpLine) continue;
       // Words that are no ids count as uses, too: that only keeps copies that could go.
       for (size_t w = 1; w < c.words.size(); ++w) ++uses_[c[w]];
@@ -86,22 +88,28 @@ class Copies {
     for (size_t word = 4; word < code_[call].words.size(); ++word) pass(call, word, passed);
   }
 
-  // A parameter's variable is stored once, passed once and loaded once, and what is loaded goes where the stored came from.
+  // A parameter's variable is stored once, passed once and loaded once, and what is loaded goes where the
+  // stored came from.
   void pass(size_t call, size_t word, std::set<uint32_t>& passed) {
     const uint32_t copy = code_[call][word];
     const auto local = locals_.find(copy);
-    if (local == locals_.end() || !local->second || uses_[copy] != 4) return;  // its definition and three uses
+    if (local == locals_.end() || !local->second || uses_[copy] != 4)
+      return;  // its definition and three uses
     uint32_t value = 0;
     const Code* const store = copy_in(call, copy, &value);
     if (!store || uses_[value] != 2) return;
     const size_t store_at = size_t(store - code_.data());
     size_t load_at = store_at;
-    while (load_at-- > 0 && !ends_block(code_[load_at].op) && !(code_[load_at].op == spv::Op::OpLoad && code_[load_at][2] == value)) {}
+    while (load_at-- > 0 && !ends_block(code_[load_at].op) &&
+           !(code_[load_at].op == spv::Op::OpLoad && code_[load_at][2] == value)) {
+    }
     if (load_at == size_t(-1) || ends_block(code_[load_at].op) || code_[load_at].words.size() != 4) return;
     const uint32_t variable = code_[load_at][3];
     if (!locals_.count(variable) || passed.count(variable) || !is_untouched(load_at, call, variable)) return;
     size_t back_at = call + 1;
-    while (back_at < code_.size() && !ends_block(code_[back_at].op) && !(code_[back_at].op == spv::Op::OpLoad && code_[back_at][3] == copy)) ++back_at;
+    while (back_at < code_.size() && !ends_block(code_[back_at].op) &&
+           !(code_[back_at].op == spv::Op::OpLoad && code_[back_at][3] == copy))
+      ++back_at;
     if (back_at + 1 >= code_.size() || ends_block(code_[back_at].op)) return;
     const Code &back = code_[back_at], &put = code_[back_at + 1];
     if (put.op != spv::Op::OpStore || put[1] != variable || put[2] != back[2] || uses_[back[2]] != 2) return;
@@ -115,7 +123,7 @@ class Copies {
   std::vector<Code> code_;
   std::map<uint32_t, bool> locals_;  // in Function storage; whether a variable without initialiser
   std::map<uint32_t, uint32_t> uses_;
-  std::set<size_t> dropped_;                               // first words of instructions
+  std::set<size_t> dropped_;                                // first words of instructions
   std::map<size_t, std::map<size_t, uint32_t>> arguments_;  // of calls: word, variable
 };
 

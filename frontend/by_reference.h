@@ -6,8 +6,9 @@
 
 namespace glint::frontend {
 
-// GLSL's `inout` copies a variable to a parameter and back around each call; inlined, an array of N elements costs 4 N
-// accesses a call. Where nothing else can tell the difference, the call takes the address of the variable itself.
+// GLSL's `inout` copies a variable to a parameter and back around each call; inlined, an array of N elements
+// costs 4 N accesses a call. Where nothing else can tell the difference, the call takes the address of the
+// variable itself.
 std::vector<uint32_t> with_references(const std::vector<uint32_t>& spirv);
 
 }  // namespace glint::frontend

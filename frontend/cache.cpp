@@ -4,7 +4,9 @@
 
 namespace glint::frontend {
 
-std::string ShaderCache::file_of(const std::string& key) const { return files_.file_of(key); }
+std::string ShaderCache::file_of(const std::string& key) const {
+  return files_.file_of(key);
+}
 
 ShaderCache::Counts ShaderCache::counts() const {
   const std::lock_guard lock(mutex_);

@@ -1,5 +1,5 @@
-// What compiling has made before, found again by the whole of what it was made from: in memory and in a folder.
-// SPDX-License-Identifier: Apache-2.0
+// What compiling has made before, found again by the whole of what it was made from: in memory and in a
+// folder. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <map>
@@ -15,8 +15,8 @@ namespace glint::frontend {
 class ShaderCache {
  public:
   struct Options {
-    std::string folder;                      // made when first needed; empty: memory only
-    std::string build;                       // of the compiler: entries of another one are not found
+    std::string folder;                        // made when first needed; empty: memory only
+    std::string build;                         // of the compiler: entries of another one are not found
     uint64_t max_bytes = uint64_t{256} << 20;  // of the folder; beyond it the files not read for longest go
   };
   struct Counts {
@@ -24,7 +24,8 @@ class ShaderCache {
   };
 
   explicit ShaderCache(const Options& options)
-      : max_bytes_(options.max_bytes), files_({options.folder, ".shader", options.build, options.max_bytes}) {}
+      : max_bytes_(options.max_bytes),
+        files_({options.folder, ".shader", options.build, options.max_bytes}) {}
 
   std::optional<std::string> find(const std::string& key);
   void store(const std::string& key, const std::string& value);

@@ -11,7 +11,8 @@
 namespace glint::frontend {
 namespace {
 
-std::string key_of(const std::vector<uint32_t>& spirv, const std::string& name, const std::string& entry_point, const BackendOptions& options) {
+std::string key_of(const std::vector<uint32_t>& spirv, const std::string& name,
+                   const std::string& entry_point, const BackendOptions& options) {
   ByteWriter key;
   key.put(std::string("program"));
   key.put(name);
@@ -49,8 +50,9 @@ std::optional<isa::Stage> stage_of_file(const std::string& path) {
   return std::nullopt;
 }
 
-CompiledModule compile_module(const std::vector<uint32_t>& spirv, const std::string& name, const std::string& entry_point,
-                              const BackendOptions& options, Diagnostics& warnings, ShaderCache* cache) {
+CompiledModule compile_module(const std::vector<uint32_t>& spirv, const std::string& name,
+                              const std::string& entry_point, const BackendOptions& options,
+                              Diagnostics& warnings, ShaderCache* cache) {
   const std::string key = cache ? key_of(spirv, name, entry_point, options) : std::string();
   if (cache)
     if (std::optional<CompiledModule> found = find(*cache, key)) return std::move(*found);
@@ -58,7 +60,8 @@ CompiledModule compile_module(const std::vector<uint32_t>& spirv, const std::str
   const size_t warnings_before = warnings.messages().size();
   out.simplified = simplify(spirv, name, warnings);
   out.program = lower(out.simplified, name, options, entry_point);
-  if (cache && warnings.messages().size() == warnings_before) {  // what warns is compiled again, and warns again
+  if (cache &&
+      warnings.messages().size() == warnings_before) {  // what warns is compiled again, and warns again
     ByteWriter bytes;
     bytes.put(out.simplified);
     put_program(bytes, out.program);
@@ -74,7 +77,8 @@ std::vector<uint32_t> spirv_of_file(const std::string& path, const GlslOptions& 
 
 isa::Program compile_file(const std::string& path, const GlslOptions& glsl, const BackendOptions& options,
                           Diagnostics& warnings) {
-  return compile_module(spirv_of_file(path, glsl), path, glsl.entry_point, options, warnings, glsl.cache).program;
+  return compile_module(spirv_of_file(path, glsl), path, glsl.entry_point, options, warnings, glsl.cache)
+      .program;
 }
 
 }  // namespace glint::frontend

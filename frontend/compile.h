@@ -15,11 +15,11 @@ namespace glint::frontend {
 class ShaderCache;
 
 struct GlslOptions {
-  std::vector<std::string> include_dirs;                      // -I
-  std::vector<std::pair<std::string, std::string>> defines;   // -D NAME=VALUE
+  std::vector<std::string> include_dirs;                     // -I
+  std::vector<std::pair<std::string, std::string>> defines;  // -D NAME=VALUE
   std::string entry_point = {};                              // of a module with several; empty: the only one
-  std::map<uint32_t, uint64_t> specialization = {};             // bits of specialisation constants, by constant_id
-  ShaderCache* cache = nullptr;                              // none: everything is compiled anew
+  std::map<uint32_t, uint64_t> specialization = {};  // bits of specialisation constants, by constant_id
+  ShaderCache* cache = nullptr;                      // none: everything is compiled anew
 };
 
 struct BackendOptions {
@@ -27,7 +27,8 @@ struct BackendOptions {
   bool schedule = true;         // latency-aware list scheduling
   bool contract = false;        // a * b + c becomes one fma where GLSL does not say `precise`
   bool queries_call = false;    // rq.proceed is a call that keeps no register: rays are walked in code
-  uint32_t guard_latency = 0;   // cycles later that a predicate guards than it can be read: comparisons for branches come earlier
+  uint32_t guard_latency =
+      0;  // cycles later that a predicate guards than it can be read: comparisons for branches come earlier
 };
 
 // Stage from the file's ending: .rgen .rint .rahit .rchit .rmiss .rcall .comp; empty when unknown.
@@ -37,7 +38,8 @@ std::optional<isa::Stage> stage_of_file(const std::string& path);
 // UserError carries glslang's messages with file and line.
 std::vector<uint32_t> glsl_to_spirv(const std::string& path, const GlslOptions& options);
 // The same of a text that lies in no file of its own; `path` is for messages and for what it includes.
-std::vector<uint32_t> glsl_text_to_spirv(const std::string& text, const std::string& path, isa::Stage stage, const GlslOptions& options);
+std::vector<uint32_t> glsl_text_to_spirv(const std::string& text, const std::string& path, isa::Stage stage,
+                                         const GlslOptions& options);
 
 // A module in SPIR-V's binary form (.spv) or text (.spvasm), validated. UserError with the file.
 std::vector<uint32_t> read_spirv(const std::string& path);
@@ -50,7 +52,8 @@ std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& n
 // SPIR-V text, for `glint compile --emit spirv`.
 std::string disassemble_spirv(const std::vector<uint32_t>& words);
 
-// Lowers one simplified module to a program. UnsupportedError lists everything unsupported at once: op, file, line.
+// Lowers one simplified module to a program. UnsupportedError lists everything unsupported at once: op, file,
+// line.
 isa::Program lower(const std::vector<uint32_t>& spirv, const std::string& name, const BackendOptions& options,
                    const std::string& entry_point = {});
 
@@ -59,8 +62,9 @@ struct CompiledModule {
   std::vector<uint32_t> simplified;
   isa::Program program;
 };
-CompiledModule compile_module(const std::vector<uint32_t>& spirv, const std::string& name, const std::string& entry_point,
-                              const BackendOptions& options, Diagnostics& warnings, ShaderCache* cache);
+CompiledModule compile_module(const std::vector<uint32_t>& spirv, const std::string& name,
+                              const std::string& entry_point, const BackendOptions& options,
+                              Diagnostics& warnings, ShaderCache* cache);
 
 // SPIR-V of a file: GLSL, .spv or .spvasm by its ending; specialised.
 std::vector<uint32_t> spirv_of_file(const std::string& path, const GlslOptions& glsl);

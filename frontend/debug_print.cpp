@@ -10,10 +10,10 @@
 namespace glint::frontend {
 namespace {
 
-constexpr size_t kHeaderWords = 5;        // SPIR-V specification, 2.3 Physical Layout
+constexpr size_t kHeaderWords = 5;  // SPIR-V specification, 2.3 Physical Layout
 constexpr std::string_view kKnownSet = "OpenCL.std";
-constexpr uint32_t kDebugPrint = 1;       // NonSemantic.DebugPrintf specification
-constexpr uint32_t kKnownPrint = 184;     // OpenCL extended instruction set: printf
+constexpr uint32_t kDebugPrint = 1;    // NonSemantic.DebugPrintf specification
+constexpr uint32_t kKnownPrint = 184;  // OpenCL extended instruction set: printf
 
 std::string text_of(const uint32_t* words, size_t count) {
   std::string text;
@@ -31,7 +31,8 @@ void append_text(std::vector<uint32_t>& out, std::string_view text) {
   for (size_t i = 0; i < text.size(); ++i) out[first + i / 4] |= uint32_t(uint8_t(text[i])) << 8 * (i % 4);
 }
 
-std::vector<uint32_t> renamed(const std::vector<uint32_t>& words, std::string_view from, uint32_t old_number, std::string_view to, uint32_t new_number) {
+std::vector<uint32_t> renamed(const std::vector<uint32_t>& words, std::string_view from, uint32_t old_number,
+                              std::string_view to, uint32_t new_number) {
   std::vector<uint32_t> out(words.begin(), words.begin() + kHeaderWords);
   std::set<uint32_t> sets;
   for (size_t i = kHeaderWords; i < words.size();) {
@@ -45,7 +46,8 @@ std::vector<uint32_t> renamed(const std::vector<uint32_t>& words, std::string_vi
     } else {
       out.insert(out.end(), words.begin() + long(i), words.begin() + long(i + length));
       // OpExtInst: result type, result, set, number of the instruction, operands
-      if (op == spv::Op::OpExtInst && sets.count(words[i + 3]) && words[i + 4] == old_number) out[first + 4] = new_number;
+      if (op == spv::Op::OpExtInst && sets.count(words[i + 3]) && words[i + 4] == old_number)
+        out[first + 4] = new_number;
     }
     i += length;
   }

@@ -9,8 +9,9 @@ namespace glint::frontend {
 
 inline constexpr std::string_view kDebugPrintSet = "NonSemantic.DebugPrintf";
 
-// SPIRV-Tools' passes leave modules alone that import such a set. A print of OpenCL's set, which they know, is kept by
-// them as something with an effect, in its place: the first function makes one of it, the second undoes that.
+// SPIRV-Tools' passes leave modules alone that import such a set. A print of OpenCL's set, which they know,
+// is kept by them as something with an effect, in its place: the first function makes one of it, the second
+// undoes that.
 std::vector<uint32_t> with_known_prints(const std::vector<uint32_t>& words);
 std::vector<uint32_t> with_debug_prints(const std::vector<uint32_t>& words);
 

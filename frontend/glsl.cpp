@@ -32,16 +32,17 @@ std::optional<std::string> read_text(const fs::path& path) {
   return std::string(std::istreambuf_iterator<char>(file), {});
 }
 
-// Blanks out the #version lines of an included file: glslang wants the directive at the start of the main file.
-// Choice: shaders whose first line includes the file that has it compile, as with tools that paste includes first; those
-// without a #version of their own are of version 460 anyway.
+// Blanks out the #version lines of an included file: glslang wants the directive at the start of the main
+// file. Choice: shaders whose first line includes the file that has it compile, as with tools that paste
+// includes first; those without a #version of their own are of version 460 anyway.
 void blank_version(std::string& text) {
   for (size_t line = 0; line < text.size();) {
     const size_t end = std::min(text.find('\n', line), text.size());
     size_t at = text.find_first_not_of(" \t", line);
     if (at < end && text[at] == '#') {
       at = text.find_first_not_of(" \t", at + 1);
-      if (at < end && text.compare(at, 7, "version") == 0) std::fill(text.begin() + long(line), text.begin() + long(end), ' ');
+      if (at < end && text.compare(at, 7, "version") == 0)
+        std::fill(text.begin() + long(line), text.begin() + long(end), ' ');
     }
     line = end + 1;
   }
@@ -63,7 +64,8 @@ class Includer final : public glslang::TShader::Includer {
   Includer(const std::vector<std::string>& dirs, isa::Stage stage) : dirs_(dirs), stage_(stage) {}
 
   IncludeResult* includeLocal(const char* header, const char* includer, size_t) override {
-    if (std::string text = text_of_extension(header, stage_); !text.empty()) return keep(header, std::move(text));
+    if (std::string text = text_of_extension(header, stage_); !text.empty())
+      return keep(header, std::move(text));
     return load(fs::path(includer).parent_path() / header);
   }
   IncludeResult* includeSystem(const char* header, const char*, size_t) override {
@@ -97,7 +99,8 @@ class Includer final : public glslang::TShader::Includer {
   std::vector<Lookup> lookups_;
 };
 
-std::string key_of(const std::string& source, const std::string& path, isa::Stage stage, const GlslOptions& options) {
+std::string key_of(const std::string& source, const std::string& path, isa::Stage stage,
+                   const GlslOptions& options) {
   ByteWriter key;
   key.put(std::string("glsl"));
   key.put(path);
@@ -108,7 +111,8 @@ std::string key_of(const std::string& source, const std::string& path, isa::Stag
   return key.take();
 }
 
-// The module that the source gave before, if everything that it included, or looked for in vain, is as it was.
+// The module that the source gave before, if everything that it included, or looked for in vain, is as it
+// was.
 std::optional<std::vector<uint32_t>> find(ShaderCache& cache, const std::string& key) {
   const std::optional<std::string> bytes = cache.find(key);
   if (!bytes) return std::nullopt;
@@ -124,7 +128,8 @@ std::optional<std::vector<uint32_t>> find(ShaderCache& cache, const std::string&
   return in.is_good() ? std::optional(std::move(words)) : std::nullopt;
 }
 
-void store(ShaderCache& cache, const std::string& key, const std::vector<Lookup>& lookups, const std::vector<uint32_t>& words) {
+void store(ShaderCache& cache, const std::string& key, const std::vector<Lookup>& lookups,
+           const std::vector<uint32_t>& words) {
   ByteWriter out;
   out.put(uint64_t(lookups.size()));
   for (const Lookup& each : lookups) {
@@ -164,8 +169,8 @@ EShLanguage language_of(isa::Stage stage) {
 
 constexpr int kLinesBeforeDefines = 1;  // of the preamble
 
-// The place of a message as people know it: glslang numbers what preamble() gives it "-1", and has no place for what it
-// finds when it links.
+// The place of a message as people know it: glslang numbers what preamble() gives it "-1", and has no place
+// for what it finds when it links.
 std::string place_in_files(const std::string& place, const std::string& path, const GlslOptions& options) {
   if (place.rfind("Linking ", 0) == 0) return path;
   if (place.rfind("-1:", 0) != 0) return place;
@@ -190,9 +195,9 @@ std::string in_our_form(const std::string& log, const std::string& path, const G
       const std::string text = line.substr(is_error ? 7 : 9);
       const size_t end_of_place = text.find(": ");
       const std::string severity = is_error ? "error: " : "warning: ";
-      line = end_of_place == std::string::npos
-                 ? severity + text
-                 : place_in_files(text.substr(0, end_of_place), path, options) + ": " + severity + text.substr(end_of_place + 2);
+      line = end_of_place == std::string::npos ? severity + text
+                                               : place_in_files(text.substr(0, end_of_place), path, options) +
+                                                     ": " + severity + text.substr(end_of_place + 2);
     }
     if (!result.empty()) result += '\n';
     result += line;
@@ -239,7 +244,8 @@ std::vector<uint32_t> glsl_to_spirv(const std::string& path, const GlslOptions& 
   return glsl_text_to_spirv(*source, path, *stage, options);
 }
 
-std::vector<uint32_t> glsl_text_to_spirv(const std::string& source, const std::string& path, isa::Stage stage, const GlslOptions& options) {
+std::vector<uint32_t> glsl_text_to_spirv(const std::string& source, const std::string& path, isa::Stage stage,
+                                         const GlslOptions& options) {
   const std::string key = options.cache ? key_of(source, path, stage, options) : std::string();
   if (options.cache)
     if (std::optional<std::vector<uint32_t>> found = find(*options.cache, key)) return std::move(*found);

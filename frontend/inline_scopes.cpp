@@ -16,14 +16,16 @@
 namespace glint::frontend {
 namespace {
 
-constexpr size_t kHeaderWords = 5;              // SPIR-V specification, 2.3 Physical Layout
+constexpr size_t kHeaderWords = 5;  // SPIR-V specification, 2.3 Physical Layout
 constexpr size_t kVersionWord = 1, kBoundWord = 3;
 constexpr uint32_t kNonSemanticVersion = 0x10600;  // from which on such sets need no extension
 constexpr uint32_t kDwarfVersion = 5, kLanguageUnknown = 0;
 
 using Words = std::vector<uint32_t>;
 
-spv::Op op_of(uint32_t word) { return spv::Op(word & 0xffff); }
+spv::Op op_of(uint32_t word) {
+  return spv::Op(word & 0xffff);
+}
 
 std::string text_at(std::span<const uint32_t> words) {
   std::string text;
@@ -84,7 +86,8 @@ Survey survey(const Words& words) {
         if (out.functions.empty()) break;
         out.files.insert(inst[1]);
         out.lines.insert(inst[2]);
-        if (out.functions.back().file == 0) out.functions.back().file = inst[1], out.functions.back().line = inst[2];
+        if (out.functions.back().file == 0)
+          out.functions.back().file = inst[1], out.functions.back().line = inst[2];
         break;
       default:
         break;
@@ -96,7 +99,8 @@ Survey survey(const Words& words) {
 // glslang: "shade(vf3;f1;".
 std::string function_name(const Survey& module, uint32_t id) {
   const auto found = module.names.find(id);
-  const std::string name = found == module.names.end() ? std::string() : found->second.substr(0, found->second.find('('));
+  const std::string name =
+      found == module.names.end() ? std::string() : found->second.substr(0, found->second.find('('));
   return name.empty() ? "%" + std::to_string(id) : name;
 }
 
@@ -106,12 +110,17 @@ class Marks {
   Marks(const Survey& module, uint32_t bound) : module_(module), bound_(bound) {
     set_ = fresh();
     append(imports_, spv::Op::OpExtInstImport, {set_}, words_of(kDebugInfoSet));
-    if (module.u32_type == 0) append(globals_, spv::Op::OpTypeInt, {u32_ = fresh(), 32, 0});
-    else u32_ = module.u32_type;
-    for (const uint32_t file : module.files) source_[file] = debug(globals_, NonSemanticShaderDebugInfo100DebugSource, {file});
+    if (module.u32_type == 0)
+      append(globals_, spv::Op::OpTypeInt, {u32_ = fresh(), 32, 0});
+    else
+      u32_ = module.u32_type;
+    for (const uint32_t file : module.files)
+      source_[file] = debug(globals_, NonSemanticShaderDebugInfo100DebugSource, {file});
     const uint32_t unit = debug(globals_, NonSemanticShaderDebugInfo100DebugCompilationUnit,
-                                {number(NonSemanticShaderDebugInfo100Version), number(kDwarfVersion), source_.begin()->second, number(kLanguageUnknown)});
-    const uint32_t type = debug(globals_, NonSemanticShaderDebugInfo100DebugTypeFunction, {number(0), module.void_type});
+                                {number(NonSemanticShaderDebugInfo100Version), number(kDwarfVersion),
+                                 source_.begin()->second, number(kLanguageUnknown)});
+    const uint32_t type =
+        debug(globals_, NonSemanticShaderDebugInfo100DebugTypeFunction, {number(0), module.void_type});
     for (const Survey::Function& function : module.functions) declare(function, unit, type);
     for (const uint32_t line : module.lines) number(line);
   }
@@ -124,13 +133,16 @@ class Marks {
   // For a block of a function: that it is of it. Nothing for functions without lines.
   Words scope(uint32_t function) {
     Words out;
-    if (const auto mark = function_.find(function); mark != function_.end()) debug(out, NonSemanticShaderDebugInfo100DebugScope, {mark->second});
+    if (const auto mark = function_.find(function); mark != function_.end())
+      debug(out, NonSemanticShaderDebugInfo100DebugScope, {mark->second});
     return out;
   }
-  // For OpLine: the optimiser forgets to write a scope before one that stands first in a block, but not before these.
+  // For OpLine: the optimiser forgets to write a scope before one that stands first in a block, but not
+  // before these.
   Words line(uint32_t file, uint32_t line) {
     Words out;
-    debug(out, NonSemanticShaderDebugInfo100DebugLine, {source_.at(file), number(line), number(line), number(0), number(0)});
+    debug(out, NonSemanticShaderDebugInfo100DebugLine,
+          {source_.at(file), number(line), number(line), number(0), number(0)});
     return out;
   }
   Words no_scope() {
@@ -159,7 +171,9 @@ class Marks {
     append(strings_, spv::Op::OpString, {name}, words_of(function_name(module_, function.id)));
     const uint32_t line = number(function.line), zero = number(0);
     // Name, type, source, line, column, parent, linkage name, flags, line of the body.
-    function_[function.id] = debug(globals_, NonSemanticShaderDebugInfo100DebugFunction, {name, type, source_.at(function.file), line, zero, unit, name, zero, line});
+    function_[function.id] =
+        debug(globals_, NonSemanticShaderDebugInfo100DebugFunction,
+              {name, type, source_.at(function.file), line, zero, unit, name, zero, line});
   }
 
   const Survey& module_;
@@ -171,23 +185,29 @@ class Marks {
 
 // Of the sections of a module's logical layout (SPIR-V specification, 2.4) those before debug information.
 bool is_before_strings(spv::Op op) {
-  return op == spv::Op::OpCapability || op == spv::Op::OpExtension || op == spv::Op::OpExtInstImport || op == spv::Op::OpMemoryModel ||
-         op == spv::Op::OpEntryPoint || op == spv::Op::OpExecutionMode || op == spv::Op::OpExecutionModeId;
+  return op == spv::Op::OpCapability || op == spv::Op::OpExtension || op == spv::Op::OpExtInstImport ||
+         op == spv::Op::OpMemoryModel || op == spv::Op::OpEntryPoint || op == spv::Op::OpExecutionMode ||
+         op == spv::Op::OpExecutionModeId;
 }
 
-bool may_stand_first(spv::Op op) { return op == spv::Op::OpPhi || op == spv::Op::OpVariable; }
+bool may_stand_first(spv::Op op) {
+  return op == spv::Op::OpPhi || op == spv::Op::OpVariable;
+}
 
 }  // namespace
 
 std::optional<Words> with_inline_scopes(const Words& words) {
   const Survey module = survey(words);
-  if (words[kVersionWord] < kNonSemanticVersion || module.has_other_set || module.files.empty() || module.void_type == 0) return std::nullopt;
+  if (words[kVersionWord] < kNonSemanticVersion || module.has_other_set || module.files.empty() ||
+      module.void_type == 0)
+    return std::nullopt;
   Marks marks(module, words[kBoundWord]);
   Words out(words.begin(), words.begin() + kHeaderWords);
   const auto add = [&](const Words& more) { out.insert(out.end(), more.begin(), more.end()); };
   uint32_t function = 0;
   bool has_strings = false;
-  size_t body = 0;  // in `out`, where a block's instructions begin behind phis and variables; 0: outside, or marked
+  size_t body =
+      0;  // in `out`, where a block's instructions begin behind phis and variables; 0: outside, or marked
   for (size_t i = kHeaderWords; i < words.size(); i += words[i] >> 16) {
     const spv::Op op = op_of(words[i]);
     if (op == spv::Op::OpMemoryModel) add(marks.imports());
@@ -201,10 +221,13 @@ std::optional<Words> with_inline_scopes(const Words& words) {
       out.insert(out.begin() + long(body), scope.begin(), scope.end());
       body = 0;
     }
-    // What the optimiser reads goes on across blocks, and it writes no scope for a block whose label has it: so labels must not.
+    // What the optimiser reads goes on across blocks, and it writes no scope for a block whose label has it:
+    // so labels must not.
     if (op == spv::Op::OpLabel || op == spv::Op::OpFunctionEnd) add(marks.no_scope());
-    if (op == spv::Op::OpLine && function != 0) add(marks.line(words[i + 1], words[i + 2]));
-    else out.insert(out.end(), words.begin() + long(i), words.begin() + long(i + (words[i] >> 16)));
+    if (op == spv::Op::OpLine && function != 0)
+      add(marks.line(words[i + 1], words[i + 2]));
+    else
+      out.insert(out.end(), words.begin() + long(i), words.begin() + long(i + (words[i] >> 16)));
     if (op == spv::Op::OpLabel || (body != 0 && may_stand_first(op))) body = out.size();
   }
   out[kBoundWord] = marks.bound();
@@ -216,8 +239,10 @@ Words without_stray_lines(const Words& words) {
   std::set<uint32_t> sets;
   for (size_t i = kHeaderWords; i < words.size(); i += words[i] >> 16) {
     const std::span<const uint32_t> inst(&words[i], words[i] >> 16);
-    if (op_of(inst[0]) == spv::Op::OpExtInstImport && text_at(inst.subspan(2)) == kDebugInfoSet) sets.insert(inst[1]);
-    const bool is_stray = op_of(inst[0]) == spv::Op::OpExtInst && sets.count(inst[3]) && inst[4] == NonSemanticShaderDebugInfo100DebugNoLine;
+    if (op_of(inst[0]) == spv::Op::OpExtInstImport && text_at(inst.subspan(2)) == kDebugInfoSet)
+      sets.insert(inst[1]);
+    const bool is_stray = op_of(inst[0]) == spv::Op::OpExtInst && sets.count(inst[3]) &&
+                          inst[4] == NonSemanticShaderDebugInfo100DebugNoLine;
     if (!is_stray) out.insert(out.end(), inst.begin(), inst.end());
   }
   return out;
@@ -236,7 +261,8 @@ Words with_plain_lines(const Words& words) {
     } else if (op == spv::Op::OpExtInst && sets.count(inst[3])) {
       if (inst[4] == NonSemanticShaderDebugInfo100DebugSource && inst.size() > 5) files[inst[2]] = inst[5];
       const bool is_line = inst[4] == NonSemanticShaderDebugInfo100DebugLine && inst.size() > 6;
-      if (is_line && files.count(inst[5])) append(out, spv::Op::OpLine, {files[inst[5]], numbers[inst[6]], 0});
+      if (is_line && files.count(inst[5]))
+        append(out, spv::Op::OpLine, {files[inst[5]], numbers[inst[6]], 0});
     } else {
       out.insert(out.end(), inst.begin(), inst.end());
     }

@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/inlined_size.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 #include <map>
-#include <spirv/unified1/spirv.hpp11>
 #include <span>
+#include <spirv/unified1/spirv.hpp11>
 
 #include "base/diagnostics.h"
 
@@ -20,7 +19,7 @@ struct Function {
   uint64_t instructions = 0;
   std::vector<uint32_t> callees;  // one a call
   uint64_t copies = 0;
-  int calls_left = 0;             // callers' calls that were not yet counted
+  int calls_left = 0;  // callers' calls that were not yet counted
 };
 
 struct CallGraph {
@@ -36,12 +35,21 @@ CallGraph read(const std::vector<uint32_t>& spirv) {
   for (size_t at = kHeaderWords; at < spirv.size(); at += spirv[at] >> 16) {
     const uint32_t* const words = &spirv[at];
     switch (spv::Op(words[0] & 0xffff)) {
-      case spv::Op::OpName: out.names[words[1]] = reinterpret_cast<const char*>(words + 2); break;
-      case spv::Op::OpEntryPoint: out.entries.push_back(words[2]); break;
-      case spv::Op::OpFunction: current = &out.functions[words[2]]; break;
-      case spv::Op::OpFunctionEnd: current = nullptr; break;
+      case spv::Op::OpName:
+        out.names[words[1]] = reinterpret_cast<const char*>(words + 2);
+        break;
+      case spv::Op::OpEntryPoint:
+        out.entries.push_back(words[2]);
+        break;
+      case spv::Op::OpFunction:
+        current = &out.functions[words[2]];
+        break;
+      case spv::Op::OpFunctionEnd:
+        current = nullptr;
+        break;
       case spv::Op::OpLine:
-      case spv::Op::OpNoLine: break;
+      case spv::Op::OpNoLine:
+        break;
       case spv::Op::OpFunctionCall:
         if (current) current->callees.push_back(words[3]);
         [[fallthrough]];
@@ -79,16 +87,21 @@ void check_inlined_size(const std::vector<uint32_t>& spirv, const std::string& n
   uint64_t all = 0, most = 0;
   uint32_t largest = 0;
   for (const auto& [id, function] : graph.functions) {
-    const uint64_t size = std::min(kMany, function.copies) * std::min<uint64_t>(function.instructions, 1u << 20);
+    const uint64_t size =
+        std::min(kMany, function.copies) * std::min<uint64_t>(function.instructions, 1u << 20);
     all = std::min(kMany, all + size);
     if (size > most) most = size, largest = id;
   }
   if (all <= kMostInlined) return;
-  const auto amount = [](uint64_t n) { return n >= kMany ? std::string("more than a million million") : fmt::format("{}", n); };
+  const auto amount = [](uint64_t n) {
+    return n >= kMany ? std::string("more than a million million") : fmt::format("{}", n);
+  };
   std::string function = graph.names.count(largest) ? graph.names.at(largest) : fmt::format("%{}", largest);
   function = function.substr(0, function.find('('));  // glslang's names end in the parameters' types
-  throw UnsupportedError(fmt::format("{}: not supported:\n  {}: calls that, put in place, make {} instructions (at most {}): '{}' is there {} times", name, name,
-                                     amount(all), kMostInlined, function, amount(graph.functions.at(largest).copies)));
+  throw UnsupportedError(fmt::format(
+      "{}: not supported:\n  {}: calls that, put in place, make {} instructions (at most {}): '{}' is there "
+      "{} times",
+      name, name, amount(all), kMostInlined, function, amount(graph.functions.at(largest).copies)));
 }
 
 }  // namespace glint::frontend

@@ -7,8 +7,9 @@
 
 namespace glint::frontend {
 
-// UnsupportedError when the inlined functions would have more than kMostInlined instructions; it names the one that makes
-// most of them. Choice: the largest public shader known has 100,000; a quarter of a million takes some 20 s to compile.
+// UnsupportedError when the inlined functions would have more than kMostInlined instructions; it names the
+// one that makes most of them. Choice: the largest public shader known has 100,000; a quarter of a million
+// takes some 20 s to compile.
 inline constexpr uint64_t kMostInlined = 250'000;
 void check_inlined_size(const std::vector<uint32_t>& spirv, const std::string& name);
 

@@ -17,11 +17,14 @@ constexpr size_t kHeaderWords = 5, kBoundWord = 3;  // SPIR-V specification, 2.3
 
 class Rewrite {
  public:
-  explicit Rewrite(const std::vector<uint32_t>& words) : words_(words), out_(words.begin(), words.begin() + kHeaderWords) {}
+  explicit Rewrite(const std::vector<uint32_t>& words)
+      : words_(words), out_(words.begin(), words.begin() + kHeaderWords) {}
 
   bool is_needed() const {
     bool found = false;
-    for_each([&](spv::Op op, std::span<const uint32_t> w) { found |= op == OpCapability && w.size() == 2 && is_ours(w[1]); });
+    for_each([&](spv::Op op, std::span<const uint32_t> w) {
+      found |= op == OpCapability && w.size() == 2 && is_ours(w[1]);
+    });
     return found;
   }
 
@@ -41,7 +44,8 @@ class Rewrite {
     }
   }
   static bool is_ours(uint32_t capability) {
-    return spv::Capability(capability) == kRayTracingPositionFetch || spv::Capability(capability) == kRayQueryPositionFetch;
+    return spv::Capability(capability) == kRayTracingPositionFetch ||
+           spv::Capability(capability) == kRayQueryPositionFetch;
   }
   uint32_t fresh() { return out_[kBoundWord]++; }
   void put(spv::Op op, std::initializer_list<uint32_t> operands) {
@@ -77,9 +81,11 @@ class Rewrite {
     if (op == OpFunction && !has_declared_) has_declared_ = true, declare();
     if (op == OpCapability && w.size() == 2 && is_ours(w[1])) return;
     if (op == OpExtension && is_extension(w)) return;
-    if (op == kGetIntersectionTriangleVertexPositions && w.size() == 5 && shifted_.contains(w[4])) return fetch(w);
+    if (op == kGetIntersectionTriangleVertexPositions && w.size() == 5 && shifted_.contains(w[4]))
+      return fetch(w);
     out_.insert(out_.end(), w.begin(), w.end());
-    const bool is_positions = op == OpDecorate && w.size() == 4 && spv::Decoration(w[2]) == spv::Decoration::BuiltIn &&
+    const bool is_positions = op == OpDecorate && w.size() == 4 &&
+                              spv::Decoration(w[2]) == spv::Decoration::BuiltIn &&
                               spv::BuiltIn(w[3]) == kHitTriangleVertexPositions;
     if (is_positions) out_[out_.size() - 2] = uint32_t(spv::Decoration::Location);
   }
@@ -102,8 +108,9 @@ class Rewrite {
 
   const std::vector<uint32_t>& words_;
   std::vector<uint32_t> out_;
-  std::map<uint32_t, uint32_t> matrix_of_, element_of_, shifted_;  // by column type; by array type; by constant
-  std::map<uint32_t, std::array<uint32_t, 2>> constants_;          // type and value
+  std::map<uint32_t, uint32_t> matrix_of_, element_of_,
+      shifted_;                                            // by column type; by array type; by constant
+  std::map<uint32_t, std::array<uint32_t, 2>> constants_;  // type and value
   bool has_declared_ = false;
 };
 

@@ -40,8 +40,8 @@ VirtualProgram Lowering::run() {
 void Lowering::choose_entry_point() {
   const std::optional<isa::Stage> stage = stage_of(entry_.model);
   if (!stage)
-    throw UnsupportedError(
-        fmt::format("{}: a shader of execution model {}", program_.name, name_of_execution_model(uint32_t(entry_.model))));
+    throw UnsupportedError(fmt::format("{}: a shader of execution model {}", program_.name,
+                                       name_of_execution_model(uint32_t(entry_.model))));
   program_.stage = *stage;
   program_.local_size = entry_.local_size;
   function_ = module_.function(entry_.function);
@@ -49,7 +49,8 @@ void Lowering::choose_entry_point() {
     throw UserError({program_.name, 0, 0}, "the entry point has no function body");
 }
 
-// Before SPIR-V 1.4 interfaces list inputs and outputs only: then every variable may belong to the entry point.
+// Before SPIR-V 1.4 interfaces list inputs and outputs only: then every variable may belong to the entry
+// point.
 bool Lowering::is_in_interface(Id variable) const {
   constexpr uint32_t kVersion14 = 0x10400;
   return module_.version < kVersion14 || entry_.interface.count(variable) != 0;
@@ -62,7 +63,8 @@ void Lowering::check_capabilities() {
   // What is made of types that nothing is known of cannot be looked at further.
   constexpr auto kCooperativeMatrixKHR = spv::Op(4456);  // newer than the packaged headers
   for (const auto& [id, type] : module_.types)
-    if (type.op == spv::Op::OpTypeCooperativeMatrixNV || type.op == kCooperativeMatrixKHR) throw_if_unsupported();
+    if (type.op == spv::Op::OpTypeCooperativeMatrixNV || type.op == kCooperativeMatrixKHR)
+      throw_if_unsupported();
 }
 
 void Lowering::index_definitions() {
@@ -99,7 +101,8 @@ void Lowering::note_interface() {
     unsupported(fmt::format("hit attributes of {} bytes", program_.attribute_bytes));
 }
 
-// Operations on constants that do not fold (of 64 bits, of floats) are computed here, before all that uses them.
+// Operations on constants that do not fold (of 64 bits, of floats) are computed here, before all that uses
+// them.
 void Lowering::prologue() {
   for (const auto& [id, constant] : module_.constants)
     if (constant.op == spv::Op::OpSpecConstantOp) value(id);
@@ -194,8 +197,10 @@ std::optional<Operand> Lowering::address_of(Id id) {
   const bool is_variable = module_.variables.count(id) != 0;
   if (!is_variable && !pointers_.count(id)) return std::nullopt;
   const Pointer p = pointer(id);
-  if (p.place == Place::Global) return emitter_.value("add.u64", {p.base, Operand::value(uint64_t(p.displacement))});
-  if (p.place == Place::Shared) return emitter_.value("add.u32", {p.base, Operand::value(uint32_t(p.displacement))});
+  if (p.place == Place::Global)
+    return emitter_.value("add.u64", {p.base, Operand::value(uint64_t(p.displacement))});
+  if (p.place == Place::Shared)
+    return emitter_.value("add.u32", {p.base, Operand::value(uint32_t(p.displacement))});
   if (p.place == Place::Resource && layout_.is_array_of_blocks(p.type)) return buffer_entry(p);
   return std::nullopt;
 }
@@ -204,7 +209,8 @@ Operand Lowering::word(Id id) {
   const Part part = part_of(type_of(id));
   const Operand x = scalar(id);
   if (bytes_of(part) == 8)
-    return x.kind == Operand::Kind::Constant ? Operand::value(uint32_t(x.constant)) : emitter_.value("cvt.u32.u64", {x});
+    return x.kind == Operand::Kind::Constant ? Operand::value(uint32_t(x.constant))
+                                             : emitter_.value("cvt.u32.u64", {x});
   return widened(emitter_, part, x, part == Part::Int8 || part == Part::Int16);
 }
 
@@ -297,9 +303,10 @@ void Lowering::throw_if_unsupported() const {
 const LoweringRow* find_lowering_row(spv::Op op) {
   static const std::map<spv::Op, const LoweringRow*> kRows = [] {
     std::map<spv::Op, const LoweringRow*> rows;
-    for (const auto family : {arithmetic_rows(), conversion_rows(), comparison_rows(), composite_rows(), memory_rows(),
-                              address_rows(), image_rows(), sample_rows(), atomic_rows(), subgroup_rows(), dot_rows(), derivative_rows(),
-                              ray_tracing_rows(), ray_query_rows(), hit_object_rows()})
+    for (const auto family :
+         {arithmetic_rows(), conversion_rows(), comparison_rows(), composite_rows(), memory_rows(),
+          address_rows(), image_rows(), sample_rows(), atomic_rows(), subgroup_rows(), dot_rows(),
+          derivative_rows(), ray_tracing_rows(), ray_query_rows(), hit_object_rows()})
       for (const LoweringRow& row : family)
         GLINT_CHECK(rows.emplace(row.op, &row).second, "two rows for op {}", uint32_t(row.op));
     return rows;
@@ -313,12 +320,13 @@ VirtualProgram lower_to_virtual(const std::vector<uint32_t>& spirv, const std::s
   const Module module = Module::parse(spirv, name);
   VirtualProgram program = Lowering(module, name, module.entry_point(entry_point, name), contract).run();
   std::vector<std::string> texts = listing_of(spirv);
-  for (size_t i = 0; i < texts.size(); ++i) program.spirv.push_back({std::move(texts[i]), module.lines.at(i)});
+  for (size_t i = 0; i < texts.size(); ++i)
+    program.spirv.push_back({std::move(texts[i]), module.lines.at(i)});
   return program;
 }
 
-isa::Program lower(const std::vector<uint32_t>& spirv, const std::string& name,
-                   const BackendOptions& options, const std::string& entry_point) {
+isa::Program lower(const std::vector<uint32_t>& spirv, const std::string& name, const BackendOptions& options,
+                   const std::string& entry_point) {
   VirtualProgram program = lower_to_virtual(spirv, name, entry_point, options.contract);
   if (options.queries_call) make_queries_calls(program);
   return assemble(std::move(program), options);

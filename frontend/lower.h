@@ -25,29 +25,39 @@ VirtualProgram lower_to_virtual(const std::vector<uint32_t>& spirv, const std::s
                                 const std::string& entry_point = {}, bool contract = false);
 
 // Where a pointer points. Attribute pairs: hit attributes of two floats, which hit shaders find in %hit.u and
-// %hit.v. Resource: a descriptor, of a buffer only while an index into an array of them is missing. Texel: of a storage
-// image, for atomics.
+// %hit.v. Resource: a descriptor, of a buffer only while an index into an array of them is missing. Texel: of
+// a storage image, for atomics.
 enum class Place : uint8_t {
-  Local, Global, Shared, Constant, Builtin, Resource, AttributePair, RayQuery, Texel, Nowhere
+  Local,
+  Global,
+  Shared,
+  Constant,
+  Builtin,
+  Resource,
+  AttributePair,
+  RayQuery,
+  Texel,
+  Nowhere
 };
 
 struct Pointer {
   Id type = 0;  // of the pointee
   Place place = Place::Nowhere;
-  Operand base = Operand::value(0);  // Local, Shared, Constant: 32-bit address; Global: 64-bit; Resource, RayQuery: index
-  int64_t displacement = 0;          // bytes; Builtin, AttributePair: parts
-  uint32_t alignment = 16;           // bytes, of base
-  uint32_t known_alignment = 0;      // bytes, of base and displacement together; 0 unless an instruction tells it
-  uint32_t component_stride = 0;     // bytes; not 0 in a column of a row-major matrix
+  Operand base = Operand::value(
+      0);  // Local, Shared, Constant: 32-bit address; Global: 64-bit; Resource, RayQuery: index
+  int64_t displacement = 0;      // bytes; Builtin, AttributePair: parts
+  uint32_t alignment = 16;       // bytes, of base
+  uint32_t known_alignment = 0;  // bytes, of base and displacement together; 0 unless an instruction tells it
+  uint32_t component_stride = 0;  // bytes; not 0 in a column of a row-major matrix
   MatrixLayout matrix;
   Id variable = 0;                         // the root
   bool is_constant = false;                // memory that no shader writes
   bool is_volatile = false;                // two loads may differ
   Operand part_index = Operand::value(0);  // Builtin, AttributePair: dynamic part index
   Operand entry;                           // Global, of an array of buffers: the address of its descriptor
-  Operand table;                           // Resource, of a pointer that is a value: the address of the descriptor with index 0
-  Operands texel;                          // Texel: handle, then the layer of arrays and coordinates
-  std::string_view shape;                  // Texel: the geometry as image ops name it
+  Operand table;   // Resource, of a pointer that is a value: the address of the descriptor with index 0
+  Operands texel;  // Texel: handle, then the layer of arrays and coordinates
+  std::string_view shape;  // Texel: the geometry as image ops name it
 };
 
 inline Pointer nowhere(Id pointee) {
@@ -117,14 +127,17 @@ class Lowering {
   void store(const Pointer& pointer, const Operands& parts);
   Operands load_builtin(spv::BuiltIn builtin, Id type);
   std::optional<Operand> address_of(Id pointer);  // none: not a pointer that is a value
-  std::optional<Operands> load_compute_builtin(spv::BuiltIn builtin);  // none: not a built-in of compute or subgroups
-  Operand buffer_entry(const Pointer& pointer);  // the address of the descriptor that the index of a buffer in an array means
+  std::optional<Operands> load_compute_builtin(
+      spv::BuiltIn builtin);  // none: not a built-in of compute or subgroups
+  Operand buffer_entry(
+      const Pointer& pointer);  // the address of the descriptor that the index of a buffer in an array means
   Pointer buffer_element(Pointer pointer);  // from the index of a buffer in an array to the buffer
-  uint32_t local_offset(Id variable);  // bytes in the frame; allotted on first use
-  uint32_t ray_query(Id variable);     // the first query or hit object of a variable; numbers are given on first use
-  void hand_over_attributes();         // to the buffer that the next report reads
-  uint32_t attribute_buffers();        // bytes in the frame of the two buffers of 64 bytes
-  void note_store(Place place);        // loads of that place are not reused any more
+  uint32_t local_offset(Id variable);       // bytes in the frame; allotted on first use
+  uint32_t ray_query(
+      Id variable);             // the first query or hit object of a variable; numbers are given on first use
+  void hand_over_attributes();  // to the buffer that the next report reads
+  uint32_t attribute_buffers();  // bytes in the frame of the two buffers of 64 bytes
+  void note_store(Place place);  // loads of that place are not reused any more
 
   // --- Reports
   void unsupported(const std::string& what);  // at the present line
@@ -170,15 +183,15 @@ class Lowering {
   std::map<Id, uint32_t> ray_queries_;      // variable to its first query
   uint32_t num_ray_queries_ = 0;
   uint32_t attribute_buffers_ = 0xffff'ffff;
-  bool attributes_in_frame_ = false;        // of an intersection shader that may report more than once
+  bool attributes_in_frame_ = false;  // of an intersection shader that may report more than once
   uint64_t local_version_ = 1, global_version_ = 1, shared_version_ = 1;  // of memory, for the reuse of loads
   uint64_t& version_of(Place place);
   std::map<std::tuple<uint16_t, uint32_t, std::string>, int> unsupported_;  // file, line, what: how often
   std::set<Id> reported_types_;
 };
 
-// A trace (docs/abi.md, Calls and rays). Arguments: structure, flags, mask, offset, stride, miss index, origin, t min,
-// direction, t max. `finish` is emitted when the rays have found what they find.
+// A trace (docs/abi.md, Calls and rays). Arguments: structure, flags, mask, offset, stride, miss index,
+// origin, t min, direction, t max. `finish` is emitted when the rays have found what they find.
 void lower_trace(Lowering& lowering, std::span<const uint32_t> arguments, const Pointer& payload,
                  const std::function<void()>& finish);
 // The lane's local address that a pointer means, in a register.
@@ -196,7 +209,8 @@ bool is_known_capability(spv::Capability capability);
 // A displacement that the 32-bit field of an instruction cannot hold goes into the base.
 Pointer in_reach(Lowering& lowering, Pointer pointer);
 
-// Fuses sums with products that nothing else reads; both of `free`, the registers of products and sums that may fuse.
+// Fuses sums with products that nothing else reads; both of `free`, the registers of products and sums that
+// may fuse.
 void contract(VirtualProgram* program, const std::set<VirtualRegister>& free);
 
 // Removes instructions whose results nobody reads and that do nothing else.

@@ -18,7 +18,8 @@ void difference(Lowering& l, const Instruction& inst, const LoweringRow&) {
   const Type& type = l.module().type(pointer);
   const uint32_t stride = type.array_stride != 0 ? type.array_stride : l.layout().size(type.element);
   const Operand a = l.scalar(inst.operands[0]), b = l.scalar(inst.operands[1]);
-  const bool is_64 = l.part_of(pointer) == Part::Uint64, to_64 = l.part_of(inst.type) == Part::Uint64 || l.part_of(inst.type) == Part::Int64;
+  const bool is_64 = l.part_of(pointer) == Part::Uint64,
+             to_64 = l.part_of(inst.type) == Part::Uint64 || l.part_of(inst.type) == Part::Int64;
   Operand count = is_64 ? e.value("div.s64", {e.value("sub.u64", {a, b}), Operand::value(stride)})
                         : e.value("div.s32", {e.value("sub.u32", {a, b}), Operand::value(stride)});
   if (is_64 && !to_64) count = e.value("cvt.u32.u64", {count});
@@ -29,7 +30,8 @@ void difference(Lowering& l, const Instruction& inst, const LoweringRow&) {
 void expect(Lowering& l, const Instruction& inst, const LoweringRow&) {
   l.set(inst.result, Operands(l.value(inst.operands[0])));
 }
-void nothing(Lowering&, const Instruction&, const LoweringRow&) {}
+void nothing(Lowering&, const Instruction&, const LoweringRow&) {
+}
 
 using enum spv::Op;
 constexpr LoweringRow kRows[] = {

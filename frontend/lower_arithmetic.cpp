@@ -17,7 +17,8 @@ void unary(Lowering& l, const Instruction& inst, const LoweringRow& row) {
   const Part part = l.part_of(inst.type);
   if (!has_op(l, row.name32, part)) return;
   Operands result;
-  for (const Operand& a : Operands(l.value(inst.operands[0]))) result.push_back(typed(l.emit(), row.name32, part, {a}));
+  for (const Operand& a : Operands(l.value(inst.operands[0])))
+    result.push_back(typed(l.emit(), row.name32, part, {a}));
   l.set(inst.result, std::move(result));
 }
 
@@ -30,7 +31,8 @@ void binary(Lowering& l, const Instruction& inst, const LoweringRow& row) {
   l.set(inst.result, std::move(result));
 }
 
-// The count may have another width than the base. Beyond the base's width everything is shifted out, as PTX does (Choice).
+// The count may have another width than the base. Beyond the base's width everything is shifted out, as PTX
+// does (Choice).
 void shift(Lowering& l, const Instruction& inst, const LoweringRow& row) {
   Emitter& e = l.emit();
   const Part part = l.part_of(inst.type), count_part = l.part_of(l.type_of(inst.operands[1]));
@@ -39,7 +41,9 @@ void shift(Lowering& l, const Instruction& inst, const LoweringRow& row) {
   const Operands a = l.value(inst.operands[0]), b = l.value(inst.operands[1]);
   Operands result;
   for (size_t i = 0; i < a.size(); ++i) {
-    const Operand count = bytes_of(count_part) == 8 ? e.value("cvt.u32.u64", {e.value("min.u64", {b[i], Operand::value(64)})}) : b[i];
+    const Operand count = bytes_of(count_part) == 8
+                              ? e.value("cvt.u32.u64", {e.value("min.u64", {b[i], Operand::value(64)})})
+                              : b[i];
     result.push_back(narrowed(e, part, e.value(name, {widened(e, part, a[i], is_signed), count})));
   }
   l.set(inst.result, std::move(result));
@@ -63,8 +67,8 @@ void signed_modulo(Lowering& l, const Instruction& inst, const LoweringRow& row)
   l.set(inst.result, std::move(result));
 }
 
-// FMod = x - y * floor(x / y), FRem with trunc (Vulkan, "Precision and Operation of SPIR-V Instructions"). The product is
-// not rounded: it is close to x, and what it lost would be most of the result.
+// FMod = x - y * floor(x / y), FRem with trunc (Vulkan, "Precision and Operation of SPIR-V Instructions").
+// The product is not rounded: it is close to x, and what it lost would be most of the result.
 void float_modulo(Lowering& l, const Instruction& inst, const LoweringRow& row) {
   Emitter& e = l.emit();
   const Part part = l.part_of(inst.type);
@@ -87,8 +91,8 @@ void times_scalar(Lowering& l, const Instruction& inst, const LoweringRow&) {
 }
 
 // Sum of a[i * step_a] * b[i], left to right, no contraction.
-Operand dot(Emitter& e, Part part, const Operands& a, size_t first_a, size_t step_a, const Operands& b, size_t first_b,
-            size_t n) {
+Operand dot(Emitter& e, Part part, const Operands& a, size_t first_a, size_t step_a, const Operands& b,
+            size_t first_b, size_t n) {
   const auto product = [&](size_t i) {
     return typed(e, "mul.rn.f32", part, {a[first_a + i * step_a], b[first_b + i]});
   };
@@ -113,7 +117,8 @@ void matrix_product(Lowering& l, const Instruction& inst, const LoweringRow&) {
   const Part part = l.part_of(inst.type);
   Operands result;
   for (size_t column = 0; column * inner < b.size(); ++column)
-    for (size_t r = 0; r < rows; ++r) result.push_back(dot(l.emit(), part, a, r, rows, b, column * inner, inner));
+    for (size_t r = 0; r < rows; ++r)
+      result.push_back(dot(l.emit(), part, a, r, rows, b, column * inner, inner));
   l.set(inst.result, std::move(result));
 }
 
@@ -137,7 +142,8 @@ void transpose(Lowering& l, const Instruction& inst, const LoweringRow&) {
 
 // The base must have 32 bits in Vulkan.
 bool has_32_bits(Lowering& l, const Instruction& inst) {
-  if (bytes_of(l.part_of(inst.type)) == 4 && bytes_of(l.part_of(l.type_of(inst.operands[0]))) == 4) return true;
+  if (bytes_of(l.part_of(inst.type)) == 4 && bytes_of(l.part_of(l.type_of(inst.operands[0]))) == 4)
+    return true;
   l.unsupported("bit instructions of other than 32 bits");
   return false;
 }
@@ -177,15 +183,17 @@ void extended(Lowering& l, const Instruction& inst, const LoweringRow& row) {
   for (size_t i = 0; i < a.size(); ++i) {
     if (bytes_of(part) < 4 && inst.op != spv::Op::OpISubBorrow) {  // all of it lies in 32 bits
       const bool is_signed = inst.op == spv::Op::OpSMulExtended;
-      const Operand whole = e.value(row.name32, {widened(e, part, a[i], is_signed), widened(e, part, b[i], is_signed)});
+      const Operand whole =
+          e.value(row.name32, {widened(e, part, a[i], is_signed), widened(e, part, b[i], is_signed)});
       first.push_back(narrowed(e, part, whole));
       second.push_back(narrowed(e, part, e.value("shr.u32", {whole, Operand::value(8 * bytes_of(part))})));
       continue;
     }
     first.push_back(typed(e, row.name32, part, {a[i], b[i]}));
     if (inst.op == spv::Op::OpIAddCarry || inst.op == spv::Op::OpISubBorrow) {
-      const Operand carry = inst.op == spv::Op::OpIAddCarry ? typed(e, "setp.lt.u32", part, {first.back(), a[i]})
-                                                            : typed(e, "setp.lt.u32", part, {a[i], b[i]});
+      const Operand carry = inst.op == spv::Op::OpIAddCarry
+                                ? typed(e, "setp.lt.u32", part, {first.back(), a[i]})
+                                : typed(e, "setp.lt.u32", part, {a[i], b[i]});
       second.push_back(typed(e, "selp.b32", part, {Operand::value(1), Operand::value(0), carry}));
     } else {
       second.push_back(typed(e, high, part, {a[i], b[i]}));

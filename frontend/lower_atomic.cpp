@@ -18,15 +18,20 @@ std::string op_suffix(std::string_view name32, Part part) {
 std::string op_name(const Pointer& pointer, const std::string& suffix) {
   const size_t dot = suffix.find('.');
   switch (pointer.place) {
-    case Place::Texel: return fmt::format("suatom.p.{}.{}{}.trap", suffix.substr(0, dot), pointer.shape, suffix.substr(dot));
-    case Place::Global: return "atom.global." + suffix;
-    case Place::Shared: return "atom.shared." + suffix;
-    default: return {};
+    case Place::Texel:
+      return fmt::format("suatom.p.{}.{}{}.trap", suffix.substr(0, dot), pointer.shape, suffix.substr(dot));
+    case Place::Global:
+      return "atom.global." + suffix;
+    case Place::Shared:
+      return "atom.shared." + suffix;
+    default:
+      return {};
   }
 }
 
 // The old value.
-Operand atomic_op(Lowering& l, const std::string& name, const Pointer& pointer, Part part, const Operands& operands) {
+Operand atomic_op(Lowering& l, const std::string& name, const Pointer& pointer, Part part,
+                  const Operands& operands) {
   const bool is_texel = pointer.place == Place::Texel;
   const Pointer p = is_texel ? pointer : in_reach(l, pointer);
   const Operand old = Operand::of(l.program().new_register(class_of(part)));
@@ -48,13 +53,15 @@ Operand combined(Lowering& l, std::string_view name32, Part part, const Operand&
 }
 
 // As a loop: compare and swap until nobody came in between.
-Operand change_by_loop(Lowering& l, const std::string& compare, const Pointer& pointer, Part part, std::string_view name32,
-                       const Operand& x) {
+Operand change_by_loop(Lowering& l, const std::string& compare, const Pointer& pointer, Part part,
+                       std::string_view name32, const Operand& x) {
   Emitter& e = l.emit();
   const Operand old = Operand::of(l.program().new_register(class_of(part)));
-  const BlockId again = e.new_block("atomic_again"), retry = e.new_block("atomic_retry"), done = e.new_block("atomic_done");
+  const BlockId again = e.new_block("atomic_again"), retry = e.new_block("atomic_retry"),
+                done = e.new_block("atomic_done");
   // Putting 0 where 0 stands reads and changes nothing.
-  e.copy(old.reg, class_of(part), atomic_op(l, compare, pointer, part, {Operand::value(0), Operand::value(0)}));
+  e.copy(old.reg, class_of(part),
+         atomic_op(l, compare, pointer, part, {Operand::value(0), Operand::value(0)}));
   e.push_reconvergence(done);
   e.place(again);
   const Operand found = atomic_op(l, compare, pointer, part, {old, combined(l, name32, part, old, x)});
@@ -69,7 +76,8 @@ Operand change_by_loop(Lowering& l, const std::string& compare, const Pointer& p
 }
 
 // The old value. Where the ISA has neither such an op nor a comparing one, it is noted.
-Operand change(Lowering& l, const Pointer& pointer, Part part, std::string_view name32, const Operands& operands) {
+Operand change(Lowering& l, const Pointer& pointer, Part part, std::string_view name32,
+               const Operands& operands) {
   const std::string name = op_name(pointer, op_suffix(name32, part));
   if (name.empty()) {
     if (pointer.place != Place::Nowhere) l.unsupported("an atomic on memory of one lane");
@@ -77,7 +85,8 @@ Operand change(Lowering& l, const Pointer& pointer, Part part, std::string_view 
   }
   if (isa::find_op(name) >= 0 && bytes_of(part) != 1) return atomic_op(l, name, pointer, part, operands);
   const std::string compare = op_name(pointer, with_bits("cas.b32", 8 * bytes_of(part)));
-  if (isa::find_op(compare) >= 0 && operands.size() == 1) return change_by_loop(l, compare, pointer, part, name32, operands[0]);
+  if (isa::find_op(compare) >= 0 && operands.size() == 1)
+    return change_by_loop(l, compare, pointer, part, name32, operands[0]);
   l.unsupported(fmt::format("no op {} ({} bits)", name, 8 * bytes_of(part)));
   return Operand::value(0);
 }
@@ -85,7 +94,8 @@ Operand change(Lowering& l, const Pointer& pointer, Part part, std::string_view 
 // Operands: pointer, scope, semantics, value.
 void read_modify_write(Lowering& l, const Instruction& inst, const LoweringRow& row) {
   const Part part = l.part_of(inst.type);
-  l.set(inst.result, {change(l, l.pointer(inst.operands[0]), part, row.name32, {l.scalar(inst.operands[3])})});
+  l.set(inst.result,
+        {change(l, l.pointer(inst.operands[0]), part, row.name32, {l.scalar(inst.operands[3])})});
 }
 
 void subtract(Lowering& l, const Instruction& inst, const LoweringRow&) {
@@ -96,7 +106,9 @@ void subtract(Lowering& l, const Instruction& inst, const LoweringRow&) {
 
 void step(Lowering& l, const Instruction& inst, const LoweringRow&) {
   const Part part = l.part_of(inst.type);
-  const Operand by = Operand::value(inst.op == spv::Op::OpAtomicIIncrement ? 1 : bytes_of(part) == 8 ? ~uint64_t{0} : 0xffff'ffff);
+  const Operand by = Operand::value(inst.op == spv::Op::OpAtomicIIncrement ? 1
+                                    : bytes_of(part) == 8                  ? ~uint64_t{0}
+                                                                           : 0xffff'ffff);
   l.set(inst.result, {change(l, l.pointer(inst.operands[0]), part, "add.u32", {by})});
 }
 
@@ -134,12 +146,19 @@ void forget_memory(Lowering& l) {
 
 void fence(Lowering& l, spv::Scope scope) {
   switch (scope) {
-    case spv::Scope::CrossDevice: l.emit().effect("membar.sys", {}); break;
+    case spv::Scope::CrossDevice:
+      l.emit().effect("membar.sys", {});
+      break;
     case spv::Scope::Device:
     case spv::Scope::QueueFamily:
-    case spv::Scope::ShaderCallKHR: l.emit().effect("membar.gl", {}); break;
-    case spv::Scope::Workgroup: l.emit().effect("membar.cta", {}); break;
-    default: break;  // Model: lanes of a warp see each other's stores in program order
+    case spv::Scope::ShaderCallKHR:
+      l.emit().effect("membar.gl", {});
+      break;
+    case spv::Scope::Workgroup:
+      l.emit().effect("membar.cta", {});
+      break;
+    default:
+      break;  // Model: lanes of a warp see each other's stores in program order
   }
   forget_memory(l);
 }
@@ -148,10 +167,13 @@ void memory_barrier(Lowering& l, const Instruction& inst, const LoweringRow&) {
   fence(l, spv::Scope(l.module().constant_u32(inst.operands[0]).value_or(uint32_t(spv::Scope::Device))));
 }
 
-// Operands: scope of execution, scope of memory, semantics. A barrier of the block also orders what the block sees.
+// Operands: scope of execution, scope of memory, semantics. A barrier of the block also orders what the block
+// sees.
 void control_barrier(Lowering& l, const Instruction& inst, const LoweringRow&) {
-  const auto execution = spv::Scope(l.module().constant_u32(inst.operands[0]).value_or(uint32_t(spv::Scope::Workgroup)));
-  const auto memory = spv::Scope(l.module().constant_u32(inst.operands[1]).value_or(uint32_t(spv::Scope::Workgroup)));
+  const auto execution =
+      spv::Scope(l.module().constant_u32(inst.operands[0]).value_or(uint32_t(spv::Scope::Workgroup)));
+  const auto memory =
+      spv::Scope(l.module().constant_u32(inst.operands[1]).value_or(uint32_t(spv::Scope::Workgroup)));
   if (memory == spv::Scope::Device || memory == spv::Scope::QueueFamily || memory == spv::Scope::CrossDevice)
     fence(l, memory);
   if (execution == spv::Scope::Workgroup)

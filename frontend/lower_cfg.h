@@ -49,8 +49,8 @@ class ControlGraph {
   std::map<Id, uint32_t> index_;
   std::vector<std::vector<uint32_t>> predecessors_;  // reachable ones, each once
   std::vector<uint32_t> reachable_;
-  std::vector<uint32_t> dominator_;  // immediate
-  std::vector<uint32_t> depth_;      // in the dominator tree, entry 1; 0 = unreachable
+  std::vector<uint32_t> dominator_;           // immediate
+  std::vector<uint32_t> depth_;               // in the dominator tree, entry 1; 0 = unreachable
   std::vector<std::vector<Construct>> ends_;  // constructs that end at each block
 };
 

@@ -16,7 +16,9 @@ Operands vector(Special first) {
   return parts;
 }
 
-Operands mask(Special lanes) { return {Operand::of(lanes), Operand::value(0), Operand::value(0), Operand::value(0)}; }
+Operands mask(Special lanes) {
+  return {Operand::of(lanes), Operand::value(0), Operand::value(0), Operand::value(0)};
+}
 
 // In the block: 0 along an axis where the block is one thread wide.
 Operands local_id(Lowering& l) {
@@ -43,31 +45,51 @@ uint32_t num_subgroups(const std::array<uint32_t, 3>& size) {
 
 std::optional<Operands> Lowering::load_compute_builtin(BuiltIn builtin) {
   switch (builtin) {
-    case BuiltIn::GlobalInvocationId: return vector(Special::LaunchX);
-    case BuiltIn::WorkgroupId: return vector(Special::CtaidX);
-    case BuiltIn::NumWorkgroups: return vector(Special::NctaidX);
+    case BuiltIn::GlobalInvocationId:
+      return vector(Special::LaunchX);
+    case BuiltIn::WorkgroupId:
+      return vector(Special::CtaidX);
+    case BuiltIn::NumWorkgroups:
+      return vector(Special::NctaidX);
     case BuiltIn::WorkgroupSize: {
       Operands size;
       for (const uint32_t axis : program_.local_size) size.push_back(Operand::value(axis));
       return size;
     }
-    case BuiltIn::LocalInvocationId: return local_id(*this);
-    case BuiltIn::LocalInvocationIndex: return Operands{local_index(*this)};
-    case BuiltIn::SubgroupSize: return Operands{Operand::value(kSubgroupSize)};
-    case BuiltIn::NumSubgroups: return Operands{Operand::value(num_subgroups(program_.local_size))};
-    case BuiltIn::SubgroupId: return Operands{emitter_.value("shr.u32", {local_index(*this), Operand::value(5)})};
-    case BuiltIn::SubgroupLocalInvocationId: return Operands{Operand::of(Special::LaneId)};
-    case BuiltIn::SubgroupEqMask: return mask(Special::LanemaskEq);
-    case BuiltIn::SubgroupGeMask: return mask(Special::LanemaskGe);
-    case BuiltIn::SubgroupGtMask: return mask(Special::LanemaskGt);
-    case BuiltIn::SubgroupLeMask: return mask(Special::LanemaskLe);
-    case BuiltIn::SubgroupLtMask: return mask(Special::LanemaskLt);
-    case BuiltIn::WarpsPerSMNV: return Operands{Operand::of(Special::NwarpId)};
-    case BuiltIn::SMCountNV: return Operands{Operand::of(Special::NsmId)};
-    case BuiltIn::WarpIDNV: return Operands{Operand::of(Special::WarpId)};
-    case BuiltIn::SMIDNV: return Operands{Operand::of(Special::SmId)};
-    case BuiltIn::DeviceIndex: return Operands{Operand::value(0)};
-    default: return std::nullopt;
+    case BuiltIn::LocalInvocationId:
+      return local_id(*this);
+    case BuiltIn::LocalInvocationIndex:
+      return Operands{local_index(*this)};
+    case BuiltIn::SubgroupSize:
+      return Operands{Operand::value(kSubgroupSize)};
+    case BuiltIn::NumSubgroups:
+      return Operands{Operand::value(num_subgroups(program_.local_size))};
+    case BuiltIn::SubgroupId:
+      return Operands{emitter_.value("shr.u32", {local_index(*this), Operand::value(5)})};
+    case BuiltIn::SubgroupLocalInvocationId:
+      return Operands{Operand::of(Special::LaneId)};
+    case BuiltIn::SubgroupEqMask:
+      return mask(Special::LanemaskEq);
+    case BuiltIn::SubgroupGeMask:
+      return mask(Special::LanemaskGe);
+    case BuiltIn::SubgroupGtMask:
+      return mask(Special::LanemaskGt);
+    case BuiltIn::SubgroupLeMask:
+      return mask(Special::LanemaskLe);
+    case BuiltIn::SubgroupLtMask:
+      return mask(Special::LanemaskLt);
+    case BuiltIn::WarpsPerSMNV:
+      return Operands{Operand::of(Special::NwarpId)};
+    case BuiltIn::SMCountNV:
+      return Operands{Operand::of(Special::NsmId)};
+    case BuiltIn::WarpIDNV:
+      return Operands{Operand::of(Special::WarpId)};
+    case BuiltIn::SMIDNV:
+      return Operands{Operand::of(Special::SmId)};
+    case BuiltIn::DeviceIndex:
+      return Operands{Operand::value(0)};
+    default:
+      return std::nullopt;
   }
 }
 

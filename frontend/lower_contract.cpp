@@ -21,7 +21,8 @@ std::string_view suffix_after(std::string_view name, std::string_view verb) {
 
 class Contraction {
  public:
-  Contraction(VirtualProgram& program, const std::set<VirtualRegister>& free) : program_(program), free_(free), uses_(program.registers.size()) {
+  Contraction(VirtualProgram& program, const std::set<VirtualRegister>& free)
+      : program_(program), free_(free), uses_(program.registers.size()) {
     for (const VirtualBlock& block : program.blocks)
       for (const VirtualInst& inst : block.code) {
         if (inst.guard != kNoRegister) ++uses_[inst.guard];
@@ -38,7 +39,8 @@ class Contraction {
       const std::string_view sum = suffix_after(name, "add"), difference = suffix_after(name, "sub");
       if ((!sum.empty() || !difference.empty()) && free_.count(inst.operands[0].reg))
         fuse(inst, sum.empty() ? difference : sum, sum.empty(), code);
-      if (!suffix_after(name, "mul").empty() && free_.count(inst.operands[0].reg)) products_[inst.operands[0].reg] = inst;
+      if (!suffix_after(name, "mul").empty() && free_.count(inst.operands[0].reg))
+        products_[inst.operands[0].reg] = inst;
       code.push_back(std::move(inst));
     }
     block.code = std::move(code);
@@ -49,8 +51,11 @@ class Contraction {
   void fuse(VirtualInst& inst, std::string_view suffix, bool is_difference, std::vector<VirtualInst>& code) {
     for (size_t side = 1; side <= 2; ++side) {
       const Operand product = inst.operands[side];
-      const auto found = product.kind == Operand::Kind::Register ? products_.find(product.reg) : products_.end();
-      if (found == products_.end() || uses_[product.reg] != 2 || suffix_after(name_of(found->second), "mul") != suffix) continue;
+      const auto found =
+          product.kind == Operand::Kind::Register ? products_.find(product.reg) : products_.end();
+      if (found == products_.end() || uses_[product.reg] != 2 ||
+          suffix_after(name_of(found->second), "mul") != suffix)
+        continue;
       Operand a = found->second.operands[1], c = inst.operands[3 - side];
       if (is_difference) (side == 1 ? c : a) = negative(side == 1 ? c : a, suffix, inst, code);
       inst.op = isa::op_index("fma" + std::string(suffix));
@@ -59,19 +64,21 @@ class Contraction {
     }
   }
 
-  Operand negative(const Operand& x, std::string_view suffix, const VirtualInst& at, std::vector<VirtualInst>& code) {
+  Operand negative(const Operand& x, std::string_view suffix, const VirtualInst& at,
+                   std::vector<VirtualInst>& code) {
     const bool is_wide = suffix == ".rn.f64";
     VirtualInst inst;
     inst.op = isa::op_index("neg" + std::string(suffix.substr(3)));
     inst.line = at.line;
-    inst.operands = {Operand::of(program_.new_register(is_wide ? RegisterClass::B64 : RegisterClass::B32)), x};
+    inst.operands = {Operand::of(program_.new_register(is_wide ? RegisterClass::B64 : RegisterClass::B32)),
+                     x};
     code.push_back(inst);
     return inst.operands[0];
   }
 
   VirtualProgram& program_;
   const std::set<VirtualRegister>& free_;
-  std::vector<uint32_t> uses_;  // and the definition
+  std::vector<uint32_t> uses_;                       // and the definition
   std::map<VirtualRegister, VirtualInst> products_;  // of the block so far
 };
 

@@ -211,14 +211,16 @@ void ControlFlow::choose(uint32_t b, const Instruction& last) {
   const uint32_t otherwise = cfg_.index_of(last.operands[1]);
   const Operand selector = lowering_.scalar(last.operands[0]);
   const uint32_t bytes = bytes_of(lowering_.layout().parts(lowering_.type_of(last.operands[0]))[0]);
-  const uint64_t mask = bytes < 8 ? (uint64_t{1} << 8 * bytes) - 1 : ~uint64_t{0};  // literals carry their sign beyond their width
+  const uint64_t mask = bytes < 8 ? (uint64_t{1} << 8 * bytes) - 1
+                                  : ~uint64_t{0};   // literals carry their sign beyond their width
   std::vector<std::pair<uint32_t, Operand>> cases;  // target, predicate
   const uint32_t words = last.literal_words;
   for (size_t i = 2; i + words < last.operands.size(); i += 1 + words) {
     const uint32_t to = cfg_.index_of(last.operands[i + words]);
     if (to == otherwise) continue;
     const uint64_t literal = last.operands[i] | (words == 2 ? uint64_t{last.operands[i + 1]} << 32 : 0);
-    const Operand hit = emit_.value(bytes == 8 ? "setp.eq.u64" : "setp.eq.u32", {selector, Operand::value(literal & mask)});
+    const Operand hit =
+        emit_.value(bytes == 8 ? "setp.eq.u64" : "setp.eq.u32", {selector, Operand::value(literal & mask)});
     const auto same_target =
         std::find_if(cases.begin(), cases.end(), [&](const auto& c) { return c.first == to; });
     if (same_target == cases.end())

@@ -18,7 +18,8 @@ std::string type_name(Part part, bool is_signed) {
 void each_part(Lowering& l, const Instruction& inst, auto&& convert) {
   const Part to = l.part_of(inst.type), from = l.part_of(l.type_of(inst.operands[0]));
   Operands result;
-  for (const Operand& x : Operands(l.value(inst.operands[0]))) result.push_back(convert(l.emit(), to, from, x));
+  for (const Operand& x : Operands(l.value(inst.operands[0])))
+    result.push_back(convert(l.emit(), to, from, x));
   l.set(inst.result, std::move(result));
 }
 
@@ -82,8 +83,9 @@ Operands words_of(Emitter& e, Part part, const Operands& parts) {
     if (i % per_word == 0)
       words.push_back(parts[i]);
     else
-      words.back() = e.value(
-          "or.b32", {words.back(), e.value("shl.b32", {parts[i], Operand::value(8 * bytes * (i % per_word))})});
+      words.back() =
+          e.value("or.b32",
+                  {words.back(), e.value("shl.b32", {parts[i], Operand::value(8 * bytes * (i % per_word))})});
   }
   return words;
 }

@@ -77,7 +77,8 @@ void remove_dead_code(VirtualProgram* program) {
   };
   for (VirtualBlock& block : program->blocks)
     for (VirtualInst& inst : block.code)
-      if (inst.kind == VirtualInst::Kind::Real && num_destinations(inst) == 1 && !needed[inst.operands[0].reg])
+      if (inst.kind == VirtualInst::Kind::Real && num_destinations(inst) == 1 &&
+          !needed[inst.operands[0].reg])
         drop_result(&inst);
   for (VirtualBlock& block : program->blocks)
     block.code.erase(std::remove_if(block.code.begin(), block.code.end(), is_dead), block.code.end());

@@ -1,5 +1,5 @@
-// Derivatives of compute shaders: differences between the lanes of a quad (SPV_NV_compute_shader_derivatives).
-// SPDX-License-Identifier: Apache-2.0
+// Derivatives of compute shaders: differences between the lanes of a quad
+// (SPV_NV_compute_shader_derivatives). SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower_derivative.h"
 
 #include <algorithm>
@@ -19,7 +19,8 @@ bool asks_for(Lowering& l, spv::Capability wanted) {
 
 // Lanes between the neighbours of a quad in y; empty, and noted, where they are in no warp together.
 std::optional<uint32_t> row_distance(Lowering& l) {
-  if (asks_for(l, spv::Capability::ComputeDerivativeGroupLinearNV)) return 2;  // quads are four threads in their order
+  if (asks_for(l, spv::Capability::ComputeDerivativeGroupLinearNV))
+    return 2;  // quads are four threads in their order
   if (!asks_for(l, spv::Capability::ComputeDerivativeGroupQuadsNV)) {
     l.unsupported("a derivative without a derivative group");
     return std::nullopt;
@@ -32,7 +33,8 @@ std::optional<uint32_t> row_distance(Lowering& l) {
 }
 
 // right - left, or below - above: of the lane's own row or column, or of the quad's first for coarse ones.
-Operand difference(Lowering& l, Part part, const Operand& x, uint32_t distance, std::optional<uint32_t> other_axis) {
+Operand difference(Lowering& l, Part part, const Operand& x, uint32_t distance,
+                   std::optional<uint32_t> other_axis) {
   Emitter& e = l.emit();
   const Operand self = Operand::of(isa::Special::LaneId);
   const uint32_t both = distance | other_axis.value_or(0);
@@ -66,7 +68,8 @@ void derivative(Lowering& l, const Instruction& inst, const LoweringRow&) {
       continue;
     }
     const Operand dx = along(1, *rows), dy = along(*rows, 1);
-    result.push_back(typed(l.emit(), "add.rn.f32", part, {typed(l.emit(), "abs.f32", part, {dx}), typed(l.emit(), "abs.f32", part, {dy})}));
+    result.push_back(typed(l.emit(), "add.rn.f32", part,
+                           {typed(l.emit(), "abs.f32", part, {dx}), typed(l.emit(), "abs.f32", part, {dy})}));
   }
   l.set(inst.result, std::move(result));
 }
@@ -80,7 +83,8 @@ constexpr LoweringRow kRows[] = {
 }  // namespace
 
 bool has_derivatives(Lowering& l) {
-  return asks_for(l, spv::Capability::ComputeDerivativeGroupLinearNV) || asks_for(l, spv::Capability::ComputeDerivativeGroupQuadsNV);
+  return asks_for(l, spv::Capability::ComputeDerivativeGroupLinearNV) ||
+         asks_for(l, spv::Capability::ComputeDerivativeGroupQuadsNV);
 }
 
 Operands gradients(Lowering& l, const Operands& coordinates, const Operand& scale) {

@@ -14,10 +14,13 @@ struct Signs {
 Signs signs_of(spv::Op op) {
   switch (op) {
     case OpSDotKHR:
-    case OpSDotAccSatKHR: return {true, true, true};
+    case OpSDotAccSatKHR:
+      return {true, true, true};
     case OpSUDotKHR:
-    case OpSUDotAccSatKHR: return {true, false, true};
-    default: return {false, false, false};
+    case OpSUDotAccSatKHR:
+      return {true, false, true};
+    default:
+      return {false, false, false};
   }
 }
 
@@ -34,7 +37,8 @@ Operands components(Lowering& l, Id id, bool is_signed) {
   Operands result;
   if (parts.size() == 1)
     for (uint32_t i = 0; i < 4; ++i) {
-      const Operand byte = e.value(is_signed ? "bfe.s32" : "bfe.u32", {parts[0], Operand::value(8 * i), Operand::value(8)});
+      const Operand byte =
+          e.value(is_signed ? "bfe.s32" : "bfe.u32", {parts[0], Operand::value(8 * i), Operand::value(8)});
       result.push_back(widened_64(e, Part::Int32, byte, is_signed));
     }
   else
@@ -53,7 +57,8 @@ Operand saturated(Emitter& e, Part part, const Operand& sum, bool is_signed) {
 
 void dot(Lowering& l, const Instruction& inst, const LoweringRow&) {
   Emitter& e = l.emit();
-  const bool accumulates = inst.op == OpSDotAccSatKHR || inst.op == OpUDotAccSatKHR || inst.op == OpSUDotAccSatKHR;
+  const bool accumulates =
+      inst.op == OpSDotAccSatKHR || inst.op == OpUDotAccSatKHR || inst.op == OpSUDotAccSatKHR;
   const Signs signs = signs_of(inst.op);
   const Part part = l.part_of(inst.type);
   const Operands a = components(l, inst.operands[0], signs.a), b = components(l, inst.operands[1], signs.b);

@@ -45,8 +45,8 @@ std::vector<uint64_t> load_key(std::string_view op, const Operand& base, int32_t
   return key;
 }
 
-// Conditions that turned out constant leave blocks that nothing branches to, and constructs whose end no lane reaches:
-// there no lanes meet.
+// Conditions that turned out constant leave blocks that nothing branches to, and constructs whose end no lane
+// reaches: there no lanes meet.
 void drop_unreachable(VirtualProgram& program, std::vector<BlockId>& layout) {
   std::vector<uint8_t> reached(program.blocks.size(), 0);
   std::vector<BlockId> work{layout.front()};

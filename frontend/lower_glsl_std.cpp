@@ -15,8 +15,9 @@ namespace {
 using Arguments = std::vector<Operands>;
 using Scalars = std::vector<Operand>;
 
-// Functions that work part by part: `compute` gets one scalar of each argument (a scalar argument repeats). Half
-// precision is computed in single precision and rounded; narrow integers are widened, by their sign if `name` says s32.
+// Functions that work part by part: `compute` gets one scalar of each argument (a scalar argument repeats).
+// Half precision is computed in single precision and rounded; narrow integers are widened, by their sign if
+// `name` says s32.
 struct Componentwise {
   uint32_t function;
   Operand (*compute)(Arithmetic&, const Scalars&, std::string_view name);
@@ -253,8 +254,8 @@ const Componentwise* find_componentwise(uint32_t function) {
   return row == std::end(kComponentwise) ? nullptr : row;
 }
 const Whole* find_whole(uint32_t function) {
-  const auto row =
-      std::find_if(std::begin(kWhole), std::end(kWhole), [&](const Whole& w) { return w.function == function; });
+  const auto row = std::find_if(std::begin(kWhole), std::end(kWhole),
+                                [&](const Whole& w) { return w.function == function; });
   return row == std::end(kWhole) ? nullptr : row;
 }
 
@@ -265,11 +266,13 @@ struct Call {
   bool is_wide = false;  // any argument or result of 64 bits
 };
 
-// Of Ldexp: an integer of any width, as one of 32 bits. Beyond these limits every exponent gives 0 or infinity.
+// Of Ldexp: an integer of any width, as one of 32 bits. Beyond these limits every exponent gives 0 or
+// infinity.
 Operand exponent(Emitter& e, Part part, const Operand& x) {
   if (bytes_of(part) < 8) return widened(e, part, x, true);
   constexpr int64_t kFar = 1 << 16;
-  const Operand near = e.value("min.s64", {e.value("max.s64", {x, Operand::value(uint64_t(-kFar))}), Operand::value(uint64_t(kFar))});
+  const Operand near = e.value(
+      "min.s64", {e.value("max.s64", {x, Operand::value(uint64_t(-kFar))}), Operand::value(uint64_t(kFar))});
   return e.value("cvt.u32.u64", {near});
 }
 
@@ -288,7 +291,8 @@ Call read_call(Lowering& l, const Instruction& inst, size_t num_arguments, bool 
     Operands parts = l.value(argument);
     for (size_t part = 0; part < parts.size(); ++part) {
       const Part kind = l.layout().parts(type)[part];
-      parts[part] = is_exponent ? exponent(l.emit(), kind, parts[part]) : widened(l.emit(), kind, parts[part], sign_extend);
+      parts[part] = is_exponent ? exponent(l.emit(), kind, parts[part])
+                                : widened(l.emit(), kind, parts[part], sign_extend);
     }
     call.arguments.push_back(std::move(parts));
   }
@@ -296,7 +300,8 @@ Call read_call(Lowering& l, const Instruction& inst, size_t num_arguments, bool 
 }
 
 Operands narrowed_parts(Lowering& l, Id type, Operands parts) {
-  for (size_t i = 0; i < parts.size(); ++i) parts[i] = narrowed(l.emit(), l.layout().parts(type)[i], parts[i]);
+  for (size_t i = 0; i < parts.size(); ++i)
+    parts[i] = narrowed(l.emit(), l.layout().parts(type)[i], parts[i]);
   return parts;
 }
 
@@ -327,7 +332,8 @@ void lower_glsl_std(Lowering& l, const Instruction& inst) {
     Operands result;
     for (size_t i = 0; i < l.layout().num_parts(inst.type); ++i) {
       Scalars scalars;
-      for (const Operands& argument : call.arguments) scalars.push_back(argument[argument.size() == 1 ? 0 : i]);
+      for (const Operands& argument : call.arguments)
+        scalars.push_back(argument[argument.size() == 1 ? 0 : i]);
       result.push_back(row->compute(a, scalars, row->name));
     }
     return l.set(inst.result, narrowed_parts(l, inst.type, std::move(result)));

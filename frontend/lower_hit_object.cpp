@@ -1,5 +1,5 @@
-// Hit objects (SPV_NV_shader_invocation_reorder): traces whose hit is kept, made-up hits, their values, their shaders.
-// SPDX-License-Identifier: Apache-2.0
+// Hit objects (SPV_NV_shader_invocation_reorder): traces whose hit is kept, made-up hits, their values, their
+// shaders. SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower.h"
 #include "isa/hit_object.h"
 
@@ -35,8 +35,8 @@ void trace(Lowering& l, const Instruction& inst, const LoweringRow&) {
               [&] { l.emit().effect("ho.record", {which}); });
 }
 
-// Operands: object, structure, instance, primitive, geometry, kind, record (or offset and stride), origin, t min,
-// direction, t max, time (in motion's forms), attributes.
+// Operands: object, structure, instance, primitive, geometry, kind, record (or offset and stride), origin, t
+// min, direction, t max, time (in motion's forms), attributes.
 void record_hit(Lowering& l, const Instruction& inst, const LoweringRow& row) {
   const size_t count = row.name32 == "ho.hit" ? 11 : 10;
   Operands operands{object(l, inst.operands[0])};
@@ -91,7 +91,8 @@ void get_matrix(Lowering& l, const Instruction& inst, const LoweringRow&) {
 
 template <uint32_t kType>
 void is_of_type(Lowering& l, const Instruction& inst, const LoweringRow&) {
-  l.set(inst.result, {l.emit().value("setp.eq.u32", {value(l, inst, HitObjectValue::Type), Operand::value(kType)})});
+  l.set(inst.result,
+        {l.emit().value("setp.eq.u32", {value(l, inst, HitObjectValue::Type), Operand::value(kType)})});
 }
 
 void get_attributes(Lowering& l, const Instruction& inst, const LoweringRow&) {

@@ -1,6 +1,5 @@
-// Hyperbolic functions and their inverses. The coefficients are minimax fits made for this project by Remez exchange; the
-// comments give the largest error of the exact polynomial.
-// SPDX-License-Identifier: Apache-2.0
+// Hyperbolic functions and their inverses. The coefficients are minimax fits made for this project by Remez
+// exchange; the comments give the largest error of the exact polynomial. SPDX-License-Identifier: Apache-2.0
 #include <span>
 
 #include "frontend/lower_math.h"
@@ -11,9 +10,11 @@ namespace {
 constexpr float kLog2E = 1.44269504088896f;
 constexpr float kLn2 = 0.693147180559945f;
 
-// f(x) = x + x z P(z), z = x^2. Relative errors: 5.3e-9 for |x| <= 1, 2.6e-9 for |x| <= 0.6, 1.1e-9 for |x| <= 0.5.
-constexpr float kSinh[] = {0.1666666716337204f, 0.008333349600434303f, 0.0001983615948120132f, 2.8169511097075883e-06f};
-constexpr float kTanh[] = {-0.3333333134651184f, 0.13333246111869812f,  -0.0539521686732769f,
+// f(x) = x + x z P(z), z = x^2. Relative errors: 5.3e-9 for |x| <= 1, 2.6e-9 for |x| <= 0.6, 1.1e-9 for |x|
+// <= 0.5.
+constexpr float kSinh[] = {0.1666666716337204f, 0.008333349600434303f, 0.0001983615948120132f,
+                           2.8169511097075883e-06f};
+constexpr float kTanh[] = {-0.3333333134651184f,  0.13333246111869812f,  -0.0539521686732769f,
                            0.021732721477746964f, -0.00826274510473013f, 0.0022269748151302338f};
 constexpr float kAsinh[] = {-0.1666666567325592f, 0.0749988928437233f,   -0.044613249599933624f,
                             0.0300129521638155f,  -0.01997998356819153f, 0.009167712181806564f};
@@ -45,7 +46,8 @@ Operand half_exp(Emitter& e, Operand x) {
 Operand log1p(Emitter& e, Operand u, Operand shift) {
   const Operand w = e.add(u, constant_f32(1));
   const Operand lost = e.sub(u, e.sub(w, constant_f32(1)));
-  const Operand exact = e.value("setp.ge.f32", {u, constant_f32(16777216.0f)});  // 2^24, infinity: nothing to correct
+  const Operand exact =
+      e.value("setp.ge.f32", {u, constant_f32(16777216.0f)});  // 2^24, infinity: nothing to correct
   const Operand correction = e.select(exact, constant_f32(0), e.div(lost, w));
   return e.fma(e.add(e.value("lg2.f32", {w}), shift), constant_f32(kLn2), correction);
 }
@@ -82,7 +84,8 @@ Operand asinh(Emitter& e, Operand x) {
   const Operand root = e.value("sqrt.rn.f32", {e.add(square, constant_f32(1))});
   const Operand u = e.add(magnitude, e.div(square, e.add(root, constant_f32(1))));
   const Operand is_huge = e.value("setp.gt.f32", {magnitude, constant_f32(kHuge)});
-  const Operand large = log1p(e, e.select(is_huge, magnitude, u), e.select(is_huge, constant_f32(1), constant_f32(0)));
+  const Operand large =
+      log1p(e, e.select(is_huge, magnitude, u), e.select(is_huge, constant_f32(1), constant_f32(0)));
   return e.select(less(e, magnitude, kAsinhReach), odd(e, x, kAsinh), with_sign(e, large, x));
 }
 
@@ -91,7 +94,8 @@ Operand acosh(Emitter& e, Operand x) {
   const Operand t = e.sub(x, constant_f32(1));
   const Operand u = e.add(t, e.value("sqrt.rn.f32", {e.mul(t, e.add(t, constant_f32(2)))}));
   const Operand is_huge = e.value("setp.gt.f32", {x, constant_f32(kHuge)});
-  const Operand result = log1p(e, e.select(is_huge, x, u), e.select(is_huge, constant_f32(1), constant_f32(0)));
+  const Operand result =
+      log1p(e, e.select(is_huge, x, u), e.select(is_huge, constant_f32(1), constant_f32(0)));
   return e.select(less(e, x, 1), Operand::value(0x7fff'ffff), result);
 }
 

@@ -15,34 +15,46 @@ std::optional<Geometry> geometry_of(Lowering& l, Id id, bool single_texels) {
   const Type& type = image_type(l, id);
   const bool layers = type.is_arrayed || type.is_multisampled;  // samples are layers: with_sample()
   switch (type.dim) {
-    case spv::Dim::Dim1D: return Geometry{layers ? "a1d" : "1d", 1, layers};
-    case spv::Dim::Dim2D: return Geometry{layers ? "a2d" : "2d", 2, layers};
-    case spv::Dim::Dim3D: return Geometry{"3d", 3, false};
-    case spv::Dim::Buffer: return Geometry{"buffer", 1, false};
+    case spv::Dim::Dim1D:
+      return Geometry{layers ? "a1d" : "1d", 1, layers};
+    case spv::Dim::Dim2D:
+      return Geometry{layers ? "a2d" : "2d", 2, layers};
+    case spv::Dim::Dim3D:
+      return Geometry{"3d", 3, false};
+    case spv::Dim::Buffer:
+      return Geometry{"buffer", 1, false};
     case spv::Dim::Cube:
       if (single_texels) return Geometry{"a2d", 2, true};
       return Geometry{layers ? "acube" : "cube", 3, layers};
-    default: break;
+    default:
+      break;
   }
-  l.unsupported(fmt::format("images of dimension {}", type.dim == spv::Dim::SubpassData ? "SubpassData" : "Rect"));
+  l.unsupported(
+      fmt::format("images of dimension {}", type.dim == spv::Dim::SubpassData ? "SubpassData" : "Rect"));
   return std::nullopt;
 }
 
 std::string_view texel_suffix(Lowering& l, Id id) {
   switch (l.part_of(image_type(l, id).element)) {
-    case Part::Float32: return "f32";
-    case Part::Int32: return "s32";
-    case Part::Uint32: return "u32";
+    case Part::Float32:
+      return "f32";
+    case Part::Int32:
+      return "s32";
+    case Part::Uint32:
+      return "u32";
     case Part::Int64:
-    case Part::Uint64: return "u32";  // halves: from_halves()
-    default: break;
+    case Part::Uint64:
+      return "u32";  // halves: from_halves()
+    default:
+      break;
   }
   l.unsupported("images of other than 32-bit and 64-bit texel types");
   return {};
 }
 
 // Model: the samples of a texel are consecutive layers; hardware keeps them together.
-Operands with_sample(Lowering& l, Id id, const Operand& handle, Operands at, const std::optional<Id>& sample) {
+Operands with_sample(Lowering& l, Id id, const Operand& handle, Operands at,
+                     const std::optional<Id>& sample) {
   const Type& type = image_type(l, id);
   if (!type.is_multisampled) return at;
   Operand layer = sample ? l.scalar(*sample) : Operand::value(0);
@@ -81,15 +93,20 @@ ImageOperands image_operands(const Instruction& inst, size_t at) {
   return result;  // the others are the memory model's
 }
 
-bool has_halves(Lowering& l, Id id) { return bytes_of(l.part_of(image_type(l, id).element)) == 8; }
+bool has_halves(Lowering& l, Id id) {
+  return bytes_of(l.part_of(image_type(l, id).element)) == 8;
+}
 
-// Texels of 64 bits lie in images as two channels of 32. Red is such a pair, green and blue are 0, alpha is 1.
+// Texels of 64 bits lie in images as two channels of 32. Red is such a pair, green and blue are 0, alpha
+// is 1.
 Operands from_halves(Lowering& l, const Operands& words) {
-  return {l.emit().value("pack.b64", {words[0], words[1]}), Operand::value(0), Operand::value(0), Operand::value(1)};
+  return {l.emit().value("pack.b64", {words[0], words[1]}), Operand::value(0), Operand::value(0),
+          Operand::value(1)};
 }
 Operands to_halves(Lowering& l, const Operand& red) {
   Emitter& e = l.emit();
-  return {e.value("cvt.u32.u64", {red}), e.value("cvt.u32.u64", {e.value("shr.u64", {red, Operand::value(32)})})};
+  return {e.value("cvt.u32.u64", {red}),
+          e.value("cvt.u32.u64", {e.value("shr.u64", {red, Operand::value(32)})})};
 }
 
 Operands four_words(Lowering& l, const std::string& name, const Operands& sources) {
@@ -107,8 +124,11 @@ Operands four_words(Lowering& l, const std::string& name, const Operands& source
 
 namespace {
 
-// Vulkan drops stores to samples that an image lacks, without a feature; places that it lacks go the same way then.
-std::string_view outside(Lowering& l, Id type) { return image_type(l, type).is_multisampled ? "zero" : "trap"; }
+// Vulkan drops stores to samples that an image lacks, without a feature; places that it lacks go the same way
+// then.
+std::string_view outside(Lowering& l, Id type) {
+  return image_type(l, type).is_multisampled ? "zero" : "trap";
+}
 
 void read(Lowering& l, const Instruction& inst, const LoweringRow&) {
   const Id type = l.type_of(inst.operands[0]);
@@ -116,7 +136,8 @@ void read(Lowering& l, const Instruction& inst, const LoweringRow&) {
   if (!geometry || texel_suffix(l, type).empty()) return;
   const Operand image = l.scalar(inst.operands[0]);
   const Operands at = with_sample(l, type, image, l.value(inst.operands[1]), image_operands(inst, 2).sample);
-  Operands texel = four_words(l, fmt::format("suld.p.{}.v4.b32.{}", geometry->name, outside(l, type)), integer_place(l.emit(), *geometry, image, at));
+  Operands texel = four_words(l, fmt::format("suld.p.{}.v4.b32.{}", geometry->name, outside(l, type)),
+                              integer_place(l.emit(), *geometry, image, at));
   if (has_halves(l, type)) texel = from_halves(l, texel);
   texel.resize(l.layout().num_parts(inst.type));
   l.set(inst.result, std::move(texel));
@@ -148,10 +169,12 @@ void fetch(Lowering& l, const Instruction& inst, const LoweringRow&) {
     for (size_t i = 0; i < offset.size(); ++i) at[i] = l.emit().value("add.s32", {at[i], offset[i]});
   }
   const Operand image = l.scalar(inst.operands[0]);
-  Operands sources = integer_place(l.emit(), *geometry, image, with_sample(l, type, image, std::move(at), extra.sample));
+  Operands sources =
+      integer_place(l.emit(), *geometry, image, with_sample(l, type, image, std::move(at), extra.sample));
   const bool has_level = extra.lod && !is_constant(l.scalar(*extra.lod), 0);
   if (has_level) sources.push_back(l.scalar(*extra.lod));
-  const Operands texel = four_words(l, fmt::format("tex{}.{}.v4.{}.s32", has_level ? ".level" : "", geometry->name, suffix), sources);
+  const Operands texel = four_words(
+      l, fmt::format("tex{}.{}.v4.{}.s32", has_level ? ".level" : "", geometry->name, suffix), sources);
   l.set(inst.result, has_halves(l, type) ? from_halves(l, texel) : texel);
 }
 
@@ -170,7 +193,8 @@ void query_size(Lowering& l, const Instruction& inst, const LoweringRow&) {
   for (uint32_t axis = 0; axis < axes; ++axis)
     result.push_back(
         l.emit().fresh(fmt::format("{}.{}{}.b32", family, has_level ? "level." : "", kAxes[axis]), sources));
-  if (type.is_arrayed) result.push_back(l.emit().fresh(fmt::format("{}.array_size.b32", family), {sources[0]}));
+  if (type.is_arrayed)
+    result.push_back(l.emit().fresh(fmt::format("{}.array_size.b32", family), {sources[0]}));
   l.set(inst.result, std::move(result));
 }
 
@@ -195,7 +219,8 @@ void texel_pointer(Lowering& l, const Instruction& inst, const LoweringRow&) {
     p.place = Place::Texel;
     p.shape = geometry->name;
     const Operand handle = l.load(image)[0];
-    p.texel = integer_place(l.emit(), *geometry, handle, with_sample(l, image.type, handle, l.value(inst.operands[1]), inst.operands[2]));
+    p.texel = integer_place(l.emit(), *geometry, handle,
+                            with_sample(l, image.type, handle, l.value(inst.operands[1]), inst.operands[2]));
   }
   l.set_pointer(inst.result, p);
 }

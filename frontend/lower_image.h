@@ -1,5 +1,5 @@
-// What image ops need to know of an image's type: its geometry, its texels, the operands that name a place in it.
-// SPDX-License-Identifier: Apache-2.0
+// What image ops need to know of an image's type: its geometry, its texels, the operands that name a place in
+// it. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
 #include <string>
@@ -19,14 +19,16 @@ struct Geometry {
 // The image type behind an image, a storage image or a combined one.
 const Type& image_type(Lowering& lowering, Id type);
 
-// Empty, and noted as unsupported, where the ISA has none. Ops on single texels see a cube as an array of its faces.
+// Empty, and noted as unsupported, where the ISA has none. Ops on single texels see a cube as an array of its
+// faces.
 std::optional<Geometry> geometry_of(Lowering& lowering, Id type, bool single_texels);
 
 // "f32", "s32" or "u32"; empty, and noted, for other types of texels.
 std::string_view texel_suffix(Lowering& lowering, Id type);
 
 // Handle, layer, coordinates.
-Operands integer_place(Emitter& e, const Geometry& geometry, const Operand& handle, const Operands& coordinates);
+Operands integer_place(Emitter& e, const Geometry& geometry, const Operand& handle,
+                       const Operands& coordinates);
 
 // SPIR-V's image operands, from the mask at `at` on.
 struct ImageOperands {

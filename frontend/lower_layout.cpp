@@ -20,7 +20,7 @@ Part Layout::scalar(Id id) {
   if (type.kind == Kind::Float && type.width == 64) return Part::Float64;
   if (type.kind == Kind::Image || type.kind == Kind::SampledImage) return Part::Uint32;  // its handle
   if (type.kind == Kind::AccelerationStructure) return Part::Uint64;                     // its address
-  if (type.kind == Kind::Sampler) return Part::Uint32;                                   // its part of a handle
+  if (type.kind == Kind::Sampler) return Part::Uint32;  // its part of a handle
   if (type.kind == Kind::Pointer && is_address(id))
     return type.storage == spv::StorageClass::Workgroup ? Part::Uint32 : Part::Uint64;
   unsupported_.insert(id);
@@ -30,8 +30,8 @@ Part Layout::scalar(Id id) {
 bool Layout::is_address(Id id) const {
   const Type& type = module_.type(id);
   if (type.kind != Kind::Pointer) return false;
-  return type.storage == spv::StorageClass::PhysicalStorageBuffer || type.storage == spv::StorageClass::StorageBuffer ||
-         type.storage == spv::StorageClass::Workgroup;
+  return type.storage == spv::StorageClass::PhysicalStorageBuffer ||
+         type.storage == spv::StorageClass::StorageBuffer || type.storage == spv::StorageClass::Workgroup;
 }
 
 bool Layout::is_array_of_blocks(Id pointee) const {

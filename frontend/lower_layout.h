@@ -10,19 +10,42 @@
 
 namespace glint::frontend {
 
-// One scalar of a value: a 32-bit register, an even/odd pair, or a predicate (32-bit 0 or 1 in memory). Values of 8 and
-// 16 bits lie in the low bits of a register; the bits above are 0, whatever the sign.
+// One scalar of a value: a 32-bit register, an even/odd pair, or a predicate (32-bit 0 or 1 in memory).
+// Values of 8 and 16 bits lie in the low bits of a register; the bits above are 0, whatever the sign.
 enum class Part : uint8_t {
-  Bool, Int32, Uint32, Float32, Int64, Uint64, Float64, Int8, Uint8, Int16, Uint16, Float16
+  Bool,
+  Int32,
+  Uint32,
+  Float32,
+  Int64,
+  Uint64,
+  Float64,
+  Int8,
+  Uint8,
+  Int16,
+  Uint16,
+  Float16
 };
 
 // In memory, and of a register's bits that count.
 constexpr uint32_t bytes_of(Part part) {
   switch (part) {
-    case Part::Int8: case Part::Uint8: return 1;
-    case Part::Int16: case Part::Uint16: case Part::Float16: return 2;
-    case Part::Bool: case Part::Int32: case Part::Uint32: case Part::Float32: return 4;
-    case Part::Int64: case Part::Uint64: case Part::Float64: return 8;
+    case Part::Int8:
+    case Part::Uint8:
+      return 1;
+    case Part::Int16:
+    case Part::Uint16:
+    case Part::Float16:
+      return 2;
+    case Part::Bool:
+    case Part::Int32:
+    case Part::Uint32:
+    case Part::Float32:
+      return 4;
+    case Part::Int64:
+    case Part::Uint64:
+    case Part::Float64:
+      return 8;
   }
   return 4;
 }
@@ -75,7 +98,8 @@ class Layout {
   // Of a variable that is an array of buffers: a pointer to it is the address of a descriptor in a table.
   bool is_array_of_blocks(Id pointee) const;
 
-  // Types met so far that no part can hold (floats of 128 bits, ...); they count as 32-bit words until reported.
+  // Types met so far that no part can hold (floats of 128 bits, ...); they count as 32-bit words until
+  // reported.
   const std::set<Id>& unsupported() const { return unsupported_; }
 
  private:

@@ -1,5 +1,5 @@
-// Inverse circular functions, exponentials and logarithms. The coefficients are minimax fits made for this project by
-// Remez exchange; the comments give the largest error of the exact polynomial.
+// Inverse circular functions, exponentials and logarithms. The coefficients are minimax fits made for this
+// project by Remez exchange; the comments give the largest error of the exact polynomial.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower_math.h"
 
@@ -91,8 +91,8 @@ Operand atan(Emitter& e, Operand x) {
   return with_sign(e, e.select(is_large, large, t), x);
 }
 
-// t = atan of the ratio of the smaller to the larger magnitude. By octants the result is t, pi/2 - t, pi/2 + t or
-// pi - t: a constant in two parts plus t or -t.
+// t = atan of the ratio of the smaller to the larger magnitude. By octants the result is t, pi/2 - t, pi/2 +
+// t or pi - t: a constant in two parts plus t or -t.
 Operand atan2(Emitter& e, Operand y, Operand x) {
   const Operand ax = abs(e, x), ay = abs(e, y);
   const Operand larger = e.value("max.f32", {ax, ay}), smaller = e.value("min.f32", {ax, ay});
@@ -109,8 +109,7 @@ Operand atan2(Emitter& e, Operand y, Operand x) {
   };
   const Operand falls = e.value("xor.pred", {is_steep, is_left});
   const Operand turned = e.select(falls, e.value("neg.f32", {t}), t);
-  const Operand sum =
-      e.add(by_octant(kHalfPi, kPi), e.add(turned, by_octant(kHalfPiRest, kPiRest)));
+  const Operand sum = e.add(by_octant(kHalfPi, kPi), e.add(turned, by_octant(kHalfPiRest, kPiRest)));
   const Operand both = e.add(ax, ay);  // min and max drop one NaN
   return e.select(e.value("testp.notanumber.f32", {both}), both, with_sign(e, sum, y));
 }

@@ -8,7 +8,8 @@ namespace glint::frontend::math {
 // Products added left to right, each rounded.
 Operand dot(Arithmetic& a, const Operands& x, const Operands& y);
 
-// Single precision. Polynomials in fma form; errors are those that the test of built-ins measures (tests/shaders).
+// Single precision. Polynomials in fma form; errors are those that the test of built-ins measures
+// (tests/shaders).
 Operand asin(Emitter& e, Operand x);              // |x| <= 1: within 2 ulp
 Operand acos(Emitter& e, Operand x);              // |x| <= 1: within 2 ulp
 Operand atan(Emitter& e, Operand x);              // within 2 ulp
@@ -29,7 +30,8 @@ Operand atanh(Emitter& e, Operand x);  // infinite at -1 and 1, NaN beyond
 
 // x * 2^n, rounded once; any n.
 Operand ldexp(Arithmetic& a, Operand x, Operand n);
-// x = fraction * 2^exponent with 1/2 <= |fraction| < 1; zeros, infinities and NaN are their own fraction, exponent 0.
+// x = fraction * 2^exponent with 1/2 <= |fraction| < 1; zeros, infinities and NaN are their own fraction,
+// exponent 0.
 struct Split {
   Operand fraction, exponent;
 };

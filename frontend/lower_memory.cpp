@@ -12,10 +12,14 @@ namespace {
 
 std::string_view space_of(Place place) {
   switch (place) {
-    case Place::Local: return "local";
-    case Place::Shared: return "shared";
-    case Place::Constant: return "const";
-    default: return "global";
+    case Place::Local:
+      return "local";
+    case Place::Shared:
+      return "shared";
+    case Place::Constant:
+      return "const";
+    default:
+      return "global";
   }
 }
 
@@ -28,19 +32,25 @@ int words_together(const std::vector<Leaf>& leaves, size_t first, const Pointer&
     const int64_t at = displacement + leaves[first].offset;
     bool fits = at % (4 * words) == 0;
     for (int i = 0; fits && i < words; ++i)
-      fits = bytes_of(leaves[first + i].part) == 4 && leaves[first + i].offset == leaves[first].offset + 4 * i;
+      fits =
+          bytes_of(leaves[first + i].part) == 4 && leaves[first + i].offset == leaves[first].offset + 4 * i;
     if (fits) return words;
   }
   return 1;
 }
 
-// The end of the op's name for `words` leaves like this one. Loads of narrow values fill the bits above with zeros.
+// The end of the op's name for `words` leaves like this one. Loads of narrow values fill the bits above with
+// zeros.
 std::string_view shape_of(Part part, int words, bool is_load) {
   switch (bytes_of(part)) {
-    case 1: return is_load ? "u8" : "b8";
-    case 2: return is_load ? "u16" : "b16";
-    case 8: return "b64";
-    default: return words == 4 ? "v4.b32" : words == 2 ? "v2.b32" : "b32";
+    case 1:
+      return is_load ? "u8" : "b8";
+    case 2:
+      return is_load ? "u16" : "b16";
+    case 8:
+      return "b64";
+    default:
+      return words == 4 ? "v4.b32" : words == 2 ? "v2.b32" : "b32";
   }
 }
 
@@ -52,13 +62,15 @@ Operands slice(Lowering& l, const Pointer& p, const Operands& parts) {
     Operand part = parts.at(first);
     if (!is_constant(p.part_index, 0))
       for (uint32_t at = 1; first + at < parts.size(); ++at)
-        part = l.emit().select(l.emit().value("setp.eq.u32", {p.part_index, Operand::value(at)}), parts[first + at], part);
+        part = l.emit().select(l.emit().value("setp.eq.u32", {p.part_index, Operand::value(at)}),
+                               parts[first + at], part);
     result.push_back(part);
   }
   return result;
 }
 
-// docs/abi.md: arrays of buffers and of acceleration structures have their descriptors in a table in global memory.
+// docs/abi.md: arrays of buffers and of acceleration structures have their descriptors in a table in global
+// memory.
 Operand descriptor_in_table(Lowering& l, const Operand& table, const Operand& index) {
   return l.emit().value("mad.wide.u32", {index, Operand::value(isa::kDescriptorBytes), table});
 }
@@ -178,7 +190,8 @@ Operand Lowering::buffer_entry(const Pointer& p) {
   if (p.table.kind != Operand::Kind::None) return descriptor_in_table(*this, p.table, p.base);
   const Decorations& d = decorations(p.variable);
   const uint32_t at = isa::descriptor_offset(d.set.value_or(0), d.binding.value_or(0));
-  return descriptor_in_table(*this, emitter_.load("ld.const.b64", Operand::value(0), int32_t(at), 1, 1)[0], p.base);
+  return descriptor_in_table(*this, emitter_.load("ld.const.b64", Operand::value(0), int32_t(at), 1, 1)[0],
+                             p.base);
 }
 
 Pointer Lowering::buffer_element(Pointer p) {

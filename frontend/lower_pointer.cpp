@@ -16,7 +16,8 @@ Pointer Lowering::buffer_pointer(const Variable& variable, Pointer p) {
   p.alignment =
       16;  // Choice: buffers are bound at multiples of 16 bytes (Vulkan minStorageBufferOffsetAlignment)
   const Type* block = &module_.type(p.type);
-  while (block->kind == Type::Kind::Array || block->kind == Type::Kind::RuntimeArray) block = &module_.type(block->element);
+  while (block->kind == Type::Kind::Array || block->kind == Type::Kind::RuntimeArray)
+    block = &module_.type(block->element);
   p.is_constant = variable.storage == spv::StorageClass::Uniform && !block->is_buffer_block;
   if (block != &module_.type(p.type)) {
     p.place = Place::Resource;
@@ -69,7 +70,8 @@ Pointer Lowering::variable_pointer(const Variable& variable) {
       return p;
     case Storage::ShaderRecordBufferKHR:
       p.place = Place::Global;
-      p.base = emitter_.value("pack.b64", {Operand::of(isa::Special::Record), Operand::of(isa::Special::RecordHi)});
+      p.base = emitter_.value("pack.b64",
+                              {Operand::of(isa::Special::Record), Operand::of(isa::Special::RecordHi)});
       p.is_constant = true;  // Vulkan: shaders only read it
       return p;
     case Storage::HitAttributeKHR: {
@@ -101,9 +103,9 @@ Pointer Lowering::variable_pointer(const Variable& variable) {
         unsupported(fmt::format("input variable {}", module_.name_of(variable.id)), variable.line);
       return p;
     default:
-      unsupported(
-          fmt::format("storage class {} of {}", name_of_storage_class(uint32_t(variable.storage)), module_.name_of(variable.id)),
-          variable.line);
+      unsupported(fmt::format("storage class {} of {}", name_of_storage_class(uint32_t(variable.storage)),
+                              module_.name_of(variable.id)),
+                  variable.line);
       return p;
   }
 }
@@ -214,7 +216,8 @@ void step_parts(Lowering& l, Pointer* p, Id index) {
 
 uint32_t flat_count(const Module& module, Id type) {
   uint32_t count = 1;
-  for (const Type* t = &module.type(type); t->kind == Type::Kind::Array; t = &module.type(t->element)) count *= t->count;
+  for (const Type* t = &module.type(type); t->kind == Type::Kind::Array; t = &module.type(t->element))
+    count *= t->count;
   return count;
 }
 
@@ -259,11 +262,14 @@ void access_chain(Lowering& l, const Instruction& inst, const LoweringRow&) {
   walk_chain(l, inst, l.pointer(inst.operands[0]), 1);
 }
 
-// SPIR-V, "Memory Object Layout": shared memory has the strides that are stated only where its variables are blocks.
+// SPIR-V, "Memory Object Layout": shared memory has the strides that are stated only where its variables are
+// blocks.
 bool has_stated_strides(const Lowering& l, Place place) {
   if (place != Place::Shared) return true;
   for (const auto& [id, variable] : l.module().variables)
-    if (variable.storage == spv::StorageClass::Workgroup && l.module().type(l.module().type(variable.type).element).is_block) return true;
+    if (variable.storage == spv::StorageClass::Workgroup &&
+        l.module().type(l.module().type(variable.type).element).is_block)
+      return true;
   return false;
 }
 
@@ -271,13 +277,15 @@ bool has_stated_strides(const Lowering& l, Place place) {
 void pointer_access_chain(Lowering& l, const Instruction& inst, const LoweringRow&) {
   Pointer p = l.pointer(inst.operands[0]);
   const Type& type = l.module().type(l.type_of(inst.operands[0]));
-  if (p.place != Place::Global && p.place != Place::Shared) return l.unsupported("OpPtrAccessChain of this pointer");
+  if (p.place != Place::Global && p.place != Place::Shared)
+    return l.unsupported("OpPtrAccessChain of this pointer");
   const bool is_stated = type.array_stride != 0 && has_stated_strides(l, p.place);
   step_elements(l, &p, inst.operands[1], is_stated ? type.array_stride : l.layout().size(type.element));
   walk_chain(l, inst, p, 2);
 }
 
-// What memory operands from `operand` on say: that a value must not be kept from an earlier access, and the alignment.
+// What memory operands from `operand` on say: that a value must not be kept from an earlier access, and the
+// alignment.
 Pointer accessed(Lowering& l, const Instruction& inst, Id pointer, size_t operand) {
   Pointer p = l.pointer(pointer);
   if (inst.operands.size() <= operand) return p;
@@ -306,11 +314,12 @@ void array_length(Lowering& l, const Instruction& inst, const LoweringRow&) {
   const Pointer p = l.pointer(inst.operands[0]);
   const Decorations& d = l.decorations(p.variable);
   const bool in_table = p.entry.kind != Operand::Kind::None;
-  if (p.place != Place::Global || (!in_table && !d.binding)) return l.unsupported("OpArrayLength of this pointer");
+  if (p.place != Place::Global || (!in_table && !d.binding))
+    return l.unsupported("OpArrayLength of this pointer");
   const uint32_t descriptor = isa::descriptor_offset(d.set.value_or(0), d.binding.value_or(0));
-  const Operand bytes = in_table
-                            ? l.emit().load("ld.global.b32", p.entry, 8, 1, 1)[0]
-                            : l.emit().load("ld.const.b32", Operand::value(0), int32_t(descriptor + 8), 1, 1)[0];
+  const Operand bytes =
+      in_table ? l.emit().load("ld.global.b32", p.entry, 8, 1, 1)[0]
+               : l.emit().load("ld.const.b32", Operand::value(0), int32_t(descriptor + 8), 1, 1)[0];
   const uint32_t offset = l.layout().member_offset(p.type, inst.operands[1]);
   const uint32_t stride =
       l.layout().element_stride(l.module().type(p.type).members.at(inst.operands[1]).type, {});

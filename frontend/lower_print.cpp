@@ -1,8 +1,7 @@
 // debugPrintfEXT: the format is matched with its arguments here; vectors become their components.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 
 #include "base/diagnostics.h"
 #include "frontend/lower.h"
@@ -27,7 +26,8 @@ class Print {
         at = conversion(at) - 1;
       }
     }
-    if (next_ != arguments_.size()) fail(fmt::format("the format takes {} arguments, the call gives {}", next_, arguments_.size()));
+    if (next_ != arguments_.size())
+      fail(fmt::format("the format takes {} arguments, the call gives {}", next_, arguments_.size()));
     end_message("print");
   }
 
@@ -35,7 +35,8 @@ class Print {
   [[noreturn]] void fail(const std::string& what) const {
     const isa::Line line = l_.emit().line();
     const auto& files = l_.module().files;
-    const std::string file = line.line != 0 && line.file < files.size() ? files[line.file] : l_.program().name;
+    const std::string file =
+        line.line != 0 && line.file < files.size() ? files[line.file] : l_.program().name;
     throw UserError({file, int(line.line), 0}, fmt::format("debugPrintfEXT(\"{}\"): {}", format_, what));
   }
 
@@ -49,14 +50,19 @@ class Print {
       at += 2;
     }
     const size_t lengths = at;
-    while (at < format_.size() && (format_[at] == 'l' || format_[at] == 'h')) ++at;  // the argument knows its width
+    while (at < format_.size() && (format_[at] == 'l' || format_[at] == 'h'))
+      ++at;  // the argument knows its width
     const bool has_length = at != lengths;
     const std::string spelled = format_.substr(first, at + 1 - first);
     c.letter = at < format_.size() ? format_[at] : '\0';
     if (c.letter == '\0' || std::string_view("diuxXofFeEgGaA").find(c.letter) == std::string_view::npos)
-      fail(fmt::format("'{}' is no conversion; known are %d %i %u %x %X %o %f %F %e %E %g %G %a %A, with vectors as %v3f", spelled));
-    if (std::max(c.width, c.precision) > isa::kMaxMessageWidth) fail(fmt::format("'{}': more than {} characters", spelled, isa::kMaxMessageWidth));
-    if (next_ == arguments_.size()) fail(fmt::format("'{}' has no argument: the call gives {}", spelled, arguments_.size()));
+      fail(fmt::format(
+          "'{}' is no conversion; known are %d %i %u %x %X %o %f %F %e %E %g %G %a %A, with vectors as %v3f",
+          spelled));
+    if (std::max(c.width, c.precision) > isa::kMaxMessageWidth)
+      fail(fmt::format("'{}': more than {} characters", spelled, isa::kMaxMessageWidth));
+    if (next_ == arguments_.size())
+      fail(fmt::format("'{}' has no argument: the call gives {}", spelled, arguments_.size()));
     const Part part = argument(c);
     ++at;
     // Older documents of the extension write 64-bit numbers as %ul.
@@ -68,8 +74,8 @@ class Print {
     const Id id = arguments_[next_++];
     const Part part = l_.part_of(l_.type_of(id));
     const Operands parts = l_.value(id);
-    // Choice: what is given is printed as what it is, where the specification leaves it undefined: all components, and
-    // floats under %d as floats. Drivers take such formats, and shaders have them.
+    // Choice: what is given is printed as what it is, where the specification leaves it undefined: all
+    // components, and floats under %d as floats. Drivers take such formats, and shaders have them.
     if (is_float(part) != isa::is_float(c)) c.letter = is_float(part) ? 'f' : is_signed(part) ? 'd' : 'u';
     c.is_wide = bytes_of(part) == 8;
     for (size_t i = 0; i < parts.size(); ++i) {
@@ -83,8 +89,10 @@ class Print {
 
   void add_words(Part part, const Operand& x) {
     Emitter& e = l_.emit();
-    if (part == Part::Bool) return words_.push_back(e.value("selp.b32", {Operand::value(1), Operand::value(0), x}));
-    if (bytes_of(part) < 8) return words_.push_back(widened(e, part, x, part == Part::Int8 || part == Part::Int16));
+    if (part == Part::Bool)
+      return words_.push_back(e.value("selp.b32", {Operand::value(1), Operand::value(0), x}));
+    if (bytes_of(part) < 8)
+      return words_.push_back(widened(e, part, x, part == Part::Int8 || part == Part::Int16));
     if (x.kind == Operand::Kind::Constant) {
       words_.push_back(Operand::value(uint32_t(x.constant)));
       return words_.push_back(Operand::value(x.constant >> 32));
@@ -107,7 +115,7 @@ class Print {
   Lowering& l_;
   const std::string& format_;
   const std::vector<Id> arguments_;
-  size_t next_ = 0;  // argument
+  size_t next_ = 0;   // argument
   std::string text_;  // of the message so far
   Operands words_;
 };

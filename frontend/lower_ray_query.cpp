@@ -16,7 +16,8 @@ Operand query(Lowering& l, const Instruction& inst) {
 
 void initialize(Lowering& l, const Instruction& inst, const LoweringRow&) {
   Operands operands{query(l, inst)};
-  for (size_t i = 1; i < inst.operands.size(); ++i) {  // structure, flags, mask, origin, t min, direction, t max
+  for (size_t i = 1; i < inst.operands.size();
+       ++i) {  // structure, flags, mask, origin, t min, direction, t max
     const Operands parts = l.value(inst.operands[i]);
     operands.insert(operands.end(), parts.begin(), parts.end());
   }
@@ -27,7 +28,9 @@ void proceed(Lowering& l, const Instruction& inst, const LoweringRow&) {
   l.set(inst.result, {l.emit().fresh("rq.proceed", {query(l, inst)})});
 }
 
-void decide(Lowering& l, const Instruction& inst, const LoweringRow& row) { l.emit().effect(row.name32, {query(l, inst)}); }
+void decide(Lowering& l, const Instruction& inst, const LoweringRow& row) {
+  l.emit().effect(row.name32, {query(l, inst)});
+}
 
 void generate(Lowering& l, const Instruction& inst, const LoweringRow& row) {
   l.emit().effect(row.name32, {query(l, inst), l.scalar(inst.operands[1])});
@@ -35,7 +38,8 @@ void generate(Lowering& l, const Instruction& inst, const LoweringRow& row) {
 
 // ".candidate" or ".committed", by the constant of SPIR-V's Intersection operand.
 std::string suffix(const Lowering& l, const Instruction& inst) {
-  return l.module().constant_u32(inst.operands[1]).value_or(0) % kPositionsOfIntersection ? ".committed" : ".candidate";
+  return l.module().constant_u32(inst.operands[1]).value_or(0) % kPositionsOfIntersection ? ".committed"
+                                                                                          : ".candidate";
 }
 
 // A scalar of a hit, and one of the ray itself.
@@ -58,8 +62,8 @@ void aabb_opaque(Lowering& l, const Instruction& inst, const LoweringRow& row) {
 
 void barycentrics(Lowering& l, const Instruction& inst, const LoweringRow&) {
   const Operand which = query(l, inst);
-  l.set(inst.result,
-        {l.emit().fresh("rq.u" + suffix(l, inst), {which}), l.emit().fresh("rq.v" + suffix(l, inst), {which})});
+  l.set(inst.result, {l.emit().fresh("rq.u" + suffix(l, inst), {which}),
+                      l.emit().fresh("rq.v" + suffix(l, inst), {which})});
 }
 
 Operands vector(Lowering& l, const std::string& stem, const std::string& end, const Operand& which) {
@@ -74,20 +78,22 @@ void vector_of_ray(Lowering& l, const Instruction& inst, const LoweringRow& row)
   l.set(inst.result, vector(l, std::string(row.name32), "", query(l, inst)));
 }
 
-// mat4x3 in GLSL: four columns of three rows; the ISA counts row by row. Corners of triangles come as the first three
-// columns of such a matrix (known_positions.h).
+// mat4x3 in GLSL: four columns of three rows; the ISA counts row by row. Corners of triangles come as the
+// first three columns of such a matrix (known_positions.h).
 void matrix_of_hit(Lowering& l, const Instruction& inst, const LoweringRow& row) {
   const Operand which = query(l, inst);
   Operands parts;
   if (l.module().constant_u32(inst.operands[1]).value_or(0) >= kPositionsOfIntersection) {
     for (int number = 0; number < 12; ++number)
-      parts.push_back(number < 9 ? l.emit().fresh("rq.corner." + std::to_string(number) + suffix(l, inst), {which}) : Operand::value(0));
+      parts.push_back(number < 9
+                          ? l.emit().fresh("rq.corner." + std::to_string(number) + suffix(l, inst), {which})
+                          : Operand::value(0));
     return l.set(inst.result, std::move(parts));
   }
   for (int column = 0; column < 4; ++column)
     for (int r = 0; r < 3; ++r)
-      parts.push_back(
-          l.emit().fresh(std::string(row.name32) + "." + std::to_string(4 * r + column) + suffix(l, inst), {which}));
+      parts.push_back(l.emit().fresh(
+          std::string(row.name32) + "." + std::to_string(4 * r + column) + suffix(l, inst), {which}));
   l.set(inst.result, std::move(parts));
 }
 
@@ -130,6 +136,8 @@ uint32_t Lowering::ray_query(Id variable) {
   return ray_queries_[variable] = first;
 }
 
-std::span<const LoweringRow> ray_query_rows() { return kRows; }
+std::span<const LoweringRow> ray_query_rows() {
+  return kRows;
+}
 
 }  // namespace glint::frontend

@@ -36,10 +36,11 @@ void execute_callable(Lowering& l, const Instruction& inst, const LoweringRow&) 
   forget_after_call(l);
 }
 
-// In SPV_NV_ray_tracing these are no terminators: code follows that no lane runs. A guard that always holds keeps it
-// well formed.
+// In SPV_NV_ray_tracing these are no terminators: code follows that no lane runs. A guard that always holds
+// keeps it well formed.
 void end_any_hit(Lowering& l, const Instruction&, const LoweringRow& row) {
-  const Operand always = l.emit().fresh("setp.ne.u32", {Operand::of(Special::LaneId), Operand::value(0xffff'ffff)});
+  const Operand always =
+      l.emit().fresh("setp.ne.u32", {Operand::of(Special::LaneId), Operand::value(0xffff'ffff)});
   VirtualInst& end = l.emit().effect(row.name32, {});
   end.guard = always.reg;
 }
@@ -129,7 +130,8 @@ void forget_after_call(Lowering& l) {
   l.emit().forget();  // what is computed again need not be saved
 }
 
-void lower_trace(Lowering& l, std::span<const uint32_t> arguments, const Pointer& payload, const std::function<void()>& finish) {
+void lower_trace(Lowering& l, std::span<const uint32_t> arguments, const Pointer& payload,
+                 const std::function<void()>& finish) {
   Emitter& e = l.emit();
   Operands operands{Operand::of(l.program().new_register(RegisterClass::Predicate))};
   const Operand waits = operands[0];
@@ -162,7 +164,8 @@ Operands Lowering::load_builtin(spv::BuiltIn builtin, Id type) {
   if (const std::optional<Operands> parts = load_compute_builtin(builtin)) return *parts;
   if (builtin == kHitTriangleVertexPositions) {
     Operands parts;
-    for (uint32_t number = 0; number < 9; ++number) parts.push_back(emitter_.fresh("rt.corner", {Operand::value(number)}));
+    for (uint32_t number = 0; number < 9; ++number)
+      parts.push_back(emitter_.fresh("rt.corner", {Operand::value(number)}));
     return parts;
   }
   switch (builtin) {

@@ -11,17 +11,18 @@ namespace {
 using enum spv::Op;
 
 bool has_reference(spv::Op op) {
-  return op == OpImageSampleDrefExplicitLod || op == OpImageSampleDrefImplicitLod || op == OpImageSampleProjDrefExplicitLod ||
-         op == OpImageSampleProjDrefImplicitLod || op == OpImageDrefGather;
+  return op == OpImageSampleDrefExplicitLod || op == OpImageSampleDrefImplicitLod ||
+         op == OpImageSampleProjDrefExplicitLod || op == OpImageSampleProjDrefImplicitLod ||
+         op == OpImageDrefGather;
 }
 bool is_projective(spv::Op op) {
-  return op == OpImageSampleProjExplicitLod || op == OpImageSampleProjImplicitLod || op == OpImageSampleProjDrefExplicitLod ||
-         op == OpImageSampleProjDrefImplicitLod;
+  return op == OpImageSampleProjExplicitLod || op == OpImageSampleProjImplicitLod ||
+         op == OpImageSampleProjDrefExplicitLod || op == OpImageSampleProjDrefImplicitLod;
 }
 
 bool is_implicit(spv::Op op) {
-  return op == OpImageSampleImplicitLod || op == OpImageSampleDrefImplicitLod || op == OpImageSampleProjImplicitLod ||
-         op == OpImageSampleProjDrefImplicitLod;
+  return op == OpImageSampleImplicitLod || op == OpImageSampleDrefImplicitLod ||
+         op == OpImageSampleProjImplicitLod || op == OpImageSampleProjDrefImplicitLod;
 }
 
 // Handle, layer as an integer (Vulkan: rounded to nearest even), coordinates.
@@ -73,8 +74,8 @@ std::optional<Sample> sample_of(Lowering& l, const Instruction& inst, size_t num
   return s;
 }
 
-// An implicit level is that of the gradients between lanes, where a module puts them into quads (a bias scales them), and
-// else level 0, as GLSL has it outside of fragment shaders.
+// An implicit level is that of the gradients between lanes, where a module puts them into quads (a bias
+// scales them), and else level 0, as GLSL has it outside of fragment shaders.
 void sample(Lowering& l, const Instruction& inst, const LoweringRow&) {
   const bool compares = has_reference(inst.op);
   const auto s = sample_of(l, inst, compares ? 3 : 2);
@@ -93,7 +94,8 @@ void sample(Lowering& l, const Instruction& inst, const LoweringRow&) {
   } else if (is_implicit(inst.op) && has_derivatives(l)) {
     name += ".grad";
     const Operands at(s->place.end() - s->geometry.coordinates, s->place.end());
-    const Operand bias = s->extra.bias ? l.emit().value("ex2.f32", {l.scalar(*s->extra.bias)}) : constant_f32(1);
+    const Operand bias =
+        s->extra.bias ? l.emit().value("ex2.f32", {l.scalar(*s->extra.bias)}) : constant_f32(1);
     const Operands parts = gradients(l, at, bias);
     sources.insert(sources.end(), parts.begin(), parts.end());
   }
@@ -115,7 +117,8 @@ void query_lod(Lowering& l, const Instruction& inst, const LoweringRow&) {
   Emitter& e = l.emit();
   const auto geometry = geometry_of(l, l.type_of(inst.operands[0]), false);
   if (!geometry) return;
-  if (geometry->name.find("cube") != std::string_view::npos) return l.unsupported("textureQueryLod of a cube");
+  if (geometry->name.find("cube") != std::string_view::npos)
+    return l.unsupported("textureQueryLod of a cube");
   if (!has_derivatives(l)) return l.unsupported("textureQueryLod without a derivative group");
   const Operand handle = l.scalar(inst.operands[0]);
   Operands at = l.value(inst.operands[1]);
@@ -124,14 +127,17 @@ void query_lod(Lowering& l, const Instruction& inst, const LoweringRow&) {
   constexpr std::string_view kAxes[] = {"width", "height", "depth"};
   Operand along[2] = {constant_f32(0), constant_f32(0)};  // squared lengths in texels, to the right and down
   for (size_t axis = 0; axis < at.size(); ++axis) {
-    const Operand size = e.value("cvt.rn.f32.u32", {e.fresh(fmt::format("txq.{}.b32", kAxes[axis]), {handle})});
+    const Operand size =
+        e.value("cvt.rn.f32.u32", {e.fresh(fmt::format("txq.{}.b32", kAxes[axis]), {handle})});
     for (size_t i = 0; i < 2; ++i) {
       const Operand step = e.mul(change[i * at.size() + axis], size);
       along[i] = e.add(along[i], e.mul(step, step));
     }
   }
-  const Operand level = e.mul(e.value("lg2.f32", {e.value("max.f32", {along[0], along[1]})}), constant_f32(0.5f));
-  const Operand last = e.add(e.value("cvt.rn.f32.u32", {e.fresh("txq.num_mipmap_levels.b32", {handle})}), constant_f32(-1));
+  const Operand level =
+      e.mul(e.value("lg2.f32", {e.value("max.f32", {along[0], along[1]})}), constant_f32(0.5f));
+  const Operand last =
+      e.add(e.value("cvt.rn.f32.u32", {e.fresh("txq.num_mipmap_levels.b32", {handle})}), constant_f32(-1));
   l.set(inst.result, {e.value("min.f32", {e.value("max.f32", {level, constant_f32(0)}), last}), level});
 }
 
@@ -139,8 +145,8 @@ Operands gather_at(Lowering& l, const Sample& s, uint32_t component, const std::
   Operands sources = s.place;
   if (offset) sources.push_back(*offset);
   if (s.reference) sources.push_back(*s.reference);
-  const std::string name = fmt::format("tld4{}{}.{}.{}.v4.{}.f32", s.reference ? ".compare" : "", offset ? ".offset" : "",
-                                       "rgba"[component], s.geometry.name, s.suffix);
+  const std::string name = fmt::format("tld4{}{}.{}.{}.v4.{}.f32", s.reference ? ".compare" : "",
+                                       offset ? ".offset" : "", "rgba"[component], s.geometry.name, s.suffix);
   return four_words(l, name, sources);
 }
 
@@ -148,7 +154,8 @@ Operands gather_at(Lowering& l, const Sample& s, uint32_t component, const std::
 void gather(Lowering& l, const Instruction& inst, const LoweringRow&) {
   const auto s = sample_of(l, inst, 3);
   if (!s) return;
-  const auto component = has_reference(inst.op) ? std::optional<uint32_t>(0) : l.module().constant_u32(inst.operands[2]);
+  const auto component =
+      has_reference(inst.op) ? std::optional<uint32_t>(0) : l.module().constant_u32(inst.operands[2]);
   if (!component || *component > 3) return l.unsupported("a gather of a component that is no constant");
   if (!s->extra.offsets) {
     std::optional<Operand> offset;
@@ -164,12 +171,17 @@ void gather(Lowering& l, const Instruction& inst, const LoweringRow&) {
 }
 
 constexpr LoweringRow kRows[] = {
-    {OpImageSampleExplicitLod, sample, ""},     {OpImageSampleImplicitLod, sample, ""},
-    {OpImageSampleDrefExplicitLod, sample, ""}, {OpImageSampleDrefImplicitLod, sample, ""},
-    {OpImageSampleProjExplicitLod, sample, ""}, {OpImageSampleProjImplicitLod, sample, ""},
-    {OpImageSampleProjDrefExplicitLod, sample, ""}, {OpImageSampleProjDrefImplicitLod, sample, ""},
+    {OpImageSampleExplicitLod, sample, ""},
+    {OpImageSampleImplicitLod, sample, ""},
+    {OpImageSampleDrefExplicitLod, sample, ""},
+    {OpImageSampleDrefImplicitLod, sample, ""},
+    {OpImageSampleProjExplicitLod, sample, ""},
+    {OpImageSampleProjImplicitLod, sample, ""},
+    {OpImageSampleProjDrefExplicitLod, sample, ""},
+    {OpImageSampleProjDrefImplicitLod, sample, ""},
     {OpImageQueryLod, query_lod, ""},
-    {OpImageGather, gather, ""},                {OpImageDrefGather, gather, ""},
+    {OpImageGather, gather, ""},
+    {OpImageDrefGather, gather, ""},
 };
 
 }  // namespace

@@ -13,10 +13,13 @@ namespace {
 using isa::Special;
 using enum spv::Op;
 
-Operand word(uint32_t bits) { return Operand::value(bits); }
+Operand word(uint32_t bits) {
+  return Operand::value(bits);
+}
 constexpr uint32_t kNobody = 0xffff'ffff;  // what bfind gives for no bits
 
-Operand shuffle_word(Lowering& l, std::string_view op, const Operand& x, const Operand& lane, const Operand& segment) {
+Operand shuffle_word(Lowering& l, std::string_view op, const Operand& x, const Operand& lane,
+                     const Operand& segment) {
   const Operand result = Operand::of(l.program().new_register(RegisterClass::B32));
   const Operand is_inside = Operand::of(l.program().new_register(RegisterClass::Predicate));
   l.emit().effect(op, {result, is_inside, x, lane, segment, word(0xffff'ffff)});
@@ -24,8 +27,12 @@ Operand shuffle_word(Lowering& l, std::string_view op, const Operand& x, const O
 }
 
 // Bits of an integer whose sign bit alone is set, all ones, ...: by the width of the type.
-uint64_t ones(Part part) { return bytes_of(part) == 8 ? ~uint64_t{0} : (uint64_t{1} << 8 * bytes_of(part)) - 1; }
-uint64_t largest(Part part) { return ones(part) >> 1; }
+uint64_t ones(Part part) {
+  return bytes_of(part) == 8 ? ~uint64_t{0} : (uint64_t{1} << 8 * bytes_of(part)) - 1;
+}
+uint64_t largest(Part part) {
+  return ones(part) >> 1;
+}
 
 uint64_t float_bits(Part part, uint16_t half, float single, double full) {
   if (part == Part::Float16) return half;
@@ -36,15 +43,23 @@ uint64_t float_bits(Part part, uint16_t half, float single, double full) {
 uint64_t identity(spv::Op op, Part part) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   switch (op) {
-    case OpGroupNonUniformIMul: return 1;
-    case OpGroupNonUniformFMul: return float_bits(part, 0x3c00, 1.0f, 1.0);
-    case OpGroupNonUniformSMin: return largest(part);
-    case OpGroupNonUniformSMax: return largest(part) + 1;
+    case OpGroupNonUniformIMul:
+      return 1;
+    case OpGroupNonUniformFMul:
+      return float_bits(part, 0x3c00, 1.0f, 1.0);
+    case OpGroupNonUniformSMin:
+      return largest(part);
+    case OpGroupNonUniformSMax:
+      return largest(part) + 1;
     case OpGroupNonUniformUMin:
-    case OpGroupNonUniformBitwiseAnd: return ones(part);
-    case OpGroupNonUniformFMin: return float_bits(part, 0x7c00, kInfinity, double(kInfinity));
-    case OpGroupNonUniformFMax: return float_bits(part, 0xfc00, -kInfinity, -double(kInfinity));
-    default: return 0;
+    case OpGroupNonUniformBitwiseAnd:
+      return ones(part);
+    case OpGroupNonUniformFMin:
+      return float_bits(part, 0x7c00, kInfinity, double(kInfinity));
+    case OpGroupNonUniformFMax:
+      return float_bits(part, 0xfc00, -kInfinity, -double(kInfinity));
+    default:
+      return 0;
   }
 }
 
@@ -72,22 +87,25 @@ Operand combine_bools(Lowering& l, spv::Op op, const Operand& x, const Lanes& la
   return e.value("setp.ne.u32", {e.value("and.b32", {e.value("popc.b32", {votes}), word(1)}), word(0)});
 }
 
-// Five steps of pointer jumping; fewer in small clusters. Whoever executes, the member before a lane is the highest
-// bit below it. Choice: the order of combining floats, which SPIR-V leaves open.
-Operand inclusive(Lowering& l, std::string_view name32, Part part, Operand x, Operand before, uint32_t cluster) {
+// Five steps of pointer jumping; fewer in small clusters. Whoever executes, the member before a lane is the
+// highest bit below it. Choice: the order of combining floats, which SPIR-V leaves open.
+Operand inclusive(Lowering& l, std::string_view name32, Part part, Operand x, Operand before,
+                  uint32_t cluster) {
   Emitter& e = l.emit();
   for (uint32_t reach = 1; reach < cluster; reach *= 2) {
     const Operand there = e.value("setp.ne.u32", {before, word(kNobody)});
     const Operand theirs = from_lane(l, part, x, before);
     x = e.select(there, typed(e, name32, part, {theirs, x}), x);
-    if (2 * reach < cluster) before = e.select(there, from_lane(l, Part::Uint32, before, before), word(kNobody));
+    if (2 * reach < cluster)
+      before = e.select(there, from_lane(l, Part::Uint32, before, before), word(kNobody));
   }
   return x;
 }
 
 }  // namespace
 
-Operand shuffle(Lowering& l, std::string_view op, Part part, const Operand& x, const Operand& lane, const Operand& segment) {
+Operand shuffle(Lowering& l, std::string_view op, Part part, const Operand& x, const Operand& lane,
+                const Operand& segment) {
   Emitter& e = l.emit();
   if (part == Part::Bool) {
     const Operand bit = e.value("selp.b32", {word(1), word(0), x});
@@ -96,7 +114,8 @@ Operand shuffle(Lowering& l, std::string_view op, Part part, const Operand& x, c
   if (bytes_of(part) < 8) return shuffle_word(l, op, x, lane, segment);
   const Operand low = e.value("cvt.u32.u64", {x});
   const Operand high = e.value("cvt.u32.u64", {e.value("shr.u64", {x, word(32)})});
-  const Operand new_low = shuffle_word(l, op, low, lane, segment), new_high = shuffle_word(l, op, high, lane, segment);
+  const Operand new_low = shuffle_word(l, op, low, lane, segment),
+                new_high = shuffle_word(l, op, high, lane, segment);
   return e.value("pack.b64", {new_low, new_high});
 }
 
@@ -109,15 +128,18 @@ Operand lowest(Lowering& l, const Operand& bits) {
   return e.value("bfind.u32", {e.value("and.b32", {bits, e.value("neg.s32", {bits})})});
 }
 
-Operand combine(Lowering& l, spv::Op op, std::string_view name32, Part part, const Operand& x, const Lanes& lanes) {
+Operand combine(Lowering& l, spv::Op op, std::string_view name32, Part part, const Operand& x,
+                const Lanes& lanes) {
   Emitter& e = l.emit();
   if (part == Part::Bool) return combine_bools(l, op, x, lanes);
   const Operand group = group_mask(e, lanes);
   const std::string reduction = "redux.sync." + std::string(name32);
   const bool is_word = part == Part::Int32 || part == Part::Uint32;
-  if (lanes.scope == Scope::All && is_word && isa::find_op(reduction) >= 0) return e.fresh(reduction, {x, group});
+  if (lanes.scope == Scope::All && is_word && isa::find_op(reduction) >= 0)
+    return e.fresh(reduction, {x, group});
   const Operand members = e.value("and.b32", {group, e.fresh("activemask.b32", {})});
-  const Operand before = e.value("bfind.u32", {e.value("and.b32", {members, Operand::of(Special::LanemaskLt)})});
+  const Operand before =
+      e.value("bfind.u32", {e.value("and.b32", {members, Operand::of(Special::LanemaskLt)})});
   const Operand sum = inclusive(l, name32, part, x, before, lanes.cluster);
   if (lanes.scope == Scope::UpToSelf) return sum;
   if (lanes.scope == Scope::All) return from_lane(l, part, sum, e.value("bfind.u32", {members}));

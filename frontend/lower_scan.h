@@ -17,10 +17,12 @@ struct Lanes {
 };
 
 // `name32` as for typed(); `op` tells the value for no lanes, and the logical operations.
-Operand combine(Lowering& l, spv::Op op, std::string_view name32, Part part, const Operand& x, const Lanes& lanes);
+Operand combine(Lowering& l, spv::Op op, std::string_view name32, Part part, const Operand& x,
+                const Lanes& lanes);
 
 // A shuffle of a value of any type; `segment` is the ISA's last operand but the mask.
-Operand shuffle(Lowering& l, std::string_view op, Part part, const Operand& x, const Operand& lane, const Operand& segment);
+Operand shuffle(Lowering& l, std::string_view op, Part part, const Operand& x, const Operand& lane,
+                const Operand& segment);
 // The value of that lane.
 Operand from_lane(Lowering& l, Part part, const Operand& x, const Operand& lane);
 

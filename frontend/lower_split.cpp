@@ -28,14 +28,15 @@ Operand clamped(Emitter& e, Operand n, int low, int high) {
 
 }  // namespace
 
-// Three factors, for 2^n alone may lie far outside of the format. The one that may leave it comes last, so that the
-// result is rounded once: when n is small enough to make the result subnormal, all products before are exact or the
-// result is 0.
+// Three factors, for 2^n alone may lie far outside of the format. The one that may leave it comes last, so
+// that the result is rounded once: when n is small enough to make the result subnormal, all products before
+// are exact or the result is 0.
 Operand ldexp(Arithmetic& a, Operand x, Operand n) {
   const Format& format = a.is_double() ? kDouble : kSingle;
   Emitter& e = a.emit();
   const int lowest = 1 - format.bias, highest = format.bias;
-  const int reach = 2 * format.bias + format.fraction_bits + 1;  // from one end of the format to past the other
+  const int reach =
+      2 * format.bias + format.fraction_bits + 1;  // from one end of the format to past the other
   const Operand all = clamped(e, n, -reach, reach);
   const Operand last = clamped(e, all, lowest, highest);
   const Operand rest = e.value("sub.s32", {all, last});
@@ -53,7 +54,8 @@ Split frexp(Arithmetic& a, Operand x) {
   const Operand magnitude = a.magnitude(x);
   const Operand is_subnormal = a.less(magnitude, a.constant(smallest_normal));
   const Operand normal = a.select(is_subnormal, a.mul(x, a.constant(double(1ull << up))), x);
-  const Operand high = a.is_double() ? e.value("cvt.u32.u64", {e.value("shr.u64", {normal, word(32)})}) : normal;
+  const Operand high =
+      a.is_double() ? e.value("cvt.u32.u64", {e.value("shr.u64", {normal, word(32)})}) : normal;
   const int high_bits = a.is_double() ? 20 : 23;  // of the fraction, in the word with the exponent
   const Operand biased = e.value("bfe.u32", {high, word(high_bits), word(a.is_double() ? 11 : 8)});
   const Operand bias = e.select(is_subnormal, word(format.bias - 1 + up), word(format.bias - 1));
@@ -65,8 +67,7 @@ Split frexp(Arithmetic& a, Operand x) {
   const Operand is_zero = a.op("setp.eq.f32", {x, a.constant(0)});
   const Operand is_finite = a.op("testp.finite.f32", {x});
   const Operand splits = e.value("and.pred", {is_finite, e.value("not.pred", {is_zero})});
-  return {a.select(splits, fraction, x),
-          e.select(splits, e.value("sub.s32", {biased, bias}), word(0))};
+  return {a.select(splits, fraction, x), e.select(splits, e.value("sub.s32", {biased, bias}), word(0))};
 }
 
 Split modf(Arithmetic& a, Operand x) {

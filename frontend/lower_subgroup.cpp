@@ -1,4 +1,5 @@
-// Subgroup operations: votes, ballots, shuffles, reductions and scans over the lanes of a warp that execute them.
+// Subgroup operations: votes, ballots, shuffles, reductions and scans over the lanes of a warp that execute
+// them.
 //
 // None of them is reused or folded, for another place in the code may be executed by other lanes.
 // SPDX-License-Identifier: Apache-2.0
@@ -12,9 +13,15 @@ namespace {
 using isa::Special;
 using enum spv::Op;
 
-Operand word(uint32_t bits) { return Operand::value(bits); }
-Operand all_lanes() { return word(0xffff'ffff); }  // of the mask; those that do not execute never take part
-Operands ballot_of(const Operand& lanes) { return {lanes, word(0), word(0), word(0)}; }
+Operand word(uint32_t bits) {
+  return Operand::value(bits);
+}
+Operand all_lanes() {
+  return word(0xffff'ffff);
+}  // of the mask; those that do not execute never take part
+Operands ballot_of(const Operand& lanes) {
+  return {lanes, word(0), word(0), word(0)};
+}
 
 bool is_subgroup(Lowering& l, const Instruction& inst) {
   if (l.module().constant_u32(inst.operands[0]).value_or(3) == uint32_t(spv::Scope::Subgroup)) return true;
@@ -31,11 +38,14 @@ void each_part(Lowering& l, const Instruction& inst, size_t at, F&& f) {
   l.set(inst.result, std::move(result));
 }
 
-Operand first_lane(Emitter& e, Lowering& l) { return scan::lowest(l, e.fresh("activemask.b32", {})); }
+Operand first_lane(Emitter& e, Lowering& l) {
+  return scan::lowest(l, e.fresh("activemask.b32", {}));
+}
 
 void elect(Lowering& l, const Instruction& inst, const LoweringRow&) {
   if (!is_subgroup(l, inst)) return;
-  l.set(inst.result, {l.emit().value("setp.eq.u32", {Operand::of(Special::LaneId), first_lane(l.emit(), l)})});
+  l.set(inst.result,
+        {l.emit().value("setp.eq.u32", {Operand::of(Special::LaneId), first_lane(l.emit(), l)})});
 }
 
 void vote(Lowering& l, const Instruction& inst, const LoweringRow& row) {
@@ -50,15 +60,17 @@ void all_equal(Lowering& l, const Instruction& inst, const LoweringRow&) {
   Operand same = word(1);
   for (const Operand& x : Operands(l.value(inst.operands.back()))) {
     const Operand theirs = scan::from_lane(l, part, x, first);
-    const Operand equal = part == Part::Bool ? e.value("not.pred", {e.value("xor.pred", {x, theirs})})
-                                             : typed(e, is_float(part) ? "setp.eq.f32" : "setp.eq.u32", part, {x, theirs});
+    const Operand equal = part == Part::Bool
+                              ? e.value("not.pred", {e.value("xor.pred", {x, theirs})})
+                              : typed(e, is_float(part) ? "setp.eq.f32" : "setp.eq.u32", part, {x, theirs});
     same = is_constant(same, 1) ? equal : e.value("and.pred", {same, equal});
   }
   l.set(inst.result, {e.fresh("vote.sync.all.pred", {same, all_lanes()})});
 }
 
 void ballot(Lowering& l, const Instruction& inst, const LoweringRow&) {
-  l.set(inst.result, ballot_of(l.emit().fresh("vote.sync.ballot.b32", {l.scalar(inst.operands.back()), all_lanes()})));
+  l.set(inst.result,
+        ballot_of(l.emit().fresh("vote.sync.ballot.b32", {l.scalar(inst.operands.back()), all_lanes()})));
 }
 
 Operand bit_of(Emitter& e, const Operand& lanes, const Operand& index) {
@@ -97,12 +109,15 @@ void shuffle(Lowering& l, const Instruction& inst, const LoweringRow& row) {
   const size_t at = inst.operands.size() - 2;
   const Operand lane = l.word(inst.operands[at + 1]);
   const Operand segment = word(row.name32 == "shfl.sync.up.b32" ? 0 : 31);
-  each_part(l, inst, at, [&](Part part, const Operand& x) { return scan::shuffle(l, row.name32, part, x, lane, segment); });
+  each_part(l, inst, at, [&](Part part, const Operand& x) {
+    return scan::shuffle(l, row.name32, part, x, lane, segment);
+  });
 }
 
 void broadcast_first(Lowering& l, const Instruction& inst, const LoweringRow&) {
   const Operand first = first_lane(l.emit(), l);
-  each_part(l, inst, inst.operands.size() - 1, [&](Part part, const Operand& x) { return scan::from_lane(l, part, x, first); });
+  each_part(l, inst, inst.operands.size() - 1,
+            [&](Part part, const Operand& x) { return scan::from_lane(l, part, x, first); });
 }
 
 void quad_broadcast(Lowering& l, const Instruction& inst, const LoweringRow&) {
@@ -122,9 +137,11 @@ void quad_swap(Lowering& l, const Instruction& inst, const LoweringRow&) {
 
 void rotate(Lowering& l, const Instruction& inst, const LoweringRow&) {
   Emitter& e = l.emit();
-  const uint32_t size = inst.operands.size() > 3 ? l.module().constant_u32(inst.operands[3]).value_or(32) : 32;
+  const uint32_t size =
+      inst.operands.size() > 3 ? l.module().constant_u32(inst.operands[3]).value_or(32) : 32;
   const Operand self = Operand::of(Special::LaneId);
-  const Operand turned = e.value("and.b32", {e.value("add.u32", {self, l.word(inst.operands[2])}), word(size - 1)});
+  const Operand turned =
+      e.value("and.b32", {e.value("add.u32", {self, l.word(inst.operands[2])}), word(size - 1)});
   const Operand lane = e.value("or.b32", {e.value("and.b32", {self, word(~(size - 1))}), turned});
   each_part(l, inst, 1, [&](Part part, const Operand& x) { return scan::from_lane(l, part, x, lane); });
 }
@@ -136,7 +153,8 @@ void partition(Lowering& l, const Instruction& inst, const LoweringRow&) {
   Operand lanes = all_lanes();
   for (Operand x : Operands(l.value(inst.operands[0]))) {
     if (part == Part::Bool) x = e.value("selp.b32", {word(1), word(0), x});
-    const Operand same = e.fresh(bytes_of(part) == 8 ? "match.any.sync.b64" : "match.any.sync.b32", {x, all_lanes()});
+    const Operand same =
+        e.fresh(bytes_of(part) == 8 ? "match.any.sync.b64" : "match.any.sync.b32", {x, all_lanes()});
     lanes = e.value("and.b32", {lanes, same});
   }
   l.set(inst.result, ballot_of(lanes));
@@ -147,22 +165,32 @@ void arithmetic(Lowering& l, const Instruction& inst, const LoweringRow& row) {
   if (!is_subgroup(l, inst)) return;
   scan::Lanes lanes;
   switch (spv::GroupOperation(inst.operands[1])) {
-    case spv::GroupOperation::Reduce: break;
-    case spv::GroupOperation::InclusiveScan: lanes.scope = scan::Scope::UpToSelf; break;
-    case spv::GroupOperation::ExclusiveScan: lanes.scope = scan::Scope::BeforeSelf; break;
+    case spv::GroupOperation::Reduce:
+      break;
+    case spv::GroupOperation::InclusiveScan:
+      lanes.scope = scan::Scope::UpToSelf;
+      break;
+    case spv::GroupOperation::ExclusiveScan:
+      lanes.scope = scan::Scope::BeforeSelf;
+      break;
     case spv::GroupOperation::ClusteredReduce:
       lanes.cluster = l.module().constant_u32(inst.operands.at(3)).value_or(32);
       break;
-    case spv::GroupOperation::PartitionedReduceNV: lanes.partition = l.value(inst.operands.at(3))[0]; break;
+    case spv::GroupOperation::PartitionedReduceNV:
+      lanes.partition = l.value(inst.operands.at(3))[0];
+      break;
     case spv::GroupOperation::PartitionedInclusiveScanNV:
       lanes.partition = l.value(inst.operands.at(3))[0], lanes.scope = scan::Scope::UpToSelf;
       break;
     case spv::GroupOperation::PartitionedExclusiveScanNV:
       lanes.partition = l.value(inst.operands.at(3))[0], lanes.scope = scan::Scope::BeforeSelf;
       break;
-    default: return l.unsupported("a group operation of this kind");
+    default:
+      return l.unsupported("a group operation of this kind");
   }
-  each_part(l, inst, 2, [&](Part part, const Operand& x) { return scan::combine(l, inst.op, row.name32, part, x, lanes); });
+  each_part(l, inst, 2, [&](Part part, const Operand& x) {
+    return scan::combine(l, inst.op, row.name32, part, x, lanes);
+  });
 }
 
 // Older names of the same, of SPV_AMD_shader_ballot.
@@ -170,13 +198,22 @@ struct Older {
   spv::Op op, standard;
 };
 constexpr Older kOlder[] = {
-    {OpGroupIAdd, OpGroupNonUniformIAdd}, {OpGroupFAdd, OpGroupNonUniformFAdd},
-    {OpGroupSMin, OpGroupNonUniformSMin}, {OpGroupUMin, OpGroupNonUniformUMin}, {OpGroupFMin, OpGroupNonUniformFMin},
-    {OpGroupSMax, OpGroupNonUniformSMax}, {OpGroupUMax, OpGroupNonUniformUMax}, {OpGroupFMax, OpGroupNonUniformFMax},
-    {OpGroupIAddNonUniformAMD, OpGroupNonUniformIAdd}, {OpGroupFAddNonUniformAMD, OpGroupNonUniformFAdd},
-    {OpGroupSMinNonUniformAMD, OpGroupNonUniformSMin}, {OpGroupUMinNonUniformAMD, OpGroupNonUniformUMin},
-    {OpGroupFMinNonUniformAMD, OpGroupNonUniformFMin}, {OpGroupSMaxNonUniformAMD, OpGroupNonUniformSMax},
-    {OpGroupUMaxNonUniformAMD, OpGroupNonUniformUMax}, {OpGroupFMaxNonUniformAMD, OpGroupNonUniformFMax},
+    {OpGroupIAdd, OpGroupNonUniformIAdd},
+    {OpGroupFAdd, OpGroupNonUniformFAdd},
+    {OpGroupSMin, OpGroupNonUniformSMin},
+    {OpGroupUMin, OpGroupNonUniformUMin},
+    {OpGroupFMin, OpGroupNonUniformFMin},
+    {OpGroupSMax, OpGroupNonUniformSMax},
+    {OpGroupUMax, OpGroupNonUniformUMax},
+    {OpGroupFMax, OpGroupNonUniformFMax},
+    {OpGroupIAddNonUniformAMD, OpGroupNonUniformIAdd},
+    {OpGroupFAddNonUniformAMD, OpGroupNonUniformFAdd},
+    {OpGroupSMinNonUniformAMD, OpGroupNonUniformSMin},
+    {OpGroupUMinNonUniformAMD, OpGroupNonUniformUMin},
+    {OpGroupFMinNonUniformAMD, OpGroupNonUniformFMin},
+    {OpGroupSMaxNonUniformAMD, OpGroupNonUniformSMax},
+    {OpGroupUMaxNonUniformAMD, OpGroupNonUniformUMax},
+    {OpGroupFMaxNonUniformAMD, OpGroupNonUniformFMax},
 };
 
 void older(Lowering& l, const Instruction& inst, const LoweringRow&) {

@@ -13,13 +13,15 @@ namespace glint::frontend {
 // "add.rn.f32" of 64 bits is "add.rn.f64": every 32 in the name changes.
 std::string with_bits(std::string_view name32, uint32_t bits);
 
-// A narrow value as 32 bits: floats converted (exact), integers with copies of their sign or zeros above. Others stay.
+// A narrow value as 32 bits: floats converted (exact), integers with copies of their sign or zeros above.
+// Others stay.
 Operand widened(Emitter& e, Part part, const Operand& x, bool sign_extend);
 // The way back: floats rounded to nearest even, integers cut.
 Operand narrowed(Emitter& e, Part part, const Operand& x);
 
-// The op on operands of type `part`; its name says whether integers are signed ("min.s32"). Narrow types use the op of
-// their own width where there is one, else that of 32 bits. The result has the same type, or is a predicate.
+// The op on operands of type `part`; its name says whether integers are signed ("min.s32"). Narrow types use
+// the op of their own width where there is one, else that of 32 bits. The result has the same type, or is a
+// predicate.
 Operand typed(Emitter& e, std::string_view name32, Part part, const Operands& sources);
 // Whether there is such an op.
 bool has_typed(std::string_view name32, Part part);
@@ -35,7 +37,8 @@ class Arithmetic {
     return is_double_ ? Operand::value(std::bit_cast<uint64_t>(value)) : constant_f32(float(value));
   }
   Operand op(std::string_view name32, Operands sources) {
-    return is_double_ ? e_.value(with_bits(name32, 64), std::move(sources)) : e_.value(name32, std::move(sources));
+    return is_double_ ? e_.value(with_bits(name32, 64), std::move(sources))
+                      : e_.value(name32, std::move(sources));
   }
   Operand add(Operand a, Operand b) { return op("add.rn.f32", {a, b}); }
   Operand sub(Operand a, Operand b) { return op("sub.rn.f32", {a, b}); }

@@ -12,8 +12,12 @@
 namespace glint::frontend {
 namespace {
 
-Operand word(uint32_t bits) { return Operand::value(bits); }
-Operand self() { return Operand::of(isa::Special::LaneId); }
+Operand word(uint32_t bits) {
+  return Operand::value(bits);
+}
+Operand self() {
+  return Operand::of(isa::Special::LaneId);
+}
 
 // f(part, the arguments' scalars) for each part of the result; a scalar argument repeats.
 template <class F>
@@ -33,12 +37,15 @@ void each_part(Lowering& l, const Instruction& inst, size_t num_arguments, F&& f
 // The middle one is max(min(x, y), min(max(x, y), z)).
 bool trinary(Lowering& l, const Instruction& inst) {
   const uint32_t function = inst.operands[1];
-  if (function < AMD_shader_trinary_minmaxFMin3AMD || function > AMD_shader_trinary_minmaxSMid3AMD) return false;
+  if (function < AMD_shader_trinary_minmaxFMin3AMD || function > AMD_shader_trinary_minmaxSMid3AMD)
+    return false;
   constexpr std::string_view kTypes[] = {"f32", "u32", "s32"};
   const std::string_view type = kTypes[(function - 1) % 3];
   const std::string least = fmt::format("min.{}", type), most = fmt::format("max.{}", type);
   each_part(l, inst, 3, [&](Part part, const Operands& x) {
-    const auto op = [&](const std::string& name, const Operand& a, const Operand& b) { return typed(l.emit(), name, part, {a, b}); };
+    const auto op = [&](const std::string& name, const Operand& a, const Operand& b) {
+      return typed(l.emit(), name, part, {a, b});
+    };
     if (function <= AMD_shader_trinary_minmaxSMin3AMD) return op(least, op(least, x[0], x[1]), x[2]);
     if (function <= AMD_shader_trinary_minmaxSMax3AMD) return op(most, op(most, x[0], x[1]), x[2]);
     return op(most, op(least, x[0], x[1]), op(least, op(most, x[0], x[1]), x[2]));
@@ -49,7 +56,8 @@ bool trinary(Lowering& l, const Instruction& inst) {
 // The first argument as that lane has it; 0 from lanes that do not execute.
 void from_lane(Lowering& l, const Instruction& inst, const Operand& lane) {
   Emitter& e = l.emit();
-  const Operand bit = e.value("and.b32", {e.value("shr.u32", {e.fresh("activemask.b32", {}), lane}), word(1)});
+  const Operand bit =
+      e.value("and.b32", {e.value("shr.u32", {e.fresh("activemask.b32", {}), lane}), word(1)});
   const Operand executes = e.value("setp.ne.u32", {bit, word(0)});
   each_part(l, inst, 1, [&](Part part, const Operands& x) {
     return e.select(executes, scan::from_lane(l, part, x[0], lane), word(0));
@@ -88,7 +96,8 @@ bool ballot(Lowering& l, const Instruction& inst) {
     }
     case AMD_shader_ballotMbcntAMD: {  // bits of the lanes below, of which there are 32
       const Operand lanes = e.value("cvt.u32.u64", {l.scalar(inst.operands.at(2))});
-      l.set(inst.result, {e.value("popc.b32", {e.value("and.b32", {lanes, Operand::of(isa::Special::LanemaskLt)})})});
+      l.set(inst.result,
+            {e.value("popc.b32", {e.value("and.b32", {lanes, Operand::of(isa::Special::LanemaskLt)})})});
       return true;
     }
     default:
@@ -104,15 +113,20 @@ Cube cube_of(Emitter& e, const Operands& p) {
   const auto size = [&](int axis) { return e.value("abs.f32", {p.at(size_t(axis))}); };
   const auto minus = [&](int axis) { return e.value("neg.f32", {p.at(size_t(axis))}); };
   const auto at_least = [&](int a, int b) { return e.value("setp.ge.f32", {size(a), size(b)}); };
-  const auto is_negative = [&](int axis) { return e.value("setp.lt.f32", {p.at(size_t(axis)), constant_f32(0)}); };
+  const auto is_negative = [&](int axis) {
+    return e.value("setp.lt.f32", {p.at(size_t(axis)), constant_f32(0)});
+  };
   const Operand z = e.value("and.pred", {at_least(2, 0), at_least(2, 1)}), y = at_least(1, 0);
   const auto choose = [&](const Operand& if_z, const Operand& if_y, const Operand& if_x) {
     return e.select(z, if_z, e.select(y, if_y, if_x));
   };
-  const auto face = [&](int axis) { return e.select(is_negative(axis), constant_f32(float(2 * axis + 1)), constant_f32(float(2 * axis))); };
+  const auto face = [&](int axis) {
+    return e.select(is_negative(axis), constant_f32(float(2 * axis + 1)), constant_f32(float(2 * axis)));
+  };
   return {choose(face(2), face(1), face(0)),
           choose(e.select(is_negative(2), minus(0), p[0]), p[0], e.select(is_negative(0), p[2], minus(2))),
-          choose(minus(1), e.select(is_negative(1), minus(2), p[2]), minus(1)), choose(size(2), size(1), size(0))};
+          choose(minus(1), e.select(is_negative(1), minus(2), p[2]), minus(1)),
+          choose(size(2), size(1), size(0))};
 }
 
 bool gcn(Lowering& l, const Instruction& inst) {
@@ -121,7 +135,9 @@ bool gcn(Lowering& l, const Instruction& inst) {
     l.set(inst.result, {e.value("cvt.u64.u32", {e.fresh("mov.b32", {Operand::of(isa::Special::Clock)})})});
     return true;
   }
-  if (inst.operands[1] != AMD_gcn_shaderCubeFaceIndexAMD && inst.operands[1] != AMD_gcn_shaderCubeFaceCoordAMD) return false;
+  if (inst.operands[1] != AMD_gcn_shaderCubeFaceIndexAMD &&
+      inst.operands[1] != AMD_gcn_shaderCubeFaceCoordAMD)
+    return false;
   const Cube cube = cube_of(e, l.value(inst.operands.at(2)));
   if (inst.operands[1] == AMD_gcn_shaderCubeFaceIndexAMD) {
     l.set(inst.result, {cube.face});

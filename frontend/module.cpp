@@ -153,7 +153,8 @@ void Parser::apply_workgroup_size() {
     const auto size = module_.constants.find(id);
     if (d.builtin != spv::BuiltIn::WorkgroupSize || size == module_.constants.end()) continue;
     for (EntryPoint& entry : module_.entry_points)
-      if (entry.model == spv::ExecutionModel::GLCompute) apply_local_size_id(entry.function, size->second.operands);
+      if (entry.model == spv::ExecutionModel::GLCompute)
+        apply_local_size_id(entry.function, size->second.operands);
   }
 }
 
@@ -229,7 +230,8 @@ void Parser::decorate_member(std::span<const uint32_t> args) {
 
 void Parser::enter(const std::vector<uint32_t>& args) {
   size_t words = 0;
-  EntryPoint entry{spv::ExecutionModel(args[0]), args[1], string_at(std::span(args).subspan(2), &words), {1, 1, 1}, {}};
+  EntryPoint entry{
+      spv::ExecutionModel(args[0]), args[1], string_at(std::span(args).subspan(2), &words), {1, 1, 1}, {}};
   entry.interface.insert(args.begin() + 2 + long(words), args.end());
   module_.entry_points.push_back(std::move(entry));
 }
@@ -308,7 +310,8 @@ bool Parser::declare_type(const Instruction& inst) {
     case spv::Op::OpTypeImage:
       type.kind = Kind::Image, type.element = args[0], type.dim = spv::Dim(args[1]),
       type.is_storage_image = args[5] == 2;
-      type.is_arrayed = args[3] != 0, type.is_multisampled = args[4] != 0, type.format = spv::ImageFormat(args[6]);
+      type.is_arrayed = args[3] != 0, type.is_multisampled = args[4] != 0,
+      type.format = spv::ImageFormat(args[6]);
       break;
     case spv::Op::OpTypeSampler:
       type.kind = Kind::Sampler;
@@ -338,8 +341,10 @@ void Parser::check_labels() const {
   for (const Block& block : function_->blocks) {
     if (block.code.empty()) malformed(fmt::format("block %{} is empty", block.label));
     for (Id to : block.successors())
-      if (!labels.count(to)) malformed(fmt::format("%{} is a branch target but no block of the function", to));
-    if (block.merge != spv::Op::OpNop && !labels.count(block.merge_block)) malformed("a merge block is missing");
+      if (!labels.count(to))
+        malformed(fmt::format("%{} is a branch target but no block of the function", to));
+    if (block.merge != spv::Op::OpNop && !labels.count(block.merge_block))
+      malformed("a merge block is missing");
   }
 }
 

@@ -11,14 +11,22 @@ namespace glint::frontend {
 
 std::optional<isa::Stage> stage_of(spv::ExecutionModel model) {
   switch (model) {
-    case spv::ExecutionModel::RayGenerationKHR: return isa::Stage::RayGeneration;
-    case spv::ExecutionModel::IntersectionKHR: return isa::Stage::Intersection;
-    case spv::ExecutionModel::AnyHitKHR: return isa::Stage::AnyHit;
-    case spv::ExecutionModel::ClosestHitKHR: return isa::Stage::ClosestHit;
-    case spv::ExecutionModel::MissKHR: return isa::Stage::Miss;
-    case spv::ExecutionModel::CallableKHR: return isa::Stage::Callable;
-    case spv::ExecutionModel::GLCompute: return isa::Stage::Compute;
-    default: return std::nullopt;
+    case spv::ExecutionModel::RayGenerationKHR:
+      return isa::Stage::RayGeneration;
+    case spv::ExecutionModel::IntersectionKHR:
+      return isa::Stage::Intersection;
+    case spv::ExecutionModel::AnyHitKHR:
+      return isa::Stage::AnyHit;
+    case spv::ExecutionModel::ClosestHitKHR:
+      return isa::Stage::ClosestHit;
+    case spv::ExecutionModel::MissKHR:
+      return isa::Stage::Miss;
+    case spv::ExecutionModel::CallableKHR:
+      return isa::Stage::Callable;
+    case spv::ExecutionModel::GLCompute:
+      return isa::Stage::Compute;
+    default:
+      return std::nullopt;
   }
 }
 
@@ -60,8 +68,9 @@ const EntryPoint& Module::entry_point(const std::string& wanted, const std::stri
   if (wanted.empty() && std::count_if(entry_points.begin(), entry_points.end(), is_main) == 1)
     return *std::find_if(entry_points.begin(), entry_points.end(), is_main);
   if (entry_points.empty()) throw UserError({file, 0, 0}, "the module has no entry point");
-  throw UserError({file, 0, 0}, wanted.empty() ? "the module has several entry points: " + known
-                                               : "the module has no entry point '" + wanted + "': it has " + known,
+  throw UserError({file, 0, 0},
+                  wanted.empty() ? "the module has several entry points: " + known
+                                 : "the module has no entry point '" + wanted + "': it has " + known,
                   "choose one by its name");
 }
 

@@ -52,7 +52,8 @@ bool has_calls(const std::vector<uint32_t>& spirv) {
 }
 
 std::vector<uint32_t> with_positive_lengths(std::vector<uint32_t> spirv, std::vector<std::string>* names) {
-  std::map<uint32_t, uint32_t> zeros, ones;  // constant to its type; constant 0 to the constant 1 in its place
+  std::map<uint32_t, uint32_t> zeros,
+      ones;  // constant to its type; constant 0 to the constant 1 in its place
   std::map<uint32_t, std::string> name;
   for_each(spirv, [&](spv::Op op, std::span<const uint32_t> w) {
     if (op == OpName && w.size() > 2) name[w[1]] = reinterpret_cast<const char*>(&w[2]);
@@ -66,12 +67,14 @@ std::vector<uint32_t> with_positive_lengths(std::vector<uint32_t> spirv, std::ve
     const size_t begin = out.size();
     out.insert(out.end(), w.begin(), w.end());
     const bool declares = op == OpConstant || op == OpConstantNull;
-    if (const auto one = declares ? ones.find(w[2]) : ones.end(); one != ones.end()) append(out, OpConstant, {w[1], one->second, 1});
+    if (const auto one = declares ? ones.find(w[2]) : ones.end(); one != ones.end())
+      append(out, OpConstant, {w[1], one->second, 1});
     if (op != OpTypeArray) return;
     const auto one = ones.find(w[3]);
     if (one == ones.end()) return;
     out[begin + 3] = one->second;
-    if (name.contains(w[3]) && std::find(names->begin(), names->end(), name[w[3]]) == names->end()) names->push_back(name[w[3]]);
+    if (name.contains(w[3]) && std::find(names->begin(), names->end(), name[w[3]]) == names->end())
+      names->push_back(name[w[3]]);
   });
   return out;
 }

@@ -169,7 +169,8 @@ void say_extensions_anew(std::string& text) {
 std::string text_of_extension(std::string_view header, isa::Stage stage) {
   if (!header.starts_with(kPrefix)) return {};
   header.remove_prefix(kPrefix.size());
-  const auto* const found = std::find_if(std::begin(kExtensions), std::end(kExtensions), [&](const Extension& e) { return e.name == header; });
+  const auto* const found = std::find_if(std::begin(kExtensions), std::end(kExtensions),
+                                         [&](const Extension& e) { return e.name == header; });
   if (found == std::end(kExtensions)) return {};
   const bool is_hit_shader = stage == isa::Stage::AnyHit || stage == isa::Stage::ClosestHit;
   return std::string(found->text) + std::string(is_hit_shader ? found->more_of_hit_shaders : "");

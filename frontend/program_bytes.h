@@ -1,5 +1,5 @@
-// Values as bytes and back, for the cache: numbers, texts, lists, programs. Only the build that wrote them reads them.
-// SPDX-License-Identifier: Apache-2.0
+// Values as bytes and back, for the cache: numbers, texts, lists, programs. Only the build that wrote them
+// reads them. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <cstring>
@@ -15,10 +15,8 @@ namespace glint::frontend {
 class ByteWriter {
  public:
   template <class T>
-    requires std::is_trivially_copyable_v<T>
-  void put(const T& value) {
-    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
-  }
+  requires std::is_trivially_copyable_v<T>
+  void put(const T& value) { bytes_.append(reinterpret_cast<const char*>(&value), sizeof value); }
   void put(const std::string& text) {
     put(uint64_t(text.size()));
     bytes_ += text;
@@ -47,13 +45,14 @@ class ByteWriter {
   std::string bytes_;
 };
 
-// Reads what a ByteWriter wrote, in the same order. What does not fit reads as nothing, and is_good() is false then.
+// Reads what a ByteWriter wrote, in the same order. What does not fit reads as nothing, and is_good() is
+// false then.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}
 
   template <class T>
-    requires std::is_trivially_copyable_v<T>
+  requires std::is_trivially_copyable_v<T>
   void get(T& value) {
     if (!has(sizeof value)) return;
     std::memcpy(&value, bytes_.data(), sizeof value);

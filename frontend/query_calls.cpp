@@ -12,7 +12,8 @@ void make_queries_calls(VirtualProgram& program) {
   for (VirtualBlock& block : program.blocks) {
     std::vector<VirtualInst> code;
     for (VirtualInst& inst : block.code) {
-      const bool calls = inst.kind == VirtualInst::Kind::Real && isa::op_table()[inst.op].effect == isa::Effect::QueryProceed;
+      const bool calls = inst.kind == VirtualInst::Kind::Real &&
+                         isa::op_table()[inst.op].effect == isa::Effect::QueryProceed;
       VirtualInst marker;
       marker.line = inst.line;
       marker.kind = VirtualInst::Kind::SaveLive;

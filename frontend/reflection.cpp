@@ -17,7 +17,8 @@ using Storage = spv::StorageClass;
 BindingKind kind_of(const Type& type, Storage storage) {
   switch (type.kind) {
     case Type::Kind::Struct:
-      return storage == Storage::Uniform && !type.is_buffer_block ? BindingKind::UniformBuffer : BindingKind::StorageBuffer;
+      return storage == Storage::Uniform && !type.is_buffer_block ? BindingKind::UniformBuffer
+                                                                  : BindingKind::StorageBuffer;
     case Type::Kind::SampledImage:
       return BindingKind::SampledImage;
     case Type::Kind::Sampler:
@@ -34,11 +35,16 @@ BindingKind kind_of(const Type& type, Storage storage) {
 isa::ImageShape shape_of(const Type& image) {
   using isa::ImageShape;
   switch (image.dim) {
-    case spv::Dim::Dim1D: return image.is_arrayed ? ImageShape::A1d : ImageShape::D1;
-    case spv::Dim::Dim3D: return ImageShape::D3;
-    case spv::Dim::Cube: return image.is_arrayed ? ImageShape::Acube : ImageShape::Cube;
-    case spv::Dim::Buffer: return ImageShape::Buffer;
-    default: return image.is_arrayed ? ImageShape::A2d : ImageShape::D2;
+    case spv::Dim::Dim1D:
+      return image.is_arrayed ? ImageShape::A1d : ImageShape::D1;
+    case spv::Dim::Dim3D:
+      return ImageShape::D3;
+    case spv::Dim::Cube:
+      return image.is_arrayed ? ImageShape::Acube : ImageShape::Cube;
+    case spv::Dim::Buffer:
+      return ImageShape::Buffer;
+    default:
+      return image.is_arrayed ? ImageShape::A2d : ImageShape::D2;
   }
 }
 
@@ -46,48 +52,89 @@ isa::ImageShape shape_of(const Type& image) {
 std::string_view format_name(spv::ImageFormat format) {
   using enum spv::ImageFormat;
   switch (format) {
-    case Rgba32f: return "rgba32f";
-    case Rgba16f: return "rgba16f";
-    case R32f: return "r32f";
-    case Rgba8: return "rgba8";
-    case Rgba8Snorm: return "rgba8_snorm";
-    case Rg32f: return "rg32f";
-    case Rg16f: return "rg16f";
-    case R11fG11fB10f: return "r11f_g11f_b10f";
-    case R16f: return "r16f";
-    case Rgba16: return "rgba16";
-    case Rgb10A2: return "rgb10_a2";
-    case Rg16: return "rg16";
-    case Rg8: return "rg8";
-    case R16: return "r16";
-    case R8: return "r8";
-    case Rgba16Snorm: return "rgba16_snorm";
-    case Rg16Snorm: return "rg16_snorm";
-    case Rg8Snorm: return "rg8_snorm";
-    case R16Snorm: return "r16_snorm";
-    case R8Snorm: return "r8_snorm";
-    case Rgba32i: return "rgba32i";
-    case Rgba16i: return "rgba16i";
-    case Rgba8i: return "rgba8i";
-    case R32i: return "r32i";
-    case Rg32i: return "rg32i";
-    case Rg16i: return "rg16i";
-    case Rg8i: return "rg8i";
-    case R16i: return "r16i";
-    case R8i: return "r8i";
-    case Rgba32ui: return "rgba32ui";
-    case Rgba16ui: return "rgba16ui";
-    case Rgba8ui: return "rgba8ui";
-    case R32ui: return "r32ui";
+    case Rgba32f:
+      return "rgba32f";
+    case Rgba16f:
+      return "rgba16f";
+    case R32f:
+      return "r32f";
+    case Rgba8:
+      return "rgba8";
+    case Rgba8Snorm:
+      return "rgba8_snorm";
+    case Rg32f:
+      return "rg32f";
+    case Rg16f:
+      return "rg16f";
+    case R11fG11fB10f:
+      return "r11f_g11f_b10f";
+    case R16f:
+      return "r16f";
+    case Rgba16:
+      return "rgba16";
+    case Rgb10A2:
+      return "rgb10_a2";
+    case Rg16:
+      return "rg16";
+    case Rg8:
+      return "rg8";
+    case R16:
+      return "r16";
+    case R8:
+      return "r8";
+    case Rgba16Snorm:
+      return "rgba16_snorm";
+    case Rg16Snorm:
+      return "rg16_snorm";
+    case Rg8Snorm:
+      return "rg8_snorm";
+    case R16Snorm:
+      return "r16_snorm";
+    case R8Snorm:
+      return "r8_snorm";
+    case Rgba32i:
+      return "rgba32i";
+    case Rgba16i:
+      return "rgba16i";
+    case Rgba8i:
+      return "rgba8i";
+    case R32i:
+      return "r32i";
+    case Rg32i:
+      return "rg32i";
+    case Rg16i:
+      return "rg16i";
+    case Rg8i:
+      return "rg8i";
+    case R16i:
+      return "r16i";
+    case R8i:
+      return "r8i";
+    case Rgba32ui:
+      return "rgba32ui";
+    case Rgba16ui:
+      return "rgba16ui";
+    case Rgba8ui:
+      return "rgba8ui";
+    case R32ui:
+      return "r32ui";
     case R64ui:
-    case R64i: return "rg32ui";  // its halves
-    case Rgb10a2ui: return "rgb10_a2ui";
-    case Rg32ui: return "rg32ui";
-    case Rg16ui: return "rg16ui";
-    case Rg8ui: return "rg8ui";
-    case R16ui: return "r16ui";
-    case R8ui: return "r8ui";
-    default: return {};
+    case R64i:
+      return "rg32ui";  // its halves
+    case Rgb10a2ui:
+      return "rgb10_a2ui";
+    case Rg32ui:
+      return "rg32ui";
+    case Rg16ui:
+      return "rg16ui";
+    case Rg8ui:
+      return "rg8ui";
+    case R16ui:
+      return "r16ui";
+    case R8ui:
+      return "r8ui";
+    default:
+      return {};
   }
 }
 
@@ -99,7 +146,9 @@ void reflect_image(const Module& module, Id type, Binding& binding) {
   binding.multisampled = image->is_multisampled;
   const Type& texel = module.type(image->element);
   binding.format = format_name(image->format);
-  binding.texel = texel.kind == Type::Kind::Float ? "f32" : texel.is_signed && texel.width == 32 ? "s32" : "u32";
+  binding.texel = texel.kind == Type::Kind::Float        ? "f32"
+                  : texel.is_signed && texel.width == 32 ? "s32"
+                                                         : "u32";
 }
 
 Binding binding_of(const Module& module, const Variable& variable, const Decorations& d) {

@@ -25,12 +25,12 @@ enum class BindingKind : uint8_t {
 struct Binding {
   uint32_t set = 0, binding = 0;
   BindingKind kind = BindingKind::Other;
-  std::string name;    // the variable's, or its block's
-  uint32_t count = 1;  // array length; 0 = runtime array
-  BlockType block{};   // of buffers
+  std::string name;                             // the variable's, or its block's
+  uint32_t count = 1;                           // array length; 0 = runtime array
+  BlockType block{};                            // of buffers
   isa::ImageShape shape = isa::ImageShape::D2;  // of images
-  std::string texel{}; // of images: "f32", "u32", "s32"
-  bool multisampled = false;  // of images
+  std::string texel{};                          // of images: "f32", "u32", "s32"
+  bool multisampled = false;                    // of images
   std::string format{};  // of storage images, as GLSL names it: "r32ui"; empty: none is declared
   bool operator==(const Binding& o) const {  // layouts aside
     return set == o.set && binding == o.binding && kind == o.kind && name == o.name && count == o.count;
@@ -45,8 +45,8 @@ struct Reflection {
   uint32_t push_constant_bytes = 0;
   uint32_t incoming_payload_bytes = 0;  // scalar-packed, bool as 4 bytes
   uint32_t largest_payload_bytes = 0;   // of the payloads that the shader declares for its own traces
-  // Scalars of the payload that the shader reads, and of those that it declares for its own traces: a letter each, f float,
-  // i integer, b bool, and its bytes as a digit.
+  // Scalars of the payload that the shader reads, and of those that it declares for its own traces: a letter
+  // each, f float, i integer, b bool, and its bytes as a digit.
   std::string incoming_payload;
   std::vector<std::string> handed_payloads;
   uint32_t attribute_bytes = 0;

@@ -19,66 +19,50 @@
 namespace glint::frontend {
 namespace {
 
-constexpr const char* kStripForeign = "--strip-nonsemantic";  // always first: imports of such sets make later passes skip the module
+constexpr const char* kStripForeign =
+    "--strip-nonsemantic";  // always first: imports of such sets make later passes skip the module
 
 // Left out on purpose: the passes behind -O that merge loads of volatile built-ins across
 // reportIntersectionEXT (redundancy elimination), contract a*b+c to Fma (simplify-instructions), fold sin and
 // cos with the host's libm (ccp) or remove divergence that hardware has (if-conversion).
 const std::vector<std::string>& pass_list() {
   static const std::vector<std::string> kPasses = {
-      kStripForeign,
-      "--freeze-spec-const",
-      "--fold-spec-const-op-composite",
-      "--wrap-opkill",
-      "--eliminate-dead-branches",
-      "--merge-return",
-      // Each function on its own first: what is in SSA form before it is copied into its callers costs little there.
-      "--eliminate-dead-functions",
-      "--eliminate-local-single-block",
-      "--eliminate-local-single-store",
-      "--scalar-replacement=100",
-      "--convert-local-access-chains",
-      "--eliminate-local-single-block",
-      "--eliminate-local-single-store",
-      "--ssa-rewrite",
-      // Not here: removal of dead code, which crashes on calls that take addresses of buffers; and merging of blocks,
-      // which moves calls into continue constructs, where functions that end an any-hit shader are not inlined.
-      "--inline-entry-points-exhaustive",
-      "--eliminate-dead-functions",
-      "--eliminate-dead-code-aggressive",
-      "--private-to-local",
-      "--eliminate-local-single-block",
-      "--eliminate-local-single-store",
-      "--eliminate-dead-code-aggressive",
-      "--scalar-replacement=100",
-      "--convert-local-access-chains",
-      "--eliminate-local-single-block",
-      "--eliminate-local-single-store",
-      "--eliminate-dead-code-aggressive",
-      "--ssa-rewrite",
-      "--eliminate-dead-code-aggressive",
-      "--vector-dce",
-      "--eliminate-dead-inserts",
-      "--eliminate-dead-branches",
-      "--cfg-cleanup",
-      "--merge-blocks",
-      "--eliminate-dead-code-aggressive",
+      kStripForeign, "--freeze-spec-const", "--fold-spec-const-op-composite", "--wrap-opkill",
+      "--eliminate-dead-branches", "--merge-return",
+      // Each function on its own first: what is in SSA form before it is copied into its callers costs little
+      // there.
+      "--eliminate-dead-functions", "--eliminate-local-single-block", "--eliminate-local-single-store",
+      "--scalar-replacement=100", "--convert-local-access-chains", "--eliminate-local-single-block",
+      "--eliminate-local-single-store", "--ssa-rewrite",
+      // Not here: removal of dead code, which crashes on calls that take addresses of buffers; and merging of
+      // blocks, which moves calls into continue constructs, where functions that end an any-hit shader are
+      // not inlined.
+      "--inline-entry-points-exhaustive", "--eliminate-dead-functions", "--eliminate-dead-code-aggressive",
+      "--private-to-local", "--eliminate-local-single-block", "--eliminate-local-single-store",
+      "--eliminate-dead-code-aggressive", "--scalar-replacement=100", "--convert-local-access-chains",
+      "--eliminate-local-single-block", "--eliminate-local-single-store", "--eliminate-dead-code-aggressive",
+      "--ssa-rewrite", "--eliminate-dead-code-aggressive", "--vector-dce", "--eliminate-dead-inserts",
+      "--eliminate-dead-branches", "--cfg-cleanup", "--merge-blocks", "--eliminate-dead-code-aggressive",
       "--eliminate-dead-const"};
   return kPasses;
 }
 
 // Constants alone, before lengths of arrays are looked at.
 const std::vector<std::string>& constants_only() {
-  static const std::vector<std::string> kPasses = {kStripForeign, "--freeze-spec-const", "--fold-spec-const-op-composite"};
+  static const std::vector<std::string> kPasses = {kStripForeign, "--freeze-spec-const",
+                                                   "--fold-spec-const-op-composite"};
   return kPasses;
 }
 
 // When R1 makes a module that is not valid: functions inlined and nothing else.
 const std::vector<std::string>& inlining_only() {
-  static const std::vector<std::string> kPasses = {
-      kStripForeign,             "--freeze-spec-const",           "--fold-spec-const-op-composite",
-      "--wrap-opkill",           "--merge-return",                "--inline-entry-points-exhaustive",
-      "--eliminate-dead-functions"};
+  static const std::vector<std::string> kPasses = {kStripForeign,
+                                                   "--freeze-spec-const",
+                                                   "--fold-spec-const-op-composite",
+                                                   "--wrap-opkill",
+                                                   "--merge-return",
+                                                   "--inline-entry-points-exhaustive",
+                                                   "--eliminate-dead-functions"};
   return kPasses;
 }
 
@@ -101,7 +85,8 @@ std::vector<uint32_t> without_extensions(const std::vector<uint32_t>& words, std
 // The optimiser leaves calls of functions marked so, and nothing here calls.
 void allow_inlining(std::vector<uint32_t>& words) {
   for (size_t i = kHeaderWords; i < words.size(); i += words[i] >> 16)
-    if (spv::Op(words[i] & 0xffff) == spv::Op::OpFunction) words[i + 3] &= ~uint32_t(spv::FunctionControlMask::DontInline);
+    if (spv::Op(words[i] & 0xffff) == spv::Op::OpFunction)
+      words[i + 3] &= ~uint32_t(spv::FunctionControlMask::DontInline);
 }
 
 // Puts the extension declarations back where the logical layout wants them: after the capabilities.
@@ -132,7 +117,8 @@ std::vector<uint32_t> after_passes(const std::vector<uint32_t>& spirv, const std
 }
 
 // The same; empty, too, when what the passes make is not valid.
-std::vector<uint32_t> valid_after_passes(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes, std::string* messages) {
+std::vector<uint32_t> valid_after_passes(const std::vector<uint32_t>& spirv,
+                                         const std::vector<std::string>& passes, std::string* messages) {
   std::vector<uint32_t> output = after_passes(spirv, passes, messages);
   if (output.empty()) return {};
   output = without_stray_lines(with_debug_prints(output));
@@ -141,8 +127,10 @@ std::vector<uint32_t> valid_after_passes(const std::vector<uint32_t>& spirv, con
   return after.empty() ? output : std::vector<uint32_t>{};
 }
 
-// The same, of a module whose functions are marked, where they can be, so that what is inlined says where it was called.
-std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes, std::string* messages) {
+// The same, of a module whose functions are marked, where they can be, so that what is inlined says where it
+// was called.
+std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes,
+                                std::string* messages) {
   const std::vector<uint32_t> input = with_plain_lines(with_known_prints(spirv));
   if (const std::optional<std::vector<uint32_t>> marked = with_inline_scopes(input)) {
     // What strips foreign sets strips the marks, too; and there are marks only where there are no such sets.
@@ -154,7 +142,8 @@ std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, const std::v
 }
 
 // Lengths that are 0 because nobody set a specialisation constant are 1 from here on.
-std::vector<uint32_t> with_lengths(std::vector<uint32_t> spirv, const std::string& name, Diagnostics& warnings) {
+std::vector<uint32_t> with_lengths(std::vector<uint32_t> spirv, const std::string& name,
+                                   Diagnostics& warnings) {
   if (!has_specialised_lengths(spirv)) return spirv;
   std::string messages;
   std::vector<std::string> names;
@@ -162,9 +151,11 @@ std::vector<uint32_t> with_lengths(std::vector<uint32_t> spirv, const std::strin
   if (folded.empty()) return spirv;
   std::vector<uint32_t> output = with_positive_lengths(folded, &names);
   if (output.size() == folded.size()) return spirv;
-  warnings.warning({name, 0, 0}, fmt::format("lengths of arrays are 0 by the defaults of specialisation constants, and taken as 1{}{}; "
-                                             "set the constants to run the shader",
-                                             names.empty() ? "" : ": ", fmt::join(names, ", ")));
+  warnings.warning(
+      {name, 0, 0},
+      fmt::format("lengths of arrays are 0 by the defaults of specialisation constants, and taken as 1{}{}; "
+                  "set the constants to run the shader",
+                  names.empty() ? "" : ": ", fmt::join(names, ", ")));
   return output;
 }
 
@@ -184,7 +175,8 @@ std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& n
     const std::vector<uint32_t> again = optimised(with_ends_that_return(spirv), *passes, &messages);
     return again.empty() || has_calls(again) ? output : again;
   }
-  warnings.warning({name, 0, 0}, "the SPIR-V optimiser failed, going on with the module as it was: " + messages);
+  warnings.warning({name, 0, 0},
+                   "the SPIR-V optimiser failed, going on with the module as it was: " + messages);
   return spirv;
 }
 

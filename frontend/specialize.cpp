@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/specialize.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 #include <span>
 #include <spirv/unified1/spirv.hpp11>
 
@@ -47,7 +46,8 @@ struct Found {
 void visit_declaration(Found& found, spv::Op op, std::span<const uint32_t> w) {
   using enum spv::Op;
   if (op == OpName && w.size() > 2) found.name[w[1]] = text_of(w.subspan(2));
-  if (op == OpDecorate && w.size() > 3 && spv::Decoration(w[2]) == spv::Decoration::SpecId) found.spec_id[w[1]] = w[3];
+  if (op == OpDecorate && w.size() > 3 && spv::Decoration(w[2]) == spv::Decoration::SpecId)
+    found.spec_id[w[1]] = w[3];
   if (op == OpTypeBool && w.size() > 1) found.number[w[1]] = "bool";
   if (op == OpTypeInt && w.size() > 3) found.number[w[1]] = fmt::format("{}{}", w[3] ? 's' : 'u', w[2]);
   if (op == OpTypeFloat && w.size() > 2) found.number[w[1]] = fmt::format("f{}", w[2]);
@@ -64,9 +64,11 @@ void visit_declaration(Found& found, spv::Op op, std::span<const uint32_t> w) {
 
 std::vector<SpecConstant> spec_constants(const std::vector<uint32_t>& words, const std::string& name) {
   Found found;
-  if (!for_each_instruction(words, [&](spv::Op op, std::span<const uint32_t> w) { visit_declaration(found, op, w); }))
+  if (!for_each_instruction(
+          words, [&](spv::Op op, std::span<const uint32_t> w) { visit_declaration(found, op, w); }))
     throw UserError({name, 0, 0}, "malformed SPIR-V: an instruction's length is wrong");
-  std::sort(found.constants.begin(), found.constants.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+  std::sort(found.constants.begin(), found.constants.end(),
+            [](const auto& a, const auto& b) { return a.id < b.id; });
   return found.constants;
 }
 
@@ -74,13 +76,15 @@ std::vector<uint32_t> specialize(std::vector<uint32_t> words, const std::map<uin
   std::map<uint32_t, uint32_t> spec_id;
   for_each_instruction(words, [&](spv::Op op, std::span<uint32_t> w) {
     using enum spv::Op;
-    if (op == OpDecorate && w.size() > 3 && spv::Decoration(w[2]) == spv::Decoration::SpecId) spec_id[w[1]] = w[3];
+    if (op == OpDecorate && w.size() > 3 && spv::Decoration(w[2]) == spv::Decoration::SpecId)
+      spec_id[w[1]] = w[3];
     const bool is_bool = op == OpSpecConstantTrue || op == OpSpecConstantFalse;
     if ((!is_bool && op != OpSpecConstant) || w.size() < 3) return;
     const auto id = spec_id.find(w[2]);
     const auto value = id == spec_id.end() ? values.end() : values.find(id->second);
     if (value == values.end()) return;
-    if (is_bool) w[0] = (w[0] & 0xffff'0000u) | uint32_t(value->second ? OpSpecConstantTrue : OpSpecConstantFalse);
+    if (is_bool)
+      w[0] = (w[0] & 0xffff'0000u) | uint32_t(value->second ? OpSpecConstantTrue : OpSpecConstantFalse);
     if (!is_bool && w.size() > 3) w[3] = uint32_t(value->second);
     if (!is_bool && w.size() > 4) w[4] = uint32_t(value->second >> 32);
   });

@@ -9,10 +9,10 @@
 namespace glint::frontend {
 
 struct SpecConstant {
-  uint32_t id = 0;       // SpecId, constant_id of GLSL
-  std::string name;      // empty when the module has no names
-  std::string number;    // "bool", "u32", "s32", "f32", "f16", ...
-  uint64_t value = 0;    // the default: bits; a bool is 0 or 1
+  uint32_t id = 0;     // SpecId, constant_id of GLSL
+  std::string name;    // empty when the module has no names
+  std::string number;  // "bool", "u32", "s32", "f32", "f16", ...
+  uint64_t value = 0;  // the default: bits; a bool is 0 or 1
 };
 
 // In the order of their ids. UserError when the words are malformed.

@@ -19,20 +19,24 @@ namespace glint::frontend {
 namespace {
 
 // Modules that glslang and the optimiser make and the validator rejects, though their meaning is plain:
-// - two variables for one built-in (glslang makes one for gl_ObjectToWorldEXT and one for gl_ObjectToWorld3x4EXT);
+// - two variables for one built-in (glslang makes one for gl_ObjectToWorldEXT and one for
+// gl_ObjectToWorld3x4EXT);
 // - conversions of a float to its own width (glslang, halves);
 // - pointers to buffers in local variables whose decoration the optimiser dropped;
-// - barriers and atomics of device scope without the capability (glslang, Vulkan memory model without scope semantics).
+// - barriers and atomics of device scope without the capability (glslang, Vulkan memory model without scope
+// semantics).
 bool is_false_alarm(std::string_view message) {
-  for (const std::string_view part : {"has more than one BuiltIn", "already has the same BuiltIn", "VUID-StandaloneSpirv-OpEntryPoint-09658",
-                                      "Expected component type bit width to be different", "bit width of Value to be different",
-                                      "expected AliasedPointer or RestrictPointer",
-                                      "requires the VulkanMemoryModelDeviceScopeKHR capability"})
+  for (const std::string_view part :
+       {"has more than one BuiltIn", "already has the same BuiltIn",
+        "VUID-StandaloneSpirv-OpEntryPoint-09658", "Expected component type bit width to be different",
+        "bit width of Value to be different", "expected AliasedPointer or RestrictPointer",
+        "requires the VulkanMemoryModelDeviceScopeKHR capability"})
     if (message.find(part) != std::string_view::npos) return true;
   return false;
 }
 
-// Constants made of a component that a vector lacks: the validator passes them, the optimiser crashes on them.
+// Constants made of a component that a vector lacks: the validator passes them, the optimiser crashes on
+// them.
 std::string missing_components(const std::vector<uint32_t>& words) {
   constexpr size_t kHeaderWords = 5;
   std::map<uint32_t, uint32_t> components, type_of;  // of vector types; of constants
@@ -41,8 +45,11 @@ std::string missing_components(const std::vector<uint32_t>& words) {
     const size_t length = words[i] >> 16;
     if (op == spv::Op::OpFunction) break;
     if (op == spv::Op::OpTypeVector) components[words[i + 1]] = words[i + 3];
-    if (op == spv::Op::OpSpecConstantComposite || op == spv::Op::OpConstantComposite) type_of[words[i + 2]] = words[i + 1];
-    if (op != spv::Op::OpSpecConstantOp || length != 6 || spv::Op(words[i + 3]) != spv::Op::OpCompositeExtract) continue;
+    if (op == spv::Op::OpSpecConstantComposite || op == spv::Op::OpConstantComposite)
+      type_of[words[i + 2]] = words[i + 1];
+    if (op != spv::Op::OpSpecConstantOp || length != 6 ||
+        spv::Op(words[i + 3]) != spv::Op::OpCompositeExtract)
+      continue;
     const auto type = type_of.find(words[i + 4]);
     const auto count = type == type_of.end() ? components.end() : components.find(type->second);
     if (count != components.end() && words[i + 5] >= count->second)
@@ -79,13 +86,17 @@ void refuse_unknown_capabilities(const std::vector<uint32_t>& words, const std::
   for (size_t at = kHeaderWords; at < words.size() && words[at] >> 16 != 0; at += words[at] >> 16) {
     const auto op = spv::Op(words[at] & 0xffff);
     if (op == spv::Op::OpFunction) break;
-    if (op == spv::Op::OpExtension) extensions += fmt::format(" {}", reinterpret_cast<const char*>(&words[at + 1]));
+    if (op == spv::Op::OpExtension)
+      extensions += fmt::format(" {}", reinterpret_cast<const char*>(&words[at + 1]));
     if (op != spv::Op::OpCapability || at + 1 == words.size()) continue;
-    if (const std::string number = fmt::format("{}", words[at + 1]); name_of_capability(words[at + 1]) == number)
-      unknown += fmt::format("\n  {}: capability {}, which the installed SPIRV-Tools do not know", name, number);
+    if (const std::string number = fmt::format("{}", words[at + 1]);
+        name_of_capability(words[at + 1]) == number)
+      unknown +=
+          fmt::format("\n  {}: capability {}, which the installed SPIRV-Tools do not know", name, number);
   }
   if (!unknown.empty())
-    throw UnsupportedError(fmt::format("{}: not supported:{}\n  extensions of the module:{}", name, unknown, extensions));
+    throw UnsupportedError(
+        fmt::format("{}: not supported:{}\n  extensions of the module:{}", name, unknown, extensions));
 }
 
 bool is_spirv_file(const std::string& path) {
@@ -114,20 +125,23 @@ std::vector<uint32_t> read_spirv(const std::string& path) {
 
 namespace {
 
-bool assemble_as(spv_target_env version, const std::string& text, std::vector<uint32_t>* words, SourceLocation* where,
-                 std::string* message) {
+bool assemble_as(spv_target_env version, const std::string& text, std::vector<uint32_t>* words,
+                 SourceLocation* where, std::string* message) {
   spvtools::SpirvTools tools(version);
-  tools.SetMessageConsumer([&](spv_message_level_t level, const char*, const spv_position_t& at, const char* said) {
-    if (level <= SPV_MSG_ERROR) *message = said, where->line = int(at.line) + 1, where->column = int(at.column) + 1;
-  });
+  tools.SetMessageConsumer(
+      [&](spv_message_level_t level, const char*, const spv_position_t& at, const char* said) {
+        if (level <= SPV_MSG_ERROR)
+          *message = said, where->line = int(at.line) + 1, where->column = int(at.column) + 1;
+      });
   return tools.Assemble(text, words, SPV_TEXT_TO_BINARY_OPTION_PRESERVE_NUMERIC_IDS);
 }
 
 }  // namespace
 
 std::vector<uint32_t> assemble_spirv(const std::string& text, const std::string& name) {
-  // Choice: text has the newest version under which it is valid, for its own version stands in a comment if anywhere.
-  // 1.6 dropped BufferBlock, 1.4 put all variables into the interface; 1.0 is what tools without an option write.
+  // Choice: text has the newest version under which it is valid, for its own version stands in a comment if
+  // anywhere. 1.6 dropped BufferBlock, 1.4 put all variables into the interface; 1.0 is what tools without an
+  // option write.
   std::vector<uint32_t> newest;
   for (const spv_target_env version : {SPV_ENV_VULKAN_1_3, SPV_ENV_UNIVERSAL_1_3, SPV_ENV_UNIVERSAL_1_0}) {
     SourceLocation where{name, 0, 0};
@@ -149,10 +163,12 @@ std::string name_of_opcode(uint32_t opcode) {
 
 namespace {
 
-// SPIRV-Tools tells names of enumerants only in text: so an instruction is disassembled, behind others that it
-// needs. Empty when its operands are not what the op wants.
-std::string text_of(spv::Op op, const std::vector<uint32_t>& operands, const std::vector<uint32_t>& before = {}) {
-  std::vector<uint32_t> words{spv::MagicNumber, 0x0001'0600, 0, 100, 0};  // header: version 1.6, ids below 100
+// SPIRV-Tools tells names of enumerants only in text: so an instruction is disassembled, behind others that
+// it needs. Empty when its operands are not what the op wants.
+std::string text_of(spv::Op op, const std::vector<uint32_t>& operands,
+                    const std::vector<uint32_t>& before = {}) {
+  std::vector<uint32_t> words{spv::MagicNumber, 0x0001'0600, 0, 100,
+                              0};  // header: version 1.6, ids below 100
   words.insert(words.end(), before.begin(), before.end());
   words.push_back(uint32_t(operands.size() + 1) << 16 | uint32_t(op));
   words.insert(words.end(), operands.begin(), operands.end());
@@ -195,8 +211,12 @@ std::string name_of_execution_model(uint32_t model) {
 }
 
 std::string name_of_glsl_function(uint32_t function) {
-  const std::vector<uint32_t> import{6u << 16 | uint32_t(spv::Op::OpExtInstImport), 1, 0x4c53'4c47, 0x6474'732e,
-                                     0x3035'342e, 0};  // %1 = OpExtInstImport "GLSL.std.450"
+  const std::vector<uint32_t> import{6u << 16 | uint32_t(spv::Op::OpExtInstImport),
+                                     1,
+                                     0x4c53'4c47,
+                                     0x6474'732e,
+                                     0x3035'342e,
+                                     0};  // %1 = OpExtInstImport "GLSL.std.450"
   std::string text;
   std::vector<uint32_t> operands{2, 3, 1, function};
   for (int arguments = 0; arguments < 4 && text.empty(); ++arguments) {

@@ -11,7 +11,8 @@ namespace glint::frontend {
 // one a line. Known false alarms are left out (see the .cpp).
 std::string validate_spirv(const std::vector<uint32_t>& words);
 
-// UnsupportedError with the numbers of the capabilities that the installed SPIRV-Tools do not know, and so cannot validate.
+// UnsupportedError with the numbers of the capabilities that the installed SPIRV-Tools do not know, and so
+// cannot validate.
 void refuse_unknown_capabilities(const std::vector<uint32_t>& words, const std::string& name);
 
 // SPIR-V text to words. UserError with the text's line and column.

@@ -37,16 +37,17 @@ class Rewriter {
       if (op == spv::Op::OpCapability && words_[at + 1] == uint32_t(spv::Capability::RayTracingNV))
         append(out, spv::Op::OpCapability, {uint32_t(spv::Capability::RayTracingKHR)});
       if (op == spv::Op::OpExtension && !has_extension_) {
-        append(out, spv::Op::OpExtension, {0x5f56'5053, 0x5f52'484b, 0x5f79'6172, 0x6361'7274, 0x0067'6e69});  // "SPV_KHR_ray_tracing"
+        append(out, spv::Op::OpExtension,
+               {0x5f56'5053, 0x5f52'484b, 0x5f79'6172, 0x6361'7274, 0x0067'6e69});  // "SPV_KHR_ray_tracing"
         has_extension_ = true;
       }
       if (!calls && op != spv::Op::OpTraceNV && op != spv::Op::OpTraceMotionNV) return;
       const std::optional<uint32_t> variable = find(out.back(), calls);
       if (!variable) return;  // reported when it is lowered
       out.back() = *variable;
-      const spv::Op standard = calls                         ? spv::Op::OpExecuteCallableKHR
+      const spv::Op standard = calls                      ? spv::Op::OpExecuteCallableKHR
                                : op == spv::Op::OpTraceNV ? spv::Op::OpTraceRayKHR
-                                                             : spv::Op::OpTraceRayMotionNV;
+                                                          : spv::Op::OpTraceRayMotionNV;
       out[begin] = uint32_t(length) << 16 | uint32_t(standard);
     });
     return out;
@@ -65,10 +66,13 @@ class Rewriter {
 
   void read_declarations() {
     for_each([&](spv::Op op, size_t at, size_t length) {
-      if (op == spv::Op::OpCapability) is_vendor_ |= words_[at + 1] == uint32_t(spv::Capability::RayTracingNV);
+      if (op == spv::Op::OpCapability)
+        is_vendor_ |= words_[at + 1] == uint32_t(spv::Capability::RayTracingNV);
       if (op == spv::Op::OpExtension)
-        has_extension_ |= std::string_view(reinterpret_cast<const char*>(&words_[at + 1])) == "SPV_KHR_ray_tracing";
-      if (op == spv::Op::OpDecorate && length == 4 && spv::Decoration(words_[at + 2]) == spv::Decoration::Location)
+        has_extension_ |=
+            std::string_view(reinterpret_cast<const char*>(&words_[at + 1])) == "SPV_KHR_ray_tracing";
+      if (op == spv::Op::OpDecorate && length == 4 &&
+          spv::Decoration(words_[at + 2]) == spv::Decoration::Location)
         location_[words_[at + 1]] = words_[at + 3];
       if (op == spv::Op::OpVariable) storage_[words_[at + 2]] = Storage(words_[at + 3]);
       if (op == spv::Op::OpConstant && length == 4) constant_[words_[at + 2]] = words_[at + 3];
@@ -84,7 +88,8 @@ class Rewriter {
     for (const Storage storage : {calls ? Storage::CallableDataKHR : Storage::RayPayloadKHR,
                                   calls ? Storage::IncomingCallableDataKHR : Storage::IncomingRayPayloadKHR})
       for (const auto& [variable, location] : location_)
-        if (const auto it = storage_.find(variable); location == wanted->second && it != storage_.end() && it->second == storage)
+        if (const auto it = storage_.find(variable);
+            location == wanted->second && it != storage_.end() && it->second == storage)
           return variable;
     return std::nullopt;
   }
@@ -128,6 +133,8 @@ class Rewriter {
 
 }  // namespace
 
-std::vector<uint32_t> with_standard_traces(const std::vector<uint32_t>& spirv) { return Rewriter(spirv).run(); }
+std::vector<uint32_t> with_standard_traces(const std::vector<uint32_t>& spirv) {
+  return Rewriter(spirv).run();
+}
 
 }  // namespace glint::frontend

@@ -38,9 +38,9 @@ struct VirtualInst {
   uint16_t op = 0;
   VirtualRegister guard = kNoRegister;  // a Predicate register
   bool guard_negate = false;
-  int32_t imm = 0;                      // byte displacement
-  BlockId target = kNoBlock;            // of a Label operand
-  std::vector<VirtualOperand> operands; // one a slot, in the order of OpRow::operands
+  int32_t imm = 0;                       // byte displacement
+  BlockId target = kNoBlock;             // of a Label operand
+  std::vector<VirtualOperand> operands;  // one a slot, in the order of OpRow::operands
   isa::Line line;
 };
 
@@ -49,7 +49,7 @@ struct VirtualInst {
 struct VirtualBlock {
   std::string name;
   std::vector<VirtualInst> code;
-  std::vector<BlockId> successors;      // all blocks control may go to next, for liveness
+  std::vector<BlockId> successors;  // all blocks control may go to next, for liveness
 };
 
 // Not SSA: phis have become moves. Every use is reached by a definition on every path.
@@ -57,15 +57,15 @@ struct VirtualProgram {
   std::string name;
   isa::Stage stage = isa::Stage::Compute;
   std::vector<RegisterClass> registers;
-  std::vector<VirtualBlock> blocks;     // in layout order; block 0 is the entry
+  std::vector<VirtualBlock> blocks;  // in layout order; block 0 is the entry
   std::vector<std::string> files;
-  std::vector<isa::Scope> scopes;       // isa::Line::scope numbers them from 1
-  std::vector<isa::SpirvLine> spirv;    // and isa::Line::spirv these
-  uint32_t local_bytes = 0;             // variables and payloads; spills and saves are placed after them
+  std::vector<isa::Scope> scopes;     // isa::Line::scope numbers them from 1
+  std::vector<isa::SpirvLine> spirv;  // and isa::Line::spirv these
+  uint32_t local_bytes = 0;           // variables and payloads; spills and saves are placed after them
   uint32_t payload_bytes = 0, attribute_bytes = 0;
   std::array<uint32_t, 3> local_size{1, 1, 1};
-  uint32_t shared_bytes = 0;            // of a block
-  std::vector<std::string> messages;    // formats of print and print.part
+  uint32_t shared_bytes = 0;          // of a block
+  std::vector<std::string> messages;  // formats of print and print.part
 
   VirtualRegister new_register(RegisterClass c) {
     registers.push_back(c);

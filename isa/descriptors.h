@@ -8,20 +8,22 @@
 
 namespace glint::isa {
 
-// The first kBindingsPerSet bindings of all sets come first, then push constants; the others follow in a part of their
-// own, so that worlds without them have a small bank.
+// The first kBindingsPerSet bindings of all sets come first, then push constants; the others follow in a part
+// of their own, so that worlds without them have a small bank.
 inline constexpr uint32_t kMaxBindings = 1024;
 inline constexpr uint32_t kMoreBindingsOffset = 32 * 1024;
-inline constexpr uint32_t kLargestBankBytes = kMoreBindingsOffset + kMaxSets * (kMaxBindings - kBindingsPerSet) * kDescriptorBytes;
+inline constexpr uint32_t kLargestBankBytes =
+    kMoreBindingsOffset + kMaxSets * (kMaxBindings - kBindingsPerSet) * kDescriptorBytes;
 static_assert(kMoreBindingsOffset >= kConstantBankBytes);
 
 constexpr uint32_t descriptor_offset(uint32_t set, uint32_t binding) {
   if (binding < kBindingsPerSet) return set * kSetBytes + binding * kDescriptorBytes;
-  return kMoreBindingsOffset + (set * (kMaxBindings - kBindingsPerSet) + binding - kBindingsPerSet) * kDescriptorBytes;
+  return kMoreBindingsOffset +
+         (set * (kMaxBindings - kBindingsPerSet) + binding - kBindingsPerSet) * kDescriptorBytes;
 }
 
-// The address that stands in a descriptor that nobody bound, as good as no program makes one up. Its (set, binding) can
-// be told as long as what is added to it stays within 32 GiB either way.
+// The address that stands in a descriptor that nobody bound, as good as no program makes one up. Its (set,
+// binding) can be told as long as what is added to it stays within 32 GiB either way.
 inline constexpr uint64_t kUnboundBase = 0xfff8'0000'0000'0000;
 inline constexpr int kUnboundPlaceShift = 36;
 constexpr uint64_t unbound_address(uint32_t set, uint32_t binding) {
@@ -31,7 +33,8 @@ struct UnboundPlace {
   uint32_t set, binding;
 };
 constexpr std::optional<UnboundPlace> unbound_place(uint64_t address) {
-  const uint64_t place = (address - kUnboundBase + (uint64_t{1} << (kUnboundPlaceShift - 1))) >> kUnboundPlaceShift;
+  const uint64_t place =
+      (address - kUnboundBase + (uint64_t{1} << (kUnboundPlaceShift - 1))) >> kUnboundPlaceShift;
   if (place >= uint64_t{kMaxSets} * kMaxBindings) return std::nullopt;
   return UnboundPlace{uint32_t(place / kMaxBindings), uint32_t(place % kMaxBindings)};
 }

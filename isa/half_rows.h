@@ -1,10 +1,9 @@
 // Rows of floats of 16 bits as rows of floats and back, and sums rounded to odd on the way: by the vector
 // instructions for it where the path has them.
 //
-// An intrinsic does in one step what isa/half.h does in ten that every compiler makes vectors of; the bits are the same
-// (test "every value op gives the same bits on every path"). Rows of floats and words are 64-byte aligned. Included only
-// by isa/ops/*.cpp (see op_makers.h).
-// SPDX-License-Identifier: Apache-2.0
+// An intrinsic does in one step what isa/half.h does in ten that every compiler makes vectors of; the bits
+// are the same (test "every value op gives the same bits on every path"). Rows of floats and words are
+// 64-byte aligned. Included only by isa/ops/*.cpp (see op_makers.h). SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "isa/conversions.h"
 #include "isa/half.h"
@@ -23,7 +22,8 @@ template <bool kUpper>
 #elif defined(__F16C__)
   for (int i = 0; i < kLanes; i += 8) {
     const __m256i word = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(words + i));
-    const __m256i half = kUpper ? _mm256_srli_epi32(word, 16) : _mm256_and_si256(word, _mm256_set1_epi32(0xffff));
+    const __m256i half =
+        kUpper ? _mm256_srli_epi32(word, 16) : _mm256_and_si256(word, _mm256_set1_epi32(0xffff));
     const __m128i packed = _mm_packus_epi32(_mm256_castsi256_si128(half), _mm256_extracti128_si256(half, 1));
     _mm256_store_ps(out + i, _mm256_cvtph_ps(packed));
   }
@@ -58,7 +58,8 @@ template <Round kRound>
 #if defined(__AVX512F__)
 // Of a number rounded down and rounded up: the same if it is a float, else neighbours, one of them odd.
 [[gnu::always_inline]] inline __m512 odd_of(__m512 down, __m512 up) {
-  return _mm512_mask_mov_ps(up, _mm512_test_epi32_mask(_mm512_castps_si512(down), _mm512_set1_epi32(1)), down);
+  return _mm512_mask_mov_ps(up, _mm512_test_epi32_mask(_mm512_castps_si512(down), _mm512_set1_epi32(1)),
+                            down);
 }
 #endif
 

@@ -7,7 +7,9 @@ namespace glint::isa {
 
 // PTX's geometries: 1d 2d 3d a1d a2d cube acube (a: array), and Vulkan's texel buffers.
 enum class ImageShape : uint8_t { Buffer, D1, D2, D3, A1d, A2d, Cube, Acube };
-constexpr bool is_cube(ImageShape s) { return s == ImageShape::Cube || s == ImageShape::Acube; }
+constexpr bool is_cube(ImageShape s) {
+  return s == ImageShape::Cube || s == ImageShape::Acube;
+}
 constexpr bool has_layers(ImageShape s) {
   return s == ImageShape::A1d || s == ImageShape::A2d || s == ImageShape::Acube;
 }
@@ -27,26 +29,40 @@ enum class ImageRequest : uint8_t {
   Bytes,   // suld.b, sust.b, sured.b: bits as they are; x counts bytes
 };
 enum class ImageLod : uint8_t { Zero, Level, Gradients };  // tex, tex.level, tex.grad
-enum class ImageOutside : uint8_t { Trap, Clamp, Zero };   // surface ops outside of the image: .trap .clamp .zero
+enum class ImageOutside : uint8_t {
+  Trap,
+  Clamp,
+  Zero
+};  // surface ops outside of the image: .trap .clamp .zero
 enum class ImageQuery : uint8_t {
-  Width, Height, Depth, ArraySize, NumMipmapLevels, NumSamples, NormalizedCoords, ChannelDataType, ChannelOrder
+  Width,
+  Height,
+  Depth,
+  ArraySize,
+  NumMipmapLevels,
+  NumSamples,
+  NormalizedCoords,
+  ChannelDataType,
+  ChannelOrder
 };
 
-// Operands, after the destination: handle; layer of arrays (s32); coordinates; level (float for Sample, s32 for Fetch
-// and Query) or both gradients; offsets (bytes x, y, z of one register, signed); reference value; data of stores.
+// Operands, after the destination: handle; layer of arrays (s32); coordinates; level (float for Sample, s32
+// for Fetch and Query) or both gradients; offsets (bytes x, y, z of one register, signed); reference value;
+// data of stores.
 struct ImageAccess {
   ImageRequest request = ImageRequest::None;
   ImageShape shape = ImageShape::D2;
   ImageLod lod = ImageLod::Zero;
-  bool is_float = true;       // Sample, Fetch, Gather: results are floats; else integers
+  bool is_float = true;  // Sample, Fetch, Gather: results are floats; else integers
   bool has_offset = false;
-  bool has_compare = false;   // texels are compared with the reference before they are filtered
-  uint8_t component = 0;      // Gather
+  bool has_compare = false;  // texels are compared with the reference before they are filtered
+  uint8_t component = 0;     // Gather
   ImageOutside outside = ImageOutside::Trap;
   ImageQuery query = ImageQuery::Width;
 };
 
-// A handle: the image's number and, from this bit on, 0 for the image's own sampler or 1 + the number of another.
+// A handle: the image's number and, from this bit on, 0 for the image's own sampler or 1 + the number of
+// another.
 inline constexpr int kHandleSamplerShift = 20;
 
 }  // namespace glint::isa

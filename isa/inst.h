@@ -9,9 +9,9 @@ namespace glint::isa {
 // An operand slot names one row of 32 lanes by 32 bits, in one of three banks, or a predicate index.
 // All banks have the same layout, so a handler reads registers, constants and specials alike.
 using Slot = uint16_t;
-inline constexpr Slot kRegisterBank = 0x0000;   // + register number; a 64-bit value is an even/odd pair
-inline constexpr Slot kConstantBank = 0x4000;   // + row of Program::constants (64 bits: two rows, low first)
-inline constexpr Slot kSpecialBank = 0x8000;    // + Special
+inline constexpr Slot kRegisterBank = 0x0000;  // + register number; a 64-bit value is an even/odd pair
+inline constexpr Slot kConstantBank = 0x4000;  // + row of Program::constants (64 bits: two rows, low first)
+inline constexpr Slot kSpecialBank = 0x8000;   // + Special
 inline constexpr Slot kSlotIndexMask = 0x3fff;
 inline constexpr int kBankShift = 14;
 
@@ -26,36 +26,103 @@ inline constexpr uint8_t kGuardNegate = 0x80;  // guard = predicate index | kGua
 // the innermost trace of the warp: the candidate in any-hit and intersection shaders, the committed hit
 // in closest-hit shaders, the ray in miss shaders (SPV_KHR_ray_tracing, built-in table).
 enum class Special : uint8_t {
-  LaneId, LaunchX, LaunchY, LaunchZ, LaunchSizeX, LaunchSizeY, LaunchSizeZ,
+  LaneId,
+  LaunchX,
+  LaunchY,
+  LaunchZ,
+  LaunchSizeX,
+  LaunchSizeY,
+  LaunchSizeZ,
   // Blocks (PTX's CTAs, Vulkan's workgroups) of a compute launch.
-  TidX, TidY, TidZ, NtidX, NtidY, NtidZ, CtaidX, CtaidY, CtaidZ, NctaidX, NctaidY, NctaidZ,
-  WarpId, NwarpId, SmId, NsmId, GridId,   // warp slot and slots of the core; core and cores; 0
-  LanemaskEq, LanemaskLe, LanemaskLt, LanemaskGe, LanemaskGt,
-  TotalSmemSize, DynamicSmemSize,         // bytes of shared memory of the block
-  Clock, ClockHi,                         // core cycle when issued; 0 on the functional machine
-  GlobalTimerLo, GlobalTimerHi,           // nanoseconds since launch; 0 on the functional machine
-  Payload,                                // local address of the incoming payload or callable data
-  Attribute,                              // local address of the hit attributes
-  Record, RecordHi,                       // address of the data in the shader's record of the binding table, both halves
-  HitT, HitKind, HitU, HitV,              // t; kind (0xfe front, 0xff back, user 0..127); barycentrics
-  HitPrimitive, HitGeometry, HitInstance, HitCustomIndex,
-  RayFlags, RayTmin, RayCullMask,
-  RayOriginX, RayOriginY, RayOriginZ, RayDirectionX, RayDirectionY, RayDirectionZ,  // world space
-  ObjectOriginX, ObjectOriginY, ObjectOriginZ, ObjectDirectionX, ObjectDirectionY, ObjectDirectionZ,
-  ObjectToWorld0, ObjectToWorld1, ObjectToWorld2, ObjectToWorld3, ObjectToWorld4, ObjectToWorld5,
-  ObjectToWorld6, ObjectToWorld7, ObjectToWorld8, ObjectToWorld9, ObjectToWorld10, ObjectToWorld11,
-  WorldToObject0, WorldToObject1, WorldToObject2, WorldToObject3, WorldToObject4, WorldToObject5,
-  WorldToObject6, WorldToObject7, WorldToObject8, WorldToObject9, WorldToObject10, WorldToObject11,
+  TidX,
+  TidY,
+  TidZ,
+  NtidX,
+  NtidY,
+  NtidZ,
+  CtaidX,
+  CtaidY,
+  CtaidZ,
+  NctaidX,
+  NctaidY,
+  NctaidZ,
+  WarpId,
+  NwarpId,
+  SmId,
+  NsmId,
+  GridId,  // warp slot and slots of the core; core and cores; 0
+  LanemaskEq,
+  LanemaskLe,
+  LanemaskLt,
+  LanemaskGe,
+  LanemaskGt,
+  TotalSmemSize,
+  DynamicSmemSize,  // bytes of shared memory of the block
+  Clock,
+  ClockHi,  // core cycle when issued; 0 on the functional machine
+  GlobalTimerLo,
+  GlobalTimerHi,  // nanoseconds since launch; 0 on the functional machine
+  Payload,        // local address of the incoming payload or callable data
+  Attribute,      // local address of the hit attributes
+  Record,
+  RecordHi,  // address of the data in the shader's record of the binding table, both halves
+  HitT,
+  HitKind,
+  HitU,
+  HitV,  // t; kind (0xfe front, 0xff back, user 0..127); barycentrics
+  HitPrimitive,
+  HitGeometry,
+  HitInstance,
+  HitCustomIndex,
+  RayFlags,
+  RayTmin,
+  RayCullMask,
+  RayOriginX,
+  RayOriginY,
+  RayOriginZ,
+  RayDirectionX,
+  RayDirectionY,
+  RayDirectionZ,  // world space
+  ObjectOriginX,
+  ObjectOriginY,
+  ObjectOriginZ,
+  ObjectDirectionX,
+  ObjectDirectionY,
+  ObjectDirectionZ,
+  ObjectToWorld0,
+  ObjectToWorld1,
+  ObjectToWorld2,
+  ObjectToWorld3,
+  ObjectToWorld4,
+  ObjectToWorld5,
+  ObjectToWorld6,
+  ObjectToWorld7,
+  ObjectToWorld8,
+  ObjectToWorld9,
+  ObjectToWorld10,
+  ObjectToWorld11,
+  WorldToObject0,
+  WorldToObject1,
+  WorldToObject2,
+  WorldToObject3,
+  WorldToObject4,
+  WorldToObject5,
+  WorldToObject6,
+  WorldToObject7,
+  WorldToObject8,
+  WorldToObject9,
+  WorldToObject10,
+  WorldToObject11,
   // ObjectToWorldN: row-major 3x4, N = 4 * row + column
   Count
 };
 inline constexpr int kNumSpecials = int(Special::Count);
 
 struct Inst {
-  uint16_t op = 0;            // index into op_table()
-  uint8_t guard = kNoGuard;   // predicate index, | kGuardNegate
+  uint16_t op = 0;           // index into op_table()
+  uint8_t guard = kNoGuard;  // predicate index, | kGuardNegate
   uint8_t reserved = 0;
-  int32_t imm = 0;            // byte displacement of a memory operand, or target instruction of a label
+  int32_t imm = 0;  // byte displacement of a memory operand, or target instruction of a label
   std::array<Slot, kMaxOperands> operand{};  // in the order of OpRow::operands, vectors one slot a part
 };
 static_assert(sizeof(Inst) == 44);

@@ -102,8 +102,9 @@ template <class T>
   const bool is_empty = n == 0 || (std::is_unsigned_v<T> && p > kLast);
   return is_empty ? T(0) : bits;
 }
-// The field in place differs from the background by the field's bits of a ^ (b >> position). Their upper neighbours leave
-// by two shifts, not by a mask of ones: compilers make no vectors of a constant shifted by 64-bit counts.
+// The field in place differs from the background by the field's bits of a ^ (b >> position). Their upper
+// neighbours leave by two shifts, not by a mask of ones: compilers make no vectors of a constant shifted by
+// 64-bit counts.
 template <class T>
 [[gnu::always_inline]] inline T inserted(T a, T b, uint32_t position, uint32_t length) {
   using W = Wrapping<T>;

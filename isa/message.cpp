@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/message.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <cctype>
+#include <fmt/format.h>
 
 namespace glint::isa {
 namespace {
@@ -14,7 +13,8 @@ namespace {
 // A decimal number at `at`, at most kMaxMessageWidth + 1.
 int number_at(std::string_view text, size_t& at) {
   int value = 0;
-  for (; at < text.size() && std::isdigit(uint8_t(text[at])); ++at) value = std::min(value * 10 + (text[at] - '0'), kMaxMessageWidth + 1);
+  for (; at < text.size() && std::isdigit(uint8_t(text[at])); ++at)
+    value = std::min(value * 10 + (text[at] - '0'), kMaxMessageWidth + 1);
   return value;
 }
 
@@ -26,7 +26,9 @@ std::string padded(const Conversion& c, const std::string& sign, const std::stri
   return zeros ? sign + std::string(fill, '0') + digits : std::string(fill, ' ') + sign + digits;
 }
 
-std::string sign_of(const Conversion& c, bool negative) { return negative ? "-" : c.plus ? "+" : c.blank ? " " : ""; }
+std::string sign_of(const Conversion& c, bool negative) {
+  return negative ? "-" : c.plus ? "+" : c.blank ? " " : "";
+}
 
 std::string format_integer(const Conversion& c, uint64_t bits) {
   const bool is_signed = c.letter == 'd' || c.letter == 'i';
@@ -41,7 +43,8 @@ std::string format_integer(const Conversion& c, uint64_t bits) {
   if (c.precision > int(digits.size())) digits.insert(0, size_t(c.precision) - digits.size(), '0');
   if (c.alternative && c.letter == 'o' && (digits.empty() || digits[0] != '0')) digits.insert(0, "0");
   std::string sign = is_signed ? sign_of(c, negative) : "";
-  if (c.alternative && magnitude != 0 && (c.letter == 'x' || c.letter == 'X')) sign = std::string("0") + c.letter;
+  if (c.alternative && magnitude != 0 && (c.letter == 'x' || c.letter == 'X'))
+    sign = std::string("0") + c.letter;
   return padded(c, sign, digits, c.zeros && c.precision < 0);
 }
 
@@ -56,8 +59,10 @@ std::string format_float(const Conversion& c, uint64_t bits) {
     format += ".6";  // what C takes without one
   const double magnitude = std::bit_cast<double>(std::bit_cast<uint64_t>(value) & ~(uint64_t{1} << 63));
   const std::string digits = fmt::format(fmt::runtime(format + c.letter + "}"), magnitude);
-  if (!is_number || (c.letter != 'a' && c.letter != 'A')) return padded(c, sign_of(c, negative), digits, c.zeros && is_number);
-  return padded(c, sign_of(c, negative) + digits.substr(0, 2), digits.substr(2), c.zeros);  // zeros go behind 0x
+  if (!is_number || (c.letter != 'a' && c.letter != 'A'))
+    return padded(c, sign_of(c, negative), digits, c.zeros && is_number);
+  return padded(c, sign_of(c, negative) + digits.substr(0, 2), digits.substr(2),
+                c.zeros);  // zeros go behind 0x
 }
 
 }  // namespace
@@ -85,7 +90,8 @@ size_t parse_flags(std::string_view text, size_t at, Conversion& out) {
 
 std::string to_text(const Conversion& c) {
   std::string out = "%";
-  for (const auto& [is_set, flag] : {std::pair{c.left, '-'}, {c.plus, '+'}, {c.blank, ' '}, {c.alternative, '#'}, {c.zeros, '0'}})
+  for (const auto& [is_set, flag] :
+       {std::pair{c.left, '-'}, {c.plus, '+'}, {c.blank, ' '}, {c.alternative, '#'}, {c.zeros, '0'}})
     if (is_set) out += flag;
   if (c.width > 0) out += std::to_string(c.width);
   if (c.precision >= 0) out += "." + std::to_string(c.precision);
@@ -113,7 +119,8 @@ ParsedMessage parse_message(std::string_view text) {
     at = parse_flags(text, at + 1, piece.conversion);
     if (at < text.size() && text[at] == 'l') piece.conversion.is_wide = true, ++at;
     piece.conversion.letter = at < text.size() ? text[at] : '\0';
-    if (std::string_view("diuxXofFeEgGaA").find(piece.conversion.letter) == std::string_view::npos || piece.conversion.letter == '\0')
+    if (std::string_view("diuxXofFeEgGaA").find(piece.conversion.letter) == std::string_view::npos ||
+        piece.conversion.letter == '\0')
       return wrong(fmt::format("'{}' is no conversion", text.substr(first, at + 1 - first)));
     if (std::max(piece.conversion.width, piece.conversion.precision) > kMaxMessageWidth)
       return wrong(fmt::format("a width of more than {}", kMaxMessageWidth));
@@ -123,7 +130,8 @@ ParsedMessage parse_message(std::string_view text) {
     out.pieces.push_back(std::move(piece));
   }
   out.after = std::move(before);
-  if (out.words > kMessageWords) return wrong(fmt::format("{} words, a print takes {}", out.words, kMessageWords));
+  if (out.words > kMessageWords)
+    return wrong(fmt::format("{} words, a print takes {}", out.words, kMessageWords));
   return out;
 }
 

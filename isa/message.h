@@ -15,11 +15,13 @@ inline constexpr uint32_t kMessageWords = 4;  // that one print takes
 struct Conversion {
   bool left = false, plus = false, blank = false, alternative = false, zeros = false;  // flags - + blank # 0
   int width = 0;
-  int precision = -1;   // none
+  int precision = -1;  // none
   bool is_wide = false;
-  char letter = 'd';    // of d i u x X o, f F e E g G a A
+  char letter = 'd';  // of d i u x X o, f F e E g G a A
 };
-inline bool is_float(const Conversion& c) { return std::string_view("fFeEgGaA").find(c.letter) != std::string_view::npos; }
+inline bool is_float(const Conversion& c) {
+  return std::string_view("fFeEgGaA").find(c.letter) != std::string_view::npos;
+}
 std::string to_text(const Conversion& c);  // "%08.3f"
 
 // Reads flags, width and precision, from behind the '%'; returns where the rest begins.

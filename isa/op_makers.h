@@ -91,8 +91,8 @@ struct Joined {
 template <Text... kParts>
 inline constexpr std::string_view joined{Joined<kParts...>::kText.data(), Joined<kParts...>::kLength};
 
-// A source operand of type T: reads the bits of one lane. 64-bit operands are two rows, low half first; 16-bit ones
-// (integers, Half, Bfloat) are the low half of a row, whose upper half means nothing.
+// A source operand of type T: reads the bits of one lane. 64-bit operands are two rows, low half first;
+// 16-bit ones (integers, Half, Bfloat) are the low half of a row, whose upper half means nothing.
 template <class T>
 struct Source {
   const uint32_t* low;
@@ -171,8 +171,9 @@ template <class R, class Value>
 template <class Test>
 [[gnu::always_inline]] inline LaneMask mask_of(Test&& test) {
 #if defined(__AVX512F__)
-  // The bits come into registers before the test, which compilers do not see: they would load them under its mask. Such
-  // a load without lanes, of a page that nobody has touched yet, faults in silence: 300 ns each time.
+  // The bits come into registers before the test, which compilers do not see: they would load them under its
+  // mask. Such a load without lanes, of a page that nobody has touched yet, faults in silence: 300 ns each
+  // time.
   __m512i low = _mm512_loadu_si512(kLaneBit), high = _mm512_loadu_si512(kLaneBit + 16);
   asm("" : "+v"(low), "+v"(high));
   alignas(64) uint32_t words[kLanes];
@@ -187,7 +188,8 @@ template <class Test>
 #endif
 }
 
-// Writes value(i) of each lane of `exec`: a bool to a predicate, 8 bytes to a register pair, less to a register.
+// Writes value(i) of each lane of `exec`: a bool to a predicate, 8 bytes to a register pair, less to a
+// register.
 template <class R, class Value>
 [[gnu::always_inline]] inline void write_result(Warp& warp, Slot slot, Value&& value) {
   if constexpr (std::is_same_v<R, bool>)
@@ -209,8 +211,8 @@ template <class F, class... A>
   (std::index_sequence_for<A...>{});
 }
 
-// The same of an F that gives Two<R, S>. Either destination may be a source, so nothing is written before all is known:
-// a predicate is a mask until then, other results go through memory of their own.
+// The same of an F that gives Two<R, S>. Either destination may be a source, so nothing is written before all
+// is known: a predicate is a mask until then, other results go through memory of their own.
 template <class F, class... A>
 [[gnu::flatten]] void run_two_values(Warp& warp, const Inst& inst) {
   [&]<size_t... N>(std::index_sequence<N...>) {
@@ -241,7 +243,9 @@ inline constexpr bool is_two<Two<A, B>> = true;
 // Instruction-mix class of a value op. Divisions and roots are sequences around the special-function unit:
 // GPGPU-Sim's SFU_OP class, and so the paper's.
 constexpr Class class_of(Unit unit) {
-  return unit == Unit::Sfu || unit == Unit::FpDiv || unit == Unit::IntDiv || unit == Unit::Fp64Div ? Class::Sfu : Class::Alu;
+  return unit == Unit::Sfu || unit == Unit::FpDiv || unit == Unit::IntDiv || unit == Unit::Fp64Div
+             ? Class::Sfu
+             : Class::Alu;
 }
 
 template <class T>
@@ -253,8 +257,8 @@ constexpr OperandKind destination_kind() {
   return std::is_same_v<T, bool> ? DstPred : sizeof(T) == 8 ? Dst64 : Dst32;
 }
 
-// A row whose handler applies `f` to sources of types A...; units, documentation and examples as OpRow says. When `f`
-// gives Two<R, S>, the row has two destinations.
+// A row whose handler applies `f` to sources of types A...; units, documentation and examples as OpRow says.
+// When `f` gives Two<R, S>, the row has two destinations.
 template <class... A, class F>
 constexpr OpRow value_op(std::string_view name, Unit unit, std::string_view doc, F, Examples examples) {
   using R = decltype(F{}(A{}...));
@@ -263,7 +267,8 @@ constexpr OpRow value_op(std::string_view name, Unit unit, std::string_view doc,
   row.klass = class_of(unit);
   row.unit = unit;
   if constexpr (is_two<R>) {
-    row.operands = {destination_kind<decltype(R::first)>(), destination_kind<decltype(R::second)>(), source_kind<A>()...};
+    row.operands = {destination_kind<decltype(R::first)>(), destination_kind<decltype(R::second)>(),
+                    source_kind<A>()...};
     row.run = &run_two_values<F, A...>;
   } else {
     row.operands = {destination_kind<R>(), source_kind<A>()...};

@@ -55,7 +55,8 @@ Path widest_path() {
 }  // namespace
 
 bool is_supported(Path path) {
-  // Every processor with AVX2 and FMA converts f16 too (F16C came before both): compilers do not all know its name here.
+  // Every processor with AVX2 and FMA converts f16 too (F16C came before both): compilers do not all know its
+  // name here.
   const bool has_avx2 =
       __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2");
   if (path == Path::Baseline) return true;

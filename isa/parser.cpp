@@ -75,10 +75,10 @@ class Parser {
     else if (d == ".loc")
       location();
     else
-      tokens_.fail(
-          name, "a directive",
-          did_you_mean(d, {".program", ".stage", ".registers", ".local_bytes", ".payload_bytes",
-                           ".attribute_bytes", ".local_size", ".shared_bytes", ".const", ".file", ".message", ".loc"}));
+      tokens_.fail(name, "a directive",
+                   did_you_mean(d, {".program", ".stage", ".registers", ".local_bytes", ".payload_bytes",
+                                    ".attribute_bytes", ".local_size", ".shared_bytes", ".const", ".file",
+                                    ".message", ".loc"}));
     if (tokens_.peek().kind != Token::Kind::Newline && tokens_.peek().kind != Token::Kind::End)
       tokens_.fail(tokens_.peek(), "the end of the line after " + d);
   }
@@ -117,7 +117,8 @@ class Parser {
   void message() {
     const Token at = tokens_.peek();
     if (small("the index of a message") != program_.messages.size())
-      tokens_.fail(at, fmt::format("message {}: messages are numbered from 0 in order", program_.messages.size()));
+      tokens_.fail(
+          at, fmt::format("message {}: messages are numbered from 0 in order", program_.messages.size()));
     program_.messages.push_back(string_value());
   }
   void location() {
@@ -151,7 +152,8 @@ class Parser {
     bool after_destination = false;
     for (const OperandKind kind : row.operands.view()) {
       const bool is_second = after_destination && is_destination(kind);
-      if (position++) tokens_.expect(is_second ? "|" : ",", fmt::format("before operand {} of {}", position, row.name));
+      if (position++)
+        tokens_.expect(is_second ? "|" : ",", fmt::format("before operand {} of {}", position, row.name));
       as_float_ = is_float(row, slot);
       operand(inst, kind, slot);
       slot += slots_of(kind);
@@ -226,7 +228,8 @@ class Parser {
     if (fraction(word, is_wide)) return "this operand is not a float: write its bits, as 0f3F800000";
     if (numbered(word, "%c"))
       return fmt::format("the program lists {} constant rows (.const)", program_.constants.size());
-    if (is_wide && find_special(word) != Special::Count) return "specials have 32 bits: copy it into a register first";
+    if (is_wide && find_special(word) != Special::Count)
+      return "specials have 32 bits: copy it into a register first";
     const std::string note = near_register(word, is_wide);
     if (!note.empty() || is_wide || word[0] != '%') return note;
     std::vector<std::string> names;
@@ -236,7 +239,8 @@ class Parser {
   Slot predicate() {
     const Token t = tokens_.peek();
     const auto index = numbered(t.text, "%p");
-    if (!index || *index >= uint64_t(kNumPredicates)) tokens_.fail(t, "a predicate, %p0 to %p7", near_operand(t.text));
+    if (!index || *index >= uint64_t(kNumPredicates))
+      tokens_.fail(t, "a predicate, %p0 to %p7", near_operand(t.text));
     tokens_.take();
     return Slot(*index);
   }
@@ -285,9 +289,10 @@ class Parser {
     }
     const auto value = is_word ? number(t.text) : std::nullopt;
     if (!value || *value > (negate ? max / 2 + 1 : max))
-      tokens_.fail(negate && !value ? t : start,
-                   is_wide ? "a register pair or a 64-bit number" : "a register, a special or a 32-bit number",
-                   is_word ? near_source(t.text, is_wide) : "");
+      tokens_.fail(
+          negate && !value ? t : start,
+          is_wide ? "a register pair or a 64-bit number" : "a register, a special or a 32-bit number",
+          is_word ? near_source(t.text, is_wide) : "");
     tokens_.take();
     return negate ? (0 - *value) & max : *value;
   }

@@ -40,7 +40,7 @@ inline constexpr uint32_t kDescriptorBytes = 16;
 inline constexpr uint32_t kBindingsPerSet = 64;
 inline constexpr uint32_t kSetBytes = kBindingsPerSet * kDescriptorBytes;  // 1 KiB
 inline constexpr uint32_t kMaxSets = 16;
-inline constexpr uint32_t kPushConstantOffset = kMaxSets * kSetBytes;      // 16 KiB
+inline constexpr uint32_t kPushConstantOffset = kMaxSets * kSetBytes;  // 16 KiB
 inline constexpr uint32_t kConstantBankBytes = kPushConstantOffset + 1024;
 
 // Register %r0 holds the local-memory stack pointer of the lane; a caller adds its own local_bytes to it
@@ -48,20 +48,20 @@ inline constexpr uint32_t kConstantBankBytes = kPushConstantOffset + 1024;
 inline constexpr Slot kStackPointer = 0;
 
 struct Program {
-  std::string name;                   // for messages: the shader's file name
+  std::string name;  // for messages: the shader's file name
   Stage stage = Stage::Compute;
-  std::vector<Inst> code;             // entry is instruction 0
-  std::vector<uint32_t> constants;    // one value a row; broadcast to 32 lanes when loaded into a machine
+  std::vector<Inst> code;           // entry is instruction 0
+  std::vector<uint32_t> constants;  // one value a row; broadcast to 32 lanes when loaded into a machine
   std::vector<std::string> files;
-  std::vector<Line> lines;            // one an instruction
+  std::vector<Line> lines;                               // one an instruction
   std::vector<std::pair<uint32_t, std::string>> labels;  // instruction index, name; sorted by index
-  uint32_t num_registers = 1;         // highest register + 1
-  uint32_t local_bytes = 0;           // stack frame: variables, payloads, spills, saved registers
-  uint32_t payload_bytes = 0;         // of the payload it reads (hit, miss) or the largest it passes (caller)
+  uint32_t num_registers = 1;                            // highest register + 1
+  uint32_t local_bytes = 0;    // stack frame: variables, payloads, spills, saved registers
+  uint32_t payload_bytes = 0;  // of the payload it reads (hit, miss) or the largest it passes (caller)
   uint32_t attribute_bytes = 0;
   std::array<uint32_t, 3> local_size{1, 1, 1};  // compute: threads of a block
-  uint32_t shared_bytes = 0;          // compute: shared memory of a block
-  std::vector<std::string> messages;  // formats of print and print.part (isa/message.h)
+  uint32_t shared_bytes = 0;                    // compute: shared memory of a block
+  std::vector<std::string> messages;            // formats of print and print.part (isa/message.h)
   // For people, from the compiler: not in the program's text, and not compared.
   std::vector<Scope> scopes;
   std::vector<SpirvLine> spirv;

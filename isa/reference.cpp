@@ -68,18 +68,35 @@ std::string examples_text(const OpRow& row, std::string_view separator, size_t m
   return out;
 }
 
-// Ops that PTX lacks or writes in another form, by the beginning of the name; a name that ends in a space is whole.
+// Ops that PTX lacks or writes in another form, by the beginning of the name; a name that ends in a space is
+// whole.
 struct Other {
   std::string_view begin, ptx;
 };
 constexpr Other kOthers[] = {
-    {"rt.", ""},         {"rq.", ""},         {"call.sbt.", ""},  {"ssy ", ""},   {"join ", ""},
-    {"sin.f32 ", ""},    {"cos.f32 ", ""},    {"ex2.f32 ", ""},   {"lg2.f32 ", ""}, {"rsqrt.f32 ", ""},
-    {"suatom.", ""},     {"tex.compare", "`tex` with a depth operand"}, {"tld4.compare", "`tld4` with a depth operand"},
-    {"pack.b64 ", "`mov.b64 d, {a, b}`"},     {"unpack.b64 ", "`mov.b64 {d, e}, a`"},
+    {"rt.", ""},
+    {"rq.", ""},
+    {"call.sbt.", ""},
+    {"ssy ", ""},
+    {"join ", ""},
+    {"sin.f32 ", ""},
+    {"cos.f32 ", ""},
+    {"ex2.f32 ", ""},
+    {"lg2.f32 ", ""},
+    {"rsqrt.f32 ", ""},
+    {"suatom.", ""},
+    {"tex.compare", "`tex` with a depth operand"},
+    {"tld4.compare", "`tld4` with a depth operand"},
+    {"pack.b64 ", "`mov.b64 d, {a, b}`"},
+    {"unpack.b64 ", "`mov.b64 {d, e}, a`"},
     {"call ", "`call`, without parameter lists"},
-    {"add.cc", "the carry in CC"}, {"addc", "the carry in CC"}, {"sub.cc", "the carry in CC"}, {"subc", "the carry in CC"},
-    {"mad.lo.cc", "the carry in CC"}, {"mad.hi.cc", "the carry in CC"}, {"madc", "the carry in CC"},
+    {"add.cc", "the carry in CC"},
+    {"addc", "the carry in CC"},
+    {"sub.cc", "the carry in CC"},
+    {"subc", "the carry in CC"},
+    {"mad.lo.cc", "the carry in CC"},
+    {"mad.hi.cc", "the carry in CC"},
+    {"madc", "the carry in CC"},
 };
 
 std::string title_of(const Family& family) {
@@ -96,11 +113,16 @@ constexpr size_t kPageExamples = 2;  // an op has up to 8: `glint isa OP` shows 
 
 std::string page_row(const OpRow& row, std::span<const PresetTimes> presets) {
   const std::string operands = operand_text(row), ptx = ptx_name(row);
-  std::string out = fmt::format("| `{}` | {} | {} | {} |", row.name, operands.empty() ? "" : "`" + operands + "`",
-                                name_of(row.klass), name_of(row.unit));
-  for (const PresetTimes& times : presets) out += fmt::format(" {} |", time_text(times.unit[size_t(row.unit)]));
-  return out + fmt::format(" {} | {} | {} |\n", ptx == row.name ? "same" : ptx.empty() ? "none" : ptx, row.doc,
-                           examples_text(row, "; ", kPageExamples));
+  std::string out =
+      fmt::format("| `{}` | {} | {} | {} |", row.name, operands.empty() ? "" : "`" + operands + "`",
+                  name_of(row.klass), name_of(row.unit));
+  for (const PresetTimes& times : presets)
+    out += fmt::format(" {} |", time_text(times.unit[size_t(row.unit)]));
+  return out + fmt::format(" {} | {} | {} |\n",
+                           ptx == row.name ? "same"
+                           : ptx.empty()   ? "none"
+                                           : ptx,
+                           row.doc, examples_text(row, "; ", kPageExamples));
 }
 
 std::vector<std::string> all_names() {
@@ -109,7 +131,8 @@ std::vector<std::string> all_names() {
   return names;
 }
 
-[[noreturn]] void unknown(std::string_view what, std::string_view name, const std::vector<std::string>& known) {
+[[noreturn]] void unknown(std::string_view what, std::string_view name,
+                          const std::vector<std::string>& known) {
   const std::string near = nearest(std::string(name), known);
   throw UserError({}, fmt::format("no {} is named '{}'", what, name),
                   near.empty() ? "" : "did you mean '" + near + "'?");
@@ -134,7 +157,11 @@ std::string operand_text(const OpRow& row) {
   std::string out;
   bool after_destination = false;
   for (const OperandKind kind : row.operands.view()) {
-    out += fmt::format("{}{}", out.empty() ? "" : after_destination && is_destination(kind) ? "|" : ", ", text_of(kind));
+    out += fmt::format("{}{}",
+                       out.empty()                                 ? ""
+                       : after_destination && is_destination(kind) ? "|"
+                                                                   : ", ",
+                       text_of(kind));
     after_destination = is_destination(kind);
   }
   return out;
@@ -156,16 +183,24 @@ std::string page_name(std::string_view family) {
 std::string reference_index(std::span<const PresetTimes> presets) {
   std::string out =
       "# Instruction set\n\n"
-      "Written from the op table (`isa/ops/`) by `tools/update_golden.py`: do not edit. `glint isa OP` prints one op, and\n"
-      "`glint isa BEGINNING` all whose names begin so. A source `a` (32 bits) or `ad` (64 bits) is a register, a number or,\n"
-      "if it has 32 bits, a special such as `%launch.x`; `%rd` is a pair of registers; `%r|%p` are two destinations. Any\n"
-      "instruction may have a guard, `@%p1` or `@!%p1`. Examples give bits: (sources) = result, result|second result.\n"
-      "The column PTX says `same` where PTX's op of that name has this meaning, and what PTX has otherwise. The columns of\n"
-      "the presets give latency and interval of the op's unit in cycles, `[core.units.<unit>]` of the configuration: to a\n"
-      "dependent instruction, and to the next one on the pipe. All ops of a preset: `docs/instructions/<preset>.csv`.\n"
+      "Written from the op table (`isa/ops/`) by `tools/update_golden.py`: do not edit. `glint isa OP` "
+      "prints one op, and\n"
+      "`glint isa BEGINNING` all whose names begin so. A source `a` (32 bits) or `ad` (64 bits) is a "
+      "register, a number or,\n"
+      "if it has 32 bits, a special such as `%launch.x`; `%rd` is a pair of registers; `%r|%p` are two "
+      "destinations. Any\n"
+      "instruction may have a guard, `@%p1` or `@!%p1`. Examples give bits: (sources) = result, "
+      "result|second result.\n"
+      "The column PTX says `same` where PTX's op of that name has this meaning, and what PTX has otherwise. "
+      "The columns of\n"
+      "the presets give latency and interval of the op's unit in cycles, `[core.units.<unit>]` of the "
+      "configuration: to a\n"
+      "dependent instruction, and to the next one on the pipe. All ops of a preset: "
+      "`docs/instructions/<preset>.csv`.\n"
       "\n| family | ops | |\n|---|---|---|\n";
   for (const Family& family : families())
-    out += fmt::format("| [{}](isa/{}.md) | {} | {} |\n", family.name, page_name(family.name), family.count, family.doc);
+    out += fmt::format("| [{}](isa/{}.md) | {} | {} |\n", family.name, page_name(family.name), family.count,
+                       family.doc);
   out += "\n| unit |";
   for (const PresetTimes& times : presets) out += fmt::format(" {} |", times.preset);
   out += "\n|---|";
@@ -182,8 +217,9 @@ std::string reference_page(std::string_view name, std::span<const PresetTimes> p
   for (const Family& family : families()) {
     names.push_back(page_name(family.name));
     if (names.back() != name) continue;
-    std::string out = fmt::format("# {}\n\n{} How to read this page: [isa.md](../isa.md).\n\n| op | operands | class | unit |",
-                                  title_of(family), family.doc);
+    std::string out = fmt::format(
+        "# {}\n\n{} How to read this page: [isa.md](../isa.md).\n\n| op | operands | class | unit |",
+        title_of(family), family.doc);
     for (const PresetTimes& times : presets) out += fmt::format(" {} |", times.preset);
     out += " PTX | meaning | examples |\n|---|---|---|---|";
     for (size_t i = 0; i < presets.size(); ++i) out += "---|";
@@ -217,7 +253,8 @@ std::string instruction_table(const PresetTimes& times) {
   std::string out = "op,unit,class,latency,interval\n";
   for (const OpRow& row : op_table()) {
     const UnitTime& t = times.unit[size_t(row.unit)];
-    out += fmt::format("{},{},{},{},{}\n", row.name, name_of(row.unit), name_of(row.klass), t.latency, t.interval);
+    out += fmt::format("{},{},{},{},{}\n", row.name, name_of(row.unit), name_of(row.klass), t.latency,
+                       t.interval);
   }
   return out;
 }

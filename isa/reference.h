@@ -22,7 +22,8 @@ struct PresetTimes {
 // docs/isa.md: how to read the pages of the families, the units' times, the families.
 std::string reference_index(std::span<const PresetTimes> presets);
 
-// docs/isa/<family>.md: every op of the family, one a line. UserError with the nearest name when there is none.
+// docs/isa/<family>.md: every op of the family, one a line. UserError with the nearest name when there is
+// none.
 std::string reference_page(std::string_view family, std::span<const PresetTimes> presets);
 std::string page_name(std::string_view family);  // "ray tracing" -> "ray_tracing"
 

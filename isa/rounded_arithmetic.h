@@ -1,7 +1,8 @@
-// The arithmetic that rows round in a direction: of a lane in the host's words, and of vectors that say how to round.
+// The arithmetic that rows round in a direction: of a lane in the host's words, and of vectors that say how
+// to round.
 //
-// `of` rounds as MXCSR says, `rounded` as its argument does, `rounded_times_2_to_32` gives 2^32 times the result of
-// sources that are zero or normal. Included only by isa/ops/*.cpp (see rounding.h).
+// `of` rounds as MXCSR says, `rounded` as its argument does, `rounded_times_2_to_32` gives 2^32 times the
+// result of sources that are zero or normal. Included only by isa/ops/*.cpp (see rounding.h).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "isa/rounding.h"

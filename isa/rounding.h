@@ -1,8 +1,8 @@
 // Arithmetic rounded in any direction, with subnormals flushed where a row says so, a warp's worth at a time.
 //
-// AVX-512 rounds by a field of the instruction, and flushes by comparisons. Other paths set the host's MXCSR meanwhile,
-// which is right and not always fast: on some processors a pair of its loads takes 50 ns. Included only by isa/ops/*.cpp.
-// SPDX-License-Identifier: Apache-2.0
+// AVX-512 rounds by a field of the instruction, and flushes by comparisons. Other paths set the host's MXCSR
+// meanwhile, which is right and not always fast: on some processors a pair of its loads takes 50 ns. Included
+// only by isa/ops/*.cpp. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <xmmintrin.h>
@@ -25,16 +25,18 @@ inline constexpr int kStaticRound = int(kRound) | 8;  // _MM_FROUND_NO_EXC
 [[gnu::always_inline]] inline __m512 without_subnormals(__m512 x) {
   const __m512i bits = _mm512_castps_si512(x);
   const __mmask16 is_small = _mm512_testn_epi32_mask(bits, _mm512_set1_epi32(0x7f80'0000));
-  return _mm512_castsi512_ps(_mm512_mask_and_epi32(bits, is_small, bits, _mm512_set1_epi32(int(0x8000'0000))));
+  return _mm512_castsi512_ps(
+      _mm512_mask_and_epi32(bits, is_small, bits, _mm512_set1_epi32(int(0x8000'0000))));
 }
 [[gnu::always_inline]] inline __m512 scaled(__m512 x) {
   return _mm512_mul_ps(x, _mm512_set1_ps(0x1p32f));
 }
 
-// The arithmetic of Work with .ftz. A result counts as subnormal by its size once rounded with an unbounded exponent
-// (as MXCSR's FTZ and PTX have it): less than 2^-126 may still round to 2^-126 where subnormals have fewer bits. Such a
-// result comes again from sources times 2^32, with all bits. Where those overflow, the true result is either exact or
-// not small: it is small and inexact only if a product's or quotient's sources are below 2^24.
+// The arithmetic of Work with .ftz. A result counts as subnormal by its size once rounded with an unbounded
+// exponent (as MXCSR's FTZ and PTX have it): less than 2^-126 may still round to 2^-126 where subnormals have
+// fewer bits. Such a result comes again from sources times 2^32, with all bits. Where those overflow, the
+// true result is either exact or not small: it is small and inexact only if a product's or quotient's sources
+// are below 2^24.
 template <class Work, Round kRound, class... Vector>
 [[gnu::always_inline]] inline __m512 flushed_part(Vector... x) {
   const __m512 result = without_subnormals(Work::template rounded<kRound>(without_subnormals(x)...));
@@ -74,8 +76,8 @@ template <Round kRound, bool kFtz, class Work, class F, class... A>
 // zeros of their sign (MXCSR's DAZ and FTZ; a result counts as subnormal by its size once rounded with an
 // unbounded exponent, as PTX's .ftz has it). The host's arithmetic does it in hardware, all lanes at once;
 // the fences keep the compiler, which knows nothing of it, from moving loads and stores (and so what lies
-// between) across. Every thread that runs Glint has MXCSR's state of process start, so it is set, not saved: reading
-// it takes longer than the arithmetic.
+// between) across. Every thread that runs Glint has MXCSR's state of process start, so it is set, not saved:
+// reading it takes longer than the arithmetic.
 template <Round kRound, bool kFtz>
 class RoundingScope {
  public:
@@ -91,7 +93,8 @@ class RoundingScope {
   RoundingScope& operator=(const RoundingScope&) = delete;
 
  private:
-  static constexpr uint32_t kProcessStart = 0x1f80;  // nearest, nothing flushed, no traps (System V ABI, 3.4.1)
+  static constexpr uint32_t kProcessStart =
+      0x1f80;  // nearest, nothing flushed, no traps (System V ABI, 3.4.1)
 };
 
 template <class Work, class F>
@@ -109,17 +112,19 @@ template <Round kRound, bool kFtz, class Work, class F, class... A>
 
 #endif
 
-// A row whose result is `finish(x, a...)` of x = Work::of(a...), the arithmetic of a lane (isa/rounded_arithmetic.h),
-// rounded in a direction and flushed. `finish` itself must not depend on either.
+// A row whose result is `finish(x, a...)` of x = Work::of(a...), the arithmetic of a lane
+// (isa/rounded_arithmetic.h), rounded in a direction and flushed. `finish` itself must not depend on either.
 template <Round kRound, bool kFtz, class Work, class... A, class F>
 constexpr OpRow flushed_op(std::string_view name, Unit unit, std::string_view doc, F, Examples examples) {
-  OpRow row = value_op<A...>(name, unit, doc, [](A... a) { return F{}(Work::of(a...), a...); }, examples);
+  OpRow row = value_op<A...>(
+      name, unit, doc, [](A... a) { return F{}(Work::of(a...), a...); }, examples);
   if constexpr (kRound != Round::Nearest || kFtz) row.run = &run_rounded<kRound, kFtz, Work, F, A...>;
   return row;
 }
 // The same, subnormals kept.
 template <Round kRound, class Work, class... A, class F>
-constexpr OpRow rounded_op(std::string_view name, Unit unit, std::string_view doc, F finish, Examples examples) {
+constexpr OpRow rounded_op(std::string_view name, Unit unit, std::string_view doc, F finish,
+                           Examples examples) {
   return flushed_op<kRound, false, Work, A...>(name, unit, doc, finish, examples);
 }
 

@@ -169,7 +169,8 @@ std::string header_text(const Program& p) {
     out += fmt::format(".local_size {} {} {}\n", p.local_size[0], p.local_size[1], p.local_size[2]);
   if (p.shared_bytes) out += fmt::format(".shared_bytes {}\n", p.shared_bytes);
   for (size_t i = 0; i < p.files.size(); ++i) out += fmt::format(".file {} {}\n", i, quoted(p.files[i]));
-  for (size_t i = 0; i < p.messages.size(); ++i) out += fmt::format(".message {} {}\n", i, quoted(p.messages[i]));
+  for (size_t i = 0; i < p.messages.size(); ++i)
+    out += fmt::format(".message {} {}\n", i, quoted(p.messages[i]));
   return out;
 }
 

@@ -16,9 +16,10 @@ std::string to_text(const Program& program);
 // One instruction, without a line end; a label is written as "@index". For traces and messages.
 std::string to_text(const Program& program, const Inst& inst);
 
-// Reads what to_text writes. A whole number is bits, "0f3F800000" and "0d3FF0000000000000" are bits of floats; where an
-// op takes a float, "1.5" and "2e-3" are the nearest one. UserError "file:line:column: what was found, what was expected" at the first
-// mistake. The result is well formed, but only verify() says whether a machine may run it.
+// Reads what to_text writes. A whole number is bits, "0f3F800000" and "0d3FF0000000000000" are bits of
+// floats; where an op takes a float, "1.5" and "2e-3" are the nearest one. UserError "file:line:column: what
+// was found, what was expected" at the first mistake. The result is well formed, but only verify() says
+// whether a machine may run it.
 Program parse(const std::string& text, const std::string& file_name);
 
 // "%launch.x", and back; of a name that is no special: Special::Count.

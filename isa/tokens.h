@@ -1,9 +1,8 @@
 // The tokens of program text, with the place of each; used by the parser alone.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <fmt/format.h>
-
 #include <cctype>
+#include <fmt/format.h>
 #include <string>
 #include <string_view>
 
@@ -57,7 +56,8 @@ class Tokens {
   // The '-' of "2e-3": after an 'e' of a word that is a decimal number so far.
   bool is_exponent_sign() const {
     const std::string& word = token_.text;
-    return (next() == '-' || next() == '+') && word.size() >= 2 && (word.back() == 'e' || word.back() == 'E') &&
+    return (next() == '-' || next() == '+') && word.size() >= 2 &&
+           (word.back() == 'e' || word.back() == 'E') &&
            word.find_first_not_of("0123456789.") == word.size() - 1;
   }
   char next() const { return at_ < text_.size() ? text_[at_] : '\0'; }

@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/verify.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bitset>
 #include <cctype>
+#include <fmt/format.h>
 #include <initializer_list>
 
 #include "isa/descriptors.h"
@@ -41,7 +40,8 @@ class Verifier {
     if (program_.num_registers < 1 || program_.num_registers > uint32_t(kMaxRegisters))
       whole(fmt::format("{} registers, expected 1 to {}", program_.num_registers, kMaxRegisters));
     if (program_.constants.size() >= size_t(kSlotIndexMask))
-      whole(fmt::format("{} constant rows, expected at most {}", program_.constants.size(), kSlotIndexMask - 1));
+      whole(fmt::format("{} constant rows, expected at most {}", program_.constants.size(),
+                        kSlotIndexMask - 1));
     if (program_.lines.size() != program_.code.size())
       whole(fmt::format("{} source lines for {} instructions", program_.lines.size(), program_.code.size()));
     for (const std::string& text : program_.messages)
@@ -146,12 +146,13 @@ class Verifier {
     const Space space = row_->memory.space;
     const bool is_entry = program_.stage == Stage::RayGeneration || program_.stage == Stage::Compute;
     const int64_t end = first + row_->memory.bytes * row_->memory.count;
-    const int64_t size = space == Space::Shared                ? int64_t(program_.shared_bytes)
-                         : space == Space::Local && is_entry  ? int64_t(program_.local_bytes)
-                         : space == Space::Const              ? int64_t(kLargestBankBytes)
-                         : space == Space::Param              ? int64_t(kConstantBankBytes - kPushConstantOffset)
-                                                              : INT64_MAX;
-    if (first < 0 || end > size) error(fmt::format("touches bytes {} to {}, and there are {}", first, end - 1, size));
+    const int64_t size = space == Space::Shared              ? int64_t(program_.shared_bytes)
+                         : space == Space::Local && is_entry ? int64_t(program_.local_bytes)
+                         : space == Space::Const             ? int64_t(kLargestBankBytes)
+                         : space == Space::Param ? int64_t(kConstantBankBytes - kPushConstantOffset)
+                                                 : INT64_MAX;
+    if (first < 0 || end > size)
+      error(fmt::format("touches bytes {} to {}, and there are {}", first, end - 1, size));
   }
 
   // The message that a print names must be known now.
@@ -161,7 +162,8 @@ class Verifier {
     if (inst.operand[0] >> kBankShift != kConstantBank >> kBankShift || row >= program_.constants.size())
       return error("the number of the message is no constant");
     if (program_.constants[row] >= program_.messages.size())
-      error(fmt::format("message {}, and the program has {}", program_.constants[row], program_.messages.size()));
+      error(fmt::format("message {}, and the program has {}", program_.constants[row],
+                        program_.messages.size()));
   }
 
   // No register or predicate is written twice.
@@ -226,7 +228,8 @@ class Verifier {
   void special(OperandKind kind, unsigned index, bool is_wide) {
     if (is_destination(kind)) error("a special as destination");
     if (is_wide) error("a special as 64-bit operand");
-    if (index >= unsigned(kNumSpecials)) return error(fmt::format("special {}, and there are {}", index, kNumSpecials));
+    if (index >= unsigned(kNumSpecials))
+      return error(fmt::format("special {}, and there are {}", index, kNumSpecials));
     stage_of_special(Special(index));
   }
 

@@ -1,7 +1,6 @@
 // Walks every path of a program once, with the stack of what is open on it: regions of ssy, traces, calls.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-
 #include <unordered_map>
 #include <vector>
 
@@ -23,9 +22,9 @@ bool ends_lanes(Effect e) {
 // Stacks of open things as a tree: a stack is its top, equal stacks are equal numbers.
 class Stacks {
  public:
-  static constexpr int32_t kNone = -1;                             // not reached
+  static constexpr int32_t kNone = -1;                               // not reached
   static constexpr int32_t kTrace = -1, kMain = -2, kFunction = -3;  // marks; from 0: the join of a region
-  static constexpr uint32_t kInMain = 0, kInFunction = 1;          // the two empty stacks
+  static constexpr uint32_t kInMain = 0, kInFunction = 1;            // the two empty stacks
 
   Stacks() : nodes_{{0, kMain}, {1, kFunction}} {}
 
@@ -38,7 +37,8 @@ class Stacks {
   int32_t top(uint32_t stack) const { return nodes_[stack].what; }
   uint32_t below(uint32_t stack) const { return nodes_[stack].below; }
 
-  // The part of the stack up to the innermost region of `join`, or kNone. Regions are not left across a trace.
+  // The part of the stack up to the innermost region of `join`, or kNone. Regions are not left across a
+  // trace.
   int32_t up_to(uint32_t stack, int32_t join) const {
     for (; top(stack) >= 0; stack = below(stack))
       if (top(stack) == join) return int32_t(stack);
@@ -102,15 +102,16 @@ class RegionWalk {
     if (effect(uint32_t(to)) == Effect::Join) {
       const int32_t kept = stacks_.up_to(stack, int32_t(to));
       if (kept == Stacks::kNone)
-        return error(from, fmt::format("comes to the join at {} outside its region: {}", to, stacks_.text(stack)));
+        return error(from,
+                     fmt::format("comes to the join at {} outside its region: {}", to, stacks_.text(stack)));
       stack = uint32_t(kept);
     }
     if (stack_at_[to] == Stacks::kNone) {
       stack_at_[to] = int32_t(stack);
       pending_.push_back(uint32_t(to));
     } else if (stack_at_[to] != int32_t(stack)) {
-      error(from, fmt::format("comes to instruction {} with {}, and another path with {}", to, stacks_.text(stack),
-                              stacks_.text(uint32_t(stack_at_[to]))));
+      error(from, fmt::format("comes to instruction {} with {}, and another path with {}", to,
+                              stacks_.text(stack), stacks_.text(uint32_t(stack_at_[to]))));
     }
   }
 
@@ -126,15 +127,18 @@ class RegionWalk {
         return error(at, fmt::format("no trace is innermost here: {}", stacks_.text(before)));
       after = stacks_.below(before);
     }
-    if ((e == Effect::Resume || e == Effect::CallCandidate || e == Effect::CallHit) && !stacks_.in_trace(before))
+    if ((e == Effect::Resume || e == Effect::CallCandidate || e == Effect::CallHit) &&
+        !stacks_.in_trace(before))
       return error(at, "no rt.trace is open on a path to here");
     const bool parts = e == Effect::BranchIndexed || (e == Effect::Branch && inst(at).guard != kNoGuard);
     if (parts && stacks_.top(before) == Stacks::kTrace)
-      error(at, "lanes may part inside a trace, and no region is open in which they would meet before its end");
+      error(at,
+            "lanes may part inside a trace, and no region is open in which they would meet before its end");
     if (e == Effect::Return) returns(at, before);
     const bool is_call = e == Effect::Call;
     const std::vector<uint32_t> next = successors(program_, at);
-    for (size_t i = 0; i < next.size(); ++i) enter(at, next[i], is_call && i == 0 ? Stacks::kInFunction : after);
+    for (size_t i = 0; i < next.size(); ++i)
+      enter(at, next[i], is_call && i == 0 ? Stacks::kInFunction : after);
   }
 
   // Ray generation and compute shaders are called by nobody.
@@ -154,8 +158,9 @@ class RegionWalk {
       if (stack_at_[at] != Stacks::kNone) continue;
       const uint32_t first = at;
       while (at + 1 < program_.code.size() && stack_at_[at + 1] == Stacks::kNone) ++at;
-      error(first, first == at ? "no path leads here"
-                               : fmt::format("no path leads here, nor to the next instructions up to {}", at));
+      error(first, first == at
+                       ? "no path leads here"
+                       : fmt::format("no path leads here, nor to the next instructions up to {}", at));
     }
   }
 

@@ -1,9 +1,8 @@
-// Data flow over the paths of a program: which registers and predicates are written, and where the stack pointer is.
-// SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
+// Data flow over the paths of a program: which registers and predicates are written, and where the stack
+// pointer is. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <fmt/format.h>
 #include <utility>
 #include <vector>
 
@@ -44,7 +43,8 @@ struct State {
     if (!is_reached) return *this = other, true;
     const State before = *this;
     for (size_t i = 0; i < kNumValues; ++i)
-      if (fact[i] != other.fact[i]) fact[i] = fact[i] == Unwritten || other.fact[i] == Unwritten ? Unwritten : Written;
+      if (fact[i] != other.fact[i])
+        fact[i] = fact[i] == Unwritten || other.fact[i] == Unwritten ? Unwritten : Written;
     if (stack != other.stack) stack = kUnknown;
     return fact != before.fact || stack != before.stack;
   }
@@ -56,7 +56,8 @@ void for_each_value(const OpRow& row, const Inst& inst, Visit&& visit) {
   int slot = 0;
   for (const OperandKind kind : row.operands.view()) {
     const bool is_predicate = kind == OperandKind::DstPred || kind == OperandKind::SrcPred;
-    const bool is_pair = kind == OperandKind::Dst64 || kind == OperandKind::Src64 || kind == OperandKind::Address64;
+    const bool is_pair =
+        kind == OperandKind::Dst64 || kind == OperandKind::Src64 || kind == OperandKind::Address64;
     for (const int end = slot + slots_of(kind); slot < end; ++slot) {
       const size_t index = inst.operand[size_t(slot)];
       if (is_predicate) {
@@ -116,7 +117,8 @@ class ValueFlow {
     is_pending_.resize(starts_.size());
   }
 
-  // Everything that code reached from a call writes: after a call it may have been written, and is not looked into.
+  // Everything that code reached from a call writes: after a call it may have been written, and is not looked
+  // into.
   void find_written_by_functions() {
     std::vector<uint32_t> pending;
     std::vector<uint8_t> seen(size(), 0);
@@ -167,7 +169,8 @@ class ValueFlow {
     if (reports_) check(state, i, row, at);
     if (is_shader_call(row.effect)) {
       const uint8_t pointer = state.fact[kStackPointer];
-      state.fact.fill(Unwritten);  // the shaders that are called use all registers and predicates (docs/abi.md)
+      state.fact.fill(
+          Unwritten);  // the shaders that are called use all registers and predicates (docs/abi.md)
       state.fact[kStackPointer] = pointer;
     }
     for_each_value(row, i, [&](size_t value, bool is_written) {
@@ -195,7 +198,8 @@ class ValueFlow {
     if (row.operands.count == 0 || !is_destination(row.operands.kind[0]) ||
         row.operands.kind[0] == OperandKind::DstPred || i.operand[0] != kStackPointer)
       return;
-    const bool adds = row.name == "add.u32" || row.name == "add.s32", subtracts = row.name == "sub.u32" || row.name == "sub.s32";
+    const bool adds = row.name == "add.u32" || row.name == "add.s32",
+               subtracts = row.name == "sub.u32" || row.name == "sub.s32";
     const Slot step = i.operand[2];
     const bool is_known = (adds || subtracts) && i.guard == kNoGuard && i.operand[1] == kStackPointer &&
                           step >> kBankShift == kConstantBank >> kBankShift && state.stack != State::kUnknown;
@@ -211,10 +215,14 @@ class ValueFlow {
     if (state.stack == State::kUnknown) return;
     const Effect e = row.effect;
     if ((e == Effect::Return || e == Effect::Ignore || e == Effect::Terminate) && state.stack != 0)
-      complain_(at, fmt::format("%r0 is {} bytes from its value at entry, where the shader returns", state.stack));
+      complain_(
+          at, fmt::format("%r0 is {} bytes from its value at entry, where the shader returns", state.stack));
     if (is_shader_call(e) && state.stack < int64_t(program_.local_bytes))
-      complain_(at, fmt::format("%r0 is {} bytes above its value at entry, and the frame that a called shader must leave "
-                                "alone has {}", state.stack, program_.local_bytes));
+      complain_(at,
+                fmt::format(
+                    "%r0 is {} bytes above its value at entry, and the frame that a called shader must leave "
+                    "alone has {}",
+                    state.stack, program_.local_bytes));
     if (row.memory.space == Space::Local) frame(state, i, row, at);
   }
 
@@ -224,8 +232,10 @@ class ValueFlow {
     const bool is_predicate = value >= size_t(kMaxRegisters);
     const std::string name =
         fmt::format("%{}{}", is_predicate ? 'p' : 'r', is_predicate ? value - size_t(kMaxRegisters) : value);
-    complain_(at, fact == Unwritten ? fmt::format("{} is read, and on a path to here nothing has written it", name)
-                                    : fmt::format("{} is read by all lanes, and only those of a guard have written it", name));
+    complain_(at,
+              fact == Unwritten
+                  ? fmt::format("{} is read, and on a path to here nothing has written it", name)
+                  : fmt::format("{} is read by all lanes, and only those of a guard have written it", name));
   }
 
   // Displacements from the stack pointer lie in the frame.
@@ -235,7 +245,8 @@ class ValueFlow {
       if (kind == OperandKind::Address32 && i.operand[size_t(slot)] == kStackPointer) {
         const int64_t first = state.stack + i.imm, end = first + row.memory.bytes * row.memory.count;
         if (first < 0 || end > int64_t(program_.local_bytes))
-          complain_(at, fmt::format("touches bytes {} to {} of the frame, which has {}", first, end - 1, program_.local_bytes));
+          complain_(at, fmt::format("touches bytes {} to {} of the frame, which has {}", first, end - 1,
+                                    program_.local_bytes));
       }
       slot += slots_of(kind);
     }

@@ -7,11 +7,12 @@
 
 namespace glint::mem {
 
-// L2 slices, those of one memory partition next to each other. Memory is cut into chunks of `interleave` bytes and the
-// chunks into groups of one chunk a slice. Inside a group chunk r goes to slice (r + hash(group)) mod N: each group fills
-// every slice once, whatever N is, so slices stay equally full and their local addresses dense; and the hash turns each
-// group differently, so that strides which are multiples of N chunks still spread. (IPOLY hashes need N = 16, 32 or 64.)
-// Without a hash, chunk r goes to slice r, as GPGPU-Sim does with memory partition index 0.
+// L2 slices, those of one memory partition next to each other. Memory is cut into chunks of `interleave`
+// bytes and the chunks into groups of one chunk a slice. Inside a group chunk r goes to slice (r +
+// hash(group)) mod N: each group fills every slice once, whatever N is, so slices stay equally full and their
+// local addresses dense; and the hash turns each group differently, so that strides which are multiples of N
+// chunks still spread. (IPOLY hashes need N = 16, 32 or 64.) Without a hash, chunk r goes to slice r, as
+// GPGPU-Sim does with memory partition index 0.
 class PartitionMap {
  public:
   PartitionMap(uint32_t partitions, uint32_t slices, uint32_t interleave, bool mixed = true)
@@ -44,18 +45,21 @@ class PartitionMap {
 };
 
 struct DramLocation {
-  uint32_t bank = 0;   // bank_in_group * groups + group
+  uint32_t bank = 0;  // bank_in_group * groups + group
   uint32_t group = 0;
   uint32_t row = 0;
 };
 
-// Banks and rows, from the low end of the local address: interleave chunk, bank group, rest of the column, bank in the
-// group, row. Neighbouring chunks so alternate between bank groups and never pay the longer tCCD_L, and the row number
-// turns the bank (permutation-based interleaving; Zhang, Zhu, Zhang, MICRO 2000).
+// Banks and rows, from the low end of the local address: interleave chunk, bank group, rest of the column,
+// bank in the group, row. Neighbouring chunks so alternate between bank groups and never pay the longer
+// tCCD_L, and the row number turns the bank (permutation-based interleaving; Zhang, Zhu, Zhang, MICRO 2000).
 class DramMap {
  public:
   DramMap(uint32_t banks, uint32_t groups, uint32_t row_bytes, uint32_t interleave)
-      : groups_(groups), per_group_(banks / groups), chunks_(row_bytes / interleave), interleave_(interleave) {}
+      : groups_(groups),
+        per_group_(banks / groups),
+        chunks_(row_bytes / interleave),
+        interleave_(interleave) {}
 
   DramLocation locate(Address local) const {
     uint64_t rest = local / interleave_;

@@ -3,7 +3,6 @@
 #include "memsys/address_space.h"
 
 #include <fmt/format.h>
-
 #include <new>
 
 #include "base/check.h"
@@ -15,25 +14,29 @@ constexpr std::align_val_t kHostAlignment{64};
 constexpr uint64_t kSlot = uint64_t{1} << AddressSpace::kShift;
 constexpr uint64_t kPhysicalAlignment = 256;
 
-uint64_t slots_of(uint64_t bytes) { return bytes <= kSlot ? 1 : (bytes + kSlot - 1) / kSlot; }
+uint64_t slots_of(uint64_t bytes) {
+  return bytes <= kSlot ? 1 : (bytes + kSlot - 1) / kSlot;
+}
 
 }  // namespace
 
 AddressSpace::~AddressSpace() {
   for (size_t i = 1; i < allocations_.size(); ++i)
     // A continuation of a large allocation points into the block of its first slot.
-    if (i == 1 || allocations_[i].data != allocations_[i - 1].data + kSlot || allocations_[i - 1].bytes <= kSlot)
+    if (i == 1 || allocations_[i].data != allocations_[i - 1].data + kSlot ||
+        allocations_[i - 1].bytes <= kSlot)
       ::operator delete[](allocations_[i].data, kHostAlignment);
 }
 
 Address AddressSpace::allocate(std::string name, uint64_t bytes) {
   // Whole lines of the host: a line can be copied, whatever of it is used.
-  const size_t line = size_t(kHostAlignment), host_bytes = size_t(bytes == 0 ? line : (bytes + line - 1) / line * line);
+  const size_t line = size_t(kHostAlignment),
+               host_bytes = size_t(bytes == 0 ? line : (bytes + line - 1) / line * line);
   auto* data = static_cast<std::byte*>(::operator new[](host_bytes, kHostAlignment));
   std::memset(data, 0, host_bytes);
   const Address address = Address(allocations_.size()) << kShift;
-  // Slot i of a large allocation spans from its own start to the end of the allocation, so that find() needs no
-  // special case for ranges that cross a multiple of 4 GiB.
+  // Slot i of a large allocation spans from its own start to the end of the allocation, so that find() needs
+  // no special case for ranges that cross a multiple of 4 GiB.
   for (uint64_t i = 0; i < slots_of(bytes); ++i)
     allocations_.push_back({name, bytes - i * kSlot, next_physical_ + i * kSlot, data + i * kSlot});
   reserve(bytes);
@@ -50,21 +53,22 @@ std::string AddressSpace::explain(Address address, uint64_t bytes) const {
   const uint64_t index = address >> kShift;
   const uint64_t offset = address & (kSlot - 1);
   if (index == 0 && offset < kSlot / 2)
-    return fmt::format("a null pointer plus {} bytes: nothing is bound there, or the address was never set", offset);
+    return fmt::format("a null pointer plus {} bytes: nothing is bound there, or the address was never set",
+                       offset);
   if (index > 0 && index < allocations_.size()) {
     const Allocation& a = allocations_[index];
     if (offset + bytes <= a.bytes) return fmt::format("{} bytes inside '{}'", bytes, a.name);
     if (offset < a.bytes)
-      return fmt::format("{} bytes across the end of '{}' ({} bytes), {} of them past it", bytes, a.name, a.bytes,
-                         offset + bytes - a.bytes);
+      return fmt::format("{} bytes across the end of '{}' ({} bytes), {} of them past it", bytes, a.name,
+                         a.bytes, offset + bytes - a.bytes);
     // The upper half of a slot is nearer to the next allocation: an index below its start.
     const bool before_next = offset >= kSlot / 2 && index + 1 < allocations_.size();
     if (!before_next)
       return fmt::format("{} bytes past the end of '{}' ({} bytes)", offset - a.bytes, a.name, a.bytes);
   }
   if (index + 1 < allocations_.size())
-    return fmt::format("{} bytes before the start of '{}' ({} bytes)", kSlot - offset, allocations_[index + 1].name,
-                       allocations_[index + 1].bytes);
+    return fmt::format("{} bytes before the start of '{}' ({} bytes)", kSlot - offset,
+                       allocations_[index + 1].name, allocations_[index + 1].bytes);
   return "no allocation is near";
 }
 

@@ -21,7 +21,7 @@ class AddressSpace {
   static constexpr int kShift = 32;
 
   struct Allocation {
-    std::string name;      // for messages: "binding 4 (Vertices)"
+    std::string name;  // for messages: "binding 4 (Vertices)"
     uint64_t bytes = 0;
     Address physical = 0;  // of byte 0; aligned to 256 B
     std::byte* data = nullptr;
@@ -53,9 +53,12 @@ class AddressSpace {
   std::span<T> view(Address address, uint64_t count) const {
     return {reinterpret_cast<T*>(find(address, count * sizeof(T))), size_t(count)};
   }
-  void write(Address address, const void* from, uint64_t bytes) { std::memcpy(find(address, bytes), from, bytes); }
+  void write(Address address, const void* from, uint64_t bytes) {
+    std::memcpy(find(address, bytes), from, bytes);
+  }
 
-  // Of an access that find() refuses: "16 bytes past the end of 'binding 4 (Vertices)' (1200 bytes)": names the nearest allocation.
+  // Of an access that find() refuses: "16 bytes past the end of 'binding 4 (Vertices)' (1200 bytes)": names
+  // the nearest allocation.
   std::string explain(Address address, uint64_t bytes) const;
   uint64_t bytes_allocated() const { return next_physical_; }
   const std::vector<Allocation>& allocations() const { return allocations_; }

@@ -12,7 +12,8 @@ namespace glint::mem {
 // Why a request was turned away, or had to wait at the head of its queue.
 enum class Refusal : uint8_t { Port, Bank, MshrFull, MergeLimit, QueueFull, SetHeld, Count };
 constexpr std::string_view name_of(Refusal reason) {
-  constexpr std::string_view kNames[] = {"port", "bank", "mshr_full", "merge_limit", "queue_full", "set_held"};
+  constexpr std::string_view kNames[] = {"port",        "bank",       "mshr_full",
+                                         "merge_limit", "queue_full", "set_held"};
   return kNames[size_t(reason)];
 }
 
@@ -22,12 +23,15 @@ struct CacheStats {
   stats::Group group;
   stats::Breakdown<Traffic> reads{&group, "reads", "request", "Reads taken, by traffic class."};
   stats::Breakdown<Traffic> hits{&group, "hits", "request", "Reads that found all their sectors present."};
-  stats::Breakdown<Traffic> pending_hits{&group, "pending_hits", "request", "Reads whose missing sectors were all on the way already."};
+  stats::Breakdown<Traffic> pending_hits{&group, "pending_hits", "request",
+                                         "Reads whose missing sectors were all on the way already."};
   stats::Breakdown<Traffic> misses{&group, "misses", "request", "Reads that fetched at least one sector."};
-  stats::Breakdown<Traffic> cold_misses{&group, "cold_misses", "request", "Misses of lines this cache had never held or fetched."};
+  stats::Breakdown<Traffic> cold_misses{&group, "cold_misses", "request",
+                                        "Misses of lines this cache had never held or fetched."};
   stats::Breakdown<Traffic> writes{&group, "writes", "request", "Writes taken."};
   stats::Breakdown<Traffic> write_hits{&group, "write_hits", "request", "Writes whose line was present."};
-  stats::Breakdown<Traffic> sectors_fetched{&group, "sectors_fetched", "sector", "Sectors asked of the level below."};
+  stats::Breakdown<Traffic> sectors_fetched{&group, "sectors_fetched", "sector",
+                                            "Sectors asked of the level below."};
   stats::Counter write_backs{&group, "write_backs", "line", "Dirty lines evicted."};
   stats::Counter evictions{&group, "evictions", "line", "Lines replaced, clean or dirty."};
 

@@ -14,16 +14,18 @@ struct Kind {
 };
 
 void set_times(DramParams& p, const std::array<double, 16>& t) {
-  double* const fields[] = {&p.rcd,   &p.rcd_write, &p.rp,    &p.ras,   &p.rc,    &p.cl,  &p.wl,    &p.wr,
-                            &p.rtp,   &p.ccd_s,     &p.ccd_l, &p.rrd_s, &p.rrd_l, &p.faw, &p.wtr_s, &p.wtr_l};
+  double* const fields[] = {&p.rcd, &p.rcd_write, &p.rp,    &p.ras,   &p.rc,    &p.cl,  &p.wl,    &p.wr,
+                            &p.rtp, &p.ccd_s,     &p.ccd_l, &p.rrd_s, &p.rrd_l, &p.faw, &p.wtr_s, &p.wtr_l};
   static_assert(std::size(fields) == std::tuple_size_v<std::array<double, 16>>);
   for (size_t i = 0; i < t.size(); ++i) *fields[i] = t[i];
 }
 void set_refresh(DramParams& p, double refi, double rfc, double rfc_bank) {
   p.refi = refi, p.rfc = rfc, p.rfc_bank = rfc_bank;
 }
-void set_bus(DramParams& p, double clock_mhz, uint32_t transfers_per_clock, uint32_t burst, uint32_t bus_bytes) {
-  p.clock_mhz = clock_mhz, p.transfers_per_clock = transfers_per_clock, p.burst = burst, p.bus_bytes = bus_bytes;
+void set_bus(DramParams& p, double clock_mhz, uint32_t transfers_per_clock, uint32_t burst,
+             uint32_t bus_bytes) {
+  p.clock_mhz = clock_mhz, p.transfers_per_clock = transfers_per_clock, p.burst = burst,
+  p.bus_bytes = bus_bytes;
 }
 void set_array(DramParams& p, uint32_t row_bytes, bool dual_command_bus, uint32_t activate_clocks) {
   p.bank_groups = 4, p.banks = 16, p.row_bytes = row_bytes, p.bus_turn = 2;
@@ -37,7 +39,8 @@ void set_array(DramParams& p, uint32_t row_bytes, bool dual_command_bus, uint32_
 void gddr6_14000(DramParams& p) {
   set_bus(p, 1750.0, 8, 16, 2);
   set_array(p, 2048, false, 1);
-  set_times(p, {15.4, 9.2, 15.4, 30.2, 45.0, 13.7, 3.4, 15.4, 2.28, 1.14, 2.28, 4.56, 4.56, 16.5, 5.13, 6.27});
+  set_times(p,
+            {15.4, 9.2, 15.4, 30.2, 45.0, 13.7, 3.4, 15.4, 2.28, 1.14, 2.28, 4.56, 4.56, 16.5, 5.13, 6.27});
   set_refresh(p, 1900.0, 120.3, 60.4);
 }
 // Half the transfers a clock, as Vulkan-Sim's mobile part has 7 GT/s on a 1750 MHz command clock.
@@ -47,34 +50,39 @@ void gddr6_7000(DramParams& p) {
 }
 void gddr6_14000_1v25(DramParams& p) {
   gddr6_14000(p);
-  set_times(p, {17.1, 11.4, 17.1, 34.2, 51.3, 13.7, 3.4, 15.4, 2.28, 1.14, 2.28, 6.27, 6.27, 24.5, 5.13, 6.27});
+  set_times(p,
+            {17.1, 11.4, 17.1, 34.2, 51.3, 13.7, 3.4, 15.4, 2.28, 1.14, 2.28, 6.27, 6.27, 24.5, 5.13, 6.27});
 }
-// LPDDR5-6400: tCK 1.25 ns, 16-bit channel; an activate is two commands (ACT-1, ACT-2); refresh of 16 Gb dies every
-// 3125, 224 or 112 clocks.
+// LPDDR5-6400: tCK 1.25 ns, 16-bit channel; an activate is two commands (ACT-1, ACT-2); refresh of 16 Gb dies
+// every 3125, 224 or 112 clocks.
 void lpddr5_6400(DramParams& p) {
   set_bus(p, 800.0, 8, 16, 2);
   set_array(p, 2048, false, 2);
-  set_times(p, {18.75, 18.75, 18.75, 42.5, 61.25, 21.25, 11.25, 35.0, 10.0, 2.5, 5.0, 5.0, 5.0, 20.0, 6.25, 12.5});
+  set_times(
+      p, {18.75, 18.75, 18.75, 42.5, 61.25, 21.25, 11.25, 35.0, 10.0, 2.5, 5.0, 5.0, 5.0, 20.0, 6.25, 12.5});
   set_refresh(p, 3906.25, 280.0, 140.0);
 }
-// HBM3-6400, one pseudo-channel: tCK 0.625 ns, an activate takes 1.5 clocks of the row command bus; refresh every 6240,
-// 416 (8 Gb a channel) or 320 clocks.
+// HBM3-6400, one pseudo-channel: tCK 0.625 ns, an activate takes 1.5 clocks of the row command bus; refresh
+// every 6240, 416 (8 Gb a channel) or 320 clocks.
 void hbm3_6400(DramParams& p) {
   set_bus(p, 1600.0, 4, 8, 4);
   set_array(p, 1024, true, 2);
-  set_times(p, {19.375, 9.375, 16.25, 28.125, 45.0, 12.5, 6.25, 20.625, 5.625, 1.25, 2.5, 2.5, 3.125, 15.0, 4.375, 6.25});
+  set_times(p, {19.375, 9.375, 16.25, 28.125, 45.0, 12.5, 6.25, 20.625, 5.625, 1.25, 2.5, 2.5, 3.125, 15.0,
+                4.375, 6.25});
   set_refresh(p, 3900.0, 260.0, 200.0);
 }
 
 constexpr Kind kKinds[] = {
-    {"gddr6_7000", "GDDR6 at 7 GT/s with the times of GDDR6-14000 at 1.35 V: 14 GB/s a 16-bit channel.", gddr6_7000},
+    {"gddr6_7000", "GDDR6 at 7 GT/s with the times of GDDR6-14000 at 1.35 V: 14 GB/s a 16-bit channel.",
+     gddr6_7000},
     {"gddr6_14000", "GDDR6-14000 at 1.35 V: 28 GB/s a 16-bit channel.", gddr6_14000},
     {"gddr6_14000_1v25", "GDDR6-14000 at 1.25 V: the same with slower rows.", gddr6_14000_1v25},
     {"lpddr5_6400", "LPDDR5-6400: 12.8 GB/s a 16-bit channel.", lpddr5_6400},
     {"hbm3_6400", "HBM3-6400: 25.6 GB/s a 32-bit pseudo-channel.", hbm3_6400}};
 
 const Kind* find(std::string_view name) {
-  const auto kind = std::find_if(std::begin(kKinds), std::end(kKinds), [&](const Kind& k) { return k.name == name; });
+  const auto kind =
+      std::find_if(std::begin(kKinds), std::end(kKinds), [&](const Kind& k) { return k.name == name; });
   return kind == std::end(kKinds) ? nullptr : &*kind;
 }
 
@@ -98,7 +106,9 @@ void apply_dram_kind(DramParams& params, std::string_view name) {
   params.kind = name;
 }
 
-std::vector<std::string> refresh_modes() { return {"none", "all_bank", "per_bank"}; }
+std::vector<std::string> refresh_modes() {
+  return {"none", "all_bank", "per_bank"};
+}
 
 void read_param(ConfigTable& table, DramParams& out, const DramKindParam& param) {
   const bool given = table.has(param.name);
@@ -106,10 +116,12 @@ void read_param(ConfigTable& table, DramParams& out, const DramKindParam& param)
   if (given && find(kind)) apply_dram_kind(out, kind);
 }
 
-void describe_param(std::vector<ParamInfo>& out, const std::string& prefix, const DramParams& params, const DramKindParam& param) {
+void describe_param(std::vector<ParamInfo>& out, const std::string& prefix, const DramParams& params,
+                    const DramKindParam& param) {
   std::string range;
   for (const std::string& name : dram_kinds()) range += (range.empty() ? "" : ", ") + name;
-  out.push_back({prefix + std::string(param.name), "", std::string(param.doc), config_text(params.kind), range});
+  out.push_back(
+      {prefix + std::string(param.name), "", std::string(param.doc), config_text(params.kind), range});
 }
 
 }  // namespace glint::mem

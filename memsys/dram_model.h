@@ -22,9 +22,11 @@ struct DramReturn {
 };
 
 // Contract (tests/contract/memsys/dram_model_test.cpp):
-//  - every added read comes back once in returns(), in order of `ready`, which lies after the cycle it was added in;
+//  - every added read comes back once in returns(), in order of `ready`, which lies after the cycle it was
+//  added in;
 //    writes give nothing back;
-//  - a place is taken from add() on until next_command() at the latest frees it: full() ends without further requests;
+//  - a place is taken from add() on until next_command() at the latest frees it: full() ends without further
+//  requests;
 //  - nothing depends on how often advance() is called, provided it is at each next_command();
 //  - every clock up to finish() is in `use` once, and data moves no faster than the bus;
 //  - no heap traffic once warm.

@@ -14,7 +14,8 @@ struct DramRequest {
 
 // Contract (tests/contract/dram_scheduler_test.cpp):
 //  - every added slot is picked exactly once, for the bank of its request;
-//  - pick() answers kNone when it holds nothing for the bank, and may do so to wait for an older request elsewhere,
+//  - pick() answers kNone when it holds nothing for the bank, and may do so to wait for an older request
+//  elsewhere,
 //    but of the banks asked in turn at least one gets a request while any is held;
 //  - the answer depends on the calls made and nothing else; no heap traffic after construction.
 class DramScheduler {

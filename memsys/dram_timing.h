@@ -14,8 +14,8 @@ namespace glint::mem {
 
 struct DramTiming {
   DramClock rcd, rcd_write, rp, ras, rc, cl, wl, wr, rtp, ccd_s, ccd_l, rrd_s, rrd_l, faw, wtr_s, wtr_l;
-  DramClock data;  // data-bus clocks of one request: a sector, or an atom where that is larger
-  DramClock rtw;   // read command to write command: the bus turns around between their data
+  DramClock data;      // data-bus clocks of one request: a sector, or an atom where that is larger
+  DramClock rtw;       // read command to write command: the bus turns around between their data
   DramClock activate;  // of the command bus
   DramClock refresh_interval = kNever;  // from one refresh command to the next; kNever: none
   DramClock refresh_time = 0;           // from it until its banks can open rows again
@@ -23,9 +23,11 @@ struct DramTiming {
 
   explicit DramTiming(const DramParams& p) {
     const auto clocks = [&](double ns) { return DramClock(std::ceil(ns * p.clock_mhz / 1000.0 - 1e-6)); };
-    rcd = clocks(p.rcd), rcd_write = clocks(p.rcd_write), rp = clocks(p.rp), ras = clocks(p.ras), rc = clocks(p.rc);
+    rcd = clocks(p.rcd), rcd_write = clocks(p.rcd_write), rp = clocks(p.rp), ras = clocks(p.ras),
+    rc = clocks(p.rc);
     cl = clocks(p.cl), wl = clocks(p.wl), wr = clocks(p.wr), rtp = clocks(p.rtp);
-    rrd_s = clocks(p.rrd_s), rrd_l = clocks(p.rrd_l), faw = clocks(p.faw), wtr_s = clocks(p.wtr_s), wtr_l = clocks(p.wtr_l);
+    rrd_s = clocks(p.rrd_s), rrd_l = clocks(p.rrd_l), faw = clocks(p.faw), wtr_s = clocks(p.wtr_s),
+    wtr_l = clocks(p.wtr_l);
     // Model: where an atom is smaller than a sector the sector's column commands go out back to back as one.
     const DramClock bursts = p.atom_bytes() < kSectorBytes ? kSectorBytes / p.atom_bytes() : 1;
     const DramClock burst = p.burst / p.transfers_per_clock;

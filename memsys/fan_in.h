@@ -9,8 +9,9 @@
 
 namespace glint::mem {
 
-// A Channel (base/engine.h) with one outbox a producer. The consumer sees all messages in order of (arrival, producer,
-// sending order): the order depends on nothing but the messages, so neither the window nor the threads change it.
+// A Channel (base/engine.h) with one outbox a producer. The consumer sees all messages in order of (arrival,
+// producer, sending order): the order depends on nothing but the messages, so neither the window nor the
+// threads change it.
 template <class Message>
 class FanIn final : public ChannelBase {
  public:

@@ -2,19 +2,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/l1_cache.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 #include <utility>
 
 namespace glint::mem {
 namespace {
 
-uint32_t num_ways(uint64_t size, uint32_t ways, uint32_t line) { return ways ? ways : uint32_t(size / line); }
+uint32_t num_ways(uint64_t size, uint32_t ways, uint32_t line) {
+  return ways ? ways : uint32_t(size / line);
+}
 
 }  // namespace
 
-L1Cache::L1Cache(const Params& params, uint16_t core, const PartitionMap& map, L1Links links, stats::Group* parent)
+L1Cache::L1Cache(const Params& params, uint16_t core, const PartitionMap& map, L1Links links,
+                 stats::Group* parent)
     : params_(params.l1),
       line_bytes_(params.line),
       core_(core),
@@ -30,7 +32,8 @@ L1Cache::L1Cache(const Params& params, uint16_t core, const PartitionMap& map, L
       miss_queue_(params_.miss_queue),
       request_port_(params.noc.core_request_bytes),
       reply_port_(params.noc.core_reply_bytes),
-      partition_reply_port_(params.noc.partition_reply_bytes) {}
+      partition_reply_port_(params.noc.partition_reply_bytes) {
+}
 
 bool L1Cache::refuse(Refusal reason) {
   stats_.refusals.add(reason);
@@ -44,7 +47,8 @@ bool L1Cache::access(Cycle now, Client client, const Request& request) {
   if (accesses_ == params_.ports) return refuse(Refusal::Port);
   const uint64_t bank = bank_of(request.line);
   if (busy_banks_ & bank) return refuse(Refusal::Bank);
-  if (filled_cycle_ == now && (filled_bank_ & bank) && params_.fill_takes_access) return refuse(Refusal::Bank);
+  if (filled_cycle_ == now && (filled_bank_ & bank) && params_.fill_takes_access)
+    return refuse(Refusal::Bank);
   const bool keeps = is_local(request.traffic) ? params_.local_write_back : params_.global_write_back;
   const bool taken = request.traffic == Traffic::ShaderAtomic ? pass_atomic(now, client, request)
                      : !request.write                         ? read(now, client, request)
@@ -58,7 +62,8 @@ bool L1Cache::access(Cycle now, Client client, const Request& request) {
 
 bool L1Cache::read(Cycle now, Client client, const Request& request) {
   const uint32_t slot = tags_.find(request.line);
-  const uint8_t missing = slot == kNone ? request.sectors : uint8_t(request.sectors & ~tags_.line(slot).valid);
+  const uint8_t missing =
+      slot == kNone ? request.sectors : uint8_t(request.sectors & ~tags_.line(slot).valid);
   uint8_t fetched = 0;
   if (missing == 0) {
     answers_[size_t(client)].hits.push({now + params_.hit_latency, order_, request.token});
@@ -71,7 +76,8 @@ bool L1Cache::read(Cycle now, Client client, const Request& request) {
     if (fetched && queue_full()) return refuse(Refusal::QueueFull);
     if (allocate_on_miss_ && !passes_l1(request.traffic)) {
       if (slot == kNone && !tags_.has_victim(request.line)) return refuse(Refusal::SetHeld);
-      const uint32_t packets = (fetched ? 1 : 0) + (slot == kNone && tags_.victim(request.line).dirty ? 1 : 0);
+      const uint32_t packets =
+          (fetched ? 1 : 0) + (slot == kNone && tags_.victim(request.line).dirty ? 1 : 0);
       if (!queue_room(packets)) return refuse(Refusal::QueueFull);
       hold(now, request.line, slot);
     }
@@ -83,7 +89,8 @@ bool L1Cache::read(Cycle now, Client client, const Request& request) {
     mshr_.expect(entry, fetched);
     mshr_.add(entry, {now, order_, request.token, missing, client, request.traffic});
     if (fetched) {
-      queue_packet(now + params_.miss_latency, {.line = request.line, .sectors = fetched, .traffic = request.traffic});
+      queue_packet(now + params_.miss_latency,
+                   {.line = request.line, .sectors = fetched, .traffic = request.traffic});
       sectors_requested_ += num_sectors(fetched);
     }
   }
@@ -101,8 +108,8 @@ void L1Cache::hold(Cycle now, Address line, uint32_t slot) {
   (slot == kNone ? tags_.insert(line) : tags_.line(slot)).held = true;
 }
 
-// Write-through: sectors that are present stay valid, with the new bytes. A line that is absent is allocated when asked
-// for, with the sectors that the write covers.
+// Write-through: sectors that are present stay valid, with the new bytes. A line that is absent is allocated
+// when asked for, with the sectors that the write covers.
 bool L1Cache::write_through(Cycle now, const Request& request) {
   const uint32_t slot = tags_.find(request.line);
   const uint8_t covered = params_.write_allocate ? covered_sectors(request, line_bytes_) : uint8_t{0};
@@ -115,11 +122,16 @@ bool L1Cache::write_through(Cycle now, const Request& request) {
     stats_.write_hits.add(request.traffic);
     if (params_.write_evict) tags_.drop(slot, request.sectors);
   }
-  if (allocates) tags_.insert(request.line).valid = covered;
-  else if (slot != kNone && covered && !params_.write_evict) tags_.line(slot).valid |= covered;
+  if (allocates)
+    tags_.insert(request.line).valid = covered;
+  else if (slot != kNone && covered && !params_.write_evict)
+    tags_.line(slot).valid |= covered;
   stats_.writes.add(request.traffic);
-  queue_packet(now + params_.miss_latency,
-               {.line = request.line, .sectors = request.sectors, .write = true, .traffic = request.traffic, .words = request.words});
+  queue_packet(now + params_.miss_latency, {.line = request.line,
+                                            .sectors = request.sectors,
+                                            .write = true,
+                                            .traffic = request.traffic,
+                                            .words = request.words});
   return true;
 }
 
@@ -128,8 +140,14 @@ bool L1Cache::pass_atomic(Cycle now, Client client, const Request& request) {
   if (queue_full()) return refuse(Refusal::QueueFull);
   const uint32_t slot = tags_.find(request.line);
   if (slot != kNone) tags_.drop(slot, request.sectors);
-  queue_packet(now + params_.miss_latency, {.line = request.line, .sectors = request.sectors, .write = request.write,
-                                            .traffic = request.traffic, .atomic = request.atomic, .token = request.token, .client = client, .order = order_,
+  queue_packet(now + params_.miss_latency, {.line = request.line,
+                                            .sectors = request.sectors,
+                                            .write = request.write,
+                                            .traffic = request.traffic,
+                                            .atomic = request.atomic,
+                                            .token = request.token,
+                                            .client = client,
+                                            .order = order_,
                                             .stamps = {.accepted = uint32_t(now)}});
   if (request.write) {
     stats_.writes.add(request.traffic);
@@ -166,7 +184,8 @@ bool L1Cache::write_back(Cycle now, const Request& request) {
 }
 
 void L1Cache::queue_packet(Cycle ready, const Packet& packet) {
-  // A write-back of a fill is ready at once and may not overtake; the queue is in order, so it waits for those before it.
+  // A write-back of a fill is ready at once and may not overtake; the queue is in order, so it waits for
+  // those before it.
   miss_queue_.push({ready, map_.slice(packet.line), packet});
   miss_queue_.back().packet.core = core_;
 }
@@ -205,7 +224,9 @@ Cycle L1Cache::next_departure() const {
 Cycle L1Cache::next_fill() const {
   if (fill_blocked_ || links_.replies->arrival() == kNever) return kNever;
   const uint32_t bytes = bytes_of(links_.replies->front());
-  return std::max(reply_port_.received_at(links_.replies->arrival(), partition_reply_port_.cycles(bytes), bytes), fill_not_before_);
+  return std::max(
+      reply_port_.received_at(links_.replies->arrival(), partition_reply_port_.cycles(bytes), bytes),
+      fill_not_before_);
 }
 
 void L1Cache::take_credits(Cycle now) {
@@ -220,7 +241,8 @@ void L1Cache::tick(Cycle now) {
   for (;;) {
     const Cycle departure = next_departure(), arrival = next_fill();
     if (std::min(departure, arrival) > now) return;
-    if (departure <= arrival) {  // departures first: a place in the queue freed this cycle can take a write-back
+    if (departure <=
+        arrival) {  // departures first: a place in the queue freed this cycle can take a write-back
       send_front(departure);
     } else if (!fill(arrival)) {
       fill_blocked_ = true;
@@ -242,7 +264,8 @@ void L1Cache::send_front(Cycle now) {
   if (fill_blocked_) fill_blocked_ = false, fill_not_before_ = now;
 }
 
-// Takes the oldest reply; false when it needs a place in the cache and its dirty victim finds none in the miss queue.
+// Takes the oldest reply; false when it needs a place in the cache and its dirty victim finds none in the
+// miss queue.
 bool L1Cache::fill(Cycle now) {
   const Reply reply = links_.replies->front();
   const bool is_kept = !reply.is_atomic && !passing_[mshr_.find(reply.line)];
@@ -252,7 +275,8 @@ bool L1Cache::fill(Cycle now) {
   stats_.reply_bytes += bytes;
   stats_.reply_wait += now - links_.replies->arrival();
   sectors_received_ += num_sectors(reply.sectors);
-  reply_port_.occupy_until(reply_port_.received_at(links_.replies->arrival(), partition_reply_port_.cycles(bytes), bytes));
+  reply_port_.occupy_until(
+      reply_port_.received_at(links_.replies->arrival(), partition_reply_port_.cycles(bytes), bytes));
   links_.replies->pop();
   fill_not_before_ = now + 1;
   if (is_kept) filled_cycle_ = now, filled_bank_ = bank_of(reply.line);
@@ -312,12 +336,14 @@ Cycle L1Cache::next_event(Cycle now) const {
 std::string L1Cache::describe() const {
   std::string out;
   if (reads_accepted_ != tokens_returned_)
-    out += fmt::format("  L1: {} reads without an answer, {} lines on the way, {} of {} sectors have come\n", reads_accepted_ - tokens_returned_,
-                       mshr_.in_use(), sectors_received_, sectors_requested_);
+    out += fmt::format("  L1: {} reads without an answer, {} lines on the way, {} of {} sectors have come\n",
+                       reads_accepted_ - tokens_returned_, mshr_.in_use(), sectors_received_,
+                       sectors_requested_);
   if (!miss_queue_.empty()) {
     const Packet& first = miss_queue_.front().packet;
-    out += fmt::format("  L1: {} packets wait to leave, the first {} line {:#x} for partition {}\n", miss_queue_.size(), first.write ? "writes" : "reads",
-                       first.line, map_.partition_of(miss_queue_.front().slice));
+    out += fmt::format("  L1: {} packets wait to leave, the first {} line {:#x} for partition {}\n",
+                       miss_queue_.size(), first.write ? "writes" : "reads", first.line,
+                       map_.partition_of(miss_queue_.front().slice));
   }
   return out;
 }

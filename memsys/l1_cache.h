@@ -21,19 +21,29 @@ namespace glint::mem {
 
 struct L1Stats : CacheStats {
   explicit L1Stats(stats::Group* parent) : CacheStats(parent, "l1") {}
-  stats::Breakdown<Refusal> refusals{&group, "refusals", "attempt", "Requests turned away; the unit tries again in a later cycle."};
+  stats::Breakdown<Refusal> refusals{&group, "refusals", "attempt",
+                                     "Requests turned away; the unit tries again in a later cycle."};
   stats::Counter fills{&group, "fills", "reply", "Replies written into the cache; at most one a cycle."};
   stats::Counter request_bytes{&group, "request_bytes", "byte", "Sent into the network, headers included."};
   stats::Counter reply_bytes{&group, "reply_bytes", "byte", "Received from the network, headers included."};
-  stats::Counter request_wait{&group, "request_wait", "cycle", "Sum over packets of the cycles they waited for the request port."};
-  stats::Counter reply_wait{&group, "reply_wait", "cycle", "Sum over replies of the cycles between arrival and fill."};
-  stats::Histogram miss_latency{&group, "miss_latency", "cycle", stats::linear(0, 2048, 32), "From a read that did not hit to its last sector."};
-  stats::Histogram l2_latency{&group, "l2_latency", "cycle", stats::linear(0, 2048, 32), "The same, of those whose last sector the L2 had."};
-  stats::Histogram dram_latency{&group, "dram_latency", "cycle", stats::linear(0, 2048, 32), "The same, of those whose last sector came from DRAM."};
-  stats::Counter timed_misses{&group, "timed_misses", "request", "Reads in them: all that did not hit, but atomics."};
+  stats::Counter request_wait{&group, "request_wait", "cycle",
+                              "Sum over packets of the cycles they waited for the request port."};
+  stats::Counter reply_wait{&group, "reply_wait", "cycle",
+                            "Sum over replies of the cycles between arrival and fill."};
+  stats::Histogram miss_latency{&group, "miss_latency", "cycle", stats::linear(0, 2048, 32),
+                                "From a read that did not hit to its last sector."};
+  stats::Histogram l2_latency{&group, "l2_latency", "cycle", stats::linear(0, 2048, 32),
+                              "The same, of those whose last sector the L2 had."};
+  stats::Histogram dram_latency{&group, "dram_latency", "cycle", stats::linear(0, 2048, 32),
+                                "The same, of those whose last sector came from DRAM."};
+  stats::Counter timed_misses{&group, "timed_misses", "request",
+                              "Reads in them: all that did not hit, but atomics."};
   stats::Counter miss_cycles{&group, "miss_cycles", "cycle", "Sum of their latencies."};
-  stats::Ratio mean_miss_latency{&group, "mean_miss_latency", "cycle", miss_cycles, timed_misses, "Mean latency of a read that did not hit."};
-  stats::Breakdown<Stage> miss_stages{&group, "miss_stages", "cycle", "The sum of their latencies, by stage."};
+  stats::Ratio mean_miss_latency{&group,       "mean_miss_latency",
+                                 "cycle",      miss_cycles,
+                                 timed_misses, "Mean latency of a read that did not hit."};
+  stats::Breakdown<Stage> miss_stages{&group, "miss_stages", "cycle",
+                                      "The sum of their latencies, by stage."};
 };
 
 // A read that was counted as a miss, told when the L1 takes it.
@@ -44,20 +54,20 @@ struct ReadMissed {
 
 // The network as one L1 sees it. All outlive the cache.
 struct L1Links {
-  std::vector<FanIn<Packet>*> requests{};   // inbound sides, by slice
-  std::vector<Cycle> request_latency{};     // by slice
-  FanIn<Reply>* replies = nullptr;          // this core's own
-  FanIn<Credit>* credits = nullptr;         // this core's own; null: packets need none
+  std::vector<FanIn<Packet>*> requests{};  // inbound sides, by slice
+  std::vector<Cycle> request_latency{};    // by slice
+  FanIn<Reply>* replies = nullptr;         // this core's own
+  FanIn<Credit>* credits = nullptr;        // this core's own; null: packets need none
 };
 
-// An accepted miss or write becomes one packet in the bounded miss queue and leaves over the core's request port, when
-// its slice has a place for it. Lines are allocated when data arrives (streaming), so that only MSHRs and the miss queue
-// limit the misses in flight; or (`allocate`) when the miss is accepted, and held until then.
-// Lines of instructions and constants pass through MSHRs and miss queue for caches of the core that keep them.
-// Atomics go past the cache to the L2, which executes them; what the cache holds of their sectors is dropped.
-// Model: a write covers whole sectors; a write to a line on its way does not disturb it.
-// Model: a read that waits for a sector already on its way is ready when the sector is, even within the hit latency.
-// Model: local memory that is dirty at the end of a run is not written back: its thread is gone.
+// An accepted miss or write becomes one packet in the bounded miss queue and leaves over the core's request
+// port, when its slice has a place for it. Lines are allocated when data arrives (streaming), so that only
+// MSHRs and the miss queue limit the misses in flight; or (`allocate`) when the miss is accepted, and held
+// until then. Lines of instructions and constants pass through MSHRs and miss queue for caches of the core
+// that keep them. Atomics go past the cache to the L2, which executes them; what the cache holds of their
+// sectors is dropped. Model: a write covers whole sectors; a write to a line on its way does not disturb it.
+// Model: a read that waits for a sector already on its way is ready when the sector is, even within the hit
+// latency. Model: local memory that is dirty at the end of a run is not written back: its thread is gone.
 class L1Cache final : public L1Port {
  public:
   L1Cache(const Params& params, uint16_t core, const PartitionMap& map, L1Links links, stats::Group* parent);
@@ -109,7 +119,9 @@ class L1Cache final : public L1Port {
   bool read(Cycle now, Client client, const Request& request);
   bool write_through(Cycle now, const Request& request);
   bool write_back(Cycle now, const Request& request);
-  uint64_t bank_of(Address line) const { return uint64_t{1} << (params_.banks == 1 ? 0 : line / line_bytes_ % params_.banks); }
+  uint64_t bank_of(Address line) const {
+    return uint64_t{1} << (params_.banks == 1 ? 0 : line / line_bytes_ % params_.banks);
+  }
   bool has_credit(uint32_t slice) const { return !links_.credits || credits_left_[slice] > 0; }
   Cycle next_credit() const { return links_.credits ? links_.credits->arrival() : kNever; }
   void take_credits(Cycle now);
@@ -154,7 +166,8 @@ class L1Cache final : public L1Port {
   bool fill_blocked_ = false;  // a dirty victim found the miss queue full: until a packet leaves
   Cycle last_credit_ = 0;
   uint64_t order_ = 0;
-  uint64_t packets_sent_ = 0, sectors_requested_ = 0, sectors_received_ = 0, reads_accepted_ = 0, tokens_returned_ = 0;
+  uint64_t packets_sent_ = 0, sectors_requested_ = 0, sectors_received_ = 0, reads_accepted_ = 0,
+           tokens_returned_ = 0;
 };
 
 }  // namespace glint::mem

@@ -2,22 +2,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/l2_slice.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 #include <utility>
 
 namespace glint::mem {
 namespace {
 
 // Of a cycle, at the nearest.
-Cycle parts_of(double cycles, Cycle parts) { return Cycle(cycles * double(parts) + 0.5); }
+Cycle parts_of(double cycles, Cycle parts) {
+  return Cycle(cycles * double(parts) + 0.5);
+}
 
-uint32_t num_ways(uint64_t size, uint32_t ways, uint32_t line) { return ways ? ways : uint32_t(size / line); }
+uint32_t num_ways(uint64_t size, uint32_t ways, uint32_t line) {
+  return ways ? ways : uint32_t(size / line);
+}
 
 }  // namespace
 
-L2Slice::L2Slice(const Params& params, uint32_t index, const PartitionMap& map, SliceLinks links, stats::Group* parent, const std::string& name)
+L2Slice::L2Slice(const Params& params, uint32_t index, const PartitionMap& map, SliceLinks links,
+                 stats::Group* parent, const std::string& name)
     : params_(params.l2),
       visit_parts_(parts_of(params.l2.write_visit, kParts)),
       partial_parts_(parts_of(params.l2.partial_interval, kParts)),
@@ -29,14 +33,16 @@ L2Slice::L2Slice(const Params& params, uint32_t index, const PartitionMap& map, 
       map_(map),
       links_(std::move(links)),
       stats_(parent, name),
-      tags_(uint32_t(params_.slice_size / line_bytes_) / num_ways(params_.slice_size, params_.ways, line_bytes_),
+      tags_(uint32_t(params_.slice_size / line_bytes_) /
+                num_ways(params_.slice_size, params_.ways, line_bytes_),
             num_ways(params_.slice_size, params_.ways, line_bytes_), line_bytes_),
       words_(params_.write_masks ? params_.slice_size / line_bytes_ : 0),
       mshr_(params_.mshr_entries, params_.mshr_merges),
       request_port_(params.noc.partition_request_bytes),
       reply_port_(params.noc.partition_reply_bytes),
       core_request_port_(params.noc.core_request_bytes),
-      to_dram_(params_.dram_queue) {}
+      to_dram_(params_.dram_queue) {
+}
 
 void L2Slice::send_ready_replies(Cycle now) {
   while (!hit_replies_.empty() && hit_replies_.front().ready <= now) {
@@ -55,7 +61,9 @@ Cycle L2Slice::next_work() const {
 Cycle L2Slice::head_received() const {
   if (links_.requests->arrival() == kNever) return kNever;
   const uint32_t bytes = bytes_of(links_.requests->front());
-  return std::max(request_port_.received_at(links_.requests->arrival(), core_request_port_.cycles(bytes), bytes), busy_until_);
+  return std::max(
+      request_port_.received_at(links_.requests->arrival(), core_request_port_.cycles(bytes), bytes),
+      busy_until_);
 }
 
 // The answer to a packet, or to some of its sectors.
@@ -70,7 +78,8 @@ void L2Slice::fill(Cycle now, const DramReturn& data) {
   const uint32_t slot = tags_.find(line);
   if (slot == kNone) evict(now, tags_.victim(line));
   TagArray::Line& filled = slot == kNone ? tags_.insert(line) : tags_.line(slot);
-  if (!words_.empty()) stats_.completed_sectors += num_sectors(sectors & filled.dirty & uint8_t(~filled.valid));
+  if (!words_.empty())
+    stats_.completed_sectors += num_sectors(sectors & filled.dirty & uint8_t(~filled.valid));
   filled.valid |= sectors;
   if (params_.fill_takes_service) {
     busy_until_ = std::max(busy_until_, now) + sector_cycles(sectors);
@@ -102,12 +111,15 @@ void L2Slice::serve(Cycle now) {
   packet.stamps.set(Stage::DramWay, now + params_.latency + dram_latency_);
   if (!(packet.write && !is_atomic(packet) ? write(now, packet) : read(now, packet))) return;
   const uint32_t bytes = bytes_of(packet);
-  request_port_.occupy_until(request_port_.received_at(links_.requests->arrival(), core_request_port_.cycles(bytes), bytes));
+  request_port_.occupy_until(
+      request_port_.received_at(links_.requests->arrival(), core_request_port_.cycles(bytes), bytes));
   stats_.request_bytes += bytes;
   stats_.request_wait += now - links_.requests->arrival();
   ++packets_received_;
   // Not sooner than any message: a window may be as long as the shortest of them.
-  if (!links_.credits.empty()) links_.credits[packet.core]->send(index_, now + 1 + links_.reply_latency[packet.core], {uint16_t(index_)});
+  if (!links_.credits.empty())
+    links_.credits[packet.core]->send(index_, now + 1 + links_.reply_latency[packet.core],
+                                      {uint16_t(index_)});
   occupy(now, packet);
   if (packet.write) written_until_ = busy_until_;
   links_.requests->pop();
@@ -118,7 +130,8 @@ Cycle L2Slice::service_parts(const Packet& packet) const {
   return Cycle{num_turns(packet)} * params_.atomic_interval * kParts + packet.atomic.lanes * lane_parts_;
 }
 
-// Writes may take parts of cycles, which are kept: one begins where the last packet ended, if it has waited for that.
+// Writes may take parts of cycles, which are kept: one begins where the last packet ended, if it has waited
+// for that.
 void L2Slice::occupy(Cycle now, const Packet& packet) {
   const bool is_write = packet.write && !is_atomic(packet);
   const Cycle parts = is_write && visit_parts_ + partial_parts_ ? write_parts(packet) : service_parts(packet);
@@ -129,9 +142,11 @@ void L2Slice::occupy(Cycle now, const Packet& packet) {
 // Of a sector written in part, the slice reads what it does not write.
 Cycle L2Slice::write_parts(const Packet& packet) const {
   const uint8_t covered = covered_sectors(packet, line_bytes_);
-  if (visit_parts_ == 0) return sector_cycles(covered) * kParts + num_sectors(uint8_t(packet.sectors & ~covered)) * partial_parts_;
+  if (visit_parts_ == 0)
+    return sector_cycles(covered) * kParts + num_sectors(uint8_t(packet.sectors & ~covered)) * partial_parts_;
   const auto part = uint8_t(partial_parts_ ? packet.sectors & ~covered : 0);
-  return visit_parts_ + num_sectors(uint8_t(packet.sectors & ~part)) * kParts + num_sectors(part) * partial_parts_;
+  return visit_parts_ + num_sectors(uint8_t(packet.sectors & ~part)) * kParts +
+         num_sectors(part) * partial_parts_;
 }
 
 // Reads, and atomics, which need what they change.
@@ -187,7 +202,9 @@ bool L2Slice::write(Cycle now, const Packet& packet) {
     stats_.write_hits.add(packet.traffic);
   }
   TagArray::Line& line = slot == kNone ? tags_.insert(packet.line) : tags_.line(slot);
-  line.valid |= words_.empty() || packet.words == kAllWords ? packet.sectors : whole_sectors(packet, tags_.slot_of(line), line.valid);
+  line.valid |= words_.empty() || packet.words == kAllWords
+                    ? packet.sectors
+                    : whole_sectors(packet, tags_.slot_of(line), line.valid);
   line.dirty |= packet.sectors;
   stats_.writes.add(packet.traffic);
   return true;
@@ -200,10 +217,13 @@ uint8_t L2Slice::whole_sectors(const Packet& packet, uint32_t slot, uint8_t vali
     const auto bit = uint8_t(1u << i);
     if (!(packet.sectors & bit)) continue;
     const WordMask whole = words_of_sector(i, line_bytes_);
-    if (!(tags_.line(slot).dirty & bit)) words_[slot] &= ~whole;  // of a line that was here before, or of old data
+    if (!(tags_.line(slot).dirty & bit))
+      words_[slot] &= ~whole;  // of a line that was here before, or of old data
     words_[slot] |= packet.words & whole;
-    if ((valid & bit) || (words_[slot] & whole) == whole) out |= bit;
-    else ++stats_.partial_writes;
+    if ((valid & bit) || (words_[slot] & whole) == whole)
+      out |= bit;
+    else
+      ++stats_.partial_writes;
   }
   return out;
 }
@@ -266,8 +286,9 @@ bool L2Slice::finished() const {
 }
 
 std::string L2Slice::describe(bool dram_works) const {
-  return fmt::format("{} packets waiting, {} lines on the way, {} for DRAM, head: {}", links_.requests->waiting(), mshr_.in_use(),
-                     to_dram_.size(), name_of(reason(dram_works)));
+  return fmt::format("{} packets waiting, {} lines on the way, {} for DRAM, head: {}",
+                     links_.requests->waiting(), mshr_.in_use(), to_dram_.size(),
+                     name_of(reason(dram_works)));
 }
 
 }  // namespace glint::mem

@@ -20,29 +20,35 @@ namespace glint::mem {
 // What a cycle of a slice went into: each cycle has exactly one.
 enum class SliceCycle : uint8_t { Service, MshrFull, MergeLimit, QueueFull, DramWait, Pipeline, Idle, Count };
 constexpr std::string_view name_of(SliceCycle cycle) {
-  constexpr std::string_view kNames[] = {"service", "mshr_full", "merge_limit", "queue_full", "dram_wait", "pipeline", "idle"};
+  constexpr std::string_view kNames[] = {"service",   "mshr_full", "merge_limit", "queue_full",
+                                         "dram_wait", "pipeline",  "idle"};
   return kNames[size_t(cycle)];
 }
 
 struct L2Stats : CacheStats {
   L2Stats(stats::Group* parent, const std::string& name) : CacheStats(parent, name) {}
   stats::Breakdown<SliceCycle> cycles{&group, "cycles", "cycle", "What each cycle of the slice went into."};
-  stats::Counter request_bytes{&group, "request_bytes", "byte", "Received from the network, headers included."};
+  stats::Counter request_bytes{&group, "request_bytes", "byte",
+                               "Received from the network, headers included."};
   stats::Counter reply_bytes{&group, "reply_bytes", "byte", "Sent into the network, headers included."};
-  stats::Counter request_wait{&group, "request_wait", "cycle", "Sum over packets of the cycles between arrival and service."};
-  stats::Counter reply_wait{&group, "reply_wait", "cycle", "Sum over replies of the cycles they waited for the reply port."};
+  stats::Counter request_wait{&group, "request_wait", "cycle",
+                              "Sum over packets of the cycles between arrival and service."};
+  stats::Counter reply_wait{&group, "reply_wait", "cycle",
+                            "Sum over replies of the cycles they waited for the reply port."};
   stats::Counter dram_reads{&group, "dram_reads", "request", "Reads handed to the DRAM channel."};
   stats::Counter dram_writes{&group, "dram_writes", "request", "Writes handed to the DRAM channel."};
-  stats::Counter partial_writes{&group, "partial_writes", "sector", "Sectors written in part that the slice did not hold."};
-  stats::Counter completed_sectors{&group, "completed_sectors", "sector", "Sectors written in part that came from DRAM for the rest."};
+  stats::Counter partial_writes{&group, "partial_writes", "sector",
+                                "Sectors written in part that the slice did not hold."};
+  stats::Counter completed_sectors{&group, "completed_sectors", "sector",
+                                   "Sectors written in part that came from DRAM for the rest."};
 };
 
 // The network as one slice sees it. All outlive the slice.
 struct SliceLinks {
-  FanIn<Packet>* requests = nullptr;        // its inbound side
-  std::vector<FanIn<Reply>*> replies{};     // by core
-  std::vector<FanIn<Credit>*> credits{};    // by core; empty: packets need none
-  std::vector<Cycle> reply_latency{};       // by core
+  FanIn<Packet>* requests = nullptr;      // its inbound side
+  std::vector<FanIn<Reply>*> replies{};   // by core
+  std::vector<FanIn<Credit>*> credits{};  // by core; empty: packets need none
+  std::vector<Cycle> reply_latency{};     // by core
 };
 
 // A request on its way from a slice to the DRAM scheduler.
@@ -53,22 +59,23 @@ struct ToDram {
   bool write = false;
 };
 
-// Packets are served in order of arrival, `sectors_per_cycle` of data a cycle. The head waits while an MSHR, a merge or a
-// place on the way to DRAM is missing, and all behind it wait too. Sectors that a write covers are valid at once; of the
-// others the slice knows the words written, keeps them until eviction and fetches the sector when it is read. Sectors
-// found are answered in one reply, sectors from DRAM one by one as they arrive.
-// Model: a fill always finds a place for its victim's write-back, which then counts against the way to DRAM.
-// Model: a sector that is written in part takes as long in DRAM as a whole one (data mask, no read-modify-write).
-// Model: dirty sectors left at the end of a run are not written back.
+// Packets are served in order of arrival, `sectors_per_cycle` of data a cycle. The head waits while an MSHR,
+// a merge or a place on the way to DRAM is missing, and all behind it wait too. Sectors that a write covers
+// are valid at once; of the others the slice knows the words written, keeps them until eviction and fetches
+// the sector when it is read. Sectors found are answered in one reply, sectors from DRAM one by one as they
+// arrive. Model: a fill always finds a place for its victim's write-back, which then counts against the way
+// to DRAM. Model: a sector that is written in part takes as long in DRAM as a whole one (data mask, no
+// read-modify-write). Model: dirty sectors left at the end of a run are not written back.
 class L2Slice {
  public:
-  L2Slice(const Params& params, uint32_t index, const PartitionMap& map, SliceLinks links, stats::Group* parent, const std::string& name);
+  L2Slice(const Params& params, uint32_t index, const PartitionMap& map, SliceLinks links,
+          stats::Group* parent, const std::string& name);
 
   // The stages of a cycle, back to front: the partition calls them.
   void fill(Cycle now, const DramReturn& data);
   void send_ready_replies(Cycle now);
   void serve(Cycle now);
-  Cycle next_work() const;               // of replies and packets; not of the way to DRAM
+  Cycle next_work() const;  // of replies and packets; not of the way to DRAM
   void account(Cycle until, bool dram_works);
 
   Ring<ToDram>& to_dram() { return to_dram_; }
@@ -104,7 +111,9 @@ class L2Slice {
   Cycle service_parts(const Packet& packet) const;
   Cycle write_parts(const Packet& packet) const;
   void occupy(Cycle now, const Packet& packet);
-  Cycle sector_cycles(uint8_t sectors) const { return (num_sectors(sectors) + params_.sectors_per_cycle - 1) / params_.sectors_per_cycle; }
+  Cycle sector_cycles(uint8_t sectors) const {
+    return (num_sectors(sectors) + params_.sectors_per_cycle - 1) / params_.sectors_per_cycle;
+  }
   void queue_for_dram(Cycle ready, Address line, uint8_t sectors, bool write);
   void evict(Cycle now, const TagArray::Line& victim);
   void send_reply(Cycle now, uint16_t core, const Reply& reply);

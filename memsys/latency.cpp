@@ -8,7 +8,9 @@ namespace glint::mem {
 namespace {
 
 // The last latency of a bucket.
-Cycle high_of(uint32_t bucket) { return Latencies::low_of(bucket + 1) - 1; }
+Cycle high_of(uint32_t bucket) {
+  return Latencies::low_of(bucket + 1) - 1;
+}
 
 std::string name_of_bucket(uint32_t bucket) {
   const Cycle low = Latencies::low_of(bucket);
@@ -20,7 +22,8 @@ std::string name_of_bucket(uint32_t bucket) {
 
 LatencyStats::LatencyStats(stats::Group* parent, std::string name, const char* what)
     : Group(parent, std::move(name)),
-      reads_(this, "reads", "request", what, [](const LatencyStats& of, Traffic traffic) { return of.reads(traffic); }),
+      reads_(this, "reads", "request", what,
+             [](const LatencyStats& of, Traffic traffic) { return of.reads(traffic); }),
       cycles_(this, "cycles", "cycle", "The sum of their latencies.",
               [](const LatencyStats& of, Traffic traffic) {
                 uint64_t sum = 0;
@@ -29,9 +32,12 @@ LatencyStats::LatencyStats(stats::Group* parent, std::string name, const char* w
               }),
       p50_(this, "p50", "cycle", "Half of them took no longer: the upper end of their bucket.",
            [](const LatencyStats& of, Traffic traffic) { return of.percentile(traffic, 50); }),
-      p90_(this, "p90", "cycle", "90 of 100 took no longer.", [](const LatencyStats& of, Traffic traffic) { return of.percentile(traffic, 90); }),
-      p99_(this, "p99", "cycle", "99 of 100 took no longer.", [](const LatencyStats& of, Traffic traffic) { return of.percentile(traffic, 99); }),
-      buckets_(this, "Their number by class and latency, eight buckets an octave from 16 cycles on.") {}
+      p90_(this, "p90", "cycle", "90 of 100 took no longer.",
+           [](const LatencyStats& of, Traffic traffic) { return of.percentile(traffic, 90); }),
+      p99_(this, "p99", "cycle", "99 of 100 took no longer.",
+           [](const LatencyStats& of, Traffic traffic) { return of.percentile(traffic, 99); }),
+      buckets_(this, "Their number by class and latency, eight buckets an octave from 16 cycles on.") {
+}
 
 uint64_t LatencyStats::count(Traffic traffic, uint32_t bucket) const {
   uint64_t sum = 0;
@@ -68,7 +74,8 @@ std::vector<std::pair<std::string_view, uint64_t>> LatencyStats::ByTraffic::part
   return out;
 }
 
-LatencyStats::Buckets::Buckets(LatencyStats* of, std::string_view doc) : BreakdownBase(of, "buckets", "request", doc), of_(*of) {
+LatencyStats::Buckets::Buckets(LatencyStats* of, std::string_view doc)
+    : BreakdownBase(of, "buckets", "request", doc), of_(*of) {
   for (size_t i = 0; i < size_t(Traffic::Count); ++i)
     for (uint32_t bucket = 0; bucket < Latencies::kBuckets; ++bucket)
       names_.push_back(fmt::format("{}:{}", name_of(Traffic(i)), name_of_bucket(bucket)));
@@ -77,7 +84,8 @@ LatencyStats::Buckets::Buckets(LatencyStats* of, std::string_view doc) : Breakdo
 std::vector<std::pair<std::string_view, uint64_t>> LatencyStats::Buckets::parts() const {
   std::vector<std::pair<std::string_view, uint64_t>> out;
   for (size_t i = 0; i < names_.size(); ++i)
-    if (const uint64_t n = of_.count(Traffic(i / Latencies::kBuckets), uint32_t(i % Latencies::kBuckets))) out.emplace_back(names_[i], n);
+    if (const uint64_t n = of_.count(Traffic(i / Latencies::kBuckets), uint32_t(i % Latencies::kBuckets)))
+      out.emplace_back(names_[i], n);
   return out;
 }
 

@@ -1,5 +1,5 @@
-// How long reads take under the load of a run: counts by traffic class and latency, and the percentiles that follow.
-// SPDX-License-Identifier: Apache-2.0
+// How long reads take under the load of a run: counts by traffic class and latency, and the percentiles that
+// follow. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <bit>
@@ -14,15 +14,16 @@
 
 namespace glint::mem {
 
-// Latencies by traffic class, in buckets: one a cycle below 16, then eight an octave, so that a bucket is at most an eighth of
-// its lower end wide. The last takes all from 983,040 cycles on.
+// Latencies by traffic class, in buckets: one a cycle below 16, then eight an octave, so that a bucket is at
+// most an eighth of its lower end wide. The last takes all from 983,040 cycles on.
 class Latencies {
  public:
   static constexpr uint32_t kExact = 16, kOctaves = 16, kSteps = 8, kBuckets = kExact + kOctaves * kSteps;
   static constexpr uint32_t bucket_of(Cycle latency) {
     if (latency < kExact) return uint32_t(latency);
     const auto octave = uint32_t(std::bit_width(latency)) - 5;
-    return octave < kOctaves ? kExact + octave * kSteps + uint32_t(latency >> (octave + 1) & (kSteps - 1)) : kBuckets - 1;
+    return octave < kOctaves ? kExact + octave * kSteps + uint32_t(latency >> (octave + 1) & (kSteps - 1))
+                             : kBuckets - 1;
   }
   static constexpr Cycle low_of(uint32_t bucket) {
     if (bucket < kExact) return bucket;
@@ -62,7 +63,8 @@ class LatencyStats : public stats::Group {
   // A number a traffic class; classes without reads are left out.
   class ByTraffic final : public stats::BreakdownBase {
    public:
-    ByTraffic(LatencyStats* of, std::string_view name, std::string_view unit, std::string_view doc, uint64_t (*read)(const LatencyStats&, Traffic))
+    ByTraffic(LatencyStats* of, std::string_view name, std::string_view unit, std::string_view doc,
+              uint64_t (*read)(const LatencyStats&, Traffic))
         : BreakdownBase(of, name, unit, doc), of_(*of), read_(read) {}
     std::vector<std::pair<std::string_view, uint64_t>> parts() const override;
 

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/memory_system.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 #include <utility>
 
 #include "base/check.h"
@@ -31,12 +30,17 @@ MemorySystem::MemorySystem(const Params& params, uint32_t num_cores, double core
   for (uint32_t s = 0; s < params.num_slices(); ++s)
     requests.push_back(requests_.emplace_back(std::make_unique<FanIn<Packet>>(num_cores)).get());
   for (uint32_t c = 0; c < num_cores; ++c) {
-    from_slice.replies.push_back(replies_.emplace_back(std::make_unique<FanIn<Reply>>(params.num_slices())).get());
-    if (params.noc.credits > 0) from_slice.credits.push_back(credits_.emplace_back(std::make_unique<FanIn<Credit>>(params.num_slices())).get());
+    from_slice.replies.push_back(
+        replies_.emplace_back(std::make_unique<FanIn<Reply>>(params.num_slices())).get());
+    if (params.noc.credits > 0)
+      from_slice.credits.push_back(
+          credits_.emplace_back(std::make_unique<FanIn<Credit>>(params.num_slices())).get());
     core_groups_.push_back(std::make_unique<stats::Group>(&group_, fmt::format("core[{}]", c)));
     L1Links links{requests, {}, replies_[c].get(), credits_.empty() ? nullptr : credits_[c].get()};
-    for (uint32_t s = 0; s < params.num_slices(); ++s) links.request_latency.push_back(params.noc.request_latency + far_latency(params, num_cores, c, s));
-    l1s_.push_back(std::make_unique<L1Cache>(params, uint16_t(c), map_, std::move(links), core_groups_[c].get()));
+    for (uint32_t s = 0; s < params.num_slices(); ++s)
+      links.request_latency.push_back(params.noc.request_latency + far_latency(params, num_cores, c, s));
+    l1s_.push_back(
+        std::make_unique<L1Cache>(params, uint16_t(c), map_, std::move(links), core_groups_[c].get()));
     load_latency_.add(l1s_.back()->latencies());
   }
   for (uint32_t p = 0; p < params.dram.channels; ++p) {
@@ -44,7 +48,8 @@ MemorySystem::MemorySystem(const Params& params, uint32_t num_cores, double core
     for (uint32_t s = p * params.l2.slices; s < (p + 1) * params.l2.slices; ++s) {
       links.push_back(from_slice);
       links.back().requests = requests[s];
-      for (uint32_t c = 0; c < num_cores; ++c) links.back().reply_latency.push_back(params.noc.reply_latency + far_latency(params, num_cores, c, s));
+      for (uint32_t c = 0; c < num_cores; ++c)
+        links.back().reply_latency.push_back(params.noc.reply_latency + far_latency(params, num_cores, c, s));
     }
     partitions_.push_back(std::make_unique<Partition>(params, p, map_, core_mhz, std::move(links), &group_));
   }
@@ -103,7 +108,7 @@ void MemorySystem::check_drained() const {
 
 // What went down came through: nothing is counted twice or lost between two levels.
 void MemorySystem::check_conserved() const {
-  uint64_t sent = 0, received = 0;  // bytes
+  uint64_t sent = 0, received = 0;         // bytes
   uint64_t timed = load_latency_.total();  // reads
   for (const auto& l1 : l1s_) {
     const L1Stats& s = l1->stats();
@@ -135,7 +140,8 @@ void MemorySystem::check_conserved() const {
 Cycle MemorySystem::written_until() const {
   Cycle end = 0;
   for (const auto& partition : partitions_)
-    for (uint32_t i = 0; i < partition->num_slices(); ++i) end = std::max(end, partition->slice(i).written_until());
+    for (uint32_t i = 0; i < partition->num_slices(); ++i)
+      end = std::max(end, partition->slice(i).written_until());
   return end;
 }
 

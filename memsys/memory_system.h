@@ -15,8 +15,8 @@
 
 namespace glint::mem {
 
-// Owns all parts and wires them. The engine advances cells() and delivers channels(); each core ticks its own l1() as
-// part of its own cell. `params` must have passed check().
+// Owns all parts and wires them. The engine advances cells() and delivers channels(); each core ticks its own
+// l1() as part of its own cell. `params` must have passed check().
 class MemorySystem {
  public:
   MemorySystem(const Params& params, uint32_t num_cores, double core_mhz, stats::Group* parent);
@@ -26,17 +26,19 @@ class MemorySystem {
   const Partition& partition(uint32_t index) const { return *partitions_[index]; }
   Partition& partition(uint32_t index) { return *partitions_[index]; }
   uint32_t num_cores() const { return uint32_t(l1s_.size()); }
-  Cycle written_until() const;            // end of the last write that reached a slice of the L2
+  Cycle written_until() const;  // end of the last write that reached a slice of the L2
   uint32_t num_partitions() const { return uint32_t(partitions_.size()); }
   const PartitionMap& map() const { return map_; }
 
-  std::vector<Cell*> cells();             // one a partition
-  std::vector<ChannelBase*> channels();   // one a slice, then one a core, then the credits of each core
+  std::vector<Cell*> cells();            // one a partition
+  std::vector<ChannelBase*> channels();  // one a slice, then one a core, then the credits of each core
   // The engine's window may be this long: no message arrives sooner after it was sent. At least 1.
   Cycle shortest_latency() const { return shortest_latency_; }
 
-  void finish(Cycle end);  // attributes the cycles up to the end of the run: call once, before reading statistics
-  void check_drained() const;  // at the end of a run: every request was answered and nothing is left; aborts otherwise
+  void finish(
+      Cycle end);  // attributes the cycles up to the end of the run: call once, before reading statistics
+  void check_drained()
+      const;  // at the end of a run: every request was answered and nothing is left; aborts otherwise
 
  private:
   void check_conserved() const;
@@ -45,7 +47,9 @@ class MemorySystem {
   stats::Group group_;
   stats::Value imbalance_{&group_, "dram_imbalance", "ratio", [this] { return imbalance(); },
                           "Data clocks of the busiest channel over the mean of all: 1 is even."};
-  LatencyStats load_latency_{&group_, "load_latency", "Reads answered by the L1s, atomics included, from their acceptance on, by traffic class."};
+  LatencyStats load_latency_{
+      &group_, "load_latency",
+      "Reads answered by the L1s, atomics included, from their acceptance on, by traffic class."};
   PartitionMap map_;
   Cycle shortest_latency_;
   std::vector<std::unique_ptr<FanIn<Packet>>> requests_;  // by slice

@@ -11,8 +11,8 @@
 namespace glint::mem {
 
 // A fixed number of entries, each with a fixed number of waiters. Waiter is a plain struct.
-// Model: an entry covers a line and knows which of its sectors are on the way, where GPGPU-Sim gives each 32-byte
-// sector an entry of its own.
+// Model: an entry covers a line and knows which of its sectors are on the way, where GPGPU-Sim gives each
+// 32-byte sector an entry of its own.
 template <class Waiter>
 class Mshr {
  public:
@@ -20,7 +20,8 @@ class Mshr {
 
   Mshr(uint32_t entries, uint32_t merges)
       : entries_(entries), waiters_(size_t(entries) * merges), index_(entries), merges_(merges) {
-    for (uint32_t i = 0; i < entries_.size(); ++i) entries_[i].first = i + 1 < entries_.size() ? i + 1 : kNone;
+    for (uint32_t i = 0; i < entries_.size(); ++i)
+      entries_[i].first = i + 1 < entries_.size() ? i + 1 : kNone;
     for (uint32_t i = 0; i < waiters_.size(); ++i) waiters_[i].next = i + 1 < waiters_.size() ? i + 1 : kNone;
   }
 
@@ -79,8 +80,8 @@ class Mshr {
  private:
   struct Entry {
     Address line = 0;
-    uint8_t pending = 0;  // sectors on the way
-    uint32_t count = 0;   // waiters
+    uint8_t pending = 0;                   // sectors on the way
+    uint32_t count = 0;                    // waiters
     uint32_t first = kNone, last = kNone;  // of the waiters; `first` links free entries
   };
   struct Link {

@@ -2,23 +2,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/partition.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
+#include <fmt/format.h>
 #include <utility>
 
 namespace glint::mem {
 
-Partition::Partition(const Params& params, uint32_t index, const PartitionMap& map, double core_mhz, std::vector<SliceLinks> links,
-                     stats::Group* parent)
+Partition::Partition(const Params& params, uint32_t index, const PartitionMap& map, double core_mhz,
+                     std::vector<SliceLinks> links, stats::Group* parent)
     : group_(parent, fmt::format("partition[{}]", index)),
       index_(index),
       map_(map),
       dram_(params.dram.model.make({params.dram, params.interleave, core_mhz, &group_})) {
   for (uint32_t i = 0; i < links.size(); ++i) {
     const std::string name = links.size() == 1 ? "l2" : fmt::format("l2[{}]", i);
-    slices_.push_back(std::make_unique<L2Slice>(params, index * uint32_t(links.size()) + i, map, std::move(links[i]), &group_, name));
+    slices_.push_back(std::make_unique<L2Slice>(params, index * uint32_t(links.size()) + i, map,
+                                                std::move(links[i]), &group_, name));
   }
 }
 
@@ -114,15 +114,19 @@ uint64_t Partition::progress() const {
 }
 
 bool Partition::finished() const {
-  return dram_->finished() && std::all_of(slices_.begin(), slices_.end(), [](const auto& slice) { return slice->finished(); });
+  return dram_->finished() &&
+         std::all_of(slices_.begin(), slices_.end(), [](const auto& slice) { return slice->finished(); });
 }
 
-bool Partition::drained() const { return finished() && sectors_requested() == sectors_replied(); }
+bool Partition::drained() const {
+  return finished() && sectors_requested() == sectors_replied();
+}
 
 std::string Partition::describe_stall() const {
   std::string out;
   for (size_t i = 0; i < slices_.size(); ++i)
-    out += fmt::format("partition {}{}: {}, {} in DRAM\n", index_, slices_.size() == 1 ? "" : fmt::format(" slice {}", i),
+    out += fmt::format("partition {}{}: {}, {} in DRAM\n", index_,
+                       slices_.size() == 1 ? "" : fmt::format(" slice {}", i),
                        slices_[i]->describe(dram_works()), dram_->in_flight());
   return out;
 }

@@ -26,7 +26,8 @@ struct DramTurn {
 class Partition final : public Cell {
  public:
   // `links`: one a slice of this partition.
-  Partition(const Params& params, uint32_t index, const PartitionMap& map, double core_mhz, std::vector<SliceLinks> links, stats::Group* parent);
+  Partition(const Params& params, uint32_t index, const PartitionMap& map, double core_mhz,
+            std::vector<SliceLinks> links, stats::Group* parent);
 
   void advance(Cycle from, Cycle until) override;
   Cycle next_event(Cycle from) const override;
@@ -43,9 +44,15 @@ class Partition final : public Cell {
   const L2Stats& stats() const { return slices_[0]->stats(); }  // of its first slice
   // Sums over the slices.
   uint64_t sum(uint64_t (*of)(const L2Slice&)) const;
-  uint64_t packets_received() const { return sum([](const L2Slice& s) { return s.packets_received(); }); }
-  uint64_t sectors_requested() const { return sum([](const L2Slice& s) { return s.sectors_requested(); }); }
-  uint64_t sectors_replied() const { return sum([](const L2Slice& s) { return s.sectors_replied(); }); }
+  uint64_t packets_received() const {
+    return sum([](const L2Slice& s) { return s.packets_received(); });
+  }
+  uint64_t sectors_requested() const {
+    return sum([](const L2Slice& s) { return s.sectors_requested(); });
+  }
+  uint64_t sectors_replied() const {
+    return sum([](const L2Slice& s) { return s.sectors_replied(); });
+  }
   bool drained() const;
 
  private:
@@ -61,7 +68,7 @@ class Partition final : public Cell {
   const PartitionMap map_;
   const std::unique_ptr<DramModel> dram_;
   std::vector<std::unique_ptr<L2Slice>> slices_;
-  size_t turn_ = 0;  // the slice that may hand over first
+  size_t turn_ = 0;      // the slice that may hand over first
   bool worked_ = false;  // the channel, at the end of the last step
   Probe<DramTurn> dram_turned_;
   IntervalSampler sampler_;

@@ -1,5 +1,5 @@
-// What a memory configuration could do at best, to hold against a data sheet, and where its levels do not fit each other.
-// SPDX-License-Identifier: Apache-2.0
+// What a memory configuration could do at best, to hold against a data sheet, and where its levels do not fit
+// each other. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <string>
@@ -19,11 +19,12 @@ struct Peak {
   double dram_bandwidth = 0;            // all data buses
   double dram_refreshed = 0;            // the same without the time of refresh
   double network() const { return core_ports < slice_ports ? core_ports : slice_ports; }
-  std::string to_string() const;        // one line
+  std::string to_string() const;  // one line
 };
 Peak peak(const Params& params, uint32_t num_cores, double core_mhz);
 
 // Warns of what one level could deliver and the next not carry. `params` must have passed check().
-void warn(const Params& params, uint32_t num_cores, double core_mhz, Diagnostics& diagnostics, const std::string& section = {});
+void warn(const Params& params, uint32_t num_cores, double core_mhz, Diagnostics& diagnostics,
+          const std::string& section = {});
 
 }  // namespace glint::mem

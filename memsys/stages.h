@@ -1,5 +1,5 @@
-// Where the time of a miss goes: the stages between an L1's miss and its fill, and the stamps that tell them apart.
-// SPDX-License-Identifier: Apache-2.0
+// Where the time of a miss goes: the stages between an L1's miss and its fill, and the stamps that tell them
+// apart. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <array>
@@ -25,7 +25,8 @@ enum class Stage : uint8_t {
   Count
 };
 constexpr std::string_view name_of(Stage stage) {
-  constexpr std::string_view kNames[] = {"l1_queue", "request", "l2_queue", "l2_service", "dram_way", "dram_queue", "dram_service", "reply"};
+  constexpr std::string_view kNames[] = {"l1_queue", "request",    "l2_queue",     "l2_service",
+                                         "dram_way", "dram_queue", "dram_service", "reply"};
   static_assert(std::size(kNames) == size_t(Stage::Count));
   return kNames[size_t(stage)];
 }
@@ -39,8 +40,8 @@ struct Stamps {
   void set_rest(Stage stage, Cycle cycle) { std::fill(end.begin() + int(stage), end.end(), uint32_t(cycle)); }
 };
 
-// Splits [accepted, filled): exactly, whatever the stamps say. Who came when the data was already on its way has no part
-// in the stages that were over by then.
+// Splits [accepted, filled): exactly, whatever the stamps say. Who came when the data was already on its way
+// has no part in the stages that were over by then.
 inline void add_stages(stats::Breakdown<Stage>& to, Cycle accepted, Cycle filled, const Stamps& stamps) {
   auto left = uint32_t(filled - accepted);  // of the latency, from the stage on
   for (size_t i = 0; i < stamps.end.size(); ++i) {

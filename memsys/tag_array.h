@@ -9,8 +9,8 @@
 
 namespace glint::mem {
 
-// One hash table finds a line in any organisation; each set is a list from most to least recently used, so that
-// 512 ways cost the same as 4. Sectors are bits of a byte: at most 8 sectors of 32 bytes in a line.
+// One hash table finds a line in any organisation; each set is a list from most to least recently used, so
+// that 512 ways cost the same as 4. Sectors are bits of a byte: at most 8 sectors of 32 bytes in a line.
 class TagArray {
  public:
   static constexpr uint32_t kNone = LineTable::kNone;
@@ -25,7 +25,11 @@ class TagArray {
   };
 
   TagArray(uint32_t sets, uint32_t ways, uint32_t line_bytes)
-      : lines_(size_t(sets) * ways), newest_(sets), oldest_(sets), index_(lines_.size()), line_bytes_(line_bytes) {
+      : lines_(size_t(sets) * ways),
+        newest_(sets),
+        oldest_(sets),
+        index_(lines_.size()),
+        line_bytes_(line_bytes) {
     for (uint32_t set = 0; set < sets; ++set) {
       for (uint32_t way = 0; way < ways; ++way) {
         Line& line = lines_[set * ways + way];
@@ -47,8 +51,8 @@ class TagArray {
   const Line& victim(Address address) const { return lines_[oldest_free(set_of(address))]; }
   bool has_victim(Address address) const { return oldest_free(set_of(address)) != kNone; }
 
-  // Replaces the victim by `address` (absent until now), most recently used, without valid sectors: the caller
-  // sets at least one.
+  // Replaces the victim by `address` (absent until now), most recently used, without valid sectors: the
+  // caller sets at least one.
   Line& insert(Address address) {
     const uint32_t slot = oldest_free(set_of(address));
     Line& line = lines_[slot];

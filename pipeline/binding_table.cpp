@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/binding_table.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstring>
+#include <fmt/format.h>
 
 #include "base/diagnostics.h"
 
@@ -15,11 +14,13 @@ namespace {
 using core::kHandleBytes;
 using isa::Stage;
 
-// shaderGroupHandleAlignment, shaderGroupBaseAlignment and maxShaderGroupStride of the driver that the conformance set
-// was recorded with.
+// shaderGroupHandleAlignment, shaderGroupBaseAlignment and maxShaderGroupStride of the driver that the
+// conformance set was recorded with.
 constexpr uint32_t kHandleAlignment = 32, kBaseAlignment = 64, kMaxStride = 4096;
 
-uint64_t round_up(uint64_t bytes, uint64_t to) { return (bytes + to - 1) / to * to; }
+uint64_t round_up(uint64_t bytes, uint64_t to) {
+  return (bytes + to - 1) / to * to;
+}
 
 class Table {
  public:
@@ -29,10 +30,13 @@ class Table {
     const TableRegion raygen{{input_.raygen}, {}};
     world_.raygen = general(input_.raygen, "the ray generation record", Stage::RayGeneration);
     place(raygen, "ray generation");
-    const uint64_t miss = place(input_.miss, "miss"), hit = place(input_.hit, "hit"), callable = place(input_.callable, "callable");
+    const uint64_t miss = place(input_.miss, "miss"), hit = place(input_.hit, "hit"),
+                   callable = place(input_.callable, "callable");
     const Address base = memory.allocate("shader binding table", bytes_.size());
     memory.write(base, bytes_.data(), bytes_.size());
-    world_.table = {base, {base + miss, stride(input_.miss, "miss")}, {base + hit, stride(input_.hit, "hit")},
+    world_.table = {base,
+                    {base + miss, stride(input_.miss, "miss")},
+                    {base + hit, stride(input_.hit, "hit")},
                     {base + callable, stride(input_.callable, "callable")}};
     world_.miss = generals(input_.miss, "miss", Stage::Miss);
     world_.callable = generals(input_.callable, "callable", Stage::Callable);
@@ -44,16 +48,20 @@ class Table {
  private:
   uint32_t stride(const TableRegion& region, const char* name) const {
     uint64_t largest = 0;
-    for (const TableRecord& record : region.records) largest = std::max<uint64_t>(largest, record.data.size());
+    for (const TableRecord& record : region.records)
+      largest = std::max<uint64_t>(largest, record.data.size());
     const uint64_t need = round_up(kHandleBytes + largest, kHandleAlignment);
     if (need > kMaxStride)
-      throw UserError(fmt::format("a {} record of {} bytes: with its handle at most {} fit", name, largest, kMaxStride));
+      throw UserError(
+          fmt::format("a {} record of {} bytes: with its handle at most {} fit", name, largest, kMaxStride));
     if (!region.stride) return uint32_t(need);
     if (*region.stride % kHandleAlignment || *region.stride > kMaxStride)
-      throw UserError(fmt::format("the stride of the {} region is {}: it must be a multiple of {} and at most {}", name,
-                                  *region.stride, kHandleAlignment, kMaxStride));
+      throw UserError(
+          fmt::format("the stride of the {} region is {}: it must be a multiple of {} and at most {}", name,
+                      *region.stride, kHandleAlignment, kMaxStride));
     if (*region.stride != 0 && region.records.size() > 1 && *region.stride < need)
-      throw UserError(fmt::format("the stride of the {} region is {}: its largest record needs {}", name, *region.stride, need));
+      throw UserError(fmt::format("the stride of the {} region is {}: its largest record needs {}", name,
+                                  *region.stride, need));
     return *region.stride;
   }
 
@@ -64,48 +72,55 @@ class Table {
     for (size_t i = 0; i < (step ? region.records.size() : std::min<size_t>(1, region.records.size())); ++i) {
       const TableRecord& record = region.records[i];
       const uint64_t at = first + i * step;
-      bytes_.resize(std::max<uint64_t>(bytes_.size(), at + std::max<uint64_t>(step, kHandleBytes + record.data.size())));
+      bytes_.resize(std::max<uint64_t>(bytes_.size(),
+                                       at + std::max<uint64_t>(step, kHandleBytes + record.data.size())));
       const uint32_t handle = record.group == kNoGroup ? 0 : record.group + 1;
       std::memcpy(bytes_.data() + at, &handle, sizeof handle);
-      if (!record.data.empty()) std::memcpy(bytes_.data() + at + kHandleBytes, record.data.data(), record.data.size());
+      if (!record.data.empty())
+        std::memcpy(bytes_.data() + at + kHandleBytes, record.data.data(), record.data.size());
     }
     return first;
   }
 
   const ShaderGroup& group(const TableRecord& record, const std::string& where) const {
     if (record.group >= input_.groups.size())
-      throw UserError(fmt::format("{} names group {}: there are {}", where, record.group, input_.groups.size()));
+      throw UserError(
+          fmt::format("{} names group {}: there are {}", where, record.group, input_.groups.size()));
     return input_.groups[record.group];
   }
 
   void check(uint32_t shader, Stage stage, const std::string& where) const {
     if (shader == core::kNoShader) return;
     if (shader >= world_.image->shaders.size())
-      throw UserError(fmt::format("{} names shader {}: there are {}", where, shader, world_.image->shaders.size()));
+      throw UserError(
+          fmt::format("{} names shader {}: there are {}", where, shader, world_.image->shaders.size()));
     const core::Shader& found = world_.image->shaders[shader];
     if (found.stage != stage)
-      throw UserError(fmt::format("{} wants a shader of stage {}: '{}' is of stage {}", where, isa::name_of(stage), found.name,
-                                  isa::name_of(found.stage)));
+      throw UserError(fmt::format("{} wants a shader of stage {}: '{}' is of stage {}", where,
+                                  isa::name_of(stage), found.name, isa::name_of(found.stage)));
   }
 
   uint32_t general(const TableRecord& record, const std::string& where, Stage stage) const {
     if (record.group == kNoGroup) return core::kNoShader;
     const ShaderGroup& found = group(record, where);
-    if (found.general == core::kNoShader) throw UserError(fmt::format("{} names group {}, which is a hit group", where, record.group));
+    if (found.general == core::kNoShader)
+      throw UserError(fmt::format("{} names group {}, which is a hit group", where, record.group));
     check(found.general, stage, where);
     return found.general;
   }
 
   std::vector<uint32_t> generals(const TableRegion& region, const char* name, Stage stage) const {
     std::vector<uint32_t> out;
-    for (size_t i = 0; i < region.records.size(); ++i) out.push_back(general(region.records[i], fmt::format("{} record {}", name, i), stage));
+    for (size_t i = 0; i < region.records.size(); ++i)
+      out.push_back(general(region.records[i], fmt::format("{} record {}", name, i), stage));
     return out;
   }
 
   core::HitGroup hit_group(const TableRecord& record, const std::string& where) const {
     if (record.group == kNoGroup) return {};
     const ShaderGroup& found = group(record, where);
-    if (found.general != core::kNoShader) throw UserError(fmt::format("{} names group {}, which is no hit group", where, record.group));
+    if (found.general != core::kNoShader)
+      throw UserError(fmt::format("{} names group {}, which is no hit group", where, record.group));
     check(found.hit.closest_hit, Stage::ClosestHit, where);
     check(found.hit.any_hit, Stage::AnyHit, where);
     check(found.hit.intersection, Stage::Intersection, where);
@@ -119,7 +134,9 @@ class Table {
 
 }  // namespace
 
-void build_binding_table(core::World& world, mem::AddressSpace& memory, const TableInput& input) { Table(world, input).build(memory); }
+void build_binding_table(core::World& world, mem::AddressSpace& memory, const TableInput& input) {
+  Table(world, input).build(memory);
+}
 
 uint32_t stack_bytes(const core::Image& image, uint32_t max_trace_depth, uint32_t max_callable_depth) {
   uint64_t largest[size_t(Stage::Compute) + 1] = {};
@@ -131,7 +148,8 @@ uint32_t stack_bytes(const core::Image& image, uint32_t max_trace_depth, uint32_
   const uint64_t tracing = std::max(of(Stage::ClosestHit), of(Stage::Miss));
   const uint64_t innermost = std::max(tracing, of(Stage::Intersection) + of(Stage::AnyHit));
   const uint64_t rays = max_trace_depth == 0 ? 0 : innermost + (max_trace_depth - 1) * tracing;
-  return uint32_t(round_up(of(Stage::RayGeneration) + of(Stage::Compute) + rays + max_callable_depth * of(Stage::Callable), 16));
+  return uint32_t(round_up(
+      of(Stage::RayGeneration) + of(Stage::Compute) + rays + max_callable_depth * of(Stage::Callable), 16));
 }
 
 }  // namespace glint::pipeline

@@ -1,5 +1,5 @@
-// The shader binding table as a Vulkan host fills it: records of a group's handle and data, in regions with strides.
-// SPDX-License-Identifier: Apache-2.0
+// The shader binding table as a Vulkan host fills it: records of a group's handle and data, in regions with
+// strides. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -11,21 +11,23 @@ namespace glint::pipeline {
 
 inline constexpr uint32_t kNoGroup = 0xffff'ffff;
 
-// VkRayTracingShaderGroupCreateInfoKHR: indices into Image::shaders, or core::kNoShader. A general group has a ray
-// generation, miss or callable shader; a hit group has the others.
+// VkRayTracingShaderGroupCreateInfoKHR: indices into Image::shaders, or core::kNoShader. A general group has
+// a ray generation, miss or callable shader; a hit group has the others.
 struct ShaderGroup {
   uint32_t general = core::kNoShader;
   core::HitGroup hit;
 };
 
 struct TableRecord {
-  uint32_t group = kNoGroup;     // index into TableInput::groups; kNoGroup: a handle of zeros, which calls nothing
-  std::vector<std::byte> data;   // what the shader's shaderRecordEXT block holds
+  uint32_t group =
+      kNoGroup;  // index into TableInput::groups; kNoGroup: a handle of zeros, which calls nothing
+  std::vector<std::byte> data;  // what the shader's shaderRecordEXT block holds
 };
 
 struct TableRegion {
   std::vector<TableRecord> records;
-  std::optional<uint32_t> stride;  // bytes; without one, the smallest that holds every record. 0: only the first record counts
+  std::optional<uint32_t>
+      stride;  // bytes; without one, the smallest that holds every record. 0: only the first record counts
 };
 
 struct TableInput {
@@ -34,12 +36,13 @@ struct TableInput {
   TableRegion miss, hit, callable;
 };
 
-// Writes the table into simulated memory and sets raygen, miss, hit, callable and table of the world, whose image is
-// linked. UserError: a group that there is not or that does not fit its region, a stride that Vulkan forbids or that is
-// too small for a record's data.
+// Writes the table into simulated memory and sets raygen, miss, hit, callable and table of the world, whose
+// image is linked. UserError: a group that there is not or that does not fit its region, a stride that Vulkan
+// forbids or that is too small for a record's data.
 void build_binding_table(core::World& world, mem::AddressSpace& memory, const TableInput& input);
 
-// The stack of a lane: the deepest chain of frames (Vulkan 1.3, "Ray Tracing Pipeline Stack", with the depths given).
+// The stack of a lane: the deepest chain of frames (Vulkan 1.3, "Ray Tracing Pipeline Stack", with the depths
+// given).
 uint32_t stack_bytes(const core::Image& image, uint32_t max_trace_depth, uint32_t max_callable_depth);
 
 }  // namespace glint::pipeline

@@ -13,9 +13,9 @@
 
 namespace glint {
 
-// The caller is one of the threads; the others live as long as the pool. A thread takes its own cells first, which stay
-// in its caches, then those that nobody has taken yet. Which thread advances a cell never shows in a result: a cell
-// reads and writes its own state only, and each window ends before the next begins.
+// The caller is one of the threads; the others live as long as the pool. A thread takes its own cells first,
+// which stay in its caches, then those that nobody has taken yet. Which thread advances a cell never shows in
+// a result: a cell reads and writes its own state only, and each window ends before the next begins.
 class CellPool {
  public:
   // Cell i belongs to thread homes[i] modulo `threads`; without homes, cells are dealt out in turn.
@@ -43,7 +43,7 @@ class CellPool {
 
   std::unique_ptr<Place[]> places_;
   const size_t num_places_;
-  Cycle from_ = 0, until_ = 0;               // of the present window
+  Cycle from_ = 0, until_ = 0;                   // of the present window
   alignas(64) std::atomic<uint64_t> window_{0};  // counts; kEnd: the threads go home
   alignas(64) std::atomic<uint64_t> left_{0};    // cells that have not advanced yet
   std::vector<std::thread> helpers_;

@@ -10,11 +10,15 @@
 
 namespace glint::pipeline {
 
-// As core::TraceRecorder: slices are cut at the window's ends, which comes earlier where the bound is reached.
+// As core::TraceRecorder: slices are cut at the window's ends, which comes earlier where the bound is
+// reached.
 class ChannelRecorder {
  public:
   // `room`: slices, at least one. Nothing is allocated later.
-  ChannelRecorder(uint32_t channel, Cycle begin, Cycle end, uint64_t room) : channel_(channel), begin_(begin), end_(end) { slices_.reserve(room); }
+  ChannelRecorder(uint32_t channel, Cycle begin, Cycle end, uint64_t room)
+      : channel_(channel), begin_(begin), end_(end) {
+    slices_.reserve(room);
+  }
 
   void turn(const mem::DramTurn& to) {
     if (to.works) {
@@ -22,7 +26,12 @@ class ChannelRecorder {
       if (slices_.size() == slices_.capacity()) end_ = std::min(end_, to.cycle);
     } else if (works_) {
       if (since_ < end_ && to.cycle > begin_)
-        slices_.push_back({std::max(since_, begin_), std::min(to.cycle, end_), channel_, TraceKind::Channel, uint32_t(to.requests - told_), {}});
+        slices_.push_back({std::max(since_, begin_),
+                           std::min(to.cycle, end_),
+                           channel_,
+                           TraceKind::Channel,
+                           uint32_t(to.requests - told_),
+                           {}});
       told_ = to.requests;
     }
     works_ = to.works;

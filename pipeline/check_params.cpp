@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/check_params.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
+#include <fmt/format.h>
 
 #include "memsys/request.h"
 
@@ -16,17 +15,22 @@ namespace {
 void check_cache(const char* key, uint32_t size, uint32_t ways, uint32_t line, Diagnostics& diagnostics) {
   const uint64_t set = uint64_t{std::max(ways, 1u)} * line;
   if (size >= set && size % set == 0) return;
-  diagnostics.error({}, fmt::format("'{}' is {} bytes, expected a multiple of {} bytes ({} ways x {} bytes)", key, size, set, std::max(ways, 1u), line));
+  diagnostics.error({}, fmt::format("'{}' is {} bytes, expected a multiple of {} bytes ({} ways x {} bytes)",
+                                    key, size, set, std::max(ways, 1u), line));
 }
 
 void check_code(const core::Params& p, uint32_t line, Diagnostics& diagnostics) {
-  if (!std::has_single_bit(line)) return;  // reported already
+  if (!std::has_single_bit(line)) return;             // reported already
   if (p.fetch.perfect && p.constant.perfect) return;  // nothing of it is built
   check_cache("core.code_cache.size", p.code_cache.size, p.code_cache.ways, line, diagnostics);
   if (!p.fetch.perfect) check_cache("core.fetch.size", p.fetch.size, p.fetch.ways, line, diagnostics);
   if (p.constant.perfect) return;
   if (!std::has_single_bit(p.constant.line) || p.constant.line > line)
-    diagnostics.error({}, fmt::format("'core.constant.line' is {} bytes, expected a power of two of at most 'memory.line' = {} bytes", p.constant.line, line));
+    diagnostics.error(
+        {},
+        fmt::format(
+            "'core.constant.line' is {} bytes, expected a power of two of at most 'memory.line' = {} bytes",
+            p.constant.line, line));
   else
     check_cache("core.constant.size", p.constant.size, p.constant.ways, p.constant.line, diagnostics);
 }
@@ -37,7 +41,9 @@ void check(const GpuParams& params, Diagnostics& diagnostics) {
   mem::check(params.memory, diagnostics, "memory.");
   check_code(params.core, params.memory.line, diagnostics);
   if (params.rt.request_bytes % mem::kSectorBytes)
-    diagnostics.error({}, fmt::format("'rt.request_bytes' is {}, expected a multiple of the sector of {} bytes", params.rt.request_bytes, mem::kSectorBytes));
+    diagnostics.error({},
+                      fmt::format("'rt.request_bytes' is {}, expected a multiple of the sector of {} bytes",
+                                  params.rt.request_bytes, mem::kSectorBytes));
 }
 
 }  // namespace glint::pipeline

@@ -12,7 +12,9 @@ namespace {
 class Ledger {
  public:
   explicit Ledger(std::string unit) : unit_(std::move(unit)) {}
-  void equal(std::string_view what, uint64_t left, uint64_t right) { rows.push_back({fmt::format("{}: {}", unit_, what), left, right}); }
+  void equal(std::string_view what, uint64_t left, uint64_t right) {
+    rows.push_back({fmt::format("{}: {}", unit_, what), left, right});
+  }
   std::vector<Balance> rows;
 
  private:
@@ -23,7 +25,8 @@ std::vector<Balance> of_core(const core::CoreCell& core, uint64_t cycles, uint32
   const core::CoreStats& s = core.stats();
   Ledger ledger(s.name());
   ledger.equal("attributed issue slots = schedulers x cycles", s.stalls.total(), cycles * schedulers);
-  ledger.equal("slots that issued = instructions", s.stalls.count(core::Stall::Issued), s.instructions.value() + s.sequence_slots.value());
+  ledger.equal("slots that issued = instructions", s.stalls.count(core::Stall::Issued),
+               s.instructions.value() + s.sequence_slots.value());
   uint64_t by_stage = 0;
   for (const core::StageStats* stage : s.stage) by_stage += stage->instructions.total();
   ledger.equal("instructions by stage = instructions", by_stage, s.instructions.value());
@@ -31,7 +34,8 @@ std::vector<Balance> of_core(const core::CoreCell& core, uint64_t cycles, uint32
   for (size_t i = 0; i < size_t(isa::Class::Count); ++i) {
     uint64_t latency = 0;
     for (const core::StageStats* stage : s.stage) latency += stage->latency.count(isa::Class(i));
-    ledger.equal(fmt::format("latency of {} by stage = latency", name_of(isa::Class(i))), latency, s.latency.count(isa::Class(i)));
+    ledger.equal(fmt::format("latency of {} by stage = latency", name_of(isa::Class(i))), latency,
+                 s.latency.count(isa::Class(i)));
   }
   ledger.equal("warps left = none", core.num_resident(), 0);
   return std::move(ledger.rows);
@@ -54,7 +58,8 @@ std::vector<Balance> of_profile(const core::CoreCell& core) {
   ledger.equal("requests = lines", sum.requests, s.lines.value());
   ledger.equal("sectors = sectors", sum.sectors, s.sectors.value());
   for (size_t i = 0; i < sum.slots.size(); ++i)
-    ledger.equal(fmt::format("slots of {}", name_of(core::Stall(i))), sum.slots[i], s.stalls.count(core::Stall(i)));
+    ledger.equal(fmt::format("slots of {}", name_of(core::Stall(i))), sum.slots[i],
+                 s.stalls.count(core::Stall(i)));
   return std::move(ledger.rows);
 }
 
@@ -64,7 +69,8 @@ std::vector<Balance> of_rays(const core::CoreStats& core, const rt::RtUnit& unit
   ledger.equal("attributed cycles = cycles", s.cycles.total(), cycles);
   ledger.equal("warps in = warps handed over", s.warps.value(), core.rt_warps.value());
   ledger.equal("rays in = rays handed over", s.rays.value() + s.resumed.value(), core.rt_lanes.value());
-  ledger.equal("rays in = rays out", s.rays.value() + s.resumed.value(), s.finished.value() + s.suspended.value());
+  ledger.equal("rays in = rays out", s.rays.value() + s.resumed.value(),
+               s.finished.value() + s.suspended.value());
   ledger.equal("rays by nodes = rays", s.ray_nodes.total(), s.rays.value());
   ledger.equal("rays by time = rays", s.ray_latency.total(), s.rays.value());
   ledger.equal("warps left = none", unit.num_resident(), 0);
@@ -76,7 +82,8 @@ std::vector<Balance> of_partition(uint32_t index, const mem::Partition& partitio
   Ledger ledger(fmt::format("partition[{}]", index));
   for (uint32_t i = 0; i < partition.num_slices(); ++i)
     ledger.equal("attributed cycles = cycles", partition.slice(i).stats().cycles.total(), cycles);
-  ledger.equal("DRAM requests = reads + writes", dram.requests.value(), dram.reads.value() + dram.writes.value());
+  ledger.equal("DRAM requests = reads + writes", dram.requests.value(),
+               dram.reads.value() + dram.writes.value());
   ledger.equal("attributed DRAM clocks = clocks", dram.use.total(), dram.clocks.value());
   return std::move(ledger.rows);
 }
@@ -93,7 +100,8 @@ std::vector<Balance> balances(const TimingMachine& machine) {
     add(of_profile(core));
     add(of_rays(core.stats(), machine.rt_unit(i), cycles));
   }
-  for (uint32_t i = 0; i < machine.memory().num_partitions(); ++i) add(of_partition(i, machine.memory().partition(i), cycles));
+  for (uint32_t i = 0; i < machine.memory().num_partitions(); ++i)
+    add(of_partition(i, machine.memory().partition(i), cycles));
   return out;
 }
 

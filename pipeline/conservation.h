@@ -15,7 +15,8 @@ struct Balance {
   uint64_t left = 0, right = 0;
 };
 
-// Of a machine whose run has ended well. What the memory system holds is checked by MemorySystem::check_drained().
+// Of a machine whose run has ended well. What the memory system holds is checked by
+// MemorySystem::check_drained().
 std::vector<Balance> balances(const TimingMachine& machine);
 
 // A line for each balance that does not hold; "" when all do.

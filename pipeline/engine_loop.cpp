@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/engine_loop.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
+#include <fmt/format.h>
 #include <thread>
 
 #include "base/diagnostics.h"
@@ -44,7 +43,8 @@ Cycle EngineLoop::run(const Between& between) {
 
 void EngineLoop::run_turn(Cycle from, uint64_t progress) {
   // Who asks for a number of threads gets it.
-  const bool in_parallel = pool_ && (options_.threads || pace_.in_parallel(std::chrono::steady_clock::now(), progress));
+  const bool in_parallel =
+      pool_ && (options_.threads || pace_.in_parallel(std::chrono::steady_clock::now(), progress));
   const Cycle end = from + options_.turn, step = options_.window ? options_.window : options_.turn;
   for (Cycle now = from; now < end; now += step) run_window(now, std::min(now + step, end), in_parallel);
 }

@@ -13,19 +13,20 @@
 
 namespace glint {
 
-// Time goes in turns, and a turn in windows. A turn's length is the model's: what acts between turns (blocks are handed
-// out, stores become visible to other cores) acts in the same cycles however the machine is run. A window is what a cell
-// advances alone; its length, the threads and the cells each of them runs change nothing but the time that a run takes.
-// Turns start at multiples of their length, so that skipping idle time does not move them.
+// Time goes in turns, and a turn in windows. A turn's length is the model's: what acts between turns (blocks
+// are handed out, stores become visible to other cores) acts in the same cycles however the machine is run. A
+// window is what a cell advances alone; its length, the threads and the cells each of them runs change
+// nothing but the time that a run takes. Turns start at multiples of their length, so that skipping idle time
+// does not move them.
 class EngineLoop {
  public:
   struct Options {
-    Cycle turn = 32;               // at most the shortest latency of the channels
-    bool no_skip = false;          // visits every turn; cells have a switch of their own
-    Cycle watchdog = 1'000'000;    // cycles without progress of any cell before the machine counts as stuck
-    uint32_t threads = 1;          // 0: as many as the host has processors, while they are faster than one
-    Cycle window = 0;              // at most a turn, and the last of a turn ends with it; 0: a turn
-    std::vector<uint32_t> homes{}; // of the cells (cell_pool.h)
+    Cycle turn = 32;                // at most the shortest latency of the channels
+    bool no_skip = false;           // visits every turn; cells have a switch of their own
+    Cycle watchdog = 1'000'000;     // cycles without progress of any cell before the machine counts as stuck
+    uint32_t threads = 1;           // 0: as many as the host has processors, while they are faster than one
+    Cycle window = 0;               // at most a turn, and the last of a turn ends with it; 0: a turn
+    std::vector<uint32_t> homes{};  // of the cells (cell_pool.h)
   };
   enum class Next { Continue, NothingMore, Stop };
   // Called at the start of each turn. Continue: more work may be handed out later. NothingMore: run until all

@@ -27,8 +27,8 @@ void answer_rays(Executor& executor, WarpContext& warp, RayCounts& counts) {
 
 namespace {
 
-// Choice: instructions that a warp runs before the next of its block, so that warps that wait for each other through
-// memory get on. Where nobody waits like that, results do not depend on it.
+// Choice: instructions that a warp runs before the next of its block, so that warps that wait for each other
+// through memory get on. Where nobody waits like that, results do not depend on it.
 constexpr uint64_t kQuantum = 10'000;
 
 class Runner {
@@ -37,7 +37,9 @@ class Runner {
       : executor(world), world_(world), budget_(instruction_budget) {
     if (!costs) return;
     costs_ = std::make_unique<core::CostRecorder>(*costs, executor.warps_per_block());
-    executor.called.listen([this](const core::Called& called) { costs_->call(called.warp.warp_in_block, called.stage, called.lanes); });
+    executor.called.listen([this](const core::Called& called) {
+      costs_->call(called.warp.warp_in_block, called.stage, called.lanes);
+    });
   }
 
   void run_block(uint32_t index) {
@@ -70,7 +72,8 @@ class Runner {
       if (warp.waiting_for_rays) answer(warp);
       if (finished && costs_) costs_->end_warp(0, warp.warp_in_block);
       if (warp.instructions > budget_) [[unlikely]]
-        throw Error(Exit::Fault, executor.passed().with(core::no_end_in_sight(world_, warp, issued.pc, budget_)));
+        throw Error(Exit::Fault,
+                    executor.passed().with(core::no_end_in_sight(world_, warp, issued.pc, budget_)));
     }
   }
 

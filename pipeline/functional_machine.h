@@ -1,5 +1,5 @@
-// The functional machine: block after block, the warps of a block in turns, every effect at once. A picture and counts, no cycles.
-// SPDX-License-Identifier: Apache-2.0
+// The functional machine: block after block, the warps of a block in turns, every effect at once. A picture
+// and counts, no cycles. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstdint>
@@ -16,11 +16,12 @@ struct FunctionalCounts {
   core::FaultLog faults;  // that were let pass
 };
 
-// Error(Exit::Fault) when a warp does something wrong or executes more than `instruction_budget` instructions.
-// `listener`, when given, hears of every retired instruction; `costs` is filled in.
+// Error(Exit::Fault) when a warp does something wrong or executes more than `instruction_budget`
+// instructions. `listener`, when given, hears of every retired instruction; `costs` is filled in.
 FunctionalCounts run_functional(const core::World& world, uint64_t instruction_budget,
                                 const std::function<void(uint64_t done, uint64_t total)>& progress,
-                                const Probe<core::Retired>::Listener& listener = {}, core::LaunchCosts* costs = nullptr);
+                                const Probe<core::Retired>::Listener& listener = {},
+                                core::LaunchCosts* costs = nullptr);
 
 // Traverses the rays that `warp` waits for and answers them. Adds to `counts` what the traversal did.
 void answer_rays(core::Executor& executor, core::WarpContext& warp, RayCounts& counts);

@@ -3,7 +3,6 @@
 #include "pipeline/kernel_launch.h"
 
 #include <fmt/format.h>
-
 #include <map>
 
 #include "base/diagnostics.h"
@@ -41,8 +40,10 @@ void KernelWorld::place_variables() {
     for (const frontend::ModuleVariable::Pointer& pointer : v.pointers) {
       const auto target = address.find(pointer.symbol);
       if (target == address.end())
-        throw UnsupportedError(fmt::format("variable '{}' holds the address of '{}', which is no variable of the module in global or constant memory",
-                                           v.name, pointer.symbol));
+        throw UnsupportedError(
+            fmt::format("variable '{}' holds the address of '{}', which is no variable of the module in "
+                        "global or constant memory",
+                        v.name, pointer.symbol));
       const uint64_t value = target->second + pointer.addend;
       std::memcpy(data[v.name] + pointer.at, &value, sizeof value);
     }
@@ -50,19 +51,26 @@ void KernelWorld::place_variables() {
 
 void KernelWorld::set_grid(const KernelGrid& grid) {
   const std::string& name = kernel_.program.name;
-  const auto size = [](const std::array<uint32_t, 3>& s) { return fmt::format("{} x {} x {}", s[0], s[1], s[2]); };
+  const auto size = [](const std::array<uint32_t, 3>& s) {
+    return fmt::format("{} x {} x {}", s[0], s[1], s[2]);
+  };
   for (const auto& s : {grid.grid, grid.block})
     for (uint32_t axis : s)
-      if (axis == 0) throw UserError({}, fmt::format("kernel '{}': a grid of {} blocks of {} threads is empty", name, size(grid.grid), size(grid.block)));
+      if (axis == 0)
+        throw UserError({}, fmt::format("kernel '{}': a grid of {} blocks of {} threads is empty", name,
+                                        size(grid.grid), size(grid.block)));
   const uint64_t threads = uint64_t{grid.block[0]} * grid.block[1] * grid.block[2];
   if (threads > core::kMaxBlockThreads)
-    throw UserError({}, fmt::format("kernel '{}': {} threads a block, at most {} can be", name, threads, core::kMaxBlockThreads));
+    throw UserError({}, fmt::format("kernel '{}': {} threads a block, at most {} can be", name, threads,
+                                    core::kMaxBlockThreads));
   if (kernel_.required_block && *kernel_.required_block != grid.block)
-    throw UserError({}, fmt::format("kernel '{}' asks for blocks of {} threads (.reqntid), not {}", name, size(*kernel_.required_block), size(grid.block)));
+    throw UserError({}, fmt::format("kernel '{}' asks for blocks of {} threads (.reqntid), not {}", name,
+                                    size(*kernel_.required_block), size(grid.block)));
   if (kernel_.largest_block) {
     const auto& most = *kernel_.largest_block;
     if (threads > uint64_t{most[0]} * most[1] * most[2])
-      throw UserError({}, fmt::format("kernel '{}' takes blocks of at most {} threads (.maxntid), not {}", name, size(most), size(grid.block)));
+      throw UserError({}, fmt::format("kernel '{}' takes blocks of at most {} threads (.maxntid), not {}",
+                                      name, size(most), size(grid.block)));
   }
   core::set_blocks(world, grid.grid, grid.block, kernel_.program.shared_bytes, grid.dynamic_shared_bytes);
 }
@@ -70,12 +78,15 @@ void KernelWorld::set_grid(const KernelGrid& grid) {
 void KernelWorld::set_arguments(const std::vector<std::vector<std::byte>>& arguments) {
   const std::string& name = kernel_.program.name;
   if (arguments.size() != kernel_.parameters.size())
-    throw UserError({}, fmt::format("kernel '{}' has {} parameters, {} arguments are given", name, kernel_.parameters.size(), arguments.size()));
+    throw UserError({}, fmt::format("kernel '{}' has {} parameters, {} arguments are given", name,
+                                    kernel_.parameters.size(), arguments.size()));
   for (size_t i = 0; i < arguments.size(); ++i) {
     const frontend::KernelParameter& p = kernel_.parameters[i];
     if (arguments[i].size() != p.bytes)
-      throw UserError({}, fmt::format("kernel '{}': parameter {} ('{}') has {} bytes, its argument {}", name, i, p.name, p.bytes, arguments[i].size()));
-    std::memcpy(world.constant_bank.data() + isa::kPushConstantOffset + p.offset, arguments[i].data(), p.bytes);
+      throw UserError({}, fmt::format("kernel '{}': parameter {} ('{}') has {} bytes, its argument {}", name,
+                                      i, p.name, p.bytes, arguments[i].size()));
+    std::memcpy(world.constant_bank.data() + isa::kPushConstantOffset + p.offset, arguments[i].data(),
+                p.bytes);
   }
 }
 

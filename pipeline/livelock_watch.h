@@ -7,14 +7,14 @@
 
 namespace glint::pipeline {
 
-// Looks at the machine between turns. Model: what is looked at is not the warps' registers, so a launch that only computes
-// for longer than the budget is taken for one that spins; a budget of 0 never ends.
+// Looks at the machine between turns. Model: what is looked at is not the warps' registers, so a launch that
+// only computes for longer than the budget is taken for one that spins; a budget of 0 never ends.
 class LivelockWatch {
  public:
   explicit LivelockWatch(uint64_t budget) : budget_(budget) {}
 
-  // `memory_changed`: since the last look. `count()` grows with everything else that counts as progress; it is asked only
-  // now and then.
+  // `memory_changed`: since the last look. `count()` grows with everything else that counts as progress; it
+  // is asked only now and then.
   template <class Count>
   void look(Cycle now, bool memory_changed, Count&& count) {
     if (memory_changed) since_ = now;

@@ -6,8 +6,8 @@
 
 namespace glint {
 
-// Tries a few windows each way, goes on in the faster way for many, then tries again. It looks at the clock of the host:
-// what it chooses differs from run to run, and no result depends on it.
+// Tries a few windows each way, goes on in the faster way for many, then tries again. It looks at the clock
+// of the host: what it chooses differs from run to run, and no result depends on it.
 class Pace {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -58,10 +58,10 @@ class Pace {
 
   Phase phase_ = Phase::TrySerial;
   Way way_ = Way::Serial;
-  uint32_t windows_ = 0;      // of the phase
-  uint64_t progress_ = 0;     // when it began
+  uint32_t windows_ = 0;   // of the phase
+  uint64_t progress_ = 0;  // when it began
   Time started_{};
-  double serial_ = 0;         // cost of the last trial
+  double serial_ = 0;  // cost of the last trial
 };
 
 }  // namespace glint

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/pipeline_world.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstring>
+#include <fmt/format.h>
 
 #include "core/block.h"
 #include "isa/descriptors.h"
@@ -27,7 +26,8 @@ bool traces_from(const Modules& modules, isa::Stage stage) {
 }
 
 std::string title(const std::string& name, const Slot& slot) {
-  return slot.is_bound() ? fmt::format("set {} binding {} ({})", slot.set.value_or(0), *slot.binding, name) : name;
+  return slot.is_bound() ? fmt::format("set {} binding {} ({})", slot.set.value_or(0), *slot.binding, name)
+                         : name;
 }
 
 }  // namespace
@@ -47,7 +47,8 @@ PipelineWorld::PipelineWorld(const PipelineDescription& description, const GpuPa
   upload_images();
   add_samplers();
   build_structures(gpu);
-  for (const auto& [place, use] : modules_.bindings())  // those that no code uses; check_pipeline() refuses the others
+  for (const auto& [place, use] :
+       modules_.bindings())  // those that no code uses; check_pipeline() refuses the others
     if (!bound_.count(place)) mark_unbound(world, use.binding);
   if (description_.raygen) fill_records();
   set_push_constants();
@@ -60,7 +61,8 @@ void PipelineWorld::link(const GpuParams& gpu) {
   add_traversal(programs, gpu, description_.shaders.empty() ? nullptr : description_.shaders[0].glsl.cache);
   image_ = core::link(programs);
   world.image = &image_;
-  const bool nested = traces_from(modules_, isa::Stage::ClosestHit) || traces_from(modules_, isa::Stage::Miss);
+  const bool nested =
+      traces_from(modules_, isa::Stage::ClosestHit) || traces_from(modules_, isa::Stage::Miss);
   world.max_trace_depth = description_.max_trace_depth.value_or(nested ? kDefaultDepth : 1);
   const bool has_callables = !description_.callable.records.empty();
   world.max_callable_depth = description_.max_callable_depth.value_or(has_callables ? kDefaultDepth : 0);
@@ -76,8 +78,9 @@ void PipelineWorld::set_launch() {
   const isa::Program& program = modules_.find(description_.compute).program;
   const auto& size = program.local_size;
   if (uint64_t{size[0]} * size[1] * size[2] > core::kMaxBlockThreads)
-    throw UserError(description_.compute_where, fmt::format("'{}' has blocks of {} x {} x {} threads: at most {} can be", description_.compute, size[0],
-                                                            size[1], size[2], core::kMaxBlockThreads));
+    throw UserError(description_.compute_where,
+                    fmt::format("'{}' has blocks of {} x {} x {} threads: at most {} can be",
+                                description_.compute, size[0], size[1], size[2], core::kMaxBlockThreads));
   core::set_blocks(world, description_.launch, size, program.shared_bytes);
 }
 
@@ -93,7 +96,8 @@ void PipelineWorld::bind(const Slot& slot, uint64_t address_or_handle, uint64_t 
   write_descriptor(world, {slot.set.value_or(0), *slot.binding}, address_or_handle, bytes_or_count);
 }
 
-// docs/abi.md: arrays of buffers and of acceleration structures have their descriptors in a table in global memory.
+// docs/abi.md: arrays of buffers and of acceleration structures have their descriptors in a table in global
+// memory.
 void PipelineWorld::bind_table(const Slot& slot, uint32_t element, uint64_t address, uint64_t bytes) {
   const BindingUse* use = use_of(slot);
   if (!use || use->binding.count == 1) return bind(slot, address, bytes);
@@ -103,11 +107,13 @@ void PipelineWorld::bind_table(const Slot& slot, uint32_t element, uint64_t addr
     uint32_t count = use->binding.count;
     const auto count_in = [&](const auto& resources) {
       for (const auto& r : resources)
-        if (r.slot.is_bound() && std::pair(r.slot.set.value_or(0), *r.slot.binding) == place) count = std::max(count, r.slot.element + 1);
+        if (r.slot.is_bound() && std::pair(r.slot.set.value_or(0), *r.slot.binding) == place)
+          count = std::max(count, r.slot.element + 1);
     };
     count_in(description_.buffers);
     count_in(description_.top_levels);
-    it->second = memory_.allocate(fmt::format("descriptors of set {} binding {}", place.first, place.second), uint64_t{count} * isa::kDescriptorBytes);
+    it->second = memory_.allocate(fmt::format("descriptors of set {} binding {}", place.first, place.second),
+                                  uint64_t{count} * isa::kDescriptorBytes);
     bind(slot, it->second, count);
   }
   const uint64_t descriptor[2] = {address, bytes};
@@ -120,8 +126,8 @@ uint64_t PipelineWorld::address_of(const std::string& buffer) const {
   return 0;
 }
 
-// Addresses are given out before anything is filled, so that buffers can point to each other: sizes come first, with
-// any address that is not 0.
+// Addresses are given out before anything is filled, so that buffers can point to each other: sizes come
+// first, with any address that is not 0.
 void PipelineWorld::upload_buffers() {
   const auto block_of = [&](const BufferDescription& b) {
     const BindingUse* use = use_of(b.slot);
@@ -129,7 +135,8 @@ void PipelineWorld::upload_buffers() {
   };
   for (const BufferDescription& b : description_.buffers) {
     const auto known = [&](const std::string& name) {
-      return uint64_t(std::any_of(description_.buffers.begin(), description_.buffers.end(), [&](const auto& other) { return other.name == name; }));
+      return uint64_t(std::any_of(description_.buffers.begin(), description_.buffers.end(),
+                                  [&](const auto& other) { return other.name == name; }));
     };
     const uint64_t bytes = bytes_of(b.data, block_of(b), known, errors_).size();
     if (const BindingUse* use = use_of(b.slot)) check_bytes(*use, bytes, b.name, b.where, errors_);
@@ -139,7 +146,8 @@ void PipelineWorld::upload_buffers() {
   errors_.throw_if_errors();
   for (size_t i = 0; i < description_.buffers.size(); ++i) {
     const BufferDescription& b = description_.buffers[i];
-    const std::vector<std::byte> bytes = bytes_of(b.data, block_of(b), [&](const std::string& name) { return address_of(name); }, errors_);
+    const std::vector<std::byte> bytes = bytes_of(
+        b.data, block_of(b), [&](const std::string& name) { return address_of(name); }, errors_);
     if (!bytes.empty()) memory_.write(buffer_address_[i], bytes.data(), bytes.size());
     bind_table(b.slot, b.slot.element, buffer_address_[i], bytes.size());
   }
@@ -150,7 +158,8 @@ std::vector<size_t> PipelineWorld::in_order(const std::vector<const Slot*>& slot
   std::vector<size_t> order(slots.size());
   for (size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
-    return std::tuple(slots[a]->set, slots[a]->binding, slots[a]->element) < std::tuple(slots[b]->set, slots[b]->binding, slots[b]->element);
+    return std::tuple(slots[a]->set, slots[a]->binding, slots[a]->element) <
+           std::tuple(slots[b]->set, slots[b]->binding, slots[b]->element);
   });
   return order;
 }
@@ -163,9 +172,11 @@ void PipelineWorld::upload_images() {
     const ImageDescription& d = description_.images[i];
     const BindingUse* use = use_of(d.slot);
     if (use && d.samples > 1 && !use->binding.multisampled)
-      throw UserError(d.where, fmt::format("image '{}' has {} samples a texel; the shader's has one", d.name, d.samples));
-    Picture picture = make_picture(d, use ? use->binding.shape : isa::ImageShape::D2, use ? use->binding.texel : "", world.launch_size,
-                                   use ? use->binding.format : "");
+      throw UserError(
+          d.where, fmt::format("image '{}' has {} samples a texel; the shader's has one", d.name, d.samples));
+    Picture picture =
+        make_picture(d, use ? use->binding.shape : isa::ImageShape::D2, use ? use->binding.texel : "",
+                     world.launch_size, use ? use->binding.format : "");
     picture.view.base = memory_.allocate(title(d.name, d.slot), picture.texels.size());
     memory_.write(picture.view.base, picture.texels.data(), picture.texels.size());
     image_handle_[i] = world.images.size();
@@ -191,7 +202,8 @@ void PipelineWorld::build_structures(const GpuParams& gpu) {
     models.reserve(description.geometries.size());  // geometries point into them
     for (const GeometryDescription& g : description.geometries) {
       rt::Geometry geometry;
-      geometry.transform = g.transform, geometry.opaque = g.opaque, geometry.no_duplicate_any_hit = g.no_duplicate_any_hit;
+      geometry.transform = g.transform, geometry.opaque = g.opaque,
+      geometry.no_duplicate_any_hit = g.no_duplicate_any_hit;
       if (!g.mesh.empty()) {
         models.push_back(load_mesh(g.mesh, g.where));
         geometry.positions = std::as_bytes(std::span(models.back().vertices));
@@ -204,7 +216,8 @@ void PipelineWorld::build_structures(const GpuParams& gpu) {
         geometry.indices = g.indices;
       }
       structures.procedurals += g.aabbs.size();
-      structures.triangles += geometry.indices.empty() ? geometry.positions.size() / geometry.stride / 3 : geometry.indices.size() / 3;
+      structures.triangles += geometry.indices.empty() ? geometry.positions.size() / geometry.stride / 3
+                                                       : geometry.indices.size() / 3;
       level.geometries.push_back(geometry);
     }
     bottoms.push_back(rt::build_bottom(memory_, "bottom level " + description.name, level, gpu.bvh));
@@ -221,12 +234,14 @@ void PipelineWorld::build_structures(const GpuParams& gpu) {
         if (description_.bottom_levels[i].name == d.bottom_level) instance.bottom = uint32_t(i);
       instances.push_back(instance);
     }
-    const rt::StructureInfo top = rt::build_top(memory_, title(description.name, description.slot), instances, bottoms, gpu.bvh);
+    const rt::StructureInfo top =
+        rt::build_top(memory_, title(description.name, description.slot), instances, bottoms, gpu.bvh);
     stack_need = std::max(stack_need, top.stack_need);
     structures.bytes += top.bytes;
     structures.instances += instances.size();
     structures.top_depth = std::max(structures.top_depth, top.depth);
-    if (description.slot.is_bound()) bind_table(description.slot, description.slot.element, top.address, top.bytes);
+    if (description.slot.is_bound())
+      bind_table(description.slot, description.slot.element, top.address, top.bytes);
   }
   place_records(world, stack_need);
 }
@@ -235,7 +250,8 @@ uint32_t PipelineWorld::group_index(const GroupDescription& group, TableInput& i
   if (!is_hit && group.general.empty()) return kNoGroup;
   ShaderGroup made;
   made.general = modules_.index_of(group.general);
-  made.hit = {modules_.index_of(group.closest_hit), modules_.index_of(group.any_hit), modules_.index_of(group.intersection)};
+  made.hit = {modules_.index_of(group.closest_hit), modules_.index_of(group.any_hit),
+              modules_.index_of(group.intersection)};
   input.groups.push_back(made);
   return uint32_t(input.groups.size() - 1);
 }
@@ -253,10 +269,13 @@ TableRecord PipelineWorld::record(const RecordDescription& description, TableInp
     const frontend::BlockType& found = modules_.find(name).reflection.shader_record;
     if (!block || found.bytes > block->bytes) block = &found, reader = &modules_.find(name);
   }
-  out.data = bytes_of(description.data, block, [&](const std::string& name) { return address_of(name); }, errors_);
+  out.data = bytes_of(
+      description.data, block, [&](const std::string& name) { return address_of(name); }, errors_);
   if (!block || out.data.size() >= block->bytes) return out;
-  errors_.error(description.where, fmt::format("the record's data have {} bytes, the shader's record {}", out.data.size(), block->bytes),
-                fmt::format("the shader declares it at {}", reader->where_declared("shaderRecord").to_string()));
+  errors_.error(
+      description.where,
+      fmt::format("the record's data have {} bytes, the shader's record {}", out.data.size(), block->bytes),
+      fmt::format("the shader declares it at {}", reader->where_declared("shaderRecord").to_string()));
   return out;
 }
 
@@ -278,29 +297,38 @@ void PipelineWorld::set_push_constants() {
   const frontend::BlockType* block = nullptr;
   const ShaderModule* reader = nullptr;
   for (const ShaderModule& module : modules_.all())
-    if (!module.reflection.push_constants.members.empty() && (!block || module.reflection.push_constants.bytes > block->bytes))
+    if (!module.reflection.push_constants.members.empty() &&
+        (!block || module.reflection.push_constants.bytes > block->bytes))
       block = &module.reflection.push_constants, reader = &module;
   if (!description_.push_constants.data) {
     if (block)
       errors_.error({description_.path, 0, 0}, "[push_constants] is missing",
-                    fmt::format("the shader declares {} bytes of them at {}", block->bytes, reader->where_declared("push_constant").to_string()));
+                    fmt::format("the shader declares {} bytes of them at {}", block->bytes,
+                                reader->where_declared("push_constant").to_string()));
     return;
   }
-  const std::vector<std::byte> bytes = bytes_of(description_.push_constants, block, [&](const std::string& name) { return address_of(name); }, errors_);
+  const std::vector<std::byte> bytes = bytes_of(
+      description_.push_constants, block, [&](const std::string& name) { return address_of(name); }, errors_);
   const uint64_t room = isa::kConstantBankBytes - isa::kPushConstantOffset;
-  if (bytes.size() > room) errors_.error(description_.push_constants.where, fmt::format("{} bytes of push constants: there is room for {}", bytes.size(), room));
+  if (bytes.size() > room)
+    errors_.error(description_.push_constants.where,
+                  fmt::format("{} bytes of push constants: there is room for {}", bytes.size(), room));
   else if (block && bytes.size() < block->bytes)
-    errors_.error(description_.push_constants.where, fmt::format("{} bytes of push constants, the shader's have {}", bytes.size(), block->bytes),
-                  fmt::format("the shader declares them at {}", reader->where_declared("push_constant").to_string()));
-  else std::memcpy(world.constant_bank.data() + isa::kPushConstantOffset, bytes.data(), bytes.size());
+    errors_.error(
+        description_.push_constants.where,
+        fmt::format("{} bytes of push constants, the shader's have {}", bytes.size(), block->bytes),
+        fmt::format("the shader declares them at {}", reader->where_declared("push_constant").to_string()));
+  else
+    std::memcpy(world.constant_bank.data() + isa::kPushConstantOffset, bytes.data(), bytes.size());
 }
 
 std::span<const std::byte> PipelineWorld::buffer(size_t index) const {
   return {memory_.find(buffer_address_[index], buffer_bytes_[index]), size_t(buffer_bytes_[index])};
 }
 
-RenderResult run_pipeline(PipelineWorld& pipeline, const GpuParams& gpu, bool timing, bool no_skip, uint32_t threads,
-                          const std::function<void(uint64_t, uint64_t)>& progress, const Observation& observe) {
+RenderResult run_pipeline(PipelineWorld& pipeline, const GpuParams& gpu, bool timing, bool no_skip,
+                          uint32_t threads, const std::function<void(uint64_t, uint64_t)>& progress,
+                          const Observation& observe) {
   RenderResult result = run_world(pipeline.world, gpu, timing, no_skip, threads, progress, observe);
   result.structures = pipeline.structures;
   result.warnings = pipeline.warnings;

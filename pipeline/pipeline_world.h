@@ -1,5 +1,5 @@
-// A described pipeline in simulated memory: shaders linked, resources uploaded, records and constants in place.
-// SPDX-License-Identifier: Apache-2.0
+// A described pipeline in simulated memory: shaders linked, resources uploaded, records and constants in
+// place. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
 #include <map>
@@ -62,7 +62,9 @@ class PipelineWorld {
 };
 
 // Runs it: counts, statistics and time; no picture. Errors as render().
-RenderResult run_pipeline(PipelineWorld& pipeline, const GpuParams& gpu, bool timing, bool no_skip, uint32_t threads,
-                          const std::function<void(uint64_t done, uint64_t total)>& progress, const Observation& observe = {});
+RenderResult run_pipeline(PipelineWorld& pipeline, const GpuParams& gpu, bool timing, bool no_skip,
+                          uint32_t threads,
+                          const std::function<void(uint64_t done, uint64_t total)>& progress,
+                          const Observation& observe = {});
 
 }  // namespace glint::pipeline

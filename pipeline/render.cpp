@@ -6,8 +6,8 @@
 
 #include "pipeline/functional_machine.h"
 #include "pipeline/run_costs.h"
-#include "pipeline/run_trace.h"
 #include "pipeline/run_stats.h"
+#include "pipeline/run_trace.h"
 #include "pipeline/scene_world.h"
 #include "pipeline/timing_machine.h"
 
@@ -16,27 +16,35 @@ RenderResult::RenderResult() = default;
 RenderResult::~RenderResult() = default;
 RenderResult::RenderResult(RenderResult&&) noexcept = default;
 RenderResult& RenderResult::operator=(RenderResult&&) noexcept = default;
-const stats::Group& RenderResult::statistics() const { return stats->root(); }
+const stats::Group& RenderResult::statistics() const {
+  return stats->root();
+}
 
-RenderResult run_world(const core::World& world, const GpuParams& gpu, bool timing, bool no_skip, uint32_t threads,
-                       const std::function<void(uint64_t, uint64_t)>& progress, const Observation& observation) {
+RenderResult run_world(const core::World& world, const GpuParams& gpu, bool timing, bool no_skip,
+                       uint32_t threads, const std::function<void(uint64_t, uint64_t)>& progress,
+                       const Observation& observation) {
   RenderResult result;
   const auto costs = observation.heat ? std::make_unique<core::LaunchCosts>(world) : nullptr;
   const auto begin = std::chrono::steady_clock::now();
   if (timing) {
     auto machine = std::make_unique<TimingMachine>(gpu, world, no_skip, HostOptions{.threads = threads});
     observe(*machine, observation);
-    const auto cost_recorders = costs ? record_costs(*machine, *costs) : std::vector<std::unique_ptr<core::CostRecorder>>{};
-    const auto trace_recorders = observation.trace.wanted ? record_trace(*machine, *world.image, observation.trace) : TraceRecorders{};
+    const auto cost_recorders =
+        costs ? record_costs(*machine, *costs) : std::vector<std::unique_ptr<core::CostRecorder>>{};
+    const auto trace_recorders =
+        observation.trace.wanted ? record_trace(*machine, *world.image, observation.trace) : TraceRecorders{};
     result.cycles = machine->run(progress);
     machine->collect(result);
     result.faults = machine->passed();
     if (observation.profile) result.profile = profile_of(*machine, *world.image);
     if (observation.sample) result.series = series_of(*machine, observation.sample);
-    if (observation.trace.wanted) result.trace = trace_of(*machine, *world.image, observation.trace, trace_recorders, observation.interval());
+    if (observation.trace.wanted)
+      result.trace =
+          trace_of(*machine, *world.image, observation.trace, trace_recorders, observation.interval());
     result.stats = std::make_unique<RunStats>(std::move(machine));
   } else {
-    const FunctionalCounts counts = run_functional(world, gpu.core.instruction_budget, progress, {}, costs.get());
+    const FunctionalCounts counts =
+        run_functional(world, gpu.core.instruction_budget, progress, {}, costs.get());
     std::copy(counts.by_class.begin(), counts.by_class.end(), result.by_class);
     result.rays = counts.rays;
     result.faults = counts.faults;
@@ -54,7 +62,8 @@ RenderResult run_world(const core::World& world, const GpuParams& gpu, bool timi
 RenderResult render(const RenderJob& job) {
   SceneWorld scene(job);
   scene.world.on_fault = job.on_fault;
-  RenderResult result = run_world(scene.world, job.gpu, job.timing, job.no_skip, job.threads, job.progress, job.observe);
+  RenderResult result =
+      run_world(scene.world, job.gpu, job.timing, job.no_skip, job.threads, job.progress, job.observe);
   result.width = job.frame.width;
   result.height = job.frame.height;
   result.structures = scene.structures;

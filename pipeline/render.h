@@ -30,16 +30,16 @@ struct RenderJob {
   scenes::RenderParams frame;
   GpuParams gpu;
   bool timing = true;
-  bool no_skip = false;             // steps every cycle: slow, for checking
-  uint32_t threads = 1;             // of the host, for the timing machine (HostOptions)
+  bool no_skip = false;                       // steps every cycle: slow, for checking
+  uint32_t threads = 1;                       // of the host, for the timing machine (HostOptions)
   StructureCache* structure_cache = nullptr;  // null: every structure is built
-  std::string shader_dir;           // folder with raygen.rgen, miss.rmiss, triangle.rchit and so on
+  std::string shader_dir;                     // folder with raygen.rgen, miss.rmiss, triangle.rchit and so on
   frontend::GlslOptions glsl;
   core::PrintLog* prints = nullptr;  // what the shaders print
   // Told now and then how many of the launch's warps have ended.
   std::function<void(uint64_t done, uint64_t total)> progress;
   core::OnFault on_fault = core::OnFault::Stop;
-  Observation observe;              // of the timing machine, but for `heat`
+  Observation observe;  // of the timing machine, but for `heat`
 };
 
 // Counted by either machine.
@@ -78,24 +78,24 @@ struct RenderResult {
   core::Residency residency;          // of each core, timing machine
   core::FaultLog faults;              // that World::on_fault let pass
   std::vector<std::string> warnings;  // of compiling the shaders
-  ProfileTable profile;             // of the timing machine, if it was asked for
+  ProfileTable profile;               // of the timing machine, if it was asked for
   SeriesTable series;
-  std::vector<CostMap> costs;       // if they were asked for
+  std::vector<CostMap> costs;  // if they were asked for
   TraceTable trace;
-  double wall_seconds = 0;          // of the run alone, without compiling and building
+  double wall_seconds = 0;  // of the run alone, without compiling and building
   std::unique_ptr<RunStats> stats;
   const stats::Group& statistics() const;  // root of the tree
 };
 
-// Runs the launch of a world on either machine; everything of the result but pictures, structures and warnings.
-// `no_skip` steps every cycle, `threads` of the host do it (HostOptions). `progress` hears how many of the launch's warps have ended. Errors as render().
-// `observe`: what else to note of a timing run.
-RenderResult run_world(const core::World& world, const GpuParams& gpu, bool timing, bool no_skip, uint32_t threads,
-                       const std::function<void(uint64_t done, uint64_t total)>& progress,
+// Runs the launch of a world on either machine; everything of the result but pictures, structures and
+// warnings. `no_skip` steps every cycle, `threads` of the host do it (HostOptions). `progress` hears how many
+// of the launch's warps have ended. Errors as render(). `observe`: what else to note of a timing run.
+RenderResult run_world(const core::World& world, const GpuParams& gpu, bool timing, bool no_skip,
+                       uint32_t threads, const std::function<void(uint64_t done, uint64_t total)>& progress,
                        const Observation& observe = {});
 
-// UserError, UnsupportedError: before anything runs. Error(Exit::Fault): the shaders did something wrong, with
-// place and launch id. Error(Exit::Stuck): the machine makes no progress.
+// UserError, UnsupportedError: before anything runs. Error(Exit::Fault): the shaders did something wrong,
+// with place and launch id. Error(Exit::Stuck): the machine makes no progress.
 RenderResult render(const RenderJob& job);
 
 }  // namespace glint::pipeline

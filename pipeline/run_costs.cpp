@@ -9,7 +9,8 @@ namespace glint::pipeline {
 namespace {
 
 // A miss is shared equally by the lanes that the read is for, whichever warps they are of.
-void charge_miss(const mem::ReadMissed& missed, const core::CoreCell& core, const rt::RtUnit& rt, core::CostRecorder& recorder) {
+void charge_miss(const mem::ReadMissed& missed, const core::CoreCell& core, const rt::RtUnit& rt,
+                 core::CostRecorder& recorder) {
   if (missed.client == mem::Client::Lsu) {
     uint32_t slot = 0;
     const LaneMask lanes = core.readers_of(missed.request.token, missed.request.line, slot);
@@ -17,7 +18,8 @@ void charge_miss(const mem::ReadMissed& missed, const core::CoreCell& core, cons
   } else if (missed.client == mem::Client::RtUnit) {
     int all = 0;
     rt.for_each_reader(missed.request.token, [&](uint32_t, LaneMask lanes) { all += int(num_lanes(lanes)); });
-    rt.for_each_reader(missed.request.token, [&](uint32_t slot, LaneMask lanes) { recorder.miss(slot, lanes, all); });
+    rt.for_each_reader(missed.request.token,
+                       [&](uint32_t slot, LaneMask lanes) { recorder.miss(slot, lanes, all); });
   }
 }
 
@@ -27,26 +29,39 @@ struct MapKind {
   double (*of)(const core::ThreadCost& sum);
 };
 constexpr MapKind kKinds[] = {
-    {"cycles", "cycle", "From the pixel's first instruction to its last: what a shader that reads its clock at both would measure, waits for other lanes included.", true, true,
-     [](const core::ThreadCost& c) { return double(c.cycles); }},
-    {"active_cycles", "cycle", "Of them, the cycles after an instruction that the pixel executed, up to the next one of its warp.", true, true,
-     [](const core::ThreadCost& c) { return double(c.active_cycles); }},
-    {"instructions", "instruction", "Instructions that the pixel executed.", false, true, [](const core::ThreadCost& c) { return double(c.instructions); }},
-    {"divergence", "fraction", "Idle share of the lane slots that the pixel's instructions took, each shared by the lanes that execute it.", false, false,
+    {"cycles", "cycle",
+     "From the pixel's first instruction to its last: what a shader that reads its clock at both would "
+     "measure, waits for other lanes included.",
+     true, true, [](const core::ThreadCost& c) { return double(c.cycles); }},
+    {"active_cycles", "cycle",
+     "Of them, the cycles after an instruction that the pixel executed, up to the next one of its warp.",
+     true, true, [](const core::ThreadCost& c) { return double(c.active_cycles); }},
+    {"instructions", "instruction", "Instructions that the pixel executed.", false, true,
+     [](const core::ThreadCost& c) { return double(c.instructions); }},
+    {"divergence", "fraction",
+     "Idle share of the lane slots that the pixel's instructions took, each shared by the lanes that execute "
+     "it.",
+     false, false,
      [](const core::ThreadCost& c) { return c.slots > 0 ? 1.0 - double(c.instructions) / c.slots : 0.0; }},
-    {"rays", "ray", "Rays traced, ray queries among them.", false, true, [](const core::ThreadCost& c) { return double(c.rays); }},
-    {"nodes", "node", "Nodes and leaves that the pixel's rays visited.", false, true, [](const core::ThreadCost& c) { return double(c.nodes); }},
-    {"triangle_tests", "test", "Ray-triangle tests.", false, true, [](const core::ThreadCost& c) { return double(c.triangle_tests); }},
-    {"any_hit_calls", "call", "Any-hit shaders begun.", false, true, [](const core::ThreadCost& c) { return double(c.any_hit_calls); }},
-    {"intersection_calls", "call", "Intersection shaders begun.", false, true, [](const core::ThreadCost& c) { return double(c.intersection_calls); }},
-    {"l1_misses", "request", "Reads of the L1 that missed, each shared by the lanes that it is for.", true, false,
-     [](const core::ThreadCost& c) { return c.l1_misses; }},
+    {"rays", "ray", "Rays traced, ray queries among them.", false, true,
+     [](const core::ThreadCost& c) { return double(c.rays); }},
+    {"nodes", "node", "Nodes and leaves that the pixel's rays visited.", false, true,
+     [](const core::ThreadCost& c) { return double(c.nodes); }},
+    {"triangle_tests", "test", "Ray-triangle tests.", false, true,
+     [](const core::ThreadCost& c) { return double(c.triangle_tests); }},
+    {"any_hit_calls", "call", "Any-hit shaders begun.", false, true,
+     [](const core::ThreadCost& c) { return double(c.any_hit_calls); }},
+    {"intersection_calls", "call", "Intersection shaders begun.", false, true,
+     [](const core::ThreadCost& c) { return double(c.intersection_calls); }},
+    {"l1_misses", "request", "Reads of the L1 that missed, each shared by the lanes that it is for.", true,
+     false, [](const core::ThreadCost& c) { return c.l1_misses; }},
 };
 
 void add(core::ThreadCost& sum, const core::ThreadCost& more) {
-  for (const auto counter : {&core::ThreadCost::cycles, &core::ThreadCost::active_cycles, &core::ThreadCost::instructions, &core::ThreadCost::rays,
-                             &core::ThreadCost::nodes, &core::ThreadCost::triangle_tests, &core::ThreadCost::any_hit_calls,
-                             &core::ThreadCost::intersection_calls})
+  for (const auto counter :
+       {&core::ThreadCost::cycles, &core::ThreadCost::active_cycles, &core::ThreadCost::instructions,
+        &core::ThreadCost::rays, &core::ThreadCost::nodes, &core::ThreadCost::triangle_tests,
+        &core::ThreadCost::any_hit_calls, &core::ThreadCost::intersection_calls})
     sum.*counter += more.*counter;
   sum.slots += more.slots;
   sum.l1_misses += more.l1_misses;
@@ -54,7 +69,8 @@ void add(core::ThreadCost& sum, const core::ThreadCost& more) {
 
 }  // namespace
 
-std::vector<std::unique_ptr<core::CostRecorder>> record_costs(TimingMachine& machine, core::LaunchCosts& costs) {
+std::vector<std::unique_ptr<core::CostRecorder>> record_costs(TimingMachine& machine,
+                                                              core::LaunchCosts& costs) {
   std::vector<std::unique_ptr<core::CostRecorder>> recorders;
   for (uint32_t i = 0; i < machine.num_cores(); ++i) {
     core::CoreCell& core = machine.core(i);
@@ -62,7 +78,9 @@ std::vector<std::unique_ptr<core::CostRecorder>> record_costs(TimingMachine& mac
     core::CostRecorder& recorder = *recorders.back();
     core.observe(recorder);
     machine.memory().l1(i).read_missed().listen(
-        [&core, &recorder, &rt = machine.rt_unit(i)](const mem::ReadMissed& missed) { charge_miss(missed, core, rt, recorder); });
+        [&core, &recorder, &rt = machine.rt_unit(i)](const mem::ReadMissed& missed) {
+          charge_miss(missed, core, rt, recorder);
+        });
   }
   return recorders;
 }

@@ -10,7 +10,9 @@
 namespace glint::pipeline {
 namespace {
 
-void add(ProfileRow& row, const core::InstructionCounts& counts) { row.add(counts, counts.slots); }
+void add(ProfileRow& row, const core::InstructionCounts& counts) {
+  row.add(counts, counts.slots);
+}
 
 ProfileRow row_of(const core::Image& image, uint32_t pc, size_t reasons) {
   const core::Shader& shader = image.shaders[image.shader_of[pc]];
@@ -38,18 +40,23 @@ ProgramListing listing_of(const isa::Program& program) {
     const isa::Line& line = program.lines[i];
     out.isa.push_back({isa::to_text(program, program.code[i]), line.file, line.line, line.spirv, line.scope});
   }
-  for (const isa::SpirvLine& each : program.spirv) out.spirv.push_back({each.text, each.line.file, each.line.line, each.line.spirv, each.line.scope});
-  for (const isa::Scope& scope : program.scopes) out.scopes.push_back({scope.function, scope.caller, scope.call.file, scope.call.line});
+  for (const isa::SpirvLine& each : program.spirv)
+    out.spirv.push_back({each.text, each.line.file, each.line.line, each.line.spirv, each.line.scope});
+  for (const isa::Scope& scope : program.scopes)
+    out.scopes.push_back({scope.function, scope.caller, scope.call.file, scope.call.line});
   return out;
 }
 
-double ratio(double a, double b) { return b > 0 ? a / b : 0.0; }
+double ratio(double a, double b) {
+  return b > 0 ? a / b : 0.0;
+}
 
 }  // namespace
 
 double growth(const std::vector<const UnitSamples*>& units, size_t sample, size_t column) {
   uint64_t sum = 0;
-  for (const UnitSamples* unit : units) sum += (*unit)[sample][column] - (sample ? (*unit)[sample - 1][column] : 0);
+  for (const UnitSamples* unit : units)
+    sum += (*unit)[sample][column] - (sample ? (*unit)[sample - 1][column] : 0);
   return double(sum);
 }
 
@@ -69,8 +76,10 @@ void observe(TimingMachine& machine, const Observation& what) {
     mem::Partition& partition = machine.memory().partition(i);
     partition.sampler().start(what.interval(), [&partition](Cycle at) -> std::vector<uint64_t> {
       const mem::DramModel& dram = partition.dram();
-      const uint64_t reads = partition.sum([](const mem::L2Slice& slice) { return slice.stats().reads.total(); });
-      const uint64_t hits = partition.sum([](const mem::L2Slice& slice) { return slice.stats().hits.total(); });
+      const uint64_t reads =
+          partition.sum([](const mem::L2Slice& slice) { return slice.stats().reads.total(); });
+      const uint64_t hits =
+          partition.sum([](const mem::L2Slice& slice) { return slice.stats().hits.total(); });
       return {reads, hits, dram.stats().busy_clocks.value(), dram.clocks().clock_at(at)};
     });
   }
@@ -96,10 +105,12 @@ ProfileTable profile_of(const TimingMachine& machine, const core::Image& image) 
 
 SeriesTable series_of(TimingMachine& machine, Cycle interval) {
   SeriesTable table;
-  table.columns = {"cycle", "ipc", "rt_warps", "l1d_miss_rate", "l2_miss_rate", "dram_use", "instructions", "l1d_reads", "l2_reads"};
+  table.columns = {"cycle",    "ipc",          "rt_warps",  "l1d_miss_rate", "l2_miss_rate",
+                   "dram_use", "instructions", "l1d_reads", "l2_reads"};
   std::vector<const UnitSamples*> cores, partitions;
   for (uint32_t i = 0; i < machine.num_cores(); ++i) cores.push_back(&machine.core(i).sampler().samples());
-  for (uint32_t i = 0; i < machine.memory().num_partitions(); ++i) partitions.push_back(&machine.memory().partition(i).sampler().samples());
+  for (uint32_t i = 0; i < machine.memory().num_partitions(); ++i)
+    partitions.push_back(&machine.memory().partition(i).sampler().samples());
   for (size_t s = 0; s < cores[0]->size(); ++s) {
     const Cycle begin = s * interval, end = std::min<Cycle>(begin + interval, machine.attributed_cycles());
     const auto of_cores = [&](OfCore column) { return growth(cores, s, column); };
@@ -108,8 +119,8 @@ SeriesTable series_of(TimingMachine& machine, Cycle interval) {
     table.rows.push_back({double(end), of_cores(kInstructions) / cycles, of_cores(kRtWarps) / cycles,
                           ratio(of_cores(kL1Reads) - of_cores(kL1Hits), of_cores(kL1Reads)),
                           ratio(of_partitions(kL2Reads) - of_partitions(kL2Hits), of_partitions(kL2Reads)),
-                          ratio(of_partitions(kDramBusy), of_partitions(kDramClocks)), of_cores(kInstructions), of_cores(kL1Reads),
-                          of_partitions(kL2Reads)});
+                          ratio(of_partitions(kDramBusy), of_partitions(kDramClocks)),
+                          of_cores(kInstructions), of_cores(kL1Reads), of_partitions(kL2Reads)});
   }
   return table;
 }

@@ -33,8 +33,8 @@ double growth(const std::vector<const UnitSamples*>& units, size_t sample, size_
 // Before the machine runs.
 void observe(TimingMachine& machine, const Observation& what);
 
-// After the run, of all cores together. One row an instruction that cost anything, in program order, and a last one for
-// the cycles that had no warp. Without a profile: no rows.
+// After the run, of all cores together. One row an instruction that cost anything, in program order, and a
+// last one for the cycles that had no warp. Without a profile: no rows.
 ProfileTable profile_of(const TimingMachine& machine, const core::Image& image);
 
 // After the run. One row an interval; the last one may be shorter.

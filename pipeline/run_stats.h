@@ -15,11 +15,13 @@ class FunctionalStats : public stats::Group {
   explicit FunctionalStats(const FunctionalCounts& counts);
 
  private:
-  stats::Breakdown<isa::Class> instructions_{this, "instructions", "instruction", "Warp instructions executed, by class."};
+  stats::Breakdown<isa::Class> instructions_{this, "instructions", "instruction",
+                                             "Warp instructions executed, by class."};
   stats::Breakdown<isa::Class> lanes_{this, "lanes", "instruction", "Lane instructions, by class."};
   stats::Counter rays_{this, "rays", "ray", "Rays traced."};
   stats::Counter nodes_{this, "nodes", "node", "Nodes and leaves visited."};
-  stats::Ratio nodes_per_ray_{this, "nodes_per_ray", "node/ray", nodes_, rays_, "Mean nodes visited by a ray."};
+  stats::Ratio nodes_per_ray_{this,   "nodes_per_ray", "node/ray",
+                              nodes_, rays_,           "Mean nodes visited by a ray."};
   stats::Counter box_tests_{this, "box_tests", "test", "Ray-box tests."};
   stats::Counter triangle_tests_{this, "triangle_tests", "test", "Ray-triangle tests."};
   stats::Breakdown<core::FaultKind> faults_{this, "faults", "fault", core::kFaultsDoc};
@@ -27,7 +29,8 @@ class FunctionalStats : public stats::Group {
 
 class RunStats {
  public:
-  explicit RunStats(const FunctionalCounts& counts) : functional_(std::make_unique<FunctionalStats>(counts)) {}
+  explicit RunStats(const FunctionalCounts& counts)
+      : functional_(std::make_unique<FunctionalStats>(counts)) {}
   explicit RunStats(std::unique_ptr<TimingMachine> machine) : timing_(std::move(machine)) {}
   const stats::Group& root() const { return timing_ ? timing_->root() : *functional_; }
   // The machine that ran, or null after a functional run.

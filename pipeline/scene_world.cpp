@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/scene_world.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
+#include <fmt/format.h>
 
 #include "base/check.h"
 #include "pipeline/binding_table.h"
@@ -19,7 +18,18 @@ namespace {
 using scenes::Model;
 
 // Bindings of set 0 (shaders/README.md).
-enum Binding : uint32_t { kTopLevel, kAccumulationImage, kPictureImage, kFrame, kVertices, kIndices, kMaterials, kOffsets, kTextures, kSpheres };
+enum Binding : uint32_t {
+  kTopLevel,
+  kAccumulationImage,
+  kPictureImage,
+  kFrame,
+  kVertices,
+  kIndices,
+  kMaterials,
+  kOffsets,
+  kTextures,
+  kSpheres
+};
 
 constexpr uint32_t kSphereRecord = 1;  // hit record of procedural models; triangles have 0
 
@@ -39,7 +49,9 @@ WorkloadShaders compile_workload(const RenderJob& job) {
   frontend::GlslOptions glsl = job.glsl;
   if (job.scene.alpha_test) glsl.defines.emplace_back("GLINT_ALPHA_TEST", "1");
   if (!job.scene.instances.empty()) glsl.defines.emplace_back("GLINT_INSTANCES", "1");
-  const frontend::BackendOptions backend{job.gpu.compiler.max_registers, job.gpu.compiler.schedule, job.gpu.compiler.contract, compiler_for(job.gpu).queries_call, job.gpu.compiler.guard_latency};
+  const frontend::BackendOptions backend{job.gpu.compiler.max_registers, job.gpu.compiler.schedule,
+                                         job.gpu.compiler.contract, compiler_for(job.gpu).queries_call,
+                                         job.gpu.compiler.guard_latency};
   auto compile = [&](const char* file) {
     out.programs.push_back(frontend::compile_file(job.shader_dir + "/" + file, glsl, backend, out.warnings));
     return uint32_t(out.programs.size() - 1);
@@ -101,8 +113,9 @@ void SceneWorld::upload_geometry(const scenes::Scene& scene) {
   std::vector<scenes::Vec4> spheres;
   for (const Model& model : scene.models) {
     offsets.push_back({uint32_t(indices.size()), uint32_t(vertices.size())});
-    spheres.push_back(model.is_procedural() ? scenes::Vec4{model.center[0], model.center[1], model.center[2], model.radius}
-                                            : scenes::Vec4{});
+    spheres.push_back(model.is_procedural()
+                          ? scenes::Vec4{model.center[0], model.center[1], model.center[2], model.radius}
+                          : scenes::Vec4{});
     vertices.insert(vertices.end(), model.vertices.begin(), model.vertices.end());
     indices.insert(indices.end(), model.indices.begin(), model.indices.end());
   }
@@ -118,7 +131,8 @@ void SceneWorld::upload_geometry(const scenes::Scene& scene) {
 }
 
 void SceneWorld::upload_images(const RenderJob& job) {
-  auto add = [&](std::string name, core::ImageView::Format format, uint32_t width, uint32_t height, const void* texels) {
+  auto add = [&](std::string name, core::ImageView::Format format, uint32_t width, uint32_t height,
+                 const void* texels) {
     const uint64_t bytes = uint64_t(width) * height * core::info_of(format).bytes;
     const Address base = memory_.allocate(name, bytes);
     if (texels) memory_.write(base, texels, bytes);
@@ -126,13 +140,16 @@ void SceneWorld::upload_images(const RenderJob& job) {
     return uint64_t(world.images.size() - 1);
   };
   using Format = core::ImageView::Format;
-  bind(kAccumulationImage, add("binding 1 (accumulation)", Format::Rgba32Float, job.frame.width, job.frame.height, nullptr), 1);
-  bind(kPictureImage, add("binding 2 (picture)", Format::Rgba32Float, job.frame.width, job.frame.height, nullptr), 1);
+  bind(kAccumulationImage,
+       add("binding 1 (accumulation)", Format::Rgba32Float, job.frame.width, job.frame.height, nullptr), 1);
+  bind(kPictureImage,
+       add("binding 2 (picture)", Format::Rgba32Float, job.frame.width, job.frame.height, nullptr), 1);
   // A scene without textures binds one white texel, as the original application does.
   static constexpr uint8_t kWhite[4] = {255, 255, 255, 255};
   const uint64_t first = world.images.size();
   for (const scenes::Texture& texture : job.scene.textures) {
-    add("texture " + texture.name, texture.srgb ? Format::Rgba8Srgb : Format::Rgba8Unorm, texture.width, texture.height, texture.rgba.data());
+    add("texture " + texture.name, texture.srgb ? Format::Rgba8Srgb : Format::Rgba8Unorm, texture.width,
+        texture.height, texture.rgba.data());
     if (texture.repeat) world.images.back().sampler.wrap.fill(core::Wrap::Repeat);
   }
   if (job.scene.textures.empty()) add("texture (white)", Format::Rgba8Unorm, 1, 1, kWhite);
@@ -159,7 +176,9 @@ void SceneWorld::build_structures(const RenderJob& job) {
     }
     level.geometries.push_back(geometry);
     const std::string name = "bottom level " + model.name;
-    const rt::EncodedBottom bottom = job.structure_cache ? job.structure_cache->encode(name, level, job.gpu.bvh) : rt::encode_bottom(name, level, job.gpu.bvh);
+    const rt::EncodedBottom bottom = job.structure_cache
+                                         ? job.structure_cache->encode(name, level, job.gpu.bvh)
+                                         : rt::encode_bottom(name, level, job.gpu.bvh);
     bottoms.push_back(rt::place(memory_, name, bottom));
     structures.bytes += bottoms.back().bytes;
     structures.bottom_depth = std::max(structures.bottom_depth, bottoms.back().depth);

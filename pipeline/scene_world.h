@@ -1,5 +1,5 @@
-// A scene in simulated memory, as the shaders' descriptor set 0 wants it, with its pipeline and binding table.
-// SPDX-License-Identifier: Apache-2.0
+// A scene in simulated memory, as the shaders' descriptor set 0 wants it, with its pipeline and binding
+// table. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "pipeline/render.h"
 #include "pipeline/unbound.h"
@@ -27,7 +27,7 @@ class SceneWorld {
   std::vector<std::string> warnings;  // of compiling
   StructureCounts structures;
   mem::AddressSpace& memory() { return memory_; }
-  std::vector<float> read_image(uint32_t handle) const;  // 4 floats a texel
+  std::vector<float> read_image(uint32_t handle) const;       // 4 floats a texel
   static constexpr uint32_t kAccumulation = 0, kPicture = 1;  // image handles
 
  private:

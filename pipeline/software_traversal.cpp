@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/software_traversal.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 #include <string_view>
 
 #include "core/warp_context.h"
@@ -29,9 +28,12 @@ bool traces_rays(const std::vector<isa::Program>& programs) {
 void check(const GpuParams& gpu) {
   Diagnostics diagnostics;
   if (gpu.bvh.format.name != "bvh6")
-    diagnostics.error({}, fmt::format("'rt.unit' is \"software\", whose program reads nodes of the format \"bvh6\"; 'bvh.format' is \"{}\"", gpu.bvh.format.name));
+    diagnostics.error({}, fmt::format("'rt.unit' is \"software\", whose program reads nodes of the format "
+                                      "\"bvh6\"; 'bvh.format' is \"{}\"",
+                                      gpu.bvh.format.name));
   if (gpu.rt.any_hit.name != "immediate")
-    diagnostics.error({}, fmt::format("'rt.unit' is \"software\", whose program has no tables of candidates: 'rt.any_hit' is \"{}\", not \"immediate\"",
+    diagnostics.error({}, fmt::format("'rt.unit' is \"software\", whose program has no tables of candidates: "
+                                      "'rt.any_hit' is \"{}\", not \"immediate\"",
                                       gpu.rt.any_hit.name));
   diagnostics.throw_if_errors();
 }
@@ -40,10 +42,13 @@ void check(const GpuParams& gpu) {
 uint32_t num_queries(const core::Image& image) {
   uint32_t count = 0;
   for (size_t pc = 0; pc < image.code.size(); ++pc) {
-    if (image.rows[pc]->effect != isa::Effect::Query || image.rows[pc]->detail != isa::detail_of(isa::Query::Initialize)) continue;
+    if (image.rows[pc]->effect != isa::Effect::Query ||
+        image.rows[pc]->detail != isa::detail_of(isa::Query::Initialize))
+      continue;
     const isa::Slot number = image.code[pc].operand[0];
     const bool is_constant = number >> isa::kBankShift == isa::kConstantBank >> isa::kBankShift;
-    const uint32_t last = is_constant ? image.constants[size_t(number & isa::kSlotIndexMask) * kLanes] : core::kMaxNumbered - 1;
+    const uint32_t last =
+        is_constant ? image.constants[size_t(number & isa::kSlotIndexMask) * kLanes] : core::kMaxNumbered - 1;
     count = std::max(count, std::min(last, core::kMaxNumbered - 1) + 1);
   }
   return count;
@@ -62,9 +67,11 @@ void add_traversal(std::vector<isa::Program>& programs, const GpuParams& gpu, fr
   check(gpu);
   Diagnostics warnings;
   const std::string name(kName);
-  const std::vector<uint32_t> spirv = frontend::glsl_text_to_spirv(traversal_source(), name, isa::Stage::Callable, {});
+  const std::vector<uint32_t> spirv =
+      frontend::glsl_text_to_spirv(traversal_source(), name, isa::Stage::Callable, {});
   // Never contracted: every hit has the bits that the RT unit gives it.
-  const frontend::BackendOptions backend{gpu.compiler.max_registers, gpu.compiler.schedule, false, false, gpu.compiler.guard_latency};
+  const frontend::BackendOptions backend{gpu.compiler.max_registers, gpu.compiler.schedule, false, false,
+                                         gpu.compiler.guard_latency};
   programs.push_back(frontend::compile_module(spirv, name, {}, backend, warnings, cache).program);
 }
 

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/structure_cache.h"
 
-#include <fmt/format.h>
-
 #include <cstring>
+#include <fmt/format.h>
 #include <type_traits>
 
 namespace glint::pipeline {
@@ -18,7 +17,8 @@ std::string_view bytes_of(std::span<T, N> values) {
 uint64_t primitives_of(const rt::BottomLevel& input) {
   uint64_t count = 0;
   for (const rt::Geometry& g : input.geometries)
-    count += !g.aabbs.empty() ? g.aabbs.size() : (g.indices.empty() ? g.positions.size() / g.stride : g.indices.size()) / 3;
+    count += !g.aabbs.empty() ? g.aabbs.size()
+                              : (g.indices.empty() ? g.positions.size() / g.stride : g.indices.size()) / 3;
   return count;
 }
 
@@ -28,8 +28,10 @@ std::string key_of(const rt::BottomLevel& input, const rt::BuildOptions& options
   for (const ParamInfo& p : options.format.params) key += fmt::format(" {}={}", p.key, p.value);
   uint64_t first = content_hash("first"), second = content_hash("second");
   for (const rt::Geometry& g : input.geometries) {
-    key += fmt::format(" [{} {} {} {} {}{}]", g.positions.size(), g.stride, g.indices.size(), g.aabbs.size(), int(g.opaque), int(g.no_duplicate_any_hit));
-    for (const std::string_view part : {bytes_of(g.positions), bytes_of(g.indices), bytes_of(g.aabbs), bytes_of(std::span<const float>(g.transform))}) {
+    key += fmt::format(" [{} {} {} {} {}{}]", g.positions.size(), g.stride, g.indices.size(), g.aabbs.size(),
+                       int(g.opaque), int(g.no_duplicate_any_hit));
+    for (const std::string_view part : {bytes_of(g.positions), bytes_of(g.indices), bytes_of(g.aabbs),
+                                        bytes_of(std::span<const float>(g.transform))}) {
       first = content_hash(part, first);
       second = content_hash(part, second);
     }
@@ -41,7 +43,8 @@ static_assert(std::is_trivially_copyable_v<rt::StructureInfo>);
 
 }  // namespace
 
-rt::EncodedBottom StructureCache::encode(const std::string& name, const rt::BottomLevel& input, const rt::BuildOptions& options) {
+rt::EncodedBottom StructureCache::encode(const std::string& name, const rt::BottomLevel& input,
+                                         const rt::BuildOptions& options) {
   if (primitives_of(input) < least_primitives_) {
     ++counts_.built;
     return rt::encode_bottom(name, input, options);

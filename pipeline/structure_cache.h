@@ -8,8 +8,8 @@
 
 namespace glint::pipeline {
 
-// One file a structure, in a folder that any number of processes may share (base/file_store.h). Small structures are
-// built each time: that is no slower than reading them. Not for several threads at a time.
+// One file a structure, in a folder that any number of processes may share (base/file_store.h). Small
+// structures are built each time: that is no slower than reading them. Not for several threads at a time.
 class StructureCache {
  public:
   struct Options {
@@ -22,10 +22,12 @@ class StructureCache {
     uint64_t found = 0, built = 0;
   };
   explicit StructureCache(const Options& options)
-      : least_primitives_(options.least_primitives), files_({options.folder, ".bvh", options.build, options.max_bytes}) {}
+      : least_primitives_(options.least_primitives),
+        files_({options.folder, ".bvh", options.build, options.max_bytes}) {}
 
   // As rt::encode_bottom, to the byte.
-  rt::EncodedBottom encode(const std::string& name, const rt::BottomLevel& input, const rt::BuildOptions& options);
+  rt::EncodedBottom encode(const std::string& name, const rt::BottomLevel& input,
+                           const rt::BuildOptions& options);
   const Counts& counts() const { return counts_; }
 
  private:

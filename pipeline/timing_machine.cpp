@@ -17,7 +17,8 @@ const GpuParams& checked(const GpuParams& params, const core::World& world) {
   check(params, diagnostics);
   core::check(params.core, world.image->num_registers, diagnostics);
   const auto& block = world.block_size;
-  core::check_block(params.core, world.image->num_registers, uint64_t(block[0]) * block[1] * block[2], world.shared_bytes, diagnostics);
+  core::check_block(params.core, world.image->num_registers, uint64_t(block[0]) * block[1] * block[2],
+                    world.shared_bytes, diagnostics);
   diagnostics.throw_if_errors();
   return params;
 }
@@ -25,30 +26,40 @@ const GpuParams& checked(const GpuParams& params, const core::World& world) {
 }  // namespace
 
 // A turn is as long as no message can be on its way: the cells of one are independent of each other.
-// Choice: stores are seen by other cores, and atomics done, at the end of the turn they were issued in, in order of cycle
-// and core (core/memory_view.h); PTX leaves the order of racing accesses open, and bounds it by fences only.
-// A machine of one core has nobody to wait for: its effects happen at issue.
-TimingMachine::TimingMachine(const GpuParams& params, const core::World& world, bool no_skip, const HostOptions& host)
+// Choice: stores are seen by other cores, and atomics done, at the end of the turn they were issued in, in
+// order of cycle and core (core/memory_view.h); PTX leaves the order of racing accesses open, and bounds it
+// by fences only. A machine of one core has nobody to wait for: its effects happen at issue.
+TimingMachine::TimingMachine(const GpuParams& params, const core::World& world, bool no_skip,
+                             const HostOptions& host)
     : params_(checked(params, world)),
       world_(world),
       memory_(params_.memory, params_.cores, params_.clock_mhz, &root_),
       watch_(params_.core.livelock_budget),
-      engine_({.turn = memory_.shortest_latency(), .no_skip = no_skip, .threads = host.threads, .window = host.window, .homes = host.homes}) {
+      engine_({.turn = memory_.shortest_latency(),
+               .no_skip = no_skip,
+               .threads = host.threads,
+               .window = host.window,
+               .homes = host.homes}) {
   const Cycle turn = params_.cores > 1 ? memory_.shortest_latency() : 0;
   const auto reserve = [&](uint64_t bytes) { return bytes ? world.memory->reserve(bytes) : Address{0}; };
-  const Address code = reserve(core::CoreCell::code_bytes(params_.core, world)), constants = reserve(core::CoreCell::constant_bytes(params_.core, world));
+  const Address code = reserve(core::CoreCell::code_bytes(params_.core, world)),
+                constants = reserve(core::CoreCell::constant_bytes(params_.core, world));
   for (uint32_t i = 0; i < params_.cores; ++i) {
     const std::string name = fmt::format("core[{}]", i);
     rt_groups_.push_back(std::make_unique<stats::Group>(&root_, fmt::format("rt_unit[{}]", i)));
     rt::RtUnit::Context rt{*world.memory, memory_.l1(i), rt_groups_.back().get(), 0};
-    if (const uint64_t bytes = rt::RtUnit::result_bytes(params_.rt)) rt.results = world.memory->reserve(bytes);
+    if (const uint64_t bytes = rt::RtUnit::result_bytes(params_.rt))
+      rt.results = world.memory->reserve(bytes);
     if (const uint64_t bytes = core::CoreCell::table_bytes(params_.core, world))
       rt.tables = core::CoreCell::table_layout(world, world.memory->reserve(bytes));
-    if (const uint64_t bytes = rt::RtUnit::stack_bytes_per_warp(params_.rt)) rt.stacks = world.memory->reserve(bytes * params_.core.warps);
+    if (const uint64_t bytes = rt::RtUnit::stack_bytes_per_warp(params_.rt))
+      rt.stacks = world.memory->reserve(bytes * params_.core.warps);
     rt_units_.push_back(std::make_unique<rt::RtUnit>(params_.rt, rt));
     const Address local = world.memory->reserve(core::CoreCell::local_bytes(params_.core, world));
     cores_.push_back(std::make_unique<core::CoreCell>(
-        params_.core, core::CoreCell::Context{world, memory_.l1(i), *rt_units_.back(), local, &root_, name, no_skip, i, params_.cores, params_.clock_mhz, rt.tables.base, code, constants, turn}));
+        params_.core,
+        core::CoreCell::Context{world, memory_.l1(i), *rt_units_.back(), local, &root_, name, no_skip, i,
+                                params_.cores, params_.clock_mhz, rt.tables.base, code, constants, turn}));
     access_latency_.add(cores_.back()->latencies());
     engine_.add(*cores_.back());
     if (core::MemoryView* view = cores_.back()->view()) views_.push_back(view);
@@ -95,14 +106,17 @@ Cycle TimingMachine::run(const std::function<void(uint64_t, uint64_t)>& progress
   const std::string lost = broken(balances(*this));
   GLINT_CHECK(lost.empty(), "\n{}", lost);
   const core::FaultLog faults = passed();
-  for (size_t kind = 0; kind < size_t(core::FaultKind::Count); ++kind) root_.faults.add(core::FaultKind(kind), faults.count(core::FaultKind(kind)));
+  for (size_t kind = 0; kind < size_t(core::FaultKind::Count); ++kind)
+    root_.faults.add(core::FaultKind(kind), faults.count(core::FaultKind(kind)));
   return end;
 }
 
 // Warps that go on for ever and nothing comes of it: spin locks, mostly, whose holder waits in vain.
 void TimingMachine::throw_livelock(Cycle now) const {
-  std::string message = fmt::format("the machine is stuck at cycle {}: warps run, but since cycle {} none has ended, no ray has and nothing in memory has changed\n",
-                                    now, watch_.since());
+  std::string message = fmt::format(
+      "the machine is stuck at cycle {}: warps run, but since cycle {} none has ended, no ray has and "
+      "nothing in memory has changed\n",
+      now, watch_.since());
   for (const auto& core : cores_)
     if (!core->finished()) message += core->describe_stall();
   throw Error(Exit::Stuck, message + "note: core.livelock_budget says how long that may last; 0: for ever");

@@ -1,5 +1,5 @@
-// The timing machine: cores with their L1 and RT unit, and the memory system, run cycle by cycle over one launch.
-// SPDX-License-Identifier: Apache-2.0
+// The timing machine: cores with their L1 and RT unit, and the memory system, run cycle by cycle over one
+// launch. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
 #include <memory>
@@ -18,16 +18,18 @@ namespace glint::pipeline {
 
 // How the host runs the machine: no result depends on it (engine_loop.h).
 struct HostOptions {
-  uint32_t threads = 1;            // 0: as many as the host has processors, while they are faster than one
-  Cycle window = 0;                // 0: the longest
-  std::vector<uint32_t> homes{};   // of the cells, cores first, then partitions: the thread of each, if not in turn
+  uint32_t threads = 1;  // 0: as many as the host has processors, while they are faster than one
+  Cycle window = 0;      // 0: the longest
+  std::vector<uint32_t>
+      homes{};  // of the cells, cores first, then partitions: the thread of each, if not in turn
 };
 
 // Builds the whole GPU for one launch. `world` outlives it.
 class TimingMachine {
  public:
   // UserError lists every parameter that cannot be.
-  TimingMachine(const GpuParams& params, const core::World& world, bool no_skip, const HostOptions& host = {});
+  TimingMachine(const GpuParams& params, const core::World& world, bool no_skip,
+                const HostOptions& host = {});
 
   // Runs the launch to its end; returns its cycles. Errors as render().
   Cycle run(const std::function<void(uint64_t done, uint64_t total)>& progress);
@@ -56,9 +58,11 @@ class TimingMachine {
 
   struct Root : stats::Group {
     Root() : Group(nullptr, "gpu") {}
-    stats::Counter cycles{this, "cycles", "cycle", "From the launch until the last core was done: the launch's time."};
+    stats::Counter cycles{this, "cycles", "cycle",
+                          "From the launch until the last core was done: the launch's time."};
     stats::Counter attributed{this, "attributed_cycles", "cycle",
-                              "Until the last write was in memory as well, in whole windows: what the cycles of every unit add up to."};
+                              "Until the last write was in memory as well, in whole windows: what the cycles "
+                              "of every unit add up to."};
     stats::Breakdown<core::FaultKind> faults{this, "faults", "fault", core::kFaultsDoc};
   };
 
@@ -66,7 +70,8 @@ class TimingMachine {
   const core::World& world_;
   Root root_;
   mem::LatencyStats access_latency_{&root_, "access_latency",
-                                    "Warp instructions that read memory through the L1, from their issue to their last sector, by traffic class."};
+                                    "Warp instructions that read memory through the L1, from their issue to "
+                                    "their last sector, by traffic class."};
   mem::MemorySystem memory_;
   std::vector<std::unique_ptr<stats::Group>> rt_groups_;
   std::vector<std::unique_ptr<rt::RtUnit>> rt_units_;

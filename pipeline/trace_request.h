@@ -9,8 +9,8 @@ namespace glint::pipeline {
 
 struct TraceRequest {
   bool wanted = false;
-  Cycle begin = 0, end = kNever;    // cycles
-  uint64_t limit = 1'000'000;       // of events
+  Cycle begin = 0, end = kNever;  // cycles
+  uint64_t limit = 1'000'000;     // of events
 };
 
 }  // namespace glint::pipeline

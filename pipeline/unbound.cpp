@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/unbound.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstring>
+#include <fmt/format.h>
 
 #include "isa/descriptors.h"
 
@@ -18,7 +17,8 @@ using frontend::BindingKind;
 constexpr uint32_t kMostPlaceholders = 1024;
 
 std::string title(const frontend::Binding& binding) {
-  return fmt::format("set {} binding {}{}", binding.set, binding.binding, binding.name.empty() ? "" : fmt::format(" ({})", binding.name));
+  return fmt::format("set {} binding {}{}", binding.set, binding.binding,
+                     binding.name.empty() ? "" : fmt::format(" ({})", binding.name));
 }
 
 core::ImageView unbound_image(const frontend::Binding& binding) {
@@ -35,7 +35,8 @@ core::Sampler unbound_sampler(const frontend::Binding& binding) {
 
 }  // namespace
 
-void write_descriptor(core::World& world, BindingPlace place, uint64_t address_or_handle, uint64_t bytes_or_count) {
+void write_descriptor(core::World& world, BindingPlace place, uint64_t address_or_handle,
+                      uint64_t bytes_or_count) {
   const uint64_t descriptor[2] = {address_or_handle, bytes_or_count};
   static_assert(sizeof(descriptor) == isa::kDescriptorBytes);
   const size_t at = isa::descriptor_offset(place.first, place.second);
@@ -63,12 +64,14 @@ void mark_unbound(core::World& world, const frontend::Binding& binding) {
       value += number;
       break;
     }
-    default: break;
+    default:
+      break;
   }
   write_descriptor(world, {binding.set, binding.binding}, value, 0);
 }
 
-void mark_unbound(core::World& world, const std::vector<frontend::Binding>& declared, const std::set<BindingPlace>& bound) {
+void mark_unbound(core::World& world, const std::vector<frontend::Binding>& declared,
+                  const std::set<BindingPlace>& bound) {
   std::set<BindingPlace> done = bound;
   for (const frontend::Binding& binding : declared)
     if (done.insert({binding.set, binding.binding}).second) mark_unbound(world, binding);
@@ -76,8 +79,10 @@ void mark_unbound(core::World& world, const std::vector<frontend::Binding>& decl
 
 void mark_rest_unbound(core::World& world, const frontend::Binding* array, size_t first) {
   const size_t rest = array && array->count > first ? array->count - first : 0;
-  if (rest && array->kind == BindingKind::Sampler) world.samplers.insert(world.samplers.end(), rest, unbound_sampler(*array));
-  else if (rest) world.images.insert(world.images.end(), rest, unbound_image(*array));
+  if (rest && array->kind == BindingKind::Sampler)
+    world.samplers.insert(world.samplers.end(), rest, unbound_sampler(*array));
+  else if (rest)
+    world.images.insert(world.images.end(), rest, unbound_image(*array));
 }
 
 void mark_all_unbound(core::World& world, const std::set<uint32_t>& bound) {

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/call_tree.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cctype>
+#include <fmt/format.h>
 
 namespace glint::report {
 namespace {
@@ -68,7 +67,8 @@ CallTree::CallTree(const std::vector<std::string>& files, const TextOf& text_of)
     if (const std::optional<std::string> text = text_of(file)) scan(file, *text);
 }
 
-// A word before parentheses is a function's head when a brace follows them outside of all braces, and may be a call inside.
+// A word before parentheses is a function's head when a brace follows them outside of all braces, and may be
+// a call inside.
 void CallTree::scan(const std::string& file, const std::string& text) {
   Tokens tokens(text);
   std::string before, head;  // the word before; that before the last parentheses outside of braces
@@ -76,8 +76,10 @@ void CallTree::scan(const std::string& file, const std::string& text) {
   bool in_function = false;
   for (std::string token = tokens.next(); !token.empty(); before = token, token = tokens.next()) {
     if (token == "(") {
-      if (in_function) calls_[before].push_back({before, file, tokens.line()});
-      else if (parens == 0) head = before;
+      if (in_function)
+        calls_[before].push_back({before, file, tokens.line()});
+      else if (parens == 0)
+        head = before;
       ++parens;
     } else if (token == ")") {
       --parens;
@@ -103,17 +105,22 @@ const CallTree::Function* CallTree::around(const std::string& file, uint32_t lin
 const CallTree::Call* CallTree::only_call(const std::string& name) const {
   const auto body = bodies_.find(name);
   const auto calls = calls_.find(name);
-  if (body == bodies_.end() || body->second != 1 || calls == calls_.end() || calls->second.size() != 1) return nullptr;
+  if (body == bodies_.end() || body->second != 1 || calls == calls_.end() || calls->second.size() != 1)
+    return nullptr;
   return &calls->second.front();
 }
 
-std::vector<std::string> frames_of(const ProgramListing& program, uint32_t scope, const std::string& file, uint32_t line) {
+std::vector<std::string> frames_of(const ProgramListing& program, uint32_t scope, const std::string& file,
+                                   uint32_t line) {
   if (scope == 0 || scope > program.scopes.size()) return {};
   std::vector<std::string> out{fmt::format("{}:{}", file, line)};
   while (scope != 0 && scope <= program.scopes.size()) {
     const ListedScope& row = program.scopes[scope - 1];
     out.insert(out.begin(), row.function);
-    if (row.caller != 0) out.insert(out.begin(), fmt::format("{}:{}", row.file < program.files.size() ? program.files[row.file] : "?", row.line));
+    if (row.caller != 0)
+      out.insert(
+          out.begin(),
+          fmt::format("{}:{}", row.file < program.files.size() ? program.files[row.file] : "?", row.line));
     scope = row.caller < scope ? row.caller : 0;  // callers come first
   }
   return out;

@@ -12,9 +12,9 @@
 
 namespace glint::report {
 
-// The compiler inlines every function, and the instructions keep the line of the function's body alone. Who called follows
-// from the text, where it can be one place only: a function that is called from several lines, has overloads or calls
-// itself begins a stack. Model: calls in macros are not seen.
+// The compiler inlines every function, and the instructions keep the line of the function's body alone. Who
+// called follows from the text, where it can be one place only: a function that is called from several lines,
+// has overloads or calls itself begins a stack. Model: calls in macros are not seen.
 class CallTree {
  public:
   // The text of a file; nothing when it cannot be read.
@@ -23,8 +23,8 @@ class CallTree {
   // Of the files that make up one shader.
   CallTree(const std::vector<std::string>& files, const TextOf& text_of);
 
-  // Outermost first, function and line in turn: {"main", "a.rgen:40", "shade", "b.glsl:17"}. Of lines outside of all known
-  // functions the line alone.
+  // Outermost first, function and line in turn: {"main", "a.rgen:40", "shade", "b.glsl:17"}. Of lines outside
+  // of all known functions the line alone.
   std::vector<std::string> frames(const std::string& file, uint32_t line) const;
 
  private:
@@ -46,8 +46,9 @@ class CallTree {
   std::map<std::string, std::vector<Call>> calls_;
 };
 
-// The frames of a line in scope `scope` of a program whose compiler kept its calls: as CallTree::frames(), for every chain of
-// calls by itself. Empty when the scope is unknown.
-std::vector<std::string> frames_of(const ProgramListing& program, uint32_t scope, const std::string& file, uint32_t line);
+// The frames of a line in scope `scope` of a program whose compiler kept its calls: as CallTree::frames(),
+// for every chain of calls by itself. Empty when the scope is unknown.
+std::vector<std::string> frames_of(const ProgramListing& program, uint32_t scope, const std::string& file,
+                                   uint32_t line);
 
 }  // namespace glint::report

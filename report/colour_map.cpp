@@ -14,7 +14,8 @@ struct Lab {
   double lightness, a, b;
 };
 
-// Choice: lightness from 0.20 to 0.93, hue from 285 to 100 degrees, chroma along a parabola: greens as strong as sRGB has them.
+// Choice: lightness from 0.20 to 0.93, hue from 285 to 100 degrees, chroma along a parabola: greens as strong
+// as sRGB has them.
 Lab on_path(double t) {
   constexpr double kBegin = 0.10, kMiddle = 0.06, kEnd = 0.15;
   const double chroma = kBegin * (1 - t) * (1 - t) + 2 * kMiddle * t * (1 - t) + kEnd * t * t;
@@ -22,7 +23,9 @@ Lab on_path(double t) {
   return {0.20 + 0.73 * t, chroma * std::cos(hue), chroma * std::sin(hue)};
 }
 
-double distance(const Lab& x, const Lab& y) { return std::hypot(x.lightness - y.lightness, x.a - y.a, x.b - y.b); }
+double distance(const Lab& x, const Lab& y) {
+  return std::hypot(x.lightness - y.lightness, x.a - y.a, x.b - y.b);
+}
 
 // sRGB's transfer function (IEC 61966-2-1).
 uint8_t encoded(double linear) {
@@ -35,7 +38,8 @@ ColourMap::Rgb srgb_of(const Lab& c) {
   const double l = std::pow(c.lightness + 0.3963377774 * c.a + 0.2158037573 * c.b, 3);
   const double m = std::pow(c.lightness - 0.1055613458 * c.a - 0.0638541728 * c.b, 3);
   const double s = std::pow(c.lightness - 0.0894841775 * c.a - 1.2914855480 * c.b, 3);
-  return {encoded(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s), encoded(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
+  return {encoded(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
+          encoded(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
           encoded(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)};
 }
 
@@ -44,7 +48,8 @@ ColourMap::Rgb srgb_of(const Lab& c) {
 ColourMap::ColourMap() {
   constexpr int kFine = 4096;
   std::vector<double> along{0.0};  // length of the path up to each fine step
-  for (int i = 1; i <= kFine; ++i) along.push_back(along.back() + distance(on_path(double(i - 1) / kFine), on_path(double(i) / kFine)));
+  for (int i = 1; i <= kFine; ++i)
+    along.push_back(along.back() + distance(on_path(double(i - 1) / kFine), on_path(double(i) / kFine)));
   for (int step = 0, i = 0; step < kSteps; ++step) {
     const double wanted = along.back() * step / (kSteps - 1);
     while (i < kFine - 1 && along[size_t(i) + 1] < wanted) ++i;

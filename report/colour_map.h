@@ -6,9 +6,10 @@
 
 namespace glint::report {
 
-// A path through Oklab (B. Ottosson, "A perceptual color space for image processing", 2020) along which each of 256 steps is
-// of equal length, so that equal differences look equal. It grows lighter all the way, so that it reads without hues too, and
-// runs from blue to yellow, which red-green colour blindness leaves apart.
+// A path through Oklab (B. Ottosson, "A perceptual color space for image processing", 2020) along which each
+// of 256 steps is of equal length, so that equal differences look equal. It grows lighter all the way, so
+// that it reads without hues too, and runs from blue to yellow, which red-green colour blindness leaves
+// apart.
 class ColourMap {
  public:
   using Rgb = std::array<uint8_t, 3>;  // sRGB

@@ -17,14 +17,15 @@ struct Change {
   std::optional<double> relative;  // (after - before) / before; absent where `before` is 0 and `after` is not
 };
 
-// Metrics that both runs have, the largest change first; what was 0 and is not any more comes before all. The speed of the
-// host (sim_rate) is left out.
+// Metrics that both runs have, the largest change first; what was 0 and is not any more comes before all. The
+// speed of the host (sim_rate) is left out.
 std::vector<Change> changes(const RunRecord& before, const RunRecord& after);
 
 // Names the metrics that only one of the runs has, A or B; "" when both have the same.
 std::string uncompared_text(const RunRecord& before, const RunRecord& after);
 
-// "METRIC<-2%" or "METRIC>5%": holds when the metric changed by less or more than so many percent of what it was.
+// "METRIC<-2%" or "METRIC>5%": holds when the metric changed by less or more than so many percent of what it
+// was.
 struct Condition {
   std::string text, metric;
   bool below = false;

@@ -14,7 +14,8 @@ std::string trimmed(std::string_view text) {
   return first == std::string_view::npos ? "" : std::string(text.substr(first, last - first + 1));
 }
 
-// The value at the beginning of `text`, and where it ends: a string up to its quote, anything else up to a comment.
+// The value at the beginning of `text`, and where it ends: a string up to its quote, anything else up to a
+// comment.
 std::string value_of(const std::string& text, size_t& end) {
   if (text.empty() || text.front() != '"') {
     end = std::min(text.find('#'), text.size());
@@ -54,23 +55,28 @@ std::vector<ConfigRow> config_rows(const std::string& toml) {
     const size_t equals = text.find('=');
     if (equals == std::string::npos) continue;
     const std::string rest = trimmed(std::string_view(text).substr(equals + 1));
-    ConfigRow row{.key = table + trimmed(std::string_view(text).substr(0, equals)), .value = {}, .unit = {}, .doc = {}};
+    ConfigRow row{
+        .key = table + trimmed(std::string_view(text).substr(0, equals)), .value = {}, .unit = {}, .doc = {}};
     size_t end = 0;
     row.value = value_of(rest, end);
-    if (const size_t hash = rest.find('#', end); hash != std::string::npos) read_comment(rest.substr(hash), row);
+    if (const size_t hash = rest.find('#', end); hash != std::string::npos)
+      read_comment(rest.substr(hash), row);
     rows.push_back(std::move(row));
   }
   return rows;
 }
 
-std::vector<ConfigChange> config_changes(const std::vector<ConfigRow>& run, const std::vector<ConfigRow>& preset) {
+std::vector<ConfigChange> config_changes(const std::vector<ConfigRow>& run,
+                                         const std::vector<ConfigRow>& preset) {
   std::map<std::string, std::string> there;
   for (const ConfigRow& row : preset) there[row.key] = row.value;
   std::vector<ConfigChange> changes;
   for (const ConfigRow& row : run) {
     const auto found = there.find(row.key);
-    if (found == there.end()) changes.push_back({row, ""});
-    else if (found->second != row.value) changes.push_back({row, found->second});
+    if (found == there.end())
+      changes.push_back({row, ""});
+    else if (found->second != row.value)
+      changes.push_back({row, found->second});
   }
   return changes;
 }

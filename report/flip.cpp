@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/flip.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fmt/format.h>
 #include <limits>
 #include <numbers>
 
@@ -23,13 +22,17 @@ struct Size {
   ptrdiff_t width = 0, height = 0;
 };
 
-// Linear sRGB to XYZ, and back: primaries and white point D65 of IEC 61966-2-1, scaled so that white has Y = 1.
+// Linear sRGB to XYZ, and back: primaries and white point D65 of IEC 61966-2-1, scaled so that white has Y
+// = 1.
 class Xyz {
  public:
   Xyz() {
-    constexpr double kChromaticity[4][2] = {{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}, {0.3127, 0.3290}};  // red, green, blue, white
+    constexpr double kChromaticity[4][2] = {
+        {0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}, {0.3127, 0.3290}};  // red, green, blue, white
     std::array<Color, 4> at{};
-    for (size_t i = 0; i < 4; ++i) at[i] = {kChromaticity[i][0] / kChromaticity[i][1], 1.0, (1 - kChromaticity[i][0] - kChromaticity[i][1]) / kChromaticity[i][1]};
+    for (size_t i = 0; i < 4; ++i)
+      at[i] = {kChromaticity[i][0] / kChromaticity[i][1], 1.0,
+               (1 - kChromaticity[i][0] - kChromaticity[i][1]) / kChromaticity[i][1]};
     white_ = at[3];
     for (size_t row = 0; row < 3; ++row)
       for (size_t i = 0; i < 3; ++i) to_[row][i] = at[i][row];
@@ -79,7 +82,9 @@ double linear(float value) {
 }
 
 // YyCxCz, linear in XYZ (sec. 4.1.1).
-Color opponent(const Color& xyz) { return {116 * xyz[1] - 16, 500 * (xyz[0] - xyz[1]), 200 * (xyz[1] - xyz[2])}; }
+Color opponent(const Color& xyz) {
+  return {116 * xyz[1] - 16, 500 * (xyz[0] - xyz[1]), 200 * (xyz[1] - xyz[2])};
+}
 Color xyz_of_opponent(const Color& c) {
   const double y = (c[0] + 16) / 116;
   return {y + c[1] / 500, y, y - c[2] / 200};
@@ -88,13 +93,18 @@ Color xyz_of_opponent(const Color& c) {
 // CIE 15, 8.2.1, with a and b fading as colours get darker: Hunt's effect (sec. 4.1.2).
 Color hunt_lab(const Color& xyz) {
   constexpr double kDelta = 6.0 / 29;
-  const auto f = [](double t) { return t > kDelta * kDelta * kDelta ? std::cbrt(t) : t / (3 * kDelta * kDelta) + 4.0 / 29; };
+  const auto f = [](double t) {
+    return t > kDelta * kDelta * kDelta ? std::cbrt(t) : t / (3 * kDelta * kDelta) + 4.0 / 29;
+  };
   const double lightness = 116 * f(xyz[1]) - 16;
-  return {lightness, 0.01 * lightness * 500 * (f(xyz[0]) - f(xyz[1])), 0.01 * lightness * 200 * (f(xyz[1]) - f(xyz[2]))};
+  return {lightness, 0.01 * lightness * 500 * (f(xyz[0]) - f(xyz[1])),
+          0.01 * lightness * 200 * (f(xyz[1]) - f(xyz[2]))};
 }
 
 // Abasi et al. 2020: city block in lightness, Euclidean in colour.
-double hyab(const Color& a, const Color& b) { return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]); }
+double hyab(const Color& a, const Color& b) {
+  return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]);
+}
 
 // Weights of one direction, around the middle.
 Plane weights(ptrdiff_t radius, const auto& weight) {
@@ -114,20 +124,26 @@ Plane filtered(const Plane& in, Size size, const Plane& across, const Plane& dow
   const ptrdiff_t ra = ptrdiff_t(across.size() / 2), rd = ptrdiff_t(down.size() / 2);
   for (ptrdiff_t y = 0; y < size.height; ++y)
     for (ptrdiff_t x = 0; x < size.width; ++x)
-      for (ptrdiff_t k = -ra; k <= ra; ++k) rows[size_t(y * size.width + x)] += across[size_t(k + ra)] * in[size_t(y * size.width + std::clamp<ptrdiff_t>(x + k, 0, size.width - 1))];
+      for (ptrdiff_t k = -ra; k <= ra; ++k)
+        rows[size_t(y * size.width + x)] +=
+            across[size_t(k + ra)] *
+            in[size_t(y * size.width + std::clamp<ptrdiff_t>(x + k, 0, size.width - 1))];
   for (ptrdiff_t y = 0; y < size.height; ++y)
     for (ptrdiff_t k = -rd; k <= rd; ++k) {
       const double* from = &rows[size_t(std::clamp<ptrdiff_t>(y + k, 0, size.height - 1) * size.width)];
-      for (ptrdiff_t x = 0; x < size.width; ++x) out[size_t(y * size.width + x)] += down[size_t(k + rd)] * from[x];
+      for (ptrdiff_t x = 0; x < size.width; ++x)
+        out[size_t(y * size.width + x)] += down[size_t(k + rd)] * from[x];
     }
   return out;
 }
 
-// Contrast sensitivity of a channel as a sum of Gaussians (sec. 4.1.1, Table 1): a of each and b in square degrees.
+// Contrast sensitivity of a channel as a sum of Gaussians (sec. 4.1.1, Table 1): a of each and b in square
+// degrees.
 struct Sensitivity {
   double a[2], b[2];
 };
-constexpr Sensitivity kSensitivity[3] = {{{1, 0}, {0.0047, 1e-5}}, {{1, 0}, {0.0053, 1e-5}}, {{34.1, 13.5}, {0.04, 0.025}}};
+constexpr Sensitivity kSensitivity[3] = {
+    {{1, 0}, {0.0047, 1e-5}}, {{1, 0}, {0.0053, 1e-5}}, {{34.1, 13.5}, {0.04, 0.025}}};
 constexpr double kWidest = 0.04;
 
 Plane as_seen(const Plane& plane, Size size, const Sensitivity& s, double ppd) {
@@ -137,7 +153,8 @@ Plane as_seen(const Plane& plane, Size size, const Sensitivity& s, double ppd) {
   double whole = 0;
   for (int i = 0; i < 2; ++i) {
     if (s.a[i] == 0) continue;
-    const Plane line = weights(radius, [&](double x) { return std::exp(-pi * pi * x * x / (ppd * ppd * s.b[i])); });
+    const Plane line =
+        weights(radius, [&](double x) { return std::exp(-pi * pi * x * x / (ppd * ppd * s.b[i])); });
     const double height = s.a[i] * std::sqrt(pi / s.b[i]);
     const Plane part = filtered(plane, size, line, line);
     for (size_t p = 0; p < out.size(); ++p) out[p] += height * part[p];
@@ -177,7 +194,8 @@ constexpr double kColorExponent = 0.7, kKnee = 0.4, kKneeValue = 0.95;  // q_c, 
 // The distance as 0..1: small ones nearly linear, large ones squeezed above the knee.
 double color_error(const Color& a, const Color& b, double largest) {
   const double distance = std::pow(hyab(a, b), kColorExponent), knee = kKnee * largest;
-  return distance < knee ? kKneeValue * distance / knee : kKneeValue + (1 - kKneeValue) * (distance - knee) / (largest - knee);
+  return distance < knee ? kKneeValue * distance / knee
+                         : kKneeValue + (1 - kKneeValue) * (distance - knee) / (largest - knee);
 }
 
 // Positive weights add up to 1, negative ones to -1.
@@ -188,7 +206,8 @@ Plane balanced(Plane values) {
   return values;
 }
 
-// Strength of edges and of points: first and second derivatives of a Gaussian as wide as a pixel's detail (sec. 4.2).
+// Strength of edges and of points: first and second derivatives of a Gaussian as wide as a pixel's detail
+// (sec. 4.2).
 struct Features {
   Plane edges, points;
 };
@@ -208,13 +227,17 @@ Features features(const Plane& grey, Size size, double ppd) {
     return x;
   };
   return {strength(balanced(weights(radius, [&](double x) { return -x * gauss(x); }))),
-          strength(balanced(weights(radius, [&](double x) { return (x * x / (sigma * sigma) - 1) * gauss(x); })))};
+          strength(
+              balanced(weights(radius, [&](double x) { return (x * x / (sigma * sigma) - 1) * gauss(x); })))};
 }
 
 void check(const Picture& a, const Picture& b, double ppd) {
   if (a.width != b.width || a.height != b.height)
-    throw UserError({}, fmt::format("pictures of {}x{} and {}x{} pixels cannot be compared", a.width, a.height, b.width, b.height));
-  if (!(ppd >= 1 && ppd <= 1000)) throw UserError({}, fmt::format("{} pixels per degree: expected 1 to 1000", ppd), fmt::format("{} is usual", kPixelsPerDegree));
+    throw UserError({}, fmt::format("pictures of {}x{} and {}x{} pixels cannot be compared", a.width,
+                                    a.height, b.width, b.height));
+  if (!(ppd >= 1 && ppd <= 1000))
+    throw UserError({}, fmt::format("{} pixels per degree: expected 1 to 1000", ppd),
+                    fmt::format("{} is usual", kPixelsPerDegree));
 }
 
 }  // namespace
@@ -226,7 +249,8 @@ Flip flip(const Picture& a, const Picture& b, double ppd) {
   const Seen x = see(a, size, xyz, ppd), y = see(b, size, xyz, ppd);
   const Features fx = features(x.grey, size, ppd), fy = features(y.grey, size, ppd);
   // The two colours that are furthest apart: green and blue.
-  const double largest = std::pow(hyab(hunt_lab(xyz.of({0, 1, 0})), hunt_lab(xyz.of({0, 0, 1}))), kColorExponent);
+  const double largest =
+      std::pow(hyab(hunt_lab(xyz.of({0, 1, 0})), hunt_lab(xyz.of({0, 0, 1}))), kColorExponent);
   Flip out;
   double all = 0;
   bool is_measured = true;
@@ -234,23 +258,29 @@ Flip flip(const Picture& a, const Picture& b, double ppd) {
     const double apart = std::max(std::abs(fx.edges[p] - fy.edges[p]), std::abs(fx.points[p] - fy.points[p]));
     const double feature_error = std::min(1.0, std::sqrt(apart / std::numbers::sqrt2));
     const bool is_beyond = is_beyond_measure(a, b, p);
-    const double error = is_beyond ? 1.0 : std::pow(color_error(x.lab[p], y.lab[p], largest), 1 - feature_error);
+    const double error =
+        is_beyond ? 1.0 : std::pow(color_error(x.lab[p], y.lab[p], largest), 1 - feature_error);
     is_measured &= !is_beyond;
     out.map.push_back(float(error));
     all += error;
   }
-  out.mean = !is_measured ? std::numeric_limits<double>::quiet_NaN() : out.map.empty() ? 0 : all / double(out.map.size());
+  out.mean = !is_measured      ? std::numeric_limits<double>::quiet_NaN()
+             : out.map.empty() ? 0
+                               : all / double(out.map.size());
   return out;
 }
 
 Picture flip_picture(const Picture& a, const Flip& flip) {
   // Evenly lighter, as the colour map "magma" of van der Walt and Smith 2015, of which these are six points.
-  constexpr float kRamp[6][3] = {{0.00f, 0.00f, 0.02f}, {0.23f, 0.06f, 0.44f}, {0.55f, 0.16f, 0.51f}, {0.87f, 0.29f, 0.41f}, {1.00f, 0.62f, 0.43f}, {0.99f, 0.99f, 0.75f}};
+  constexpr float kRamp[6][3] = {{0.00f, 0.00f, 0.02f}, {0.23f, 0.06f, 0.44f}, {0.55f, 0.16f, 0.51f},
+                                 {0.87f, 0.29f, 0.41f}, {1.00f, 0.62f, 0.43f}, {0.99f, 0.99f, 0.75f}};
   Picture out{a.width, a.height, std::vector<float>(flip.map.size() * 3)};
   for (size_t p = 0; p < flip.map.size(); ++p) {
     const float at = std::clamp(flip.map[p], 0.0f, 1.0f) * 5;
     const int below = std::min(int(at), 4);
-    for (int c = 0; c < 3; ++c) out.rgb[3 * p + size_t(c)] = kRamp[below][c] + (at - float(below)) * (kRamp[below + 1][c] - kRamp[below][c]);
+    for (int c = 0; c < 3; ++c)
+      out.rgb[3 * p + size_t(c)] =
+          kRamp[below][c] + (at - float(below)) * (kRamp[below + 1][c] - kRamp[below][c]);
   }
   return out;
 }

@@ -11,13 +11,14 @@ namespace glint::report {
 inline constexpr double kPixelsPerDegree = 67;
 
 struct Flip {
-  double mean = 0;          // over pixels; not a number where a pixel is beyond measure (image_compare.h)
-  std::vector<float> map;   // one a pixel, row 0 on top; 0: looks the same, 1: as different as can be
+  double mean = 0;         // over pixels; not a number where a pixel is beyond measure (image_compare.h)
+  std::vector<float> map;  // one a pixel, row 0 on top; 0: looks the same, 1: as different as can be
 };
 
-// LDR-FLIP of Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild 2020, "FLIP: A Difference Evaluator for
-// Alternating Images". Values are sRGB, clamped to 0..1; those that are not finite count as 0, and the map is 1 where pixels are beyond measure. Beyond the edges a picture goes
-// on as its edge. UserError unless the pictures have one size and `pixels_per_degree` lies between 1 and 1000.
+// LDR-FLIP of Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild 2020, "FLIP: A Difference
+// Evaluator for Alternating Images". Values are sRGB, clamped to 0..1; those that are not finite count as 0,
+// and the map is 1 where pixels are beyond measure. Beyond the edges a picture goes on as its edge. UserError
+// unless the pictures have one size and `pixels_per_degree` lies between 1 and 1000.
 Flip flip(const Picture& a, const Picture& b, double pixels_per_degree = kPixelsPerDegree);
 
 // The map as colours from black over purple and orange to white, three floats a pixel.

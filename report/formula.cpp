@@ -22,26 +22,30 @@ Maybe both(Maybe a, Maybe b, Function function) {
 }
 
 // Beginnings of paths that stand for those of all instances.
-constexpr std::pair<std::string_view, std::string_view> kUnits[] = {{"core.", "gpu.core[*]."},
-                                                                    {"rt.", "gpu.rt_unit[*].rt."},
-                                                                    {"l1.", "gpu.memory.core[*].l1."},
-                                                                    {"l2.", "gpu.memory.partition[*].l2*."},
-                                                                    {"dram.", "gpu.memory.partition[*].dram."}};
+constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
+    {"core.", "gpu.core[*]."},
+    {"rt.", "gpu.rt_unit[*].rt."},
+    {"l1.", "gpu.memory.core[*].l1."},
+    {"l2.", "gpu.memory.partition[*].l2*."},
+    {"dram.", "gpu.memory.partition[*].dram."}};
 
-// Choice: a metric means the same whichever machine counted it, so what a path is called in the functional machine's
-// statistics is looked up where the timing machine's are not there. A beginning that ends in "::" keeps the part.
-constexpr std::pair<std::string_view, std::string_view> kFunctional[] = {{"gpu.core[*].lane_instructions", "gpu.lanes::*"},
-                                                                         {"gpu.core[*].instructions", "gpu.instructions::*"},
-                                                                         {"gpu.core[*].instructions_by_class::", "gpu.instructions::"},
-                                                                         {"gpu.rt_unit[*].rt.rays", "gpu.rays"},
-                                                                         {"gpu.rt_unit[*].rt.nodes", "gpu.nodes"},
-                                                                         {"gpu.rt_unit[*].rt.box_tests", "gpu.box_tests"},
-                                                                         {"gpu.rt_unit[*].rt.triangle_tests", "gpu.triangle_tests"}};
+// Choice: a metric means the same whichever machine counted it, so what a path is called in the functional
+// machine's statistics is looked up where the timing machine's are not there. A beginning that ends in "::"
+// keeps the part.
+constexpr std::pair<std::string_view, std::string_view> kFunctional[] = {
+    {"gpu.core[*].lane_instructions", "gpu.lanes::*"},
+    {"gpu.core[*].instructions", "gpu.instructions::*"},
+    {"gpu.core[*].instructions_by_class::", "gpu.instructions::"},
+    {"gpu.rt_unit[*].rt.rays", "gpu.rays"},
+    {"gpu.rt_unit[*].rt.nodes", "gpu.nodes"},
+    {"gpu.rt_unit[*].rt.box_tests", "gpu.box_tests"},
+    {"gpu.rt_unit[*].rt.triangle_tests", "gpu.triangle_tests"}};
 
 std::vector<double> functional_values(const RunRecord& run, std::string_view path) {
   for (const auto& [timing, functional] : kFunctional) {
     if (path == timing) return run.values(std::string(functional));
-    if (timing.ends_with("::") && path.starts_with(timing)) return run.values(std::string(functional) + std::string(path.substr(timing.size())));
+    if (timing.ends_with("::") && path.starts_with(timing))
+      return run.values(std::string(functional) + std::string(path.substr(timing.size())));
   }
   return {};
 }
@@ -75,15 +79,19 @@ class Reader {
     return true;
   }
   [[noreturn]] void fail(const std::string& expected) const {
-    throw UserError({}, fmt::format("'{}' is no formula: expected {} at '{}'", text_, expected, text_.substr(at_)));
+    throw UserError(
+        {}, fmt::format("'{}' is no formula: expected {} at '{}'", text_, expected, text_.substr(at_)));
   }
 
   Maybe read_sum() {
     Maybe value = read_product();
     for (;;) {
-      if (take('+')) value = both(value, read_product(), [](double a, double b) { return a + b; });
-      else if (take('-')) value = both(value, read_product(), [](double a, double b) { return a - b; });
-      else return value;
+      if (take('+'))
+        value = both(value, read_product(), [](double a, double b) { return a + b; });
+      else if (take('-'))
+        value = both(value, read_product(), [](double a, double b) { return a - b; });
+      else
+        return value;
     }
   }
 
@@ -94,7 +102,8 @@ class Reader {
         value = both(value, read_atom(), [](double a, double b) { return a * b; });
       } else if (take('/')) {
         const Maybe below = read_atom();
-        value = below && *below == 0 ? std::nullopt : both(value, below, [](double a, double b) { return a / b; });
+        value = below && *below == 0 ? std::nullopt
+                                     : both(value, below, [](double a, double b) { return a / b; });
       } else {
         return value;
       }
@@ -115,7 +124,8 @@ class Reader {
       return number;
     }
     const size_t open = here.find('('), close = here.find(')');
-    if (open == std::string_view::npos || close == std::string_view::npos || close < open) fail("a number or sum(PATH)");
+    if (open == std::string_view::npos || close == std::string_view::npos || close < open)
+      fail("a number or sum(PATH)");
     at_ += close + 1;
     return look_up(std::string(here.substr(0, open)), std::string(here.substr(open + 1, close - open - 1)));
   }
@@ -124,7 +134,8 @@ class Reader {
     const bool is_fact = function == "run" || function == "config";
     const std::string name = is_fact ? written : whole_path(written);
     if (!is_fact && function != "sum" && function != "max" && function != "mean")
-      throw UserError({}, fmt::format("'{}' is no function of a formula", function), "sum, max, mean, run and config are");
+      throw UserError({}, fmt::format("'{}' is no function of a formula", function),
+                      "sum, max, mean, run and config are");
     if (!is_fact) paths.push_back(name);
     if (!run_) return std::nullopt;
     if (is_fact) return function == "run" ? run_->fact(name) : run_->config(name);
@@ -143,7 +154,9 @@ class Reader {
 
 }  // namespace
 
-std::optional<double> evaluate(const std::string& formula, const RunRecord& run) { return Reader(formula, &run).read_all(); }
+std::optional<double> evaluate(const std::string& formula, const RunRecord& run) {
+  return Reader(formula, &run).read_all();
+}
 
 std::string why_absent(const RunRecord& run) {
   return run.text("mode") == "functional" ? "counted by the timing machine only, or nothing to divide by"

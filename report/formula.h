@@ -1,8 +1,10 @@
 // Formulas over a finished run: what a derived metric is, as text that documents it and is what is computed.
 //
-//   sum(PATH) max(PATH) mean(PATH)   over all statistics whose path matches; '*' stands for any characters but '.'
-//                                    core. rt. l1. l2. dram. at its beginning are those of all instances: gpu.core[*]. and so on
-//                                    a run of the functional machine gives what it counts of these
+//   sum(PATH) max(PATH) mean(PATH)   over all statistics whose path matches; '*' stands for any characters
+//   but '.'
+//                                    core. rt. l1. l2. dram. at its beginning are those of all instances:
+//                                    gpu.core[*]. and so on a run of the functional machine gives what it
+//                                    counts of these
 //   run(NAME) config(KEY)            a number of run.json, a key of the configuration
 //   numbers, + - * /, parentheses
 // SPDX-License-Identifier: Apache-2.0

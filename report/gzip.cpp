@@ -20,11 +20,14 @@ struct GzipWriter::Stream {
 };
 
 GzipWriter::GzipWriter() : stream_(std::make_unique<Stream>()) {
-  const int status = deflateInit2(&stream_->z, Z_DEFAULT_COMPRESSION, Z_DEFLATED, kGzip, 8, Z_DEFAULT_STRATEGY);
+  const int status =
+      deflateInit2(&stream_->z, Z_DEFAULT_COMPRESSION, Z_DEFLATED, kGzip, 8, Z_DEFAULT_STRATEGY);
   GLINT_CHECK(status == Z_OK, "zlib cannot start: {}", status);
 }
 
-GzipWriter::~GzipWriter() { deflateEnd(&stream_->z); }
+GzipWriter::~GzipWriter() {
+  deflateEnd(&stream_->z);
+}
 
 void GzipWriter::add(std::string_view text) {
   waiting_ += text;
@@ -53,7 +56,8 @@ void GzipWriter::deflate_all(bool ends) {
 
 std::string zlib_bytes(std::string_view text) {
   std::string best;
-  for (const int strategy : {Z_DEFAULT_STRATEGY, Z_FILTERED}) {  // the second suits numbers: it takes no short repetitions
+  for (const int strategy :
+       {Z_DEFAULT_STRATEGY, Z_FILTERED}) {  // the second suits numbers: it takes no short repetitions
     z_stream z{};
     const int status = deflateInit2(&z, Z_BEST_COMPRESSION, Z_DEFLATED, MAX_WBITS, MAX_MEM_LEVEL, strategy);
     GLINT_CHECK(status == Z_OK, "zlib cannot start: {}", status);

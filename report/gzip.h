@@ -23,8 +23,8 @@ class GzipWriter {
   std::string waiting_, out_;
 };
 
-// Calls `each` for every line of the file, without its end, until it answers false. UserError where the file cannot be read
-// or is damaged.
+// Calls `each` for every line of the file, without its end, until it answers false. UserError where the file
+// cannot be read or is damaged.
 void read_gzip_lines(const std::string& path, const std::function<bool(std::string_view line)>& each);
 
 // `text` as a zlib stream (RFC 1950), as small as zlib makes it.

@@ -45,8 +45,18 @@ std::string heat_index(const std::vector<CostMap>& maps) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const CostMap& map : maps) {
     const HeatSummary s = summary_of(map);
-    list.push_back({{"name", map.name}, {"unit", map.unit}, {"doc", map.doc}, {"file", map.name + ".npy"}, {"picture", map.name + ".png"},
-                    {"width", map.width}, {"height", map.height}, {"sum", s.sum}, {"min", s.min}, {"mean", s.mean}, {"p99", s.p99}, {"max", s.max}});
+    list.push_back({{"name", map.name},
+                    {"unit", map.unit},
+                    {"doc", map.doc},
+                    {"file", map.name + ".npy"},
+                    {"picture", map.name + ".png"},
+                    {"width", map.width},
+                    {"height", map.height},
+                    {"sum", s.sum},
+                    {"min", s.min},
+                    {"mean", s.mean},
+                    {"p99", s.p99},
+                    {"max", s.max}});
   }
   return nlohmann::ordered_json{{"schema", kSchema}, {"maps", list}}.dump(1) + "\n";
 }

@@ -17,7 +17,8 @@ struct HeatSummary {
 };
 HeatSummary summary_of(const CostMap& map);
 
-// The map alone, a pixel a pixel (fewer where a side has more than 2048): PNG. Colours go from 0 to HeatSummary::top.
+// The map alone, a pixel a pixel (fewer where a side has more than 2048): PNG. Colours go from 0 to
+// HeatSummary::top.
 std::string heat_picture(const CostMap& map);
 
 // The map, enlarged when small, with its name, the scale and its unit beside it: PNG.
@@ -29,7 +30,8 @@ std::string heat_index(const std::vector<CostMap>& maps);
 // Name and bytes of every file of a run's maps, below "heat/".
 std::vector<std::pair<std::string, std::string>> heat_files(const std::vector<CostMap>& maps);
 
-// What heat_files() wrote into a run directory; none where there are no maps. UserError where a file is damaged.
+// What heat_files() wrote into a run directory; none where there are no maps. UserError where a file is
+// damaged.
 std::vector<CostMap> read_heat(const std::string& directory);
 
 }  // namespace glint::report

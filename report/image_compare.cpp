@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/image_compare.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fmt/format.h>
 #include <limits>
 
 #include "base/diagnostics.h"
@@ -14,11 +13,13 @@
 namespace glint::report {
 namespace {
 
-constexpr size_t kWindow = 11;     // pixels (Wang et al. 2004, sec. III-B, as are the numbers below)
-constexpr double kSigma = 1.5;     // pixels
+constexpr size_t kWindow = 11;  // pixels (Wang et al. 2004, sec. III-B, as are the numbers below)
+constexpr double kSigma = 1.5;  // pixels
 constexpr double kC1 = 0.01 * 0.01, kC2 = 0.03 * 0.03;  // (K1 L)^2 and (K2 L)^2 with L = 1
 
-double known(float value) { return std::isfinite(value) ? double(value) : 0.0; }
+double known(float value) {
+  return std::isfinite(value) ? double(value) : 0.0;
+}
 
 // How the three channels from `first` differ.
 struct PixelPair {
@@ -30,7 +31,8 @@ PixelPair pair_of(const Picture& a, const Picture& b, size_t first) {
   PixelPair out;
   for (size_t c = first; c < first + 3; ++c) {
     const float x = a.rgb[c], y = b.rgb[c];
-    const bool is_same = x == y || (std::isnan(x) && std::isnan(y)), is_finite = std::isfinite(x) && std::isfinite(y);
+    const bool is_same = x == y || (std::isnan(x) && std::isnan(y)),
+               is_finite = std::isfinite(x) && std::isfinite(y);
     out.is_same &= is_same;
     out.is_finite &= is_finite;
     out.is_beyond_measure |= !is_same && !is_finite;
@@ -44,14 +46,16 @@ PixelPair pair_of(const Picture& a, const Picture& b, size_t first) {
 
 void check_sizes(const Picture& a, const Picture& b) {
   if (a.width == b.width && a.height == b.height) return;
-  throw UserError({}, fmt::format("pictures of {}x{} and {}x{} pixels cannot be compared", a.width, a.height, b.width, b.height));
+  throw UserError({}, fmt::format("pictures of {}x{} and {}x{} pixels cannot be compared", a.width, a.height,
+                                  b.width, b.height));
 }
 
 // ITU-R BT.709 weights.
 std::vector<double> luminance(const Picture& picture) {
   std::vector<double> out(size_t(picture.width) * picture.height);
   const auto channel = [&](size_t i) { return std::clamp(known(picture.rgb[i]), 0.0, 1.0); };
-  for (size_t i = 0; i < out.size(); ++i) out[i] = 0.2126 * channel(3 * i) + 0.7152 * channel(3 * i + 1) + 0.0722 * channel(3 * i + 2);
+  for (size_t i = 0; i < out.size(); ++i)
+    out[i] = 0.2126 * channel(3 * i) + 0.7152 * channel(3 * i + 1) + 0.0722 * channel(3 * i + 2);
   return out;
 }
 
@@ -90,18 +94,22 @@ double ssim(const Picture& a, const Picture& b) {
   if (a.width < kWindow || a.height < kWindow) return std::numeric_limits<double>::quiet_NaN();
   const std::vector<double> x = luminance(a), y = luminance(b);
   const auto mean = [&](const std::vector<double>& plane) { return blurred(plane, a.width, a.height); };
-  const std::vector<double> mx = mean(x), my = mean(y), xx = mean(product(x, x)), yy = mean(product(y, y)), xy = mean(product(x, y));
+  const std::vector<double> mx = mean(x), my = mean(y), xx = mean(product(x, x)), yy = mean(product(y, y)),
+                            xy = mean(product(x, y));
   double sum = 0;
   for (size_t i = 0; i < mx.size(); ++i) {
     const double vx = xx[i] - mx[i] * mx[i], vy = yy[i] - my[i] * my[i], covariance = xy[i] - mx[i] * my[i];
-    sum += (2 * mx[i] * my[i] + kC1) * (2 * covariance + kC2) / ((mx[i] * mx[i] + my[i] * my[i] + kC1) * (vx + vy + kC2));
+    sum += (2 * mx[i] * my[i] + kC1) * (2 * covariance + kC2) /
+           ((mx[i] * mx[i] + my[i] * my[i] + kC1) * (vx + vy + kC2));
   }
   return sum / double(mx.size());
 }
 
 }  // namespace
 
-bool is_beyond_measure(const Picture& a, const Picture& b, size_t pixel) { return pair_of(a, b, 3 * pixel).is_beyond_measure; }
+bool is_beyond_measure(const Picture& a, const Picture& b, size_t pixel) {
+  return pair_of(a, b, 3 * pixel).is_beyond_measure;
+}
 
 ImageDifference difference(const Picture& a, const Picture& b) {
   check_sizes(a, b);
@@ -128,7 +136,9 @@ ImageDifference difference(const Picture& a, const Picture& b) {
 Picture difference_picture(const Picture& a, const Picture& b, double largest) {
   check_sizes(a, b);
   Picture out{a.width, a.height, std::vector<float>(a.rgb.size())};
-  for (size_t i = 0; i < a.rgb.size(); i += 3) std::fill_n(out.rgb.begin() + ptrdiff_t(i), 3, largest > 0 ? float(pair_of(a, b, i).largest / largest) : 0.0f);
+  for (size_t i = 0; i < a.rgb.size(); i += 3)
+    std::fill_n(out.rgb.begin() + ptrdiff_t(i), 3,
+                largest > 0 ? float(pair_of(a, b, i).largest / largest) : 0.0f);
   mark_beyond_measure(a, b, out);
   return out;
 }

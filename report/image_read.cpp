@@ -1,9 +1,8 @@
 // Reading the pictures that runs leave.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <bit>
 #include <cstring>
+#include <fmt/format.h>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -36,10 +35,13 @@ Picture read_pfm(const std::string& bytes, const std::string& path) {
   std::string magic;
   int64_t width = 0, height = 0;
   double scale = 0;
-  if (!(in >> magic >> width >> height >> scale) || width < 1 || height < 1 || width > kMaxSide || height > kMaxSide || scale == 0)
+  if (!(in >> magic >> width >> height >> scale) || width < 1 || height < 1 || width > kMaxSide ||
+      height > kMaxSide || scale == 0)
     throw UserError({path}, "the header is not of a PFM");
   const size_t begin = size_t(in.tellg()) + 1, row = size_t(width) * 3;
-  if (bytes.size() != begin + row * size_t(height) * sizeof(float)) throw UserError({path}, fmt::format("has {} bytes, expected {}", bytes.size(), begin + row * size_t(height) * sizeof(float)));
+  if (bytes.size() != begin + row * size_t(height) * sizeof(float))
+    throw UserError({path}, fmt::format("has {} bytes, expected {}", bytes.size(),
+                                        begin + row * size_t(height) * sizeof(float)));
   Picture out{uint32_t(width), uint32_t(height), std::vector<float>(row * size_t(height))};
   for (size_t y = 0; y < size_t(height); ++y)
     for (size_t i = 0; i < row; ++i) {
@@ -53,8 +55,11 @@ Picture read_pfm(const std::string& bytes, const std::string& path) {
 
 Picture read_png(const std::string& bytes, const std::string& path) {
   int width = 0, height = 0, channels = 0;
-  stbi_uc* pixels = stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()), int(bytes.size()), &width, &height, &channels, 3);
-  if (!pixels) throw UserError({path}, fmt::format("cannot read the picture: {}", stbi_failure_reason()), "expected a PFM or a PNG");
+  stbi_uc* pixels = stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()), int(bytes.size()),
+                                          &width, &height, &channels, 3);
+  if (!pixels)
+    throw UserError({path}, fmt::format("cannot read the picture: {}", stbi_failure_reason()),
+                    "expected a PFM or a PNG");
   Picture out{uint32_t(width), uint32_t(height), std::vector<float>(size_t(width) * size_t(height) * 3)};
   for (size_t i = 0; i < out.rgb.size(); ++i) out.rgb[i] = float(pixels[i]) / 255.0f;
   stbi_image_free(pixels);

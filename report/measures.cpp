@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/measures.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-
-#include <algorithm>
 #include <map>
 
 #include "base/diagnostics.h"
@@ -15,22 +14,28 @@ namespace {
 
 constexpr double kWarm = 0.01, kHot = 0.1;  // shares of all cycles
 
-double part(uint64_t of, uint64_t whole) { return whole ? double(of) / double(whole) : 0.0; }
+double part(uint64_t of, uint64_t whole) {
+  return whole ? double(of) / double(whole) : 0.0;
+}
 
-std::string count(uint64_t value) { return value ? with_thousands(value) : ""; }
+std::string count(uint64_t value) {
+  return value ? with_thousands(value) : "";
+}
 
 // "long_scoreboard 62.0 %": what most of the row's cycles that issued nothing were spent on.
 std::string main_reason(const ProfileTable& profile, const ProfileRow& row) {
   if (row.slots.size() < 2) return "";
   const auto most = std::max_element(row.slots.begin() + 1, row.slots.end());
   if (*most == 0) return "";
-  return fmt::format("{} {}", profile.reasons[size_t(most - row.slots.begin())], percent(part(*most, row.total())));
+  return fmt::format("{} {}", profile.reasons[size_t(most - row.slots.begin())],
+                     percent(part(*most, row.total())));
 }
 
 }  // namespace
 
 std::vector<std::string> measure_names(const ProfileTable& profile) {
-  std::vector<std::string> out = {"cycles", "issues", "lanes", "accesses", "requests", "sectors", "latency", "waits"};
+  std::vector<std::string> out = {"cycles",   "issues",  "lanes",   "accesses",
+                                  "requests", "sectors", "latency", "waits"};
   out.insert(out.end(), profile.reasons.begin(), profile.reasons.end());
   return out;
 }
@@ -40,7 +45,8 @@ Measures::Measures(const ProfileTable& profile, std::vector<std::string> names, 
   const std::vector<std::string> known = measure_names(profile);
   for (const std::string& name : names_)
     if (std::find(known.begin(), known.end(), name) == known.end())
-      throw UserError({}, fmt::format("unknown measure '{}'", name), fmt::format("there are: {}", fmt::join(known, ", ")));
+      throw UserError({}, fmt::format("unknown measure '{}'", name),
+                      fmt::format("there are: {}", fmt::join(known, ", ")));
   for (const ProfileRow& row : profile.rows)
     if (!row.shader.empty()) whole_ += row.total();
 }
@@ -51,7 +57,9 @@ std::vector<std::string> Measures::headings() const {
   return out;
 }
 
-std::string Measures::share(uint64_t cycles) const { return percent(part(cycles, whole_)); }
+std::string Measures::share(uint64_t cycles) const {
+  return percent(part(cycles, whole_));
+}
 
 std::string Measures::cell(const std::string& name, const ProfileRow& row) const {
   if (name == "cycles") return share(row.total());

@@ -9,9 +9,9 @@
 
 namespace glint::report {
 
-// Names of measures: "cycles" (share of those of all instructions), "issues", "lanes" (active, mean of an issue), "accesses",
-// "requests", "sectors", "latency" (mean cycles of an access or trace), "waits" (what most cycles that issued nothing waited
-// for), and the name of any reason (its cycles).
+// Names of measures: "cycles" (share of those of all instructions), "issues", "lanes" (active, mean of an
+// issue), "accesses", "requests", "sectors", "latency" (mean cycles of an access or trace), "waits" (what
+// most cycles that issued nothing waited for), and the name of any reason (its cycles).
 std::vector<std::string> measure_names(const ProfileTable& profile);
 inline const std::vector<std::string> kUsualMeasures = {"cycles", "issues", "lanes", "sectors", "waits"};
 

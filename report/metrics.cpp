@@ -12,12 +12,17 @@ namespace glint::report {
 namespace {
 
 // What tells runs apart: column and name in run.json.
-constexpr std::pair<std::string_view, std::string_view> kIdentity[] = {
-    {"scene", "scene.name"}, {"form", "scene.form"}, {"shader", "shader"}, {"config", "config.name"}, {"config_hash", "config.hash"}};
+constexpr std::pair<std::string_view, std::string_view> kIdentity[] = {{"scene", "scene.name"},
+                                                                       {"form", "scene.form"},
+                                                                       {"shader", "shader"},
+                                                                       {"config", "config.name"},
+                                                                       {"config_hash", "config.hash"}};
 constexpr std::pair<std::string_view, std::string_view> kNumbers[] = {
     {"fraction", "scene.fraction"}, {"width", "width"}, {"height", "height"}, {"samples", "samples"}};
 
-std::string cell(std::optional<double> value) { return value ? fmt::format("{}", *value) : ""; }
+std::string cell(std::optional<double> value) {
+  return value ? fmt::format("{}", *value) : "";
+}
 
 }  // namespace
 
@@ -25,7 +30,8 @@ std::vector<MetricValue> metrics_of(const RunRecord& run) {
   std::vector<MetricValue> out;
   for (const MetricGroup& group : metric_groups())
     for (const Metric& metric : group.metrics)
-      out.push_back({&metric, metric.formula.empty() ? std::nullopt : evaluate(std::string(metric.formula), run)});
+      out.push_back(
+          {&metric, metric.formula.empty() ? std::nullopt : evaluate(std::string(metric.formula), run)});
   return out;
 }
 
@@ -51,8 +57,8 @@ std::string metrics_text(const RunRecord& run) {
   for (const MetricValue& value : metrics_of(run)) {
     const Metric& metric = *value.metric;
     const std::string why = metric.formula.empty() ? std::string(metric.paper) : why_absent(run);
-    rows.push_back({std::string(metric.name), value.value ? fmt::format("{:.6g}", *value.value) : "-", std::string(metric.unit),
-                    value.value ? std::string(metric.doc) : why});
+    rows.push_back({std::string(metric.name), value.value ? fmt::format("{:.6g}", *value.value) : "-",
+                    std::string(metric.unit), value.value ? std::string(metric.doc) : why});
   }
   return table(rows, "<><<");
 }
@@ -60,10 +66,13 @@ std::string metrics_text(const RunRecord& run) {
 std::string metrics_markdown() {
   std::string out;
   for (const MetricGroup& group : metric_groups()) {
-    out += fmt::format("## {} ({})\n\n| metric | unit | meaning | formula | in the paper |\n|---|---|---|---|---|\n", group.title, group.metrics.size());
+    out += fmt::format(
+        "## {} ({})\n\n| metric | unit | meaning | formula | in the paper |\n|---|---|---|---|---|\n",
+        group.title, group.metrics.size());
     for (const Metric& m : group.metrics) {
       const bool absent = m.formula.empty();
-      out += fmt::format("| `{}` | {} | {} | {} | {} |\n", m.name, m.unit, m.doc, absent ? fmt::format("*empty:* {}", m.paper) : fmt::format("`{}`", m.formula),
+      out += fmt::format("| `{}` | {} | {} | {} | {} |\n", m.name, m.unit, m.doc,
+                         absent ? fmt::format("*empty:* {}", m.paper) : fmt::format("`{}`", m.formula),
                          absent ? "" : m.paper);
     }
     out += "\n";

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/npy.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <fmt/format.h>
 #include <limits>
 
 #include "base/diagnostics.h"
@@ -54,18 +53,23 @@ std::string npy_bytes(const std::string& dtype, const std::string& shape, std::s
 
 std::string npy_of_map(const CostMap& map) {
   const std::string shape = fmt::format("({}, {})", map.height, map.width);
-  return map.is_count ? npy_bytes("<u4", shape, raw<uint32_t>(map.values)) : npy_bytes("<f4", shape, raw<float>(map.values));
+  return map.is_count ? npy_bytes("<u4", shape, raw<uint32_t>(map.values))
+                      : npy_bytes("<f4", shape, raw<float>(map.values));
 }
 
 void read_npy(const std::string& bytes, const std::string& name, CostMap& map) {
-  const auto refuse = [&]() { return UserError({name}, "this is no map of cost", "the file is damaged; run it again"); };
+  const auto refuse = [&]() {
+    return UserError({name}, "this is no map of cost", "the file is damaged; run it again");
+  };
   if (bytes.size() < 10 || std::string_view(bytes).substr(0, 8) != kMagic) throw refuse();
   const size_t header = uint8_t(bytes[8]) + 256u * uint8_t(bytes[9]);
   if (bytes.size() < 10 + header) throw refuse();
   const std::string text = bytes.substr(10, header);
   const std::string_view data = std::string_view(bytes).substr(10 + header);
   char kind = 0;
-  if (std::sscanf(text.c_str(), "{'descr': '<%c4', 'fortran_order': False, 'shape': (%u, %u)", &kind, &map.height, &map.width) != 3) throw refuse();
+  if (std::sscanf(text.c_str(), "{'descr': '<%c4', 'fortran_order': False, 'shape': (%u, %u)", &kind,
+                  &map.height, &map.width) != 3)
+    throw refuse();
   if ((kind != 'u' && kind != 'f') || data.size() != size_t{map.width} * map.height * 4) throw refuse();
   map.is_count = kind == 'u';
   map.is_count ? read_numbers<uint32_t>(data, map.values) : read_numbers<float>(data, map.values);

@@ -14,8 +14,8 @@ std::string npy_bytes(const std::string& dtype, const std::string& shape, std::s
 // Height x width numbers: <u4 of counts, each at most 2^32 - 1, else <f4.
 std::string npy_of_map(const CostMap& map);
 
-// Width, height and values of `map` from what npy_of_map() wrote. `name` stands in the message; UserError when it is
-// something else.
+// Width, height and values of `map` from what npy_of_map() wrote. `name` stands in the message; UserError
+// when it is something else.
 void read_npy(const std::string& bytes, const std::string& name, CostMap& map);
 
 }  // namespace glint::report

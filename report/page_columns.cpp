@@ -19,7 +19,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr size_t kMaxNumbers = 200'000;  // of statistics, at 2 to 3 bytes each: with more, a page would not stay below 1 MB
+constexpr size_t kMaxNumbers =
+    200'000;  // of statistics, at 2 to 3 bytes each: with more, a page would not stay below 1 MB
 constexpr double kMaxWhole = 9007199254740992.0;  // 2^53: from there on a double is no exact count
 
 // 5.0 as 5, at any depth.
@@ -40,12 +41,16 @@ size_t numbers_in(const Json& value) {
   return out;
 }
 
-bool is_fraction(const Json& value) { return value.is_number_float() || (value.is_array() && std::any_of(value.begin(), value.end(), is_fraction)); }
+bool is_fraction(const Json& value) {
+  return value.is_number_float() ||
+         (value.is_array() && std::any_of(value.begin(), value.end(), is_fraction));
+}
 
 // Counts over all instances, of a histogram bin by bin: [1, 2] as [3], [[1, 2], [1]] as [[2, 2]].
 Json added_up(const Json& instances) {
   if (!instances.is_array() || instances.size() < 2) return instances;
-  const bool is_histogram = std::any_of(instances.begin(), instances.end(), [](const Json& one) { return one.is_array(); });
+  const bool is_histogram =
+      std::any_of(instances.begin(), instances.end(), [](const Json& one) { return one.is_array(); });
   std::vector<int64_t> sums(is_histogram ? 0 : 1);
   for (const Json& one : instances) {
     const Json bins = one.is_array() ? one : is_histogram ? Json::array() : Json::array({one});
@@ -64,7 +69,8 @@ class Columns {
     auto next = names_.begin();
     for (const auto& [name, value] : values.items()) {
       auto found = columns_.find(name);
-      if (found == columns_.end()) found = columns_.emplace(name, Column{names_.insert(next, name), std::vector<Json>(num_runs_)}).first;
+      if (found == columns_.end())
+        found = columns_.emplace(name, Column{names_.insert(next, name), std::vector<Json>(num_runs_)}).first;
       next = std::next(found->second.place);
       found->second.values[run] = whole(value);
     }
@@ -80,7 +86,8 @@ class Columns {
   void add_up() {
     for (auto name = names_.begin(); name != names_.end();) {
       std::vector<Json>& values = columns_.at(*name).values;
-      const bool is_many = std::any_of(values.begin(), values.end(), [](const Json& one) { return one.is_array() && one.size() > 1; });
+      const bool is_many = std::any_of(values.begin(), values.end(),
+                                       [](const Json& one) { return one.is_array() && one.size() > 1; });
       if (is_many && std::any_of(values.begin(), values.end(), is_fraction)) {
         columns_.erase(*name);
         name = names_.erase(name);
@@ -100,7 +107,8 @@ class Columns {
     for (const std::string& name : names_) {
       if (left_out.contains(name)) continue;
       const std::vector<Json>& all = values(name);
-      const bool is_same = std::all_of(all.begin(), all.end(), [&](const Json& one) { return one == all[0]; });
+      const bool is_same =
+          std::all_of(all.begin(), all.end(), [&](const Json& one) { return one == all[0]; });
       out[name] = is_same ? Json::array({all[0]}) : Json(all);
     }
     return out;
@@ -139,7 +147,9 @@ std::optional<Numbers> numbers_of(const std::string& name, const std::vector<Jso
   return out;
 }
 
-double at(const Instances& instances, size_t index) { return instances[instances.size() == 1 ? 0 : index]; }
+double at(const Instances& instances, size_t index) {
+  return instances[instances.size() == 1 ? 0 : index];
+}
 
 // As web/src/document.js computes it: of two numbers that 0 divides, 0.
 bool is_quotient(const Instances& wanted, const Instances& over, const Instances& under) {
@@ -158,16 +168,21 @@ bool is_quotient(const Numbers& wanted, const Numbers& over, const Numbers& unde
   return true;
 }
 
-// The first two columns of whole numbers whose quotient `wanted` is, by one of its values first, as there are many pairs.
-std::optional<std::pair<std::string, std::string>> parts_of(const Numbers& wanted, const std::vector<Numbers>& counts) {
+// The first two columns of whole numbers whose quotient `wanted` is, by one of its values first, as there are
+// many pairs.
+std::optional<std::pair<std::string, std::string>> parts_of(const Numbers& wanted,
+                                                            const std::vector<Numbers>& counts) {
   const auto is_some = [](double value) { return value != 0; };
-  const auto run = std::find_if(wanted.runs.begin(), wanted.runs.end(), [&](const Instances& one) { return std::any_of(one.begin(), one.end(), is_some); });
+  const auto run = std::find_if(wanted.runs.begin(), wanted.runs.end(), [&](const Instances& one) {
+    return std::any_of(one.begin(), one.end(), is_some);
+  });
   const auto sample = size_t(std::find_if(run->begin(), run->end(), is_some) - run->begin());
   const double value = (*run)[sample];
   std::vector<std::pair<const Numbers*, double>> known;
   for (const Numbers& one : counts) {
     const Instances& instances = one.runs[size_t(run - wanted.runs.begin())];
-    if ((instances.size() == run->size() || instances.size() == 1) && at(instances, sample) != 0) known.emplace_back(&one, at(instances, sample));
+    if ((instances.size() == run->size() || instances.size() == 1) && at(instances, sample) != 0)
+      known.emplace_back(&one, at(instances, sample));
   }
   for (const auto& [over, a] : known)
     for (const auto& [under, b] : known)
@@ -178,7 +193,8 @@ std::optional<std::pair<std::string, std::string>> parts_of(const Numbers& wante
 Json quotients_of(const Columns& stats) {
   std::vector<Numbers> counts, others;
   for (const std::string& name : stats.names())
-    if (std::optional<Numbers> numbers = numbers_of(name, stats.values(name))) (numbers->is_whole ? counts : others).push_back(std::move(*numbers));
+    if (std::optional<Numbers> numbers = numbers_of(name, stats.values(name)))
+      (numbers->is_whole ? counts : others).push_back(std::move(*numbers));
   Json out = Json::object();
   for (const Numbers& one : others)
     if (const auto parts = parts_of(one, counts)) out[one.name] = {parts->first, parts->second};
@@ -206,15 +222,19 @@ Json without_pictures(const Json& maps) {
 Json page_columns(const Json& data) {
   const Json& runs = data.at("runs");
   Columns stats(runs.size()), metrics(runs.size()), config(runs.size());
-  const std::vector<std::pair<const char*, Columns*>> turned = {{"stats", &stats}, {"metrics", &metrics}, {"config", &config}};
+  const std::vector<std::pair<const char*, Columns*>> turned = {
+      {"stats", &stats}, {"metrics", &metrics}, {"config", &config}};
   Json list = Json::array(), listings = Json::array();
   for (size_t i = 0; i < runs.size(); ++i) {
     for (const auto& [name, columns] : turned) columns->add(i, runs[i].value(name, Json::object()));
     Json& run = list.emplace_back(Json::object());
     for (const auto& [name, value] : runs[i].items()) {
-      if (name == "timeline") run[name] = timeline_columns(value);
-      else if (name == "heat") run[name] = without_pictures(value);
-      else if (name != "stats" && name != "metrics" && name != "config" && name != "picture") run[name] = value;
+      if (name == "timeline")
+        run[name] = timeline_columns(value);
+      else if (name == "heat")
+        run[name] = without_pictures(value);
+      else if (name != "stats" && name != "metrics" && name != "config" && name != "picture")
+        run[name] = value;
     }
     if (!run.contains("source")) continue;
     share_listing(run["source"], listings);

@@ -3,7 +3,6 @@
 #include "report/page_heat.h"
 
 #include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 
 #include "report/base64.h"
@@ -18,8 +17,18 @@ Json page_heat(const std::vector<CostMap>& maps) {
   Json out = Json::array();
   for (const CostMap& map : maps) {
     const HeatSummary s = summary_of(map);
-    out.push_back({{"name", map.name}, {"unit", map.unit}, {"doc", map.doc}, {"width", map.width}, {"height", map.height}, {"sum", s.sum}, {"min", s.min},
-                   {"mean", s.mean}, {"p99", s.p99}, {"max", s.max}, {"top", s.top}, {"picture", "data:image/png;base64," + base64(heat_picture(map))}});
+    out.push_back({{"name", map.name},
+                   {"unit", map.unit},
+                   {"doc", map.doc},
+                   {"width", map.width},
+                   {"height", map.height},
+                   {"sum", s.sum},
+                   {"min", s.min},
+                   {"mean", s.mean},
+                   {"p99", s.p99},
+                   {"max", s.max},
+                   {"top", s.top},
+                   {"picture", "data:image/png;base64," + base64(heat_picture(map))}});
   }
   return out;
 }

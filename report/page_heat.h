@@ -8,8 +8,8 @@
 
 namespace glint::report {
 
-// [{name, unit, doc, width, height, sum, min, mean, p99, max, top, picture}]: `top` ends the colour scale, `picture` is a
-// data URI of the map alone.
+// [{name, unit, doc, width, height, sum, min, mean, p99, max, top, picture}]: `top` ends the colour scale,
+// `picture` is a data URI of the map alone.
 nlohmann::ordered_json page_heat(const std::vector<CostMap>& maps);
 
 // The colour scale from 0 to `top`: "#rrggbb" in even steps.

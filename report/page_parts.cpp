@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/page_parts.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "base/diagnostics.h"
@@ -16,11 +15,16 @@ namespace glint::report {
 std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {
-    if (c == '&') out += "&amp;";
-    else if (c == '<') out += "&lt;";
-    else if (c == '>') out += "&gt;";
-    else if (c == '"') out += "&quot;";
-    else out += c;
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
   }
   return out;
 }
@@ -44,7 +48,8 @@ std::string shown(const nlohmann::ordered_json& value) {
   if (value.is_string()) return escaped(value.get<std::string>());
   if (value.is_boolean()) return value.get<bool>() ? "true" : "false";
   const double number = value.get<double>();
-  if ((std::floor(number) != number && std::abs(number) < 1000) || std::abs(number) > 9e15) return fmt::format("{:.4g}", number);
+  if ((std::floor(number) != number && std::abs(number) < 1000) || std::abs(number) > 9e15)
+    return fmt::format("{:.4g}", number);
   const std::string digits = fmt::format("{:.0f}", std::abs(number));
   std::string out = number < 0 ? "−" : "";
   for (size_t i = 0; i < digits.size(); ++i) {
@@ -60,7 +65,9 @@ std::string packed_element(std::string_view id, std::string_view text) {
 
 void place(std::string& page, std::string_view mark, const std::string& text) {
   const size_t at = page.find(mark);
-  if (at == std::string::npos) throw UserError({"web/dist"}, fmt::format("a page's frame has no place {}", mark), "Glint's own files are incomplete: install it again");
+  if (at == std::string::npos)
+    throw UserError({"web/dist"}, fmt::format("a page's frame has no place {}", mark),
+                    "Glint's own files are incomplete: install it again");
   page.replace(at, mark.size(), text);
 }
 

@@ -7,7 +7,8 @@
 
 namespace glint::report {
 
-// {"reasons", "ops", "stages", "lines"}. The lines are the 40 that took most cycles, with their text where the file can still be read.
+// {"reasons", "ops", "stages", "lines"}. The lines are the 40 that took most cycles, with their text where
+// the file can still be read.
 nlohmann::ordered_json page_profile(const ProfileTable& profile);
 
 }  // namespace glint::report

@@ -21,8 +21,11 @@ constexpr size_t kCounts = 8;                             // numbers before the 
 
 Json timeline_columns(const Json& timeline) {
   std::vector<Json> rows = timeline.at("slices").get<std::vector<Json>>();
-  const auto order = [](const Json& row) { return std::tuple(row[kKind].get<int64_t>(), row[kThread].get<int64_t>(), row[kBegin].get<int64_t>()); };
-  std::stable_sort(rows.begin(), rows.end(), [&](const Json& a, const Json& b) { return order(a) < order(b); });
+  const auto order = [](const Json& row) {
+    return std::tuple(row[kKind].get<int64_t>(), row[kThread].get<int64_t>(), row[kBegin].get<int64_t>());
+  };
+  std::stable_sort(rows.begin(), rows.end(),
+                   [&](const Json& a, const Json& b) { return order(a) < order(b); });
   size_t width = 0;
   for (const Json& row : rows) width = std::max(width, row.size());
   std::vector<Json> columns(width, Json::array());

@@ -12,7 +12,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json columns_of(const std::vector<ListedLine>& lines, size_t first, bool is_isa) {
-  Json text = Json::array(), file = Json::array(), line = Json::array(), spirv = Json::array(), scope = Json::array();
+  Json text = Json::array(), file = Json::array(), line = Json::array(), spirv = Json::array(),
+       scope = Json::array();
   for (size_t i = first; i < lines.size(); ++i) {
     text.push_back(lines[i].text);
     file.push_back(lines[i].file);
@@ -21,8 +22,10 @@ Json columns_of(const std::vector<ListedLine>& lines, size_t first, bool is_isa)
     scope.push_back(lines[i].scope);
   }
   Json out = {{"text", text}, {"file", file}, {"line", line}};
-  if (is_isa) out["spirv"] = spirv, out["scope"] = scope;
-  else out["first"] = first + 1;
+  if (is_isa)
+    out["spirv"] = spirv, out["scope"] = scope;
+  else
+    out["first"] = first + 1;
   return out;
 }
 
@@ -35,13 +38,18 @@ size_t first_function(const ProgramListing& program) {
 
 Json program_of(const ProgramListing& program) {
   Json scopes = Json::array();
-  for (const ListedScope& scope : program.scopes) scopes.push_back({scope.function, scope.caller, scope.file, scope.line});
-  return {{"shader", program.shader}, {"stage", program.stage}, {"scopes", scopes}, {"isa", columns_of(program.isa, 0, true)},
+  for (const ListedScope& scope : program.scopes)
+    scopes.push_back({scope.function, scope.caller, scope.file, scope.line});
+  return {{"shader", program.shader},
+          {"stage", program.stage},
+          {"scopes", scopes},
+          {"isa", columns_of(program.isa, 0, true)},
           {"spirv", columns_of(program.spirv, first_function(program), false)}};
 }
 
 Json counts_of(const ProfileRow& row) {
-  Json out = {row.program, row.index, row.issues, row.lanes, row.sectors, row.accesses, row.ended, row.latency};
+  Json out = {row.program, row.index,    row.issues, row.lanes,
+              row.sectors, row.accesses, row.ended,  row.latency};
   for (size_t i = 0; i < row.slots.size(); ++i)
     if (row.slots[i]) out.push_back(i), out.push_back(row.slots[i]);
   return out;
@@ -51,7 +59,8 @@ Json counts_of(const ProfileRow& row) {
 
 Json page_source(const ProfileTable& profile, const SourceMap& map) {
   Json files = Json::array(), programs = Json::array(), counts = Json::array();
-  for (const SourceFile& file : map.files) files.push_back({{"path", file.path}, {"text", file.is_known ? Json(file.lines) : Json(nullptr)}});
+  for (const SourceFile& file : map.files)
+    files.push_back({{"path", file.path}, {"text", file.is_known ? Json(file.lines) : Json(nullptr)}});
   for (const ProgramListing& program : map.programs) programs.push_back(program_of(program));
   uint64_t no_warp = 0;
   for (const ProfileRow& row : profile.rows) {
@@ -60,10 +69,15 @@ Json page_source(const ProfileTable& profile, const SourceMap& map) {
       continue;
     }
     if (row.program >= map.programs.size() || row.index >= map.programs[row.program].isa.size())
-      throw UserError({}, "profile.csv and source.json of the run do not belong together", "run it again with --profile");
+      throw UserError({}, "profile.csv and source.json of the run do not belong together",
+                      "run it again with --profile");
     counts.push_back(counts_of(row));
   }
-  return {{"reasons", profile.reasons}, {"files", files}, {"programs", programs}, {"counts", counts}, {"no_warp", no_warp}};
+  return {{"reasons", profile.reasons},
+          {"files", files},
+          {"programs", programs},
+          {"counts", counts},
+          {"no_warp", no_warp}};
 }
 
 }  // namespace glint::report

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/page_stats.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -39,8 +38,10 @@ class Turner {
       const Instance instance = instance_of(name);
       const std::string there = path.empty() ? instance.pattern : path + "." + instance.pattern;
       const size_t number = instance.is_one ? instance.index : index;
-      if (child.contains("value") && child.contains("unit")) add(child, there, number);
-      else walk(child, there, number);
+      if (child.contains("value") && child.contains("unit"))
+        add(child, there, number);
+      else
+        walk(child, there, number);
     }
   }
 
@@ -62,8 +63,12 @@ class Turner {
     }
   }
   void put(const std::string& path, size_t index, Json value) {
-    const bool is_known = value.is_number() || (value.is_array() && std::all_of(value.begin(), value.end(), [](const Json& v) { return v.is_number(); }));
-    if (!is_known) throw UserError({}, fmt::format("statistic '{}' has no number", path), "stats.json is damaged; run it again");
+    const bool is_known =
+        value.is_number() || (value.is_array() && std::all_of(value.begin(), value.end(),
+                                                              [](const Json& v) { return v.is_number(); }));
+    if (!is_known)
+      throw UserError({}, fmt::format("statistic '{}' has no number", path),
+                      "stats.json is damaged; run it again");
     Json& list = out_[path];
     if (list.is_null()) list = Json::array();
     while (list.size() <= index) list.push_back(0);

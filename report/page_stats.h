@@ -5,9 +5,9 @@
 
 namespace glint::report {
 
-// "gpu.core[*].blocks": [64, 64], "gpu.core[*].issue_slots::issued": [9, 8], "gpu.cycles": [100]; of a histogram a list of
-// counts an instance, without the empty bins at its end. A value that is 0 in every instance is the number 0. Adds unit,
-// meaning and bins of each statistic that `docs` does not have yet.
+// "gpu.core[*].blocks": [64, 64], "gpu.core[*].issue_slots::issued": [9, 8], "gpu.cycles": [100]; of a
+// histogram a list of counts an instance, without the empty bins at its end. A value that is 0 in every
+// instance is the number 0. Adds unit, meaning and bins of each statistic that `docs` does not have yet.
 nlohmann::ordered_json page_stats(const nlohmann::ordered_json& stats, nlohmann::ordered_json& docs);
 
 }  // namespace glint::report

@@ -31,13 +31,22 @@ Json page_timeline(const Timeline& timeline) {
   Names kinds, names;
   Json slices = Json::array();
   for (const Timeline::Slice& slice : timeline.slices) {
-    Json row = {slice.thread, kinds.of(slice.kind), slice.begin - timeline.begin, slice.length, names.of(slice.name)};
+    Json row = {slice.thread, kinds.of(slice.kind), slice.begin - timeline.begin, slice.length,
+                names.of(slice.name)};
     for (const char* arg : {"rays", "nodes"})
       if (const auto found = slice.args.find(arg); found != slice.args.end()) row.push_back(found->second);
     slices.push_back(std::move(row));
   }
-  return {{"core", timeline.core}, {"cores", timeline.cores}, {"begin", timeline.begin}, {"end", timeline.end}, {"trace_begin", timeline.trace_begin},
-          {"trace_end", timeline.trace_end}, {"cut", timeline.is_cut}, {"kinds", kinds.list()}, {"names", names.list()}, {"slices", std::move(slices)}};
+  return {{"core", timeline.core},
+          {"cores", timeline.cores},
+          {"begin", timeline.begin},
+          {"end", timeline.end},
+          {"trace_begin", timeline.trace_begin},
+          {"trace_end", timeline.trace_end},
+          {"cut", timeline.is_cut},
+          {"kinds", kinds.list()},
+          {"names", names.list()},
+          {"slices", std::move(slices)}};
 }
 
 }  // namespace glint::report

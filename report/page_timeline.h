@@ -7,8 +7,8 @@
 
 namespace glint::report {
 
-// {core, cores, begin, end, trace_begin, trace_end, cut, kinds, names, slices}; a slice is [thread, kind, cycles after
-// `begin`, cycles, name] and, of rays, their number and the nodes visited.
+// {core, cores, begin, end, trace_begin, trace_end, cut, kinds, names, slices}; a slice is [thread, kind,
+// cycles after `begin`, cycles, name] and, of rays, their number and the nodes visited.
 nlohmann::ordered_json page_timeline(const Timeline& timeline);
 
 }  // namespace glint::report

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/profile_files.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <charconv>
+#include <fmt/format.h>
 #include <map>
 #include <set>
 
@@ -19,7 +18,9 @@ constexpr const char* kInstruction = "instruction";
 constexpr const char* kLine = "line";
 constexpr const char* kNone = "no_warp";
 // Before the reasons.
-const std::vector<std::string> kColumns = {"by", "stage", "shader", "program", "file", "line", "spirv", "index", "op", "issues", "lanes", "accesses", "requests", "sectors", "ended", "latency", "cycles"};
+const std::vector<std::string> kColumns = {"by",       "stage",   "shader", "program", "file",  "line",
+                                           "spirv",    "index",   "op",     "issues",  "lanes", "accesses",
+                                           "requests", "sectors", "ended",  "latency", "cycles"};
 
 std::string csv_line(const std::vector<std::string>& cells) {
   std::string out;
@@ -28,8 +29,18 @@ std::string csv_line(const std::vector<std::string>& cells) {
 }
 
 std::string row_text(const char* by, const ProfileRow& row) {
-  std::vector<std::string> cells{by, row.stage, row.shader, std::to_string(row.program), row.file, std::to_string(row.line), std::to_string(row.spirv), std::to_string(row.index), row.op};
-  for (const uint64_t n : {row.issues, row.lanes, row.accesses, row.requests, row.sectors, row.ended, row.latency, row.total()}) cells.push_back(std::to_string(n));
+  std::vector<std::string> cells{by,
+                                 row.stage,
+                                 row.shader,
+                                 std::to_string(row.program),
+                                 row.file,
+                                 std::to_string(row.line),
+                                 std::to_string(row.spirv),
+                                 std::to_string(row.index),
+                                 row.op};
+  for (const uint64_t n :
+       {row.issues, row.lanes, row.accesses, row.requests, row.sectors, row.ended, row.latency, row.total()})
+    cells.push_back(std::to_string(n));
   for (const uint64_t n : row.slots) cells.push_back(std::to_string(n));
   return csv_line(cells);
 }
@@ -59,13 +70,15 @@ std::vector<std::string> read_line(const std::string& text, size_t& at) {
 // Numbers of a row from column `first` on.
 class Numbers {
  public:
-  Numbers(const std::vector<std::string>& cells, const std::string& name, int line) : cells_(cells), name_(name), line_(line) {}
+  Numbers(const std::vector<std::string>& cells, const std::string& name, int line)
+      : cells_(cells), name_(name), line_(line) {}
   uint64_t at(size_t column) const {
     uint64_t value = 0;
     const std::string& cell = cells_[column];
     const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
     if (error != std::errc() || end != cell.data() + cell.size())
-      throw UserError({name_, line_, 0}, fmt::format("expected a number in column {}, found '{}'", column + 1, cell));
+      throw UserError({name_, line_, 0},
+                      fmt::format("expected a number in column {}, found '{}'", column + 1, cell));
     return value;
   }
 
@@ -86,7 +99,9 @@ ProfileRow row_of(const std::vector<std::string>& cells, const Numbers& numbers)
   row.index = uint32_t(numbers.at(7));
   row.op = cells[8];
   size_t column = 9;
-  for (uint64_t* to : {&row.issues, &row.lanes, &row.accesses, &row.requests, &row.sectors, &row.ended, &row.latency}) *to = numbers.at(column++);
+  for (uint64_t* to :
+       {&row.issues, &row.lanes, &row.accesses, &row.requests, &row.sectors, &row.ended, &row.latency})
+    *to = numbers.at(column++);
   for (size_t i = kColumns.size(); i < cells.size(); ++i) row.slots.push_back(numbers.at(i));
   return row;
 }
@@ -121,13 +136,18 @@ std::string profile_folded(const ProfileTable& profile, const CallTree::TextOf& 
   for (const ProfileRow& row : profile.rows)
     if (row.line) files[{row.stage, row.shader}].insert(row.file);
   std::map<std::pair<std::string, std::string>, CallTree> trees;
-  for (const auto& [shader, names] : files) trees.emplace(shader, CallTree({names.begin(), names.end()}, text_of));
+  for (const auto& [shader, names] : files)
+    trees.emplace(shader, CallTree({names.begin(), names.end()}, text_of));
   std::map<std::string, uint64_t> stacks;  // sorted: the same text for the same profile
   for (const ProfileRow& row : profile.rows) {
     std::vector<std::string> calls{row.shader};
-    if (row.line) calls = row.program < profile.programs.size() ? frames_of(profile.programs[row.program], row.scope, row.file, row.line) : std::vector<std::string>();
+    if (row.line)
+      calls = row.program < profile.programs.size()
+                  ? frames_of(profile.programs[row.program], row.scope, row.file, row.line)
+                  : std::vector<std::string>();
     if (calls.empty()) calls = trees.at({row.stage, row.shader}).frames(row.file, row.line);
-    const std::string frames = row.shader.empty() ? "gpu" : fmt::format("{};{}", row.stage, fmt::join(calls, ";"));
+    const std::string frames =
+        row.shader.empty() ? "gpu" : fmt::format("{};{}", row.stage, fmt::join(calls, ";"));
     for (size_t i = 0; i < row.slots.size(); ++i)
       if (row.slots[i]) stacks[frames + ";" + profile.reasons[i]] += row.slots[i];
   }
@@ -147,12 +167,14 @@ ProfileTable parse_profile(const std::string& text, const std::string& name) {
   size_t at = 0;
   const std::vector<std::string> header = read_line(text, at);
   if (header.size() <= kColumns.size() || !std::equal(kColumns.begin(), kColumns.end(), header.begin()))
-    throw UserError({name, 1, 0}, "this is no profile of this version", "`glint run ... --profile` writes one");
+    throw UserError({name, 1, 0}, "this is no profile of this version",
+                    "`glint run ... --profile` writes one");
   out.reasons.assign(header.begin() + ptrdiff_t(kColumns.size()), header.end());
   for (int line = 2; at < text.size(); ++line) {
     const std::vector<std::string> cells = read_line(text, at);
     if (cells.size() != header.size())
-      throw UserError({name, line, 0}, fmt::format("expected {} columns, found {}", header.size(), cells.size()));
+      throw UserError({name, line, 0},
+                      fmt::format("expected {} columns, found {}", header.size(), cells.size()));
     if (cells[0] != kLine) out.rows.push_back(row_of(cells, Numbers(cells, name, line)));
   }
   return out;

@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kResults[] = {"image.png", "image.pfm", "printf.txt", "profile.csv", "profile.folded", "source.json", "series.csv", "trace.json.gz"};
+constexpr const char* kResults[] = {"image.png",      "image.pfm",   "printf.txt", "profile.csv",
+                                    "profile.folded", "source.json", "series.csv", "trace.json.gz"};
 constexpr const char* kFolder = "heat";  // the one folder of a run
 
 bool put(const std::string& path, const std::string& bytes) {
@@ -35,7 +36,9 @@ std::vector<std::string> saved_before(const std::string& path) {
   std::vector<std::string> out;
   if (!json.is_object() || !json.contains("saved") || !json["saved"].is_array()) return out;
   for (const nlohmann::json& name : json["saved"])
-    if (name.is_string() && name != "." && name != ".." && !name.get<std::string>().empty() && name.get<std::string>().find('/') == std::string::npos) out.push_back(name);
+    if (name.is_string() && name != "." && name != ".." && !name.get<std::string>().empty() &&
+        name.get<std::string>().find('/') == std::string::npos)
+      out.push_back(name);
   return out;
 }
 
@@ -69,7 +72,8 @@ RunDirectory::RunDirectory(std::string path) : path_(std::move(path)) {
 void RunDirectory::remove(const std::string& name) const {
   std::error_code error;
   if (name != kFolder && fs::is_directory(fs::symlink_status(path_of(name), error)))
-    throw UserError({path_of(name)}, "a folder stands where a run has a file", "move it away, or give another folder with --out");
+    throw UserError({path_of(name)}, "a folder stands where a run has a file",
+                    "move it away, or give another folder with --out");
   fs::remove_all(path_of(name), error);
   if (error) throw UserError({path_of(name)}, "cannot remove what an earlier run left: " + error.message());
 }
@@ -86,7 +90,8 @@ void RunDirectory::write(const std::string& name, const std::string& bytes) cons
 void RunDirectory::remove_results(const std::vector<std::string>& saved) const {
   std::vector<std::string> names = saved_before(path_of("run.json"));
   names.insert(names.end(), saved.begin(), saved.end());
-  for (const auto& [name, entry] : Registry<StatWriter>::instance().entries()) names.push_back("stats." + std::string(name));
+  for (const auto& [name, entry] : Registry<StatWriter>::instance().entries())
+    names.push_back("stats." + std::string(name));
   names.insert(names.end(), std::begin(kResults), std::end(kResults));
   names.push_back(kFolder);
   remove("run.json");
@@ -128,17 +133,28 @@ void RunDirectory::write_run(const RunInfo& info) const {
   json["height"] = info.height;
   json["samples"] = info.samples;
   json["seed"] = info.seed;
-  if (info.bounces > 0) json["rays"] = {{"bounces", info.bounces}, {"shadow_rays", info.shadow_rays}, {"ao_rays", info.ao_rays}};
+  if (info.bounces > 0)
+    json["rays"] = {{"bounces", info.bounces}, {"shadow_rays", info.shadow_rays}, {"ao_rays", info.ao_rays}};
   if (const auto& s = info.structures)
-    json["structures"] = {{"bytes", s->bytes},         {"triangles", s->triangles}, {"procedurals", s->procedurals},  {"bottom_levels", s->bottom_levels},
-                          {"instances", s->instances}, {"top_depth", s->top_depth}, {"bottom_depth", s->bottom_depth}};
-  if (const auto& r = info.residency) json["residency"] = {{"warps", r->warps}, {"blocks", r->blocks}, {"limit", r->limit}};
+    json["structures"] = {{"bytes", s->bytes},
+                          {"triangles", s->triangles},
+                          {"procedurals", s->procedurals},
+                          {"bottom_levels", s->bottom_levels},
+                          {"instances", s->instances},
+                          {"top_depth", s->top_depth},
+                          {"bottom_depth", s->bottom_depth}};
+  if (const auto& r = info.residency)
+    json["residency"] = {{"warps", r->warps}, {"blocks", r->blocks}, {"limit", r->limit}};
   json["started"] = info.started;
   json["wall_seconds"] = info.wall_seconds;
   json["on_fault"] = info.on_fault;
   if (!info.faults.empty()) json["faults"] = nlohmann::ordered_json::array();
   for (const FaultInfo& fault : info.faults)
-    json["faults"].push_back({{"kind", fault.kind}, {"place", fault.place}, {"what", fault.what}, {"launch_id", fault.launch_id}, {"count", fault.count}});
+    json["faults"].push_back({{"kind", fault.kind},
+                              {"place", fault.place},
+                              {"what", fault.what},
+                              {"launch_id", fault.launch_id},
+                              {"count", fault.count}});
   if (!info.saved.empty()) json["saved"] = info.saved;
   json["exit"] = info.exit;
   if (!info.message.empty()) json["message"] = info.message;

@@ -43,11 +43,11 @@ struct RunInfo {
   uint64_t scene_hash = 0, scene_triangles = 0, config_hash = 0, seed = 0;
   double scene_fraction = 1;  // of the original's triangles
   uint32_t width = 0, height = 0, samples = 0;
-  uint32_t bounces = 0, shadow_rays = 0, ao_rays = 0;  // of a scene's frame; 0 = it is none
-  std::optional<StructureInfo> structures;             // once they are built
-  std::optional<ResidencyInfo> residency;              // of a timing run
+  uint32_t bounces = 0, shadow_rays = 0, ao_rays = 0;        // of a scene's frame; 0 = it is none
+  std::optional<StructureInfo> structures;                   // once they are built
+  std::optional<ResidencyInfo> residency;                    // of a timing run
   std::vector<std::pair<std::string, double>> memory_peaks;  // what the memory system could do at best
-  std::string started;  // ISO 8601, UTC
+  std::string started;                                       // ISO 8601, UTC
   double wall_seconds = 0;
   std::string on_fault = "stop";
   std::vector<FaultInfo> faults;
@@ -56,19 +56,21 @@ struct RunInfo {
   std::string message;  // of the error, when exit is not 0
 };
 
-// Writes a file under another name and renames it: a reader never sees half a file, and nothing stays behind when it cannot
-// be written, which is a UserError. What is no regular file (a pipe, a device) is written to as it is.
+// Writes a file under another name and renames it: a reader never sees half a file, and nothing stays behind
+// when it cannot be written, which is a UserError. What is no regular file (a pipe, a device) is written to
+// as it is.
 void write_file(const std::string& path, const std::string& bytes);
 
-// Files go through write_file(); run.json is written last: a directory with one is complete, or says what went wrong.
-// UserError when the folder or a file cannot be written.
+// Files go through write_file(); run.json is written last: a directory with one is complete, or says what
+// went wrong. UserError when the folder or a file cannot be written.
 class RunDirectory {
  public:
   explicit RunDirectory(std::string path);  // made with its parents
   const std::string& path() const { return path_; }
   std::string path_of(const std::string& name) const { return path_ + "/" + name; }
 
-  void write(const std::string& name, const std::string& bytes) const;  // "heat/rays.png": in a folder below it
+  void write(const std::string& name,
+             const std::string& bytes) const;  // "heat/rays.png": in a folder below it
   void remove(const std::string& name) const;  // a file or folder that an earlier run left, if it is there
   // All that an earlier run left but config.toml, run.json first; and `saved`. Files of other commands stay.
   void remove_results(const std::vector<std::string>& saved) const;

@@ -3,7 +3,6 @@
 #include "report/run_record.h"
 
 #include <fmt/format.h>
-
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -20,7 +19,8 @@ namespace {
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r')) text.remove_suffix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r'))
+    text.remove_suffix(1);
   return text;
 }
 
@@ -30,9 +30,11 @@ std::string whole_file(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-void flatten(const nlohmann::json& json, const std::string& name, std::map<std::string, double>& numbers, std::map<std::string, std::string>& texts) {
+void flatten(const nlohmann::json& json, const std::string& name, std::map<std::string, double>& numbers,
+             std::map<std::string, std::string>& texts) {
   if (json.is_object()) {
-    for (const auto& [key, value] : json.items()) flatten(value, name.empty() ? key : name + "." + key, numbers, texts);
+    for (const auto& [key, value] : json.items())
+      flatten(value, name.empty() ? key : name + "." + key, numbers, texts);
   } else if (json.is_number()) {
     numbers[name] = json.get<double>();
   } else if (json.is_string()) {
@@ -46,12 +48,16 @@ void RunRecord::add_finished(const std::string& directory) {
   const std::string file = directory + "/run.json";
   add_facts(whole_file(file), file);
   if (const double schema = fact("schema").value_or(0); schema != kRunSchema)
-    throw UserError({file}, fmt::format("schema {}, expected {}", schema, kRunSchema), "another version of Glint wrote it: run it again with this one");
+    throw UserError({file}, fmt::format("schema {}, expected {}", schema, kRunSchema),
+                    "another version of Glint wrote it: run it again with this one");
   if (const double exit = fact("exit").value_or(0); exit != 0)
-    throw UserError({file}, fmt::format("the run failed with exit code {}: {}", exit, text("message")), "it left no results: run it again");
+    throw UserError({file}, fmt::format("the run failed with exit code {}: {}", exit, text("message")),
+                    "it left no results: run it again");
 }
 
-void check_finished(const std::string& directory) { RunRecord().add_finished(directory); }
+void check_finished(const std::string& directory) {
+  RunRecord().add_finished(directory);
+}
 
 RunRecord RunRecord::read(const std::string& directory) {
   RunRecord record;
@@ -65,11 +71,17 @@ RunRecord RunRecord::read(const std::string& directory) {
 void RunRecord::add_stats(const std::string& csv, const std::string& name) {
   std::istringstream in(csv);
   std::string line;
-  if (!std::getline(in, line) || line.rfind("path,value,", 0) != 0) throw UserError({name, 1}, "this is no table of statistics", "expected the header path,value,unit,doc");
+  if (!std::getline(in, line) || line.rfind("path,value,", 0) != 0)
+    throw UserError({name, 1}, "this is no table of statistics", "expected the header path,value,unit,doc");
   for (int row = 2; std::getline(in, line); ++row) {
     const size_t first = line.find(','), second = line.find(',', first + 1);
-    const std::optional<double> value = second == std::string::npos ? std::nullopt : finite_number(std::string_view(line).substr(first + 1, second - first - 1));
-    if (!value) throw UserError({name, row}, "this row has no value, or none that is finite", "the file is damaged; run it again");
+    const std::optional<double> value =
+        second == std::string::npos
+            ? std::nullopt
+            : finite_number(std::string_view(line).substr(first + 1, second - first - 1));
+    if (!value)
+      throw UserError({name, row}, "this row has no value, or none that is finite",
+                      "the file is damaged; run it again");
     stats_.emplace_back(line.substr(0, first), *value);
   }
 }
@@ -90,7 +102,8 @@ void RunRecord::add_config(const std::string& toml) {
     if (text.size() > 2 && text.front() == '[' && text.back() == ']') {
       table = std::string(text.substr(1, text.size() - 2)) + ".";
     } else if (equals != std::string_view::npos) {
-      if (const auto value = finite_number(trimmed(text.substr(equals + 1)))) config_[table + std::string(trimmed(text.substr(0, equals)))] = *value;
+      if (const auto value = finite_number(trimmed(text.substr(equals + 1))))
+        config_[table + std::string(trimmed(text.substr(0, equals)))] = *value;
     }
   }
 }

@@ -9,7 +9,8 @@
 
 namespace glint::report {
 
-// UserError when run.json of a directory is absent, of another schema, or of a run that failed: with that run's message.
+// UserError when run.json of a directory is absent, of another schema, or of a run that failed: with that
+// run's message.
 void check_finished(const std::string& directory);
 
 class RunRecord {

@@ -12,11 +12,12 @@ namespace glint::report {
 
 struct SourceFile {
   std::string path;
-  bool is_known = false;            // whether its text could be read when the run ended
+  bool is_known = false;  // whether its text could be read when the run ended
   std::vector<std::string> lines;
 };
 
-// All programs of a run. ProgramListing::files of each is empty: ListedLine::file and ListedScope::file number `files`.
+// All programs of a run. ProgramListing::files of each is empty: ListedLine::file and ListedScope::file
+// number `files`.
 struct SourceMap {
   std::vector<SourceFile> files;
   std::vector<ProgramListing> programs;
@@ -30,7 +31,8 @@ SourceMap source_map(const std::vector<ProgramListing>& programs, const TextOf& 
 // The document (docs/profiling.md); the same map gives the same bytes.
 std::string source_json(const SourceMap& map);
 
-// What source_json() wrote. `name` stands in messages; UserError when it is something else, or its numbers name nothing.
+// What source_json() wrote. `name` stands in messages; UserError when it is something else, or its numbers
+// name nothing.
 SourceMap parse_source(const std::string& text, const std::string& name);
 
 // Lines without their ends; tabs are four blanks.

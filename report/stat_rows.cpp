@@ -118,7 +118,8 @@ class SumVisitor final : public PathVisitor {
 bool path_matches(std::string_view pattern, std::string_view path) {
   if (pattern.empty()) return path.empty();
   if (pattern[0] == '*')
-    return path_matches(pattern.substr(1), path) || (!path.empty() && path[0] != '.' && path_matches(pattern, path.substr(1)));
+    return path_matches(pattern.substr(1), path) ||
+           (!path.empty() && path[0] != '.' && path_matches(pattern, path.substr(1)));
   return !path.empty() && pattern[0] == path[0] && path_matches(pattern.substr(1), path.substr(1));
 }
 

@@ -27,7 +27,8 @@ std::vector<StatRow> stat_names(const stats::Group& root);
 // Whether a path is of `pattern`, in which '*' stands for any characters but '.'.
 bool path_matches(std::string_view pattern, std::string_view path);
 
-// The sum of the values whose path (as in StatRow, bins of histograms apart) matches `pattern`; absent when no path does.
+// The sum of the values whose path (as in StatRow, bins of histograms apart) matches `pattern`; absent when
+// no path does.
 std::optional<double> stat_sum(const stats::Group& root, const std::string& pattern);
 
 }  // namespace glint::report

@@ -50,7 +50,8 @@ std::string execution(const Summary& s) {
     rows.push_back({"IPC", fmt::format("{:.3f}", part(s.warp_instructions, t.cycles)),
                     "warp instructions a cycle, all cores"});
     if (t.warp_slots > 0)
-      rows.push_back({"warps a core", fmt::format("{} of {}", t.resident_warps, t.warp_slots), fmt::format("at most, limited by {}", t.residency_limit)});
+      rows.push_back({"warps a core", fmt::format("{} of {}", t.resident_warps, t.warp_slots),
+                      fmt::format("at most, limited by {}", t.residency_limit)});
   }
   rows.push_back({"warp instructions", with_thousands(s.warp_instructions), ""});
   rows.push_back({"SIMT efficiency", percent(s.simt_efficiency), "lanes that do work"});
@@ -74,7 +75,9 @@ std::string mix(const Summary& s, const Terminal& terminal) {
   return table(rows, "<>><>", " ");
 }
 
-std::string peaks(const TimingSummary& t) { return t.memory_peaks.empty() ? "" : " at best: " + t.memory_peaks + "\n"; }
+std::string peaks(const TimingSummary& t) {
+  return t.memory_peaks.empty() ? "" : " at best: " + t.memory_peaks + "\n";
+}
 
 std::string machine(const TimingSummary& t, const Terminal& terminal) {
   Rows rows;
@@ -117,7 +120,9 @@ std::string format_summary(const Summary& s, const Terminal& terminal) {
   if (!s.note.empty()) out += " " + s.note + "\n";
   out += "\n" + execution(s);
   if (!s.mix.empty()) out += "\n" + heading("Instruction mix", terminal) + "\n" + mix(s, terminal);
-  if (s.timing) out += "\n" + heading("Memory and RT unit", terminal) + "\n" + peaks(*s.timing) + machine(*s.timing, terminal);
+  if (s.timing)
+    out += "\n" + heading("Memory and RT unit", terminal) + "\n" + peaks(*s.timing) +
+           machine(*s.timing, terminal);
   out += "\n" + heading("Rays", terminal) + "\n" + rays(s);
   out += "\n" + heading("Simulation", terminal) + "\n" + speed(s);
   for (const std::string& file : s.files) out += " " + file + "\n";

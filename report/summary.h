@@ -25,9 +25,10 @@ struct HitRate {
 struct TimingSummary {
   uint64_t cycles = 0;  // core clock
   double clock_mhz = 0;
-  uint32_t resident_warps = 0, warp_slots = 0;  // of a core: those that fit of the launch, those that there are
-  std::string residency_limit;                  // what is used up first: "registers"
-  std::string memory_peaks;                     // what the memory system could do at best, in one line
+  uint32_t resident_warps = 0,
+           warp_slots = 0;      // of a core: those that fit of the launch, those that there are
+  std::string residency_limit;  // what is used up first: "registers"
+  std::string memory_peaks;     // what the memory system could do at best, in one line
   HitRate l1_rt, l1_shader, l2;
   std::optional<double> dram_utilisation;  // data-bus cycles / DRAM cycles
   std::optional<double> dram_efficiency;   // data-bus cycles / DRAM cycles with a request pending

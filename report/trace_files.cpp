@@ -3,7 +3,6 @@
 #include "report/trace_files.h"
 
 #include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 
 #include "report/gzip.h"
@@ -29,13 +28,21 @@ class Writer {
   }
 
  private:
-  static std::string quoted(const std::string& text) { return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace); }
+  static std::string quoted(const std::string& text) {
+    return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  }
   uint32_t memory() const { return kFirstCore + uint32_t(trace_.cores.size()); }
 
   void begin() {
-    const nlohmann::ordered_json about = {{"unit", "a microsecond of this trace is a cycle"}, {"begin", trace_.begin}, {"end", trace_.end},
-                                          {"asked_end", trace_.asked_end}, {"cut", trace_.is_cut()}, {"limit", trace_.limit}, {"events", num_events(trace_)},
-                                          {"counters_left_out", trace_.counters_left_out}, {"cores", trace_.cores.size()}};
+    const nlohmann::ordered_json about = {{"unit", "a microsecond of this trace is a cycle"},
+                                          {"begin", trace_.begin},
+                                          {"end", trace_.end},
+                                          {"asked_end", trace_.asked_end},
+                                          {"cut", trace_.is_cut()},
+                                          {"limit", trace_.limit},
+                                          {"events", num_events(trace_)},
+                                          {"counters_left_out", trace_.counters_left_out},
+                                          {"cores", trace_.cores.size()}};
     file_.add("{\"otherData\":" + about.dump() + ",\n\"displayTimeUnit\":\"ms\",\"traceEvents\":[");
   }
   void event(const std::string& text) {
@@ -44,12 +51,17 @@ class Writer {
     file_.add(text);
   }
   void name_process(uint32_t process, const std::string& name) {
-    event(fmt::format(R"({{"ph":"M","pid":{},"name":"process_name","args":{{"name":"{}"}}}})", process, name));
-    event(fmt::format(R"({{"ph":"M","pid":{},"name":"process_sort_index","args":{{"sort_index":{}}}}})", process, process));
+    event(
+        fmt::format(R"({{"ph":"M","pid":{},"name":"process_name","args":{{"name":"{}"}}}})", process, name));
+    event(fmt::format(R"({{"ph":"M","pid":{},"name":"process_sort_index","args":{{"sort_index":{}}}}})",
+                      process, process));
   }
   void name_thread(uint32_t process, uint32_t thread, const std::string& name) {
-    event(fmt::format(R"({{"ph":"M","pid":{},"tid":{},"name":"thread_name","args":{{"name":"{}"}}}})", process, thread, name));
-    event(fmt::format(R"({{"ph":"M","pid":{},"tid":{},"name":"thread_sort_index","args":{{"sort_index":{}}}}})", process, thread, thread));
+    event(fmt::format(R"({{"ph":"M","pid":{},"tid":{},"name":"thread_name","args":{{"name":"{}"}}}})",
+                      process, thread, name));
+    event(
+        fmt::format(R"({{"ph":"M","pid":{},"tid":{},"name":"thread_sort_index","args":{{"sort_index":{}}}}})",
+                    process, thread, thread));
   }
 
   void write_core(uint32_t core) {
@@ -59,35 +71,48 @@ class Writer {
     for (const TraceSlice& slice : trace_.cores[core]) {
       const bool in_rt = slice.kind == TraceKind::Rays;
       const uint32_t thread = slice.place + (in_rt ? kFirstPlace : kFirstWarpSlot);
-      if (thread != named) name_thread(process, thread, fmt::format("{} {:02}", in_rt ? "RT place" : "warp slot", slice.place));
+      if (thread != named)
+        name_thread(process, thread, fmt::format("{} {:02}", in_rt ? "RT place" : "warp slot", slice.place));
       named = thread;
-      event(fmt::format(R"({{"ph":"X","pid":{},"tid":{},"ts":{},"dur":{},{}}})", process, thread, slice.begin, slice.end - slice.begin, what(slice)));
+      event(fmt::format(R"({{"ph":"X","pid":{},"tid":{},"ts":{},"dur":{},{}}})", process, thread, slice.begin,
+                        slice.end - slice.begin, what(slice)));
     }
   }
   void write_channel(uint32_t channel) {
     if (trace_.channels[channel].empty()) return;
     name_thread(memory(), kFirstWarpSlot + channel, fmt::format("channel {:02}", channel));
     for (const TraceSlice& slice : trace_.channels[channel])
-      event(fmt::format(R"({{"ph":"X","pid":{},"tid":{},"ts":{},"dur":{},{}}})", memory(), kFirstWarpSlot + channel, slice.begin, slice.end - slice.begin, what(slice)));
+      event(fmt::format(R"({{"ph":"X","pid":{},"tid":{},"ts":{},"dur":{},{}}})", memory(),
+                        kFirstWarpSlot + channel, slice.begin, slice.end - slice.begin, what(slice)));
   }
   std::string what(const TraceSlice& slice) const {
     switch (slice.kind) {
-      case TraceKind::Warp: return fmt::format(R"("cat":"warp","name":"warp {}","args":{{"warp":{}}})", slice.value, slice.value);
+      case TraceKind::Warp:
+        return fmt::format(R"("cat":"warp","name":"warp {}","args":{{"warp":{}}})", slice.value, slice.value);
       case TraceKind::Stage:
-        return fmt::format(R"("cat":"stage","name":{},"args":{{"shader":{}}})", quoted(trace_.stages[slice.value]), quoted(trace_.shaders[slice.value]));
-      case TraceKind::State: return fmt::format(R"("cat":"state","name":"{}")", trace_.states[slice.value]);
-      case TraceKind::Channel: return fmt::format(R"("cat":"channel","name":"requests","args":{{"requests":{}}})", slice.value);
-      case TraceKind::Rays: break;
+        return fmt::format(R"("cat":"stage","name":{},"args":{{"shader":{}}})",
+                           quoted(trace_.stages[slice.value]), quoted(trace_.shaders[slice.value]));
+      case TraceKind::State:
+        return fmt::format(R"("cat":"state","name":"{}")", trace_.states[slice.value]);
+      case TraceKind::Channel:
+        return fmt::format(R"("cat":"channel","name":"requests","args":{{"requests":{}}})", slice.value);
+      case TraceKind::Rays:
+        break;
     }
-    return fmt::format(R"("cat":"rays","name":"rays","args":{{"rays":{},"warp_slot":{},"nodes":{},"triangle_tests":{}}})", slice.value, slice.args[0], slice.args[1],
-                       slice.args[2]);
+    return fmt::format(
+        R"("cat":"rays","name":"rays","args":{{"rays":{},"warp_slot":{},"nodes":{},"triangle_tests":{}}})",
+        slice.value, slice.args[0], slice.args[1], slice.args[2]);
   }
   void write_counter(const TraceCounter& counter) {
     const bool is_channel = counter.of == TraceCounter::Of::Channel;
-    const uint32_t process = counter.of == TraceCounter::Of::Gpu ? kGpuProcess : is_channel ? memory() : kFirstCore + counter.index;
-    const std::string name = is_channel ? fmt::format("channel {}: {}", counter.index, counter.name) : counter.name;
+    const uint32_t process = counter.of == TraceCounter::Of::Gpu ? kGpuProcess
+                             : is_channel                        ? memory()
+                                                                 : kFirstCore + counter.index;
+    const std::string name =
+        is_channel ? fmt::format("channel {}: {}", counter.index, counter.name) : counter.name;
     for (const auto& [cycle, value] : counter.values)
-      event(fmt::format(R"({{"ph":"C","pid":{},"ts":{},"name":"{}","args":{{"{}":{}}}}})", process, cycle, name, counter.unit, value));
+      event(fmt::format(R"({{"ph":"C","pid":{},"ts":{},"name":"{}","args":{{"{}":{}}}}})", process, cycle,
+                        name, counter.unit, value));
   }
 
   const TraceTable& trace_;
@@ -105,6 +130,8 @@ uint64_t num_events(const TraceTable& trace) {
   return events;
 }
 
-std::string trace_json_gz(const TraceTable& trace) { return Writer(trace).write(); }
+std::string trace_json_gz(const TraceTable& trace) {
+  return Writer(trace).write();
+}
 
 }  // namespace glint::report

@@ -1,8 +1,7 @@
 // Reading a window of a trace back for the timeline of the report.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "base/diagnostics.h"
@@ -16,7 +15,9 @@ using Json = nlohmann::json;
 
 constexpr uint32_t kFirstCore = 2;  // process of core 0
 
-UserError damaged(const std::string& path) { return UserError({path}, "this is no trace of a run", "`glint run ... --trace` writes one"); }
+UserError damaged(const std::string& path) {
+  return UserError({path}, "this is no trace of a run", "`glint run ... --trace` writes one");
+}
 
 // The line's object without what joins it to the next.
 Json parsed(std::string_view line) {
@@ -26,7 +27,8 @@ Json parsed(std::string_view line) {
 
 void read_head(std::string_view line, const std::string& path, Timeline& timeline) {
   const Json head = parsed(std::string(line.substr(0, line.rfind(','))) + "}");
-  if (!head.is_object() || !head.contains("otherData") || !head["otherData"].contains("begin")) throw damaged(path);
+  if (!head.is_object() || !head.contains("otherData") || !head["otherData"].contains("begin"))
+    throw damaged(path);
   const Json& about = head["otherData"];
   timeline.trace_begin = about["begin"];
   timeline.trace_end = about["end"];
@@ -42,11 +44,13 @@ Timeline::Slice slice_of(const Json& event) {
 }
 
 // The cycles around `middle` that no more than `most` slices overlap.
-std::pair<Cycle, Cycle> fitting(const std::vector<Timeline::Slice>& slices, Cycle first, Cycle last, size_t most) {
+std::pair<Cycle, Cycle> fitting(const std::vector<Timeline::Slice>& slices, Cycle first, Cycle last,
+                                size_t most) {
   const Cycle middle = first + (last - first) / 2;
   const auto within = [&](Cycle half) {
     const Cycle begin = middle - std::min(half, middle - first), end = std::min(middle + half, last);
-    return size_t(std::count_if(slices.begin(), slices.end(), [&](const auto& s) { return s.begin < end && s.begin + s.length > begin; }));
+    return size_t(std::count_if(slices.begin(), slices.end(),
+                                [&](const auto& s) { return s.begin < end && s.begin + s.length > begin; }));
   };
   Cycle low = 1, high = std::max<Cycle>(last - middle, 1);  // within(low) is taken to fit
   if (within(high) <= most) return {first, last};
@@ -58,7 +62,8 @@ std::pair<Cycle, Cycle> fitting(const std::vector<Timeline::Slice>& slices, Cycl
 void clip(Timeline& timeline) {
   std::vector<Timeline::Slice> kept;
   for (Timeline::Slice& slice : timeline.slices) {
-    const Cycle end = std::min(slice.begin + slice.length, timeline.end), begin = std::max(slice.begin, timeline.begin);
+    const Cycle end = std::min(slice.begin + slice.length, timeline.end),
+                begin = std::max(slice.begin, timeline.begin);
     if (begin >= end) continue;
     slice.begin = begin;
     slice.length = end - begin;
@@ -94,16 +99,26 @@ Timeline read_timeline(const std::string& path, const TimelineRequest& request) 
     return true;
   });
   if (!has_head) throw damaged(path);
-  if (request.core >= timeline.cores) throw UserError({path}, fmt::format("has no SM {}", request.core), fmt::format("its SMs are 0 to {}", timeline.cores - 1));
+  if (request.core >= timeline.cores)
+    throw UserError({path}, fmt::format("has no SM {}", request.core),
+                    fmt::format("its SMs are 0 to {}", timeline.cores - 1));
   const Cycle first = timeline.trace_begin, last = timeline.trace_end;
   if (request.end && (request.begin >= last || request.end <= first))
-    throw UserError({path}, fmt::format("has nothing of cycles {} to {}", request.begin, request.end), fmt::format("it shows cycles {} to {}", first, last));
-  if (request.end) std::tie(timeline.begin, timeline.end) = std::pair(std::max(request.begin, first), std::min(request.end, last));
-  else std::tie(timeline.begin, timeline.end) = fitting(timeline.slices, first, last, request.most_slices);
+    throw UserError({path}, fmt::format("has nothing of cycles {} to {}", request.begin, request.end),
+                    fmt::format("it shows cycles {} to {}", first, last));
+  if (request.end)
+    std::tie(timeline.begin, timeline.end) =
+        std::pair(std::max(request.begin, first), std::min(request.end, last));
+  else
+    std::tie(timeline.begin, timeline.end) = fitting(timeline.slices, first, last, request.most_slices);
   clip(timeline);
   bound(timeline, request.most_slices);
-  const auto depth = [](const Timeline::Slice& s) { return s.kind == "warp" ? 0 : s.kind == "stage" ? 1 : 2; };
-  std::stable_sort(timeline.slices.begin(), timeline.slices.end(), [&](const auto& a, const auto& b) { return std::pair(a.begin, depth(a)) < std::pair(b.begin, depth(b)); });
+  const auto depth = [](const Timeline::Slice& s) {
+    return s.kind == "warp" ? 0 : s.kind == "stage" ? 1 : 2;
+  };
+  std::stable_sort(timeline.slices.begin(), timeline.slices.end(), [&](const auto& a, const auto& b) {
+    return std::pair(a.begin, depth(a)) < std::pair(b.begin, depth(b));
+  });
   return timeline;
 }
 

@@ -9,7 +9,8 @@
 
 namespace glint::report {
 
-// A line `name = value` of a log. `formula` "" = Glint has no such number, `note` says why; else what differs, if anything.
+// A line `name = value` of a log. `formula` "" = Glint has no such number, `note` says why; else what
+// differs, if anything.
 struct PeerStat {
   std::string_view name, formula, note;
 };

@@ -11,7 +11,8 @@ namespace glint::rt {
 
 // Contract (tests/contract/rt_any_hit_mode_test.cpp):
 //  - without a table, rays stop at each candidate and present() is never called;
-//  - present() takes a candidate out of the table of at least one of the lanes, of none more than one, and of no other lane;
+//  - present() takes a candidate out of the table of at least one of the lanes, of none more than one, and of
+//  no other lane;
 //  - the choice depends on the arguments alone: a mode has no state and serves all cores.
 class AnyHitMode {
  public:
@@ -23,7 +24,8 @@ class AnyHitMode {
   virtual ~AnyHitMode() = default;
   // Candidates that a ray's table holds, at most kMaxTableRows; 0: no table.
   virtual uint32_t table_rows() const = 0;
-  // Of the rays `lanes`, all Gathered: chooses who runs which candidate next, and rt::present()s it. The others wait.
+  // Of the rays `lanes`, all Gathered: chooses who runs which candidate next, and rt::present()s it. The
+  // others wait.
   virtual void present(RayState* rays, LaneMask lanes, const ShaderOf& shader_of) const = 0;
 };
 

@@ -5,13 +5,16 @@
 
 namespace glint::rt {
 
-// Ize 2013, "Robust BVH Ray Traversal": each slab distance carries at most 1.5 ulp of its own size and the far one must be
-// widened by 2 ulp. Choice: 8 ulp, on both ends, so that a box is also never entered later than its own
-// triangles are hit by the sheared test, whose distance rounds on its own: ties at equal t then do not depend on the order of visits.
+// Ize 2013, "Robust BVH Ray Traversal": each slab distance carries at most 1.5 ulp of its own size and the
+// far one must be widened by 2 ulp. Choice: 8 ulp, on both ends, so that a box is also never entered later
+// than its own triangles are hit by the sheared test, whose distance rounds on its own: ties at equal t then
+// do not depend on the order of visits.
 inline constexpr float kSlabShrink = 1 - 8 * 0x1p-24f, kSlabGrow = 1 + 8 * 0x1p-23f;
 
-// One slab: the planes the ray meets first and last. Not-a-number (0 * inf: the ray lies in the plane) leaves the interval as it is.
-inline void clip_slab(float near_plane, float far_plane, float origin, float inverse, float& t_near, float& t_far) {
+// One slab: the planes the ray meets first and last. Not-a-number (0 * inf: the ray lies in the plane) leaves
+// the interval as it is.
+inline void clip_slab(float near_plane, float far_plane, float origin, float inverse, float& t_near,
+                      float& t_far) {
   const float enter = (near_plane - origin) * inverse;
   const float leave = (far_plane - origin) * inverse;
   t_near = enter > t_near ? enter : t_near;
@@ -19,7 +22,11 @@ inline void clip_slab(float near_plane, float far_plane, float origin, float inv
 }
 
 // Widens [t_near, t_far] outwards whatever the signs.
-inline float widen_near(float t) { return t * (t > 0 ? kSlabShrink : kSlabGrow); }
-inline float widen_far(float t) { return t * (t > 0 ? kSlabGrow : kSlabShrink); }
+inline float widen_near(float t) {
+  return t * (t > 0 ? kSlabShrink : kSlabGrow);
+}
+inline float widen_far(float t) {
+  return t * (t > 0 ? kSlabGrow : kSlabShrink);
+}
 
 }  // namespace glint::rt

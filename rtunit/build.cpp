@@ -44,7 +44,8 @@ bool is_finite(const Bounds& b) {
          std::all_of(b.high.begin(), b.high.end(), [](float x) { return std::isfinite(x); });
 }
 double half_area(const Bounds& b) {
-  const double x = double(b.high[0]) - b.low[0], y = double(b.high[1]) - b.low[1], z = double(b.high[2]) - b.low[2];
+  const double x = double(b.high[0]) - b.low[0], y = double(b.high[1]) - b.low[1],
+               z = double(b.high[2]) - b.low[2];
   return x * y + y * z + z * x;
 }
 
@@ -74,8 +75,8 @@ std::optional<Triangle> triangle_at(const Geometry& g, uint64_t index) {
   for (size_t corner = 0; corner < 3; ++corner) {
     const uint64_t vertex = g.indices.empty() ? 3 * index + corner : g.indices[3 * index + corner];
     if (vertex * g.stride + 12 > g.positions.size())
-      throw UserError(fmt::format("triangle {} names vertex {}, and there are only {} bytes of vertices", index, vertex,
-                                  g.positions.size()));
+      throw UserError(fmt::format("triangle {} names vertex {}, and there are only {} bytes of vertices",
+                                  index, vertex, g.positions.size()));
     std::memcpy(&out[corner], &g.positions[vertex * g.stride], 12);
     if (g.transform != kIdentity) out[corner] = transformed(g.transform, out[corner]);
     for (float x : out[corner])
@@ -85,7 +86,8 @@ std::optional<Triangle> triangle_at(const Geometry& g, uint64_t index) {
   return out;
 }
 
-// Adds `second` to a leaf that holds `first` when they share two corners and the common box is no larger than both.
+// Adds `second` to a leaf that holds `first` when they share two corners and the common box is no larger than
+// both.
 bool try_pair(const Triangle& first, const Triangle& second, TriangleLeaf& leaf) {
   Bounds both = bounds_of(first);
   extend(both, bounds_of(second));
@@ -134,8 +136,10 @@ void add_triangles(const Geometry& g, uint32_t geometry, bool pair, Leaves& leav
 void add_aabbs(const Geometry& g, uint32_t geometry, Leaves& leaves) {
   for (size_t i = 0; i < g.aabbs.size(); ++i) {
     const Bounds& box = g.aabbs[i];
-    // Vulkan: inactive when the first coordinate is not a number; Choice: also when any is infinite or the box inside out
-    if (!is_finite(box) || box.low[0] > box.high[0] || box.low[1] > box.high[1] || box.low[2] > box.high[2]) continue;
+    // Vulkan: inactive when the first coordinate is not a number; Choice: also when any is infinite or the
+    // box inside out
+    if (!is_finite(box) || box.low[0] > box.high[0] || box.low[1] > box.high[1] || box.low[2] > box.high[2])
+      continue;
     ProceduralLeaf leaf;
     leaf.box = box;
     leaf.geometry = geometry;
@@ -150,7 +154,8 @@ void add_aabbs(const Geometry& g, uint32_t geometry, Leaves& leaves) {
 void measure(const BuildTree& tree, const Leaves& leaves, StructureInfo& info) {
   std::vector<uint32_t> need(tree.nodes.size()), depth(tree.nodes.size());
   std::vector<uint32_t> need_of_block(leaves.bytes.size() / kBlockBytes + 1);
-  for (size_t i = 0; i < leaves.items.size(); ++i) need_of_block[leaves.items[i].leaf_block] = leaves.stack_need[i];
+  for (size_t i = 0; i < leaves.items.size(); ++i)
+    need_of_block[leaves.items[i].leaf_block] = leaves.stack_need[i];
   for (size_t n = tree.nodes.size(); n-- > 0;) {
     const BuildTree::Node& node = tree.nodes[n];
     if (node.kind != NodeKind::Internal) {
@@ -178,15 +183,17 @@ EncodedBottom encode(const std::string& name, uint8_t level, Leaves& leaves, con
   StructureInfo info;
   measure(tree, leaves, info);
   if (info.stack_need > kStackEntries)
-    throw UserError(fmt::format("'{}': a ray may need {} stack entries and has {}; the tree is too unbalanced", name,
-                                info.stack_need, kStackEntries));
+    throw UserError(
+        fmt::format("'{}': a ray may need {} stack entries and has {}; the tree is too unbalanced", name,
+                    info.stack_need, kStackEntries));
   info.bounds = tree.nodes[0].bounds;
   info.primitives = leaves.primitives;
   tree.leaf_bytes = std::move(leaves.bytes);
   std::vector<std::byte> bytes = format->encode(tree);
   info.bytes = bytes.size();
   info.format = format->id();
-  if (info.bytes > kMostBytes) throw UserError(fmt::format("'{}': {} bytes; a structure has at most {}", name, info.bytes, kMostBytes));
+  if (info.bytes > kMostBytes)
+    throw UserError(fmt::format("'{}': {} bytes; a structure has at most {}", name, info.bytes, kMostBytes));
   StructureHeader header;
   header.format = uint8_t(format->id());
   header.level = level;
@@ -221,8 +228,8 @@ std::optional<std::array<float, 12>> inverse(const std::array<float, 12>& m) {
   return out;
 }
 
-// World box of a transformed box, padded by what the rounding of the object-space ray may move it: not at all without a
-// transform, where a pad could cost a whole step of a node's planes.
+// World box of a transformed box, padded by what the rounding of the object-space ray may move it: not at all
+// without a transform, where a pad could cost a whole step of a node's planes.
 Bounds world_bounds(const std::array<float, 12>& m, const Bounds& box) {
   if (m == kIdentity) return box;
   constexpr double kPad = 8 * 0x1p-24;
@@ -276,14 +283,16 @@ StructureInfo build_bottom(mem::AddressSpace& memory, const std::string& name, c
   return place(memory, name, encode_bottom(name, input, options));
 }
 
-StructureInfo build_top(mem::AddressSpace& memory, const std::string& name, std::span<const Instance> instances,
-                        std::span<const StructureInfo> bottoms, const BuildOptions& options) {
+StructureInfo build_top(mem::AddressSpace& memory, const std::string& name,
+                        std::span<const Instance> instances, std::span<const StructureInfo> bottoms,
+                        const BuildOptions& options) {
   const FormatId format = options.format.make({})->id();
   Leaves leaves;
   for (size_t i = 0; i < instances.size(); ++i) {
     const Instance& instance = instances[i];
     if (instance.bottom >= bottoms.size())
-      throw UserError(fmt::format("instance {} names bottom level {} of {}", i, instance.bottom, bottoms.size()));
+      throw UserError(
+          fmt::format("instance {} names bottom level {} of {}", i, instance.bottom, bottoms.size()));
     const StructureInfo& bottom = bottoms[instance.bottom];
     if (bottom.format != format)
       throw UserError(fmt::format("'{}': bottom level {} has another node format", name, instance.bottom));

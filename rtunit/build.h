@@ -15,17 +15,17 @@ namespace glint::rt {
 
 inline constexpr std::array<float, 12> kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  // row-major 3x4
 
-// Triangles (positions, and indices unless empty: then three positions a triangle) or AABBs. The spans are only read during
-// build_bottom(). Triangles with a not-a-number corner are inactive (Vulkan); so are those of no area, which no
-// ray can hit. Inactive ones keep their primitive index.
+// Triangles (positions, and indices unless empty: then three positions a triangle) or AABBs. The spans are
+// only read during build_bottom(). Triangles with a not-a-number corner are inactive (Vulkan); so are those
+// of no area, which no ray can hit. Inactive ones keep their primitive index.
 struct Geometry {
-  std::span<const std::byte> positions;    // float3 at multiples of `stride` bytes
+  std::span<const std::byte> positions;  // float3 at multiples of `stride` bytes
   uint32_t stride = 12;
   std::span<const uint32_t> indices;
-  std::span<const Bounds> aabbs;           // not empty: an AABB geometry
+  std::span<const Bounds> aabbs;                // not empty: an AABB geometry
   std::array<float, 12> transform = kIdentity;  // of the triangles, applied at build
   bool opaque = true;
-  bool no_duplicate_any_hit = false;       // always so here: every primitive lies in one leaf
+  bool no_duplicate_any_hit = false;  // always so here: every primitive lies in one leaf
 };
 struct BottomLevel {
   std::vector<Geometry> geometries;
@@ -33,11 +33,11 @@ struct BottomLevel {
 
 struct Instance {
   std::array<float, 12> transform = kIdentity;  // object to world, row-major 3x4
-  uint32_t custom_index = 0;               // 24 bits
-  uint32_t mask = 0xff;                    // 8 bits
-  uint32_t sbt_offset = 0;                 // 24 bits
-  uint32_t flags = 0;                      // instance_flag::*
-  uint32_t bottom = 0;                     // index of its bottom level
+  uint32_t custom_index = 0;                    // 24 bits
+  uint32_t mask = 0xff;                         // 8 bits
+  uint32_t sbt_offset = 0;                      // 24 bits
+  uint32_t flags = 0;                           // instance_flag::*
+  uint32_t bottom = 0;                          // index of its bottom level
 };
 
 // The keys of [bvh] in a configuration.
@@ -45,22 +45,24 @@ struct BuildOptions {
   PolicyChoice<NodeFormat> format{"bvh6"};  // Vulkan-Sim 2.0
   bool pair_triangles = true;
   static constexpr auto params() {
-    return std::tuple{policy(&BuildOptions::format, "format", "How internal nodes are written, and how many children they have."),
-                      flag(&BuildOptions::pair_triangles, "pair_triangles",
-                           "Two neighbouring triangles of a geometry share a leaf where that costs no area.")};
+    return std::tuple{
+        policy(&BuildOptions::format, "format",
+               "How internal nodes are written, and how many children they have."),
+        flag(&BuildOptions::pair_triangles, "pair_triangles",
+             "Two neighbouring triangles of a geometry share a leaf where that costs no area.")};
   }
 };
 
 struct StructureInfo {
-  Address address = 0;        // virtual, of the header: what descriptors and rays hold
+  Address address = 0;  // virtual, of the header: what descriptors and rays hold
   Bounds bounds{};
   uint64_t bytes = 0;
   FormatId format = FormatId::Bvh6;
-  uint32_t nodes = 0;         // internal
+  uint32_t nodes = 0;  // internal
   uint32_t leaves = 0;
-  uint32_t depth = 0;         // internal nodes from root to deepest leaf
-  uint64_t primitives = 0;    // active triangles and AABBs, or active instances
-  uint32_t stack_need = 0;    // stack entries that the worst ray needs, instances' bottom levels included
+  uint32_t depth = 0;       // internal nodes from root to deepest leaf
+  uint64_t primitives = 0;  // active triangles and AABBs, or active instances
+  uint32_t stack_need = 0;  // stack entries that the worst ray needs, instances' bottom levels included
 };
 
 // A bottom level as bytes that may lie anywhere: all that is left of its geometry. `info.address` is not set.
@@ -69,16 +71,19 @@ struct EncodedBottom {
   std::vector<std::byte> bytes;
 };
 // UserError when an index is out of range or the tree is too deep for the ray stack.
-EncodedBottom encode_bottom(const std::string& name, const BottomLevel& input, const BuildOptions& options = {});
+EncodedBottom encode_bottom(const std::string& name, const BottomLevel& input,
+                            const BuildOptions& options = {});
 StructureInfo place(mem::AddressSpace& memory, const std::string& name, const EncodedBottom& bottom);
 
 // Both at once.
 StructureInfo build_bottom(mem::AddressSpace& memory, const std::string& name, const BottomLevel& input,
                            const BuildOptions& options = {});
 
-// UserError when a transform cannot be inverted, an index is out of range, a bottom level has another node format or
-// the trees are too deep for the ray stack. Instances of empty bottom levels are inactive and keep their index.
-StructureInfo build_top(mem::AddressSpace& memory, const std::string& name, std::span<const Instance> instances,
-                        std::span<const StructureInfo> bottoms, const BuildOptions& options = {});
+// UserError when a transform cannot be inverted, an index is out of range, a bottom level has another node
+// format or the trees are too deep for the ray stack. Instances of empty bottom levels are inactive and keep
+// their index.
+StructureInfo build_top(mem::AddressSpace& memory, const std::string& name,
+                        std::span<const Instance> instances, std::span<const StructureInfo> bottoms,
+                        const BuildOptions& options = {});
 
 }  // namespace glint::rt

@@ -30,10 +30,13 @@ void* create_node(RTCThreadLocalAllocator allocator, unsigned count, void*) {
   return node;
 }
 void set_children(void* node, void** children, unsigned count, void*) {
-  for (unsigned i = 0; i < count; ++i) static_cast<RawNode*>(node)->child[i] = static_cast<RawNode*>(children[i]);
+  for (unsigned i = 0; i < count; ++i)
+    static_cast<RawNode*>(node)->child[i] = static_cast<RawNode*>(children[i]);
 }
-void set_bounds(void*, const RTCBounds**, unsigned, void*) {}  // recomputed from the leaves below
-void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, size_t count, void*) {
+void set_bounds(void*, const RTCBounds**, unsigned, void*) {
+}  // recomputed from the leaves below
+void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, size_t count,
+                  void*) {
   GLINT_CHECK_EQ(count, size_t{1});
   auto* node = new (rtcThreadLocalAlloc(allocator, sizeof(RawNode), alignof(RawNode))) RawNode;
   node->item = primitives[0].primID;
@@ -114,8 +117,9 @@ void build_tree(std::span<const BuildItem> items, uint32_t width, BuildTree& tre
   const RTCBVH bvh = rtcNewBVH(device);
   std::vector<RTCBuildPrimitive> primitives = primitives_of(items);
   RTCBuildArguments arguments = rtcDefaultBuildArguments();
-  arguments.buildQuality = RTC_BUILD_QUALITY_MEDIUM;  // binned SAH without spatial splits: each primitive once
-  arguments.maxBranchingFactor = width;               // opens the child of largest area until the node is full
+  arguments.buildQuality =
+      RTC_BUILD_QUALITY_MEDIUM;          // binned SAH without spatial splits: each primitive once
+  arguments.maxBranchingFactor = width;  // opens the child of largest area until the node is full
   arguments.maxDepth = kMaxDepth;
   arguments.maxLeafSize = 1;
   arguments.bvh = bvh;
@@ -126,7 +130,8 @@ void build_tree(std::span<const BuildItem> items, uint32_t width, BuildTree& tre
   arguments.setNodeBounds = set_bounds;
   arguments.createLeaf = create_leaf;
   const void* root = rtcBuildBVH(&arguments);
-  GLINT_CHECK(root, "Embree cannot build a tree of {} leaves: error {}", items.size(), int(rtcGetDeviceError(device)));
+  GLINT_CHECK(root, "Embree cannot build a tree of {} leaves: error {}", items.size(),
+              int(rtcGetDeviceError(device)));
   flatten(static_cast<const RawNode*>(root), items, tree);
   rtcReleaseBVH(bvh);
   rtcReleaseDevice(device);

@@ -14,8 +14,8 @@ struct BuildItem {
   uint32_t leaf_block = 0;
 };
 
-// Fills tree.nodes and tree.children, parents before children; one leaf an item, at most `width` children a node, the root
-// internal. The same items give the same tree.
+// Fills tree.nodes and tree.children, parents before children; one leaf an item, at most `width` children a
+// node, the root internal. The same items give the same tree.
 void build_tree(std::span<const BuildItem> items, uint32_t width, BuildTree& tree);
 
 Bounds empty_bounds();

@@ -1,5 +1,5 @@
-// The candidates that a ray has met and no shader has decided: its column of a warp's table in deferred any-hit mode.
-// SPDX-License-Identifier: Apache-2.0
+// The candidates that a ray has met and no shader has decided: its column of a warp's table in deferred
+// any-hit mode. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
 #include <cstdint>
@@ -17,11 +17,12 @@ struct Candidate {
 };
 
 inline constexpr uint32_t kMaxTableRows = 32;  // bits of a mask
-// Choice: an entry is a sector of eight words: t, two weights, kind and flags, instance leaf, geometry, primitive, record.
+// Choice: an entry is a sector of eight words: t, two weights, kind and flags, instance leaf, geometry,
+// primitive, record.
 inline constexpr uint32_t kTableEntryBytes = 32;
 
-// Where entries lie in memory: row r of lane l of warp slot w at base + ((w * rows + r) * 32 + l) * 32, so that lanes
-// that fill the same row share lines.
+// Where entries lie in memory: row r of lane l of warp slot w at base + ((w * rows + r) * 32 + l) * 32, so
+// that lanes that fill the same row share lines.
 struct TableLayout {
   Address base = 0;   // physical, of this core
   uint32_t rows = 0;  // 0: no tables
@@ -36,9 +37,9 @@ struct CandidateTable {
   uint32_t used = 0;           // bit r: row r holds a candidate
   uint32_t unwritten = 0;      // bit r: the RT unit has not sent it to memory yet
   // Counted since clear().
-  uint32_t gathered = 0;       // candidates put in
-  uint32_t dropped = 0;        // taken out undecided, because the ray had ended before them
-  uint32_t overflows = 0;      // times the traversal stopped because the table was full
+  uint32_t gathered = 0;   // candidates put in
+  uint32_t dropped = 0;    // taken out undecided, because the ray had ended before them
+  uint32_t overflows = 0;  // times the traversal stopped because the table was full
 
   void clear() { used = unwritten = gathered = dropped = overflows = 0; }
   bool is_full() const { return uint32_t(std::popcount(used)) == row.size(); }

@@ -15,8 +15,8 @@ class Coalescer {
  public:
   struct Context {};
   virtual ~Coalescer() = default;
-  // The warps, as a mask of their slots, whose lanes that want the same node share the fetch made for a lane of `picked`.
-  // 0: no lane shares it, of its own warp neither.
+  // The warps, as a mask of their slots, whose lanes that want the same node share the fetch made for a lane
+  // of `picked`. 0: no lane shares it, of its own warp neither.
   virtual uint64_t partners(uint32_t picked, std::span<const WarpView> warps) const = 0;
 };
 

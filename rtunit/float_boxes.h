@@ -34,7 +34,8 @@ struct FloatBoxes {
       const float* near_plane = backward ? node.high[a] : node.low[a];
       const float* far_plane = backward ? node.low[a] : node.high[a];
       for (int i = 0; i < kWidth; ++i)
-        clip_slab(near_plane[i], far_plane[i], space.origin[a], space.inverse_direction[a], t_near[i], t_far[i]);
+        clip_slab(near_plane[i], far_plane[i], space.origin[a], space.inverse_direction[a], t_near[i],
+                  t_far[i]);
     }
     int hits = 0;
     for (int i = 0; i < kWidth && node.child[i] != kNone; ++i) {
@@ -59,7 +60,8 @@ struct FloatBoxes {
       for (uint32_t index : children_of(tree, tree.nodes[n])) {
         const BuildTree::Node& child = tree.nodes[index];
         node.child[i] = node_ref(layout.block[index], child.kind);
-        for (size_t a = 0; a < 3; ++a) node.low[a][i] = child.bounds.low[a], node.high[a][i] = child.bounds.high[a];
+        for (size_t a = 0; a < 3; ++a)
+          node.low[a][i] = child.bounds.low[a], node.high[a][i] = child.bounds.high[a];
         ++i;
       }
       std::memcpy(&out[size_t(layout.block[n]) * kBlockBytes], &node, sizeof node);

@@ -24,7 +24,8 @@ inline std::vector<Bounds> bounds_of_children(const BuildTree& tree, const Build
   return out;
 }
 
-// Calls place(child) for every child of every internal node: siblings together, the first child's subtree next.
+// Calls place(child) for every child of every internal node: siblings together, the first child's subtree
+// next.
 template <class Place>
 void depth_first(const BuildTree& tree, Place place) {
   std::vector<uint32_t> stack{0}, inner;
@@ -52,8 +53,8 @@ inline Layout mixed_layout(const BuildTree& tree, uint32_t node_bytes) {
   return out;
 }
 
-// Depth first, internal nodes packed; behind them the leaves, at multiples of their own 64 bytes. Internal children of a
-// node follow each other without gaps, and so do its leaves.
+// Depth first, internal nodes packed; behind them the leaves, at multiples of their own 64 bytes. Internal
+// children of a node follow each other without gaps, and so do its leaves.
 inline Layout split_layout(const BuildTree& tree, uint32_t node_bytes) {
   Layout out{std::vector<uint32_t>(tree.nodes.size()), 0};
   out.block[0] = kRootBlock;
@@ -77,8 +78,8 @@ inline std::vector<std::byte> bytes_with_leaves(const BuildTree& tree, const Lay
   for (size_t n = 0; n < tree.nodes.size(); ++n) {
     const BuildTree::Node& node = tree.nodes[n];
     if (node.kind == NodeKind::Internal) continue;
-    std::memcpy(&out[size_t(layout.block[n]) * kBlockBytes], &tree.leaf_bytes[size_t(node.leaf_block) * kBlockBytes],
-                leaf_bytes(node.kind));
+    std::memcpy(&out[size_t(layout.block[n]) * kBlockBytes],
+                &tree.leaf_bytes[size_t(node.leaf_block) * kBlockBytes], leaf_bytes(node.kind));
   }
   return out;
 }

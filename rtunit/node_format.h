@@ -1,8 +1,8 @@
 // How internal nodes are written: the interface between the builder and a node format.
 //
-// A format is one file pair in rtunit/formats/: `<name>.cpp` encodes and is registered here; `<name>.h` holds a struct
-// with kWidth, kNodeBytes and the static test() that traversal is compiled for (traversal.cpp lists it by FormatId).
-// SPDX-License-Identifier: Apache-2.0
+// A format is one file pair in rtunit/formats/: `<name>.cpp` encodes and is registered here; `<name>.h` holds
+// a struct with kWidth, kNodeBytes and the static test() that traversal is compiled for (traversal.cpp lists
+// it by FormatId). SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -14,7 +14,8 @@
 
 namespace glint::rt {
 
-// A tree as the builder hands it over. Node 0 is the root and internal; leaves point to their bytes in `leaf_bytes`.
+// A tree as the builder hands it over. Node 0 is the root and internal; leaves point to their bytes in
+// `leaf_bytes`.
 struct BuildTree {
   struct Node {
     Bounds bounds;
@@ -44,9 +45,11 @@ class NodeFormat {
   virtual ~NodeFormat() = default;
   virtual FormatId id() const = 0;
   virtual uint32_t width() const = 0;  // most children of a node, at least 2
-  virtual uint32_t node_bytes() const = 0;  // of an internal node: what a ray fetches; a multiple of kBlockBytes
+  virtual uint32_t node_bytes()
+      const = 0;  // of an internal node: what a ray fetches; a multiple of kBlockBytes
   virtual std::vector<std::byte> encode(const BuildTree& tree) const = 0;
-  // Children of the internal node whose bytes start at `node`; returns how many were written to `out` (>= width() long).
+  // Children of the internal node whose bytes start at `node`; returns how many were written to `out` (>=
+  // width() long).
   virtual uint32_t decode(const std::byte* node, std::span<DecodedChild> out) const = 0;
 };
 

@@ -1,5 +1,5 @@
-// Boxes in 8 bits a plane: steps of a power of two from an origin, an axis at a time (Ylitie et al. 2017, section 3.1).
-// SPDX-License-Identifier: Apache-2.0
+// Boxes in 8 bits a plane: steps of a power of two from an origin, an axis at a time (Ylitie et al. 2017,
+// section 3.1). SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
 #include <cmath>
@@ -12,7 +12,8 @@
 
 namespace glint::rt {
 
-// What turns bytes into planes: plane q lies at origin[axis] + q * 2^(exponent[axis] - 127), rounded to float once.
+// What turns bytes into planes: plane q lies at origin[axis] + q * 2^(exponent[axis] - 127), rounded to float
+// once.
 struct Grid {
   std::array<float, 3> origin{};
   std::array<uint8_t, 3> exponent{};  // biased as in a float, 1..254
@@ -27,7 +28,8 @@ struct QuantisedPlanes {
 };
 
 // With the grid's origin and exponent as they are; false when a plane does not fit in 8 bits.
-inline bool quantise_with_step(std::span<const Bounds> boxes, size_t axis, const Grid& grid, QuantisedPlanes planes) {
+inline bool quantise_with_step(std::span<const Bounds> boxes, size_t axis, const Grid& grid,
+                               QuantisedPlanes planes) {
   const float origin = grid.origin[axis], step = grid.step(axis);
   for (size_t i = 0; i < boxes.size(); ++i) {
     const Bounds& box = boxes[i];

@@ -11,16 +11,17 @@
 
 namespace glint::rt {
 
-// Of a format: kWidth; Node with origin, exponent, num_children, kind, low and high; and References, whose next(i) is the
-// reference of child i, asked for in order.
+// Of a format: kWidth; Node with origin, exponent, num_children, kind, low and high; and References, whose
+// next(i) is the reference of child i, asked for in order.
 template <class Format>
 struct QuantisedBoxes {
-  // Two SIMD registers of single precision: planes of missing children are zeros, and nobody looks at what they give.
+  // Two SIMD registers of single precision: planes of missing children are zeros, and nobody looks at what
+  // they give.
   static constexpr int kPlanes = 8;
 
   // Children that the ray enters in [t_min, t_max], in index order. Returns how many; counts the tests.
-  static int test(const std::byte* bytes, const RaySpace& space, float t_min, float t_max, float* t_enter, NodeRef* child,
-                  uint32_t& box_tests) {
+  static int test(const std::byte* bytes, const RaySpace& space, float t_min, float t_max, float* t_enter,
+                  NodeRef* child, uint32_t& box_tests) {
     typename Format::Node node;
     std::memcpy(&node, bytes, sizeof node);
     float t_near[kPlanes], t_far[kPlanes];
@@ -34,8 +35,8 @@ struct QuantisedBoxes {
       for (int i = Format::kWidth; i < kPlanes; ++i) near_q[i] = far_q[i] = 0;
       const float step = grid.step(a);
       for (int i = 0; i < kPlanes; ++i)
-        clip_slab(Grid::plane(node.origin[a], near_q[i], step), Grid::plane(node.origin[a], far_q[i], step), space.origin[a],
-                  space.inverse_direction[a], t_near[i], t_far[i]);
+        clip_slab(Grid::plane(node.origin[a], near_q[i], step), Grid::plane(node.origin[a], far_q[i], step),
+                  space.origin[a], space.inverse_direction[a], t_near[i], t_far[i]);
     }
     const int count = num_children(node);
     box_tests += uint32_t(count);
@@ -61,7 +62,8 @@ struct QuantisedBoxes {
     for (size_t a = 0; a < 3; ++a) quantise(boxes, a, grid, {node.low[a], node.high[a]});
     node.origin = grid.origin;
     node.exponent = grid.exponent;
-    for (uint32_t index : children_of(tree, from)) node.kind[node.num_children++] = uint8_t(tree.nodes[index].kind);
+    for (uint32_t index : children_of(tree, from))
+      node.kind[node.num_children++] = uint8_t(tree.nodes[index].kind);
     return node;
   }
 
@@ -98,7 +100,9 @@ struct QuantisedBoxes {
  private:
   // Bytes that a shader has overwritten may say anything.
   template <class Node>
-  static int num_children(const Node& node) { return node.num_children < Format::kWidth ? node.num_children : Format::kWidth; }
+  static int num_children(const Node& node) {
+    return node.num_children < Format::kWidth ? node.num_children : Format::kWidth;
+  }
 };
 
 }  // namespace glint::rt

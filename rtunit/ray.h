@@ -20,8 +20,8 @@ struct Ray {
   std::array<float, 3> origin{}, direction{};  // world space; the direction need not have length 1
   float t_min = 0, t_max = 0;
   uint32_t flags = 0;
-  uint32_t cull_mask = 0xff;       // low 8 bits count
-  Address structure = 0;           // virtual address of the top-level structure's header
+  uint32_t cull_mask = 0xff;  // low 8 bits count
+  Address structure = 0;      // virtual address of the top-level structure's header
   uint32_t sbt_offset = 0, sbt_stride = 0, miss_index = 0;
 };
 
@@ -30,20 +30,20 @@ inline constexpr uint32_t kNoHit = 0xffff'ffff;
 // A candidate or committed hit. `instance` == kNoHit: none.
 struct Hit {
   float t = 0;
-  float u = 0, v = 0;              // weights of vertex 1 and 2 (triangles)
-  uint32_t kind = 0;               // kHitKindFront, kHitKindBack or the intersection shader's own
-  uint32_t instance = kNoHit;      // index in the top-level structure
+  float u = 0, v = 0;          // weights of vertex 1 and 2 (triangles)
+  uint32_t kind = 0;           // kHitKindFront, kHitKindBack or the intersection shader's own
+  uint32_t instance = kNoHit;  // index in the top-level structure
   uint32_t geometry = 0, primitive = 0;
-  uint32_t custom_index = 0;       // 24 bits
-  uint32_t sbt_record = 0;         // the instance's shader-binding-table offset, 24 bits
-  Address instance_leaf = 0;       // virtual address of the instance's record: holds the transforms
-  Address triangle_leaf = 0;       // of the leaf with the triangle's corners; 0: the hit is on no triangle
+  uint32_t custom_index = 0;  // 24 bits
+  uint32_t sbt_record = 0;    // the instance's shader-binding-table offset, 24 bits
+  Address instance_leaf = 0;  // virtual address of the instance's record: holds the transforms
+  Address triangle_leaf = 0;  // of the leaf with the triangle's corners; 0: the hit is on no triangle
   bool valid() const { return instance != kNoHit; }
 };
 
 // What a lane's traversal waits for.
 enum class RayStatus : uint8_t {
-  Idle,               // holds no ray
+  Idle,  // holds no ray
   Traversing,
   NeedsIntersection,  // an AABB was entered: the intersection shader of `candidate` must run
   NeedsAnyHit,        // a non-opaque candidate: its any-hit shader must run

@@ -15,8 +15,9 @@ struct Fetch {
   NodeKind kind = NodeKind::Internal;
 };
 
-// Kept by the traversal for rays that have one. node[d] is the node visited last at depth d; of a ray's stack, entry i is a
-// child of node[parent[i]]. Depths wrap at 256: no tree that fits a stack of 192 entries is near it.
+// Kept by the traversal for rays that have one. node[d] is the node visited last at depth d; of a ray's
+// stack, entry i is a child of node[parent[i]]. Depths wrap at 256: no tree that fits a stack of 192 entries
+// is near it.
 struct RayPath {
   const void* ray = nullptr;  // whose it is
   static constexpr uint8_t kNoParent = 0xff;

@@ -11,9 +11,9 @@ namespace glint::rt {
 
 // What a policy may know of a resident warp. Slots are 0, 1, ... in the order of the span.
 struct WarpView {
-  bool ready = false;       // some lane wants a node
+  bool ready = false;  // some lane wants a node
   uint32_t lanes_wanting = 0;
-  uint64_t age = 0;         // order of arrival: smaller is older
+  uint64_t age = 0;  // order of arrival: smaller is older
   Cycle arrived = 0;
 };
 

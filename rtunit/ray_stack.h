@@ -8,7 +8,8 @@
 
 namespace glint::rt {
 
-// build_top() proves that no ray can need more. How many of them are on chip is the stack model's (rtunit/stack_model.h).
+// build_top() proves that no ray can need more. How many of them are on chip is the stack model's
+// (rtunit/stack_model.h).
 inline constexpr int kStackEntries = 192;
 
 // One node still to be visited: where it is and where the ray enters it.
@@ -17,8 +18,9 @@ struct StackEntry {
   float t_enter;
 };
 
-// Only entries that were set mean anything. What lies deeper than most rays ever go is apart, made when a ray first needs it
-// and then kept: a resident thread stays below 1 KB of the host's memory, and no ray waits for the heap twice.
+// Only entries that were set mean anything. What lies deeper than most rays ever go is apart, made when a ray
+// first needs it and then kept: a resident thread stays below 1 KB of the host's memory, and no ray waits for
+// the heap twice.
 class RayStack {
  public:
   const StackEntry& operator[](size_t i) const { return i < kNear ? near_[i] : deep_[i - kNear]; }

@@ -13,9 +13,10 @@
 namespace glint::rt {
 
 // Contract (tests/contract/rt_port_test.cpp):
-//  - submit() is called only when can_accept(); the unit then works on `states[lane]` for the lanes of `mask`,
-//    all of which are Traversing, until each is Done, needs a shader or has Gathered candidates; the storage stays the caller's and is
-//    not touched by it meanwhile.
+//  - submit() is called only when can_accept(); the unit then works on `states[lane]` for the lanes of
+//  `mask`,
+//    all of which are Traversing, until each is Done, needs a shader or has Gathered candidates; the storage
+//    stays the caller's and is not touched by it meanwhile.
 //  - exactly one completion comes back for each submit, at a later cycle.
 //  - a warp that needs shaders is given back whole; the core runs them, resolves the candidates
 //    (RayState::accept, ignore, terminate) and submits the still Traversing lanes again.
@@ -30,7 +31,8 @@ class RtPort {
   virtual void tick(Cycle now) = 0;
   // Earliest cycle after `now` at which tick() can do anything without new input; kNever when idle.
   virtual Cycle next_event(Cycle now) const = 0;
-  // Lines on the warps inside and what they wait for, for a machine that is stuck; "" when there is nothing to say.
+  // Lines on the warps inside and what they wait for, for a machine that is stuck; "" when there is nothing
+  // to say.
   virtual std::string describe() const { return {}; }
 };
 

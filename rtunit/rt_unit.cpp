@@ -10,7 +10,9 @@
 namespace glint::rt {
 namespace {
 
-bool has_descriptor(NodeKind kind) { return kind != NodeKind::Internal && kind != NodeKind::Instance; }
+bool has_descriptor(NodeKind kind) {
+  return kind != NodeKind::Internal && kind != NodeKind::Instance;
+}
 
 }  // namespace
 
@@ -19,7 +21,9 @@ uint64_t RtUnit::result_bytes(const Params& params) {
   return params.result_store ? uint64_t{params.warps} * kLanes * mem::kSectorBytes : 0;
 }
 
-uint64_t RtUnit::stack_bytes_per_warp(const Params& params) { return StackLayout{0, params.stack.make({})->rows()}.bytes_per_warp(); }
+uint64_t RtUnit::stack_bytes_per_warp(const Params& params) {
+  return StackLayout{0, params.stack.make({})->rows()}.bytes_per_warp();
+}
 
 RtUnit::RtUnit(const Params& params, const Context& context)
     : params_(params),
@@ -37,7 +41,8 @@ RtUnit::RtUnit(const Params& params, const Context& context)
       slots_(params.warps),
       views_(params.warps),
       fetches_(size_t(params.warps) * kLanes),
-      pipes_{Pipeline(params.box, fetches_.size()), Pipeline(params.triangle, fetches_.size()), Pipeline(params.transform, fetches_.size()),
+      pipes_{Pipeline(params.box, fetches_.size()), Pipeline(params.triangle, fetches_.size()),
+             Pipeline(params.transform, fetches_.size()),
              Pipeline({params.shortcuts.header_latency, 1, kNone}, fetches_.size()),
              Pipeline({params.shortcuts.descriptor_latency, 1, kNone}, fetches_.size())},
       finished_(params.warps),
@@ -64,7 +69,8 @@ void RtUnit::submit(Cycle now, uint32_t warp_slot, LaneMask mask, RayState* stat
   ++stats_.warps;
   free->spills = 0;
   has_news_ = true;
-  warp_moved_.fire([&] { return WarpMoved{now, uint32_t(free - slots_.begin()), warp_slot, false, mask, states}; });
+  warp_moved_.fire(
+      [&] { return WarpMoved{now, uint32_t(free - slots_.begin()), warp_slot, false, mask, states}; });
   for_each_lane(mask, [&](int lane) { admit(*free, uint32_t(free - slots_.begin()), lane, now); });
 }
 
@@ -128,7 +134,8 @@ Cycle RtUnit::next_event(Cycle now) const {
 }
 
 bool RtUnit::wants_to_send(Cycle now) const {
-  if (sending_ != kNone || num_stores_ || can_send_stack(now) || !writing_.empty() || !gathering_.empty()) return true;
+  if (sending_ != kNone || num_stores_ || can_send_stack(now) || !writing_.empty() || !gathering_.empty())
+    return true;
   return !is_mshr_full() && has_reads_waiting();
 }
 
@@ -237,15 +244,19 @@ Fetch RtUnit::next_read(Slot& slot, int lane) const {
 
 void RtUnit::stop(Slot& slot, uint32_t slot_index, int lane, Cycle now) {
   RayState& state = slot.states[lane];
-  // A shader that gets the ray may end its walk, so the ray is counted now; admit() takes that back if it returns.
+  // A shader that gets the ray may end its walk, so the ray is counted now; admit() takes that back if it
+  // returns.
   state.unit_cycles += now - slot.arrived;
   stats_.ray_latency.add(state.unit_cycles);
   stats_.ray_nodes.add(state.nodes_visited);
   stats_.most_nodes = std::max(stats_.most_nodes, state.nodes_visited);
   stats_.deepest_stack = std::max(stats_.deepest_stack, uint32_t(state.stack_peak));
-  const bool has_ended = state.status == RayStatus::Done || (state.status == RayStatus::Gathered && state.stack_size == 0);
-  if (has_ended) ++stats_.finished;
-  else ++stats_.suspended;
+  const bool has_ended =
+      state.status == RayStatus::Done || (state.status == RayStatus::Gathered && state.stack_size == 0);
+  if (has_ended)
+    ++stats_.finished;
+  else
+    ++stats_.suspended;
   --num_rays_;
   slot.stopped |= LaneMask{1} << lane;
   leave(slot_index, now);
@@ -280,10 +291,13 @@ RtUnit::Pipe RtUnit::pipe_for(const NodeFetch& fetch) {
   if (fetch.part == Part::Header) return kHeader;
   if (fetch.part == Part::Descriptor) return kDescriptor;
   switch (fetch.node.kind) {
-    case NodeKind::Instance: return kTransform;
+    case NodeKind::Instance:
+      return kTransform;
     case NodeKind::Triangle:
-    case NodeKind::TriangleSecond: return kTriangle;
-    default: return kBox;
+    case NodeKind::TriangleSecond:
+      return kTriangle;
+    default:
+      return kBox;
   }
 }
 
@@ -316,8 +330,10 @@ void RtUnit::hand_out(uint32_t index, Cycle now) {
     test.slot = fetch.slot;
     for_each_lane(fetch.lanes, [&](int lane) {
       test.lane = uint8_t(lane);
-      if (fetch.part == Part::Fill) place(fetch.slot, lane, now);
-      else pipes_[pipe].waiting.push(test);
+      if (fetch.part == Part::Fill)
+        place(fetch.slot, lane, now);
+      else
+        pipes_[pipe].waiting.push(test);
     });
   }
 }
@@ -340,7 +356,8 @@ void RtUnit::start_tests(Cycle now) {
   }
 }
 
-// The functional step: made when the test starts, seen by the unit when it ends. Returns how many stores it causes.
+// The functional step: made when the test starts, seen by the unit when it ends. Returns how many stores it
+// causes.
 uint32_t RtUnit::visit(const Test& test, Cycle now) {
   Slot& slot = slots_[test.slot];
   const LaneMask lane_bit = LaneMask{1} << test.lane;
@@ -364,7 +381,8 @@ uint32_t RtUnit::visit(const Test& test, Cycle now) {
   RayState& state = slot.states[test.lane];
   node_visited_.fire([&] { return NodeVisited{now, slot.warp, test.lane, node}; });
   const uint32_t boxes = state.box_tests, triangles = state.triangle_tests, hits = state.hits_in_interval;
-  if (!params_.retest && state.stack[size_t(state.stack_size) - 1].t_enter > state.committed.t) ++stats_.stale_nodes;
+  if (!params_.retest && state.stack[size_t(state.stack_size) - 1].t_enter > state.committed.t)
+    ++stats_.stale_nodes;
   step(state, memory_.find(node.address, node.bytes));
   if (tends_stacks_) slot.stack[test.lane] = stack_model_->settle(state);
   stats_.box_tests += state.box_tests - boxes;
@@ -379,11 +397,19 @@ uint32_t RtUnit::visit(const Test& test, Cycle now) {
 void RtUnit::count_node(NodeKind kind) {
   ++stats_.nodes;
   switch (kind) {
-    case NodeKind::Internal: ++stats_.internal_nodes; break;
-    case NodeKind::Instance: ++stats_.instance_leaves; break;
+    case NodeKind::Internal:
+      ++stats_.internal_nodes;
+      break;
+    case NodeKind::Instance:
+      ++stats_.instance_leaves;
+      break;
     case NodeKind::Triangle:
-    case NodeKind::TriangleSecond: ++stats_.triangle_leaves; break;
-    case NodeKind::Procedural: ++stats_.procedural_leaves; break;
+    case NodeKind::TriangleSecond:
+      ++stats_.triangle_leaves;
+      break;
+    case NodeKind::Procedural:
+      ++stats_.procedural_leaves;
+      break;
   }
 }
 

@@ -41,7 +41,7 @@ class RtUnit final : public RtPort {
     const mem::AddressSpace& memory;
     mem::L1Port& l1;
     stats::Group* stats = nullptr;
-    Address results = 0;  // physical, line-aligned: result_bytes() of it
+    Address results = 0;   // physical, line-aligned: result_bytes() of it
     TableLayout tables{};  // line-aligned; where rays that gather candidates have theirs written
     Address stacks = 0;    // physical, line-aligned: stack_bytes_per_warp() for each warp slot of the core
   };
@@ -63,18 +63,22 @@ class RtUnit final : public RtPort {
   void finish(Cycle end) { account_gap(end); }
   const RtStats& stats() const { return stats_; }
   // RtStats::warp_cycles as it will be at the start of cycle `at`, when nothing happens before.
-  uint64_t warp_cycles_until(Cycle at) const { return stats_.warp_cycles.value() + (at - next_unaccounted_) * gap_warps_; }
+  uint64_t warp_cycles_until(Cycle at) const {
+    return stats_.warp_cycles.value() + (at - next_unaccounted_) * gap_warps_;
+  }
   uint32_t num_resident() const { return num_resident_; }
   Probe<NodeVisited>& node_visited() { return node_visited_; }
   Probe<WarpMoved>& warp_moved() { return warp_moved_; }
-  // Tells each(warp slot, lanes) of whom the read that is just being sent is for. `token` is that of its request.
+  // Tells each(warp slot, lanes) of whom the read that is just being sent is for. `token` is that of its
+  // request.
   template <class Each>
   void for_each_reader(mem::Token token, Each&& each) const {
     if (token != sending_) {  // a fill of a stack has no fetch yet
       const StackOp& op = stack_ops_.front();
       return each(slots_[op.slot].warp, LaneMask{1} << op.lane);
     }
-    for (uint32_t i = token; i != kNone; i = fetches_[i].next) each(slots_[fetches_[i].slot].warp, fetches_[i].lanes);
+    for (uint32_t i = token; i != kNone; i = fetches_[i].next)
+      each(slots_[fetches_[i].slot].warp, fetches_[i].lanes);
   }
 
  private:
@@ -82,11 +86,12 @@ class RtUnit final : public RtPort {
   // Choice: stores of single hits begin again at the first place after so many; Vulkan-Sim never does.
   static constexpr uint32_t kHitPlaces = 1 << 16, kHitPlaceBytes = 256;
 
-  // What a lane reads: a node, a header or a leaf's descriptor on its own (Shortcuts), a node that it has visited before, or
-  // a sector of its stack.
+  // What a lane reads: a node, a header or a leaf's descriptor on its own (Shortcuts), a node that it has
+  // visited before, or a sector of its stack.
   enum class Part : uint8_t { Node, Header, Descriptor, Replay, Fill };
 
-  // A place in the warp buffer. A lane of `mask` is in exactly one of: `wanting` a node, a fetch, a test, `stopped`.
+  // A place in the warp buffer. A lane of `mask` is in exactly one of: `wanting` a node, a fetch, a test,
+  // `stopped`.
   struct Slot {
     bool used = false;
     uint32_t warp = 0;
@@ -96,13 +101,14 @@ class RtUnit final : public RtPort {
     Cycle arrived = 0;
     std::array<Fetch, kLanes> node;
     std::array<Part, kLanes> part;
-    LaneMask headers = 0, described = 0;          // lanes whose next read is a header; whose leaf's descriptor has been read
-    uint32_t stores = 0;                          // of single hits, to be sent
+    LaneMask headers = 0,
+             described = 0;  // lanes whose next read is a header; whose leaf's descriptor has been read
+    uint32_t stores = 0;     // of single hits, to be sent
     Cycle last_store = 0;
-    bool is_leaving = false;                      // all is done; the last store's acknowledgement is on its way
-    std::array<StackWork, kLanes> stack;          // still to be done before the lane's next node
-    uint32_t spills = 0;                          // sectors of its lanes' stacks to be sent
-    uint32_t rows = 0;                            // of the candidate table with entries to write
+    bool is_leaving = false;              // all is done; the last store's acknowledgement is on its way
+    std::array<StackWork, kLanes> stack;  // still to be done before the lane's next node
+    uint32_t spills = 0;                  // sectors of its lanes' stacks to be sent
+    uint32_t rows = 0;                    // of the candidate table with entries to write
     std::array<LaneMask, kMaxTableRows> entries;  // of a row in `rows`: the lanes
   };
   // A node on its way for some lanes of one slot. Its index is the token of its requests.
@@ -193,27 +199,28 @@ class RtUnit final : public RtPort {
   std::unique_ptr<ChildOrder> child_order_;
   std::unique_ptr<StackModel> stack_model_;
   const StackLayout stacks_;
-  const bool tends_stacks_;  // the stack model can ask for something
+  const bool tends_stacks_;                                          // the stack model can ask for something
   std::vector<std::unique_ptr<std::array<RayPath, kLanes>>> paths_;  // by the core's warp slot
 
   std::vector<Slot> slots_;
   std::vector<WarpView> views_;
-  std::vector<NodeFetch> fetches_;      // one a lane at most
+  std::vector<NodeFetch> fetches_;  // one a lane at most
   std::vector<uint32_t> free_fetches_;
   std::array<Pipeline, kNumPipes> pipes_;
-  mem::Ring<uint32_t> finished_;        // slots whose lanes have all stopped and whose results are written
-  mem::Ring<uint32_t> writing_;         // slots with results to write
-  mem::Ring<uint32_t> gathering_;       // slots with table entries to write
-  mem::Ring<uint32_t> completions_;     // warps given back
+  mem::Ring<uint32_t> finished_;     // slots whose lanes have all stopped and whose results are written
+  mem::Ring<uint32_t> writing_;      // slots with results to write
+  mem::Ring<uint32_t> gathering_;    // slots with table entries to write
+  mem::Ring<uint32_t> completions_;  // warps given back
   mem::Ring<StackOp> stack_ops_;
-  uint32_t sending_ = kNone;            // fetch whose requests have not all been taken
+  uint32_t sending_ = kNone;  // fetch whose requests have not all been taken
   uint32_t num_resident_ = 0, num_rays_ = 0, num_fetches_ = 0;
   uint32_t num_stores_ = 0, num_leaving_ = 0;  // Slot::stores and is_leaving over all slots
   uint32_t next_hit_place_ = 0;
   uint64_t next_age_ = 0;
-  bool has_news_ = false;               // something was submitted since the last tick
+  bool has_news_ = false;  // something was submitted since the last tick
 
-  // The past, for cycles that are skipped: nothing happened in them, so they were like the end of the last one.
+  // The past, for cycles that are skipped: nothing happened in them, so they were like the end of the last
+  // one.
   Cycle next_unaccounted_ = 0;
   Stall gap_reason_ = Stall::Idle;
   uint32_t gap_warps_ = 0, gap_rays_ = 0;

@@ -11,11 +11,15 @@ namespace {
 
 mem::Traffic traffic_of(NodeKind kind) {
   switch (kind) {
-    case NodeKind::Internal: return mem::Traffic::RtNode;
-    case NodeKind::Instance: return mem::Traffic::RtInstance;
+    case NodeKind::Internal:
+      return mem::Traffic::RtNode;
+    case NodeKind::Instance:
+      return mem::Traffic::RtInstance;
     case NodeKind::Triangle:
-    case NodeKind::TriangleSecond: return mem::Traffic::RtTriangle;
-    case NodeKind::Procedural: return mem::Traffic::RtProcedural;
+    case NodeKind::TriangleSecond:
+      return mem::Traffic::RtTriangle;
+    case NodeKind::Procedural:
+      return mem::Traffic::RtProcedural;
   }
   return mem::Traffic::RtNode;
 }
@@ -26,7 +30,8 @@ mem::Traffic traffic_of(NodeKind kind) {
 Stall RtUnit::send_requests(Cycle now) {
   bool sent = false;
   for (uint32_t i = 0; i < params_.requests_per_cycle; ++i) {
-    const bool has_other = sending_ != kNone || num_stores_ || can_send_stack(now) || !writing_.empty() || !gathering_.empty();
+    const bool has_other =
+        sending_ != kNone || num_stores_ || can_send_stack(now) || !writing_.empty() || !gathering_.empty();
     if (!has_other && !choose_fetch(now)) break;
     if (!send_next(now)) {
       ++stats_.refusals;
@@ -44,7 +49,8 @@ bool RtUnit::send_next(Cycle now) {
   return writing_.empty() ? send_entries(now) : send_result(now);
 }
 
-// Takes the node of the lowest wanting lane of the warp that the policy picks, for all lanes that want it and share.
+// Takes the node of the lowest wanting lane of the warp that the policy picks, for all lanes that want it and
+// share.
 bool RtUnit::choose_fetch(Cycle now) {
   if (is_mshr_full()) return false;
   bool any = false;
@@ -56,13 +62,14 @@ bool RtUnit::choose_fetch(Cycle now) {
   }
   if (!any) return false;
   const uint32_t picked = scheduler_->pick(views_);
-  GLINT_CHECK(picked < slots_.size() && views_[picked].ready, "scheduler '{}' picked slot {}, which is not ready",
-              params_.scheduler.name, picked);
+  GLINT_CHECK(picked < slots_.size() && views_[picked].ready,
+              "scheduler '{}' picked slot {}, which is not ready", params_.scheduler.name, picked);
   Slot& slot = slots_[picked];
   const auto first = size_t(std::countr_zero(slot.wanting));
   const Fetch node = slot.node[first];
   const uint64_t partners = coalescer_->partners(picked, views_);
-  sending_ = new_fetch(picked, partners ? lanes_wanting(slot, node) : LaneMask{1} << first, node, slot.part[first]);
+  sending_ =
+      new_fetch(picked, partners ? lanes_wanting(slot, node) : LaneMask{1} << first, node, slot.part[first]);
   ++num_fetches_;
   ++stats_.fetches;
   stats_.merged_lanes += num_lanes(fetches_[sending_].lanes) - 1;
@@ -82,7 +89,8 @@ LaneMask RtUnit::lanes_wanting(const Slot& slot, const Fetch& wanted) {
   LaneMask out = 0;
   for_each_lane(slot.wanting, [&](int lane) {
     const Fetch& node = slot.node[size_t(lane)];
-    out |= LaneMask{node.address == wanted.address && node.kind == wanted.kind && node.bytes == wanted.bytes} << lane;
+    out |= LaneMask{node.address == wanted.address && node.kind == wanted.kind && node.bytes == wanted.bytes}
+           << lane;
   });
   return out;
 }
@@ -95,14 +103,15 @@ uint32_t RtUnit::new_fetch(uint32_t slot, LaneMask lanes, const Fetch& node, Par
   return index;
 }
 
-// The next sectors of the node being sent: no more than a request holds, and of one line. A node that begins within a
-// sector takes the whole of it.
+// The next sectors of the node being sent: no more than a request holds, and of one line. A node that begins
+// within a sector takes the whole of it.
 bool RtUnit::send_node(Cycle now) {
   NodeFetch& fetch = fetches_[sending_];
   const Address at = memory_.physical(fetch.node.address + fetch.sent);
   const Address offset = at & (l1_.line_bytes() - 1);
   const Address first = offset / mem::kSectorBytes, room = params_.request_bytes / mem::kSectorBytes;
-  const Address end = std::min<Address>({offset + fetch.node.bytes - fetch.sent, (first + room) * mem::kSectorBytes, l1_.line_bytes()});
+  const Address end = std::min<Address>(
+      {offset + fetch.node.bytes - fetch.sent, (first + room) * mem::kSectorBytes, l1_.line_bytes()});
   const uint32_t count = uint32_t((end + mem::kSectorBytes - 1) / mem::kSectorBytes - first);
   mem::Request request;
   request.line = at - offset;
@@ -118,7 +127,8 @@ bool RtUnit::send_node(Cycle now) {
   return true;
 }
 
-// Model: results are written as node traffic, 32 B a ray, one request a line; the warp is given back when the L1 has taken them.
+// Model: results are written as node traffic, 32 B a ray, one request a line; the warp is given back when the
+// L1 has taken them.
 bool RtUnit::send_result(Cycle now) {
   const uint32_t index = writing_.front();
   Slot& slot = slots_[index];
@@ -161,7 +171,8 @@ bool RtUnit::send_hit(Cycle now) {
   return true;
 }
 
-// What a visit has put into the lane's table goes to memory. Returns the number of entries, when single stores carry them.
+// What a visit has put into the lane's table goes to memory. Returns the number of entries, when single
+// stores carry them.
 uint32_t RtUnit::collect_entries(uint32_t slot_index, int lane) {
   Slot& slot = slots_[slot_index];
   CandidateTable& table = *slot.states[lane].table;
@@ -185,7 +196,8 @@ bool RtUnit::send_entries(Cycle now) {
   Slot& slot = slots_[index];
   const auto row = uint32_t(std::countr_zero(slot.rows));
   LaneMask& lanes = slot.entries[row];
-  const uint32_t lanes_a_line = l1_.line_bytes() / kTableEntryBytes, first = uint32_t(std::countr_zero(lanes)) / lanes_a_line * lanes_a_line;
+  const uint32_t lanes_a_line = l1_.line_bytes() / kTableEntryBytes,
+                 first = uint32_t(std::countr_zero(lanes)) / lanes_a_line * lanes_a_line;
   const LaneMask in_line = lanes >> first & ((LaneMask{1} << lanes_a_line) - 1);
   mem::Request request;
   request.line = tables_.entry(slot.warp, row, int(first));

@@ -5,8 +5,8 @@
 
 namespace glint::rt {
 
-// Model: a ray that a second ray of its lane has overtaken while it waited for a shader (a ray query in an any-hit shader)
-// loses its path; the rest of its stack then counts as on chip.
+// Model: a ray that a second ray of its lane has overtaken while it waited for a shader (a ray query in an
+// any-hit shader) loses its path; the rest of its stack then counts as on chip.
 void RtUnit::keep_path(RayState& state, uint32_t warp_slot, int lane) {
   if (paths_.size() <= warp_slot) paths_.resize(warp_slot + 1);
   if (!paths_[warp_slot]) paths_[warp_slot] = std::make_unique<std::array<RayPath, kLanes>>();
@@ -26,7 +26,8 @@ void RtUnit::keep_path(RayState& state, uint32_t warp_slot, int lane) {
 bool RtUnit::tend_stack(uint32_t slot_index, int lane) {
   Slot& slot = slots_[slot_index];
   StackWork& work = slot.stack[size_t(lane)];
-  for (; work.spills; --work.spills, ++slot.spills) stack_ops_.push({slot_index, work.row++, uint8_t(lane), false});
+  for (; work.spills; --work.spills, ++slot.spills)
+    stack_ops_.push({slot_index, work.row++, uint8_t(lane), false});
   if (work.fills) {
     --work.fills;
     stack_ops_.push({slot_index, --work.row, uint8_t(lane), true});

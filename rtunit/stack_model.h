@@ -10,13 +10,14 @@ namespace glint::rt {
 inline constexpr int kEntriesPerSector = 4;  // 32 B of StackEntry
 static_assert(kEntriesPerSector * sizeof(StackEntry) == 32);
 
-// What the RT unit has to do before the ray's next node. Row r of a stack in memory holds its entries 4r .. 4r + 3.
+// What the RT unit has to do before the ray's next node. Row r of a stack in memory holds its entries 4r ..
+// 4r + 3.
 struct StackWork {
-  uint16_t row = 0;      // where the stack in memory ended: rows from here on are spilled, those below it filled
-  uint16_t spills = 0;   // sectors to write
-  uint16_t fills = 0;    // sectors to read, one after the other
-  uint16_t replays = 0;  // nodes to visit again: RayPath::node from the root on
-  uint16_t replayed = 0; // of them, those asked for
+  uint16_t row = 0;  // where the stack in memory ended: rows from here on are spilled, those below it filled
+  uint16_t spills = 0;    // sectors to write
+  uint16_t fills = 0;     // sectors to read, one after the other
+  uint16_t replays = 0;   // nodes to visit again: RayPath::node from the root on
+  uint16_t replayed = 0;  // of them, those asked for
 };
 
 // Where stacks lie in memory: as candidate tables do (rtunit/candidate_table.h), so that lanes share lines.
@@ -30,7 +31,8 @@ struct StackLayout {
 };
 
 // Contract (tests/contract/rt_stack_model_test.cpp):
-//  - settle() is called when the ray enters the unit and after each of its visits; it changes `stack_off_chip` alone;
+//  - settle() is called when the ray enters the unit and after each of its visits; it changes
+//  `stack_off_chip` alone;
 //  - afterwards the ray's next entry is on chip, and never more entries than the model has room for;
 //  - every sector that is filled was spilled before, and is not filled again before it is spilled again;
 //  - a model has no state of its own and serves all rays.
@@ -38,8 +40,8 @@ class StackModel {
  public:
   struct Context {};
   virtual ~StackModel() = default;
-  virtual uint32_t rows() const { return 0; }           // of StackLayout
-  virtual bool keeps_path() const { return false; }     // rays need a RayPath
+  virtual uint32_t rows() const { return 0; }        // of StackLayout
+  virtual bool keeps_path() const { return false; }  // rays need a RayPath
   virtual StackWork settle(RayState& state) const = 0;
 };
 

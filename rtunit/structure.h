@@ -8,8 +8,8 @@
 
 namespace glint::rt {
 
-// Everything in a structure lies at multiples of a block from its header; block 0 is the header itself, behind it
-// lies the root, always an internal node.
+// Everything in a structure lies at multiples of a block from its header; block 0 is the header itself,
+// behind it lies the root, always an internal node.
 inline constexpr uint32_t kBlockBytes = 16;
 inline constexpr uint32_t kRootBlock = 4;
 inline constexpr uint32_t kLeafBytes = 64;  // of leaves but instances
@@ -20,14 +20,22 @@ enum class NodeKind : uint8_t { Internal, Instance, Triangle, Procedural, Triang
 // Block number and kind in 32 bits: 2^29 blocks = 8 GiB a structure.
 using NodeRef = uint32_t;
 inline constexpr int kKindBits = 3;
-constexpr NodeRef node_ref(uint32_t block, NodeKind kind) { return block << kKindBits | uint32_t(kind); }
-constexpr uint32_t block_of(NodeRef ref) { return ref >> kKindBits; }
-constexpr NodeKind kind_of(NodeRef ref) { return NodeKind(ref & ((1u << kKindBits) - 1)); }
+constexpr NodeRef node_ref(uint32_t block, NodeKind kind) {
+  return block << kKindBits | uint32_t(kind);
+}
+constexpr uint32_t block_of(NodeRef ref) {
+  return ref >> kKindBits;
+}
+constexpr NodeKind kind_of(NodeRef ref) {
+  return NodeKind(ref & ((1u << kKindBits) - 1));
+}
 constexpr uint64_t kMostBytes = (uint64_t{1} << (32 - kKindBits)) * kBlockBytes;
-constexpr uint32_t leaf_bytes(NodeKind kind) { return kind == NodeKind::Instance ? 2 * kLeafBytes : kLeafBytes; }
+constexpr uint32_t leaf_bytes(NodeKind kind) {
+  return kind == NodeKind::Instance ? 2 * kLeafBytes : kLeafBytes;
+}
 
-// The node formats that traversal is compiled for (rtunit/formats/). A header names one; a bottom level's is that of
-// the top level above it.
+// The node formats that traversal is compiled for (rtunit/formats/). A header names one; a bottom level's is
+// that of the top level above it.
 enum class FormatId : uint8_t { Bvh6, Bvh2, Bvh4, Bvh8, Count };
 
 struct Bounds {
@@ -47,7 +55,8 @@ struct StructureHeader {
 };
 static_assert(sizeof(StructureHeader) == kRootBlock * kBlockBytes);
 
-// One or two triangles of one geometry. The second shares an edge: its corners are picked from the four vertices.
+// One or two triangles of one geometry. The second shares an edge: its corners are picked from the four
+// vertices.
 struct TriangleLeaf {
   std::array<std::array<float, 3>, 4> vertex;
   std::array<uint32_t, 2> primitive;
@@ -71,11 +80,11 @@ static_assert(sizeof(ProceduralLeaf) == kLeafBytes);
 // An instance. Transforms are row-major 3x4. What traversal needs comes first; shaders read the rest.
 struct InstanceLeaf {
   std::array<float, 12> world_to_object{};
-  Address structure = 0;                   // header of the bottom level
-  uint32_t custom_index_and_mask = 0;      // low 24 bits index, high 8 mask
-  uint32_t sbt_offset_and_flags = 0;       // low 24 bits offset, high 8 Vulkan instance flags
+  Address structure = 0;               // header of the bottom level
+  uint32_t custom_index_and_mask = 0;  // low 24 bits index, high 8 mask
+  uint32_t sbt_offset_and_flags = 0;   // low 24 bits offset, high 8 Vulkan instance flags
   std::array<float, 12> object_to_world{};
-  uint32_t instance = 0;                   // index in the build input (gl_InstanceID)
+  uint32_t instance = 0;  // index in the build input (gl_InstanceID)
   uint32_t pad[3]{};
 
   uint32_t custom_index() const { return custom_index_and_mask & 0xff'ffff; }
@@ -87,7 +96,8 @@ static_assert(sizeof(InstanceLeaf) == leaf_bytes(NodeKind::Instance));
 
 // VkGeometryInstanceFlagBitsKHR.
 namespace instance_flag {
-inline constexpr uint32_t kFacingCullDisable = 0x1, kFlipFacing = 0x2, kForceOpaque = 0x4, kForceNoOpaque = 0x8;
+inline constexpr uint32_t kFacingCullDisable = 0x1, kFlipFacing = 0x2, kForceOpaque = 0x4,
+                          kForceNoOpaque = 0x8;
 }
 
 }  // namespace glint::rt

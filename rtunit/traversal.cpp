@@ -15,8 +15,12 @@
 namespace glint::rt {
 namespace {
 
-bool has(const RayState& s, uint32_t flag) { return (s.ray.flags & flag) != 0; }
-bool ends_at_first_hit(const RayState& s) { return s.rules.end_at_first_hit && has(s, ray_flag::kTerminateOnFirstHit); }
+bool has(const RayState& s, uint32_t flag) {
+  return (s.ray.flags & flag) != 0;
+}
+bool ends_at_first_hit(const RayState& s) {
+  return s.rules.end_at_first_hit && has(s, ray_flag::kTerminateOnFirstHit);
+}
 
 void finish(RayState& s) {
   s.status = RayStatus::Done;
@@ -24,14 +28,17 @@ void finish(RayState& s) {
   if (s.table) s.table->drop(s.table->used);
 }
 
-// Choice: at equal t the lowest (instance, geometry, primitive) wins, so results do not depend on the order of visits.
+// Choice: at equal t the lowest (instance, geometry, primitive) wins, so results do not depend on the order
+// of visits.
 bool wins(const RayState& s, float t, uint32_t instance, uint32_t geometry, uint32_t primitive) {
   if (t != s.committed.t) return t < s.committed.t;
-  return s.committed.valid() && std::tuple(instance, geometry, primitive) <
-                                    std::tuple(s.committed.instance, s.committed.geometry, s.committed.primitive);
+  return s.committed.valid() &&
+         std::tuple(instance, geometry, primitive) <
+             std::tuple(s.committed.instance, s.committed.geometry, s.committed.primitive);
 }
 
-// Takes out of the table what cannot become the hit any more: the ray has become shorter since it was gathered.
+// Takes out of the table what cannot become the hit any more: the ray has become shorter since it was
+// gathered.
 void drop_beaten(RayState& s) {
   for (uint32_t rest = s.table->used; rest; rest &= rest - 1) {
     const auto row = uint32_t(std::countr_zero(rest));
@@ -65,8 +72,8 @@ bool passes(RayState& s, RayStatus needed) {
   return !s.table->is_full();
 }
 
-// Drops entries that cannot matter any more and leaves a finished bottom level, so that the top entry is the next node.
-// An entry at exactly the committed distance stays: a tie may be decided for its primitive.
+// Drops entries that cannot matter any more and leaves a finished bottom level, so that the top entry is the
+// next node. An entry at exactly the committed distance stays: a tie may be decided for its primitive.
 void settle(RayState& s) {
   for (;;) {
     if (s.stack_size == s.bottom_stack_base) {
@@ -111,7 +118,8 @@ void visit_internal(RayState& s, const std::byte* bytes) {
   float t_enter[Format::kWidth];
   NodeRef child[Format::kWidth];
   int hits = Format::test(bytes, s.space, s.ray.t_min, s.committed.t, t_enter, child, s.box_tests);
-  if (has(s, ray_flag::kSkipTriangles | ray_flag::kSkipAabbs)) hits = without_skipped(s, hits, t_enter, child);
+  if (has(s, ray_flag::kSkipTriangles | ray_flag::kSkipAabbs))
+    hits = without_skipped(s, hits, t_enter, child);
   uint8_t order[Format::kWidth];
   if (!s.rules.order) [[likely]]
     nearest_first({hits, t_enter, child}, order);
@@ -153,7 +161,9 @@ bool is_opaque(const RayState& s, bool geometry_opaque) {
   if (has(s, ray_flag::kNoOpaque)) opaque = false;
   return opaque;
 }
-bool culled_by_opacity(const RayState& s, bool opaque) { return has(s, opaque ? ray_flag::kCullOpaque : ray_flag::kCullNoOpaque); }
+bool culled_by_opacity(const RayState& s, bool opaque) {
+  return has(s, opaque ? ray_flag::kCullOpaque : ray_flag::kCullNoOpaque);
+}
 
 Hit candidate_of(const RayState& s, uint32_t geometry, uint32_t primitive) {
   Hit hit;
@@ -180,7 +190,8 @@ void visit_triangles(RayState& s, const std::byte* bytes, const StackEntry& entr
   const bool opaque = is_opaque(s, leaf.opaque != 0);
   if (culled_by_opacity(s, opaque)) return;
   for (uint32_t i = resumed ? 1 : 0; i < leaf.count && i < 2; ++i) {
-    const uint32_t a = i ? leaf.second & 3 : 0, b = i ? leaf.second >> 2 & 3 : 1, c = i ? leaf.second >> 4 & 3 : 2;
+    const uint32_t a = i ? leaf.second & 3 : 0, b = i ? leaf.second >> 2 & 3 : 1,
+                   c = i ? leaf.second >> 4 & 3 : 2;
     ++s.triangle_tests;
     TriangleHit found;
     if (!intersect_triangle(s.space, leaf.vertex[a], leaf.vertex[b], leaf.vertex[c], found)) continue;
@@ -199,7 +210,8 @@ void visit_triangles(RayState& s, const std::byte* bytes, const StackEntry& entr
     if (!opaque) {
       s.candidate_procedural = false;
       if (passes(s, RayStatus::NeedsAnyHit)) continue;
-      if (i == 0 && leaf.count > 1) push(s, node_ref(block_of(entry.node), NodeKind::TriangleSecond), entry.t_enter);
+      if (i == 0 && leaf.count > 1)
+        push(s, node_ref(block_of(entry.node), NodeKind::TriangleSecond), entry.t_enter);
       return;
     }
     s.committed = s.candidate;
@@ -220,7 +232,8 @@ void visit_procedural(RayState& s, const std::byte* bytes) {
     clip_slab(backward ? leaf.box.high[a] : leaf.box.low[a], backward ? leaf.box.low[a] : leaf.box.high[a],
               s.space.origin[a], s.space.inverse_direction[a], t_near, t_far);
   }
-  const float enter = std::fmax(widen_near(t_near), s.ray.t_min), leave = std::fmin(widen_far(t_far), s.committed.t);
+  const float enter = std::fmax(widen_near(t_near), s.ray.t_min),
+              leave = std::fmin(widen_far(t_far), s.committed.t);
   if (!(enter <= leave)) return;
   s.candidate = candidate_of(s, leaf.geometry, leaf.primitive);
   s.candidate.t = enter;
@@ -242,12 +255,21 @@ void step_as(RayState& s, const std::byte* bytes) {
   const StackEntry entry = s.stack[size_t(--s.stack_size)];
   ++s.nodes_visited;
   switch (kind_of(entry.node)) {
-    case NodeKind::Internal: visit_internal<Format>(s, bytes); break;
-    case NodeKind::Instance: visit_instance(s, bytes, entry); break;
+    case NodeKind::Internal:
+      visit_internal<Format>(s, bytes);
+      break;
+    case NodeKind::Instance:
+      visit_instance(s, bytes, entry);
+      break;
     case NodeKind::Triangle:
-    case NodeKind::TriangleSecond: visit_triangles(s, bytes, entry); break;
-    case NodeKind::Procedural: visit_procedural(s, bytes); break;
-    default: return break_off(s);
+    case NodeKind::TriangleSecond:
+      visit_triangles(s, bytes, entry);
+      break;
+    case NodeKind::Procedural:
+      visit_procedural(s, bytes);
+      break;
+    default:
+      return break_off(s);
   }
   if (s.status != RayStatus::Traversing) return;
   settle(s);
@@ -275,11 +297,13 @@ struct FormatCode {
 };
 template <class Format>
 constexpr FormatCode code_for() {
-  static_assert(Format::kNodeBytes < 256 && Format::kNodeBytes % kBlockBytes == 0);  // RayState keeps it in a byte
+  static_assert(Format::kNodeBytes < 256 &&
+                Format::kNodeBytes % kBlockBytes == 0);  // RayState keeps it in a byte
   return {step_as<Format>, run_as<Format>, Format::kNodeBytes};
 }
 // In the order of FormatId.
-constexpr std::array<FormatCode, size_t(FormatId::Count)> kFormats{code_for<Bvh6>(), code_for<Bvh2>(), code_for<Bvh4>(), code_for<Bvh8>()};
+constexpr std::array<FormatCode, size_t(FormatId::Count)> kFormats{code_for<Bvh6>(), code_for<Bvh2>(),
+                                                                   code_for<Bvh4>(), code_for<Bvh8>()};
 
 // A candidate has been decided: the next of the table, or the next node.
 void go_on(RayState& s) {
@@ -314,7 +338,9 @@ bool is_same_primitive(const Hit& a, const Hit& b) {
   return a.instance == b.instance && a.geometry == b.geometry && a.primitive == b.primitive;
 }
 
-bool is_finite(const std::array<float, 3>& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
+bool is_finite(const std::array<float, 3>& v) {
+  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
 
 }  // namespace
 
@@ -322,7 +348,8 @@ bool begin(RayState& s, const mem::AddressSpace& memory) {
   s.committed = Hit{};
   s.committed.t = s.ray.t_max;
   s.candidate = Hit{};
-  s.candidate_procedural = s.candidate_opaque = s.attribute_slot = s.report_accepted = s.terminated = s.broken = false;
+  s.candidate_procedural = s.candidate_opaque = s.attribute_slot = s.report_accepted = s.terminated =
+      s.broken = false;
   s.instance_leaf = 0;
   s.instance = kNoHit;
   s.instance_flags = s.instance_custom_index = s.instance_sbt_record = 0;
@@ -331,7 +358,8 @@ bool begin(RayState& s, const mem::AddressSpace& memory) {
   s.rules.order = nullptr;
   s.path = nullptr;
   s.bottom_stack_base = -1;
-  s.nodes_visited = s.box_tests = s.triangle_tests = s.leaves_visited = s.instances_visited = s.hits_in_interval = 0;
+  s.nodes_visited = s.box_tests = s.triangle_tests = s.leaves_visited = s.instances_visited =
+      s.hits_in_interval = 0;
   if (s.table) s.table->clear();
   s.status = RayStatus::Done;
   if (s.ray.structure == 0) return true;
@@ -339,7 +367,9 @@ bool begin(RayState& s, const mem::AddressSpace& memory) {
   if (!bytes) return false;
   StructureHeader header;
   std::memcpy(&header, bytes, sizeof header);
-  if (header.magic != StructureHeader::kMagic || header.level != 1 || header.format >= uint8_t(FormatId::Count)) return false;
+  if (header.magic != StructureHeader::kMagic || header.level != 1 ||
+      header.format >= uint8_t(FormatId::Count))
+    return false;
   const bool sane = is_finite(s.ray.origin) && is_finite(s.ray.direction) && std::isfinite(s.ray.t_min) &&
                     s.ray.t_min <= s.ray.t_max;
   if (!sane) return true;
@@ -352,17 +382,25 @@ bool begin(RayState& s, const mem::AddressSpace& memory) {
   return true;
 }
 
-void step(RayState& s, const std::byte* bytes) { kFormats[s.format].step(s, bytes); }
+void step(RayState& s, const std::byte* bytes) {
+  kFormats[s.format].step(s, bytes);
+}
 
 void break_off(RayState& s) {
   s.broken = true;
   finish(s);
 }
 
-void run(RayState& s, const mem::AddressSpace& memory) { kFormats[s.format].run(s, memory); }
+void run(RayState& s, const mem::AddressSpace& memory) {
+  kFormats[s.format].run(s, memory);
+}
 
-void accept_candidate(RayState& s) { commit(s, false); }
-void terminate_candidate(RayState& s) { commit(s, true); }
+void accept_candidate(RayState& s) {
+  commit(s, false);
+}
+void terminate_candidate(RayState& s) {
+  commit(s, true);
+}
 
 void ignore_candidate(RayState& s) {
   if (s.candidate_procedural) {
@@ -377,9 +415,12 @@ Report report(RayState& s, float t, uint32_t kind) {
   s.report_accepted = false;
   // inclusive at both ends for shaders' own hits (Vulkan: "Ray Intersection Candidate Determination")
   const bool at_end_of_ray = !s.committed.valid() && t == s.committed.t;
-  // The first accepted report ends the intersection shader, though a nearer primitive may still be looked for.
-  const bool is_over = s.terminated || (has(s, ray_flag::kTerminateOnFirstHit) && is_same_primitive(s.committed, s.candidate));
-  if (is_over || !(t >= s.ray.t_min) || !(at_end_of_ray || wins(s, t, s.candidate.instance, s.candidate.geometry, s.candidate.primitive)))
+  // The first accepted report ends the intersection shader, though a nearer primitive may still be looked
+  // for.
+  const bool is_over =
+      s.terminated || (has(s, ray_flag::kTerminateOnFirstHit) && is_same_primitive(s.committed, s.candidate));
+  if (is_over || !(t >= s.ray.t_min) ||
+      !(at_end_of_ray || wins(s, t, s.candidate.instance, s.candidate.geometry, s.candidate.primitive)))
     return Report::Rejected;
   s.candidate.t = t;
   s.candidate.kind = kind;

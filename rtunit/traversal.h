@@ -1,5 +1,5 @@
-// Ray traversal one node at a time, with Vulkan's rules: the same steps for the functional and the timing machine.
-// SPDX-License-Identifier: Apache-2.0
+// Ray traversal one node at a time, with Vulkan's rules: the same steps for the functional and the timing
+// machine. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 
@@ -9,9 +9,9 @@
 
 namespace glint::rt {
 
-// Starts the ray in `state.ray`: resets everything else. A null structure, a not-a-number or infinite ray and an empty
-// interval end at once as a miss (Choice: Vulkan leaves them undefined). False when `ray.structure` is not a
-// top-level structure: the program's fault; the ray is then Done.
+// Starts the ray in `state.ray`: resets everything else. A null structure, a not-a-number or infinite ray and
+// an empty interval end at once as a miss (Choice: Vulkan leaves them undefined). False when `ray.structure`
+// is not a top-level structure: the program's fault; the ray is then Done.
 bool begin(RayState& state, const mem::AddressSpace& memory);
 
 // What step() must be given next. Only while Traversing.
@@ -28,8 +28,9 @@ void step(RayState& state, const std::byte* bytes);
 // Ends a ray whose next node lies outside memory: Done, `broken`.
 void break_off(RayState& state);
 
-// Steps until the ray is Done, needs a shader or has gathered candidates and can go no further without shaders: the
-// traversal has ended, or (Choice) the table is full, and the ray traverses on when all of it has been decided.
+// Steps until the ray is Done, needs a shader or has gathered candidates and can go no further without
+// shaders: the traversal has ended, or (Choice) the table is full, and the ray traverses on when all of it
+// has been decided.
 void run(RayState& state, const mem::AddressSpace& memory);
 
 // Takes a candidate of a Gathered ray out of its table: its shader is next.
@@ -54,7 +55,8 @@ enum class Report : uint8_t {
   Accepted,     // opaque: committed; attribute_slot has flipped
   NeedsAnyHit,  // status is NeedsAnyHit until the candidate is decided, then NeedsIntersection again
 };
-// reportIntersectionEXT(t, kind). Sets report_accepted unless the answer is NeedsAnyHit: then the decision does.
+// reportIntersectionEXT(t, kind). Sets report_accepted unless the answer is NeedsAnyHit: then the decision
+// does.
 Report report(RayState& state, float t, uint32_t kind);
 void finish_intersection(RayState& state);
 

@@ -1,5 +1,5 @@
-// The ray-triangle test: watertight edges and vertices (Woop, Benthin, Wald 2013, JCGT 2-1), distance from the plane.
-// SPDX-License-Identifier: Apache-2.0
+// The ray-triangle test: watertight edges and vertices (Woop, Benthin, Wald 2013, JCGT 2-1), distance from
+// the plane. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,8 @@ struct TriangleHit {
 };
 
 // Sets what the tests derive from the ray's origin and direction (Woop et al. 2013, sec. 3).
-inline void enter_space(RaySpace& space, const std::array<float, 3>& origin, const std::array<float, 3>& direction) {
+inline void enter_space(RaySpace& space, const std::array<float, 3>& origin,
+                        const std::array<float, 3>& direction) {
   space.origin = origin;
   space.direction = direction;
   const float ax = std::fabs(direction[0]), ay = std::fabs(direction[1]), az = std::fabs(direction[2]);
@@ -28,24 +29,25 @@ inline void enter_space(RaySpace& space, const std::array<float, 3>& origin, con
   space.shear = {direction[kx] / direction[kz], direction[ky] / direction[kz], 1 / direction[kz]};
 }
 
-// Component k of the plane's normal: the cross product of two edges, of the two pairs the one whose subtrahend is the
-// smaller (less is cancelled), the last rounding exact.
+// Component k of the plane's normal: the cross product of two edges, of the two pairs the one whose
+// subtrahend is the smaller (less is cancelled), the last rounding exact.
 inline float normal_component(float a1, float a2, float b1, float b2, float c1, float c2) {
   const float ab = a2 * b1, bc = b2 * c1;
   return std::fabs(ab) < std::fabs(bc) ? std::fma(a1, b2, -ab) : std::fma(b1, c2, -bc);
 }
 
-// Distance of the plane through three corners, in lengths of the direction: t = (v0 . N) (1 / (N . D)), corners
-// relative to the origin. `weighted`, the distance averaged with the edge test's weights, stands where N . D vanishes
-// and where the plane's distance leaves the corners' own depths [low, high] along the axis kz by more than 2^-21, half
-// of what boxes are widened by: the normal of a sliver is noise, and a hit must stay near its box.
-// Choice: reciprocal and product, not a quotient, and fused where written: nearly always the bits of Embree's robust
-// test, whose grazing self-hits follow the last bit. std::fma rounds once on every machine. Measured over 64 x 64 x 2
-// primary rays of SHIP, BUNNY and REF against the exact value: mean error 0.77, 0.54, 0.51 ulp (averaged weights: 0.76,
-// 0.75, 0.75), largest 5.3, 3.4, 2.2 ulp (7.3, 5.2, 4.1). Double precision would give 0.25, but other self-hits.
-inline float plane_distance(const std::array<float, 3>& o, const std::array<float, 3>& d, const std::array<float, 3>& p0,
-                            const std::array<float, 3>& p1, const std::array<float, 3>& p2, float low, float high,
-                            float weighted) {
+// Distance of the plane through three corners, in lengths of the direction: t = (v0 . N) (1 / (N . D)),
+// corners relative to the origin. `weighted`, the distance averaged with the edge test's weights, stands
+// where N . D vanishes and where the plane's distance leaves the corners' own depths [low, high] along the
+// axis kz by more than 2^-21, half of what boxes are widened by: the normal of a sliver is noise, and a hit
+// must stay near its box. Choice: reciprocal and product, not a quotient, and fused where written: nearly
+// always the bits of Embree's robust test, whose grazing self-hits follow the last bit. std::fma rounds once
+// on every machine. Measured over 64 x 64 x 2 primary rays of SHIP, BUNNY and REF against the exact value:
+// mean error 0.77, 0.54, 0.51 ulp (averaged weights: 0.76, 0.75, 0.75), largest 5.3, 3.4, 2.2 ulp
+// (7.3, 5.2, 4.1). Double precision would give 0.25, but other self-hits.
+inline float plane_distance(const std::array<float, 3>& o, const std::array<float, 3>& d,
+                            const std::array<float, 3>& p0, const std::array<float, 3>& p1,
+                            const std::array<float, 3>& p2, float low, float high, float weighted) {
   std::array<float, 3> v0, e0, e1, e2, n;
   for (size_t k = 0; k < 3; ++k) {
     v0[k] = p0[k] - o[k];
@@ -64,10 +66,11 @@ inline float plane_distance(const std::array<float, 3>& o, const std::array<floa
   return t >= low - slack && t <= high + slack ? t : weighted;
 }
 
-// Tests the line of the ray; the interval is the caller's. False for degenerate triangles and for not-a-number. Whether
-// it hits is the edge test's alone: the plane only says where.
-inline bool intersect_triangle(const RaySpace& space, const std::array<float, 3>& p0, const std::array<float, 3>& p1,
-                               const std::array<float, 3>& p2, TriangleHit& hit) {
+// Tests the line of the ray; the interval is the caller's. False for degenerate triangles and for
+// not-a-number. Whether it hits is the edge test's alone: the plane only says where.
+inline bool intersect_triangle(const RaySpace& space, const std::array<float, 3>& p0,
+                               const std::array<float, 3>& p1, const std::array<float, 3>& p2,
+                               TriangleHit& hit) {
   const auto [kx, ky, kz] = space.axis;
   const auto& o = space.origin;
   const float sx = space.shear[0], sy = space.shear[1], sz = space.shear[2];
@@ -90,7 +93,8 @@ inline bool intersect_triangle(const RaySpace& space, const std::array<float, 3>
   const float ta = sz * az, tb = sz * bz, tc = sz * cz;
   const float weighted = (u * ta + v * tb + w * tc) / det;
   if (weighted != weighted) return false;
-  const float t = plane_distance(o, space.direction, p0, p1, p2, std::min({ta, tb, tc}), std::max({ta, tb, tc}), weighted);
+  const float t = plane_distance(o, space.direction, p0, p1, p2, std::min({ta, tb, tc}),
+                                 std::max({ta, tb, tc}), weighted);
   hit = {t, v / det, w / det, det > 0};
   return true;
 }

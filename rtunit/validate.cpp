@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/validate.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstring>
+#include <fmt/format.h>
 #include <set>
 #include <tuple>
 
@@ -42,7 +41,8 @@ class Validation {
       error("{:#x} holds no header of a level-{} structure", address, level);
       return {};
     }
-    const auto format = header.format < uint8_t(FormatId::Count) ? make_format(FormatId(header.format)) : nullptr;
+    const auto format =
+        header.format < uint8_t(FormatId::Count) ? make_format(FormatId(header.format)) : nullptr;
     if (!format) {
       error("{:#x}: unknown node format {}", address, header.format);
       return {};
@@ -55,11 +55,13 @@ class Validation {
     primitives.swap(primitives_);
     Measured out = internal(kRootBlock, 0);
     if (primitives_.size() != header.num_primitives)
-      error("{:#x}: {} primitives reached, the header says {}", address, primitives_.size(), header.num_primitives);
+      error("{:#x}: {} primitives reached, the header says {}", address, primitives_.size(),
+            header.num_primitives);
     primitives_.swap(primitives);
     if (out.stack_need > header.stack_need)
       error("{:#x}: needs {} stack entries, the header says {}", address, out.stack_need, header.stack_need);
-    if (header.num_primitives && !contains(header.bounds, out.bounds)) error("{:#x}: the header's box is too small", address);
+    if (header.num_primitives && !contains(header.bounds, out.bounds))
+      error("{:#x}: the header's box is too small", address);
     if (level == 1 && out.stack_need > kStackEntries)
       error("{:#x}: needs {} stack entries, a ray has {}", address, out.stack_need, kStackEntries);
     frame_ = outer;
@@ -84,8 +86,10 @@ class Validation {
   bool read(Address base, uint32_t block, T& out) {
     const Address at = base + Address(block) * kBlockBytes;
     const std::byte* bytes = memory_.find(at, sizeof out);
-    if (bytes) std::memcpy(&out, bytes, sizeof out);
-    else error("{}", memory_.explain(at, sizeof out));
+    if (bytes)
+      std::memcpy(&out, bytes, sizeof out);
+    else
+      error("{}", memory_.explain(at, sizeof out));
     return bytes != nullptr;
   }
   void reached(uint32_t geometry, uint32_t primitive) {
@@ -95,7 +99,8 @@ class Validation {
 
   Measured internal(uint32_t block, uint32_t depth) {
     Measured out;
-    const std::byte* bytes = memory_.find(frame_.base + Address(block) * kBlockBytes, frame_.format->node_bytes());
+    const std::byte* bytes =
+        memory_.find(frame_.base + Address(block) * kBlockBytes, frame_.format->node_bytes());
     if (!bytes || depth > kStackEntries) {
       error("{:#x}: block {} at depth {} is outside or deeper than any stack", frame_.base, block, depth);
       return out;
@@ -115,9 +120,12 @@ class Validation {
   Measured child(NodeRef ref, uint32_t depth) {
     const uint32_t block = block_of(ref);
     switch (kind_of(ref)) {
-      case NodeKind::Internal: return internal(block, depth + 1);
-      case NodeKind::Instance: return instance(block);
-      case NodeKind::Triangle: return triangles(block);
+      case NodeKind::Internal:
+        return internal(block, depth + 1);
+      case NodeKind::Instance:
+        return instance(block);
+      case NodeKind::Triangle:
+        return triangles(block);
       case NodeKind::Procedural: {
         Measured out;
         ProceduralLeaf leaf;
@@ -126,7 +134,8 @@ class Validation {
         out.bounds = leaf.box;
         return out;
       }
-      case NodeKind::TriangleSecond: break;
+      case NodeKind::TriangleSecond:
+        break;
     }
     error("{:#x}: block {} has kind {}", frame_.base, block, int(kind_of(ref)));
     return {};
@@ -136,7 +145,8 @@ class Validation {
     Measured out;
     TriangleLeaf leaf;
     if (!read(frame_.base, block, leaf)) return out;
-    if (leaf.count < 1 || leaf.count > 2) error("{:#x}: block {} holds {} triangles", frame_.base, block, leaf.count);
+    if (leaf.count < 1 || leaf.count > 2)
+      error("{:#x}: block {} holds {} triangles", frame_.base, block, leaf.count);
     for (uint32_t i = 0; i < leaf.count && i < 2; ++i) {
       reached(leaf.geometry, leaf.primitive[i]);
       for (uint32_t corner = 0; corner < 3; ++corner) {
@@ -160,7 +170,8 @@ class Validation {
       for (size_t r = 0; r < 3; ++r) {
         double x = leaf.object_to_world[4 * r + 3];
         for (size_t c = 0; c < 3; ++c)
-          x += double(leaf.object_to_world[4 * r + c]) * (corner >> c & 1 ? bottom.bounds.high[c] : bottom.bounds.low[c]);
+          x += double(leaf.object_to_world[4 * r + c]) *
+               (corner >> c & 1 ? bottom.bounds.high[c] : bottom.bounds.low[c]);
         p[r] = float(x);
       }
       extend(out.bounds, {p, p});

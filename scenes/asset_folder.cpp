@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/asset_folder.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
 #include <map>
 #include <set>
@@ -105,7 +104,8 @@ class FolderLoader {
 
   Model load(const std::string& file) {
     const size_t first = scene_.materials.size();
-    Model model = load_obj((folder_ / file).string(), scene_.materials, rules_.textures ? &scene_.textures : nullptr);
+    Model model =
+        load_obj((folder_ / file).string(), scene_.materials, rules_.textures ? &scene_.textures : nullptr);
     if (wanted_.contains(file)) keep(file, model, int32_t(first));
     return model;
   }
@@ -152,10 +152,14 @@ class FolderLoader {
 
 }  // namespace
 
-Material paint(int r, int g, int b) { return lambertian(float(r) / 256, float(g) / 256, float(b) / 256); }
+Material paint(int r, int g, int b) {
+  return lambertian(float(r) / 256, float(g) / 256, float(b) / 256);
+}
 
 void append_copy(Model& model, const Model& part, const Affine& matrix, int32_t material) {
-  const auto row = [&matrix](size_t i) -> Vec3 { return {matrix[4 * i], matrix[4 * i + 1], matrix[4 * i + 2]}; };
+  const auto row = [&matrix](size_t i) -> Vec3 {
+    return {matrix[4 * i], matrix[4 * i + 1], matrix[4 * i + 2]};
+  };
   const Vec3 rows[3] = {row(0), row(1), row(2)}, move{matrix[3], matrix[7], matrix[11]};
   // the cofactors are the inverse transpose times the determinant, whose sign turns mirrored normals round
   const Vec3 cofactors[3] = {cross(rows[1], rows[2]), cross(rows[2], rows[0]), cross(rows[0], rows[1])};
@@ -164,8 +168,8 @@ void append_copy(Model& model, const Model& part, const Affine& matrix, int32_t 
   for (const Vertex& v : part.vertices) {
     Vertex copy = v;
     copy.position = Vec3{dot(rows[0], v.position), dot(rows[1], v.position), dot(rows[2], v.position)} + move;
-    copy.normal = normalized(Vec3{dot(cofactors[0], v.normal), dot(cofactors[1], v.normal),
-                                  dot(cofactors[2], v.normal)} * sign);
+    copy.normal = normalized(
+        Vec3{dot(cofactors[0], v.normal), dot(cofactors[1], v.normal), dot(cofactors[2], v.normal)} * sign);
     if (material >= 0) copy.material = material;
     model.vertices.push_back(copy);
   }
@@ -186,9 +190,10 @@ std::string find_folder(const std::string& assets, const std::vector<std::string
 void load_folder(Scene& scene, const LoadOptions& options, const FolderRules& rules) {
   const std::string folder = find_folder(options.assets, rules.folders);
   if (folder.empty())
-    throw UserError({}, fmt::format("no files for scene {} in the assets folder '{}'", scene.name, options.assets),
-                    fmt::format("expected OBJ files in one of {} there; without an assets folder the scene is built in",
-                                fmt::join(rules.folders, ", ")));
+    throw UserError(
+        {}, fmt::format("no files for scene {} in the assets folder '{}'", scene.name, options.assets),
+        fmt::format("expected OBJ files in one of {} there; without an assets folder the scene is built in",
+                    fmt::join(rules.folders, ", ")));
   FolderLoader loader(scene, rules, folder);
   const uint64_t models = loader.run(options), absent = loader.absent();
   scene.form = absent == 0 ? "original" : "partial";

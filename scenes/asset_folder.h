@@ -17,19 +17,20 @@ struct NameRule {
 };
 
 struct FolderRules {
-  std::vector<std::string> folders;  // candidates below the assets folder; its own name is one, for the folder itself
+  std::vector<std::string>
+      folders;  // candidates below the assets folder; its own name is one, for the folder itself
   bool textures = false;
-  float scale = 1;                   // about the origin
-  std::string skip = {};             // files whose name contains this are left out; "" = none
-  std::vector<NameRule> colors = {}; // the first that matches
+  float scale = 1;                    // about the origin
+  std::string skip = {};              // files whose name contains this are left out; "" = none
+  std::vector<NameRule> colors = {};  // the first that matches
   // What no name rule can say: gets the file's name and its materials, after `colors`.
   std::function<void(const std::string& name, std::span<Material> materials)> recolor = {};
 };
 
-// Appends the files in the order of their names. Files without triangles give no model. A table `instances.tsv` in the
-// folder lists further files as affine copies: name, file, 3x4 matrix in rows. Sets form and note: the original has a
-// material library beside every OBJ file, so a library alone says that its OBJ file is absent and the scene "partial".
-// UserError when no folder holds an OBJ file.
+// Appends the files in the order of their names. Files without triangles give no model. A table
+// `instances.tsv` in the folder lists further files as affine copies: name, file, 3x4 matrix in rows. Sets
+// form and note: the original has a material library beside every OBJ file, so a library alone says that its
+// OBJ file is absent and the scene "partial". UserError when no folder holds an OBJ file.
 void load_folder(Scene& scene, const LoadOptions& options, const FolderRules& rules);
 
 // The first of `folders` below `assets` that holds OBJ files, or "".
@@ -38,8 +39,8 @@ std::string find_folder(const std::string& assets, const std::vector<std::string
 // A colour of 0 to 255, over 256 as the application has it.
 Material paint(int r, int g, int b);
 
-// Appends a copy of `part`, moved: normals by the inverse transpose, normalised; every material `material`, or the
-// part's own when that is negative.
+// Appends a copy of `part`, moved: normals by the inverse transpose, normalised; every material `material`,
+// or the part's own when that is negative.
 void append_copy(Model& model, const Model& part, const Affine& matrix, int32_t material);
 
 }  // namespace glint::scenes

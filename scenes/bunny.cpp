@@ -22,7 +22,8 @@ float ear_distance(const Vec3& mirrored) {
   const Vec3 thin = normalized({-axis[1], axis[0], 0.02f});
   const float across = dot(q, thin), rest = std::max(dot(q, q) - across * across, 0.0f);
   const float outer = std::sqrt(across * across * 3.2f + rest) - width;
-  const float groove = ellipsoid_distance(mirrored, kRoot + axis * 0.55f + thin * 0.075f, {0.14f, 0.15f, 0.055f});
+  const float groove =
+      ellipsoid_distance(mirrored, kRoot + axis * 0.55f + thin * 0.075f, {0.14f, 0.15f, 0.055f});
   return std::max(outer * 0.6f, -groove);
 }
 
@@ -43,7 +44,8 @@ float rabbit_distance(const Vec3& p) {
   d = blended_union(d, ellipsoid_distance(m, {-0.32f, 0.55f, 0}, {0.28f, 0.42f, 0.29f}), 0.2f);
   d = blended_union(d, ellipsoid_distance(m, {0.20f, 0.33f, 0.26f}, {0.29f, 0.31f, 0.17f}), 0.06f);
   d = blended_union(d, ellipsoid_distance(m, {-0.05f, 0.07f, 0.33f}, {0.27f, 0.08f, 0.10f}), 0.06f);
-  d = blended_union(d, limb_distance(m, {-0.42f, 0.45f, 0.15f}, 0.12f, {-0.53f, 0.09f, 0.15f}, 0.075f), 0.07f);
+  d = blended_union(d, limb_distance(m, {-0.42f, 0.45f, 0.15f}, 0.12f, {-0.53f, 0.09f, 0.15f}, 0.075f),
+                    0.07f);
   d = blended_union(d, ellipsoid_distance(m, {-0.60f, 0.06f, 0.15f}, {0.14f, 0.07f, 0.08f}), 0.05f);
   d = blended_union(d, ellipsoid_distance(m, {0.60f, 0.27f, 0}, {0.14f, 0.15f, 0.14f}), 0.05f);
   d = blended_union(d, head_distance(m), 0.10f);
@@ -55,7 +57,8 @@ float rabbit_distance(const Vec3& p) {
 }  // namespace
 
 Model make_bunny_stand_in(int32_t material) {
-  Model model = surface_of(rabbit_distance, {{-1.05f, -0.05f, -0.60f}, {0.85f, 1.65f, 0.60f}}, kCell, material);
+  Model model =
+      surface_of(rabbit_distance, {{-1.05f, -0.05f, -0.60f}, {0.85f, 1.65f, 0.60f}}, kCell, material);
   model.name = "bunny_stand_in";
   return model;
 }

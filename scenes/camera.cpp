@@ -1,5 +1,5 @@
-// What a frame's uniform block (binding 3) holds: camera matrices, light and counts, as the shaders read them.
-// SPDX-License-Identifier: Apache-2.0
+// What a frame's uniform block (binding 3) holds: camera matrices, light and counts, as the shaders read
+// them. SPDX-License-Identifier: Apache-2.0
 #include "scenes/camera.h"
 
 #include <cmath>
@@ -65,9 +65,15 @@ FrameUniforms frame_uniforms(const Scene& scene, Workload workload, const Render
   u.total_samples = u.samples = params.samples;  // the first frame: no earlier sum is read
   u.bounces = params.bounces;
   switch (workload) {
-    case Workload::PathTracing: u.secondary_rays = kDefaultSecondaryRays; break;
-    case Workload::Shadow: u.secondary_rays = params.shadow_rays; break;
-    case Workload::AmbientOcclusion: u.secondary_rays = params.ao_rays; break;
+    case Workload::PathTracing:
+      u.secondary_rays = kDefaultSecondaryRays;
+      break;
+    case Workload::Shadow:
+      u.secondary_rays = params.shadow_rays;
+      break;
+    case Workload::AmbientOcclusion:
+      u.secondary_rays = params.ao_rays;
+      break;
   }
   u.random_seed = params.seed;
   u.width = params.width;

@@ -1,5 +1,5 @@
-// What a frame's uniform block (binding 3) holds: camera matrices, light and counts, as the shaders read them.
-// SPDX-License-Identifier: Apache-2.0
+// What a frame's uniform block (binding 3) holds: camera matrices, light and counts, as the shaders read
+// them. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstddef>
@@ -29,8 +29,8 @@ struct CameraMatrices {
   Mat4 model_view, projection, model_view_inverse, projection_inverse;
 };
 
-// Right-handed look-at view, perspective with depth 0..1, near 0.1, far 10000, and y pointing down as Vulkan has
-// it. `aspect` is width over height.
+// Right-handed look-at view, perspective with depth 0..1, near 0.1, far 10000, and y pointing down as Vulkan
+// has it. `aspect` is width over height.
 CameraMatrices camera_matrices(const Camera& camera, float aspect);
 
 // Binding 3, std140.
@@ -42,10 +42,11 @@ struct FrameUniforms {
   uint32_t width, height, has_sky, show_heatmap;
 };
 static_assert(sizeof(FrameUniforms) == 320);
-static_assert(offsetof(FrameUniforms, light_position) == 256 && offsetof(FrameUniforms, total_samples) == 284 &&
-              offsetof(FrameUniforms, width) == 304);
+static_assert(offsetof(FrameUniforms, light_position) == 256 &&
+              offsetof(FrameUniforms, total_samples) == 284 && offsetof(FrameUniforms, width) == 304);
 
-// `secondary_rays` is the workload's own count; path tracing, which casts none, has the application's default, 16.
+// `secondary_rays` is the workload's own count; path tracing, which casts none, has the application's
+// default, 16.
 FrameUniforms frame_uniforms(const Scene& scene, Workload workload, const RenderParams& params);
 
 // The same as 320 bytes.

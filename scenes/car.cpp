@@ -22,11 +22,14 @@ class Workshop {
 
   // Every new part gets the next texture, as long as there are any, then plain colours.
   int32_t paint() {
-    static constexpr Pattern kPatterns[] = {Pattern::Panels, Pattern::Stone, Pattern::Stripes, Pattern::Planks};
-    const float r = random_.between(0.2f, 0.9f), g = random_.between(0.15f, 0.6f), b = random_.between(0.1f, 0.5f);
+    static constexpr Pattern kPatterns[] = {Pattern::Panels, Pattern::Stone, Pattern::Stripes,
+                                            Pattern::Planks};
+    const float r = random_.between(0.2f, 0.9f), g = random_.between(0.15f, 0.6f),
+                b = random_.between(0.1f, 0.5f);
     if (made_ >= kTextures) return generator_.color(r, g, b);
     const uint32_t seed = made_++;
-    return generator_.textured(paint_texture(kPatterns[seed % 4], {r, g, b}, kTextureSide, kTextureSide, seed));
+    return generator_.textured(
+        paint_texture(kPatterns[seed % 4], {r, g, b}, kTextureSide, kTextureSide, seed));
   }
   Random& random() { return random_; }
 
@@ -40,18 +43,23 @@ class Workshop {
 void wheels(Generator& generator, Workshop& shop, const Frame& car) {
   static constexpr Vec2 kBolt[] = {{-1, 0}, {-1, 1}, {0.4f, 1}, {0.5f, 0.6f}, {1, 0.6f}, {1, 0}};
   for (int k = 0; k < 4; ++k) {
-    const Frame hub = car.inner({k % 2 ? 0.68f : -0.68f, -0.5f, k / 2 ? 0.95f : -0.95f}, {0.3f, 0.75f, 0.25f});
+    const Frame hub =
+        car.inner({k % 2 ? 0.68f : -0.68f, -0.5f, k / 2 ? 0.95f : -0.95f}, {0.3f, 0.75f, 0.25f});
     const Frame wheel{hub.x, hub.z, hub.y, hub.origin};
     generator.model("Torus", [&](Model& m) { add_ring(m, wheel, 320'000, shop.paint(), 0.35f); });
     generator.model("Rim", [&](Model& m) {
       const int32_t material = shop.paint();
-      add_machine(m, wheel.inner({0, 0, 0}, {0.5f, 0.8f, 0.5f}), 200'000, std::span(&material, 1), uint32_t(k));
+      add_machine(m, wheel.inner({0, 0, 0}, {0.5f, 0.8f, 0.5f}), 200'000, std::span(&material, 1),
+                  uint32_t(k));
     });
-    generator.model("Brake", [&](Model& m) { add_lathe(m, wheel.inner({0, 0.3f, 0}, {0.4f, 0.2f, 0.4f}), kBolt, 60'000, shop.paint()); });
+    generator.model("Brake", [&](Model& m) {
+      add_lathe(m, wheel.inner({0, 0.3f, 0}, {0.4f, 0.2f, 0.4f}), kBolt, 60'000, shop.paint());
+    });
     for (int bolt = 0; bolt < 12; ++bolt)
       generator.model("Bolt", [&](Model& m) {
         const double angle = 6.283185307 * bolt / 12;
-        add_lathe(m, wheel.inner({0.5f * cosine(angle), 0.9f, 0.5f * sine(angle)}, {0.05f, 0.2f, 0.05f}), kBolt, 3'000, shop.paint());
+        add_lathe(m, wheel.inner({0.5f * cosine(angle), 0.9f, 0.5f * sine(angle)}, {0.05f, 0.2f, 0.05f}),
+                  kBolt, 3'000, shop.paint());
       });
   }
 }
@@ -60,26 +68,34 @@ void body(Generator& generator, Workshop& shop, const Frame& car) {
   Random& random = shop.random();
   for (int k = 0; k < 60; ++k)
     generator.model("Panel", [&](Model& m) {
-      const float along = float(k % 20) / 10 - 0.95f, narrow = 0.75f - 0.45f * (along > 0 ? along * along : 0);
+      const float along = float(k % 20) / 10 - 0.95f,
+                  narrow = 0.75f - 0.45f * (along > 0 ? along * along : 0);
       const Vec3 center{along, k < 20 ? 0.35f : -0.2f, k < 20 ? 0 : (k < 40 ? narrow : -narrow)};
       const Vec3 size{0.09f, k < 20 ? 0.08f : 0.45f, k < 20 ? narrow : 0.07f};
       add_rounded_box(m, car.inner(center, size, random.between(-4, 4)), 60'000, shop.paint(), 0.4f);
     });
   for (uint32_t k = 0; k < 70; ++k)
     generator.model("Cube", [&](Model& m) {
-      const float x = random.between(-0.95f, 0.6f), y = random.between(-0.3f, 0.75f), z = random.between(-0.5f, 0.5f), size = random.between(0.06f, 0.18f);
+      const float x = random.between(-0.95f, 0.6f), y = random.between(-0.3f, 0.75f),
+                  z = random.between(-0.5f, 0.5f), size = random.between(0.06f, 0.18f);
       const int32_t materials[] = {shop.paint()};
       add_machine(m, car.inner({x, y, z}, {size, size * 2, size}), 50'000, materials, 50 + k);
     });
   for (uint32_t k = 0; k < 60; ++k)
     generator.model("BezierCurve", [&](Model& m) {
-      const float x = random.between(-0.9f, 0.5f), z = random.between(-0.6f, 0.6f), reach = random.between(0.2f, 0.6f);
-      add_cable(m, car.at(x, 0.4f, z), car.at(x + reach, random.between(0.1f, 0.6f), -z), 0.4f, 0.025f, 20'000, shop.paint());
+      const float x = random.between(-0.9f, 0.5f), z = random.between(-0.6f, 0.6f),
+                  reach = random.between(0.2f, 0.6f);
+      add_cable(m, car.at(x, 0.4f, z), car.at(x + reach, random.between(0.1f, 0.6f), -z), 0.4f, 0.025f,
+                20'000, shop.paint());
     });
   const Frame wing = car.inner({-1, 1, 0}, {0.16f, 0.08f, 1});
   generator.model("Wing", [&](Model& m) { add_rounded_box(m, wing, 200'000, shop.paint(), 0.6f); });
-  generator.model("Helmet", [&](Model& m) { add_ball(m, car.inner({-0.05f, 0.75f, 0}, {0.14f, 0.4f, 0.2f}), 200'000, shop.paint(), 0.1f); });
-  generator.model("Cockpit", [&](Model& m) { add_ring(m, car.inner({0, 0.5f, 0}, {0.3f, 0.25f, 0.4f}), 120'000, shop.paint(), 0.2f); });
+  generator.model("Helmet", [&](Model& m) {
+    add_ball(m, car.inner({-0.05f, 0.75f, 0}, {0.14f, 0.4f, 0.2f}), 200'000, shop.paint(), 0.1f);
+  });
+  generator.model("Cockpit", [&](Model& m) {
+    add_ring(m, car.inner({0, 0.5f, 0}, {0.3f, 0.25f, 0.4f}), 120'000, shop.paint(), 0.2f);
+  });
 }
 
 // Towers of the town around, and the slope below.
@@ -87,15 +103,18 @@ void surroundings(Generator& generator, Workshop& shop, const Frame& view) {
   Random& random = shop.random();
   for (uint32_t k = 0; k < 48; ++k)
     generator.model("Tower", [&](Model& m) {
-      const float depth = 45 + 2 * float(k), x = random.between(-0.38f, 0.38f) * depth, tall = random.between(0.06f, 0.2f) * depth;
+      const float depth = 45 + 2 * float(k), x = random.between(-0.38f, 0.38f) * depth,
+                  tall = random.between(0.06f, 0.2f) * depth;
       const int32_t materials[] = {shop.paint()};
-      add_machine(m, view.inner({x, tall - 0.3f * depth, 18 - depth}, {0.05f * depth, tall, 0.05f * depth}), 15'000, materials, 200 + k);
+      add_machine(m, view.inner({x, tall - 0.3f * depth, 18 - depth}, {0.05f * depth, tall, 0.05f * depth}),
+                  15'000, materials, 200 + k);
     });
   generator.model("Ground", [&](Model& m) {
     const int32_t material = shop.paint();
     add_patch(m, generator.rest(), 1, material, [&](float u, float v) {
       const float depth = 24 + 110 * v, x = (u - 0.5f) * 1.3f * depth;
-      return view.at(x, -0.20f * depth + 0.1f * depth * fractal({x * 0.05f, 1, depth * 0.05f}, 5), 18 - depth);
+      return view.at(x, -0.20f * depth + 0.1f * depth * fractal({x * 0.05f, 1, depth * 0.05f}, 5),
+                     18 - depth);
     });
   });
 }
@@ -108,7 +127,9 @@ void generate(Scene& scene, const LoadOptions& options) {
   body(generator, shop, car);
   wheels(generator, shop, car);
   surroundings(generator, shop, view);
-  scene.note = "A procedural racing car; about the original's triangle count (12.7M), its number of models (302) and textures (244, 504 MB).";
+  scene.note =
+      "A procedural racing car; about the original's triangle count (12.7M), its number of models (302) and "
+      "textures (244, 504 MB).";
 }
 
 }  // namespace

@@ -23,10 +23,12 @@ struct Fair {
     for (const float side : {-14.0f, 14.0f}) {
       const Vec3 middle = hub + Vec3{0, 0, side};
       for (const float part : {1.0f, 0.9f, 0.35f})
-        add_ring(model, {{radius * part, 0, 0}, {0, 0, 2.5f}, {0, radius * part, 0}, middle}, 2400, color(1), 0.012f);
+        add_ring(model, {{radius * part, 0, 0}, {0, 0, 2.5f}, {0, radius * part, 0}, middle}, 2400, color(1),
+                 0.012f);
       for (uint32_t k = 0; k < kSpokes; ++k) {
         const double angle = 2 * kPi * k / kSpokes;
-        add_cable(model, middle, middle + Vec3{radius * cosine(angle), radius * sine(angle), 0}, 0, 1.1f, 400, color(2));
+        add_cable(model, middle, middle + Vec3{radius * cosine(angle), radius * sine(angle), 0}, 0, 1.1f, 400,
+                  color(2));
       }
       for (const float lean : {-90.0f, 90.0f})
         add_cable(model, middle, {hub[0] + lean, 20, hub[2] + side * 2}, 0, 5, 1200, color(3));
@@ -40,12 +42,14 @@ struct Fair {
   }
 
   void tent(const Vec3& foot, float size, uint32_t k) {
-    static constexpr Vec2 kRoof[] = {{-1, 1}, {-0.6f, 0.98f}, {-0.55f, 1.1f}, {0.2f, 0.45f}, {0.9f, 0.05f}, {1, 0}};
+    static constexpr Vec2 kRoof[] = {{-1, 1},       {-0.6f, 0.98f}, {-0.55f, 1.1f},
+                                     {0.2f, 0.45f}, {0.9f, 0.05f},  {1, 0}};
     add_lathe(model, upright(foot + Vec3{0, size, 0}, {size, size, size}), kRoof, 6000, color(k));
     for (uint32_t s = 0; s < 12; ++s) {
       const double angle = 2 * kPi * s / 12;
       const Vec3 rim = foot + Vec3{size * 1.06f * cosine(angle), size * 0.42f, size * 1.06f * sine(angle)};
-      add_cloth(model, {{size * 0.12f, 0, 0}, {0, size * 0.12f, 0}, {0, 0, 3}, rim}, 800, color(k + s % 2 + 1), 2, s);
+      add_cloth(model, {{size * 0.12f, 0, 0}, {0, size * 0.12f, 0}, {0, 0, 3}, rim}, 800,
+                color(k + s % 2 + 1), 2, s);
     }
     add_ball(model, upright(foot + Vec3{0, 2 * size + 4, 0}, {4, 4, 4}), 500, color(k + 2));
   }
@@ -58,7 +62,8 @@ struct Fair {
       const double angle = 2 * kPi * k / 16;
       const Vec3 place = foot + Vec3{size * 0.8f * cosine(angle), 26, size * 0.8f * sine(angle)};
       add_cable(model, place + Vec3{0, -20, 0}, place + Vec3{0, 40, 0}, 0, 1, 300, color(8));
-      add_ball(model, upright(place, {5, 6, 12}, float(k) * -22.5f), 2600, color(9 + k), 0.25f, 1.5f);  // a horse's body
+      add_ball(model, upright(place, {5, 6, 12}, float(k) * -22.5f), 2600, color(9 + k), 0.25f,
+               1.5f);  // a horse's body
       add_ball(model, upright(place + Vec3{0, 8, 0}, {3, 6, 4}), 900, color(9 + k), 0.2f, 2);
     }
   }
@@ -72,8 +77,10 @@ struct Fair {
     });
     for (int row = 0; row < 3; ++row)
       for (int toy = 0; toy < 7; ++toy)
-        add_ball(model, frame.inner({float(toy) * 0.28f - 0.84f, 0.45f * float(row) + 0.1f, -0.7f}, {0.1f, 0.14f, 0.15f}), 260,
-                 color(uint32_t(toy + row) + k), 0.25f, 2);
+        add_ball(
+            model,
+            frame.inner({float(toy) * 0.28f - 0.84f, 0.45f * float(row) + 0.1f, -0.7f}, {0.1f, 0.14f, 0.15f}),
+            260, color(uint32_t(toy + row) + k), 0.25f, 2);
   }
 
   void lamps(const Vec3& start, const Vec3& end, uint32_t k) {
@@ -108,7 +115,8 @@ void build_coaster(Fair& fair) {
   std::array<std::vector<Vec3>, 2> rails;
   for (int k = 0; k <= 600; ++k) {
     const double t = 2 * kPi * k / 600;
-    const Vec3 middle{120 + 420 * cosine(t), 170 + 85 * sine(3 * t) + 30 * cosine(5 * t), -1500 + 130 * sine(t)};
+    const Vec3 middle{120 + 420 * cosine(t), 170 + 85 * sine(3 * t) + 30 * cosine(5 * t),
+                      -1500 + 130 * sine(t)};
     for (size_t side = 0; side < 2; ++side) rails[side].push_back(middle + Vec3{0, 0, side ? 8.0f : -8.0f});
     if (k % 4 == 0) add_cable(fair.model, rails[0].back(), rails[1].back(), 0, 1, 16, fair.color(2));
     if (k % 12 == 0) add_cable(fair.model, middle, {middle[0], 20, middle[2]}, 0, 2.5f, 160, fair.color(3));
@@ -121,18 +129,24 @@ void generate(Scene& scene, const LoadOptions& options) {
   Fair fair;
   Random random(19);
   for (uint32_t k = 0; k < 35; ++k) {  // as many materials as the original has
-    const float r = random.between(0.1f, 0.95f), g = random.between(0.1f, 0.9f), b = random.between(0.1f, 0.9f);
+    const float r = random.between(0.1f, 0.95f), g = random.between(0.1f, 0.9f),
+                b = random.between(0.1f, 0.9f);
     fair.colors.push_back(k % 5 ? generator.color(r, g, b) : generator.color(0.9f, 0.9f, 0.86f));
   }
   build_fair(fair);
   build_coaster(fair);
   const uint64_t made = fair.model.indices.size() / 3;
-  add_patch(fair.model, made + 20'000 < kTriangles ? kTriangles - made : 20'000, 1, fair.color(3), [](float u, float v) -> Vec3 {
-    const float x = -700 + 1600 * u, z = -600 - 1200 * v;
-    return {x, 20 + 2.5f * fractal({x * 0.03f, 0, z * 0.03f}, 3), z};
+  add_patch(fair.model, made + 20'000 < kTriangles ? kTriangles - made : 20'000, 1, fair.color(3),
+            [](float u, float v) -> Vec3 {
+              const float x = -700 + 1600 * u, z = -600 - 1200 * v;
+              return {x, 20 + 2.5f * fractal({x * 0.03f, 0, z * 0.03f}, 3), z};
+            });
+  generator.model("carnival", [&](Model& model) {
+    model = std::move(fair.model);
+    model.name = "carnival";
   });
-  generator.model("carnival", [&](Model& model) { model = std::move(fair.model); model.name = "carnival"; });
-  scene.note = "A procedural fairground of the original's triangle count (449.6K) and number of materials (35).";
+  scene.note =
+      "A procedural fairground of the original's triangle count (449.6K) and number of materials (35).";
 }
 
 }  // namespace
@@ -146,7 +160,8 @@ Scene build_carnival(const LoadOptions& options) {
     return scene;
   }
   const std::string path = find_asset(options.assets, scene.name,
-                                      {"assets/models/TheCarnival.obj", "models/TheCarnival.obj", "CRNVL/TheCarnival.obj", "TheCarnival.obj"});
+                                      {"assets/models/TheCarnival.obj", "models/TheCarnival.obj",
+                                       "CRNVL/TheCarnival.obj", "TheCarnival.obj"});
   scene.models.push_back(load_obj(path, scene.materials));
   place(scene.models.back(), {.translation = {400, 20, 150}, .scale = 0.2f});
   scene.form = "original";

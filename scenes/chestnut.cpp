@@ -11,19 +11,22 @@
 namespace glint::scenes {
 namespace {
 
-constexpr const char* kYoungTree = "CHSNT/AL05y.obj";  // a stand-in of another size
+constexpr const char* kYoungTree = "CHSNT/AL05y.obj";   // a stand-in of another size
 constexpr double kTilt = -75 * 3.14159265358979 / 180;  // about +x
 
 void tilt(Model& model) {
   const float c = cosine(kTilt), s = sine(kTilt);
-  const auto turn = [c, s](const Vec3& v) -> Vec3 { return {v[0], c * v[1] - s * v[2], s * v[1] + c * v[2]}; };
+  const auto turn = [c, s](const Vec3& v) -> Vec3 {
+    return {v[0], c * v[1] - s * v[2], s * v[1] + c * v[2]};
+  };
   for (Vertex& vertex : model.vertices) {
     vertex.position = turn(vertex.position);
     vertex.normal = turn(vertex.normal);
   }
 }
 
-// Eight of the young tree, about as many triangles as the old one, turned by an eighth each about its axis (z).
+// Eight of the young tree, about as many triangles as the old one, turned by an eighth each about its axis
+// (z).
 Model grow_up(const Model& young) {
   Model model;
   for (int k = 0; k < 8; ++k) {
@@ -37,15 +40,16 @@ Model grow_up(const Model& young) {
 
 void load(Scene& scene, const LoadOptions& options) {
   const std::string path = find_asset(options.assets, scene.name,
-                                      {"assets/models/chestnut.obj", "models/chestnut.obj", "CHSNT/chestnut.obj", "chestnut.obj",
-                                       kYoungTree, "AL05y.obj"});
+                                      {"assets/models/chestnut.obj", "models/chestnut.obj",
+                                       "CHSNT/chestnut.obj", "chestnut.obj", kYoungTree, "AL05y.obj"});
   Model tree = load_obj(path, scene.materials, &scene.textures);
   scene.form = "original";
   scene.note = "Mesh from the assets folder.";
   if (std::filesystem::path(path).filename() == "AL05y.obj") {
     tree = grow_up(tree);
     scene.form = "stand-in";
-    scene.note = "Eight copies of the young tree (38,253 triangles) instead of the original's old one (313K).";
+    scene.note =
+        "Eight copies of the young tree (38,253 triangles) instead of the original's old one (313K).";
   }
   tilt(tree);
   scene.models.push_back(std::move(tree));
@@ -61,13 +65,26 @@ void generate(Scene& scene, const LoadOptions& options) {
   const int32_t ground = generator.color(0.8f, 0.8f, 0.8f);
   generator.model("chestnut", [&](Model& model) {
     add_tree(model, model,
-             {.foot = {20, -12, -75}, .up = {0, -sine(kTilt), cosine(kTilt)}, .height = 150, .spread = 0.45f, .leaf = 0.035f,
-              .wood = 0.3f, .bark = bark, .leaves = leaves, .seed = 11},
+             {.foot = {20, -12, -75},
+              .up = {0, -sine(kTilt), cosine(kTilt)},
+              .height = 150,
+              .spread = 0.45f,
+              .leaf = 0.035f,
+              .wood = 0.3f,
+              .bark = bark,
+              .leaves = leaves,
+              .seed = 11},
              kTriangles - kGround);
-    add_ground(model, {-200, -200}, {240, 90}, [](float x, float z) { return -12 - 4 * fractal({x * 0.02f, 0, z * 0.02f}, 2); },
-               kGround, ground);
+    add_ground(
+        model, {-200, -200}, {240, 90},
+        [](float x, float z) {
+          return -12 - 4 * fractal({x * 0.02f, 0, z * 0.02f}, 2);
+        },
+        kGround, ground);
   });
-  scene.note = "A procedural tree of about the original's triangle count (313K), with leaves cut out by their texture's alpha.";
+  scene.note =
+      "A procedural tree of about the original's triangle count (313K), with leaves cut out by their "
+      "texture's alpha.";
 }
 
 }  // namespace

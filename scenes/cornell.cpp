@@ -6,12 +6,12 @@
 namespace glint::scenes {
 namespace {
 
-constexpr float kEdge = 555;                   // world units, as in "Ray Tracing: The Next Week"
+constexpr float kEdge = 555;                    // world units, as in "Ray Tracing: The Next Week"
 constexpr float kLightHeight = 0.998f * kEdge;  // 553.89: just under the ceiling
 constexpr int32_t kRed = 0, kGreen = 1, kWhite = 2, kLight = 3;
 
-// Two triangles over four corners, clockwise as seen from inside; the normal points into the box, and so do the
-// triangles, counter-clockwise.
+// Two triangles over four corners, clockwise as seen from inside; the normal points into the box, and so do
+// the triangles, counter-clockwise.
 void add_wall(Model& box, const std::array<Vec3, 4>& corners, const Vec3& normal, int32_t material) {
   constexpr Vec2 kCoordinates[4] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   const uint32_t first = uint32_t(box.vertices.size());

@@ -8,9 +8,9 @@
 namespace glint::scenes {
 namespace {
 
-constexpr int kBlock = 4;         // lattice points along a block that is skipped or sampled as a whole
-constexpr int kCoarse = 16;       // the same, tried first
-constexpr float kSlope = 1.5f;    // the field's steepest change, see the header
+constexpr int kBlock = 4;       // lattice points along a block that is skipped or sampled as a whole
+constexpr int kCoarse = 16;     // the same, tried first
+constexpr float kSlope = 1.5f;  // the field's steepest change, see the header
 constexpr uint32_t kNone = ~0u;
 
 float lattice_value(int x, int y, int z) {
@@ -95,7 +95,8 @@ class SurfaceNets {
         ++crossings;
       }
     const Vec3 mean = sum * (1 / float(crossings));
-    return add_vertex(model_, point(float(x) + mean[0], float(y) + mean[1], float(z) + mean[2]), {}, material_);
+    return add_vertex(model_, point(float(x) + mean[0], float(y) + mean[1], float(z) + mean[2]), {},
+                      material_);
   }
 
   // Faces of the lattice edges in plane z (along x and y) and of those that leave it (along z).

@@ -41,13 +41,16 @@ FolderRules rules(Random& draws) {
 float ground(float x, float z) {
   const float away = 60 - z;
   const float rise = away > 60 ? 0.06f * (away - 60) : 0.0f;
-  return -1.5f + 1.6f * fractal({x * 0.04f, 0, z * 0.04f}, 3) + rise * (1 + fractal({x * 0.01f, 3, z * 0.01f}, 3));
+  return -1.5f + 1.6f * fractal({x * 0.04f, 0, z * 0.04f}, 3) +
+         rise * (1 + fractal({x * 0.01f, 3, z * 0.01f}, 3));
 }
 
 void hiker(Generator& generator, const Vec3& feet) {
-  const auto part = [&](const char* name, const Vec3& at, const Vec3& size, uint64_t triangles, const Material& material) {
+  const auto part = [&](const char* name, const Vec3& at, const Vec3& size, uint64_t triangles,
+                        const Material& material) {
     const int32_t index = generator.material(material);
-    generator.model(name, [&](Model& m) { add_ball(m, upright(feet + at, size), triangles, index, 0.15f, 2); });
+    generator.model(name,
+                    [&](Model& m) { add_ball(m, upright(feet + at, size), triangles, index, 0.15f, 2); });
   };
   part("Character", {0, 1.62f, 0}, {0.12f, 0.15f, 0.13f}, 19'000, paint(223, 187, 161));
   part("Character2_Shirt", {0, 1.2f, 0}, {0.25f, 0.32f, 0.16f}, 8'700, paint(156, 74, 61));
@@ -58,19 +61,32 @@ void hiker(Generator& generator, const Vec3& feet) {
 }
 
 void plants(Generator& generator, Random& random) {
-  const int32_t bark = generator.material(paint(142, 85, 47)), leaves[] = {generator.material(bush_color(0)), generator.material(bush_color(0.5f)), generator.material(bush_color(1))};
+  const int32_t bark = generator.material(paint(142, 85, 47)),
+                leaves[] = {generator.material(bush_color(0)), generator.material(bush_color(0.5f)),
+                            generator.material(bush_color(1))};
   const int32_t petals = generator.material(paint(212, 207, 207));
   for (uint32_t k = 0; k < 86; ++k)
     generator.model("Mesh", [&](Model& m) {
       const float depth = 24 + 1.5f * float(k), side = k % 2 ? 1.0f : -1.0f;
       const float x = -26 + (0.08f + side * random.between(0.08f, 0.45f)) * depth, z = 62 - depth;
-      add_tree(m, m, {.foot = {x, ground(x, z) - 0.2f, z}, .height = random.between(5, 9), .spread = 0.5f, .leaf = 0.05f, .wood = 0.45f, .bark = bark, .leaves = leaves[k % 3], .seed = k}, 23'000);
+      add_tree(m, m,
+               {.foot = {x, ground(x, z) - 0.2f, z},
+                .height = random.between(5, 9),
+                .spread = 0.5f,
+                .leaf = 0.05f,
+                .wood = 0.45f,
+                .bark = bark,
+                .leaves = leaves[k % 3],
+                .seed = k},
+               23'000);
     });
   for (uint32_t k = 0; k < 139; ++k)
     generator.model("bush", [&](Model& m) {
       const float depth = 12 + 0.8f * float(k), side = k % 2 ? 1.0f : -1.0f, z = 62 - depth;
-      const float x = -26 + (0.08f + side * random.between(0.03f, 0.4f)) * depth, size = random.between(0.4f, 1);
-      add_bush(m, upright({x, ground(x, z) + 0.5f * size, z}, {size, size * 0.9f, size}), 7'400, generator.material(bush_color(random.next())), 0.16f, k);
+      const float x = -26 + (0.08f + side * random.between(0.03f, 0.4f)) * depth,
+                  size = random.between(0.4f, 1);
+      add_bush(m, upright({x, ground(x, z) + 0.5f * size, z}, {size, size * 0.9f, size}), 7'400,
+               generator.material(bush_color(random.next())), 0.16f, k);
     });
   for (uint32_t k = 0; k < 15; ++k)
     generator.model("FlowerParticles", [&](Model& m) {
@@ -86,19 +102,33 @@ void generate(Scene& scene, const LoadOptions& options) {
   Random random(291);
   plants(generator, random);
   hiker(generator, {-25.2f, ground(-25.2f, 52), 52});
-  const int32_t cloud = generator.color(0.8f, 0.8f, 0.8f), far = generator.material(paint(232, 189, 26)), near = generator.material(paint(220, 139, 27));
+  const int32_t cloud = generator.color(0.8f, 0.8f, 0.8f), far = generator.material(paint(232, 189, 26)),
+                near = generator.material(paint(220, 139, 27));
   for (uint32_t k = 0; k < 33; ++k)
     generator.model("CLOUDS", [&](Model& m) {
-      const float x = -330 + 28 * float(k) + random.between(-10, 10), y = random.between(120, 230), size = random.between(14, 34);
-      add_ball(m, upright({x, y, -500 - 15 * float(k % 5)}, {size * 1.8f, size * 0.5f, size}), 9'000, cloud, 0.5f, 2.2f);
+      const float x = -330 + 28 * float(k) + random.between(-10, 10), y = random.between(120, 230),
+                  size = random.between(14, 34);
+      add_ball(m, upright({x, y, -500 - 15 * float(k % 5)}, {size * 1.8f, size * 0.5f, size}), 9'000, cloud,
+               0.5f, 2.2f);
     });
   generator.model("BackGround_terrain", [&](Model& m) {
-    add_ground(m, {-400, -1100}, {700, -150}, [](float x, float z) { return ground(x, z) + 25 * fractal({x * 0.006f, 9, z * 0.006f}, 4); }, 60'000, far);
+    add_ground(
+        m, {-400, -1100}, {700, -150},
+        [](float x, float z) {
+          return ground(x, z) + 25 * fractal({x * 0.006f, 9, z * 0.006f}, 4);
+        },
+        60'000, far);
   });
   for (uint32_t k = 0; k < 2; ++k)
-    generator.model("MidGround_terrain", [&](Model& m) { add_ground(m, {k ? -26.0f : -160.0f, -150}, {k ? 120.0f : -26.0f, 10}, ground, 90'000, far); });
-  generator.model("ForeGround_terrain", [&](Model& m) { add_ground(m, {-70, 10}, {20, 66}, ground, generator.rest(), near); });
-  scene.note = "A procedural autumn forest; about the original's triangle count (4.2M) and its number of models (283).";
+    generator.model("MidGround_terrain", [&](Model& m) {
+      add_ground(m, {k ? -26.0f : -160.0f, -150}, {k ? 120.0f : -26.0f, 10}, ground, 90'000, far);
+    });
+  generator.model("ForeGround_terrain", [&](Model& m) {
+    add_ground(m, {-70, 10}, {20, 66}, ground, generator.rest(), near);
+  });
+  scene.note =
+      "A procedural autumn forest; about the original's triangle count (4.2M) and its number of models "
+      "(283).";
 }
 
 }  // namespace

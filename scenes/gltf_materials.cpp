@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/gltf_materials.h"
 
-#include <tiny_gltf.h>
-
 #include <map>
+#include <tiny_gltf.h>
 #include <tuple>
 
 #include "scenes/builders.h"
@@ -32,12 +31,15 @@ class MaterialReader {
     const auto& e = m.emissiveFactor;
     const auto strength = float(number_of(m, "KHR_materials_emissive_strength", "emissiveStrength", 1));
     // Model: an emissive texture counts as if it were white.
-    if (e.size() == 3 && e[0] + e[1] + e[2] > 0) return diffuse_light(float(e[0]) * strength, float(e[1]) * strength, float(e[2]) * strength);
+    if (e.size() == 3 && e[0] + e[1] + e[2] > 0)
+      return diffuse_light(float(e[0]) * strength, float(e[1]) * strength, float(e[2]) * strength);
     if (number_of(m, "KHR_materials_transmission", "transmissionFactor", 0) > 0.5)
-      return dielectric(float(number_of(m, "KHR_materials_ior", "ior", 1.5)));  // 1.5: the extension's default
+      return dielectric(
+          float(number_of(m, "KHR_materials_ior", "ior", 1.5)));  // 1.5: the extension's default
     const auto [metal, roughness] = metal_and_roughness(pbr);
     // Model: a surface is all metal or none, and a metal's lobe is a ball of the radius of its roughness.
-    Material out = metal > 0.5 ? metallic(color[0], color[1], color[2], float(roughness)) : lambertian(color[0], color[1], color[2]);
+    Material out = metal > 0.5 ? metallic(color[0], color[1], color[2], float(roughness))
+                               : lambertian(color[0], color[1], color[2]);
     if (pbr.baseColorTexture.index >= 0) out.texture = texture(pbr.baseColorTexture.index, m);
     return out;
   }
@@ -54,7 +56,9 @@ class MaterialReader {
     return {metal * blue * scale, roughness * green * scale};
   }
 
-  const tinygltf::Image& image_of(const tinygltf::Texture& texture) const { return file_.images.at(size_t(texture.source)); }
+  const tinygltf::Image& image_of(const tinygltf::Texture& texture) const {
+    return file_.images.at(size_t(texture.source));
+  }
 
   // Choice: blending is a mask of one half: the shaders know only hits and misses.
   int32_t texture(int index, const tinygltf::Material& m) {
@@ -65,10 +69,14 @@ class MaterialReader {
     if (!is_new) return place->second;
     const tinygltf::Texture& source = file_.textures.at(size_t(index));
     const tinygltf::Image& image = image_of(source);
-    Texture out{.name = image.name.empty() ? image.uri : image.name, .width = uint32_t(image.width), .height = uint32_t(image.height), .rgba = image.image};
+    Texture out{.name = image.name.empty() ? image.uri : image.name,
+                .width = uint32_t(image.width),
+                .height = uint32_t(image.height),
+                .rgba = image.image};
     out.srgb = true;  // glTF 2.0, 3.9.2: base colours are sRGB
     // Model: mirrored repetition repeats.
-    out.repeat = source.sampler < 0 || file_.samplers.at(size_t(source.sampler)).wrapS != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+    out.repeat = source.sampler < 0 ||
+                 file_.samplers.at(size_t(source.sampler)).wrapS != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
     for (size_t i = 3; i < out.rgba.size(); i += 4) {
       const bool hidden = double(out.rgba[i]) * factor < cutoff * 255;
       scene_.alpha_test |= hidden;
@@ -80,7 +88,8 @@ class MaterialReader {
 
   Scene& scene_;
   const tinygltf::Model& file_;
-  std::map<std::tuple<int, double, double>, int32_t> known_;  // texture, cutoff, alpha factor -> index in the scene
+  std::map<std::tuple<int, double, double>, int32_t>
+      known_;  // texture, cutoff, alpha factor -> index in the scene
 };
 
 }  // namespace

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/gltf_mesh.h"
 
+#include <cstring>
 #include <fmt/format.h>
 #include <tiny_gltf.h>
-
-#include <cstring>
 
 #include "base/diagnostics.h"
 #include "scenes/mesh.h"
@@ -45,7 +44,8 @@ class MeshReader {
     const int stride = accessor.ByteStride(view);
     if (stride < 1) fail("an accessor has a stride that does not fit its type");
     const size_t first = view.byteOffset + accessor.byteOffset;
-    const bool fits = first <= data.size() && bytes <= data.size() - first && accessor.count - 1 <= (data.size() - first - bytes) / size_t(stride);
+    const bool fits = first <= data.size() && bytes <= data.size() - first &&
+                      accessor.count - 1 <= (data.size() - first - bytes) / size_t(stride);
     if (accessor.count > 0 && !fits) fail("an accessor leaves its buffer");
     for (size_t i = 0; i < accessor.count; ++i) put(i, data.data() + first + i * size_t(stride));
   }
@@ -64,7 +64,8 @@ class MeshReader {
     const auto found = p.attributes.find(name);
     if (found == p.attributes.end()) return nullptr;
     const tinygltf::Accessor& accessor = file_.accessors.at(size_t(found->second));
-    if (accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT || accessor.type != type) fail(fmt::format("{} must be float", name));
+    if (accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT || accessor.type != type)
+      fail(fmt::format("{} must be float", name));
     return &accessor;
   }
 
@@ -112,7 +113,8 @@ class MeshReader {
 
 }  // namespace
 
-Model read_mesh(const tinygltf::Model& file, const tinygltf::Mesh& mesh, const std::vector<int32_t>& materials, const std::string& path) {
+Model read_mesh(const tinygltf::Model& file, const tinygltf::Mesh& mesh,
+                const std::vector<int32_t>& materials, const std::string& path) {
   MeshReader reader(file, materials, path);
   for (const tinygltf::Primitive& primitive : mesh.primitives) reader.add(primitive);
   reader.model.name = mesh.name;

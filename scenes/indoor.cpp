@@ -36,9 +36,9 @@ Model load_bunny(Scene& scene, const LoadOptions& options) {
     scene.note = "A procedural bunny of the original's size, place and about its triangle count (144,046).";
     return make_bunny_stand_in(int32_t(scene.materials.size() - 1));
   }
-  const std::string path = find_asset(options.assets, scene.name,
-                                      {"assets/models/bunny.obj", "models/bunny.obj", "BUNNY/bunny.obj",
-                                       kStanfordBunny});
+  const std::string path =
+      find_asset(options.assets, scene.name,
+                 {"assets/models/bunny.obj", "models/bunny.obj", "BUNNY/bunny.obj", kStanfordBunny});
   Model model = load_obj(path, scene.materials);
   if (ends_with(path, kStanfordBunny)) {
     adjust(model, 10, {0, -0.33f, 0});  // to the original's units, with its feet on the floor
@@ -55,11 +55,12 @@ Model load_statue(Scene& scene, const LoadOptions& options) {
   if (options.assets.empty()) {
     scene.form = "built-in";
     scene.materials.push_back(lambertian(0.7f, 0.7f, 0.7f));
-    scene.note = "A procedural winged statue of the original's size, place and about its triangle count (448.9K).";
+    scene.note =
+        "A procedural winged statue of the original's size, place and about its triangle count (448.9K).";
     return make_statue_stand_in(int32_t(scene.materials.size() - 1));
   }
-  const std::string path = find_asset(options.assets, scene.name,
-                                      {"assets/models/lucy.obj", "models/lucy.obj", kSmallLucy});
+  const std::string path =
+      find_asset(options.assets, scene.name, {"assets/models/lucy.obj", "models/lucy.obj", kSmallLucy});
   Model model = load_obj(path, scene.materials);
   if (ends_with(path, kSmallLucy)) {
     constexpr float kScale = 0.37f;  // about 355 world units of height after the placement

@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/instancing.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <fmt/format.h>
 #include <unordered_map>
 
 #include "scenes/mesh.h"
@@ -20,7 +19,7 @@ using Matrix = std::array<Row, 3>;
 constexpr double kTolerance = 1e-5;      // of the copy's largest extent: files have five to seven digits
 constexpr double kFloatSteps = 8;        // of the largest coordinate, for copies far from the origin
 constexpr double kNormalCosine = 0.995;  // files round normals to three or four digits
-constexpr double kFlat = 1e-9;           // a determinant below this, of a matrix of trace 1, is of a flat body
+constexpr double kFlat = 1e-9;  // a determinant below this, of a matrix of trace 1, is of a flat body
 
 Row centre_of(const Model& model) {
   Row sum{};
@@ -31,7 +30,8 @@ Row centre_of(const Model& model) {
 }
 
 Row offset(const Vertex& v, const Row& centre) {
-  return {double(v.position[0]) - centre[0], double(v.position[1]) - centre[1], double(v.position[2]) - centre[2]};
+  return {double(v.position[0]) - centre[0], double(v.position[1]) - centre[1],
+          double(v.position[2]) - centre[2]};
 }
 
 void add_outer(Matrix& m, const Row& a, const Row& b, double weight = 1) {
@@ -42,10 +42,16 @@ void add_outer(Matrix& m, const Row& a, const Row& b, double weight = 1) {
 Row cross(const Row& a, const Row& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-double dot(const Row& a, const Row& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+double dot(const Row& a, const Row& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
-double trace(const Matrix& m) { return m[0][0] + m[1][1] + m[2][2]; }
-double determinant(const Matrix& m) { return dot(m[0], cross(m[1], m[2])); }
+double trace(const Matrix& m) {
+  return m[0][0] + m[1][1] + m[2][2];
+}
+double determinant(const Matrix& m) {
+  return dot(m[0], cross(m[1], m[2]));
+}
 
 Matrix inverse(const Matrix& m) {
   const Row columns[3] = {cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])};
@@ -86,9 +92,10 @@ size_t largest_triangle(const Model& model) {
   return best;
 }
 
-// The linear part that fits best: D * C^-1 with C = sum p p^T and D = sum q p^T about the centres. A flat body leaves one
-// direction open: its normal goes to the copy's.
-std::optional<Matrix> linear_part(const Model& from, const Model& to, const Row& from_centre, const Row& to_centre) {
+// The linear part that fits best: D * C^-1 with C = sum p p^T and D = sum q p^T about the centres. A flat
+// body leaves one direction open: its normal goes to the copy's.
+std::optional<Matrix> linear_part(const Model& from, const Model& to, const Row& from_centre,
+                                  const Row& to_centre) {
   Matrix c{}, d{};
   for (size_t i = 0; i < from.vertices.size(); ++i) {
     const Row p = offset(from.vertices[i], from_centre), q = offset(to.vertices[i], to_centre);
@@ -140,18 +147,23 @@ bool normals_follow(const Model& from, const Model& to, const Matrix& m) {
 // The first texture with each one's texels: files name the same picture more than once.
 std::vector<int32_t> first_alike(const std::vector<Texture>& textures) {
   const auto alike = [&](const Texture& a, const Texture& b) {
-    return a.width == b.width && a.height == b.height && a.srgb == b.srgb && a.repeat == b.repeat && a.rgba == b.rgba;
+    return a.width == b.width && a.height == b.height && a.srgb == b.srgb && a.repeat == b.repeat &&
+           a.rgba == b.rgba;
   };
   std::vector<int32_t> first(textures.size());
   for (size_t i = 0; i < textures.size(); ++i)
-    first[i] = int32_t(std::find_if(textures.begin(), textures.begin() + ptrdiff_t(i), [&](const Texture& t) { return alike(t, textures[i]); }) - textures.begin());
+    first[i] = int32_t(std::find_if(textures.begin(), textures.begin() + ptrdiff_t(i),
+                                    [&](const Texture& t) { return alike(t, textures[i]); }) -
+                       textures.begin());
   return first;
 }
 
 // The number of each material's first equal.
 std::vector<size_t> first_equal(const Scene& scene) {
   const std::vector<int32_t> textures = first_alike(scene.textures);
-  const auto texture_of = [&](const Material& m) { return m.texture < 0 ? m.texture : textures[size_t(m.texture)]; };
+  const auto texture_of = [&](const Material& m) {
+    return m.texture < 0 ? m.texture : textures[size_t(m.texture)];
+  };
   const auto equal = [&](const Material& a, const Material& b) {
     return a.diffuse == b.diffuse && texture_of(a) == texture_of(b) && a.fuzziness == b.fuzziness &&
            a.refraction_index == b.refraction_index && a.model == b.model;
@@ -159,7 +171,9 @@ std::vector<size_t> first_equal(const Scene& scene) {
   std::vector<size_t> first(scene.materials.size());
   for (size_t i = 0; i < first.size(); ++i) {
     const auto end = scene.materials.begin() + ptrdiff_t(i);
-    first[i] = size_t(std::find_if(scene.materials.begin(), end, [&](const Material& m) { return equal(m, *end); }) - scene.materials.begin());
+    first[i] =
+        size_t(std::find_if(scene.materials.begin(), end, [&](const Material& m) { return equal(m, *end); }) -
+               scene.materials.begin());
   }
   return first;
 }
@@ -167,9 +181,11 @@ std::vector<size_t> first_equal(const Scene& scene) {
 // What a copy shares with its original bit for bit, but for positions and normals.
 bool same_but_moved(const std::vector<size_t>& materials, const Model& a, const Model& b) {
   return a.vertices.size() == b.vertices.size() && a.indices == b.indices &&
-         std::equal(a.vertices.begin(), a.vertices.end(), b.vertices.begin(), [&](const Vertex& v, const Vertex& w) {
-           return v.texture_coordinate == w.texture_coordinate && materials[size_t(v.material)] == materials[size_t(w.material)];
-         });
+         std::equal(a.vertices.begin(), a.vertices.end(), b.vertices.begin(),
+                    [&](const Vertex& v, const Vertex& w) {
+                      return v.texture_coordinate == w.texture_coordinate &&
+                             materials[size_t(v.material)] == materials[size_t(w.material)];
+                    });
 }
 
 uint64_t shape_hash(const Model& model) {
@@ -222,7 +238,8 @@ void share_copies(Scene& scene) {
   scene.models = std::move(kept);
   if (scene.models.size() == before) return;
   scene.instances = std::move(instances);
-  scene.note += fmt::format(" {} of {} models are instances of others.", before - scene.models.size(), before);
+  scene.note +=
+      fmt::format(" {} of {} models are instances of others.", before - scene.models.size(), before);
 }
 
 }  // namespace glint::scenes

@@ -23,7 +23,8 @@ FolderRules rules() {
 void boat(Model& model, const Frame& f, int32_t wood) {
   constexpr int kPlanks = 24;
   const auto hull = [&](float u, float down) {
-    const float along = 2 * u - 1, beam = (1 - along * along * along * along) * (0.35f + 0.65f * std::sqrt(down));
+    const float along = 2 * u - 1,
+                beam = (1 - along * along * along * along) * (0.35f + 0.65f * std::sqrt(down));
     return Vec3{along, -0.3f + 0.9f * down + 0.25f * along * along, 0.28f * beam};
   };
   for (const float side : {-1.0f, 1.0f})
@@ -42,7 +43,8 @@ void boat(Model& model, const Frame& f, int32_t wood) {
   for (int k = 0; k < 40; ++k) {  // rail posts
     const float along = -0.9f + 1.8f * float(k / 2) / 19;
     const Vec3 p = hull(0.5f + 0.5f * along, 1);
-    add_cable(model, f.at({p[0], p[1], p[2] * (k % 2 ? 1.0f : -1.0f)}), f.at({p[0], p[1] + 0.15f, p[2] * (k % 2 ? 1.0f : -1.0f)}), 0, 0.01f, 400, wood);
+    add_cable(model, f.at({p[0], p[1], p[2] * (k % 2 ? 1.0f : -1.0f)}),
+              f.at({p[0], p[1] + 0.15f, p[2] * (k % 2 ? 1.0f : -1.0f)}), 0, 0.01f, 400, wood);
   }
   add_cable(model, f.at(0.1f, 0.4f, 0), f.at(0.1f, 2.9f, 0), 0, 0.03f, 4'000, wood);
   add_cable(model, f.at(0.7f, 0.6f, 0), f.at(1.5f, 1, 0), 0, 0.02f, 2'000, wood);
@@ -60,19 +62,26 @@ void fleet(Generator& generator, const Scene& scene) {
     generator.model("boat", [&](Model& m) { boat(m, f, wood); });
     for (const float mast : {0.0f, 0.6f})
       generator.model("ship_sail", [&](Model& m) {
-        add_cloth(m, {f.x * (0.35f - 0.1f * mast), f.y * (0.9f - 0.3f * mast), f.z * 0.2f, f.at(0.1f + mast * 0.9f, 1.8f - mast * 0.6f, 0)}, 5'000, sail, 0.7f, k);
+        add_cloth(m,
+                  {f.x * (0.35f - 0.1f * mast), f.y * (0.9f - 0.3f * mast), f.z * 0.2f,
+                   f.at(0.1f + mast * 0.9f, 1.8f - mast * 0.6f, 0)},
+                  5'000, sail, 0.7f, k);
       });
   }
   for (uint32_t k = 0; k < 3; ++k)
     generator.model("rope", [&](Model& m) {
       for (int line = 0; line < 8; ++line) {
         const Vec3 base = view.at(k % 2 ? 1.2f : -1.1f, 0, -7.5f - 2.3f * float(k));
-        add_cable(m, {base[0], kWater + 2.5f, base[2]}, {base[0] + 0.3f * float(line) - 1.2f, kWater + 0.4f, base[2] + 0.3f}, 0.05f, 0.008f, 500, rope);
+        add_cable(m, {base[0], kWater + 2.5f, base[2]},
+                  {base[0] + 0.3f * float(line) - 1.2f, kWater + 0.4f, base[2] + 0.3f}, 0.05f, 0.008f, 500,
+                  rope);
       }
     });
 }
 
-float waves(float x, float z) { return kWater + 0.03f * fractal({x * 1.3f, 2, z * 1.3f}, 3); }
+float waves(float x, float z) {
+  return kWater + 0.03f * fractal({x * 1.3f, 2, z * 1.3f}, 3);
+}
 
 // Terraces of chalk.
 float cliffs(float x, float z, float shift) {
@@ -89,18 +98,30 @@ void generate(Scene& scene, const LoadOptions& options) {
   generator.model("water", [&](Model& m) { add_ground(m, {-60, -25}, {8, 45}, waves, 60'000, water); });
   for (uint32_t k = 0; k < 3; ++k)
     generator.model("ship_wake", [&](Model& m) {
-      add_ground(m, {-8 - 2.2f * float(k), 11 + float(k)}, {-7 - 2.2f * float(k), 13 + float(k)}, [](float x, float z) { return waves(x, z) + 0.02f * fractal({x * 4, 0, z * 4}, 2); }, 2'000, foam);
+      add_ground(
+          m, {-8 - 2.2f * float(k), 11 + float(k)}, {-7 - 2.2f * float(k), 13 + float(k)},
+          [](float x, float z) {
+            return waves(x, z) + 0.02f * fractal({x * 4, 0, z * 4}, 2);
+          },
+          2'000, foam);
     });
   for (uint32_t k = 0; k < 4; ++k)
-    generator.model("mast_top", [&](Model& m) { add_ball(m, upright({-6 - 3 * float(k), kWater + 3, 11 + 1.5f * float(k)}, {0.05f, 0.05f, 0.05f}), 1'500, foam); });
+    generator.model("mast_top", [&](Model& m) {
+      add_ball(m, upright({-6 - 3 * float(k), kWater + 3, 11 + 1.5f * float(k)}, {0.05f, 0.05f, 0.05f}),
+               1'500, foam);
+    });
   for (uint32_t k = 0; k < 3; ++k) {
     const uint64_t share = generator.rest() / (3 - k);
     generator.model("Landscape", [&](Model& m) {
       const float x = -12 - 12 * float(k);
-      add_ground(m, {x - 13, -20}, {x, 42}, [k](float a, float b) { return cliffs(a, b, 7 * float(k)); }, share, chalk);
+      add_ground(
+          m, {x - 13, -20}, {x, 42}, [k](float a, float b) { return cliffs(a, b, 7 * float(k)); }, share,
+          chalk);
     });
   }
-  scene.note = "Procedural cliffs, water and boats; about the original's triangle count (3.3M) and number of models (26).";
+  scene.note =
+      "Procedural cliffs, water and boats; about the original's triangle count (3.3M) and number of models "
+      "(26).";
 }
 
 }  // namespace

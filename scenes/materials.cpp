@@ -14,7 +14,9 @@ Material metallic(float r, float g, float b, float fuzziness) {
 
 Material dielectric(float refraction_index) {
   // The application stores this colour and never uses it.
-  return {.diffuse = {0.7f, 0.7f, 1, 1}, .refraction_index = refraction_index, .model = MaterialModel::Dielectric};
+  return {.diffuse = {0.7f, 0.7f, 1, 1},
+          .refraction_index = refraction_index,
+          .model = MaterialModel::Dielectric};
 }
 
 Material diffuse_light(float r, float g, float b) {

@@ -19,20 +19,28 @@ Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-float length(const Vec3& v) { return std::sqrt(dot(v, v)); }
+float length(const Vec3& v) {
+  return std::sqrt(dot(v, v));
+}
 
 Vec3 normalized(const Vec3& v) {
   const float l = length(v);
   return l > 0 ? Vec3{v[0] / l, v[1] / l, v[2] / l} : v;
 }
 
-float sine(double radians) { return float(std::sin(radians)); }
-float cosine(double radians) { return float(std::cos(radians)); }
+float sine(double radians) {
+  return float(std::sin(radians));
+}
+float cosine(double radians) {
+  return float(std::cos(radians));
+}
 
 void place(Model& model, const Placement& placement) {
   const double angle = double(placement.rotation_y) * std::numbers::pi / 180;
   const float c = cosine(angle), s = sine(angle);
-  const auto rotate = [c, s](const Vec3& v) -> Vec3 { return {c * v[0] + s * v[2], v[1], c * v[2] - s * v[0]}; };
+  const auto rotate = [c, s](const Vec3& v) -> Vec3 {
+    return {c * v[0] + s * v[2], v[1], c * v[2] - s * v[0]};
+  };
   for (Vertex& vertex : model.vertices) {
     vertex.position = rotate(vertex.position) * placement.scale + placement.translation;
     vertex.normal = rotate(vertex.normal) * (1 / placement.scale);

@@ -8,10 +8,18 @@
 namespace glint::scenes {
 
 // Vector arithmetic in float, components in order.
-inline Vec3 operator+(const Vec3& a, const Vec3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-inline Vec3 operator-(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-inline Vec3 operator*(const Vec3& a, float s) { return {a[0] * s, a[1] * s, a[2] * s}; }
-inline float dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+inline Vec3 operator+(const Vec3& a, const Vec3& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+inline Vec3 operator-(const Vec3& a, const Vec3& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+inline Vec3 operator*(const Vec3& a, float s) {
+  return {a[0] * s, a[1] * s, a[2] * s};
+}
+inline float dot(const Vec3& a, const Vec3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 Vec3 cross(const Vec3& a, const Vec3& b);
 float length(const Vec3& v);
 Vec3 normalized(const Vec3& v);  // (0,0,0) stays (0,0,0)
@@ -22,9 +30,9 @@ float cosine(double radians);
 
 // Translation * uniform scale * rotation about +y (right-handed): how the application places a model.
 struct Placement {
-  Vec3 translation{};       // world units
-  float scale = 1;          // factor
-  float rotation_y = 0;     // degrees
+  Vec3 translation{};    // world units
+  float scale = 1;       // factor
+  float rotation_y = 0;  // degrees
 };
 
 // Moves every vertex; normals turn and shrink by the inverse transpose and are not renormalised, as in the

@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/obj_loader.h"
 
-#include <fmt/format.h>
-#include <tiny_obj_loader.h>
-
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
 #include <map>
+#include <tiny_obj_loader.h>
 #include <unordered_map>
 
 #include "base/diagnostics.h"
@@ -70,13 +69,15 @@ bool parse(tinyobj::ObjReader& reader, const std::string& path) {
   if (parts.empty()) return reader.ParseFromFile(path, config);
   std::string text;
   for (const std::string& part : parts) text += contents(part);
-  return reader.ParseFromString(text, contents(std::filesystem::path(path).replace_extension(".mtl").string()), config);
+  return reader.ParseFromString(
+      text, contents(std::filesystem::path(path).replace_extension(".mtl").string()), config);
 }
 
 tinyobj::ObjReader read(const std::string& path) {
   tinyobj::ObjReader reader;
   if (!parse(reader, path))
-    throw UserError({path}, "this OBJ file cannot be read: " + reader.Error(), "expected a Wavefront OBJ file");
+    throw UserError({path}, "this OBJ file cannot be read: " + reader.Error(),
+                    "expected a Wavefront OBJ file");
   // A named material library that is absent would silently turn every colour grey.
   if (reader.Warning().find("not found") != std::string::npos && reader.GetMaterials().empty())
     throw UserError({path}, "its material library cannot be read: " + reader.Warning(),

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/paintings.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
 #include "scenes/distance_field.h"
 #include "scenes/solids.h"
@@ -15,7 +14,9 @@ namespace {
 
 constexpr uint32_t kTile = 4;  // texels of a side that share a value of smooth noise
 
-uint8_t unorm(float value) { return uint8_t(std::clamp(value, 0.0f, 1.0f) * 255 + 0.5f); }
+uint8_t unorm(float value) {
+  return uint8_t(std::clamp(value, 0.0f, 1.0f) * 255 + 0.5f);
+}
 
 float grain(uint32_t x, uint32_t y, uint32_t seed) {
   uint32_t h = x * 0x8da6b343u ^ y * 0xd8163841u ^ seed * 0xcb1ab31fu;
@@ -33,12 +34,18 @@ float brick(float u, float v, float rows, float joint) {
 
 float shade(Pattern pattern, float u, float v) {
   switch (pattern) {
-    case Pattern::Stone: return 1;
-    case Pattern::Bricks: return brick(u, v, 16, 0.06f);
-    case Pattern::Planks: return brick(v, u, 8, 0.03f) * (0.9f + 0.1f * wave(u * 60));
-    case Pattern::Panels: return brick(u, v, 4, 0.02f);
-    case Pattern::Stripes: return 0.75f + 0.25f * wave(u * 10);
-    case Pattern::Bark: return 0.65f + 0.35f * wave(u * 14 + 0.4f * wave(v * 5));
+    case Pattern::Stone:
+      return 1;
+    case Pattern::Bricks:
+      return brick(u, v, 16, 0.06f);
+    case Pattern::Planks:
+      return brick(v, u, 8, 0.03f) * (0.9f + 0.1f * wave(u * 60));
+    case Pattern::Panels:
+      return brick(u, v, 4, 0.02f);
+    case Pattern::Stripes:
+      return 0.75f + 0.25f * wave(u * 10);
+    case Pattern::Bark:
+      return 0.65f + 0.35f * wave(u * 14 + 0.4f * wave(v * 5));
   }
   return 1;
 }

@@ -9,7 +9,9 @@ namespace {
 
 constexpr uint64_t kTriangles = 1'700'000;
 
-FolderRules rules() { return {.folders = {"Scenes/Blender_2.83", "assets/Scenes/Blender_2.83", "PARTY"}}; }
+FolderRules rules() {
+  return {.folders = {"Scenes/Blender_2.83", "assets/Scenes/Blender_2.83", "PARTY"}};
+}
 
 struct Palette {
   std::vector<int32_t> colors;
@@ -22,15 +24,19 @@ void add_house(Model& model, const Frame& f, const Palette& palette, uint32_t se
   add_rounded_box(model, f, 1'200, palette[seed], 0.02f);
   for (int row = 0; row < 5; ++row)
     for (int column = 0; column < 4; ++column) {
-      const Frame window = f.inner({-0.72f + 0.48f * float(column), -0.75f + 0.4f * float(row), 1}, {0.15f, 0.13f, 0.05f});
+      const Frame window =
+          f.inner({-0.72f + 0.48f * float(column), -0.75f + 0.4f * float(row), 1}, {0.15f, 0.13f, 0.05f});
       add_rounded_box(model, window, 150, palette[seed + 3], 0.1f);
-      add_rounded_box(model, window.inner({0, -1.1f, 0.8f}, {1.2f, 0.12f, 1.4f}), 100, palette[seed + 1], 0.3f);
+      add_rounded_box(model, window.inner({0, -1.1f, 0.8f}, {1.2f, 0.12f, 1.4f}), 100, palette[seed + 1],
+                      0.3f);
     }
   for (int pipe = 0; pipe < 3; ++pipe) {
     const float x = random.between(-0.95f, 0.95f);
     add_cable(model, f.at(x, -1, 1.03f), f.at(x, 1, 1.03f), 0, 0.12f, 400, palette[seed + 2]);
   }
-  add_patch(model, 800, 1, palette[seed + 4], [&](float u, float v) { return f.at(2.2f * u - 1.1f, 1 + 0.25f * (v < 0.5f ? v : 1 - v), 2.2f * v - 1.1f); });
+  add_patch(model, 800, 1, palette[seed + 4], [&](float u, float v) {
+    return f.at(2.2f * u - 1.1f, 1 + 0.25f * (v < 0.5f ? v : 1 - v), 2.2f * v - 1.1f);
+  });
 }
 
 void add_boat(Model& model, const Frame& f, const Palette& palette, uint32_t seed) {
@@ -46,9 +52,11 @@ void add_boat(Model& model, const Frame& f, const Palette& palette, uint32_t see
 void houses_and_boats(Generator& generator, const Frame& town, const Palette& palette, Random& random) {
   for (uint32_t k = 0; k < 40; ++k)
     generator.model("House", [&](Model& m) {
-      const float row = float(k / 8), depth = 70 + 16 * row, x = (float(k % 8) - 3.5f) * (5 + row) + random.between(-1, 1);
+      const float row = float(k / 8), depth = 70 + 16 * row,
+                  x = (float(k % 8) - 3.5f) * (5 + row) + random.between(-1, 1);
       const float height = random.between(5, 8) + 0.8f * row;
-      add_house(m, town.inner({x, height - 1, -depth}, {3 + 0.5f * row, height, 4}, random.between(-12, 12)), palette, k);
+      add_house(m, town.inner({x, height - 1, -depth}, {3 + 0.5f * row, height, 4}, random.between(-12, 12)),
+                palette, k);
     });
   for (uint32_t k = 0; k < 24; ++k)
     generator.model("boatback", [&](Model& m) {
@@ -65,22 +73,28 @@ void small_things(Generator& generator, const Frame& town, const Palette& palett
   for (uint32_t k = 0; k < 80; ++k)
     generator.model("boxes", [&](Model& m) {
       const float size = random.between(0.35f, 0.8f), stack = float(random.below(3));
-      add_machine(m, town.inner(place(28, 68) + Vec3{0, size * (1 + 2 * stack), 0}, {size, size, size}, float(k) * 37), 5'500, palette.colors, k);
+      add_machine(
+          m,
+          town.inner(place(28, 68) + Vec3{0, size * (1 + 2 * stack), 0}, {size, size, size}, float(k) * 37),
+          5'500, palette.colors, k);
     });
   for (uint32_t k = 0; k < 60; ++k)
     generator.model("Power_Meter", [&](Model& m) {
-      const float depth = 64 + float(k % 6) * 0.2f, x = (float(k % 20) - 9.5f) * 0.95f, y = 1.5f + 3.5f * float(k / 20);
+      const float depth = 64 + float(k % 6) * 0.2f, x = (float(k % 20) - 9.5f) * 0.95f,
+                  y = 1.5f + 3.5f * float(k / 20);
       add_machine(m, town.inner({x, y, -depth}, {0.4f, 0.6f, 0.25f}), 3'000, palette.colors, 100 + k);
     });
   for (uint32_t k = 0; k < 50; ++k)
     generator.model("Cylinder", [&](Model& m) {
       static constexpr Vec2 kBarrel[] = {{-1, 0}, {-1, 0.9f}, {-0.4f, 1}, {0.4f, 1}, {1, 0.9f}, {1, 0}};
-      add_lathe(m, town.inner(place(25, 60) + Vec3{0, 0.6f, 0}, {0.4f, 0.6f, 0.4f}), kBarrel, 2'400, palette[k]);
+      add_lathe(m, town.inner(place(25, 60) + Vec3{0, 0.6f, 0}, {0.4f, 0.6f, 0.4f}), kBarrel, 2'400,
+                palette[k]);
     });
   for (uint32_t k = 0; k < 40; ++k)
     generator.model("BezierCurve", [&](Model& m) {
       const float depth = random.between(35, 90), y = random.between(5, 14);
-      add_cable(m, town.at(-0.2f * depth, y, -depth), town.at(0.2f * depth, y + random.between(-2, 2), -depth - 5), 2, 0.04f, 3'000, palette[k]);
+      add_cable(m, town.at(-0.2f * depth, y, -depth),
+                town.at(0.2f * depth, y + random.between(-2, 2), -depth - 5), 2, 0.04f, 3'000, palette[k]);
     });
   for (uint32_t k = 0; k < 23; ++k)
     generator.model("Armature", [&](Model& m) {
@@ -95,15 +109,18 @@ void generate(Scene& scene, const LoadOptions& options) {
   Random random(283);
   Palette palette;
   for (int k = 0; k < 14; ++k) {
-    const float r = random.between(0.15f, 0.85f), g = random.between(0.12f, 0.7f), b = random.between(0.1f, 0.6f);
+    const float r = random.between(0.15f, 0.85f), g = random.between(0.12f, 0.7f),
+                b = random.between(0.1f, 0.6f);
     palette.colors.push_back(generator.color(r, g, b));
   }
-  const int32_t water = generator.color(0.1f, 0.2f, 0.25f), plank = generator.color(0.4f, 0.28f, 0.18f), steam = generator.color(0.8f, 0.8f, 0.8f);
+  const int32_t water = generator.color(0.1f, 0.2f, 0.25f), plank = generator.color(0.4f, 0.28f, 0.18f),
+                steam = generator.color(0.8f, 0.8f, 0.8f);
   const Frame town = in_view_upright(scene.camera, 0);
   houses_and_boats(generator, town, palette, random);
   small_things(generator, town, palette, random);
   generator.model("Pier", [&](Model& m) {
-    for (int k = 0; k < 160; ++k) add_rounded_box(m, town.inner({0, -3.2f, -20 - 0.3f * float(k)}, {4, 0.1f, 0.14f}), 200, plank, 0.2f);
+    for (int k = 0; k < 160; ++k)
+      add_rounded_box(m, town.inner({0, -3.2f, -20 - 0.3f * float(k)}, {4, 0.1f, 0.14f}), 200, plank, 0.2f);
   });
   generator.model("The_Water", [&](Model& m) {
     add_patch(m, 150'000, 1, water, [&](float u, float v) {
@@ -111,8 +128,11 @@ void generate(Scene& scene, const LoadOptions& options) {
       return town.at(x, -5 + 0.15f * fractal({x * 0.4f, 0, z * 0.4f}, 3), z);
     });
   });
-  generator.model("Low_Drift_Complex_Steam", [&](Model& m) { add_ball(m, town.inner({12, 16, -110}, {10, 9, 8}), generator.rest(), steam, 0.5f, 2.5f); });
-  scene.note = "A procedural harbour; about the original's triangle count (1.7M) and its number of models (320).";
+  generator.model("Low_Drift_Complex_Steam", [&](Model& m) {
+    add_ball(m, town.inner({12, 16, -110}, {10, 9, 8}), generator.rest(), steam, 0.5f, 2.5f);
+  });
+  scene.note =
+      "A procedural harbour; about the original's triangle count (1.7M) and its number of models (320).";
 }
 
 }  // namespace

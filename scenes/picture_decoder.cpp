@@ -41,15 +41,19 @@ DecodedPicture decoded(std::vector<T> DecodedPicture::*pixels, Decode&& decode) 
 
 }  // namespace
 
-bool is_hdr_picture(const std::string& path) { return stbi_is_hdr(path.c_str()) != 0; }
+bool is_hdr_picture(const std::string& path) {
+  return stbi_is_hdr(path.c_str()) != 0;
+}
 
 DecodedPicture decode_picture_file(const std::string& path) {
   if (!is_hdr_picture(path)) return decode_picture_bytes_of_file(path);
-  return decoded(&DecodedPicture::floats, [&](int* w, int* h, int* n) { return stbi_loadf(path.c_str(), w, h, n, kChannels); });
+  return decoded(&DecodedPicture::floats,
+                 [&](int* w, int* h, int* n) { return stbi_loadf(path.c_str(), w, h, n, kChannels); });
 }
 
 DecodedPicture decode_picture_bytes_of_file(const std::string& path) {
-  return decoded(&DecodedPicture::bytes, [&](int* w, int* h, int* n) { return stbi_load(path.c_str(), w, h, n, kChannels); });
+  return decoded(&DecodedPicture::bytes,
+                 [&](int* w, int* h, int* n) { return stbi_load(path.c_str(), w, h, n, kChannels); });
 }
 
 DecodedPicture decode_picture(std::span<const uint8_t> file) {

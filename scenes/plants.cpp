@@ -15,7 +15,7 @@ struct Branch {
   float length = 1, radius = 1;
 };
 
-constexpr uint32_t kSegments = 4;   // of a branch
+constexpr uint32_t kSegments = 4;  // of a branch
 constexpr uint32_t kSides = 6;
 constexpr uint64_t kBranchTriangles = 2 * kSegments * kSides;
 
@@ -82,17 +82,19 @@ void add_tree(Model& wood_model, Model& leaf_model, const TreeShape& shape, uint
   }
 }
 
-void add_bush(Model& model, const Frame& frame, uint64_t triangles, int32_t material, float leaf, uint32_t seed) {
+void add_bush(Model& model, const Frame& frame, uint64_t triangles, int32_t material, float leaf,
+              uint32_t seed) {
   Random random(seed);
   for (uint64_t k = 0; k < triangles / 2; ++k) {
     const Vec3 direction = random.direction();
     const float radius = 0.75f + 0.2f * noise(direction * 3 + frame.origin), depth = random.next();
-    add_leaf(model, frame.at(direction * (radius * (1 - 0.5f * depth * depth))), leaf * random.between(0.6f, 1.2f), material, random);
+    add_leaf(model, frame.at(direction * (radius * (1 - 0.5f * depth * depth))),
+             leaf * random.between(0.6f, 1.2f), material, random);
   }
 }
 
-void add_grass(Model& model, const Vec2& lower, const Vec2& upper, const Height& ground, float blade, uint64_t triangles,
-               int32_t material, uint32_t seed) {
+void add_grass(Model& model, const Vec2& lower, const Vec2& upper, const Height& ground, float blade,
+               uint64_t triangles, int32_t material, uint32_t seed) {
   Random random(seed);
   for (uint64_t k = 0; k < triangles / 3; ++k) {
     const float x = random.between(lower[0], upper[0]), z = random.between(lower[1], upper[1]);
@@ -104,11 +106,13 @@ void add_grass(Model& model, const Vec2& lower, const Vec2& upper, const Height&
   }
 }
 
-void add_flower(Model& model, const Frame& frame, uint64_t triangles, int32_t stem, int32_t petals, uint32_t seed) {
+void add_flower(Model& model, const Frame& frame, uint64_t triangles, int32_t stem, int32_t petals,
+                uint32_t seed) {
   Random random(seed);
   std::vector<Vec3> path;
   const float lean = random.between(-0.3f, 0.3f);
-  for (int k = 0; k <= 8; ++k) path.push_back(frame.at(lean * float(k * k) / 64, -1 + 1.5f * float(k) / 8, 0));
+  for (int k = 0; k <= 8; ++k)
+    path.push_back(frame.at(lean * float(k * k) / 64, -1 + 1.5f * float(k) / 8, 0));
   const float thick = length(frame.x) * 0.05f;
   add_tube(model, path, thick, thick * 0.6f, 6, stem);
   constexpr uint32_t kPetals = 9;
@@ -118,14 +122,16 @@ void add_flower(Model& model, const Frame& frame, uint64_t triangles, int32_t st
     const Vec3 out{cosine(angle), 0, sine(angle)}, side{-out[2], 0, out[0]};
     add_patch(model, share, 1, petals, [&](float u, float v) {
       const float wide = 1.4f * v * (1 - v) + 0.05f;
-      const Vec3 p = out * (0.1f + 0.8f * v) + side * ((u - 0.5f) * wide) + Vec3{lean, 0.5f + 0.45f * v - 0.35f * v * v + 0.3f * (u - 0.5f) * (u - 0.5f), 0};
+      const Vec3 p = out * (0.1f + 0.8f * v) + side * ((u - 0.5f) * wide) +
+                     Vec3{lean, 0.5f + 0.45f * v - 0.35f * v * v + 0.3f * (u - 0.5f) * (u - 0.5f), 0};
       return frame.at(p);
     });
   }
   add_ball(model, frame.inner({lean, 0.55f, 0}, {0.18f, 0.12f, 0.18f}), share, stem, 0.1f);
 }
 
-void add_hair(Model& model, const Frame& frame, float hair, const Vec3& fall, uint64_t triangles, int32_t material, uint32_t seed) {
+void add_hair(Model& model, const Frame& frame, float hair, const Vec3& fall, uint64_t triangles,
+              int32_t material, uint32_t seed) {
   constexpr uint32_t kHairSegments = 6, kHairSides = 3;
   Random random(seed);
   std::vector<Vec3> path(kHairSegments + 1);
@@ -142,7 +148,8 @@ void add_hair(Model& model, const Frame& frame, float hair, const Vec3& fall, ui
   }
 }
 
-void add_ground(Model& model, const Vec2& lower, const Vec2& upper, const Height& height, uint64_t triangles, int32_t material) {
+void add_ground(Model& model, const Vec2& lower, const Vec2& upper, const Height& height, uint64_t triangles,
+                int32_t material) {
   const float wide = upper[0] - lower[0], deep = upper[1] - lower[1];
   add_patch(model, triangles, wide / deep, material, [&](float u, float v) -> Vec3 {
     const float x = lower[0] + wide * u, z = upper[1] - deep * v;  // so that normals point up

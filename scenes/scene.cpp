@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/scene.h"
 
-#include <fmt/format.h>
-
 #include <bit>
 #include <cctype>
+#include <fmt/format.h>
 
 #include "base/diagnostics.h"
 #include "scenes/builders.h"
@@ -28,13 +27,15 @@ constexpr Entry kScenes[] = {
     {"SHIP", "A schooner with thin masts and rigging, one structure.", 6'255, build_ship},
     {"BUNNY", "A bunny in a Cornell box.", 144'058, build_bunny},
     {"SPNZA", "A colonnaded hall, indoor, with 24 large textures; one structure.", 262'267, build_sponza},
-    {"CHSNT", "A chestnut tree whose leaves are cut out by their texture's alpha: any-hit shaders.", 313'000, build_chestnut},
+    {"CHSNT", "A chestnut tree whose leaves are cut out by their texture's alpha: any-hit shaders.", 313'000,
+     build_chestnut},
     {"BATH", "A bathroom with mirror and lamps, indoor.", 423'821, build_bathroom},
     {"REF", "A statue and a glass sphere in a box with mirror walls.", 448'912, build_mirror_box},
     {"CRNVL", "A fairground, one structure.", 449'600, build_carnival},
     {"FOX", "A fox in thick fur among flowers: long thin triangles.", 1'600'000, build_fox},
     {"PARTY", "A harbour town of 320 structures.", 1'700'000, build_party},
-    {"SPRNG", "A figure close to the camera, grass, a mountain that fills the view.", 1'900'000, build_spring},
+    {"SPRNG", "A figure close to the camera, grass, a mountain that fills the view.", 1'900'000,
+     build_spring},
     {"LANDS", "Cliffs and boats on reflecting water.", 3'300'000, build_lands},
     {"FRST", "An autumn forest of 283 structures.", 4'200'000, build_forest},
     {"PARK", "Long thin grass, trees and mountains on a procedural ground.", 6'000'000, build_park},
@@ -90,7 +91,9 @@ void add(ContentHash& hash, const Camera& c) {
   hash.add(uint64_t{c.has_sky});
 }
 
-uint64_t triangles_of(const Model& model) { return model.is_procedural() ? 0 : model.indices.size() / 3; }
+uint64_t triangles_of(const Model& model) {
+  return model.is_procedural() ? 0 : model.indices.size() / 3;
+}
 
 std::string upper_case(std::string text) {
   for (char& c : text) c = char(std::toupper(static_cast<unsigned char>(c)));
@@ -105,7 +108,8 @@ Scene build_scene(const std::string& name, const LoadOptions& options) {
     if (wanted != entry.name) continue;
     Scene scene = entry.build(options);
     scene.original_triangles = entry.triangles;
-    if (entry.triangles > 0) scene.note += fmt::format(" {:.1f} % of the original's triangles.", 100 * scene.fraction());
+    if (entry.triangles > 0)
+      scene.note += fmt::format(" {:.1f} % of the original's triangles.", 100 * scene.fraction());
     return scene;
   }
   const std::string near = nearest(wanted, names);

@@ -18,12 +18,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float kFieldOfView = 40;                // degrees, of a camera that a file does not have
-constexpr Vec3 kFromThere{0.55f, 0.35f, 1};       // it looks from the right, a little above
+constexpr float kFieldOfView = 40;           // degrees, of a camera that a file does not have
+constexpr Vec3 kFromThere{0.55f, 0.35f, 1};  // it looks from the right, a little above
 
 std::string ending_of(const std::string& name) {
   std::string ending = fs::path(name).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
   return ending;
 }
 
@@ -56,7 +57,8 @@ bool names_scene_file(const std::string& name) {
 Model flattened(const Scene& scene) {
   Model out;
   for (const Instance& instance : instances_of(scene))
-    if (const Model& model = scene.models[instance.model]; !model.is_procedural()) append_copy(out, model, instance.to_world, -1);
+    if (const Model& model = scene.models[instance.model]; !model.is_procedural())
+      append_copy(out, model, instance.to_world, -1);
   return out;
 }
 
@@ -96,7 +98,9 @@ Scene load_scene_file(const std::string& path, const LoadOptions& options) {
 }
 
 #ifndef GLINT_GLTF
-bool reads_gltf() { return false; }
+bool reads_gltf() {
+  return false;
+}
 Scene load_gltf(const std::string& path, const LoadOptions&) {
   throw UserError({path}, "this Glint does not read glTF", "install libtinygltf-dev and build it again");
 }

@@ -42,7 +42,9 @@ struct Shipyard {
 };
 
 // Height of the rail, half width at the rail, and depth of the hull, along the ship (t = 0 stern, 1 bow).
-float rail_height(float t) { return 1.62f + 1.6f * (t - 0.45f) * (t - 0.45f) + (t < 0.2f ? 0.3f * (0.2f - t) : 0); }
+float rail_height(float t) {
+  return 1.62f + 1.6f * (t - 0.45f) * (t - 0.45f) + (t < 0.2f ? 0.3f * (0.2f - t) : 0);
+}
 float half_width(float t) {
   const float fore = std::max((t - 0.45f) / 0.55f, 0.0f), aft = std::max((0.45f - t) / 0.45f, 0.0f);
   return 1.92f * (1 - fore * fore * fore) * (1 - 0.28f * aft * aft);
@@ -51,8 +53,12 @@ float keel_height(float t) {
   const float fore = std::max((t - 0.70f) / 0.30f, 0.0f), aft = std::max((0.2f - t) / 0.2f, 0.0f);
   return kKeel + 2.6f * fore * fore + 1.4f * aft * aft;
 }
-float along(float t) { return kStern + (kBow - kStern) * t; }
-float station(float z) { return (z - kStern) / (kBow - kStern); }
+float along(float t) {
+  return kStern + (kBow - kStern) * t;
+}
+float station(float z) {
+  return (z - kStern) / (kBow - kStern);
+}
 
 // A point of the planking: v = 0 at the keel, 1 at the rail; the bow rakes forward.
 Vec3 hull_point(float t, float v, float side) {
@@ -98,7 +104,9 @@ void build_hull(Shipyard& yard) {
   add_box(yard.ship, {-0.05f, -0.7f, kStern - 0.3f}, {0.05f, 1.2f, kStern + 0.1f}, yard.dark_planks);
 }
 
-float deck_height(float z) { return rail_height(station(z)) - 0.72f; }
+float deck_height(float z) {
+  return rail_height(station(z)) - 0.72f;
+}
 
 struct Mast {
   float z, top;
@@ -111,17 +119,18 @@ void build_spars(Shipyard& yard) {
     yard.spar_between({0, 9.6f, mast.z - 0.3f}, {0, mast.top, mast.z - 0.72f}, 0.10f, 0.03f, 8);
     add_box(yard.ship, {-0.3f, 9.7f, mast.z - 0.75f}, {0.3f, 9.8f, mast.z - 0.1f}, yard.spar);
   }
-  yard.spar_between({0, 1.7f, 6.6f}, {0, 3.3f, 13.78f}, 0.17f, 0.05f, 8);            // bowsprit
-  yard.spar_between({0, 2.5f, -3.5f}, {0, 3.0f, -13.78f}, 0.11f, 0.06f, 8);          // main boom
-  yard.spar_between({0, 8.4f, -3.6f}, {0, 11.2f, -9.8f}, 0.08f, 0.04f, 8);           // main gaff
-  yard.spar_between({0, 2.4f, 3.1f}, {0, 2.6f, -2.4f}, 0.09f, 0.06f, 8);             // fore boom
-  yard.spar_between({0, 8.2f, 2.9f}, {0, 10.4f, -1.2f}, 0.07f, 0.04f, 8);            // fore gaff
-  yard.spar_between({-3.9f, 9.4f, 3.3f}, {3.9f, 9.4f, 3.3f}, 0.08f, 0.08f, 8);       // fore yard
-  yard.spar_between({-2.7f, 12.9f, 3.0f}, {2.7f, 12.9f, 3.0f}, 0.06f, 0.06f, 8);     // topsail yard
+  yard.spar_between({0, 1.7f, 6.6f}, {0, 3.3f, 13.78f}, 0.17f, 0.05f, 8);         // bowsprit
+  yard.spar_between({0, 2.5f, -3.5f}, {0, 3.0f, -13.78f}, 0.11f, 0.06f, 8);       // main boom
+  yard.spar_between({0, 8.4f, -3.6f}, {0, 11.2f, -9.8f}, 0.08f, 0.04f, 8);        // main gaff
+  yard.spar_between({0, 2.4f, 3.1f}, {0, 2.6f, -2.4f}, 0.09f, 0.06f, 8);          // fore boom
+  yard.spar_between({0, 8.2f, 2.9f}, {0, 10.4f, -1.2f}, 0.07f, 0.04f, 8);         // fore gaff
+  yard.spar_between({-3.9f, 9.4f, 3.3f}, {3.9f, 9.4f, 3.3f}, 0.08f, 0.08f, 8);    // fore yard
+  yard.spar_between({-2.7f, 12.9f, 3.0f}, {2.7f, 12.9f, 3.0f}, 0.06f, 0.06f, 8);  // topsail yard
 }
 
 // Four corners in turn (u = 0: the edge at the mast), filled out to the side by `belly`.
-void add_sail(Shipyard& yard, const std::array<Vec3, 4>& c, const Vec3& belly, uint32_t columns, uint32_t rows) {
+void add_sail(Shipyard& yard, const std::array<Vec3, 4>& c, const Vec3& belly, uint32_t columns,
+              uint32_t rows) {
   add_sheet(yard.ship, columns, rows, yard.sail, [=](float u, float v) {
     const Vec3 low = c[0] * (1 - u) + c[1] * u, high = c[3] * (1 - u) + c[2] * u;
     return low * (1 - v) + high * v + belly * (16 * u * (1 - u) * v * (1 - v) * (1.2f - 0.4f * v));
@@ -129,9 +138,12 @@ void add_sail(Shipyard& yard, const std::array<Vec3, 4>& c, const Vec3& belly, u
 }
 
 void build_sails(Shipyard& yard) {
-  add_sail(yard, {{{0, 2.7f, -3.6f}, {0, 3.15f, -13.3f}, {0, 11.1f, -9.6f}, {0, 8.3f, -3.8f}}}, {0.9f, 0, 0}, 8, 8);
-  add_sail(yard, {{{0, 2.6f, 3.0f}, {0, 2.75f, -2.2f}, {0, 10.3f, -1.1f}, {0, 8.1f, 2.8f}}}, {0.7f, 0, 0}, 6, 8);
-  add_sail(yard, {{{0, 8.8f, -3.75f}, {0, 11.2f, -9.5f}, {0, 14.8f, -3.95f}, {0, 14.9f, -3.9f}}}, {0.3f, 0, 0}, 5, 5);
+  add_sail(yard, {{{0, 2.7f, -3.6f}, {0, 3.15f, -13.3f}, {0, 11.1f, -9.6f}, {0, 8.3f, -3.8f}}}, {0.9f, 0, 0},
+           8, 8);
+  add_sail(yard, {{{0, 2.6f, 3.0f}, {0, 2.75f, -2.2f}, {0, 10.3f, -1.1f}, {0, 8.1f, 2.8f}}}, {0.7f, 0, 0}, 6,
+           8);
+  add_sail(yard, {{{0, 8.8f, -3.75f}, {0, 11.2f, -9.5f}, {0, 14.8f, -3.95f}, {0, 14.9f, -3.9f}}},
+           {0.3f, 0, 0}, 5, 5);
   add_sail(yard, {{{-3.3f, 9.5f, 3.4f}, {3.3f, 9.5f, 3.4f}, {2.4f, 12.85f, 3.1f}, {-2.4f, 12.85f, 3.1f}}},
            {0, 0, 0.7f}, 7, 5);
   const Vec3 jibs[3][3] = {{{0, 2.45f, 9.6f}, {0, 3.3f, 5.2f}, {0, 9.4f, 3.5f}},
@@ -182,15 +194,19 @@ void build_stays(Shipyard& yard) {
 }
 
 void build_barrels(Shipyard& yard) {
-  const auto place_barrel = [&yard](float x, float z, float height, float radius, uint32_t sides, int32_t material) {
+  const auto place_barrel = [&yard](float x, float z, float height, float radius, uint32_t sides,
+                                    int32_t material) {
     const float y = deck_height(z);
-    const Ring rings[] = {{0, radius * 0.8f}, {0.25f, radius * 0.96f}, {0.5f, radius}, {0.75f, radius * 0.96f},
+    const Ring rings[] = {{0, radius * 0.8f},
+                          {0.25f, radius * 0.96f},
+                          {0.5f, radius},
+                          {0.75f, radius * 0.96f},
                           {1, radius * 0.8f}};
     add_turned_body(yard.ship, {x, y, z}, {x, y + height, z}, rings, sides, true, material);
   };
   for (int i = 0; i < 8; ++i)
-    place_barrel((i % 2 ? 0.32f : -0.36f), -0.5f - 0.62f * float(i / 2) + 0.1f * float(i % 2), 0.66f, 0.25f, 12,
-                 yard.barrel);
+    place_barrel((i % 2 ? 0.32f : -0.36f), -0.5f - 0.62f * float(i / 2) + 0.1f * float(i % 2), 0.66f, 0.25f,
+                 12, yard.barrel);
   for (int i = 0; i < 5; ++i)
     place_barrel((i % 2 ? 1.05f : -1.1f), -7.2f + 2.3f * float(i), 0.56f, 0.21f, 10, yard.old_barrel);
 }
@@ -203,13 +219,13 @@ void build_guns(Shipyard& yard) {
     for (const float w : {-0.17f, 0.13f})
       add_box(yard.ship, {x - 0.3f, y + 0.26f, z + w}, {x + 0.3f, y + 0.42f, z + w + 0.04f}, yard.carriage);
     const Ring wheel[] = {{0, 0.11f}, {1, 0.11f}};
-    add_turned_body(yard.ship, {x - 0.2f, y + 0.1f, z - 0.22f}, {x - 0.2f, y + 0.1f, z + 0.22f}, wheel, 6, true,
-                    yard.carriage);
-    add_turned_body(yard.ship, {x + 0.2f, y + 0.1f, z - 0.22f}, {x + 0.2f, y + 0.1f, z + 0.22f}, wheel, 6, true,
-                    yard.carriage);
+    add_turned_body(yard.ship, {x - 0.2f, y + 0.1f, z - 0.22f}, {x - 0.2f, y + 0.1f, z + 0.22f}, wheel, 6,
+                    true, yard.carriage);
+    add_turned_body(yard.ship, {x + 0.2f, y + 0.1f, z - 0.22f}, {x + 0.2f, y + 0.1f, z + 0.22f}, wheel, 6,
+                    true, yard.carriage);
     const Ring barrel[] = {{0, 0.05f}, {0.06f, 0.13f}, {0.5f, 0.105f}, {0.94f, 0.08f}, {1, 0.10f}};
-    add_turned_body(yard.ship, {x - side * 0.4f, y + 0.42f, z}, {x + side * 0.85f, y + 0.47f, z}, barrel, 7, true,
-                    yard.cannon);
+    add_turned_body(yard.ship, {x - side * 0.4f, y + 0.42f, z}, {x + side * 0.85f, y + 0.47f, z}, barrel, 7,
+                    true, yard.cannon);
   }
 }
 

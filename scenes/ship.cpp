@@ -14,7 +14,9 @@ Scene build_ship(const LoadOptions& options) {
   if (options.assets.empty()) {
     ship = make_schooner(scene.materials);
     scene.form = "built-in";
-    scene.note = "A procedural schooner with the original's bounds, number of materials and about its triangle count (6,255).";
+    scene.note =
+        "A procedural schooner with the original's bounds, number of materials and about its triangle count "
+        "(6,255).";
   } else {
     const std::string path = find_asset(options.assets, scene.name,
                                         {"assets/models/karimSchooner.obj", "models/karimSchooner.obj",

@@ -14,7 +14,9 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-uint32_t at_least(uint32_t least, double value) { return std::max(least, uint32_t(std::lround(value))); }
+uint32_t at_least(uint32_t least, double value) {
+  return std::max(least, uint32_t(std::lround(value)));
+}
 
 // A point of the box's surface pulled onto its rounded edges.
 Vec3 rounded(const Vec3& p, float roundness) {
@@ -26,14 +28,20 @@ Vec3 rounded(const Vec3& p, float roundness) {
 
 // One part of a machine, in a frame of its own.
 void add_part(Model& model, const Frame& frame, uint64_t triangles, int32_t material, uint32_t kind) {
-  static constexpr Vec2 kPiston[] = {{-1, 0}, {-1, 0.9f}, {-0.3f, 0.9f}, {-0.25f, 0.5f}, {0.5f, 0.5f}, {0.55f, 0.8f}, {1, 0.8f}, {1, 0}};
+  static constexpr Vec2 kPiston[] = {{-1, 0},      {-1, 0.9f},    {-0.3f, 0.9f}, {-0.25f, 0.5f},
+                                     {0.5f, 0.5f}, {0.55f, 0.8f}, {1, 0.8f},     {1, 0}};
   static constexpr Vec2 kKnob[] = {{-1, 0}, {-0.9f, 1}, {0, 1}, {0.2f, 0.7f}, {0.8f, 0.6f}, {1, 0}};
   switch (kind) {
-    case 0: return add_lathe(model, frame, kPiston, triangles, material);
-    case 1: return add_lathe(model, frame, kKnob, triangles, material);
-    case 2: return add_ring(model, frame, triangles, material, 0.3f);
-    case 3: return add_ball(model, frame, triangles, material);
-    default: return add_rounded_box(model, frame, triangles, material, 0.25f);
+    case 0:
+      return add_lathe(model, frame, kPiston, triangles, material);
+    case 1:
+      return add_lathe(model, frame, kKnob, triangles, material);
+    case 2:
+      return add_ring(model, frame, triangles, material, 0.3f);
+    case 3:
+      return add_ball(model, frame, triangles, material);
+    default:
+      return add_rounded_box(model, frame, triangles, material, 0.25f);
   }
 }
 
@@ -70,13 +78,15 @@ Frame in_view_upright(const Camera& camera, float depth) {
   return frame;
 }
 
-void add_patch(Model& model, uint64_t triangles, float aspect, int32_t material, const std::function<Vec3(float, float)>& position) {
+void add_patch(Model& model, uint64_t triangles, float aspect, int32_t material,
+               const std::function<Vec3(float, float)>& position) {
   const double rows = std::sqrt(double(triangles) / 2 / double(aspect));
   const uint32_t height = at_least(1, rows);
   add_sheet(model, at_least(1, double(triangles) / 2 / height), height, material, position);
 }
 
-void add_ball(Model& model, const Frame& frame, uint64_t triangles, int32_t material, float bumps, float frequency) {
+void add_ball(Model& model, const Frame& frame, uint64_t triangles, int32_t material, float bumps,
+              float frequency) {
   add_patch(model, triangles, 2, material, [&](float u, float v) {
     const double around = kTurn * double(u), down = kTurn / 2 * double(v);
     const Vec3 p{sine(down) * sine(around), cosine(down), sine(down) * cosine(around)};
@@ -84,7 +94,8 @@ void add_ball(Model& model, const Frame& frame, uint64_t triangles, int32_t mate
   });
 }
 
-void add_rounded_box(Model& model, const Frame& frame, uint64_t triangles, int32_t material, float roundness) {
+void add_rounded_box(Model& model, const Frame& frame, uint64_t triangles, int32_t material,
+                     float roundness) {
   for (size_t axis = 0; axis < 3; ++axis)
     for (const float side : {-1.0f, 1.0f})
       add_patch(model, triangles / 6, 1, material, [&](float u, float v) {
@@ -105,7 +116,8 @@ void add_ring(Model& model, const Frame& frame, uint64_t triangles, int32_t mate
   });
 }
 
-void add_lathe(Model& model, const Frame& frame, std::span<const Vec2> profile, uint64_t triangles, int32_t material) {
+void add_lathe(Model& model, const Frame& frame, std::span<const Vec2> profile, uint64_t triangles,
+               int32_t material) {
   const auto pieces = uint64_t(profile.size() - 1);
   for (size_t k = 0; k < pieces; ++k)  // each piece has its own vertices: edges between pieces are sharp
     add_patch(model, triangles / pieces, 4, material, [&](float u, float v) {
@@ -116,7 +128,8 @@ void add_lathe(Model& model, const Frame& frame, std::span<const Vec2> profile, 
     });
 }
 
-void add_tube(Model& model, std::span<const Vec3> path, float start, float end, uint32_t sides, int32_t material) {
+void add_tube(Model& model, std::span<const Vec3> path, float start, float end, uint32_t sides,
+              int32_t material) {
   const auto first = uint32_t(model.vertices.size());
   Vec3 right{};
   for (size_t k = 0; k < path.size(); ++k) {
@@ -140,7 +153,8 @@ void add_tube(Model& model, std::span<const Vec3> path, float start, float end, 
     }
 }
 
-void add_cable(Model& model, const Vec3& start, const Vec3& end, float sag, float radius, uint64_t triangles, int32_t material) {
+void add_cable(Model& model, const Vec3& start, const Vec3& end, float sag, float radius, uint64_t triangles,
+               int32_t material) {
   const uint32_t sides = triangles > 4000 ? 16 : 8;
   const uint32_t segments = at_least(1, double(triangles) / (2 * sides));
   std::vector<Vec3> path;
@@ -151,7 +165,8 @@ void add_cable(Model& model, const Vec3& start, const Vec3& end, float sag, floa
   add_tube(model, path, radius, radius, sides, material);
 }
 
-void add_machine(Model& model, const Frame& frame, uint64_t triangles, std::span<const int32_t> materials, uint32_t seed) {
+void add_machine(Model& model, const Frame& frame, uint64_t triangles, std::span<const int32_t> materials,
+                 uint32_t seed) {
   constexpr uint32_t kKinds = 7;  // of which three are boxes
   Random random(seed);
   const auto parts = uint32_t(std::clamp<uint64_t>(triangles / 600, 2, 90));
@@ -171,7 +186,8 @@ void add_machine(Model& model, const Frame& frame, uint64_t triangles, std::span
   }
 }
 
-void add_cloth(Model& model, const Frame& frame, uint64_t triangles, int32_t material, float folds, uint32_t seed) {
+void add_cloth(Model& model, const Frame& frame, uint64_t triangles, int32_t material, float folds,
+               uint32_t seed) {
   const auto shift = float(seed) * 7.31f;
   add_patch(model, triangles, 1, material, [&](float u, float v) {
     const float deep = 0.35f * wave(u * folds + 0.3f * noise({u * 2, v * 2, shift})) * (0.4f + 0.6f * v);

@@ -42,7 +42,8 @@ const std::vector<StandInTexture>& stand_in_textures() {
 int32_t stand_in_material(Scene& scene, const std::string& name, const std::filesystem::path& textures) {
   const auto& table = stand_in_textures();
   const auto found = std::find_if(table.begin(), table.end(), [&](const StandInTexture& entry) {
-    return std::any_of(entry.parts.begin(), entry.parts.end(), [&](const std::string& part) { return name.find(part) != std::string::npos; });
+    return std::any_of(entry.parts.begin(), entry.parts.end(),
+                       [&](const std::string& part) { return name.find(part) != std::string::npos; });
   });
   const char* file = found == table.end() ? "background" : found->texture;
   for (size_t k = 0; k < scene.materials.size(); ++k)
@@ -60,7 +61,8 @@ Model subdivided(const Model& model) {
     Vertex m = a;
     m.position = (a.position + b.position) * 0.5f;
     m.normal = normalized(a.normal + b.normal);
-    for (size_t k = 0; k < 2; ++k) m.texture_coordinate[k] = 0.5f * (a.texture_coordinate[k] + b.texture_coordinate[k]);
+    for (size_t k = 0; k < 2; ++k)
+      m.texture_coordinate[k] = 0.5f * (a.texture_coordinate[k] + b.texture_coordinate[k]);
     return m;
   };
   for (size_t i = 0; i < model.indices.size(); i += 3) {
@@ -82,20 +84,24 @@ void load_stand_in(Scene& scene, const std::filesystem::path& folder) {
   Model all;
   for (const fs::path& file : files) {
     std::vector<Material> unused;
-    const int32_t material = stand_in_material(scene, file.stem().string(), folder.parent_path() / "textures");
+    const int32_t material =
+        stand_in_material(scene, file.stem().string(), folder.parent_path() / "textures");
     constexpr float s = kStandInScale;
     append_copy(all, load_obj(file.string(), unused), {s, 0, 0, 0, 0, s, 0, 0, 0, 0, s, 0}, material);
   }
   scene.models.push_back(subdivided(all));
   scene.models.back().name = "sponza_stand_in";
   scene.form = "stand-in";
-  scene.note = "An earlier model of the same building, every triangle cut in four (271,708), with the original's textures.";
+  scene.note =
+      "An earlier model of the same building, every triangle cut in four (271,708), with the original's "
+      "textures.";
 }
 
 void load(Scene& scene, const LoadOptions& options) {
   namespace fs = std::filesystem;
-  const std::vector<std::string> files = {"Scenes/Sponza/sponza.obj", "assets/Scenes/Sponza/sponza.obj", "SPNZA/sponza.obj",
-                                          "sponza.obj", "SPNZA/dabrovic/walls-lib_0.obj", "dabrovic/walls-lib_0.obj"};
+  const std::vector<std::string> files = {
+      "Scenes/Sponza/sponza.obj",       "assets/Scenes/Sponza/sponza.obj", "SPNZA/sponza.obj", "sponza.obj",
+      "SPNZA/dabrovic/walls-lib_0.obj", "dabrovic/walls-lib_0.obj"};
   const fs::path path = find_asset(options.assets, scene.name, files);
   if (path.filename() == "sponza.obj") {
     scene.models.push_back(load_obj(path.string(), scene.materials, &scene.textures));
@@ -107,7 +113,8 @@ void load(Scene& scene, const LoadOptions& options) {
   place(scene.models.back(), {.rotation_y = 270});
 }
 
-// The generated hall: its long axis is z, the floor is y = 0, the court lies between the columns at |x| = kColumns.
+// The generated hall: its long axis is z, the floor is y = 0, the court lies between the columns at |x| =
+// kColumns.
 constexpr float kHalfWidth = 560, kColumns = 260, kHalfLength = 1860, kFloor = 420, kHeight = 1500;
 constexpr uint32_t kBays = 12;  // columns of a side
 
@@ -116,29 +123,37 @@ struct Hall {
   std::vector<int32_t> paint;  // 24 textures, as many as the original's
   Model model{};
 
-  void rectangle(const Vec3& corner, const Vec3& side, const Vec3& other, int32_t material, uint64_t triangles) {
+  void rectangle(const Vec3& corner, const Vec3& side, const Vec3& other, int32_t material,
+                 uint64_t triangles) {
     add_patch(model, triangles, length(side) / length(other), material,
               [&](float u, float v) { return corner + side * u + other * v; });
   }
   void columns(float side, float z, float floor) {
-    static constexpr Vec2 kProfile[] = {{-1, 0.9f}, {-0.95f, 1}, {-0.85f, 1}, {-0.8f, 0.7f}, {0, 0.68f}, {0.8f, 0.6f}, {0.85f, 0.95f}, {1, 1}};
+    static constexpr Vec2 kProfile[] = {{-1, 0.9f}, {-0.95f, 1},  {-0.85f, 1},    {-0.8f, 0.7f},
+                                        {0, 0.68f}, {0.8f, 0.6f}, {0.85f, 0.95f}, {1, 1}};
     const float low = floor * kFloor;
-    add_lathe(model, upright({side * kColumns, low + 130, z}, {34, 130, 34}), kProfile, 1250, paint[floor > 0 ? 5 : 4]);
+    add_lathe(model, upright({side * kColumns, low + 130, z}, {34, 130, 34}), kProfile, 1250,
+              paint[floor > 0 ? 5 : 4]);
     add_rounded_box(model, upright({side * kColumns, low + 10, z}, {42, 12, 42}), 150, paint[6]);
     add_rounded_box(model, upright({side * kColumns, low + 270, z}, {46, 12, 46}), 150, paint[6]);
   }
   // From one column to the next: the inside of a half ring and the wall above it.
   void arch(float side, float z0, float z1, float floor) {
-    const float low = floor * kFloor + 282, middle = 0.5f * (z0 + z1), radius = 0.5f * (z1 - z0) - 34, top = (floor + 1) * kFloor;
+    const float low = floor * kFloor + 282, middle = 0.5f * (z0 + z1), radius = 0.5f * (z1 - z0) - 34,
+                top = (floor + 1) * kFloor;
     const auto rim = [&](float u) -> Vec3 {
       const double angle = 3.14159265358979 * double(u);
-      return {side * kColumns, std::min(low + radius * sine(angle), top - 12), middle - radius * cosine(angle)};
+      return {side * kColumns, std::min(low + radius * sine(angle), top - 12),
+              middle - radius * cosine(angle)};
     };
-    add_patch(model, 500, 4, paint[7], [&](float u, float v) { return rim(u) + Vec3{(v - 0.5f) * 70, 0, 0}; });
+    add_patch(model, 500, 4, paint[7], [&](float u, float v) {
+      return rim(u) + Vec3{(v - 0.5f) * 70, 0, 0};
+    });
     for (const float face : {-35.0f, 35.0f})
       add_patch(model, 400, 4, paint[8], [&](float u, float v) {
         const Vec3 p = rim(u);
-        return Vec3{p[0] + face, p[1] + (top - p[1]) * v, z0 + (z1 - z0) * u + (p[2] - z0 - (z1 - z0) * u) * (1 - v)};
+        return Vec3{p[0] + face, p[1] + (top - p[1]) * v,
+                    z0 + (z1 - z0) * u + (p[2] - z0 - (z1 - z0) * u) * (1 - v)};
       });
   }
   void side_of(float side) {
@@ -149,16 +164,22 @@ struct Hall {
         columns(side, z, floor);
         if (k + 1 < kBays) arch(side, z, z + bay, floor);
       }
-      if (k % 2 == 0) add_cloth(model, {{80, 0, 0}, {0, 150, 0}, {0, 0, 35}, {side * (kColumns - 60), 560, z + bay / 2}}, 2800, paint[9 + k % 3], 5, k);
-      add_lathe(model, upright({side * 160, 25, z}, {28, 25, 28}), std::array<Vec2, 4>{{{-1, 0.5f}, {0, 1}, {0.7f, 0.6f}, {1, 0.8f}}}, 700, paint[12]);
+      if (k % 2 == 0)
+        add_cloth(model, {{80, 0, 0}, {0, 150, 0}, {0, 0, 35}, {side * (kColumns - 60), 560, z + bay / 2}},
+                  2800, paint[9 + k % 3], 5, k);
+      add_lathe(model, upright({side * 160, 25, z}, {28, 25, 28}),
+                std::array<Vec2, 4>{{{-1, 0.5f}, {0, 1}, {0.7f, 0.6f}, {1, 0.8f}}}, 700, paint[12]);
     }
     for (const float floor : {0.0f, 1.0f})  // gallery ceilings
-      rectangle({wall, (floor + 1) * kFloor - 8, -kHalfLength}, {inner - wall, 0, 0}, {0, 0, 2 * kHalfLength}, paint[2], 2400);
+      rectangle({wall, (floor + 1) * kFloor - 8, -kHalfLength}, {inner - wall, 0, 0}, {0, 0, 2 * kHalfLength},
+                paint[2], 2400);
     rectangle({wall, 0, -kHalfLength}, {0, 0, 2 * kHalfLength}, {0, 2 * kFloor, 0}, paint[1], 4000);
-    rectangle({inner, 2 * kFloor, -kHalfLength}, {0, 0, 2 * kHalfLength}, {0, kHeight - 2 * kFloor, 0}, paint[0], 4000);
+    rectangle({inner, 2 * kFloor, -kHalfLength}, {0, 0, 2 * kHalfLength}, {0, kHeight - 2 * kFloor, 0},
+              paint[0], 4000);
     for (uint32_t k = 0; k < 24; ++k) {  // windows and doors
       const float z = -kHalfLength + 2 * kHalfLength * (float(k) + 0.5f) / 24;
-      add_rounded_box(model, upright({k % 2 ? inner : wall, k % 2 ? 1050.0f : 160.0f, z}, {14, 110, 50}), 240, paint[13 + k % 4]);
+      add_rounded_box(model, upright({k % 2 ? inner : wall, k % 2 ? 1050.0f : 160.0f, z}, {14, 110, 50}), 240,
+                      paint[13 + k % 4]);
     }
   }
   void ends() {
@@ -184,7 +205,8 @@ void generate(Scene& scene, const LoadOptions& options) {
     const Vec3 stone{tone, tone * 0.92f, tone * 0.78f};
     const bool cloth = k >= 9 && k < 12;
     const Pattern pattern = cloth ? Pattern::Stripes : k < 4 ? kPatterns[k] : Pattern::Stone;
-    hall.paint.push_back(generator.textured(paint_texture(pattern, cloth ? kCloth[k - 9] : stone, 1024, 1024, k)));
+    hall.paint.push_back(
+        generator.textured(paint_texture(pattern, cloth ? kCloth[k - 9] : stone, 1024, 1024, k)));
   }
   hall.side_of(-1);
   hall.side_of(1);
@@ -195,10 +217,15 @@ void generate(Scene& scene, const LoadOptions& options) {
     add_ball(hall.model, upright(pot, {30, 24, 30}), 1500, hall.paint[21 + k % 3], 0.2f, 4);
   }
   const uint64_t made = hall.model.indices.size() / 3;
-  hall.rectangle({-kHalfWidth, 0, kHalfLength}, {2 * kHalfWidth, 0, 0}, {0, 0, -2 * kHalfLength}, hall.paint[3],
-                 made + 2000 < kTriangles ? kTriangles - made : 2000);
-  generator.model("hall", [&](Model& model) { model = std::move(hall.model); model.name = "hall"; });
-  scene.note = "A procedural hall of the original's size, triangle count (262,267) and number of textures (24 of 4 MiB).";
+  hall.rectangle({-kHalfWidth, 0, kHalfLength}, {2 * kHalfWidth, 0, 0}, {0, 0, -2 * kHalfLength},
+                 hall.paint[3], made + 2000 < kTriangles ? kTriangles - made : 2000);
+  generator.model("hall", [&](Model& model) {
+    model = std::move(hall.model);
+    model.name = "hall";
+  });
+  scene.note =
+      "A procedural hall of the original's size, triangle count (262,267) and number of textures (24 of 4 "
+      "MiB).";
 }
 
 }  // namespace

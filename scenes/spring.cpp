@@ -38,11 +38,15 @@ void stitches(Model& model, const Frame& frame, uint64_t triangles, int32_t mate
 }
 
 void girl(Generator& generator, const Frame& view) {
-  const auto part = [&](const char* name, const Vec3& center, const Vec3& size, uint64_t triangles, int32_t material, float bumps) {
-    generator.model(name, [&](Model& m) { add_ball(m, view.inner(center, size), triangles, material, bumps, 4); });
+  const auto part = [&](const char* name, const Vec3& center, const Vec3& size, uint64_t triangles,
+                        int32_t material, float bumps) {
+    generator.model(name,
+                    [&](Model& m) { add_ball(m, view.inner(center, size), triangles, material, bumps, 4); });
   };
-  const int32_t skin = generator.material(paint(223, 175, 171)), jacket = generator.material(paint(163, 67, 42));
-  const int32_t pants = generator.material(paint(92, 74, 101)), boots = generator.material(paint(150, 106, 86));
+  const int32_t skin = generator.material(paint(223, 175, 171)),
+                jacket = generator.material(paint(163, 67, 42));
+  const int32_t pants = generator.material(paint(92, 74, 101)),
+                boots = generator.material(paint(150, 106, 86));
   const int32_t hair = generator.material(paint(108, 86, 99)), scarf = generator.material(paint(114, 76, 64));
   const int32_t seam = generator.material(paint(92, 64, 51)), band = generator.material(paint(69, 23, 8));
   part("spring_body", {0, 0.42f, 0}, {0.17f, 0.21f, 0.17f}, 95'000, skin, 0.08f);
@@ -52,18 +56,31 @@ void girl(Generator& generator, const Frame& view) {
   for (const float side : {-1.0f, 1.0f}) {
     part("spring_boots", {0.13f * side, -0.95f, 0.05f}, {0.1f, 0.14f, 0.18f}, 30'000, boots, 0.2f);
     part("spring_sleeve", {0.34f * side, -0.15f, 0.08f}, {0.1f, 0.32f, 0.1f}, 40'000, jacket, 0.25f);
-    generator.model("spring_boots_stitches", [&](Model& m) { stitches(m, view.inner({0.13f * side, -0.92f, 0.05f}, {0.11f, 0.15f, 0.19f}), 60'000, seam, 3); });
+    generator.model("spring_boots_stitches", [&](Model& m) {
+      stitches(m, view.inner({0.13f * side, -0.92f, 0.05f}, {0.11f, 0.15f, 0.19f}), 60'000, seam, 3);
+    });
   }
-  generator.model("spring_jacket_stitches", [&](Model& m) { stitches(m, view.inner({0, -0.15f, 0}, {0.31f, 0.37f, 0.21f}), 235'000, seam, 1); });
-  generator.model("spring_pants_stitches", [&](Model& m) { stitches(m, view.inner({0, -0.6f, 0}, {0.23f, 0.31f, 0.19f}), 150'000, seam, 2); });
-  generator.model("spring_hair", [&](Model& m) { add_hair(m, view.inner({0, 0.52f, -0.09f}, {0.17f, 0.17f, 0.14f}), 0.3f, view.y * -2.5f, 180'000, hair, 7); });
-  generator.model("spring_hairband", [&](Model& m) { add_ring(m, {view.x * 0.2f, view.y * 0.05f, view.z * 0.2f, view.at(0, 0.56f, -0.02f)}, 8'000, band, 0.12f); });
+  generator.model("spring_jacket_stitches", [&](Model& m) {
+    stitches(m, view.inner({0, -0.15f, 0}, {0.31f, 0.37f, 0.21f}), 235'000, seam, 1);
+  });
+  generator.model("spring_pants_stitches", [&](Model& m) {
+    stitches(m, view.inner({0, -0.6f, 0}, {0.23f, 0.31f, 0.19f}), 150'000, seam, 2);
+  });
+  generator.model("spring_hair", [&](Model& m) {
+    add_hair(m, view.inner({0, 0.52f, -0.09f}, {0.17f, 0.17f, 0.14f}), 0.3f, view.y * -2.5f, 180'000, hair,
+             7);
+  });
+  generator.model("spring_hairband", [&](Model& m) {
+    add_ring(m, {view.x * 0.2f, view.y * 0.05f, view.z * 0.2f, view.at(0, 0.56f, -0.02f)}, 8'000, band,
+             0.12f);
+  });
 }
 
 // Hills close by, then a mountain that rises over the whole picture.
 float slope(float x, float z) {
   const float away = 4 - z, far = away < 12 ? 0.0f : away - 12;
-  return -1.1f + 0.3f * fractal({x * 0.3f, 0, z * 0.3f}, 3) + 0.3f * away + 0.75f * far + 0.12f * far * fractal({x * 0.02f, 5, z * 0.02f}, 4);
+  return -1.1f + 0.3f * fractal({x * 0.3f, 0, z * 0.3f}, 3) + 0.3f * away + 0.75f * far +
+         0.12f * far * fractal({x * 0.02f, 5, z * 0.02f}, 4);
 }
 
 void generate(Scene& scene, const LoadOptions& options) {
@@ -75,14 +92,18 @@ void generate(Scene& scene, const LoadOptions& options) {
   constexpr uint32_t kPatches = 36;
   for (uint32_t k = 0; k < kPatches; ++k)
     generator.model("GEO-Grass_patch", [&](Model& m) {
-      const float x = -5.5f + 0.8f * float(k % 8) + random.between(-0.2f, 0.2f), z = 2.6f - 1.3f * float(k / 8);
-      add_grass(m, {x - 0.6f, z - 0.8f}, {x + 0.6f, z + 0.8f}, slope, random.between(0.35f, 0.8f), 15'500, k % 3 ? grass : dry, k);
+      const float x = -5.5f + 0.8f * float(k % 8) + random.between(-0.2f, 0.2f),
+                  z = 2.6f - 1.3f * float(k / 8);
+      add_grass(m, {x - 0.6f, z - 0.8f}, {x + 0.6f, z + 0.8f}, slope, random.between(0.35f, 0.8f), 15'500,
+                k % 3 ? grass : dry, k);
     });
   generator.model("mountain", [&](Model& m) {
     add_ground(m, {-700, -930}, {500, 4}, slope, 150'000, rock);
     add_ground(m, {-30, -30}, {25, 4}, slope, generator.rest() - 150'000, grass);
   });
-  scene.note = "A procedural figure, grass and mountain; about the original's triangle count (1.9M) and its number of models (51).";
+  scene.note =
+      "A procedural figure, grass and mountain; about the original's triangle count (1.9M) and its number of "
+      "models (51).";
 }
 
 }  // namespace

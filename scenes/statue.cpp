@@ -9,8 +9,8 @@
 namespace glint::scenes {
 namespace {
 
-constexpr float kCell = 1.602f;   // chosen for about 448.9K triangles
-constexpr int kFeathers = 9;      // a wing
+constexpr float kCell = 1.602f;  // chosen for about 448.9K triangles
+constexpr int kFeathers = 9;     // a wing
 
 // The figure looks along +z with its right hand at +x; `m` has x = |x|.
 float wing_distance(const Vec3& m) {
@@ -40,7 +40,8 @@ float robe_distance(const Vec3& p) {
   const float skirt = limb_distance({p[0] * 0.92f, p[1], p[2] * 1.1f}, {0, 95, 0}, 82, {0, 330, 0}, 36);
   float d = skirt + fall * (5.5f * fold + 2.5f * noise(p * 0.03f));
   d = std::max(d * 0.75f, 62 - p[1]);  // the hem touches the pedestal
-  const float torso = ellipsoid_distance(p, {0, 385, 0}, {50, 72, 35}) + 1.5f * wave(p[1] * 0.05f + p[0] * 0.02f);
+  const float torso =
+      ellipsoid_distance(p, {0, 385, 0}, {50, 72, 35}) + 1.5f * wave(p[1] * 0.05f + p[0] * 0.02f);
   d = blended_union(d, torso * 0.8f, 18);
   const float belt = std::max(std::abs(p[1] - 333) - 5, length({p[0], 0, p[2] * 1.15f}) - 41);
   return blended_union(d, belt * 0.8f, 4);
@@ -62,13 +63,14 @@ float body_distance(const Vec3& p) {
 
 float head_distance(const Vec3& p) {
   float d = ellipsoid_distance(p, {0, 508, 7}, {22, 30, 25});
-  d = blended_union(d, limb_distance(p, {0, 512, 30}, 3.5f, {0, 501, 34}, 4.5f), 5);    // nose
-  d = blended_union(d, ellipsoid_distance(p, {0, 484, 24}, {8, 6, 7}), 6);              // chin
+  d = blended_union(d, limb_distance(p, {0, 512, 30}, 3.5f, {0, 501, 34}, 4.5f), 5);  // nose
+  d = blended_union(d, ellipsoid_distance(p, {0, 484, 24}, {8, 6, 7}), 6);            // chin
   d = std::max(d, -ellipsoid_distance(p, {9, 514, 33}, {5, 4, 5}));
   d = std::max(d, -ellipsoid_distance(p, {-9, 514, 33}, {5, 4, 5}));
-  const float hair = ellipsoid_distance(p, {0, 516, -3}, {28, 30, 28}) + 2.2f * wave(p[0] * 0.11f + p[1] * 0.05f);
+  const float hair =
+      ellipsoid_distance(p, {0, 516, -3}, {28, 30, 28}) + 2.2f * wave(p[0] * 0.11f + p[1] * 0.05f);
   d = blended_union(d, hair * 0.8f, 3);
-  return blended_union(d, ellipsoid_distance(p, {0, 520, -30}, {13, 13, 13}), 6);       // knot of hair
+  return blended_union(d, ellipsoid_distance(p, {0, 520, -30}, {13, 13, 13}), 6);  // knot of hair
 }
 
 float pedestal_distance(const Vec3& p) {

@@ -8,7 +8,8 @@
 namespace glint::scenes {
 namespace {
 
-void add_cap(Model& model, uint32_t ring, uint32_t sides, const Vec3& normal, bool reverse, int32_t material) {
+void add_cap(Model& model, uint32_t ring, uint32_t sides, const Vec3& normal, bool reverse,
+             int32_t material) {
   const uint32_t first = uint32_t(model.vertices.size());
   for (uint32_t i = 0; i < sides; ++i) add_vertex(model, model.vertices[ring + i].position, normal, material);
   for (uint32_t i = 1; i + 1 < sides; ++i)
@@ -17,8 +18,8 @@ void add_cap(Model& model, uint32_t ring, uint32_t sides, const Vec3& normal, bo
 
 }  // namespace
 
-void add_turned_body(Model& model, const Vec3& start, const Vec3& end, std::span<const Ring> rings, uint32_t sides,
-                     bool closed, int32_t material) {
+void add_turned_body(Model& model, const Vec3& start, const Vec3& end, std::span<const Ring> rings,
+                     uint32_t sides, bool closed, int32_t material) {
   const Vec3 axis = end - start, along = normalized(axis);
   const Vec3 helper = std::abs(along[1]) < 0.9f ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
   const Vec3 right = normalized(cross(helper, along)), up = cross(along, right);

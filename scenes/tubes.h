@@ -15,8 +15,8 @@ struct Ring {
 
 // A body turned about the axis from `start` to `end`, with `sides` facets and flat caps at both ends when
 // `closed`: 2 * sides * (rings - 1) triangles and sides - 2 a cap.
-void add_turned_body(Model& model, const Vec3& start, const Vec3& end, std::span<const Ring> rings, uint32_t sides,
-                     bool closed, int32_t material);
+void add_turned_body(Model& model, const Vec3& start, const Vec3& end, std::span<const Ring> rings,
+                     uint32_t sides, bool closed, int32_t material);
 
 // An open prism of three sides, 6 triangles: a rope.
 void add_rope(Model& model, const Vec3& start, const Vec3& end, float radius, int32_t material);

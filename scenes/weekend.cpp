@@ -1,7 +1,6 @@
 // WKND: the 487 spheres of "Ray Tracing in One Weekend", drawn in the application's order.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-
 #include <random>
 
 #include "scenes/builders.h"
@@ -66,7 +65,8 @@ Scene build_weekend(const LoadOptions&) {
   scene.name = "WKND";
   scene.form = "original";
   scene.note = "Complete: all 487 spheres are generated as in the original application.";
-  scene.camera = {.eye = {13, 2, 3}, .target = {0, 0, 0}, .field_of_view = 20, .aperture = 0.1f, .focus_distance = 10};
+  scene.camera = {
+      .eye = {13, 2, 3}, .target = {0, 0, 0}, .field_of_view = 20, .aperture = 0.1f, .focus_distance = 10};
   return std::move(scene);
 }
 

@@ -1,5 +1,5 @@
-// `glint bench [SUITE|NAMES...]`: runs workloads of LumiBench, each as a process of its own, and gathers their metrics.
-// SPDX-License-Identifier: Apache-2.0
+// `glint bench [SUITE|NAMES...]`: runs workloads of LumiBench, each as a process of its own, and gathers
+// their metrics. SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <fmt/format.h>
@@ -29,7 +29,12 @@ std::string last_words(const std::string& log) {
 
 class Bench {
  public:
-  Bench(const Session& session, const BenchOptions& options) : options_(options), plan_(plan_bench(session, options)), csv_(plan_.tasks.size()), is_live_(session.can_move_cursor), terminal_(session.terminal) {}
+  Bench(const Session& session, const BenchOptions& options)
+      : options_(options),
+        plan_(plan_bench(session, options)),
+        csv_(plan_.tasks.size()),
+        is_live_(session.can_move_cursor),
+        terminal_(session.terminal) {}
 
   Exit run() {
     const report::RunDirectory directory(plan_.directory);
@@ -56,7 +61,8 @@ class Bench {
 
   void limits() {
     const uint64_t available = available_memory();
-    limits_.processes = options_.processes > 0 ? options_.processes : std::max(1u, std::thread::hardware_concurrency());
+    limits_.processes =
+        options_.processes > 0 ? options_.processes : std::max(1u, std::thread::hardware_concurrency());
     limits_.memory = options_.memory > 0 ? uint64_t(options_.memory * 1e9) : available;
   }
 
@@ -71,12 +77,14 @@ class Bench {
     }
     std::sort(needs.rbegin(), needs.rend());
     for (size_t i = 0; i < std::min<size_t>(needs.size(), limits_.processes); ++i) together += needs[i];
-    print_output("{} workloads{}: {}, {} spp, {} on {}, {} at a time, into {}\n", plan_.tasks.size(),
-               options_.resume ? fmt::format(", {} of them complete", plan_.tasks.size() - chosen_.size()) : "", options_.size, options_.frame.samples, options_.mode,
-               options_.config, limits_.processes, plan_.directory);
+    print_output(
+        "{} workloads{}: {}, {} spp, {} on {}, {} at a time, into {}\n", plan_.tasks.size(),
+        options_.resume ? fmt::format(", {} of them complete", plan_.tasks.size() - chosen_.size()) : "",
+        options_.size, options_.frame.samples, options_.mode, options_.config, limits_.processes,
+        plan_.directory);
     if (chosen_.empty()) return;
-    print_output("memory, estimated: {} for {}, {} for the largest together; limit {}\n", gigabytes(largest), name, gigabytes(together),
-               limits_.memory ? gigabytes(limits_.memory) : "not known");
+    print_output("memory, estimated: {} for {}, {} for the largest together; limit {}\n", gigabytes(largest),
+                 name, gigabytes(together), limits_.memory ? gigabytes(limits_.memory) : "not known");
     if (limits_.memory && largest > limits_.memory)
       fmt::print(stderr, "warning: {} may not fit into {}; it runs alone\n", name, gigabytes(limits_.memory));
     else if (limits_.memory && together > limits_.memory)
@@ -97,7 +105,8 @@ class Bench {
     pool.on_time = [&] { view.draw(pool, names); };
     pool.on_end = [&](size_t index) { take(chosen_[index], pool.processes()[index], view, directory); };
     const bool whole = pool.run();
-    for (size_t k = 0; k < chosen_.size(); ++k) plan_.tasks[chosen_[k]].process.state = pool.processes()[k].state;
+    for (size_t k = 0; k < chosen_.size(); ++k)
+      plan_.tasks[chosen_[k]].process.state = pool.processes()[k].state;
     return whole;
   }
 
@@ -105,7 +114,9 @@ class Bench {
   void take(size_t index, const Process& process, BenchView& view, const report::RunDirectory& directory) {
     BenchTask& task = plan_.tasks[index];
     task.process = process;
-    std::string figures = process.state == Process::State::Stopped ? "stopped" : fmt::format("FAILED, {}: {}", process.end, last_words(process.log));
+    std::string figures = process.state == Process::State::Stopped
+                              ? "stopped"
+                              : fmt::format("FAILED, {}: {}", process.end, last_words(process.log));
     if (process.state == Process::State::Done) {
       const report::RunRecord record = report::RunRecord::read(task.directory);
       figures = figures_of(record);
@@ -119,7 +130,8 @@ class Bench {
   std::vector<BenchRow> rows() const {
     std::vector<BenchRow> out;
     for (const BenchTask& task : plan_.tasks)
-      if (task.process.state == Process::State::Done) out.push_back({&task, &task.process, report::RunRecord::read(task.directory)});
+      if (task.process.state == Process::State::Done)
+        out.push_back({&task, &task.process, report::RunRecord::read(task.directory)});
     return out;
   }
 
@@ -140,17 +152,21 @@ class Bench {
     }
     const std::string table = summary_table(rows());
     directory.write("summary.txt", table);
-    print_output("\n{}\n{} of {} workloads complete, metrics in {}\n", table, done, plan_.tasks.size(), directory.path_of("metrics.csv"));
-    if (failed) fmt::print(stderr, "error: {} failed:{}\n  note: log.txt in the directory of each says why\n", failed, names);
-    if (!whole) fmt::print(stderr, "error: interrupted\n  note: the same command with --resume goes on from here\n");
+    print_output("\n{}\n{} of {} workloads complete, metrics in {}\n", table, done, plan_.tasks.size(),
+                 directory.path_of("metrics.csv"));
+    if (failed)
+      fmt::print(stderr, "error: {} failed:{}\n  note: log.txt in the directory of each says why\n", failed,
+                 names);
+    if (!whole)
+      fmt::print(stderr, "error: interrupted\n  note: the same command with --resume goes on from here\n");
     return failed || !whole ? Exit::Failure : Exit::Ok;
   }
 
   const BenchOptions& options_;
   BenchPlan plan_;
   PoolLimits limits_;
-  std::vector<size_t> chosen_;     // to run; the others are complete
-  std::vector<std::string> csv_;   // the row of each that is complete, by task
+  std::vector<size_t> chosen_;    // to run; the others are complete
+  std::vector<std::string> csv_;  // the row of each that is complete, by task
   bool is_live_;
   report::Terminal terminal_;
 };
@@ -160,21 +176,41 @@ class Bench {
 void add_bench(CLI::App& app, Session& session) {
   auto options = std::make_shared<BenchOptions>();
   CLI::App* command = app.add_subcommand("bench", "Run workloads of LumiBench and gather their metrics");
-  command->add_option("NAMES", options->names, "lumibench (all 46, the default), subset (8), a scene, pt, sh, ao, or workloads: 'glint list workloads'");
-  command->add_option("-j,--jobs", options->processes, "Processes at a time; 0: one for each processor")->check(CLI::Range(0u, 1024u))->capture_default_str();
-  command->add_flag("--resume", options->resume, "Leave out what is complete: the same configuration, options, program and shaders");
-  command->add_option("--memory", options->memory, "GB that all may take together (default: what is available)")->check(number_range(0.001, 1e6));
+  command->add_option("NAMES", options->names,
+                      "lumibench (all 46, the default), subset (8), a scene, pt, sh, ao, or workloads: "
+                      "'glint list workloads'");
+  command->add_option("-j,--jobs", options->processes, "Processes at a time; 0: one for each processor")
+      ->check(CLI::Range(0u, 1024u))
+      ->capture_default_str();
+  command->add_flag("--resume", options->resume,
+                    "Leave out what is complete: the same configuration, options, program and shaders");
+  command
+      ->add_option("--memory", options->memory, "GB that all may take together (default: what is available)")
+      ->check(number_range(0.001, 1e6));
   command->add_option("--config", options->config, "Preset or TOML file")->capture_default_str();
-  command->add_option("--set", options->settings, "Override of a key, repeatable: core.warps=16")->type_name("KEY=VALUE")->allow_extra_args(false);
+  command->add_option("--set", options->settings, "Override of a key, repeatable: core.warps=16")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
   command->add_option("--mode", options->mode, "timing: cycle by cycle; functional: picture and counts only")
       ->check(CLI::IsMember({"timing", "functional"}))
       ->capture_default_str();
-  command->add_option("--assets", options->assets, "Folder of original scene data")->type_name("DIR")->envname("GLINT_ASSETS");
-  command->add_option("--out", options->out, "Folder of the results, a folder a workload (default: out/bench-CONFIG)")->type_name("DIR");
-  command->add_option("--threads", options->threads, "Threads of each process")->check(CLI::Range(0u, 256u))->capture_default_str();
-  command->add_option("--size", options->size, "Image size in pixels")->type_name("WxH")->capture_default_str();
+  command->add_option("--assets", options->assets, "Folder of original scene data")
+      ->type_name("DIR")
+      ->envname("GLINT_ASSETS");
+  command
+      ->add_option("--out", options->out,
+                   "Folder of the results, a folder a workload (default: out/bench-CONFIG)")
+      ->type_name("DIR");
+  command->add_option("--threads", options->threads, "Threads of each process")
+      ->check(CLI::Range(0u, 256u))
+      ->capture_default_str();
+  command->add_option("--size", options->size, "Image size in pixels")
+      ->type_name("WxH")
+      ->capture_default_str();
   add_frame_options(*command, options->frame);
-  command->callback([&session, options] { session.action = [&session, options] { return Bench(session, *options).run(); }; });
+  command->callback([&session, options] {
+    session.action = [&session, options] { return Bench(session, *options).run(); };
+  });
 }
 
 }  // namespace glint::app

@@ -41,28 +41,41 @@ uint64_t hash_of_shaders(const Resources& resources) {
 std::string key_of(const Session& session, const BenchOptions& options) {
   const pipeline::GpuParams gpu = read_config(session.resources, options.config, options.settings);
   const scenes::RenderParams& frame = options.frame;
-  const std::string text =
-      fmt::format("config {:016x} mode {} size {} spp {} bounces {} shadow {} ao {} seed {} assets '{}' version {} {} program {:016x} shaders {:016x}",
-                  report::fnv1a(report::config_key_values(describe_params(gpu))), options.mode, options.size, frame.samples, frame.bounces, frame.shadow_rays,
-                  frame.ao_rays, frame.seed, options.assets.empty() ? "" : fs::weakly_canonical(options.assets).string(), GLINT_VERSION, GLINT_GIT,
-                  report::fnv1a(bytes_of("/proc/self/exe")), hash_of_shaders(session.resources));
+  const std::string text = fmt::format(
+      "config {:016x} mode {} size {} spp {} bounces {} shadow {} ao {} seed {} assets '{}' version {} {} "
+      "program {:016x} shaders {:016x}",
+      report::fnv1a(report::config_key_values(describe_params(gpu))), options.mode, options.size,
+      frame.samples, frame.bounces, frame.shadow_rays, frame.ao_rays, frame.seed,
+      options.assets.empty() ? "" : fs::weakly_canonical(options.assets).string(), GLINT_VERSION, GLINT_GIT,
+      report::fnv1a(bytes_of("/proc/self/exe")), hash_of_shaders(session.resources));
   return fmt::format("{:016x}", report::fnv1a(text));
 }
 
-nlohmann::json mark_of(const BenchTask& task) { return nlohmann::json::parse(bytes_of(task.directory + "/" + kMark), nullptr, false); }
+nlohmann::json mark_of(const BenchTask& task) {
+  return nlohmann::json::parse(bytes_of(task.directory + "/" + kMark), nullptr, false);
+}
 
 bool is_complete(const BenchTask& task, const std::string& key) {
   const nlohmann::json mark = mark_of(task);
   if (!mark.is_object() || !mark.contains("key") || mark["key"] != key) return false;
-  return fs::exists(task.directory + "/stats.csv") && fs::exists(task.directory + "/run.json") && fs::exists(task.directory + "/config.toml");
+  return fs::exists(task.directory + "/stats.csv") && fs::exists(task.directory + "/run.json") &&
+         fs::exists(task.directory + "/config.toml");
 }
 
 std::vector<std::string> command_of(const BenchOptions& options, const BenchTask& task) {
   const scenes::RenderParams& frame = options.frame;
-  std::vector<std::string> out = {"run", task.workload.name(), "--config=" + options.config, "--size=" + options.size, "--mode=" + options.mode,
-                                  fmt::format("--spp={}", frame.samples), fmt::format("--bounces={}", frame.bounces),
-                                  fmt::format("--shadow-rays={}", frame.shadow_rays), fmt::format("--ao-rays={}", frame.ao_rays),
-                                  fmt::format("--seed={}", frame.seed), fmt::format("--threads={}", options.threads), "--out=" + task.directory};
+  std::vector<std::string> out = {"run",
+                                  task.workload.name(),
+                                  "--config=" + options.config,
+                                  "--size=" + options.size,
+                                  "--mode=" + options.mode,
+                                  fmt::format("--spp={}", frame.samples),
+                                  fmt::format("--bounces={}", frame.bounces),
+                                  fmt::format("--shadow-rays={}", frame.shadow_rays),
+                                  fmt::format("--ao-rays={}", frame.ao_rays),
+                                  fmt::format("--seed={}", frame.seed),
+                                  fmt::format("--threads={}", options.threads),
+                                  "--out=" + task.directory};
   for (const std::string& setting : options.settings) out.push_back("--set=" + setting);
   if (!options.assets.empty()) out.push_back("--assets=" + options.assets);
   return out;
@@ -74,10 +87,12 @@ BenchPlan plan_bench(const Session& session, const BenchOptions& options) {
   BenchPlan plan;
   scenes::RenderParams frame = options.frame;
   parse_size(options.size, frame);
-  const std::vector<std::string> names = options.names.empty() ? std::vector<std::string>{"lumibench"} : options.names;
+  const std::vector<std::string> names =
+      options.names.empty() ? std::vector<std::string>{"lumibench"} : options.names;
   const std::vector<NamedWorkload> workloads = select_workloads(names);
   plan.key = key_of(session, options);
-  plan.directory = options.out.empty() ? "out/bench-" + fs::path(options.config).stem().string() : options.out;
+  plan.directory =
+      options.out.empty() ? "out/bench-" + fs::path(options.config).stem().string() : options.out;
   const uint64_t pixels = uint64_t{frame.width} * frame.height;
   for (const NamedWorkload& workload : workloads) {
     BenchTask task{workload, plan.directory + "/" + workload.name(), {}};
@@ -92,7 +107,10 @@ BenchPlan plan_bench(const Session& session, const BenchOptions& options) {
 }
 
 void mark_complete(const BenchTask& task, const std::string& key, const Process& process) {
-  const nlohmann::ordered_json mark = {{"workload", task.workload.name()}, {"key", key}, {"wall_seconds", process.seconds}, {"peak_bytes", process.peak_bytes}};
+  const nlohmann::ordered_json mark = {{"workload", task.workload.name()},
+                                       {"key", key},
+                                       {"wall_seconds", process.seconds},
+                                       {"peak_bytes", process.peak_bytes}};
   report::RunDirectory(task.directory).write(kMark, mark.dump(2) + "\n");
 }
 

@@ -1,5 +1,5 @@
-// What `glint bench` is to do: the workloads, the commands that run them, and which of them are complete already.
-// SPDX-License-Identifier: Apache-2.0
+// What `glint bench` is to do: the workloads, the commands that run them, and which of them are complete
+// already. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <string>

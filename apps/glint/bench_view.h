@@ -1,5 +1,5 @@
-// What `glint bench` shows: a line for each workload that has ended, and on a terminal below them those that run.
-// SPDX-License-Identifier: Apache-2.0
+// What `glint bench` shows: a line for each workload that has ended, and on a terminal below them those that
+// run. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 #include <vector>
@@ -13,7 +13,8 @@ namespace glint::app {
 class BenchView {
  public:
   // `is_live`: stdout is a terminal whose cursor can be moved; else only finished lines are printed.
-  BenchView(const report::Terminal& terminal, bool is_live, size_t total) : terminal_(terminal), is_live_(is_live), total_(total) {}
+  BenchView(const report::Terminal& terminal, bool is_live, size_t total)
+      : terminal_(terminal), is_live_(is_live), total_(total) {}
   ~BenchView() { clear(); }
   BenchView(const BenchView&) = delete;
   BenchView& operator=(const BenchView&) = delete;

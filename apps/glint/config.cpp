@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/config.h"
 
-#include <fmt/format.h>
-
 #include <cstdio>
+#include <fmt/format.h>
 
 #include "base/config.h"
 #include "base/diagnostics.h"
@@ -19,11 +18,13 @@ namespace {
 SourceLocation place_of(const Config& config, std::string key, bool table_too) {
   Diagnostics ignored;
   ConfigTable table = config.root(ignored);
-  for (size_t dot; (dot = key.find('.')) != std::string::npos; key = key.substr(dot + 1)) table = table.take_table(key.substr(0, dot));
+  for (size_t dot; (dot = key.find('.')) != std::string::npos; key = key.substr(dot + 1))
+    table = table.take_table(key.substr(0, dot));
   return table_too || table.has(key) ? table.where(key) : SourceLocation{};
 }
 
-// The place of the first key that the message quotes and the user has set, or of whose table something is set.
+// The place of the first key that the message quotes and the user has set, or of whose table something is
+// set.
 SourceLocation place_of_quoted(const Config& config, const std::string& message, bool table_too) {
   for (size_t open = message.find('\''); open != std::string::npos;) {
     const size_t close = message.find('\'', open + 1);
@@ -75,7 +76,9 @@ pipeline::GpuParams read_preset(const Resources& resources, const std::string& n
   return read_quietly(resources, name_or_path, {});
 }
 
-uint64_t config_hash(const pipeline::GpuParams& params) { return report::fnv1a(report::config_key_values(describe_params(params))); }
+uint64_t config_hash(const pipeline::GpuParams& params) {
+  return report::fnv1a(report::config_key_values(describe_params(params)));
+}
 
 pipeline::GpuParams read_config(const Resources& resources, const std::string& name_or_path,
                                 const std::vector<std::string>& settings) {

@@ -10,8 +10,8 @@
 
 namespace glint::app {
 
-// Preset or file first, then the settings in order. UserError lists everything that is wrong; what is odd about the
-// machine that comes of it is said on stderr.
+// Preset or file first, then the settings in order. UserError lists everything that is wrong; what is odd
+// about the machine that comes of it is said on stderr.
 pipeline::GpuParams read_config(const Resources& resources, const std::string& name_or_path,
                                 const std::vector<std::string>& settings);
 

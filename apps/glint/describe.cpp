@@ -1,5 +1,5 @@
-// `glint describe NAME`: what a configuration key means, its value in a preset, unit and range; or what a statistic or a metric counts.
-// SPDX-License-Identifier: Apache-2.0
+// `glint describe NAME`: what a configuration key means, its value in a preset, unit and range; or what a
+// statistic or a metric counts. SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <memory>
@@ -32,7 +32,7 @@ void print_markdown(const std::vector<ParamInfo>& infos) {
   print_output("| key | value | unit | range | meaning |\n|---|---|---|---|---|\n");
   for (const ParamInfo& info : infos)
     print_output("| `{}` | {} | {} | {} | {}{} |\n", info.key, info.value, info.unit, info.range, info.doc,
-               info.needs.empty() ? "" : fmt::format(" Needs `{}`.", info.needs));
+                 info.needs.empty() ? "" : fmt::format(" Needs `{}`.", info.needs));
 }
 
 // "gpu.core[3].issue_slots::raw_fixed" -> "gpu.core[*].issue_slots"
@@ -64,8 +64,11 @@ bool print_metric(const std::string& wanted, std::vector<std::string>& names) {
     for (const report::Metric& metric : group.metrics) {
       names.emplace_back(metric.name);
       if (metric.name != wanted) continue;
-      print_output("{} (a metric: `glint stats RUN --format metrics`, metrics.csv)\n  {}\n  unit     {}\n  formula  {}\n", metric.name, metric.doc, metric.unit,
-                   metric.formula.empty() ? "none: Glint cannot give it" : metric.formula);
+      print_output(
+          "{} (a metric: `glint stats RUN --format metrics`, metrics.csv)\n  {}\n  unit     {}\n  formula  "
+          "{}\n",
+          metric.name, metric.doc, metric.unit,
+          metric.formula.empty() ? "none: Glint cannot give it" : metric.formula);
       if (!metric.paper.empty()) print_output("  paper    {}\n", metric.paper);
       return true;
     }
@@ -84,9 +87,10 @@ Exit describe(const Session& session, const Options& options) {
   if (found.empty()) {
     if (print_stats(options.key, names) || print_metric(options.key, names)) return Exit::Ok;
     const std::string guess = nearest(options.key, names);
-    throw UserError(
-        {}, fmt::format("no configuration key, statistic or metric '{}'", options.key),
-        guess.empty() ? "'glint describe' lists all keys, 'glint list stats' all statistics, 'glint list metrics' all metrics" : fmt::format("did you mean '{}'?", guess));
+    throw UserError({}, fmt::format("no configuration key, statistic or metric '{}'", options.key),
+                    guess.empty() ? "'glint describe' lists all keys, 'glint list stats' all statistics, "
+                                    "'glint list metrics' all metrics"
+                                  : fmt::format("did you mean '{}'?", guess));
   }
   if (options.markdown)
     print_markdown(found);
@@ -104,7 +108,8 @@ void add_describe(CLI::App& app, Session& session) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("describe", "Explain configuration keys, statistics and metrics");
   command->add_option("NAME", options->key,
-                      "A key or the beginning of keys: core.warps, core, rt; or a statistic: gpu.core[0].ipc; or a metric: simt_efficiency (default: all keys)");
+                      "A key or the beginning of keys: core.warps, core, rt; or a statistic: "
+                      "gpu.core[0].ipc; or a metric: simt_efficiency (default: all keys)");
   command->add_option("--config", options->config, "Preset or TOML file whose values are shown")
       ->capture_default_str();
   command->add_option("--set", options->settings, "Overrides, as for run")->type_name("KEY=VALUE");

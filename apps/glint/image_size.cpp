@@ -11,7 +11,8 @@ namespace {
 constexpr uint32_t kMaxSide = 16384;  // pixels; beyond it images exceed what a PNG encoder here takes
 
 uint32_t number(const std::string& digits) {
-  if (digits.empty() || digits.size() > 5 || digits.find_first_not_of("0123456789") != std::string::npos) return 0;
+  if (digits.empty() || digits.size() > 5 || digits.find_first_not_of("0123456789") != std::string::npos)
+    return 0;
   return uint32_t(std::stoul(digits));
 }
 }  // namespace

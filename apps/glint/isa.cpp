@@ -60,9 +60,12 @@ std::string text_of(const Resources& resources, const Options& options) {
 void add_isa(CLI::App& app, Session& session) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("isa", "Explain the instruction set, or one op");
-  CLI::Option* op = command->add_option("OP", options->op, "An op's full name, fma.rn.f32, or its beginning (default: all ops)");
-  CLI::Option* table = command->add_option("--table", options->table, "Unit, latency and interval of every op of a preset, as CSV");
-  CLI::Option* page = command->add_option("--page", options->page, "The page of a family, as docs/isa/FAMILY.md");
+  CLI::Option* op = command->add_option("OP", options->op,
+                                        "An op's full name, fma.rn.f32, or its beginning (default: all ops)");
+  CLI::Option* table = command->add_option("--table", options->table,
+                                           "Unit, latency and interval of every op of a preset, as CSV");
+  CLI::Option* page =
+      command->add_option("--page", options->page, "The page of a family, as docs/isa/FAMILY.md");
   CLI::Option* index = command->add_flag("--index", options->index, "As docs/isa.md");
   CLI::Option* pages = command->add_flag("--pages", options->pages, "The names of the families' pages");
   table->type_name("PRESET");

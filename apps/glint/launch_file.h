@@ -13,16 +13,16 @@ namespace glint::app {
 struct LaunchArgument {
   std::vector<std::byte> bytes;  // of the number, or what the buffer holds at first
   bool is_buffer = false;
-  std::string name, type;        // of a buffer
-  bool save = false;             // to NAME.bin of the run directory
-  uint32_t show = 0;             // first values to print
+  std::string name, type;  // of a buffer
+  bool save = false;       // to NAME.bin of the run directory
+  uint32_t show = 0;       // first values to print
   SourceLocation where;
 };
 
 struct LaunchFile {
-  std::string kernel;            // path of the PTX file
-  std::string entry;             // empty: the only one
-  bool contract = true;          // frontend::PtxOptions::contract
+  std::string kernel;    // path of the PTX file
+  std::string entry;     // empty: the only one
+  bool contract = true;  // frontend::PtxOptions::contract
   pipeline::KernelGrid grid;
   std::vector<LaunchArgument> arguments;
 };

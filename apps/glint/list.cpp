@@ -34,18 +34,22 @@ Rows shader_rows() {
 Rows workload_rows() {
   Rows rows;
   for (const NamedWorkload& workload : lumibench())
-    rows.push_back({workload.name(), std::string(workload.scene), std::string(workload.shader), workload.in_subset ? "subset" : ""});
+    rows.push_back({workload.name(), std::string(workload.scene), std::string(workload.shader),
+                    workload.in_subset ? "subset" : ""});
   return rows;
 }
 
 std::string metrics_page() {
-  return report::metrics_markdown() + "\n## Vulkan-Sim's names\n\n`glint stats RUN --format vulkan-sim` prints them.\n\n" + report::vulkan_sim_markdown();
+  return report::metrics_markdown() +
+         "\n## Vulkan-Sim's names\n\n`glint stats RUN --format vulkan-sim` prints them.\n\n" +
+         report::vulkan_sim_markdown();
 }
 
 Rows metric_rows() {
   Rows rows;
   for (const report::MetricGroup& group : report::metric_groups())
-    for (const report::Metric& metric : group.metrics) rows.push_back({std::string(metric.name), std::string(metric.unit), std::string(metric.doc)});
+    for (const report::Metric& metric : group.metrics)
+      rows.push_back({std::string(metric.name), std::string(metric.unit), std::string(metric.doc)});
   return rows;
 }
 
@@ -102,11 +106,14 @@ void add_list(CLI::App& app, Session& session) {
     bool markdown = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("list", "List scenes, shaders, workloads, configs, policies, ops, stats or metrics");
+  CLI::App* command =
+      app.add_subcommand("list", "List scenes, shaders, workloads, configs, policies, ops, stats or metrics");
   command->add_option("WHAT", options->what, "What to list")
       ->required()
-      ->check(CLI::IsMember({"scenes", "shaders", "workloads", "configs", "policies", "ops", "stats", "metrics"}));
-  command->add_flag("--markdown", options->markdown, "Of stats and metrics: as docs/stats.md and docs/metrics.md");
+      ->check(CLI::IsMember(
+          {"scenes", "shaders", "workloads", "configs", "policies", "ops", "stats", "metrics"}));
+  command->add_flag("--markdown", options->markdown,
+                    "Of stats and metrics: as docs/stats.md and docs/metrics.md");
   command->callback([&session, options] {
     session.action = [&session, options] { return list(session, options->what, options->markdown); };
   });

@@ -40,11 +40,12 @@ void look_at_terminal(Session& session) {
       session.on_terminal && !(no_colour && *no_colour) && kind && std::string(kind) != "dumb";
 }
 
-// A descriptor that is closed would be given to the next file that is opened, and what is printed would go there: writes to
-// stdout fail instead, and those to stderr go nowhere.
+// A descriptor that is closed would be given to the next file that is opened, and what is printed would go
+// there: writes to stdout fail instead, and those to stderr go nowhere.
 void keep_descriptors() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-    if (::fcntl(descriptor, F_GETFD) == -1) ::open("/dev/null", descriptor == STDERR_FILENO ? O_WRONLY : O_RDONLY);
+    if (::fcntl(descriptor, F_GETFD) == -1)
+      ::open("/dev/null", descriptor == STDERR_FILENO ? O_WRONLY : O_RDONLY);
 }
 
 int report_parse_error(const CLI::App& app, const CLI::ParseError& error, const Session& session) {
@@ -75,7 +76,8 @@ int run_action(const Session& session) {
 }
 
 int main_of(int argc, char** argv) {
-  Session session{.arguments = {argv, argv + argc}, .resources = Resources::find(), .terminal = {}, .action = {}};
+  Session session{
+      .arguments = {argv, argv + argc}, .resources = Resources::find(), .terminal = {}, .action = {}};
   look_at_terminal(session);
   CLI::App app(
       "Glint: a GPU you can read. Runs ray-tracing shaders on a simulated GPU and says what it did, cycle by "
@@ -107,7 +109,8 @@ int main_of(int argc, char** argv) {
   return run_action(session);
 }
 
-// What the machine refuses anywhere: stderr that takes no more, a thread that cannot be started, a folder that cannot be read.
+// What the machine refuses anywhere: stderr that takes no more, a thread that cannot be started, a folder
+// that cannot be read.
 int guarded_main(int argc, char** argv) {
   try {
     keep_descriptors();

@@ -1,5 +1,5 @@
-// `glint microbench`: latencies, throughputs and bandwidths of a configuration, measured by running code on it.
-// SPDX-License-Identifier: Apache-2.0
+// `glint microbench`: latencies, throughputs and bandwidths of a configuration, measured by running code on
+// it. SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -46,14 +46,17 @@ void set_number(Reference& out, const std::string& key, const std::string& text)
   if (end != text.c_str() && *end == 0) out[key] = value;
 }
 
-// Two forms, known by their first column: ops ("op(step)": latency and throughput of steps), and "group,name,param,value".
+// Two forms, known by their first column: ops ("op(step)": latency and throughput of steps), and
+// "group,name,param,value".
 void read_reference(Reference& out, const std::string& path) {
   std::ifstream in(path);
   if (!in) throw UserError({}, fmt::format("cannot read '{}'", path));
   std::string line;
   std::getline(in, line);
   const bool ops = line.starts_with("op(step)"), groups = line.starts_with("group,");
-  if (!ops && !groups) throw UserError({path, 1, 1}, "expected a first line that begins with 'op(step)' or 'group,name,param,value'");
+  if (!ops && !groups)
+    throw UserError({path, 1, 1},
+                    "expected a first line that begins with 'op(step)' or 'group,name,param,value'");
   while (std::getline(in, line)) {
     std::vector<std::string> cell = split(line);
     if (ops && cell.size() >= 6) {
@@ -92,8 +95,10 @@ std::optional<double> measure(const MicroBench& bench, const pipeline::GpuParams
   }
 }
 
-std::vector<std::string> row_of(const MicroBench& bench, double value, const Reference& reference, std::map<std::string, Sums>& sums) {
-  std::vector<std::string> cells{bench.group, bench.name, bench.param, fmt::format("{:.2f}", value), bench.unit};
+std::vector<std::string> row_of(const MicroBench& bench, double value, const Reference& reference,
+                                std::map<std::string, Sums>& sums) {
+  std::vector<std::string> cells{bench.group, bench.name, bench.param, fmt::format("{:.2f}", value),
+                                 bench.unit};
   const auto at = reference.find(bench.group + "|" + bench.name + "|" + bench.param);
   if (at == reference.end()) return cells;
   const double error = value / at->second - 1;
@@ -108,10 +113,11 @@ std::vector<std::string> row_of(const MicroBench& bench, double value, const Ref
 }
 
 void print_sums(const std::map<std::string, Sums>& sums) {
-  std::vector<std::vector<std::string>> rows{{"group", "compared", "within 5 %", "within 10 %", "mean error"}};
+  std::vector<std::vector<std::string>> rows{
+      {"group", "compared", "within 5 %", "within 10 %", "mean error"}};
   for (const auto& [group, sum] : sums)
-    rows.push_back({group, std::to_string(sum.compared), std::to_string(sum.within5), std::to_string(sum.within10),
-                    fmt::format("{:.1f} %", 100 * sum.error / sum.compared)});
+    rows.push_back({group, std::to_string(sum.compared), std::to_string(sum.within5),
+                    std::to_string(sum.within10), fmt::format("{:.1f} %", 100 * sum.error / sum.compared)});
   if (sums.empty()) return;
   print_output("\n{}", report::table(rows, "<>>>>"));
 }
@@ -129,15 +135,18 @@ Exit microbench(const Session& session, const Options& options) {
       if (!wanted(bench, options.only)) continue;
       if (session.on_terminal) fmt::print(stderr, "\r\033[K{} {} {}", bench.group, bench.name, bench.param);
       const std::optional<double> value = measure(bench, gpu, skipped);
-      rows.push_back(value ? row_of(bench, *value, reference, sums) : std::vector<std::string>{bench.group, bench.name, bench.param, "-", bench.unit});
+      rows.push_back(value ? row_of(bench, *value, reference, sums)
+                           : std::vector<std::string>{bench.group, bench.name, bench.param, "-", bench.unit});
     }
   if (session.on_terminal) fmt::print(stderr, "\r\033[K");
   if (rows.size() == 1) throw UserError({}, "no benchmark has that in its group, name or parameter");
   print_output("{}", report::table(rows, "<<<><>>"));
   print_sums(sums);
   for (const auto& [reason, names] : skipped)
-    fmt::print(stderr, "\n{} benchmarks (-) were not run, the first of them '{}':\n{}\n", names.size(), names.front(), reason);
-  const bool measured = std::any_of(rows.begin() + 1, rows.end(), [](const auto& row) { return row[3] != "-"; });
+    fmt::print(stderr, "\n{} benchmarks (-) were not run, the first of them '{}':\n{}\n", names.size(),
+               names.front(), reason);
+  const bool measured =
+      std::any_of(rows.begin() + 1, rows.end(), [](const auto& row) { return row[3] != "-"; });
   return measured ? Exit::Ok : Exit::UserInput;
 }
 
@@ -145,12 +154,17 @@ Exit microbench(const Session& session, const Options& options) {
 
 void add_microbench(CLI::App& app, Session& session) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("microbench", "Measure a configuration's latencies and bandwidths by running code on it");
+  CLI::App* command = app.add_subcommand(
+      "microbench", "Measure a configuration's latencies and bandwidths by running code on it");
   command->add_option("--config", options->config, "Preset or file")->capture_default_str();
   command->add_option("--set", options->settings, "KEY=VALUE: override one key");
-  command->add_option("--compare", options->compare, "CSV file of a real part's values, to stand beside")->type_name("FILE");
-  command->add_option("--only", options->only, "Only benchmarks with this text in group, name or parameter")->type_name("TEXT");
-  command->callback([&session, options] { session.action = [&session, options] { return microbench(session, *options); }; });
+  command->add_option("--compare", options->compare, "CSV file of a real part's values, to stand beside")
+      ->type_name("FILE");
+  command->add_option("--only", options->only, "Only benchmarks with this text in group, name or parameter")
+      ->type_name("TEXT");
+  command->callback([&session, options] {
+    session.action = [&session, options] { return microbench(session, *options); };
+  });
 }
 
 }  // namespace glint::app

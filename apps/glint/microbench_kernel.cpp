@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/microbench_kernel.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 
 #include "base/diagnostics.h"
 #include "pipeline/timing_machine.h"
@@ -14,7 +13,8 @@ namespace glint::app {
 std::string text_of(const MicroKernel& kernel) {
   std::string text = ".version 8.0\n.target sm_90\n.address_size 64\n" + kernel.variables +
                      ".visible .entry bench(.param .u64 data, .param .u32 n)\n{\n"
-                     ".reg .f32 %f<64>; .reg .f64 %d<64>; .reg .b32 %r<64>; .reg .b64 %rd<64>; .reg .b16 %h<64>; .reg .pred %p<64>;\n"
+                     ".reg .f32 %f<64>; .reg .f64 %d<64>; .reg .b32 %r<64>; .reg .b64 %rd<64>; .reg .b16 "
+                     "%h<64>; .reg .pred %p<64>;\n"
                      ".reg .u32 %turn;\n"
                      "ld.param.u64 %rd0, [data];\nld.param.u32 %r0, [n];\nmov.u32 %turn, %r0;\n";
   text += kernel.before;
@@ -29,7 +29,8 @@ std::string text_of(const MicroKernel& kernel) {
 }
 
 uint64_t cycles_of(const MicroKernel& kernel, const pipeline::GpuParams& gpu) {
-  const frontend::PtxOptions options{{gpu.compiler.max_registers, gpu.compiler.schedule, false, false, gpu.compiler.guard_latency}, true};
+  const frontend::PtxOptions options{
+      {gpu.compiler.max_registers, gpu.compiler.schedule, false, false, gpu.compiler.guard_latency}, true};
   pipeline::KernelWorld world(frontend::compile_ptx(text_of(kernel), "microbench", "bench", options));
   const uint64_t bytes = std::max<uint64_t>(kernel.bytes, kernel.data.size() * 8);
   const Address data = world.memory().allocate("data", bytes);
@@ -57,7 +58,9 @@ double cycles_per_turn(MicroKernel kernel, uint32_t few, uint32_t many, const pi
   return (double(cycles_of(kernel, gpu)) - double(less)) / double(many - few);
 }
 
-uint32_t full_block(const pipeline::GpuParams& gpu) { return 32 * std::min(32u, gpu.core.warps); }
+uint32_t full_block(const pipeline::GpuParams& gpu) {
+  return 32 * std::min(32u, gpu.core.warps);
+}
 
 pipeline::GpuParams with_one_core(pipeline::GpuParams gpu) {
   gpu.cores = 1;

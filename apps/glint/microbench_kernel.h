@@ -1,5 +1,5 @@
-// Small kernels for measuring: PTX text run on the timing machine, and differences of cycles between two of them.
-// SPDX-License-Identifier: Apache-2.0
+// Small kernels for measuring: PTX text run on the timing machine, and differences of cycles between two of
+// them. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -25,14 +25,15 @@ struct MicroBench {
 
 // A kernel with the parameters `data` (the address of a buffer) and `n`, around a body.
 struct MicroKernel {
-  std::string before, body, after;  // `body` is repeated `unroll` times in a loop of n turns (%turn counts down)
+  std::string before, body,
+      after;  // `body` is repeated `unroll` times in a loop of n turns (%turn counts down)
   uint32_t unroll = 1;
   uint32_t turns = 1;
-  std::vector<uint64_t> data{0};    // 8 bytes each
-  uint64_t bytes = 0;               // of the buffer, at least; what `data` does not say is 0
+  std::vector<uint64_t> data{0};  // 8 bytes each
+  uint64_t bytes = 0;             // of the buffer, at least; what `data` does not say is 0
   uint32_t blocks = 1, threads = 32;
-  std::string variables;            // of the module
-  bool is_loop = true;              // false: no loop around the bodies
+  std::string variables;  // of the module
+  bool is_loop = true;    // false: no loop around the bodies
 };
 
 // The whole text: registers %f, %d, %r, %rd, %h, %p from 0 to 63 are declared, %rd0 is the buffer, %r0 n.

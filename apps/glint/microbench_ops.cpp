@@ -9,7 +9,8 @@
 namespace glint::app {
 namespace {
 
-// A step of a chain through %f1, %d1, %r1, %rd1 or %h1, which one `kind` says (f, d, r, l, h). %f2, %f3, ... do not change.
+// A step of a chain through %f1, %d1, %r1, %rd1 or %h1, which one `kind` says (f, d, r, l, h). %f2, %f3, ...
+// do not change.
 struct Step {
   std::string_view name;
   char kind;
@@ -39,8 +40,10 @@ constexpr Step kSteps[] = {
     {"lg2.approx.f32", 'f', "lg2.approx.f32 %f1,%f1;"},
     {"tanh.approx.f32", 'f', "tanh.approx.f32 %f1,%f1;"},
     {"cvt.rni.f32.f32", 'f', "cvt.rni.f32.f32 %f1,%f1;add.f32 %f1,%f1,%f2;"},
-    {"cvt.rzi.s32.f32+iadd+cvt.rn.f32.s32", 'f', "cvt.rzi.s32.f32 %r1,%f1;add.s32 %r1,%r1,%r2;cvt.rn.f32.s32 %f1,%r1;"},
-    {"cvt.rzi.u32.f32+iadd+cvt.rn.f32.u32", 'f', "cvt.rzi.u32.f32 %r1,%f1;add.u32 %r1,%r1,%r2;cvt.rn.f32.u32 %f1,%r1;"},
+    {"cvt.rzi.s32.f32+iadd+cvt.rn.f32.s32", 'f',
+     "cvt.rzi.s32.f32 %r1,%f1;add.s32 %r1,%r1,%r2;cvt.rn.f32.s32 %f1,%r1;"},
+    {"cvt.rzi.u32.f32+iadd+cvt.rn.f32.u32", 'f',
+     "cvt.rzi.u32.f32 %r1,%f1;add.u32 %r1,%r1,%r2;cvt.rn.f32.u32 %f1,%r1;"},
     {"cvt.f64.f32+cvt.rn.f32.f64", 'f', "cvt.f64.f32 %d1,%f1;add.f64 %d1,%d1,%d2;cvt.rn.f32.f64 %f1,%d1;"},
     {"cvt.rn.f16.f32+cvt.f32.f16", 'f', "cvt.rn.f16.f32 %h1,%f1;cvt.f32.f16 %f1,%h1;"},
     {"setp.lt.f32+selp", 'f', "setp.lt.f32 %p1,%f1,%f2;selp.f32 %f1,%f2,%f3,%p1;"},
@@ -99,23 +102,29 @@ constexpr Step kSteps[] = {
     {"shfl.bfly", 'r', "shfl.sync.bfly.b32 %r1,%r1,1,31,-1;"},
     {"shfl.up+add", 'r', "shfl.sync.up.b32 %r1,%r1,1,0,-1;add.s32 %r1,%r1,%r2;"},
     {"setp+vote.ballot", 'r', "setp.ne.u32 %p1,%r1,%r2;vote.sync.ballot.b32 %r1,%p1,-1;"},
-    {"setp+vote.all+selp", 'r', "setp.ne.u32 %p1,%r1,%r2;vote.sync.all.pred %p2,%p1,-1;selp.b32 %r1,%r2,%r3,%p2;"},
+    {"setp+vote.all+selp", 'r',
+     "setp.ne.u32 %p1,%r1,%r2;vote.sync.all.pred %p2,%p1,-1;selp.b32 %r1,%r2,%r3,%p2;"},
     {"match.any", 'r', "match.any.sync.b32 %r1,%r1,-1;"},
     {"redux.add.s32", 'r', "redux.sync.add.s32 %r1,%r1,-1;"},
     {"redux.xor.b32", 'r', "redux.sync.xor.b32 %r1,%r1,-1;"},
     {"vote.any+selp", 'r', "setp.ne.u32 %p1,%r1,%r2;vote.sync.any.pred %p2,%p1,-1;selp.b32 %r1,%r2,%r3,%p2;"},
-    {"setp+setp.and+selp", 'r', "setp.lt.s32 %p1,%r1,%r2;setp.ne.and.u32 %p2,%r1,%r3,%p1;selp.b32 %r1,%r2,%r3,%p2;"},
+    {"setp+setp.and+selp", 'r',
+     "setp.lt.s32 %p1,%r1,%r2;setp.ne.and.u32 %p2,%r1,%r3,%p1;selp.b32 %r1,%r2,%r3,%p2;"},
 };
 
 // Loads of what a chain begins with and steps read.
 std::string loads_of(const std::string& n, int place) {
   const std::string at = "[%rd0+" + std::to_string(place * 8) + "];";
-  return "ld.global.f32 %f" + n + "," + at + "ld.global.f64 %d" + n + "," + at + "ld.global.b32 %r" + n + "," + at + "ld.global.b64 %rd" + n + "," + at +
-         "ld.global.b16 %h" + n + "," + at;
+  return "ld.global.f32 %f" + n + "," + at + "ld.global.f64 %d" + n + "," + at + "ld.global.b32 %r" + n +
+         "," + at + "ld.global.b64 %rd" + n + "," + at + "ld.global.b16 %h" + n + "," + at;
 }
 
 std::string store_of(char kind, const std::string& n) {
-  const std::string type = kind == 'f' ? "f32 [%rd0],%f" : kind == 'd' ? "f64 [%rd0],%d" : kind == 'r' ? "b32 [%rd0],%r" : kind == 'l' ? "b64 [%rd0],%rd" : "b16 [%rd0],%h";
+  const std::string type = kind == 'f'   ? "f32 [%rd0],%f"
+                           : kind == 'd' ? "f64 [%rd0],%d"
+                           : kind == 'r' ? "b32 [%rd0],%r"
+                           : kind == 'l' ? "b64 [%rd0],%rd"
+                                         : "b16 [%rd0],%h";
   return "st.global." + type + n + ";\n";
 }
 
@@ -135,7 +144,8 @@ double latency_of(const Step& step, const pipeline::GpuParams& gpu) {
   return cycles_per_body(kernel, 32 / step.slow, 96 / step.slow, with_one_core(gpu));
 }
 
-// The step in a chain of its own: what it changes, registers 1 and the second predicate, get the chain's number behind theirs.
+// The step in a chain of its own: what it changes, registers 1 and the second predicate, get the chain's
+// number behind theirs.
 std::string step_of_chain(std::string_view text, int chain) {
   std::string out;
   for (size_t i = 0; i < text.size(); ++i) {
@@ -143,13 +153,15 @@ std::string step_of_chain(std::string_view text, int chain) {
     const bool changes = text[i] == '1' || (text[i] == '2' && text[i - 1] == 'p');
     size_t name = i;
     while (name > 0 && std::islower(text[name - 1])) --name;
-    if (changes && name < i && name > 0 && text[name - 1] == '%' && !std::isdigit(text[i + 1])) out += std::to_string(chain);
+    if (changes && name < i && name > 0 && text[name - 1] == '%' && !std::isdigit(text[i + 1]))
+      out += std::to_string(chain);
   }
   return out;
 }
 
-// As measured on hardware: 32 steps a turn of a loop that is in it, of eight chains a thread. With one a thread the eight warps
-// of a scheduler just hide 16 cycles, and a guarded add takes 18. Slow steps have one: hardware calls a function for them.
+// As measured on hardware: 32 steps a turn of a loop that is in it, of eight chains a thread. With one a
+// thread the eight warps of a scheduler just hide 16 cycles, and a guarded add takes 18. Slow steps have one:
+// hardware calls a function for them.
 double throughput_of(const Step& step, const pipeline::GpuParams& gpu) {
   constexpr int kChains = 8;
   const int steps = 32 / int(step.slow), chains = step.slow == 1 ? kChains : 1;
@@ -167,7 +179,8 @@ double throughput_of(const Step& step, const pipeline::GpuParams& gpu) {
   return double(steps) * kernel.threads / cycles_per_turn(kernel, 4, 12, with_one_core(gpu));
 }
 
-// Two kinds of instructions that do not depend on each other, four chains of each: which pipes they share. # is the chain.
+// Two kinds of instructions that do not depend on each other, four chains of each: which pipes they share. #
+// is the chain.
 struct Mix {
   std::string_view name, text, results;
 };
@@ -190,7 +203,11 @@ double mix_of(const Mix& mix, const pipeline::GpuParams& gpu) {
   const std::string body = chains_of(mix.text);
   MicroKernel kernel = chain_of({mix.name, 'f', body});
   for (char kind : mix.results)
-    kernel.after += chains_of(kind == 'd' ? "st.global.f64 [%rd0],%d1#;" : kind == 'f' ? "st.global.f32 [%rd0],%f1#;" : kind == 'g' ? "st.global.f32 [%rd0],%f2#;" : kind == 'r' ? "st.global.b32 [%rd0],%r1#;" : "st.global.b32 [%rd0],%r2#;");
+    kernel.after += chains_of(kind == 'd'   ? "st.global.f64 [%rd0],%d1#;"
+                              : kind == 'f' ? "st.global.f32 [%rd0],%f1#;"
+                              : kind == 'g' ? "st.global.f32 [%rd0],%f2#;"
+                              : kind == 'r' ? "st.global.b32 [%rd0],%r1#;"
+                                            : "st.global.b32 [%rd0],%r2#;");
   kernel.threads = full_block(gpu);
   pipeline::GpuParams in_order = with_one_core(gpu);
   in_order.compiler.schedule = false;  // that would put the chains of one kind before those of the other
@@ -202,11 +219,14 @@ double mix_of(const Mix& mix, const pipeline::GpuParams& gpu) {
 std::vector<MicroBench> op_benchmarks() {
   std::vector<MicroBench> out;
   for (const Step& step : kSteps) {
-    out.push_back({"latency", std::string(step.name), "", "cycle", [&step](const auto& gpu) { return latency_of(step, gpu); }});
-    out.push_back({"throughput", std::string(step.name), "", "lane/cycle", [&step](const auto& gpu) { return throughput_of(step, gpu); }});
+    out.push_back({"latency", std::string(step.name), "", "cycle",
+                   [&step](const auto& gpu) { return latency_of(step, gpu); }});
+    out.push_back({"throughput", std::string(step.name), "", "lane/cycle",
+                   [&step](const auto& gpu) { return throughput_of(step, gpu); }});
   }
   for (const Mix& mix : kMixes)
-    out.push_back({"mix", std::string(mix.name), "", "inst/cycle", [&mix](const auto& gpu) { return mix_of(mix, gpu); }});
+    out.push_back({"mix", std::string(mix.name), "", "inst/cycle",
+                   [&mix](const auto& gpu) { return mix_of(mix, gpu); }});
   return out;
 }
 

@@ -1,10 +1,9 @@
 // `glint model RUN...`: cycles that analytical models predict, beside those that were simulated.
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
-
 #include <chrono>
 #include <cmath>
+#include <fmt/format.h>
 #include <memory>
 
 #include "apps/glint/bench_tables.h"
@@ -34,11 +33,13 @@ using Columns = std::vector<std::pair<std::string, double>>;
 
 double fact(const report::RunRecord& run, const std::string& directory, const std::string& name) {
   if (const std::optional<double> value = run.fact(name)) return *value;
-  throw UserError({directory + "/run.json"}, fmt::format("has no '{}'", name), "the interval model takes runs of scenes; --statistics-only leaves it out");
+  throw UserError({directory + "/run.json"}, fmt::format("has no '{}'", name),
+                  "the interval model takes runs of scenes; --statistics-only leaves it out");
 }
 
 // The launch that a run has made, again.
-pipeline::RenderJob job_of(const Session& session, const Options& options, const report::RunRecord& run, const std::string& directory) {
+pipeline::RenderJob job_of(const Session& session, const Options& options, const report::RunRecord& run,
+                           const std::string& directory) {
   const WorkloadInfo& workload = find_workload(run.text("shader"));
   pipeline::RenderJob job;
   job.gpu = read_config(session.resources, directory + "/config.toml", {});
@@ -54,20 +55,33 @@ pipeline::RenderJob job_of(const Session& session, const Options& options, const
   job.shader_dir = session.resources.shader_dir(std::string(workload.folder));
   job.scene = scenes::load_scene(run.text("scene.name"), {options.assets, false, {}});
   if (fmt::format("{:016x}", job.scene.hash()) != run.text("scene.hash"))
-    throw UserError({directory + "/run.json"}, fmt::format("the run's scene is '{}', and here it is '{}'", run.text("scene.form"), job.scene.form), "--assets names the folder that the run was given");
+    throw UserError(
+        {directory + "/run.json"},
+        fmt::format("the run's scene is '{}', and here it is '{}'", run.text("scene.form"), job.scene.form),
+        "--assets names the folder that the run was given");
   return job;
 }
 
 Columns columns_of(const pipeline::IntervalEstimate& estimate, double seconds) {
-  Columns out = {{"interval_rays", double(estimate.rays.rays)}, {"interval_nodes", double(estimate.rays.nodes)}, {"interval_traces", double(estimate.rays.traces)}, {"interval_trace_cycles", double(estimate.rays.trace_cycles)},
-                 {"interval_l1_shader_reads", double(estimate.l1[0].reads)}, {"interval_l1_shader_misses", double(estimate.l1[0].misses)}, {"interval_l1_rt_reads", double(estimate.l1[1].reads)},
-                 {"interval_l1_rt_misses", double(estimate.l1[1].misses)}, {"interval_l2_reads", double(estimate.l2.reads)}, {"interval_l2_misses", double(estimate.l2.misses)}, {"interval_dram_sectors", double(estimate.dram_sectors)}};
-  for (const auto& [name, cycles] : estimate.bounds()) out.emplace_back(fmt::format("bound: {}", name), cycles);
+  Columns out = {{"interval_rays", double(estimate.rays.rays)},
+                 {"interval_nodes", double(estimate.rays.nodes)},
+                 {"interval_traces", double(estimate.rays.traces)},
+                 {"interval_trace_cycles", double(estimate.rays.trace_cycles)},
+                 {"interval_l1_shader_reads", double(estimate.l1[0].reads)},
+                 {"interval_l1_shader_misses", double(estimate.l1[0].misses)},
+                 {"interval_l1_rt_reads", double(estimate.l1[1].reads)},
+                 {"interval_l1_rt_misses", double(estimate.l1[1].misses)},
+                 {"interval_l2_reads", double(estimate.l2.reads)},
+                 {"interval_l2_misses", double(estimate.l2.misses)},
+                 {"interval_dram_sectors", double(estimate.dram_sectors)}};
+  for (const auto& [name, cycles] : estimate.bounds())
+    out.emplace_back(fmt::format("bound: {}", name), cycles);
   out.emplace_back("interval_seconds", seconds);
   return out;
 }
 
-double run_interval(const Session& session, const Options& options, const report::RunRecord& run, const std::string& directory, Columns& columns) {
+double run_interval(const Session& session, const Options& options, const report::RunRecord& run,
+                    const std::string& directory, Columns& columns) {
   const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(options.shaders);
   const std::unique_ptr<pipeline::StructureCache> structures = open_structure_cache(options.shaders);
   pipeline::RenderJob job = job_of(session, options, run, directory);
@@ -77,26 +91,37 @@ double run_interval(const Session& session, const Options& options, const report
   pipeline::IntervalMachine machine(job.gpu, scene.world);
   const auto begin = std::chrono::steady_clock::now();
   const pipeline::IntervalEstimate estimate = machine.run({});
-  const Columns found = columns_of(estimate, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  const Columns found =
+      columns_of(estimate, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   columns.insert(columns.end(), found.begin(), found.end());
   double simulated = 0;
   for (const double instructions : run.values("gpu.core[*].instructions")) simulated += instructions;
   if (double(estimate.instructions) != simulated)
-    throw UserError({directory}, fmt::format("the run executed {:.0f} warp instructions, the same launch here {}", simulated, estimate.instructions), "another version of Glint made the run, or options that run.json does not have: run it again");
+    throw UserError(
+        {directory},
+        fmt::format("the run executed {:.0f} warp instructions, the same launch here {}", simulated,
+                    estimate.instructions),
+        "another version of Glint made the run, or options that run.json does not have: run it again");
   return double(estimate.cycles);
 }
 
-report::ModelRow row_of(const Session& session, const Options& options, const std::string& workload, const std::string& directory) {
+report::ModelRow row_of(const Session& session, const Options& options, const std::string& workload,
+                        const std::string& directory) {
   const report::RunRecord run = report::RunRecord::read(directory);
   if (!options.statistics_only && !run.fact("rays.bounces"))
-    throw UserError({directory}, fmt::format("this is a run of {} '{}': models take runs of scenes", run.text("scene.form") == "pipeline" ? "the pipeline" : "the kernel", run.text("scene.name")),
-                    "--statistics-only gives Hong and Kim's model alone, of any timing run that reads memory");
+    throw UserError(
+        {directory},
+        fmt::format("this is a run of {} '{}': models take runs of scenes",
+                    run.text("scene.form") == "pipeline" ? "the pipeline" : "the kernel",
+                    run.text("scene.name")),
+        "--statistics-only gives Hong and Kim's model alone, of any timing run that reads memory");
   report::ModelRow row{.workload = workload, .cycles = 0, .predicted = {}, .inputs = {}};
   const report::HongKimResult model = report::hong_kim(report::hong_kim_inputs(run, directory));
   for (const double cycles : run.values("gpu.cycles")) row.cycles += cycles;
   row.predicted.push_back(model.cycles);
   row.inputs = report::hong_kim_columns(model);
-  if (!options.statistics_only) row.predicted.push_back(run_interval(session, options, run, directory, row.inputs));
+  if (!options.statistics_only)
+    row.predicted.push_back(run_interval(session, options, run, directory, row.inputs));
   return row;
 }
 
@@ -127,7 +152,8 @@ Exit model(const Session& session, const Options& options) {
   write_output(out, report::model_csv(models));
   if (out == "-") return Exit::Ok;
   write_output("", report::model_text(models) + (options.inputs ? inputs_text(models) : ""));
-  print_output("\n{}\n`glint report {}` draws it\n", out, options.out.empty() && options.runs.size() == 1 ? options.runs[0] : out);
+  print_output("\n{}\n`glint report {}` draws it\n", out,
+               options.out.empty() && options.runs.size() == 1 ? options.runs[0] : out);
   return Exit::Ok;
 }
 
@@ -135,14 +161,23 @@ Exit model(const Session& session, const Options& options) {
 
 void add_model(CLI::App& app, Session& session) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("model", "Predict cycles of finished runs by analytical models, and compare");
-  command->add_option("RUN", options->runs, "Directories of runs on the timing machine, or of `glint bench`")->required();
-  command->add_option("-o,--out", options->out, "Table with all inputs, or - (default: models.csv in the directory; with several, here)")->type_name("FILE");
+  CLI::App* command =
+      app.add_subcommand("model", "Predict cycles of finished runs by analytical models, and compare");
+  command->add_option("RUN", options->runs, "Directories of runs on the timing machine, or of `glint bench`")
+      ->required();
+  command
+      ->add_option("-o,--out", options->out,
+                   "Table with all inputs, or - (default: models.csv in the directory; with several, here)")
+      ->type_name("FILE");
   command->add_flag("--inputs", options->inputs, "Print the inputs of each run as well");
-  command->add_flag("--statistics-only", options->statistics_only, "Hong and Kim's model alone: no pass over the scene");
-  command->add_option("--assets", options->assets, "Folder of original scene data, as the runs were given it")->type_name("DIR")->envname("GLINT_ASSETS");
+  command->add_flag("--statistics-only", options->statistics_only,
+                    "Hong and Kim's model alone: no pass over the scene");
+  command->add_option("--assets", options->assets, "Folder of original scene data, as the runs were given it")
+      ->type_name("DIR")
+      ->envname("GLINT_ASSETS");
   add_shader_options(*command, options->shaders);
-  command->callback([&session, options] { session.action = [&session, options] { return model(session, *options); }; });
+  command->callback(
+      [&session, options] { session.action = [&session, options] { return model(session, *options); }; });
 }
 
 }  // namespace glint::app

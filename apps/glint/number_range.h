@@ -1,9 +1,8 @@
-// Check of an option's number against a range, which "nan" does not pass (it passes CLI::Range: no comparison with it holds).
-// SPDX-License-Identifier: Apache-2.0
+// Check of an option's number against a range, which "nan" does not pass (it passes CLI::Range: no comparison
+// with it holds). SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-
 #include <string>
 
 namespace glint::app {

@@ -10,7 +10,7 @@
 namespace CLI {
 class App;
 class Option;
-}
+}  // namespace CLI
 
 namespace glint::app {
 
@@ -24,11 +24,13 @@ void check_observation(const pipeline::Observation& observe, bool timing);
 bool observes(const pipeline::Observation& observe);
 
 // An option that takes "100:200" as cycles 100 to 200; an end that is left out is the run's.
-CLI::Option* add_cycle_window(CLI::App& command, const std::string& name, const std::string& doc, Cycle& begin, Cycle& end);
+CLI::Option* add_cycle_window(CLI::App& command, const std::string& name, const std::string& doc,
+                              Cycle& begin, Cycle& end);
 
-// Writes the files that were asked for, and removes those that an earlier run left and this one has not; returns lines for
-// the summary. What a limit has cut off is said on stderr too.
-std::vector<std::string> write_observation(const pipeline::Observation& observe, const pipeline::RenderResult& result,
+// Writes the files that were asked for, and removes those that an earlier run left and this one has not;
+// returns lines for the summary. What a limit has cut off is said on stderr too.
+std::vector<std::string> write_observation(const pipeline::Observation& observe,
+                                           const pipeline::RenderResult& result,
                                            const report::RunDirectory& directory);
 
 }  // namespace glint::app

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/outputs.h"
 
-#include <fmt/format.h>
-
 #include <cstring>
 #include <filesystem>
+#include <fmt/format.h>
 
 #include "pipeline/description/data.h"
 #include "pipeline/description/pictures.h"
@@ -47,9 +46,13 @@ std::string number_text(const std::string& type, const std::byte* at) {
   return is_signed ? as<int64_t>(at) : as<uint64_t>(at);
 }
 
-std::string_view text_of(std::span<const std::byte> bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
+std::string_view text_of(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
 
-std::string ending_of(const std::string& file) { return std::filesystem::path(file).extension().string(); }
+std::string ending_of(const std::string& file) {
+  return std::filesystem::path(file).extension().string();
+}
 
 }  // namespace
 
@@ -57,7 +60,8 @@ std::string wrong_with_output(const std::string& file, bool is_image) {
   const std::string ending = ending_of(file);
   if (file.find('/') != std::string::npos) return "it goes to the run directory: give a name without folders";
   if (ending == ".npy" || ending == ".csv" || ending == ".raw" || ending == ".bin") return "";
-  if (ending == ".png" || ending == ".pfm") return is_image ? "" : "a buffer is no picture: .npy, .csv or .raw";
+  if (ending == ".png" || ending == ".pfm")
+    return is_image ? "" : "a buffer is no picture: .npy, .csv or .raw";
   return is_image ? "expected .png, .pfm, .npy, .csv or .raw" : "expected .npy, .csv or .raw";
 }
 
@@ -65,7 +69,8 @@ std::string first_numbers(const std::string& named, std::span<const std::byte> b
   const std::string type = plain(named);
   const size_t each = pipeline::bytes_of_number(type);
   std::string out;
-  for (size_t i = 0; i < count && (i + 1) * each <= bytes.size(); ++i) out += (i ? " " : "") + number_text(type, bytes.data() + i * each);
+  for (size_t i = 0; i < count && (i + 1) * each <= bytes.size(); ++i)
+    out += (i ? " " : "") + number_text(type, bytes.data() + i * each);
   return out;
 }
 
@@ -74,7 +79,8 @@ std::string buffer_file(const std::string& file, const std::string& named, std::
   const size_t each = pipeline::bytes_of_number(type), count = bytes.size() / each;
   if (ending == ".npy") {
     const char kind = type[0] == 's' ? 'i' : type[0];
-    return report::npy_bytes(fmt::format("{}{}{}", each == 1 ? '|' : '<', kind, each), fmt::format("({},)", count), text_of(bytes.first(count * each)));
+    return report::npy_bytes(fmt::format("{}{}{}", each == 1 ? '|' : '<', kind, each),
+                             fmt::format("({},)", count), text_of(bytes.first(count * each)));
   }
   if (ending != ".csv") return std::string(text_of(bytes));
   std::string out = "value\n";
@@ -82,17 +88,22 @@ std::string buffer_file(const std::string& file, const std::string& named, std::
   return out;
 }
 
-std::string image_file(const std::string& file, const core::ImageView& view, std::span<const std::byte> bytes) {
+std::string image_file(const std::string& file, const core::ImageView& view,
+                       std::span<const std::byte> bytes) {
   const std::string ending = ending_of(file);
-  if (ending != ".png" && ending != ".pfm" && ending != ".npy" && ending != ".csv") return std::string(text_of(bytes));
+  if (ending != ".png" && ending != ".pfm" && ending != ".npy" && ending != ".csv")
+    return std::string(text_of(bytes));
   const std::vector<float> texels = pipeline::texels_as_floats(view, bytes.data());
   const uint32_t rows = view.height * view.depth * view.layers;
   if (ending == ".png") return report::png_bytes({view.width, rows, texels});
   if (ending == ".pfm") return report::pfm_bytes({view.width, rows, texels});
-  if (ending == ".npy") return report::npy_bytes("<f4", fmt::format("({}, {}, 4)", rows, view.width), text_of(std::as_bytes(std::span(texels))));
+  if (ending == ".npy")
+    return report::npy_bytes("<f4", fmt::format("({}, {}, 4)", rows, view.width),
+                             text_of(std::as_bytes(std::span(texels))));
   std::string out = "x,y,red,green,blue,alpha\n";
   for (size_t i = 0; i + 4 <= texels.size(); i += 4)
-    out += fmt::format("{},{},{},{},{},{}\n", i / 4 % view.width, i / 4 / view.width, texels[i], texels[i + 1], texels[i + 2], texels[i + 3]);
+    out += fmt::format("{},{},{},{},{},{}\n", i / 4 % view.width, i / 4 / view.width, texels[i],
+                       texels[i + 1], texels[i + 2], texels[i + 3]);
   return out;
 }
 

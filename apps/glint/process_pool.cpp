@@ -1,5 +1,5 @@
-// Forking, listening and reaping. Signals come through a descriptor, so that nothing runs inside of a handler.
-// SPDX-License-Identifier: Apache-2.0
+// Forking, listening and reaping. Signals come through a descriptor, so that nothing runs inside of a
+// handler. SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/process_pool.h"
 
 #include <algorithm>
@@ -34,8 +34,8 @@ sigset_t watched_signals() {
 [[noreturn]] void become(char* const* arguments, const char* log, int pipe) {
   const sigset_t set = watched_signals();
   ::sigprocmask(SIG_UNBLOCK, &set, nullptr);
-  ::setpgid(0, 0);                       // Ctrl-C is for the parent, who decides
-  ::prctl(PR_SET_PDEATHSIG, SIGTERM);    // nobody is left behind
+  ::setpgid(0, 0);                     // Ctrl-C is for the parent, who decides
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // nobody is left behind
   const int out = ::open(log, O_WRONLY | O_CREAT | O_TRUNC, 0666), in = ::open("/dev/null", O_RDONLY);
   if (out >= 0 && in >= 0) {
     ::dup2(in, STDIN_FILENO);
@@ -48,7 +48,9 @@ sigset_t watched_signals() {
 }
 
 std::string how_it_ended(int status) {
-  if (WIFSIGNALED(status)) return fmt::format("signal {}{}", WTERMSIG(status), WTERMSIG(status) == SIGKILL ? ", perhaps out of memory" : "");
+  if (WIFSIGNALED(status))
+    return fmt::format("signal {}{}", WTERMSIG(status),
+                       WTERMSIG(status) == SIGKILL ? ", perhaps out of memory" : "");
   return WEXITSTATUS(status) == 0 ? "" : fmt::format("exit {}", WEXITSTATUS(status));
 }
 
@@ -103,7 +105,9 @@ void ProcessPool::start_what_fits() {
     for (size_t i = 0; i < processes_.size(); ++i) {
       const Process& process = processes_[i];
       const bool fits = limits_.memory == 0 || children_.empty() || used + process.memory <= limits_.memory;
-      if (process.state == Process::State::Waiting && fits && (best == processes_.size() || process.weight > processes_[best].weight)) best = i;
+      if (process.state == Process::State::Waiting && fits &&
+          (best == processes_.size() || process.weight > processes_[best].weight))
+        best = i;
     }
     if (best == processes_.size() || !start(best)) return;
   }
@@ -161,7 +165,9 @@ void ProcessPool::hear(Child& child) {
     child.text.erase(0, end + 1);
     const size_t space = line.find(' ');
     uint32_t thousandths = 0;
-    if (space == std::string::npos || std::from_chars(line.data() + space + 1, line.data() + line.size(), thousandths).ec != std::errc{}) continue;
+    if (space == std::string::npos ||
+        std::from_chars(line.data() + space + 1, line.data() + line.size(), thousandths).ec != std::errc{})
+      continue;
     process.phase = line.substr(0, space);
     process.progress = std::min(1.0, thousandths / 1000.0);
   }
@@ -184,7 +190,9 @@ void ProcessPool::end(size_t at, int status, uint64_t peak_bytes) {
   process.seconds = seconds_since(child.start);
   process.peak_bytes = peak_bytes;
   process.end = how_it_ended(status);
-  process.state = process.end.empty() ? Process::State::Done : interrupted_ ? Process::State::Stopped : Process::State::Failed;
+  process.state = process.end.empty() ? Process::State::Done
+                  : interrupted_      ? Process::State::Stopped
+                                      : Process::State::Failed;
   if (on_end) on_end(child.index);
 }
 

@@ -1,5 +1,5 @@
-// Runs commands as processes of their own, a few at a time within a limit of memory, and hears how far each is.
-// SPDX-License-Identifier: Apache-2.0
+// Runs commands as processes of their own, a few at a time within a limit of memory, and hears how far each
+// is. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <chrono>
 #include <cstdint>
@@ -30,7 +30,8 @@ struct PoolLimits {
 
 class ProcessPool {
  public:
-  ProcessPool(std::vector<Process> processes, const PoolLimits& limits) : processes_(std::move(processes)), limits_(limits) {}
+  ProcessPool(std::vector<Process> processes, const PoolLimits& limits)
+      : processes_(std::move(processes)), limits_(limits) {}
 
   // Called when a process has ended, and now and then between; by index.
   std::function<void(size_t index)> on_end;
@@ -53,7 +54,9 @@ class ProcessPool {
     Clock::time_point start;
     std::string text;  // an unfinished line
   };
-  static double seconds_since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); }
+  static double seconds_since(Clock::time_point then) {
+    return std::chrono::duration<double>(Clock::now() - then).count();
+  }
 
   void start_what_fits();
   bool start(size_t index);

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/recorded_run.h"
 
-#include <fmt/chrono.h>
-
 #include <chrono>
 #include <cstdio>
+#include <fmt/chrono.h>
 #include <new>
 
 #include "apps/glint/config.h"
@@ -17,7 +16,8 @@
 
 namespace glint::app {
 
-report::RunInfo new_run_info(const Session& session, const pipeline::GpuParams& gpu, const std::string& config, const std::string& mode) {
+report::RunInfo new_run_info(const Session& session, const pipeline::GpuParams& gpu,
+                             const std::string& config, const std::string& mode) {
   report::RunInfo info;
   info.command = session.arguments;
   info.version = GLINT_VERSION;
@@ -27,11 +27,13 @@ report::RunInfo new_run_info(const Session& session, const pipeline::GpuParams& 
   info.config_hash = config_hash(gpu);
   info.mode = mode;
   const mem::Peak peak = mem::peak(gpu.memory, gpu.cores, gpu.clock_mhz);
-  info.memory_peaks = {{"l1_bytes", double(peak.l1_bytes)},       {"l1_bytes_per_second", peak.l1_bandwidth},
-                       {"network_bytes_per_second", peak.network()}, {"l2_bytes", double(peak.l2_bytes)},
-                       {"l2_bytes_per_second", peak.l2_bandwidth},   {"dram_bytes_per_second", peak.dram_bandwidth}};
-  info.started = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
-                             fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
+  info.memory_peaks = {
+      {"l1_bytes", double(peak.l1_bytes)},          {"l1_bytes_per_second", peak.l1_bandwidth},
+      {"network_bytes_per_second", peak.network()}, {"l2_bytes", double(peak.l2_bytes)},
+      {"l2_bytes_per_second", peak.l2_bandwidth},   {"dram_bytes_per_second", peak.dram_bandwidth}};
+  info.started =
+      fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
+                  fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
   return info;
 }
 
@@ -40,8 +42,11 @@ namespace {
 // What of the result stands in run.json.
 void add_result(const pipeline::RenderResult& result, report::RunInfo& info) {
   for (const core::FaultLog::Entry& fault : result.faults.in_order())
-    info.faults.push_back({std::string(core::name_of(fault.kind)), fault.first.place, fault.first.what, fault.first.launch_id, fault.count});
-  if (result.residency.warps > 0) info.residency = {result.residency.warps, result.residency.blocks, std::string(name_of(result.residency.limit))};
+    info.faults.push_back({std::string(core::name_of(fault.kind)), fault.first.place, fault.first.what,
+                           fault.first.launch_id, fault.count});
+  if (result.residency.warps > 0)
+    info.residency = {result.residency.warps, result.residency.blocks,
+                      std::string(name_of(result.residency.limit))};
 }
 
 void keep_prints(const std::string& printed, const report::RunDirectory& directory) {
@@ -52,18 +57,23 @@ void keep_prints(const std::string& printed, const report::RunDirectory& directo
 
 }  // namespace
 
-void begin_directory(const report::RunDirectory& directory, const report::RunInfo& info, const pipeline::GpuParams& gpu, const std::string& title) {
+void begin_directory(const report::RunDirectory& directory, const report::RunInfo& info,
+                     const pipeline::GpuParams& gpu, const std::string& title) {
   directory.remove_results(info.saved);
   directory.write_config(describe_params(gpu), "Resolved configuration of: " + title);
 }
 
-pipeline::RenderResult run_recorded(const Session& session, const std::string& what, const report::RunDirectory& directory,
-                                    report::RunInfo& info, const std::function<pipeline::RenderResult(const ShowProgress&)>& run,
-                                    const std::function<void(const pipeline::RenderResult&)>& keep, core::PrintLog* prints) {
+pipeline::RenderResult run_recorded(const Session& session, const std::string& what,
+                                    const report::RunDirectory& directory, report::RunInfo& info,
+                                    const std::function<pipeline::RenderResult(const ShowProgress&)>& run,
+                                    const std::function<void(const pipeline::RenderResult&)>& keep,
+                                    core::PrintLog* prints) {
   report::Progress progress(session.on_terminal ? stdout : nullptr, what, session.terminal);
   ProgressPipe pipe(session.progress_descriptor, what);
   const auto start = std::chrono::steady_clock::now();
-  const auto stop_watch = [&] { info.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  const auto stop_watch = [&] {
+    info.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
   const auto fail = [&](Exit exit, const std::string& message) {
     if (info.wall_seconds == 0) stop_watch();
     info.exit = int(exit);
@@ -95,11 +105,13 @@ pipeline::RenderResult run_recorded(const Session& session, const std::string& w
   }
 }
 
-void print_result(const Session& session, bool json, const pipeline::RenderJob& job, const pipeline::RenderResult& result,
-                  const std::string& title, std::vector<std::string> files) {
+void print_result(const Session& session, bool json, const pipeline::RenderJob& job,
+                  const pipeline::RenderResult& result, const std::string& title,
+                  std::vector<std::string> files) {
   if (!result.faults.empty()) fmt::print(stderr, "{}\n", result.faults.to_string());
   if (json) {
-    write_output("", Registry<report::StatWriter>::instance().entry("json").make_default({})->write(result.statistics()));
+    write_output("", Registry<report::StatWriter>::instance().entry("json").make_default({})->write(
+                         result.statistics()));
     return;
   }
   report::Summary summary = summarise(job, result);

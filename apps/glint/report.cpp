@@ -1,10 +1,9 @@
 // `glint report RUN...`: one HTML page of finished runs and of what is known of suites.
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <filesystem>
+#include <fmt/format.h>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -23,13 +22,16 @@ namespace {
 
 constexpr const char* kDefaultPreset = "mobile";  // of --config
 
-// Glint's own preset to compare a run's configuration with: the one it names, else one that is the same, else the default.
-// A file of the user's is never read again: it may have changed since the run.
+// Glint's own preset to compare a run's configuration with: the one it names, else one that is the same, else
+// the default. A file of the user's is never read again: it may have changed since the run.
 std::string preset_of(const Resources& resources, const report::RunRecord& facts) {
   const std::vector<std::string> presets = resources.config_names();
-  if (const std::string name = facts.text("config.name"); std::find(presets.begin(), presets.end(), name) != presets.end()) return name;
+  if (const std::string name = facts.text("config.name");
+      std::find(presets.begin(), presets.end(), name) != presets.end())
+    return name;
   for (const std::string& preset : presets)
-    if (fmt::format("{:016x}", config_hash(read_preset(resources, preset))) == facts.text("config.hash")) return preset;
+    if (fmt::format("{:016x}", config_hash(read_preset(resources, preset))) == facts.text("config.hash"))
+      return preset;
   return kDefaultPreset;
 }
 
@@ -55,8 +57,14 @@ Exit write_report(const Session& session, const std::vector<std::string>& named,
   nlohmann::ordered_json data = report::page_data(runs, GLINT_VERSION);
   add_suites(inputs, data);
   const auto web = [&](const char* name) { return read_file(session.resources.web_file(name)); };
-  const std::string page = report::page(data, {.frame = web("report.html"), .style = web("report.css"), .script = web("report.js"), .unpack = web("unpack.js")});
-  const std::string path = !out.empty() ? out : named.size() == 1 && std::filesystem::is_directory(named[0]) ? named[0] + "/report.html" : "report.html";
+  const std::string page = report::page(data, {.frame = web("report.html"),
+                                               .style = web("report.css"),
+                                               .script = web("report.js"),
+                                               .unpack = web("unpack.js")});
+  const std::string path = !out.empty() ? out
+                           : named.size() == 1 && std::filesystem::is_directory(named[0])
+                               ? named[0] + "/report.html"
+                               : "report.html";
   write_output(path, page);
   if (path != "-") print_output("{}\n", path);
   return Exit::Ok;
@@ -72,16 +80,26 @@ void add_report(CLI::App& app, Session& session) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("report", "Write a page of figures about finished runs");
-  command->add_option("RUN", options->runs, "Run directories, or folders of `glint bench`, with what `glint characterize` and `glint model` have left there; folders and tables of these two alone. "
-                  "With several runs, figures stand side by side and changes are against the first")->required();
-  command->add_option("-o,--out", options->out, "File, or - (default: report.html in the directory named; with several, here)");
-  add_cycle_window(*command, "--timeline", "Cycles of the warp timeline, of a run with --trace (default: as many around the middle of the trace as stay readable)",
+  command
+      ->add_option("RUN", options->runs,
+                   "Run directories, or folders of `glint bench`, with what `glint characterize` and `glint "
+                   "model` have left there; folders and tables of these two alone. "
+                   "With several runs, figures stand side by side and changes are against the first")
+      ->required();
+  command->add_option("-o,--out", options->out,
+                      "File, or - (default: report.html in the directory named; with several, here)");
+  add_cycle_window(*command, "--timeline",
+                   "Cycles of the warp timeline, of a run with --trace (default: as many around the middle "
+                   "of the trace as stay readable)",
                    options->timeline.begin, options->timeline.end);
-  command->add_option("--timeline-sm", options->timeline.core, "SM of the warp timeline")->capture_default_str();
+  command->add_option("--timeline-sm", options->timeline.core, "SM of the warp timeline")
+      ->capture_default_str();
   command->callback([&session, options, command] {
     std::optional<report::TimelineRequest> timeline;
     if (command->count("--timeline") + command->count("--timeline-sm") > 0) timeline = options->timeline;
-    session.action = [&session, options, timeline] { return write_report(session, options->runs, options->out, timeline); };
+    session.action = [&session, options, timeline] {
+      return write_report(session, options->runs, options->out, timeline);
+    };
   });
 }
 

@@ -18,12 +18,14 @@ struct ReportInputs {
   std::vector<SuiteInput> characterizations, models;
 };
 
-// Named may be: directories of runs, folders of `glint bench` (with the models.csv and the folder `characterization` that are in
-// them), folders of `glint characterize`, tables of `glint model`, folders with such a table. UserError where a table or document
-// cannot be read; directories that are of none of these count as runs, for report::page_data() to refuse.
+// Named may be: directories of runs, folders of `glint bench` (with the models.csv and the folder
+// `characterization` that are in them), folders of `glint characterize`, tables of `glint model`, folders
+// with such a table. UserError where a table or document cannot be read; directories that are of none of
+// these count as runs, for report::page_data() to refuse.
 ReportInputs report_inputs(const std::vector<std::string>& named);
 
-// Puts into the page's document what is said of suites. Whether the numbers are those of the runs beside them is told by cycles.
+// Puts into the page's document what is said of suites. Whether the numbers are those of the runs beside them
+// is told by cycles.
 void add_suites(const ReportInputs& inputs, nlohmann::ordered_json& data);
 
 }  // namespace glint::app

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <fmt/format.h>
-
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,8 +37,8 @@ class OutputError : public Error {
   OutputError() : Error(Exit::Failure, "cannot write to standard output") {}
 };
 
-// Writes to `path` (report::write_file()), or to stdout when it is empty or "-": the one way to it, so that no loss goes
-// unnoticed. UserError when the file cannot be written, OutputError when stdout cannot.
+// Writes to `path` (report::write_file()), or to stdout when it is empty or "-": the one way to it, so that
+// no loss goes unnoticed. UserError when the file cannot be written, OutputError when stdout cannot.
 void write_output(const std::string& path, const std::string& bytes);
 
 // To stdout, as fmt::print().

@@ -46,7 +46,8 @@ void take_workload_name(Options& options, bool shader_given) {
   const std::optional<SceneAndShader> named = split_workload(options.scene);
   if (!named) return;
   if (shader_given && options.shader != named->shader)
-    throw UserError({}, fmt::format("'{}' is {} with --shader {}, and --shader is {}", options.scene, named->scene, named->shader, options.shader));
+    throw UserError({}, fmt::format("'{}' is {} with --shader {}, and --shader is {}", options.scene,
+                                    named->scene, named->shader, options.shader));
   options.scene = named->scene;
   options.shader = named->shader;
 }
@@ -70,9 +71,9 @@ pipeline::RenderJob make_job(const Session& session, const Options& options) {
   report::Progress progress(session.on_terminal ? stdout : nullptr, "loading", session.terminal);
   ProgressPipe pipe(session.progress_descriptor, "loading");
   job.scene = scenes::load_scene(options.scene, {options.assets, options.instancing, [&](double part) {
-    progress.update(uint64_t(100 * part), 100);
-    pipe.update(uint64_t(1000 * part), 1000);
-  }});
+                                                   progress.update(uint64_t(100 * part), 100);
+                                                   pipe.update(uint64_t(1000 * part), 1000);
+                                                 }});
   return job;
 }
 
@@ -101,23 +102,39 @@ report::RunInfo describe_run(const Session& session, const Options& options, con
 }
 
 Exit run_scripts(const Session& session, const Options& options) {
-  AmberOptions amber{{options.scene}, options.config, options.settings, options.max_instructions, options.mode_given && options.mode == "timing", options.no_skip, options.threads, options.on_fault, options.shaders, options.print_limit};
+  AmberOptions amber{{options.scene},
+                     options.config,
+                     options.settings,
+                     options.max_instructions,
+                     options.mode_given && options.mode == "timing",
+                     options.no_skip,
+                     options.threads,
+                     options.on_fault,
+                     options.shaders,
+                     options.print_limit};
   amber.scripts.insert(amber.scripts.end(), options.more.begin(), options.more.end());
   return run_amber(session, amber);
 }
 
 Exit run(const Session& session, const Options& options) {
   if (names_script(options.scene)) {
-    if (observes(options.observe)) throw UserError({}, "--profile, --sample, --heat and --trace do not go with Amber scripts", "a script has no run directory");
+    if (observes(options.observe))
+      throw UserError({}, "--profile, --sample, --heat and --trace do not go with Amber scripts",
+                      "a script has no run directory");
     return run_scripts(session, options);
   }
-  if (!options.more.empty()) throw UserError({}, fmt::format("'{}' is one too many", options.more[0]), "only Amber scripts run several at a time");
+  if (!options.more.empty())
+    throw UserError({}, fmt::format("'{}' is one too many", options.more[0]),
+                    "only Amber scripts run several at a time");
   if (names_pipeline(options.scene))
-    return run_pipeline(session, {options.scene, options.config_given ? options.config : "", options.mode_given ? options.mode : "", options.out,
-                                  options.settings, options.max_instructions, options.json, options.no_skip, options.threads, options.shaders, options.print_limit, options.on_fault, options.observe});
+    return run_pipeline(session, {options.scene, options.config_given ? options.config : "",
+                                  options.mode_given ? options.mode : "", options.out, options.settings,
+                                  options.max_instructions, options.json, options.no_skip, options.threads,
+                                  options.shaders, options.print_limit, options.on_fault, options.observe});
   if (names_kernel(options.scene))
-    return run_ptx(session, {options.scene, options.launch, options.config, options.mode, options.out, options.settings,
-                             options.max_instructions, options.json, options.no_skip, options.threads, options.on_fault, options.observe});
+    return run_ptx(session, {options.scene, options.launch, options.config, options.mode, options.out,
+                             options.settings, options.max_instructions, options.json, options.no_skip,
+                             options.threads, options.on_fault, options.observe});
   const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(options.shaders);
   core::PrintLog prints(options.print_limit);
   pipeline::RenderJob job = make_job(session, options);
@@ -131,18 +148,25 @@ Exit run(const Session& session, const Options& options) {
   report::RunInfo info = describe_run(session, options, job);
   info.on_fault = core::name_of(options.on_fault);
   begin_directory(directory, info, job.gpu, title_of(job, options));
-  std::vector<std::string> files = {"picture    " + directory.path_of("image.png"), "statistics " + directory.path_of("stats.txt")};
-  const pipeline::RenderResult result = run_recorded(session, "rendering", directory, info, [&](const ShowProgress& progress) {
-    job.progress = progress;
-    pipeline::RenderResult rendered = pipeline::render(job);
-    const pipeline::StructureCounts& made = rendered.structures;
-    info.structures = {made.bytes, made.triangles, made.procedurals, made.bottom_levels, made.instances, made.top_depth, made.bottom_depth};
-    return rendered;
-  }, [&](const pipeline::RenderResult& rendered) {
-    directory.write_image({rendered.width, rendered.height, rendered.rgba});
-    directory.write_stats(rendered.statistics());
-    for (std::string& line : write_observation(job.observe, rendered, directory)) files.push_back(std::move(line));
-  }, &prints);
+  std::vector<std::string> files = {"picture    " + directory.path_of("image.png"),
+                                    "statistics " + directory.path_of("stats.txt")};
+  const pipeline::RenderResult result = run_recorded(
+      session, "rendering", directory, info,
+      [&](const ShowProgress& progress) {
+        job.progress = progress;
+        pipeline::RenderResult rendered = pipeline::render(job);
+        const pipeline::StructureCounts& made = rendered.structures;
+        info.structures = {made.bytes,     made.triangles, made.procedurals, made.bottom_levels,
+                           made.instances, made.top_depth, made.bottom_depth};
+        return rendered;
+      },
+      [&](const pipeline::RenderResult& rendered) {
+        directory.write_image({rendered.width, rendered.height, rendered.rgba});
+        directory.write_stats(rendered.statistics());
+        for (std::string& line : write_observation(job.observe, rendered, directory))
+          files.push_back(std::move(line));
+      },
+      &prints);
   for (const std::string& warning : result.warnings) fmt::print(stderr, "{}\n", warning);
   print_result(session, options.json, job, result, title_of(job, options), std::move(files));
   return Exit::Ok;
@@ -152,10 +176,17 @@ Exit run(const Session& session, const Options& options) {
 
 void add_run(CLI::App& app, Session& session) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("run", "Render a scene, or launch a pipeline or a PTX kernel, on the simulated GPU");
-  command->add_option("SCENE", options->scene, "Scene; 'glint list scenes' names them. Or a workload: SHIP_SH. Or a scene of your own: FILE.obj, FILE.gltf, FILE.glb. Or a pipeline: FILE.toml, or one shader file. Or a kernel: FILE.ptx, or its launch FILE.toml. Or an Amber script: FILE.amber")->required();
+  CLI::App* command =
+      app.add_subcommand("run", "Render a scene, or launch a pipeline or a PTX kernel, on the simulated GPU");
+  command
+      ->add_option("SCENE", options->scene,
+                   "Scene; 'glint list scenes' names them. Or a workload: SHIP_SH. Or a scene of your own: "
+                   "FILE.obj, FILE.gltf, FILE.glb. Or a pipeline: FILE.toml, or one shader file. Or a "
+                   "kernel: FILE.ptx, or its launch FILE.toml. Or an Amber script: FILE.amber")
+      ->required();
   command->add_option("MORE", options->more, "More Amber scripts, after a first one: FILE.amber");
-  command->add_option("--launch", options->launch, "Launch file of a kernel: grid, block, arguments")->type_name("FILE");
+  command->add_option("--launch", options->launch, "Launch file of a kernel: grid, block, arguments")
+      ->type_name("FILE");
   command->add_option("--shader", options->shader, "pt, sh or ao; 'glint list shaders' explains")
       ->capture_default_str();
   command
@@ -169,8 +200,11 @@ void add_run(CLI::App& app, Session& session) {
   command->add_option("--mode", options->mode, "timing: cycle by cycle; functional: picture and counts only")
       ->check(CLI::IsMember({"timing", "functional"}))
       ->capture_default_str();
-  command->add_option("--assets", options->assets, "Folder of original scene data")->type_name("DIR")->envname("GLINT_ASSETS");
-  command->add_flag("--instancing", options->instancing, "Models of a scene that are affine copies of another share its structure and vertices");
+  command->add_option("--assets", options->assets, "Folder of original scene data")
+      ->type_name("DIR")
+      ->envname("GLINT_ASSETS");
+  command->add_flag("--instancing", options->instancing,
+                    "Models of a scene that are affine copies of another share its structure and vertices");
   command->add_option("--out", options->out, "Run directory (default: out/SCENE_SHADER-MODE)")
       ->type_name("DIR");
   command
@@ -179,34 +213,44 @@ void add_run(CLI::App& app, Session& session) {
       ->check(CLI::PositiveNumber);
   command
       ->add_option("--on-fault", options->on_fault_name,
-                   "stop: the first fault ends the run; warn: wrong loads give 0, wrong stores do nothing, and each is listed (docs/errors.md)")
+                   "stop: the first fault ends the run; warn: wrong loads give 0, wrong stores do nothing, "
+                   "and each is listed (docs/errors.md)")
       ->check(CLI::IsMember({"stop", "warn"}))
       ->capture_default_str();
   command->add_flag("--json", options->json, "Print the statistics as JSON instead of the summary");
   command->add_flag("--no-skip", options->no_skip, "Step every cycle: slow, same result, for checking");
-  command->add_option("--threads", options->threads, "Threads of the timing machine, same result with any number; 0: all processors, while they are faster than one")
+  command
+      ->add_option("--threads", options->threads,
+                   "Threads of the timing machine, same result with any number; 0: all processors, while "
+                   "they are faster than one")
       ->check(CLI::Range(0u, 256u))
       ->capture_default_str();
-  command->add_option("--printf-limit", options->print_limit, "Messages of debugPrintfEXT to show, the first by launch id")->capture_default_str();
+  command
+      ->add_option("--printf-limit", options->print_limit,
+                   "Messages of debugPrintfEXT to show, the first by launch id")
+      ->capture_default_str();
   add_observe_options(*command, options->observe);
   add_shader_options(*command, options->shaders);
-  command->add_option("--size", options->size, "Image size in pixels")->type_name("WxH")->capture_default_str();
+  command->add_option("--size", options->size, "Image size in pixels")
+      ->type_name("WxH")
+      ->capture_default_str();
   add_frame_options(*command, options->frame);
-  command->add_option("--progress-fd", session.progress_descriptor, "Descriptor to write the progress to")->group("");  // for `bench`
-  for (CLI::Option* option : command->get_options())  // a script's own options are overridden by those that it is given
+  command->add_option("--progress-fd", session.progress_descriptor, "Descriptor to write the progress to")
+      ->group("");  // for `bench`
+  for (CLI::Option* option :
+       command->get_options())  // a script's own options are overridden by those that it is given
     if (!option->get_positional() && option->get_items_expected_max() == 1) option->take_last();
-  command->callback(
-      [&session, options, command] {
-        options->config_given = command->count("--config") > 0;
-        options->mode_given = command->count("--mode") > 0;
-        options->on_fault = options->on_fault_name == "warn" ? core::OnFault::Warn : core::OnFault::Stop;
-        if (options->shaders.contract) options->settings.push_back("compiler.contract=true");
-        const bool shader_given = command->count("--shader") > 0;
-        session.action = [&session, options, shader_given] {
-          take_workload_name(*options, shader_given);
-          return run(session, *options);
-        };
-      });
+  command->callback([&session, options, command] {
+    options->config_given = command->count("--config") > 0;
+    options->mode_given = command->count("--mode") > 0;
+    options->on_fault = options->on_fault_name == "warn" ? core::OnFault::Warn : core::OnFault::Stop;
+    if (options->shaders.contract) options->settings.push_back("compiler.contract=true");
+    const bool shader_given = command->count("--shader") > 0;
+    session.action = [&session, options, shader_given] {
+      take_workload_name(*options, shader_given);
+      return run(session, *options);
+    };
+  });
 }
 
 }  // namespace glint::app

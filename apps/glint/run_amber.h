@@ -18,14 +18,14 @@ struct AmberOptions {
   bool timing = false, no_skip = false;
   uint32_t threads = 0;  // of the host
   core::OnFault on_fault = core::OnFault::Stop;
-  ShaderOptions shaders;  // their folders and macros mean nothing to a script
+  ShaderOptions shaders;     // their folders and macros mean nothing to a script
   uint64_t print_limit = 0;  // of each launch
 };
 
 bool names_script(const std::string& what);  // a path that ends in .amber
 
-// 0: all passed. Of one script that fails: 1 for an expectation, 2 to 5 for an error of that kind. Of several: 1 when
-// any fails, else 3 when any is unsupported.
+// 0: all passed. Of one script that fails: 1 for an expectation, 2 to 5 for an error of that kind. Of
+// several: 1 when any fails, else 3 when any is unsupported.
 Exit run_amber(const Session& session, const AmberOptions& options);
 
 }  // namespace glint::app

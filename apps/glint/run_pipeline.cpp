@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/run_pipeline.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
 #include <iterator>
 
@@ -21,27 +20,35 @@
 namespace glint::app {
 namespace {
 
-bool is_shader(const std::string& what) { return frontend::stage_of_file(what).has_value() || what.ends_with(".spv") || what.ends_with(".spvasm"); }
+bool is_shader(const std::string& what) {
+  return frontend::stage_of_file(what).has_value() || what.ends_with(".spv") || what.ends_with(".spvasm");
+}
 
 // What the command line says comes after what the file says.
-pipeline::PipelineDescription with_options(pipeline::PipelineDescription description, const frontend::GlslOptions& glsl) {
+pipeline::PipelineDescription with_options(pipeline::PipelineDescription description,
+                                           const frontend::GlslOptions& glsl) {
   for (pipeline::ShaderFile& shader : description.shaders) {
     auto& dirs = shader.glsl.include_dirs;
     dirs.insert(dirs.end(), glsl.include_dirs.begin(), glsl.include_dirs.end());
     auto& defines = shader.glsl.defines;
-    std::erase_if(defines, [&](const auto& d) { return std::any_of(glsl.defines.begin(), glsl.defines.end(), [&](const auto& o) { return o.first == d.first; }); });
+    std::erase_if(defines, [&](const auto& d) {
+      return std::any_of(glsl.defines.begin(), glsl.defines.end(),
+                         [&](const auto& o) { return o.first == d.first; });
+    });
     defines.insert(defines.end(), glsl.defines.begin(), glsl.defines.end());
     shader.glsl.cache = glsl.cache;
   }
   return description;
 }
 
-pipeline::PipelineDescription read_description(const PipelineOptions& options, const frontend::GlslOptions& glsl) {
+pipeline::PipelineDescription read_description(const PipelineOptions& options,
+                                               const frontend::GlslOptions& glsl) {
   if (!is_shader(options.what)) return with_options(pipeline::read_pipeline(options.what), glsl);
   const std::vector<std::string> shaders = pipeline::with_companions(options.what);
   const std::filesystem::path path(options.what);
   const std::string name = (path.parent_path() / ("defaults of " + path.filename().string())).string();
-  pipeline::PipelineDescription out = pipeline::parse_pipeline(pipeline::default_description(shaders, path.parent_path().string(), glsl), name);
+  pipeline::PipelineDescription out = pipeline::parse_pipeline(
+      pipeline::default_description(shaders, path.parent_path().string(), glsl), name);
   out.name = path.filename().string();
   return with_options(std::move(out), glsl);
 }
@@ -66,7 +73,8 @@ std::vector<std::string> keep(pipeline::PipelineWorld& world, const report::RunD
     for (const pipeline::Save& save : d.images[i].saves) {
       const core::ImageView& view = world.image(i);
       const uint64_t bytes = view.bytes_before_level(1);
-      directory.write(save.file, image_file(save.file, view, {world.memory().find(view.base, bytes), size_t(bytes)}));
+      directory.write(save.file,
+                      image_file(save.file, view, {world.memory().find(view.base, bytes), size_t(bytes)}));
       lines.push_back(fmt::format("{:<10} {}", d.images[i].name, directory.path_of(save.file)));
     }
   for (size_t i = 0; i < d.buffers.size(); ++i) {
@@ -75,21 +83,25 @@ std::vector<std::string> keep(pipeline::PipelineWorld& world, const report::RunD
       directory.write(save.file, buffer_file(save.file, b.data.type, world.buffer(i)));
       lines.push_back(fmt::format("{:<10} {}", b.name, directory.path_of(save.file)));
     }
-    if (b.show > 0) lines.push_back(fmt::format("{:<10} {}", b.name, first_numbers(b.data.type, world.buffer(i), b.show)));
+    if (b.show > 0)
+      lines.push_back(fmt::format("{:<10} {}", b.name, first_numbers(b.data.type, world.buffer(i), b.show)));
   }
   return lines;
 }
 
-report::RunInfo describe_run(const Session& session, const pipeline::PipelineWorld& world, const pipeline::GpuParams& gpu, const std::string& config,
+report::RunInfo describe_run(const Session& session, const pipeline::PipelineWorld& world,
+                             const pipeline::GpuParams& gpu, const std::string& config,
                              const std::string& mode) {
   report::RunInfo info = new_run_info(session, gpu, config, mode);
   info.scene = world.description().name;
   info.scene_form = "pipeline";
   std::string everything;  // what the launch begins with
   for (const auto& allocation : world.memory().allocations())
-    if (allocation.data) everything.append(reinterpret_cast<const char*>(allocation.data), size_t(allocation.bytes));
+    if (allocation.data)
+      everything.append(reinterpret_cast<const char*>(allocation.data), size_t(allocation.bytes));
   info.scene_hash = report::fnv1a(everything);
-  for (const pipeline::ShaderModule& module : world.modules().all()) info.shader += (info.shader.empty() ? "" : " ") + module.name;
+  for (const pipeline::ShaderModule& module : world.modules().all())
+    info.shader += (info.shader.empty() ? "" : " ") + module.name;
   for (const auto& image : world.description().images)
     for (const pipeline::Save& save : image.saves) info.saved.push_back(save.file);
   for (const auto& buffer : world.description().buffers)
@@ -109,11 +121,15 @@ bool names_pipeline(const std::string& what) {
 
 Exit run_pipeline(const Session& session, const PipelineOptions& options) {
   const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(options.shaders);
-  const pipeline::PipelineDescription description = read_description(options, glsl_options(options.shaders, cache.get()));
+  const pipeline::PipelineDescription description =
+      read_description(options, glsl_options(options.shaders, cache.get()));
   check_saves(description);
   const pipeline::MachineDescription& machine = description.machine;
-  const auto first = [](const std::string& a, const std::string& b, const char* c) { return !a.empty() ? a : !b.empty() ? b : std::string(c); };
-  const std::string mode = first(options.mode, machine.mode, "timing"), config = first(options.config, machine.config, "mobile");
+  const auto first = [](const std::string& a, const std::string& b, const char* c) {
+    return !a.empty() ? a : !b.empty() ? b : std::string(c);
+  };
+  const std::string mode = first(options.mode, machine.mode, "timing"),
+                    config = first(options.config, machine.config, "mobile");
   std::vector<std::string> settings = machine.settings;
   settings.insert(settings.end(), options.settings.begin(), options.settings.end());
 
@@ -131,20 +147,28 @@ Exit run_pipeline(const Session& session, const PipelineOptions& options) {
   for (const std::string& warning : world.warnings) fmt::print(stderr, "{}\n", warning);
 
   const auto& [x, y, z] = world.world.launch_size;
-  const std::string title = fmt::format("{}  {} x {} x {} {}, {} on {}", description.name, x, y, z, description.compute.empty() ? "rays" : "threads", mode, config);
-  const report::RunDirectory directory(options.out.empty() ? fmt::format("out/{}-{}", description.name, mode) : options.out);
+  const std::string title = fmt::format("{}  {} x {} x {} {}, {} on {}", description.name, x, y, z,
+                                        description.compute.empty() ? "rays" : "threads", mode, config);
+  const report::RunDirectory directory(options.out.empty() ? fmt::format("out/{}-{}", description.name, mode)
+                                                           : options.out);
   report::RunInfo info = describe_run(session, world, job.gpu, config, mode);
   info.on_fault = core::name_of(options.on_fault);
   begin_directory(directory, info, job.gpu, title);
   std::vector<std::string> files;
-  const pipeline::RenderResult result = run_recorded(session, "running", directory, info, [&](const ShowProgress& progress) {
-    return pipeline::run_pipeline(world, job.gpu, job.timing, job.no_skip, options.threads, progress, options.observe);
-  }, [&](const pipeline::RenderResult& ended) {
-    directory.write_stats(ended.statistics());
-    files = keep(world, directory);
-    files.push_back("statistics " + directory.path_of("stats.txt"));
-    for (std::string& line : write_observation(options.observe, ended, directory)) files.push_back(std::move(line));
-  }, &prints);
+  const pipeline::RenderResult result = run_recorded(
+      session, "running", directory, info,
+      [&](const ShowProgress& progress) {
+        return pipeline::run_pipeline(world, job.gpu, job.timing, job.no_skip, options.threads, progress,
+                                      options.observe);
+      },
+      [&](const pipeline::RenderResult& ended) {
+        directory.write_stats(ended.statistics());
+        files = keep(world, directory);
+        files.push_back("statistics " + directory.path_of("stats.txt"));
+        for (std::string& line : write_observation(options.observe, ended, directory))
+          files.push_back(std::move(line));
+      },
+      &prints);
   print_result(session, options.json, job, result, title, std::move(files));
   return Exit::Ok;
 }

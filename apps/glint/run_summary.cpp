@@ -46,11 +46,13 @@ report::TimingSummary timing_of(const pipeline::RenderJob& job, const pipeline::
   out.l1_rt = sums.hits(l1, "rt_*");
   out.l1_shader = sums.hits(l1, "shader_*");
   out.memory_peaks = mem::peak(job.gpu.memory, job.gpu.cores, job.gpu.clock_mhz).to_string();
-  const report::HitRate one = sums.hits("gpu.memory.partition[*].l2", "*"), several = sums.hits("gpu.memory.partition[*].l2[*]", "*");
+  const report::HitRate one = sums.hits("gpu.memory.partition[*].l2", "*"),
+                        several = sums.hits("gpu.memory.partition[*].l2[*]", "*");
   out.l2 = {one.hits + several.hits, one.accesses + several.accesses};
   out.dram_utilisation = sums.ratio(dram + ".busy_clocks", dram + ".clocks");
   out.dram_efficiency = sums.ratio(dram + ".busy_clocks", dram + ".active_clocks");
-  if (const double busy = double(sums.count(rt + ".unit_cycles") - sums.count(rt + ".cycles::idle")); busy > 0)
+  if (const double busy = double(sums.count(rt + ".unit_cycles") - sums.count(rt + ".cycles::idle"));
+      busy > 0)
     out.rt_occupancy = double(sums.count(rt + ".warp_cycles")) / (busy * job.gpu.rt.warps);
   out.rt_efficiency = sums.ratio(rt + ".ray_cycles", rt + ".lane_slots");
   return out;

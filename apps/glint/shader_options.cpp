@@ -20,7 +20,8 @@ std::string variable(const char* name) {
 std::string cache_folder(const std::string& kind) {
   if (const std::string folder = variable("GLINT_CACHE"); !folder.empty()) return folder + "/" + kind;
   // XDG Base Directory Specification: relative paths there are invalid and left out.
-  if (const std::string folder = variable("XDG_CACHE_HOME"); folder.starts_with('/')) return folder + "/glint/" + kind;
+  if (const std::string folder = variable("XDG_CACHE_HOME"); folder.starts_with('/'))
+    return folder + "/glint/" + kind;
   if (const std::string home = variable("HOME"); !home.empty()) return home + "/.cache/glint/" + kind;
   return {};  // only in memory
 }
@@ -31,20 +32,27 @@ std::string build_id() {
   const fs::path self = fs::read_symlink("/proc/self/exe", failed);
   const uint64_t bytes = failed ? 0 : fs::file_size(self, failed);
   const auto time = failed ? fs::file_time_type() : fs::last_write_time(self, failed);
-  return failed ? std::string() : fmt::format("{} {} {}", GLINT_VERSION, bytes, time.time_since_epoch().count());
+  return failed ? std::string()
+                : fmt::format("{} {} {}", GLINT_VERSION, bytes, time.time_since_epoch().count());
 }
 
 }  // namespace
 
 void add_source_options(CLI::App& command, ShaderOptions& options) {
-  command.add_option("-I,--include", options.include_dirs, "Folder to look for #include in")->type_name("DIR")->allow_extra_args(false);
-  command.add_option("-D,--define", options.defines, "Macro")->type_name("NAME[=VALUE]")->allow_extra_args(false);
+  command.add_option("-I,--include", options.include_dirs, "Folder to look for #include in")
+      ->type_name("DIR")
+      ->allow_extra_args(false);
+  command.add_option("-D,--define", options.defines, "Macro")
+      ->type_name("NAME[=VALUE]")
+      ->allow_extra_args(false);
 }
 
 void add_shader_options(CLI::App& command, ShaderOptions& options) {
   add_source_options(command, options);
-  command.add_flag("--contract", options.contract, "Make a * b + c of GLSL one fma, as drivers do, but where it is `precise`");
-  command.add_flag("--no-cache", options.no_cache, "Compile shaders and build structures anew, and keep none");
+  command.add_flag("--contract", options.contract,
+                   "Make a * b + c of GLSL one fma, as drivers do, but where it is `precise`");
+  command.add_flag("--no-cache", options.no_cache,
+                   "Compile shaders and build structures anew, and keep none");
 }
 
 frontend::GlslOptions glsl_options(const ShaderOptions& options, frontend::ShaderCache* cache) {
@@ -63,13 +71,15 @@ std::unique_ptr<frontend::ShaderCache> open_shader_cache(const ShaderOptions& op
   if (options.no_cache) return nullptr;
   const std::string build = build_id();
   // Where the executable cannot be told from another one, what it compiled stays in memory.
-  return std::make_unique<frontend::ShaderCache>(frontend::ShaderCache::Options{build.empty() ? "" : cache_folder("shaders"), build});
+  return std::make_unique<frontend::ShaderCache>(
+      frontend::ShaderCache::Options{build.empty() ? "" : cache_folder("shaders"), build});
 }
 
 std::unique_ptr<pipeline::StructureCache> open_structure_cache(const ShaderOptions& options) {
   const std::string build = build_id();
   if (options.no_cache || build.empty()) return nullptr;
-  return std::make_unique<pipeline::StructureCache>(pipeline::StructureCache::Options{cache_folder("structures"), build});
+  return std::make_unique<pipeline::StructureCache>(
+      pipeline::StructureCache::Options{cache_folder("structures"), build});
 }
 
 }  // namespace glint::app

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/stat_list.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 
 #include "core/image.h"
 #include "isa/program.h"
@@ -33,7 +32,8 @@ std::vector<report::StatRow> all_stats() {
   params.cores = 1;
   std::vector<report::StatRow> out = report::stat_names(pipeline::TimingMachine(params, world, false).root());
   for (report::StatRow& row : report::stat_names(pipeline::RunStats(pipeline::FunctionalCounts{}).root())) {
-    if (std::ranges::any_of(out, [&](const report::StatRow& have) { return have.path == row.path; })) continue;
+    if (std::ranges::any_of(out, [&](const report::StatRow& have) { return have.path == row.path; }))
+      continue;
     row.doc += " The functional machine's.";
     out.push_back(std::move(row));
   }

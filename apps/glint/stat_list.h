@@ -9,7 +9,7 @@
 namespace glint::app {
 
 std::vector<report::StatRow> all_stats();  // an instance's number reads [*]; no values
-std::string stat_list();           // aligned columns
-std::string stat_list_markdown();  // the table of docs/stats.md
+std::string stat_list();                   // aligned columns
+std::string stat_list_markdown();          // the table of docs/stats.md
 
 }  // namespace glint::app

@@ -1,5 +1,5 @@
-// `glint stats RUN`: the statistics of a finished run again, in any format, as metrics, or by Vulkan-Sim's names.
-// SPDX-License-Identifier: Apache-2.0
+// `glint stats RUN`: the statistics of a finished run again, in any format, as metrics, or by Vulkan-Sim's
+// names. SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
@@ -20,7 +20,8 @@ Exit stats(const std::string& run, const std::string& format) {
   } else {
     report::check_finished(run);
     const std::string path = run + "/stats." + format;
-    if (!std::filesystem::exists(path)) throw UserError({path}, "there is no such file", "is this the directory of a finished run?");
+    if (!std::filesystem::exists(path))
+      throw UserError({path}, "there is no such file", "is this the directory of a finished run?");
     write_output("", read_file(path));
   }
   return Exit::Ok;
@@ -35,10 +36,14 @@ void add_stats(CLI::App& app, Session& session) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("stats", "Print the statistics of a finished run");
   command->add_option("RUN", options->run, "Run directory")->required();
-  command->add_option("--format", options->format, "txt, csv, json: as the run wrote them; metrics: those of docs/metrics.md; vulkan-sim: under the names of its logs")
+  command
+      ->add_option("--format", options->format,
+                   "txt, csv, json: as the run wrote them; metrics: those of docs/metrics.md; vulkan-sim: "
+                   "under the names of its logs")
       ->check(CLI::IsMember({"txt", "csv", "json", "metrics", "vulkan-sim"}))
       ->capture_default_str();
-  command->callback([&session, options] { session.action = [options] { return stats(options->run, options->format); }; });
+  command->callback(
+      [&session, options] { session.action = [options] { return stats(options->run, options->format); }; });
 }
 
 }  // namespace glint::app

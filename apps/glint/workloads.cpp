@@ -12,10 +12,11 @@ namespace glint::app {
 namespace {
 
 // LumiBench, Figure 7: by triangles, from few to many.
-constexpr std::string_view kScenes[] = {"WKND", "SHIP", "BUNNY", "SPNZA", "CHSNT", "BATH", "REF",  "CRNVL",
-                                        "FOX",  "PARTY", "SPRNG", "LANDS", "FRST", "PARK", "CAR", "ROBOT"};
+constexpr std::string_view kScenes[] = {"WKND", "SHIP",  "BUNNY", "SPNZA", "CHSNT", "BATH", "REF", "CRNVL",
+                                        "FOX",  "PARTY", "SPRNG", "LANDS", "FRST",  "PARK", "CAR", "ROBOT"};
 // LumiBench, Table 2: one of each cluster.
-constexpr std::string_view kSubset[] = {"SPNZA_AO", "BUNNY_AO", "WKND_PT", "SHIP_SH", "ROBOT_SH", "BATH_PT", "PARK_PT", "CHSNT_PT"};
+constexpr std::string_view kSubset[] = {"SPNZA_AO", "BUNNY_AO", "WKND_PT", "SHIP_SH",
+                                        "ROBOT_SH", "BATH_PT",  "PARK_PT", "CHSNT_PT"};
 // Its leaves are cut out by an any-hit shader; the paper runs it with path tracing only.
 constexpr std::string_view kPathTracingOnly = "CHSNT";
 
@@ -26,7 +27,8 @@ std::string upper(std::string_view text) {
 }
 
 bool is_called(const NamedWorkload& workload, const std::string& name) {
-  return name == "LUMIBENCH" || (name == "SUBSET" && workload.in_subset) || name == workload.scene || name == upper(workload.shader) || name == workload.name();
+  return name == "LUMIBENCH" || (name == "SUBSET" && workload.in_subset) || name == workload.scene ||
+         name == upper(workload.shader) || name == workload.name();
 }
 
 }  // namespace
@@ -42,7 +44,9 @@ const WorkloadInfo& find_workload(const std::string& name) {
                   guess.empty() ? "" : "did you mean '" + guess + "'?");
 }
 
-std::string NamedWorkload::name() const { return std::string(scene) + "_" + upper(shader); }
+std::string NamedWorkload::name() const {
+  return std::string(scene) + "_" + upper(shader);
+}
 
 std::vector<NamedWorkload> lumibench() {
   std::vector<NamedWorkload> out;
@@ -69,7 +73,8 @@ std::vector<NamedWorkload> select_workloads(const std::vector<std::string>& name
     for (const NamedWorkload& workload : all) known.push_back(workload.name());
     const std::string guess = nearest(upper(name), known);
     throw UserError({}, "no workload or suite '" + name + "'",
-                    guess.empty() ? "'glint list workloads' names them; suites are lumibench and subset" : "did you mean '" + guess + "'?");
+                    guess.empty() ? "'glint list workloads' names them; suites are lumibench and subset"
+                                  : "did you mean '" + guess + "'?");
   }
   std::vector<NamedWorkload> out;
   for (size_t i = 0; i < all.size(); ++i)
@@ -83,7 +88,8 @@ std::optional<SceneAndShader> split_workload(const std::string& name) {
   const std::string scene = upper(name.substr(0, bar)), shader = upper(name.substr(bar + 1));
   for (const scenes::SceneInfo& info : scenes::scene_list())
     for (const WorkloadInfo& set : kWorkloads)
-      if (info.name == scene && upper(set.name) == shader) return SceneAndShader{scene, std::string(set.name)};
+      if (info.name == scene && upper(set.name) == shader)
+        return SceneAndShader{scene, std::string(set.name)};
   return std::nullopt;
 }
 

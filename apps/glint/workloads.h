@@ -1,5 +1,5 @@
-// What there is to run by name: the shader sets, and the 46 workloads of LumiBench, each a scene with a shader set.
-// SPDX-License-Identifier: Apache-2.0
+// What there is to run by name: the shader sets, and the 46 workloads of LumiBench, each a scene with a
+// shader set. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <optional>
@@ -38,11 +38,12 @@ struct NamedWorkload {
 // All 46: scenes by the triangles that the paper gives, pt, sh and ao of each; CHSNT has pt alone.
 std::vector<NamedWorkload> lumibench();
 
-// Names of suites (`lumibench`, `subset`), scenes, shader sets and workloads, in any case, to workloads: each once, in
-// the order of lumibench(). UserError with the nearest name for one that is none.
+// Names of suites (`lumibench`, `subset`), scenes, shader sets and workloads, in any case, to workloads: each
+// once, in the order of lumibench(). UserError with the nearest name for one that is none.
 std::vector<NamedWorkload> select_workloads(const std::vector<std::string>& names);
 
-// Scene and shader set of a name like SHIP_SH, of every scene with every set; nothing when it is not of that form.
+// Scene and shader set of a name like SHIP_SH, of every scene with every set; nothing when it is not of that
+// form.
 struct SceneAndShader {
   std::string scene, shader;
 };

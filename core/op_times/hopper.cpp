@@ -7,61 +7,109 @@ namespace {
 
 using isa::Unit;
 
-// Source: dependent chains and 32 warps of independent ones on an NVIDIA H200 (1980 MHz), of PTX ops as its assembler
-// translates them; intervals are 32 lanes x 4 schedulers over the lane operations that a core did in a cycle. Latencies
-// of steps of two ops are split at the latencies that the other op has alone and the crossing of pipes (1 cycle). The last
-// number, where there is one: machine instructions of the op as they execute without a slow path, from the listings that the
-// same measurements took; for divisions of 64 bits, whose listings end at a call, a guess.
-// Model: a sequence of instructions holds one pipe for its throughput, whatever pipes its parts run on.
+// Source: dependent chains and 32 warps of independent ones on an NVIDIA H200 (1980 MHz), of PTX ops as its
+// assembler translates them; intervals are 32 lanes x 4 schedulers over the lane operations that a core did
+// in a cycle. Latencies of steps of two ops are split at the latencies that the other op has alone and the
+// crossing of pipes (1 cycle). The last number, where there is one: machine instructions of the op as they
+// execute without a slow path, from the listings that the same measurements took; for divisions of 64 bits,
+// whose listings end at a call, a guess. Model: a sequence of instructions holds one pipe for its throughput,
+// whatever pipes its parts run on.
 constexpr OpTime kTimes[] = {
     // The assembler turns every second addition into a multiply-add on the other pipe: 5 cycles, one a cycle.
-    {"add.cc.*", 4, 2}, {"sub.cc.*", 4, 2}, {"add.sat.s32", 4, 2}, {"sub.sat.s32", 4, 2},
-    {"add.s32", 5, 1, Unit::Fp32, true}, {"add.u32", 5, 1, Unit::Fp32, true},
-    {"sub.s32", 5, 1, Unit::Fp32, true}, {"sub.u32", 5, 1, Unit::Fp32, true},
+    {"add.cc.*", 4, 2},
+    {"sub.cc.*", 4, 2},
+    {"add.sat.s32", 4, 2},
+    {"sub.sat.s32", 4, 2},
+    {"add.s32", 5, 1, Unit::Fp32, true},
+    {"add.u32", 5, 1, Unit::Fp32, true},
+    {"sub.s32", 5, 1, Unit::Fp32, true},
+    {"sub.u32", 5, 1, Unit::Fp32, true},
     // Integer multiplication runs on the single-precision pipe, at half its rate.
-    {"mul.lo.s32", 4, 2, Unit::Fp32}, {"mul.lo.u32", 4, 2, Unit::Fp32},
-    {"mad.lo.s32", 4, 2, Unit::Fp32}, {"mad.lo.u32", 4, 2, Unit::Fp32},
-    {"mul.hi.s32", 9, 4, Unit::Fp32}, {"mul.hi.u32", 9, 4, Unit::Fp32},
-    {"mad.hi.s32", 9, 4, Unit::Fp32}, {"mad.hi.u32", 9, 4, Unit::Fp32},
-    {"mul.wide.*32", 4, 2.75, Unit::Fp32}, {"mad.wide.*32", 4, 2.75, Unit::Fp32},
-    {"mul24.lo.*", 10, 2, Unit::Fp32, false, 2}, {"dp4a.*", 4, 2, Unit::Fp32},
-    {"mul.lo.*64", 12, 8, Unit::Fp32, false, 4}, {"mad.lo.*64", 12, 8, Unit::Fp32, false, 4},
-    {"mul.hi.*64", 30, 16, Unit::Fp32, false, 8}, {"mad.hi.*64", 30, 16, Unit::Fp32, false, 8},  // guess: four wide products
+    {"mul.lo.s32", 4, 2, Unit::Fp32},
+    {"mul.lo.u32", 4, 2, Unit::Fp32},
+    {"mad.lo.s32", 4, 2, Unit::Fp32},
+    {"mad.lo.u32", 4, 2, Unit::Fp32},
+    {"mul.hi.s32", 9, 4, Unit::Fp32},
+    {"mul.hi.u32", 9, 4, Unit::Fp32},
+    {"mad.hi.s32", 9, 4, Unit::Fp32},
+    {"mad.hi.u32", 9, 4, Unit::Fp32},
+    {"mul.wide.*32", 4, 2.75, Unit::Fp32},
+    {"mad.wide.*32", 4, 2.75, Unit::Fp32},
+    {"mul24.lo.*", 10, 2, Unit::Fp32, false, 2},
+    {"dp4a.*", 4, 2, Unit::Fp32},
+    {"mul.lo.*64", 12, 8, Unit::Fp32, false, 4},
+    {"mad.lo.*64", 12, 8, Unit::Fp32, false, 4},
+    {"mul.hi.*64", 30, 16, Unit::Fp32, false, 8},
+    {"mad.hi.*64", 30, 16, Unit::Fp32, false, 8},  // guess: four wide products
     // Two instructions each. Comparisons of 64 bits: two, of which the second has the result.
     // Those of 64-bit sums run on two pipes, and their issue slots alone limit them.
-    {"add.s64", 4, 1, Unit::Int, false, 2}, {"add.u64", 4, 1, Unit::Int, false, 2},
-    {"sub.s64", 4, 1, Unit::Int, false, 2}, {"sub.u64", 4, 1, Unit::Int, false, 2},
-    {"and.b64", 4, 4, Unit::Int, false, 2}, {"or.b64", 4, 4, Unit::Int, false, 2}, {"xor.b64", 4, 4, Unit::Int, false, 2},
-    {"not.b64", 4, 4, Unit::Int, false, 2}, {"selp.b64", 4, 4, Unit::Int, false, 2},
-    {"shl.b64", 6, 2, Unit::Int, false, 2}, {"shr.*64", 5, 4, Unit::Int, false, 2}, {"setp.*.f64", 8, 4.8125},
+    {"add.s64", 4, 1, Unit::Int, false, 2},
+    {"add.u64", 4, 1, Unit::Int, false, 2},
+    {"sub.s64", 4, 1, Unit::Int, false, 2},
+    {"sub.u64", 4, 1, Unit::Int, false, 2},
+    {"and.b64", 4, 4, Unit::Int, false, 2},
+    {"or.b64", 4, 4, Unit::Int, false, 2},
+    {"xor.b64", 4, 4, Unit::Int, false, 2},
+    {"not.b64", 4, 4, Unit::Int, false, 2},
+    {"selp.b64", 4, 4, Unit::Int, false, 2},
+    {"shl.b64", 6, 2, Unit::Int, false, 2},
+    {"shr.*64", 5, 4, Unit::Int, false, 2},
+    {"setp.*.f64", 8, 4.8125},
     {"setp.*64", 8, 4, Unit::Int, false, 2},
-    {"abs.s32", 4, 2.625}, {"bfe.*32", 8, 7.5, Unit::Int, false, 3}, {"bfi.b32", 8, 9, Unit::Int, false, 4}, {"clz.b32", 23, 8, Unit::Count, false, 2},
+    {"abs.s32", 4, 2.625},
+    {"bfe.*32", 8, 7.5, Unit::Int, false, 3},
+    {"bfi.b32", 8, 9, Unit::Int, false, 4},
+    {"clz.b32", 23, 8, Unit::Count, false, 2},
     // Integer division and remainder: sequences.
-    {"div.s32", 131, 33, Unit::Count, false, 23}, {"div.u32", 124, 29, Unit::Count, false, 17},
-    {"rem.s32", 132, 30, Unit::Count, false, 20}, {"rem.u32", 126, 28, Unit::Count, false, 16},
-    {"div.s64", 331, 120, Unit::Count, false, 70}, {"div.u64", 331, 120, Unit::Count, false, 70},  // intervals: guess
-    {"rem.s64", 331, 120, Unit::Count, false, 70}, {"rem.u64", 331, 120, Unit::Count, false, 70},  // the same
+    {"div.s32", 131, 33, Unit::Count, false, 23},
+    {"div.u32", 124, 29, Unit::Count, false, 17},
+    {"rem.s32", 132, 30, Unit::Count, false, 20},
+    {"rem.u32", 126, 28, Unit::Count, false, 16},
+    {"div.s64", 331, 120, Unit::Count, false, 70},
+    {"div.u64", 331, 120, Unit::Count, false, 70},  // intervals: guess
+    {"rem.s64", 331, 120, Unit::Count, false, 70},
+    {"rem.u64", 331, 120, Unit::Count, false, 70},  // the same
     // Comparisons, minima and the like run on the integer pipe.
-    {"setp.*.f32", 4, 2, Unit::Int}, {"set.*.f32", 4, 2, Unit::Int}, {"testp.*.f32", 4, 2, Unit::Int},
-    {"min.*f32", 4, 2, Unit::Int}, {"max.*f32", 4, 2, Unit::Int},
-    {"add.rn*.f16x2", 8, 1}, {"mul.rn*.f16x2", 8, 1}, {"fma.rn*.f16x2", 8, 1}, {"fma.rn*.bf16x2", 8, 1},
+    {"setp.*.f32", 4, 2, Unit::Int},
+    {"set.*.f32", 4, 2, Unit::Int},
+    {"testp.*.f32", 4, 2, Unit::Int},
+    {"min.*f32", 4, 2, Unit::Int},
+    {"max.*f32", 4, 2, Unit::Int},
+    {"add.rn*.f16x2", 8, 1},
+    {"mul.rn*.f16x2", 8, 1},
+    {"fma.rn*.f16x2", 8, 1},
+    {"fma.rn*.bf16x2", 8, 1},
     // Sequences around the special-function unit.
-    {"div.rn*.f32", 57, 17, Unit::Count, false, 10}, {"rcp.rn*.f32", 77, 12, Unit::Count, false, 10},
+    {"div.rn*.f32", 57, 17, Unit::Count, false, 10},
+    {"rcp.rn*.f32", 77, 12, Unit::Count, false, 10},
     {"sqrt.rn*.f32", 55, 11, Unit::Count, false, 11},
-    {"rcp.approx.f32", 41, 8.5625, Unit::Count, false, 7}, {"rsqrt.approx.f32", 39, 8, Unit::Count, false, 4},
-    {"lg2.approx.f32", 39, 8, Unit::Count, false, 4}, {"sqrt.approx.f32", 39, 8, Unit::Count, false, 4},
-    {"sin.approx*", 23, 8, Unit::Count, false, 2}, {"cos.approx*", 23, 8, Unit::Count, false, 2},
-    {"div.approx*", 23, 8, Unit::Count, false, 2}, {"div.full*", 40, 8, Unit::Count, false, 7},  // rcp and mul
-    {"rcp.approx.ftz.f64", 17, 8, Unit::Sfu}, {"rsqrt.approx.ftz.f64", 17, 8, Unit::Sfu},
+    {"rcp.approx.f32", 41, 8.5625, Unit::Count, false, 7},
+    {"rsqrt.approx.f32", 39, 8, Unit::Count, false, 4},
+    {"lg2.approx.f32", 39, 8, Unit::Count, false, 4},
+    {"sqrt.approx.f32", 39, 8, Unit::Count, false, 4},
+    {"sin.approx*", 23, 8, Unit::Count, false, 2},
+    {"cos.approx*", 23, 8, Unit::Count, false, 2},
+    {"div.approx*", 23, 8, Unit::Count, false, 2},
+    {"div.full*", 40, 8, Unit::Count, false, 7},  // rcp and mul
+    {"rcp.approx.ftz.f64", 17, 8, Unit::Sfu},
+    {"rsqrt.approx.ftz.f64", 17, 8, Unit::Sfu},
     {"fma.r*.f64", 8, 2.1875},  // three operands of 64 bits: reads of registers hold it up
-    {"div.r*.f64", 124, 26, Unit::Count, false, 16}, {"sqrt.rn.f64", 92, 28, Unit::Count, false, 15},
+    {"div.r*.f64", 124, 26, Unit::Count, false, 16},
+    {"sqrt.rn.f64", 92, 28, Unit::Count, false, 15},
     {"rcp.rn.f64", 92, 20, Unit::Count, false, 11},  // guess
     // Conversions.
-    {"cvt.rn.f32.s32", 4, 2, Unit::Int}, {"cvt.rn.f32.u32", 4, 2, Unit::Int},
-    {"cvt.rn.f16.f32", 4, 2, Unit::Int}, {"cvt.f32.f16", 4, 1, Unit::Fp32},
-    {"cvt.f64.f32", 18, 8.5, Unit::Sfu}, {"cvt.rn.f32.f64", 18, 8.5, Unit::Sfu},
+    {"cvt.rn.f32.s32", 4, 2, Unit::Int},
+    {"cvt.rn.f32.u32", 4, 2, Unit::Int},
+    {"cvt.rn.f16.f32", 4, 2, Unit::Int},
+    {"cvt.f32.f16", 4, 1, Unit::Fp32},
+    {"cvt.f64.f32", 18, 8.5, Unit::Sfu},
+    {"cvt.rn.f32.f64", 18, 8.5, Unit::Sfu},
     // Across lanes.
-    {"vote.*", 13, 2, Unit::Int}, {"match.*", 28, 8}, {"shfl.sync.up.*", 24, 4}, {"shfl.sync.down.*", 24, 4}, {"redux.*", 44, 8, Unit::Count, false, 2},
+    {"vote.*", 13, 2, Unit::Int},
+    {"match.*", 28, 8},
+    {"shfl.sync.up.*", 24, 4},
+    {"shfl.sync.down.*", 24, 4},
+    {"redux.*", 44, 8, Unit::Count, false, 2},
 };
 
 class Hopper final : public OpTimes {

@@ -6,12 +6,13 @@ namespace glint::core {
 namespace {
 
 // "Analyzing Modern NVIDIA GPU cores", MICRO 2025, section 5.1.2: compiler-guided greedy, then youngest.
-// Model: the compiler guides by stall counts, which the scoreboard's ready times stand for. Its yield bit, which asks for
-// another warp once, does not exist in this ISA.
+// Model: the compiler guides by stall counts, which the scoreboard's ready times stand for. Its yield bit,
+// which asks for another warp once, does not exist in this ISA.
 class GreedyThenYoungest final : public IssueScheduler {
  public:
   static constexpr std::string_view kName = "cggty";
-  static constexpr std::string_view kDoc = "Compiler-guided greedy, then youngest: the warp issued last while it is ready.";
+  static constexpr std::string_view kDoc =
+      "Compiler-guided greedy, then youngest: the warp issued last while it is ready.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

@@ -8,7 +8,8 @@ namespace {
 class LooseRoundRobin final : public IssueScheduler {
  public:
   static constexpr std::string_view kName = "lrr";
-  static constexpr std::string_view kDoc = "Loose round robin: the next ready warp after the one issued last.";
+  static constexpr std::string_view kDoc =
+      "Loose round robin: the next ready warp after the one issued last.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

@@ -8,7 +8,8 @@ namespace {
 class Linear final : public WarpLayout {
  public:
   static constexpr std::string_view kName = "linear";
-  static constexpr std::string_view kDoc = "32 consecutive launch indices (32x1 where rows are that long), row after row.";
+  static constexpr std::string_view kDoc =
+      "32 consecutive launch indices (32x1 where rows are that long), row after row.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

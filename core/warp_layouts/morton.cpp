@@ -8,8 +8,8 @@
 namespace glint::core {
 namespace {
 
-// Morton, "A Computer Oriented Geodetic Data Base", IBM 1966: bits of x and y in turns, x lowest. Warps that start
-// together lie in a square of the picture.
+// Morton, "A Computer Oriented Geodetic Data Base", IBM 1966: bits of x and y in turns, x lowest. Warps that
+// start together lie in a square of the picture.
 class MortonOrder final : public WarpLayout {
  public:
   static constexpr std::string_view kName = "morton";
@@ -25,8 +25,8 @@ class MortonOrder final : public WarpLayout {
     return {bit(0) | bit(2) << 1 | bit(4) << 2, bit(1) | bit(3) << 1};
   }
 
-  // The nth place of the Z curve through the smallest square around the grid, without those outside of it: each quadrant
-  // is passed over as a whole while more places lie before the nth one than it has.
+  // The nth place of the Z curve through the smallest square around the grid, without those outside of it:
+  // each quadrant is passed over as a whole while more places lie before the nth one than it has.
   Place nth(uint32_t n, uint32_t columns, uint32_t rows) const override {
     Place at;
     for (uint32_t half = std::bit_ceil(std::max(columns, rows)) / 2; half > 0; half /= 2) {
@@ -44,7 +44,9 @@ class MortonOrder final : public WarpLayout {
   }
 
  private:
-  static uint32_t extent(uint32_t from, uint32_t length, uint32_t end) { return from >= end ? 0 : std::min(length, end - from); }
+  static uint32_t extent(uint32_t from, uint32_t length, uint32_t end) {
+    return from >= end ? 0 : std::min(length, end - from);
+  }
 };
 
 const Register<WarpLayout, MortonOrder> registered;

@@ -19,8 +19,8 @@ namespace {
 constexpr uint16_t kNoSlot = 0xffff;
 constexpr float kNeverSpill = std::numeric_limits<float>::infinity();
 
-// What it costs, in estimated executed instructions, to keep a value in memory rather than in a register. Below 0
-// for values that are saved and restored around more calls than they have accesses.
+// What it costs, in estimated executed instructions, to keep a value in memory rather than in a register.
+// Below 0 for values that are saved and restored around more calls than they have accesses.
 class SpillCosts {
  public:
   SpillCosts(const VirtualProgram& program, const Liveness& liveness, const std::vector<float>& weights,
@@ -59,10 +59,15 @@ class SpillCosts {
 // One attempt to colour one file.
 class Colouring {
  public:
-  Colouring(const InterferenceGraph& graph, const std::vector<RegisterClass>& classes, const SpillCosts& costs,
-            uint32_t max_registers)
-      : graph_(graph), classes_(classes), costs_(costs), max_registers_(max_registers),
-        slot_(classes.size(), kNoSlot), degree_(classes.size()), state_(classes.size(), State::Waiting) {}
+  Colouring(const InterferenceGraph& graph, const std::vector<RegisterClass>& classes,
+            const SpillCosts& costs, uint32_t max_registers)
+      : graph_(graph),
+        classes_(classes),
+        costs_(costs),
+        max_registers_(max_registers),
+        slot_(classes.size(), kNoSlot),
+        degree_(classes.size()),
+        state_(classes.size(), State::Waiting) {}
 
   // True when every value has a slot; else spilled() says what to spill, or is empty: there is no way.
   bool run() {
@@ -131,8 +136,8 @@ class Colouring {
     for (VirtualRegister r : graph_.nodes()) {
       if (state_[r] != State::Waiting) continue;
       const float cost = costs_.of(r) / float(degree_[r] + 1);
-      const bool tie_by_size = best != kNoRegister && cost == best_cost && classes_[r] == RegisterClass::B32 &&
-                               classes_[best] == RegisterClass::B64;
+      const bool tie_by_size = best != kNoRegister && cost == best_cost &&
+                               classes_[r] == RegisterClass::B32 && classes_[best] == RegisterClass::B64;
       if (best != kNoRegister && cost >= best_cost && !tie_by_size) continue;
       best = r;
       best_cost = cost;
@@ -154,7 +159,8 @@ class Colouring {
     if (slot < 0) return false;
     if (c == RegisterClass::Predicate) return slot < isa::kNumPredicates && !taken[size_t(slot)];
     if (c == RegisterClass::B32) return slot >= 1 && slot < int(max_registers_) && !taken[size_t(slot)];
-    return slot >= 2 && slot % 2 == 0 && slot + 1 < int(max_registers_) && !taken[size_t(slot)] && !taken[size_t(slot) + 1];
+    return slot >= 2 && slot % 2 == 0 && slot + 1 < int(max_registers_) && !taken[size_t(slot)] &&
+           !taken[size_t(slot) + 1];
   }
 
   uint16_t choose(VirtualRegister r) {
@@ -234,9 +240,10 @@ bool colour_file(VirtualProgram& program, RegisterFile file, uint32_t max_regist
     const bool done = colouring.run();
     if (!done && how == Coalescing::All) continue;
     if (!done && colouring.spilled().empty())
-      throw UserError(SourceLocation{program.name},
-                      fmt::format("an instruction needs more values at once than fit into {} registers", max_registers),
-                      "raise max_registers; rt.trace alone reads up to 17");
+      throw UserError(
+          SourceLocation{program.name},
+          fmt::format("an instruction needs more values at once than fit into {} registers", max_registers),
+          "raise max_registers; rt.trace alone reads up to 17");
     std::vector<bool> chosen(program.registers.size());
     for (VirtualRegister r : colouring.spilled()) chosen[r] = true;
     SpillPlan plan{std::vector<VirtualRegister>(program.registers.size(), kNoRegister), &unspillable};
@@ -258,8 +265,9 @@ bool colour_file(VirtualProgram& program, RegisterFile file, uint32_t max_regist
 
 Allocation allocate(VirtualProgram& program, uint32_t max_registers, const Ops& ops) {
   if (max_registers < kFewestRegisters || max_registers > uint32_t(isa::kMaxRegisters))
-    throw UserError(SourceLocation{program.name}, fmt::format("max_registers is {}, expected {} to {}", max_registers,
-                                                              kFewestRegisters, isa::kMaxRegisters));
+    throw UserError(SourceLocation{program.name},
+                    fmt::format("max_registers is {}, expected {} to {}", max_registers, kFewestRegisters,
+                                isa::kMaxRegisters));
   Allocation out;
   std::vector<bool> unspillable(program.registers.size());
   for (RegisterFile file : {RegisterFile::Predicates, RegisterFile::Registers})

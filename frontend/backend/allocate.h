@@ -14,8 +14,9 @@ struct Allocation {
 
 inline constexpr uint32_t kFewestRegisters = 8;  // below, one store of a vector and its address do not fit
 
-// Gives every virtual register a place below `max_registers`, %r0 left out, 64-bit values at even places. Inserts
-// spill code and grows program.local_bytes where needed. UserError when an instruction needs more at once.
+// Gives every virtual register a place below `max_registers`, %r0 left out, 64-bit values at even places.
+// Inserts spill code and grows program.local_bytes where needed. UserError when an instruction needs more at
+// once.
 Allocation allocate(VirtualProgram& program, uint32_t max_registers, const Ops& ops);
 
 }  // namespace glint::frontend

@@ -32,9 +32,9 @@ class BranchCleaner {
   bool is_branch(const Coded& c) const { return c.inst.op == ops_.bra; }
   bool leaves(const Coded& c) const {
     const isa::Effect effect = isa::op_table()[c.inst.op].effect;
-    return !is_guarded(c) && (effect == isa::Effect::Branch || effect == isa::Effect::Exit ||
-                              effect == isa::Effect::Return || effect == isa::Effect::Ignore ||
-                              effect == isa::Effect::Terminate);
+    return !is_guarded(c) &&
+           (effect == isa::Effect::Branch || effect == isa::Effect::Exit || effect == isa::Effect::Return ||
+            effect == isa::Effect::Ignore || effect == isa::Effect::Terminate);
   }
   bool falls_through(size_t block) const { return code_[block].empty() || !leaves(code_[block].back()); }
   size_t first_code(size_t block) const {
@@ -92,7 +92,8 @@ class BranchCleaner {
     }
     if (block.size() < 2) return false;
     Coded& choice = block[block.size() - 2];
-    if (!is_branch(choice) || !is_guarded(choice) || !is_branch(block.back()) || is_guarded(block.back())) return false;
+    if (!is_branch(choice) || !is_guarded(choice) || !is_branch(block.back()) || is_guarded(block.back()))
+      return false;
     if (goes_next(choice)) {
       choice.inst.guard ^= isa::kGuardNegate;
       choice.target = block.back().target;
@@ -105,7 +106,8 @@ class BranchCleaner {
     return true;
   }
 
-  // Edges that lead to each block by a branch, and ssy instructions that name it; empty blocks pass theirs on.
+  // Edges that lead to each block by a branch, and ssy instructions that name it; empty blocks pass theirs
+  // on.
   struct Edges {
     uint32_t branches = 0, ssys = 0;
     size_t from = 0;  // block of the last branch
@@ -165,8 +167,8 @@ class BranchCleaner {
     return changed;
   }
 
-  // `bra H` at the end of a loop, where H is a few plain instructions and `@p bra out`, falling into the body: a copy of
-  // them with `@!p bra body` takes the branch's place.
+  // `bra H` at the end of a loop, where H is a few plain instructions and `@p bra out`, falling into the
+  // body: a copy of them with `@!p bra body` takes the branch's place.
   bool rotate_loops() {
     constexpr size_t kLongestTest = 5;  // instructions copied, the branch included
     bool changed = false;
@@ -175,11 +177,15 @@ class BranchCleaner {
       if (block.empty() || !is_branch(block.back()) || is_guarded(block.back())) continue;
       const size_t head = first_code(block.back().target);
       if (head > b || head == code_.size()) continue;
-      const auto test = std::find_if(code_[head].begin(), code_[head].end(), [&](const Coded& c) { return is_branch(c); });
+      const auto test =
+          std::find_if(code_[head].begin(), code_[head].end(), [&](const Coded& c) { return is_branch(c); });
       const size_t length = size_t(test - code_[head].begin()) + 1;
       if (test == code_[head].end() || !is_guarded(*test) || length > kLongestTest) continue;
       if (first_code(test->target) <= head) continue;
-      if (!std::all_of(code_[head].begin(), test, [&](const Coded& c) { return isa::op_table()[c.inst.op].effect == isa::Effect::None || isa::op_table()[c.inst.op].effect == isa::Effect::Load; }))
+      if (!std::all_of(code_[head].begin(), test, [&](const Coded& c) {
+            return isa::op_table()[c.inst.op].effect == isa::Effect::None ||
+                   isa::op_table()[c.inst.op].effect == isa::Effect::Load;
+          }))
         continue;
       const BlockId body = split_behind(head, length);
       if (body == kNoBlock) continue;
@@ -197,7 +203,8 @@ class BranchCleaner {
     return changed;
   }
 
-  // Splits a block behind its first `length` instructions; the rest moves to the block behind it, which must be free.
+  // Splits a block behind its first `length` instructions; the rest moves to the block behind it, which must
+  // be free.
   BlockId split_behind(size_t block, size_t length) {
     if (length == code_[block].size()) {
       const size_t next = first_code(block + 1);
@@ -215,6 +222,8 @@ class BranchCleaner {
 
 }  // namespace
 
-void clean_branches(Code& code, const Ops& ops) { BranchCleaner(code, ops).run(); }
+void clean_branches(Code& code, const Ops& ops) {
+  BranchCleaner(code, ops).run();
+}
 
 }  // namespace glint::frontend

@@ -20,8 +20,8 @@ using Code = std::vector<std::vector<Coded>>;  // one a block, in layout order
 //   branches to branches go straight to the end; branches to the next instruction disappear
 //   `@p bra A; bra B; A:` becomes `@!p bra B; A:`
 //   unreachable blocks are emptied; a block that only its predecessor in layout enters joins that one
-//   `ssy M` and the `join` at M disappear when all lanes reach M over one edge out of the block of the ssy: they have
-//   never parted
+//   `ssy M` and the `join` at M disappear when all lanes reach M over one edge out of the block of the ssy:
+//   they have never parted
 // Last, a loop that tests at its top gets a second test at its bottom, which saves a branch an iteration.
 void clean_branches(Code& code, const Ops& ops);
 

@@ -17,14 +17,17 @@ using Operand = VirtualOperand;
 
 constexpr uint32_t kFrameAlignment = 16;  // bytes: a vector of four words lies in one 16-byte piece
 
-uint32_t round_up(uint32_t bytes) { return (bytes + kFrameAlignment - 1) / kFrameAlignment * kFrameAlignment; }
+uint32_t round_up(uint32_t bytes) {
+  return (bytes + kFrameAlignment - 1) / kFrameAlignment * kFrameAlignment;
+}
 
 // Physical registers that hold the region's values, ascending. Values merged by the allocator share one.
-std::vector<uint16_t> registers_of(const CallRegion& region, const VirtualProgram& program, const Allocation& allocation) {
+std::vector<uint16_t> registers_of(const CallRegion& region, const VirtualProgram& program,
+                                   const Allocation& allocation) {
   std::bitset<isa::kMaxRegisters + 1> used;
   region.live.for_each([&](VirtualRegister r) {
-    // A predicate that is live only now was not when keep_predicates_across_calls looked: spilling has given guards new
-    // names since, so a value that no lane reads again looks as if some lanes might.
+    // A predicate that is live only now was not when keep_predicates_across_calls looked: spilling has given
+    // guards new names since, so a value that no lane reads again looks as if some lanes might.
     if (program.registers[r] == RegisterClass::Predicate) return;
     used.set(allocation.slot[r]);
     if (program.registers[r] == RegisterClass::B64) used.set(allocation.slot[r] + 1u);
@@ -71,15 +74,16 @@ void lower_frame_address(VirtualInst& inst, uint32_t frame) {
   if (!is_real(inst)) return;
   for_each_slot(row_of(inst), [&](size_t slot, isa::OperandKind kind) {
     if (inst.operands[slot].kind != Operand::Kind::StackPointer) return;
-    GLINT_CHECK(kind == isa::OperandKind::Address32, "the stack pointer is read as a value inside a call region ({})",
-                row_of(inst).name);
+    GLINT_CHECK(kind == isa::OperandKind::Address32,
+                "the stack pointer is read as a value inside a call region ({})", row_of(inst).name);
     inst.imm -= int32_t(frame);
   });
 }
 
 void move_stack_pointer(std::vector<VirtualInst>& out, uint16_t op, uint32_t frame, const isa::Line& line) {
   if (frame == 0) return;
-  out.push_back(make_inst(op, {Operand::stack_pointer(), Operand::stack_pointer(), Operand::value(frame)}, line));
+  out.push_back(
+      make_inst(op, {Operand::stack_pointer(), Operand::stack_pointer(), Operand::value(frame)}, line));
 }
 
 }  // namespace
@@ -91,7 +95,8 @@ void demote_predicates(VirtualProgram& program, const Ops& ops) {
   std::vector<float> gain(program.registers.size());  // estimated executed instructions
   const std::vector<float> weights = block_weights(program);
   for (const CallRegion& region : find_call_regions(program, find_liveness(program)))
-    region.live.for_each([&](VirtualRegister r) { gain[r] += 2 * weights[region.save.block]; });  // selp and setp
+    region.live.for_each(
+        [&](VirtualRegister r) { gain[r] += 2 * weights[region.save.block]; });  // selp and setp
   for (BlockId b = 0; b < program.blocks.size(); ++b)
     for (const VirtualInst& inst : program.blocks[b].code) {
       for_each_def(inst, [&](VirtualRegister r) { gain[r] -= weights[b]; });

@@ -8,9 +8,13 @@
 
 namespace glint::frontend {
 
-// By register. Holds as long as instructions change in place only; a pass that changes operands keeps the counts.
+// By register. Holds as long as instructions change in place only; a pass that changes operands keeps the
+// counts.
 struct DefUse {
-  explicit DefUse(VirtualProgram& program) : definitions(program.registers.size()), uses(program.registers.size()), last(program.registers.size()) {
+  explicit DefUse(VirtualProgram& program)
+      : definitions(program.registers.size()),
+        uses(program.registers.size()),
+        last(program.registers.size()) {
     for (VirtualBlock& block : program.blocks)
       for (VirtualInst& inst : block.code) {
         for_each_def(inst, [&](VirtualRegister r) {
@@ -21,8 +25,11 @@ struct DefUse {
       }
   }
 
-  // The one definition of a register; nothing when it has several or a guarded one, and of what is no register.
-  VirtualInst* definition(const VirtualOperand& o) const { return is_register(o) && definitions[o.reg] == 1 ? last[o.reg] : nullptr; }
+  // The one definition of a register; nothing when it has several or a guarded one, and of what is no
+  // register.
+  VirtualInst* definition(const VirtualOperand& o) const {
+    return is_register(o) && definitions[o.reg] == 1 ? last[o.reg] : nullptr;
+  }
   bool is_used_once(const VirtualOperand& o) const { return is_register(o) && uses[o.reg] == 1; }
 
   std::vector<uint32_t> definitions, uses;

@@ -71,8 +71,8 @@ class Encoder {
       out.inst.operand[slot] = slot_of(inst.operands[slot], kind, row);
       slots = slot + 1;
     });
-    GLINT_CHECK(slots == inst.operands.size(), "'{}': {} takes {} operands, it has {}", program_.name, row.name, slots,
-                inst.operands.size());
+    GLINT_CHECK(slots == inst.operands.size(), "'{}': {} takes {} operands, it has {}", program_.name,
+                row.name, slots, inst.operands.size());
     return out;
   }
 
@@ -87,12 +87,15 @@ class Encoder {
         return isa::Slot(isa::kRegisterBank + slot);
       }
       case VirtualOperand::Kind::Constant:
-        return kind == isa::OperandKind::Src64 || kind == isa::OperandKind::Address64 ? constants_.pair(operand.constant)
-                                                                                      : constants_.word(uint32_t(operand.constant));
+        return kind == isa::OperandKind::Src64 || kind == isa::OperandKind::Address64
+                   ? constants_.pair(operand.constant)
+                   : constants_.word(uint32_t(operand.constant));
       case VirtualOperand::Kind::Special:
         return isa::Slot(isa::kSpecialBank + isa::Slot(operand.special));
-      case VirtualOperand::Kind::StackPointer: return isa::kStackPointer;
-      case VirtualOperand::Kind::None: break;
+      case VirtualOperand::Kind::StackPointer:
+        return isa::kStackPointer;
+      case VirtualOperand::Kind::None:
+        break;
     }
     GLINT_PANIC("'{}': {} has an empty operand", program_.name, row.name);
   }

@@ -10,8 +10,8 @@ namespace glint::frontend {
 // Constant rows of a program, each value once.
 class ConstantTable {
  public:
-  isa::Slot word(uint32_t value);   // one row
-  isa::Slot pair(uint64_t value);   // two consecutive rows, low half first
+  isa::Slot word(uint32_t value);  // one row
+  isa::Slot pair(uint64_t value);  // two consecutive rows, low half first
   std::vector<uint32_t> take() { return std::move(rows_); }
 
  private:
@@ -20,9 +20,9 @@ class ConstantTable {
   std::map<uint64_t, isa::Slot> pairs_;
 };
 
-// Encodes `program`, in which no SaveLive or RestoreLive is left. Instructions that the allocation has made useless
-// (moves onto themselves), blocks that control cannot reach and branches to the next instruction are left out;
-// branches to branches go straight to the end.
+// Encodes `program`, in which no SaveLive or RestoreLive is left. Instructions that the allocation has made
+// useless (moves onto themselves), blocks that control cannot reach and branches to the next instruction are
+// left out; branches to branches go straight to the end.
 isa::Program emit(const VirtualProgram& program, const Allocation& allocation, const Ops& ops);
 
 }  // namespace glint::frontend

@@ -31,13 +31,15 @@ class Converter {
 
  private:
   struct Selection {
-    size_t ssy = 0, branch = 0;             // indices in the head's code
+    size_t ssy = 0, branch = 0;  // indices in the head's code
     BlockId taken = kNoBlock, other = kNoBlock, merge = kNoBlock;
     VirtualRegister condition = kNoRegister;
-    bool negate = false;                    // of the branch
+    bool negate = false;  // of the branch
   };
 
-  bool is_plain_branch(const VirtualInst& inst) const { return is_real(inst) && inst.op == ops_.bra && !is_guarded(inst); }
+  bool is_plain_branch(const VirtualInst& inst) const {
+    return is_real(inst) && inst.op == ops_.bra && !is_guarded(inst);
+  }
 
   // The selection that ends the block, if one does.
   bool find(BlockId head, Selection& out) const {
@@ -52,7 +54,9 @@ class Converter {
     out.negate = code[out.branch].guard_negate;
     for (out.ssy = out.branch; out.ssy-- > 0;)
       if (!is_movable(code[out.ssy])) break;
-    if (out.ssy >= out.branch || !is_real(code[out.ssy]) || code[out.ssy].op != ops_.ssy || is_guarded(code[out.ssy])) return false;
+    if (out.ssy >= out.branch || !is_real(code[out.ssy]) || code[out.ssy].op != ops_.ssy ||
+        is_guarded(code[out.ssy]))
+      return false;
     out.merge = code[out.ssy].target;
     return out.merge != head && out.taken != out.other;
   }
@@ -61,7 +65,9 @@ class Converter {
   bool arm(BlockId block, BlockId head, const Selection& selection, Instructions& out) const {
     if (block == selection.merge) return true;
     const VirtualBlock& b = program_.blocks[block];
-    if (predecessors_[block] != std::vector<BlockId>{head} || b.successors != std::vector<BlockId>{selection.merge}) return false;
+    if (predecessors_[block] != std::vector<BlockId>{head} ||
+        b.successors != std::vector<BlockId>{selection.merge})
+      return false;
     if (ssys_[block] != 0) return false;
     out = b.code;
     if (!out.empty() && is_plain_branch(out.back())) out.pop_back();
@@ -76,8 +82,8 @@ class Converter {
     return true;
   }
 
-  // `add t, a, b; mov x, t` is `add x, a, b` when nothing else reads t, and nothing between touches x. Temporaries
-  // of an arm that anything outside reads are not renamed.
+  // `add t, a, b; mov x, t` is `add x, a, b` when nothing else reads t, and nothing between touches x.
+  // Temporaries of an arm that anything outside reads are not renamed.
   void write_results_directly(Instructions& arm) const {
     for (size_t m = 0; m < arm.size(); ++m) {
       if (!ops_.is_move(arm[m].op) || !is_register(arm[m].operands[1])) continue;
@@ -85,7 +91,10 @@ class Converter {
       if (count(from) != 2) continue;  // one definition and this use
       for (size_t d = m; d-- > 0;) {
         bool defines = false, touches = false;
-        for_each_def(arm[d], [&](VirtualRegister r) { defines |= r == from; touches |= r == to; });
+        for_each_def(arm[d], [&](VirtualRegister r) {
+          defines |= r == from;
+          touches |= r == to;
+        });
         if (defines) {
           if (touches) break;
           for_each_slot(row_of(arm[d]), [&](size_t slot, isa::OperandKind kind) {
@@ -117,7 +126,8 @@ class Converter {
     Selection s;
     if (!find(head, s) || ssys_[s.merge] != 1) return false;
     const VirtualBlock& merge = program_.blocks[s.merge];
-    if (merge.code.empty() || !is_real(merge.code.front()) || merge.code.front().op != ops_.join) return false;
+    if (merge.code.empty() || !is_real(merge.code.front()) || merge.code.front().op != ops_.join)
+      return false;
     for (BlockId from : predecessors_[s.merge])
       if (from != head && from != s.taken && from != s.other) return false;
     Instructions taken, other;
@@ -146,7 +156,8 @@ class Converter {
     block.code.insert(block.code.end(), selected.begin(), selected.end());
     block.code.insert(block.code.end(), merge.code.begin() + 1, merge.code.end());
     if (!ends(block.code)) {
-      block.code.push_back(make_inst(ops_.bra, {}, block.code.empty() ? isa::Line{} : block.code.back().line));
+      block.code.push_back(
+          make_inst(ops_.bra, {}, block.code.empty() ? isa::Line{} : block.code.back().line));
       block.code.back().target = s.merge + 1;
     }
     block.successors = merge.successors;
@@ -166,14 +177,15 @@ class Converter {
            effect == isa::Effect::Ignore || effect == isa::Effect::Terminate;
   }
 
-  // True when all lanes may run `arm` before the lanes of `rest` run that one: it consists of moves to registers that
-  // `rest` writes too and does not read. Unguarded moves can be coalesced.
+  // True when all lanes may run `arm` before the lanes of `rest` run that one: it consists of moves to
+  // registers that `rest` writes too and does not read. Unguarded moves can be coalesced.
   bool may_run_first(const Instructions& arm, const Instructions& rest) const {
     for (const VirtualInst& inst : arm) {
       if (!ops_.is_move(inst.op)) return false;
       bool is_read = false;
       for (const Instructions* code : {&arm, &rest})
-        for (const VirtualInst& reader : *code) for_each_use(reader, [&](VirtualRegister r) { is_read |= r == inst.operands[0].reg; });
+        for (const VirtualInst& reader : *code)
+          for_each_use(reader, [&](VirtualRegister r) { is_read |= r == inst.operands[0].reg; });
       if (is_read || !is_written(rest, inst.operands[0])) return false;
     }
     return true;
@@ -204,8 +216,10 @@ class Converter {
       // A source made in an arm exists only under the guard.
       if (is_written(taken, a.operands[1]) || is_written(other, b.operands[1])) break;
       const auto& [yes, no] = s.negate ? std::pair{b, a} : std::pair{a, b};
-      out.insert(out.begin(), make_inst(a.op == ops_.mov_b64 ? ops_.selp_b64 : ops_.selp_b32,
-                                        {a.operands[0], yes.operands[1], no.operands[1], VirtualOperand::of(s.condition)}, a.line));
+      out.insert(out.begin(),
+                 make_inst(a.op == ops_.mov_b64 ? ops_.selp_b64 : ops_.selp_b32,
+                           {a.operands[0], yes.operands[1], no.operands[1], VirtualOperand::of(s.condition)},
+                           a.line));
       taken.pop_back();
       other.pop_back();
     }
@@ -220,6 +234,8 @@ class Converter {
 
 }  // namespace
 
-void convert_selections(VirtualProgram& program, const Ops& ops) { Converter(program, ops).run(); }
+void convert_selections(VirtualProgram& program, const Ops& ops) {
+  Converter(program, ops).run();
+}
 
 }  // namespace glint::frontend

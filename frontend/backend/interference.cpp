@@ -13,9 +13,12 @@ uint32_t blocked_by(RegisterClass self, RegisterClass neighbour) {
 
 uint32_t slots_for(RegisterClass self, uint32_t max_registers) {
   switch (self) {
-    case RegisterClass::Predicate: return isa::kNumPredicates;
-    case RegisterClass::B32: return max_registers - 1;        // all but the stack pointer
-    case RegisterClass::B64: return max_registers / 2 - 1;    // all but (%r0, %r1)
+    case RegisterClass::Predicate:
+      return isa::kNumPredicates;
+    case RegisterClass::B32:
+      return max_registers - 1;  // all but the stack pointer
+    case RegisterClass::B64:
+      return max_registers / 2 - 1;  // all but (%r0, %r1)
   }
   return 0;
 }
@@ -36,7 +39,8 @@ InterferenceGraph::InterferenceGraph(const VirtualProgram& program, const Livene
     nodes_.push_back(r);
   }
   matrix_.resize(nodes_.size() * (nodes_.size() + 1) / 2 / 64 + 1);
-  for (BlockId b = 0; b < program.blocks.size(); ++b) scan_block(program, liveness.out[b], ops, b, weights[b]);
+  for (BlockId b = 0; b < program.blocks.size(); ++b)
+    scan_block(program, liveness.out[b], ops, b, weights[b]);
 }
 
 void InterferenceGraph::scan_block(const VirtualProgram& program, const RegisterSet& live_out, const Ops& ops,
@@ -46,9 +50,11 @@ void InterferenceGraph::scan_block(const VirtualProgram& program, const Register
   for (size_t i = code.size(); i-- > 0;) {
     const VirtualInst& inst = code[i];
     // The ends of a move hold the same value: that the source lives on is no reason to keep them apart.
-    const bool is_copy = is_real(inst) && ops.is_move(inst.op) && !is_guarded(inst) && is_register(inst.operands[1]);
+    const bool is_copy =
+        is_real(inst) && ops.is_move(inst.op) && !is_guarded(inst) && is_register(inst.operands[1]);
     add_edges(inst, walk.live(), is_copy ? inst.operands[1].reg : kNoRegister);
-    if (is_copy && has(inst.operands[0].reg)) moves_.push_back({inst.operands[0].reg, inst.operands[1].reg, weight});
+    if (is_copy && has(inst.operands[0].reg))
+      moves_.push_back({inst.operands[0].reg, inst.operands[1].reg, weight});
     if (is_real(inst)) note_wishes(inst, ops, weight);
     walk.step(inst);
   }
@@ -134,7 +140,8 @@ void InterferenceGraph::merge(VirtualRegister into, VirtualRegister gone) {
 }
 
 void InterferenceGraph::coalesce(Coalescing how, uint32_t max_registers, const std::vector<bool>& pinned) {
-  std::stable_sort(moves_.begin(), moves_.end(), [](const Move& a, const Move& b) { return a.weight > b.weight; });
+  std::stable_sort(moves_.begin(), moves_.end(),
+                   [](const Move& a, const Move& b) { return a.weight > b.weight; });
   for (const Move& move : moves_) {
     const VirtualRegister to = representative(move.to), from = representative(move.from);
     if (to == from || pinned[to] != pinned[from] || interfere(to, from)) continue;

@@ -30,7 +30,8 @@ size_t RegisterSet::size() const {
 }
 
 bool LiveWalk::is_conditional(VirtualRegister r) const {
-  return std::any_of(conditional_.begin(), conditional_.end(), [&](const Conditional& c) { return c.reg == r; });
+  return std::any_of(conditional_.begin(), conditional_.end(),
+                     [&](const Conditional& c) { return c.reg == r; });
 }
 
 bool LiveWalk::is_conditional(VirtualRegister r, const VirtualInst& inst) const {
@@ -86,7 +87,7 @@ Liveness find_liveness(const VirtualProgram& program) {
 }
 
 std::vector<float> block_weights(const VirtualProgram& program) {
-  constexpr float kTripsOfALoop = 8.0f;        // Choice: unknown trip counts count as 8
+  constexpr float kTripsOfALoop = 8.0f;  // Choice: unknown trip counts count as 8
   constexpr float kMost = 8.0f * 8.0f * 8.0f * 8.0f;
   std::vector<float> weights(program.blocks.size(), 1.0f);
   std::vector<BlockId> last_latch(program.blocks.size(), kNoBlock);  // of the loop that a block heads
@@ -95,7 +96,8 @@ std::vector<float> block_weights(const VirtualProgram& program) {
       if (next <= b) last_latch[next] = b;
   for (BlockId head = 0; head < program.blocks.size(); ++head) {
     if (last_latch[head] == kNoBlock) continue;
-    for (BlockId b = head; b <= last_latch[head]; ++b) weights[b] = std::min(weights[b] * kTripsOfALoop, kMost);
+    for (BlockId b = head; b <= last_latch[head]; ++b)
+      weights[b] = std::min(weights[b] * kTripsOfALoop, kMost);
   }
   return weights;
 }
@@ -114,8 +116,9 @@ std::vector<bool> enters_in_region(const VirtualProgram& program) {
       if (inst.kind == VirtualInst::Kind::RestoreLive) now = kOutside;
     }
     for (BlockId next : program.blocks[b].successors) {
-      GLINT_CHECK(state[next] == kUnknown || state[next] == now, "'{}': block '{}' lies inside and outside a call region",
-                  program.name, program.blocks[next].name);
+      GLINT_CHECK(state[next] == kUnknown || state[next] == now,
+                  "'{}': block '{}' lies inside and outside a call region", program.name,
+                  program.blocks[next].name);
       if (state[next] != kUnknown) continue;
       state[next] = now;
       work.push_back(next);
@@ -137,12 +140,13 @@ Place find_restore(const VirtualProgram& program, Place save) {
     const Place at = work.back();
     work.pop_back();
     const VirtualBlock& block = program.blocks[at.block];
-    const auto restore = std::find_if(block.code.begin() + std::ptrdiff_t(at.index), block.code.end(), [](const VirtualInst& inst) {
-      return inst.kind == VirtualInst::Kind::RestoreLive;
-    });
+    const auto restore =
+        std::find_if(block.code.begin() + std::ptrdiff_t(at.index), block.code.end(),
+                     [](const VirtualInst& inst) { return inst.kind == VirtualInst::Kind::RestoreLive; });
     if (restore != block.code.end()) {
       const Place here{at.block, size_t(restore - block.code.begin())};
-      GLINT_CHECK(found.block == kNoBlock || found == here, "'{}': a SaveLive reaches two RestoreLive", program.name);
+      GLINT_CHECK(found.block == kNoBlock || found == here, "'{}': a SaveLive reaches two RestoreLive",
+                  program.name);
       found = here;
       continue;
     }

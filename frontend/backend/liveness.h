@@ -1,8 +1,8 @@
 // Which virtual registers are live where, and the other facts about control flow that the backend needs.
 //
-// A lane is a thread of its own to this analysis: ops write only the lanes that execute them, so the values of
-// waiting lanes stay in their registers whatever the others do, and liveness along each lane's path suffices.
-// SPDX-License-Identifier: Apache-2.0
+// A lane is a thread of its own to this analysis: ops write only the lanes that execute them, so the values
+// of waiting lanes stay in their registers whatever the others do, and liveness along each lane's path
+// suffices. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
 #include <cstdint>
@@ -21,7 +21,7 @@ class RegisterSet {
   bool contains(VirtualRegister r) const { return (words_[r / 64] >> (r % 64)) & 1; }
   void insert(VirtualRegister r) { words_[r / 64] |= uint64_t{1} << (r % 64); }
   void erase(VirtualRegister r) { words_[r / 64] &= ~(uint64_t{1} << (r % 64)); }
-  bool unite(const RegisterSet& other);        // true when it grew
+  bool unite(const RegisterSet& other);  // true when it grew
   void intersect(const RegisterSet& other);
   size_t size() const;
 
@@ -45,8 +45,9 @@ Liveness find_liveness(const VirtualProgram& program);
 
 // Walks a block backwards, keeping the set of registers that are live before what it has passed.
 //
-// A guarded write does not end the old value, since lanes whose guard is false keep it, unless those lanes never look:
-// because every read behind it stands under the same guard, or because a write under the opposite guard follows.
+// A guarded write does not end the old value, since lanes whose guard is false keep it, unless those lanes
+// never look: because every read behind it stands under the same guard, or because a write under the opposite
+// guard follows.
 class LiveWalk {
  public:
   explicit LiveWalk(RegisterSet live_out) : live_(std::move(live_out)) {}
@@ -71,7 +72,8 @@ class LiveWalk {
 // Choice: a backward branch in layout order makes a loop of everything between its ends.
 std::vector<float> block_weights(const VirtualProgram& program);
 
-// For each block, whether control enters it between a SaveLive and its RestoreLive. Our own bug if paths disagree.
+// For each block, whether control enters it between a SaveLive and its RestoreLive. Our own bug if paths
+// disagree.
 std::vector<bool> enters_in_region(const VirtualProgram& program);
 
 // The place of an instruction.

@@ -20,8 +20,7 @@ bool is_fixed(isa::Special s) {
 // One sweep over the program. Instructions change in place, none is added or removed.
 class Sweep {
  public:
-  Sweep(VirtualProgram& program, const Ops& ops)
-      : program_(program), ops_(ops), registers_(program) {}
+  Sweep(VirtualProgram& program, const Ops& ops) : program_(program), ops_(ops), registers_(program) {}
 
   bool run() {
     const std::vector<bool> enters_inside = enters_in_region(program_);
@@ -46,10 +45,11 @@ class Sweep {
   const VirtualInst* definition(const Operand& o) const { return registers_.definition(o); }
   // True when the operand means the same at every place that its user's definition reaches.
   bool is_stable(const Operand& o) const {
-    return is_constant(o) || definition(o) != nullptr || (o.kind == Operand::Kind::Special && is_fixed(o.special));
+    return is_constant(o) || definition(o) != nullptr ||
+           (o.kind == Operand::Kind::Special && is_fixed(o.special));
   }
-  // True when the operand still means at `inst` what it meant at `source`: it is stable, or both stand in one block and
-  // nothing between them writes it.
+  // True when the operand still means at `inst` what it meant at `source`: it is stable, or both stand in one
+  // block and nothing between them writes it.
   bool is_unchanged(const Operand& o, const VirtualInst& source, const VirtualInst& inst) const {
     if (is_stable(o)) return true;
     const VirtualInst* const first = block_->code.data();
@@ -71,8 +71,8 @@ class Sweep {
   void forward_guard(VirtualInst& inst) {
     if (!is_guarded(inst)) return;
     const VirtualInst* source = definition(Operand::of(inst.guard));
-    if (!source || (source->op != ops_.not_pred && source->op != ops_.mov_pred) || !is_register(source->operands[1]) ||
-        !is_stable(source->operands[1]))
+    if (!source || (source->op != ops_.not_pred && source->op != ops_.mov_pred) ||
+        !is_register(source->operands[1]) || !is_stable(source->operands[1]))
       return;
     --registers_.uses[inst.guard];
     inst.guard = source->operands[1].reg;
@@ -92,9 +92,10 @@ class Sweep {
     if (!source) return;
     if (ops_.is_move(source->op)) {
       const Operand& from = source->operands[1];
-      if (is_stable(from) && !(kind == isa::OperandKind::SrcPred && !is_register(from))) replace(operand, from);
-    } else if (source->op == ops_.not_pred && (inst.op == ops_.selp_b32 || inst.op == ops_.selp_b64) && slot == 3 &&
-               is_stable(source->operands[1])) {
+      if (is_stable(from) && !(kind == isa::OperandKind::SrcPred && !is_register(from)))
+        replace(operand, from);
+    } else if (source->op == ops_.not_pred && (inst.op == ops_.selp_b32 || inst.op == ops_.selp_b64) &&
+               slot == 3 && is_stable(source->operands[1])) {
       std::swap(inst.operands[1], inst.operands[2]);
       replace(operand, source->operands[1]);
     }
@@ -132,10 +133,12 @@ class Sweep {
   // 32-bit addition did not.
   bool add_displacement(VirtualInst& inst, int64_t bytes, isa::OperandKind kind) {
     constexpr int64_t kMostLocal = 1 << 24;
-    constexpr int64_t kMost = std::numeric_limits<int32_t>::max(), kLeast = std::numeric_limits<int32_t>::min();
+    constexpr int64_t kMost = std::numeric_limits<int32_t>::max(),
+                      kLeast = std::numeric_limits<int32_t>::min();
     if (bytes > kMost || bytes < kLeast) return false;
     const int64_t sum = inst.imm + bytes;
-    if (kind == isa::OperandKind::Address32 ? (sum < 0 || sum >= kMostLocal || bytes < 0) : (sum > kMost || sum < kLeast))
+    if (kind == isa::OperandKind::Address32 ? (sum < 0 || sum >= kMostLocal || bytes < 0)
+                                            : (sum > kMost || sum < kLeast))
       return false;
     inst.imm = int32_t(sum);
     return true;
@@ -163,7 +166,8 @@ class Sweep {
   }
 
   bool fuse_narrow(VirtualInst& inst, const VirtualInst& source, const Operand& addend) {
-    if (source.op != ops_.mul_lo_u32 && source.op != ops_.mul_lo_s32 && source.op != ops_.shl_b32) return false;
+    if (source.op != ops_.mul_lo_u32 && source.op != ops_.mul_lo_s32 && source.op != ops_.shl_b32)
+      return false;
     const Operand a = source.operands[1];
     Operand b = source.operands[2];
     if (source.op == ops_.shl_b32) {
@@ -194,8 +198,11 @@ class Sweep {
       return true;
     }
     if (shift != 0 || (source->op != ops_.mul_wide_u32 && source->op != ops_.mul_wide_s32)) return false;
-    if (!is_unchanged(source->operands[1], *source, inst) || !is_unchanged(source->operands[2], *source, inst)) return false;
-    become(inst, is_signed ? ops_.mad_wide_s32 : ops_.mad_wide_u32, {source->operands[1], source->operands[2], addend});
+    if (!is_unchanged(source->operands[1], *source, inst) ||
+        !is_unchanged(source->operands[2], *source, inst))
+      return false;
+    become(inst, is_signed ? ops_.mad_wide_s32 : ops_.mad_wide_u32,
+           {source->operands[1], source->operands[2], addend});
     return true;
   }
 
@@ -203,7 +210,8 @@ class Sweep {
   void split_pair(VirtualInst& inst) {
     if (inst.op != ops_.low_word) return;
     const VirtualInst* source = definition(inst.operands[1]);
-    if (!source || (source->op != ops_.pack && source->op != ops_.widen_u32 && source->op != ops_.widen_s32)) return;
+    if (!source || (source->op != ops_.pack && source->op != ops_.widen_u32 && source->op != ops_.widen_s32))
+      return;
     if (is_stable(source->operands[1])) become(inst, ops_.mov_b32, {source->operands[1]});
   }
 
@@ -224,18 +232,25 @@ bool unpack_packs(VirtualProgram& program, const Ops& ops) {
         definitions[r] += is_guarded(inst) ? 2 : 1;
         if (inst.op == ops.pack) packed[r] = {inst.operands[1], inst.operands[2]};
       });
-  const auto is_stable = [&](const Operand& o) { return is_constant(o) || (is_register(o) && definitions[o.reg] == 1); };
+  const auto is_stable = [&](const Operand& o) {
+    return is_constant(o) || (is_register(o) && definitions[o.reg] == 1);
+  };
   bool changed = false;
   for (VirtualBlock& block : program.blocks) {
     std::vector<VirtualInst> code;
     for (VirtualInst& inst : block.code) {
-      const bool is_unpack = is_real(inst) && inst.op == ops.unpack && !is_guarded(inst) && is_register(inst.operands[2]);
-      const std::vector<Operand> from = is_unpack && definitions[inst.operands[2].reg] == 1 ? packed[inst.operands[2].reg] : std::vector<Operand>{};
-      if (from.empty() || !is_stable(from[0]) || !is_stable(from[1]) || definitions[inst.operands[0].reg] != 1) {
+      const bool is_unpack =
+          is_real(inst) && inst.op == ops.unpack && !is_guarded(inst) && is_register(inst.operands[2]);
+      const std::vector<Operand> from = is_unpack && definitions[inst.operands[2].reg] == 1
+                                            ? packed[inst.operands[2].reg]
+                                            : std::vector<Operand>{};
+      if (from.empty() || !is_stable(from[0]) || !is_stable(from[1]) ||
+          definitions[inst.operands[0].reg] != 1) {
         code.push_back(std::move(inst));
         continue;
       }
-      for (size_t k : {size_t{0}, size_t{1}}) code.push_back(make_inst(ops.mov_b32, {inst.operands[k], from[k]}, inst.line));
+      for (size_t k : {size_t{0}, size_t{1}})
+        code.push_back(make_inst(ops.mov_b32, {inst.operands[k], from[k]}, inst.line));
       changed = true;
     }
     block.code = std::move(code);

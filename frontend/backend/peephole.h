@@ -12,8 +12,9 @@ namespace glint::frontend {
 //   addresses              add.u64 a, b, 16; [a + 4]    -> [b + 20]
 //   halves of packed pairs pack.b64 d, a, b; unpack {x, y}, d -> mov x, a; mov y, b
 //   dead code              pure ops (loads too) whose results nothing reads
-// Only registers with one unguarded definition take part: such a definition reaches all uses, and its operands, when
-// they are of that kind too, still hold the same values there. Floating-point arithmetic is never fused or reordered.
+// Only registers with one unguarded definition take part: such a definition reaches all uses, and its
+// operands, when they are of that kind too, still hold the same values there. Floating-point arithmetic is
+// never fused or reordered.
 void simplify_code(VirtualProgram& program, const Ops& ops);
 
 // Drops pure instructions whose results nothing reads. True when there were any.

@@ -10,29 +10,38 @@ namespace glint::frontend {
 namespace {
 
 // Cycles from issue to use that the order is tuned for. It does not change results, only how well latencies
-// overlap. Arithmetic: 4 cycles on Volta and later (Z. Jia et al., "Dissecting the NVIDIA Volta GPU architecture via
-// microbenchmarking", 2018, table 4.1); loads: an L1 hit of about 28 cycles (the same, table 3.1).
-// Choice: multi-pass and texture latencies are round numbers of the right order.
+// overlap. Arithmetic: 4 cycles on Volta and later (Z. Jia et al., "Dissecting the NVIDIA Volta GPU
+// architecture via microbenchmarking", 2018, table 4.1); loads: an L1 hit of about 28 cycles (the same,
+// table 3.1). Choice: multi-pass and texture latencies are round numbers of the right order.
 uint32_t latency_of(const VirtualInst& inst) {
   switch (row_of(inst).unit) {
     case isa::Unit::Int:
     case isa::Unit::Fp32:
     case isa::Unit::Fp16:
     case isa::Unit::Move:
-    case isa::Unit::Predicate: return 4;
-    case isa::Unit::Sfu: return 16;
+    case isa::Unit::Predicate:
+      return 4;
+    case isa::Unit::Sfu:
+      return 16;
     case isa::Unit::IntDiv:
     case isa::Unit::FpDiv:
-    case isa::Unit::Fp64Div: return 40;
-    case isa::Unit::Shuffle: return 24;
-    case isa::Unit::Fp64: return 16;
-    case isa::Unit::Const: return 8;
-    case isa::Unit::Lsu: return 28;
-    case isa::Unit::Tex: return 80;
+    case isa::Unit::Fp64Div:
+      return 40;
+    case isa::Unit::Shuffle:
+      return 24;
+    case isa::Unit::Fp64:
+      return 16;
+    case isa::Unit::Const:
+      return 8;
+    case isa::Unit::Lsu:
+      return 28;
+    case isa::Unit::Tex:
+      return 80;
     case isa::Unit::Branch:
     case isa::Unit::Barrier:
     case isa::Unit::RtUnit:
-    case isa::Unit::Count: return 1;
+    case isa::Unit::Count:
+      return 1;
   }
   return 1;
 }
@@ -46,9 +55,14 @@ struct Pressure {
 };
 
 Pressure pressure_of(RegisterClass c) {
-  return {c == RegisterClass::B64 ? 2 : c == RegisterClass::B32 ? 1 : 0, c == RegisterClass::Predicate ? 1 : 0};
+  return {c == RegisterClass::B64   ? 2
+          : c == RegisterClass::B32 ? 1
+                                    : 0,
+          c == RegisterClass::Predicate ? 1 : 0};
 }
-Pressure larger(Pressure a, Pressure b) { return {std::max(a.words, b.words), std::max(a.predicates, b.predicates)}; }
+Pressure larger(Pressure a, Pressure b) {
+  return {std::max(a.words, b.words), std::max(a.predicates, b.predicates)};
+}
 // Whether there is room for `growth` beside `now`; where nothing grows there always is.
 bool fits(Pressure now, Pressure growth, Pressure limit) {
   return (growth.words <= 0 || now.words + growth.words <= limit.words) &&
@@ -67,12 +81,16 @@ MemoryUse memory_use(const VirtualInst& inst) {
   MemoryUse use;
   if (row.effect == isa::Effect::SurfaceStore || row.effect == isa::Effect::SurfaceLoad ||
       row.effect == isa::Effect::Texture) {
-    // Choice: images and buffers may share memory, so texture and surface ops are ordered like global accesses.
+    // Choice: images and buffers may share memory, so texture and surface ops are ordered like global
+    // accesses.
     use = {true, row.effect == isa::Effect::SurfaceStore, false, isa::Space::Global, 0, 0};
-  } else if (row.effect == isa::Effect::Load || row.effect == isa::Effect::Store || row.effect == isa::Effect::Atomic) {
-    use = {true, row.effect != isa::Effect::Load, false, row.memory.space, inst.imm,
-           int64_t{inst.imm} + row.memory.bytes * row.memory.count};
-    for (const VirtualOperand& o : inst.operands) use.in_frame |= o.kind == VirtualOperand::Kind::StackPointer;
+  } else if (row.effect == isa::Effect::Load || row.effect == isa::Effect::Store ||
+             row.effect == isa::Effect::Atomic) {
+    use = {true,     row.effect != isa::Effect::Load,
+           false,    row.memory.space,
+           inst.imm, int64_t{inst.imm} + row.memory.bytes * row.memory.count};
+    for (const VirtualOperand& o : inst.operands)
+      use.in_frame |= o.kind == VirtualOperand::Kind::StackPointer;
   }
   return use;
 }
@@ -96,15 +114,21 @@ bool reads_clock(const VirtualInst& inst) {
 class Run {
  public:
   // `behind`: the guard of what follows the run, kNoRegister without.
-  Run(const VirtualProgram& program, std::vector<VirtualInst> code, RegisterSet live_out, uint32_t guard_latency, VirtualRegister behind)
-      : program_(program), code_(std::move(code)), live_out_(std::move(live_out)), guard_latency_(guard_latency), nodes_(code_.size()) {
+  Run(const VirtualProgram& program, std::vector<VirtualInst> code, RegisterSet live_out,
+      uint32_t guard_latency, VirtualRegister behind)
+      : program_(program),
+        code_(std::move(code)),
+        live_out_(std::move(live_out)),
+        guard_latency_(guard_latency),
+        nodes_(code_.size()) {
     LiveWalk walk(live_out_);
     for (size_t i = code_.size(); i-- > 0;) walk.step(code_[i]);
     live_in_ = walk.live();
     add_dependences();
     for (size_t i = code_.size(); i-- > 0;) {
       nodes_[i].height = latency_of(code_[i]);
-      for_each_def(code_[i], [&](VirtualRegister r) { nodes_[i].height += r == behind ? guard_latency_ : 0; });
+      for_each_def(code_[i],
+                   [&](VirtualRegister r) { nodes_[i].height += r == behind ? guard_latency_ : 0; });
       for (const Edge& edge : nodes_[i].after)
         nodes_[i].height = std::max(nodes_[i].height, edge.delay + nodes_[edge.to].height);
     }
@@ -115,8 +139,9 @@ class Run {
     const Pressure old_peak = peak(code_);
     std::vector<VirtualInst> ordered = list_schedule(comfortable);
     const Pressure new_peak = peak(ordered);
-    const bool is_worse = (new_peak.words > comfortable.words && new_peak.words > old_peak.words) ||
-                          (new_peak.predicates > comfortable.predicates && new_peak.predicates > old_peak.predicates);
+    const bool is_worse =
+        (new_peak.words > comfortable.words && new_peak.words > old_peak.words) ||
+        (new_peak.predicates > comfortable.predicates && new_peak.predicates > old_peak.predicates);
     return is_worse ? std::move(code_) : std::move(ordered);
   }
 
@@ -141,7 +166,8 @@ class Run {
   void add_dependences() {
     std::vector<std::pair<VirtualRegister, LastAccess>> accesses;  // sorted by register
     const auto access = [&](VirtualRegister r) -> LastAccess& {
-      const auto at = std::lower_bound(accesses.begin(), accesses.end(), r, [](const auto& a, VirtualRegister b) { return a.first < b; });
+      const auto at = std::lower_bound(accesses.begin(), accesses.end(), r,
+                                       [](const auto& a, VirtualRegister b) { return a.first < b; });
       if (at != accesses.end() && at->first == r) return at->second;
       return accesses.insert(at, {r, {}})->second;
     };
@@ -149,7 +175,8 @@ class Run {
     for (size_t i = 0; i < code_.size(); ++i) {
       for_each_use(code_[i], [&](VirtualRegister r) {
         LastAccess& last = access(r);
-        for (size_t w : last.writers) depend(w, i, latency_of(code_[w]) + (r == code_[i].guard ? guard_latency_ : 0));
+        for (size_t w : last.writers)
+          depend(w, i, latency_of(code_[w]) + (r == code_[i].guard ? guard_latency_ : 0));
         last.readers.push_back(i);
       });
       for_each_def(code_[i], [&](VirtualRegister r) {
@@ -165,7 +192,8 @@ class Run {
       const MemoryUse use = memory_use(code_[i]);
       if (!use.any) continue;
       for (const auto& [earlier, other] : memory)
-        if (must_stay_in_order(other, use)) depend(earlier, i, other.writes && !use.writes ? latency_of(code_[earlier]) : 1);
+        if (must_stay_in_order(other, use))
+          depend(earlier, i, other.writes && !use.writes ? latency_of(code_[earlier]) : 1);
       memory.emplace_back(i, use);
     }
   }
@@ -176,7 +204,9 @@ class Run {
     Pressure now = count(live), most = now;
     for (size_t i = code.size(); i-- > 0;) {
       Pressure with_dead_results = now;
-      for_each_def(code[i], [&](VirtualRegister r) { with_dead_results += live.contains(r) ? Pressure{} : pressure(r); });
+      for_each_def(code[i], [&](VirtualRegister r) {
+        with_dead_results += live.contains(r) ? Pressure{} : pressure(r);
+      });
       most = larger(most, with_dead_results);
       if (!is_guarded(code[i]))
         for_each_def(code[i], [&](VirtualRegister r) {
@@ -203,7 +233,8 @@ class Run {
   }
 
   // What becomes live less what dies when instruction `i` issues next.
-  Pressure growth(size_t i, const RegisterSet& live, const std::vector<std::pair<VirtualRegister, uint32_t>>& uses_left) const {
+  Pressure growth(size_t i, const RegisterSet& live,
+                  const std::vector<std::pair<VirtualRegister, uint32_t>>& uses_left) const {
     Pressure more;
     for_each_def(code_[i], [&](VirtualRegister r) {
       if (!live.contains(r)) more += pressure(r);
@@ -219,7 +250,8 @@ class Run {
 
   // Instructions still to come that read `r`.
   static uint32_t uses_of(const std::vector<std::pair<VirtualRegister, uint32_t>>& uses, VirtualRegister r) {
-    const auto at = std::lower_bound(uses.begin(), uses.end(), r, [](const auto& a, VirtualRegister b) { return a.first < b; });
+    const auto at = std::lower_bound(uses.begin(), uses.end(), r,
+                                     [](const auto& a, VirtualRegister b) { return a.first < b; });
     return at != uses.end() && at->first == r ? at->second : 0;
   }
 
@@ -235,7 +267,8 @@ class Run {
 
   std::vector<std::pair<VirtualRegister, uint32_t>> count_uses() const {
     std::vector<VirtualRegister> all;
-    for (const VirtualInst& inst : code_) for_each_distinct_use(inst, [&](VirtualRegister r) { all.push_back(r); });
+    for (const VirtualInst& inst : code_)
+      for_each_distinct_use(inst, [&](VirtualRegister r) { all.push_back(r); });
     std::sort(all.begin(), all.end());
     std::vector<std::pair<VirtualRegister, uint32_t>> uses;
     for (VirtualRegister r : all) {
@@ -272,24 +305,27 @@ class Run {
     return out;
   }
 
-  bool is_better(size_t a, Pressure a_growth, size_t b, Pressure b_growth, uint32_t cycle, Pressure now, Pressure comfortable) const {
+  bool is_better(size_t a, Pressure a_growth, size_t b, Pressure b_growth, uint32_t cycle, Pressure now,
+                 Pressure comfortable) const {
     const bool a_fits = fits(now, a_growth, comfortable), b_fits = fits(now, b_growth, comfortable);
     if (a_fits != b_fits) return a_fits;
     if (!a_fits || now.words >= comfortable.words) {  // no room: what frees most, else the old order
       if (a_growth.sum() != b_growth.sum()) return a_growth.sum() < b_growth.sum();
       return a < b;
     }
-    const uint32_t a_start = std::max(nodes_[a].earliest, cycle), b_start = std::max(nodes_[b].earliest, cycle);
+    const uint32_t a_start = std::max(nodes_[a].earliest, cycle),
+                   b_start = std::max(nodes_[b].earliest, cycle);
     if (a_start != b_start) return a_start < b_start;
     if (nodes_[a].height != nodes_[b].height) return nodes_[a].height > nodes_[b].height;
     if (a_growth.words != b_growth.words) return a_growth.words < b_growth.words;
     return a < b;
   }
 
-  void issue(size_t chosen, uint32_t cycle, RegisterSet& live, std::vector<std::pair<VirtualRegister, uint32_t>>& uses_left,
-             std::vector<size_t>& ready) {
+  void issue(size_t chosen, uint32_t cycle, RegisterSet& live,
+             std::vector<std::pair<VirtualRegister, uint32_t>>& uses_left, std::vector<size_t>& ready) {
     for_each_distinct_use(code_[chosen], [&](VirtualRegister r) {
-      const auto at = std::lower_bound(uses_left.begin(), uses_left.end(), r, [](const auto& a, VirtualRegister b) { return a.first < b; });
+      const auto at = std::lower_bound(uses_left.begin(), uses_left.end(), r,
+                                       [](const auto& a, VirtualRegister b) { return a.first < b; });
       if (--at->second == 0 && !live_out_.contains(r)) live.erase(r);
     });
     for_each_def(code_[chosen], [&](VirtualRegister r) { live.insert(r); });
@@ -310,7 +346,8 @@ class Run {
 }  // namespace
 
 void schedule(VirtualProgram& program, uint32_t max_registers, uint32_t guard_latency) {
-  // Room that allocation wants beyond the words that are live: the stack pointer, gaps between pairs, what it spills through.
+  // Room that allocation wants beyond the words that are live: the stack pointer, gaps between pairs, what it
+  // spills through.
   constexpr uint32_t kReserve = 4;
   constexpr size_t kShortestRun = 3, kLongestRun = 2000;  // longer ones are cut: the search is quadratic
   const uint32_t words = max_registers > 2 * kReserve ? max_registers - kReserve : max_registers / 2;
@@ -338,7 +375,8 @@ void schedule(VirtualProgram& program, uint32_t max_registers, uint32_t guard_la
       while (begin > 0 && moves[begin - 1] && end - begin < kLongestRun) --begin;
       if (end - begin >= kShortestRun) {
         const auto first = code.begin() + std::ptrdiff_t(begin), last = code.begin() + std::ptrdiff_t(end);
-        const std::vector<VirtualInst> ordered = Run(program, {first, last}, walk.live(), guard_latency, guard).schedule(comfortable);
+        const std::vector<VirtualInst> ordered =
+            Run(program, {first, last}, walk.live(), guard_latency, guard).schedule(comfortable);
         std::copy(ordered.begin(), ordered.end(), first);
       }
       while (end > begin) walk.step(code[--end]);

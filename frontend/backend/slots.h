@@ -34,11 +34,21 @@ struct Ops {
   bool is_move(uint16_t op) const { return op == mov_b32 || op == mov_b64 || op == mov_pred; }
 };
 
-inline const isa::OpRow& row_of(const VirtualInst& inst) { return isa::op_table()[inst.op]; }
-inline bool is_real(const VirtualInst& inst) { return inst.kind == VirtualInst::Kind::Real; }
-inline bool is_guarded(const VirtualInst& inst) { return inst.guard != kNoRegister; }
-inline bool is_register(const VirtualOperand& o) { return o.kind == VirtualOperand::Kind::Register; }
-inline bool is_constant(const VirtualOperand& o) { return o.kind == VirtualOperand::Kind::Constant; }
+inline const isa::OpRow& row_of(const VirtualInst& inst) {
+  return isa::op_table()[inst.op];
+}
+inline bool is_real(const VirtualInst& inst) {
+  return inst.kind == VirtualInst::Kind::Real;
+}
+inline bool is_guarded(const VirtualInst& inst) {
+  return inst.guard != kNoRegister;
+}
+inline bool is_register(const VirtualOperand& o) {
+  return o.kind == VirtualOperand::Kind::Register;
+}
+inline bool is_constant(const VirtualOperand& o) {
+  return o.kind == VirtualOperand::Kind::Constant;
+}
 
 // Calls visit(slot, kind) for each operand slot; parts of a vector come one by one as Dst32 or Src32.
 template <class Visit>

@@ -14,8 +14,8 @@ struct Home {
   bool planned = false;
   bool is_constant = false;
   uint64_t constant = 0;
-  uint32_t offset = 0;                     // in the frame
-  VirtualRegister word = kNoRegister;      // predicates: the 32-bit register
+  uint32_t offset = 0;                 // in the frame
+  VirtualRegister word = kNoRegister;  // predicates: the 32-bit register
 };
 
 class Spiller {
@@ -54,10 +54,11 @@ class Spiller {
         for_each_def(inst, [&](VirtualRegister r) {
           Home* home = home_of(r);
           if (!home) return;
-          const bool moves_constant = (inst.op == ops_.mov_b32 || inst.op == ops_.mov_b64) && !is_guarded(inst) &&
-                                      is_constant(inst.operands[1]);
+          const bool moves_constant = (inst.op == ops_.mov_b32 || inst.op == ops_.mov_b64) &&
+                                      !is_guarded(inst) && is_constant(inst.operands[1]);
           const VirtualRegister group = plan_.group[r];
-          if (!moves_constant || (home->is_constant && home->constant != inst.operands[1].constant)) varies[group] = true;
+          if (!moves_constant || (home->is_constant && home->constant != inst.operands[1].constant))
+            varies[group] = true;
           if (!moves_constant) return;
           home->is_constant = true;
           home->constant = inst.operands[1].constant;
@@ -98,17 +99,18 @@ class Spiller {
     if (c == RegisterClass::Predicate)
       emit(ops_.setp_ne, {Operand::of(value), Operand::of(home.word), Operand::value(0)}, 0, at, false);
     else if (home.is_constant)
-      emit(c == RegisterClass::B64 ? ops_.mov_b64 : ops_.mov_b32, {Operand::of(value), Operand::value(home.constant)}, 0,
-           at, false);
+      emit(c == RegisterClass::B64 ? ops_.mov_b64 : ops_.mov_b32,
+           {Operand::of(value), Operand::value(home.constant)}, 0, at, false);
     else
-      emit(c == RegisterClass::B64 ? ops_.load_b64 : ops_.load_b32, {Operand::of(value), Operand::stack_pointer()},
-           int32_t(home.offset), at, false);
+      emit(c == RegisterClass::B64 ? ops_.load_b64 : ops_.load_b32,
+           {Operand::of(value), Operand::stack_pointer()}, int32_t(home.offset), at, false);
     return value;
   }
 
   void store(const Home& home, RegisterClass c, const Operand& value, const VirtualInst& after) {
     if (c == RegisterClass::Predicate)
-      emit(ops_.selp_b32, {Operand::of(home.word), Operand::value(1), Operand::value(0), value}, 0, after, true);
+      emit(ops_.selp_b32, {Operand::of(home.word), Operand::value(1), Operand::value(0), value}, 0, after,
+           true);
     else if (!home.is_constant)
       emit(c == RegisterClass::B64 ? ops_.store_b64 : ops_.store_b32, {Operand::stack_pointer(), value},
            int32_t(home.offset), after, true);
@@ -131,21 +133,23 @@ class Spiller {
       return true;
     }
     if (from && !to) {
-      emit(c == RegisterClass::B64 ? ops_.load_b64 : ops_.load_b32, {inst.operands[0], Operand::stack_pointer()},
-           int32_t(from->offset), inst, true);
+      emit(c == RegisterClass::B64 ? ops_.load_b64 : ops_.load_b32,
+           {inst.operands[0], Operand::stack_pointer()}, int32_t(from->offset), inst, true);
       return true;
     }
     return false;
   }
 
-  // Instructions in a row with the same spilled guard share one reload. This is not thrift alone: a temporary that is
-  // written and read under one guard is dead above only as long as that guard has one name (LiveWalk).
+  // Instructions in a row with the same spilled guard share one reload. This is not thrift alone: a temporary
+  // that is written and read under one guard is dead above only as long as that guard has one name
+  // (LiveWalk).
   void reload_guard(VirtualInst& inst) {
     if (!home_of(inst.guard)) {
       guard_ = {};
       return;
     }
-    if (const VirtualRegister group = plan_.group[inst.guard]; guard_.group != group) guard_ = {group, reload(inst.guard, inst)};
+    if (const VirtualRegister group = plan_.group[inst.guard]; guard_.group != group)
+      guard_ = {group, reload(inst.guard, inst)};
     inst.guard = guard_.value;
   }
 
@@ -202,6 +206,8 @@ class Spiller {
 
 }  // namespace
 
-void spill(VirtualProgram& program, const Ops& ops, SpillPlan& plan) { Spiller(program, ops, plan).run(); }
+void spill(VirtualProgram& program, const Ops& ops, SpillPlan& plan) {
+  Spiller(program, ops, plan).run();
+}
 
 }  // namespace glint::frontend

@@ -12,7 +12,11 @@ namespace {
 class Contraction {
  public:
   Contraction(Draft& draft, const FreeArithmetic& free, VirtualProgram& program)
-      : draft_(draft), free_(free), program_(program), definitions_(program.registers.size()), uses_(program.registers.size()) {
+      : draft_(draft),
+        free_(free),
+        program_(program),
+        definitions_(program.registers.size()),
+        uses_(program.registers.size()) {
     for (const DraftBlock& block : draft.blocks) {
       if (block.condition != kNoRegister) ++uses_[block.condition];
       for (const VirtualInst& inst : block.code) {
@@ -38,7 +42,8 @@ class Contraction {
  private:
   // The register of a free result that is written once; else kNoRegister.
   VirtualRegister result_of(const VirtualInst& inst) const {
-    if (!is_real(inst) || inst.operands.empty() || inst.operands[0].kind != VirtualOperand::Kind::Register) return kNoRegister;
+    if (!is_real(inst) || inst.operands.empty() || inst.operands[0].kind != VirtualOperand::Kind::Register)
+      return kNoRegister;
     const VirtualRegister to = inst.operands[0].reg;
     if (!free_.contains(to) || definitions_[to] != 1 || is_guarded(inst)) return kNoRegister;
     return inst.operands.size() == 3 ? to : kNoRegister;
@@ -56,8 +61,10 @@ class Contraction {
     return found != products_.end() && free_.at(o.reg).suffix == suffix ? &found->second : nullptr;
   }
 
-  VirtualOperand negated(const VirtualOperand& value, const std::string& suffix, const VirtualInst& like, std::vector<VirtualInst>& out) {
-    const VirtualOperand to = VirtualOperand::of(program_.new_register(program_.registers[like.operands[0].reg]));
+  VirtualOperand negated(const VirtualOperand& value, const std::string& suffix, const VirtualInst& like,
+                         std::vector<VirtualInst>& out) {
+    const VirtualOperand to =
+        VirtualOperand::of(program_.new_register(program_.registers[like.operands[0].reg]));
     const int op = isa::find_op("neg" + suffix);
     out.push_back(make_inst(uint16_t(op), {to, value}, like.line));
     return to;
@@ -89,6 +96,8 @@ class Contraction {
 
 }  // namespace
 
-void contract(Draft& draft, const FreeArithmetic& free, VirtualProgram& program) { Contraction(draft, free, program).run(); }
+void contract(Draft& draft, const FreeArithmetic& free, VirtualProgram& program) {
+  Contraction(draft, free, program).run();
+}
 
 }  // namespace glint::frontend::ptx

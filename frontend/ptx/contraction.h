@@ -15,8 +15,9 @@ struct FreeResult {
 };
 using FreeArithmetic = std::map<VirtualRegister, FreeResult>;
 
-// Fuses each such sum with a product that nothing else reads, of the same block and kind. Where both operands are
-// products the left one is fused, as measured: `mul x, a, b; mul y, c, d; sub z, x, y` is fma(a, b, -y) on the hardware.
+// Fuses each such sum with a product that nothing else reads, of the same block and kind. Where both operands
+// are products the left one is fused, as measured: `mul x, a, b; mul y, c, d; sub z, x, y` is fma(a, b, -y)
+// on the hardware.
 void contract(Draft& draft, const FreeArithmetic& free, VirtualProgram& program);
 
 }  // namespace glint::frontend::ptx

@@ -1,19 +1,20 @@
 // Constant expressions and operands.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <bit>
+#include <fmt/format.h>
 #include <utility>
 
 #include "frontend/ptx/parser.h"
 
 namespace glint::frontend::ptx {
 
-void Cursor::fail(Place at, const std::string& message) const { throw UserError({file_, at.line, at.column}, message); }
+void Cursor::fail(Place at, const std::string& message) const {
+  throw UserError({file_, at.line, at.column}, message);
+}
 
 void Cursor::fail(const std::string& expected) const {
   const Token& t = peek();
-  const std::string found = t.kind == Token::Kind::End      ? "the end of the file"
+  const std::string found = t.kind == Token::Kind::End       ? "the end of the file"
                             : t.kind == Token::Kind::DotWord ? fmt::format("'.{}'", t.text)
                                                              : fmt::format("'{}'", t.text);
   fail(t.place, fmt::format("expected {}, found {}", expected, found));
@@ -45,8 +46,8 @@ namespace {
 // Binding strength of the operators of constant expressions; 0: no such operator.
 int strength_of(const std::string& mark) {
   static constexpr std::pair<std::string_view, int> kStrength[] = {
-      {"||", 1}, {"&&", 2}, {"|", 3}, {"^", 4}, {"&", 5}, {"==", 6}, {"!=", 6}, {"<", 7}, {">", 7},
-      {"<=", 7}, {">=", 7}, {"<<", 8}, {">>", 8}, {"+", 9}, {"-", 9}, {"*", 10}, {"/", 10}, {"%", 10}};
+      {"||", 1}, {"&&", 2}, {"|", 3},  {"^", 4},  {"&", 5}, {"==", 6}, {"!=", 6}, {"<", 7},  {">", 7},
+      {"<=", 7}, {">=", 7}, {"<<", 8}, {">>", 8}, {"+", 9}, {"-", 9},  {"*", 10}, {"/", 10}, {"%", 10}};
   for (const auto& [text, strength] : kStrength)
     if (text == mark) return strength;
   return 0;
@@ -84,7 +85,8 @@ uint64_t Cursor::binary(int least, const std::string& what) {
     if (strength == 0 || strength <= least) break;
     next();
     const uint64_t right = binary(strength, what);
-    if (right == 0 && (op.text == "/" || op.text == "%")) fail(op.place, "division by zero in a constant expression");
+    if (right == 0 && (op.text == "/" || op.text == "%"))
+      fail(op.place, "division by zero in a constant expression");
     left = apply(op.text, left, right);
   }
   return left;
@@ -154,7 +156,8 @@ Operand Cursor::simple_operand() {
 Operand Cursor::number_operand() {
   Operand out;
   out.place = peek().place;
-  const bool negative = is_mark("-") && (peek(1).kind == Token::Kind::Float32 || peek(1).kind == Token::Kind::Float64);
+  const bool negative =
+      is_mark("-") && (peek(1).kind == Token::Kind::Float32 || peek(1).kind == Token::Kind::Float64);
   if (negative) next();
   if (is(Token::Kind::Float32) || is(Token::Kind::Float64)) {
     const bool single = is(Token::Kind::Float32);

@@ -13,10 +13,13 @@ VirtualInst jump(const char* op, const isa::Line& line, BlockId target = kNoBloc
   return inst;
 }
 
-bool is_plain_exit(const DraftBlock& block) { return block.code.empty() && block.end == DraftBlock::End::Exit; }
+bool is_plain_exit(const DraftBlock& block) {
+  return block.code.empty() && block.end == DraftBlock::End::Exit;
+}
 
 // Ends of blocks become instructions. `after` is the block behind in layout.
-void append_end(VirtualBlock& out, const DraftBlock& block, const std::vector<DraftBlock>& all, BlockId after) {
+void append_end(VirtualBlock& out, const DraftBlock& block, const std::vector<DraftBlock>& all,
+                BlockId after) {
   if (block.end == DraftBlock::End::Branch) {
     const bool leaves = is_plain_exit(all[block.taken]);
     VirtualInst choice = jump(leaves ? "exit" : "bra", block.line, leaves ? kNoBlock : block.taken);

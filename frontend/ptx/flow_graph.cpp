@@ -89,7 +89,8 @@ std::vector<Loop> natural_loops(const Edges& next, BlockId entry) {
     }
   std::vector<Loop> loops;
   for (auto& [head, body] : bodies) loops.push_back({head, std::move(body)});
-  std::stable_sort(loops.begin(), loops.end(), [](const Loop& a, const Loop& b) { return a.body.size() < b.body.size(); });
+  std::stable_sort(loops.begin(), loops.end(),
+                   [](const Loop& a, const Loop& b) { return a.body.size() < b.body.size(); });
   return loops;
 }
 

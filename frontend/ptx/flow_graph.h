@@ -14,8 +14,8 @@ using Blocks = std::set<BlockId>;
 // The same edges, the other way.
 Edges reversed(const Edges& next);
 
-// By block, the last block that every way from `root` to it passes; the root's is itself, kNoBlock where no way leads.
-// Of the reversed edges, from the end, these are the immediate post-dominators.
+// By block, the last block that every way from `root` to it passes; the root's is itself, kNoBlock where no
+// way leads. Of the reversed edges, from the end, these are the immediate post-dominators.
 std::vector<BlockId> immediate_dominators(const Edges& next, BlockId root);
 
 // A natural loop: every way into it is through its head.

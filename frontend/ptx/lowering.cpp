@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/ptx/lowering.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cctype>
+#include <fmt/format.h>
 
 #include "frontend/backend/liveness.h"
 #include "frontend/ptx/machine.h"
@@ -14,12 +13,19 @@
 namespace glint::frontend::ptx {
 
 RegisterClass class_of(const Type& type) {
-  return type.kind == 'p' ? RegisterClass::Predicate : type.bits == 64 ? RegisterClass::B64 : RegisterClass::B32;
+  return type.kind == 'p'  ? RegisterClass::Predicate
+         : type.bits == 64 ? RegisterClass::B64
+                           : RegisterClass::B32;
 }
 
-Lowering::Lowering(const Module& module, const Function& entry, const PtxOptions& options, Kernel& kernel, Diagnostics& errors,
-                   Diagnostics& unsupported)
-    : module_(module), entry_(entry), options_(options), kernel_(kernel), errors_(errors), unsupported_(unsupported) {
+Lowering::Lowering(const Module& module, const Function& entry, const PtxOptions& options, Kernel& kernel,
+                   Diagnostics& errors, Diagnostics& unsupported)
+    : module_(module),
+      entry_(entry),
+      options_(options),
+      kernel_(kernel),
+      errors_(errors),
+      unsupported_(unsupported) {
   for (const Declaration& d : module.variables) module_variables_[d.name] = &d;
   for (const Function& f : module.functions) functions_[f.name] = &f;
   program_.name = entry.name;
@@ -44,7 +50,8 @@ VirtualProgram Lowering::run() {
   for (const DraftBlock& block : draft_.blocks)
     for (BlockId next : block.successors())
       if (std::find(draft_.layout.begin(), draft_.layout.end(), next) == draft_.layout.end())
-        error(entry_.place, fmt::format("label '{}' is branched to but stands nowhere", draft_.blocks[next].name));
+        error(entry_.place,
+              fmt::format("label '{}' is branched to but stands nowhere", draft_.blocks[next].name));
   if (errors_.has_errors()) return std::move(program_);
   if (options_.contract) contract(draft_, free_, program_);
   if (options_.shape) {
@@ -68,7 +75,9 @@ void Lowering::zero_what_nobody_wrote(VirtualProgram& program) {
     VirtualInst inst;
     inst.line = line_;
     const RegisterClass c = program.registers[r];
-    inst.op = isa::op_index(c == RegisterClass::Predicate ? "setp.ne.u32" : c == RegisterClass::B64 ? "mov.b64" : "mov.b32");
+    inst.op = isa::op_index(c == RegisterClass::Predicate ? "setp.ne.u32"
+                            : c == RegisterClass::B64     ? "mov.b64"
+                                                          : "mov.b32");
     inst.operands = {VirtualOperand::of(r), zero};
     if (c == RegisterClass::Predicate) inst.operands.push_back(zero);
     zeros.push_back(std::move(inst));
@@ -79,7 +88,9 @@ void Lowering::zero_what_nobody_wrote(VirtualProgram& program) {
 
 namespace {
 
-uint64_t aligned(uint64_t at, uint64_t align) { return align ? (at + align - 1) / align * align : at; }
+uint64_t aligned(uint64_t at, uint64_t align) {
+  return align ? (at + align - 1) / align * align : at;
+}
 
 }  // namespace
 
@@ -100,7 +111,8 @@ void Lowering::place_parameters() {
 }
 
 // Names in the kernel and the functions that it may call, and the shared variables declared there.
-void Lowering::collect_names(const std::vector<Statement>& list, std::set<std::string>& used, std::set<const Function*>& seen) {
+void Lowering::collect_names(const std::vector<Statement>& list, std::set<std::string>& used,
+                             std::set<const Function*>& seen) {
   const auto visit = [&](const Operand& o, auto&& self) -> void {
     used.insert(o.name);
     for (const Operand& part : o.parts) self(part, self);
@@ -109,7 +121,8 @@ void Lowering::collect_names(const std::vector<Statement>& list, std::set<std::s
   };
   for (const Statement& s : list) {
     for (const Operand& o : s.instruction.operands) visit(o, visit);
-    if (s.kind == Statement::Kind::Declaration && s.declaration.space == VariableSpace::Shared && !s.declaration.is_extern)
+    if (s.kind == Statement::Kind::Declaration && s.declaration.space == VariableSpace::Shared &&
+        !s.declaration.is_extern)
       place_shared({&s.declaration});
     collect_names(s.body, used, seen);
   }
@@ -132,7 +145,8 @@ void Lowering::place_variables() {
     grew = false;
     for (const auto& [name, d] : module_variables_)
       if (used.contains(name))
-        for (const Initializer& value : d->initial) grew |= !value.symbol.empty() && used.insert(value.symbol).second;
+        for (const Initializer& value : d->initial)
+          grew |= !value.symbol.empty() && used.insert(value.symbol).second;
   }
   std::vector<const Declaration*> open;
   for (const Declaration& d : module_.variables) {
@@ -161,7 +175,8 @@ Symbol Lowering::module_variable(const Declaration& d) {
     symbol.address = shared_.at(&d);
     return symbol;
   }
-  if (d.is_extern) no_support(d.place, fmt::format("variable '{}' belongs to another module: Glint links none", d.name));
+  if (d.is_extern)
+    no_support(d.place, fmt::format("variable '{}' belongs to another module: Glint links none", d.name));
   ModuleVariable variable;
   variable.name = d.name;
   variable.bytes = d.bytes();
@@ -174,10 +189,12 @@ Symbol Lowering::module_variable(const Declaration& d) {
   for (const Initializer& value : d.initial) {
     const size_t at = variable.initial.size();
     if (!value.symbol.empty()) variable.pointers.push_back({at, value.symbol, value.value});
-    for (size_t i = 0; i < element; ++i) variable.initial.push_back(value.symbol.empty() ? std::byte(value.value >> (8 * i)) : std::byte{});
+    for (size_t i = 0; i < element; ++i)
+      variable.initial.push_back(value.symbol.empty() ? std::byte(value.value >> (8 * i)) : std::byte{});
   }
   if (variable.initial.size() > variable.bytes)
-    error(d.place, fmt::format("'{}' has {} bytes, but values for {}", d.name, variable.bytes, variable.initial.size()));
+    error(d.place, fmt::format("'{}' has {} bytes, but values for {}", d.name, variable.bytes,
+                               variable.initial.size()));
   kernel_.variables.push_back(std::move(variable));
   return symbol;
 }
@@ -229,7 +246,8 @@ void Lowering::predeclare_labels(const std::vector<Statement>& list) {
     symbol.kind = s.kind == Statement::Kind::Label ? Symbol::Kind::Label : Symbol::Kind::Targets;
     if (symbol.kind == Symbol::Kind::Label) symbol.block = new_block(s.label);
     symbol.targets = &s.targets;
-    if (!scopes_.back().names.emplace(s.label, symbol).second) error(s.place, fmt::format("label '{}' stands here twice", s.label));
+    if (!scopes_.back().names.emplace(s.label, symbol).second)
+      error(s.place, fmt::format("label '{}' stands here twice", s.label));
   }
 }
 
@@ -243,7 +261,9 @@ void Lowering::statements(const std::vector<Statement>& list) {
         begin(block);
         break;
       }
-      case Statement::Kind::Declaration: declare(s.declaration); break;
+      case Statement::Kind::Declaration:
+        declare(s.declaration);
+        break;
       case Statement::Kind::Scope:
         scopes_.emplace_back();
         predeclare_labels(s.body);
@@ -254,7 +274,8 @@ void Lowering::statements(const std::vector<Statement>& list) {
         if (block_ == kNoBlock) begin(new_block(""));  // behind a branch, without a label: nothing gets here
         lower(s.instruction);
         break;
-      case Statement::Kind::Targets: break;
+      case Statement::Kind::Targets:
+        break;
     }
   }
 }
@@ -275,7 +296,8 @@ void Lowering::declare(const Declaration& d) {
       symbol.reg = temporary(class_of(d.type));
   } else if (d.space == VariableSpace::Param) {
     symbol.kind = Symbol::Kind::Parameter;
-    for (uint64_t i = 0; i < (d.bytes() + 3) / 4; ++i) symbol.elements.push_back(temporary(RegisterClass::B32));
+    for (uint64_t i = 0; i < (d.bytes() + 3) / 4; ++i)
+      symbol.elements.push_back(temporary(RegisterClass::B32));
   } else {
     symbol.kind = Symbol::Kind::Variable;
     if (d.space == VariableSpace::Local) {
@@ -284,7 +306,8 @@ void Lowering::declare(const Declaration& d) {
     } else if (d.space == VariableSpace::Shared && !d.is_extern) {
       symbol.address = shared_.at(&d);
     } else {
-      return no_support(d.place, fmt::format("'{}': global, constant and extern variables inside a function", d.name));
+      return no_support(d.place,
+                        fmt::format("'{}': global, constant and extern variables inside a function", d.name));
     }
   }
   scopes_.back().names[d.name] = symbol;
@@ -295,7 +318,9 @@ Symbol* Lowering::find_range(Scope& scope, const std::string& name) {
   for (const Declaration* d : scope.ranges) {
     if (!name.starts_with(d->name) || name.size() == d->name.size()) continue;
     const std::string digits = name.substr(d->name.size());
-    if (!std::all_of(digits.begin(), digits.end(), [](unsigned char c) { return std::isdigit(c); }) || digits.size() > 9) continue;
+    if (!std::all_of(digits.begin(), digits.end(), [](unsigned char c) { return std::isdigit(c); }) ||
+        digits.size() > 9)
+      continue;
     if ((digits.size() > 1 && digits[0] == '0') || std::stoul(digits) >= d->range) continue;
     Symbol symbol;
     symbol.type = d->type;

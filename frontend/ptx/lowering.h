@@ -28,15 +28,15 @@ struct Symbol {
   VirtualRegister reg = kNoRegister;
   std::vector<VirtualRegister> elements;
   VariableSpace space = VariableSpace::Global;
-  uint64_t address = 0;      // Global: place of its address in the constant bank, from kPushConstantOffset
+  uint64_t address = 0;  // Global: place of its address in the constant bank, from kPushConstantOffset
   BlockId block = kNoBlock;
   const std::vector<std::string>* targets = nullptr;
 };
 
 struct Scope {
   std::map<std::string, Symbol> names;
-  std::vector<const Declaration*> ranges;   // .reg .b32 %r<10>
-  bool is_function = false;                 // names outside are the module's
+  std::vector<const Declaration*> ranges;  // .reg .b32 %r<10>
+  bool is_function = false;                // names outside are the module's
 };
 
 // Where an instruction's results go when the register is wider or narrower than the row's.
@@ -47,8 +47,8 @@ struct LateMove {
 
 class Lowering {
  public:
-  Lowering(const Module& module, const Function& entry, const PtxOptions& options, Kernel& kernel, Diagnostics& errors,
-           Diagnostics& unsupported);
+  Lowering(const Module& module, const Function& entry, const PtxOptions& options, Kernel& kernel,
+           Diagnostics& errors, Diagnostics& unsupported);
   // The program before register allocation. Mistakes are in the diagnostics.
   VirtualProgram run();
   uint64_t static_shared_bytes() const { return static_shared_; }
@@ -56,7 +56,8 @@ class Lowering {
  private:
   // lowering.cpp: names, blocks, statements
   void place_variables();
-  void collect_names(const std::vector<Statement>& statements, std::set<std::string>& used, std::set<const Function*>& seen);
+  void collect_names(const std::vector<Statement>& statements, std::set<std::string>& used,
+                     std::set<const Function*>& seen);
   void place_shared(const std::vector<const Declaration*>& declarations);
   void place_parameters();
   Symbol module_variable(const Declaration& d);
@@ -75,7 +76,9 @@ class Lowering {
   void end_exit();
 
   SourceLocation where(Place place) const { return {module_.file, place.line, place.column}; }
-  void error(Place place, const std::string& what, const std::string& note = {}) { errors_.error(where(place), what, note); }
+  void error(Place place, const std::string& what, const std::string& note = {}) {
+    errors_.error(where(place), what, note);
+  }
   void no_support(Place place, const std::string& what) { unsupported_.error(where(place), what); }
 
   // lowering_operands.cpp
@@ -120,8 +123,10 @@ class Lowering {
   void lower_memory(const Instruction& inst);
   void lower_atomic(const Instruction& inst, const MemoryForm& form);
   void lower_access(const Instruction& inst, const MemoryForm& form);
-  void access_parts(const Instruction& inst, MemoryForm form, const std::vector<const Operand*>& parts, const Operand& at);
-  void access_pairs(const Instruction& inst, const MemoryForm& form, int row, const std::vector<const Operand*>& parts, const Operand& at);
+  void access_parts(const Instruction& inst, MemoryForm form, const std::vector<const Operand*>& parts,
+                    const Operand& at);
+  void access_pairs(const Instruction& inst, const MemoryForm& form, int row,
+                    const std::vector<const Operand*>& parts, const Operand& at);
   void access_words(const Instruction& inst, const MemoryForm& form, const Symbol& words, int64_t offset,
                     const std::vector<const Operand*>& parts);
   void load_word_part(const MemoryForm& form, const Symbol& words, uint32_t at, const Operand& to);
@@ -133,7 +138,8 @@ class Lowering {
   void lower_indexed_branch(const Instruction& inst);
   void lower_return(const Instruction& inst, bool whole_kernel);
   void lower_call(const Instruction& inst);
-  void inline_call(const Instruction& inst, const Function& callee, const std::vector<Operand>& results, const std::vector<Operand>& arguments);
+  void inline_call(const Instruction& inst, const Function& callee, const std::vector<Operand>& results,
+                   const std::vector<Operand>& arguments);
   Symbol bind_parameter(const Declaration& formal, const Operand* actual);
   BlockId label(const std::string& name, Place place);
 
@@ -145,19 +151,19 @@ class Lowering {
   Diagnostics& unsupported_;
   VirtualProgram program_;
   Draft draft_;
-  BlockId block_ = kNoBlock;                           // that grows; kNoBlock: what follows is unreachable
+  BlockId block_ = kNoBlock;  // that grows; kNoBlock: what follows is unreachable
   std::vector<Scope> scopes_;
   std::map<std::string, const Declaration*> module_variables_;
   std::map<std::string, const Function*> functions_;
-  std::map<const Declaration*, uint64_t> shared_;      // offsets of static shared variables
-  std::map<std::string, Symbol> placed_;               // variables of the module that the kernel uses
-  uint32_t bank_bytes_ = 0;                            // used, from kPushConstantOffset
+  std::map<const Declaration*, uint64_t> shared_;  // offsets of static shared variables
+  std::map<std::string, Symbol> placed_;           // variables of the module that the kernel uses
+  uint32_t bank_bytes_ = 0;                        // used, from kPushConstantOffset
   uint64_t static_shared_ = 0;
   std::vector<std::pair<const Function*, BlockId>> calls_;  // open ones and where they return
   VirtualRegister guard_ = kNoRegister;
   bool guard_negate_ = false;
   isa::Line line_;
-  std::vector<LateMove> late_;                         // after the instruction
+  std::vector<LateMove> late_;  // after the instruction
   FreeArithmetic free_;
 };
 

@@ -1,8 +1,7 @@
 // Branches, calls and ends.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 
 #include "frontend/ptx/lowering.h"
 
@@ -10,11 +9,16 @@ namespace glint::frontend::ptx {
 
 bool Lowering::lower_control(const Instruction& inst) {
   const std::string& op = inst.words[0];
-  if (op == "bra") lower_branch(inst);
-  else if (op == "brx") lower_indexed_branch(inst);
-  else if (op == "ret" || op == "exit") lower_return(inst, op == "exit");
-  else if (op == "call") lower_call(inst);
-  else return false;
+  if (op == "bra")
+    lower_branch(inst);
+  else if (op == "brx")
+    lower_indexed_branch(inst);
+  else if (op == "ret" || op == "exit")
+    lower_return(inst, op == "exit");
+  else if (op == "call")
+    lower_call(inst);
+  else
+    return false;
   return true;
 }
 
@@ -26,7 +30,8 @@ BlockId Lowering::label(const std::string& name, Place place) {
 }
 
 void Lowering::lower_branch(const Instruction& inst) {
-  if (inst.operands.size() != 1 || inst.operands[0].kind != Operand::Kind::Name) return error(inst.place, "'bra' takes a label");
+  if (inst.operands.size() != 1 || inst.operands[0].kind != Operand::Kind::Name)
+    return error(inst.place, "'bra' takes a label");
   const BlockId target = label(inst.operands[0].name, inst.operands[0].place);
   if (guard_ == kNoRegister) return end_goto(target);
   const BlockId next = new_block("");
@@ -34,8 +39,8 @@ void Lowering::lower_branch(const Instruction& inst) {
   begin(next);
 }
 
-// Model: a chain of comparisons, not a jump through a table. An index past the list goes to its last label; PTX leaves
-// that undefined.
+// Model: a chain of comparisons, not a jump through a table. An index past the list goes to its last label;
+// PTX leaves that undefined.
 void Lowering::lower_indexed_branch(const Instruction& inst) {
   const Symbol* list = inst.operands.size() == 2 ? find(inst.operands[1].name) : nullptr;
   if (!list || list->kind != Symbol::Kind::Targets || list->targets->empty())
@@ -77,32 +82,39 @@ void Lowering::lower_call(const Instruction& inst) {
   const std::vector<Operand> none;
   const bool has_results = !inst.operands.empty() && inst.operands[0].kind == Operand::Kind::List;
   const std::vector<Operand>& results = has_results ? inst.operands[at++].parts : none;
-  if (at >= inst.operands.size() || inst.operands[at].kind != Operand::Kind::Name) return error(inst.place, "'call' takes the name of a function");
+  if (at >= inst.operands.size() || inst.operands[at].kind != Operand::Kind::Name)
+    return error(inst.place, "'call' takes the name of a function");
   const Operand& name = inst.operands[at++];
   const bool has_arguments = at < inst.operands.size() && inst.operands[at].kind == Operand::Kind::List;
   const std::vector<Operand>& arguments = has_arguments ? inst.operands[at].parts : none;
   const auto f = functions_.find(name.name);
   if (f == functions_.end()) {
-    if (find(name.name)) return no_support(name.place, "calls through a register: calls must name their function");
+    if (find(name.name))
+      return no_support(name.place, "calls through a register: calls must name their function");
     return error(name.place, fmt::format("there is no function '{}'", name.name));
   }
   const Function& callee = *f->second;
-  if (!callee.has_body) return no_support(name.place, fmt::format("function '{}' has no body in this module: Glint links none", name.name));
+  if (!callee.has_body)
+    return no_support(name.place,
+                      fmt::format("function '{}' has no body in this module: Glint links none", name.name));
   if (std::any_of(calls_.begin(), calls_.end(), [&](const auto& open) { return open.first == &callee; }))
-    return no_support(name.place, fmt::format("'{}' calls itself: functions become part of their caller", name.name));
+    return no_support(name.place,
+                      fmt::format("'{}' calls itself: functions become part of their caller", name.name));
   if (callee.parameters.size() != arguments.size() || callee.results.size() != results.size())
-    return error(inst.place, fmt::format("'{}' takes {} parameters and gives {} results; here are {} and {}", name.name,
-                                         callee.parameters.size(), callee.results.size(), arguments.size(), results.size()));
+    return error(inst.place, fmt::format("'{}' takes {} parameters and gives {} results; here are {} and {}",
+                                         name.name, callee.parameters.size(), callee.results.size(),
+                                         arguments.size(), results.size()));
   inline_call(inst, callee, results, arguments);
 }
 
-// A parameter in .param space is its words: those of the variable that the caller names, or a copy of a register or
-// number. A parameter in a register is a register of its own.
+// A parameter in .param space is its words: those of the variable that the caller names, or a copy of a
+// register or number. A parameter in a register is a register of its own.
 Symbol Lowering::bind_parameter(const Declaration& formal, const Operand* actual) {
   const Symbol* given = actual && actual->kind == Operand::Kind::Name ? find(actual->name) : nullptr;
   if (given && given->kind == Symbol::Kind::Parameter && formal.space == VariableSpace::Param) {
     if (given->elements.size() * 4 < formal.bytes())
-      error(actual->place, fmt::format("'{}' has fewer bytes than parameter '{}'", actual->name, formal.name));
+      error(actual->place,
+            fmt::format("'{}' has fewer bytes than parameter '{}'", actual->name, formal.name));
     return *given;
   }
   Symbol symbol;
@@ -112,13 +124,17 @@ Symbol Lowering::bind_parameter(const Declaration& formal, const Operand* actual
     symbol.reg = temporary(class_of(formal.type));
   } else {
     symbol.kind = Symbol::Kind::Parameter;
-    for (uint64_t i = 0; i < (formal.bytes() + 3) / 4; ++i) symbol.elements.push_back(temporary(RegisterClass::B32));
+    for (uint64_t i = 0; i < (formal.bytes() + 3) / 4; ++i)
+      symbol.elements.push_back(temporary(RegisterClass::B32));
   }
   if (!actual) return symbol;
   if (formal.space == VariableSpace::Register) {
-    if (formal.type.kind == 'p') emit(isa::op_index("mov.pred"), {VirtualOperand::of(symbol.reg), predicate_source(*actual)});
-    else emit(isa::op_index(wide ? "mov.b64" : "mov.b32"),
-              {VirtualOperand::of(symbol.reg), source(*actual, wide ? isa::OperandKind::Src64 : isa::OperandKind::Src32, formal.type)});
+    if (formal.type.kind == 'p')
+      emit(isa::op_index("mov.pred"), {VirtualOperand::of(symbol.reg), predicate_source(*actual)});
+    else
+      emit(isa::op_index(wide ? "mov.b64" : "mov.b32"),
+           {VirtualOperand::of(symbol.reg),
+            source(*actual, wide ? isa::OperandKind::Src64 : isa::OperandKind::Src32, formal.type)});
   } else {
     MemoryForm form;
     form.type = formal.type;
@@ -127,8 +143,8 @@ Symbol Lowering::bind_parameter(const Declaration& formal, const Operand* actual
   return symbol;
 }
 
-void Lowering::inline_call(const Instruction& inst, const Function& callee, const std::vector<Operand>& results,
-                           const std::vector<Operand>& arguments) {
+void Lowering::inline_call(const Instruction& inst, const Function& callee,
+                           const std::vector<Operand>& results, const std::vector<Operand>& arguments) {
   const BlockId behind = new_block("");
   if (guard_ != kNoRegister) {
     const BlockId inside = new_block("");
@@ -138,11 +154,14 @@ void Lowering::inline_call(const Instruction& inst, const Function& callee, cons
   }
   Scope scope;
   scope.is_function = true;
-  for (size_t i = 0; i < arguments.size(); ++i) scope.names[callee.parameters[i].name] = bind_parameter(callee.parameters[i], &arguments[i]);
-  std::vector<std::pair<Symbol, const Operand*>> copies;  // results in registers go to the caller's afterwards
+  for (size_t i = 0; i < arguments.size(); ++i)
+    scope.names[callee.parameters[i].name] = bind_parameter(callee.parameters[i], &arguments[i]);
+  std::vector<std::pair<Symbol, const Operand*>>
+      copies;  // results in registers go to the caller's afterwards
   for (size_t i = 0; i < results.size(); ++i) {
     const Symbol* given = find(results[i].name);
-    const bool same_words = given && given->kind == Symbol::Kind::Parameter && callee.results[i].space == VariableSpace::Param;
+    const bool same_words =
+        given && given->kind == Symbol::Kind::Parameter && callee.results[i].space == VariableSpace::Param;
     const Symbol symbol = bind_parameter(callee.results[i], same_words ? &results[i] : nullptr);
     scope.names[callee.results[i].name] = symbol;
     if (!same_words) copies.emplace_back(symbol, &results[i]);
@@ -170,7 +189,9 @@ void Lowering::inline_call(const Instruction& inst, const Function& callee, cons
         const isa::OperandKind kind = c == RegisterClass::Predicate ? isa::OperandKind::DstPred
                                       : c == RegisterClass::B64     ? isa::OperandKind::Dst64
                                                                     : isa::OperandKind::Dst32;
-        emit(isa::op_index(c == RegisterClass::Predicate ? "mov.pred" : c == RegisterClass::B64 ? "mov.b64" : "mov.b32"),
+        emit(isa::op_index(c == RegisterClass::Predicate ? "mov.pred"
+                           : c == RegisterClass::B64     ? "mov.b64"
+                                                         : "mov.b32"),
              {destination(*to, kind, symbol.type), VirtualOperand::of(symbol.reg)});
         finish_moves();
       }

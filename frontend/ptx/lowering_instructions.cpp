@@ -1,8 +1,7 @@
 // Instructions: most are a row of the table, some need more than one or other operands.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 
 #include "frontend/ptx/lowering.h"
 
@@ -26,7 +25,8 @@ std::vector<Type> types_of(const Words& words) {
 std::vector<const Operand*> flattened(const std::vector<Operand>& operands) {
   std::vector<const Operand*> out;
   for (const Operand& o : operands) {
-    if (o.kind != Operand::Kind::Pair) out.push_back(&o);
+    if (o.kind != Operand::Kind::Pair)
+      out.push_back(&o);
     else
       for (const Operand& part : o.parts) out.push_back(&part);
   }
@@ -65,17 +65,21 @@ Operand integer_operand(uint64_t value, Place place) {
 void Lowering::report_no_row(const Instruction& inst) {
   const std::string name = joined(inst.words);
   const std::string near = nearest_row(name);
-  no_support(inst.place, near.empty() ? fmt::format("no op '{}'", name) : fmt::format("no op '{}'; did you mean '{}'?", name, near));
+  no_support(inst.place, near.empty() ? fmt::format("no op '{}'", name)
+                                      : fmt::format("no op '{}'; did you mean '{}'?", name, near));
 }
 
 void Lowering::lower_row(const Instruction& inst, int row, std::vector<const Operand*> operands) {
   const isa::OpRow& r = isa::op_table()[size_t(row)];
   const std::vector<Type> types = types_of(inst.words);
   const Type result = types.empty() ? Type{} : types.front(), input = types.empty() ? Type{} : types.back();
-  const size_t written = !inst.operands.empty() && inst.operands[0].kind == Operand::Kind::Pair ? inst.operands[0].parts.size() : 1;
+  const size_t written = !inst.operands.empty() && inst.operands[0].kind == Operand::Kind::Pair
+                             ? inst.operands[0].parts.size()
+                             : 1;
   for (int n = int(written); n < num_destinations(r); ++n) operands.insert(operands.begin() + n, &sink());
   if (operands.size() != r.operands.count)
-    return error(inst.place, fmt::format("'{}' takes {} operands, not {}", joined(inst.words), r.operands.count, operands.size()));
+    return error(inst.place, fmt::format("'{}' takes {} operands, not {}", joined(inst.words),
+                                         r.operands.count, operands.size()));
   std::vector<VirtualOperand> out;
   int64_t imm = 0;
   for (size_t i = 0; i < operands.size(); ++i) {
@@ -86,7 +90,8 @@ void Lowering::lower_row(const Instruction& inst, int row, std::vector<const Ope
         return error(o.place, fmt::format("expected a vector of {} operands", isa::slots_of(kind)));
       const bool writes = isa::is_destination(kind);
       for (const Operand& part : o.parts)
-        out.push_back(writes ? destination(part, OperandKind::Dst32, result) : source(part, OperandKind::Src32, input));
+        out.push_back(writes ? destination(part, OperandKind::Dst32, result)
+                             : source(part, OperandKind::Src32, input));
     } else if (kind == OperandKind::Address32 || kind == OperandKind::Address64) {
       out.push_back(address(o, kind == OperandKind::Address64, imm));
     } else {
@@ -102,7 +107,9 @@ void Lowering::note_free_arithmetic(const Instruction& inst, const std::vector<V
   const std::string& op = inst.words[0];
   const bool ftz = inst.words.size() == 3 && inst.words[1] == "ftz";
   const auto type = type_of(inst.words.back());
-  if ((op != "mul" && op != "add" && op != "sub") || (inst.words.size() != 2 && !ftz) || !type || type->kind != 'f') return;
+  if ((op != "mul" && op != "add" && op != "sub") || (inst.words.size() != 2 && !ftz) || !type ||
+      type->kind != 'f')
+    return;
   if (guard_ != kNoRegister || operands.front().kind != VirtualOperand::Kind::Register) return;
   const std::string suffix = (ftz ? ".ftz." : ".") + inst.words.back();
   free_[operands.front().reg] = {op[0], suffix};
@@ -116,15 +123,23 @@ void Lowering::lower_generic(const Instruction& inst) {
 
 bool Lowering::lower_special(const Instruction& inst) {
   using Handler = void (Lowering::*)(const Instruction&);
-  static const std::map<std::string, Handler> kHandlers{
-      {"mov", &Lowering::lower_move},       {"setp", &Lowering::lower_setp},      {"cvta", &Lowering::lower_address_conversion},
-      {"ld", &Lowering::lower_memory},      {"ldu", &Lowering::lower_memory},     {"st", &Lowering::lower_memory},
-      {"atom", &Lowering::lower_memory},    {"red", &Lowering::lower_memory},     {"bar", &Lowering::lower_barrier},
-      {"barrier", &Lowering::lower_barrier}, {"membar", &Lowering::lower_fence},  {"fence", &Lowering::lower_fence},
-      {"vote", &Lowering::lower_old_warp_op}, {"shfl", &Lowering::lower_old_warp_op}};
+  static const std::map<std::string, Handler> kHandlers{{"mov", &Lowering::lower_move},
+                                                        {"setp", &Lowering::lower_setp},
+                                                        {"cvta", &Lowering::lower_address_conversion},
+                                                        {"ld", &Lowering::lower_memory},
+                                                        {"ldu", &Lowering::lower_memory},
+                                                        {"st", &Lowering::lower_memory},
+                                                        {"atom", &Lowering::lower_memory},
+                                                        {"red", &Lowering::lower_memory},
+                                                        {"bar", &Lowering::lower_barrier},
+                                                        {"barrier", &Lowering::lower_barrier},
+                                                        {"membar", &Lowering::lower_fence},
+                                                        {"fence", &Lowering::lower_fence},
+                                                        {"vote", &Lowering::lower_old_warp_op},
+                                                        {"shfl", &Lowering::lower_old_warp_op}};
   // Hints without a result.
-  static const std::set<std::string> kNothing{"prefetch", "prefetchu", "applypriority", "nanosleep", "pmevent", "griddepcontrol",
-                                              "setmaxnreg"};
+  static const std::set<std::string> kNothing{"prefetch", "prefetchu",      "applypriority", "nanosleep",
+                                              "pmevent",  "griddepcontrol", "setmaxnreg"};
   const std::string& op = inst.words[0];
   if (kNothing.contains(op)) return true;
   const bool has_carry = has_word(inst.words, "cc") || op == "addc" || op == "subc" || op == "madc";
@@ -140,8 +155,11 @@ bool Lowering::lower_special(const Instruction& inst) {
 
 void Lowering::lower_move(const Instruction& inst) {
   if (inst.operands.size() == 2) {
-    const bool joins = inst.operands[1].kind == Operand::Kind::Vector, splits = inst.operands[0].kind == Operand::Kind::Vector;
-    if (joins != splits) return joins ? join_parts(inst, inst.operands[0], inst.operands[1].parts) : split_parts(inst, inst.operands[0].parts, inst.operands[1]);
+    const bool joins = inst.operands[1].kind == Operand::Kind::Vector,
+               splits = inst.operands[0].kind == Operand::Kind::Vector;
+    if (joins != splits)
+      return joins ? join_parts(inst, inst.operands[0], inst.operands[1].parts)
+                   : split_parts(inst, inst.operands[0].parts, inst.operands[1]);
   }
   if (joined(inst.words) == "mov.pred" && inst.operands.size() == 2) {
     const VirtualOperand from = predicate_source(inst.operands[1]);
@@ -156,7 +174,8 @@ constexpr uint64_t kLowHalves = 0x5410, kLowBytes = 0x0040;
 
 void Lowering::join_parts(const Instruction& inst, const Operand& to, const std::vector<Operand>& parts) {
   const std::vector<Type> types = types_of(inst.words);
-  const uint32_t bits = types.empty() ? 0 : types[0].bits, part = parts.empty() ? 0 : bits / uint32_t(parts.size());
+  const uint32_t bits = types.empty() ? 0 : types[0].bits,
+                 part = parts.empty() ? 0 : bits / uint32_t(parts.size());
   const auto value = [&](size_t i) { return source(parts[i], OperandKind::Src32, {'b', 32}); };
   const auto halves = [&](VirtualOperand low, VirtualOperand high) {
     return compute32("prmt.b32", {low, high, VirtualOperand::value(kLowHalves)});
@@ -168,9 +187,12 @@ void Lowering::join_parts(const Instruction& inst, const Operand& to, const std:
     const VirtualOperand low = halves(value(0), value(1)), high = halves(value(2), value(3));
     emit(isa::op_index("pack.b64"), {destination(to, OperandKind::Dst64, types[0]), low, high});
   } else if (bits == 32 && (part == 16 || part == 8)) {
-    const auto bytes = [&](size_t i) { return compute32("prmt.b32", {value(i), value(i + 1), VirtualOperand::value(kLowBytes)}); };
+    const auto bytes = [&](size_t i) {
+      return compute32("prmt.b32", {value(i), value(i + 1), VirtualOperand::value(kLowBytes)});
+    };
     const VirtualOperand low = part == 16 ? value(0) : bytes(0), high = part == 16 ? value(1) : bytes(2);
-    emit(isa::op_index("prmt.b32"), {destination(to, OperandKind::Dst32, types[0]), low, high, VirtualOperand::value(kLowHalves)});
+    emit(isa::op_index("prmt.b32"),
+         {destination(to, OperandKind::Dst32, types[0]), low, high, VirtualOperand::value(kLowHalves)});
   } else {
     no_support(inst.place, fmt::format("'{}' of {} parts", joined(inst.words), parts.size()));
   }
@@ -179,18 +201,22 @@ void Lowering::join_parts(const Instruction& inst, const Operand& to, const std:
 
 void Lowering::split_parts(const Instruction& inst, const std::vector<Operand>& parts, const Operand& from) {
   const std::vector<Type> types = types_of(inst.words);
-  const uint32_t bits = types.empty() ? 0 : types[0].bits, part = parts.empty() ? 0 : bits / uint32_t(parts.size());
+  const uint32_t bits = types.empty() ? 0 : types[0].bits,
+                 part = parts.empty() ? 0 : bits / uint32_t(parts.size());
   const auto split = [&](VirtualOperand word, size_t first) {
     for (uint32_t i = 0; i < 32 / part; ++i) {
       const VirtualOperand to = destination(parts[first + i], OperandKind::Dst32, {'b', part});
-      emit(isa::op_index("bfe.u32"), {to, word, VirtualOperand::value(i * part), VirtualOperand::value(part)});
+      emit(isa::op_index("bfe.u32"),
+           {to, word, VirtualOperand::value(i * part), VirtualOperand::value(part)});
     }
   };
   if (bits == 64 && (part == 32 || part == 16)) {
     const VirtualOperand pair = source(from, OperandKind::Src64, types[0]);
     const bool whole = part == 32;
-    const VirtualOperand low = whole ? destination(parts[0], OperandKind::Dst32, {'b', 32}) : VirtualOperand::of(temporary(RegisterClass::B32));
-    const VirtualOperand high = whole ? destination(parts[1], OperandKind::Dst32, {'b', 32}) : VirtualOperand::of(temporary(RegisterClass::B32));
+    const VirtualOperand low = whole ? destination(parts[0], OperandKind::Dst32, {'b', 32})
+                                     : VirtualOperand::of(temporary(RegisterClass::B32));
+    const VirtualOperand high = whole ? destination(parts[1], OperandKind::Dst32, {'b', 32})
+                                      : VirtualOperand::of(temporary(RegisterClass::B32));
     emit(isa::op_index("unpack.b64"), {low, high, pair});
     if (!whole) {
       split(low, 0);
@@ -209,16 +235,20 @@ void Lowering::split_parts(const Instruction& inst, const std::vector<Operand>& 
 void Lowering::lower_setp(const Instruction& inst) {
   const int row = find_row(inst.words);
   const bool pair = !inst.operands.empty() && inst.operands[0].kind == Operand::Kind::Pair;
-  if (row >= 0 && (!pair || num_destinations(isa::op_table()[size_t(row)]) == 2)) return lower_row(inst, row, flattened(inst.operands));
+  if (row >= 0 && (!pair || num_destinations(isa::op_table()[size_t(row)]) == 2))
+    return lower_row(inst, row, flattened(inst.operands));
   Words plain;
   std::string combine;
   for (const std::string& word : inst.words) {
-    if (word == "and" || word == "or" || word == "xor") combine = word + ".pred";
-    else plain.push_back(word);
+    if (word == "and" || word == "or" || word == "xor")
+      combine = word + ".pred";
+    else
+      plain.push_back(word);
   }
   const int comparison = find_row(plain);
   if (comparison < 0) return report_no_row(inst);
-  if (inst.operands.size() != (combine.empty() ? 3u : 4u)) return error(inst.place, fmt::format("'{}' takes other operands", joined(inst.words)));
+  if (inst.operands.size() != (combine.empty() ? 3u : 4u))
+    return error(inst.place, fmt::format("'{}' takes other operands", joined(inst.words)));
   const OperandKind kind = isa::op_table()[size_t(comparison)].operands.kind[1];
   const Type type = types_of(inst.words).back();
   const VirtualOperand a = source(inst.operands[1], kind, type), b = source(inst.operands[2], kind, type);
@@ -228,8 +258,10 @@ void Lowering::lower_setp(const Instruction& inst) {
   for (size_t i = 0; i < to.size(); ++i) {
     const VirtualOperand test = i == 0 ? holds : compute_predicate("not.pred", {holds});
     const VirtualOperand p = destination(*to[i], OperandKind::DstPred, {'p', 1});
-    if (combine.empty()) emit(isa::op_index("mov.pred"), {p, test});
-    else emit(isa::op_index(combine), {p, test, third});
+    if (combine.empty())
+      emit(isa::op_index("mov.pred"), {p, test});
+    else
+      emit(isa::op_index(combine), {p, test, third});
   }
 }
 
@@ -282,12 +314,15 @@ void Lowering::lower_barrier(const Instruction& inst) {
   const bool is_warp = has_word(plain.words, "warp");
   const size_t threads = has_word(plain.words, "red") ? 2 : 1;
   if (!is_warp && operands.empty()) operands.push_back(&all);
-  if (!is_warp && operands.size() + 1 == count) operands.insert(operands.begin() + std::ptrdiff_t(threads), &all);
+  if (!is_warp && operands.size() + 1 == count)
+    operands.insert(operands.begin() + std::ptrdiff_t(threads), &all);
   lower_row(plain, row, operands);
 }
 
 void Lowering::lower_fence(const Instruction& inst) {
-  const char* scope = has_word(inst.words, "sys") ? "membar.sys" : has_word(inst.words, "cta") ? "membar.cta" : "membar.gl";
+  const char* scope = has_word(inst.words, "sys")   ? "membar.sys"
+                      : has_word(inst.words, "cta") ? "membar.cta"
+                                                    : "membar.gl";
   emit(isa::op_index(scope), {});
 }
 

@@ -30,7 +30,8 @@ void Lowering::lower_atomic(const Instruction& inst, const MemoryForm& form) {
 
 void Lowering::lower_access(const Instruction& inst, const MemoryForm& form) {
   const bool load = form.op == "ld";
-  if (inst.operands.size() < 2) return error(inst.place, fmt::format("'{}' takes a value and an address", joined(inst.words)));
+  if (inst.operands.size() < 2)
+    return error(inst.place, fmt::format("'{}' takes a value and an address", joined(inst.words)));
   const Operand &value = inst.operands[load ? 0 : 1], &at = inst.operands[load ? 1 : 0];
   std::vector<const Operand*> parts;
   if (value.kind == Operand::Kind::Vector)
@@ -38,14 +39,16 @@ void Lowering::lower_access(const Instruction& inst, const MemoryForm& form) {
   else
     parts.push_back(&value);
   if (parts.size() != form.vector)
-    return error(value.place, fmt::format("'{}' moves {} values, here are {}", joined(inst.words), form.vector, parts.size()));
+    return error(value.place, fmt::format("'{}' moves {} values, here are {}", joined(inst.words),
+                                          form.vector, parts.size()));
   if (at.kind == Operand::Kind::Address && at.parts.size() == 1 && at.parts[0].kind == Operand::Kind::Name)
     if (const Symbol* symbol = find(at.parts[0].name); symbol && symbol->kind == Symbol::Kind::Parameter)
       return access_words(inst, form, *symbol, at.offset, parts);
   access_parts(inst, form, parts, at);
 }
 
-void Lowering::access_parts(const Instruction& inst, MemoryForm form, const std::vector<const Operand*>& parts, const Operand& at) {
+void Lowering::access_parts(const Instruction& inst, MemoryForm form,
+                            const std::vector<const Operand*>& parts, const Operand& at) {
   const int row = find_access_row(form, uint32_t(parts.size()));
   if (row < 0) {
     if (parts.size() == 1) return report_no_row(inst);
@@ -74,34 +77,40 @@ void Lowering::access_parts(const Instruction& inst, MemoryForm form, const std:
 }
 
 // The rows of pairs take each as two registers, low half first.
-void Lowering::access_pairs(const Instruction&, const MemoryForm& form, int row, const std::vector<const Operand*>& parts, const Operand& at) {
+void Lowering::access_pairs(const Instruction&, const MemoryForm& form, int row,
+                            const std::vector<const Operand*>& parts, const Operand& at) {
   const bool load = form.op == "ld";
   const isa::OpRow& r = isa::op_table()[size_t(row)];
   int64_t imm = 0;
   const VirtualOperand base = address(at, r.operands.kind[load ? 1 : 0] == OperandKind::Address64, imm);
   std::vector<VirtualOperand> words;
-  for (size_t i = 0; i < 2 * parts.size(); ++i) words.push_back(VirtualOperand::of(temporary(RegisterClass::B32)));
+  for (size_t i = 0; i < 2 * parts.size(); ++i)
+    words.push_back(VirtualOperand::of(temporary(RegisterClass::B32)));
   if (!load)
     for (size_t i = 0; i < parts.size(); ++i)
-      compute("unpack.b64", {words[2 * i], words[2 * i + 1], source(*parts[i], OperandKind::Src64, form.type)});
+      compute("unpack.b64",
+              {words[2 * i], words[2 * i + 1], source(*parts[i], OperandKind::Src64, form.type)});
   std::vector<VirtualOperand> operands = words;
   operands.insert(load ? operands.end() : operands.begin(), base);
   emit(row, std::move(operands), imm);
   if (load)
     for (size_t i = 0; i < parts.size(); ++i)
-      emit(isa::op_index("pack.b64"), {destination(*parts[i], OperandKind::Dst64, form.type), words[2 * i], words[2 * i + 1]});
+      emit(isa::op_index("pack.b64"),
+           {destination(*parts[i], OperandKind::Dst64, form.type), words[2 * i], words[2 * i + 1]});
   finish_moves();
 }
 
-void Lowering::access_words(const Instruction& inst, const MemoryForm& form, const Symbol& words, int64_t offset,
-                            const std::vector<const Operand*>& parts) {
+void Lowering::access_words(const Instruction& inst, const MemoryForm& form, const Symbol& words,
+                            int64_t offset, const std::vector<const Operand*>& parts) {
   const uint32_t bytes = form.type.bits / 8;
   for (size_t i = 0; i < parts.size(); ++i) {
     const int64_t at = offset + int64_t(i * bytes);
     if (at < 0 || at % bytes != 0 || size_t(at) + bytes > words.elements.size() * 4 || bytes > 8)
       return error(inst.place, fmt::format("{} bytes at {} lie outside the parameter", bytes, at));
-    if (form.op == "ld") load_word_part(form, words, uint32_t(at), *parts[i]);
-    else store_word_part(form, words, uint32_t(at), *parts[i]);
+    if (form.op == "ld")
+      load_word_part(form, words, uint32_t(at), *parts[i]);
+    else
+      store_word_part(form, words, uint32_t(at), *parts[i]);
   }
 }
 
@@ -109,17 +118,20 @@ void Lowering::load_word_part(const MemoryForm& form, const Symbol& words, uint3
   const VirtualOperand word = VirtualOperand::of(words.elements[at / 4]);
   const uint32_t bits = form.type.bits;
   if (bits == 64) {
-    emit(isa::op_index("pack.b64"), {destination(to, OperandKind::Dst64, form.type), word, VirtualOperand::of(words.elements[at / 4 + 1])});
+    emit(isa::op_index("pack.b64"), {destination(to, OperandKind::Dst64, form.type), word,
+                                     VirtualOperand::of(words.elements[at / 4 + 1])});
   } else if (bits == 32) {
     emit(isa::op_index("mov.b32"), {destination(to, OperandKind::Dst32, form.type), word});
   } else {
     const char* op = form.type.kind == 's' ? "bfe.s32" : "bfe.u32";
-    emit(isa::op_index(op), {destination(to, OperandKind::Dst32, form.type), word, VirtualOperand::value(at % 4 * 8), VirtualOperand::value(bits)});
+    emit(isa::op_index(op), {destination(to, OperandKind::Dst32, form.type), word,
+                             VirtualOperand::value(at % 4 * 8), VirtualOperand::value(bits)});
   }
   finish_moves();
 }
 
-void Lowering::store_word_part(const MemoryForm& form, const Symbol& words, uint32_t at, const Operand& from) {
+void Lowering::store_word_part(const MemoryForm& form, const Symbol& words, uint32_t at,
+                               const Operand& from) {
   const VirtualOperand word = VirtualOperand::of(words.elements[at / 4]);
   const uint32_t bits = form.type.bits;
   if (bits == 64) {
@@ -128,8 +140,11 @@ void Lowering::store_word_part(const MemoryForm& form, const Symbol& words, uint
     return;
   }
   const VirtualOperand value = source(from, OperandKind::Src32, form.type);
-  if (bits == 32) emit(isa::op_index("mov.b32"), {word, value});
-  else emit(isa::op_index("bfi.b32"), {word, value, word, VirtualOperand::value(at % 4 * 8), VirtualOperand::value(bits)});
+  if (bits == 32)
+    emit(isa::op_index("mov.b32"), {word, value});
+  else
+    emit(isa::op_index("bfi.b32"),
+         {word, value, word, VirtualOperand::value(at % 4 * 8), VirtualOperand::value(bits)});
 }
 
 }  // namespace glint::frontend::ptx

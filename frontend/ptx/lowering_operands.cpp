@@ -1,8 +1,7 @@
 // Operands: registers, literals, special registers, addresses, and the conversions between widths.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <bit>
+#include <fmt/format.h>
 
 #include "frontend/ptx/lowering.h"
 #include "isa/text.h"
@@ -13,7 +12,9 @@ using isa::OperandKind;
 
 namespace {
 
-bool is_wide(OperandKind kind) { return kind == OperandKind::Src64 || kind == OperandKind::Dst64 || kind == OperandKind::Address64; }
+bool is_wide(OperandKind kind) {
+  return kind == OperandKind::Src64 || kind == OperandKind::Dst64 || kind == OperandKind::Address64;
+}
 
 }  // namespace
 
@@ -60,7 +61,8 @@ VirtualOperand Lowering::compute_predicate(std::string_view op, std::vector<Virt
 
 VirtualOperand Lowering::widened(VirtualOperand narrow, bool with_sign) {
   if (narrow.kind == VirtualOperand::Kind::Constant)
-    return VirtualOperand::value(with_sign ? uint64_t(int64_t(int32_t(narrow.constant))) : uint64_t(uint32_t(narrow.constant)));
+    return VirtualOperand::value(with_sign ? uint64_t(int64_t(int32_t(narrow.constant)))
+                                           : uint64_t(uint32_t(narrow.constant)));
   return compute64(with_sign ? "cvt.s64.s32" : "cvt.u64.u32", {narrow});
 }
 
@@ -102,10 +104,13 @@ VirtualOperand Lowering::predicate_source(const Operand& o) {
 // Bits of a number as the instruction's type reads them.
 VirtualOperand Lowering::literal(const Operand& o, bool wide, const Type& type) {
   if (o.kind == Operand::Kind::Integer) return VirtualOperand::value(wide ? o.value : uint32_t(o.value));
-  if (type.bits == 16 && o.kind == Operand::Kind::Float64) no_support(o.place, "decimal constants of 16-bit floats: write their bits");
+  if (type.bits == 16 && o.kind == Operand::Kind::Float64)
+    no_support(o.place, "decimal constants of 16-bit floats: write their bits");
   if (o.kind == Operand::Kind::Float32)
-    return VirtualOperand::value(wide ? std::bit_cast<uint64_t>(double(std::bit_cast<float>(uint32_t(o.value)))) : o.value);
-  return VirtualOperand::value(wide ? o.value : std::bit_cast<uint32_t>(float(std::bit_cast<double>(o.value))));
+    return VirtualOperand::value(
+        wide ? std::bit_cast<uint64_t>(double(std::bit_cast<float>(uint32_t(o.value)))) : o.value);
+  return VirtualOperand::value(wide ? o.value
+                                    : std::bit_cast<uint32_t>(float(std::bit_cast<double>(o.value))));
 }
 
 VirtualOperand Lowering::special_source(const Operand& o, bool wide, bool& found) {
@@ -119,7 +124,8 @@ VirtualOperand Lowering::special_source(const Operand& o, bool wide, bool& found
   if (name == "%clock64" || (name == "%clock" && wide)) return pair(Special::Clock, Special::ClockHi);
   if (name == "%globaltimer") return pair(Special::GlobalTimerLo, Special::GlobalTimerHi);
   // Model: a cluster is one block.
-  if (name.starts_with("%cluster_ctaid.") || name == "%cluster_ctarank" || name == "%is_explicit_cluster") return VirtualOperand::value(0);
+  if (name.starts_with("%cluster_ctaid.") || name == "%cluster_ctarank" || name == "%is_explicit_cluster")
+    return VirtualOperand::value(0);
   if (name.starts_with("%cluster_nctaid.") || name == "%cluster_nctarank") return VirtualOperand::value(1);
   const Special special = isa::find_special(name);
   found = special != Special::Count && special < Special::Payload;
@@ -134,22 +140,26 @@ VirtualOperand Lowering::address_of(const Symbol& symbol, int64_t offset, bool w
   }
   const VirtualOperand to = VirtualOperand::of(temporary(RegisterClass::B64));
   compute("ld.param.b64", {to, VirtualOperand::value(0)}, int64_t(symbol.address));
-  const VirtualOperand whole = offset ? compute64("add.u64", {to, VirtualOperand::value(uint64_t(offset))}) : to;
+  const VirtualOperand whole =
+      offset ? compute64("add.u64", {to, VirtualOperand::value(uint64_t(offset))}) : to;
   return wide ? whole : compute32("cvt.u32.u64", {whole});
 }
 
 VirtualOperand Lowering::name_source(const Operand& o, bool wide) {
   const Symbol* symbol = find(o.name);
   // `%tid.x` is no part of a scalar register %tid.
-  if (symbol && symbol->kind == Symbol::Kind::Register && symbol->elements.empty() && !o.element.empty()) symbol = nullptr;
+  if (symbol && symbol->kind == Symbol::Kind::Register && symbol->elements.empty() && !o.element.empty())
+    symbol = nullptr;
   if (!symbol) {
     bool found = false;
     const VirtualOperand special = special_source(o, wide, found);
     if (found) return special;
     if (functions_.contains(o.name)) {
-      no_support(o.place, fmt::format("the address of function '{}': calls must name their function", o.name));
+      no_support(o.place,
+                 fmt::format("the address of function '{}': calls must name their function", o.name));
     } else {
-      error(o.place, fmt::format("'{}' is not declared", o.element.empty() ? o.name : o.name + "." + o.element));
+      error(o.place,
+            fmt::format("'{}' is not declared", o.element.empty() ? o.name : o.name + "." + o.element));
     }
     return VirtualOperand::value(0);
   }
@@ -179,16 +189,20 @@ VirtualOperand Lowering::source(const Operand& o, OperandKind kind, const Type& 
   switch (o.kind) {
     case Operand::Kind::Integer:
     case Operand::Kind::Float32:
-    case Operand::Kind::Float64: return literal(o, is_wide(kind), type);
-    case Operand::Kind::Name: return name_source(o, is_wide(kind));
-    default: error(o.place, "expected a register or a number"); return VirtualOperand::value(0);
+    case Operand::Kind::Float64:
+      return literal(o, is_wide(kind), type);
+    case Operand::Kind::Name:
+      return name_source(o, is_wide(kind));
+    default:
+      error(o.place, "expected a register or a number");
+      return VirtualOperand::value(0);
   }
 }
 
 VirtualOperand Lowering::destination(const Operand& o, OperandKind kind, const Type& type) {
   const RegisterClass wanted = kind == OperandKind::DstPred ? RegisterClass::Predicate
-                               : is_wide(kind)             ? RegisterClass::B64
-                                                           : RegisterClass::B32;
+                               : is_wide(kind)              ? RegisterClass::B64
+                                                            : RegisterClass::B32;
   if (o.kind == Operand::Kind::Sink) return VirtualOperand::of(temporary(wanted));
   if (o.kind != Operand::Kind::Name) {
     error(o.place, "expected a register to write");
@@ -205,11 +219,14 @@ VirtualOperand Lowering::destination(const Operand& o, OperandKind kind, const T
   if (has == wanted) return VirtualOperand::of(reg);
   const VirtualOperand value = VirtualOperand::of(temporary(wanted));
   if (has == RegisterClass::Predicate || wanted == RegisterClass::Predicate) {
-    error(o.place, fmt::format("'{}' is {} predicate, the result is {}", o.name, has == RegisterClass::Predicate ? "a" : "no",
+    error(o.place, fmt::format("'{}' is {} predicate, the result is {}", o.name,
+                               has == RegisterClass::Predicate ? "a" : "no",
                                wanted == RegisterClass::Predicate ? "one" : "a number"));
     return value;
   }
-  const char* op = has == RegisterClass::B32 ? "cvt.u32.u64" : type.kind == 's' ? "cvt.s64.s32" : "cvt.u64.u32";
+  const char* op = has == RegisterClass::B32 ? "cvt.u32.u64"
+                   : type.kind == 's'        ? "cvt.s64.s32"
+                                             : "cvt.u64.u32";
   late_.push_back({isa::op_index(op), VirtualOperand::of(reg), value});
   return value;
 }

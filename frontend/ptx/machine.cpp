@@ -13,14 +13,17 @@ namespace {
 
 using Operand = VirtualOperand;
 
-uint64_t lowest_bit(uint64_t value) { return value & (~value + 1); }
+uint64_t lowest_bit(uint64_t value) {
+  return value & (~value + 1);
+}
 
 class Shaping {
  public:
   explicit Shaping(VirtualProgram& program)
       : program_(program), registers_(program), users_(program.registers.size()) {
     for (VirtualBlock& block : program.blocks)
-      for (VirtualInst& inst : block.code) for_each_use(inst, [&](VirtualRegister r) { users_[r].push_back(&inst); });
+      for (VirtualInst& inst : block.code)
+        for_each_use(inst, [&](VirtualRegister r) { users_[r].push_back(&inst); });
   }
 
   void run() {
@@ -28,7 +31,8 @@ class Shaping {
       for (VirtualInst& inst : block.code) combine_predicates(block, inst);
       merge_loads(block);
     }
-    for (VirtualBlock& block : program_.blocks) std::erase_if(block.code, [&](const VirtualInst& inst) { return is_merged(inst); });
+    for (VirtualBlock& block : program_.blocks)
+      std::erase_if(block.code, [&](const VirtualInst& inst) { return is_merged(inst); });
   }
   void spread_products() {
     for (VirtualRegister r = 0; r < registers_.last.size(); ++r)
@@ -39,18 +43,23 @@ class Shaping {
   // The one definition, which then comes before every use, with operands that hold the same value there.
   VirtualInst* definition(const Operand& o) const { return registers_.definition(o); }
   bool is_stable(const Operand& o) const { return is_constant(o) || definition(o); }
-  bool is_unchanged(const VirtualBlock& block, const Operand& o, const VirtualInst& from, const VirtualInst& to) const {
+  bool is_unchanged(const VirtualBlock& block, const Operand& o, const VirtualInst& from,
+                    const VirtualInst& to) const {
     if (is_stable(o)) return true;
     const VirtualInst *first = block.code.data(), *last = first + block.code.size();
-    if (!is_register(o) || std::less<>()(&from, first) || !std::less<>()(&from, last) || &from >= &to) return false;
+    if (!is_register(o) || std::less<>()(&from, first) || !std::less<>()(&from, last) || &from >= &to)
+      return false;
     bool changes = false;
     for (const VirtualInst* between = &from; between < &to; ++between)
       for_each_def(*between, [&](VirtualRegister r) { changes |= r == o.reg; });
     return !changes;
   }
 
-  // What a comparison's name gets for the op that combines its result with another predicate; null: no such op.
-  const char* combination(uint16_t op) const { return op == and_pred_ ? ".and" : op == or_pred_ ? ".or" : op == xor_pred_ ? ".xor" : nullptr; }
+  // What a comparison's name gets for the op that combines its result with another predicate; null: no such
+  // op.
+  const char* combination(uint16_t op) const {
+    return op == and_pred_ ? ".and" : op == or_pred_ ? ".or" : op == xor_pred_ ? ".xor" : nullptr;
+  }
 
   void combine_predicates(const VirtualBlock& block, VirtualInst& inst) {
     if (!is_real(inst)) return;
@@ -59,14 +68,18 @@ class Shaping {
     for (size_t k : {size_t{2}, size_t{1}}) {
       const Operand test = inst.operands[k], other = inst.operands[3 - k];
       const VirtualInst* setp = definition(test);
-      if (!setp || registers_.uses[test.reg] != 1 || setp->operands.size() != 3 || !is_register(other)) continue;
+      if (!setp || registers_.uses[test.reg] != 1 || setp->operands.size() != 3 || !is_register(other))
+        continue;
       const std::string name(row_of(*setp).name);
       const size_t type = name.rfind('.');
       if (!name.starts_with("setp.")) continue;
       const int row = isa::find_op(name.substr(0, type) + combined + name.substr(type));
-      if (row < 0 || !is_unchanged(block, setp->operands[1], *setp, inst) || !is_unchanged(block, setp->operands[2], *setp, inst)) continue;
+      if (row < 0 || !is_unchanged(block, setp->operands[1], *setp, inst) ||
+          !is_unchanged(block, setp->operands[2], *setp, inst))
+        continue;
       inst.op = uint16_t(row);
-      inst.operands = {inst.operands[0], Operand::of(new_predicate()), setp->operands[1], setp->operands[2], other};
+      inst.operands = {inst.operands[0], Operand::of(new_predicate()), setp->operands[1], setp->operands[2],
+                       other};
       return;
     }
   }
@@ -84,13 +97,15 @@ class Shaping {
     const uint16_t mad = fused(product);
     if (mad == 0 || registers_.uses[r] < 2) return;
     const Operand a = product.operands[1];
-    const Operand b = product.op == ops_.shl_b32 ? Operand::value(uint64_t{1} << product.operands[2].constant) : product.operands[2];
+    const Operand b = product.op == ops_.shl_b32 ? Operand::value(uint64_t{1} << product.operands[2].constant)
+                                                 : product.operands[2];
     if (!is_stable(a) || !is_stable(b)) return;
     const bool wide = program_.registers[r] == RegisterClass::B64;
     for (const VirtualInst* user : users_[r])
       if (!is_sum(*user, r, wide)) return;
     for (VirtualInst* user : users_[r]) {
-      const Operand addend = user->operands[is_register(user->operands[1]) && user->operands[1].reg == r ? 2 : 1];
+      const Operand addend =
+          user->operands[is_register(user->operands[1]) && user->operands[1].reg == r ? 2 : 1];
       user->op = mad;
       user->operands = {user->operands[0], a, b, addend};
     }
@@ -98,12 +113,16 @@ class Shaping {
   uint16_t fused(const VirtualInst& product) const {
     if (product.op == ops_.mul_wide_s32) return ops_.mad_wide_s32;
     if (product.op == ops_.mul_wide_u32) return ops_.mad_wide_u32;
-    const bool shifts = product.op == ops_.shl_b32 && is_constant(product.operands[2]) && product.operands[2].constant < 32;
-    return shifts || product.op == ops_.mul_lo_s32 || product.op == ops_.mul_lo_u32 ? ops_.mad_lo_u32 : uint16_t{0};
+    const bool shifts =
+        product.op == ops_.shl_b32 && is_constant(product.operands[2]) && product.operands[2].constant < 32;
+    return shifts || product.op == ops_.mul_lo_s32 || product.op == ops_.mul_lo_u32 ? ops_.mad_lo_u32
+                                                                                    : uint16_t{0};
   }
   bool is_sum(const VirtualInst& inst, VirtualRegister r, bool wide) const {
     if (!is_real(inst)) return false;
-    if (wide ? inst.op != ops_.add_s64 && inst.op != ops_.add_u64 : inst.op != ops_.add_s32 && inst.op != ops_.add_u32) return false;
+    if (wide ? inst.op != ops_.add_s64 && inst.op != ops_.add_u64
+             : inst.op != ops_.add_s32 && inst.op != ops_.add_u32)
+      return false;
     int times = 0;
     for (size_t k : {size_t{1}, size_t{2}}) {
       times += is_register(inst.operands[k]) && inst.operands[k].reg == r;
@@ -130,7 +149,9 @@ class Shaping {
     return 1;
   }
 
-  bool is_merged(const VirtualInst& inst) const { return is_real(inst) && inst.op == load_shared_ && inst.operands.empty(); }
+  bool is_merged(const VirtualInst& inst) const {
+    return is_real(inst) && inst.op == load_shared_ && inst.operands.empty();
+  }
   bool is_word_load(const VirtualInst& inst) const {
     if (!is_real(inst) || inst.op != load_shared_ || is_merged(inst) || is_guarded(inst)) return false;
     return definition(inst.operands[0]) && definition(inst.operands[1]);
@@ -143,7 +164,8 @@ class Shaping {
       std::vector<VirtualInst*> group;
       for (size_t i = begin; i < block.code.size() && is_pure(block.code[i]); ++i) {
         VirtualInst& inst = block.code[i];
-        if (is_word_load(inst) && inst.operands[1].reg == block.code[begin].operands[1].reg) group.push_back(&inst);
+        if (is_word_load(inst) && inst.operands[1].reg == block.code[begin].operands[1].reg)
+          group.push_back(&inst);
       }
       for (size_t words : {size_t{4}, size_t{2}})
         if (merge(group, words)) break;
@@ -157,7 +179,8 @@ class Shaping {
     const int32_t base = first.imm / bytes * bytes;
     std::vector<VirtualInst*> parts;
     for (size_t word = 0; word < words; ++word) {
-      const auto at = std::find_if(group.begin(), group.end(), [&](const VirtualInst* i) { return i->imm == base + int32_t(4 * word); });
+      const auto at = std::find_if(group.begin(), group.end(),
+                                   [&](const VirtualInst* i) { return i->imm == base + int32_t(4 * word); });
       if (at == group.end()) return false;
       parts.push_back(*at);
     }
@@ -174,10 +197,12 @@ class Shaping {
 
   VirtualProgram& program_;
   const Ops ops_;
-  const uint16_t and_pred_ = isa::op_index("and.pred"), or_pred_ = isa::op_index("or.pred"), xor_pred_ = isa::op_index("xor.pred");
+  const uint16_t and_pred_ = isa::op_index("and.pred"), or_pred_ = isa::op_index("or.pred"),
+                 xor_pred_ = isa::op_index("xor.pred");
   const uint16_t mad_lo_s32_ = isa::op_index("mad.lo.s32");
   const uint16_t load_shared_ = isa::op_index("ld.shared.b32");
-  const uint16_t load_shared_v2_ = isa::op_index("ld.shared.v2.b32"), load_shared_v4_ = isa::op_index("ld.shared.v4.b32");
+  const uint16_t load_shared_v2_ = isa::op_index("ld.shared.v2.b32"),
+                 load_shared_v4_ = isa::op_index("ld.shared.v4.b32");
   DefUse registers_;
   std::vector<std::vector<VirtualInst*>> users_;
 };
@@ -221,14 +246,20 @@ void negate_factors(VirtualProgram& program) {
   std::vector<Home> homes(program.registers.size());
   for (BlockId b = 0; b < program.blocks.size(); ++b)
     for (const VirtualInst& inst : program.blocks[b].code) {
-      for_each_def(inst, [&](VirtualRegister r) { homes[r] = {homes[r].definitions + (is_guarded(inst) ? 2 : 1), homes[r].uses, b, &inst}; });
+      for_each_def(inst, [&](VirtualRegister r) {
+        homes[r] = {homes[r].definitions + (is_guarded(inst) ? 2 : 1), homes[r].uses, b, &inst};
+      });
       for_each_use(inst, [&](VirtualRegister r) { ++homes[r].uses; });
     }
-  const auto is_stable = [&](const Operand& o) { return is_constant(o) || (is_register(o) && homes[o.reg].definitions == 1); };
+  const auto is_stable = [&](const Operand& o) {
+    return is_constant(o) || (is_register(o) && homes[o.reg].definitions == 1);
+  };
   std::map<VirtualRegister, VirtualRegister> negated;
   for (BlockId b = 0; b < program.blocks.size(); ++b)
     for (VirtualInst& inst : program.blocks[b].code) {
-      if (!is_real(inst) || inst.op != neg || is_guarded(inst) || !is_stable(inst.operands[1]) || !is_register(inst.operands[1])) continue;
+      if (!is_real(inst) || inst.op != neg || is_guarded(inst) || !is_stable(inst.operands[1]) ||
+          !is_register(inst.operands[1]))
+        continue;
       const Home& product = homes[inst.operands[1].reg];
       if (product.uses != 1 || !is_real(*product.inst) || product.inst->op != mul) continue;
       const std::vector<Operand> factors(product.inst->operands.begin() + 1, product.inst->operands.end());

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/ptx/parser.h"
 
-#include <fmt/format.h>
-
 #include <bit>
+#include <fmt/format.h>
 #include <map>
 
 namespace glint::frontend::ptx {
@@ -15,7 +14,8 @@ std::optional<Type> type_of(const std::string& word) {
   for (std::string_view other : kOthers)
     if (word == other) return Type{other[0] == 'u' || other[0] == 's' ? other[0] : 'f', 32};
   if (word == "bf16") return Type{'f', 16};
-  static const std::map<std::string, uint32_t> kBits{{"8", 8}, {"16", 16}, {"32", 32}, {"64", 64}, {"128", 128}};
+  static const std::map<std::string, uint32_t> kBits{
+      {"8", 8}, {"16", 16}, {"32", 32}, {"64", 64}, {"128", 128}};
   if (word.size() < 2 || std::string_view("busf").find(word[0]) == std::string_view::npos) return {};
   const auto bits = kBits.find(word.substr(1));
   if (bits == kBits.end() || (word[0] == 'f' && bits->second == 8)) return {};
@@ -40,7 +40,9 @@ std::optional<VariableSpace> space_of(const std::string& word) {
 
 class Parser {
  public:
-  Parser(std::string_view text, const std::string& file) : in_(tokenize(text, file), file) { module_.file = file; }
+  Parser(std::string_view text, const std::string& file) : in_(tokenize(text, file), file) {
+    module_.file = file;
+  }
 
   Module run() {
     while (!in_.at_end()) module_item();
@@ -117,7 +119,8 @@ class Parser {
     // A declaration ahead of its definition, or after it, is the same function.
     for (Function& other : module_.functions)
       if (other.name == f.name) {
-        if (other.has_body && f.has_body) in_.fail(f.place, fmt::format("function '{}' is defined twice", f.name));
+        if (other.has_body && f.has_body)
+          in_.fail(f.place, fmt::format("function '{}' is defined twice", f.name));
         if (f.has_body) other = std::move(f);
         return;
       }
@@ -225,12 +228,19 @@ class Parser {
     const Operand o = in_.operand();
     switch (o.kind) {
       case Operand::Kind::Integer:
-      case Operand::Kind::Float32: d.initial.push_back({o.value, {}}); return;
-      case Operand::Kind::Float64:
-        d.initial.push_back({d.type.bits == 32 ? std::bit_cast<uint32_t>(float(std::bit_cast<double>(o.value))) : o.value, {}});
+      case Operand::Kind::Float32:
+        d.initial.push_back({o.value, {}});
         return;
-      case Operand::Kind::Name: d.initial.push_back({uint64_t(o.offset), o.name}); return;
-      default: in_.fail(o.place, "expected a number or the name of a variable");
+      case Operand::Kind::Float64:
+        d.initial.push_back(
+            {d.type.bits == 32 ? std::bit_cast<uint32_t>(float(std::bit_cast<double>(o.value))) : o.value,
+             {}});
+        return;
+      case Operand::Kind::Name:
+        d.initial.push_back({uint64_t(o.offset), o.name});
+        return;
+      default:
+        in_.fail(o.place, "expected a number or the name of a variable");
     }
   }
 
@@ -275,7 +285,8 @@ class Parser {
       if (directive == "loc" || directive == "file") return skip_line_directive();
       if (directive == "pragma") return skip_to_semicolon();
       in_.fail(s.place, fmt::format("'.{}' has no meaning here", directive));
-    } else if (in_.is(Token::Kind::Word) && in_.peek(1).kind == Token::Kind::Mark && in_.peek(1).text == ":") {
+    } else if (in_.is(Token::Kind::Word) && in_.peek(1).kind == Token::Kind::Mark &&
+               in_.peek(1).text == ":") {
       s.label = in_.next().text;
       in_.next();
       if (in_.is_dot("branchtargets") || in_.is_dot("calltargets") || in_.is_dot("callprototype"))
@@ -319,6 +330,8 @@ class Parser {
 
 }  // namespace
 
-Module parse(std::string_view text, const std::string& file) { return Parser(text, file).run(); }
+Module parse(std::string_view text, const std::string& file) {
+  return Parser(text, file).run();
+}
 
 }  // namespace glint::frontend::ptx

@@ -1,5 +1,5 @@
-// The parser's tools that declarations and statements share: a cursor over tokens, constant expressions, operands.
-// SPDX-License-Identifier: Apache-2.0
+// The parser's tools that declarations and statements share: a cursor over tokens, constant expressions,
+// operands. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <string>
@@ -16,8 +16,12 @@ class Cursor {
   const Token& peek(size_t ahead = 0) const { return tokens_[std::min(at_ + ahead, tokens_.size() - 1)]; }
   const Token& next() { return tokens_[at_ + 1 < tokens_.size() ? at_++ : at_]; }
   bool at_end() const { return peek().kind == Token::Kind::End; }
-  bool is_mark(std::string_view text) const { return peek().kind == Token::Kind::Mark && peek().text == text; }
-  bool is_dot(std::string_view text) const { return peek().kind == Token::Kind::DotWord && peek().text == text; }
+  bool is_mark(std::string_view text) const {
+    return peek().kind == Token::Kind::Mark && peek().text == text;
+  }
+  bool is_dot(std::string_view text) const {
+    return peek().kind == Token::Kind::DotWord && peek().text == text;
+  }
   bool is(Token::Kind kind) const { return peek().kind == kind; }
   bool accept(std::string_view mark);      // takes the mark if it stands here
   bool accept_dot(std::string_view word);  // takes the `.word` if it stands here
@@ -30,7 +34,7 @@ class Cursor {
   // An operand of an instruction.
   Operand operand();
 
-  [[noreturn]] void fail(const std::string& expected) const;            // "expected X, found Y" here
+  [[noreturn]] void fail(const std::string& expected) const;  // "expected X, found Y" here
   [[noreturn]] void fail(Place at, const std::string& message) const;
 
  private:

@@ -27,16 +27,20 @@ const ptx::Function& find_entry(const ptx::Module& module, const std::string& en
   }
   if (names.empty()) throw UserError({module.file, 0, 0}, "the module has no kernel (.entry)");
   const std::string list = fmt::format("kernels: {}", fmt::join(names, ", "));
-  if (entry.empty() && names.size() > 1) throw UserError({module.file, 0, 0}, "the module has several kernels: name one", list);
+  if (entry.empty() && names.size() > 1)
+    throw UserError({module.file, 0, 0}, "the module has several kernels: name one", list);
   if (!found) throw UserError({module.file, 0, 0}, fmt::format("there is no kernel '{}'", entry), list);
   return *found;
 }
 
 }  // namespace
 
-Kernel compile_ptx(std::string_view text, const std::string& file, const std::string& entry, const PtxOptions& options) {
+Kernel compile_ptx(std::string_view text, const std::string& file, const std::string& entry,
+                   const PtxOptions& options) {
   const ptx::Module module = ptx::parse(text, file);
-  if (module.address_size != 64) throw UnsupportedError(fmt::format("{}: error: addresses of {} bits: Glint has 64", file, module.address_size));
+  if (module.address_size != 64)
+    throw UnsupportedError(
+        fmt::format("{}: error: addresses of {} bits: Glint has 64", file, module.address_size));
   const ptx::Function& function = find_entry(module, entry);
   Kernel kernel;
   kernel.required_block = function.required_block;
@@ -48,7 +52,8 @@ Kernel compile_ptx(std::string_view text, const std::string& file, const std::st
     for (const std::string& message : unsupported.messages()) errors.error({}, message);
     errors.throw_if_errors();
   }
-  if (unsupported.has_errors()) throw UnsupportedError(fmt::format("{}", fmt::join(unsupported.messages(), "\n")));
+  if (unsupported.has_errors())
+    throw UnsupportedError(fmt::format("{}", fmt::join(unsupported.messages(), "\n")));
   kernel.program = assemble(std::move(program), options.backend);
   kernel.program.shared_bytes = uint32_t(lowering.static_shared_bytes());
   return kernel;

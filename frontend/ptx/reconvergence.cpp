@@ -1,14 +1,15 @@
 // Post-dominators, and the regions whose lanes must meet.
 //
-// Nesting. Let P1 lie in S(P2). If S(P1) and S(P2) overlap, S(P1) is added to S(P2): its blocks are post-dominated by
-// P1, so also by P2, and edges out of it still lead into S(P2). After that any two sets are nested or disjoint: of two
-// that share a block, the one whose P comes first on the way to the end lies in the other.
+// Nesting. Let P1 lie in S(P2). If S(P1) and S(P2) overlap, S(P1) is added to S(P2): its blocks are
+// post-dominated by P1, so also by P2, and edges out of it still lead into S(P2). After that any two sets are
+// nested or disjoint: of two that share a block, the one whose P comes first on the way to the end lies in
+// the other.
 //
-// Loops. A branch of which both ways stay in a loop is looked at within one turn of it: ways out of the loop do not count,
-// and what leads back to the head leads to one new block, the turn's end. So lanes that went on to the next turn wait there
-// for those that are still in this one. Source: counts of executed loads of a traversal loop on an H200 (docs/validation.md).
-// Lanes that leave the loop leave S(P) without its join, and wait at the join of a region around the loop: `is_sound`.
-// SPDX-License-Identifier: Apache-2.0
+// Loops. A branch of which both ways stay in a loop is looked at within one turn of it: ways out of the loop
+// do not count, and what leads back to the head leads to one new block, the turn's end. So lanes that went on
+// to the next turn wait there for those that are still in this one. Source: counts of executed loads of a
+// traversal loop on an H200 (docs/validation.md). Lanes that leave the loop leave S(P) without its join, and
+// wait at the join of a region around the loop: `is_sound`. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <map>
 #include <set>
@@ -37,7 +38,8 @@ class Reconvergence {
     for (Loop& loop : natural_loops(next_, draft_.layout.front())) {
       const Edges turn = edges_of_turn(loop);
       const std::vector<BlockId> post = immediate_dominators(reversed(turn), end_);
-      const bool needs = std::any_of(loop.body.begin(), loop.body.end(), [&](BlockId b) { return parts_lanes(b, turn) && post[b] == end_; });
+      const bool needs = std::any_of(loop.body.begin(), loop.body.end(),
+                                     [&](BlockId b) { return parts_lanes(b, turn) && post[b] == end_; });
       if (needs) out.push_back(std::move(loop));
     }
     return out;
@@ -113,7 +115,8 @@ class Reconvergence {
 
   bool parts_lanes(BlockId b, const Edges& edges) const {
     const DraftBlock& x = draft_.blocks[b];
-    return reachable_[b] && x.end == DraftBlock::End::Branch && !x.uniform && x.taken != x.next && edges[b].size() == 2;
+    return reachable_[b] && x.end == DraftBlock::End::Branch && !x.uniform && x.taken != x.next &&
+           edges[b].size() == 2;
   }
 
   // Within the loop: its head, reached again, is the virtual end.
@@ -148,13 +151,15 @@ class Reconvergence {
     find(next_);
   }
 
-  // Whether any two regions are nested or disjoint, and lanes that leave one by another way than its meeting place
-  // come to one around it before they could come back.
+  // Whether any two regions are nested or disjoint, and lanes that leave one by another way than its meeting
+  // place come to one around it before they could come back.
   bool is_sound() {
     for (const auto& [p, s] : regions_) {
       if (s.contains(p)) return false;
       for (const auto& [other, t] : regions_)
-        if (overlap(s, t) && !std::includes(s.begin(), s.end(), t.begin(), t.end()) && !std::includes(t.begin(), t.end(), s.begin(), s.end())) return false;
+        if (overlap(s, t) && !std::includes(s.begin(), s.end(), t.begin(), t.end()) &&
+            !std::includes(t.begin(), t.end(), s.begin(), s.end()))
+          return false;
       if (comes_back(p, s)) return false;
     }
     return true;
@@ -165,7 +170,9 @@ class Reconvergence {
     const auto follow = [&](BlockId b) {
       for (BlockId n : block(b).successors()) {
         const auto around = regions_.find(n);
-        const bool waits = around != regions_.end() && around->second.contains(b) && std::includes(around->second.begin(), around->second.end(), region.begin(), region.end());
+        const bool waits =
+            around != regions_.end() && around->second.contains(b) &&
+            std::includes(around->second.begin(), around->second.end(), region.begin(), region.end());
         if (!waits && !(region.contains(b) && region.contains(n))) work.push_back(n);
       }
     };
@@ -196,8 +203,8 @@ class Reconvergence {
     }
   }
 
-  // Meeting places of the regions that an edge enters, outermost first. `from` is a block, or with `behind_join` the
-  // join of `to`, which lies in a region exactly when all of S(to) does.
+  // Meeting places of the regions that an edge enters, outermost first. `from` is a block, or with
+  // `behind_join` the join of `to`, which lies in a region exactly when all of S(to) does.
   std::vector<BlockId> entered(BlockId from, BlockId to, bool behind_join) const {
     std::vector<BlockId> out;
     for (const auto& [p, s] : regions_) {
@@ -205,7 +212,8 @@ class Reconvergence {
       const bool inside = behind_join ? overlap(s, regions_.at(to)) : s.contains(from);
       if (!inside) out.push_back(p);
     }
-    std::sort(out.begin(), out.end(), [&](BlockId a, BlockId b) { return regions_.at(a).size() > regions_.at(b).size(); });
+    std::sort(out.begin(), out.end(),
+              [&](BlockId a, BlockId b) { return regions_.at(a).size() > regions_.at(b).size(); });
     return out;
   }
 
@@ -268,7 +276,8 @@ class Reconvergence {
     const std::vector<BlockId> behind_join = has_join ? entered(to, to, true) : std::vector<BlockId>{};
     // What every way into the block enters is pushed in the block itself, just before it ends.
     const std::vector<BlockId>& first = has_join ? behind_join : edges.front().enters;
-    const bool same = std::all_of(edges.begin(), edges.end(), [&](const Edge& e) { return e.to_join || e.enters == first; });
+    const bool same = std::all_of(edges.begin(), edges.end(),
+                                  [&](const Edge& e) { return e.to_join || e.enters == first; });
     if (same) at_end_[to] = first;
     if (has_join && !same) push_all(block(joins_[to]).code, behind_join, block(to).line);
     for (const Edge& edge : edges) {
@@ -291,11 +300,11 @@ class Reconvergence {
   }
 
   Draft& draft_;
-  const BlockId end_;                          // the virtual end
-  Edges next_;                                 // edges that count
+  const BlockId end_;  // the virtual end
+  Edges next_;         // edges that count
   std::vector<bool> reachable_;
-  std::map<BlockId, Blocks> regions_;          // S(P) by P
-  std::map<BlockId, BlockId> joins_;           // join block of P
+  std::map<BlockId, Blocks> regions_;                         // S(P) by P
+  std::map<BlockId, BlockId> joins_;                          // join block of P
   std::map<BlockId, std::vector<BlockId>> at_end_, on_edge_;  // ssys that a block pushes before it ends
   std::map<BlockId, std::vector<BlockId>> behind_;  // new blocks, by the block behind which they lie
 };
@@ -325,8 +334,10 @@ void end_turns(Draft& draft, const Loop& loop) {
 void add_reconvergence(Draft& draft) {
   Draft with_ends = draft;
   for (const Loop& loop : Reconvergence(draft).loops_without_end()) end_turns(with_ends, loop);
-  if (Reconvergence(with_ends).run(true)) draft = std::move(with_ends);
-  else Reconvergence(draft).run(false);
+  if (Reconvergence(with_ends).run(true))
+    draft = std::move(with_ends);
+  else
+    Reconvergence(draft).run(false);
 }
 
 }  // namespace glint::frontend::ptx

@@ -15,7 +15,9 @@ std::string joined(const Words& words) {
   return out;
 }
 
-bool has_word(const Words& words, std::string_view word) { return std::find(words.begin(), words.end(), word) != words.end(); }
+bool has_word(const Words& words, std::string_view word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
 
 namespace {
 
@@ -24,7 +26,9 @@ bool is_one_of(const std::string& word, const std::array<std::string_view, kCoun
   return std::find(list.begin(), list.end(), word) != list.end();
 }
 
-int row_of(const Words& words) { return isa::find_op(joined(words)); }
+int row_of(const Words& words) {
+  return isa::find_op(joined(words));
+}
 
 bool is_float(const std::string& word) {
   const auto type = type_of(word);
@@ -33,8 +37,9 @@ bool is_float(const std::string& word) {
 
 // Place of a modifier of floating-point arithmetic in the canonical order, PTX's own.
 int rank_of(const std::string& word) {
-  static constexpr std::array<std::string_view, 15> kOrder{"approx", "full", "rn", "rz", "rm",   "rp",      "rna", "ftz",
-                                                           "sat",    "relu", "NaN", "xorsign", "abs", "satfinite", "oob"};
+  static constexpr std::array<std::string_view, 15> kOrder{"approx", "full",    "rn",  "rz",        "rm",
+                                                           "rp",     "rna",     "ftz", "sat",       "relu",
+                                                           "NaN",    "xorsign", "abs", "satfinite", "oob"};
   const auto at = std::find(kOrder.begin(), kOrder.end(), word);
   if (at == kOrder.end()) return 100;  // types stay behind
   const int rank = int(at - kOrder.begin());
@@ -42,19 +47,23 @@ int rank_of(const std::string& word) {
 }
 
 Words with_float_defaults(Words words) {
-  static constexpr std::array<std::string_view, 7> kArithmetic{"add", "sub", "mul", "mad", "fma", "min", "max"};
+  static constexpr std::array<std::string_view, 7> kArithmetic{"add", "sub", "mul", "mad",
+                                                               "fma", "min", "max"};
   if (words.size() < 2 || !is_one_of(words[0], kArithmetic) || !is_float(words.back())) return words;
   if (words[0] == "mad") words[0] = "fma";
   const bool rounds = words[0] != "min" && words[0] != "max";
-  const bool has_rounding = std::any_of(words.begin() + 1, words.end(), [](const std::string& w) { return rank_of(w) == 2; });
+  const bool has_rounding =
+      std::any_of(words.begin() + 1, words.end(), [](const std::string& w) { return rank_of(w) == 2; });
   if (rounds && !has_rounding) words.insert(words.begin() + 1, "rn");
-  std::stable_sort(words.begin() + 1, words.end(), [](const std::string& a, const std::string& b) { return rank_of(a) < rank_of(b); });
+  std::stable_sort(words.begin() + 1, words.end(),
+                   [](const std::string& a, const std::string& b) { return rank_of(a) < rank_of(b); });
   return words;
 }
 
 // setp.lo.u32 and setp.lt.u32 are one, and so on.
 Words with_common_comparison(Words words) {
-  static constexpr std::pair<std::string_view, std::string_view> kSame[] = {{"lo", "lt"}, {"ls", "le"}, {"hi", "gt"}, {"hs", "ge"}};
+  static constexpr std::pair<std::string_view, std::string_view> kSame[] = {
+      {"lo", "lt"}, {"ls", "le"}, {"hi", "gt"}, {"hs", "ge"}};
   if (words.size() > 2 && (words[0] == "setp" || words[0] == "set"))
     for (const auto& [unsigned_name, name] : kSame)
       if (words[1] == unsigned_name) words[1] = name;
@@ -63,11 +72,13 @@ Words with_common_comparison(Words words) {
 
 // Ops whose result does not depend on what the bits of their first type mean.
 bool ignores_type(const Words& words) {
-  static constexpr std::array<std::string_view, 16> kBitOps{"mov", "selp", "slct", "and", "or",   "xor",  "not", "cnot",
-                                                            "shl", "add",  "sub",  "addc", "subc", "popc", "clz", "brev"};
+  static constexpr std::array<std::string_view, 16> kBitOps{"mov",  "selp", "slct", "and", "or",  "xor",
+                                                            "not",  "cnot", "shl",  "add", "sub", "addc",
+                                                            "subc", "popc", "clz",  "brev"};
   if (is_one_of(words[0], kBitOps)) return true;
   if (words[0] == "mul" || words[0] == "mad" || words[0] == "madc") return has_word(words, "lo");
-  if (words[0] == "setp" || words[0] == "set") return words[1] == "eq" || words[1] == "ne" || words.back()[0] == 'b';
+  if (words[0] == "setp" || words[0] == "set")
+    return words[1] == "eq" || words[1] == "ne" || words.back()[0] == 'b';
   return words[0] == "shr" && words.back()[0] == 'b';
 }
 
@@ -113,9 +124,10 @@ std::optional<MemoryForm> memory_form(const Words& words) {
   MemoryForm form;
   form.op = words[0] == "ldu" ? "ld" : words[0];
   if (form.op != "ld" && form.op != "st" && form.op != "atom" && form.op != "red") return {};
-  static constexpr std::array<std::string_view, 6> kSpaces{"global", "shared", "local", "const", "param", "generic"};
-  static constexpr std::array<std::string_view, 14> kFunctions{"add", "min", "max", "inc", "dec", "and", "or",
-                                                               "xor", "exch", "cas", "noftz", "ftz", "rn", "sat"};
+  static constexpr std::array<std::string_view, 6> kSpaces{"global", "shared", "local",
+                                                           "const",  "param",  "generic"};
+  static constexpr std::array<std::string_view, 14> kFunctions{
+      "add", "min", "max", "inc", "dec", "and", "or", "xor", "exch", "cas", "noftz", "ftz", "rn", "sat"};
   for (size_t i = 1; i < words.size(); ++i) {
     const std::string head = words[i].substr(0, words[i].find("::"));
     if (is_one_of(head, kSpaces)) {

@@ -15,14 +15,15 @@ using Words = std::vector<std::string>;
 std::string joined(const Words& words);  // {"add", "f32"} -> "add.f32"
 bool has_word(const Words& words, std::string_view word);
 
-// The row of an arithmetic, comparison, selection, conversion or warp op, or -1: the exact spelling, else with PTX's
-// defaults filled in (add.f32 = add.rn.f32), in canonical order, and with types that differ in name only.
+// The row of an arithmetic, comparison, selection, conversion or warp op, or -1: the exact spelling, else
+// with PTX's defaults filled in (add.f32 = add.rn.f32), in canonical order, and with types that differ in
+// name only.
 int find_row(const Words& words);
 
 // What a load, store or atomic asks for, cache hints and scopes left out.
 struct MemoryForm {
-  std::string op;         // ld, st, atom, red
-  std::string space;      // global, shared, local, const, param; empty: generic
+  std::string op;     // ld, st, atom, red
+  std::string space;  // global, shared, local, const, param; empty: generic
   uint32_t vector = 1;
   Words function;         // atom, red: {"add", "noftz"}
   std::string type_name;  // as written

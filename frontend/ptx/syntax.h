@@ -20,13 +20,15 @@ std::optional<Type> type_of(const std::string& word);
 
 struct Operand {
   enum class Kind : uint8_t {
-    Sink,      // _
-    Name,      // register, variable, label, function; element: the x of %tid.x; offset: of `name + 4`
-    Integer, Float32, Float64,  // value holds bits
-    Vector,    // {a, b}: parts
-    Address,   // [parts[0] + offset, more parts]
-    Pair,      // a|b: parts
-    List       // (a, b): parts, of a call
+    Sink,  // _
+    Name,  // register, variable, label, function; element: the x of %tid.x; offset: of `name + 4`
+    Integer,
+    Float32,
+    Float64,  // value holds bits
+    Vector,   // {a, b}: parts
+    Address,  // [parts[0] + offset, more parts]
+    Pair,     // a|b: parts
+    List      // (a, b): parts, of a call
   } kind = Kind::Sink;
   std::string name, element;
   bool negated = false;  // !name
@@ -39,7 +41,7 @@ struct Operand {
 struct Instruction {
   std::vector<std::string> words;  // of the opcode: {"ld", "global", "f32"}
   std::vector<Operand> operands;
-  std::string guard;               // name of a predicate, or empty
+  std::string guard;  // name of a predicate, or empty
   bool guard_negated = false;
   Place place;
 };
@@ -47,34 +49,34 @@ struct Instruction {
 enum class VariableSpace : uint8_t { Register, Shared, Local, Const, Global, Param };
 
 struct Initializer {
-  uint64_t value = 0;   // bits of the element type
-  std::string symbol;   // or the address of that, plus value
+  uint64_t value = 0;  // bits of the element type
+  std::string symbol;  // or the address of that, plus value
 };
 
 struct Declaration {
   VariableSpace space = VariableSpace::Register;
   Type type;
-  uint32_t vector = 1;          // .v2, .v4
-  uint32_t align = 0;           // 0: natural
+  uint32_t vector = 1;  // .v2, .v4
+  uint32_t align = 0;   // 0: natural
   std::string name;
-  uint32_t range = 0;           // %r<10>: 10 registers named %r0 to %r9
+  uint32_t range = 0;  // %r<10>: 10 registers named %r0 to %r9
   std::vector<uint64_t> dimensions;
   bool is_extern = false, has_open_dimension = false;
   std::vector<Initializer> initial;
   Place place;
 
-  uint64_t count() const;       // elements, of all dimensions
+  uint64_t count() const;  // elements, of all dimensions
   uint64_t bytes() const { return count() * vector * type.bits / 8; }
   uint32_t alignment() const { return align ? align : vector * type.bits / 8; }
 };
 
 struct Statement {
   enum class Kind : uint8_t { Label, Instruction, Declaration, Scope, Targets } kind = Kind::Instruction;
-  std::string label;                  // Label; Targets: name of the list
+  std::string label;  // Label; Targets: name of the list
   Instruction instruction;
   Declaration declaration;
-  std::vector<Statement> body;        // Scope
-  std::vector<std::string> targets;   // Targets
+  std::vector<Statement> body;       // Scope
+  std::vector<std::string> targets;  // Targets
   Place place;
 };
 

@@ -2,19 +2,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/ptx/tokens.h"
 
-#include <fmt/format.h>
-
 #include <bit>
 #include <cctype>
 #include <cstdlib>
+#include <fmt/format.h>
 #include <utility>
 
 namespace glint::frontend::ptx {
 namespace {
 
-bool is_word_start(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_' || c == '$' || c == '%'; }
-bool is_word_part(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '$'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_word_start(char c) {
+  return std::isalpha(static_cast<unsigned char>(c)) || c == '_' || c == '$' || c == '%';
+}
+bool is_word_part(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '$';
+}
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
 
 class Tokenizer {
  public:
@@ -33,7 +38,8 @@ class Tokenizer {
       if (is_word_start(c)) {
         // `%` alone is the remainder operator of constant expressions.
         token.kind = c == '%' && !is_word_part(peek(1)) ? Token::Kind::Mark : Token::Kind::Word;
-        token.text = take([&, first = true](char x) mutable { return std::exchange(first, false) || is_word_part(x); });
+        token.text = take(
+            [&, first = true](char x) mutable { return std::exchange(first, false) || is_word_part(x); });
       } else if (c == '.' && is_word_part(peek(1)) && !(is_digit(peek(1)) && !glues())) {
         token.kind = Token::Kind::DotWord;
         advance();
@@ -98,7 +104,8 @@ class Tokenizer {
       token.kind = kind == 'f' ? Token::Kind::Float32 : Token::Kind::Float64;
       token.value = digits_of(token, 2, 16);
       if (token.text.size() != 2 + digits)
-        fail(token.place, fmt::format("'{}' has {} digits, 0{} takes {}", token.text, token.text.size() - 2, kind, digits));
+        fail(token.place, fmt::format("'{}' has {} digits, 0{} takes {}", token.text, token.text.size() - 2,
+                                      kind, digits));
       return;
     }
     if (text_[at_] == '0' && (kind == 'x' || kind == 'b')) {
@@ -149,7 +156,8 @@ class Tokenizer {
     for (std::string_view two : {"<<", ">>", "==", "!=", "<=", ">=", "&&", "||"})
       if (text_.substr(at_, 2) == two) token.text = two;
     if (token.text.empty()) token.text = std::string(1, text_[at_]);
-    if (token.text.size() == 1 && std::string_view("!&()*+,-/:;<=>?@[]^{|}~%").find(text_[at_]) == std::string_view::npos)
+    if (token.text.size() == 1 &&
+        std::string_view("!&()*+,-/:;<=>?@[]^{|}~%").find(text_[at_]) == std::string_view::npos)
       fail(token.place, fmt::format("unexpected character '{}'", text_[at_]));
     for (size_t i = 0; i < token.text.size(); ++i) advance();
   }
@@ -163,6 +171,8 @@ class Tokenizer {
 
 }  // namespace
 
-std::vector<Token> tokenize(std::string_view text, const std::string& file) { return Tokenizer(text, file).run(); }
+std::vector<Token> tokenize(std::string_view text, const std::string& file) {
+  return Tokenizer(text, file).run();
+}
 
 }  // namespace glint::frontend::ptx

@@ -17,13 +17,13 @@ struct Place {
 
 struct Token {
   enum class Kind : uint8_t {
-    Word,      // add, %r1, $L__BB0_2, _ZZ6kernel
-    DotWord,   // .f32, .entry, .L1::no_allocate: text without the dot
-    Integer,   // value
-    Float32,   // 0f3F800000: value holds the bits
-    Float64,   // 0d3FF0000000000000 or 1.5: value holds the bits of the double
+    Word,     // add, %r1, $L__BB0_2, _ZZ6kernel
+    DotWord,  // .f32, .entry, .L1::no_allocate: text without the dot
+    Integer,  // value
+    Float32,  // 0f3F800000: value holds the bits
+    Float64,  // 0d3FF0000000000000 or 1.5: value holds the bits of the double
     String,
-    Mark,      // one character of punctuation, or one of << >> == != <= >= && ||
+    Mark,  // one character of punctuation, or one of << >> == != <= >= && ||
     End
   } kind = Kind::End;
   std::string text;

@@ -16,20 +16,26 @@ namespace {
 
 using Operand = VirtualOperand;
 
-constexpr int64_t kTurns = 4;     // at a time; of the rest, two
-// Instructions of a body. Choice: with 64 an H200's counts of the calibration kernels come out, whose lanes count alike; where they
-// may not, it has copied a body of 20 instructions and left one of 45 alone (h_spmv, h_chase of bench/held_out).
+constexpr int64_t kTurns = 4;  // at a time; of the rest, two
+// Instructions of a body. Choice: with 64 an H200's counts of the calibration kernels come out, whose lanes
+// count alike; where they may not, it has copied a body of 20 instructions and left one of 45 alone (h_spmv,
+// h_chase of bench/held_out).
 constexpr size_t kMostCode = 64, kMostCodeOfEach = 32;
 
 // One loop: its block, and what its registers are in the copies.
 class CountedLoop {
  public:
-  CountedLoop(Draft& draft, VirtualProgram& program, BlockId at) : draft_(draft), program_(program), at_(at) {}
+  CountedLoop(Draft& draft, VirtualProgram& program, BlockId at)
+      : draft_(draft), program_(program), at_(at) {}
 
   bool run() {
     const DraftBlock& block = draft_.blocks[at_];
-    if (block.end != DraftBlock::End::Branch || block.taken != at_ || block.next == at_ || block.negate || block.code.size() > kMostCode) return false;
-    const auto all = [&](bool (*holds)(const VirtualInst&)) { return std::all_of(block.code.begin(), block.code.end(), holds); };
+    if (block.end != DraftBlock::End::Branch || block.taken != at_ || block.next == at_ || block.negate ||
+        block.code.size() > kMostCode)
+      return false;
+    const auto all = [&](bool (*holds)(const VirtualInst&)) {
+      return std::all_of(block.code.begin(), block.code.end(), holds);
+    };
     if (!all(can_be_copied)) return false;
     find_definitions(block);
     if (!find_counter(block)) return false;
@@ -42,7 +48,8 @@ class CountedLoop {
  private:
   static bool can_be_copied(const VirtualInst& inst) {
     if (!is_real(inst) || is_guarded(inst)) return false;
-    return is_movable(inst) || row_of(inst).effect == isa::Effect::Barrier || row_of(inst).effect == isa::Effect::Fence;
+    return is_movable(inst) || row_of(inst).effect == isa::Effect::Barrier ||
+           row_of(inst).effect == isa::Effect::Fence;
   }
   // Else lanes of a warp may be in different copies, where they were in one turn.
   static bool is_a_lane_s_own(const VirtualInst& inst) {
@@ -50,7 +57,8 @@ class CountedLoop {
   }
 
   void find_definitions(const DraftBlock& block) {
-    for (const VirtualInst& inst : block.code) for_each_def(inst, [&](VirtualRegister r) { ++definitions_[r]; });
+    for (const VirtualInst& inst : block.code)
+      for_each_def(inst, [&](VirtualRegister r) { ++definitions_[r]; });
     std::set<VirtualRegister> written;
     for (const VirtualInst& inst : block.code) {
       for_each_use(inst, [&](VirtualRegister r) {
@@ -62,43 +70,58 @@ class CountedLoop {
     for (BlockId b = 0; b < draft_.blocks.size(); ++b) {
       if (b == at_) continue;
       for (const VirtualInst& inst : draft_.blocks[b].code)
-        for_each_use(inst, [&](VirtualRegister r) { if (definitions_.contains(r)) kept_.insert(r); });
+        for_each_use(inst, [&](VirtualRegister r) {
+          if (definitions_.contains(r)) kept_.insert(r);
+        });
       if (definitions_.contains(draft_.blocks[b].condition)) kept_.insert(draft_.blocks[b].condition);
     }
   }
 
   // The constant that the instruction adds to a register which nothing else changes.
   std::optional<int64_t> step_of(const VirtualInst& inst) const {
-    const bool narrow = inst.op == ops_.add_s32 || inst.op == ops_.add_u32, wide = inst.op == ops_.add_s64 || inst.op == ops_.add_u64;
+    const bool narrow = inst.op == ops_.add_s32 || inst.op == ops_.add_u32,
+               wide = inst.op == ops_.add_s64 || inst.op == ops_.add_u64;
     if (!narrow && !wide) return std::nullopt;
     const Operand &to = inst.operands[0], &from = inst.operands[1], &by = inst.operands[2];
-    if (!is_register(from) || from.reg != to.reg || !is_constant(by) || definitions_.at(to.reg) != 1) return std::nullopt;
+    if (!is_register(from) || from.reg != to.reg || !is_constant(by) || definitions_.at(to.reg) != 1)
+      return std::nullopt;
     const int64_t step = narrow ? int64_t{int32_t(uint32_t(by.constant))} : int64_t(by.constant);
     constexpr int64_t kMost = 1 << 24;
     return step > -kMost && step < kMost ? std::optional(step) : std::nullopt;
   }
 
-  // The last test: `setp.ne.s32 p, r, 0` behind r's step down, or `setp.lt.s32 p, r, bound` behind its step up.
+  // The last test: `setp.ne.s32 p, r, 0` behind r's step down, or `setp.lt.s32 p, r, bound` behind its step
+  // up.
   bool find_counter(const DraftBlock& block) {
     if (block.code.empty() || kept_.contains(block.condition)) return false;
     const VirtualInst& test = block.code.back();
-    if ((test.op != setp_ne_s32_ && test.op != setp_lt_s32_) || test.operands[0].reg != block.condition || definitions_[block.condition] != 1) return false;
+    if ((test.op != setp_ne_s32_ && test.op != setp_lt_s32_) || test.operands[0].reg != block.condition ||
+        definitions_[block.condition] != 1)
+      return false;
     const Operand &value = test.operands[1], &end = test.operands[2];
-    if (!is_register(value) || !steps_.contains(value.reg) || program_.registers[value.reg] != RegisterClass::B32) return false;
+    if (!is_register(value) || !steps_.contains(value.reg) ||
+        program_.registers[value.reg] != RegisterClass::B32)
+      return false;
     counter_ = value.reg;
     end_ = end;
     counts_up_ = test.op == setp_lt_s32_;
-    if (counts_up_) return steps_[counter_] > 0 && (is_constant(end) || (is_register(end) && !definitions_.contains(end.reg)));
+    if (counts_up_)
+      return steps_[counter_] > 0 &&
+             (is_constant(end) || (is_register(end) && !definitions_.contains(end.reg)));
     return steps_[counter_] < 0 && is_constant(end) && end.constant == 0;
   }
 
   // All lanes that are in the loop are in the same turn, and leave it together.
-  bool lanes_count_together() const { return is_uniform(Operand::of(counter_), true) && is_uniform(end_, false); }
-  // One value for all lanes: the constants, what is computed once from such, and the counter that starts with one.
+  bool lanes_count_together() const {
+    return is_uniform(Operand::of(counter_), true) && is_uniform(end_, false);
+  }
+  // One value for all lanes: the constants, what is computed once from such, and the counter that starts with
+  // one.
   bool is_uniform(const Operand& o, bool is_counter, int depth = 0) const {
     constexpr int kDeepest = 8;
     if (is_constant(o)) return true;
-    if (o.kind == Operand::Kind::Special) return o.special >= isa::Special::NtidX && o.special <= isa::Special::NctaidZ;
+    if (o.kind == Operand::Kind::Special)
+      return o.special >= isa::Special::NtidX && o.special <= isa::Special::NctaidZ;
     if (!is_register(o) || depth == kDeepest) return false;
     const VirtualInst* source = nullptr;
     for (BlockId b = 0; b < draft_.blocks.size(); ++b)
@@ -111,17 +134,21 @@ class CountedLoop {
       }
     if (!source) return false;
     const isa::OpRow& row = row_of(*source);
-    const bool reads_constants = row.effect == isa::Effect::Load && (row.name.starts_with("ld.const") || row.name.starts_with("ld.param"));
+    const bool reads_constants = row.effect == isa::Effect::Load &&
+                                 (row.name.starts_with("ld.const") || row.name.starts_with("ld.param"));
     if (row.effect != isa::Effect::None && !reads_constants) return false;
     if (row.unit == isa::Unit::Shuffle || row.name == "activemask.b32") return false;
     bool uniform = true;
     for_each_slot(row, [&](size_t slot, isa::OperandKind kind) {
-      if (!isa::is_destination(kind)) uniform = uniform && is_uniform(source->operands[slot], false, depth + 1);
+      if (!isa::is_destination(kind))
+        uniform = uniform && is_uniform(source->operands[slot], false, depth + 1);
     });
     return uniform;
   }
 
-  static Operand constant_of(int64_t value, bool wide) { return Operand::value(wide ? uint64_t(value) : uint64_t(uint32_t(value))); }
+  static Operand constant_of(int64_t value, bool wide) {
+    return Operand::value(wide ? uint64_t(value) : uint64_t(uint32_t(value)));
+  }
   bool is_wide(VirtualRegister r) const { return program_.registers[r] == RegisterClass::B64; }
   Operand now(const Operand& o) const {
     if (!is_register(o)) return o;
@@ -162,10 +189,14 @@ class CountedLoop {
   // A sum of a stepping register and one that stays: what the first turn had, and the steps since.
   bool take_from_first(VirtualInst& inst, int64_t turn, size_t i) const {
     const bool wide = inst.op == ops_.add_s64 || inst.op == ops_.add_u64;
-    if (turn == 0 || (!wide && inst.op != ops_.add_s32 && inst.op != ops_.add_u32) || kept_.contains(inst.operands[0].reg)) return false;
+    if (turn == 0 || (!wide && inst.op != ops_.add_s32 && inst.op != ops_.add_u32) ||
+        kept_.contains(inst.operands[0].reg))
+      return false;
     for (size_t k : {size_t{1}, size_t{2}}) {
       const Operand &moving = inst.operands[k], &other = inst.operands[3 - k];
-      if (!is_register(moving) || !steps_.contains(moving.reg) || !is_register(other) || definitions_.contains(other.reg)) continue;
+      if (!is_register(moving) || !steps_.contains(moving.reg) || !is_register(other) ||
+          definitions_.contains(other.reg))
+        continue;
       // Both turns read it before its step, or both behind it.
       const int64_t behind = stepped_.contains(moving.reg) && stepped_.at(moving.reg) > turn;
       if (behind != int64_t{is_behind(i, moving.reg)}) return false;
@@ -176,7 +207,8 @@ class CountedLoop {
   }
   bool is_behind(size_t i, VirtualRegister r) const {
     const std::vector<VirtualInst>& code = draft_.blocks[at_].code;
-    return std::any_of(code.begin(), code.begin() + std::ptrdiff_t(i), [&](const VirtualInst& inst) { return step_of(inst) && inst.operands[0].reg == r; });
+    return std::any_of(code.begin(), code.begin() + std::ptrdiff_t(i),
+                       [&](const VirtualInst& inst) { return step_of(inst) && inst.operands[0].reg == r; });
   }
 
   BlockId add_block(std::vector<VirtualInst> code, BlockId next) {
@@ -196,27 +228,34 @@ class CountedLoop {
     block.end = DraftBlock::End::Branch;
     block.condition = program_.new_register(RegisterClass::Predicate);
     const uint16_t op = counts_up_ ? setp_lt_s32_ : turns > 1 ? setp_gt_s32_ : setp_ne_s32_;
-    block.code.push_back(make_inst(op, {Operand::of(block.condition), Operand::of(counter_), limit(turns)}, block.line));
+    block.code.push_back(
+        make_inst(op, {Operand::of(block.condition), Operand::of(counter_), limit(turns)}, block.line));
     block.negate = negate;
     block.taken = taken;
   }
-  // Where the counter must be before or beyond for that many turns. Saturated: a bound that no counter can be below.
+  // Where the counter must be before or beyond for that many turns. Saturated: a bound that no counter can be
+  // below.
   Operand limit(int64_t turns) {
     const int64_t way = steps_[counter_] * (turns - 1);
     if (!counts_up_) return constant_of(-way, false);
     if (turns == 1) return end_;
-    if (is_constant(end_)) return constant_of(std::max<int64_t>(int64_t{int32_t(uint32_t(end_.constant))} - way, INT32_MIN), false);
+    if (is_constant(end_))
+      return constant_of(std::max<int64_t>(int64_t{int32_t(uint32_t(end_.constant))} - way, INT32_MIN),
+                         false);
     const auto [found, is_new] = limits_.try_emplace(turns, kNoRegister);
     if (is_new) {
       found->second = program_.new_register(RegisterClass::B32);
       std::vector<VirtualInst>& code = draft_.blocks[first_block_].code;
-      code.insert(code.begin(), make_inst(sub_sat_s32_, {Operand::of(found->second), end_, constant_of(way, false)}, draft_.blocks[at_].line));
+      code.insert(code.begin(),
+                  make_inst(sub_sat_s32_, {Operand::of(found->second), end_, constant_of(way, false)},
+                            draft_.blocks[at_].line));
     }
     return Operand::of(found->second);
   }
 
-  // Model: a block each, so that loads stay in their turn: an H200 waits for memory once in each of the four (k_matmul,
-  // docs/validation.md), not once for all. Returns the first; the last goes to `next`, or to the block behind it.
+  // Model: a block each, so that loads stay in their turn: an H200 waits for memory once in each of the four
+  // (k_matmul, docs/validation.md), not once for all. Returns the first; the last goes to `next`, or to the
+  // block behind it.
   BlockId add_turns(int64_t turns, BlockId next = kNoBlock) {
     stepped_.clear(), names_.clear(), first_.clear();
     const auto body = BlockId(draft_.blocks.size());
@@ -228,12 +267,13 @@ class CountedLoop {
     return body;
   }
 
-  // Puts the copies in front of the loop, and their tests around them: fours, then two, then the loop itself. The first turn
-  // runs whatever the counter is.
+  // Puts the copies in front of the loop, and their tests around them: fours, then two, then the loop itself.
+  // The first turn runs whatever the counter is.
   void append() {
     first_block_ = BlockId(draft_.blocks.size());
     const BlockId entry = add_block({}, first_block_ + 1);
-    const BlockId fours = add_turns(kTurns), few = add_block({}, kNoBlock), two = add_turns(2), rest = add_block({}, at_), short_entry = add_block({}, at_);
+    const BlockId fours = add_turns(kTurns), few = add_block({}, kNoBlock), two = add_turns(2),
+                  rest = add_block({}, at_), short_entry = add_block({}, at_);
     draft_.blocks[few].next = two;
     end_in_test(entry, kTurns, true, short_entry);
     end_in_test(few - 1, kTurns, false, fours);
@@ -246,7 +286,8 @@ class CountedLoop {
       if (block.next == at_) block.next = first_block_;
       if (block.end == DraftBlock::End::Branch && block.taken == at_) block.taken = first_block_;
     }
-    draft_.layout.insert(std::find(draft_.layout.begin(), draft_.layout.end(), at_), layout_.begin(), layout_.end());
+    draft_.layout.insert(std::find(draft_.layout.begin(), draft_.layout.end(), at_), layout_.begin(),
+                         layout_.end());
   }
 
   Draft& draft_;
@@ -256,16 +297,17 @@ class CountedLoop {
   const uint16_t setp_ne_s32_ = isa::op_index("setp.ne.s32"), setp_gt_s32_ = isa::op_index("setp.gt.s32");
   const uint16_t setp_lt_s32_ = isa::op_index("setp.lt.s32"), sub_sat_s32_ = isa::op_index("sub.sat.s32");
   VirtualRegister counter_ = kNoRegister;
-  Operand end_;                                        // what the counter runs to
+  Operand end_;  // what the counter runs to
   bool counts_up_ = false;
-  std::map<int64_t, VirtualRegister> limits_;          // by turns, where the end is in a register
-  std::map<VirtualRegister, int> definitions_;         // in the loop
-  std::set<VirtualRegister> kept_;                     // of those, what a turn takes from the last one or others read
-  std::map<VirtualRegister, int64_t> steps_, stepped_; // what a turn adds; turns of it done in the copies so far
-  std::map<VirtualRegister, VirtualRegister> names_;   // at the present place of the copies
-  std::map<size_t, Operand> first_;                    // what the first turn's instruction gave
-  BlockId first_block_ = kNoBlock;                     // of those that are new
-  std::vector<BlockId> layout_;                        // these
+  std::map<int64_t, VirtualRegister> limits_;   // by turns, where the end is in a register
+  std::map<VirtualRegister, int> definitions_;  // in the loop
+  std::set<VirtualRegister> kept_;  // of those, what a turn takes from the last one or others read
+  std::map<VirtualRegister, int64_t> steps_,
+      stepped_;  // what a turn adds; turns of it done in the copies so far
+  std::map<VirtualRegister, VirtualRegister> names_;  // at the present place of the copies
+  std::map<size_t, Operand> first_;                   // what the first turn's instruction gave
+  BlockId first_block_ = kNoBlock;                    // of those that are new
+  std::vector<BlockId> layout_;                       // these
 };
 
 }  // namespace

@@ -9,7 +9,8 @@
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
-// Recorded: global memory's adder takes subnormals for zeros, and gives zeros for them; shared memory's keeps them.
+// Recorded: global memory's adder takes subnormals for zeros, and gives zeros for them; shared memory's keeps
+// them.
 float flushed(float x) {
   return (float_bits(x) & 0x7f80'0000u) == 0 ? float_of(float_bits(x) & 0x8000'0000u) : x;
 }
@@ -23,8 +24,8 @@ bool is_nan64(uint64_t x) {
 }
 constexpr uint64_t kQuiet = 0x0008'0000'0000'0000;
 
-// Recorded: NaNs keep their payload. Shared memory's make the result quiet, the old value's first; global memory's adder
-// passes them on as they are, the operand's first.
+// Recorded: NaNs keep their payload. Shared memory's make the result quiet, the old value's first; global
+// memory's adder passes them on as they are, the operand's first.
 uint64_t add_f64(uint64_t old, uint64_t b, uint64_t is_global) {
   if (is_global && is_nan64(b)) return b;
   if (is_nan64(old)) return is_global ? old : old | kQuiet;
@@ -33,7 +34,8 @@ uint64_t add_f64(uint64_t old, uint64_t b, uint64_t is_global) {
   return is_nan64(sum) ? 0xfff8'0000'0000'0000 : sum;
 }
 
-// f16 and bf16 add in single precision, which has more than twice their digits: rounding twice is rounding once.
+// f16 and bf16 add in single precision, which has more than twice their digits: rounding twice is rounding
+// once.
 uint32_t add_half(uint32_t a, uint32_t b) {
   return to_half(to_float(Half{uint16_t(a)}) + to_float(Half{uint16_t(b)})).bits;
 }
@@ -58,8 +60,8 @@ uint64_t maximum(uint64_t old, uint64_t b, uint64_t) {
   return uint64_t(T(old) > T(b) ? T(old) : T(b));
 }
 
-// Smaller or larger of two floats, given as bits in Int: the other one of a NaN, and -0 below +0 (IEEE 754-2019,
-// minimumNumber). Choice: two NaNs give a quiet one; Vulkan leaves it open.
+// Smaller or larger of two floats, given as bits in Int: the other one of a NaN, and -0 below +0 (IEEE
+// 754-2019, minimumNumber). Choice: two NaNs give a quiet one; Vulkan leaves it open.
 template <class Int, Int kInfinity, bool kLargest>
 uint64_t extreme(uint64_t old, uint64_t other, uint64_t) {
   constexpr Int kMagnitude = Int(Int(~Int{0}) >> 1), kSign = Int(~kMagnitude), kQuietNan = Int(kMagnitude);
@@ -193,11 +195,13 @@ constexpr OpRow atomic_row(size_t n, const Place& place, const Op& op, bool retu
   operands.kind[operands.count++] = address;
   operands.kind[operands.count++] = source;
   if (op.is_swap) operands.kind[operands.count++] = source;
-  OpRow row = effect_op(kNames[n].view(), Class::Mem, Unit::Lsu, Effect::Atomic, operands, kSentences[n].view());
+  OpRow row =
+      effect_op(kNames[n].view(), Class::Mem, Unit::Lsu, Effect::Atomic, operands, kSentences[n].view());
   row.memory = {place.space, op.bytes, 1, false};
   row.atomic = op.function;
-  row.run = is_wide ? returns ? &form_addresses<uint64_t, 1> : &form_addresses<uint64_t, 0>
-                    : returns ? &form_addresses<uint32_t, 1> : &form_addresses<uint32_t, 0>;
+  row.run = is_wide   ? returns ? &form_addresses<uint64_t, 1> : &form_addresses<uint64_t, 0>
+              : returns ? &form_addresses<uint32_t, 1>
+                      : &form_addresses<uint32_t, 0>;
   return row;
 }
 

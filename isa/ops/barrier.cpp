@@ -1,6 +1,7 @@
 // Waiting for the other warps of the block, and ordering memory accesses: the machine does it all.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/barrier.h"
+
 #include "isa/op_makers.h"
 #include "isa/ops/families.h"
 
@@ -18,8 +19,8 @@ constexpr OpRow fence(std::string_view name, FenceScope scope, Operands operands
   return row;
 }
 
-// Operands: the barrier (0 to 15), and how many threads it waits for: a multiple of 32, or 0 for all of the block
-// that have not ended. A warp counts as 32 threads.
+// Operands: the barrier (0 to 15), and how many threads it waits for: a multiple of 32, or 0 for all of the
+// block that have not ended. A warp counts as 32 threads.
 constexpr OpRow kRows[] = {
     barrier("bar.sync", BarrierKind::Sync, {Src32, Src32},
             "Waits at a barrier until that many threads have arrived (0: all that have not ended)."),
@@ -32,10 +33,13 @@ constexpr OpRow kRows[] = {
     barrier("bar.red.or.pred", BarrierKind::Or, {DstPred, Src32, Src32, SrcPred},
             "Waits as bar.sync; tells whether the predicate of any thread is true."),
     fence("bar.warp.sync", FenceScope::Warp, {Src32},
-          "Orders the memory accesses of the lanes of a mask, which have met already where their paths joined."),
-    fence("membar.cta", FenceScope::Block, {}, "Orders memory accesses as the threads of the block see them."),
+          "Orders the memory accesses of the lanes of a mask, which have met already where their paths "
+          "joined."),
+    fence("membar.cta", FenceScope::Block, {},
+          "Orders memory accesses as the threads of the block see them."),
     fence("membar.gl", FenceScope::Gpu, {}, "Orders memory accesses as all threads see them."),
-    fence("membar.sys", FenceScope::System, {}, "Orders memory accesses as all threads and the host see them."),
+    fence("membar.sys", FenceScope::System, {},
+          "Orders memory accesses as all threads and the host see them."),
 };
 
 }  // namespace

@@ -89,12 +89,13 @@ constexpr auto product_rows() {
           joined<"madc", kHalf, N::kName>, Unit::Int, "Half of a product, plus the third source and a carry.",
           [](T a, T b, T c, bool carry) { return sum_with_carry(half_product<kHigh>(a, b), c, carry).first; },
           {{{3, 5, 1, 0}, kProduct + 1}, {{3, 5, 1, 1}, kProduct + 2}}),
-      with_handler(value_op<T, T, T, bool>(
-                       joined<"madc", kHalf, ".cc", N::kName>, Unit::Int,
-                       "Half of a product, plus the third source and a carry; the predicate is the carry out.",
-                       [](T, T, T, bool) { return Two<T, bool>{}; },
-                       {{{3, 5, 1, 1}, kProduct + 2, 0}, {{3, 5, kOnes, 1}, kProduct, 1}}),
-                   &run_product<T, kHigh, true>));
+      with_handler(
+          value_op<T, T, T, bool>(
+              joined<"madc", kHalf, ".cc", N::kName>, Unit::Int,
+              "Half of a product, plus the third source and a carry; the predicate is the carry out.",
+              [](T, T, T, bool) { return Two<T, bool>{}; },
+              {{{3, 5, 1, 1}, kProduct + 2, 0}, {{3, 5, kOnes, 1}, kProduct, 1}}),
+          &run_product<T, kHigh, true>));
 }
 
 constexpr auto kRows = rows_of_types<TypeS32, TypeU32, TypeS64, TypeU64>([]<class N>() {

@@ -51,11 +51,12 @@ struct HalfPrecision : Named<Half, ".f16"> {
 };
 struct FlushedHalf : HalfPrecision {
   static constexpr auto kFlush = Text(".ftz");
-  // In a float's place, the exponent raised so far that infinities and NaNs are a float's: the order stays, and only
-  // what becomes 0 needs a choice.
+  // In a float's place, the exponent raised so far that infinities and NaNs are a float's: the order stays,
+  // and only what becomes 0 needs a choice.
   [[gnu::always_inline]] static float upper_value(uint32_t word) {
     const uint32_t magnitude = word & 0x7fff'0000u;
-    const uint32_t raised = magnitude < 0x0400'0000u ? 0u : (magnitude >> 3) + (0x7f80'0000u - (0x7c00'0000u >> 3));
+    const uint32_t raised =
+        magnitude < 0x0400'0000u ? 0u : (magnitude >> 3) + (0x7f80'0000u - (0x7c00'0000u >> 3));
     return float_of(raised | (word & 0x8000'0000u));
   }
   [[gnu::always_inline]] static float value(Half x) { return upper_value(uint32_t(x.bits) << 16); }

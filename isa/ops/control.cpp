@@ -15,8 +15,9 @@ constexpr OpRow kRows[] = {
     control("ssy", Effect::PushReconvergence, {Label},
             "Opens a region whose lanes meet at the join of the label."),
     control("join", Effect::Join, {}, "Waits until every lane of the region has arrived or left it."),
-    control("brx.idx", Effect::BranchIndexed, {Src32, Label},
-            "Continues at that branch, counted from 0, of the table of bra at the label; may split the warp."),
+    control(
+        "brx.idx", Effect::BranchIndexed, {Src32, Label},
+        "Continues at that branch, counted from 0, of the table of bra at the label; may split the warp."),
     control("call", Effect::Call, {Label}, "Calls the function at the label; its ret comes back here."),
     control("exit", Effect::Exit, {}, "Ends the lanes."),
     control("ret", Effect::Return, {},

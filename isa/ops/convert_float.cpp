@@ -147,9 +147,9 @@ inline uint32_t narrowed_nan(double nan) {
   const uint64_t bits = double_bits(nan);
   return uint32_t(bits >> 48 & 0x8000) | kQuiet | (uint32_t(bits >> (52 - kPayload)) & kMask);
 }
-// Handler: clamps where the name says so and rounds to 16 bits, a row at a time. Doubles come as floats rounded to odd,
-// so that the second rounding is the only one. As recorded: .ftz changes nothing, a subnormal still rounds up or down to
-// the least f16.
+// Handler: clamps where the name says so and rounds to 16 bits, a row at a time. Doubles come as floats
+// rounded to odd, so that the second rounding is the only one. As recorded: .ftz changes nothing, a subnormal
+// still rounds up or down to the least f16.
 template <class D, class S, Round kRound, bool kSat, bool kRelu>
 [[gnu::flatten]] void run_narrow(Warp& warp, const Inst& inst) {
   constexpr bool kFromDouble = std::is_same_v<S, TypeF64>;
@@ -176,8 +176,8 @@ template <class D, class S, Round kRound, bool kSat, bool kRelu>
 template <class D, class S, Round kRound, bool kFtz, bool kSat, bool kRelu>
 constexpr OpRow narrow_row() {
   OpRow row;
-  row.name = joined<"cvt", round_name<kRound>, when<kFtz, ".ftz">, when<kSat, ".sat">, when<kRelu, ".relu">, D::kName,
-                    S::kName>;
+  row.name = joined<"cvt", round_name<kRound>, when<kFtz, ".ftz">, when<kSat, ".sat">, when<kRelu, ".relu">,
+                    D::kName, S::kName>;
   row.operands = {Dst32, source_kind<typename S::Type>()};
   row.run = &run_narrow<D, S, kRound, kSat, kRelu>;
   row.doc = kSat    ? "Narrows a float, rounded as the name says; clamped to [0, 1], NaN becomes 0."

@@ -35,7 +35,8 @@ struct FromInteger {
 template <class D, class From, Round kRound, bool kSat>
 struct Convert {
   using To = typename D::Type;
-  using Bits = std::conditional_t<sizeof(To) == 8, uint64_t, std::conditional_t<sizeof(To) == 4, uint32_t, uint16_t>>;
+  using Bits =
+      std::conditional_t<sizeof(To) == 8, uint64_t, std::conditional_t<sizeof(To) == 4, uint32_t, uint16_t>>;
   To operator()(Register<From> source) const {
     const From x = From(source);
     if constexpr (kSat)  // of the integers only 0 and 1 lie in [0, 1]
@@ -88,7 +89,8 @@ constexpr OpRow row() {
                                {{1}, D::kOne},
                                {{std::is_signed_v<From> ? kMinusOne : 1},
                                 std::is_signed_v<From> ? (kSat ? 0 : D::kMinusOne) : D::kOne}};
-  constexpr std::string_view kName = joined<"cvt", round_name<kRound>, when<kSat, ".sat">, D::kName, S::kName>;
+  constexpr std::string_view kName =
+      joined<"cvt", round_name<kRound>, when<kSat, ".sat">, D::kName, S::kName>;
   constexpr std::string_view kDoc = kSat ? "Converts an integer, rounded as the name says; clamped to [0, 1]."
                                          : "Converts an integer, rounded as the name says.";
   constexpr Unit kUnit = sizeof(To) == 8 || sizeof(From) == 8 ? Unit::Sfu : Unit::Int;
@@ -96,8 +98,8 @@ constexpr OpRow row() {
     return rounded_op<kRound, FromInteger<To, From>, Register<From>>(
         kName, kUnit, kDoc, [](To x, Register<From>) { return x; }, kExamples);
   else
-    return value_op<Register<From>>(kName, kUnit, kDoc, Convert<D, From, kIsRounded ? kRound : Round::Nearest, kSat>{},
-                                    kExamples);
+    return value_op<Register<From>>(kName, kUnit, kDoc, Convert < D, From,
+                                    kIsRounded ? kRound : Round::Nearest, kSat > {}, kExamples);
 }
 template <class D, class S>
 constexpr auto pair_rows() {

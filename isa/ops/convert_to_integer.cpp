@@ -21,8 +21,8 @@ struct Convert {
 
 #if defined(__AVX512F__)
 
-// Eight doubles, rounded and clamped: 32-bit words for the narrower integers. The instructions give the lowest number
-// for all that a signed one cannot hold, and the highest for an unsigned one.
+// Eight doubles, rounded and clamped: 32-bit words for the narrower integers. The instructions give the
+// lowest number for all that a signed one cannot hold, and the highest for an unsigned one.
 template <class To, Round kRound, bool kFromDouble>
 [[gnu::always_inline]] inline auto to_integer_part(__m512d x) {
   constexpr int kDirection = kStaticRound<kRound>;
@@ -37,10 +37,11 @@ template <class To, Round kRound, bool kFromDouble>
                                                         : _mm512_cvt_roundpd_epi32(inside, kDirection);
     return _mm256_mask_set1_epi32(number, is_nan, int(kNan));
   } else {
-    const __m512i number = kIsSigned ? _mm512_cvt_roundpd_epi64(above, kDirection)
-                                     : _mm512_cvt_roundpd_epu64(above, kDirection);
+    const __m512i number =
+        kIsSigned ? _mm512_cvt_roundpd_epi64(above, kDirection) : _mm512_cvt_roundpd_epu64(above, kDirection);
     const __mmask8 is_high = _mm512_cmp_pd_mask(x, _mm512_set1_pd(kIsSigned ? 0x1p63 : 0x1p64), _CMP_GE_OQ);
-    return _mm512_mask_set1_epi64(_mm512_mask_set1_epi64(number, is_high, int64_t(kHigh)), is_nan, int64_t(kNan));
+    return _mm512_mask_set1_epi64(_mm512_mask_set1_epi64(number, is_high, int64_t(kHigh)), is_nan,
+                                  int64_t(kNan));
   }
 }
 // A row of S as doubles, eight lanes at a time: `take(i, doubles)` of the lanes from i on.

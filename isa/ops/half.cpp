@@ -161,19 +161,22 @@ template <uint32_t kLeast>
   return float_of((bits & 0x7fff'ffffu) < kLeast ? bits & 0x8000'0000u : bits);
 }
 
-// Handler of a row: halves to floats, the arithmetic in single precision, and back. A pair's halves one after the other.
+// Handler of a row: halves to floats, the arithmetic in single precision, and back. A pair's halves one after
+// the other.
 template <class Format, bool kPair, class Op, bool kFtz, bool kSat, bool kRelu>
 struct Arithmetic {
   [[gnu::flatten]] static void run(Warp& warp, const Inst& inst) {
     alignas(64) uint32_t low[kLanes], high[kLanes];
     half<false>(warp, inst, low);
     if constexpr (kPair) half<true>(warp, inst, high);
-    write_lanes<uint32_t>(warp, inst.operand.front(), [&](int i) { return kPair ? low[i] | high[i] << 16 : low[i]; });
+    write_lanes<uint32_t>(warp, inst.operand.front(),
+                          [&](int i) { return kPair ? low[i] | high[i] << 16 : low[i]; });
   }
   template <bool kUpper>
   [[gnu::always_inline]] static void half(const Warp& warp, const Inst& inst, uint32_t* out) {
     constexpr uint32_t kLeastNormal = 0x3880'0000;  // 2^-14: the only format with .ftz is f16
-    constexpr uint32_t kLeastKept = 0x387f'f000;    // with an unbounded exponent f16 would round less to less than 2^-14
+    constexpr uint32_t kLeastKept =
+        0x387f'f000;  // with an unbounded exponent f16 would round less to less than 2^-14
     Floats in[Op::kSources], result;
     for (size_t n = 0; n < Op::kSources; ++n) {
       const Source<uint32_t> source(warp, *(&inst.operand.front() + 1 + n));
@@ -182,7 +185,8 @@ struct Arithmetic {
     }
     Op::template run<Format>(in, result.at);
     if constexpr (kSat) all_lanes([&](int i) { result.at[i] = saturated(result.at[i]); });
-    if constexpr (kRelu) all_lanes([&](int i) { result.at[i] = result.at[i] <= 0.0f ? 0.0f : result.at[i]; });  // a NaN stays
+    if constexpr (kRelu)
+      all_lanes([&](int i) { result.at[i] = result.at[i] <= 0.0f ? 0.0f : result.at[i]; });  // a NaN stays
     if constexpr (kFtz) all_lanes([&](int i) { result.at[i] = zero_below<kLeastKept>(result.at[i]); });
     Format::narrow(result.at, out);
   }
@@ -336,8 +340,9 @@ template <class Format, bool kPair>
 constexpr auto format_rows = joined_rows(two_source_rows<Format, kPair, Add>,
                                          two_source_rows<Format, kPair, Subtract>,
                                          two_source_rows<Format, kPair, Multiply>, fma_rows<Format, kPair>,
-                                         extreme_rows<Format, kPair, false>, extreme_rows<Format, kPair, true>,
-                                         sign_rows<Format, kPair, false>, sign_rows<Format, kPair, true>);
+                                         extreme_rows<Format, kPair, false>,
+                                         extreme_rows<Format, kPair, true>, sign_rows<Format, kPair, false>,
+                                         sign_rows<Format, kPair, true>);
 constexpr auto kRows = joined_rows(format_rows<F16, false>, format_rows<F16, true>, format_rows<Bf16, false>,
                                    format_rows<Bf16, true>);
 

@@ -41,15 +41,18 @@ template <int kSlot>
 }
 
 constexpr Handler handler_of(const Operands& operands) {
-  const int first = operands.kind[0] == DstVec4 ? 4 : operands.kind[0] == DstVec2 ? 2 : operands.kind[0] == Dst32 || operands.kind[0] == Dst64 ? 1 : 0;
+  const int first = operands.kind[0] == DstVec4                              ? 4
+                    : operands.kind[0] == DstVec2                            ? 2
+                    : operands.kind[0] == Dst32 || operands.kind[0] == Dst64 ? 1
+                                                                             : 0;
   return first == 4   ? &form_image_access<4>
          : first == 2 ? &form_image_access<2>
          : first == 1 ? &form_image_access<1>
                       : &form_image_access<0>;
 }
 
-constexpr OpRow image_op(std::string_view name, Effect effect, const ImageAccess& image, const Operands& operands,
-                         std::string_view doc) {
+constexpr OpRow image_op(std::string_view name, Effect effect, const ImageAccess& image,
+                         const Operands& operands, std::string_view doc) {
   OpRow row = effect_op(name, Class::Tex, Unit::Tex, effect, operands, doc);
   row.memory = {Space::Global, 4, 4, false};
   row.image = image;

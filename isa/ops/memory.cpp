@@ -108,7 +108,8 @@ constexpr auto kSentences = [] {
   std::array<Word, kNumAccesses> out{};
   size_t n = 0;
   each_access([&](const Place& place, const Shape& shape, bool store) {
-    out[n++] = Word{store ? "Stores " : "Loads ", bytes_of(shape, store), store ? " to " : " of ", place.what, "."};
+    out[n++] =
+        Word{store ? "Stores " : "Loads ", bytes_of(shape, store), store ? " to " : " of ", place.what, "."};
   });
   return out;
 }();
@@ -117,9 +118,10 @@ constexpr OpRow access_row(size_t n, const Place& place, const Shape& shape, boo
   const bool is_wide = place.space == Space::Global || place.space == Space::Generic;
   const bool is_constant = place.space == Space::Const || place.space == Space::Param;
   const OperandKind address = is_wide ? Address64 : Address32;
-  OpRow row = effect_op(kNames[n].view(), Class::Mem, is_constant ? Unit::Const : Unit::Lsu,
-                        store ? Effect::Store : Effect::Load,
-                        store ? Operands{address, shape.store} : Operands{shape.load, address}, kSentences[n].view());
+  OpRow row =
+      effect_op(kNames[n].view(), Class::Mem, is_constant ? Unit::Const : Unit::Lsu,
+                store ? Effect::Store : Effect::Load,
+                store ? Operands{address, shape.store} : Operands{shape.load, address}, kSentences[n].view());
   row.memory = {place.space, shape.bytes, shape.count, shape.sign_extend};
   row.run = handler_of(is_wide, store ? 0 : slots_of(shape.load));
   return row;
@@ -164,11 +166,15 @@ constexpr OpRow kAddressRows[] = {
     to_generic<Space::Local>("cvta.local.u64", "Generic address of a local one."),
     to_generic<Space::Const>("cvta.const.u64", "Generic address of a place in the constant bank."),
     to_generic<Space::Param>("cvta.param.u64", "Generic address of a kernel's parameter."),
-    from_generic<Space::Global>("cvta.to.global.u64", "Global address of a generic one that is in global memory."),
-    from_generic<Space::Shared>("cvta.to.shared.u64", "Shared address of a generic one that is in shared memory."),
-    from_generic<Space::Local>("cvta.to.local.u64", "Local address of a generic one that is in local memory."),
+    from_generic<Space::Global>("cvta.to.global.u64",
+                                "Global address of a generic one that is in global memory."),
+    from_generic<Space::Shared>("cvta.to.shared.u64",
+                                "Shared address of a generic one that is in shared memory."),
+    from_generic<Space::Local>("cvta.to.local.u64",
+                               "Local address of a generic one that is in local memory."),
     from_generic<Space::Const>("cvta.to.const.u64", "Constant-bank address of a generic one that is there."),
-    from_generic<Space::Param>("cvta.to.param.u64", "Parameter address of a generic one that is a parameter's."),
+    from_generic<Space::Param>("cvta.to.param.u64",
+                               "Parameter address of a generic one that is a parameter's."),
     is_space<Space::Global>("isspacep.global", "Whether a generic address is in global memory."),
     is_space<Space::Shared>("isspacep.shared", "Whether a generic address is in shared memory."),
     is_space<Space::Local>("isspacep.local", "Whether a generic address is in local memory."),

@@ -12,7 +12,8 @@ constexpr OpRow print(std::string_view name, Effect effect, std::string_view doc
 }
 
 constexpr OpRow kRows[] = {
-    print("print", Effect::Print, "Prints a message, whose number is a constant, with the four words, and ends the lane's line."),
+    print("print", Effect::Print,
+          "Prints a message, whose number is a constant, with the four words, and ends the lane's line."),
     print("print.part", Effect::PrintPart, "As print; the lane's next message goes on in the same line."),
 };
 

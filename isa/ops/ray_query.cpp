@@ -8,23 +8,28 @@
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
-constexpr OpRow query(std::string_view name, Effect effect, Query detail, Operands operands, std::string_view doc) {
+constexpr OpRow query(std::string_view name, Effect effect, Query detail, Operands operands,
+                      std::string_view doc) {
   OpRow row = effect_op(name, Class::Rt, Unit::RtUnit, effect, operands, doc);
   row.detail = detail_of(detail);
   return row;
 }
 
-constexpr auto kSteps = joined_rows(
-    query("rq.initialize", Effect::Query, Query::Initialize,
-          {Src32, Src64, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32},
-          "Starts a ray: query, structure, flags, mask, origin, tmin, direction, tmax."),
-    query("rq.proceed", Effect::QueryProceed, Query::Initialize, {DstPred, Src32},
-          "Gives the ray of a query to the RT unit, an undecided candidate being ignored; tells whether there is a new "
-          "candidate."),
-    query("rq.confirm", Effect::Query, Query::Confirm, {Src32}, "Commits the triangle that is the candidate."),
-    query("rq.generate", Effect::Query, Query::Generate, {Src32, Src32},
-          "Commits a hit at t (second operand) in the box that is the candidate, if t lies in the ray's interval."),
-    query("rq.terminate", Effect::Query, Query::Terminate, {Src32}, "Ends the traversal; what is committed stays."));
+constexpr auto kSteps =
+    joined_rows(query("rq.initialize", Effect::Query, Query::Initialize,
+                      {Src32, Src64, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32},
+                      "Starts a ray: query, structure, flags, mask, origin, tmin, direction, tmax."),
+                query("rq.proceed", Effect::QueryProceed, Query::Initialize, {DstPred, Src32},
+                      "Gives the ray of a query to the RT unit, an undecided candidate being ignored; tells "
+                      "whether there is a new "
+                      "candidate."),
+                query("rq.confirm", Effect::Query, Query::Confirm, {Src32},
+                      "Commits the triangle that is the candidate."),
+                query("rq.generate", Effect::Query, Query::Generate, {Src32, Src32},
+                      "Commits a hit at t (second operand) in the box that is the candidate, if t lies in "
+                      "the ray's interval."),
+                query("rq.terminate", Effect::Query, Query::Terminate, {Src32},
+                      "Ends the traversal; what is committed stays."));
 
 constexpr OpRow value(std::string_view name, Query field, int element, bool committed, std::string_view doc) {
   OpRow row = effect_op(name, Class::Rt, Unit::RtUnit, Effect::Query, {Dst32, Src32}, doc);
@@ -34,10 +39,13 @@ constexpr OpRow value(std::string_view name, Query field, int element, bool comm
 
 constexpr auto kValues = joined_rows(
     value("rq.type.candidate", Query::Type, 0, false, "Kind of the candidate: 0 triangle, 1 box."),
-    value("rq.type.committed", Query::Type, 0, true, "Kind of the committed hit: 0 none, 1 triangle, 2 generated."),
+    value("rq.type.committed", Query::Type, 0, true,
+          "Kind of the committed hit: 0 none, 1 triangle, 2 generated."),
     value("rq.t.candidate", Query::T, 0, false, "Distance of the candidate triangle."),
-    value("rq.t.committed", Query::T, 0, true, "Distance of the committed hit; the ray's end when there is none."),
-    value("rq.aabb_opaque.candidate", Query::AabbOpaque, 0, false, "1 if the candidate box is opaque, else 0."),
+    value("rq.t.committed", Query::T, 0, true,
+          "Distance of the committed hit; the ray's end when there is none."),
+    value("rq.aabb_opaque.candidate", Query::AabbOpaque, 0, false,
+          "1 if the candidate box is opaque, else 0."),
     value("rq.tmin", Query::Tmin, 0, false, "Begin of the ray's interval."),
     value("rq.flags", Query::Flags, 0, false, "Flags of the ray."),
     value("rq.origin.x", Query::Origin, 0, false, "Origin of the ray in world space."),
@@ -74,13 +82,13 @@ constexpr std::array<OpRow, 2 * kCount> numbers_of_both(Query field, std::string
   };
   [&]<int... kElement>(std::integer_sequence<int, kElement...>) {
     (element(std::integral_constant<int, kElement>{}), ...);
-  }(std::make_integer_sequence<int, kCount>{});
+  }
+  (std::make_integer_sequence<int, kCount>{});
   return out;
 }
 
 constexpr auto kRows = joined_rows(
-    kSteps, kValues,
-    of_both<"instance">(Query::Instance, 0, "Index of the instance."),
+    kSteps, kValues, of_both<"instance">(Query::Instance, 0, "Index of the instance."),
     of_both<"custom">(Query::CustomIndex, 0, "Custom index of the instance."),
     of_both<"sbt_offset">(Query::SbtOffset, 0, "Binding-table offset of the instance."),
     of_both<"geometry">(Query::Geometry, 0, "Index of the geometry."),
@@ -94,9 +102,13 @@ constexpr auto kRows = joined_rows(
     of_both<"object.direction.x">(Query::ObjectDirection, 0, "Direction of the ray in object space."),
     of_both<"object.direction.y">(Query::ObjectDirection, 1, "Direction of the ray in object space."),
     of_both<"object.direction.z">(Query::ObjectDirection, 2, "Direction of the ray in object space."),
-    numbers_of_both<"object_to_world">(Query::ObjectToWorld, "Element of the instance's transform, row-major 3x4."),
-    numbers_of_both<"world_to_object">(Query::WorldToObject, "Element of the inverse transform, row-major 3x4."),
-    numbers_of_both<"corner", 9>(Query::Corner, "Coordinate of a corner of the triangle in object space: x, y, z of the first, then of the others."));
+    numbers_of_both<"object_to_world">(Query::ObjectToWorld,
+                                       "Element of the instance's transform, row-major 3x4."),
+    numbers_of_both<"world_to_object">(Query::WorldToObject,
+                                       "Element of the inverse transform, row-major 3x4."),
+    numbers_of_both<"corner", 9>(
+        Query::Corner,
+        "Coordinate of a corner of the triangle in object space: x, y, z of the first, then of the others."));
 
 }  // namespace
 

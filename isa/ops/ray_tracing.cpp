@@ -36,9 +36,10 @@ constexpr OpRow kRows[] = {
          "Calls the any-hit shader of each lane's reported hit, split by shader."),
     call("call.sbt.hit", Effect::CallHit,
          "Calls the closest-hit or miss shader of each lane's ray, split by shader."),
-    call("call.sbt.callable", Effect::CallCallable,
-         "Calls each lane's callable shader, split by shader: index of its record, local address of its data.",
-         {Src32, Src32}),
+    call(
+        "call.sbt.callable", Effect::CallCallable,
+        "Calls each lane's callable shader, split by shader: index of its record, local address of its data.",
+        {Src32, Src32}),
 };
 
 }  // namespace

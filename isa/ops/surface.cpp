@@ -16,7 +16,8 @@ template <ImageOutside kOutside>
 constexpr auto outside_doc() {
   if constexpr (kOutside == ImageOutside::Trap) return Text(" Outside of the image: a fault.");
   if constexpr (kOutside == ImageOutside::Clamp) return Text(" Outside of the image: the nearest texel.");
-  if constexpr (kOutside == ImageOutside::Zero) return Text(" Outside of the image: loads give 0, stores are dropped.");
+  if constexpr (kOutside == ImageOutside::Zero)
+    return Text(" Outside of the image: loads give 0, stores are dropped.");
 }
 template <ImageOutside kOutside>
 constexpr ImageAccess access_of(ImageRequest request, ImageShape shape) {
@@ -32,10 +33,12 @@ constexpr std::array<OpRow, 2> texel_rows() {
   load.add(DstVec4).add_place(kShape);
   store.add_place(kShape).add(SrcVec4);
   const ImageAccess image = access_of<kOutside>(ImageRequest::Texel, kShape);
-  return {image_op(joined<"suld.p", shape_text<kShape>(), ".v4.b32", outside_text<kOutside>()>, Effect::SurfaceLoad, image,
-                   load.list, joined<"Loads a texel, converted from the image's format.", outside_doc<kOutside>()>),
-          image_op(joined<"sust.p", shape_text<kShape>(), ".v4.b32", outside_text<kOutside>()>, Effect::SurfaceStore,
-                   image, store.list, joined<"Stores a texel, converted to the image's format.", outside_doc<kOutside>()>)};
+  return {image_op(joined<"suld.p", shape_text<kShape>(), ".v4.b32", outside_text<kOutside>()>,
+                   Effect::SurfaceLoad, image, load.list,
+                   joined<"Loads a texel, converted from the image's format.", outside_doc<kOutside>()>),
+          image_op(joined<"sust.p", shape_text<kShape>(), ".v4.b32", outside_text<kOutside>()>,
+                   Effect::SurfaceStore, image, store.list,
+                   joined<"Stores a texel, converted to the image's format.", outside_doc<kOutside>()>)};
 }
 
 enum class Width { B8, B16, B32, V2, V4 };
@@ -56,21 +59,30 @@ constexpr std::array<OpRow, 2> byte_rows() {
   store.add_place(kShape).add(kWidth == Width::V4 ? SrcVec4 : kWidth == Width::V2 ? SrcVec2 : Src32);
   const ImageAccess image = access_of<kOutside>(ImageRequest::Bytes, kShape);
   std::array<OpRow, 2> rows = {
-      image_op(joined<"suld.b", shape_text<kShape>(), width_text<kWidth>(), outside_text<kOutside>()>, Effect::SurfaceLoad,
-               image, load.list, joined<"Loads bytes of an image as they are; x counts bytes.", outside_doc<kOutside>()>),
-      image_op(joined<"sust.b", shape_text<kShape>(), width_text<kWidth>(), outside_text<kOutside>()>, Effect::SurfaceStore,
-               image, store.list, joined<"Stores bytes to an image as they are; x counts bytes.", outside_doc<kOutside>()>)};
+      image_op(joined<"suld.b", shape_text<kShape>(), width_text<kWidth>(), outside_text<kOutside>()>,
+               Effect::SurfaceLoad, image, load.list,
+               joined<"Loads bytes of an image as they are; x counts bytes.", outside_doc<kOutside>()>),
+      image_op(joined<"sust.b", shape_text<kShape>(), width_text<kWidth>(), outside_text<kOutside>()>,
+               Effect::SurfaceStore, image, store.list,
+               joined<"Stores bytes to an image as they are; x counts bytes.", outside_doc<kOutside>()>)};
   for (OpRow& row : rows)
-    row.memory = {Space::Global, uint8_t(kWidth == Width::B8 ? 1 : kWidth == Width::B16 ? 2 : 4),
-                  uint8_t(kWidth == Width::V4 ? 4 : kWidth == Width::V2 ? 2 : 1), false};
+    row.memory = {Space::Global,
+                  uint8_t(kWidth == Width::B8    ? 1
+                          : kWidth == Width::B16 ? 2
+                                                 : 4),
+                  uint8_t(kWidth == Width::V4   ? 4
+                          : kWidth == Width::V2 ? 2
+                                                : 1),
+                  false};
   return rows;
 }
 
 template <ImageOutside kOutside, ImageShape... kShapes>
 constexpr auto accesses_of() {
-  return joined_rows(texel_rows<kOutside, kShapes>()..., byte_rows<kOutside, kShapes, Width::B8>()...,
-                     byte_rows<kOutside, kShapes, Width::B16>()..., byte_rows<kOutside, kShapes, Width::B32>()...,
-                     byte_rows<kOutside, kShapes, Width::V2>()..., byte_rows<kOutside, kShapes, Width::V4>()...);
+  return joined_rows(
+      texel_rows<kOutside, kShapes>()..., byte_rows<kOutside, kShapes, Width::B8>()...,
+      byte_rows<kOutside, kShapes, Width::B16>()..., byte_rows<kOutside, kShapes, Width::B32>()...,
+      byte_rows<kOutside, kShapes, Width::V2>()..., byte_rows<kOutside, kShapes, Width::V4>()...);
 }
 
 enum class Rmw { AddU32, AddS32, AddF32, MinU32, MinS32, MaxU32, MaxS32, And, Or, Xor, Exch, Cas };
@@ -100,17 +112,28 @@ constexpr uint64_t apply(uint64_t old, uint64_t operand, uint64_t swap) {
   const auto sa = int32_t(a), sb = int32_t(b);
   switch (kRmw) {
     case Rmw::AddU32:
-    case Rmw::AddS32: return uint32_t(a + b);
-    case Rmw::AddF32: return __builtin_bit_cast(uint32_t, __builtin_bit_cast(float, a) + __builtin_bit_cast(float, b));
-    case Rmw::MinU32: return a < b ? a : b;
-    case Rmw::MinS32: return sa < sb ? a : b;
-    case Rmw::MaxU32: return a > b ? a : b;
-    case Rmw::MaxS32: return sa > sb ? a : b;
-    case Rmw::And: return a & b;
-    case Rmw::Or: return a | b;
-    case Rmw::Xor: return a ^ b;
-    case Rmw::Exch: return b;
-    case Rmw::Cas: return a == b ? uint32_t(swap) : a;
+    case Rmw::AddS32:
+      return uint32_t(a + b);
+    case Rmw::AddF32:
+      return __builtin_bit_cast(uint32_t, __builtin_bit_cast(float, a) + __builtin_bit_cast(float, b));
+    case Rmw::MinU32:
+      return a < b ? a : b;
+    case Rmw::MinS32:
+      return sa < sb ? a : b;
+    case Rmw::MaxU32:
+      return a > b ? a : b;
+    case Rmw::MaxS32:
+      return sa > sb ? a : b;
+    case Rmw::And:
+      return a & b;
+    case Rmw::Or:
+      return a | b;
+    case Rmw::Xor:
+      return a ^ b;
+    case Rmw::Exch:
+      return b;
+    case Rmw::Cas:
+      return a == b ? uint32_t(swap) : a;
   }
   return a;
 }
@@ -129,7 +152,8 @@ constexpr OpRow atomic_row() {
   OperandList operands;
   operands.add(Dst32).add_place(kShape).add(Src32, kRmw == Rmw::Cas ? 2 : 1);
   OpRow row = image_op(joined<"suatom.p", rmw_name<kRmw>(), shape_text<kShape>(), rmw_type<kRmw>(), ".trap">,
-                       Effect::SurfaceAtomic, access_of<ImageOutside::Trap>(ImageRequest::Texel, kShape), operands.list,
+                       Effect::SurfaceAtomic, access_of<ImageOutside::Trap>(ImageRequest::Texel, kShape),
+                       operands.list,
                        joined<"Changes a texel of 32 bits", where_doc<kRmw>(),
                               " and gives its old value; lanes take turns, the lowest first.">);
   row.memory = {Space::Global, 4, 1, false};
@@ -142,11 +166,14 @@ constexpr std::array<OpRow, sizeof...(kRmw)> atomics_of() {
 }
 template <ImageShape... kShapes>
 constexpr auto atomics() {
-  return joined_rows(atomics_of<kShapes, Rmw::AddU32, Rmw::AddS32, Rmw::AddF32, Rmw::MinU32, Rmw::MinS32, Rmw::MaxU32,
-                                 Rmw::MaxS32, Rmw::And, Rmw::Or, Rmw::Xor, Rmw::Exch, Rmw::Cas>()...);
+  return joined_rows(
+      atomics_of<kShapes, Rmw::AddU32, Rmw::AddS32, Rmw::AddF32, Rmw::MinU32, Rmw::MinS32, Rmw::MaxU32,
+                 Rmw::MaxS32, Rmw::And, Rmw::Or, Rmw::Xor, Rmw::Exch, Rmw::Cas>()...);
 }
 
-constexpr uint64_t swap_if_equal(uint64_t old, uint64_t expected, uint64_t swap) { return old == expected ? swap : old; }
+constexpr uint64_t swap_if_equal(uint64_t old, uint64_t expected, uint64_t swap) {
+  return old == expected ? swap : old;
+}
 
 // Texels of 64 bits: others than this one are loops of it.
 template <ImageShape kShape>
@@ -155,7 +182,8 @@ constexpr OpRow wide_atomic_row() {
   operands.add(Dst64).add_place(kShape).add(Src64, 2);
   OpRow row = image_op(joined<"suatom.p.cas", shape_text<kShape>(), ".b64.trap">, Effect::SurfaceAtomic,
                        access_of<ImageOutside::Trap>(ImageRequest::Texel, kShape), operands.list,
-                       "Changes a texel of 64 bits to the last operand where it equals the one before and gives its old value.");
+                       "Changes a texel of 64 bits to the last operand where it equals the one before and "
+                       "gives its old value.");
   row.memory = {Space::Global, 8, 1, false};
   row.atomic = &swap_if_equal;
   return row;
@@ -170,9 +198,10 @@ template <ImageOutside kOutside, ImageShape kShape, Rmw kRmw>
 constexpr OpRow reduction_row() {
   OperandList operands;
   operands.add_place(kShape).add(Src32);
-  OpRow row = image_op(joined<"sured.b", rmw_name<kRmw>(), shape_text<kShape>(), rmw_type<kRmw>(), outside_text<kOutside>()>,
-                       Effect::SurfaceAtomic, access_of<kOutside>(ImageRequest::Bytes, kShape), operands.list,
-                       joined<"Changes 32 bits of an image; x counts bytes.", outside_doc<kOutside>()>);
+  OpRow row = image_op(
+      joined<"sured.b", rmw_name<kRmw>(), shape_text<kShape>(), rmw_type<kRmw>(), outside_text<kOutside>()>,
+      Effect::SurfaceAtomic, access_of<kOutside>(ImageRequest::Bytes, kShape), operands.list,
+      joined<"Changes 32 bits of an image; x counts bytes.", outside_doc<kOutside>()>);
   row.memory = {Space::Global, 4, 1, false};
   row.atomic = &apply<kRmw>;
   return row;
@@ -183,8 +212,8 @@ constexpr std::array<OpRow, sizeof...(kRmw)> reductions_of() {
 }
 template <ImageOutside kOutside, ImageShape... kShapes>
 constexpr auto reductions() {
-  return joined_rows(reductions_of<kOutside, kShapes, Rmw::AddU32, Rmw::AddS32, Rmw::MinU32, Rmw::MinS32, Rmw::MaxU32,
-                                    Rmw::MaxS32, Rmw::And, Rmw::Or>()...);
+  return joined_rows(reductions_of<kOutside, kShapes, Rmw::AddU32, Rmw::AddS32, Rmw::MinU32, Rmw::MinS32,
+                                   Rmw::MaxU32, Rmw::MaxS32, Rmw::And, Rmw::Or>()...);
 }
 
 constexpr OpRow query(std::string_view name, ImageQuery what, std::string_view doc) {
@@ -194,18 +223,24 @@ constexpr OpRow query(std::string_view name, ImageQuery what, std::string_view d
 }
 constexpr std::array kQueries = {
     query("suq.width.b32", ImageQuery::Width, "Width of a storage image, in texels."),
-    query("suq.height.b32", ImageQuery::Height, "Height of a storage image, in texels; 1 when it has one dimension."),
-    query("suq.depth.b32", ImageQuery::Depth, "Depth of a storage image, in texels; 1 unless it has three dimensions."),
-    query("suq.array_size.b32", ImageQuery::ArraySize, "Layers of a storage image; of cubes, how many cubes."),
-    query("suq.channel_data_type.b32", ImageQuery::ChannelDataType, "OpenCL's number of the channels' type, 0 if it has none."),
+    query("suq.height.b32", ImageQuery::Height,
+          "Height of a storage image, in texels; 1 when it has one dimension."),
+    query("suq.depth.b32", ImageQuery::Depth,
+          "Depth of a storage image, in texels; 1 unless it has three dimensions."),
+    query("suq.array_size.b32", ImageQuery::ArraySize,
+          "Layers of a storage image; of cubes, how many cubes."),
+    query("suq.channel_data_type.b32", ImageQuery::ChannelDataType,
+          "OpenCL's number of the channels' type, 0 if it has none."),
     query("suq.channel_order.b32", ImageQuery::ChannelOrder, "OpenCL's number of the channels' order."),
 };
 
 constexpr auto kRows = joined_rows(
-    accesses_of<ImageOutside::Trap, D1, D2, D3, A1d, A2d>(), accesses_of<ImageOutside::Clamp, D1, D2, D3, A1d, A2d>(),
+    accesses_of<ImageOutside::Trap, D1, D2, D3, A1d, A2d>(),
+    accesses_of<ImageOutside::Clamp, D1, D2, D3, A1d, A2d>(),
     accesses_of<ImageOutside::Zero, D1, D2, D3, A1d, A2d>(), texel_rows<ImageOutside::Trap, Buffer>(),
-    atomics<Buffer, D1, D2, D3, A1d, A2d>(), wide_atomics<Buffer, D1, D2, D3, A1d, A2d>(), reductions<ImageOutside::Trap, D1, D2, D3>(),
-    reductions<ImageOutside::Clamp, D1, D2, D3>(), reductions<ImageOutside::Zero, D1, D2, D3>(), kQueries);
+    atomics<Buffer, D1, D2, D3, A1d, A2d>(), wide_atomics<Buffer, D1, D2, D3, A1d, A2d>(),
+    reductions<ImageOutside::Trap, D1, D2, D3>(), reductions<ImageOutside::Clamp, D1, D2, D3>(),
+    reductions<ImageOutside::Zero, D1, D2, D3>(), kQueries);
 
 }  // namespace
 

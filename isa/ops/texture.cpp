@@ -1,5 +1,5 @@
-// Texture ops: filtered fetches, texel fetches, gathers and queries. Their handlers hand the handle to the texture unit.
-// SPDX-License-Identifier: Apache-2.0
+// Texture ops: filtered fetches, texel fetches, gathers and queries. Their handlers hand the handle to the
+// texture unit. SPDX-License-Identifier: Apache-2.0
 #include "isa/ops/families.h"
 #include "isa/ops/image_rows.h"
 
@@ -35,8 +35,10 @@ constexpr auto text_if() {
 }
 template <ImageShape kShape>
 constexpr auto place_doc() {
-  if constexpr (has_layers(kShape)) return Text("handle, layer, coordinates");
-  else return Text("handle, coordinates");
+  if constexpr (has_layers(kShape))
+    return Text("handle, layer, coordinates");
+  else
+    return Text("handle, coordinates");
 }
 
 // What follows the place in a name and in a sentence.
@@ -46,7 +48,8 @@ constexpr auto forms_text() {
 }
 template <bool kCompare, bool kOffset>
 constexpr auto forms_doc() {
-  return Joined<text_if<kOffset, ", texel offsets (bytes x, y, z)">(), text_if<kCompare, ", reference value">()>::kAsText;
+  return Joined<text_if<kOffset, ", texel offsets (bytes x, y, z)">(),
+                text_if<kCompare, ", reference value">()>::kAsText;
 }
 
 template <ImageLod kLod, bool kCompare, bool kOffset, Data kData, ImageShape kShape>
@@ -78,15 +81,21 @@ constexpr OpRow fetch_row() {
 
 template <uint8_t kComponent, bool kCompare, bool kOffset, Data kData, ImageShape kShape>
 constexpr OpRow gather_row() {
-  constexpr Text kName = kComponent == 0 ? Text(".r") : kComponent == 1 ? Text(".g") : kComponent == 2 ? Text(".b") : Text(".a");
+  constexpr Text kName = kComponent == 0   ? Text(".r")
+                         : kComponent == 1 ? Text(".g")
+                         : kComponent == 2 ? Text(".b")
+                                           : Text(".a");
   OperandList operands;
   operands.add(DstVec4).add_place(kShape).add(Src32, int(kOffset) + int(kCompare));
-  ImageAccess image{ImageRequest::Gather, kShape, ImageLod::Zero, kData == Data::F32, kOffset, kCompare, kComponent};
-  return image_op(joined<"tld4", forms_text<kCompare, kOffset>(), kName, shape_text<kShape>(), ".v4", data_text<kData>(), ".f32">,
-                  Effect::Texture, image, operands.list,
-                  joined<text_if<kCompare, "Compares the four texels that a linear filter reads: ">(),
-                         text_if<!kCompare, "Gathers one component of the four texels that a linear filter reads: ">(),
-                         place_doc<kShape>(), forms_doc<kCompare, kOffset>(), ".">);
+  ImageAccess image{
+      ImageRequest::Gather, kShape, ImageLod::Zero, kData == Data::F32, kOffset, kCompare, kComponent};
+  return image_op(
+      joined<"tld4", forms_text<kCompare, kOffset>(), kName, shape_text<kShape>(), ".v4", data_text<kData>(),
+             ".f32">,
+      Effect::Texture, image, operands.list,
+      joined<text_if<kCompare, "Compares the four texels that a linear filter reads: ">(),
+             text_if<!kCompare, "Gathers one component of the four texels that a linear filter reads: ">(),
+             place_doc<kShape>(), forms_doc<kCompare, kOffset>(), ".">);
 }
 
 template <ImageLod kLod, bool kOffset, Data kData, ImageShape... kShapes>
@@ -129,7 +138,8 @@ constexpr auto gather_rows() {
                      gathers_of<false, true, kData, kComponents, D2, A2d>()...);
 }
 
-constexpr OpRow query(std::string_view name, ImageQuery what, std::string_view doc, ImageLod lod = ImageLod::Zero) {
+constexpr OpRow query(std::string_view name, ImageQuery what, std::string_view doc,
+                      ImageLod lod = ImageLod::Zero) {
   ImageAccess image{ImageRequest::Query};
   image.lod = lod;
   image.query = what;
@@ -140,26 +150,31 @@ constexpr OpRow query(std::string_view name, ImageQuery what, std::string_view d
 
 constexpr std::array kQueries = {
     query("txq.width.b32", ImageQuery::Width, "Width of a texture, in texels."),
-    query("txq.height.b32", ImageQuery::Height, "Height of a texture, in texels; 1 when it has one dimension."),
-    query("txq.depth.b32", ImageQuery::Depth, "Depth of a texture, in texels; 1 unless it has three dimensions."),
+    query("txq.height.b32", ImageQuery::Height,
+          "Height of a texture, in texels; 1 when it has one dimension."),
+    query("txq.depth.b32", ImageQuery::Depth,
+          "Depth of a texture, in texels; 1 unless it has three dimensions."),
     query("txq.level.width.b32", ImageQuery::Width, "Width of a level: handle, level.", ImageLod::Level),
     query("txq.level.height.b32", ImageQuery::Height, "Height of a level: handle, level.", ImageLod::Level),
     query("txq.level.depth.b32", ImageQuery::Depth, "Depth of a level: handle, level.", ImageLod::Level),
     query("txq.array_size.b32", ImageQuery::ArraySize, "Layers of a texture; of cubes, how many cubes."),
     query("txq.num_mipmap_levels.b32", ImageQuery::NumMipmapLevels, "Levels of a texture."),
     query("txq.num_samples.b32", ImageQuery::NumSamples, "Samples of a texel."),
-    query("txq.normalized_coords.b32", ImageQuery::NormalizedCoords, "1 when coordinates run from 0 to 1, 0 when they count texels."),
-    query("txq.channel_data_type.b32", ImageQuery::ChannelDataType, "OpenCL's number of the channels' type, 0 if it has none."),
+    query("txq.normalized_coords.b32", ImageQuery::NormalizedCoords,
+          "1 when coordinates run from 0 to 1, 0 when they count texels."),
+    query("txq.channel_data_type.b32", ImageQuery::ChannelDataType,
+          "OpenCL's number of the channels' type, 0 if it has none."),
     query("txq.channel_order.b32", ImageQuery::ChannelOrder, "OpenCL's number of the channels' order."),
 };
 
 constexpr auto kRows = joined_rows(
     sample_rows<ImageLod::Zero>(), sample_rows<ImageLod::Level>(), sample_rows<ImageLod::Gradients>(),
-    comparison_rows<ImageLod::Zero>(), comparison_rows<ImageLod::Level>(), comparison_rows<ImageLod::Gradients>(),
-    fetches_of<ImageLod::Zero, Buffer, D1, D2, D3, A1d, A2d>(), fetches_of<ImageLod::Level, D1, D2, D3, A1d, A2d>(),
-    gather_rows<Data::F32, 0, 1, 2, 3>(), gather_rows<Data::S32, 0, 1, 2, 3>(), gather_rows<Data::U32, 0, 1, 2, 3>(),
-    gathers_of<true, false, Data::F32, 0, D2, A2d, Cube, Acube>(), gathers_of<true, true, Data::F32, 0, D2, A2d>(),
-    kQueries);
+    comparison_rows<ImageLod::Zero>(), comparison_rows<ImageLod::Level>(),
+    comparison_rows<ImageLod::Gradients>(), fetches_of<ImageLod::Zero, Buffer, D1, D2, D3, A1d, A2d>(),
+    fetches_of<ImageLod::Level, D1, D2, D3, A1d, A2d>(), gather_rows<Data::F32, 0, 1, 2, 3>(),
+    gather_rows<Data::S32, 0, 1, 2, 3>(), gather_rows<Data::U32, 0, 1, 2, 3>(),
+    gathers_of<true, false, Data::F32, 0, D2, A2d, Cube, Acube>(),
+    gathers_of<true, true, Data::F32, 0, D2, A2d>(), kQueries);
 
 }  // namespace
 

@@ -1,9 +1,8 @@
 // Lanes that read each other: shuffles, votes, matches and reductions.
 //
-// Their last operand is the member mask. The lanes that take part with a lane are those of its mask that execute the
-// instruction with the same mask; Choice: a lane outside its own mask takes part with nobody and still gets a result
-// (PTX leaves it open).
-// SPDX-License-Identifier: Apache-2.0
+// Their last operand is the member mask. The lanes that take part with a lane are those of its mask that
+// execute the instruction with the same mask; Choice: a lane outside its own mask takes part with nobody and
+// still gets a result (PTX leaves it open). SPDX-License-Identifier: Apache-2.0
 #include "isa/op_makers.h"
 #include "isa/ops/families.h"
 
@@ -21,7 +20,8 @@ namespace {
   const __m256i wanted = _mm256_set1_epi32(int(value));
   LaneMask mask = 0;
   for (int i = 0; i < kLanes; i += 8) {
-    const __m256i same = _mm256_cmpeq_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(row + i)), wanted);
+    const __m256i same =
+        _mm256_cmpeq_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(row + i)), wanted);
     mask |= uint32_t(_mm256_movemask_ps(_mm256_castsi256_ps(same))) << i;
   }
   return mask;
@@ -41,10 +41,11 @@ namespace {
 #endif
 }
 
-// Calls `visit(group, members)` for each different mask in row `masks`: the executing lanes that gave it, and those of
-// them that it names. Mostly once.
+// Calls `visit(group, members)` for each different mask in row `masks`: the executing lanes that gave it, and
+// those of them that it names. Mostly once.
 template <class Visit>
-[[gnu::always_inline]] inline void each_group(const Warp& warp, const Source<uint32_t>& masks, Visit&& visit) {
+[[gnu::always_inline]] inline void each_group(const Warp& warp, const Source<uint32_t>& masks,
+                                              Visit&& visit) {
   for (LaneMask rest = warp.exec; rest;) {
     const uint32_t mask = masks.at(__builtin_ctz(rest));
     const LaneMask group = lanes_equal(masks.low, mask) & rest;
@@ -90,7 +91,8 @@ template <Shuffle kMode>
                   : kMode == Shuffle::Butterfly ? i ^ distance
                                                 : first | (distance & ~segment);
     const bool inside = kMode == Shuffle::Up ? j >= last : j <= last;
-    return {uint32_t(inside ? j : i) & 31, inside};  // a clamp below the lane's segment may point past the warp: wraps
+    return {uint32_t(inside ? j : i) & 31,
+            inside};  // a clamp below the lane's segment may point past the warp: wraps
   };
   alignas(64) uint32_t from[kLanes], value[kLanes];
   all_lanes([&](int i) { from[i] = source(i).lane; });
@@ -108,7 +110,10 @@ template <Vote kVote>
   const LaneMask votes = a.mask;
   each_group(warp, masks, [&](LaneMask group, LaneMask members) {
     const bool all = (votes & members) == members, any = (votes & members) != 0;
-    set_predicate(warp, slot_at(inst, 0), group, kVote == Vote::All ? all : kVote == Vote::Any ? any : all | !any);
+    set_predicate(warp, slot_at(inst, 0), group,
+                  kVote == Vote::All   ? all
+                  : kVote == Vote::Any ? any
+                                       : all | !any);
   });
 }
 [[gnu::flatten]] void ballot(Warp& warp, const Inst& inst) {
@@ -125,14 +130,17 @@ template <Vote kVote>
 template <class T>
 [[gnu::always_inline]] inline void lanes_of_values(const Source<T>& a, LaneMask* out) {
 #if defined(__AVX512F__)
-  // Words that differ leave bits. Packed to 16 bits, where what was not 0 stays so, one test of 32 lanes makes a mask:
-  // such instructions, one or two a cycle, are what this waits for. Packing takes four lanes in turn from either source.
-  const __m512i fours = _mm512_setr_epi64(0, 1, 4, 5, 8, 9, 12, 13), others = _mm512_setr_epi64(2, 3, 6, 7, 10, 11, 14, 15);
+  // Words that differ leave bits. Packed to 16 bits, where what was not 0 stays so, one test of 32 lanes
+  // makes a mask: such instructions, one or two a cycle, are what this waits for. Packing takes four lanes in
+  // turn from either source.
+  const __m512i fours = _mm512_setr_epi64(0, 1, 4, 5, 8, 9, 12, 13),
+                others = _mm512_setr_epi64(2, 3, 6, 7, 10, 11, 14, 15);
   const auto dealt = [](const uint32_t* row, __m512i which) {
     return _mm512_permutex2var_epi64(_mm512_loadu_si512(row), which, _mm512_loadu_si512(row + 16));
   };
   const uint32_t* const upper = sizeof(T) == 8 ? a.high : a.low;
-  const __m512i low[] = {dealt(a.low, fours), dealt(a.low, others)}, high[] = {dealt(upper, fours), dealt(upper, others)};
+  const __m512i low[] = {dealt(a.low, fours), dealt(a.low, others)},
+                high[] = {dealt(upper, fours), dealt(upper, others)};
   for (int k = 0; k < kLanes; ++k) {
     const __m512i wanted = _mm512_set1_epi32(int(a.low[k])), wanted_high = _mm512_set1_epi32(int(upper[k]));
     __m512i different[2];
@@ -236,7 +244,8 @@ void active_mask(Warp& warp, const Inst& inst) {
   write_predicate(warp, slot_at(inst, 1), leaders);
 }
 
-constexpr OpRow row(std::string_view name, Operands operands, Handler run, std::string_view doc, Examples examples) {
+constexpr OpRow row(std::string_view name, Operands operands, Handler run, std::string_view doc,
+                    Examples examples) {
   OpRow out = effect_op(name, Class::Alu, Unit::Shuffle, Effect::None, operands, doc);
   out.run = run;
   out.examples = examples;
@@ -263,18 +272,18 @@ constexpr OpRow kRows[] = {
                 "Value of the lane whose number differs in the bits b, and whether it is in the segment."),
     shuffle_row("shfl.sync.idx.b32", &shuffle<Shuffle::Index>,
                 "Value of lane b of the segment that c describes, and whether there is one."),
-    row("vote.sync.all.pred", kVote, &vote<Vote::All>, "Whether the predicate is true for all lanes of the mask.",
-        {{{1, ~0u}, 1}, {{0, ~0u}, 0}}),
-    row("vote.sync.any.pred", kVote, &vote<Vote::Any>, "Whether the predicate is true for any lane of the mask.",
-        {{{1, ~0u}, 1}, {{0, ~0u}, 0}}),
-    row("vote.sync.uni.pred", kVote, &vote<Vote::Uniform>, "Whether the predicate is the same for all lanes of the mask.",
-        {{{1, ~0u}, 1}, {{0, ~0u}, 1}}),
-    row("vote.sync.ballot.b32", {Dst32, SrcPred, Src32}, &ballot, "The lanes of the mask whose predicate is true.",
-        {{{1, 5}, 5}, {{0, 5}, 0}}),
-    row("match.any.sync.b32", {Dst32, Src32, Src32}, &match_any<uint32_t>, "The lanes of the mask with the same value.",
-        {{{9, 7}, 7}, {{0, 2}, 2}}),
-    row("match.any.sync.b64", {Dst32, Src64, Src32}, &match_any<uint64_t>, "The lanes of the mask with the same value.",
-        {{{9, 7}, 7}, {{0x1'0000'0000, 2}, 2}}),
+    row("vote.sync.all.pred", kVote, &vote<Vote::All>,
+        "Whether the predicate is true for all lanes of the mask.", {{{1, ~0u}, 1}, {{0, ~0u}, 0}}),
+    row("vote.sync.any.pred", kVote, &vote<Vote::Any>,
+        "Whether the predicate is true for any lane of the mask.", {{{1, ~0u}, 1}, {{0, ~0u}, 0}}),
+    row("vote.sync.uni.pred", kVote, &vote<Vote::Uniform>,
+        "Whether the predicate is the same for all lanes of the mask.", {{{1, ~0u}, 1}, {{0, ~0u}, 1}}),
+    row("vote.sync.ballot.b32", {Dst32, SrcPred, Src32}, &ballot,
+        "The lanes of the mask whose predicate is true.", {{{1, 5}, 5}, {{0, 5}, 0}}),
+    row("match.any.sync.b32", {Dst32, Src32, Src32}, &match_any<uint32_t>,
+        "The lanes of the mask with the same value.", {{{9, 7}, 7}, {{0, 2}, 2}}),
+    row("match.any.sync.b64", {Dst32, Src64, Src32}, &match_any<uint64_t>,
+        "The lanes of the mask with the same value.", {{{9, 7}, 7}, {{0x1'0000'0000, 2}, 2}}),
     row("match.all.sync.b32", {Dst32, DstPred, Src32, Src32}, &match_all<uint32_t>,
         "The lanes of the mask and true if all have the same value; otherwise 0 and false.",
         {{{9, 7}, 7, 1}, {{0, 2}, 2, 1}}),
@@ -282,17 +291,20 @@ constexpr OpRow kRows[] = {
         "The lanes of the mask and true if all have the same value; otherwise 0 and false.",
         {{{9, 7}, 7, 1}, {{0x1'0000'0000, 2}, 2, 1}}),
     reduction<uint32_t, 0>("redux.sync.add.u32", "Sum over the lanes of the mask.",
-                           [](auto a, auto b) { return a + b; }, {{{5, 3}, 10}, {{0x8000'0001, 7}, 0x8000'0003}}),
+                           [](auto a, auto b) { return a + b; },
+                           {{{5, 3}, 10}, {{0x8000'0001, 7}, 0x8000'0003}}),
     reduction<uint32_t, 0>("redux.sync.add.s32", "Sum over the lanes of the mask.",
                            [](auto a, auto b) { return a + b; },
                            {{{5, 3}, 10}, {{0xffff'ffff, 7}, 0xffff'fffd}}),
     reduction<uint32_t, ~0u>("redux.sync.min.u32", "Minimum over the lanes of the mask.",
-                             [](auto a, auto b) { return a < b ? a : b; }, {{{5, 3}, 5}, {{0xffff'ffff, 7}, 0xffff'ffff}}),
+                             [](auto a, auto b) { return a < b ? a : b; },
+                             {{{5, 3}, 5}, {{0xffff'ffff, 7}, 0xffff'ffff}}),
     reduction<int32_t, 0x7fff'ffff>("redux.sync.min.s32", "Signed minimum over the lanes of the mask.",
                                     [](auto a, auto b) { return a < b ? a : b; },
                                     {{{5, 3}, 5}, {{0xffff'ffff, 7}, 0xffff'ffff}}),
     reduction<uint32_t, 0>("redux.sync.max.u32", "Maximum over the lanes of the mask.",
-                           [](auto a, auto b) { return a > b ? a : b; }, {{{5, 3}, 5}, {{0xffff'ffff, 7}, 0xffff'ffff}}),
+                           [](auto a, auto b) { return a > b ? a : b; },
+                           {{{5, 3}, 5}, {{0xffff'ffff, 7}, 0xffff'ffff}}),
     reduction<int32_t, -0x7fff'ffff - 1>("redux.sync.max.s32", "Signed maximum over the lanes of the mask.",
                                          [](auto a, auto b) { return a > b ? a : b; },
                                          {{{5, 3}, 5}, {{0xffff'ffff, 7}, 0xffff'ffff}}),
@@ -305,8 +317,8 @@ constexpr OpRow kRows[] = {
     // Who runs is not among its operands: no example holds for every warp.
     row("activemask.b32", {Dst32}, &active_mask, "The lanes that execute this instruction.", {}),
     // The second result differs from lane to lane: true in the lane of the first.
-    row("elect.sync", {Dst32, DstPred, Src32}, &elect, "The lowest lane of the mask, and whether it is this one.",
-        {{{7}, 0}, {{6}, 1}}),
+    row("elect.sync", {Dst32, DstPred, Src32}, &elect,
+        "The lowest lane of the mask, and whether it is this one.", {{{7}, 0}, {{6}, 1}}),
 };
 
 }  // namespace

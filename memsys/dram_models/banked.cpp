@@ -1,9 +1,9 @@
-// Policy: banks with row buffers, every command at the first clock that its timing allows; what it forbids afterwards.
-// SPDX-License-Identifier: Apache-2.0
-#include "memsys/dram_channel.h"
-
+// Policy: banks with row buffers, every command at the first clock that its timing allows; what it forbids
+// afterwards. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <bit>
+
+#include "memsys/dram_channel.h"
 
 namespace glint::mem {
 
@@ -18,7 +18,8 @@ DramChannel::DramChannel(const Context& context)
       group_gates_(context.params.bank_groups),
       group_turned_(context.params.bank_groups),
       refresh_due_(timing_.refresh_interval) {
-  for (uint32_t bank = 0; bank < banks_.size(); ++bank) bank_group_.push_back(uint8_t(bank % group_gates_.size()));
+  for (uint32_t bank = 0; bank < banks_.size(); ++bank)
+    bank_group_.push_back(uint8_t(bank % group_gates_.size()));
   for (uint32_t slot = 0; slot < slots_.size(); ++slot) free_.push_back(uint32_t(slots_.size()) - 1 - slot);
 }
 
@@ -62,7 +63,8 @@ void DramChannel::step(DramClock now) {
   next_step_ = busy_banks_ ? std::min(plan_.at, refresh_due_) : plan_.at;
 }
 
-// Gives free banks requests; true when any got one. Only a free bank or a new request changes what pick() answers.
+// Gives free banks requests; true when any got one. Only a free bank or a new request changes what pick()
+// answers.
 bool DramChannel::pick_all() {
   bool any = false;
   for (bool again = true; again;) {  // an answer may make way for a bank that was asked before (fcfs)
@@ -102,7 +104,8 @@ void DramChannel::plan_from(DramClock first) {
   for (uint64_t rest = busy_banks_; rest; rest &= rest - 1) {
     const uint32_t index = uint32_t(std::countr_zero(rest));
     const Bank& bank = banks_[index];
-    const DramClock shared = std::max(group_gates_[bank_group_[index]].at[bank.next], channel_gates_.at[bank.next]);
+    const DramClock shared =
+        std::max(group_gates_[bank_group_[index]].at[bank.next], channel_gates_.at[bank.next]);
     const DramClock at = std::max(std::max(bank.gates.at[bank.next], shared), first);
     if (at > plan_.at) continue;
     if (at < plan_.at) plan_ = {at, kNone, kNone};
@@ -136,7 +139,8 @@ void DramChannel::issue_column(uint32_t index, DramClock now) {
     turned_[1] = now + t.rtw;
     bank.gates.raise(Precharge, now + t.rtp);
     run_timers_until(now + t.rtw);
-    returns_.push({clocks_.cycle_after(now + t.cl + t.data), slot.line, slot.sectors, clocks_.cycle_after(now)});
+    returns_.push(
+        {clocks_.cycle_after(now + t.cl + t.data), slot.line, slot.sectors, clocks_.cycle_after(now)});
     ++stats_.reads;
   }
   if (stats_.reads.value() + stats_.writes.value() > 1 && write != last_was_write_) ++stats_.turnarounds;
@@ -174,7 +178,8 @@ void DramChannel::issue_row(uint32_t index, DramClock now) {
   if (t.activate > 1) {
     channel_gates_.raise(Activate, now + t.activate);
     channel_gates_.raise(Precharge, now + t.activate);
-    if (!dual_command_bus_) channel_gates_.raise(Read, now + t.activate), channel_gates_.raise(Write, now + t.activate);
+    if (!dual_command_bus_)
+      channel_gates_.raise(Read, now + t.activate), channel_gates_.raise(Write, now + t.activate);
   }
   last_activates_[num_activates_++ % 4] = now;
   if (num_activates_ >= 4) channel_gates_.raise(Activate, last_activates_[num_activates_ % 4] + t.faw);
@@ -182,8 +187,8 @@ void DramChannel::issue_row(uint32_t index, DramClock now) {
   ++stats_.activates;
 }
 
-// Attributes the clocks [accounted_, until), in which no command went out after the first, no bank changed hands and no
-// refresh fell due.
+// Attributes the clocks [accounted_, until), in which no command went out after the first, no bank changed
+// hands and no refresh fell due.
 void DramChannel::account(DramClock until) {
   if (until <= accounted_) return;
   const DramClock length = until - accounted_;
@@ -276,7 +281,8 @@ namespace {
 class Banked final : public DramChannel {
  public:
   static constexpr const char* kName = "banked";
-  static constexpr const char* kDoc = "Banks, rows, command timing and refresh; `memory.dram.scheduler` orders the requests.";
+  static constexpr const char* kDoc =
+      "Banks, rows, command timing and refresh; `memory.dram.scheduler` orders the requests.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

@@ -9,19 +9,22 @@
 namespace glint::mem {
 namespace {
 
-// A request is on the data bus when those before it have left, data_clocks / efficiency after them; a read's data has
-// come `latency` after that begins and its own transfer.
-// Model: a place in the queue is free when its transfer begins, as with banks when the column command goes out.
+// A request is on the data bus when those before it have left, data_clocks / efficiency after them; a read's
+// data has come `latency` after that begins and its own transfer. Model: a place in the queue is free when
+// its transfer begins, as with banks when the column command goes out.
 class Simple final : public DramModel {
  public:
   static constexpr const char* kName = "simple";
-  static constexpr const char* kDoc = "A fixed latency and a share of the peak bandwidth, first come, first served: for fast sweeps.";
+  static constexpr const char* kDoc =
+      "A fixed latency and a share of the peak bandwidth, first come, first served: for fast sweeps.";
   struct Params {
     double latency = 29.1;    // tRCD + CL of GDDR6-14000: a closed row
     double efficiency = 0.9;  // Choice: what refresh and turnarounds leave of streams, about
     static constexpr auto params() {
-      return std::tuple{param(&Params::latency, "latency", "ns", "From the beginning of a read's service to its first data.", 0.0, 1e5),
-                        param(&Params::efficiency, "efficiency", "ratio", "Share of the data bus's peak bandwidth that can be had.", 0.01, 1.0)};
+      return std::tuple{param(&Params::latency, "latency", "ns",
+                              "From the beginning of a read's service to its first data.", 0.0, 1e5),
+                        param(&Params::efficiency, "efficiency", "ratio",
+                              "Share of the data bus's peak bandwidth that can be had.", 0.01, 1.0)};
     }
   };
 
@@ -29,7 +32,9 @@ class Simple final : public DramModel {
       : DramModel(context, DramTiming(context.params).data),
         latency_(DramClock(std::ceil(params.latency * context.params.clock_mhz / 1000.0 - 1e-6))),
         // Parts of a clock: 2^10 of them, so that any efficiency is met in the long run.
-        spacing_(std::max<DramClock>(data_clocks_ << kFraction, DramClock(std::ceil(double(data_clocks_ << kFraction) / params.efficiency)))),
+        spacing_(
+            std::max<DramClock>(data_clocks_ << kFraction,
+                                DramClock(std::ceil(double(data_clocks_ << kFraction) / params.efficiency)))),
         waiting_(context.params.queue) {}
 
   void add(Cycle now, Address line, uint8_t sectors, Address, bool write) override {
@@ -75,7 +80,8 @@ class Simple final : public DramModel {
       return;
     }
     ++stats_.reads;
-    returns_.push({clocks_.cycle_after(request.start + latency_ + data_clocks_), request.line, request.sectors, clocks_.cycle_after(request.start)});
+    returns_.push({clocks_.cycle_after(request.start + latency_ + data_clocks_), request.line,
+                   request.sectors, clocks_.cycle_after(request.start)});
   }
   // Attributes the clocks up to `until`; after the data, requests wait or nobody does.
   void account(DramClock until, bool waiting) {

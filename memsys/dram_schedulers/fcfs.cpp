@@ -12,7 +12,8 @@ namespace {
 class Fcfs final : public DramScheduler {
  public:
   static constexpr const char* kName = "fcfs";
-  static constexpr const char* kDoc = "The oldest request of the channel; younger ones wait even when their banks are free.";
+  static constexpr const char* kDoc =
+      "The oldest request of the channel; younger ones wait even when their banks are free.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

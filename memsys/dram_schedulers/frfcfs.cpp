@@ -8,8 +8,8 @@
 namespace glint::mem {
 namespace {
 
-// Each bank has a list of its requests, oldest first. Without a cap a stream of row hits can starve a row miss for as
-// long as the stream lasts, as in GPGPU-Sim.
+// Each bank has a list of its requests, oldest first. Without a cap a stream of row hits can starve a row
+// miss for as long as the stream lasts, as in GPGPU-Sim.
 class FrFcfs final : public DramScheduler {
  public:
   static constexpr const char* kName = "frfcfs";
@@ -18,7 +18,8 @@ class FrFcfs final : public DramScheduler {
     uint32_t hit_cap = 0;
     static constexpr auto params() {
       return std::tuple{param(&Params::hit_cap, "hit_cap", "request",
-                              "Row hits that may overtake the oldest request in a row; 0 is no limit.", 0, 1 << 16)};
+                              "Row hits that may overtake the oldest request in a row; 0 is no limit.", 0,
+                              1 << 16)};
     }
   };
 

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/description/check.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 #include <set>
 
 #include "isa/text.h"
@@ -32,11 +31,18 @@ std::vector<Given> all_given(const PipelineDescription& d) {
 
 std::string table_for(BindingKind kind) {
   switch (kind) {
-    case BindingKind::UniformBuffer: case BindingKind::StorageBuffer: return "buffer";
-    case BindingKind::StorageImage: case BindingKind::SampledImage: return "image";
-    case BindingKind::AccelerationStructure: return "top_level";
-    case BindingKind::Sampler: return "sampler";
-    default: return "";
+    case BindingKind::UniformBuffer:
+    case BindingKind::StorageBuffer:
+      return "buffer";
+    case BindingKind::StorageImage:
+    case BindingKind::SampledImage:
+      return "image";
+    case BindingKind::AccelerationStructure:
+      return "top_level";
+    case BindingKind::Sampler:
+      return "sampler";
+    default:
+      return "";
   }
 }
 
@@ -54,12 +60,14 @@ class Check {
     for (const auto& [place, use] : modules_.bindings()) check_binding(place.first, place.second, use);
     for (const Given& g : given_)
       if (g.slot->is_bound() && !modules_.bindings().count({g.slot->set.value_or(0), *g.slot->binding}))
-        warnings_.push_back(fmt::format("{}: note: no shader has set {} binding {}: '{}' is bound for nobody", g.where.to_string(),
-                                        g.slot->set.value_or(0), *g.slot->binding, g.name));
+        warnings_.push_back(fmt::format("{}: note: no shader has set {} binding {}: '{}' is bound for nobody",
+                                        g.where.to_string(), g.slot->set.value_or(0), *g.slot->binding,
+                                        g.name));
     check_stage(d_.compute, isa::Stage::Compute, d_.compute_where, "[compute]");
     if (d_.raygen) check_record(*d_.raygen, isa::Stage::RayGeneration, "[raygen]");
     for (const auto& record : d_.miss.records) check_record(record, isa::Stage::Miss, "a miss record");
-    for (const auto& record : d_.callable.records) check_record(record, isa::Stage::Callable, "a callable record");
+    for (const auto& record : d_.callable.records)
+      check_record(record, isa::Stage::Callable, "a callable record");
     for (const auto& record : d_.hit.records) check_hit(record);
     for (const auto& group : d_.groups) check_hit_group(group);
     note_large_payloads();
@@ -71,10 +79,13 @@ class Check {
  private:
   // Files of the run directory that something else writes.
   void check_saves(const std::vector<Save>& saves) {
-    static const std::vector<std::string> kOwn{"config.toml", "run.json", "stats.txt", "stats.json", "stats.csv", "printf.txt", "profile.csv", "profile.folded", "series.csv"};
+    static const std::vector<std::string> kOwn{"config.toml", "run.json",       "stats.txt",
+                                               "stats.json",  "stats.csv",      "printf.txt",
+                                               "profile.csv", "profile.folded", "series.csv"};
     for (const Save& save : saves) {
       if (std::find(kOwn.begin(), kOwn.end(), save.file) != kOwn.end())
-        errors_.error(save.where, fmt::format("the run itself writes '{}'", save.file), "save under another name");
+        errors_.error(save.where, fmt::format("the run itself writes '{}'", save.file),
+                      "save under another name");
       else if (!saved_.insert(save.file).second)
         errors_.error(save.where, fmt::format("'{}' is saved twice", save.file), "save under another name");
     }
@@ -83,38 +94,53 @@ class Check {
   void check_binding(uint32_t set, uint32_t binding, const BindingUse& use) {
     std::vector<const Given*> here;
     for (const Given& g : given_)
-      if (g.slot->is_bound() && g.slot->set.value_or(0) == set && *g.slot->binding == binding) here.push_back(&g);
+      if (g.slot->is_bound() && g.slot->set.value_or(0) == set && *g.slot->binding == binding)
+        here.push_back(&g);
     const std::string table = table_for(use.binding.kind);
     if (here.empty()) {
       if (!use.is_used) return;  // declared and never read
-      errors_.error({d_.path, 0, 0}, fmt::format("nothing is bound to set {} binding {}", set, binding),
-                    fmt::format("{}: add [[{}]] with set = {}, binding = {}", declared(use), table, set, binding));
+      errors_.error(
+          {d_.path, 0, 0}, fmt::format("nothing is bound to set {} binding {}", set, binding),
+          fmt::format("{}: add [[{}]] with set = {}, binding = {}", declared(use), table, set, binding));
       return;
     }
     std::set<uint32_t> elements;
     for (const Given* g : here) {
       if (g->kind != table)
-        errors_.error(g->where, fmt::format("set {} binding {}: '{}' is a [[{}]], the shader wants a [[{}]]", set, binding, g->name, g->kind, table), declared(use));
+        errors_.error(g->where,
+                      fmt::format("set {} binding {}: '{}' is a [[{}]], the shader wants a [[{}]]", set,
+                                  binding, g->name, g->kind, table),
+                      declared(use));
       if (!elements.insert(g->slot->element).second)
-        errors_.error(g->where, fmt::format("set {} binding {} element {} is bound twice", set, binding, g->slot->element),
-                      use.binding.count == 1 ? "" : "elements of an array of descriptors: element = 0, 1, ...");
+        errors_.error(
+            g->where,
+            fmt::format("set {} binding {} element {} is bound twice", set, binding, g->slot->element),
+            use.binding.count == 1 ? "" : "elements of an array of descriptors: element = 0, 1, ...");
       if (use.binding.count && g->slot->element >= use.binding.count)
-        errors_.error(g->where, fmt::format("element {} of set {} binding {}: the shader's array has {}", g->slot->element, set, binding, use.binding.count), declared(use));
+        errors_.error(g->where,
+                      fmt::format("element {} of set {} binding {}: the shader's array has {}",
+                                  g->slot->element, set, binding, use.binding.count),
+                      declared(use));
     }
     const uint32_t wanted = std::max(use.binding.count, *elements.rbegin() + 1);
     if (elements.size() < wanted && use.is_used) {
       uint32_t first = 0;
       while (elements.count(first)) ++first;
-      errors_.error(here[0]->where, fmt::format("set {} binding {} has {} elements, element {} is missing", set, binding, wanted, first), declared(use));
+      errors_.error(here[0]->where,
+                    fmt::format("set {} binding {} has {} elements, element {} is missing", set, binding,
+                                wanted, first),
+                    declared(use));
     }
   }
 
-  void check_stage(const std::string& name, isa::Stage stage, const SourceLocation& where, const std::string& what) {
+  void check_stage(const std::string& name, isa::Stage stage, const SourceLocation& where,
+                   const std::string& what) {
     if (name.empty()) return;
     const ShaderModule& module = modules_.find(name);
     if (module.reflection.stage != stage)
-      errors_.error(where, fmt::format("{} wants a shader of stage {}: '{}' is of stage {}", what, isa::name_of(stage), module.path,
-                                       isa::name_of(module.reflection.stage)));
+      errors_.error(
+          where, fmt::format("{} wants a shader of stage {}: '{}' is of stage {}", what, isa::name_of(stage),
+                             module.path, isa::name_of(module.reflection.stage)));
   }
 
   const GroupDescription* group_of(const RecordDescription& record) {
@@ -125,7 +151,8 @@ class Check {
       names.push_back(group.name);
     }
     const std::string near = nearest(record.group, names);
-    errors_.error(record.where, fmt::format("there is no group '{}'", record.group), near.empty() ? "" : fmt::format("did you mean '{}'?", near));
+    errors_.error(record.where, fmt::format("there is no group '{}'", record.group),
+                  near.empty() ? "" : fmt::format("did you mean '{}'?", near));
     return nullptr;
   }
 
@@ -133,7 +160,8 @@ class Check {
     const GroupDescription* group = group_of(record);
     if (!group) return;
     check_stage(group->general, stage, record.where, what);
-    if (group->general.empty() && stage == isa::Stage::RayGeneration) errors_.error(record.where, "[raygen] needs 'shader'");
+    if (group->general.empty() && stage == isa::Stage::RayGeneration)
+      errors_.error(record.where, "[raygen] needs 'shader'");
   }
 
   void check_hit(const RecordDescription& record) {
@@ -150,12 +178,16 @@ class Check {
   // Which payload a trace hands over is known only when it runs, so only what no trace can hand over is told.
   void note_large_payloads() {
     uint32_t largest = 0;
-    for (const ShaderModule& module : modules_.all()) largest = std::max(largest, module.reflection.largest_payload_bytes);
+    for (const ShaderModule& module : modules_.all())
+      largest = std::max(largest, module.reflection.largest_payload_bytes);
     for (const ShaderModule& module : modules_.all())
       if (module.reflection.incoming_payload_bytes > largest)
-        warnings_.push_back(fmt::format("{}: note: the shader reads a payload of {} bytes; the largest that any shader here hands to a trace has {}",
-                                        module.path, module.reflection.incoming_payload_bytes, largest));
-      else note_other_payload(module);
+        warnings_.push_back(
+            fmt::format("{}: note: the shader reads a payload of {} bytes; the largest that any shader here "
+                        "hands to a trace has {}",
+                        module.path, module.reflection.incoming_payload_bytes, largest));
+      else
+        note_other_payload(module);
   }
 
   // Where no trace of these shaders can hand over what a shader reads, scalar for scalar.
@@ -167,18 +199,23 @@ class Check {
     for (const ShaderModule& caller : modules_.all())
       for (const std::string& handed : caller.reflection.handed_payloads) {
         const size_t end = std::min(read.size(), handed.size());
-        const size_t same = size_t(std::mismatch(read.begin(), read.begin() + long(end), handed.begin()).first - read.begin());
+        const size_t same = size_t(
+            std::mismatch(read.begin(), read.begin() + long(end), handed.begin()).first - read.begin());
         fits |= same == end;
         if (nearest.empty() || same > agree) agree = same, nearest = handed;
       }
     if (fits || nearest.empty()) return;
     const size_t scalar = agree / 2;
-    warnings_.push_back(fmt::format("{}: note: scalar {} of the payload that the shader reads is {}; the most alike that a shader here hands to a trace has {} there",
-                                    module.path, scalar + 1, name_of_scalar(read.substr(2 * scalar, 2)), name_of_scalar(nearest.substr(2 * scalar, 2))));
+    warnings_.push_back(
+        fmt::format("{}: note: scalar {} of the payload that the shader reads is {}; the most alike that a "
+                    "shader here hands to a trace has {} there",
+                    module.path, scalar + 1, name_of_scalar(read.substr(2 * scalar, 2)),
+                    name_of_scalar(nearest.substr(2 * scalar, 2))));
   }
   static std::string name_of_scalar(const std::string& scalar) {
     const int bits = 8 * (scalar[1] - '0');
-    return scalar[0] == 'b' ? "a bool" : fmt::format("{} of {} bits", scalar[0] == 'f' ? "a float" : "an integer", bits);
+    return scalar[0] == 'b' ? "a bool"
+                            : fmt::format("{} of {} bits", scalar[0] == 'f' ? "a float" : "an integer", bits);
   }
 
   const PipelineDescription& d_;
@@ -191,13 +228,18 @@ class Check {
 
 }  // namespace
 
-void check_pipeline(const PipelineDescription& description, const Modules& modules, std::vector<std::string>& warnings) {
+void check_pipeline(const PipelineDescription& description, const Modules& modules,
+                    std::vector<std::string>& warnings) {
   Check(description, modules, warnings).run();
 }
 
-void check_bytes(const BindingUse& use, uint64_t bytes, const std::string& name, const SourceLocation& where, Diagnostics& errors) {
+void check_bytes(const BindingUse& use, uint64_t bytes, const std::string& name, const SourceLocation& where,
+                 Diagnostics& errors) {
   if (bytes < use.binding.block.bytes)
-    errors.error(where, fmt::format("buffer '{}' has {} bytes, the shader's block needs {}", name, bytes, use.binding.block.bytes), declared(use));
+    errors.error(where,
+                 fmt::format("buffer '{}' has {} bytes, the shader's block needs {}", name, bytes,
+                             use.binding.block.bytes),
+                 declared(use));
 }
 
 }  // namespace glint::pipeline

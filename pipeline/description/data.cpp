@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/description/data.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstring>
+#include <fmt/format.h>
 #include <fstream>
 #include <iterator>
 
@@ -45,9 +44,12 @@ class Members {
 
   void write(const Value& value, const BlockType& type, uint64_t at, const std::string& name) {
     switch (type.kind) {
-      case BlockType::Kind::Struct: return write_struct(value, type, at, name);
-      case BlockType::Kind::Array: return write_array(value, type, at, name);
-      case BlockType::Kind::Numbers: break;
+      case BlockType::Kind::Struct:
+        return write_struct(value, type, at, name);
+      case BlockType::Kind::Array:
+        return write_array(value, type, at, name);
+      case BlockType::Kind::Numbers:
+        break;
     }
     std::vector<const Value*> numbers;
     flatten(value, numbers);
@@ -65,7 +67,8 @@ class Members {
       if (found == names.end()) {
         const std::string near = nearest(key, names);
         errors_.error(each.where, fmt::format("the shader's block has no member '{}'", key),
-                      near.empty() ? fmt::format("it has {}", fmt::join(names, ", ")) : fmt::format("did you mean '{}'?", near));
+                      near.empty() ? fmt::format("it has {}", fmt::join(names, ", "))
+                                   : fmt::format("did you mean '{}'?", near));
         continue;
       }
       const frontend::BlockMember& member = type.members[size_t(found - names.begin())];
@@ -74,26 +77,35 @@ class Members {
   }
 
   void write_array(const Value& value, const BlockType& type, uint64_t at, const std::string& name) {
-    if (value.kind != Value::Kind::List) return errors_.error(value.where, fmt::format("'{}' must be a list: it is an array", name));
+    if (value.kind != Value::Kind::List)
+      return errors_.error(value.where, fmt::format("'{}' must be a list: it is an array", name));
     const BlockType& element = type.element[0];
-    const bool flat = element.kind == BlockType::Kind::Numbers && !value.list.empty() && value.list[0].kind != Value::Kind::List;
+    const bool flat = element.kind == BlockType::Kind::Numbers && !value.list.empty() &&
+                      value.list[0].kind != Value::Kind::List;
     const size_t each = flat ? element.offsets.size() : 1;
     const size_t count = value.list.size() / std::max<size_t>(1, each);
     if (flat && value.list.size() % each)
-      return errors_.error(value.where, fmt::format("'{}' has {} numbers: they come in {}s", name, value.list.size(), each));
+      return errors_.error(
+          value.where, fmt::format("'{}' has {} numbers: they come in {}s", name, value.list.size(), each));
     if (type.count && count > type.count)
-      return errors_.error(value.where, fmt::format("'{}' has {} elements, the shader's array {}", name, count, type.count));
+      return errors_.error(
+          value.where, fmt::format("'{}' has {} elements, the shader's array {}", name, count, type.count));
     std::vector<const Value*> numbers;
     if (flat) flatten(value, numbers);
     for (size_t i = 0; i < count; ++i)
-      if (flat) write_numbers(std::vector(numbers.begin() + long(i * each), numbers.begin() + long((i + 1) * each)), 0, value, element, at + i * type.stride, name);
-      else write(value.list[i], element, at + i * type.stride, fmt::format("{}[{}]", name, i));
+      if (flat)
+        write_numbers(std::vector(numbers.begin() + long(i * each), numbers.begin() + long((i + 1) * each)),
+                      0, value, element, at + i * type.stride, name);
+      else
+        write(value.list[i], element, at + i * type.stride, fmt::format("{}[{}]", name, i));
     if (bytes.size() < at + count * type.stride) bytes.resize(at + count * type.stride);
   }
 
-  void write_numbers(const std::vector<const Value*>& numbers, size_t, const Value& value, const BlockType& type, uint64_t at, const std::string& name) {
+  void write_numbers(const std::vector<const Value*>& numbers, size_t, const Value& value,
+                     const BlockType& type, uint64_t at, const std::string& name) {
     if (numbers.size() != type.offsets.size())
-      return errors_.error(value.where, fmt::format("'{}' has {} numbers, the shader's member {} of type {}", name, numbers.size(), type.offsets.size(), type.number));
+      return errors_.error(value.where, fmt::format("'{}' has {} numbers, the shader's member {} of type {}",
+                                                    name, numbers.size(), type.offsets.size(), type.number));
     if (bytes.size() < at + type.bytes) bytes.resize(at + type.bytes);
     for (size_t i = 0; i < numbers.size(); ++i)
       if (!put_number(type.number, *numbers[i], address_, bytes.data() + at + type.offsets[i]))
@@ -104,34 +116,42 @@ class Members {
   Diagnostics& errors_;
 };
 
-bool is_type(const std::string& name) { return std::find(number_types().begin(), number_types().end(), name) != number_types().end(); }
+bool is_type(const std::string& name) {
+  return std::find(number_types().begin(), number_types().end(), name) != number_types().end();
+}
 
-void append_typed(const Value& list, const std::string& type, const AddressOf& address, std::vector<std::byte>& out, Diagnostics& errors) {
+void append_typed(const Value& list, const std::string& type, const AddressOf& address,
+                  std::vector<std::byte>& out, Diagnostics& errors) {
   std::vector<const Value*> numbers;
   flatten(list, numbers);
   const size_t each = bytes_of_number(type);
   for (const Value* number : numbers) {
     out.resize(out.size() + each);
-    if (!put_number(type, *number, address, out.data() + out.size() - each)) return errors.error(number->where, fmt::format("this is no {}", type));
+    if (!put_number(type, *number, address, out.data() + out.size() - each))
+      return errors.error(number->where, fmt::format("this is no {}", type));
   }
 }
 
-std::vector<std::byte> inline_bytes(const DataSource& source, const BlockType* block, const AddressOf& address, Diagnostics& errors) {
+std::vector<std::byte> inline_bytes(const DataSource& source, const BlockType* block,
+                                    const AddressOf& address, Diagnostics& errors) {
   std::vector<std::byte> out;
   const auto chunk = [&](const Value& table) {
     for (const auto& [type, numbers] : table.table) append_typed(numbers, type, address, out, errors);
   };
   const auto is_chunk = [](const Value& v) {
-    return v.kind == Value::Kind::Table && !v.table.empty() && std::all_of(v.table.begin(), v.table.end(), [](const auto& e) { return is_type(e.key); });
+    return v.kind == Value::Kind::Table && !v.table.empty() &&
+           std::all_of(v.table.begin(), v.table.end(), [](const auto& e) { return is_type(e.key); });
   };
   const Value& data = source.data;
-  if (data.kind == Value::Kind::List && !data.list.empty() && std::all_of(data.list.begin(), data.list.end(), is_chunk)) {
+  if (data.kind == Value::Kind::List && !data.list.empty() &&
+      std::all_of(data.list.begin(), data.list.end(), is_chunk)) {
     for (const Value& each : data.list) chunk(each);
   } else if (is_chunk(data)) {
     chunk(data);
   } else if (data.kind == Value::Kind::Table) {
     if (!block || block->members.empty()) {
-      errors.error(data.where, "no shader declares a block here: members cannot be named", "give typed numbers: data = { f32 = [1, 2] }");
+      errors.error(data.where, "no shader declares a block here: members cannot be named",
+                   "give typed numbers: data = { f32 = [1, 2] }");
       return out;
     }
     Members members(address, errors);
@@ -182,12 +202,15 @@ std::vector<std::byte> file_bytes(const DataSource& source, Diagnostics& errors)
 }  // namespace
 
 const std::vector<std::string>& number_types() {
-  static const std::vector<std::string> kTypes{"u8",  "s8",  "u16", "s16", "u32", "s32", "u64",   "s64",    "f16", "f32",
-                                               "f64", "i8",  "i16", "i32", "i64", "int", "uint", "float", "double"};
+  static const std::vector<std::string> kTypes{"u8",  "s8",  "u16",  "s16",   "u32",   "s32", "u64",
+                                               "s64", "f16", "f32",  "f64",   "i8",    "i16", "i32",
+                                               "i64", "int", "uint", "float", "double"};
   return kTypes;
 }
 
-uint32_t bytes_of_number(const std::string& type) { return uint32_t(std::stoul(canonical(type).substr(1))) / 8; }
+uint32_t bytes_of_number(const std::string& type) {
+  return uint32_t(std::stoul(canonical(type).substr(1))) / 8;
+}
 
 bool put_number(const std::string& name, const Value& value, const AddressOf& address, std::byte* at) {
   const std::string type = canonical(name);
@@ -207,15 +230,21 @@ bool put_number(const std::string& name, const Value& value, const AddressOf& ad
   return true;
 }
 
-std::vector<std::byte> bytes_of(const DataSource& source, const BlockType* block, const AddressOf& address, Diagnostics& errors) {
+std::vector<std::byte> bytes_of(const DataSource& source, const BlockType* block, const AddressOf& address,
+                                Diagnostics& errors) {
   std::vector<std::byte> out;
-  if (source.data) out = inline_bytes(source, block, address, errors);
-  else if (source.init == "file") out = file_bytes(source, errors);
-  else if (source.init == "mesh") out = mesh_attribute(source, errors);
+  if (source.data)
+    out = inline_bytes(source, block, address, errors);
+  else if (source.init == "file")
+    out = file_bytes(source, errors);
+  else if (source.init == "mesh")
+    out = mesh_attribute(source, errors);
   if (source.bytes && out.size() > *source.bytes)
-    errors.error(source.where, fmt::format("the data have {} bytes, the buffer {}", out.size(), *source.bytes));
+    errors.error(source.where,
+                 fmt::format("the data have {} bytes, the buffer {}", out.size(), *source.bytes));
   if (source.bytes) out.resize(size_t(*source.bytes));
-  if (!source.data && (source.init == "iota" || source.init == "value" || source.init == "random")) fill(source, out);
+  if (!source.data && (source.init == "iota" || source.init == "value" || source.init == "random"))
+    fill(source, out);
   return out;
 }
 

@@ -15,7 +15,8 @@ namespace glint::pipeline {
 const std::vector<std::string>& number_types();
 uint32_t bytes_of_number(const std::string& type);
 
-// Addresses of buffers by name, for pointers in data: 64-bit numbers that are written as a buffer's name. 0: unknown.
+// Addresses of buffers by name, for pointers in data: 64-bit numbers that are written as a buffer's name. 0:
+// unknown.
 using AddressOf = std::function<uint64_t(const std::string& buffer)>;
 
 // Puts a number at `at`; false when the value is none of that type.
@@ -23,13 +24,14 @@ bool put_number(const std::string& type, const Value& value, const AddressOf& ad
 
 // The bytes of a source. `block` is the layout by which members are named; null: there is none.
 // Mistakes go to `errors`.
-std::vector<std::byte> bytes_of(const DataSource& source, const frontend::BlockType* block, const AddressOf& address, Diagnostics& errors);
+std::vector<std::byte> bytes_of(const DataSource& source, const frontend::BlockType* block,
+                                const AddressOf& address, Diagnostics& errors);
 
 // xorshift64*: the same numbers on every machine.
 class RandomNumbers {
  public:
   explicit RandomNumbers(uint64_t seed) : state_(seed * 0x9e37'79b9'7f4a'7c15ull + 1) {}
-  uint64_t next_bits();    // 53 of them
+  uint64_t next_bits();  // 53 of them
   double next_unit() { return double(next_bits()) * 0x1p-53; }
 
  private:

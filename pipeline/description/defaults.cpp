@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/description/defaults.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <bit>
 #include <filesystem>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "pipeline/description/modules.h"
 
@@ -35,7 +34,8 @@ std::string zeros(const BlockType& type) {
   if (type.kind == BlockType::Kind::Array) return list(std::min(type.count, 64u), zeros(type.element[0]));
   if (type.kind == BlockType::Kind::Struct) {
     std::string out = "{ ";
-    for (const auto& member : type.members) out += fmt::format("{}{} = {}", out.size() > 2 ? ", " : "", member.name, zeros(member.type));
+    for (const auto& member : type.members)
+      out += fmt::format("{}{} = {}", out.size() > 2 ? ", " : "", member.name, zeros(member.type));
     return out + " }";
   }
   const std::string zero = type.number[0] == 'f' ? "0.0" : "0";
@@ -59,7 +59,8 @@ uint32_t default_bytes(const BlockType& block) {
   uint32_t bytes = block.bytes;
   if (!block.members.empty()) {
     const auto& last = block.members.back();
-    if (last.type.kind == BlockType::Kind::Array && last.type.count == 0) bytes = last.offset + kElements * std::max(1u, last.type.stride);
+    if (last.type.kind == BlockType::Kind::Array && last.type.count == 0)
+      bytes = last.offset + kElements * std::max(1u, last.type.stride);
   }
   return (bytes + 15) / 16 * 16;
 }
@@ -85,10 +86,13 @@ opaque = {}
 
 class Writer {
  public:
-  Writer(const Modules& modules, const std::string& folder, const frontend::GlslOptions& glsl) : modules_(modules), folder_(folder), glsl_(glsl) {}
+  Writer(const Modules& modules, const std::string& folder, const frontend::GlslOptions& glsl)
+      : modules_(modules), folder_(folder), glsl_(glsl) {}
 
   std::string run() {
-    out_ = "# Written by `glint init`; docs/pipelines.md explains every key. Paths start at this file's folder.\n";
+    out_ =
+        "# Written by `glint init`; docs/pipelines.md explains every key. Paths start at this file's "
+        "folder.\n";
     write_compile();
     write_stages();
     write_launch();
@@ -116,7 +120,8 @@ class Writer {
     if (glsl_.include_dirs.empty() && glsl_.defines.empty()) return;
     std::vector<std::string> folders, macros;
     for (const std::string& folder : glsl_.include_dirs) folders.push_back(quoted(from_folder(folder)));
-    for (const auto& [name, value] : glsl_.defines) macros.push_back(fmt::format("{} = {}", name, quoted(value)));
+    for (const auto& [name, value] : glsl_.defines)
+      macros.push_back(fmt::format("{} = {}", name, quoted(value)));
     line("\n[compile]");
     if (!folders.empty()) line("include = [{}]", fmt::join(folders, ", "));
     if (!macros.empty()) line("define = {{ {} }}", fmt::join(macros, ", "));
@@ -125,7 +130,8 @@ class Writer {
   void write_record_data(const std::vector<const ShaderModule*>& shaders) {
     for (const ShaderModule* m : shaders)
       if (m && !m->reflection.shader_record.members.empty()) {
-        for (const std::string& member : frontend::describe_members(m->reflection.shader_record)) line("# {}", member);
+        for (const std::string& member : frontend::describe_members(m->reflection.shader_record))
+          line("# {}", member);
         line("data = {}", zeros(m->reflection.shader_record));
         return;
       }
@@ -145,15 +151,26 @@ class Writer {
     std::vector<const ShaderModule*> starts;
     for (const ShaderModule& m : modules_.all()) {
       switch (m.reflection.stage) {
-        case isa::Stage::RayGeneration: case isa::Stage::Compute: starts.push_back(&m); break;
-        case isa::Stage::ClosestHit: hit(m).closest = &m; break;
-        case isa::Stage::AnyHit: hit(m).any = &m; break;
-        case isa::Stage::Intersection: hit(m).intersection = &m; break;
-        default: break;
+        case isa::Stage::RayGeneration:
+        case isa::Stage::Compute:
+          starts.push_back(&m);
+          break;
+        case isa::Stage::ClosestHit:
+          hit(m).closest = &m;
+          break;
+        case isa::Stage::AnyHit:
+          hit(m).any = &m;
+          break;
+        case isa::Stage::Intersection:
+          hit(m).intersection = &m;
+          break;
+        default:
+          break;
       }
     }
     if (starts.size() != 1)
-      throw UserError({}, fmt::format("{} ray generation or compute shaders among the files, expected one", starts.size()));
+      throw UserError({}, fmt::format("{} ray generation or compute shaders among the files, expected one",
+                                      starts.size()));
     start_ = starts[0];
     const bool is_compute = start_->reflection.stage == isa::Stage::Compute;
     line("\n[{}]\nshader = {}", is_compute ? "compute" : "raygen", quoted(path_of(*start_)));
@@ -162,7 +179,8 @@ class Writer {
     write_region("miss", isa::Stage::Miss);
     for (const auto& [name, h] : hits) {
       line("\n[[hit]]  # record {}", num_hits_);
-      for (const auto& [key, m] : {std::pair{"closest_hit", h.closest}, {"any_hit", h.any}, {"intersection", h.intersection}})
+      for (const auto& [key, m] :
+           {std::pair{"closest_hit", h.closest}, {"any_hit", h.any}, {"intersection", h.intersection}})
         if (m) line("{} = {}", key, quoted(path_of(*m)));
       write_record_data({h.closest, h.any, h.intersection});
       if (h.intersection && box_record_ < 0) box_record_ = num_hits_;
@@ -188,13 +206,16 @@ class Writer {
       return;
     }
     const auto& size = start_->reflection.local_size;
-    threads_ = size[1] * size[2] == 1 && !writes_picture() ? std::array<uint32_t, 2>{kElements, 1} : std::array<uint32_t, 2>{kSide, kSide};
-    line("\n[launch]\n# Blocks of {} x {} x {} threads.\ngroups = [{}, {}]", size[0], size[1], size[2], (threads_[0] + size[0] - 1) / size[0], (threads_[1] + size[1] - 1) / size[1]);
+    threads_ = size[1] * size[2] == 1 && !writes_picture() ? std::array<uint32_t, 2>{kElements, 1}
+                                                           : std::array<uint32_t, 2>{kSide, kSide};
+    line("\n[launch]\n# Blocks of {} x {} x {} threads.\ngroups = [{}, {}]", size[0], size[1], size[2],
+         (threads_[0] + size[0] - 1) / size[0], (threads_[1] + size[1] - 1) / size[1]);
   }
 
   bool writes_picture() const {
     for (const auto& [place, use] : modules_.bindings())
-      if (use.binding.kind == BindingKind::StorageImage && isa::num_coordinates(use.binding.shape) > 1) return true;
+      if (use.binding.kind == BindingKind::StorageImage && isa::num_coordinates(use.binding.shape) > 1)
+        return true;
     return false;
   }
 
@@ -214,16 +235,21 @@ class Writer {
       for (const frontend::SpecConstant& c : m.constants) {
         if (first) line("\n# Specialisation constants and their defaults.\n[specialization]");
         first = false;
-        std::string value = fmt::format("{}", int64_t(c.number[0] == 's' ? int64_t(int32_t(c.value)) : int64_t(c.value)));
+        std::string value =
+            fmt::format("{}", int64_t(c.number[0] == 's' ? int64_t(int32_t(c.value)) : int64_t(c.value)));
         if (c.number == "bool") value = c.value ? "true" : "false";
         if (c.number == "f32") value = fmt::format("{}", std::bit_cast<float>(uint32_t(c.value)));
-        line("# {} = {}  # constant_id {}, {}", c.name.empty() ? fmt::format("{}", c.id) : c.name, value, c.id, c.number);
+        line("# {} = {}  # constant_id {}, {}", c.name.empty() ? fmt::format("{}", c.id) : c.name, value,
+             c.id, c.number);
       }
   }
 
   void write_slot(const char* table, const frontend::Binding& b, const std::string& name, uint32_t element) {
-    line("\n[[{}]]\nname = {}\nset = {}\nbinding = {}", table, quoted(element ? fmt::format("{}{}", name, element) : name), b.set, b.binding);
-    if (b.count != 1) line("element = {}  # of {}", element, b.count ? fmt::format("{}", b.count) : std::string("as many as you like"));
+    line("\n[[{}]]\nname = {}\nset = {}\nbinding = {}", table,
+         quoted(element ? fmt::format("{}{}", name, element) : name), b.set, b.binding);
+    if (b.count != 1)
+      line("element = {}  # of {}", element,
+           b.count ? fmt::format("{}", b.count) : std::string("as many as you like"));
   }
 
   void write_binding(const BindingUse& use) {
@@ -231,12 +257,17 @@ class Writer {
     const std::string name = b.name.empty() ? fmt::format("binding_{}_{}", b.set, b.binding) : b.name;
     for (uint32_t element = 0; element < std::max(1u, b.count); ++element) switch (b.kind) {
         case BindingKind::UniformBuffer:
-        case BindingKind::StorageBuffer: write_buffer(b, name, element); break;
+        case BindingKind::StorageBuffer:
+          write_buffer(b, name, element);
+          break;
         case BindingKind::StorageImage:
           write_slot("image", b, name, element);
           line("size = [{}]", size_text(b, kSide, kSide));
-          if (b.multisampled) line("samples = 4");
-          else line("save = {}", quoted(fmt::format("{}{}.png", name, element ? fmt::format("{}", element) : "")));
+          if (b.multisampled)
+            line("samples = 4");
+          else
+            line("save = {}",
+                 quoted(fmt::format("{}{}.png", name, element ? fmt::format("{}", element) : "")));
           break;
         case BindingKind::SampledImage:
           write_slot("image", b, name, element);
@@ -254,14 +285,16 @@ class Writer {
           has_structures_ = true;
           write_instances();
           break;
-        case BindingKind::Other: break;
+        case BindingKind::Other:
+          break;
       }
   }
 
   static std::string size_text(const frontend::Binding& b, uint32_t w, uint32_t h) {
     const int axes = isa::num_coordinates(b.shape);
     if (axes == 1) return fmt::format("{}", w);
-    return axes == 3 && !isa::is_cube(b.shape) ? fmt::format("{}, {}, {}", w, h, 16) : fmt::format("{}, {}", w, h);
+    return axes == 3 && !isa::is_cube(b.shape) ? fmt::format("{}, {}, {}", w, h, 16)
+                                               : fmt::format("{}, {}", w, h);
   }
 
   void write_buffer(const frontend::Binding& b, const std::string& name, uint32_t element) {
@@ -272,7 +305,8 @@ class Writer {
       return;
     }
     const std::string number = number_of(b.block);
-    line("type = {}\nbytes = {}\ninit = \"zero\"  # value, iota, random; or data = [...], or file = \"...\"", quoted(number), default_bytes(b.block));
+    line("type = {}\nbytes = {}\ninit = \"zero\"  # value, iota, random; or data = [...], or file = \"...\"",
+         quoted(number), default_bytes(b.block));
     line("show = 8");
     line("save = {}", quoted(fmt::format("{}{}.npy", name, element ? fmt::format("{}", element) : "")));
   }
@@ -280,7 +314,9 @@ class Writer {
   void write_instances() {
     const bool only_boxes = box_record_ >= 0 && triangle_record_ < 0;
     if (!only_boxes) {
-      line("[[top_level.instance]]\nbottom_level = \"triangles\"\n# also: translate, rotate, scale or transform; custom_index, mask, flags");
+      line(
+          "[[top_level.instance]]\nbottom_level = \"triangles\"\n# also: translate, rotate, scale or "
+          "transform; custom_index, mask, flags");
       if (triangle_record_ > 0) line("sbt_offset = {}", triangle_record_);
     }
     if (box_record_ < 0) return;
@@ -306,7 +342,8 @@ class Writer {
 
 }  // namespace
 
-std::string default_description(const std::vector<std::string>& shaders, const std::string& folder, const frontend::GlslOptions& glsl) {
+std::string default_description(const std::vector<std::string>& shaders, const std::string& folder,
+                                const frontend::GlslOptions& glsl) {
   PipelineDescription description;
   for (const std::string& shader : shaders) description.shaders.push_back({shader, shader, "", glsl, {}});
   const Modules modules(description, {}, true);

@@ -1,5 +1,5 @@
-// A pipeline with everything a Vulkan host would set up for one launch, as a file describes it: nothing is loaded yet.
-// SPDX-License-Identifier: Apache-2.0
+// A pipeline with everything a Vulkan host would set up for one launch, as a file describes it: nothing is
+// loaded yet. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <map>
@@ -25,7 +25,7 @@ struct ShaderFile {
 // Bytes of a buffer, of a record or of push constants.
 struct DataSource {
   SourceLocation where;
-  Value data;               // numbers of `type`, {TYPE = numbers} or a list of such, or members by name; none: `init`
+  Value data;  // numbers of `type`, {TYPE = numbers} or a list of such, or members by name; none: `init`
   std::string type = "u32";
   std::string init = "zero";  // zero, value, iota, random, file, mesh
   double value = 0, low = 0, high = 1;
@@ -115,8 +115,8 @@ struct GroupDescription {
   SourceLocation where;
 };
 struct RecordDescription {
-  std::string group;        // of [[group]]
-  GroupDescription inlined; // used without `group`
+  std::string group;         // of [[group]]
+  GroupDescription inlined;  // used without `group`
   DataSource data;
   SourceLocation where;
 };
@@ -146,7 +146,7 @@ struct PipelineDescription {
   std::vector<BottomLevelDescription> bottom_levels;
   std::vector<TopLevelDescription> top_levels;
   DataSource push_constants;
-  Value specialization;  // a table of constants by name or number
+  Value specialization;                     // a table of constants by name or number
   std::array<uint32_t, 3> launch{0, 0, 0};  // rays, or blocks of a compute shader; zeros: not said
   std::optional<uint32_t> max_trace_depth, max_callable_depth;
   MachineDescription machine;

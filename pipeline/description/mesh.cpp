@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/description/mesh.h"
 
-#include <fmt/format.h>
-
 #include <cstring>
 #include <filesystem>
+#include <fmt/format.h>
 
 #include "scenes/obj_loader.h"
 #include "scenes/scene_file.h"
@@ -14,8 +13,10 @@ namespace glint::pipeline {
 
 scenes::Model load_mesh(const std::string& path, const SourceLocation& where) {
   std::error_code failed;
-  if (!std::filesystem::is_regular_file(path, failed)) throw UserError(where, fmt::format("cannot read '{}'", path));
-  if (!scenes::names_scene_file(path)) throw UserError(where, fmt::format("'{}' is no mesh that is read here", path), "OBJ and glTF are");
+  if (!std::filesystem::is_regular_file(path, failed))
+    throw UserError(where, fmt::format("cannot read '{}'", path));
+  if (!scenes::names_scene_file(path))
+    throw UserError(where, fmt::format("'{}' is no mesh that is read here", path), "OBJ and glTF are");
   if (!path.ends_with(".obj")) return scenes::flattened(scenes::load_gltf(path, {}));
   std::vector<scenes::Material> materials;
   return scenes::load_obj(path, materials);
@@ -33,9 +34,12 @@ std::vector<std::byte> mesh_attribute(const DataSource& source, Diagnostics& err
       for (uint32_t index : model.indices) append(index);
     else
       for (const scenes::Vertex& v : model.vertices)
-        if (source.attribute == "normals") append(v.normal);
-        else if (source.attribute == "coordinates") append(v.texture_coordinate);
-        else append(v.position);
+        if (source.attribute == "normals")
+          append(v.normal);
+        else if (source.attribute == "coordinates")
+          append(v.texture_coordinate);
+        else
+          append(v.position);
   } catch (const UserError& error) {
     errors.error(source.where, error.what());
   }

@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/description/modules.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
 #include <iterator>
 #include <regex>
@@ -21,33 +20,44 @@ namespace {
 std::string read_file(const std::string& path, const SourceLocation& where) {
   std::error_code failed;
   std::ifstream in(path, std::ios::binary);
-  if (!in || !std::filesystem::is_regular_file(path, failed)) throw UserError(where, fmt::format("cannot read the shader '{}'", path));
+  if (!in || !std::filesystem::is_regular_file(path, failed))
+    throw UserError(where, fmt::format("cannot read the shader '{}'", path));
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-bool is_binary(const std::string& path) { return path.ends_with(".spv") || path.ends_with(".spvasm"); }
+bool is_binary(const std::string& path) {
+  return path.ends_with(".spv") || path.ends_with(".spvasm");
+}
 
-int line_of(const std::string& text, size_t at) { return 1 + int(std::count(text.begin(), text.begin() + long(at), '\n')); }
+int line_of(const std::string& text, size_t at) {
+  return 1 + int(std::count(text.begin(), text.begin() + long(at), '\n'));
+}
 
 // The bits of a specialisation constant.
 uint64_t bits_of(const Value& value, const frontend::SpecConstant& constant, Diagnostics& errors) {
   std::byte bytes[8]{};
   const std::string type = constant.number == "bool" ? "u8" : constant.number;
   Value number = value;
-  if (type == "u8" && value.kind == Value::Kind::Bool) number.kind = Value::Kind::Integer, number.whole = value.flag;
-  if (!put_number(type, number, [](const std::string&) { return uint64_t{0}; }, bytes))
+  if (type == "u8" && value.kind == Value::Kind::Bool)
+    number.kind = Value::Kind::Integer, number.whole = value.flag;
+  if (!put_number(
+          type, number, [](const std::string&) { return uint64_t{0}; }, bytes))
     errors.error(value.where, fmt::format("the specialisation constant is of type {}", constant.number));
   uint64_t out = 0;
   std::memcpy(&out, bytes, sizeof out);
   return out;
 }
 
-bool is_number(const std::string& text) { return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos; }
+bool is_number(const std::string& text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+}
 
 }  // namespace
 
 const char* name_of(frontend::BindingKind kind) {
-  constexpr const char* kNames[] = {"uniform buffer", "storage buffer", "storage image", "sampled image", "acceleration structure", "sampler", "unknown resource"};
+  constexpr const char* kNames[] = {"uniform buffer",  "storage buffer",         "storage image",
+                                    "sampled image",   "acceleration structure", "sampler",
+                                    "unknown resource"};
   return kNames[size_t(kind)];
 }
 
@@ -55,7 +65,8 @@ std::vector<uint32_t> read_module(const std::string& path, const frontend::GlslO
   if (!is_binary(path)) return frontend::glsl_to_spirv(path, glsl);
   const std::string bytes = read_file(path, {});
   if (path.ends_with(".spvasm")) return frontend::assemble_spirv(bytes, path);
-  if (bytes.size() % 4 != 0 || bytes.size() < 20) throw UserError({path, 0, 0}, "this is no SPIR-V module: its size is no multiple of 4");
+  if (bytes.size() % 4 != 0 || bytes.size() < 20)
+    throw UserError({path, 0, 0}, "this is no SPIR-V module: its size is no multiple of 4");
   std::vector<uint32_t> words(bytes.size() / 4);
   std::memcpy(words.data(), bytes.data(), bytes.size());
   if (words[0] == 0x0302'2307)  // SPIR-V specification 2.3: the magic number tells the byte order
@@ -69,9 +80,12 @@ SourceLocation ShaderModule::where_declared(const frontend::Binding& binding) co
   for (std::sregex_iterator it(text.begin(), text.end(), layout), end; it != end; ++it) {
     const std::string inside = (*it)[1].str();
     std::smatch number;
-    if (!std::regex_search(inside, number, std::regex(R"(\bbinding\s*=\s*(\d+))")) || std::stoul(number[1]) != binding.binding) continue;
+    if (!std::regex_search(inside, number, std::regex(R"(\bbinding\s*=\s*(\d+))")) ||
+        std::stoul(number[1]) != binding.binding)
+      continue;
     const bool has_set = std::regex_search(inside, number, std::regex(R"(\bset\s*=\s*(\d+))"));
-    if ((has_set ? std::stoul(number[1]) : 0) == binding.set) return {path, line_of(text, size_t(it->position())), 0};
+    if ((has_set ? std::stoul(number[1]) : 0) == binding.set)
+      return {path, line_of(text, size_t(it->position())), 0};
   }
   return {path, 0, 0};
 }
@@ -86,11 +100,13 @@ Modules::Modules(const PipelineDescription& description, const CompilerParams& c
   Diagnostics errors;
   for (size_t i = 0; i < modules_.size(); ++i) merge(modules_[i], simplified_[i], errors);
   for (const auto& [name, value] : description.specialization.table)
-    if (!constants_met_.count(name)) errors.error(value.where, fmt::format("no shader has a specialisation constant '{}'", name));
+    if (!constants_met_.count(name))
+      errors.error(value.where, fmt::format("no shader has a specialisation constant '{}'", name));
   errors.throw_if_errors();
 }
 
-void Modules::compile(const ShaderFile& file, const PipelineDescription& description, const CompilerParams& compiler, bool only_reflect) {
+void Modules::compile(const ShaderFile& file, const PipelineDescription& description,
+                      const CompilerParams& compiler, bool only_reflect) {
   ShaderModule module;
   module.name = file.name, module.path = file.path;
   const std::string text = read_file(file.path, file.where);
@@ -112,7 +128,10 @@ void Modules::compile(const ShaderFile& file, const PipelineDescription& descrip
   if (only_reflect)
     compiled.simplified = frontend::simplify(words, file.path, notes);
   else
-    compiled = frontend::compile_module(words, file.path, file.entry, {compiler.max_registers, compiler.schedule, compiler.contract, compiler.queries_call, compiler.guard_latency}, notes, file.glsl.cache);
+    compiled = frontend::compile_module(words, file.path, file.entry,
+                                        {compiler.max_registers, compiler.schedule, compiler.contract,
+                                         compiler.queries_call, compiler.guard_latency},
+                                        notes, file.glsl.cache);
   simplified_.push_back(frontend::reflect(compiled.simplified, file.path));
   module.reflection.local_size = simplified_.back().local_size;
   module.program = std::move(compiled.program);
@@ -122,20 +141,27 @@ void Modules::compile(const ShaderFile& file, const PipelineDescription& descrip
 
 void Modules::merge(const ShaderModule& module, const frontend::Reflection& simplified, Diagnostics& errors) {
   for (const frontend::Binding& binding : module.reflection.bindings) {
-    const auto [it, is_new] = bindings_.try_emplace({binding.set, binding.binding}, BindingUse{&module, binding, false});
+    const auto [it, is_new] =
+        bindings_.try_emplace({binding.set, binding.binding}, BindingUse{&module, binding, false});
     BindingUse& use = it->second;
-    for (const frontend::Binding& other : simplified.bindings) use.is_used |= other.set == binding.set && other.binding == binding.binding;
+    for (const frontend::Binding& other : simplified.bindings)
+      use.is_used |= other.set == binding.set && other.binding == binding.binding;
     if (is_new) continue;
     if (binding.kind != use.binding.kind)
-      errors.error(module.where_declared(binding),
-                   fmt::format("set {} binding {} ('{}') is a {} here and a {} at {}", binding.set, binding.binding, binding.name, name_of(binding.kind),
-                               name_of(use.binding.kind), use.module->where_declared(use.binding).to_string()));
-    if (binding.block.bytes > use.binding.block.bytes) use.binding.block = binding.block, use.module = &module;
+      errors.error(
+          module.where_declared(binding),
+          fmt::format("set {} binding {} ('{}') is a {} here and a {} at {}", binding.set, binding.binding,
+                      binding.name, name_of(binding.kind), name_of(use.binding.kind),
+                      use.module->where_declared(use.binding).to_string()));
+    if (binding.block.bytes > use.binding.block.bytes)
+      use.binding.block = binding.block, use.module = &module;
     use.binding.count = std::max(use.binding.count, binding.count);
   }
 }
 
-const ShaderModule& Modules::find(const std::string& name) const { return modules_[index_of(name)]; }
+const ShaderModule& Modules::find(const std::string& name) const {
+  return modules_[index_of(name)];
+}
 
 uint32_t Modules::index_of(const std::string& name) const {
   if (name.empty()) return core::kNoShader;

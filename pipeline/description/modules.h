@@ -20,7 +20,8 @@ struct ShaderModule {
   std::vector<frontend::SpecConstant> constants;
   isa::Program program;
 
-  // "shader.comp:12" of the declaration of a binding, or of the push constants; only the file when it is not found.
+  // "shader.comp:12" of the declaration of a binding, or of the push constants; only the file when it is not
+  // found.
   SourceLocation where_declared(const frontend::Binding& binding) const;
   SourceLocation where_declared(const std::string& word) const;
 };
@@ -34,7 +35,8 @@ struct BindingUse {
 
 class Modules {
  public:
-  // Compiles every shader file of the description. UserError lists what is wrong with the shaders' names and constants.
+  // Compiles every shader file of the description. UserError lists what is wrong with the shaders' names and
+  // constants.
   Modules(const PipelineDescription& description, const CompilerParams& compiler, bool only_reflect = false);
 
   const std::vector<ShaderModule>& all() const { return modules_; }
@@ -44,7 +46,8 @@ class Modules {
   std::vector<std::string> warnings;
 
  private:
-  void compile(const ShaderFile& file, const PipelineDescription& description, const CompilerParams& compiler, bool only_reflect);
+  void compile(const ShaderFile& file, const PipelineDescription& description, const CompilerParams& compiler,
+               bool only_reflect);
   void merge(const ShaderModule& module, const frontend::Reflection& simplified, Diagnostics& errors);
 
   std::vector<ShaderModule> modules_;

@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/description/pictures.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <fmt/format.h>
 
 #include "pipeline/description/data.h"
 #include "scenes/picture_decoder.h"
@@ -27,7 +26,8 @@ struct Layer {
 // 8-bit files as values of 0..1, unless the format keeps integers.
 Layer load(const std::string& path, bool as_integers, const SourceLocation& where) {
   const scenes::DecodedPicture picture = scenes::decode_picture_file(path);
-  if (!picture.error.empty()) throw UserError(where, fmt::format("cannot read the image '{}': {}", path, picture.error));
+  if (!picture.error.empty())
+    throw UserError(where, fmt::format("cannot read the image '{}': {}", path, picture.error));
   Layer out;
   out.width = picture.width, out.height = picture.height;
   out.is_float = !picture.floats.empty();
@@ -44,7 +44,9 @@ Layer load(const std::string& path, bool as_integers, const SourceLocation& wher
 }
 
 // sRGB files hold encoded values; the format's encode() takes linear ones (IEC 61966-2-1).
-double to_linear(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
+double to_linear(double v) {
+  return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+}
 
 Texel made_up(const ImageDescription& image, uint32_t x, uint32_t y, uint32_t z, RandomNumbers& random) {
   if (image.init == "value") return image.value;
@@ -66,8 +68,11 @@ Texel given(const ImageDescription& image, size_t index, size_t channels) {
 void check_data(const ImageDescription& image, const core::ImageView& view, size_t channels) {
   const size_t wanted = size_t{view.width} * view.height * view.depth * view.layers * channels;
   if (image.data.size() != wanted)
-    throw UserError(image.where, fmt::format("image '{}' has {} numbers: {} x {} x {} texels with {} layers and {} channels want {}", image.name,
-                                             image.data.size(), view.width, view.height, view.depth, view.layers, channels, wanted));
+    throw UserError(
+        image.where,
+        fmt::format("image '{}' has {} numbers: {} x {} x {} texels with {} layers and {} channels want {}",
+                    image.name, image.data.size(), view.width, view.height, view.depth, view.layers, channels,
+                    wanted));
 }
 
 core::Words words_of(const Texel& texel, const core::FormatInfo& info) {
@@ -80,7 +85,8 @@ core::Words words_of(const Texel& texel, const core::FormatInfo& info) {
 // The mean of the texels above, two in each direction that halves.
 std::vector<Texel> halved(const std::vector<Texel>& above, const core::ImageView& view, uint32_t level) {
   const uint32_t w = view.extent(0, level), h = view.extent(1, level), d = view.extent(2, level);
-  const uint32_t aw = view.extent(0, level - 1), ah = view.extent(1, level - 1), ad = view.extent(2, level - 1);
+  const uint32_t aw = view.extent(0, level - 1), ah = view.extent(1, level - 1),
+                 ad = view.extent(2, level - 1);
   std::vector<Texel> out;
   for (uint32_t layer = 0; layer < view.layers; ++layer)
     for (uint32_t z = 0; z < d; ++z)
@@ -88,8 +94,11 @@ std::vector<Texel> halved(const std::vector<Texel>& above, const core::ImageView
         for (uint32_t x = 0; x < w; ++x) {
           Texel sum{};
           for (uint32_t corner = 0; corner < 8; ++corner) {
-            const uint32_t sx = std::min(2 * x + (corner & 1), aw - 1), sy = std::min(2 * y + (corner >> 1 & 1), ah - 1), sz = std::min(2 * z + (corner >> 2), ad - 1);
-            for (size_t c = 0; c < 4; ++c) sum[c] += above[((size_t{layer} * ad + sz) * ah + sy) * aw + sx][c] / 8;
+            const uint32_t sx = std::min(2 * x + (corner & 1), aw - 1),
+                           sy = std::min(2 * y + (corner >> 1 & 1), ah - 1),
+                           sz = std::min(2 * z + (corner >> 2), ad - 1);
+            for (size_t c = 0; c < 4; ++c)
+              sum[c] += above[((size_t{layer} * ad + sz) * ah + sy) * aw + sx][c] / 8;
           }
           out.push_back(sum);
         }
@@ -97,42 +106,59 @@ std::vector<Texel> halved(const std::vector<Texel>& above, const core::ImageView
 }
 
 void check_format(const ImageDescription& image, const core::FormatInfo& info, const std::string& texel) {
-  const std::string found = info.numeric == core::Numeric::Uint ? "u32" : info.numeric == core::Numeric::Sint ? "s32" : "f32";
+  const std::string found = info.numeric == core::Numeric::Uint   ? "u32"
+                            : info.numeric == core::Numeric::Sint ? "s32"
+                                                                  : "f32";
   if (!texel.empty() && found != texel)
-    throw UserError(image.where, fmt::format("image '{}' has the format {}, whose texels are {}; the shader's are {}", image.name, info.name, found, texel));
+    throw UserError(image.where,
+                    fmt::format("image '{}' has the format {}, whose texels are {}; the shader's are {}",
+                                image.name, info.name, found, texel));
 }
 
 void check_shape(const ImageDescription& image, const core::ImageView& view) {
   const bool is_flat = view.depth == 1, is_line = view.height == 1 && is_flat;
   const char* wrong = nullptr;
-  if (view.samples > 1 && (isa::num_coordinates(view.shape) != 2 || image.mipmaps)) wrong = "has several samples: it is 2D and has no mipmaps";
+  if (view.samples > 1 && (isa::num_coordinates(view.shape) != 2 || image.mipmaps))
+    wrong = "has several samples: it is 2D and has no mipmaps";
   if (view.shape != ImageShape::D3 && !is_flat) wrong = "is not 3D: its depth must be 1";
-  if ((view.shape == ImageShape::D1 || view.shape == ImageShape::A1d || view.shape == ImageShape::Buffer) && !is_line) wrong = "is 1D: its height must be 1";
-  if (isa::is_cube(view.shape) && (view.width != view.height || view.layers % 6)) wrong = "is a cube: as wide as high, and six layers";
-  if (!isa::has_layers(view.shape) && !isa::is_cube(view.shape) && view.layers != view.samples) wrong = "is no array: it has one layer";
-  if (wrong) throw UserError(image.where, fmt::format("image '{}' is {} x {} x {} with {} layers; the shader's {}", image.name, view.width, view.height, view.depth, view.layers, wrong));
+  if ((view.shape == ImageShape::D1 || view.shape == ImageShape::A1d || view.shape == ImageShape::Buffer) &&
+      !is_line)
+    wrong = "is 1D: its height must be 1";
+  if (isa::is_cube(view.shape) && (view.width != view.height || view.layers % 6))
+    wrong = "is a cube: as wide as high, and six layers";
+  if (!isa::has_layers(view.shape) && !isa::is_cube(view.shape) && view.layers != view.samples)
+    wrong = "is no array: it has one layer";
+  if (wrong)
+    throw UserError(image.where,
+                    fmt::format("image '{}' is {} x {} x {} with {} layers; the shader's {}", image.name,
+                                view.width, view.height, view.depth, view.layers, wrong));
 }
 
 }  // namespace
 
-Picture make_picture(const ImageDescription& image, ImageShape shape, const std::string& texel, std::array<uint32_t, 3> fallback,
-                     const std::string& declared) {
+Picture make_picture(const ImageDescription& image, ImageShape shape, const std::string& texel,
+                     std::array<uint32_t, 3> fallback, const std::string& declared) {
   Picture out;
   core::ImageView& view = out.view;
-  const TexelFormat widest = texel == "u32" ? TexelFormat::Rgba32Uint : texel == "s32" ? TexelFormat::Rgba32Sint : TexelFormat::Rgba32Float;
+  const TexelFormat widest = texel == "u32"   ? TexelFormat::Rgba32Uint
+                             : texel == "s32" ? TexelFormat::Rgba32Sint
+                                              : TexelFormat::Rgba32Float;
   const TexelFormat plain = (image.files.empty() ? format_named(declared) : std::nullopt).value_or(widest);
   const bool is_hdr = !image.files.empty() && scenes::is_hdr_picture(image.files[0]);
-  view.format = image.format.value_or(!image.files.empty() && !is_hdr && texel != "u32" && texel != "s32" ? TexelFormat::Rgba8Unorm : plain);
+  view.format = image.format.value_or(
+      !image.files.empty() && !is_hdr && texel != "u32" && texel != "s32" ? TexelFormat::Rgba8Unorm : plain);
   const core::FormatInfo& info = core::info_of(view.format);
   check_format(image, info, texel);
-  view.name = image.name, view.shape = shape, view.sampler = image.sampler, view.layers = image.layers * image.samples, view.samples = image.samples;
+  view.name = image.name, view.shape = shape, view.sampler = image.sampler,
+  view.layers = image.layers * image.samples, view.samples = image.samples;
   if (isa::is_cube(shape) && image.files.empty() && image.layers == 1) view.layers = 6;
 
   std::vector<Texel> level;
   for (const std::string& file : image.files) {
     Layer layer = load(file, core::is_integer(info), image.where);
     if (!level.empty() && (layer.width != view.width || layer.height != view.height))
-      throw UserError(image.where, fmt::format("'{}' is {} x {}, the files before it {} x {}", file, layer.width, layer.height, view.width, view.height));
+      throw UserError(image.where, fmt::format("'{}' is {} x {}, the files before it {} x {}", file,
+                                               layer.width, layer.height, view.width, view.height));
     view.width = layer.width, view.height = layer.height;
     if (info.numeric == core::Numeric::Srgb && !layer.is_float)
       for (Texel& t : layer.texels)
@@ -150,9 +176,13 @@ Picture make_picture(const ImageDescription& image, ImageShape shape, const std:
     for (uint32_t layer = 0; layer < view.layers; ++layer)
       for (uint32_t z = 0; z < view.depth; ++z)
         for (uint32_t y = 0; y < view.height; ++y)
-          for (uint32_t x = 0; x < view.width; ++x) level.push_back(is_given ? given(image, level.size(), info.channels) : made_up(image, x, y, z, random));
+          for (uint32_t x = 0; x < view.width; ++x)
+            level.push_back(is_given ? given(image, level.size(), info.channels)
+                                     : made_up(image, x, y, z, random));
   } else if (image.size[0] && (image.size[0] != view.width || image.size[1] != view.height)) {
-    throw UserError(image.where, fmt::format("image '{}': its file is {} x {}, 'size' says {} x {}", image.name, view.width, view.height, image.size[0], image.size[1]));
+    throw UserError(image.where,
+                    fmt::format("image '{}': its file is {} x {}, 'size' says {} x {}", image.name,
+                                view.width, view.height, image.size[0], image.size[1]));
   }
   check_shape(image, view);
   if (image.mipmaps) view.levels = uint32_t(std::bit_width(std::max({view.width, view.height, view.depth})));
@@ -171,7 +201,9 @@ std::vector<float> texels_as_floats(const core::ImageView& view, const std::byte
   const size_t count = size_t{view.width} * view.height * view.depth * view.layers;
   for (size_t i = 0; i < count; ++i)
     for (uint32_t word : core::decode(view.format, data + i * info.bytes))
-      out.push_back(info.numeric == core::Numeric::Uint ? float(word) : info.numeric == core::Numeric::Sint ? float(int32_t(word)) : std::bit_cast<float>(word));
+      out.push_back(info.numeric == core::Numeric::Uint   ? float(word)
+                    : info.numeric == core::Numeric::Sint ? float(int32_t(word))
+                                                          : std::bit_cast<float>(word));
   return out;
 }
 

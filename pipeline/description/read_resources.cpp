@@ -1,9 +1,8 @@
 // Reading of buffers, images and samplers.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
+#include <fmt/format.h>
 
 #include "isa/descriptors.h"
 #include "pipeline/description/data.h"
@@ -36,19 +35,24 @@ core::Sampler read_sampler_keys(TableReader& t) {
   out.mag = filter("mag_filter", both);
   out.min = filter("min_filter", both);
   out.mip = filter("mip_filter", "nearest");
-  const std::vector<std::string> wraps{"repeat", "mirrored_repeat", "clamp_to_edge", "clamp_to_border", "mirror_clamp_to_edge"};
+  const std::vector<std::string> wraps{"repeat", "mirrored_repeat", "clamp_to_edge", "clamp_to_border",
+                                       "mirror_clamp_to_edge"};
   const std::string all = t.name("wrap", "clamp_to_edge", wraps);
   const char* keys[] = {"wrap_u", "wrap_v", "wrap_w"};
   for (size_t i = 0; i < 3; ++i)
-    out.wrap[i] = core::Wrap(std::find(wraps.begin(), wraps.end(), t.name(keys[i], all, wraps)) - wraps.begin());
+    out.wrap[i] =
+        core::Wrap(std::find(wraps.begin(), wraps.end(), t.name(keys[i], all, wraps)) - wraps.begin());
   const std::vector<double> border = t.numbers("border");
-  for (size_t i = 0; i < std::min<size_t>(4, border.size()); ++i) out.border[i] = std::bit_cast<uint32_t>(float(border[i]));
+  for (size_t i = 0; i < std::min<size_t>(4, border.size()); ++i)
+    out.border[i] = std::bit_cast<uint32_t>(float(border[i]));
   out.lod_bias = float(t.number("lod_bias", 0));
   out.min_lod = float(t.number("min_lod", 0));
   out.max_lod = float(t.number("max_lod", 1000));
   out.unnormalized = t.flag("unnormalized", false);
-  const std::vector<std::string> compares{"never", "less", "equal", "less_or_equal", "greater", "not_equal", "greater_or_equal", "always"};
-  out.compare = core::Comparison(std::find(compares.begin(), compares.end(), t.name("compare", "never", compares)) - compares.begin());
+  const std::vector<std::string> compares{
+      "never", "less", "equal", "less_or_equal", "greater", "not_equal", "greater_or_equal", "always"};
+  out.compare = core::Comparison(
+      std::find(compares.begin(), compares.end(), t.name("compare", "never", compares)) - compares.begin());
   return out;
 }
 
@@ -76,8 +80,9 @@ ImageDescription read_image(Reading& r, const Value& value) {
     out.format = format_named(t.text("format"));
     const std::string near = out.format ? "" : nearest(t.text("format"), format_names());
     if (!out.format)
-      r.errors.error(t.take("format")->where, fmt::format("'{}' is no format of texels", t.text("format")),
-                     near.empty() ? "for example rgba8_unorm, rgba32_float" : fmt::format("did you mean '{}'?", near));
+      r.errors.error(
+          t.take("format")->where, fmt::format("'{}' is no format of texels", t.text("format")),
+          near.empty() ? "for example rgba8_unorm, rgba32_float" : fmt::format("did you mean '{}'?", near));
   }
   const std::vector<uint32_t> size = t.sizes("size", 3);
   if (!size.empty()) out.size = {1, 1, 1};
@@ -87,8 +92,11 @@ ImageDescription read_image(Reading& r, const Value& value) {
   out.mipmaps = t.flag("mipmaps", false);
   const bool has_data = t.take("data") != nullptr;
   out.data = t.numbers("data");
-  out.init = has_data ? "data" : t.name("init", t.take("value") ? "value" : "zero", {"zero", "value", "checker", "random"});
-  if (has_data && !out.files.empty()) r.errors.error(value.where, fmt::format("image '{}' has both a file and data", out.name));
+  out.init = has_data
+                 ? "data"
+                 : t.name("init", t.take("value") ? "value" : "zero", {"zero", "value", "checker", "random"});
+  if (has_data && !out.files.empty())
+    r.errors.error(value.where, fmt::format("image '{}' has both a file and data", out.name));
   const std::vector<double> color = t.numbers("value");
   for (size_t i = 0; i < 4; ++i) out.value[i] = i < color.size() ? color[i] : i == 3 ? 1 : 0;
   out.seed = uint64_t(t.integer("seed", 1, 0, INT64_MAX));
@@ -114,7 +122,8 @@ SamplerDescription read_sampler(Reading& r, const Value& value) {
 Slot read_slot(TableReader& t) {
   Slot slot;
   if (const auto set = t.optional_integer("set", 0, isa::kMaxSets - 1)) slot.set = uint32_t(*set);
-  if (const auto binding = t.optional_integer("binding", 0, isa::kMaxBindings - 1)) slot.binding = uint32_t(*binding);
+  if (const auto binding = t.optional_integer("binding", 0, isa::kMaxBindings - 1))
+    slot.binding = uint32_t(*binding);
   slot.element = uint32_t(t.integer("element", 0, 0, 1 << 20));
   if (slot.binding && !slot.set) slot.set = 0;
   return slot;
@@ -129,7 +138,10 @@ DataSource read_data(Reading& r, TableReader& t, bool is_buffer) {
   const bool real = out.type[0] == 'f';
   out.file = r.beside(t.text("file"));
   out.attribute = t.name("attribute", "", {"", "positions", "normals", "coordinates", "indices"});
-  const std::string fallback = !out.attribute.empty() ? "mesh" : !out.file.empty() ? "file" : t.take("value") ? "value" : "zero";
+  const std::string fallback = !out.attribute.empty() ? "mesh"
+                               : !out.file.empty()    ? "file"
+                               : t.take("value")      ? "value"
+                                                      : "zero";
   out.init = t.name("init", fallback, {"zero", "value", "iota", "random", "file", "mesh"});
   out.value = t.number("value", 0);
   out.low = t.number("low", 0);
@@ -137,10 +149,12 @@ DataSource read_data(Reading& r, TableReader& t, bool is_buffer) {
   out.seed = uint64_t(t.integer("seed", 1, 0, INT64_MAX));
   if (const auto bytes = t.optional_integer("bytes", 1, kMostBytes)) out.bytes = uint64_t(*bytes);
   const int64_t element = int64_t(bytes_of_number(out.type));
-  if (const auto count = t.optional_integer("count", 1, kMostBytes / element)) out.bytes = uint64_t(*count * element);
+  if (const auto count = t.optional_integer("count", 1, kMostBytes / element))
+    out.bytes = uint64_t(*count * element);
   if (out.init != "file" && out.init != "mesh" && !out.data && !out.bytes)
     r.errors.error(t.where(), "a buffer needs 'data', 'file', 'count' (of its type) or 'bytes'");
-  if ((out.init == "file" || out.init == "mesh") && out.file.empty()) r.errors.error(t.where(), "'file' is missing");
+  if ((out.init == "file" || out.init == "mesh") && out.file.empty())
+    r.errors.error(t.where(), "'file' is missing");
   return out;
 }
 
@@ -153,7 +167,8 @@ void read_resources(Reading& r, TableReader& root) {
 
 std::vector<std::string> format_names() {
   std::vector<std::string> out;
-  for (size_t i = 0; i < size_t(core::TexelFormat::Count); ++i) out.emplace_back(core::info_of(core::TexelFormat(i)).name);
+  for (size_t i = 0; i < size_t(core::TexelFormat::Count); ++i)
+    out.emplace_back(core::info_of(core::TexelFormat(i)).name);
   return out;
 }
 
@@ -164,8 +179,13 @@ std::optional<core::TexelFormat> format_named(const std::string& name) {
   for (size_t i = 0; i < size_t(core::TexelFormat::Count); ++i) {
     const std::string full(core::info_of(core::TexelFormat(i)).name);
     const size_t bar = full.find('_');
-    const std::string channels = full.substr(0, bar), kind = bar == std::string::npos ? "" : full.substr(bar + 1);
-    const std::string glsl = kind == "unorm" ? channels : kind == "float" ? channels + "f" : kind == "uint" ? channels + "ui" : kind == "sint" ? channels + "i" : full;
+    const std::string channels = full.substr(0, bar),
+                      kind = bar == std::string::npos ? "" : full.substr(bar + 1);
+    const std::string glsl = kind == "unorm"   ? channels
+                             : kind == "float" ? channels + "f"
+                             : kind == "uint"  ? channels + "ui"
+                             : kind == "sint"  ? channels + "i"
+                                               : full;
     if (name == full || name == glsl) return core::TexelFormat(i);
   }
   return {};

@@ -1,8 +1,7 @@
 // Reading of shaders, groups, records, constants, launch and machine.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <filesystem>
+#include <fmt/format.h>
 
 #include "pipeline/description/read.h"
 
@@ -16,11 +15,16 @@ namespace {
 
 std::string text_of(const Value& v) {
   switch (v.kind) {
-    case Value::Kind::Text: return v.text;
-    case Value::Kind::Integer: return fmt::format("{}", v.whole);
-    case Value::Kind::Real: return fmt::format("{}", v.real);
-    case Value::Kind::Bool: return v.flag ? "1" : "0";
-    default: return "1";
+    case Value::Kind::Text:
+      return v.text;
+    case Value::Kind::Integer:
+      return fmt::format("{}", v.whole);
+    case Value::Kind::Real:
+      return fmt::format("{}", v.real);
+    case Value::Kind::Bool:
+      return v.flag ? "1" : "0";
+    default:
+      return "1";
   }
 }
 
@@ -37,7 +41,8 @@ frontend::GlslOptions read_glsl(Reading& r, TableReader& t, frontend::GlslOption
 }
 
 // A record may name a file that no [[shader]] does.
-void add_file(Reading& r, const std::string& name, const SourceLocation& where, const frontend::GlslOptions& glsl) {
+void add_file(Reading& r, const std::string& name, const SourceLocation& where,
+              const frontend::GlslOptions& glsl) {
   if (name.empty()) return;
   for (const ShaderFile& shader : r.out.shaders)
     if (shader.name == name) return;
@@ -45,7 +50,8 @@ void add_file(Reading& r, const std::string& name, const SourceLocation& where, 
 }
 
 void add_group(Reading& r, const GroupDescription& group, const frontend::GlslOptions& glsl) {
-  for (const std::string& name : {group.general, group.closest_hit, group.any_hit, group.intersection}) add_file(r, name, group.where, glsl);
+  for (const std::string& name : {group.general, group.closest_hit, group.any_hit, group.intersection})
+    add_file(r, name, group.where, glsl);
 }
 
 enum class Region { Raygen, Hit, General };
@@ -62,7 +68,8 @@ GroupDescription read_group(TableReader& t, Region region) {
   return group;
 }
 
-RecordDescription read_record(Reading& r, const Value& value, Region region, const std::string& what, const frontend::GlslOptions& glsl) {
+RecordDescription read_record(Reading& r, const Value& value, Region region, const std::string& what,
+                              const frontend::GlslOptions& glsl) {
   TableReader t(value, what, r.errors);
   RecordDescription record;
   record.where = value.where;
@@ -71,19 +78,25 @@ RecordDescription read_record(Reading& r, const Value& value, Region region, con
   record.data = read_data(r, t, false);
   t.finish();
   add_group(r, record.inlined, glsl);
-  if (!record.group.empty() && record.inlined.general + record.inlined.closest_hit + record.inlined.any_hit + record.inlined.intersection != "")
+  if (!record.group.empty() && record.inlined.general + record.inlined.closest_hit + record.inlined.any_hit +
+                                       record.inlined.intersection !=
+                                   "")
     r.errors.error(value.where, fmt::format("{} has both 'group' and shaders", what));
   return record;
 }
 
-void read_region(Reading& r, TableReader& root, RegionDescription& region, const std::string& key, Region kind, const frontend::GlslOptions& glsl) {
-  for (const Value* each : root.tables(key)) region.records.push_back(read_record(r, *each, kind, fmt::format("a record of '{}'", key), glsl));
+void read_region(Reading& r, TableReader& root, RegionDescription& region, const std::string& key,
+                 Region kind, const frontend::GlslOptions& glsl) {
+  for (const Value* each : root.tables(key))
+    region.records.push_back(read_record(r, *each, kind, fmt::format("a record of '{}'", key), glsl));
 }
 
 void read_strides(Reading& r, TableReader& root) {
   for (const Value* each : root.tables("table")) {
     TableReader t(*each, "the binding table", r.errors);
-    for (const auto& [key, region] : {std::pair{"miss_stride", &r.out.miss}, {"hit_stride", &r.out.hit}, {"callable_stride", &r.out.callable}})
+    for (const auto& [key, region] : {std::pair{"miss_stride", &r.out.miss},
+                                      {"hit_stride", &r.out.hit},
+                                      {"callable_stride", &r.out.callable}})
       if (const auto stride = t.optional_integer(key, 0, 4096)) region->stride = uint32_t(*stride);
     t.finish();
   }
@@ -101,10 +114,13 @@ void read_shaders(Reading& r, TableReader& root) {
   for (const Value* each : root.tables("shader")) {
     TableReader t(*each, "a shader", r.errors);
     const std::string file = t.required_text("file");
-    ShaderFile shader{t.text("name", file), r.beside(file), t.text("entry"), read_glsl(r, t, glsl), each->where};
+    ShaderFile shader{t.text("name", file), r.beside(file), t.text("entry"), read_glsl(r, t, glsl),
+                      each->where};
     t.finish();
     for (const ShaderFile& other : r.out.shaders)
-      if (other.name == shader.name) r.errors.error(each->where, fmt::format("there are two shaders '{}'", shader.name), "give one of them a 'name'");
+      if (other.name == shader.name)
+        r.errors.error(each->where, fmt::format("there are two shaders '{}'", shader.name),
+                       "give one of them a 'name'");
     r.out.shaders.push_back(std::move(shader));
   }
   for (const Value* each : root.tables("group")) {
@@ -116,7 +132,8 @@ void read_shaders(Reading& r, TableReader& root) {
     add_group(r, group, glsl);
     r.out.groups.push_back(std::move(group));
   }
-  if (const Value* raygen = root.take("raygen")) r.out.raygen = read_record(r, *raygen, Region::Raygen, "[raygen]", glsl);
+  if (const Value* raygen = root.take("raygen"))
+    r.out.raygen = read_record(r, *raygen, Region::Raygen, "[raygen]", glsl);
   if (const Value* compute = root.take("compute")) {
     TableReader t(*compute, "[compute]", r.errors);
     r.out.compute = t.required_text("shader");
@@ -137,17 +154,21 @@ void read_launch(Reading& r, TableReader& root) {
     const bool is_compute = !r.out.compute.empty();
     const char* key = is_compute ? "groups" : "size";
     if (const Value* other = t.take(is_compute ? "size" : "groups"))
-      r.errors.error(other->where, is_compute ? "a compute shader is launched in 'groups' of its local size" : "rays are launched by 'size'");
+      r.errors.error(other->where, is_compute ? "a compute shader is launched in 'groups' of its local size"
+                                              : "rays are launched by 'size'");
     const std::vector<uint32_t> size = t.sizes(key, 3);
     if (!size.empty()) r.out.launch = {1, 1, 1};
     std::copy(size.begin(), size.end(), r.out.launch.begin());
-    if (const auto depth = t.optional_integer("max_trace_depth", 0, 31)) r.out.max_trace_depth = uint32_t(*depth);
-    if (const auto depth = t.optional_integer("max_callable_depth", 0, 31)) r.out.max_callable_depth = uint32_t(*depth);
+    if (const auto depth = t.optional_integer("max_trace_depth", 0, 31))
+      r.out.max_trace_depth = uint32_t(*depth);
+    if (const auto depth = t.optional_integer("max_callable_depth", 0, 31))
+      r.out.max_callable_depth = uint32_t(*depth);
     t.finish();
   }
   if (r.out.launch[0] == 0)
     r.errors.error(launch ? launch->where : SourceLocation{r.out.path, 0, 0},
-                   r.out.compute.empty() ? "[launch] needs 'size': rays in x, y and z" : "[launch] needs 'groups': blocks in x, y and z");
+                   r.out.compute.empty() ? "[launch] needs 'size': rays in x, y and z"
+                                         : "[launch] needs 'groups': blocks in x, y and z");
   for (const Value* each : root.tables("machine")) {
     TableReader t(*each, "[machine]", r.errors);
     if (t.take("mode")) r.out.machine.mode = t.name("mode", "timing", {"timing", "functional"});
@@ -177,14 +198,20 @@ PipelineDescription read_root(const Value& root, const std::string& path) {
   if (const Value* constants = t.take("specialization")) out.specialization = *constants;
   t.finish();
   if (out.raygen.has_value() == !out.compute.empty())
-    errors.error({path, 0, 0}, out.raygen ? "a pipeline has [raygen] or [compute], not both" : "a pipeline needs [raygen] or [compute]");
-  if (out.compute.empty() == false && !(out.miss.records.empty() && out.hit.records.empty() && out.callable.records.empty()))
+    errors.error({path, 0, 0}, out.raygen ? "a pipeline has [raygen] or [compute], not both"
+                                          : "a pipeline needs [raygen] or [compute]");
+  if (out.compute.empty() == false &&
+      !(out.miss.records.empty() && out.hit.records.empty() && out.callable.records.empty()))
     errors.error(out.compute_where, "a compute pipeline has no records of miss, hit or callable shaders");
   errors.throw_if_errors();
   return out;
 }
 
-PipelineDescription read_pipeline(const std::string& path) { return read_root(read_toml(path), path); }
-PipelineDescription parse_pipeline(const std::string& text, const std::string& path) { return read_root(parse_toml(text, path), path); }
+PipelineDescription read_pipeline(const std::string& path) {
+  return read_root(read_toml(path), path);
+}
+PipelineDescription parse_pipeline(const std::string& text, const std::string& path) {
+  return read_root(parse_toml(text, path), path);
+}
 
 }  // namespace glint::pipeline

@@ -6,9 +6,8 @@
 #include <fmt/ranges.h>
 
 #define TOML_EXCEPTIONS 1
-#include <toml++/toml.h>
-
 #include <algorithm>
+#include <toml++/toml.h>
 
 namespace glint::pipeline {
 namespace {
@@ -28,7 +27,8 @@ Value value_of(const toml::node& node, const std::string& file) {
       out.table.push_back({std::string(key.str()), std::move(value)});
     }
     std::stable_sort(out.table.begin(), out.table.end(), [](const auto& a, const auto& b) {
-      return std::pair(a.value.where.line, a.value.where.column) < std::pair(b.value.where.line, b.value.where.column);
+      return std::pair(a.value.where.line, a.value.where.column) <
+             std::pair(b.value.where.line, b.value.where.column);
     });
   } else if (const auto* list = node.as_array()) {
     out.kind = Value::Kind::List;
@@ -51,12 +51,14 @@ Value parsed(const std::string& file, const Parse& parse) {
     const toml::table root = parse();
     return value_of(root, file);
   } catch (const toml::parse_error& error) {
-    throw UserError({file, int(error.source().begin.line), int(error.source().begin.column)}, std::string(error.description()));
+    throw UserError({file, int(error.source().begin.line), int(error.source().begin.column)},
+                    std::string(error.description()));
   }
 }
 
 const char* name_of(Value::Kind kind) {
-  constexpr const char* kNames[] = {"nothing", "true or false", "a whole number", "a number", "a string", "a list", "a table"};
+  constexpr const char* kNames[] = {"nothing",  "true or false", "a whole number", "a number",
+                                    "a string", "a list",        "a table"};
   return kNames[size_t(kind)];
 }
 
@@ -84,8 +86,10 @@ Value parse_toml(const std::string& text, const std::string& name) {
   return parsed(name, [&] { return toml::parse(text, name); });
 }
 
-TableReader::TableReader(const Value& table, std::string what, Diagnostics& errors) : table_(table), what_(std::move(what)), errors_(errors) {
-  if (table.kind != Value::Kind::Table) errors_.error(table.where, fmt::format("{} must be a table, not {}", what_, name_of(table.kind)));
+TableReader::TableReader(const Value& table, std::string what, Diagnostics& errors)
+    : table_(table), what_(std::move(what)), errors_(errors) {
+  if (table.kind != Value::Kind::Table)
+    errors_.error(table.where, fmt::format("{} must be a table, not {}", what_, name_of(table.kind)));
 }
 
 void TableReader::wrong(const Value& value, const std::string& key, const std::string& expected) {
@@ -108,12 +112,14 @@ std::string TableReader::required_text(const std::string& key) {
   return text(key);
 }
 
-std::string TableReader::name(const std::string& key, const std::string& fallback, const std::vector<std::string>& names) {
+std::string TableReader::name(const std::string& key, const std::string& fallback,
+                              const std::vector<std::string>& names) {
   const std::string found = text(key, fallback);
   if (std::find(names.begin(), names.end(), found) != names.end()) return found;
   const std::string near = nearest(found, names);
   const Value* value = take(key);
-  errors_.error(value ? value->where : table_.where, fmt::format("'{}' is '{}', expected one of {}", key, found, fmt::join(names, ", ")),
+  errors_.error(value ? value->where : table_.where,
+                fmt::format("'{}' is '{}', expected one of {}", key, found, fmt::join(names, ", ")),
                 near.empty() ? "" : fmt::format("did you mean '{}'?", near));
   return fallback;
 }
@@ -121,7 +127,8 @@ std::string TableReader::name(const std::string& key, const std::string& fallbac
 std::optional<int64_t> TableReader::optional_integer(const std::string& key, int64_t least, int64_t most) {
   const Value* value = take(key);
   if (!value) return {};
-  if (value->kind == Value::Kind::Integer && value->whole >= least && value->whole <= most) return value->whole;
+  if (value->kind == Value::Kind::Integer && value->whole >= least && value->whole <= most)
+    return value->whole;
   if (value->kind == Value::Kind::Integer)
     errors_.error(value->where, fmt::format("'{}' is {}, expected {} to {}", key, value->whole, least, most));
   else
@@ -152,8 +159,10 @@ std::vector<std::string> TableReader::texts(const std::string& key) {
   std::vector<std::string> out;
   if (value->kind != Value::Kind::List) wrong(*value, key, "a string or a list of strings");
   for (const Value& each : value->list)
-    if (each.kind == Value::Kind::Text) out.push_back(each.text);
-    else wrong(each, key, "a string or a list of strings");
+    if (each.kind == Value::Kind::Text)
+      out.push_back(each.text);
+    else
+      wrong(each, key, "a string or a list of strings");
   return out;
 }
 
@@ -170,7 +179,8 @@ std::vector<uint32_t> TableReader::sizes(const std::string& key, size_t most) {
   const Value* value = take(key);
   if (!value) return {};
   std::vector<uint32_t> out;
-  bool good = value->kind == Value::Kind::Integer || (value->kind == Value::Kind::List && !value->list.empty() && value->list.size() <= most);
+  bool good = value->kind == Value::Kind::Integer ||
+              (value->kind == Value::Kind::List && !value->list.empty() && value->list.size() <= most);
   const auto add = [&](const Value& v) {
     good &= v.kind == Value::Kind::Integer && v.whole >= 1 && v.whole <= kMostOfAxis;
     if (good) out.push_back(uint32_t(v.whole));
@@ -178,7 +188,9 @@ std::vector<uint32_t> TableReader::sizes(const std::string& key, size_t most) {
   if (value->kind == Value::Kind::Integer) add(*value);
   for (const Value& each : value->list) add(each);
   if (good) return out;
-  errors_.error(value->where, fmt::format("'{}' must be a whole number, or a list of up to {}, each from 1 to {}", key, most, kMostOfAxis));
+  errors_.error(value->where,
+                fmt::format("'{}' must be a whole number, or a list of up to {}, each from 1 to {}", key,
+                            most, kMostOfAxis));
   return {};
 }
 
@@ -189,8 +201,10 @@ std::vector<const Value*> TableReader::tables(const std::string& key) {
   std::vector<const Value*> out;
   if (value->kind != Value::Kind::List) wrong(*value, key, fmt::format("tables: [[{}]]", key));
   for (const Value& each : value->list)
-    if (each.kind == Value::Kind::Table) out.push_back(&each);
-    else wrong(each, key, fmt::format("tables: [[{}]]", key));
+    if (each.kind == Value::Kind::Table)
+      out.push_back(&each);
+    else
+      wrong(each, key, fmt::format("tables: [[{}]]", key));
   return out;
 }
 
@@ -200,7 +214,8 @@ void TableReader::finish() {
     if (known_.count(key)) continue;
     const std::string near = nearest(key, known);
     errors_.error(value.where, fmt::format("'{}' is no key of {}", key, what_),
-                  near.empty() ? fmt::format("there are {}", fmt::join(known, ", ")) : fmt::format("did you mean '{}'?", near));
+                  near.empty() ? fmt::format("there are {}", fmt::join(known, ", "))
+                               : fmt::format("did you mean '{}'?", near));
   }
 }
 

@@ -21,7 +21,7 @@ struct Value {
   std::string text;
   std::vector<Value> list;
   std::vector<Entry> table;  // by line
-  SourceLocation where;                              // of the key, or of the value in a list
+  SourceLocation where;      // of the key, or of the value in a list
 
   explicit operator bool() const { return kind != Kind::None; }
   bool is_number() const { return kind == Kind::Integer || kind == Kind::Real; }
@@ -39,8 +39,8 @@ struct Entry {
 Value read_toml(const std::string& path);
 Value parse_toml(const std::string& text, const std::string& name);
 
-// One table being read. Each call marks its key as known; finish() reports the others with the nearest known one.
-// Wrong types are reported at once, and the fallback stands in.
+// One table being read. Each call marks its key as known; finish() reports the others with the nearest known
+// one. Wrong types are reported at once, and the fallback stands in.
 class TableReader {
  public:
   // `what` names the table in messages: "a buffer".
@@ -49,15 +49,17 @@ class TableReader {
   const Value* take(const std::string& key);  // null when absent
   std::string text(const std::string& key, const std::string& fallback = {});
   std::string required_text(const std::string& key);
-  std::string name(const std::string& key, const std::string& fallback, const std::vector<std::string>& names);
+  std::string name(const std::string& key, const std::string& fallback,
+                   const std::vector<std::string>& names);
   int64_t integer(const std::string& key, int64_t fallback, int64_t least, int64_t most);
   std::optional<int64_t> optional_integer(const std::string& key, int64_t least, int64_t most);
   double number(const std::string& key, double fallback);
   bool flag(const std::string& key, bool fallback);
-  std::vector<std::string> texts(const std::string& key);            // a string or a list of them
-  std::vector<double> numbers(const std::string& key);               // a number or a list, lists in lists flattened
-  std::vector<uint32_t> sizes(const std::string& key, size_t most);  // one number, or up to `most`, each from 1 to kMostOfAxis
-  std::vector<const Value*> tables(const std::string& key);          // [[key]] or [key]
+  std::vector<std::string> texts(const std::string& key);  // a string or a list of them
+  std::vector<double> numbers(const std::string& key);     // a number or a list, lists in lists flattened
+  std::vector<uint32_t> sizes(const std::string& key,
+                              size_t most);  // one number, or up to `most`, each from 1 to kMostOfAxis
+  std::vector<const Value*> tables(const std::string& key);  // [[key]] or [key]
   void finish();
   const SourceLocation& where() const { return table_.where; }
 

@@ -9,9 +9,9 @@
 
 namespace glint::pipeline {
 
-// Time is cut into short spans; each has room for as many cycles of work as it is long. A request takes room from the first span
-// with any, at or after its time: a reply that comes late does not hold up those that come before it.
-// Model: work that lies farther apart than kSpans spans does not meet.
+// Time is cut into short spans; each has room for as many cycles of work as it is long. A request takes room
+// from the first span with any, at or after its time: a reply that comes late does not hold up those that
+// come before it. Model: work that lies farther apart than kSpans spans does not meet.
 class Bandwidth {
  public:
   Bandwidth() : rooms_(kSpans) {}
@@ -21,7 +21,8 @@ class Bandwidth {
     for (uint64_t span = at / kSpan;; ++span) {
       const Room& room = rooms_[span % kSpans];
       if (room.span > span) return at;
-      if (room.span < span || room.used < float(kSpan)) return std::max(at, span * kSpan + (room.span < span ? 0 : Cycle(room.used)));
+      if (room.span < span || room.used < float(kSpan))
+        return std::max(at, span * kSpan + (room.span < span ? 0 : Cycle(room.used)));
     }
   }
 

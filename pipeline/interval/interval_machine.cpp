@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/interval/interval_machine.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 
 #include "base/num_lanes.h"
 #include "core/coalesce.h"
@@ -31,21 +30,31 @@ const core::World& checked(const GpuParams& params, const core::World& world) {
       {rt.scheduler.name != "oldest_first", "rt.scheduler other than \"oldest_first\""},
       {rt.coalescing.name != "within_warp", "rt.coalescing other than \"within_warp\""},
       {rt.stack.name != "full", "stacks that leave the RT unit: rt.stack other than \"full\""},
-      {rt.result_store || rt.shortcuts.fetch_headers || rt.shortcuts.fetch_descriptors || rt.shortcuts.store_each_hit, "rt.result_store and the accesses of rt.shortcuts"},
-      {!params.core.fetch.perfect || !params.core.constant.perfect, "caches of instructions and constants: core.fetch.perfect and core.constant.perfect = false"}};
+      {rt.result_store || rt.shortcuts.fetch_headers || rt.shortcuts.fetch_descriptors ||
+           rt.shortcuts.store_each_hit,
+       "rt.result_store and the accesses of rt.shortcuts"},
+      {!params.core.fetch.perfect || !params.core.constant.perfect,
+       "caches of instructions and constants: core.fetch.perfect and core.constant.perfect = false"}};
   std::string message;
   for (const auto& [is_there, what] : unknown)
     if (is_there) message += fmt::format("the interval model does not know {}\n", what);
-  if (!message.empty()) throw UnsupportedError(message + "  note: `glint model --statistics-only` leaves it out");
+  if (!message.empty())
+    throw UnsupportedError(message + "  note: `glint model --statistics-only` leaves it out");
   return world;
 }
 
 }  // namespace
 
 struct IntervalMachine::Core {
-  Core(const GpuParams& params, const core::World& world, MemoryModel& memory, uint32_t core_index, uint32_t slots)
-      : index(core_index), rays(params.rt, *world.memory, memory, core_index), warps(slots), issue(params.core.schedulers), lines(params.memory.line),
-        local{world.memory->reserve(core::CoreCell::local_bytes(params.core, world)), world.local_bytes / 4} {}
+  Core(const GpuParams& params, const core::World& world, MemoryModel& memory, uint32_t core_index,
+       uint32_t slots)
+      : index(core_index),
+        rays(params.rt, *world.memory, memory, core_index),
+        warps(slots),
+        issue(params.core.schedulers),
+        lines(params.memory.line),
+        local{world.memory->reserve(core::CoreCell::local_bytes(params.core, world)), world.local_bytes / 4} {
+  }
 
   uint32_t index;
   RayModel rays;
@@ -59,9 +68,14 @@ struct IntervalMachine::Core {
 };
 
 IntervalMachine::IntervalMachine(const GpuParams& params, const core::World& world)
-    : params_(params), world_(checked(params, world)), executor_(world), table_(*world.image, params.core), memory_(params.memory, params.cores, params.clock_mhz) {
+    : params_(params),
+      world_(checked(params, world)),
+      executor_(world),
+      table_(*world.image, params.core),
+      memory_(params.memory, params.cores, params.clock_mhz) {
   const uint32_t slots = core::residency(params.core, core::CoreCell::needs_of(world)).warps;
-  for (uint32_t i = 0; i < params.cores; ++i) cores_.push_back(std::make_unique<Core>(params, world, memory_, i, slots));
+  for (uint32_t i = 0; i < params.cores; ++i)
+    cores_.push_back(std::make_unique<Core>(params, world, memory_, i, slots));
 }
 
 IntervalMachine::~IntervalMachine() = default;
@@ -88,9 +102,11 @@ void IntervalMachine::run_interval(Core& core, uint32_t slot, Cycle at) {
     for (const uint16_t use : table_.uses(row)) now = std::max(now, core.ready[use]);
     now = std::max(now, Cycle(pipe_free[size_t(row.pipe)]));
     const core::Issued issued = executor_.execute(warp, now);
-    if (executor_.fault()) throw Error(executor_.fault()->exit(), executor_.passed().with(*executor_.fault()));
+    if (executor_.fault())
+      throw Error(executor_.fault()->exit(), executor_.passed().with(*executor_.fault()));
     if (warp.instructions > params_.core.instruction_budget) [[unlikely]]
-      throw Error(Exit::Fault, executor_.passed().with(core::no_end_in_sight(world_, warp, pc, params_.core.instruction_budget)));
+      throw Error(Exit::Fault, executor_.passed().with(
+                                   core::no_end_in_sight(world_, warp, pc, params_.core.instruction_budget)));
     finished = issued.finished;
     ++estimate_.instructions;
     estimate_.lanes += num_lanes(issued.lanes);
@@ -99,12 +115,15 @@ void IntervalMachine::run_interval(Core& core, uint32_t slot, Cycle at) {
     pipe_free[size_t(row.pipe)] = double(now) + interval;
     work[size_t(row.pipe)] += interval;
     Cycle done = now + row.latency;
-    if (row.finish == Finish::Memory || row.finish == Finish::CallRecord) done = access(core, slot, issued, row, now);
+    if (row.finish == Finish::Memory || row.finish == Finish::CallRecord)
+      done = access(core, slot, issued, row, now);
     for (const uint16_t def : table_.defs(row)) core.ready[def] = done;
-    const bool holds = row.finish == Finish::Control || row.finish == Finish::CallRecord || row.finish == Finish::Fence || row.finish == Finish::Barrier;
+    const bool holds = row.finish == Finish::Control || row.finish == Finish::CallRecord ||
+                       row.finish == Finish::Fence || row.finish == Finish::Barrier;
     now = holds ? done : now + table_.issues(pc);
   }
-  // What the scheduler has to do for its other warps first: it issues one a cycle, and a pipe has its interval.
+  // What the scheduler has to do for its other warps first: it issues one a cycle, and a pipe has its
+  // interval.
   Cycle& issue = core.issue[slot % core.issue.size()];
   const double busy = std::max(slots, *std::ranges::max_element(work));
   issue = std::max(issue, at) + Cycle(busy);
@@ -113,7 +132,8 @@ void IntervalMachine::run_interval(Core& core, uint32_t slot, Cycle at) {
 }
 
 // When what an instruction loads is there; what it stores costs the warp nothing more.
-Cycle IntervalMachine::access(Core& core, uint32_t slot, const core::Issued& issued, const core::IssueRow& row, Cycle at) {
+Cycle IntervalMachine::access(Core& core, uint32_t slot, const core::Issued& issued,
+                              const core::IssueRow& row, Cycle at) {
   core.lines.clear();
   const isa::Access& addresses = core.warps[slot].regs.access;
   const auto bytes = uint32_t(issued.row->memory.bytes * issued.row->memory.count);
@@ -122,7 +142,8 @@ Cycle IntervalMachine::access(Core& core, uint32_t slot, const core::Issued& iss
   if (row.is_texture) {
     for (const auto& texels : executor_.texels().rows())
       for_each_lane(issued.lanes, [&](int lane) {
-        if (texels[size_t(lane)] != core::TexelList::kNone) core.lines.add(world_.memory->physical(texels[size_t(lane)]), 4, lane);
+        if (texels[size_t(lane)] != core::TexelList::kNone)
+          core.lines.add(world_.memory->physical(texels[size_t(lane)]), 4, lane);
       });
   } else if (row.finish == Finish::CallRecord) {
     coalesce_global(core.lines, *world_.memory, addresses, issued.lanes, mem::kSectorBytes);
@@ -135,8 +156,10 @@ Cycle IntervalMachine::access(Core& core, uint32_t slot, const core::Issued& iss
   Cycle done = std::max<Cycle>(begin, at + row.latency);
   Cycle sent = begin;
   for (const core::LineSectors& line : core.lines.lines()) {
-    if (is_write) memory_.write(core.index, line.line, line.sectors, sent, local != 0);
-    else done = std::max(done, memory_.read(core.index, line.line, line.sectors, sent, Asker::Shader));
+    if (is_write)
+      memory_.write(core.index, line.line, line.sectors, sent, local != 0);
+    else
+      done = std::max(done, memory_.read(core.index, line.line, line.sectors, sent, Asker::Shader));
     ++sent;
   }
   return done;
@@ -208,7 +231,13 @@ IntervalEstimate IntervalMachine::collect() const {
 }
 
 std::array<std::pair<std::string_view, double>, 7> IntervalEstimate::bounds() const {
-  return {{{"issue slots", issue}, {"RT warps", rt_slots}, {"RT request port", rt_port}, {"RT test pipes", rt_tests}, {"L1 port", l1_ports}, {"L2 slice", l2_slices}, {"DRAM bus", dram_buses}}};
+  return {{{"issue slots", issue},
+           {"RT warps", rt_slots},
+           {"RT request port", rt_port},
+           {"RT test pipes", rt_tests},
+           {"L1 port", l1_ports},
+           {"L2 slice", l2_slices},
+           {"DRAM bus", dram_buses}}};
 }
 
 }  // namespace glint::pipeline

@@ -9,8 +9,12 @@
 namespace glint::pipeline {
 namespace {
 
-uint32_t count(uint8_t sectors) { return uint32_t(std::popcount(sectors)); }
-double packet_cycles(uint32_t sectors, uint32_t bytes_per_cycle) { return double(mem::kHeaderBytes + sectors * mem::kSectorBytes) / bytes_per_cycle; }
+uint32_t count(uint8_t sectors) {
+  return uint32_t(std::popcount(sectors));
+}
+double packet_cycles(uint32_t sectors, uint32_t bytes_per_cycle) {
+  return double(mem::kHeaderBytes + sectors * mem::kSectorBytes) / bytes_per_cycle;
+}
 
 template <class List, class Work>
 double most(const List& list, Work work) {
@@ -22,7 +26,9 @@ double most(const List& list, Work work) {
 }  // namespace
 
 MemoryModel::Cache::Cache(uint64_t size, uint32_t ways, uint32_t line)
-    : tags(ways ? uint32_t(size / line / ways) : 1, ways ? ways : uint32_t(size / line), line), fills(size / line) {}
+    : tags(ways ? uint32_t(size / line / ways) : 1, ways ? ways : uint32_t(size / line), line),
+      fills(size / line) {
+}
 
 MemoryModel::MemoryModel(const mem::Params& params, uint32_t num_cores, double core_mhz)
     : params_(params),
@@ -30,9 +36,12 @@ MemoryModel::MemoryModel(const mem::Params& params, uint32_t num_cores, double c
       core_per_dram_(core_mhz / params.dram.clock_mhz),
       partitions_(params.dram.channels, params.l2.slices, params.interleave, params.hash == "mixed"),
       dram_map_(params.dram.banks, params.dram.bank_groups, params.dram.row_bytes, params.interleave) {
-  for (uint32_t i = 0; i < num_cores; ++i) cores_.push_back({Cache(params.l1.size, params.l1.ways, params.line), {}, {}, {}});
-  for (uint32_t i = 0; i < params.num_slices(); ++i) slices_.push_back({Cache(params.l2.slice_size, params.l2.ways, params.line), {}, {}});
-  for (uint32_t i = 0; i < params.dram.channels; ++i) channels_.push_back({std::vector<Bank>(params.dram.banks), {}});
+  for (uint32_t i = 0; i < num_cores; ++i)
+    cores_.push_back({Cache(params.l1.size, params.l1.ways, params.line), {}, {}, {}});
+  for (uint32_t i = 0; i < params.num_slices(); ++i)
+    slices_.push_back({Cache(params.l2.slice_size, params.l2.ways, params.line), {}, {}});
+  for (uint32_t i = 0; i < params.dram.channels; ++i)
+    channels_.push_back({std::vector<Bank>(params.dram.banks), {}});
 }
 
 // The line, made where it is absent; what it displaces goes down when it is newer.
@@ -42,7 +51,8 @@ mem::TagArray::Line& MemoryModel::line_of(Core& core, Address line, Cycle at) {
     tags.touch(slot);
     return tags.line(slot);
   }
-  if (const mem::TagArray::Line& victim = tags.victim(line); victim.dirty) write_below(core, victim.address, victim.dirty, at);
+  if (const mem::TagArray::Line& victim = tags.victim(line); victim.dirty)
+    write_below(core, victim.address, victim.dirty, at);
   return tags.insert(line);
 }
 
@@ -54,7 +64,8 @@ mem::TagArray::Line& MemoryModel::line_of(Slice& slice, uint32_t index, Address 
   }
   if (const mem::TagArray::Line& victim = tags.victim(line); victim.dirty) {
     dram_sectors_ += count(victim.dirty);
-    channels_[partitions_.partition_of(index)].bus.take(at, count(victim.dirty) * double(timing_.data) * core_per_dram_);
+    channels_[partitions_.partition_of(index)].bus.take(
+        at, count(victim.dirty) * double(timing_.data) * core_per_dram_);
   }
   return tags.insert(line);
 }
@@ -71,7 +82,8 @@ Cycle MemoryModel::read(uint32_t core_index, Address line, uint8_t sectors, Cycl
   if (!missing) return std::max(begin + params_.l1.hit_latency, fill.ready_for(begin));
   ++counts.misses;
   found.valid |= missing;
-  fill = {begin, std::max(fetch(core, line, missing, begin + params_.l1.miss_latency), fill.ready_for(begin))};
+  fill = {begin,
+          std::max(fetch(core, line, missing, begin + params_.l1.miss_latency), fill.ready_for(begin))};
   return fill.ready;
 }
 
@@ -109,7 +121,8 @@ Cycle MemoryModel::fetch(Core& core, Address line, uint8_t sectors, Cycle at) {
   Slice& slice = slices_[index];
   ++l2_counts_.reads;
   const Cycle sent = core.request.take(at, packet_cycles(0, params_.noc.core_request_bytes));
-  const Cycle served = slice.service.take(sent + params_.noc.request_latency, double(n) / params_.l2.sectors_per_cycle);
+  const Cycle served =
+      slice.service.take(sent + params_.noc.request_latency, double(n) / params_.l2.sectors_per_cycle);
   mem::TagArray::Line& found = line_of(slice, index, line, served);
   Fill& fill = slice.l2.fills[slice.l2.tags.slot_of(found)];
   if (found.valid == 0) fill = {};
@@ -121,7 +134,8 @@ Cycle MemoryModel::fetch(Core& core, Address line, uint8_t sectors, Cycle at) {
     ready = from_dram(index, line, count(missing), served + params_.l2.latency);
     fill = {served, ready};
   }
-  const double partition = packet_cycles(n, params_.noc.partition_reply_bytes), own = packet_cycles(n, params_.noc.core_reply_bytes);
+  const double partition = packet_cycles(n, params_.noc.partition_reply_bytes),
+               own = packet_cycles(n, params_.noc.core_reply_bytes);
   const Cycle replied = slice.reply.take(ready, partition) + params_.noc.reply_latency;
   return core.reply.take(replied, own) + Cycle(own) + 1;
 }
@@ -129,7 +143,8 @@ Cycle MemoryModel::fetch(Core& core, Address line, uint8_t sectors, Cycle at) {
 void MemoryModel::write_below(Core& core, Address line, uint8_t sectors, Cycle at) {
   const uint32_t index = partitions_.slice(line), n = count(sectors);
   const Cycle sent = core.request.take(at, packet_cycles(n, params_.noc.core_request_bytes));
-  const Cycle served = slices_[index].service.take(sent + params_.noc.request_latency, double(n) / params_.l2.sectors_per_cycle);
+  const Cycle served = slices_[index].service.take(sent + params_.noc.request_latency,
+                                                   double(n) / params_.l2.sectors_per_cycle);
   mem::TagArray::Line& found = line_of(slices_[index], index, line, served);
   if (found.valid == 0) slices_[index].l2.fills[slices_[index].l2.tags.slot_of(found)] = {};
   found.valid |= sectors;
@@ -144,7 +159,8 @@ Cycle MemoryModel::from_dram(uint32_t slice, Address line, uint32_t num_sectors,
   const bool opens = bank.row != int64_t{where.row};
   const double row = opens ? double(bank.row < 0 ? timing_.rcd : timing_.rp + timing_.rcd) : 0;
   bank.row = where.row;
-  const double columns = double(timing_.ccd_l) * num_sectors, data = core_per_dram_ * double(timing_.data) * num_sectors;
+  const double columns = double(timing_.ccd_l) * num_sectors,
+               data = core_per_dram_ * double(timing_.data) * num_sectors;
   // A bank opens no second row within tRC.
   const double busy = opens ? std::max(row + columns, double(timing_.rc)) : columns;
   const Cycle begin = bank.busy.take(at + params_.dram.latency, core_per_dram_ * busy);

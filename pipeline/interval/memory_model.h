@@ -1,5 +1,5 @@
-// Latency of accesses without simulating queues: tags of all caches, open rows, and bandwidth of each resource on the way.
-// SPDX-License-Identifier: Apache-2.0
+// Latency of accesses without simulating queues: tags of all caches, open rows, and bandwidth of each
+// resource on the way. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstdint>
@@ -20,8 +20,8 @@ struct CacheCounts {
   uint64_t reads = 0, misses = 0;
 };
 
-// Model: no MSHRs, miss queues, credits or refresh, no order among requests of a bank but that of arrival; a line takes its place when it is
-// asked for, and what is read of it before it has come waits for it.
+// Model: no MSHRs, miss queues, credits or refresh, no order among requests of a bank but that of arrival; a
+// line takes its place when it is asked for, and what is read of it before it has come waits for it.
 class MemoryModel {
  public:
   MemoryModel(const mem::Params& params, uint32_t num_cores, double core_mhz);
@@ -44,8 +44,8 @@ class MemoryModel {
   double dram_work() const;
 
  private:
-  // Warps run ahead of each other within an interval: a line may have been asked for at a later time than it is wanted. Then it is
-  // this wish that fetches it, and what it costs is what the later one has paid.
+  // Warps run ahead of each other within an interval: a line may have been asked for at a later time than it
+  // is wanted. Then it is this wish that fetches it, and what it costs is what the later one has paid.
   struct Fill {
     Cycle asked = 0, ready = 0;
     Cycle ready_for(Cycle at) {

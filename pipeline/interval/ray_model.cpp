@@ -10,16 +10,26 @@
 
 namespace glint::pipeline {
 
-// Cycles from a lane's wish to its request and from a test's end to the next wish, which the unit's registers take.
-// Source: the timing machine's RT unit (rtunit/rt_unit.cpp), which does each in a cycle of its own.
+// Cycles from a lane's wish to its request and from a test's end to the next wish, which the unit's registers
+// take. Source: the timing machine's RT unit (rtunit/rt_unit.cpp), which does each in a cycle of its own.
 constexpr Cycle kStep = 1;
 
-RayModel::RayModel(const rt::Params& params, const mem::AddressSpace& memory, MemoryModel& caches, uint32_t core)
-    : params_(params), memory_(memory), caches_(caches), core_(core), traces_(params.warps), box_{params.box}, triangle_{params.triangle}, transform_{params.transform} {}
+RayModel::RayModel(const rt::Params& params, const mem::AddressSpace& memory, MemoryModel& caches,
+                   uint32_t core)
+    : params_(params),
+      memory_(memory),
+      caches_(caches),
+      core_(core),
+      traces_(params.warps),
+      box_{params.box},
+      triangle_{params.triangle},
+      transform_{params.transform} {
+}
 
 void RayModel::submit(Cycle at, uint32_t slot, core::WarpContext& warp) {
   now_ = std::max(now_, at);
-  if (std::ranges::any_of(traces_, [](const Trace& trace) { return !trace.used; })) return begin(at, slot, warp);
+  if (std::ranges::any_of(traces_, [](const Trace& trace) { return !trace.used; }))
+    return begin(at, slot, warp);
   waiting_.emplace_back(slot, &warp);
 }
 
@@ -71,13 +81,16 @@ void RayModel::advance() {
   while (!events_.empty() && events_.top().at <= now) {
     const Event event = events_.top();
     events_.pop();
-    if (event.arrived) test(event);
-    else go_on(event.trace, event.lanes, now);
+    if (event.arrived)
+      test(event);
+    else
+      go_on(event.trace, event.lanes, now);
   }
   if (num_wanting_ && port_free_ <= double(now)) send(now);
 }
 
-// One node of the oldest warp that wants any, for all its lanes that want it. While the L1 takes shaders' accesses more lanes come to want it.
+// One node of the oldest warp that wants any, for all its lanes that want it. While the L1 takes shaders'
+// accesses more lanes come to want it.
 void RayModel::send(Cycle now) {
   if (const Cycle free = caches_.port_free(core_, now); free > now) {
     port_free_ = double(free);
@@ -90,7 +103,9 @@ void RayModel::send(Cycle now) {
   Trace& trace = traces_[index];
   const int first = std::countr_zero(trace.wanting);
   LaneMask same = 0;
-  for_each_lane(trace.wanting, [&](int lane) { same |= LaneMask{trace.node[size_t(lane)] == trace.node[size_t(first)]} << lane; });
+  for_each_lane(trace.wanting, [&](int lane) {
+    same |= LaneMask{trace.node[size_t(lane)] == trace.node[size_t(first)]} << lane;
+  });
   trace.wanting &= ~same;
   num_wanting_ -= trace.wanting == 0;
   const rt::Fetch fetch = rt::next_fetch(trace.warp->rays[first]);
@@ -125,11 +140,13 @@ void RayModel::test(const Event& event) {
     rt::step(state, memory_.find(fetch.address, fetch.bytes));
     ++counts_.nodes;
     Pipe& pipe = pipe_of(fetch.kind);
-    const double starts = std::max<uint32_t>(1, state.triangle_tests - before), busy = starts * pipe.params.interval / pipe.params.units;
+    const double starts = std::max<uint32_t>(1, state.triangle_tests - before),
+                 busy = starts * pipe.params.interval / pipe.params.units;
     const double begin = std::max(pipe.free, double(event.at));
     pipe.free = begin + busy;
     pipe.work += busy;
-    push(Cycle(begin + (starts - 1) * pipe.params.interval) + pipe.params.latency + kStep, event.trace, LaneMask{1} << lane, false);
+    push(Cycle(begin + (starts - 1) * pipe.params.interval) + pipe.params.latency + kStep, event.trace,
+         LaneMask{1} << lane, false);
   });
 }
 

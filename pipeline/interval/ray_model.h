@@ -1,5 +1,5 @@
-// The RT unit of a core as the interval model sees it: warps that share a request port and test pipes, node by node.
-// SPDX-License-Identifier: Apache-2.0
+// The RT unit of a core as the interval model sees it: warps that share a request port and test pipes, node
+// by node. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstdint>
@@ -69,7 +69,9 @@ class RayModel {
   void test(const Event& event);
   void go_on(uint32_t index, LaneMask lanes, Cycle now);
   Pipe& pipe_of(rt::NodeKind kind);
-  void push(Cycle at, uint32_t trace, LaneMask lanes, bool arrived) { events_.push({at, order_++, trace, lanes, arrived}); }
+  void push(Cycle at, uint32_t trace, LaneMask lanes, bool arrived) {
+    events_.push({at, order_++, trace, lanes, arrived});
+  }
 
   const rt::Params& params_;
   const mem::AddressSpace& memory_;

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/analytical/hong_kim.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 
 #include "base/diagnostics.h"
 #include "report/formula.h"
@@ -19,8 +18,11 @@ constexpr const char* kDramLatency = "sum(l1.miss_cycles) / sum(l1.timed_misses)
 double value_of(const std::string& formula, const RunRecord& run, const std::string& name) {
   if (const std::optional<double> value = evaluate(formula, run)) return *value;
   if (formula == kDramLatency && run.text("mode") == "timing")
-    throw UserError({name}, "none of this run's reads missed in the L1: there is no latency of memory to model", "Hong and Kim's model takes timing runs that read memory; all models take runs of scenes");
-  throw UserError({name}, fmt::format("this run has no '{}'", formula), "the model needs a finished run of the timing machine: glint run --mode timing");
+    throw UserError(
+        {name}, "none of this run's reads missed in the L1: there is no latency of memory to model",
+        "Hong and Kim's model takes timing runs that read memory; all models take runs of scenes");
+  throw UserError({name}, fmt::format("this run has no '{}'", formula),
+                  "the model needs a finished run of the timing machine: glint run --mode timing");
 }
 
 }  // namespace
@@ -33,7 +35,8 @@ HongKimInputs hong_kim_inputs(const RunRecord& run, const std::string& name) {
   in.warps = std::min(value("run(residency.warps)"), warps / in.cores);
   in.repetitions = warps / in.cores / in.warps;
   in.instructions = value("sum(core.instructions)") / warps;
-  const double memory = value("sum(core.instructions_by_class::mem) + sum(core.instructions_by_class::tex) + sum(rt.warps)");
+  const double memory =
+      value("sum(core.instructions_by_class::mem) + sum(core.instructions_by_class::tex) + sum(rt.warps)");
   in.memory_instructions = memory / warps;
   in.accesses = value("sum(l1.reads::*) + sum(l1.writes::*)") / memory;
   in.dram_latency = value(kDramLatency);
@@ -48,16 +51,19 @@ HongKimInputs hong_kim_inputs(const RunRecord& run, const std::string& name) {
 HongKimResult hong_kim(const HongKimInputs& in) {
   HongKimResult out;
   out.inputs = in;
-  const double latency = in.memory_latency() + (in.accesses - 1) * in.departure_delay;  // of a memory instruction: Mem_L_Uncoal
-  const double delay = in.accesses * in.departure_delay;                                // until the next one may go
+  const double latency =
+      in.memory_latency() + (in.accesses - 1) * in.departure_delay;  // of a memory instruction: Mem_L_Uncoal
+  const double delay = in.accesses * in.departure_delay;             // until the next one may go
   out.memory_cycles = latency * in.memory_instructions;
   out.computation_cycles = in.issue_cycles * in.instructions;
   out.mwp_without_bandwidth = std::max(1.0, latency / delay);
   // BW_per_warp = bytes / latency; all cores share the bandwidth.
-  out.mwp_peak_bandwidth = in.bytes > 0 ? std::max(1.0, in.bandwidth / (in.bytes / latency * in.cores)) : in.warps;
+  out.mwp_peak_bandwidth =
+      in.bytes > 0 ? std::max(1.0, in.bandwidth / (in.bytes / latency * in.cores)) : in.warps;
   out.mwp = std::min({out.mwp_without_bandwidth, out.mwp_peak_bandwidth, in.warps});
   out.cwp = std::min((out.memory_cycles + out.computation_cycles) / out.computation_cycles, in.warps);
-  const double between = out.computation_cycles / in.memory_instructions;  // computation from one memory instruction to the next
+  const double between =
+      out.computation_cycles / in.memory_instructions;  // computation from one memory instruction to the next
   if (out.mwp == in.warps && out.cwp == in.warps) {
     out.equation = 22;
     out.cycles = out.memory_cycles + out.computation_cycles + between * (out.mwp - 1);
@@ -74,11 +80,25 @@ HongKimResult hong_kim(const HongKimInputs& in) {
 
 std::vector<std::pair<std::string, double>> hong_kim_columns(const HongKimResult& result) {
   const HongKimInputs& in = result.inputs;
-  return {{"warps_per_core", in.warps}, {"repetitions", in.repetitions}, {"instructions_per_warp", in.instructions}, {"memory_instructions_per_warp", in.memory_instructions},
-          {"accesses_per_memory_instruction", in.accesses}, {"dram_latency", in.dram_latency}, {"l1_miss_rate", in.miss_rate}, {"memory_latency", in.memory_latency()},
-          {"departure_delay", in.departure_delay}, {"issue_cycles", in.issue_cycles}, {"dram_bytes_per_memory_instruction", in.bytes}, {"dram_bytes_per_cycle", in.bandwidth},
-          {"memory_cycles", result.memory_cycles}, {"computation_cycles", result.computation_cycles}, {"mwp_without_bandwidth", result.mwp_without_bandwidth}, {"mwp_peak_bandwidth", result.mwp_peak_bandwidth},
-          {"mwp", result.mwp}, {"cwp", result.cwp}, {"equation", double(result.equation)}};
+  return {{"warps_per_core", in.warps},
+          {"repetitions", in.repetitions},
+          {"instructions_per_warp", in.instructions},
+          {"memory_instructions_per_warp", in.memory_instructions},
+          {"accesses_per_memory_instruction", in.accesses},
+          {"dram_latency", in.dram_latency},
+          {"l1_miss_rate", in.miss_rate},
+          {"memory_latency", in.memory_latency()},
+          {"departure_delay", in.departure_delay},
+          {"issue_cycles", in.issue_cycles},
+          {"dram_bytes_per_memory_instruction", in.bytes},
+          {"dram_bytes_per_cycle", in.bandwidth},
+          {"memory_cycles", result.memory_cycles},
+          {"computation_cycles", result.computation_cycles},
+          {"mwp_without_bandwidth", result.mwp_without_bandwidth},
+          {"mwp_peak_bandwidth", result.mwp_peak_bandwidth},
+          {"mwp", result.mwp},
+          {"cwp", result.cwp},
+          {"equation", double(result.equation)}};
 }
 
 }  // namespace glint::report

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/analytical/model_table.h"
 
-#include <fmt/format.h>
-
 #include <charconv>
 #include <cmath>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "base/diagnostics.h"
@@ -21,13 +20,17 @@ constexpr std::string_view kModelPrefix = "model:";  // of a model's column in t
 double number(const std::string& text, const std::string& name, int row) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) throw UserError({name, row}, fmt::format("'{}' is no number", text), "`glint model -o` writes such a table");
+  if (error != std::errc{} || end != text.data() + text.size())
+    throw UserError({name, row}, fmt::format("'{}' is no number", text),
+                    "`glint model -o` writes such a table");
   return value;
 }
 
 double cycles(const std::string& text, const std::string& name, int row) {
   const double value = number(text, name, row);
-  if (!std::isfinite(value) || value <= 0) throw UserError({name, row}, fmt::format("'{}' are no cycles: they are finite and more than 0", text), "the table is damaged: run `glint model` again");
+  if (!std::isfinite(value) || value <= 0)
+    throw UserError({name, row}, fmt::format("'{}' are no cycles: they are finite and more than 0", text),
+                    "the table is damaged: run `glint model` again");
   return value;
 }
 
@@ -76,7 +79,9 @@ std::string model_text(const ModelTable& models) {
   std::vector<std::vector<std::string>> scores = {{"", "R2", "mean error", "predicted / simulated", "worst"}};
   for (size_t i = 0; i < models.models.size(); ++i) {
     const ModelScore score = models.score(i);
-    scores.push_back({models.models[i], fmt::format("{:.3f}", score.r2), percent(score.mean_error), fmt::format("{:.2f}", score.ratio), fmt::format("{} ({})", percent(score.worst_error), score.worst)});
+    scores.push_back({models.models[i], fmt::format("{:.3f}", score.r2), percent(score.mean_error),
+                      fmt::format("{:.2f}", score.ratio),
+                      fmt::format("{} ({})", percent(score.worst_error), score.worst)});
   }
   return out + table(scores, "<>>><");
 }
@@ -98,18 +103,27 @@ std::string model_csv(const ModelTable& models) {
 
 ModelTable parse_models(const std::string& csv, const std::string& name) {
   const CsvTable read = read_csv(csv, name);
-  if (read.columns.size() < 3 || read.columns[0] != "workload" || read.columns[1] != "cycles") throw UserError({name, 1}, "this is no table of models", "expected the columns workload, cycles and models: `glint model -o` writes it");
+  if (read.columns.size() < 3 || read.columns[0] != "workload" || read.columns[1] != "cycles")
+    throw UserError({name, 1}, "this is no table of models",
+                    "expected the columns workload, cycles and models: `glint model -o` writes it");
   ModelTable out;
   for (const std::string& column : read.columns)
     if (column.starts_with(kModelPrefix)) out.models.push_back(column.substr(kModelPrefix.size()));
-  if (out.models.empty()) throw UserError({name, 1}, fmt::format("no column '{}NAME'", kModelPrefix), "this is no table of models, or its first line is cut: `glint model -o` writes it");
-  if (read.rows.empty()) throw UserError({name, 1}, "no workload below the names of the columns", "the table is cut: run `glint model` again");
+  if (out.models.empty())
+    throw UserError({name, 1}, fmt::format("no column '{}NAME'", kModelPrefix),
+                    "this is no table of models, or its first line is cut: `glint model -o` writes it");
+  if (read.rows.empty())
+    throw UserError({name, 1}, "no workload below the names of the columns",
+                    "the table is cut: run `glint model` again");
   for (size_t i = 0; i < read.rows.size(); ++i) {
     const auto& cells = read.rows[i];
-    ModelRow row{.workload = cells[0], .cycles = cycles(cells[1], name, int(i) + 2), .predicted = {}, .inputs = {}};
+    ModelRow row{
+        .workload = cells[0], .cycles = cycles(cells[1], name, int(i) + 2), .predicted = {}, .inputs = {}};
     for (size_t j = 2; j < cells.size(); ++j) {
-      if (read.columns[j].starts_with(kModelPrefix)) row.predicted.push_back(cycles(cells[j], name, int(i) + 2));
-      else row.inputs.emplace_back(read.columns[j], number(cells[j], name, int(i) + 2));
+      if (read.columns[j].starts_with(kModelPrefix))
+        row.predicted.push_back(cycles(cells[j], name, int(i) + 2));
+      else
+        row.inputs.emplace_back(read.columns[j], number(cells[j], name, int(i) + 2));
     }
     out.rows.push_back(std::move(row));
   }
@@ -120,9 +134,15 @@ nlohmann::ordered_json models_json(const ModelTable& models) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array(), workloads = nlohmann::ordered_json::array();
   for (size_t i = 0; i < models.models.size(); ++i) {
     const ModelScore score = models.score(i);
-    list.push_back({{"name", models.models[i]}, {"r2", score.r2}, {"mape", score.mean_error}, {"ratio", score.ratio}, {"worst", score.worst}, {"worst_error", score.worst_error}});
+    list.push_back({{"name", models.models[i]},
+                    {"r2", score.r2},
+                    {"mape", score.mean_error},
+                    {"ratio", score.ratio},
+                    {"worst", score.worst},
+                    {"worst_error", score.worst_error}});
   }
-  for (const ModelRow& row : models.rows) workloads.push_back({{"name", row.workload}, {"cycles", row.cycles}, {"predicted", row.predicted}});
+  for (const ModelRow& row : models.rows)
+    workloads.push_back({{"name", row.workload}, {"cycles", row.cycles}, {"predicted", row.predicted}});
   return {{"models", std::move(list)}, {"workloads", std::move(workloads)}};
 }
 

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/characterize/characterization.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <set>
 
 #include "report/table.h"
@@ -27,7 +26,8 @@ Subset judged(const Characterization& result, std::vector<int> rows) {
 std::vector<int> rows_of(const FeatureTable& table, const std::vector<std::string>& names) {
   std::vector<int> out;
   for (const std::string& name : names)
-    if (const auto found = std::ranges::find(table.workloads, name); found != table.workloads.end()) out.push_back(int(found - table.workloads.begin()));
+    if (const auto found = std::ranges::find(table.workloads, name); found != table.workloads.end())
+      out.push_back(int(found - table.workloads.begin()));
   return out;
 }
 
@@ -47,7 +47,8 @@ void draw_kiviat(Characterization& result) {
   result.kiviat.resize(result.table.rows(), Eigen::Index(result.metrics.metrics.size()));
   for (Eigen::Index j = 0; j < result.kiviat.cols(); ++j) {
     const Eigen::ArrayXd values = result.table.values.col(result.metrics.metrics[size_t(j)].column).array();
-    result.kiviat.col(j) = (values - values.minCoeff()) / (values.maxCoeff() - values.minCoeff());  // no column is constant
+    result.kiviat.col(j) =
+        (values - values.minCoeff()) / (values.maxCoeff() - values.minCoeff());  // no column is constant
   }
 }
 
@@ -59,45 +60,62 @@ std::string names_of(const FeatureTable& table, const std::vector<int>& rows) {
 
 std::string components_text(const Characterization& result) {
   const PrincipalComponents& pca = result.components;
-  const std::string kept = pca.eigenvalues[0] > 1 ? fmt::format("{} with an eigenvalue above 1 have", pca.kept) : "none has an eigenvalue above 1; the first has";
+  const std::string kept = pca.eigenvalues[0] > 1
+                               ? fmt::format("{} with an eigenvalue above 1 have", pca.kept)
+                               : "none has an eigenvalue above 1; the first has";
   std::string out = fmt::format("\nComponents: {} {} of the variance\n", kept, percent(pca.explained()));
   double sum = 0;
   std::vector<std::vector<std::string>> rows = {{"", "eigenvalue", "together", "loads most on"}};
   for (Eigen::Index i = 0; i < pca.kept; ++i) {
     std::vector<int> order(result.table.metrics.size());
     for (size_t j = 0; j < order.size(); ++j) order[j] = int(j);
-    std::ranges::stable_sort(order, std::ranges::greater{}, [&](int j) { return std::abs(pca.loadings(j, i)); });
+    std::ranges::stable_sort(order, std::ranges::greater{},
+                             [&](int j) { return std::abs(pca.loadings(j, i)); });
     std::string most;
-    for (size_t k = 0; k < std::min<size_t>(4, order.size()); ++k) most += fmt::format("{}{} {:+.2f}", k ? ", " : "", result.table.metrics[size_t(order[k])], pca.loadings(order[k], i));
+    for (size_t k = 0; k < std::min<size_t>(4, order.size()); ++k)
+      most += fmt::format("{}{} {:+.2f}", k ? ", " : "", result.table.metrics[size_t(order[k])],
+                          pca.loadings(order[k], i));
     sum += pca.eigenvalues[i];
-    rows.push_back({fmt::format("PC{}", i + 1), fmt::format("{:.2f}", pca.eigenvalues[i]), percent(sum / pca.eigenvalues.sum()), most});
+    rows.push_back({fmt::format("PC{}", i + 1), fmt::format("{:.2f}", pca.eigenvalues[i]),
+                    percent(sum / pca.eigenvalues.sum()), most});
   }
   return out + table(rows, "<>><", " ");
 }
 
 std::string clusters_text(const Characterization& result) {
-  std::string out = fmt::format("\nClusters: {} linkage on Euclidean distance, cut into {}; tree and distances correlate by {:.3f}\n", name_of(result.options.linkage), result.options.clusters, result.cophenetic);
+  std::string out = fmt::format(
+      "\nClusters: {} linkage on Euclidean distance, cut into {}; tree and distances correlate by {:.3f}\n",
+      name_of(result.options.linkage), result.options.clusters, result.cophenetic);
   std::vector<std::vector<std::string>> rows = {{"", "representative", "to centre", "of"}};
   for (const Representative& one : result.chosen) {
     std::vector<int> members;
     for (const int row : result.leaves)
       if (result.cluster_of[size_t(row)] == one.cluster) members.push_back(row);
-    rows.push_back({fmt::format("{}", one.cluster + 1), result.table.workloads[size_t(one.row)], fmt::format("{:.2f}", one.distance), names_of(result.table, members)});
+    rows.push_back({fmt::format("{}", one.cluster + 1), result.table.workloads[size_t(one.row)],
+                    fmt::format("{:.2f}", one.distance), names_of(result.table, members)});
   }
   out += table(rows, "><><", " ");
-  out += fmt::format("\nThe representatives are nearest to all workloads within {} of the mean distance between two.\n", percent(result.subset.coverage_error));
+  out += fmt::format(
+      "\nThe representatives are nearest to all workloads within {} of the mean distance between two.\n",
+      percent(result.subset.coverage_error));
   if (!result.reference.rows.empty())
-    out += fmt::format("{}: {}; in {} of {} clusters, within {}.\n", result.options.reference_name, names_of(result.table, result.reference.rows), result.reference.clusters_met, result.options.clusters,
-                       percent(result.reference.coverage_error));
+    out += fmt::format("{}: {}; in {} of {} clusters, within {}.\n", result.options.reference_name,
+                       names_of(result.table, result.reference.rows), result.reference.clusters_met,
+                       result.options.clusters, percent(result.reference.coverage_error));
   return out;
 }
 
 std::string metrics_text_of(const Characterization& result) {
   const ChosenMetrics& found = result.metrics;
-  std::string out = fmt::format("\nMetrics: distances in these {} correlate by {:.4f} with those in all {} ({} sets tried in {} generations, seed {})\n", found.metrics.size(), found.fitness, result.table.columns(), found.evaluations,
-                                found.generations, result.options.search.seed);
+  std::string out = fmt::format(
+      "\nMetrics: distances in these {} correlate by {:.4f} with those in all {} ({} sets tried in {} "
+      "generations, seed {})\n",
+      found.metrics.size(), found.fitness, result.table.columns(), found.evaluations, found.generations,
+      result.options.search.seed);
   std::vector<std::vector<std::string>> rows;
-  for (const ChosenMetrics::Metric& metric : found.metrics) rows.push_back({result.table.metrics[size_t(metric.column)], fmt::format("{:.4f} without it", metric.fitness_without)});
+  for (const ChosenMetrics::Metric& metric : found.metrics)
+    rows.push_back({result.table.metrics[size_t(metric.column)],
+                    fmt::format("{:.4f} without it", metric.fitness_without)});
   return out + table(rows, "<>", " ");
 }
 
@@ -113,7 +131,8 @@ Characterization characterize(FeatureTable table, const CharacterizationOptions&
   std::vector<int> rows;
   for (const Representative& one : result.chosen) rows.push_back(one.row);
   result.subset = judged(result, std::move(rows));
-  if (std::vector<int> reference = rows_of(result.table, options.reference); !reference.empty()) result.reference = judged(result, std::move(reference));
+  if (std::vector<int> reference = rows_of(result.table, options.reference); !reference.empty())
+    result.reference = judged(result, std::move(reference));
   result.metrics = choose_metrics(DistanceFitness(result.table.standardised), options.search);
   draw_kiviat(result);
   return result;
@@ -121,11 +140,14 @@ Characterization characterize(FeatureTable table, const CharacterizationOptions&
 
 std::string characterization_text(const Characterization& result) {
   std::string out = fmt::format("{} workloads, {} metrics", result.table.rows(), result.table.columns());
-  if (!result.table.dropped.empty()) out += fmt::format("; {} columns left out:", result.table.dropped.size());
+  if (!result.table.dropped.empty())
+    out += fmt::format("; {} columns left out:", result.table.dropped.size());
   out += "\n";
   std::vector<std::vector<std::string>> rows;
-  for (const FeatureTable::Dropped& dropped : result.table.dropped) rows.push_back({dropped.column, dropped.why});
-  return out + report::table(rows, "<<", " ") + components_text(result) + clusters_text(result) + metrics_text_of(result);
+  for (const FeatureTable::Dropped& dropped : result.table.dropped)
+    rows.push_back({dropped.column, dropped.why});
+  return out + report::table(rows, "<<", " ") + components_text(result) + clusters_text(result) +
+         metrics_text_of(result);
 }
 
 }  // namespace glint::report

@@ -17,8 +17,9 @@ struct CharacterizationOptions {
   Linkage linkage = Linkage::Average;
   int clusters = 8;       // = workloads of the subset; cut to the number of workloads
   SearchSettings search;  // for the representative metrics
-  std::vector<std::string> reference;  // names of a published subset to compare with; those that the table lacks are left out
-  std::string reference_name;          // whose it is
+  std::vector<std::string>
+      reference;  // names of a published subset to compare with; those that the table lacks are left out
+  std::string reference_name;  // whose it is
 };
 
 // A set of workloads that stands for all.
@@ -33,17 +34,19 @@ struct Characterization {
   FeatureTable table;
   PrincipalComponents components;
   std::vector<Join> joins;
-  std::vector<int> leaves;         // rows, from left to right of the dendrogram
-  std::vector<int> cluster_of;     // of each row
-  double cut_low = 0, cut_high = 0;  // a line between these two distances crosses as many branches as there are clusters
+  std::vector<int> leaves;      // rows, from left to right of the dendrogram
+  std::vector<int> cluster_of;  // of each row
+  double cut_low = 0,
+         cut_high = 0;  // a line between these two distances crosses as many branches as there are clusters
   double cophenetic = 0;
   std::vector<Representative> chosen;  // by cluster
-  Subset subset, reference;        // `reference` is empty without options.reference
+  Subset subset, reference;            // `reference` is empty without options.reference
   ChosenMetrics metrics;
-  Eigen::MatrixXd kiviat;          // workloads x chosen metrics, 0 = the least of all workloads, 1 = the most
+  Eigen::MatrixXd kiviat;  // workloads x chosen metrics, 0 = the least of all workloads, 1 = the most
 };
 
-// Errors as feature_table(). The same table and options give the same result on every machine, up to rounding.
+// Errors as feature_table(). The same table and options give the same result on every machine, up to
+// rounding.
 Characterization characterize(FeatureTable table, const CharacterizationOptions& options);
 
 // What a terminal shows: what was dropped, components, clusters with their representatives, metrics.

@@ -10,7 +10,8 @@ namespace glint::report {
 namespace {
 
 // A row a name, a column a heading.
-std::string matrix(const std::string& corner, const std::vector<std::string>& names, const std::vector<std::string>& columns, const Eigen::MatrixXd& values) {
+std::string matrix(const std::string& corner, const std::vector<std::string>& names,
+                   const std::vector<std::string>& columns, const Eigen::MatrixXd& values) {
   std::string out = corner;
   for (const std::string& column : columns) out += "," + csv_field(column);
   out += "\n";
@@ -33,14 +34,17 @@ std::string eigenvalues(const PrincipalComponents& pca) {
   double sum = 0;
   for (Eigen::Index i = 0; i < pca.eigenvalues.size(); ++i) {
     sum += pca.eigenvalues[i];
-    out += fmt::format("PC{},{},{},{},{}\n", i + 1, pca.eigenvalues[i], pca.eigenvalues[i] / pca.eigenvalues.sum(), sum / pca.eigenvalues.sum(), int(i < pca.kept));
+    out += fmt::format("PC{},{},{},{},{}\n", i + 1, pca.eigenvalues[i],
+                       pca.eigenvalues[i] / pca.eigenvalues.sum(), sum / pca.eigenvalues.sum(),
+                       int(i < pca.kept));
   }
   return out;
 }
 
 std::string linkage(const std::vector<Join>& joins) {
   std::string out = "first,second,distance,leaves\n";
-  for (const Join& join : joins) out += fmt::format("{},{},{},{}\n", join.first, join.second, join.distance, join.size);
+  for (const Join& join : joins)
+    out += fmt::format("{},{},{},{}\n", join.first, join.second, join.distance, join.size);
   return out;
 }
 
@@ -48,20 +52,25 @@ std::string leaves(const Characterization& result) {
   std::string out = "position,row,workload,cluster\n";
   for (size_t i = 0; i < result.leaves.size(); ++i) {
     const size_t row = size_t(result.leaves[i]);
-    out += fmt::format("{},{},{},{}\n", i, row, csv_field(result.table.workloads[row]), result.cluster_of[row] + 1);
+    out += fmt::format("{},{},{},{}\n", i, row, csv_field(result.table.workloads[row]),
+                       result.cluster_of[row] + 1);
   }
   return out;
 }
 
 std::string subset(const Characterization& result) {
   std::string out = "cluster,workload,distance_to_centre\n";
-  for (const Representative& one : result.chosen) out += fmt::format("{},{},{}\n", one.cluster + 1, csv_field(result.table.workloads[size_t(one.row)]), one.distance);
+  for (const Representative& one : result.chosen)
+    out += fmt::format("{},{},{}\n", one.cluster + 1, csv_field(result.table.workloads[size_t(one.row)]),
+                       one.distance);
   return out;
 }
 
 std::string chosen_metrics(const Characterization& result) {
   std::string out = "metric,fitness,fitness_without\n";
-  for (const ChosenMetrics::Metric& one : result.metrics.metrics) out += fmt::format("{},{},{}\n", csv_field(result.table.metrics[size_t(one.column)]), result.metrics.fitness, one.fitness_without);
+  for (const ChosenMetrics::Metric& one : result.metrics.metrics)
+    out += fmt::format("{},{},{}\n", csv_field(result.table.metrics[size_t(one.column)]),
+                       result.metrics.fitness, one.fitness_without);
   return out;
 }
 
@@ -71,9 +80,11 @@ std::vector<std::pair<std::string, std::string>> characterization_files(const Ch
   const FeatureTable& table = result.table;
   const std::vector<std::string> components = component_names(result.components.kept);
   std::string dropped = "metric,why\n";
-  for (const FeatureTable::Dropped& one : table.dropped) dropped += csv_field(one.column) + "," + csv_field(one.why) + "\n";
+  for (const FeatureTable::Dropped& one : table.dropped)
+    dropped += csv_field(one.column) + "," + csv_field(one.why) + "\n";
   std::vector<std::string> chosen;
-  for (const ChosenMetrics::Metric& one : result.metrics.metrics) chosen.push_back(table.metrics[size_t(one.column)]);
+  for (const ChosenMetrics::Metric& one : result.metrics.metrics)
+    chosen.push_back(table.metrics[size_t(one.column)]);
   return {{"standardised.csv", matrix("workload", table.workloads, table.metrics, table.standardised)},
           {"dropped.csv", dropped},
           {"eigenvalues.csv", eigenvalues(result.components)},

@@ -14,9 +14,10 @@ struct CharacterizationSource {
   std::string version;  // of Glint
 };
 
-// {"kind": "characterization", "schema", "workloads", "eigenvalues", "kept", "joins", "leaves", "clusters", "axes", ...}: the numbers of
-// characterization_files(), to the same bits; docs/characterization.md has the fields. read_characterization() of report/page_suite.h
-// checks kind and schema.
-nlohmann::ordered_json characterization_json(const Characterization& result, const CharacterizationSource& source);
+// {"kind": "characterization", "schema", "workloads", "eigenvalues", "kept", "joins", "leaves", "clusters",
+// "axes", ...}: the numbers of characterization_files(), to the same bits; docs/characterization.md has the
+// fields. read_characterization() of report/page_suite.h checks kind and schema.
+nlohmann::ordered_json characterization_json(const Characterization& result,
+                                             const CharacterizationSource& source);
 
 }  // namespace glint::report

@@ -12,20 +12,27 @@
 namespace glint::report {
 namespace {
 
-constexpr std::pair<std::string_view, Linkage> kNames[] = {
-    {"single", Linkage::Single}, {"complete", Linkage::Complete}, {"average", Linkage::Average}, {"ward", Linkage::Ward}};
+constexpr std::pair<std::string_view, Linkage> kNames[] = {{"single", Linkage::Single},
+                                                           {"complete", Linkage::Complete},
+                                                           {"average", Linkage::Average},
+                                                           {"ward", Linkage::Ward}};
 
 struct Group {
   int number = 0, size = 1;
 };
 
-// Distance of group k to the union of i and j (Lance and Williams 1967), from the distances before. Ward: of distances, not squares.
+// Distance of group k to the union of i and j (Lance and Williams 1967), from the distances before. Ward: of
+// distances, not squares.
 double distance_to_union(Linkage linkage, double ik, double jk, double ij, double i, double j, double k) {
   switch (linkage) {
-    case Linkage::Single: return std::min(ik, jk);
-    case Linkage::Complete: return std::max(ik, jk);
-    case Linkage::Average: return (i * ik + j * jk) / (i + j);
-    case Linkage::Ward: return std::sqrt(((i + k) * ik * ik + (j + k) * jk * jk - k * ij * ij) / (i + j + k));
+    case Linkage::Single:
+      return std::min(ik, jk);
+    case Linkage::Complete:
+      return std::max(ik, jk);
+    case Linkage::Average:
+      return (i * ik + j * jk) / (i + j);
+    case Linkage::Ward:
+      return std::sqrt(((i + k) * ik * ik + (j + k) * jk * jk - k * ij * ij) / (i + j + k));
   }
   return 0;
 }
@@ -34,7 +41,9 @@ std::pair<size_t, size_t> nearest_pair(const Eigen::MatrixXd& distance, const st
   std::pair<size_t, size_t> best{0, 1};
   for (size_t i = 0; i < groups.size(); ++i)
     for (size_t j = i + 1; j < groups.size(); ++j)
-      if (distance(Eigen::Index(i), Eigen::Index(j)) < distance(Eigen::Index(best.first), Eigen::Index(best.second))) best = {i, j};
+      if (distance(Eigen::Index(i), Eigen::Index(j)) <
+          distance(Eigen::Index(best.first), Eigen::Index(best.second)))
+        best = {i, j};
   return best;
 }
 
@@ -83,11 +92,15 @@ std::vector<Join> hierarchy(const Eigen::MatrixXd& scores, Linkage linkage) {
     const Group a = groups[i], b = groups[j];
     const auto row = Eigen::Index(i), other = Eigen::Index(j);
     const double ij = distance(row, other);
-    joins.push_back({.first = std::min(a.number, b.number), .second = std::max(a.number, b.number), .distance = ij, .size = a.size + b.size});
+    joins.push_back({.first = std::min(a.number, b.number),
+                     .second = std::max(a.number, b.number),
+                     .distance = ij,
+                     .size = a.size + b.size});
     for (size_t k = 0; k < groups.size(); ++k) {
       if (k == i || k == j) continue;
       const auto at = Eigen::Index(k);
-      distance(row, at) = distance(at, row) = distance_to_union(linkage, distance(row, at), distance(other, at), ij, a.size, b.size, groups[k].size);
+      distance(row, at) = distance(at, row) = distance_to_union(
+          linkage, distance(row, at), distance(other, at), ij, a.size, b.size, groups[k].size);
     }
     groups[i] = {.number = n + int(joins.size()) - 1, .size = a.size + b.size};
     groups.erase(groups.begin() + std::ptrdiff_t(j));
@@ -105,12 +118,14 @@ std::vector<int> leaf_order(const std::vector<Join>& joins) {
 std::vector<int> clusters(const std::vector<Join>& joins, int count) {
   const int n = int(joins.size()) + 1, kept = n - count;  // joins that stay
   std::vector<int> parent(size_t(2 * n - 1), -1);
-  for (int i = 0; i < kept; ++i) parent[size_t(joins[size_t(i)].first)] = parent[size_t(joins[size_t(i)].second)] = n + i;
+  for (int i = 0; i < kept; ++i)
+    parent[size_t(joins[size_t(i)].first)] = parent[size_t(joins[size_t(i)].second)] = n + i;
   std::vector<int> out(size_t(n), -1), roots;
   for (const int leaf : leaf_order(joins)) {
     int root = leaf;
     while (parent[size_t(root)] >= 0) root = parent[size_t(root)];
-    if (roots.empty() || roots.back() != root) roots.push_back(root);  // leaves of a group are neighbours in this order
+    if (roots.empty() || roots.back() != root)
+      roots.push_back(root);  // leaves of a group are neighbours in this order
     out[size_t(leaf)] = int(roots.size()) - 1;
   }
   return out;

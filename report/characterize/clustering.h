@@ -8,8 +8,8 @@
 
 namespace glint::report {
 
-// How far two groups are apart: the nearest pair, the farthest, the mean of all pairs, or by how much joining them raises the
-// sum of squares within groups (Ward).
+// How far two groups are apart: the nearest pair, the farthest, the mean of all pairs, or by how much joining
+// them raises the sum of squares within groups (Ward).
 enum class Linkage { Single, Complete, Average, Ward };
 // "single", "complete", "average", "ward"; UserError otherwise.
 Linkage linkage_of(const std::string& name);
@@ -22,17 +22,19 @@ struct Join {
   int size = 0;               // leaves of both
 };
 
-// n - 1 joins, nearest first. `scores`: a row a workload, at least two. Of pairs equally near the one with the
-// lowest rows joins first.
+// n - 1 joins, nearest first. `scores`: a row a workload, at least two. Of pairs equally near the one with
+// the lowest rows joins first.
 std::vector<Join> hierarchy(const Eigen::MatrixXd& scores, Linkage linkage);
 
 // The leaves from left to right so that no lines of a dendrogram cross.
 std::vector<int> leaf_order(const std::vector<Join>& joins);
 
-// The group of each leaf when the last `count` - 1 joins are undone (1 <= count <= leaves). Groups are numbered from 0 in leaf_order().
+// The group of each leaf when the last `count` - 1 joins are undone (1 <= count <= leaves). Groups are
+// numbered from 0 in leaf_order().
 std::vector<int> clusters(const std::vector<Join>& joins, int count);
 
-// Correlation of distances and the distances at which leaves join (cophenetic): how well the tree tells the distances, -1 to 1.
+// Correlation of distances and the distances at which leaves join (cophenetic): how well the tree tells the
+// distances, -1 to 1.
 double cophenetic_correlation(const std::vector<Join>& joins, const Eigen::MatrixXd& scores);
 
 }  // namespace glint::report

@@ -12,7 +12,8 @@ struct FeatureTable {
     std::string column, why;
   };
   std::vector<std::string> workloads;  // distinct
-  std::vector<std::string> scenes, shaders;  // of each workload; from its name (SCENE_SHADER) where the table has no such columns
+  std::vector<std::string> scenes,
+      shaders;  // of each workload; from its name (SCENE_SHADER) where the table has no such columns
   std::vector<std::string> metrics;
   Eigen::MatrixXd values;        // workloads x metrics, as they stand in the file
   Eigen::MatrixXd standardised;  // each column with mean 0 and variance 1 (over n, not n - 1)
@@ -22,9 +23,10 @@ struct FeatureTable {
   Eigen::Index columns() const { return values.cols(); }
 };
 
-// From metrics.csv of `glint bench`, or any table whose first column names the workloads. Columns that say which run it was and the
-// host's speed are no metrics; dropped with a reason are: columns of text, with an empty cell, constant, or equal to an earlier one.
-// UserError where there are fewer than three workloads, fewer than two metrics remain, or a workload stands there twice.
+// From metrics.csv of `glint bench`, or any table whose first column names the workloads. Columns that say
+// which run it was and the host's speed are no metrics; dropped with a reason are: columns of text, with an
+// empty cell, constant, or equal to an earlier one. UserError where there are fewer than three workloads,
+// fewer than two metrics remain, or a workload stands there twice.
 FeatureTable feature_table(const std::string& csv, const std::string& name);
 
 // z-scores of each column. Every column has to vary.

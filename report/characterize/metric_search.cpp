@@ -13,7 +13,9 @@ struct Individual {
   double fitness = -2;
 };
 
-bool is_better(const Individual& a, const Individual& b) { return a.fitness != b.fitness ? a.fitness > b.fitness : a.columns < b.columns; }
+bool is_better(const Individual& a, const Individual& b) {
+  return a.fitness != b.fitness ? a.fitness > b.fitness : a.columns < b.columns;
+}
 
 // The numbers of std::mt19937_64 are the same everywhere, those of the standard's distributions are not.
 class Dice {
@@ -28,7 +30,11 @@ class Dice {
 class Search {
  public:
   Search(const DistanceFitness& fitness, const SearchSettings& settings)
-      : fitness_(fitness), settings_(settings), total_(int(fitness.metrics())), count_(std::clamp(settings.count, 1, total_)), dice_(settings.seed) {}
+      : fitness_(fitness),
+        settings_(settings),
+        total_(int(fitness.metrics())),
+        count_(std::clamp(settings.count, 1, total_)),
+        dice_(settings.seed) {}
 
   ChosenMetrics run() {
     for (int i = 0; i < settings_.islands; ++i) islands_.push_back(founders());
@@ -42,7 +48,8 @@ class Search {
         quiet = 0;
       }
     }
-    while (exchange_one()) {}
+    while (exchange_one()) {
+    }
     return result();
   }
 
@@ -57,7 +64,8 @@ class Search {
   // `columns` filled up with random others until there are enough.
   std::vector<int> filled(std::vector<int> columns) {
     while (int(columns.size()) < count_)
-      if (const int column = dice_.below(size_t(total_)); std::ranges::find(columns, column) == columns.end()) columns.push_back(column);
+      if (const int column = dice_.below(size_t(total_)); std::ranges::find(columns, column) == columns.end())
+        columns.push_back(column);
     return columns;
   }
 
@@ -69,7 +77,9 @@ class Search {
   }
 
   // The better of two by chance. An island is sorted, best first.
-  const Individual& parent(const std::vector<Individual>& island) { return island[size_t(std::min(dice_.below(island.size()), dice_.below(island.size())))]; }
+  const Individual& parent(const std::vector<Individual>& island) {
+    return island[size_t(std::min(dice_.below(island.size()), dice_.below(island.size())))];
+  }
 
   // What both parents have, and a random part of what one has.
   Individual child(const Individual& a, const Individual& b) {
@@ -89,11 +99,15 @@ class Search {
   }
 
   std::vector<Individual> next_generation(const std::vector<Individual>& island) {
-    std::vector<Individual> out(island.begin(), island.begin() + std::min<std::ptrdiff_t>(2, std::ssize(island)));  // the two best stay
+    std::vector<Individual> out(
+        island.begin(),
+        island.begin() + std::min<std::ptrdiff_t>(2, std::ssize(island)));  // the two best stay
     while (out.size() < island.size()) out.push_back(child(parent(island), parent(island)));
     std::ranges::sort(out, is_better);
     // Twins are replaced by newcomers: otherwise an island soon holds one set many times.
-    const auto twins = std::unique(out.begin(), out.end(), [](const Individual& a, const Individual& b) { return a.columns == b.columns; });
+    const auto twins = std::unique(out.begin(), out.end(), [](const Individual& a, const Individual& b) {
+      return a.columns == b.columns;
+    });
     std::for_each(twins, out.end(), [&](Individual& twin) { twin = judged(filled({})); });
     std::ranges::sort(out, is_better);
     return out;
@@ -123,7 +137,8 @@ class Search {
         if (std::ranges::find(best_.columns, column) != best_.columns.end()) continue;
         std::vector<int> columns = best_.columns;
         columns[at] = column;
-        if (Individual other = judged(std::move(columns)); other.fitness > better.fitness) better = std::move(other);
+        if (Individual other = judged(std::move(columns)); other.fitness > better.fitness)
+          better = std::move(other);
       }
     }
     if (better.fitness <= best_.fitness) return false;
@@ -132,7 +147,8 @@ class Search {
   }
 
   ChosenMetrics result() const {
-    ChosenMetrics out{.metrics = {}, .fitness = best_.fitness, .generations = generations_, .evaluations = evaluations_};
+    ChosenMetrics out{
+        .metrics = {}, .fitness = best_.fitness, .generations = generations_, .evaluations = evaluations_};
     for (const int column : best_.columns) {
       std::vector<int> others = best_.columns;
       std::erase(others, column);
@@ -158,7 +174,8 @@ DistanceFitness::DistanceFitness(const Eigen::MatrixXd& standardised) {
   const Eigen::Index n = standardised.rows();
   squares_.resize(n * (n - 1) / 2, standardised.cols());
   for (Eigen::Index i = 0, at = 0; i < n; ++i)
-    for (Eigen::Index j = i + 1; j < n; ++j) squares_.row(at++) = (standardised.row(i) - standardised.row(j)).array().square();
+    for (Eigen::Index j = i + 1; j < n; ++j)
+      squares_.row(at++) = (standardised.row(i) - standardised.row(j)).array().square();
   full_ = squares_.rowwise().sum().sqrt();
   full_ -= full_.mean();
   if (const double size = full_.matrix().norm(); size > 0) full_ /= size;
@@ -173,6 +190,8 @@ double DistanceFitness::operator()(const std::vector<int>& chosen) const {
   return size > 0 ? (sum * full_).sum() / size : 0;
 }
 
-ChosenMetrics choose_metrics(const DistanceFitness& fitness, const SearchSettings& settings) { return Search(fitness, settings).run(); }
+ChosenMetrics choose_metrics(const DistanceFitness& fitness, const SearchSettings& settings) {
+  return Search(fitness, settings).run();
+}
 
 }  // namespace glint::report

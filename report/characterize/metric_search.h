@@ -1,5 +1,5 @@
-// The few metrics that tell workloads apart as all of them do, by a genetic algorithm as in MICA (Hoste and Eeckhout 2006, 2007).
-// SPDX-License-Identifier: Apache-2.0
+// The few metrics that tell workloads apart as all of them do, by a genetic algorithm as in MICA (Hoste and
+// Eeckhout 2006, 2007). SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -7,8 +7,9 @@
 
 namespace glint::report {
 
-// Scores sets of metrics: Pearson's correlation of the distances between workloads in these metrics with those in all metrics.
-// Choice: MICA's fitness also falls with the number of metrics; here that number is given, so the factor is the same for all sets.
+// Scores sets of metrics: Pearson's correlation of the distances between workloads in these metrics with
+// those in all metrics. Choice: MICA's fitness also falls with the number of metrics; here that number is
+// given, so the factor is the same for all sets.
 class DistanceFitness {
  public:
   explicit DistanceFitness(const Eigen::MatrixXd& standardised);
@@ -21,7 +22,8 @@ class DistanceFitness {
   Eigen::ArrayXd full_;      // distances in all metrics, centred, of length 1
 };
 
-// Choice: MICA names no sizes. With these the best of ten seeds is found by each of them on the LumiBench metrics (docs/characterization.md).
+// Choice: MICA names no sizes. With these the best of ten seeds is found by each of them on the LumiBench
+// metrics (docs/characterization.md).
 struct SearchSettings {
   int count = 8;          // metrics to choose
   uint64_t seed = 1;      // same seed, same result

@@ -15,7 +15,8 @@ PrincipalComponents principal_components(const Eigen::MatrixXd& standardised) {
   out.kept = std::max<Eigen::Index>(1, (out.eigenvalues.array() > 1).count());
   out.directions = solver.eigenvectors().rowwise().reverse().leftCols(out.kept);
   for (auto direction : out.directions.colwise()) {
-    // A direction and its opposite are the same component: one of them is chosen, so that every machine shows the same picture.
+    // A direction and its opposite are the same component: one of them is chosen, so that every machine shows
+    // the same picture.
     Eigen::Index largest = 0;
     direction.cwiseAbs().maxCoeff(&largest);
     if (direction[largest] < 0) direction = -direction;

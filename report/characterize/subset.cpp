@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/characterize/subset.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <fmt/format.h>
 #include <map>
 #include <set>
 
@@ -37,12 +36,14 @@ std::vector<std::vector<Member>> members_of(const Eigen::MatrixXd& scores, const
 std::map<std::string, double> cycles_of(const std::string& csv, const std::string& name) {
   const CsvTable table = read_csv(csv, name);
   const auto found = std::ranges::find(table.columns, "cycles");
-  if (found == table.columns.end()) throw UserError({name, 1}, "there is no column 'cycles'", "`glint bench` writes it into metrics.csv");
+  if (found == table.columns.end())
+    throw UserError({name, 1}, "there is no column 'cycles'", "`glint bench` writes it into metrics.csv");
   std::map<std::string, double> out;
   for (const std::vector<std::string>& row : table.rows) {
     const std::string& cell = row[size_t(found - table.columns.begin())];
     double value = 0;
-    if (std::from_chars(cell.data(), cell.data() + cell.size(), value).ec == std::errc{} && value > 0) out[row[0]] = value;
+    if (std::from_chars(cell.data(), cell.data() + cell.size(), value).ec == std::errc{} && value > 0)
+      out[row[0]] = value;
   }
   return out;
 }
@@ -61,7 +62,8 @@ SpeedUps::Range range_of(const std::map<std::string, double>& speed_ups) {
 
 }  // namespace
 
-std::vector<Representative> representatives(const FeatureTable& table, const Eigen::MatrixXd& scores, const std::vector<int>& clusters) {
+std::vector<Representative> representatives(const FeatureTable& table, const Eigen::MatrixXd& scores,
+                                            const std::vector<int>& clusters) {
   const std::vector<std::vector<Member>> members = members_of(scores, clusters);
   std::vector<size_t> order(members.size());
   for (size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -69,7 +71,9 @@ std::vector<Representative> representatives(const FeatureTable& table, const Eig
   std::vector<Representative> out(members.size());
   std::set<std::string> taken;
   for (const size_t cluster : order) {
-    const auto free = std::ranges::find_if(members[cluster], [&](const Member& member) { return !taken.contains(table.scenes[size_t(member.row)]); });
+    const auto free = std::ranges::find_if(members[cluster], [&](const Member& member) {
+      return !taken.contains(table.scenes[size_t(member.row)]);
+    });
     const Member& chosen = free != members[cluster].end() ? *free : members[cluster].front();
     taken.insert(table.scenes[size_t(chosen.row)]);
     out[cluster] = {.row = chosen.row, .cluster = int(cluster), .distance = chosen.distance};
@@ -87,14 +91,18 @@ double coverage_error(const Eigen::MatrixXd& scores, const std::vector<int>& row
   return sum / double(scores.rows()) / pairwise_distances(scores).mean();
 }
 
-SpeedUps speed_ups(const std::string& before, const std::string& before_name, const std::string& after, const std::string& after_name, const std::vector<std::string>& names) {
+SpeedUps speed_ups(const std::string& before, const std::string& before_name, const std::string& after,
+                   const std::string& after_name, const std::vector<std::string>& names) {
   const std::map<std::string, double> was = cycles_of(before, before_name), is = cycles_of(after, after_name);
   std::map<std::string, double> all, chosen;
   for (const auto& [workload, cycles] : was)
     if (const auto found = is.find(workload); found != is.end()) all[workload] = cycles / found->second;
   for (const std::string& name : names) {
     const auto found = all.find(name);
-    if (found == all.end()) throw UserError({is.contains(name) ? before_name : after_name}, fmt::format("has no cycles of {}", name), "both tables need the workloads of the subset");
+    if (found == all.end())
+      throw UserError({is.contains(name) ? before_name : after_name},
+                      fmt::format("has no cycles of {}", name),
+                      "both tables need the workloads of the subset");
     chosen[name] = found->second;
   }
   return {.all = range_of(all), .subset = range_of(chosen)};

@@ -15,15 +15,18 @@ struct Representative {
   double distance = 0;  // to the centre of its cluster
 };
 
-// One of each cluster, by cluster: the nearest to the centre (the mean of the cluster's scores) whose scene no other cluster has
-// given yet; where all scenes are taken, the nearest. Small clusters choose first, for they have the least choice.
-std::vector<Representative> representatives(const FeatureTable& table, const Eigen::MatrixXd& scores, const std::vector<int>& clusters);
+// One of each cluster, by cluster: the nearest to the centre (the mean of the cluster's scores) whose scene
+// no other cluster has given yet; where all scenes are taken, the nearest. Small clusters choose first, for
+// they have the least choice.
+std::vector<Representative> representatives(const FeatureTable& table, const Eigen::MatrixXd& scores,
+                                            const std::vector<int>& clusters);
 
-// Mean distance of all workloads to the nearest of `rows`, as a share of the mean distance between two workloads: 0 = each is
-// there itself. Below 1; smaller is better.
+// Mean distance of all workloads to the nearest of `rows`, as a share of the mean distance between two
+// workloads: 0 = each is there itself. Below 1; smaller is better.
 double coverage_error(const Eigen::MatrixXd& scores, const std::vector<int>& rows);
 
-// Speed-ups from one configuration to another, of some workloads against all of them (the paper's check of its subset).
+// Speed-ups from one configuration to another, of some workloads against all of them (the paper's check of
+// its subset).
 struct SpeedUps {
   struct Range {
     double mean = 0, least = 0, most = 0;  // geometric mean
@@ -33,8 +36,9 @@ struct SpeedUps {
   double error() const { return subset.mean / all.mean - 1; }
 };
 
-// `before` and `after`: tables of metrics with a column `cycles`. UserError where one lacks it or a workload of `names`. Workloads
-// that only one of the two tables has are left out.
-SpeedUps speed_ups(const std::string& before, const std::string& before_name, const std::string& after, const std::string& after_name, const std::vector<std::string>& names);
+// `before` and `after`: tables of metrics with a column `cycles`. UserError where one lacks it or a workload
+// of `names`. Workloads that only one of the two tables has are left out.
+SpeedUps speed_ups(const std::string& before, const std::string& before_name, const std::string& after,
+                   const std::string& after_name, const std::vector<std::string>& names);
 
 }  // namespace glint::report

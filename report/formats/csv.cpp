@@ -17,7 +17,8 @@ class CsvWriter final : public StatWriter {
   std::string write(const stats::Group& root) const override {
     std::string out = "path,value,unit,doc\n";
     for (const StatRow& row : stat_rows(root))
-      out += csv_field(row.path) + "," + csv_field(row.value) + "," + csv_field(row.unit) + "," + csv_field(row.doc) + "\n";
+      out += csv_field(row.path) + "," + csv_field(row.value) + "," + csv_field(row.unit) + "," +
+             csv_field(row.doc) + "\n";
     return out;
   }
 };

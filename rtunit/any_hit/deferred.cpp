@@ -1,5 +1,5 @@
-// Mode `deferred`: traversal runs on and gathers candidates in a table; then shaders run over it, one shader at a time.
-// SPDX-License-Identifier: Apache-2.0
+// Mode `deferred`: traversal runs on and gathers candidates in a table; then shaders run over it, one shader
+// at a time. SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <tuple>
 
@@ -18,9 +18,11 @@ struct Group {
   std::array<uint8_t, kLanes> row{};
 };
 
-// Nearest first: what it may commit makes the most others drop. Of equals the one that would win (traversal.cpp).
+// Nearest first: what it may commit makes the most others drop. Of equals the one that would win
+// (traversal.cpp).
 bool comes_before(const Hit& a, const Hit& b) {
-  return std::tie(a.t, a.instance, a.geometry, a.primitive) < std::tie(b.t, b.instance, b.geometry, b.primitive);
+  return std::tie(a.t, a.instance, a.geometry, a.primitive) <
+         std::tie(b.t, b.instance, b.geometry, b.primitive);
 }
 
 // Candidates of more shaders than this at once wait for a later round.
@@ -42,10 +44,11 @@ struct Groups {
   }
 };
 
-// The shader that the most lanes can run together. Vulkan-Sim's function-call coalescing makes as many calls: for each
-// shader as many as the lane with the most candidates for it has.
+// The shader that the most lanes can run together. Vulkan-Sim's function-call coalescing makes as many calls:
+// for each shader as many as the lane with the most candidates for it has.
 bool is_better(const Group& a, const Group& b) {
-  if ((a.shader == AnyHitMode::kNoShader) != (b.shader == AnyHitMode::kNoShader)) return b.shader == AnyHitMode::kNoShader;
+  if ((a.shader == AnyHitMode::kNoShader) != (b.shader == AnyHitMode::kNoShader))
+    return b.shader == AnyHitMode::kNoShader;
   if (num_lanes(a.lanes) != num_lanes(b.lanes)) return num_lanes(a.lanes) > num_lanes(b.lanes);
   return a.shader < b.shader;
 }
@@ -53,12 +56,15 @@ bool is_better(const Group& a, const Group& b) {
 class Deferred final : public AnyHitMode {
  public:
   static constexpr std::string_view kName = "deferred";
-  static constexpr std::string_view kDoc = "Rays gather candidates in tables; shaders run over them after the traversal.";
+  static constexpr std::string_view kDoc =
+      "Rays gather candidates in tables; shaders run over them after the traversal.";
   struct Params {
     uint32_t table_entries = 8;  // Choice: Vulkan-Sim has 1,000 and stops the run when a table is full
     static constexpr auto params() {
-      return std::tuple{param(&Params::table_entries, "table_entries", "candidate",
-                              "Candidates of a ray that its table holds; when it is full, their shaders run first.", 1, kMaxTableRows)};
+      return std::tuple{
+          param(&Params::table_entries, "table_entries", "candidate",
+                "Candidates of a ray that its table holds; when it is full, their shaders run first.", 1,
+                kMaxTableRows)};
     }
   };
   Deferred(Params params, Context) : params_(params) {}
@@ -83,7 +89,8 @@ class Deferred final : public AnyHitMode {
     for (size_t i = 0; i < groups.count; ++i) {
       const Group& group = groups.group[i];
       if (group.shader != kNoShader || &group == best) continue;
-      for_each_lane(group.lanes & ~best->lanes, [&](int lane) { rt::present(rays[lane], group.row[size_t(lane)]); });
+      for_each_lane(group.lanes & ~best->lanes,
+                    [&](int lane) { rt::present(rays[lane], group.row[size_t(lane)]); });
     }
   }
 

@@ -1,5 +1,5 @@
-// Mode `immediate`: a ray stops at each candidate, its shader runs, and the ray goes on, shorter by what was accepted.
-// SPDX-License-Identifier: Apache-2.0
+// Mode `immediate`: a ray stops at each candidate, its shader runs, and the ray goes on, shorter by what was
+// accepted. SPDX-License-Identifier: Apache-2.0
 #include "base/check.h"
 #include "base/registry.h"
 #include "rtunit/any_hit_mode.h"
@@ -17,7 +17,9 @@ class Immediate final : public AnyHitMode {
   Immediate(Params, Context) {}
 
   uint32_t table_rows() const override { return 0; }
-  void present(RayState*, LaneMask, const ShaderOf&) const override { GLINT_PANIC("mode '{}' has no tables", kName); }
+  void present(RayState*, LaneMask, const ShaderOf&) const override {
+    GLINT_PANIC("mode '{}' has no tables", kName);
+  }
 };
 
 const Register<AnyHitMode, Immediate> registered;

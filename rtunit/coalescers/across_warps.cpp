@@ -9,7 +9,8 @@ namespace {
 class AcrossWarps final : public Coalescer {
  public:
   static constexpr std::string_view kName = "across_warps";
-  static constexpr std::string_view kDoc = "Lanes of all warps in the unit that wait to ask for the same node share a fetch.";
+  static constexpr std::string_view kDoc =
+      "Lanes of all warps in the unit that wait to ask for the same node share a fetch.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

@@ -1,5 +1,5 @@
-// Coalescing `within_warp`: lanes of a warp that want the same node share its fetch, as in the published simulators.
-// SPDX-License-Identifier: Apache-2.0
+// Coalescing `within_warp`: lanes of a warp that want the same node share its fetch, as in the published
+// simulators. SPDX-License-Identifier: Apache-2.0
 #include "base/registry.h"
 #include "rtunit/coalescer.h"
 
@@ -15,7 +15,9 @@ class WithinWarp final : public Coalescer {
   };
   WithinWarp(Params, Context) {}
 
-  uint64_t partners(uint32_t picked, std::span<const WarpView>) const override { return uint64_t{1} << picked; }
+  uint64_t partners(uint32_t picked, std::span<const WarpView>) const override {
+    return uint64_t{1} << picked;
+  }
 };
 
 const Register<Coalescer, WithinWarp> registered;

@@ -20,7 +20,9 @@ class Bvh4Format final : public NodeFormat {
   uint32_t width() const override { return Bvh4::kWidth; }
   uint32_t node_bytes() const override { return Bvh4::kNodeBytes; }
   std::vector<std::byte> encode(const BuildTree& tree) const override { return Bvh4::encode(tree); }
-  uint32_t decode(const std::byte* node, std::span<DecodedChild> out) const override { return Bvh4::decode(node, out); }
+  uint32_t decode(const std::byte* node, std::span<DecodedChild> out) const override {
+    return Bvh4::decode(node, out);
+  }
 };
 
 const Register<NodeFormat, Bvh4Format> registered;

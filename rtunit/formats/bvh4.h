@@ -1,12 +1,13 @@
-// Node format `bvh4`: 128-byte nodes of four boxes in single precision, of the size of AMD's RDNA 2 box nodes.
-// SPDX-License-Identifier: Apache-2.0
+// Node format `bvh4`: 128-byte nodes of four boxes in single precision, of the size of AMD's RDNA 2 box
+// nodes. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "rtunit/float_boxes.h"
 
 namespace glint::rt {
 
-// RDNA 2 ISA guide (2020), IMAGE_BVH_INTERSECT_RAY: a box node of 32-bit floats has four references, whose low 3 bits
-// are the kind, and four boxes, in 128 B. Choice: planes of one axis lie together, references behind the boxes.
+// RDNA 2 ISA guide (2020), IMAGE_BVH_INTERSECT_RAY: a box node of 32-bit floats has four references, whose
+// low 3 bits are the kind, and four boxes, in 128 B. Choice: planes of one axis lie together, references
+// behind the boxes.
 using Bvh4 = FloatBoxes<4>;
 static_assert(Bvh4::kNodeBytes == 128);
 

@@ -10,7 +10,8 @@ namespace {
 class Bvh6Format final : public NodeFormat {
  public:
   static constexpr std::string_view kName = "bvh6";
-  static constexpr std::string_view kDoc = "64 B nodes of six children, 8-bit planes, power-of-two steps an axis.";
+  static constexpr std::string_view kDoc =
+      "64 B nodes of six children, 8-bit planes, power-of-two steps an axis.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };
@@ -26,7 +27,9 @@ class Bvh6Format final : public NodeFormat {
       if (!children.empty()) node.first_block = layout.block[children[0]];
     });
   }
-  uint32_t decode(const std::byte* bytes, std::span<DecodedChild> out) const override { return Bvh6::decode(bytes, out); }
+  uint32_t decode(const std::byte* bytes, std::span<DecodedChild> out) const override {
+    return Bvh6::decode(bytes, out);
+  }
 };
 
 const Register<NodeFormat, Bvh6Format> registered;

@@ -10,7 +10,8 @@ namespace {
 class Bvh8Format final : public NodeFormat {
  public:
   static constexpr std::string_view kName = "bvh8";
-  static constexpr std::string_view kDoc = "80 B nodes of eight children, 8-bit planes, power-of-two steps an axis; leaves apart.";
+  static constexpr std::string_view kDoc =
+      "80 B nodes of eight children, 8-bit planes, power-of-two steps an axis; leaves apart.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };
@@ -29,7 +30,9 @@ class Bvh8Format final : public NodeFormat {
       }
     });
   }
-  uint32_t decode(const std::byte* bytes, std::span<DecodedChild> out) const override { return Bvh8::decode(bytes, out); }
+  uint32_t decode(const std::byte* bytes, std::span<DecodedChild> out) const override {
+    return Bvh8::decode(bytes, out);
+  }
 };
 
 const Register<NodeFormat, Bvh8Format> registered;

@@ -5,10 +5,10 @@
 
 namespace glint::rt {
 
-// "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", figure 2: 12 B origin, 3 B exponents, 1 B,
-// two base indices of 4 B, 8 B about the children, 48 B planes; nodes and leaves in arrays of their own.
-// Model: children are visited by distance, as in every format; the paper's order by octant is not there, so the byte
-// behind the exponents counts the children, and the kinds say which are nodes.
+// "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", figure 2: 12 B origin, 3 B
+// exponents, 1 B, two base indices of 4 B, 8 B about the children, 48 B planes; nodes and leaves in arrays of
+// their own. Model: children are visited by distance, as in every format; the paper's order by octant is not
+// there, so the byte behind the exponents counts the children, and the kinds say which are nodes.
 struct Bvh8 : QuantisedBoxes<Bvh8> {
   static constexpr int kWidth = 8;
 
@@ -26,7 +26,8 @@ struct Bvh8 : QuantisedBoxes<Bvh8> {
   // References of a node's children, one after the other.
   class References {
    public:
-    explicit References(const Node& node) : node_(node), next_node_(node.first_node), next_leaf_(node.first_leaf) {}
+    explicit References(const Node& node)
+        : node_(node), next_node_(node.first_node), next_leaf_(node.first_leaf) {}
     NodeRef next(int child) {
       const NodeKind kind = NodeKind(node_.kind[size_t(child)] & 7);
       uint32_t& next = kind == NodeKind::Internal ? next_node_ : next_leaf_;

@@ -1,8 +1,7 @@
 // Whole scripts on both machines.
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/support/catch.h"
-
 #include "tests/amber/support.h"
+#include "tests/support/catch.h"
 
 namespace glint::amber {
 namespace {
@@ -14,7 +13,9 @@ Outcome run(const std::string& name, bool timing) {
 }
 
 TEST_CASE("scripts of every kind pass on the functional machine", "[amber]") {
-  for (const char* name : {"values", "shared", "spirv", "layouts", "images", "rays", "options", "resources", "entries", "numbers", "files", "sections", "versions", "first_hit", "strides", "far_binding", "chosen_arrays", "samples"}) {
+  for (const char* name : {"values", "shared", "spirv", "layouts", "images", "rays", "options", "resources",
+                           "entries", "numbers", "files", "sections", "versions", "first_hit", "strides",
+                           "far_binding", "chosen_arrays", "samples"}) {
     const Outcome outcome = run(name, false);
     INFO(name << ": " << outcome.message);
     CHECK(outcome.verdict == Verdict::Passed);

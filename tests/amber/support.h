@@ -20,6 +20,8 @@ inline Outcome outcome_of(const std::string& body, bool timing = false) {
   return out;
 }
 
-inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+inline bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 }  // namespace glint::amber

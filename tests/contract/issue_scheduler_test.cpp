@@ -61,9 +61,9 @@ TEST_CASE("gto stays with its warp while that is ready, then takes the oldest") 
   const auto gto = make("gto", 4);
   const std::vector<uint64_t> age = {30, 10, 20, 40};
 
-  CHECK(gto->pick({0b1001, age, 0}) == 0);   // oldest of 0 and 3
-  CHECK(gto->pick({0b1111, age, 1}) == 0);   // greedy, although 1 is older
-  CHECK(gto->pick({0b1110, age, 2}) == 1);   // then the oldest
+  CHECK(gto->pick({0b1001, age, 0}) == 0);  // oldest of 0 and 3
+  CHECK(gto->pick({0b1111, age, 1}) == 0);  // greedy, although 1 is older
+  CHECK(gto->pick({0b1110, age, 2}) == 1);  // then the oldest
   CHECK(gto->pick({0b1101, age, 3}) == 2);
   CHECK(gto->pick({0b1111, age, 4}) == 2);
 }

@@ -1,8 +1,7 @@
 // Every registered any-hit mode keeps the promises of rtunit/any_hit_mode.h.
 // SPDX-License-Identifier: Apache-2.0
-#include "rtunit/any_hit_mode.h"
-
 #include "base/registry.h"
+#include "rtunit/any_hit_mode.h"
 #include "rtunit/traversal.h"
 #include "tests/support/catch.h"
 #include "tests/support/rt_scenes.h"
@@ -40,9 +39,12 @@ struct Warp {
   }
 };
 
-uint32_t shader_of(int, const Candidate& candidate) { return candidate.hit.primitive == 0 ? AnyHitMode::kNoShader : candidate.hit.primitive; }
+uint32_t shader_of(int, const Candidate& candidate) {
+  return candidate.hit.primitive == 0 ? AnyHitMode::kNoShader : candidate.hit.primitive;
+}
 
-TEST_CASE("every mode with a table presents one candidate of some lanes at a time until all tables are empty") {
+TEST_CASE(
+    "every mode with a table presents one candidate of some lanes at a time until all tables are empty") {
   const auto names = Registry<AnyHitMode>::names();
   REQUIRE(names.size() >= 2);
   Random random{11};
@@ -65,7 +67,8 @@ TEST_CASE("every mode with a table presents one candidate of some lanes at a tim
           RayState& state = warp.ray[size_t(lane)];
           if (state.status == RayStatus::Gathered) return;
           presented |= LaneMask{1} << lane;
-          REQUIRE(state.status == (state.candidate_procedural ? RayStatus::NeedsIntersection : RayStatus::NeedsAnyHit));
+          REQUIRE(state.status ==
+                  (state.candidate_procedural ? RayStatus::NeedsIntersection : RayStatus::NeedsAnyHit));
           state.status = RayStatus::Gathered;
           if (state.table->used == 0) waiting &= ~(LaneMask{1} << lane);
         });
@@ -93,7 +96,8 @@ TEST_CASE("the deferred mode runs one shader at a time, nearest candidates first
       for (uint32_t rest = before[size_t(lane)].used; rest; rest &= rest - 1) {
         const Hit& hit = before[size_t(lane)].row[size_t(std::countr_zero(rest))].hit;
         wants[hit.primitive] = true;
-        if (state.status != RayStatus::Gathered && hit.primitive == state.candidate.primitive) CHECK(state.candidate.t <= hit.t);
+        if (state.status != RayStatus::Gathered && hit.primitive == state.candidate.primitive)
+          CHECK(state.candidate.t <= hit.t);
       }
       for (size_t s = 0; s < 4; ++s) wanting[s] += wants[s];
       if (state.status == RayStatus::Gathered || state.candidate.primitive == 0) return;

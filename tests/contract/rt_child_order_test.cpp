@@ -29,7 +29,9 @@ Hits hits(std::initializer_list<std::pair<float, NodeKind>> children) {
   return out;
 }
 
-Order order_of(const char* name, const Hits& of) { return of.sorted(*Registry<ChildOrder>::instance().entry(name).make_default({})); }
+Order order_of(const char* name, const Hits& of) {
+  return of.sorted(*Registry<ChildOrder>::instance().entry(name).make_default({}));
+}
 
 constexpr NodeKind kNode = NodeKind::Internal, kLeaf = NodeKind::Triangle;
 
@@ -61,10 +63,13 @@ TEST_CASE("near_first is by distance, of equals the lower; and it is what the tr
   CHECK(Registry<ChildOrder>::instance().entry("near_first").make_default({})->for_rays() == nullptr);
 }
 
-TEST_CASE("index_order is that of the node") { CHECK(order_of("index_order", hits({{3, kNode}, {1, kLeaf}, {2, kNode}})) == Order{0, 1, 2}); }
+TEST_CASE("index_order is that of the node") {
+  CHECK(order_of("index_order", hits({{3, kNode}, {1, kLeaf}, {2, kNode}})) == Order{0, 1, 2});
+}
 
 TEST_CASE("first_internal goes down the first internal child, then from the last child to the first") {
-  CHECK(order_of("first_internal", hits({{3, kLeaf}, {1, kNode}, {2, kNode}, {0, kLeaf}})) == Order{1, 3, 2, 0});
+  CHECK(order_of("first_internal", hits({{3, kLeaf}, {1, kNode}, {2, kNode}, {0, kLeaf}})) ==
+        Order{1, 3, 2, 0});
   CHECK(order_of("first_internal", hits({{3, kLeaf}, {1, kLeaf}})) == Order{1, 0});
 }
 

@@ -35,7 +35,9 @@ TEST_CASE("a coalescing policy names no partners, or the warp itself and others 
 TEST_CASE("lanes share a fetch with nobody, with their warp, or with all that are ready") {
   std::vector<WarpView> warps(5);
   warps[1].ready = warps[2].ready = warps[4].ready = true;
-  const auto partners = [&](const char* name) { return Registry<Coalescer>::instance().entry(name).make_default({})->partners(2, warps); };
+  const auto partners = [&](const char* name) {
+    return Registry<Coalescer>::instance().entry(name).make_default({})->partners(2, warps);
+  };
   CHECK(partners("each_lane") == 0);
   CHECK(partners("within_warp") == 0b00100);
   CHECK(partners("across_warps") == 0b10110);

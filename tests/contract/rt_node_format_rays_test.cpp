@@ -1,5 +1,5 @@
-// In every registered node format a ray finds what testing every primitive finds, to the bit, under all of Vulkan's flags.
-// SPDX-License-Identifier: Apache-2.0
+// In every registered node format a ray finds what testing every primitive finds, to the bit, under all of
+// Vulkan's flags. SPDX-License-Identifier: Apache-2.0
 #include "base/registry.h"
 #include "rtunit/validate.h"
 #include "tests/support/catch.h"
@@ -17,11 +17,18 @@ Positions scaled(Positions p, float scale, std::array<float, 3> move = {}) {
 // Points, lines and not-a-numbers among the triangles, several of them twice.
 Positions with_degenerate(Random& random, Positions p) {
   for (int i = 0; i < 20; ++i) {
-    const size_t at = 3 * random.below(uint32_t(p.size() / 3)), from = 3 * random.below(uint32_t(p.size() / 3));
+    const size_t at = 3 * random.below(uint32_t(p.size() / 3)),
+                 from = 3 * random.below(uint32_t(p.size() / 3));
     switch (random.below(4)) {
-      case 0: p[at + 1] = p[at]; break;
-      case 1: p[at] = p[at + 1] = p[at + 2]; break;
-      case 2: p[at][random.below(3)] = NAN; break;
+      case 0:
+        p[at + 1] = p[at];
+        break;
+      case 1:
+        p[at] = p[at + 1] = p[at + 2];
+        break;
+      case 2:
+        p[at][random.below(3)] = NAN;
+        break;
       default:
         for (size_t c = 0; c < 3; ++c) p[at + c] = p[from + c];
     }
@@ -109,8 +116,8 @@ std::vector<Named> scenes() {
 }
 
 RayState random_ray(Random& random, Address top, float size, std::array<float, 3> center = {}) {
-  static constexpr uint32_t kFlags[] = {0,     0,     1,     2,     0x10,  0x20,  0x40, 0x80,
-                                        0x100, 0x200, 0x11,  0x22,  0x42,  0x81,  0x110};
+  static constexpr uint32_t kFlags[] = {0,     0,     1,    2,    0x10, 0x20, 0x40, 0x80,
+                                        0x100, 0x200, 0x11, 0x22, 0x42, 0x81, 0x110};
   auto origin = random.point(2 * size);
   const auto target = random.point(size / 2);
   std::array<float, 3> direction;
@@ -123,8 +130,8 @@ RayState random_ray(Random& random, Address top, float size, std::array<float, 3
 }
 
 bool same(const Hit& a, const Hit& b) {
-  return std::memcmp(&a.t, &b.t, sizeof a.t) == 0 && a.u == b.u && a.v == b.v && a.kind == b.kind && a.instance == b.instance &&
-         a.geometry == b.geometry && a.primitive == b.primitive;
+  return std::memcmp(&a.t, &b.t, sizeof a.t) == 0 && a.u == b.u && a.v == b.v && a.kind == b.kind &&
+         a.instance == b.instance && a.geometry == b.geometry && a.primitive == b.primitive;
 }
 
 // Compares one ray in one format; of a ray that any hit ends, the hit is one of all.
@@ -140,7 +147,8 @@ void check_ray(const BuiltScene& built, RayState state, const std::vector<Hit>& 
   run_to_end(state, built.memory);
   REQUIRE(state.committed.valid() == !expected.empty());
   if (expected.empty()) return;
-  const auto found = std::find_if(expected.begin(), expected.end(), [&](const Hit& hit) { return same(state.committed, hit); });
+  const auto found = std::find_if(expected.begin(), expected.end(),
+                                  [&](const Hit& hit) { return same(state.committed, hit); });
   REQUIRE(found != expected.end());
 }
 

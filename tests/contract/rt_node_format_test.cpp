@@ -12,7 +12,9 @@
 namespace glint::rt::test {
 namespace {
 
-BuildOptions options_of(const std::string& format, bool pair = true) { return {format.c_str(), pair}; }
+BuildOptions options_of(const std::string& format, bool pair = true) {
+  return {format.c_str(), pair};
+}
 
 TEST_CASE("every node format encodes sound structures, the same every time") {
   Random random{6};
@@ -20,10 +22,12 @@ TEST_CASE("every node format encodes sound structures, the same every time") {
   for (const std::string& name : Registry<NodeFormat>::names()) {
     CAPTURE(name);
     mem::AddressSpace a, b;
-    const StructureInfo first = single(a, triangles(positions), options_of(name)), second = single(b, triangles(positions), options_of(name));
+    const StructureInfo first = single(a, triangles(positions), options_of(name)),
+                        second = single(b, triangles(positions), options_of(name));
     CHECK(validate(a, first.address).empty());
     REQUIRE(first.bytes == second.bytes);
-    CHECK(std::memcmp(a.find(first.address, first.bytes), b.find(second.address, second.bytes), first.bytes) == 0);
+    CHECK(std::memcmp(a.find(first.address, first.bytes), b.find(second.address, second.bytes),
+                      first.bytes) == 0);
     const auto format = make_format(name);
     CHECK(format->width() >= 2);
     CHECK(format->node_bytes() % kBlockBytes == 0);
@@ -50,12 +54,14 @@ TEST_CASE("a bottom level of another node format is refused") {
   const Positions positions = soup(random, 10, 10, 1);
   mem::AddressSpace memory;
   const StructureInfo bottom = build_bottom(memory, "b", {{triangles(positions)}}, {"bvh2"});
-  CHECK_THROWS_WITH(build_top(memory, "t", std::vector<Instance>(1), std::vector{bottom}, {"bvh6"}), Catch::Contains("another node format"));
+  CHECK_THROWS_WITH(build_top(memory, "t", std::vector<Instance>(1), std::vector{bottom}, {"bvh6"}),
+                    Catch::Contains("another node format"));
 }
 
 // Width and bytes as published; the number of nodes between a full tree's and a binary one's.
 TEST_CASE("nodes have the published sizes, and a structure is its header, nodes and leaves") {
-  const std::map<std::string, std::pair<uint32_t, uint32_t>> known{{"bvh2", {2, 64}}, {"bvh4", {4, 128}}, {"bvh6", {6, 64}}, {"bvh8", {8, 80}}};
+  const std::map<std::string, std::pair<uint32_t, uint32_t>> known{
+      {"bvh2", {2, 64}}, {"bvh4", {4, 128}}, {"bvh6", {6, 64}}, {"bvh8", {8, 80}}};
   Random random{1};
   const Positions positions = soup(random, 1000, 10, 1);
   uint32_t last_depth = 1000;
@@ -68,8 +74,10 @@ TEST_CASE("nodes have the published sizes, and a structure is its header, nodes 
     const StructureInfo info = build_bottom(memory, "b", {{triangles(positions)}}, options_of(name, false));
     CHECK(info.leaves == 1000);
     CHECK(info.nodes >= 999 / (size.first - 1));
-    if (name == "bvh2") CHECK(info.nodes == 999);
-    else CHECK(info.nodes < 999 / 2);
+    if (name == "bvh2")
+      CHECK(info.nodes == 999);
+    else
+      CHECK(info.nodes < 999 / 2);
     const uint64_t nodes_end = 64 + uint64_t(size.second) * info.nodes;
     CHECK(info.bytes == (nodes_end + 63) / 64 * 64 + 64 * 1000);
     CHECK(info.depth < last_depth);  // wider trees are shallower
@@ -94,7 +102,8 @@ TEST_CASE("boxes as decoded contain what they were made of") {
       BuildTree tree;
       tree.nodes.resize(1);
       tree.leaf_bytes.resize(kLeafBytes * format->width());
-      const float size = std::pow(10.f, random.uniform(-36, 36)), place = size * std::pow(10.f, random.uniform(-2, 6));
+      const float size = std::pow(10.f, random.uniform(-36, 36)),
+                  place = size * std::pow(10.f, random.uniform(-2, 6));
       const auto center = scaled_point(random, std::fmin(place, 1e37f));
       tree.nodes[0].num_children = 1 + random.below(format->width());
       for (uint32_t i = 0; i < tree.nodes[0].num_children; ++i) {
@@ -140,7 +149,8 @@ TEST_CASE("the validator finds damage in every node format") {
       view[at] = before;
     }
     CHECK(validate(memory, info.address).empty());
-    CHECK(found > node_bytes / 4);  // of the bytes changed one by one; low bits of planes and padding may go unseen
+    CHECK(found >
+          node_bytes / 4);  // of the bytes changed one by one; low bits of planes and padding may go unseen
   }
 }
 

@@ -10,7 +10,8 @@ namespace {
 struct Rays {
   std::vector<WarpRays> warps{2};
   std::vector<std::array<CandidateTable, kLanes>> tables{2};
-  // Half of the seeds gather candidates. Lanes 0 to 3 of a warp, and the first lanes of all warps, have the same ray.
+  // Half of the seeds gather candidates. Lanes 0 to 3 of a warp, and the first lanes of all warps, have the
+  // same ray.
   Rays(uint64_t seed, const BuiltScene& built, bool gather) {
     Random random{seed};
     RayState same;
@@ -32,7 +33,8 @@ struct Rays {
 };
 
 bool same_hit(const Hit& a, const Hit& b) {
-  return std::memcmp(&a.t, &b.t, 12) == 0 && a.kind == b.kind && a.instance == b.instance && a.geometry == b.geometry && a.primitive == b.primitive;
+  return std::memcmp(&a.t, &b.t, 12) == 0 && a.kind == b.kind && a.instance == b.instance &&
+         a.geometry == b.geometry && a.primitive == b.primitive;
 }
 
 // Every policy that a traversal may depend on, and the limits beside it.
@@ -59,7 +61,9 @@ std::vector<Params> combinations() {
   return out;
 }
 
-TEST_CASE("with every combination of policies each ray finds the same hit, and skipping to events changes no cycle") {
+TEST_CASE(
+    "with every combination of policies each ray finds the same hit, and skipping to events changes no "
+    "cycle") {
   uint64_t hits = 0, combination = 0, spills = 0, restarts = 0, across = 0, stale = 0, full = 0;
   std::vector<std::unique_ptr<BuiltScene>> built;
   std::vector<Scene> scenes;
@@ -71,13 +75,18 @@ TEST_CASE("with every combination of policies each ray finds the same hit, and s
     const BuiltScene& scene = *built[combination % built.size()];
     const bool gather = combination / 4 % 2;
     ++combination;
-    CAPTURE(params.child_order.name, params.coalescing.name, params.stack.name, params.scheduler.name, params.retest, params.mshr_entries, gather);
-    Rays expected(combination, scene, false), ticked(combination, scene, gather), skipped(combination, scene, gather);
+    CAPTURE(params.child_order.name, params.coalescing.name, params.stack.name, params.scheduler.name,
+            params.retest, params.mshr_entries, gather);
+    Rays expected(combination, scene, false), ticked(combination, scene, gather),
+        skipped(combination, scene, gather);
     mem::FixedLatencyMemory l1_ticked(20, 2), l1_skipped(20, 2);
-    const RtUnit::Context context{scene.memory, l1_ticked, nullptr, Address{1} << 30, {Address{1} << 31, gather ? 3u : 0u}, Address{1} << 32};
+    const RtUnit::Context context{
+        scene.memory,    l1_ticked, nullptr, Address{1} << 30, {Address{1} << 31, gather ? 3u : 0u},
+        Address{1} << 32};
     RtUnit::Context other{scene.memory, l1_skipped, nullptr, context.results, context.tables, context.stacks};
     RtUnit all(params, context), some(params, other);
-    const Launch a = launch(all, l1_ticked, ticked.warps, true), b = launch(some, l1_skipped, skipped.warps, false);
+    const Launch a = launch(all, l1_ticked, ticked.warps, true),
+                 b = launch(some, l1_skipped, skipped.warps, false);
     REQUIRE(a.completion == b.completion);
     REQUIRE(all.stats().cycles.parts() == some.stats().cycles.parts());
     for (size_t w = 0; w < expected.warps.size(); ++w)

@@ -37,7 +37,8 @@ TEST_CASE("each submit is answered once, later, with every ray stopped") {
         CHECK(open[*warp] < now);
         open.erase(*warp);
         ++answers;
-        for (const RayState& state : warps[*warp]) CHECK((state.status == RayStatus::Done || state.status == RayStatus::NeedsAnyHit));
+        for (const RayState& state : warps[*warp])
+          CHECK((state.status == RayStatus::Done || state.status == RayStatus::NeedsAnyHit));
       }
       CHECK(unit.can_accept() == (open.size() < 3));
       if (next < warps.size() && unit.can_accept()) {

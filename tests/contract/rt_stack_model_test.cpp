@@ -11,7 +11,9 @@
 namespace glint::rt::test {
 namespace {
 
-std::unique_ptr<StackModel> model_of(const std::string& name) { return Registry<StackModel>::instance().entry(name).make_default({}); }
+std::unique_ptr<StackModel> model_of(const std::string& name) {
+  return Registry<StackModel>::instance().entry(name).make_default({});
+}
 
 // A ray that does nothing but push and pop.
 struct Walker {
@@ -26,7 +28,8 @@ struct Walker {
   void visit(int pops, int pushes) {
     const auto depth = uint8_t(path.parent[size_t(ray.stack_size) - 1] + 1);
     ray.stack_size = int16_t(ray.stack_size - pops);
-    for (; pushes > 0 && ray.stack_size < kStackEntries; --pushes) path.parent[size_t(ray.stack_size++)] = depth;
+    for (; pushes > 0 && ray.stack_size < kStackEntries; --pushes)
+      path.parent[size_t(ray.stack_size++)] = depth;
   }
 };
 
@@ -55,13 +58,16 @@ TEST_CASE("every stack model keeps the next entry on chip, and fills what it has
       settle();
       while (walker.ray.stack_size > 0) {
         const int deep = random.below(10) ? 1 : 1 + int(random.below(uint32_t(walker.ray.stack_size)));
-        walker.visit(deep, random.below(100) < 60 - uint32_t(walker.ray.stack_size) / 4 ? int(random.below(5)) : 0);
+        walker.visit(deep,
+                     random.below(100) < 60 - uint32_t(walker.ray.stack_size) / 4 ? int(random.below(5)) : 0);
         settle();
       }
       CHECK(in_memory.empty());
     }
-    if (name == "full") CHECK(most_on_chip > 20);
-    else CHECK(most_on_chip == 8);
+    if (name == "full")
+      CHECK(most_on_chip > 20);
+    else
+      CHECK(most_on_chip == 8);
   }
 }
 
@@ -92,7 +98,9 @@ TEST_CASE("a ray that ends at its first hit leaves its stack where it is") {
     walker.ray.committed.instance = 1;
     CHECK(model->settle(walker.ray).fills == 0);
   }
-  SECTION("but one whose entries lie behind its hit reads them to know it") { CHECK(model->settle(walker.ray).fills == 6); }
+  SECTION("but one whose entries lie behind its hit reads them to know it") {
+    CHECK(model->settle(walker.ray).fills == 6);
+  }
   CHECK(walker.ray.stack_off_chip == 0);
 }
 

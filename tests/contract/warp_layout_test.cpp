@@ -1,5 +1,5 @@
-// The contract of warp layouts: every thread of a launch is in exactly one lane of one warp, every block starts once.
-// SPDX-License-Identifier: Apache-2.0
+// The contract of warp layouts: every thread of a launch is in exactly one lane of one warp, every block
+// starts once. SPDX-License-Identifier: Apache-2.0
 #include <set>
 #include <tuple>
 
@@ -11,7 +11,9 @@
 namespace glint::core {
 namespace {
 
-std::shared_ptr<const WarpLayout> make(const std::string& name) { return Registry<WarpLayout>::instance().entry(name).make_default({}); }
+std::shared_ptr<const WarpLayout> make(const std::string& name) {
+  return Registry<WarpLayout>::instance().entry(name).make_default({});
+}
 
 // A launch of a program that does nothing.
 struct Launch {
@@ -46,7 +48,8 @@ TEST_CASE("a layout's tile has a place for each lane, and its order a turn for e
       }
       CHECK(places.size() == size_t(kLanes));
     }
-    for (const auto& [columns, rows] : {std::pair{1u, 1u}, {7u, 1u}, {1u, 9u}, {4u, 4u}, {13u, 6u}, {3u, 40u}}) {
+    for (const auto& [columns, rows] :
+         {std::pair{1u, 1u}, {7u, 1u}, {1u, 9u}, {4u, 4u}, {13u, 6u}, {3u, 40u}}) {
       std::set<std::pair<uint32_t, uint32_t>> places;
       for (uint32_t n = 0; n < columns * rows; ++n) {
         const auto place = layout->nth(n, columns, rows);
@@ -60,7 +63,12 @@ TEST_CASE("a layout's tile has a place for each lane, and its order a turn for e
 
 TEST_CASE("every thread of a launch without blocks is one active lane of one warp, under every layout") {
   for (const std::string& name : Registry<WarpLayout>::names())
-    for (const std::array<uint32_t, 3> size : {std::array{64u, 32u, 1u}, {61u, 35u, 1u}, {100u, 1u, 1u}, {9u, 5u, 3u}, {1u, 7u, 2u}, {5u, 3u, 1u}}) {
+    for (const std::array<uint32_t, 3> size : {std::array{64u, 32u, 1u},
+                                               {61u, 35u, 1u},
+                                               {100u, 1u, 1u},
+                                               {9u, 5u, 3u},
+                                               {1u, 7u, 2u},
+                                               {5u, 3u, 1u}}) {
       CAPTURE(name, size[0], size[1], size[2]);
       const Launch launch(name, size);
       const Executor executor(launch.world);
@@ -74,7 +82,8 @@ TEST_CASE("every thread of a launch without blocks is one active lane of one war
           REQUIRE((id[0] < size[0] && id[1] < size[1] && id[2] < size[2]));
           REQUIRE(seen.insert({id[0], id[1], id[2]}).second);
           for (size_t axis = 0; axis < 3; ++axis)
-            REQUIRE(warp.regs.bank[2][(size_t(isa::Special::LaunchX) + axis) * kLanes + size_t(lane)] == id[axis]);
+            REQUIRE(warp.regs.bank[2][(size_t(isa::Special::LaunchX) + axis) * kLanes + size_t(lane)] ==
+                    id[axis]);
         });
       }
       CHECK(seen.size() == size_t{size[0]} * size[1] * size[2]);
@@ -95,7 +104,8 @@ TEST_CASE("every block of a grid starts once, under every layout") {
       seen.insert(block.id());
       // Threads of a block are numbered x fastest, whatever the layout.
       const auto first = launch_id(launch.world, b * executor.warps_per_block(), 9);
-      CHECK(first == std::array<uint32_t, 3>{block.id()[0] * 8 + 1, block.id()[1] * 4 + 1, block.id()[2] * 2});
+      CHECK(first ==
+            std::array<uint32_t, 3>{block.id()[0] * 8 + 1, block.id()[1] * 4 + 1, block.id()[2] * 2});
     }
     CHECK(seen.size() == 60);
   }

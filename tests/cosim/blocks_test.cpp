@@ -15,7 +15,8 @@ pipeline::GpuParams small_gpu() {
   return params;
 }
 
-Cycle run_timing(core::TextLaunch& launch, bool no_skip = false, const pipeline::GpuParams& params = small_gpu()) {
+Cycle run_timing(core::TextLaunch& launch, bool no_skip = false,
+                 const pipeline::GpuParams& params = small_gpu()) {
   pipeline::TimingMachine machine(params, launch.world, no_skip);
   const Cycle cycles = machine.run({});
   for (uint32_t i = 0; i < machine.num_cores(); ++i)
@@ -23,7 +24,8 @@ Cycle run_timing(core::TextLaunch& launch, bool no_skip = false, const pipeline:
   return cycles;
 }
 
-// Sums 0 to 255 of each block in shared memory; the block's result goes to its word, and into a global sum at word 0.
+// Sums 0 to 255 of each block in shared memory; the block's result goes to its word, and into a global sum at
+// word 0.
 const std::string kReduce = R"(
     mov.b32 %r4, %tid.x;
     shl.b32 %r5, %r4, 2;
@@ -58,8 +60,8 @@ MEET:
     exit;
 )";
 
-// Counts the residues of the thread numbers modulo 16: first in shared memory, then of all blocks in global memory. The
-// old values of a second atomic add up to the same whatever the order.
+// Counts the residues of the thread numbers modulo 16: first in shared memory, then of all blocks in global
+// memory. The old values of a second atomic add up to the same whatever the order.
 const std::string kHistogram = R"(
     mad.lo.u32 %r4, %ctaid.x, %ntid.x, %tid.x;
     rem.u32 %r5, %r4, 16;
@@ -119,14 +121,16 @@ TEST_CASE("an atomic costs a trip to the L2, and a red does not") {
     return run_timing(launch);
   };
   // A chain: each atomic adds what the one before returned.
-  const Cycle chain = cycles("atom.global.add.u32 %r4, [%rd2], %r4;"), apart = cycles("red.global.add.u32 [%rd2], 1;");
+  const Cycle chain = cycles("atom.global.add.u32 %r4, [%rd2], %r4;"),
+              apart = cycles("red.global.add.u32 [%rd2], 1;");
 
   CHECK(chain > 8 * 2 * 48);  // eight round trips over the network
   CHECK(apart < chain / 2);
 }
 
 TEST_CASE("the L2 counts atomics, and they leave the line dirty") {
-  core::TextLaunch launch("    ld.param.b64 %rd2, [0];\n    atom.global.add.u32 %r4, [%rd2], 1;\n    exit;\n", {});
+  core::TextLaunch launch("    ld.param.b64 %rd2, [0];\n    atom.global.add.u32 %r4, [%rd2], 1;\n    exit;\n",
+                          {});
   pipeline::TimingMachine machine(small_gpu(), launch.world, false);
   machine.run({});
 
@@ -165,7 +169,8 @@ TEST_CASE("programs read the clock and their place on the timing machine") {
 }
 
 TEST_CASE("a barrier that nobody can complete ends the timing machine with the same fault") {
-  const std::string text = "    setp.ge.u32 %p1, %tid.x, 96;\n    @%p1 exit;\n    bar.sync 2, 256;\n    exit;\n";
+  const std::string text =
+      "    setp.ge.u32 %p1, %tid.x, 96;\n    @%p1 exit;\n    bar.sync 2, 256;\n    exit;\n";
   core::TextLaunch launch(text, {.block = {256, 1, 1}}), functional(text, {.block = {256, 1, 1}});
   std::string message;
   try {

@@ -1,8 +1,7 @@
 // Both machines in step: every warp retires the same instructions with the same results.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <cstring>
+#include <fmt/format.h>
 #include <vector>
 
 #include "base/registry.h"
@@ -25,7 +24,9 @@ struct Step {
 };
 using History = std::vector<std::vector<Step>>;  // by warp of the launch
 
-uint64_t mix(uint64_t hash, uint64_t value) { return (hash ^ value) * 0x9e3779b97f4a7c15ull + (hash >> 29); }
+uint64_t mix(uint64_t hash, uint64_t value) {
+  return (hash ^ value) * 0x9e3779b97f4a7c15ull + (hash >> 29);
+}
 
 uint64_t result_of(const core::Retired& retired) {
   uint64_t hash = 1;
@@ -42,7 +43,9 @@ uint64_t result_of(const core::Retired& retired) {
         continue;
       }
       for (int half = 0; half < (kind == isa::OperandKind::Dst64 ? 2 : 1); ++half)
-        for_each_lane(retired.issued.lanes, [&](int lane) { hash = mix(hash, retired.warp.regs.read(isa::Slot(operand + half))[lane]); });
+        for_each_lane(retired.issued.lanes, [&](int lane) {
+          hash = mix(hash, retired.warp.regs.read(isa::Slot(operand + half))[lane]);
+        });
     }
   }
   return hash;
@@ -53,7 +56,8 @@ void record(History& history, const core::Retired& retired) {
 }
 
 std::string describe(const core::World& world, const Step& step) {
-  return fmt::format("{} lanes {:08x} result {:016x}", world.image->place_of(step.pc), step.lanes, step.result);
+  return fmt::format("{} lanes {:08x} result {:016x}", world.image->place_of(step.pc), step.lanes,
+                     step.result);
 }
 
 // "" when equal, otherwise the first difference.
@@ -79,8 +83,8 @@ std::string compare_machines(const pipeline::RenderJob& job) {
     machine.core(c).executor().retired.listen([&](const core::Retired& retired) { record(timing, retired); });
   machine.run({});
   std::string difference = first_difference(for_functional.world, functional, timing);
-  if (difference.empty() &&
-      for_functional.read_image(pipeline::SceneWorld::kPicture) != for_timing.read_image(pipeline::SceneWorld::kPicture))
+  if (difference.empty() && for_functional.read_image(pipeline::SceneWorld::kPicture) !=
+                                for_timing.read_image(pipeline::SceneWorld::kPicture))
     difference = "the pictures differ";
   return difference;
 }
@@ -89,7 +93,8 @@ std::string compare_machines(const pipeline::RenderJob& job) {
 
 TEST_CASE("the timing machine retires what the functional machine retires, instruction by instruction") {
   const auto scene = GENERATE("WKND", "CORNELL");
-  const auto workload = GENERATE(pipeline::Workload::PathTracing, pipeline::Workload::Shadow, pipeline::Workload::AmbientOcclusion);
+  const auto workload = GENERATE(pipeline::Workload::PathTracing, pipeline::Workload::Shadow,
+                                 pipeline::Workload::AmbientOcclusion);
   INFO(scene << " " << test::shader_folder(workload));
 
   CHECK(compare_machines(test::small_job(scene, workload, 16, 1)) == "");
@@ -106,8 +111,8 @@ TEST_CASE("both machines retire the same in every node format") {
 
 TEST_CASE("no node format changes a byte of a picture") {
   const auto scene = GENERATE("WKND", "SHIP");
-  pipeline::RenderJob job =
-      test::small_job(scene, *scene == 'W' ? pipeline::Workload::PathTracing : pipeline::Workload::Shadow, 48, 1);
+  pipeline::RenderJob job = test::small_job(
+      scene, *scene == 'W' ? pipeline::Workload::PathTracing : pipeline::Workload::Shadow, 48, 1);
   job.timing = false;
   const std::vector<float> expected = pipeline::render(job).accumulation;
   for (const std::string& format : Registry<rt::NodeFormat>::names()) {
@@ -115,7 +120,8 @@ TEST_CASE("no node format changes a byte of a picture") {
     const pipeline::RenderResult result = pipeline::render(job);
     INFO(scene << " " << format);
     REQUIRE(result.accumulation.size() == expected.size());
-    CHECK(std::memcmp(result.accumulation.data(), expected.data(), expected.size() * sizeof expected[0]) == 0);
+    CHECK(std::memcmp(result.accumulation.data(), expected.data(), expected.size() * sizeof expected[0]) ==
+          0);
   }
 }
 

@@ -1,5 +1,5 @@
-// The whole timing machine: nothing is lost, every cycle has a reason, and skipping idle time changes nothing.
-// SPDX-License-Identifier: Apache-2.0
+// The whole timing machine: nothing is lost, every cycle has a reason, and skipping idle time changes
+// nothing. SPDX-License-Identifier: Apache-2.0
 #include "pipeline/scene_world.h"
 #include "pipeline/timing_machine.h"
 #include "tests/support/catch.h"
@@ -37,7 +37,8 @@ TEST_CASE("rays that enter the RT units leave them") {
   }
 }
 
-TEST_CASE("each ray is in the spreads of nodes and times once, also those that a shader is the last to have") {
+TEST_CASE(
+    "each ray is in the spreads of nodes and times once, also those that a shader is the last to have") {
   const pipeline::RenderJob job = test::small_job("WKND", pipeline::Workload::PathTracing, 8, 1);
   pipeline::SceneWorld scene(job);
   pipeline::TimingMachine machine(job.gpu, scene.world, false);

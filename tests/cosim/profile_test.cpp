@@ -42,10 +42,12 @@ Watched watch(const pipeline::Observation& observation, bool no_skip = false, Cy
 }
 
 bool same(const ProfileTable& a, const ProfileTable& b) {
-  return std::equal(a.rows.begin(), a.rows.end(), b.rows.begin(), b.rows.end(), [](const ProfileRow& x, const ProfileRow& y) {
-    return x.shader == y.shader && x.index == y.index && x.issues == y.issues && x.lanes == y.lanes && x.sectors == y.sectors &&
-           x.latency == y.latency && x.slots == y.slots;
-  });
+  return std::equal(a.rows.begin(), a.rows.end(), b.rows.begin(), b.rows.end(),
+                    [](const ProfileRow& x, const ProfileRow& y) {
+                      return x.shader == y.shader && x.index == y.index && x.issues == y.issues &&
+                             x.lanes == y.lanes && x.sectors == y.sectors && x.latency == y.latency &&
+                             x.slots == y.slots;
+                    });
 }
 
 }  // namespace
@@ -56,10 +58,13 @@ TEST_CASE("everything that goes into a run balances, and a balance that does not
   CHECK(balances.size() > 50);
   CHECK(std::count_if(balances.begin(), balances.end(), [](const auto& b) { return b.left > 0; }) > 25);
 
-  const auto rays = std::find_if(balances.begin(), balances.end(), [](const auto& b) { return b.what == "core[1] RT unit: rays in = rays out"; });
+  const auto rays = std::find_if(balances.begin(), balances.end(), [](const auto& b) {
+    return b.what == "core[1] RT unit: rays in = rays out";
+  });
   REQUIRE(rays != balances.end());
   ++rays->left;
-  CHECK(pipeline::broken(balances) == fmt::format("core[1] RT unit: rays in = rays out: {} against {}\n", rays->left, rays->right));
+  CHECK(pipeline::broken(balances) ==
+        fmt::format("core[1] RT unit: rays in = rays out: {} against {}\n", rays->left, rays->right));
 }
 
 TEST_CASE("the profile has every issue slot of every scheduler, and knows the lines of shaders") {
@@ -78,21 +83,27 @@ TEST_CASE("the profile has every issue slot of every scheduler, and knows the li
 }
 
 TEST_CASE("watching changes no cycle, and stepping or another window no figure") {
-  const Watched plain = watch({}), watched = watch({true, 1000}), stepped = watch({true, 1000}, true), narrow = watch({true, 1000}, false, 7);
+  const Watched plain = watch({}), watched = watch({true, 1000}), stepped = watch({true, 1000}, true),
+                narrow = watch({true, 1000}, false, 7);
   CHECK(plain.profile.rows.empty());
   CHECK(plain.cycles == watched.cycles);
   CHECK(same(watched.profile, stepped.profile));
   CHECK(watched.series.rows == stepped.series.rows);
   CHECK(watched.cycles == narrow.cycles);
-  CHECK(same(ProfileTable{{}, {watched.profile.rows.begin(), watched.profile.rows.end() - 1}, {}}, ProfileTable{{}, {narrow.profile.rows.begin(), narrow.profile.rows.end() - 1}, {}}));
+  CHECK(same(ProfileTable{{}, {watched.profile.rows.begin(), watched.profile.rows.end() - 1}, {}},
+             ProfileTable{{}, {narrow.profile.rows.begin(), narrow.profile.rows.end() - 1}, {}}));
   // The end of a run is in whole windows: the last rows differ by that.
   const size_t whole = std::min(watched.attributed, narrow.attributed) / 1000;
-  CHECK(std::equal(watched.series.rows.begin(), watched.series.rows.begin() + ptrdiff_t(whole), narrow.series.rows.begin()));
+  CHECK(std::equal(watched.series.rows.begin(), watched.series.rows.begin() + ptrdiff_t(whole),
+                   narrow.series.rows.begin()));
 }
 
 TEST_CASE("a series has a row an interval, and its counts add up to the run's") {
   const Watched run = watch({false, 777});
-  const auto column = [&](const std::string& name) { return size_t(std::find(run.series.columns.begin(), run.series.columns.end(), name) - run.series.columns.begin()); };
+  const auto column = [&](const std::string& name) {
+    return size_t(std::find(run.series.columns.begin(), run.series.columns.end(), name) -
+                  run.series.columns.begin());
+  };
   CHECK(run.series.rows.size() == (run.attributed + 776) / 777);
   CHECK(run.series.rows.back()[column("cycle")] == double(run.attributed));
   double instructions = 0, warps = 0;

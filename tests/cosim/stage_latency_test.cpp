@@ -1,5 +1,5 @@
-// Latency by shader stage: it adds up to latency by class, is the same however a run is made, and follows the code.
-// SPDX-License-Identifier: Apache-2.0
+// Latency by shader stage: it adds up to latency by class, is the same however a run is made, and follows the
+// code. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
 
@@ -45,7 +45,8 @@ Latencies run(uint32_t threads, bool no_skip, bool profile = false) {
     Core& one = out.cores.emplace_back();
     for (size_t k = 0; k < kNumClasses; ++k) {
       one.all[k] = stats.latency.count(isa::Class(k));
-      for (size_t s = 0; s < one.stage.size(); ++s) one.stage[s][k] = stats.stage[s]->latency.count(isa::Class(k));
+      for (size_t s = 0; s < one.stage.size(); ++s)
+        one.stage[s][k] = stats.stage[s]->latency.count(isa::Class(k));
     }
   }
   if (profile) out.profile = pipeline::profile_of(machine, *scene.world.image);
@@ -62,7 +63,8 @@ uint64_t of_stage(const Latencies& run, isa::Stage stage, isa::Class klass) {
 
 TEST_CASE("latencies of all stages add up to latency by class, on one thread or two, stepping or skipping") {
   const Latencies plain = run(1, false);
-  for (const auto& [threads, no_skip] : {std::pair(1u, false), std::pair(2u, false), std::pair(1u, true), std::pair(2u, true)}) {
+  for (const auto& [threads, no_skip] :
+       {std::pair(1u, false), std::pair(2u, false), std::pair(1u, true), std::pair(2u, true)}) {
     CAPTURE(threads, no_skip);
     const Latencies other = run(threads, no_skip);
     CHECK(other.cycles == plain.cycles);
@@ -74,15 +76,18 @@ TEST_CASE("latencies of all stages add up to latency by class, on one thread or 
         CHECK(sum == core.all[k]);
       }
   }
-  for (const isa::Stage stage : {isa::Stage::RayGeneration, isa::Stage::Intersection, isa::Stage::ClosestHit, isa::Stage::Miss})
+  for (const isa::Stage stage :
+       {isa::Stage::RayGeneration, isa::Stage::Intersection, isa::Stage::ClosestHit, isa::Stage::Miss})
     CHECK(of_stage(plain, stage, isa::Class::Mem) > 0);
   for (const isa::Stage stage : {isa::Stage::AnyHit, isa::Stage::Callable, isa::Stage::Compute})
     CHECK(of_stage(plain, stage, isa::Class::Alu) == 0);
 }
 
-// The profile knows an instruction's stage from the program that it stands in, and times accesses and traces only; the others
-// end a few cycles after their issue.
-TEST_CASE("what a stage's accesses and traces took is in the latency of that stage, though other stages run when they end") {
+// The profile knows an instruction's stage from the program that it stands in, and times accesses and traces
+// only; the others end a few cycles after their issue.
+TEST_CASE(
+    "what a stage's accesses and traces took is in the latency of that stage, though other stages run when "
+    "they end") {
   constexpr uint64_t kMostFixed = 64;
   const Latencies watched = run(1, false, true);
   CHECK(watched.cores == run(1, false).cores);
@@ -92,7 +97,8 @@ TEST_CASE("what a stage's accesses and traces took is in the latency of that sta
       CAPTURE(name_of(klass), name_of(stage));
       uint64_t timed = 0, others = 0;
       for (const ProfileRow& row : watched.profile.rows) {
-        if (row.stage != name_of(stage) || isa::op_table()[size_t(isa::find_op(row.op))].klass != klass) continue;
+        if (row.stage != name_of(stage) || isa::op_table()[size_t(isa::find_op(row.op))].klass != klass)
+          continue;
         timed += row.latency;
         others += row.issues - row.ended;
       }

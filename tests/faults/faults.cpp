@@ -39,7 +39,8 @@ void check_mistake(const Mistake& mistake, const std::string& place, const RunWr
     CHECK_THAT(message, Contains(fmt::format("launch id ({}, {}, {})", x, y, z)));
 
     core::FaultLog faults;
-    const std::vector<uint32_t> results = run(mistake.code, fault_options(timing, core::OnFault::Warn), faults);
+    const std::vector<uint32_t> results =
+        run(mistake.code, fault_options(timing, core::OnFault::Warn), faults);
     for (uint32_t lane = 0; lane < results.size(); ++lane) {
       CAPTURE(lane);
       CHECK(results[lane] == mistake.result(lane));

@@ -7,14 +7,17 @@ namespace glint::core {
 namespace {
 
 void note(FaultLog& log, uint32_t pc, FaultKind kind, uint32_t launch_index, const std::string& what) {
-  log.note(pc, kind, launch_index, [&] { return Fault{what, "a.comp:" + std::to_string(pc), {launch_index, 0, 0}}; });
+  log.note(pc, kind, launch_index, [&] {
+    return Fault{what, "a.comp:" + std::to_string(pc), {launch_index, 0, 0}};
+  });
 }
 
 }  // namespace
 
 TEST_CASE("faults at one place are one entry that tells the first time of the lowest launch index") {
   FaultLog log;
-  for (const uint32_t index : {9u, 4u, 7u, 4u}) note(log, 3, FaultKind::OutOfBounds, index, "wrong " + std::to_string(index));
+  for (const uint32_t index : {9u, 4u, 7u, 4u})
+    note(log, 3, FaultKind::OutOfBounds, index, "wrong " + std::to_string(index));
   REQUIRE(log.in_order().size() == 1);
   const FaultLog::Entry entry = log.in_order()[0];
   CHECK(entry.count == 4);
@@ -43,8 +46,10 @@ TEST_CASE("a fault that ends the run is told after those that were let pass") {
   const Fault last{"the end", "b.comp:9", {}};
   CHECK(log.with(last) == last.to_string());
   note(log, 1, FaultKind::Image, 0, "before");
-  CHECK(log.with(last) == "a.comp:1: fault: before\n  note: launch id (0, 0, 0)\n"
-                          "warning: faults let pass: 1, at 1 places; loads gave 0, stores were dropped\n" + last.to_string());
+  CHECK(log.with(last) ==
+        "a.comp:1: fault: before\n  note: launch id (0, 0, 0)\n"
+        "warning: faults let pass: 1, at 1 places; loads gave 0, stores were dropped\n" +
+            last.to_string());
 }
 
 }  // namespace glint::core

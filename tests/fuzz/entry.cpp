@@ -11,7 +11,8 @@
 namespace glint::fuzz {
 namespace {
 
-constexpr uint64_t kInstructions = 2000;  // a warp runs: enough for every op of a short program and some rounds of a loop
+constexpr uint64_t kInstructions =
+    2000;  // a warp runs: enough for every op of a short program and some rounds of a loop
 
 bool is_sound(const isa::Program& program) {
   Diagnostics diagnostics;
@@ -34,8 +35,8 @@ Reached run_if_sound(const isa::Program& program) {
   if (!can_run(program)) return Reached::Verified;
   const std::string fault = run(program, kInstructions);
   for (const char* broken : {"without its ssy", "that was not called"})
-    GLINT_CHECK(fault.find(broken) == std::string::npos, "the verifier accepted what faults so: {}\n{}", fault,
-                isa::to_text(program));
+    GLINT_CHECK(fault.find(broken) == std::string::npos, "the verifier accepted what faults so: {}\n{}",
+                fault, isa::to_text(program));
   return Reached::Ran;
 }
 

@@ -13,8 +13,8 @@ namespace glint::fuzz {
 // How far an input came.
 enum class Reached : uint8_t { Refused, Parsed, Verified, Ran };
 
-// Text: what parses survives its own text; what the verifier accepts runs without a crash, and without a fault of
-// control flow. Panics (base/check.h) when that does not hold.
+// Text: what parses survives its own text; what the verifier accepts runs without a crash, and without a
+// fault of control flow. Panics (base/check.h) when that does not hold.
 Reached assembly(const std::string& text);
 
 // Bytes that spell a program of the op table, often one that text cannot write.

@@ -33,9 +33,12 @@ class Bytes {
 };
 
 // Ops that make paths, regions and calls stand for an eighth of all op numbers.
-constexpr std::string_view kSteering[] = {"bra", "ssy", "join", "exit", "ret", "rt.trace", "rt.end", "rt.resume",
-                                          "call.sbt.candidate", "call.sbt.hit", "setp.eq.u32", "mov.b32",
-                                          "ld.global.b32", "st.global.b32", "ld.local.b32", "st.local.b32"};
+constexpr std::string_view kSteering[] = {"bra",           "ssy",           "join",
+                                          "exit",          "ret",           "rt.trace",
+                                          "rt.end",        "rt.resume",     "call.sbt.candidate",
+                                          "call.sbt.hit",  "setp.eq.u32",   "mov.b32",
+                                          "ld.global.b32", "st.global.b32", "ld.local.b32",
+                                          "st.local.b32"};
 
 uint16_t some_op(Bytes& in) {
   const uint32_t n = in.half();
@@ -46,9 +49,12 @@ uint16_t some_op(Bytes& in) {
 
 Slot some_slot(Bytes& in, const Program& p, OperandKind kind) {
   const uint32_t n = in.byte();
-  if (kind == OperandKind::DstPred || kind == OperandKind::SrcPred) return Slot(n % (kNumPredicates + (n == 255)));
-  const bool is_wide = kind == OperandKind::Dst64 || kind == OperandKind::Src64 || kind == OperandKind::Address64;
-  if (n < 128 || (is_destination(kind) && n < 250)) return Slot(is_wide ? n % p.num_registers & ~1u : n % p.num_registers);
+  if (kind == OperandKind::DstPred || kind == OperandKind::SrcPred)
+    return Slot(n % (kNumPredicates + (n == 255)));
+  const bool is_wide =
+      kind == OperandKind::Dst64 || kind == OperandKind::Src64 || kind == OperandKind::Address64;
+  if (n < 128 || (is_destination(kind) && n < 250))
+    return Slot(is_wide ? n % p.num_registers & ~1u : n % p.num_registers);
   if (n < 192 && !p.constants.empty()) return Slot(kConstantBank + n % p.constants.size());
   if (n < 250) return Slot(kSpecialBank + (n - 128) % kNumSpecials);
   return Slot(in.half());
@@ -61,7 +67,8 @@ Inst some_inst(Bytes& in, const Program& p) {
   if (guard >= 128) inst.guard = uint8_t((guard & 7) | (guard & 64 ? kGuardNegate : 0));
   int slot = 0;
   for (const OperandKind kind : op_table()[inst.op].operands.view()) {
-    for (const int end = slot + slots_of(kind); slot < end; ++slot) inst.operand[size_t(slot)] = some_slot(in, p, kind);
+    for (const int end = slot + slots_of(kind); slot < end; ++slot)
+      inst.operand[size_t(slot)] = some_slot(in, p, kind);
     if (kind == OperandKind::Label) inst.imm = int32_t(p.code.size()) + int8_t(in.byte());
     if (kind == OperandKind::Address32 || kind == OperandKind::Address64) {
       const uint32_t n = in.byte();

@@ -44,7 +44,8 @@ TEST_CASE("programs spelt by bytes do no harm, and many of the corpus run") {
   for (const fs::path& path : corpus("verify")) {
     INFO(path);
     const std::string bytes = bytes_of(path);
-    ran += fuzz::program({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()}) == fuzz::Reached::Ran;
+    ran +=
+        fuzz::program({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()}) == fuzz::Reached::Ran;
     ++all;
   }
   // The numbers of ops move when the table grows, and with them what a byte string spells.

@@ -65,7 +65,8 @@ struct Scene {
     box.geometries.push_back(geometry);
     const std::vector<rt::StructureInfo> bottoms{rt::build_bottom(memory, "triangle", triangle),
                                                  rt::build_bottom(memory, "box", box)};
-    const std::vector<rt::Instance> instances{{rt::kIdentity, 7, 0xff, 0, 0, 0}, {rt::kIdentity, 8, 0xff, 0, 0, 1}};
+    const std::vector<rt::Instance> instances{{rt::kIdentity, 7, 0xff, 0, 0, 0},
+                                              {rt::kIdentity, 8, 0xff, 0, 0, 1}};
     top = rt::build_top(memory, "top", instances, bottoms);
     buffer = memory.allocate("buffer", kBufferBytes);
     binding_table = memory.allocate("binding table", 32 * 4);

@@ -71,8 +71,8 @@ TEST_CASE("logarithms are within 0.51 ulp, subnormals and the neighbourhood of 1
 }
 
 TEST_CASE("reciprocal square roots are within 0.51 ulp, reciprocals and roots are rounded correctly") {
-  CHECK(max_error("rsqrt.f32", 1, 0x7f7f'ffff, 1499, false,
-                  [](double x) { return 1 / std::sqrt(x); }) < 0.51);
+  CHECK(max_error("rsqrt.f32", 1, 0x7f7f'ffff, 1499, false, [](double x) { return 1 / std::sqrt(x); }) <
+        0.51);
   CHECK(max_error("sqrt.rn.f32", 1, 0x7f7f'ffff, 1499, false, [](double x) { return std::sqrt(x); }) <= 0.5);
   CHECK(max_error("rcp.rn.f32", bits(0x1p-127f), 0x7f7f'ffff, 1499, true, [](double x) { return 1 / x; }) <=
         0.5);

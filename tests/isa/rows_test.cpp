@@ -154,7 +154,8 @@ TEST_CASE("results that only rounding lifts to the least normal number are flush
     for (int lane = 0; lane < kLanes; ++lane) {
       const uint64_t r = next_random(seed);
       const uint32_t fraction = uint32_t(r) & 0x007f'ffff, sign = uint32_t(r >> 32) & 0x8000'0000;
-      const float a = std::bit_cast<float>((120 + uint32_t(r >> 40) % 6) << 23 | (r >> 60 ? fraction : 0x7f'ffff)),
+      const float a = std::bit_cast<float>((120 + uint32_t(r >> 40) % 6) << 23 |
+                                           (r >> 60 ? fraction : 0x7f'ffff)),
                   step = 1.0f + float(int(r >> 48 & 7) - 4) * 0x1p-23f;
       float b = 0x1p-126f / a * step, c = 0;
       if (seed % 3 == 1) b = a * 0x1p126f * step;
@@ -167,8 +168,8 @@ TEST_CASE("results that only rounding lifts to the least normal number are flush
   int lifted = 0;
   for (size_t op = 0; op < op_table().size(); ++op) {
     const OpRow& row = op_table(Path::Baseline)[op];
-    if (row.name.find(".ftz") == row.name.npos || !row.name.ends_with(".f32") || row.name.starts_with("cvt") ||
-        row.operands.kind[0] != OperandKind::Dst32 || !is_value_op(row))
+    if (row.name.find(".ftz") == row.name.npos || !row.name.ends_with(".f32") ||
+        row.name.starts_with("cvt") || row.operands.kind[0] != OperandKind::Dst32 || !is_value_op(row))
       continue;
     std::string kept(row.name);
     kept.erase(kept.find(".ftz"), 4);
@@ -188,7 +189,8 @@ TEST_CASE("results that only rounding lifts to the least normal number are flush
       if (other < 0) continue;
       const auto unflushed = run(op_table(Path::Baseline)[size_t(other)]);
       for (int lane = 0; lane < kLanes; ++lane)
-        lifted += (unflushed[size_t(lane)] & 0x7fff'ffff) == 0x0080'0000 && (expected[size_t(lane)] & 0x7fff'ffff) == 0;
+        lifted += (unflushed[size_t(lane)] & 0x7fff'ffff) == 0x0080'0000 &&
+                  (expected[size_t(lane)] & 0x7fff'ffff) == 0;
     }
     CHECK(different == 0);
   }

@@ -1,5 +1,5 @@
-// The text of programs: what is printed parses to the identical program, and mistakes are named at their place.
-// SPDX-License-Identifier: Apache-2.0
+// The text of programs: what is printed parses to the identical program, and mistakes are named at their
+// place. SPDX-License-Identifier: Apache-2.0
 #include "isa/text.h"
 
 #include <algorithm>
@@ -81,7 +81,8 @@ Inst simple(std::string_view op, std::initializer_list<Slot> operands = {}, int3
   return inst;
 }
 
-// All registers and predicates written, then `op` in surroundings where it makes sense, in a shader of `stage`.
+// All registers and predicates written, then `op` in surroundings where it makes sense, in a shader of
+// `stage`.
 Program program_of_one_row(uint16_t op, Stage stage) {
   Program p;
   p.name = "one row";
@@ -93,7 +94,8 @@ Program program_of_one_row(uint16_t op, Stage stage) {
   for (Slot q = 0; q < kNumPredicates; ++q) p.code.push_back(simple("setp.eq.u32", {q, Slot(1 + q), 9}));
   const OpRow& row = op_table()[op];
   const Effect e = row.effect;
-  const bool in_trace = e == Effect::Resume || e == Effect::CallCandidate || e == Effect::CallHit || e == Effect::EndTrace;
+  const bool in_trace =
+      e == Effect::Resume || e == Effect::CallCandidate || e == Effect::CallHit || e == Effect::EndTrace;
   if (in_trace) {
     Inst trace = simple("rt.trace", {0, 2});
     for (size_t i = 2; i < 17; ++i) trace.operand[i] = 4;
@@ -117,7 +119,8 @@ Program program_of_one_row(uint16_t op, Stage stage) {
   p.code.push_back(inst);
   const bool is_entry = stage == Stage::RayGeneration || stage == Stage::Compute;
   const Inst last = simple(is_entry ? "exit" : "ret");
-  const bool ends = e == Effect::Exit || e == Effect::Return || e == Effect::Ignore || e == Effect::Terminate || e == Effect::Trap;
+  const bool ends = e == Effect::Exit || e == Effect::Return || e == Effect::Ignore ||
+                    e == Effect::Terminate || e == Effect::Trap;
   if (e == Effect::PushReconvergence) p.code.push_back(simple("join"));
   if (e == Effect::BranchIndexed) p.code.push_back(simple("bra", {}, int32_t(p.code.size()) + 1));
   if (e == Effect::Trace || (in_trace && e != Effect::EndTrace)) p.code.push_back(simple("rt.end"));
@@ -169,9 +172,10 @@ TEST_CASE("every row stands in a sound program of some stage, which survives its
       const std::string text = to_text(p);
       const Program q = parse(text, "one row");
       CHECK(to_text(q) == text);
-      CHECK(std::equal(p.code.begin(), p.code.end(), q.code.begin(), q.code.end(), [](const Inst& a, const Inst& b) {
-        return a.op == b.op && a.guard == b.guard && a.imm == b.imm && a.operand == b.operand;
-      }));
+      CHECK(std::equal(
+          p.code.begin(), p.code.end(), q.code.begin(), q.code.end(), [](const Inst& a, const Inst& b) {
+            return a.op == b.op && a.guard == b.guard && a.imm == b.imm && a.operand == b.operand;
+          }));
     }
     INFO(first_message);
     CHECK(is_sound);
@@ -247,10 +251,11 @@ TEST_CASE("where an op takes a float, a fraction is the nearest float and 0d its
       "mul.rn.f32 %r1, 1.5, -0.1;\nmul.rn.f32 %r1, 2e-3, 1.0;\nmul.rn.f32 %r1, 5, 16777217.0;\n"
       "setp.lt.f32 %p0, %r1, -0.0;\n",
       "p");
-  CHECK(p.constants == std::vector<uint32_t>{0x3fc0'0000, 0xbdcc'cccd, 0x3b03'126f, 0x3f80'0000, 5, 0x4b80'0000,
-                                             0x8000'0000});
+  CHECK(p.constants == std::vector<uint32_t>{0x3fc0'0000, 0xbdcc'cccd, 0x3b03'126f, 0x3f80'0000, 5,
+                                             0x4b80'0000, 0x8000'0000});
   CHECK(parse(to_text(p), "p") == p);
-  CHECK(starts(error_of("add.u32 %r1, %r2, 1.5;"), "bad.isa:1:19: error: found '1.5', expected a register, a special or"));
+  CHECK(starts(error_of("add.u32 %r1, %r2, 1.5;"),
+               "bad.isa:1:19: error: found '1.5', expected a register, a special or"));
   CHECK(error_of("add.u32 %r1, %r2, 1.5;").find("this operand is not a float") != std::string::npos);
   CHECK(starts(error_of("mul.rn.f32 %r1, 1.5x, 1.0;"), "bad.isa:1:17: error: found '1.5x'"));
   CHECK(starts(error_of("mul.rn.f32 %r1, 1e99, 1.0;"), "bad.isa:1:17: error: found '1e99'"));
@@ -324,7 +329,8 @@ TEST_CASE("the parser names the place of a mistake and what it expected") {
                "bad.isa:1:14: error: found '0f3F8000', expected a register"));
 }
 
-TEST_CASE("the reference shows every op once with its times, and an unknown op is met with the nearest name") {
+TEST_CASE(
+    "the reference shows every op once with its times, and an unknown op is met with the nearest name") {
   PresetTimes times{"tiny", {}};
   for (uint32_t unit = 0; unit < times.unit.size(); ++unit) times.unit[unit] = {100 + unit, 50 + unit};
   const std::vector<PresetTimes> presets{times};
@@ -338,9 +344,12 @@ TEST_CASE("the reference shows every op once with its times, and an unknown op i
       const size_t at = page.find(cell);
       REQUIRE(at != std::string::npos);
       CHECK(page.find(cell, at + 1) == std::string::npos);
-      const std::string unit = std::to_string(100 + int(row.unit)), interval = std::to_string(50 + int(row.unit));
-      CHECK(page.substr(at, page.find('\n', at) - at).find("| " + unit + "/" + interval + " |") != std::string::npos);
-      CHECK(table.find("\n" + std::string(row.name) + "," + std::string(name_of(row.unit)) + ",") != std::string::npos);
+      const std::string unit = std::to_string(100 + int(row.unit)),
+                        interval = std::to_string(50 + int(row.unit));
+      CHECK(page.substr(at, page.find('\n', at) - at).find("| " + unit + "/" + interval + " |") !=
+            std::string::npos);
+      CHECK(table.find("\n" + std::string(row.name) + "," + std::string(name_of(row.unit)) + ",") !=
+            std::string::npos);
       const std::string alone = describe_op(row.name, presets);
       CHECK(alone.find(std::string(row.doc)) != std::string::npos);
       CHECK(alone.find("tiny: latency " + unit + ", interval " + interval) != std::string::npos);

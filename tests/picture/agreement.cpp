@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/picture/agreement.h"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fmt/format.h>
 #include <iostream>
+#include <unistd.h>
 
 #include "pipeline/structure_cache.h"
 #include "tests/reference/surface.h"
@@ -19,9 +18,12 @@ namespace {
 
 constexpr uint32_t kSamples = 2;
 
-bool close(float a, float b) { return std::abs(a - b) <= 1e-3f * std::max(std::abs(b), 1e-3f); }
+bool close(float a, float b) {
+  return std::abs(a - b) <= 1e-3f * std::max(std::abs(b), 1e-3f);
+}
 
-std::vector<reference::ReferenceResult> references(const pipeline::RenderJob& job, const std::vector<Case>& cases) {
+std::vector<reference::ReferenceResult> references(const pipeline::RenderJob& job,
+                                                   const std::vector<Case>& cases) {
   scenes::Scene flat;
   if (!job.scene.instances.empty()) flat = reference::flattened(job.scene);
   const scenes::Scene& scene = job.scene.instances.empty() ? job.scene : flat;
@@ -43,7 +45,8 @@ std::vector<reference::ReferenceResult> references(const pipeline::RenderJob& jo
 
 // A folder that is gone with the object.
 struct Folder {
-  std::filesystem::path path = std::filesystem::temp_directory_path() / ("glint_structures_" + std::to_string(getpid()));
+  std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("glint_structures_" + std::to_string(getpid()));
   Folder() { std::filesystem::create_directories(path); }
   ~Folder() { std::filesystem::remove_all(path); }
   Folder(const Folder&) = delete;
@@ -68,7 +71,8 @@ Agreement compare(const pipeline::RenderResult& picture, const reference::Refere
     agree += all;
   }
   for (int c = 0; c < 3; ++c)
-    out.mean_error = std::max(out.mean_error, std::abs(mean[c] - expected_mean[c]) / std::max(expected_mean[c], 1e-9));
+    out.mean_error =
+        std::max(out.mean_error, std::abs(mean[c] - expected_mean[c]) / std::max(expected_mean[c], 1e-9));
   out.pixels = double(agree) / double(expected.sum.size());
   out.ray_ratio = double(picture.rays.rays) / double(expected.rays);
   return out;
@@ -91,11 +95,12 @@ std::vector<Agreement> agreements(pipeline::RenderJob job, const std::vector<Cas
       picture = pipeline::render(job);
     }
     out.push_back(compare(picture, expected[i]));
-    std::cout << fmt::format("| {} | {} | {} | {}{} | {} | {} | {} | {:.2f} | {:.4f} |\n", job.scene.name, job.scene.form,
-                             job.scene.triangles(), shader_folder(now.workload),
-                             now.workload == pipeline::Workload::PathTracing ? fmt::format(" {}", now.bounces) : "",
-                             now.oracle == Oracle::Embree ? "Embree" : "exact", picture.rays.rays, expected[i].rays,
-                             100 * out.back().pixels, 100 * out.back().mean_error)
+    std::cout << fmt::format(
+                     "| {} | {} | {} | {}{} | {} | {} | {} | {:.2f} | {:.4f} |\n", job.scene.name,
+                     job.scene.form, job.scene.triangles(), shader_folder(now.workload),
+                     now.workload == pipeline::Workload::PathTracing ? fmt::format(" {}", now.bounces) : "",
+                     now.oracle == Oracle::Embree ? "Embree" : "exact", picture.rays.rays, expected[i].rays,
+                     100 * out.back().pixels, 100 * out.back().mean_error)
               << std::flush;
   }
   return out;

@@ -9,7 +9,8 @@
 
 namespace glint::test {
 
-// Embree has its own triangle test and takes any of several triangles at equal distance; Exact has Glint's rule.
+// Embree has its own triangle test and takes any of several triangles at equal distance; Exact has Glint's
+// rule.
 enum class Oracle { Embree, Exact };
 
 struct Agreement {
@@ -26,8 +27,8 @@ struct Case {
   Oracle oracle;
 };
 
-// Loads the scene once and renders all the cases with both: the references first, so that large scenes need no more memory
-// than one of the two. Prints a row of a table for each. The scene may have instances.
+// Loads the scene once and renders all the cases with both: the references first, so that large scenes need
+// no more memory than one of the two. Prints a row of a table for each. The scene may have instances.
 std::vector<Agreement> agreements(const std::string& scene, const std::string& assets, uint32_t size,
                                   const std::vector<Case>& cases);
 std::vector<Agreement> agreements(pipeline::RenderJob job, const std::vector<Case>& cases);

@@ -10,8 +10,8 @@ namespace {
 
 constexpr uint32_t kSize = 64;
 
-// A quad of x, y in [-1, 1] facing the camera under the sky. Its texture has two texels side by side, the left one
-// with alpha 0; between their centres, u = 1/4 and 3/4, alpha is filtered and not zero.
+// A quad of x, y in [-1, 1] facing the camera under the sky. Its texture has two texels side by side, the
+// left one with alpha 0; between their centres, u = 1/4 and 3/4, alpha is filtered and not zero.
 scenes::Scene quad_scene(bool with_quad) {
   scenes::Scene scene;
   scene.name = "QUAD";
@@ -43,9 +43,13 @@ pipeline::RenderResult picture(bool with_quad, bool timing, const char* any_hit 
 }
 
 // Column of the pixels that see `x` on the quad's plane: 5 away, half the picture is tan(20 deg) * 5 wide.
-uint32_t column(float x) { return uint32_t((x / 1.8199f * 0.5f + 0.5f) * kSize); }
+uint32_t column(float x) {
+  return uint32_t((x / 1.8199f * 0.5f + 0.5f) * kSize);
+}
 
-const float* pixel(const pipeline::RenderResult& result, uint32_t x, uint32_t y) { return &result.rgba[4 * (y * kSize + x)]; }
+const float* pixel(const pipeline::RenderResult& result, uint32_t x, uint32_t y) {
+  return &result.rgba[4 * (y * kSize + x)];
+}
 
 }  // namespace
 

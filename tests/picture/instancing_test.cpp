@@ -1,5 +1,5 @@
-// Pictures of scenes whose copies are shared, and of a scene with instances, masks and textures of every kind.
-// SPDX-License-Identifier: Apache-2.0
+// Pictures of scenes whose copies are shared, and of a scene with instances, masks and textures of every
+// kind. SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <cstdlib>
 
@@ -30,15 +30,17 @@ double equal_pixels(const std::vector<float>& a, const std::vector<float>& b) {
   size_t equal = 0;
   for (size_t i = 0; i < a.size(); i += 4) {
     bool all = true;
-    for (size_t c = i; c < i + 3; ++c) all = all && std::abs(a[c] - b[c]) <= 1e-3f * std::max(std::abs(a[c]), 1e-3f);
+    for (size_t c = i; c < i + 3; ++c)
+      all = all && std::abs(a[c] - b[c]) <= 1e-3f * std::max(std::abs(a[c]), 1e-3f);
     equal += all;
   }
   return 4 * double(equal) / double(a.size());
 }
 
-// What may differ: a copy's corners are rounded after its matrix, so a ray that grazes an edge or begins on a surface may
-// meet another triangle; the y of a vertical wall's normal is zero but for rounding, and its sign decides whether a
-// shadow ray towards the zenith is traced at all (17 of 1,024 pixels of PARTY, all brighter by what two such rays take).
+// What may differ: a copy's corners are rounded after its matrix, so a ray that grazes an edge or begins on a
+// surface may meet another triangle; the y of a vertical wall's normal is zero but for rounding, and its sign
+// decides whether a shadow ray towards the zenith is traced at all (17 of 1,024 pixels of PARTY, all brighter
+// by what two such rays take).
 void check_shared(const std::string& scene, const std::string& assets) {
   const pipeline::RenderJob stored = test::small_job(scene, Workload::Shadow, kSize, 2, assets);
   pipeline::RenderJob shared = stored;
@@ -59,8 +61,8 @@ void check_shared(const std::string& scene, const std::string& assets) {
   CHECK(std::abs(moved.ray_ratio - 1) < 1e-3);
 }
 
-// A floor of a coarse texture that repeats and is stored as sRGB; above it two copies of a leaf with holes, one of them
-// stretched, turned and mirrored; a ball with a texture of its own.
+// A floor of a coarse texture that repeats and is stored as sRGB; above it two copies of a leaf with holes,
+// one of them stretched, turned and mirrored; a ball with a texture of its own.
 scenes::Scene garden() {
   scenes::Scene scene;
   scene.name = "GARDEN";
@@ -68,16 +70,19 @@ scenes::Scene garden() {
   scene.alpha_test = true;
   scene.camera.eye = {0, 2, 6};
   scene.camera.target = {0, 0.5f, 0};
-  scene.textures.push_back({"tiles", 2, 2, {250, 20, 60, 255, 20, 180, 60, 255, 90, 90, 200, 255, 240, 240, 10, 255}, true, true});
+  scene.textures.push_back(
+      {"tiles", 2, 2, {250, 20, 60, 255, 20, 180, 60, 255, 90, 90, 200, 255, 240, 240, 10, 255}, true, true});
   scene.textures.push_back({"leaf", 3, 1, {0, 99, 0, 255, 0, 0, 0, 0, 200, 99, 0, 255}});
-  scene.textures.push_back({"stripes", 4, 1, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255}});
+  scene.textures.push_back(
+      {"stripes", 4, 1, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255}});
   for (int32_t k = 0; k < 3; ++k) {
     scenes::Material material;
     material.diffuse = {0.9f, 0.8f, 0.7f, 1};
     material.texture = k;
     scene.materials.push_back(material);
   }
-  const auto quad = [&](int32_t material, std::array<scenes::Vec3, 4> corners, scenes::Vec3 normal, float most) {
+  const auto quad = [&](int32_t material, std::array<scenes::Vec3, 4> corners, scenes::Vec3 normal,
+                        float most) {
     scenes::Model model;
     model.name = "quad";
     const scenes::Vec2 at[4] = {{-most, -most}, {most, -most}, {most, most}, {-most, most}};
@@ -94,7 +99,10 @@ scenes::Scene garden() {
   ball.vertices.push_back({ball.center, {}, {}, 2});
   ball.indices = {0, 0, 0};
   scene.models.push_back(ball);
-  scene.instances = {{0, scenes::kIdentity}, {1, scenes::kIdentity}, {1, {0, 0, 1.5f, -1.5f, 0, 0.8f, 0, 0.1f, 0.7f, 0.2f, 0, -0.5f}}, {2, scenes::kIdentity}};
+  scene.instances = {{0, scenes::kIdentity},
+                     {1, scenes::kIdentity},
+                     {1, {0, 0, 1.5f, -1.5f, 0, 0.8f, 0, 0.1f, 0.7f, 0.2f, 0, -0.5f}},
+                     {2, scenes::kIdentity}};
   return scene;
 }
 
@@ -122,10 +130,12 @@ TEST_CASE("the forest of files whose copies are shared has the picture of one th
   CHECK(shared.scene.stored_triangles() * 10 < stored.scene.stored_triangles());
   // of grass and leaves, whose tips are less than a pixel: 1,016 of 1,024 pixels
   for (const Workload workload : {Workload::AmbientOcclusion, Workload::PathTracing})
-    CHECK(equal_pixels(picture(stored, workload).accumulation, picture(shared, workload).accumulation) >= 0.985);
+    CHECK(equal_pixels(picture(stored, workload).accumulation, picture(shared, workload).accumulation) >=
+          0.985);
 }
 
-TEST_CASE("instances, masks, repeated and sRGB textures and textured spheres give the exact reference's picture") {
+TEST_CASE(
+    "instances, masks, repeated and sRGB textures and textured spheres give the exact reference's picture") {
   pipeline::RenderJob job = test::small_job("CORNELL", Workload::Shadow, 64, 2);
   job.scene = garden();
   for (const Agreement& a : test::agreements(job, {{Workload::Shadow, 16, Oracle::Exact},

@@ -1,5 +1,5 @@
-// Four scenes' pictures and ray counts at 64x64 against the plain C++ reference renderer, which shares no code with the machine.
-// SPDX-License-Identifier: Apache-2.0
+// Four scenes' pictures and ray counts at 64x64 against the plain C++ reference renderer, which shares no
+// code with the machine. SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
 #include "tests/picture/agreement.h"
@@ -18,7 +18,9 @@ Agreement agreement(const std::string& scene, Workload workload, uint32_t bounce
   return test::agreements(scene, {}, kSize, {{workload, bounces, oracle}}).front();
 }
 
-std::string any_scene() { return GENERATE("WKND", "SHIP", "BUNNY", "REF"); }
+std::string any_scene() {
+  return GENERATE("WKND", "SHIP", "BUNNY", "REF");
+}
 
 }  // namespace
 

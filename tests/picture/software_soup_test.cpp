@@ -1,5 +1,5 @@
-// Ray queries over random triangles, boxes and instances, walked in code: what the shared traversal finds, bit for bit.
-// SPDX-License-Identifier: Apache-2.0
+// Ray queries over random triangles, boxes and instances, walked in code: what the shared traversal finds,
+// bit for bit. SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <cstring>
 #include <iterator>
@@ -69,7 +69,10 @@ std::vector<uint32_t> rays_of(uint64_t seed) {
   std::vector<uint32_t> words;
   for (uint32_t i = 0; i < kRays; ++i) {
     const auto origin = random.point(15), direction = random.point(1);
-    const float values[8] = {origin[0], origin[1], origin[2], 0.01f, direction[0], i % 16 ? direction[1] : 0.0f, direction[2], i % 3 ? 1e30f : 20.0f};
+    const float values[8] = {origin[0],    origin[1],
+                             origin[2],    0.01f,
+                             direction[0], i % 16 ? direction[1] : 0.0f,
+                             direction[2], i % 3 ? 1e30f : 20.0f};
     for (const float value : values) words.push_back(std::bit_cast<uint32_t>(value));
     words.push_back(kFlags[random.below(std::size(kFlags))]);
     words.push_back(i % 5 ? 0xff : 0x0f);
@@ -84,9 +87,12 @@ std::vector<uint32_t> hits_of(uint64_t seed, std::string_view unit, uint32_t max
   gpu.rt.unit = unit;
   gpu.compiler.max_registers = max_registers;
   Diagnostics warnings;
-  const std::vector<uint32_t> spirv = frontend::glsl_text_to_spirv(kShader, "soup.comp", isa::Stage::Compute, {});
-  const frontend::BackendOptions backend{max_registers, true, false, pipeline::compiler_for(gpu).queries_call};
-  std::vector<isa::Program> programs{frontend::compile_module(spirv, "soup.comp", {}, backend, warnings, nullptr).program};
+  const std::vector<uint32_t> spirv =
+      frontend::glsl_text_to_spirv(kShader, "soup.comp", isa::Stage::Compute, {});
+  const frontend::BackendOptions backend{max_registers, true, false,
+                                         pipeline::compiler_for(gpu).queries_call};
+  std::vector<isa::Program> programs{
+      frontend::compile_module(spirv, "soup.comp", {}, backend, warnings, nullptr).program};
   pipeline::add_traversal(programs, gpu, nullptr);
   const core::Image image = core::link(programs);
   core::World world;
@@ -98,9 +104,11 @@ std::vector<uint32_t> hits_of(uint64_t seed, std::string_view unit, uint32_t max
   core::set_blocks(world, {kRays / 64, 1, 1}, {64, 1, 1}, 0);
   pipeline::place_records(world, built.top.stack_need);
   const std::vector<uint32_t> rays = rays_of(seed + 1);
-  const Address from = built.memory.allocate("rays", rays.size() * 4), to = built.memory.allocate("hits", kRays * kHitWords * 4);
+  const Address from = built.memory.allocate("rays", rays.size() * 4),
+                to = built.memory.allocate("hits", kRays * kHitWords * 4);
   built.memory.write(from, rays.data(), rays.size() * 4);
-  const uint64_t descriptors[] = {built.top.address, built.top.bytes, from, rays.size() * 4, to, kRays * kHitWords * 4};
+  const uint64_t descriptors[] = {built.top.address,    built.top.bytes, from, rays.size() * 4, to,
+                                  kRays * kHitWords * 4};
   std::memcpy(world.constant_bank.data(), descriptors, sizeof descriptors);
   pipeline::run_functional(world, kBudget, {});
   const auto words = built.memory.view<uint32_t>(to, kRays * kHitWords);
@@ -109,12 +117,16 @@ std::vector<uint32_t> hits_of(uint64_t seed, std::string_view unit, uint32_t max
 
 }  // namespace
 
-TEST_CASE("ray queries over random soups find the same hits after as many candidates when rays are walked in code") {
+TEST_CASE(
+    "ray queries over random soups find the same hits after as many candidates when rays are walked in "
+    "code") {
   for (const uint64_t seed : {11, 12, 13, 14}) {
     INFO("seed " << seed);
-    const std::vector<uint32_t> unit = hits_of(seed, rt::kHardware, 64), code = hits_of(seed, rt::kSoftware, seed % 2 ? 64 : 24);
+    const std::vector<uint32_t> unit = hits_of(seed, rt::kHardware, 64),
+                                code = hits_of(seed, rt::kSoftware, seed % 2 ? 64 : 24);
     uint32_t triangles = 0, boxes = 0;
-    for (uint32_t ray = 0; ray < kRays; ++ray) triangles += unit[ray * kHitWords] == 1, boxes += unit[ray * kHitWords] == 2;
+    for (uint32_t ray = 0; ray < kRays; ++ray)
+      triangles += unit[ray * kHitWords] == 1, boxes += unit[ray * kHitWords] == 2;
     CHECK(triangles > 100);
     CHECK(boxes > 10);
     CHECK(unit == code);

@@ -11,7 +11,8 @@ namespace {
 
 constexpr uint32_t kSize = 16;
 
-pipeline::RenderResult picture(const std::string& scene, Workload workload, std::string_view unit, bool timing, bool no_skip = false, uint32_t threads = 1) {
+pipeline::RenderResult picture(const std::string& scene, Workload workload, std::string_view unit,
+                               bool timing, bool no_skip = false, uint32_t threads = 1) {
   pipeline::RenderJob job = test::small_job(scene, workload, kSize, 1);
   job.gpu.rt.unit = unit;
   job.timing = timing;
@@ -39,7 +40,8 @@ TEST_CASE("pictures are the RT unit's, bit for bit, when both machines walk rays
   const std::string scene = GENERATE("WKND", "SHIP", "BUNNY");
   for (const Workload workload : {Workload::PathTracing, Workload::Shadow, Workload::AmbientOcclusion}) {
     INFO(scene << ' ' << int(workload));
-    const pipeline::RenderResult unit = picture(scene, workload, rt::kHardware, false), code = picture(scene, workload, rt::kSoftware, false);
+    const pipeline::RenderResult unit = picture(scene, workload, rt::kHardware, false),
+                                 code = picture(scene, workload, rt::kSoftware, false);
     CHECK(unit.rgba == code.rgba);
     CHECK(code.rays.nodes == 0);  // the shared traversal has walked none
     CHECK(code.lane_instructions > 2 * unit.lane_instructions);
@@ -54,7 +56,8 @@ TEST_CASE("with rays in code skipping and stepping, one thread and two, take the
 }
 
 TEST_CASE("the RT unit does nothing when rays are walked in code") {
-  const pipeline::RenderResult unit = picture("WKND", Workload::Shadow, rt::kHardware, true), code = picture("WKND", Workload::Shadow, rt::kSoftware, true);
+  const pipeline::RenderResult unit = picture("WKND", Workload::Shadow, rt::kHardware, true),
+                               code = picture("WKND", Workload::Shadow, rt::kSoftware, true);
   CHECK(unit.rays.nodes > 0);
   CHECK(code.rays.nodes == 0);
 }

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/cache.h"
 
-#include <unistd.h>
-
 #include <atomic>
 #include <chrono>
 #include <filesystem>
@@ -11,6 +9,7 @@
 #include <iterator>
 #include <random>
 #include <thread>
+#include <unistd.h>
 
 #include "base/diagnostics.h"
 #include "frontend/compile.h"
@@ -30,7 +29,9 @@ struct Folder {
     std::ofstream(path / name) << text;
     return (path / name).string();
   }
-  ShaderCache cache(uint64_t max_bytes = 1 << 20, const std::string& build = "build 1") const { return ShaderCache({(path / "cache").string(), build, max_bytes}); }
+  ShaderCache cache(uint64_t max_bytes = 1 << 20, const std::string& build = "build 1") const {
+    return ShaderCache({(path / "cache").string(), build, max_bytes});
+  }
   uint64_t bytes() const {
     uint64_t out = 0;
     for (const auto& file : fs::directory_iterator(path / "cache")) out += file.file_size();
@@ -87,7 +88,8 @@ TEST_CASE("the folder does not outgrow its limit by more than an eighth, and wha
   for (int i = 0; i < 300; ++i) {
     cache.store("key " + std::to_string(i), std::string(1000, 'x'));
     std::error_code failed;
-    fs::last_write_time(cache.file_of("kept"), fs::file_time_type::clock::now() + std::chrono::hours(1), failed);
+    fs::last_write_time(cache.file_of("kept"), fs::file_time_type::clock::now() + std::chrono::hours(1),
+                        failed);
     CHECK(folder.bytes() < 114'000);
   }
   CHECK(folder.cache().find("kept"));
@@ -122,12 +124,16 @@ TEST_CASE("a folder that cannot be written is no error") {
 }
 
 constexpr const char* kShader =
-    "#version 460\n#include \"part.glsl\"\nlayout(local_size_x = 32) in;\nlayout(set = 0, binding = 0) buffer W { uint w[]; };\n"
+    "#version 460\n#include \"part.glsl\"\nlayout(local_size_x = 32) in;\nlayout(set = 0, binding = 0) "
+    "buffer W { uint w[]; };\n"
     "void main() { w[gl_LocalInvocationID.x] = VALUE + part(); }\n";
 
-TEST_CASE("a compiled program comes back the same with lines and header, and changes when anything it is made of does") {
+TEST_CASE(
+    "a compiled program comes back the same with lines and header, and changes when anything it is made of "
+    "does") {
   const Folder folder;
-  const std::string shader = folder.write("a.comp", kShader), part = folder.write("part.glsl", "uint part() { return 1; }\n");
+  const std::string shader = folder.write("a.comp", kShader),
+                    part = folder.write("part.glsl", "uint part() { return 1; }\n");
   const auto compile = [&](const char* value, bool contract, uint64_t* missing) {
     ShaderCache cache = folder.cache();
     frontend::GlslOptions glsl;

@@ -1,5 +1,5 @@
-// --contract: products and sums become one fma, bit for bit, unless the shader says `precise` or the switch is off.
-// SPDX-License-Identifier: Apache-2.0
+// --contract: products and sums become one fma, bit for bit, unless the shader says `precise` or the switch
+// is off. SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <cmath>
 #include <random>
@@ -11,7 +11,9 @@
 namespace glint::test {
 namespace {
 
-uint32_t bits(float x) { return std::bit_cast<uint32_t>(x); }
+uint32_t bits(float x) {
+  return std::bit_cast<uint32_t>(x);
+}
 
 // Stores `expression` of a, b, c and d, which are words 0 to 3, to word 4.
 std::string shader_of(const std::string& expression, const std::string& type = "float") {
@@ -26,7 +28,8 @@ size_t count(const isa::Program& program, std::string_view name) {
   return out;
 }
 
-void check(const std::string& expression, float (*fused)(float, float, float, float), float (*apart)(float, float, float, float), bool precise = false) {
+void check(const std::string& expression, float (*fused)(float, float, float, float),
+           float (*apart)(float, float, float, float), bool precise = false) {
   INFO(expression);
   std::mt19937 random(3);
   std::uniform_real_distribution<float> near_one(0.5f, 2.0f);
@@ -38,7 +41,8 @@ void check(const std::string& expression, float (*fused)(float, float, float, fl
   for (int i = 0; i < 50; ++i) {
     float v[4];
     for (float& x : v) x = near_one(random);
-    const float expected[2] = {apart(v[0], v[1], v[2], v[3]), (precise ? apart : fused)(v[0], v[1], v[2], v[3])};
+    const float expected[2] = {apart(v[0], v[1], v[2], v[3]),
+                               (precise ? apart : fused)(v[0], v[1], v[2], v[3])};
     different += bits(fused(v[0], v[1], v[2], v[3])) != bits(expected[0]);
     for (const int k : {0, 1}) {
       runs[k].words = {bits(v[0]), bits(v[1]), bits(v[2]), bits(v[3]), 0};
@@ -50,29 +54,49 @@ void check(const std::string& expression, float (*fused)(float, float, float, fl
 }
 
 // volatile: this compiler must not fuse either.
-float mul(float a, float b) { volatile float r = a * b; return r; }
-float add(float a, float b) { volatile float r = a + b; return r; }
+float mul(float a, float b) {
+  volatile float r = a * b;
+  return r;
+}
+float add(float a, float b) {
+  volatile float r = a + b;
+  return r;
+}
 
 TEST_CASE("sums and differences of products are fused with the switch and rounded twice without") {
-  check("a * b + c", [](float a, float b, float c, float) { return std::fma(a, b, c); }, [](float a, float b, float c, float) { return add(mul(a, b), c); });
-  check("c + a * b", [](float a, float b, float c, float) { return std::fma(a, b, c); }, [](float a, float b, float c, float) { return add(mul(a, b), c); });
-  check("a * b - c", [](float a, float b, float c, float) { return std::fma(a, b, -c); }, [](float a, float b, float c, float) { return add(mul(a, b), -c); });
-  check("c - a * b", [](float a, float b, float c, float) { return std::fma(-a, b, c); }, [](float a, float b, float c, float) { return add(c, -mul(a, b)); });
-  check("a * b - c * d", [](float a, float b, float c, float d) { return std::fma(a, b, -mul(c, d)); },
-        [](float a, float b, float c, float d) { return add(mul(a, b), -mul(c, d)); });
-  check("dot(vec2(a, b), vec2(c, d))", [](float a, float b, float c, float d) { return std::fma(a, c, mul(b, d)); },
-        [](float a, float b, float c, float d) { return add(mul(a, c), mul(b, d)); });
+  check(
+      "a * b + c", [](float a, float b, float c, float) { return std::fma(a, b, c); },
+      [](float a, float b, float c, float) { return add(mul(a, b), c); });
+  check(
+      "c + a * b", [](float a, float b, float c, float) { return std::fma(a, b, c); },
+      [](float a, float b, float c, float) { return add(mul(a, b), c); });
+  check(
+      "a * b - c", [](float a, float b, float c, float) { return std::fma(a, b, -c); },
+      [](float a, float b, float c, float) { return add(mul(a, b), -c); });
+  check(
+      "c - a * b", [](float a, float b, float c, float) { return std::fma(-a, b, c); },
+      [](float a, float b, float c, float) { return add(c, -mul(a, b)); });
+  check(
+      "a * b - c * d", [](float a, float b, float c, float d) { return std::fma(a, b, -mul(c, d)); },
+      [](float a, float b, float c, float d) { return add(mul(a, b), -mul(c, d)); });
+  check(
+      "dot(vec2(a, b), vec2(c, d))",
+      [](float a, float b, float c, float d) { return std::fma(a, c, mul(b, d)); },
+      [](float a, float b, float c, float d) { return add(mul(a, c), mul(b, d)); });
 }
 
 TEST_CASE("what is precise is rounded twice with the switch too") {
-  check("a * b + c", [](float a, float b, float c, float) { return std::fma(a, b, c); }, [](float a, float b, float c, float) { return add(mul(a, b), c); }, true);
+  check(
+      "a * b + c", [](float a, float b, float c, float) { return std::fma(a, b, c); },
+      [](float a, float b, float c, float) { return add(mul(a, b), c); }, true);
 }
 
 TEST_CASE("a product that something else reads stays, and nothing is fused without the switch") {
   ShaderRun on, off;
   on.backend.contract = true;
-  const std::string twice = "layout(local_size_x = 1) in;\nlayout(set = 0, binding = 0) buffer W { float a, b, c, d, r; };\n"
-                            "void main() { float p = a * b; r = p + c; d = p; }\n";
+  const std::string twice =
+      "layout(local_size_x = 1) in;\nlayout(set = 0, binding = 0) buffer W { float a, b, c, d, r; };\n"
+      "void main() { float p = a * b; r = p + c; d = p; }\n";
   CHECK(count(compile_text(on, twice), "fma.rn.f32") == 0);
   const std::string once = shader_of("a * b + c");
   CHECK(count(compile_text(off, once), "fma.rn.f32") == 0);
@@ -85,8 +109,10 @@ TEST_CASE("halves and doubles are fused by their own ops, and built-in functions
   ShaderRun on, off;
   on.backend.contract = true;
   CHECK(count(compile_text(on, shader_of("double(a) * double(b) + double(c)", "double")), "fma.rn.f64") == 1);
-  CHECK(count(compile_text(on, shader_of("float16_t(a) * float16_t(b) + float16_t(c)", "float16_t")), "fma.rn.f16") == 1);
-  CHECK(compile_text(on, shader_of("exp(a) + atan(b) * 2.0")).code.size() == compile_text(off, shader_of("exp(a) + atan(b) * 2.0")).code.size() - 1);
+  CHECK(count(compile_text(on, shader_of("float16_t(a) * float16_t(b) + float16_t(c)", "float16_t")),
+              "fma.rn.f16") == 1);
+  CHECK(compile_text(on, shader_of("exp(a) + atan(b) * 2.0")).code.size() ==
+        compile_text(off, shader_of("exp(a) + atan(b) * 2.0")).code.size() - 1);
 }
 
 }  // namespace

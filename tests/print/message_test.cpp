@@ -66,11 +66,13 @@ TEST_CASE("floats and doubles print as C prints them, with every flag") {
     if (value != value || single != single) continue;
     INFO(start << letter << " of " << value);
     CHECK(glint_format(start + "l" + letter, bits) == c_format(start + letter, value));
-    CHECK(glint_format(start + letter, std::bit_cast<uint32_t>(single)) == c_format(start + letter, double(single)));
+    CHECK(glint_format(start + letter, std::bit_cast<uint32_t>(single)) ==
+          c_format(start + letter, double(single)));
   }
   for (const uint32_t special : {0u, 0x8000'0000u, 0x7f80'0000u, 0xff80'0000u, 0x7fc0'0000u, 1u})
     for (const char* format : {"%f", "%8.3e", "%-9G|", "%+a", "%010f", "%x"})
-      if (std::string(format) != "%x") CHECK(glint_format(format, special) == c_format(format, double(std::bit_cast<float>(special))));
+      if (std::string(format) != "%x")
+        CHECK(glint_format(format, special) == c_format(format, double(std::bit_cast<float>(special))));
 }
 
 TEST_CASE("a message takes several values, and percent signs stand for themselves when doubled") {
@@ -82,7 +84,8 @@ TEST_CASE("a message takes several values, and percent signs stand for themselve
 }
 
 TEST_CASE("what is no conversion, is too wide or takes too many words is an error") {
-  for (const char* bad : {"%", "abc %", "%s", "%5", "%.", "%-", "%l", "%ld%ld%d", "%1000d", "%.1000f", "%99999999999d", "%d%d%d%d%d", "%y"}) {
+  for (const char* bad : {"%", "abc %", "%s", "%5", "%.", "%-", "%l", "%ld%ld%d", "%1000d", "%.1000f",
+                          "%99999999999d", "%d%d%d%d%d", "%y"}) {
     INFO(bad);
     CHECK(!isa::parse_message(bad).error.empty());
   }

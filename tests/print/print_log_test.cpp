@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/print_log.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 #include <random>
 #include <thread>
 
@@ -20,7 +19,8 @@ std::string expected(uint64_t threads, uint64_t limit) {
   for (uint64_t t = 0; t < threads; ++t)
     for (uint64_t i = 0; i < t % 4; ++i, ++count)
       if (count < limit) out += fmt::format("thread {} line {}\n", t, i);
-  if (count > limit) out += fmt::format("({} more messages not shown; the limit is {})\n", count - limit, limit);
+  if (count > limit)
+    out += fmt::format("({} more messages not shown; the limit is {})\n", count - limit, limit);
   return out;
 }
 

@@ -1,5 +1,5 @@
-// debugPrintfEXT of real shaders: what is printed, in which order, on both machines; and formats that are wrong.
-// SPDX-License-Identifier: Apache-2.0
+// debugPrintfEXT of real shaders: what is printed, in which order, on both machines; and formats that are
+// wrong. SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include "base/diagnostics.h"
@@ -34,7 +34,9 @@ std::string error_of(const std::string& text) {
 }
 
 std::string main_with(const std::string& statements) {
-  return "layout(local_size_x = 1) in;\nlayout(set = 0, binding = 0) buffer W { uint w[]; };\nvoid main() {\n" + statements + "\n}\n";
+  return "layout(local_size_x = 1) in;\nlayout(set = 0, binding = 0) buffer W { uint w[]; };\nvoid main() "
+         "{\n" +
+         statements + "\n}\n";
 }
 
 TEST_CASE("every type prints: scalars, vectors, booleans, narrow and wide numbers") {
@@ -42,15 +44,19 @@ TEST_CASE("every type prints: scalars, vectors, booleans, narrow and wide number
   run.words = {7, 0xffff'fffe};
   const std::string text =
       "#extension GL_EXT_shader_explicit_arithmetic_types : require\n" +
-      main_with("int i = int(w[1]); float f = float(w[0]) / 2.0; double d = double(f) / 3.0lf;\n"
-                "debugPrintfEXT(\"%d %u %x %X %o|%5d|%-5d|%05d\", i, w[0], w[1], w[1], w[0], i, i, i);\n"
-                "debugPrintfEXT(\"%f %e %g %a %.3f %8.2f|\", f, f, f, f, f, f);\n"
-                "debugPrintfEXT(\"%v3f and %1.2v2f and %v4d and %v2x\", vec3(f, f + 1, f + 2), vec2(f), ivec4(i), uvec2(w[0], w[1]));\n"
-                "debugPrintfEXT(\"%lf %.12f %v2lf\", d, d, dvec2(d, -d));\n"
-                "debugPrintfEXT(\"%ld %lu %lx %ul %u|\", int64_t(i), uint64_t(w[1]) << 8, uint64_t(w[1]) << 32, uint64_t(w[1]) << 4, uint64_t(1) << 40);\n"
-                "debugPrintfEXT(\"%d %u %d %u %f\", int8_t(i), uint8_t(w[1]), int16_t(i), uint16_t(w[1]), float16_t(f));\n"
-                "debugPrintfEXT(\"%d %d 100%%\", f > 1.0, f > 100.0);\n"
-                "debugPrintfEXT(\"nothing\\n\");");
+      main_with(
+          "int i = int(w[1]); float f = float(w[0]) / 2.0; double d = double(f) / 3.0lf;\n"
+          "debugPrintfEXT(\"%d %u %x %X %o|%5d|%-5d|%05d\", i, w[0], w[1], w[1], w[0], i, i, i);\n"
+          "debugPrintfEXT(\"%f %e %g %a %.3f %8.2f|\", f, f, f, f, f, f);\n"
+          "debugPrintfEXT(\"%v3f and %1.2v2f and %v4d and %v2x\", vec3(f, f + 1, f + 2), vec2(f), ivec4(i), "
+          "uvec2(w[0], w[1]));\n"
+          "debugPrintfEXT(\"%lf %.12f %v2lf\", d, d, dvec2(d, -d));\n"
+          "debugPrintfEXT(\"%ld %lu %lx %ul %u|\", int64_t(i), uint64_t(w[1]) << 8, uint64_t(w[1]) << 32, "
+          "uint64_t(w[1]) << 4, uint64_t(1) << 40);\n"
+          "debugPrintfEXT(\"%d %u %d %u %f\", int8_t(i), uint8_t(w[1]), int16_t(i), uint16_t(w[1]), "
+          "float16_t(f));\n"
+          "debugPrintfEXT(\"%d %d 100%%\", f > 1.0, f > 100.0);\n"
+          "debugPrintfEXT(\"nothing\\n\");");
   CHECK(printed(text, run) ==
         "-2 7 fffffffe FFFFFFFE 7|   -2|-2   |-0002\n"
         "3.500000 3.500000e+00 3.5 0x1.cp+1 3.500     3.50|\n"
@@ -62,7 +68,9 @@ TEST_CASE("every type prints: scalars, vectors, booleans, narrow and wide number
         "nothing\n");
 }
 
-TEST_CASE("lines are ordered by launch id and then by program order, in divergent code and loops, at any register limit") {
+TEST_CASE(
+    "lines are ordered by launch id and then by program order, in divergent code and loops, at any register "
+    "limit") {
   const std::string text =
       "layout(local_size_x = 24, local_size_y = 2) in;\n"
       "void main() {\n"
@@ -78,7 +86,8 @@ TEST_CASE("lines are ordered by launch id and then by program order, in divergen
   for (uint32_t id = 0; id < 72 * 4; ++id) {
     for (uint32_t i = 0; i < id % 3; ++i)
       wanted += id % 2 == 0 ? fmt::format("even {} turn {}\n", id, i)
-                            : fmt::format("odd {} turn {} of {}: {:.6f}, {:.6f}, 0.500000\n", id, i, id % 3, double(id), double(i));
+                            : fmt::format("odd {} turn {} of {}: {:.6f}, {:.6f}, 0.500000\n", id, i, id % 3,
+                                          double(id), double(i));
     if (id != 100) wanted += fmt::format("end {}\n", id);
   }
   for (const uint32_t registers : {16u, 24u, 64u}) {
@@ -90,7 +99,8 @@ TEST_CASE("lines are ordered by launch id and then by program order, in divergen
 }
 
 TEST_CASE("no more lines than the limit are shown, the first by launch id, and the rest is counted") {
-  const std::string text = "layout(local_size_x = 64) in;\nvoid main() { debugPrintfEXT(\"%u\", gl_GlobalInvocationID.x); }\n";
+  const std::string text =
+      "layout(local_size_x = 64) in;\nvoid main() { debugPrintfEXT(\"%u\", gl_GlobalInvocationID.x); }\n";
   ShaderRun run;
   run.size = {4, 1, 1};
   run.print_limit = 3;
@@ -105,14 +115,18 @@ TEST_CASE("a ray generation shader prints by its launch id") {
   for (int z = 0; z < 2; ++z)
     for (int y = 0; y < 3; ++y)
       for (int x = 0; x < 2; ++x) wanted += fmt::format("{}, {}, {}\n", x, y, z);
-  CHECK(printed("#extension GL_EXT_ray_tracing : require\nvoid main() { debugPrintfEXT(\"%v3u\", gl_LaunchIDEXT); }\n", run) == wanted);
+  CHECK(printed("#extension GL_EXT_ray_tracing : require\nvoid main() { debugPrintfEXT(\"%v3u\", "
+                "gl_LaunchIDEXT); }\n",
+                run) == wanted);
 }
 
 TEST_CASE("prints in functions do not keep them from being inlined, and results stay what they are") {
   ShaderRun run;
   run.words = {5, 0};
-  const std::string text = "struct Pair { uint a, b; };\nPair twice(Pair p) { Pair q = p; q.a *= 2; debugPrintfEXT(\"a %d\", q.a); return q; }\n" +
-                           main_with("w[1] = twice(twice(Pair(w[0], 1))).a;");
+  const std::string text =
+      "struct Pair { uint a, b; };\nPair twice(Pair p) { Pair q = p; q.a *= 2; debugPrintfEXT(\"a %d\", "
+      "q.a); return q; }\n" +
+      main_with("w[1] = twice(twice(Pair(w[0], 1))).a;");
   const isa::Program program = compile_text({}, kPrintf + text);
   CHECK(program.local_bytes == 0);
   CHECK(run_text(run, kPrintf + text) == "a 10\na 20\n");
@@ -122,7 +136,10 @@ TEST_CASE("prints in functions do not keep them from being inlined, and results 
 TEST_CASE("a program with messages goes through its text, quotes and line ends included") {
   ShaderRun run;
   run.words = {3};
-  const isa::Program program = compile_text(run, kPrintf + main_with("debugPrintfEXT(\"say \\\"%u\\\"\\nback\\\\slash %u %u %u %u\", w[0], 1, 2, 3, 4);"));
+  const isa::Program program = compile_text(
+      run,
+      kPrintf +
+          main_with("debugPrintfEXT(\"say \\\"%u\\\"\\nback\\\\slash %u %u %u %u\", w[0], 1, 2, 3, 4);"));
   CHECK(program.messages.size() == 2);
   const isa::Program again = isa::parse(isa::to_text(program), "again");
   CHECK(again == program);
@@ -132,8 +149,12 @@ TEST_CASE("a program with messages goes through its text, quotes and line ends i
 TEST_CASE("an argument of another kind or size than its format prints as what it is") {
   ShaderRun run;
   run.words = {7};
-  CHECK(run_text(run, kPrintf + main_with("debugPrintfEXT(\"%f %d %5.1d\", w[0], float(w[0]) / 2, int(w[0]) - 9);")) == "7 3.500000    -2\n");
-  CHECK(run_text(run, kPrintf + main_with("debugPrintfEXT(\"%d; %v3f\", uvec2(w[0], 1), vec2(w[0]));")) == "7, 1; 7.000000, 7.000000\n");
+  CHECK(run_text(
+            run,
+            kPrintf + main_with("debugPrintfEXT(\"%f %d %5.1d\", w[0], float(w[0]) / 2, int(w[0]) - 9);")) ==
+        "7 3.500000    -2\n");
+  CHECK(run_text(run, kPrintf + main_with("debugPrintfEXT(\"%d; %v3f\", uvec2(w[0], 1), vec2(w[0]));")) ==
+        "7, 1; 7.000000, 7.000000\n");
 }
 
 TEST_CASE("formats that do not fit are errors with file and line") {

@@ -14,8 +14,10 @@ namespace glint::test {
 isa::Program compile_text(const ShaderRun& run, const std::string& text) {
   const std::string name = run.stage == isa::Stage::Compute ? "text.comp" : "text.rgen";
   Diagnostics diagnostics;
-  const std::vector<uint32_t> spirv = frontend::glsl_text_to_spirv("#version 460\n" + text, name, run.stage, run.glsl);
-  isa::Program program = frontend::compile_module(spirv, name, "", run.backend, diagnostics, run.glsl.cache).program;
+  const std::vector<uint32_t> spirv =
+      frontend::glsl_text_to_spirv("#version 460\n" + text, name, run.stage, run.glsl);
+  isa::Program program =
+      frontend::compile_module(spirv, name, "", run.backend, diagnostics, run.glsl.cache).program;
   isa::verify(program, diagnostics);
   diagnostics.throw_if_errors();
   return program;
@@ -56,6 +58,8 @@ std::string run_program(ShaderRun& run, const isa::Program& program) {
   return prints.take();
 }
 
-std::string run_text(ShaderRun& run, const std::string& text) { return run_program(run, compile_text(run, text)); }
+std::string run_text(ShaderRun& run, const std::string& text) {
+  return run_program(run, compile_text(run, text));
+}
 
 }  // namespace glint::test

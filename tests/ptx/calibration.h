@@ -1,8 +1,6 @@
 // The recorded inputs and outputs of the calibration kernels, which lie beside the repository.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <zstd.h>
-
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -10,6 +8,7 @@
 #include <sstream>
 #include <string>
 #include <vector>
+#include <zstd.h>
 
 #include "tests/support/catch.h"
 
@@ -29,7 +28,8 @@ class Outputs {
     REQUIRE(ZSTD_decompress(data_.data(), data_.size(), packed.data(), packed.size()) == data_.size());
     std::istringstream lines(read_file(folder / "valid_out.txt"));
     for (std::string line; std::getline(lines, line);) {
-      const size_t at = std::stoul(line.substr(line.find("off=") + 4)), bytes = std::stoul(line.substr(line.find("bytes=") + 6));
+      const size_t at = std::stoul(line.substr(line.find("off=") + 4)),
+                   bytes = std::stoul(line.substr(line.find("bytes=") + 6));
       ranges_.push_back({line.substr(0, line.find(" off=")), at, bytes});
     }
   }

@@ -1,7 +1,7 @@
 // Instructions and cycles of the calibration kernels on the preset `h200`, beside a GPU's counters.
 //
-// The kernels, their inputs and the counters lie beside the repository. `test_ptx_h200 [rays]` runs those that take long.
-// SPDX-License-Identifier: Apache-2.0
+// The kernels, their inputs and the counters lie beside the repository. `test_ptx_h200 [rays]` runs those
+// that take long. SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -30,9 +30,12 @@ std::map<std::string, Counters> read_counters(const std::filesystem::path& path)
     std::vector<std::string> cells(1);
     bool quoted = false;
     for (char c : line) {
-      if (c == '"') quoted = !quoted;
-      else if (c == ',' && !quoted) cells.emplace_back();
-      else cells.back() += c;
+      if (c == '"')
+        quoted = !quoted;
+      else if (c == ',' && !quoted)
+        cells.emplace_back();
+      else
+        cells.back() += c;
     }
     if (head.empty()) {
       head = cells;
@@ -50,7 +53,8 @@ std::map<std::string, Counters> read_counters(const std::filesystem::path& path)
     };
     std::string name = cells[0].substr(0, cells[0].find('('));
     while (out.contains(name)) name += " again";
-    out[name] = {number("sm__cycles_elapsed.max"), number("smsp__inst_executed.sum"), number("l1tex__t_requests_pipe_lsu_mem_global_op_ld.sum")};
+    out[name] = {number("sm__cycles_elapsed.max"), number("smsp__inst_executed.sum"),
+                 number("l1tex__t_requests_pipe_lsu_mem_global_op_ld.sum")};
   }
   return out;
 }
@@ -58,12 +62,17 @@ std::map<std::string, Counters> read_counters(const std::filesystem::path& path)
 class Runs {
  public:
   explicit Runs(const std::filesystem::path& folder)
-      : recorded(folder), text_(read_file(folder / "valid.ptx")), counters_(read_counters(folder / "../valid_ncu_summary.csv")), gpu_(test::preset("h200")) {}
+      : recorded(folder),
+        text_(read_file(folder / "valid.ptx")),
+        counters_(read_counters(folder / "../valid_ncu_summary.csv")),
+        gpu_(test::preset("h200")) {}
 
   template <class Arguments>
-  void run(const std::string& name, const pipeline::KernelGrid& grid, const Arguments& arguments, const std::string& launch = {}) {
+  void run(const std::string& name, const pipeline::KernelGrid& grid, const Arguments& arguments,
+           const std::string& launch = {}) {
     const pipeline::CompilerParams& compiler = gpu_.compiler;
-    Launcher kernel(text_, "valid.ptx", name, {{compiler.max_registers, compiler.schedule, false, false, compiler.guard_latency}});
+    Launcher kernel(text_, "valid.ptx", name,
+                    {{compiler.max_registers, compiler.schedule, false, false, compiler.guard_latency}});
     arguments(kernel);
     kernel.world().set_grid(grid);
     kernel.set_arguments();
@@ -77,8 +86,9 @@ class Runs {
     }
     const Counters& real = counters_.at(launch.empty() ? name : launch);
     const double error = cycles / real.cycles - 1;
-    std::printf("%-22s cycles %8.0f of %8.0f %+6.1f %%   instructions %9.0f of %9.0f %+6.1f %%\n", (launch.empty() ? name : launch).c_str(), cycles, real.cycles,
-                100 * error, instructions, real.instructions, 100 * (instructions / real.instructions - 1));
+    std::printf("%-22s cycles %8.0f of %8.0f %+6.1f %%   instructions %9.0f of %9.0f %+6.1f %%\n",
+                (launch.empty() ? name : launch).c_str(), cycles, real.cycles, 100 * error, instructions,
+                real.instructions, 100 * (instructions / real.instructions - 1));
     std::fflush(stdout);
     INFO(name);
     CHECK(std::abs(instructions / real.instructions - 1) <= 0.05);
@@ -99,46 +109,67 @@ class Runs {
   int count_ = 0;
 };
 
-std::filesystem::path folder() { return std::filesystem::path(GLINT_SOURCE_DIR) / "../shared/data/h200/kernels"; }
+std::filesystem::path folder() {
+  return std::filesystem::path(GLINT_SOURCE_DIR) / "../shared/data/h200/kernels";
+}
 
 }  // namespace
 
-TEST_CASE("the short calibration kernels take the cycles that a GPU took, on average within the bound of docs/validation.md") {
+TEST_CASE(
+    "the short calibration kernels take the cycles that a GPU took, on average within the bound of "
+    "docs/validation.md") {
   if (!std::filesystem::exists(folder() / "valid.ptx")) {
     WARN("SKIPPED: no calibration kernels in " << folder().string());
     return;
   }
   Runs runs(folder());
   const uint32_t n = Inputs::kCount;
-  const pipeline::KernelGrid lines{{n / 256, 1, 1}, {256, 1, 1}, 0}, tiles{{16, 16, 1}, {16, 16, 1}, 0}, turns{{16, 16, 1}, {32, 8, 1}, 0};
+  const pipeline::KernelGrid lines{{n / 256, 1, 1}, {256, 1, 1}, 0}, tiles{{16, 16, 1}, {16, 16, 1}, 0},
+      turns{{16, 16, 1}, {32, 8, 1}, 0};
   const Words zeros(n);
   const auto& in = runs.in;
   runs.run("k_vecadd", lines, [&](Launcher& k) { k.buffer(in.a).buffer(in.b).buffer(in.b).value(n); });
-  runs.run("k_saxpy_stride", lines, [&](Launcher& k) { k.buffer(in.a).buffer(in.b).value(2.0f).value(n).value(8u); });
+  runs.run("k_saxpy_stride", lines,
+           [&](Launcher& k) { k.buffer(in.a).buffer(in.b).value(2.0f).value(n).value(8u); });
   for (const char* name : {"k_matmul", "k_matmul_tiled"})
     runs.run(name, tiles, [&](Launcher& k) { k.buffer(in.a).buffer(in.b).buffer(in.b).value(256u); });
   runs.run("k_reduce", lines, [&](Launcher& k) { k.buffer(in.a).buffer(in.b).value(n); });
   for (const char* name : {"k_transpose", "k_transpose_tiled", "k_transpose_conflict"})
     runs.run(name, turns, [&](Launcher& k) { k.buffer(in.a).buffer(zeros).value(512u); });
-  runs.run("k_hist", {{64, 1, 1}, {256, 1, 1}, 0}, [&](Launcher& k) { k.buffer(in.u).buffer(Words(256)).value(n); });
+  runs.run("k_hist", {{64, 1, 1}, {256, 1, 1}, 0},
+           [&](Launcher& k) { k.buffer(in.u).buffer(Words(256)).value(n); });
   runs.run("k_mandel", tiles, [&](Launcher& k) { k.buffer(zeros).value(256u).value(256u).value(256u); });
-  runs.run("k_gather", lines, [&](Launcher& k) { k.buffer(in.table).buffer(in.index).buffer(zeros).value(n); });
-  runs.run("k_stencil", {{16, 64, 1}, {32, 8, 1}, 0}, [&](Launcher& k) { k.buffer(in.a).buffer(zeros).value(512u); });
+  runs.run("k_gather", lines,
+           [&](Launcher& k) { k.buffer(in.table).buffer(in.index).buffer(zeros).value(n); });
+  runs.run("k_stencil", {{16, 64, 1}, {32, 8, 1}, 0},
+           [&](Launcher& k) { k.buffer(in.a).buffer(zeros).value(512u); });
   std::printf("mean absolute error of cycles: %.1f %%\n", 100 * runs.mean_error());
   CHECK(runs.mean_error() <= 0.20);
 }
 
 TEST_CASE("the kernels that trace rays take the cycles that a GPU took", "[.][rays]") {
   Runs runs(folder());
-  const Words nodes = runs.recorded.get<uint32_t>("bvh nodes"), triangles = runs.recorded.get<uint32_t>("tris");
+  const Words nodes = runs.recorded.get<uint32_t>("bvh nodes"),
+              triangles = runs.recorded.get<uint32_t>("tris");
   const uint32_t rays = 128 * 128;
   const pipeline::KernelGrid grid{{rays / 128, 1, 1}, {128, 1, 1}, 0};
-  const Words primary = runs.recorded.get<uint32_t>("rays primary"), random = runs.recorded.get<uint32_t>("rays random");
-  runs.run("k_brute", grid, [&](Launcher& k) { k.buffer(triangles).value(512u).buffer(primary).buffer(Words(rays * 4)).value(rays); });
+  const Words primary = runs.recorded.get<uint32_t>("rays primary"),
+              random = runs.recorded.get<uint32_t>("rays random");
+  runs.run("k_brute", grid, [&](Launcher& k) {
+    k.buffer(triangles).value(512u).buffer(primary).buffer(Words(rays * 4)).value(rays);
+  });
   for (const bool is_random : {false, true})
-    runs.run("k_bvh", grid, [&](Launcher& k) {
-      k.buffer(nodes).buffer(triangles).buffer(is_random ? random : primary).buffer(Words(rays * 4)).buffer(Words(rays)).value(rays);
-    }, is_random ? "k_bvh again" : "k_bvh");
+    runs.run(
+        "k_bvh", grid,
+        [&](Launcher& k) {
+          k.buffer(nodes)
+              .buffer(triangles)
+              .buffer(is_random ? random : primary)
+              .buffer(Words(rays * 4))
+              .buffer(Words(rays))
+              .value(rays);
+        },
+        is_random ? "k_bvh again" : "k_bvh");
   std::printf("mean absolute error of cycles: %.1f %%\n", 100 * runs.mean_error());
   CHECK(runs.mean_error() <= 0.20);
 }

@@ -13,12 +13,14 @@ namespace glint {
 // One kernel, its buffers and arguments in order.
 class Launcher {
  public:
-  Launcher(const std::string& text, const std::string& file, const std::string& entry, const frontend::PtxOptions& options = {})
+  Launcher(const std::string& text, const std::string& file, const std::string& entry,
+           const frontend::PtxOptions& options = {})
       : world_(frontend::compile_ptx(text, file, entry, options)) {}
 
   template <class T>
   Launcher& buffer(const std::vector<T>& data) {
-    buffers_.push_back(world_.memory().allocate("argument " + std::to_string(arguments_.size()), data.size() * sizeof(T)));
+    buffers_.push_back(
+        world_.memory().allocate("argument " + std::to_string(arguments_.size()), data.size() * sizeof(T)));
     world_.memory().write(buffers_.back(), data.data(), data.size() * sizeof(T));
     return value(buffers_.back());
   }

@@ -1,7 +1,6 @@
 // The PTX front end by small kernels: what they compute, and how mistakes are told.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-
 #include <fstream>
 #include <iterator>
 
@@ -18,12 +17,16 @@ const std::string kHead = ".version 7.0\n.target sm_70\n.address_size 64\n";
 // A kernel `k` of one warp that stores %out of each thread, a word, to its parameter.
 std::string storing(const std::string& body, const std::string& before = "") {
   return kHead + before +
-         ".visible .entry k(.param .u64 to)\n{\n.reg .b32 %out, %lane, %r<40>; .reg .b64 %at, %rd<20>; .reg .pred %p<20>; .reg .f32 %f<9>;\n"
-         "mov.u32 %lane, %tid.x; mov.u32 %out, 0;\n" + body +
+         ".visible .entry k(.param .u64 to)\n{\n.reg .b32 %out, %lane, %r<40>; .reg .b64 %at, %rd<20>; .reg "
+         ".pred %p<20>; .reg .f32 %f<9>;\n"
+         "mov.u32 %lane, %tid.x; mov.u32 %out, 0;\n" +
+         body +
          "\nld.param.u64 %at, [to]; mad.wide.u32 %at, %lane, 4, %at; st.global.u32 [%at], %out; ret;\n}\n";
 }
 
-std::vector<uint32_t> outputs(const std::string& text, const pipeline::KernelGrid& grid = {{1, 1, 1}, {32, 1, 1}, 0}, const frontend::PtxOptions& options = {}) {
+std::vector<uint32_t> outputs(const std::string& text,
+                              const pipeline::KernelGrid& grid = {{1, 1, 1}, {32, 1, 1}, 0},
+                              const frontend::PtxOptions& options = {}) {
   Launcher k(text, "test.ptx", "k", options);
   const uint32_t threads = grid.block[0] * grid.block[1] * grid.block[2];
   k.buffer(std::vector<uint32_t>(threads));
@@ -82,9 +85,8 @@ TEST_CASE("lanes that part meet again where their paths must meet") {
     mad.lo.u32 %out, %r1, 100, %r2;
     setp.ne.u32 %p3, %r3, -1;
     @%p3 mov.u32 %out, 9;)";
-  CHECK(outputs(storing(body)) == expected([](uint32_t lane) {
-          return lane < 16 ? 107u : (lane < 24 ? 200u : 300u) + 0xffff0000u;
-        }));
+  CHECK(outputs(storing(body)) ==
+        expected([](uint32_t lane) { return lane < 16 ? 107u : (lane < 24 ? 200u : 300u) + 0xffff0000u; }));
 }
 
 TEST_CASE("a loop with several exits and an early end gathers the lanes that are left") {
@@ -103,7 +105,9 @@ TEST_CASE("a loop with several exits and an early end gathers the lanes that are
     add.u32 %out, %r1, 1000;
     setp.ne.u32 %p4, %r2, 0xffffffdf;
     @%p4 mov.u32 %out, 9;)";
-  CHECK(outputs(storing(body)) == expected([](uint32_t lane) { return lane == 5 ? 0u : lane == 0 ? 1077u : lane + 1000; }));
+  CHECK(outputs(storing(body)) == expected([](uint32_t lane) {
+          return lane == 5 ? 0u : lane == 0 ? 1077u : lane + 1000;
+        }));
 }
 
 TEST_CASE("functions take and give words, bytes and structs, and become part of each caller") {
@@ -156,7 +160,8 @@ TEST_CASE("variables of the module lie in their spaces with their values and poi
     bar.sync 0;
     ld.shared.u32 %r6, [%r4]; ld.shared.u32 %r7, [%r5];
     add.u32 %out, %r1, %r2; add.u32 %out, %out, %r3; add.u32 %out, %out, %r6; add.u32 %out, %out, %r7;)";
-  CHECK(outputs(storing(body, variables), {{1, 1, 1}, {32, 1, 1}, 128}) == expected([](uint32_t lane) { return 1077 + lane; }));
+  CHECK(outputs(storing(body, variables), {{1, 1, 1}, {32, 1, 1}, 128}) ==
+        expected([](uint32_t lane) { return 1077 + lane; }));
 }
 
 TEST_CASE("local memory, vectors, literals and predicates mean what PTX says") {
@@ -171,37 +176,49 @@ TEST_CASE("local memory, vectors, literals and predicates mean what PTX says") {
     setp.lt.and.u32 %p1|%p2, %lane, 4, !%p9;
     add.u32 %out, %r1, %r2; add.u32 %out, %out, %r3; add.u32 %out, %out, %r4; add.u32 %out, %out, %r5; add.u32 %out, %out, %r6;
     @%p1 add.u32 %out, %out, 1000; @%p2 add.u32 %out, %out, 2000;)";
-  CHECK(outputs(storing(body)) == expected([](uint32_t lane) { return lane + 16 + 16 + 3 + 0x40005 + 2 + (lane < 4 ? 1000 : 2000); }));
+  CHECK(outputs(storing(body)) ==
+        expected([](uint32_t lane) { return lane + 16 + 16 + 3 + 0x40005 + 2 + (lane < 4 ? 1000 : 2000); }));
 }
 
 TEST_CASE("a comparison takes in the predicate that it is combined with, unless others read it alone") {
-  const std::string both = "setp.gt.u32 %p1,%lane,3;setp.lt.u32 %p2,%lane,20;and.pred %p3,%p1,%p2;setp.eq.u32 %p4,%lane,30;or.pred %p5,%p4,%p3;\n@%p5 mov.u32 %out,7;\n";
+  const std::string both =
+      "setp.gt.u32 %p1,%lane,3;setp.lt.u32 %p2,%lane,20;and.pred %p3,%p1,%p2;setp.eq.u32 "
+      "%p4,%lane,30;or.pred %p5,%p4,%p3;\n@%p5 mov.u32 %out,7;\n";
   const std::string text = shaped(both);
   CHECK(count(text, "setp.lt.and.u32") + count(text, "setp.gt.and.u32") == 1);
   CHECK(count(text, "setp.eq.or.u32") == 1);
   CHECK(count(text, ".pred") == 0);
   CHECK(count(shaped(both + "@%p1 add.u32 %out,%out,1;@%p2 add.u32 %out,%out,2;\n"), "and.pred") == 1);
   // What it compares has changed since.
-  CHECK(count(shaped("mov.u32 %r1,%lane;setp.gt.u32 %p1,%r1,3;setp.ne.u32 %p2,%lane,9;add.u32 %r1,%r1,%lane;and.pred %p3,%p1,%p2;\n"
-                     "@%p1 add.u32 %out,%out,1;\n@%p3 add.u32 %out,%out,%r1;\n"), "setp.gt.and") == 0);
+  CHECK(count(shaped("mov.u32 %r1,%lane;setp.gt.u32 %p1,%r1,3;setp.ne.u32 %p2,%lane,9;add.u32 "
+                     "%r1,%r1,%lane;and.pred %p3,%p1,%p2;\n"
+                     "@%p1 add.u32 %out,%out,1;\n@%p3 add.u32 %out,%out,%r1;\n"),
+              "setp.gt.and") == 0);
 }
 
 TEST_CASE("a product that only sums read becomes part of each of them") {
-  const std::string body = "mul.lo.u32 %r9,%lane,7;mul.wide.u32 %rd1,%r9,12;cvt.u64.u32 %rd4,%lane;add.s64 %rd2,%rd1,%rd4;add.s64 %rd3,%rd2,%rd1;xor.b64 %rd5,%rd2,%rd3;cvt.u32.u64 %out,%rd5;\n";
+  const std::string body =
+      "mul.lo.u32 %r9,%lane,7;mul.wide.u32 %rd1,%r9,12;cvt.u64.u32 %rd4,%lane;add.s64 %rd2,%rd1,%rd4;add.s64 "
+      "%rd3,%rd2,%rd1;xor.b64 %rd5,%rd2,%rd3;cvt.u32.u64 %out,%rd5;\n";
   const std::string text = shaped(body);
   CHECK(count(text, "mad.wide.u32") == 3);  // and the one of the store
   CHECK(count(text, "mul.wide.u32") == 0);
   const std::string read = shaped(body + "cvt.u32.u64 %r5,%rd1;add.u32 %out,%out,%r5;\n");
   CHECK(count(read, "mul.wide.u32") == 1);
-  CHECK(count(shaped("shl.b32 %r1,%lane,5;add.s32 %r2,%r1,3;add.s32 %r3,%r1,%lane;xor.b32 %out,%r2,%r3;\n"), "shl.b32") == 0);
+  CHECK(count(shaped("shl.b32 %r1,%lane,5;add.s32 %r2,%r1,3;add.s32 %r3,%r1,%lane;xor.b32 %out,%r2,%r3;\n"),
+              "shl.b32") == 0);
 }
 
 TEST_CASE("a loop of one block that counts down runs four turns at a time, and any number of them") {
   // Lanes count from different numbers of steps of 3; the pointer steps by 8, what it is added to stays.
   const auto body = [](const std::string& start, const std::string& more = "") {
-    return "mul.lo.u32 %r1,%lane,3;" + start + "mov.u64 %rd1,0;mul.wide.u32 %rd2,%lane,16;mov.u32 %r2,7;\n"
-           "LOOP: add.s64 %rd3,%rd1,%rd2;cvt.u32.u64 %r3,%rd3;add.s64 %rd1,%rd1,8;add.s64 %rd4,%rd1,%rd2;cvt.u32.u64 %r4,%rd4;\n"
-           "mad.lo.u32 %r2,%r2,5,%r3;xor.b32 %r2,%r2,%r4;" + more + "add.s32 %r1,%r1,-3;setp.ne.s32 %p1,%r1,0;@%p1 bra LOOP;\n"
+    return "mul.lo.u32 %r1,%lane,3;" + start +
+           "mov.u64 %rd1,0;mul.wide.u32 %rd2,%lane,16;mov.u32 %r2,7;\n"
+           "LOOP: add.s64 %rd3,%rd1,%rd2;cvt.u32.u64 %r3,%rd3;add.s64 %rd1,%rd1,8;add.s64 "
+           "%rd4,%rd1,%rd2;cvt.u32.u64 %r4,%rd4;\n"
+           "mad.lo.u32 %r2,%r2,5,%r3;xor.b32 %r2,%r2,%r4;" +
+           more +
+           "add.s32 %r1,%r1,-3;setp.ne.s32 %p1,%r1,0;@%p1 bra LOOP;\n"
            "cvt.u32.u64 %r5,%rd1;add.u32 %out,%r2,%r5;add.u32 %out,%out,%r1;\n";
   };
   const std::string some = shaped(body("add.u32 %r1,%r1,3;"));
@@ -214,13 +231,17 @@ TEST_CASE("a loop of one block that counts down runs four turns at a time, and a
   CHECK(count(shaped(body("mov.u32 %r1,30;") + "@%p1 add.u32 %out,%out,1;\n"), "setp.gt.s32") == 0);
 }
 
-TEST_CASE("a loop of one block that counts up to a bound runs four turns at a time, and any number of them, also where the bound less four turns has no name") {
+TEST_CASE(
+    "a loop of one block that counts up to a bound runs four turns at a time, and any number of them, also "
+    "where the bound less four turns has no name") {
   // %r1 from `start` by 3 up to `bound`; each lane's turns are seen in %r2.
   const auto body = [](const std::string& start, const std::string& bound, const std::string& more = "") {
-    return start + bound + "mov.u32 %r2,7;\nLOOP: mad.lo.u32 %r2,%r2,5,%r1;" + more + "add.s32 %r1,%r1,3;setp.lt.s32 %p1,%r1,%r6;@%p1 bra LOOP;\nadd.u32 %out,%r2,%r1;\n";
+    return start + bound + "mov.u32 %r2,7;\nLOOP: mad.lo.u32 %r2,%r2,5,%r1;" + more +
+           "add.s32 %r1,%r1,3;setp.lt.s32 %p1,%r1,%r6;@%p1 bra LOOP;\nadd.u32 %out,%r2,%r1;\n";
   };
   const std::string by_lane = "mov.u32 %r6,%lane;", from_2 = "mov.u32 %r1,2;";
-  for (const std::string& text : {shaped(body(from_2, by_lane)), shaped(body("mov.u32 %r1,%lane;", "mov.u32 %r6,40;"))}) {
+  for (const std::string& text :
+       {shaped(body(from_2, by_lane)), shaped(body("mov.u32 %r1,%lane;", "mov.u32 %r6,40;"))}) {
     CHECK(count(text, "mad.lo.u32 %r") >= 7);
     CHECK(count(text, "setp.lt.s32") == 6);  // 4, 4, 2, 2, 1 and the loop's own
   }
@@ -236,8 +257,10 @@ TEST_CASE("a loop of one block that counts up to a bound runs four turns at a ti
 TEST_CASE("the negation of a product becomes that of a factor from elsewhere, to the bit") {
   const std::string text = shaped(
       "cvt.rn.f32.u32 %f6,%lane;sub.rn.f32 %f1,%f6,0f40A00000;mov.u32 %r1,0;mov.u32 %r2,0;\n"
-      "LOOP: cvt.rn.f32.u32 %f7,%r1;sub.rn.f32 %f2,%f7,0f40000000;mul.f32 %f3,%f1,%f2;mul.f32 %f4,%f2,%f2;sub.f32 %f5,%f4,%f3;mov.b32 %r3,%f5;\n"
-      "mad.lo.u32 %r2,%r2,31,%r3;add.u32 %r1,%r1,1;setp.lt.u32 %p1,%r1,5;@%p1 bra LOOP;\nmov.u32 %out,%r2;\n");
+      "LOOP: cvt.rn.f32.u32 %f7,%r1;sub.rn.f32 %f2,%f7,0f40000000;mul.f32 %f3,%f1,%f2;mul.f32 "
+      "%f4,%f2,%f2;sub.f32 %f5,%f4,%f3;mov.b32 %r3,%f5;\n"
+      "mad.lo.u32 %r2,%r2,31,%r3;add.u32 %r1,%r1,1;setp.lt.u32 %p1,%r1,5;@%p1 bra LOOP;\nmov.u32 "
+      "%out,%r2;\n");
   CHECK(count(text, "neg.f32") == 1);
   CHECK(text.find("neg.f32") < text.find("mul.rn.f32"));
 }
@@ -245,9 +268,13 @@ TEST_CASE("the negation of a product becomes that of a factor from elsewhere, to
 TEST_CASE("words of shared memory are loaded together where their place is known to be aligned") {
   const std::string room = ".shared .align 16 .b8 room[4096];\n";
   const auto body = [](int stride, const std::string& between = "") {
-    return fmt::format("mov.u32 %r1,room;shl.b32 %r2,%lane,{};add.s32 %r3,%r1,%r2;st.shared.u32 [%r3],%lane;st.shared.u32 [%r3+12],5;bar.sync 0;\n"
-                       "ld.shared.u32 %r4,[%r3];ld.shared.u32 %r5,[%r3+12];{}ld.shared.u32 %r6,[%r3+4];ld.shared.u32 %r7,[%r3+8];\n"
-                       "mad.lo.u32 %out,%r4,3,%r5;mad.lo.u32 %out,%r6,5,%out;mad.lo.u32 %out,%r7,7,%out;\n", stride, between);
+    return fmt::format(
+        "mov.u32 %r1,room;shl.b32 %r2,%lane,{};add.s32 %r3,%r1,%r2;st.shared.u32 [%r3],%lane;st.shared.u32 "
+        "[%r3+12],5;bar.sync 0;\n"
+        "ld.shared.u32 %r4,[%r3];ld.shared.u32 %r5,[%r3+12];{}ld.shared.u32 %r6,[%r3+4];ld.shared.u32 "
+        "%r7,[%r3+8];\n"
+        "mad.lo.u32 %out,%r4,3,%r5;mad.lo.u32 %out,%r6,5,%out;mad.lo.u32 %out,%r7,7,%out;\n",
+        stride, between);
   };
   CHECK(count(shaped(body(4), room), "ld.shared.v4") == 1);
   CHECK(count(shaped(body(4), room), "ld.shared.b32") == 0);
@@ -258,8 +285,11 @@ TEST_CASE("words of shared memory are loaded together where their place is known
 }
 
 TEST_CASE("lanes that branch to the end of the kernel end where they are") {
-  const std::string text = kHead + ".visible .entry k(.param .u64 to)\n{\n.reg .b32 %lane; .reg .b64 %at; .reg .pred %p;\nmov.u32 %lane, %tid.x;\n"
-                           "setp.gt.u32 %p, %lane, 4;\n@%p bra END;\nld.param.u64 %at, [to]; mad.wide.u32 %at, %lane, 4, %at; st.global.u32 [%at], 1;\nEND: ret;\n}\n";
+  const std::string text = kHead +
+                           ".visible .entry k(.param .u64 to)\n{\n.reg .b32 %lane; .reg .b64 %at; .reg .pred "
+                           "%p;\nmov.u32 %lane, %tid.x;\n"
+                           "setp.gt.u32 %p, %lane, 4;\n@%p bra END;\nld.param.u64 %at, [to]; mad.wide.u32 "
+                           "%at, %lane, 4, %at; st.global.u32 [%at], 1;\nEND: ret;\n}\n";
   const std::string code = isa::to_text(frontend::compile_ptx(text, "test.ptx", "k", {}).program);
   CHECK(count(code, "%p0 exit") == 1);
   CHECK(count(code, "ssy") + count(code, "join") + count(code, "bra") == 0);
@@ -270,13 +300,18 @@ TEST_CASE("mistakes are told with file, line and column, all at once") {
   const std::string two = message_of(storing("add.u33 %r1, %r2, %r3;\nfrobnicate.b32 %r1, %r2;"));
   CHECK(two.find("test.ptx:8:1: error: no op 'add.u33'; did you mean 'add.u32'?") != std::string::npos);
   CHECK(two.find("test.ptx:9:1: error: no op 'frobnicate.b32'") != std::string::npos);
-  CHECK(message_of(storing("add.u32 %r1, %nothing, 1;")).find("test.ptx:8:14: error: '%nothing' is not declared") != std::string::npos);
-  CHECK(message_of(storing("bra NOWHERE;")).find("test.ptx:8:5: error: there is no label 'NOWHERE' here") != std::string::npos);
+  CHECK(message_of(storing("add.u32 %r1, %nothing, 1;"))
+            .find("test.ptx:8:14: error: '%nothing' is not declared") != std::string::npos);
+  CHECK(message_of(storing("bra NOWHERE;")).find("test.ptx:8:5: error: there is no label 'NOWHERE' here") !=
+        std::string::npos);
   CHECK(message_of(storing("add.u32 %r1, %r2;")).find("takes 3 operands, not 2") != std::string::npos);
-  CHECK(message_of(storing("add.u32 %r1 %r2;")).find("test.ptx:8:13: error: expected ',', found '%r2'") != std::string::npos);
+  CHECK(message_of(storing("add.u32 %r1 %r2;")).find("test.ptx:8:13: error: expected ',', found '%r2'") !=
+        std::string::npos);
   CHECK(message_of(storing("@%r1 bra X; X:")).find("'%r1' is no predicate") != std::string::npos);
-  CHECK(message_of(storing("call f;", ".func f() { call f; ret; }\n")).find("'f' calls itself") != std::string::npos);
-  CHECK(message_of(storing("call printf;", ".extern .func printf();\n")).find("has no body") != std::string::npos);
+  CHECK(message_of(storing("call f;", ".func f() { call f; ret; }\n")).find("'f' calls itself") !=
+        std::string::npos);
+  CHECK(message_of(storing("call printf;", ".extern .func printf();\n")).find("has no body") !=
+        std::string::npos);
   CHECK(message_of(kHead).find("the module has no kernel") != std::string::npos);
 }
 
@@ -293,8 +328,8 @@ struct Random {
   }
 };
 
-// A graph of blocks, any of which may lead to any others: block b adds its number to a hash, then ends the lane, goes
-// on, or branches by a bit of the hash. A budget of steps ends every walk.
+// A graph of blocks, any of which may lead to any others: block b adds its number to a hash, then ends the
+// lane, goes on, or branches by a bit of the hash. A budget of steps ends every walk.
 struct Maze {
   struct Block {
     uint32_t kind = 0, bit = 0, taken = 0, next = 0;  // kind 0: end
@@ -306,7 +341,10 @@ struct Maze {
     const uint32_t count = 2 + random.below(10);
     for (uint32_t b = 0; b < count; ++b) {
       const uint32_t kind = random.below(8);
-      blocks.push_back({kind == 0 ? 0u : kind < 3 ? 1u : 2u, random.below(12), random.below(count), random.below(count)});
+      blocks.push_back({kind == 0  ? 0u
+                        : kind < 3 ? 1u
+                                   : 2u,
+                        random.below(12), random.below(count), random.below(count)});
     }
     blocks.back().kind = 0;
   }
@@ -322,11 +360,15 @@ struct Maze {
   std::string text() const {
     std::string out = "mul.lo.u32 %out, %lane, 2654435761; mov.u32 %r1, 0;\n";
     for (size_t b = 0; b < blocks.size(); ++b) {
-      out += fmt::format("B{}: xor.b32 %out, %out, {}; mul.lo.u32 %out, %out, 16777619; add.u32 %r1, %r1, 1;\n"
-                         "setp.gt.u32 %p1, %r1, 60; @%p1 bra END;\n", b, b + 1);
+      out += fmt::format(
+          "B{}: xor.b32 %out, %out, {}; mul.lo.u32 %out, %out, 16777619; add.u32 %r1, %r1, 1;\n"
+          "setp.gt.u32 %p1, %r1, 60; @%p1 bra END;\n",
+          b, b + 1);
       if (blocks[b].kind == 0) out += "bra END;\n";
       if (blocks[b].kind == 2)
-        out += fmt::format("shr.u32 %r2, %out, {}; and.b32 %r2, %r2, 1; setp.ne.u32 %p2, %r2, 0; @%p2 bra B{};\n", 8 + blocks[b].bit, blocks[b].taken);
+        out += fmt::format(
+            "shr.u32 %r2, %out, {}; and.b32 %r2, %r2, 1; setp.ne.u32 %p2, %r2, 0; @%p2 bra B{};\n",
+            8 + blocks[b].bit, blocks[b].taken);
       if (blocks[b].kind != 0) out += fmt::format("bra B{};\n", blocks[b].next);
     }
     return out + "END: activemask.b32 %r3; setp.ne.u32 %p3, %r3, -1; @%p3 mov.u32 %out, 0;\n";
@@ -359,8 +401,10 @@ TEST_CASE("the example kernels give the same on both machines, and what they sho
     Launcher sums(read("block_sums.ptx"), "block_sums.ptx", "block_sums");
     sums.buffer(numbers).buffer(std::vector<uint32_t>(4));
     const pipeline::KernelGrid grid{{4, 1, 1}, {256, 1, 1}, 0};
-    if (timing) CHECK(sums.run_timing(grid, params) > 0);
-    else sums.run_functional(grid);
+    if (timing)
+      CHECK(sums.run_timing(grid, params) > 0);
+    else
+      sums.run_functional(grid);
     CHECK(sums.read<uint32_t>(1, 4) == std::vector<uint32_t>{32640, 98176, 163712, 229248});
 
     Launcher saxpy(read("saxpy.ptx"), "saxpy.ptx", "saxpy");
@@ -368,8 +412,10 @@ TEST_CASE("the example kernels give the same on both machines, and what they sho
     for (size_t i = 0; i < 1000; ++i) x[i] = float(i), z[i] = 2.0f * float(i) + 1.0f;
     saxpy.buffer(x).buffer(y).value(2.0f).value(1000u);
     const pipeline::KernelGrid lines{{8, 1, 1}, {128, 1, 1}, 0};
-    if (timing) CHECK(saxpy.run_timing(lines, params) > 0);
-    else saxpy.run_functional(lines);
+    if (timing)
+      CHECK(saxpy.run_timing(lines, params) > 0);
+    else
+      saxpy.run_functional(lines);
     CHECK(saxpy.read<float>(1, 1000) == z);
   }
 }

@@ -1,6 +1,6 @@
-// Both intersectors on one Embree tree: geometry i is model i; spheres, and for the exact one triangles too, are
-// user geometry whose candidates go through tests/reference/shapes.cpp.
-// SPDX-License-Identifier: Apache-2.0
+// Both intersectors on one Embree tree: geometry i is model i; spheres, and for the exact one triangles too,
+// are user geometry whose candidates go through tests/reference/shapes.cpp. SPDX-License-Identifier:
+// Apache-2.0
 #include <algorithm>
 #include <cstring>
 #include <limits>
@@ -124,14 +124,16 @@ class EmbreeIntersector final : public Intersector {
       hit.t = meets_sphere(query.ray, model.center, model.radius);
       if (hit.t < 0) return;
     } else {
-      const auto corner = [&](size_t k) -> Vec { return model.vertices[model.indices[3 * args->primID + k]].position; };
+      const auto corner = [&](size_t k) -> Vec {
+        return model.vertices[model.indices[3 * args->primID + k]].position;
+      };
       if (!meets_triangle(query.ray, corner(0), corner(1), corner(2), hit)) return;
       if (!(query.ray.t_min < hit.t && hit.t < query.ray.t_max)) return;
       if (query.passes(hit)) return;
     }
     const bool found = rh.hit.geomID != RTC_INVALID_GEOMETRY_ID;
-    const bool first_of_equals = found && (hit.model < rh.hit.geomID ||
-                                           (hit.model == rh.hit.geomID && hit.primitive < rh.hit.primID));
+    const bool first_of_equals =
+        found && (hit.model < rh.hit.geomID || (hit.model == rh.hit.geomID && hit.primitive < rh.hit.primID));
     if (hit.t > rh.ray.tfar || (hit.t == rh.ray.tfar && found && !first_of_equals)) return;
     rh.ray.tfar = hit.t;
     rh.hit.geomID = hit.model;

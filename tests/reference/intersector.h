@@ -17,9 +17,9 @@ struct Ray {
 
 struct Hit {
   static constexpr uint32_t kMiss = ~0u;
-  uint32_t model = kMiss;      // index into Scene::models
-  uint32_t primitive = 0;      // triangle; 0 for a sphere
-  float t = 0, u = 0, v = 0;   // weights of corners 1 and 2
+  uint32_t model = kMiss;     // index into Scene::models
+  uint32_t primitive = 0;     // triangle; 0 for a sphere
+  float t = 0, u = 0, v = 0;  // weights of corners 1 and 2
   bool missed() const { return model == kMiss; }
 };
 
@@ -32,8 +32,8 @@ class Intersector {
 
 // Embree's robust triangle test; spheres by the intersection shader's formula.
 std::unique_ptr<Intersector> make_embree_intersector(const scenes::Scene& scene);
-// Woop, Benthin and Wald 2013 in scalar float for every triangle whose box the ray meets (Embree only finds the
-// boxes); equal distances go to the lowest (model, primitive).
+// Woop, Benthin and Wald 2013 in scalar float for every triangle whose box the ray meets (Embree only finds
+// the boxes); equal distances go to the lowest (model, primitive).
 std::unique_ptr<Intersector> make_exact_intersector(const scenes::Scene& scene);
 
 // Woop's test on three corners: fills t, u, v and returns true when the ray's line meets the triangle; the

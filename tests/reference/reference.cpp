@@ -56,8 +56,8 @@ Vec transform(const scenes::Mat4& m, const Vec& v, float w) {
 }
 
 // `texel`: the texture's colour where the ray hit. Lights have none.
-void scatter(Payload& ray, const Material& material, const Vec& texel, const Vec& ray_direction, const Vec& normal,
-             float distance) {
+void scatter(Payload& ray, const Material& material, const Vec& texel, const Vec& ray_direction,
+             const Vec& normal, float distance) {
   const Vec diffuse{material.diffuse[0], material.diffuse[1], material.diffuse[2]};
   const Vec d = normalize(ray_direction);
   const float projection = dot(d, normal);
@@ -100,8 +100,12 @@ void scatter(Payload& ray, const Material& material, const Vec& texel, const Vec
 
 class Renderer {
  public:
-  Renderer(const scenes::Scene& scene, Workload workload, const scenes::RenderParams& params, Intersector& intersector)
-      : scene_(scene), workload_(workload), uniforms_(frame_uniforms(scene, workload, params)), intersector_(intersector) {}
+  Renderer(const scenes::Scene& scene, Workload workload, const scenes::RenderParams& params,
+           Intersector& intersector)
+      : scene_(scene),
+        workload_(workload),
+        uniforms_(frame_uniforms(scene, workload, params)),
+        intersector_(intersector) {}
 
   ReferenceResult run() {
     ReferenceResult result;
@@ -131,9 +135,15 @@ class Renderer {
       Ray camera{.t_min = 0.001f, .t_max = 10000.0f};
       make_camera_ray(x, y, jitter_state, camera);
       switch (workload_) {
-        case Workload::PathTracing: sum = sum + trace_path(camera); break;
-        case Workload::Shadow: sum = sum + trace_shadows(camera); break;
-        case Workload::AmbientOcclusion: sum = sum + trace_occlusion(camera); break;
+        case Workload::PathTracing:
+          sum = sum + trace_path(camera);
+          break;
+        case Workload::Shadow:
+          sum = sum + trace_shadows(camera);
+          break;
+        case Workload::AmbientOcclusion:
+          sum = sum + trace_occlusion(camera);
+          break;
       }
     }
     return sum;
@@ -152,8 +162,8 @@ class Renderer {
     const Vec lens{uniforms_.aperture / 2.0f * px, uniforms_.aperture / 2.0f * py, 0};
     const Vec target = transform(uniforms_.matrices.projection_inverse, {ndc_x, ndc_y, 1}, 1);
     camera.origin = transform(uniforms_.matrices.model_view_inverse, lens, 1);
-    camera.direction =
-        transform(uniforms_.matrices.model_view_inverse, normalize(target * uniforms_.focus_distance - lens), 0);
+    camera.direction = transform(uniforms_.matrices.model_view_inverse,
+                                 normalize(target * uniforms_.focus_distance - lens), 0);
   }
 
   Vec trace_path(Ray ray) {
@@ -179,7 +189,8 @@ class Renderer {
     for (uint32_t j = 0; j < uniforms_.secondary_rays; ++j) {
       shadow.direction = {0, 1, 0};
       if (!uniforms_.has_sky) {
-        const Vec lamp = uniforms_.light_position + draw_in_unit_sphere(ray_.random_state) * uniforms_.light_radius;
+        const Vec lamp =
+            uniforms_.light_position + draw_in_unit_sphere(ray_.random_state) * uniforms_.light_radius;
         const Vec to_light = lamp - shadow.origin;
         shadow.t_max = length(to_light);
         shadow.direction = normalize(to_light);
@@ -232,7 +243,8 @@ class Renderer {
     const scenes::Model& model = scene_.models[hit.model];
     const Vec normal = (ray.origin + ray.direction * hit.t - model.center) / Vec(model.radius);
     const Material& material = scene_.materials[size_t(model.vertices[model.indices[0]].material)];
-    const float u = (std::atan2(normal.x, normal.z) + kPi) / (2 * kPi), v = 1 - (std::asin(normal.y) + kPi / 2) / kPi;
+    const float u = (std::atan2(normal.x, normal.z) + kPi) / (2 * kPi),
+                v = 1 - (std::asin(normal.y) + kPi / 2) / kPi;
     scatter(ray_, material, texture_color(scene_, material, u, v), ray.direction, normal, hit.t);
     ray_.normal = normal;
   }
@@ -261,7 +273,8 @@ class Renderer {
 
 ReferenceResult render(const scenes::Scene& scene, Workload workload, const scenes::RenderParams& params,
                        Intersector& intersector) {
-  GLINT_CHECK(scene.instances.empty(), "the reference renders models in world coordinates, not {} instances", scene.instances.size());
+  GLINT_CHECK(scene.instances.empty(), "the reference renders models in world coordinates, not {} instances",
+              scene.instances.size());
   return Renderer(scene, workload, params, intersector).run();
 }
 

@@ -31,8 +31,9 @@ TEST_CASE("the generator and the hash have their known values") {
   uint32_t state = 1;
   CHECK(random_float(state) == float(1015568748u & 0xffffffu) / 16777216.0f);  // 1664525 + 1013904223
   CHECK(state == 1015568748u);
-  CHECK(random_float(state) == float(1586005467u & 0xffffffu) / 16777216.0f);  // Numerical Recipes' third value
-  CHECK(hash_pair(0, 0) == 0x741c187du);  // computed once with arbitrary-precision integers
+  CHECK(random_float(state) ==
+        float(1586005467u & 0xffffffu) / 16777216.0f);  // Numerical Recipes' third value
+  CHECK(hash_pair(0, 0) == 0x741c187du);                // computed once with arbitrary-precision integers
   CHECK(hash_pair(5, 7) == 0x697193aeu);
 }
 
@@ -57,7 +58,8 @@ TEST_CASE("a ray through a shared edge meets at least one of its two triangles")
     Hit hit;
     const auto side = [&](const Vec& p) {
       const Vec e = b - a, q = p - a;
-      const Vec n(e.y * ray.direction.z - e.z * ray.direction.y, e.z * ray.direction.x - e.x * ray.direction.z,
+      const Vec n(e.y * ray.direction.z - e.z * ray.direction.y,
+                  e.z * ray.direction.x - e.x * ray.direction.z,
                   e.x * ray.direction.y - e.y * ray.direction.x);
       return dot(n, q);
     };
@@ -87,7 +89,8 @@ TEST_CASE("ray counts keep to the workloads' limits and add up over the pixels")
   const struct {
     Workload workload;
     uint32_t least, most;
-  } limits[] = {{Workload::PathTracing, 2, 32}, {Workload::Shadow, 2, 6}, {Workload::AmbientOcclusion, 2, 10}};
+  } limits[] = {
+      {Workload::PathTracing, 2, 32}, {Workload::Shadow, 2, 6}, {Workload::AmbientOcclusion, 2, 10}};
   for (const auto& limit : limits) {
     const ReferenceResult result = render_small(scene, limit.workload, 32);
     uint64_t sum = 0;
@@ -111,7 +114,7 @@ TEST_CASE("a ray that misses indoors is black and outdoors has the sky's colour"
   scene.camera.has_sky = true;
   const ReferenceResult sky = render_small(scene, Workload::Shadow, 4);
   for (const Vec& c : sky.mean) {
-    CHECK(c.z == Approx(1));           // blue is 1 at every height
+    CHECK(c.z == Approx(1));  // blue is 1 at every height
     CHECK((c.x > 0.5f && c.x < 1));
   }
   CHECK(sky.mean[0].x < sky.mean[15].x);  // row 0 is the top, where the sky is bluer
@@ -139,6 +142,7 @@ TEST_CASE("the exact test and Embree's agree on nearly every ray of a detailed s
 TEST_CASE("equal distances go to the lowest model and primitive") {
   Scene scene = load_scene("CORNELL", {});
   scene.models.push_back(scene.models[0]);
-  const Hit hit = make_exact_intersector(scene)->closest({{278, 278, 800}, {0.03f, 0.01f, -1}, 0.001f, 10000});
+  const Hit hit =
+      make_exact_intersector(scene)->closest({{278, 278, 800}, {0.03f, 0.01f, -1}, 0.001f, 10000});
   CHECK(hit.model == 0);
 }

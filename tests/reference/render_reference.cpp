@@ -1,10 +1,9 @@
 // A picture from the reference renderer: render_reference SCENE pt|sh|ao SIZE SAMPLES OUT.png [ASSETS].
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <fmt/format.h>
 #include <map>
 
 #include "base/diagnostics.h"
@@ -26,7 +25,8 @@ int run(char** argv) {
   const std::map<std::string, Workload> workloads = {
       {"pt", Workload::PathTracing}, {"sh", Workload::Shadow}, {"ao", Workload::AmbientOcclusion}};
   const auto workload = workloads.find(argv[2]);
-  if (workload == workloads.end()) throw glint::UserError(fmt::format("unknown workload '{}': pt, sh or ao", argv[2]));
+  if (workload == workloads.end())
+    throw glint::UserError(fmt::format("unknown workload '{}': pt, sh or ao", argv[2]));
   glint::scenes::RenderParams params;
   params.width = params.height = uint32_t(std::atoi(argv[3]));
   params.samples = uint32_t(std::atoi(argv[4]));
@@ -40,8 +40,8 @@ int run(char** argv) {
   const int side = int(params.width);
   if (!stbi_write_png(argv[5], side, side, 3, bytes.data(), 3 * side))
     throw glint::UserError(fmt::format("cannot write '{}'", argv[5]));
-  fmt::print("{} ({}): {} triangles, {} spheres, {} rays, hash {:016x}\n", scene.name, scene.form, scene.triangles(),
-             scene.procedurals(), result.rays, scene.hash());
+  fmt::print("{} ({}): {} triangles, {} spheres, {} rays, hash {:016x}\n", scene.name, scene.form,
+             scene.triangles(), scene.procedurals(), result.rays, scene.hash());
   return 0;
 }
 

@@ -12,7 +12,9 @@ struct Axes {
   int x, y, z;
 };
 
-float at(const Vec& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+float at(const Vec& v, int axis) {
+  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+}
 
 // Woop et al. 2013, 3.2: z is the direction's largest component; x and y keep the winding.
 Axes permute(const Vec& d) {
@@ -29,19 +31,24 @@ Axes permute(const Vec& d) {
 struct Corner {
   float x, y, z;
 };
-float edge(const Corner& p, const Corner& q) { return p.x * q.y - p.y * q.x; }
+float edge(const Corner& p, const Corner& q) {
+  return p.x * q.y - p.y * q.x;
+}
 float edge_in_double(const Corner& p, const Corner& q) {
   return float(double(p.x) * double(q.y) - double(p.y) * double(q.x));
 }
 
-// x, y or z of the normal from whichever corner's cross product cancels less, fused as Embree's robust test has it.
+// x, y or z of the normal from whichever corner's cross product cancels less, fused as Embree's robust test
+// has it.
 float steadier(float p1, float p2, float q1, float q2, float r1, float r2) {
   const float first = p2 * q1, second = q2 * r1;
   if (std::abs(first) < std::abs(second)) return std::fma(p1, q2, -first);
   return std::fma(q1, r2, -second);
 }
 
-float fused_dot(const Vec& a, const Vec& b) { return std::fma(a.x, b.x, std::fma(a.y, b.y, a.z * b.z)); }
+float fused_dot(const Vec& a, const Vec& b) {
+  return std::fma(a.x, b.x, std::fma(a.y, b.y, a.z * b.z));
+}
 
 // Where the triangle's plane crosses the ray; false when the plane is edge-on.
 bool meets_plane(const Ray& ray, const Vec& a, const Vec& b, const Vec& c, float& t) {

@@ -61,7 +61,8 @@ void move(scenes::Model& model, const scenes::Affine& m) {
     }
     double determinant = 0;
     for (size_t c = 0; c < 3; ++c)
-      determinant += at(0, c) * (at(1, (c + 1) % 3) * at(2, (c + 2) % 3) - at(1, (c + 2) % 3) * at(2, (c + 1) % 3));
+      determinant +=
+          at(0, c) * (at(1, (c + 1) % 3) * at(2, (c + 2) % 3) - at(1, (c + 2) % 3) * at(2, (c + 1) % 3));
     const double length = std::sqrt(square) * (determinant < 0 ? -1 : 1);
     for (size_t r = 0; r < 3; ++r) vertex.normal[r] = length != 0 ? float(normal[r] / length) : 0.0f;
   }

@@ -7,7 +7,7 @@ namespace glint::reference {
 
 struct Surface {
   Vec normal;
-  float u = 0, v = 0;  // texture coordinates
+  float u = 0, v = 0;                          // texture coordinates
   const scenes::Material* material = nullptr;  // of the first corner
 };
 Surface surface_of(const scenes::Scene& scene, const Hit& hit);

@@ -11,7 +11,9 @@ namespace scenes = glint::scenes;
 namespace {
 
 // Two texels side by side, black without alpha and white.
-scenes::Texture two_texels() { return {"two", 2, 1, {0, 0, 0, 0, 255, 255, 255, 255}}; }
+scenes::Texture two_texels() {
+  return {"two", 2, 1, {0, 0, 0, 0, 255, 255, 255, 255}};
+}
 
 // A right triangle with that texture at z = 0, and the same of plain white at z = -1.
 scenes::Scene two_triangles() {
@@ -23,7 +25,9 @@ scenes::Scene two_triangles() {
   for (const int32_t material : {0, 1}) {
     scenes::Model model;
     const float z = -float(material);
-    model.vertices = {{{0, 0, z}, {0, 0, 1}, {0, 0}, material}, {{1, 0, z}, {0, 0, 1}, {1, 0}, material}, {{0, 1, z}, {0, 0, 1}, {0, 1}, material}};
+    model.vertices = {{{0, 0, z}, {0, 0, 1}, {0, 0}, material},
+                      {{1, 0, z}, {0, 0, 1}, {1, 0}, material},
+                      {{0, 1, z}, {0, 0, 1}, {0, 1}, material}};
     model.indices = {0, 1, 2};
     scene.models.push_back(model);
   }
@@ -62,9 +66,9 @@ TEST_CASE("sRGB colours become linear before they are mixed, and alpha is linear
   CHECK(sample(texture, 0.5f, 0.5f)[0] == Approx(128 / 255.0));
   texture.srgb = true;
   const scenes::Vec4 color = sample(texture, 0.5f, 0.5f);
-  CHECK(color[0] == Approx(0.2158605));          // ((128 / 255 + 0.055) / 1.055) ^ 2.4
+  CHECK(color[0] == Approx(0.2158605));           // ((128 / 255 + 0.055) / 1.055) ^ 2.4
   CHECK(color[1] == Approx(10 / 255.0 / 12.92));  // the straight part
-  CHECK(color[2] == Approx(0.5));                // the mean of 0 and 1, not the value of 127.5
+  CHECK(color[2] == Approx(0.5));                 // the mean of 0 and 1, not the value of 127.5
   CHECK(color[3] == Approx(128 / 255.0));
 }
 

@@ -30,7 +30,9 @@ Pair neighbours(float x, uint32_t size, bool repeat) {
 }
 
 // IEC 61966-2-1.
-float linear(float srgb) { return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f); }
+float linear(float srgb) {
+  return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f);
+}
 
 scenes::Vec4 texel(const scenes::Texture& texture, uint32_t x, uint32_t y) {
   const uint8_t* bytes = &texture.rgba[4 * (size_t(y) * texture.width + x)];
@@ -45,7 +47,8 @@ scenes::Vec4 texel(const scenes::Texture& texture, uint32_t x, uint32_t y) {
 }  // namespace
 
 scenes::Vec4 sample(const scenes::Texture& texture, float u, float v) {
-  const Pair x = neighbours(u, texture.width, texture.repeat), y = neighbours(v, texture.height, texture.repeat);
+  const Pair x = neighbours(u, texture.width, texture.repeat),
+             y = neighbours(v, texture.height, texture.repeat);
   scenes::Vec4 sum{};
   for (size_t j = 0; j < 2; ++j)
     for (size_t i = 0; i < 2; ++i) {

@@ -5,8 +5,8 @@
 
 namespace glint::reference {
 
-// The bilinear filter's mean of the four texels around (u, v): red, green, blue, alpha. One level; wraps and decodes
-// sRGB as the texture says.
+// The bilinear filter's mean of the four texels around (u, v): red, green, blue, alpha. One level; wraps and
+// decodes sRGB as the texture says.
 scenes::Vec4 sample(const scenes::Texture& texture, float u, float v);
 
 }  // namespace glint::reference

@@ -14,17 +14,37 @@ struct Vec {
   Vec(const std::array<float, 3>& v) : x(v[0]), y(v[1]), z(v[2]) {}
 };
 
-inline Vec operator+(const Vec& a, const Vec& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline Vec operator-(const Vec& a, const Vec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline Vec operator*(const Vec& a, const Vec& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
-inline Vec operator/(const Vec& a, const Vec& b) { return {a.x / b.x, a.y / b.y, a.z / b.z}; }
-inline Vec operator-(const Vec& a) { return {-a.x, -a.y, -a.z}; }
+inline Vec operator+(const Vec& a, const Vec& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline Vec operator-(const Vec& a, const Vec& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Vec operator*(const Vec& a, const Vec& b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+inline Vec operator/(const Vec& a, const Vec& b) {
+  return {a.x / b.x, a.y / b.y, a.z / b.z};
+}
+inline Vec operator-(const Vec& a) {
+  return {-a.x, -a.y, -a.z};
+}
 
-inline float dot(const Vec& a, const Vec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline float length(const Vec& v) { return std::sqrt(dot(v, v)); }
-inline Vec normalize(const Vec& v) { return v / length(v); }
-inline Vec mix(const Vec& a, const Vec& b, float t) { return a * (1.0f - t) + b * t; }
-inline Vec reflect(const Vec& d, const Vec& n) { return d - n * (2.0f * dot(n, d)); }
+inline float dot(const Vec& a, const Vec& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline float length(const Vec& v) {
+  return std::sqrt(dot(v, v));
+}
+inline Vec normalize(const Vec& v) {
+  return v / length(v);
+}
+inline Vec mix(const Vec& a, const Vec& b, float t) {
+  return a * (1.0f - t) + b * t;
+}
+inline Vec reflect(const Vec& d, const Vec& n) {
+  return d - n * (2.0f * dot(n, d));
+}
 
 // GLSL specification, 8.5: the zero vector on total reflection.
 inline Vec refract(const Vec& d, const Vec& n, float eta) {

@@ -11,18 +11,24 @@ namespace {
 
 using Catch::Matchers::Contains;
 
-// Shaders 0 to 4: ray generation, miss, closest-hit, intersection, callable; a group for each, the fourth with both of hits.
+// Shaders 0 to 4: ray generation, miss, closest-hit, intersection, callable; a group for each, the fourth
+// with both of hits.
 struct Bench {
   core::World world;
   mem::AddressSpace memory;
-  core::Image image = core::link({compile_lab("table.rgen"), compile_lab("table.rmiss"), compile_lab("tag1.rchit"),
-                                  compile_lab("pair.rint"), compile_lab("rt/twice.rcall")});
+  core::Image image =
+      core::link({compile_lab("table.rgen"), compile_lab("table.rmiss"), compile_lab("tag1.rchit"),
+                  compile_lab("pair.rint"), compile_lab("rt/twice.rcall")});
   pipeline::TableInput input;
 
   Bench() {
     world.image = &image;
     world.memory = &memory;
-    input.groups = {{0, {}}, {1, {}}, {core::kNoShader, {2, core::kNoShader, core::kNoShader}}, {core::kNoShader, {2, core::kNoShader, 3}}, {4, {}}};
+    input.groups = {{0, {}},
+                    {1, {}},
+                    {core::kNoShader, {2, core::kNoShader, core::kNoShader}},
+                    {core::kNoShader, {2, core::kNoShader, 3}},
+                    {4, {}}};
     input.raygen = {0, data(1)};
     input.miss.records = {{1, {}}, {}};
     input.hit.records = {{2, data(8)}, {3, data(40)}, {}};
@@ -40,7 +46,9 @@ struct Bench {
   uint32_t word(Address at) { return memory.view<uint32_t>(at, 1)[0]; }
 };
 
-TEST_CASE("records lie at the smallest stride that holds the largest of their region, handle first, data behind it") {
+TEST_CASE(
+    "records lie at the smallest stride that holds the largest of their region, handle first, data behind "
+    "it") {
   Bench b;
   REQUIRE(b.error() == "no error");
   const core::BindingTable& t = b.world.table;
@@ -98,7 +106,8 @@ TEST_CASE("a table that no host may ask for is refused with the record's name") 
   }
   SECTION("a shader of another stage") {
     b.input.callable.records[0].group = 1;
-    CHECK_THAT(b.error(), Contains("callable record 0 wants a shader of stage callable") && Contains("of stage miss"));
+    CHECK_THAT(b.error(),
+               Contains("callable record 0 wants a shader of stage callable") && Contains("of stage miss"));
   }
 }
 
@@ -108,7 +117,8 @@ TEST_CASE("the stack of a lane holds the deepest chain of frames that the depths
   const uint32_t called = std::max({bytes(1), bytes(2), bytes(3)});
   CHECK(pipeline::stack_bytes(b.image, 0, 0) == (bytes(0) + 15) / 16 * 16);
   CHECK(pipeline::stack_bytes(b.image, 1, 0) == (bytes(0) + called + 15) / 16 * 16);
-  CHECK(pipeline::stack_bytes(b.image, 3, 2) == (bytes(0) + called + 2 * std::max(bytes(1), bytes(2)) + 2 * bytes(4) + 15) / 16 * 16);
+  CHECK(pipeline::stack_bytes(b.image, 3, 2) ==
+        (bytes(0) + called + 2 * std::max(bytes(1), bytes(2)) + 2 * bytes(4) + 15) / 16 * 16);
 }
 
 }  // namespace

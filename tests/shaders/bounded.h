@@ -1,8 +1,8 @@
 // A number and how far a conforming implementation may be from it: Vulkan's table of precision as arithmetic.
 //
-// Vulkan specification, "Precision and Operation of SPIR-V Instructions": some operations have an error of their own,
-// others inherit that of a formula. A Bounded runs the formula and adds the errors up. Subnormal results may be flushed.
-// SPDX-License-Identifier: Apache-2.0
+// Vulkan specification, "Precision and Operation of SPIR-V Instructions": some operations have an error of
+// their own, others inherit that of a formula. A Bounded runs the formula and adds the errors up. Subnormal
+// results may be flushed. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -36,25 +36,39 @@ inline Bounded rounded(double v, double e, double ulps) {
 // The largest change of f over the interval of x.
 template <class F>
 double spread(const Bounded& x, F&& f) {
-  const double middle = f(x.v), change = std::max(std::abs(f(x.v - x.e) - middle), std::abs(f(x.v + x.e) - middle));
+  const double middle = f(x.v),
+               change = std::max(std::abs(f(x.v - x.e) - middle), std::abs(f(x.v + x.e) - middle));
   return std::isnan(change) ? kUnbounded : change;
 }
 
-inline Bounded operator-(const Bounded& x) { return {-x.v, x.e}; }
-inline Bounded operator+(const Bounded& x, const Bounded& y) { return rounded(x.v + y.v, x.e + y.e, 0.5); }
-inline Bounded operator-(const Bounded& x, const Bounded& y) { return x + -y; }
+inline Bounded operator-(const Bounded& x) {
+  return {-x.v, x.e};
+}
+inline Bounded operator+(const Bounded& x, const Bounded& y) {
+  return rounded(x.v + y.v, x.e + y.e, 0.5);
+}
+inline Bounded operator-(const Bounded& x, const Bounded& y) {
+  return x + -y;
+}
 inline Bounded operator*(const Bounded& x, const Bounded& y) {
   return rounded(x.v * y.v, std::abs(x.v) * y.e + std::abs(y.v) * x.e + x.e * y.e, 0.5);
 }
 inline Bounded operator/(const Bounded& x, const Bounded& y) {
   const double nearest = std::abs(y.v) - y.e;
-  if (nearest < 0x1p-126 || std::abs(y.v) > 0x1p126) return {x.v / y.v, kUnbounded};  // where the table is silent
+  if (nearest < 0x1p-126 || std::abs(y.v) > 0x1p126)
+    return {x.v / y.v, kUnbounded};  // where the table is silent
   return rounded(x.v / y.v, (x.e + std::abs(x.v / y.v) * y.e) / nearest, 2.5);
 }
 
-inline Bounded abs(const Bounded& x) { return {std::abs(x.v), x.e}; }
-inline Bounded min(const Bounded& x, const Bounded& y) { return {std::min(x.v, y.v), std::max(x.e, y.e)}; }
-inline Bounded max(const Bounded& x, const Bounded& y) { return {std::max(x.v, y.v), std::max(x.e, y.e)}; }
+inline Bounded abs(const Bounded& x) {
+  return {std::abs(x.v), x.e};
+}
+inline Bounded min(const Bounded& x, const Bounded& y) {
+  return {std::min(x.v, y.v), std::max(x.e, y.e)};
+}
+inline Bounded max(const Bounded& x, const Bounded& y) {
+  return {std::max(x.v, y.v), std::max(x.e, y.e)};
+}
 inline Bounded floor(const Bounded& x) {
   if (std::floor(x.v - x.e) == std::floor(x.v + x.e)) return {std::floor(x.v)};
   return {std::floor(x.v), std::ceil(x.e)};
@@ -86,30 +100,60 @@ inline Bounded log_of(const Bounded& x, double (*f)(double)) {
   if (x.v - x.e < kSmallestNormal) result.e = kUnbounded;  // a flushed operand is 0
   return result;
 }
-inline Bounded log2(const Bounded& x) { return log_of(x, [](double t) { return std::log2(t); }); }
-inline Bounded log(const Bounded& x) { return log_of(x, [](double t) { return std::log(t); }); }
-inline Bounded pow(const Bounded& x, const Bounded& y) { return exp2(y * log2(x)); }
+inline Bounded log2(const Bounded& x) {
+  return log_of(x, [](double t) { return std::log2(t); });
+}
+inline Bounded log(const Bounded& x) {
+  return log_of(x, [](double t) { return std::log(t); });
+}
+inline Bounded pow(const Bounded& x, const Bounded& y) {
+  return exp2(y * log2(x));
+}
 
 // 2^-11 within [-pi, pi]; beyond, the table is silent.
 inline Bounded circular(const Bounded& x, double value) {
   return {value, std::abs(x.v) <= std::numbers::pi ? 0x1p-11 + x.e : kUnbounded};
 }
-inline Bounded sin(const Bounded& x) { return circular(x, std::sin(x.v)); }
-inline Bounded cos(const Bounded& x) { return circular(x, std::cos(x.v)); }
-inline Bounded tan(const Bounded& x) { return sin(x) / cos(x); }
-inline Bounded atan(const Bounded& x) { return rounded(std::atan(x.v), x.e, 4096); }
+inline Bounded sin(const Bounded& x) {
+  return circular(x, std::sin(x.v));
+}
+inline Bounded cos(const Bounded& x) {
+  return circular(x, std::cos(x.v));
+}
+inline Bounded tan(const Bounded& x) {
+  return sin(x) / cos(x);
+}
+inline Bounded atan(const Bounded& x) {
+  return rounded(std::atan(x.v), x.e, 4096);
+}
 inline Bounded atan(const Bounded& y, const Bounded& x) {
   const double r = std::max(std::hypot(y.v, x.v) - y.e - x.e, 0.0);
   return rounded(std::atan2(y.v, x.v), y.e + x.e == 0 ? 0 : r == 0 ? kUnbounded : (y.e + x.e) / r, 4096);
 }
-inline Bounded asin(const Bounded& x) { return atan(x, sqrt(1.0 - x * x)); }
-inline Bounded acos(const Bounded& x) { return atan(sqrt(1.0 - x * x), x); }
-inline Bounded sinh(const Bounded& x) { return (exp(x) - exp(-x)) * 0.5; }
-inline Bounded cosh(const Bounded& x) { return (exp(x) + exp(-x)) * 0.5; }
-inline Bounded tanh(const Bounded& x) { return sinh(x) / cosh(x); }
-inline Bounded asinh(const Bounded& x) { return log(x + sqrt(x * x + 1.0)); }
-inline Bounded acosh(const Bounded& x) { return log(x + sqrt(x * x - 1.0)); }
-inline Bounded atanh(const Bounded& x) { return log((1.0 + x) / (1.0 - x)) * 0.5; }
+inline Bounded asin(const Bounded& x) {
+  return atan(x, sqrt(1.0 - x * x));
+}
+inline Bounded acos(const Bounded& x) {
+  return atan(sqrt(1.0 - x * x), x);
+}
+inline Bounded sinh(const Bounded& x) {
+  return (exp(x) - exp(-x)) * 0.5;
+}
+inline Bounded cosh(const Bounded& x) {
+  return (exp(x) + exp(-x)) * 0.5;
+}
+inline Bounded tanh(const Bounded& x) {
+  return sinh(x) / cosh(x);
+}
+inline Bounded asinh(const Bounded& x) {
+  return log(x + sqrt(x * x + 1.0));
+}
+inline Bounded acosh(const Bounded& x) {
+  return log(x + sqrt(x * x - 1.0));
+}
+inline Bounded atanh(const Bounded& x) {
+  return log((1.0 + x) / (1.0 - x)) * 0.5;
+}
 
 // `then` where x < y, else `other`; both when the errors leave it open.
 inline Bounded if_less(const Bounded& x, const Bounded& y, const Bounded& then, const Bounded& other) {
@@ -119,13 +163,25 @@ inline Bounded if_less(const Bounded& x, const Bounded& y, const Bounded& then, 
 }
 
 // The same names for the numbers themselves, exact to a double.
-using std::abs, std::floor, std::sqrt, std::exp2, std::exp, std::log2, std::log, std::pow, std::sin, std::cos, std::tan,
-    std::asin, std::acos, std::sinh, std::cosh, std::tanh, std::asinh, std::acosh, std::atanh;
-inline double min(double x, double y) { return y < x ? y : x; }
-inline double max(double x, double y) { return x < y ? y : x; }
-inline double inversesqrt(double x) { return 1 / std::sqrt(x); }
-inline double atan(double x) { return std::atan(x); }
-inline double atan(double y, double x) { return std::atan2(y, x); }
-inline double if_less(double x, double y, double then, double other) { return x < y ? then : other; }
+using std::abs, std::floor, std::sqrt, std::exp2, std::exp, std::log2, std::log, std::pow, std::sin, std::cos,
+    std::tan, std::asin, std::acos, std::sinh, std::cosh, std::tanh, std::asinh, std::acosh, std::atanh;
+inline double min(double x, double y) {
+  return y < x ? y : x;
+}
+inline double max(double x, double y) {
+  return x < y ? y : x;
+}
+inline double inversesqrt(double x) {
+  return 1 / std::sqrt(x);
+}
+inline double atan(double x) {
+  return std::atan(x);
+}
+inline double atan(double y, double x) {
+  return std::atan2(y, x);
+}
+inline double if_less(double x, double y, double then, double other) {
+  return x < y ? then : other;
+}
 
 }  // namespace glint::test

@@ -1,5 +1,5 @@
-// What GLSL's float built-ins should give: the value in double precision, and how far from it Vulkan lets one be.
-// SPDX-License-Identifier: Apache-2.0
+// What GLSL's float built-ins should give: the value in double precision, and how far from it Vulkan lets one
+// be. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string_view>
 
@@ -7,7 +7,8 @@
 
 namespace glint::test {
 
-// One expression of a, b and c. ua, ia and their kin are the bits of the same inputs, as unsigned and signed integers.
+// One expression of a, b and c. ua, ia and their kin are the bits of the same inputs, as unsigned and signed
+// integers.
 struct Inputs {
   float a, b, c;
   uint32_t ua, ub, uc;
@@ -18,7 +19,8 @@ struct BuiltinReference {
   Bounded (*bound)(const Inputs&);
   // Whether GLSL defines the result; null: for all numbers.
   bool (*is_defined)(const Inputs&) = nullptr;
-  // The formula in single precision, where the driver contracts it to an fma and Glint does not (frontend/README.md).
+  // The formula in single precision, where the driver contracts it to an fma and Glint does not
+  // (frontend/README.md).
   float (*in_order)(const Inputs&) = nullptr;
 };
 

@@ -1,16 +1,15 @@
-// GLSL's built-ins, 138 expressions on 2,048 inputs, against those of a real driver, where its recordings are at hand.
-// SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-#include <zstd.h>
-
+// GLSL's built-ins, 138 expressions on 2,048 inputs, against those of a real driver, where its recordings are
+// at hand. SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
 #include <iterator>
 #include <set>
+#include <zstd.h>
 
 #include "core/image.h"
 #include "frontend/compile.h"
@@ -61,7 +60,8 @@ struct Recorded {
   std::vector<Expression> expressions;
   Words in, out;
 
-  explicit Recorded(const fs::path& folder) : in(words_of(folder / "inputs.bin")), out(words_of(folder / "outputs.bin")) {
+  explicit Recorded(const fs::path& folder)
+      : in(words_of(folder / "inputs.bin")), out(words_of(folder / "outputs.bin")) {
     std::ifstream list(folder / "ops.txt");
     for (std::string type, text; list >> type && std::getline(list >> std::ws, text);)
       expressions.push_back({text, type == "f32"});
@@ -74,7 +74,8 @@ struct Recorded {
   }
 };
 
-// Runs the shader once for each expression; set 0, binding 0 the inputs, 1 the outputs; push constants {expression, lanes}.
+// Runs the shader once for each expression; set 0, binding 0 the inputs, 1 the outputs; push constants
+// {expression, lanes}.
 Words run_all(const fs::path& shader, const Recorded& recorded) {
   Diagnostics diagnostics;
   const isa::Program program = frontend::compile_file(shader.string(), {}, {}, diagnostics);
@@ -90,7 +91,8 @@ Words run_all(const fs::path& shader, const Recorded& recorded) {
   world.launch_size = {kLanes, 1, 1};
   world.local_bytes = program.local_bytes;
   const uint64_t in_bytes = recorded.in.size() * 4, out_bytes = recorded.out.size() * 4;
-  const uint64_t descriptors[4] = {memory.allocate("in", in_bytes), in_bytes, memory.allocate("out", out_bytes), out_bytes};
+  const uint64_t descriptors[4] = {memory.allocate("in", in_bytes), in_bytes,
+                                   memory.allocate("out", out_bytes), out_bytes};
   memory.write(descriptors[0], recorded.in.data(), in_bytes);
   std::memcpy(world.constant_bank.data(), descriptors, sizeof(descriptors));
   for (uint32_t op = 0; op < recorded.expressions.size(); ++op) {
@@ -102,7 +104,9 @@ Words run_all(const fs::path& shader, const Recorded& recorded) {
   return {words.begin(), words.end()};
 }
 
-bool is_subnormal(float x) { return std::fpclassify(x) == FP_SUBNORMAL; }
+bool is_subnormal(float x) {
+  return std::fpclassify(x) == FP_SUBNORMAL;
+}
 
 // Where integer results need not be the driver's, and why. `kept`: what they must be then, or null.
 struct Exception {
@@ -110,26 +114,40 @@ struct Exception {
   bool (*applies)(const Inputs&);
   uint32_t (*kept)(const Inputs&) = nullptr;
 };
-bool any_subnormal(const Inputs& x) { return is_subnormal(x.a) || is_subnormal(x.b) || is_subnormal(x.c); }
-constexpr std::string_view kFlushed = "the driver flushes subnormals to 0, Glint keeps them; Vulkan allows both";
+bool any_subnormal(const Inputs& x) {
+  return is_subnormal(x.a) || is_subnormal(x.b) || is_subnormal(x.c);
+}
+constexpr std::string_view kFlushed =
+    "the driver flushes subnormals to 0, Glint keeps them; Vulkan allows both";
 constexpr std::string_view kOutOfRange = "out of the integer's range, or NaN: undefined (GLSL 5.4.1)";
 constexpr std::string_view kPackedNan = "packing of NaN is undefined (GLSL 8.4: clamp of NaN)";
 constexpr Exception kExceptions[] = {
     {"uint(a)", kOutOfRange, [](const Inputs& x) { return !(x.a > -1.0f && x.a < 0x1p32f); }},
     {"uint(int(a))", kOutOfRange, [](const Inputs& x) { return !(x.a >= -0x1p31f && x.a < 0x1p31f); }},
-    {"packHalf2x16(vec2(a,b))", "the bits of a NaN are not defined", [](const Inputs& x) { return std::isnan(x.a) || std::isnan(x.b); }},
-    {"packSnorm2x16(vec2(a,b))", kPackedNan, [](const Inputs& x) { return std::isnan(x.a) || std::isnan(x.b); }},
-    {"packUnorm2x16(vec2(a,b))", kPackedNan, [](const Inputs& x) { return std::isnan(x.a) || std::isnan(x.b); }},
-    {"packSnorm4x8(vec4(a,b,c,a))", kPackedNan, [](const Inputs& x) { return std::isnan(x.a) || std::isnan(x.b) || std::isnan(x.c); }},
-    {"packUnorm4x8(vec4(a,b,c,a))", kPackedNan, [](const Inputs& x) { return std::isnan(x.a) || std::isnan(x.b) || std::isnan(x.c); }},
-    {"frexp_e(a)", kFlushed, any_subnormal, [](const Inputs& x) { int e; std::frexp(x.a, &e); return uint32_t(e); }},
+    {"packHalf2x16(vec2(a,b))", "the bits of a NaN are not defined",
+     [](const Inputs& x) { return std::isnan(x.a) || std::isnan(x.b); }},
+    {"packSnorm2x16(vec2(a,b))", kPackedNan,
+     [](const Inputs& x) { return std::isnan(x.a) || std::isnan(x.b); }},
+    {"packUnorm2x16(vec2(a,b))", kPackedNan,
+     [](const Inputs& x) { return std::isnan(x.a) || std::isnan(x.b); }},
+    {"packSnorm4x8(vec4(a,b,c,a))", kPackedNan,
+     [](const Inputs& x) { return std::isnan(x.a) || std::isnan(x.b) || std::isnan(x.c); }},
+    {"packUnorm4x8(vec4(a,b,c,a))", kPackedNan,
+     [](const Inputs& x) { return std::isnan(x.a) || std::isnan(x.b) || std::isnan(x.c); }},
+    {"frexp_e(a)", kFlushed, any_subnormal,
+     [](const Inputs& x) {
+       int e;
+       std::frexp(x.a, &e);
+       return uint32_t(e);
+     }},
     {"uint(a<b)", kFlushed, any_subnormal, [](const Inputs& x) { return uint32_t(x.a < x.b); }},
     {"uint(a<=b)", kFlushed, any_subnormal, [](const Inputs& x) { return uint32_t(x.a <= x.b); }},
     {"uint(a>b)", kFlushed, any_subnormal, [](const Inputs& x) { return uint32_t(x.a > x.b); }},
     {"uint(a>=b)", kFlushed, any_subnormal, [](const Inputs& x) { return uint32_t(x.a >= x.b); }},
     {"uint(a==b)", kFlushed, any_subnormal, [](const Inputs& x) { return uint32_t(x.a == x.b); }},
     {"uint(a!=b)", kFlushed, any_subnormal, [](const Inputs& x) { return uint32_t(x.a != x.b); }},
-    {"uint(a!=0.0?bool(ua):false)", kFlushed, any_subnormal, [](const Inputs& x) { return uint32_t(x.a != 0); }},
+    {"uint(a!=0.0?bool(ua):false)", kFlushed, any_subnormal,
+     [](const Inputs& x) { return uint32_t(x.a != 0); }},
     {"uint(any(lessThan(vec3(a,b,c),vec3(b,c,a))))", kFlushed, any_subnormal,
      [](const Inputs& x) { return uint32_t(x.a < x.b || x.b < x.c || x.c < x.a); }},
     {"uint(all(greaterThanEqual(vec3(a,b,c),vec3(-1.0))))", kFlushed, any_subnormal,
@@ -147,20 +165,25 @@ struct Result {
   bool holds() const { return wrong == 0 && !too_far; }
   void note_wrong(const Inputs& x, uint32_t ours, uint32_t driver, double expected, double allowed) {
     if (wrong++ == 0)
-      first_wrong = fmt::format("a {:08x} {:g} b {:08x} {:g} c {:08x} {:g}: {:08x} {:g}, driver {:08x} {:g}, exact {:.9g} within {:g}", x.ua, x.a, x.ub,
-                                x.b, x.uc, x.c, ours, std::bit_cast<float>(ours), driver, std::bit_cast<float>(driver), expected, allowed);
+      first_wrong = fmt::format(
+          "a {:08x} {:g} b {:08x} {:g} c {:08x} {:g}: {:08x} {:g}, driver {:08x} {:g}, exact {:.9g} within "
+          "{:g}",
+          x.ua, x.a, x.ub, x.b, x.uc, x.c, ours, std::bit_cast<float>(ours), driver,
+          std::bit_cast<float>(driver), expected, allowed);
   }
 };
 
-Result compare_integers(std::string_view expression, const Recorded& recorded, const uint32_t* ours, const uint32_t* driver) {
-  const auto exception =
-      std::find_if(std::begin(kExceptions), std::end(kExceptions), [&](const Exception& e) { return e.expression == expression; });
+Result compare_integers(std::string_view expression, const Recorded& recorded, const uint32_t* ours,
+                        const uint32_t* driver) {
+  const auto exception = std::find_if(std::begin(kExceptions), std::end(kExceptions),
+                                      [&](const Exception& e) { return e.expression == expression; });
   Result result;
   for (uint32_t lane = 0; lane < kLanes; ++lane) {
     const Inputs x = recorded.inputs(lane);
     if (ours[lane] == driver[lane]) {
       ++result.equal;
-    } else if (exception != std::end(kExceptions) && exception->applies(x) && (!exception->kept || exception->kept(x) == ours[lane])) {
+    } else if (exception != std::end(kExceptions) && exception->applies(x) &&
+               (!exception->kept || exception->kept(x) == ours[lane])) {
       ++result.excepted;
       result.reasons.insert(exception->reason);
     } else {
@@ -170,14 +193,19 @@ Result compare_integers(std::string_view expression, const Recorded& recorded, c
   return result;
 }
 
-bool is_moderate(float x) { return std::abs(x) >= 1e-3f && std::abs(x) <= 1e3f; }
+bool is_moderate(float x) {
+  return std::abs(x) >= 1e-3f && std::abs(x) <= 1e3f;
+}
 
 // The ulps of the moderate inputs, ascending; `n` of them count.
-std::vector<double> moderate_ulps(const BuiltinReference& reference, const Recorded& recorded, const uint32_t* words) {
+std::vector<double> moderate_ulps(const BuiltinReference& reference, const Recorded& recorded,
+                                  const uint32_t* words) {
   std::vector<double> ulps;
   for (uint32_t lane = 0; lane < kLanes; ++lane) {
     const Inputs x = recorded.inputs(lane);
-    if (!is_moderate(x.a) || !is_moderate(x.b) || !is_moderate(x.c) || (reference.is_defined && !reference.is_defined(x))) continue;
+    if (!is_moderate(x.a) || !is_moderate(x.b) || !is_moderate(x.c) ||
+        (reference.is_defined && !reference.is_defined(x)))
+      continue;
     const double v = reference.value(x);
     if (!(std::abs(v) >= kSmallestNormal && std::abs(v) <= kLargest)) continue;
     const double error = std::abs(double(std::bit_cast<float>(words[lane])) - v) / ulp(v);
@@ -186,26 +214,33 @@ std::vector<double> moderate_ulps(const BuiltinReference& reference, const Recor
   std::sort(ulps.begin(), ulps.end());
   return ulps;
 }
-double percentile_99(const std::vector<double>& ulps) { return ulps.empty() ? 0 : ulps[size_t(0.99 * double(ulps.size() - 1))]; }
+double percentile_99(const std::vector<double>& ulps) {
+  return ulps.empty() ? 0 : ulps[size_t(0.99 * double(ulps.size() - 1))];
+}
 
-constexpr double kOpenUlps = 4;  // where Vulkan bounds no error, ours is small all the same, but for the lanes counted as open
+constexpr double kOpenUlps =
+    4;  // where Vulkan bounds no error, ours is small all the same, but for the lanes counted as open
 
 bool is_near(float got, double v, double allowed) {
   if (std::isnan(v)) return std::isnan(got);
   if (std::abs(v) >= kLargest + ulp(kLargest) / 2)  // overflows, give or take the error of the largest floats
-    return std::signbit(got) == std::signbit(v) && double(std::abs(got)) >= std::min(kLargest, std::abs(v)) - allowed;
+    return std::signbit(got) == std::signbit(v) &&
+           double(std::abs(got)) >= std::min(kLargest, std::abs(v)) - allowed;
   return std::abs(double(got) - v) <= allowed;
 }
 
-Result compare_floats(const BuiltinReference& reference, const Recorded& recorded, const uint32_t* ours, const uint32_t* driver) {
+Result compare_floats(const BuiltinReference& reference, const Recorded& recorded, const uint32_t* ours,
+                      const uint32_t* driver) {
   Result result;
-  const std::vector<double> ulps = moderate_ulps(reference, recorded, ours), driver_ulps = moderate_ulps(reference, recorded, driver);
+  const std::vector<double> ulps = moderate_ulps(reference, recorded, ours),
+                            driver_ulps = moderate_ulps(reference, recorded, driver);
   result.p99_ours = percentile_99(ulps);
   result.p99_driver = percentile_99(driver_ulps);
   double p99_allowed = std::max(2 * result.p99_driver, 0.5);  // nothing is nearer than correct rounding
   if (reference.in_order) {
     Words formula;
-    for (uint32_t lane = 0; lane < kLanes; ++lane) formula.push_back(std::bit_cast<uint32_t>(reference.in_order(recorded.inputs(lane))));
+    for (uint32_t lane = 0; lane < kLanes; ++lane)
+      formula.push_back(std::bit_cast<uint32_t>(reference.in_order(recorded.inputs(lane))));
     p99_allowed = std::max(p99_allowed, percentile_99(moderate_ulps(reference, recorded, formula.data())));
   }
   result.too_far = result.p99_ours > p99_allowed;
@@ -213,13 +248,15 @@ Result compare_floats(const BuiltinReference& reference, const Recorded& recorde
   for (uint32_t lane = 0; lane < kLanes; ++lane) {
     const Inputs x = recorded.inputs(lane);
     const double v = reference.value(x);
-    const double allowed = std::max(reference.bound(x).e, std::isinf(v) ? 0 : driver_worst * ulp(std::min(std::abs(v), kLargest)));
+    const double allowed = std::max(reference.bound(x).e,
+                                    std::isinf(v) ? 0 : driver_worst * ulp(std::min(std::abs(v), kLargest)));
     if (ours[lane] == driver[lane]) {
       ++result.equal;
     } else if (reference.is_defined && !reference.is_defined(x)) {
       ++result.excepted;
       result.reasons.insert("outside of the function's domain, or NaN where one operand is chosen");
-    } else if (is_near(std::bit_cast<float>(ours[lane]), v, std::isinf(allowed) ? kOpenUlps * ulp(v) : allowed)) {
+    } else if (is_near(std::bit_cast<float>(ours[lane]), v,
+                       std::isinf(allowed) ? kOpenUlps * ulp(v) : allowed)) {
       ++result.within;
     } else if (std::isinf(allowed)) {
       ++result.open;
@@ -235,13 +272,14 @@ Result compare_floats(const BuiltinReference& reference, const Recorded& recorde
 TEST_CASE("built-in functions of GLSL give a driver's integers, and floats within Vulkan's precision") {
   const fs::path folder = golden_folder();
   if (!fs::exists(folder / "ops.comp")) {
-    WARN("SKIPPED: no recordings of built-ins in " << folder.string() << "; name their folder in GLINT_GLSL_GOLDEN_DIR");
+    WARN("SKIPPED: no recordings of built-ins in " << folder.string()
+                                                   << "; name their folder in GLINT_GLSL_GOLDEN_DIR");
     return;
   }
   const Recorded recorded(folder);
   const Words ours = run_all(folder / "ops.comp", recorded);
-  fmt::print("{:61} {:>5} {:>6} {:>8} {:>5} {:>5} {:>11} {:>11}\n", "expression", "equal", "within", "excepted", "open", "wrong", "p99 ulp",
-             "driver's");
+  fmt::print("{:61} {:>5} {:>6} {:>8} {:>5} {:>5} {:>11} {:>11}\n", "expression", "equal", "within",
+             "excepted", "open", "wrong", "p99 ulp", "driver's");
   size_t hold = 0;
   std::set<std::string_view> reasons;
   for (size_t op = 0; op < recorded.expressions.size(); ++op) {
@@ -250,16 +288,20 @@ TEST_CASE("built-in functions of GLSL give a driver's integers, and floats withi
     const BuiltinReference* reference = find_reference(text);
     INFO(text);
     REQUIRE((reference != nullptr) == is_float);
-    const Result r = is_float ? compare_floats(*reference, recorded, mine, theirs) : compare_integers(text, recorded, mine, theirs);
+    const Result r = is_float ? compare_floats(*reference, recorded, mine, theirs)
+                              : compare_integers(text, recorded, mine, theirs);
     hold += r.holds();
     reasons.insert(r.reasons.begin(), r.reasons.end());
-    fmt::print("{:61} {:5} {:6} {:8} {:5} {:5} {:>11} {:>11} {}\n", text, r.equal, r.within, r.excepted, r.open, r.wrong,
-               is_float ? fmt::format("{:.3g}", r.p99_ours) : "", is_float ? fmt::format("{:.3g}", r.p99_driver) : "",
-               r.holds() ? "holds" : r.too_far ? "FAILS at the 99th percentile" : "FAILS: " + r.first_wrong);
+    fmt::print("{:61} {:5} {:6} {:8} {:5} {:5} {:>11} {:>11} {}\n", text, r.equal, r.within, r.excepted,
+               r.open, r.wrong, is_float ? fmt::format("{:.3g}", r.p99_ours) : "",
+               is_float ? fmt::format("{:.3g}", r.p99_driver) : "",
+               r.holds()   ? "holds"
+               : r.too_far ? "FAILS at the 99th percentile"
+                           : "FAILS: " + r.first_wrong);
     CHECK(r.holds());
   }
-  fmt::print("excepted: {}\nopen: lanes for which Vulkan bounds no error\n{} of {} hold\n", fmt::join(reasons, "; "), hold,
-             recorded.expressions.size());
+  fmt::print("excepted: {}\nopen: lanes for which Vulkan bounds no error\n{} of {} hold\n",
+             fmt::join(reasons, "; "), hold, recorded.expressions.size());
 }
 
 }  // namespace glint::test

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/shaders/compute_lab.h"
 
-#include <fmt/format.h>
-
 #include <cstring>
+#include <fmt/format.h>
 
 #include "pipeline/functional_machine.h"
 #include "pipeline/timing_machine.h"
@@ -59,7 +58,8 @@ void ComputeLab::run(const LabOptions& options) {
   }
   std::map<uint32_t, std::vector<uint64_t>> tables;
   for (const auto& [binding, all] : buffer_arrays) {
-    for (const Words& words : all) tables[binding].insert(tables[binding].end(), {bench.place("element", words), words.size() * 4});
+    for (const Words& words : all)
+      tables[binding].insert(tables[binding].end(), {bench.place("element", words), words.size() * 4});
     Words table(tables[binding].size() * 2);
     std::memcpy(table.data(), tables[binding].data(), table.size() * 4);
     bench.bind(binding, bench.place(fmt::format("table {}", binding), table), all.size());
@@ -98,7 +98,8 @@ void ComputeLab::run(const LabOptions& options) {
 }
 
 const std::vector<LabOptions>& compute_lab_options() {
-  static const std::vector<LabOptions> kSome = {{24, true, false}, {64, true, false}, {64, false, false}, {64, true, true}};
+  static const std::vector<LabOptions> kSome = {
+      {24, true, false}, {64, true, false}, {64, false, false}, {64, true, true}};
   return kSome;
 }
 

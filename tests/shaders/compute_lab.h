@@ -27,7 +27,8 @@ class ComputeLab {
   std::map<uint32_t, std::vector<LabImage>> images;
   std::map<uint32_t, std::vector<core::Sampler>> samplers;
   std::vector<uint32_t> addressed;  // bindings of `buffers` whose addresses are the push constants
-  // A buffer of `count` nodes of `bytes` bytes, each of which begins with the address of the next; the last with 0.
+  // A buffer of `count` nodes of `bytes` bytes, each of which begins with the address of the next; the last
+  // with 0.
   struct Chain {
     uint32_t binding = 0, bytes = 0, count = 0;
   } linked;
@@ -42,7 +43,8 @@ class ComputeLab {
   std::string file_;
 };
 
-// Machines and register limits for compute shaders; fewer than for rays, as a whole world is cheap to check at once.
+// Machines and register limits for compute shaders; fewer than for rays, as a whole world is cheap to check
+// at once.
 const std::vector<LabOptions>& compute_lab_options();
 
 }  // namespace glint::test

@@ -1,5 +1,5 @@
-// Compute shaders: blocks, shared memory, atomics, addresses, layouts, small types, constants and entry points.
-// SPDX-License-Identifier: Apache-2.0
+// Compute shaders: blocks, shared memory, atomics, addresses, layouts, small types, constants and entry
+// points. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -14,7 +14,9 @@ namespace {
 
 using Catch::Matchers::Contains;
 
-uint32_t bits(float x) { return std::bit_cast<uint32_t>(x); }
+uint32_t bits(float x) {
+  return std::bit_cast<uint32_t>(x);
+}
 
 // Runs `lab` anew for every machine and register limit, and lets `check` look.
 void each_machine(const ComputeLab& fresh, const std::function<void(ComputeLab&)>& check) {
@@ -79,7 +81,9 @@ TEST_CASE("atomics change buffers, shared memory and texels once for each thread
     CHECK(u[21] == bits(63.0f));
     CHECK(u[22] == bits(-63.0f));
     CHECK(u[23] == bits(2.5f));
-    const auto at = [&](size_t i) { return uint64_t{after.buffers[1][2 * i]} | uint64_t{after.buffers[1][2 * i + 1]} << 32; };
+    const auto at = [&](size_t i) {
+      return uint64_t{after.buffers[1][2 * i]} | uint64_t{after.buffers[1][2 * i + 1]} << 32;
+    };
     CHECK(at(0) == 64 * 0x1'0000'0001);
     CHECK(at(1) == uint64_t{63} << 33);
     CHECK(at(2) == uint64_t{1} << 40);
@@ -116,7 +120,8 @@ Words uniforms() {
   return w;
 }
 
-TEST_CASE("addresses are followed, computed with and compared; blocks keep their layouts; buffers have numbers") {
+TEST_CASE(
+    "addresses are followed, computed with and compared; blocks keep their layouts; buffers have numbers") {
   ComputeLab lab("compute/memory.comp");
   lab.buffers[0] = Words(32 * 16);
   lab.buffers[1] = uniforms();
@@ -127,7 +132,8 @@ TEST_CASE("addresses are followed, computed with and compared; blocks keep their
   lab.buffers[21] = Words(24);  // four nodes of 24 bytes; the addresses of the next come below
   lab.addressed = {21, 20, 20};
   lab.linked = {21, 24, 4};
-  for (uint32_t i = 0; i < 4; ++i) lab.buffers[21][6 * i + 2] = 11 * i, lab.buffers[21][6 * i + 5] = bits(float(i) * 2);
+  for (uint32_t i = 0; i < 4; ++i)
+    lab.buffers[21][6 * i + 2] = 11 * i, lab.buffers[21][6 * i + 5] = bits(float(i) * 2);
   each_machine(lab, [](ComputeLab& after) {
     for (uint32_t id = 0; id < 32; ++id) {
       INFO("lane " << id);
@@ -153,7 +159,8 @@ TEST_CASE("addresses are followed, computed with and compared; blocks keep their
 }
 
 TEST_CASE("specialisation constants size blocks and arrays, by default and as given from outside") {
-  const auto expect = [](uint32_t width, uint32_t count, bool more, float scale, const std::map<uint32_t, uint64_t>& given) {
+  const auto expect = [](uint32_t width, uint32_t count, bool more, float scale,
+                         const std::map<uint32_t, uint64_t>& given) {
     ComputeLab lab("compute/special.comp");
     lab.buffers[0] = Words(width * 2 * 4);
     lab.glsl.specialization = given;
@@ -176,7 +183,9 @@ TEST_CASE("a module's entry points are chosen by name, and the names are told wh
   ComputeLab lab("compute/two.spvasm");
   lab.buffers[0] = Words(8);
   lab.glsl.entry_point = "wide";
-  each_machine(lab, [](ComputeLab& after) { CHECK(after.buffers[0] == Words{20, 100, 20, 1, 100, 100, 100, 100}); });
+  each_machine(lab, [](ComputeLab& after) {
+    CHECK(after.buffers[0] == Words{20, 100, 20, 1, 100, 100, 100, 100});
+  });
   lab.glsl.entry_point = "chosen";
   each_machine(lab, [](ComputeLab& after) { CHECK(after.buffers[0] == Words{5, 6, 0, 0, 0, 0, 7, 8}); });
   for (const std::string name : {"", "other"}) {
@@ -198,7 +207,11 @@ TEST_CASE("bytes, halves and 64-bit integers go through buffers, shared memory a
   static_assert(offsetof(Cell, d) == 8 && offsetof(Cell, e) == 16 && sizeof(Cell) == 24);
   std::vector<Cell> cells(32);
   for (uint32_t i = 0; i < 32; ++i)
-    cells[i] = {uint8_t(i * 8 + 1), int16_t(100 * int(i) - 1000), uint16_t(0x3c00 + i), uint64_t(i) * 0x123456789, {0x4000, uint16_t(0x4400 + i), 0xc800}};
+    cells[i] = {uint8_t(i * 8 + 1),
+                int16_t(100 * int(i) - 1000),
+                uint16_t(0x3c00 + i),
+                uint64_t(i) * 0x123456789,
+                {0x4000, uint16_t(0x4400 + i), 0xc800}};
   lab.buffers[0] = Words(32 * 4);
   lab.buffers[1] = Words(32 * 6);
   std::memcpy(lab.buffers[1].data(), cells.data(), 32 * 24);

@@ -8,9 +8,9 @@ namespace glint::test {
 namespace {
 
 TEST_CASE("shaders that use many features at once compile to programs that verify") {
-  const std::string file = GENERATE(as<std::string>{}, "halves.comp", "mixed.comp", "addresses.rgen", "ballots.comp",
-                                    "blocks.comp", "small_groups.comp", "nested.comp", "pointers_in_calls.comp",
-                                    "legacy.rgen", "wide.rgen");
+  const std::string file = GENERATE(as<std::string>{}, "halves.comp", "mixed.comp", "addresses.rgen",
+                                    "ballots.comp", "blocks.comp", "small_groups.comp", "nested.comp",
+                                    "pointers_in_calls.comp", "legacy.rgen", "wide.rgen");
   for (const uint32_t registers : {24u, 64u}) {
     INFO(file << " with " << registers << " registers");
     CHECK(compile_lab("features/" + file, {}, {registers, true, false}).code.size() > 8);

@@ -20,14 +20,17 @@ core::Sampler sampler(core::Filter filter) {
 }
 
 // Texel n is `first` + n.
-LabImage counting(ImageShape shape, std::array<uint32_t, 3> size, uint32_t layers, uint32_t levels, float first) {
+LabImage counting(ImageShape shape, std::array<uint32_t, 3> size, uint32_t layers, uint32_t levels,
+                  float first) {
   LabImage image;
   core::ImageView& view = image.view;
   view.format = TexelFormat::R32Float;
   view.shape = shape;
-  view.width = size[0], view.height = size[1], view.depth = size[2], view.layers = layers, view.levels = levels;
+  view.width = size[0], view.height = size[1], view.depth = size[2], view.layers = layers,
+  view.levels = levels;
   view.sampler = sampler(core::Filter::Nearest);
-  for (uint64_t i = 0; i < view.bytes() / 4; ++i) image.texels.push_back(std::bit_cast<uint32_t>(first + float(i)));
+  for (uint64_t i = 0; i < view.bytes() / 4; ++i)
+    image.texels.push_back(std::bit_cast<uint32_t>(first + float(i)));
   return image;
 }
 
@@ -68,15 +71,33 @@ std::vector<float> expected_row(uint32_t id) {
   const auto flat = [](uint32_t tx, uint32_t ty) { return 1.0f + float(4 * ty + tx); };
   const float level_1 = 17.0f + float(2 * (y / 2) + x / 2);
   const uint32_t gx = x & 1, gy = y & 1;  // between texels gx, gx + 1
-  const float gathered = flat(gx, gy + 1) + 100.0f * flat(gx + 1, gy + 1) + 10000.0f * flat(gx + 1, gy) + 0.01f * flat(gx, gy);
+  const float gathered =
+      flat(gx, gy + 1) + 100.0f * flat(gx + 1, gy + 1) + 10000.0f * flat(gx + 1, gy) + 0.01f * flat(gx, gy);
   const uint32_t axis = id % 3, face = 2 * axis + (id & 8 ? 1 : 0);
-  return {flat(x, y), level_1, 21.0f, flat(std::min(x + 1, 3u), y == 0 ? 0 : y - 1), level_1 + flat((x & 1) + 2, (y & 1) + 1),
-          gathered, float(100 + 4 * axis + 2), float(200 + (id & 7)), float(300 + face), id & 1 ? 9.0f : 7.0f,
-          id & 1 ? 11.5f : 13.0f, 11.0f, float(500 + id), 43.0f, float(id) / 32.0f < 0.5f ? 1.0f : 0.0f,
-          float(2 + 20 + 300), float(3 + 20 + 3200 + 10000), float(3 + 20 + 3200 + 10000), 2.0f};
+  return {flat(x, y),
+          level_1,
+          21.0f,
+          flat(std::min(x + 1, 3u), y == 0 ? 0 : y - 1),
+          level_1 + flat((x & 1) + 2, (y & 1) + 1),
+          gathered,
+          float(100 + 4 * axis + 2),
+          float(200 + (id & 7)),
+          float(300 + face),
+          id & 1 ? 9.0f : 7.0f,
+          id & 1 ? 11.5f : 13.0f,
+          11.0f,
+          float(500 + id),
+          43.0f,
+          float(id) / 32.0f < 0.5f ? 1.0f : 0.0f,
+          float(2 + 20 + 300),
+          float(3 + 20 + 3200 + 10000),
+          float(3 + 20 + 3200 + 10000),
+          2.0f};
 }
 
-TEST_CASE("images of every geometry are sampled, fetched, gathered, measured, read and written where they should be") {
+TEST_CASE(
+    "images of every geometry are sampled, fetched, gathered, measured, read and written where they should "
+    "be") {
   for (const LabOptions& options : compute_lab_options()) {
     INFO(to_string(options));
     ComputeLab lab = lab_of_images();

@@ -1,5 +1,5 @@
-// Comparing what each lane of a laboratory launch stored with what it should have, for all machines and register limits.
-// SPDX-License-Identifier: Apache-2.0
+// Comparing what each lane of a laboratory launch stored with what it should have, for all machines and
+// register limits. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
 #include <cstdint>
@@ -11,7 +11,9 @@
 
 namespace glint::test {
 
-inline uint32_t bits(float value) { return std::bit_cast<uint32_t>(value); }
+inline uint32_t bits(float value) {
+  return std::bit_cast<uint32_t>(value);
+}
 using Row = std::vector<uint32_t>;  // a lane's words, from the first; those left out are not checked
 
 inline void check_lanes(RayLab& lab, const std::function<Row(uint32_t lane)>& expected) {

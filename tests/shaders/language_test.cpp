@@ -28,14 +28,21 @@ bool search(uint32_t start, uint32_t& steps, uint32_t& found) {
 
 uint32_t classify(uint32_t x) {
   switch (x) {
-    case 0: return 11;
-    case 1: return 10;
-    case 2: return 6000;
+    case 0:
+      return 11;
+    case 1:
+      return 10;
+    case 2:
+      return 6000;
     case 3:
-    case 4: return 42;
-    case 5: return 6102;
-    case 7: return 1100;
-    default: return 6100;
+    case 4:
+      return 42;
+    case 5:
+      return 6102;
+    case 7:
+      return 1100;
+    default:
+      return 6100;
   }
 }
 
@@ -114,7 +121,8 @@ std::vector<uint32_t> counting(uint32_t words) {
   return result;
 }
 
-// m[column][row] of matrices whose words count from `first`, `stride` words from one column (or row) to the next.
+// m[column][row] of matrices whose words count from `first`, `stride` words from one column (or row) to the
+// next.
 struct Words {
   uint32_t first, stride;
   bool by_rows;
@@ -153,9 +161,12 @@ Row matrices(uint32_t lane) {
   const auto frame = [](uint32_t f) { return 1 + 25 * f; };
   const uint32_t f = frame(i & 1);
   row.push_back(bits(Words{f, 3, false}.at(2, 1) + float(f + 9 + 2 + 1) * 100 + float(f + 12 + 1) * 10000));
-  row.push_back(bits(Words{f + 13 + 6, 3, false}.at(1, 2) + Words{frame(1) + 13 + 6 * (i & 1), 3, false}.at(0, i % 3) * 100));
+  row.push_back(bits(Words{f + 13 + 6, 3, false}.at(1, 2) +
+                     Words{frame(1) + 13 + 6 * (i & 1), 3, false}.at(0, i % 3) * 100));
   row.push_back(bits(Words{51, 3, true}.at(i % 3, 1)));
-  const auto look = [&](uint32_t c, uint32_t r) { return (c == i ? 9.0f : rows.at(c, r)) + (c == 1 && r == i ? 1.0f : 0.0f); };
+  const auto look = [&](uint32_t c, uint32_t r) {
+    return (c == i ? 9.0f : rows.at(c, r)) + (c == 1 && r == i ? 1.0f : 0.0f);
+  };
   row.push_back(bits(look(i, 0) + look(1, i) * 100 + look(2, 2) * 10000));
   float s[3][3];
   for (uint32_t c = 0; c < 3; ++c)
@@ -180,7 +191,7 @@ TEST_CASE("matrices in buffers are read and written by majorness, stride and lay
   check_lanes(lab, matrices);
   const std::vector<uint32_t>& mixed = lab.buffers_after[12];
   const auto at = [&](uint32_t word) { return std::bit_cast<float>(mixed[word]); };
-  CHECK((at(60) == 1 && at(65) == 60 && at(68) == 9));                    // columns of three
+  CHECK((at(60) == 1 && at(65) == 60 && at(68) == 9));                                 // columns of three
   CHECK((at(69) == 1 && at(70) == 3 && at(71) == 50 && at(72) == 2 && at(74) == 60));  // two rows of three
   CHECK(at(1 + 13 + 1) == 12345);
   CHECK(at(75) == 76);
@@ -189,10 +200,9 @@ TEST_CASE("matrices in buffers are read and written by majorness, stride and lay
 Row layouts(uint32_t lane) {
   const uint32_t one = lane & 1;
   const auto f = [](uint32_t word) { return float(word + 1); };
-  // std140: weights 3 x 4 words; outer at 12: head, inner at +4 of 8 words each, tail at +20, last at +23; flag at
-  // 36, pairs at 40 of 4 words each.
-  // std430: count, outers at 4: head 0, inner 4 and 12, tail 20, last 23, 24 words.
-  // scalar: count 0, normal 1, inner at 4 of 6 words.
+  // std140: weights 3 x 4 words; outer at 12: head, inner at +4 of 8 words each, tail at +20, last at +23;
+  // flag at 36, pairs at 40 of 4 words each. std430: count, outers at 4: head 0, inner 4 and 12, tail 20,
+  // last 23, 24 words. scalar: count 0, normal 1, inner at 4 of 6 words.
   Row row;
   row.push_back(bits(f(4 * (lane % 3)) + f(12)));
   row.push_back(bits(f(16 + 8 * one + 3) + f(24 + 5) * 100));
@@ -212,7 +222,8 @@ Row layouts(uint32_t lane) {
   return row;
 }
 
-TEST_CASE("uniform, storage, scalar and push-constant blocks have their members where their layout rule says") {
+TEST_CASE(
+    "uniform, storage, scalar and push-constant blocks have their members where their layout rule says") {
   RayLab lab({"layouts.rgen", {}, {}, {}});
   lab.words_per_lane = 16;
   lab.buffers[10] = counting(48);
@@ -276,10 +287,14 @@ TEST_CASE("arrays of arrays and structs are copied, passed and indexed dynamical
 }
 
 TEST_CASE("defines, include chains, macros and specialisation defaults reach the code") {
-  RayLab lab({"constants.rgen", {}, {}, {{lab_file("more")}, {{"SAMPLES", "4"}, {"FEATURE", ""}, {"TEXT_VALUE", "(3u + 4u)"}}}});
+  RayLab lab({"constants.rgen",
+              {},
+              {},
+              {{lab_file("more")}, {{"SAMPLES", "4"}, {"FEATURE", ""}, {"TEXT_VALUE", "(3u + 4u)"}}}});
   check_lanes(lab, [](uint32_t lane) {
     volatile const float product = float(lane) * 1.1f;  // rounds before the sum: `precise`
-    return Row{10 * lane, bits(0.25f), 4 * (lane + 1) * (lane + 1), 2, 7 + lane * 7, 11, bits(product + 2.2f), 36 + 460};
+    return Row{10 * lane,    bits(0.25f), 4 * (lane + 1) * (lane + 1), 2,
+               7 + lane * 7, 11,          bits(product + 2.2f),        36 + 460};
   });
 }
 
@@ -287,7 +302,12 @@ TEST_CASE("storage images are read after writes of the same lane, textures by a 
   RayLab lab({"images.rgen", {}, {}, {}});
   check_lanes(lab, [](uint32_t lane) {
     const auto red = [](uint32_t t) { return bits(float(64 * t + 16) / 255.0f); };
-    return Row{bits(float(lane & 1 ? 2 * lane : lane)), red(lane & 1), bits(10), bits(128.0f / 255.0f), red(1), red(0)};
+    return Row{bits(float(lane & 1 ? 2 * lane : lane)),
+               red(lane & 1),
+               bits(10),
+               bits(128.0f / 255.0f),
+               red(1),
+               red(0)};
   });
   CHECK(lab.image[4 * 9 + 0] == 18);
   CHECK(lab.image[4 * 9 + 2] == 2);

@@ -90,8 +90,17 @@ TEST_CASE("each sample of a texel is its own, and stores to samples that an imag
     lab.run(options);
     for (uint32_t lane = 0; lane < 4; ++lane) {
       INFO(to_string(options) << " lane " << lane);
-      const Words expected{lane * 100, lane * 100 + 1, lane * 100 + 2, lane * 100 + 3, lane * 100 + 7, 4,
-                           22, 203, lane + 40, (4 + lane) * 1000 + lane, 22};
+      const Words expected{lane * 100,
+                           lane * 100 + 1,
+                           lane * 100 + 2,
+                           lane * 100 + 3,
+                           lane * 100 + 7,
+                           4,
+                           22,
+                           203,
+                           lane + 40,
+                           (4 + lane) * 1000 + lane,
+                           22};
       for (uint32_t i = 0; i < expected.size(); ++i) {
         INFO("word " << i);
         CHECK(lab.buffers[0][lane * 16 + i] == expected[i]);

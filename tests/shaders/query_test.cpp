@@ -6,8 +6,8 @@
 namespace glint::test {
 namespace {
 
-// The laboratory's scene as queries.rgen walks it: it takes triangle 0 of the quads that are not opaque, and in boxes a
-// hit at distance 9.75.
+// The laboratory's scene as queries.rgen walks it: it takes triangle 0 of the quads that are not opaque, and
+// in boxes a hit at distance 9.75.
 Row walked(uint32_t x, uint32_t y) {
   const bool hits = x >= 2, box = x >= 6, opaque = x % 2 == 0;
   const uint32_t primitive = box ? y : y < 3 ? 0 : 1, instance = x < 4 ? 0 : x < 6 ? 1 : 2;
@@ -31,7 +31,8 @@ Row walked(uint32_t x, uint32_t y) {
   return row;
 }
 
-TEST_CASE("a ray query offers what is not opaque, commits what the shader takes, and tells everything about it") {
+TEST_CASE(
+    "a ray query offers what is not opaque, commits what the shader takes, and tells everything about it") {
   RayLab lab({"queries.rgen", {}, {}, {}});
   lab.words_per_lane = 16;
   for (const LabOptions& options : all_lab_options()) {
@@ -42,9 +43,11 @@ TEST_CASE("a ray query offers what is not opaque, commits what the shader takes,
       const Row row = walked(x, y);
       for (size_t i = 0; i < row.size(); ++i) {
         const uint32_t word = got[lane * 16 + i];
-        INFO("x " << x << " y " << y << " word " << i << " is " << word << ", as float " << std::bit_cast<float>(word));
+        INFO("x " << x << " y " << y << " word " << i << " is " << word << ", as float "
+                  << std::bit_cast<float>(word));
         if (i == 12)
-          CHECK(double(std::bit_cast<float>(word)) == Approx(double(std::bit_cast<float>(row[i]))).margin(1e-6));
+          CHECK(double(std::bit_cast<float>(word)) ==
+                Approx(double(std::bit_cast<float>(row[i]))).margin(1e-6));
         else
           CHECK(word == row[i]);
       }

@@ -6,8 +6,12 @@
 namespace glint::test {
 namespace {
 
-bool misses(uint32_t x) { return x < 2 || x >= RayLab::kWidth; }
-bool is_box(uint32_t x) { return x >= 6; }
+bool misses(uint32_t x) {
+  return x < 2 || x >= RayLab::kWidth;
+}
+bool is_box(uint32_t x) {
+  return x >= 6;
+}
 
 struct Job {
   uint32_t depth = 0;
@@ -54,7 +58,9 @@ RayLab callables_lab() {
   return lab;
 }
 
-TEST_CASE("callables call each other with data of their own or handed on, lane by lane, and each sees its own record") {
+TEST_CASE(
+    "callables call each other with data of their own or handed on, lane by lane, and each sees its own "
+    "record") {
   RayLab lab = callables_lab();
   check_lanes(lab, [](uint32_t lane) {
     Job job{lane % 5, (lane & 1) != 0, {1, 2, 3}, {float(lane), 0.5f}};
@@ -62,21 +68,31 @@ TEST_CASE("callables call each other with data of their own or handed on, lane b
     if (lane % 3 == 0) callables.add(job);
     if (lane % 3 == 1) callables.mix(job);
     const uint32_t single = lane & 2 ? lane * 2 + 1 : lane;
-    return Row{job.trail[0], job.trail[1], job.trail[2], bits(job.sum[0]), bits(job.sum[1]), single, 77077, job.odd ? 1u : 0u};
+    return Row{job.trail[0],     job.trail[1], job.trail[2], bits(job.sum[0]),
+               bits(job.sum[1]), single,       77077,        job.odd ? 1u : 0u};
   });
 }
 
 TEST_CASE("callables nested deeper than the pipeline allows are a fault that names shader and depth") {
   RayLab lab = callables_lab();
   lab.max_callable_depth = 3;
-  CHECK_THROWS_WITH(lab.run(), Catch::Matchers::Contains("calls a callable shader at depth 4: the pipeline allows 3") &&
-                                   Catch::Matchers::Contains(".rcall:"));
+  CHECK_THROWS_WITH(lab.run(),
+                    Catch::Matchers::Contains("calls a callable shader at depth 4: the pipeline allows 3") &&
+                        Catch::Matchers::Contains(".rcall:"));
 }
 
-TEST_CASE("each shader reads the data of its own record, before and after rays and callables with other records") {
-  RayLab lab({"rt/records.rgen", {"rt/records.rmiss", "rt/records.rmiss"},
-              {{"rt/records.rchit", "rt/records.rahit", ""}, {"rt/records.rchit", "rt/records.rahit", ""}, {}, {},
-               {"rt/box.rchit", "", "rt/records.rint"}, {"rt/box.rchit", "", "rt/records.rint"}}, {}, {"", "", "", "rt/twice.rcall"}});
+TEST_CASE(
+    "each shader reads the data of its own record, before and after rays and callables with other records") {
+  RayLab lab({"rt/records.rgen",
+              {"rt/records.rmiss", "rt/records.rmiss"},
+              {{"rt/records.rchit", "rt/records.rahit", ""},
+               {"rt/records.rchit", "rt/records.rahit", ""},
+               {},
+               {},
+               {"rt/box.rchit", "", "rt/records.rint"},
+               {"rt/box.rchit", "", "rt/records.rint"}},
+              {},
+              {"", "", "", "rt/twice.rcall"}});
   lab.max_trace_depth = 2;
   lab.raygen_data = {3, 4};
   lab.miss_data = {{5, 6}, {7, 8}};
@@ -93,14 +109,23 @@ TEST_CASE("each shader reads the data of its own record, before and after rays a
     uint32_t any = 0;
     if (x & 1) any = y == 0 ? 6 * tag : y < 4 ? 6 * tag + 1000 : y == 4 ? 4 * tag + 1000 : 5 * tag;
     if ((x & 1) && y == 5) return Row{0, any, 0, outer_miss, 0, 0xfd, 43};  // ignored
-    return Row{tag * 101, any, 0, 0, tag * 2 + 1 + inner_miss * 1000 + (x & 1 ? 2000000u : 1000000u), 0xfd, 43};
+    return Row{tag * 101, any, 0, 0, tag * 2 + 1 + inner_miss * 1000 + (x & 1 ? 2000000u : 1000000u),
+               0xfd,      43};
   });
 }
 
-TEST_CASE("the vendor's extension traces by the payload's location, and its any-hit ends are no terminators") {
-  RayLab lab({"rt/vendor.rgen", {"rt/vendor.rmiss"},
-              {{"rt/vendor.rchit", "rt/vendor.rahit", ""}, {"rt/vendor.rchit", "rt/vendor.rahit", ""}, {}, {},
-               {"rt/vendor.rchit", "", "rt/vendor.rint"}, {"rt/vendor.rchit", "", "rt/vendor.rint"}}, {}, {"rt/vendor.rcall"}});
+TEST_CASE(
+    "the vendor's extension traces by the payload's location, and its any-hit ends are no terminators") {
+  RayLab lab({"rt/vendor.rgen",
+              {"rt/vendor.rmiss"},
+              {{"rt/vendor.rchit", "rt/vendor.rahit", ""},
+               {"rt/vendor.rchit", "rt/vendor.rahit", ""},
+               {},
+               {},
+               {"rt/vendor.rchit", "", "rt/vendor.rint"},
+               {"rt/vendor.rchit", "", "rt/vendor.rint"}},
+              {},
+              {"rt/vendor.rcall"}});
   check_pixels(lab, [](uint32_t x, uint32_t y) {
     const uint32_t number = (y * 8 + x) * 3 + 2;
     if (misses(x)) return Row{0, 0, 100, 0, number, 8};
@@ -113,7 +138,10 @@ TEST_CASE("the vendor's extension traces by the payload's location, and its any-
 }
 
 TEST_CASE("lanes choose a structure of an array, and a null structure is a miss") {
-  RayLab lab({"rt/arrays.rgen", {"table.rmiss"}, {{"tag1.rchit", "", ""}, {}, {}, {}, {"tag2.rchit", "", "pair.rint"}}, {}});
+  RayLab lab({"rt/arrays.rgen",
+              {"table.rmiss"},
+              {{"tag1.rchit", "", ""}, {}, {}, {}, {"tag2.rchit", "", "pair.rint"}},
+              {}});
   check_pixels(lab, [](uint32_t x, uint32_t) {
     const uint32_t tag = misses(x) ? 30 : is_box(x) ? 2 : 1;
     return Row{x & 1 ? tag : 30, tag};
@@ -121,8 +149,15 @@ TEST_CASE("lanes choose a structure of an array, and a null structure is a miss"
 }
 
 TEST_CASE("a ray's time reaches its shaders, and rays without one have time 0") {
-  RayLab lab({"rt/motion.rgen", {"rt/motion.rmiss"},
-              {{"rt/motion.rchit", "", ""}, {"rt/motion.rchit", "", ""}, {}, {}, {"rt/motion.rchit", "", "pair.rint"}, {"rt/motion.rchit", "", "pair.rint"}}, {}});
+  RayLab lab({"rt/motion.rgen",
+              {"rt/motion.rmiss"},
+              {{"rt/motion.rchit", "", ""},
+               {"rt/motion.rchit", "", ""},
+               {},
+               {},
+               {"rt/motion.rchit", "", "pair.rint"},
+               {"rt/motion.rchit", "", "pair.rint"}},
+              {}});
   check_pixels(lab, [](uint32_t x, uint32_t y) {
     const float t = misses(x) ? 100.0f : is_box(x) ? 9.0f : x < 4 ? 10.0f : 8.0f;
     return Row{bits(float(y * 8 + x) * 0.25f), bits(t), 0};
@@ -130,9 +165,15 @@ TEST_CASE("a ray's time reaches its shaders, and rays without one have time 0") 
 }
 
 TEST_CASE("hit objects keep traced and made-up hits until their shaders are executed") {
-  RayLab lab({"rt/object.rgen", {"rt/object.rmiss", "rt/object.rmiss"},
-              {{"rt/object.rchit", "", ""}, {"rt/object.rchit", "", ""}, {}, {},
-               {"rt/object.rchit", "", "pair.rint"}, {"rt/object.rchit", "", "pair.rint"}}, {}});
+  RayLab lab({"rt/object.rgen",
+              {"rt/object.rmiss", "rt/object.rmiss"},
+              {{"rt/object.rchit", "", ""},
+               {"rt/object.rchit", "", ""},
+               {},
+               {},
+               {"rt/object.rchit", "", "pair.rint"},
+               {"rt/object.rchit", "", "pair.rint"}},
+              {}});
   lab.words_per_lane = 24;
   lab.miss_data = {{1}, {2}};
   lab.hit_data = {{1}, {2}, {}, {}, {4}, {5}};
@@ -164,7 +205,8 @@ TEST_CASE("hit objects keep traced and made-up hits until their shaders are exec
         const float weight = std::bit_cast<float>(words[12]);
         const double v = (y + 0.5) / 6, expected = is_box(x) ? (x & 1) + 0.5 : y < 3 ? 0.5 - v : 0.5;
         CHECK(double(weight) == Approx(expected).margin(1e-6));
-        CHECK(words[13] == custom(x) * 1000 + primitive * 10 + (x & 1) + (record + 1 - (is_box(x) ? 1 : 0)) * 1000000);
+        CHECK(words[13] ==
+              custom(x) * 1000 + primitive * 10 + (x & 1) + (record + 1 - (is_box(x) ? 1 : 0)) * 1000000);
         CHECK(words[14] == uint32_t(weight * 64) + 1000 * uint32_t(t));
       }
       CHECK(words[15] == 0);

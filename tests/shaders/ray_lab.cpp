@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/shaders/ray_lab.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <fmt/format.h>
 #include <span>
 
 #include "base/registry.h"
@@ -22,15 +21,18 @@ namespace {
 
 constexpr uint64_t kBudget = 2'000'000;  // instructions a warp: far more than any shader here needs
 
-void bind(core::World& world, uint32_t set, uint32_t binding, uint64_t address_or_handle, uint64_t bytes_or_count) {
+void bind(core::World& world, uint32_t set, uint32_t binding, uint64_t address_or_handle,
+          uint64_t bytes_or_count) {
   const uint64_t descriptor[2] = {address_or_handle, bytes_or_count};
-  std::memcpy(world.constant_bank.data() + set * isa::kSetBytes + binding * isa::kDescriptorBytes, descriptor, sizeof(descriptor));
+  std::memcpy(world.constant_bank.data() + set * isa::kSetBytes + binding * isa::kDescriptorBytes, descriptor,
+              sizeof(descriptor));
 }
 
 rt::StructureInfo quads(mem::AddressSpace& memory, const rt::BuildOptions& options) {
   std::vector<std::array<float, 3>> corners;
   for (float x : {0.0f, 1.0f})
-    for (const auto& [dx, y] : {std::pair{0.0f, 0.0f}, {1.0f, 0.0f}, {1.0f, 6.0f}, {0.0f, 6.0f}}) corners.push_back({x + dx, y, 0});
+    for (const auto& [dx, y] : {std::pair{0.0f, 0.0f}, {1.0f, 0.0f}, {1.0f, 6.0f}, {0.0f, 6.0f}})
+      corners.push_back({x + dx, y, 0});
   const uint32_t indices[2][6] = {{0, 1, 2, 0, 2, 3}, {4, 5, 6, 4, 6, 7}};
   rt::BottomLevel level;
   for (int g = 0; g < 2; ++g) {
@@ -91,7 +93,8 @@ struct Shaders {
   }
 };
 
-pipeline::TableInput make_table(const RayLab& lab, const LabShaders& files, Shaders& shaders, const LabOptions& options) {
+pipeline::TableInput make_table(const RayLab& lab, const LabShaders& files, Shaders& shaders,
+                                const LabOptions& options) {
   pipeline::TableInput table;
   const auto general = [&](const std::string& file) {
     if (file.empty()) return pipeline::kNoGroup;
@@ -102,8 +105,10 @@ pipeline::TableInput make_table(const RayLab& lab, const LabShaders& files, Shad
   for (const std::string& file : files.miss) add(table.miss, general(file), lab.miss_data);
   for (const std::string& file : files.callable) add(table.callable, general(file), lab.callable_data);
   for (const LabShaders::Group& group : files.hit) {
-    table.groups.push_back({core::kNoShader, {shaders.shader(group.closest, files, options), shaders.shader(group.any, files, options),
-                                              shaders.shader(group.intersection, files, options)}});
+    table.groups.push_back(
+        {core::kNoShader,
+         {shaders.shader(group.closest, files, options), shaders.shader(group.any, files, options),
+          shaders.shader(group.intersection, files, options)}});
     add(table.hit, uint32_t(table.groups.size() - 1), lab.hit_data);
   }
   return table;
@@ -127,11 +132,15 @@ void add_images(core::World& world, mem::AddressSpace& memory) {
 
 }  // namespace
 
-std::string lab_file(const std::string& file) { return std::string(GLINT_SOURCE_DIR) + "/tests/shaders/glsl/" + file; }
+std::string lab_file(const std::string& file) {
+  return std::string(GLINT_SOURCE_DIR) + "/tests/shaders/glsl/" + file;
+}
 
-isa::Program compile_lab(const std::string& file, const frontend::GlslOptions& glsl, const LabOptions& options) {
+isa::Program compile_lab(const std::string& file, const frontend::GlslOptions& glsl,
+                         const LabOptions& options) {
   Diagnostics diagnostics;
-  isa::Program program = frontend::compile_file(lab_file(file), glsl, {options.max_registers, options.schedule, false, options.software}, diagnostics);
+  isa::Program program = frontend::compile_file(
+      lab_file(file), glsl, {options.max_registers, options.schedule, false, options.software}, diagnostics);
   isa::verify(program, diagnostics);
   diagnostics.throw_if_errors();
   if (!diagnostics.messages().empty()) throw UserError(file + ": " + diagnostics.messages().front());
@@ -166,7 +175,8 @@ std::vector<uint32_t> RayLab::run(const LabOptions& options) {
   const Address structure_words = memory.allocate("the top level's address", 8);
   memory.write(structure_words, &top.address, 8);
   bind(world, 0, 30, structure_words, 8);
-  const uint64_t structures[4] = {0, 0, top.address, top.bytes};  // descriptors of a null structure and of the top level
+  const uint64_t structures[4] = {0, 0, top.address,
+                                  top.bytes};  // descriptors of a null structure and of the top level
   const Address array = memory.allocate("structures", sizeof structures);
   memory.write(array, structures, sizeof structures);
   bind(world, 0, 31, array, 2);
@@ -183,7 +193,8 @@ std::vector<uint32_t> RayLab::run(const LabOptions& options) {
       if (set == 0) address[binding] = at;
     }
   if (!push_constants.empty())
-    std::memcpy(world.constant_bank.data() + isa::kPushConstantOffset, push_constants.data(), push_constants.size() * 4);
+    std::memcpy(world.constant_bank.data() + isa::kPushConstantOffset, push_constants.data(),
+                push_constants.size() * 4);
 
   world.on_fault = options.on_fault;
   if (options.timing) {
@@ -216,17 +227,28 @@ const std::vector<LabOptions>& all_lab_options() {
     out.software = true;
     return out;
   };
-  static const std::vector<LabOptions> kAll = {{16, true, false}, {32, true, false}, {64, true, false},
-                                               {64, false, false}, {255, true, false}, {16, true, true}, {64, true, true},
-                                               {32, true, false, "deferred"}, {64, true, true, "deferred"},
-                                               in_format("bvh2", false), in_format("bvh4", true), in_format("bvh8", false),
-                                               in_code(16, false), in_code(64, true)};
+  static const std::vector<LabOptions> kAll = {{16, true, false},
+                                               {32, true, false},
+                                               {64, true, false},
+                                               {64, false, false},
+                                               {255, true, false},
+                                               {16, true, true},
+                                               {64, true, true},
+                                               {32, true, false, "deferred"},
+                                               {64, true, true, "deferred"},
+                                               in_format("bvh2", false),
+                                               in_format("bvh4", true),
+                                               in_format("bvh8", false),
+                                               in_code(16, false),
+                                               in_code(64, true)};
   return kAll;
 }
 
 std::string to_string(const LabOptions& options) {
-  return fmt::format("{} registers, {}, {} machine, {} any-hit, {}", options.max_registers, options.schedule ? "scheduled" : "in order",
-                     options.timing ? "timing" : "functional", options.any_hit, options.node_format) + (options.software ? ", rays in code" : "");
+  return fmt::format("{} registers, {}, {} machine, {} any-hit, {}", options.max_registers,
+                     options.schedule ? "scheduled" : "in order", options.timing ? "timing" : "functional",
+                     options.any_hit, options.node_format) +
+         (options.software ? ", rays in code" : "");
 }
 
 }  // namespace glint::test

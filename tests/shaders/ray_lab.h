@@ -1,5 +1,5 @@
-// A small world built by hand for shaders: buffers, images, three instances and a binding table, on both machines.
-// SPDX-License-Identifier: Apache-2.0
+// A small world built by hand for shaders: buffers, images, three instances and a binding table, on both
+// machines. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <map>
@@ -34,12 +34,13 @@ struct LabOptions {
   bool software = false;  // rays are walked in code
 };
 
-// The scene, seen from above along -z. Lanes (x, y) of a launch of kWidth x kHeight shoot at (x + 1/2, y + 1/2):
+// The scene, seen from above along -z. Lanes (x, y) of a launch of kWidth x kHeight shoot at (x + 1/2, y +
+// 1/2):
 //   x 0, 1  nothing
-//   x 2     instance 0 (custom index 100, record 0, moved by (2, 0, 0)): geometry 0, an opaque quad [0,1] x [0,6], z 0
-//   x 3     the same instance, geometry 1: the quad moved by one, not opaque
-//   x 4, 5  instance 1 (custom index 200, record 0): the same quads at (4, 0, 2), z scaled by 3
-//   x 6, 7  instance 2 (custom index 300, record 4): boxes of one unit, z in [-1, 1], primitive y; geometry 0 opaque, geometry 1 not
+//   x 2     instance 0 (custom index 100, record 0, moved by (2, 0, 0)): geometry 0, an opaque quad [0,1] x
+//   [0,6], z 0 x 3     the same instance, geometry 1: the quad moved by one, not opaque x 4, 5  instance 1
+//   (custom index 200, record 0): the same quads at (4, 0, 2), z scaled by 3 x 6, 7  instance 2 (custom index
+//   300, record 4): boxes of one unit, z in [-1, 1], primitive y; geometry 0 opaque, geometry 1 not
 // A quad's triangles: corners (0,0) (1,0) (1,6) and (0,0) (1,6) (0,6).
 class RayLab {
  public:
@@ -59,8 +60,8 @@ class RayLab {
 
   explicit RayLab(LabShaders shaders) : shaders_(std::move(shaders)) {}
 
-  // Compiles, verifies and runs the launch; returns the results, words_per_lane a lane. The storage image and the
-  // buffers after the run are in `image` and `buffers_after`. Errors as pipeline::render().
+  // Compiles, verifies and runs the launch; returns the results, words_per_lane a lane. The storage image and
+  // the buffers after the run are in `image` and `buffers_after`. Errors as pipeline::render().
   std::vector<uint32_t> run(const LabOptions& options = {});
   std::vector<float> image;
   core::FaultLog faults;  // that were let pass
@@ -71,7 +72,8 @@ class RayLab {
 };
 
 // Compiles one file of tests/shaders/glsl and verifies the program.
-isa::Program compile_lab(const std::string& file, const frontend::GlslOptions& glsl = {}, const LabOptions& options = {});
+isa::Program compile_lab(const std::string& file, const frontend::GlslOptions& glsl = {},
+                         const LabOptions& options = {});
 std::string lab_file(const std::string& file);
 
 // The machines and register limits that every check goes through.

@@ -1,25 +1,42 @@
-// Where ray tracing is not what one expects: ends of rays by stage, bits that do not count, payloads by two names.
-// SPDX-License-Identifier: Apache-2.0
+// Where ray tracing is not what one expects: ends of rays by stage, bits that do not count, payloads by two
+// names. SPDX-License-Identifier: Apache-2.0
 #include "tests/shaders/lane_checks.h"
 #include "tests/support/catch.h"
 
 namespace glint::test {
 namespace {
 
-TEST_CASE("gl_RayTmaxEXT is the candidate's distance in any-hit, the hit's in closest-hit, the ray's end in miss shaders, and moves with reports") {
-  RayLab lab({"traps/ends.rgen", {"traps/ends.rmiss"},
-              {{"traps/ends.rchit", "traps/ends.rahit", ""}, {"traps/ends.rchit", "traps/ends.rahit", ""}, {}, {},
-               {"traps/ends.rchit", "traps/ends.rahit", "traps/ends.rint"}, {"traps/ends.rchit", "traps/ends.rahit", "traps/ends.rint"}}, {}});
+TEST_CASE(
+    "gl_RayTmaxEXT is the candidate's distance in any-hit, the hit's in closest-hit, the ray's end in miss "
+    "shaders, and moves with reports") {
+  RayLab lab({"traps/ends.rgen",
+              {"traps/ends.rmiss"},
+              {{"traps/ends.rchit", "traps/ends.rahit", ""},
+               {"traps/ends.rchit", "traps/ends.rahit", ""},
+               {},
+               {},
+               {"traps/ends.rchit", "traps/ends.rahit", "traps/ends.rint"},
+               {"traps/ends.rchit", "traps/ends.rahit", "traps/ends.rint"}},
+              {}});
   check_pixels(lab, [](uint32_t x, uint32_t) {
     const uint32_t quad = bits(x < 4 ? 10.0f : 8.0f);
     switch (x) {
-      case 0: case 1: return Row{0, 0, 0, 0, 0, 0, bits(64), 0};
-      case 2: case 4: return Row{0, 0, 0, 0, 0, 0, quad, quad};
-      case 3: case 5: return Row{0, 0, 0, 0, quad, quad, quad, quad};
+      case 0:
+      case 1:
+        return Row{0, 0, 0, 0, 0, 0, bits(64), 0};
+      case 2:
+      case 4:
+        return Row{0, 0, 0, 0, 0, 0, quad, quad};
+      case 3:
+      case 5:
+        return Row{0, 0, 0, 0, quad, quad, quad, quad};
       // Opaque: 9.5 is accepted, so that 9.75 lies beyond the end.
-      case 6: return Row{bits(64), bits(10.5f), bits(9.5f), bits(1009.5f), 0, 0, bits(9.5f), bits(9.5f)};
+      case 6:
+        return Row{bits(64), bits(10.5f), bits(9.5f), bits(1009.5f), 0, 0, bits(9.5f), bits(9.5f)};
       // Its any-hit shader ignores 9.5: the end stays where it was, and 9.75 is accepted.
-      default: return Row{bits(64), bits(10.5f), bits(10.5f), bits(9.75f), bits(9.75f), bits(9.75f), bits(9.75f), bits(9.75f)};
+      default:
+        return Row{bits(64),    bits(10.5f), bits(10.5f), bits(9.75f),
+                   bits(9.75f), bits(9.75f), bits(9.75f), bits(9.75f)};
     }
   });
 }
@@ -42,7 +59,10 @@ TEST_CASE("of a trace's offset and stride count 4 bits, of its miss index 16, of
 }
 
 TEST_CASE("several incoming payloads of one shader are the same memory") {
-  RayLab lab({"traps/aliases.rgen", {""}, {{"traps/aliases.rchit", "", ""}, {"traps/aliases.rchit", "", ""}, {}, {}, {}, {}}, {}});
+  RayLab lab({"traps/aliases.rgen",
+              {""},
+              {{"traps/aliases.rchit", "", ""}, {"traps/aliases.rchit", "", ""}, {}, {}, {}, {}},
+              {}});
   check_pixels(lab, [](uint32_t x, uint32_t) {
     if (x < 2 || x >= 6) return Row{bits(0.25f), bits(0.25f), bits(0.25f), bits(0.25f)};
     return Row{bits(1.5f), 7, bits(8.5f), bits(0.25f)};

@@ -30,8 +30,13 @@ uint32_t leave_early(uint32_t x) {
 }
 
 Words expected(uint32_t x) {
-  Words row{lanes_where([&](uint32_t l) { return (l & 1) == (x & 1); }), kAll, leave_early(x), kAll,
-            lanes_where([&](uint32_t l) { return l % 5 >= x % 5; }), kAll, kAll};
+  Words row{lanes_where([&](uint32_t l) { return (l & 1) == (x & 1); }),
+            kAll,
+            leave_early(x),
+            kAll,
+            lanes_where([&](uint32_t l) { return l % 5 >= x % 5; }),
+            kAll,
+            kAll};
   const uint32_t last = x % 3 == 2 ? 1 : 2;  // the last iteration in which this lane did not continue
   row.push_back(lanes_where([&](uint32_t l) { return l % 3 != last; }));
   row.push_back(kAll);
@@ -52,7 +57,9 @@ Words expected(uint32_t x) {
   return row;
 }
 
-TEST_CASE("lanes meet after each if, loop, switch, early return and short circuit, and continue together at a loop's step") {
+TEST_CASE(
+    "lanes meet after each if, loop, switch, early return and short circuit, and continue together at a "
+    "loop's step") {
   for (const LabOptions& options : compute_lab_options()) {
     INFO(to_string(options));
     ComputeLab lab("traps/reconverge.comp");
@@ -77,7 +84,9 @@ TEST_CASE("what a module calls unreachable stops the run when a lane comes there
   }
 }
 
-TEST_CASE("remainders have the dividend's sign, moduli the divisor's; a switch over 64 bits compares all of them and falls through") {
+TEST_CASE(
+    "remainders have the dividend's sign, moduli the divisor's; a switch over 64 bits compares all of them "
+    "and falls through") {
   for (const LabOptions& options : compute_lab_options()) {
     INFO(to_string(options));
     ComputeLab lab("traps/remainders.spvasm");
@@ -86,7 +95,8 @@ TEST_CASE("remainders have the dividend's sign, moduli the divisor's; a switch o
     lab.buffers[1] = {u(-7), 3, 0, 1, 7, u(-3), kAll, kAll, u(-7), u(-3), 0, 0, 6, 3, 1, 0};
     lab.buffers[0] = Words(16);
     lab.run(options);
-    CHECK(lab.buffers[0] == Words{u(-1), 2, f(-1), 110, 1, u(-2), f(1), 10, u(-1), u(-1), f(-1), 1000, 0, 0, f(0), 1000});
+    CHECK(lab.buffers[0] ==
+          Words{u(-1), 2, f(-1), 110, 1, u(-2), f(1), 10, u(-1), u(-1), f(-1), 1000, 0, 0, f(0), 1000});
   }
 }
 

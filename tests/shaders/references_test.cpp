@@ -38,7 +38,7 @@ std::array<uint32_t, 19> expected(uint32_t lane) {
   twice(a, lane);
   both(a, b);
   const uint32_t second = a[0] + b[0];
-  b[0] += b[0];  // both(b, b): what is copied back last stays
+  b[0] += b[0];     // both(b, b): what is copied back last stays
   a[3] = a[3] + 1;  // part: the element is copied back after the array
   b[3] = 9;         // part_first: before it
   a[4] += 3;
@@ -51,7 +51,8 @@ std::array<uint32_t, 19> expected(uint32_t lane) {
   return words;
 }
 
-TEST_CASE("parameters copied in and out are what copies would make of them, whoever else names the variable") {
+TEST_CASE(
+    "parameters copied in and out are what copies would make of them, whoever else names the variable") {
   for (const LabOptions& options : compute_lab_options()) {
     ComputeLab lab("compute/references.comp");
     lab.buffers[0].assign(32 * 32, 0);
@@ -60,14 +61,16 @@ TEST_CASE("parameters copied in and out are what copies would make of them, whoe
       const auto row = std::span(lab.buffers[0]).subspan(lane * 32, 19);
       const auto words = expected(lane);
       CAPTURE(lane);
-      CHECK(std::vector<uint32_t>(row.begin(), row.end()) == std::vector<uint32_t>(words.begin(), words.end()));
+      CHECK(std::vector<uint32_t>(row.begin(), row.end()) ==
+            std::vector<uint32_t>(words.begin(), words.end()));
     }
   }
 }
 
 TEST_CASE("copies around calls go where nothing tells the difference, and the module stays valid") {
   const std::string path = std::string(GLINT_SOURCE_DIR) + "/tests/shaders/glsl/compute/references.comp";
-  const std::vector<uint32_t> before = frontend::glsl_to_spirv(path, {}), after = frontend::with_references(before);
+  const std::vector<uint32_t> before = frontend::glsl_to_spirv(path, {}),
+                              after = frontend::with_references(before);
   CHECK(after.size() < before.size());
   CHECK(frontend::validate_spirv(after).empty());
   CHECK(frontend::with_references(after) == after);

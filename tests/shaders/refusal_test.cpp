@@ -22,7 +22,8 @@ std::string message_of(const std::string& file) {
 TEST_CASE("all that is unsupported in one shader comes in one message, by name, line and count") {
   const std::string message = message_of<UnsupportedError>("refused.rgen");
   const std::string file = lab_file("refused.rgen");
-  for (const char* expected : {":18: OpImageSparseSampleExplicitLod (2 times)", "capability SparseResidency"}) {
+  for (const char* expected :
+       {":18: OpImageSparseSampleExplicitLod (2 times)", "capability SparseResidency"}) {
     INFO(expected);
     CHECK_THAT(message, Contains(expected));
   }
@@ -30,15 +31,18 @@ TEST_CASE("all that is unsupported in one shader comes in one message, by name, 
 }
 
 TEST_CASE("an unsupported op in an included function is listed under the included file's line") {
-  CHECK_THAT(message_of<UnsupportedError>("refused.rgen"), Contains("parts/refused.glsl:5: OpImageSparseFetch"));
+  CHECK_THAT(message_of<UnsupportedError>("refused.rgen"),
+             Contains("parts/refused.glsl:5: OpImageSparseFetch"));
 }
 
 TEST_CASE("a mistake in a file that an included file includes is reported there") {
   CHECK_THAT(message_of<UserError>("mistake.rchit"), Contains("glsl/parts/mistake.glsl:6: error: 'nothing'"));
 }
 
-TEST_CASE("a capability younger than the validator is refused by its number, with the extension that brings it") {
-  CHECK_THAT(message_of<UnsupportedError>("cluster.rchit"), Contains("capability 5437") && Contains("SPV_NV_cluster_acceleration_structure"));
+TEST_CASE(
+    "a capability younger than the validator is refused by its number, with the extension that brings it") {
+  CHECK_THAT(message_of<UnsupportedError>("cluster.rchit"),
+             Contains("capability 5437") && Contains("SPV_NV_cluster_acceleration_structure"));
 }
 
 TEST_CASE("a GLSL extension younger than the compiler is refused by name at its line") {
@@ -48,19 +52,24 @@ TEST_CASE("a GLSL extension younger than the compiler is refused by name at its 
 
 TEST_CASE("functions that would grow past all bounds when inlined are refused at once, by name and number") {
   // Ten levels, each calling the next three times: 3 to the 10th copies of the last.
-  std::string text = "#version 450\nlayout(binding = 0) buffer B { vec4 v[]; };\nvec4 last(vec4 x) { return sin(x) * v[3]; }\n";
+  std::string text =
+      "#version 450\nlayout(binding = 0) buffer B { vec4 v[]; };\nvec4 last(vec4 x) { return sin(x) * v[3]; "
+      "}\n";
   std::string callee = "last";
   for (int level = 0; level < 10; ++level) {
     const std::string name = "f" + std::to_string(level);
-    text += "vec4 " + name + "(vec4 x) { return " + callee + "(x) + " + callee + "(x.yzwx) * " + callee + "(-x); }\n";
+    text += "vec4 " + name + "(vec4 x) { return " + callee + "(x) + " + callee + "(x.yzwx) * " + callee +
+            "(-x); }\n";
     callee = name;
   }
   const auto compile = [&] {
     Diagnostics notes;
-    const std::vector<uint32_t> words = frontend::glsl_text_to_spirv(text + "void main() { v[0] = " + callee + "(v[1]); }\n", "deep.comp", isa::Stage::Compute, {});
+    const std::vector<uint32_t> words = frontend::glsl_text_to_spirv(
+        text + "void main() { v[0] = " + callee + "(v[1]); }\n", "deep.comp", isa::Stage::Compute, {});
     frontend::compile_module(words, "deep.comp", "main", {}, notes, nullptr);
   };
-  CHECK_THROWS_WITH(compile(), Contains("'last' is there 59049 times") && Contains("deep.comp: calls that, put in place, make"));
+  CHECK_THROWS_WITH(compile(), Contains("'last' is there 59049 times") &&
+                                   Contains("deep.comp: calls that, put in place, make"));
   CHECK_THROWS_AS(compile(), UnsupportedError);
 }
 

@@ -1,6 +1,5 @@
-// What the optimiser is helped with: lengths of arrays that are 0 by default, any-hit shaders that end in continue
-// constructs; and levels that are asked for.
-// SPDX-License-Identifier: Apache-2.0
+// What the optimiser is helped with: lengths of arrays that are 0 by default, any-hit shaders that end in
+// continue constructs; and levels that are asked for. SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <cmath>
 
@@ -34,11 +33,14 @@ TEST_CASE("arrays are as long as the specialisation constants that are set say")
   for (uint32_t i = 0; i < 32; ++i) CHECK(lab.buffers[0][i] == 3 * (i ^ 1) + 300 + 7);
 }
 
-TEST_CASE("a shader whose arrays have length 0 by default compiles, with a warning that names the arrays' constant") {
+TEST_CASE(
+    "a shader whose arrays have length 0 by default compiles, with a warning that names the arrays' "
+    "constant") {
   Diagnostics warnings;
   frontend::compile_file(lab_file("compute/lengths.comp"), {}, {}, warnings);
   REQUIRE(warnings.messages().size() == 1);
-  CHECK_THAT(warnings.messages()[0], Catch::Matchers::Contains("kParts") && Catch::Matchers::Contains("taken as 1"));
+  CHECK_THAT(warnings.messages()[0],
+             Catch::Matchers::Contains("kParts") && Catch::Matchers::Contains("taken as 1"));
 }
 
 TEST_CASE("arrays of constant lengths, and lengths that are not 0, are left as they are") {

@@ -12,7 +12,9 @@ namespace {
 
 constexpr uint32_t kThreads = 64, kWords = 56;
 
-uint32_t bits(float x) { return std::bit_cast<uint32_t>(x); }
+uint32_t bits(float x) {
+  return std::bit_cast<uint32_t>(x);
+}
 
 Words inputs() {
   Words words;
@@ -81,35 +83,44 @@ class Reference {
     put(1);
     const uint32_t odds = warp_.ballot([](uint32_t x) { return (x & 1) == 1; });
     put(odds), put(0), put(odds >> lane_ & 1), put(odds >> (x_ & 31) & 1);
-    put(uint32_t(std::popcount(odds) | std::popcount(odds & up_to()) << 8 | std::popcount(odds & below()) << 16));
-    put(odds ? uint32_t(std::countr_zero(odds)) : kAll), put(odds ? 31 - uint32_t(std::countl_zero(odds)) : kAll);
+    put(uint32_t(std::popcount(odds) | std::popcount(odds & up_to()) << 8 |
+                 std::popcount(odds & below()) << 16));
+    put(odds ? uint32_t(std::countr_zero(odds)) : kAll),
+        put(odds ? 31 - uint32_t(std::countl_zero(odds)) : kAll);
     put(warp_.x[first]), put(warp_.has(5) ? warp_.x[5] : kAnything);
   }
   void reductions() {
     put(warp_.over(kAll, 0u, same, kAdd));
-    put(uint32_t(warp_.over(kAll, 1000, [](uint32_t x) { return int(x) - 100; }, kMin)));
+    put(uint32_t(warp_.over(
+        kAll, 1000, [](uint32_t x) { return int(x) - 100; }, kMin)));
     put(warp_.over(kAll, 0u, same, kMax));
-    put(warp_.over(kAll, ~0u, [](uint32_t x) { return x | 0x70; }, [](uint32_t a, uint32_t b) { return a & b; }));
+    put(warp_.over(
+        kAll, ~0u, [](uint32_t x) { return x | 0x70; }, [](uint32_t a, uint32_t b) { return a & b; }));
     put(warp_.over(kAll, 0u, same, [](uint32_t a, uint32_t b) { return a | b; }));
     put(warp_.over(kAll, 0u, same, [](uint32_t a, uint32_t b) { return a ^ b; }));
     put(warp_.over(kAll, 1u, odd, kMul));
     put(bits(warp_.over(kAll, 0.0f, real, kAdd)));  // exact in any order
-    put(bits(warp_.over(kAll, -1e9f, [](uint32_t x) { return float(x) - 128.0f; }, kMax)));
+    put(bits(warp_.over(
+        kAll, -1e9f, [](uint32_t x) { return float(x) - 128.0f; }, kMax)));
   }
   void scans() {
     put(warp_.over(up_to(), 0u, same, kAdd)), put(warp_.over(below(), 0u, same, kAdd));
     put(warp_.over(below(), ~0u, same, kMin));
-    put(uint32_t(warp_.over(up_to(), -1000, [](uint32_t x) { return int(x) - 128; }, kMax)));
+    put(uint32_t(warp_.over(
+        up_to(), -1000, [](uint32_t x) { return int(x) - 128; }, kMax)));
     put(warp_.over(below(), 1u, odd, kMul)), put(bits(warp_.over(up_to(), 0.0f, real, kAdd)));
     const auto wide = [](uint32_t x) { return uint64_t{x} << 30; };
     put64(warp_.over(kAll, uint64_t{0}, wide, kAdd)), put64(warp_.over(below(), uint64_t{0}, wide, kAdd));
-    put(bits(warp_.over(kAll, 0.0f, [](uint32_t x) { return float(x & 15); }, kAdd)));
+    put(bits(warp_.over(
+        kAll, 0.0f, [](uint32_t x) { return float(x & 15); }, kAdd)));
     put(warp_.ballot([](uint32_t x) { return x > 3; }) == warp_.active);
     put((warp_.ballot([](uint32_t x) { return x > 200; }) & up_to()) != 0);
     put(uint32_t(std::popcount(warp_.ballot([](uint32_t x) { return (x & 2) != 0; }) & below())) & 1);
   }
   void clusters() {
-    const auto cluster = [&](uint32_t size) { return (size == 32 ? kAll : ((1u << size) - 1)) << (lane_ & ~(size - 1)); };
+    const auto cluster = [&](uint32_t size) {
+      return (size == 32 ? kAll : ((1u << size) - 1)) << (lane_ & ~(size - 1));
+    };
     put(warp_.over(cluster(4), 0u, same, kAdd)), put(bits(warp_.over(cluster(8), 0.0f, real, kMax)));
     put(warp_.over(cluster(2), 1u, odd, kMul));
     const uint32_t part = warp_.ballot([&](uint32_t x) { return (x & 3) == (x_ & 3); });
@@ -136,8 +147,12 @@ void compare(const uint32_t* got, const Words& expected) {
 
 Words shuffles(const uint32_t* x, uint32_t lane) {
   const uint32_t quad = lane & ~3u;
-  return {x[lane ^ 3], bits(float(x[lane ^ 16])), lane >= 1 ? x[lane - 1] : Reference::kAnything,
-          lane < 30 ? x[lane + 2] : Reference::kAnything, x[quad | 2], x[lane ^ 1] + 1000 * x[lane ^ 2] + 1000000 * x[lane ^ 3]};
+  return {x[lane ^ 3],
+          bits(float(x[lane ^ 16])),
+          lane >= 1 ? x[lane - 1] : Reference::kAnything,
+          lane < 30 ? x[lane + 2] : Reference::kAnything,
+          x[quad | 2],
+          x[lane ^ 1] + 1000 * x[lane ^ 2] + 1000000 * x[lane ^ 3]};
 }
 
 // Lanes 0..n of the loop: lane l runs it l % 7 + 1 times.

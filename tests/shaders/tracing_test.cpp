@@ -1,5 +1,5 @@
-// Shaders of every stage with rays: payloads, built-ins, recursion, reports, any-hit decisions, the binding table.
-// SPDX-License-Identifier: Apache-2.0
+// Shaders of every stage with rays: payloads, built-ins, recursion, reports, any-hit decisions, the binding
+// table. SPDX-License-Identifier: Apache-2.0
 #include <functional>
 
 #include "tests/shaders/lane_checks.h"
@@ -8,10 +8,18 @@
 namespace glint::test {
 namespace {
 
-bool misses(uint32_t x) { return x < 2 || x >= RayLab::kWidth; }
-bool is_box(uint32_t x) { return x >= 6; }
-uint32_t custom_index(uint32_t x) { return x < 4 ? 100 : x < 6 ? 200 : 300; }
-uint32_t primitive(uint32_t x, uint32_t y) { return is_box(x) ? y : y < 3 ? 0 : 1; }
+bool misses(uint32_t x) {
+  return x < 2 || x >= RayLab::kWidth;
+}
+bool is_box(uint32_t x) {
+  return x >= 6;
+}
+uint32_t custom_index(uint32_t x) {
+  return x < 4 ? 100 : x < 6 ? 200 : 300;
+}
+uint32_t primitive(uint32_t x, uint32_t y) {
+  return is_box(x) ? y : y < 3 ? 0 : 1;
+}
 
 // Only exact numbers: weights of a triangle's corners are checked with a tolerance below.
 Row info(uint32_t x, uint32_t y) {
@@ -52,9 +60,17 @@ Row info(uint32_t x, uint32_t y) {
   return row;
 }
 
-TEST_CASE("a closest-hit shader sees the hit through its built-ins and hands back a payload of nested types") {
-  RayLab lab({"info.rgen", {"info.rmiss"}, {{"info.rchit", "", ""}, {"info.rchit", "", ""}, {}, {},
-                                            {"info.rchit", "", "pair.rint"}, {"info.rchit", "", "pair.rint"}}, {}});
+TEST_CASE(
+    "a closest-hit shader sees the hit through its built-ins and hands back a payload of nested types") {
+  RayLab lab({"info.rgen",
+              {"info.rmiss"},
+              {{"info.rchit", "", ""},
+               {"info.rchit", "", ""},
+               {},
+               {},
+               {"info.rchit", "", "pair.rint"},
+               {"info.rchit", "", "pair.rint"}},
+              {}});
   lab.words_per_lane = 40;
   for (const LabOptions& options : all_lab_options()) {
     INFO(to_string(options));
@@ -79,10 +95,13 @@ TEST_CASE("a closest-hit shader sees the hit through its built-ins and hands bac
 }
 
 TEST_CASE("shadow rays with their own payload leave the first payload alone and skip closest-hit shaders") {
-  RayLab lab({"shadow.rgen", {"primary.rmiss", "lit.rmiss", "counts.rmiss"},
-              {{"shadow.rchit", "", ""}, {}, {}, {}, {"shadow.rchit", "", "pair.rint"}}, {}});
+  RayLab lab({"shadow.rgen",
+              {"primary.rmiss", "lit.rmiss", "counts.rmiss"},
+              {{"shadow.rchit", "", ""}, {}, {}, {}, {"shadow.rchit", "", "pair.rint"}},
+              {}});
   const auto blocked = [](uint32_t x, uint32_t y, int side, bool without_second) {
-    // From z -8 along (side, 0, 1). Quads at z 0 and 2, boxes between z -1 and 1, whose shader reports 9 always.
+    // From z -8 along (side, 0, 1). Quads at z 0 and 2, boxes between z -1 and 1, whose shader reports 9
+    // always.
     (void)y;
     const auto column = [&](float dz) { return float(x) + 0.5f + float(side) * dz; };
     const float first = column(8), second = column(10);
@@ -111,18 +130,28 @@ struct Path {
   float sum = 0;
   uint32_t trail = 0, depth = 0;
 };
-float distance(uint32_t x) { return is_box(x) ? 9 : x < 4 ? 10 : 8; }
+float distance(uint32_t x) {
+  return is_box(x) ? 9 : x < 4 ? 10 : 8;
+}
 
 Path nested(uint32_t x, uint32_t y, uint32_t depth, uint32_t trail) {
   if (misses(x)) return {0.5f, trail * 16 + 14, depth};
   if (depth == 3) return {1, 15, depth};
   const Path next = nested(x + 1, y, depth + 1, 0);
-  return {next.sum * 2 + distance(x) + float(primitive(x, y)) * 100 + distance(x) * 2, next.trail * 16 + custom_index(x) / 100, depth};
+  return {next.sum * 2 + distance(x) + float(primitive(x, y)) * 100 + distance(x) * 2,
+          next.trail * 16 + custom_index(x) / 100, depth};
 }
 
 TEST_CASE("a closest-hit shader that traces sees its own hit again afterwards, at each depth") {
-  RayLab lab({"recursion.rgen", {"recursion.rmiss"}, {{"recursion.rchit", "", ""}, {"recursion.rchit", "", ""}, {}, {},
-                                                      {"recursion.rchit", "", "pair.rint"}, {"recursion.rchit", "", "pair.rint"}}, {}});
+  RayLab lab({"recursion.rgen",
+              {"recursion.rmiss"},
+              {{"recursion.rchit", "", ""},
+               {"recursion.rchit", "", ""},
+               {},
+               {},
+               {"recursion.rchit", "", "pair.rint"},
+               {"recursion.rchit", "", "pair.rint"}},
+              {}});
   lab.max_trace_depth = 4;
   check_pixels(lab, [](uint32_t x, uint32_t y) {
     const Path path = nested(x, y, 0, 3);
@@ -131,8 +160,15 @@ TEST_CASE("a closest-hit shader that traces sees its own hit again afterwards, a
 }
 
 TEST_CASE("a trace deeper than the pipeline allows is a fault that names the shader") {
-  RayLab lab({"recursion.rgen", {"recursion.rmiss"}, {{"recursion.rchit", "", ""}, {"recursion.rchit", "", ""}, {}, {},
-                                                      {"recursion.rchit", "", "pair.rint"}, {"recursion.rchit", "", "pair.rint"}}, {}});
+  RayLab lab({"recursion.rgen",
+              {"recursion.rmiss"},
+              {{"recursion.rchit", "", ""},
+               {"recursion.rchit", "", ""},
+               {},
+               {},
+               {"recursion.rchit", "", "pair.rint"},
+               {"recursion.rchit", "", "pair.rint"}},
+              {}});
   lab.max_trace_depth = 3;
   CHECK_THROWS_WITH(lab.run(), Catch::Matchers::Contains("recursion.rchit:14"));
 }
@@ -142,7 +178,10 @@ TEST_CASE("hit and miss shaders that pass on their own payload share it with all
   frontend::GlslOptions glsl;
   if (miss_traces) glsl.defines.push_back({"MISS_TRACES", "1"});
   // Boxes only where the attribute is exact; quads have null shaders: they end the path.
-  RayLab lab({"recursion.rgen", {"recursion.rmiss"}, {{}, {}, {}, {}, {"own.rchit", "", "pair.rint"}, {"own.rchit", "", "pair.rint"}}, glsl});
+  RayLab lab({"recursion.rgen",
+              {"recursion.rmiss"},
+              {{}, {}, {}, {}, {"own.rchit", "", "pair.rint"}, {"own.rchit", "", "pair.rint"}},
+              glsl});
   lab.max_trace_depth = 4;
   check_pixels(lab, [&](uint32_t x, uint32_t y) {
     Path path{0, 3, 0};
@@ -171,8 +210,15 @@ TEST_CASE("each report in a loop carries the attributes of its moment, and rejec
   const bool pair = GENERATE(false, true);
   frontend::GlslOptions glsl;
   if (pair) glsl.defines.push_back({"PAIR", "1"});
-  RayLab lab({"reports.rgen", {"none.rmiss"}, {{}, {}, {}, {}, {"reports.rchit", "reports.rahit", "reports.rint"},
-                                               {"reports.rchit", "reports.rahit", "reports.rint"}}, glsl});
+  RayLab lab({"reports.rgen",
+              {"none.rmiss"},
+              {{},
+               {},
+               {},
+               {},
+               {"reports.rchit", "reports.rahit", "reports.rint"},
+               {"reports.rchit", "reports.rahit", "reports.rint"}},
+              glsl});
   lab.words_per_lane = 12;
   check_pixels(lab, [&](uint32_t x, uint32_t y) {
     if (!is_box(x)) return Row{0, 0, 0, 100, 0, 0, 0, 0, 0};
@@ -180,8 +226,9 @@ TEST_CASE("each report in a loop carries the attributes of its moment, and rejec
     const float n[3] = {float(x - 6) + 0.5f, float(y) + 0.5f, 10};
     const uint32_t last = opaque ? 3 : 2;
     const float t = opaque ? 9.25f : 9.75f;
-    return Row{bits(pair ? n[1] : n[0]), bits(n[1]), bits(pair ? n[1] : n[2]), last, last, bits(t),
-               opaque ? 0u : 4u, opaque ? 3u : 18u, bits(t)};
+    return Row{
+        bits(pair ? n[1] : n[0]), bits(n[1]), bits(pair ? n[1] : n[2]), last, last, bits(t), opaque ? 0u : 4u,
+        opaque ? 3u : 18u,        bits(t)};
   });
 }
 
@@ -192,11 +239,16 @@ TEST_CASE("any-hit shaders ignore, accept and end rays from nested branches, and
     const uint32_t geometry = x & 1, hit = 50 + geometry;
     if (y % 2 == 0 && geometry == 0) return Row{0, 0, hit, 0};  // opaque
     switch (y) {
-      case 0: return Row{1, 0, hit, 0};
-      case 1: return Row{1, 13, 7, 1};
-      case 2: return Row{1, 1014, hit, 6};
-      case 3: return Row{1, 0, hit, 8};
-      default: return geometry == 1 ? Row{1, 0, 7, 0} : Row{1, 0, hit, 0};  // primitive 1
+      case 0:
+        return Row{1, 0, hit, 0};
+      case 1:
+        return Row{1, 13, 7, 1};
+      case 2:
+        return Row{1, 1014, hit, 6};
+      case 3:
+        return Row{1, 0, hit, 8};
+      default:
+        return geometry == 1 ? Row{1, 0, 7, 0} : Row{1, 0, hit, 0};  // primitive 1
     }
   });
 }

@@ -1,5 +1,5 @@
-// Derivatives, AMD's instruction sets, atomics that are loops, wide constants, functions that ask to stay apart.
-// SPDX-License-Identifier: Apache-2.0
+// Derivatives, AMD's instruction sets, atomics that are loops, wide constants, functions that ask to stay
+// apart. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -23,7 +23,9 @@ void each_machine(const ComputeLab& fresh, const std::function<void(ComputeLab&)
   }
 }
 
-float real(uint32_t word) { return std::bit_cast<float>(word); }
+float real(uint32_t word) {
+  return std::bit_cast<float>(word);
+}
 
 // Three levels of 4 x 4, 2 x 2 and one texel, of 1, 2 and 3.
 LabImage levels() {
@@ -46,7 +48,9 @@ void check_derivatives(const Words& results, uint32_t right, uint32_t below, flo
   for (uint32_t i = 0; i < 64; ++i) {
     INFO("thread " << i);
     const uint32_t* row = &results[8 * i];
-    const auto along = [](uint32_t from, uint32_t step) { return field((from & ~step) | step) - field(from & ~step); };
+    const auto along = [](uint32_t from, uint32_t step) {
+      return field((from & ~step) | step) - field(from & ~step);
+    };
     CHECK(real(row[0]) == along(i, right));
     CHECK(real(row[1]) == along(i, below));
     CHECK(real(row[2]) == std::abs(along(i, right)) + std::abs(along(i, below)));
@@ -91,7 +95,8 @@ T middle(T a, T b, T c) {
 // Vulkan, "Cube Map Face Selection", case by case: face, s and t.
 std::array<float, 3> cube(float x, float y, float z) {
   const float ax = std::abs(x), ay = std::abs(y), az = std::abs(z);
-  if (az >= ax && az >= ay) return {z < 0 ? 5.0f : 4.0f, (z < 0 ? -x : x) / (2 * az) + 0.5f, -y / (2 * az) + 0.5f};
+  if (az >= ax && az >= ay)
+    return {z < 0 ? 5.0f : 4.0f, (z < 0 ? -x : x) / (2 * az) + 0.5f, -y / (2 * az) + 0.5f};
   if (ay >= ax) return {y < 0 ? 3.0f : 2.0f, x / (2 * ay) + 0.5f, (y < 0 ? -z : z) / (2 * ay) + 0.5f};
   return {x < 0 ? 1.0f : 0.0f, (x < 0 ? z : -z) / (2 * ax) + 0.5f, -y / (2 * ax) + 0.5f};
 }
@@ -109,11 +114,22 @@ Words vendor_row(const Words& v, uint32_t self) {
   const auto bits = [](float f) { return std::bit_cast<uint32_t>(f); };
   const auto [face, s, t] = cube(float(a), float(b), float(c));
   const uint32_t below = 0x0f0f'1234u & ((1u << self) - 1);
-  return {uint32_t(std::min({a, b, c})), uint32_t(std::max({a, b, c})), uint32_t(middle(a, b, c)),
-          middle(uint32_t(a), uint32_t(b), uint32_t(c)), bits(middle(float(a), float(b), float(c))),
-          uint32_t(at((self & ~3u) + kSwizzle[self & 3])), uint32_t(at(((self & 29) | 2) ^ 16)), uint32_t(self == 5 ? b : a),
-          uint32_t(std::popcount(below)), uint32_t(sum), uint32_t(least), uint32_t(a > 0 ? most + scanned : 0),
-          bits(face), bits(s), bits(t), 1};
+  return {uint32_t(std::min({a, b, c})),
+          uint32_t(std::max({a, b, c})),
+          uint32_t(middle(a, b, c)),
+          middle(uint32_t(a), uint32_t(b), uint32_t(c)),
+          bits(middle(float(a), float(b), float(c))),
+          uint32_t(at((self & ~3u) + kSwizzle[self & 3])),
+          uint32_t(at(((self & 29) | 2) ^ 16)),
+          uint32_t(self == 5 ? b : a),
+          uint32_t(std::popcount(below)),
+          uint32_t(sum),
+          uint32_t(least),
+          uint32_t(a > 0 ? most + scanned : 0),
+          bits(face),
+          bits(s),
+          bits(t),
+          1};
 }
 
 TEST_CASE("AMD's sets give minima of three, exchanges between lanes, and faces of cubes") {
@@ -158,7 +174,9 @@ TEST_CASE("constants of 64 bits follow the values they are made of") {
     each_machine(lab, [&](ComputeLab& after) {
       for (uint32_t i = 0; i < 32; ++i) {
         INFO("thread " << i << ", values set: " << is_set);
-        const auto at = [&](uint32_t n) { return after.buffers[0][6 * i + 2 * n] | uint64_t{after.buffers[0][6 * i + 2 * n + 1]} << 32; };
+        const auto at = [&](uint32_t n) {
+          return after.buffers[0][6 * i + 2 * n] | uint64_t{after.buffers[0][6 * i + 2 * n + 1]} << 32;
+        };
         CHECK(at(0) == (i % 2 == 0 ? big + 7 : (big >> 3) + big + 7));
         CHECK(at(1) == (i % 2 == 0 ? uint64_t(product) : is_set ? 20u : 6u));
         CHECK(at(2) == (product < 0 ? uint64_t(small) : big));
@@ -167,7 +185,9 @@ TEST_CASE("constants of 64 bits follow the values they are made of") {
   }
 }
 
-TEST_CASE("functions that ask not to be inlined run, also from a loop's continue construct; main is the entry point") {
+TEST_CASE(
+    "functions that ask not to be inlined run, also from a loop's continue construct; main is the entry "
+    "point") {
   ComputeLab lab("compute/apart.spvasm");
   lab.buffers[0] = Words(32);
   each_machine(lab, [](ComputeLab& after) {

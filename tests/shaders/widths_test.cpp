@@ -22,13 +22,16 @@ uint16_t half_bits(double x) {
 }
 double half_value(uint16_t h) {
   const int exponent = h >> 10 & 31, fraction = h & 1023;
-  const double magnitude = exponent == 0 ? std::ldexp(fraction, -24) : std::ldexp(1024 + fraction, exponent - 25);
+  const double magnitude =
+      exponent == 0 ? std::ldexp(fraction, -24) : std::ldexp(1024 + fraction, exponent - 25);
   return h & 0x8000 ? -magnitude : magnitude;
 }
 
 std::vector<uint32_t> inputs() {
-  std::vector<uint32_t> words{0, 1, 0xffff'ffff, 0x8000'8080, 0x7fff'7f7f, 0x0001'ff80, 0xff80'0001, 0x0000'8000};
-  for (uint32_t state = 9; words.size() < RayLab::kLanesUsed;) words.push_back(state = state * 747796405u + 2891336453u);
+  std::vector<uint32_t> words{0,           1,           0xffff'ffff, 0x8000'8080,
+                              0x7fff'7f7f, 0x0001'ff80, 0xff80'0001, 0x0000'8000};
+  for (uint32_t state = 9; words.size() < RayLab::kLanesUsed;)
+    words.push_back(state = state * 747796405u + 2891336453u);
   return words;
 }
 
@@ -44,7 +47,8 @@ static_assert(sizeof(Mixed) == 24);
 
 Mixed mixed(uint32_t lane) {
   const uint32_t w = inputs()[lane];
-  return {int8_t(w), uint8_t(w >> 3), int16_t(w >> 7), half_bits(double(lane) - 20.5), uint16_t(w >> 11), double(w % 1000), int64_t(w) * -77};
+  return {int8_t(w),         uint8_t(w >> 3),  int16_t(w >> 7), half_bits(double(lane) - 20.5),
+          uint16_t(w >> 11), double(w % 1000), int64_t(w) * -77};
 }
 std::vector<uint32_t> words_of(const std::vector<Mixed>& records) {
   std::vector<uint32_t> words(records.size() * sizeof(Mixed) / 4);
@@ -52,16 +56,22 @@ std::vector<uint32_t> words_of(const std::vector<Mixed>& records) {
   return words;
 }
 
-void push64(Row& row, uint64_t x) { row.insert(row.end(), {uint32_t(x), uint32_t(x >> 32)}); }
-void push64(Row& row, double x) { push64(row, std::bit_cast<uint64_t>(x)); }
+void push64(Row& row, uint64_t x) {
+  row.insert(row.end(), {uint32_t(x), uint32_t(x >> 32)});
+}
+void push64(Row& row, double x) {
+  push64(row, std::bit_cast<uint64_t>(x));
+}
 
 Row narrow(uint32_t w) {
   const auto i8 = int8_t(w), j8 = int8_t(w >> 8);
   const auto u8 = uint8_t(w), v8 = uint8_t(w >> 8);
-  Row row{uint32_t(int8_t(i8 + j8)) ^ uint32_t(int8_t(i8 * j8)) << 8,
-          uint32_t(uint8_t(u8 + v8)) | uint32_t(uint8_t(u8 * v8)) << 8 | uint32_t(u8 >> 3) << 16,
-          uint32_t(i8 < j8) | uint32_t(u8 < v8) << 1 | uint32_t(i8 == j8) << 2 | uint32_t(int8_t(-i8) > j8) << 3,
-          uint32_t(i8 >> 2) + uint32_t(std::min(i8, j8)) * 3 + std::max(u8, v8) * 5u + uint32_t(int8_t(std::abs(i8)))};
+  Row row{
+      uint32_t(int8_t(i8 + j8)) ^ uint32_t(int8_t(i8 * j8)) << 8,
+      uint32_t(uint8_t(u8 + v8)) | uint32_t(uint8_t(u8 * v8)) << 8 | uint32_t(u8 >> 3) << 16,
+      uint32_t(i8 < j8) | uint32_t(u8 < v8) << 1 | uint32_t(i8 == j8) << 2 | uint32_t(int8_t(-i8) > j8) << 3,
+      uint32_t(i8 >> 2) + uint32_t(std::min(i8, j8)) * 3 + std::max(u8, v8) * 5u +
+          uint32_t(int8_t(std::abs(i8)))};
   const auto i16 = int16_t(w), j16 = int16_t(w >> 16);
   const auto u16 = uint16_t(w), v16 = uint16_t(w >> 16);
   row.push_back(uint32_t(int16_t(i16 - j16)));
@@ -80,7 +90,8 @@ void add_wide(Row& row, uint32_t w) {
   const int64_t rest = b == 0 ? 1 : a % b;
   push64(row, uint64_t(rest != 0 && (rest < 0) != (b < 0) ? rest + b : rest));  // OpSMod: the divisor's sign
   push64(row, uint64_t(std::max(a, b) >> 3) ^ uint64_t(std::abs(a)) << 5);
-  row.push_back(uint32_t(a < b) | uint32_t(uint64_t(a) < uint64_t(b)) << 1 | uint32_t((a > 0) - (a < 0) + 1) << 2);
+  row.push_back(uint32_t(a < b) | uint32_t(uint64_t(a) < uint64_t(b)) << 1 |
+                uint32_t((a > 0) - (a < 0) + 1) << 2);
   row.push_back(bits(float(a)));
   push64(row, double(a));
   const double d = double(a) / 3.0, s = double(b) + 0.25;
@@ -116,7 +127,8 @@ void add_functions(Row& row, uint32_t w) {
   const double h = half_value(uint16_t(w & 0x7bff)), k = half_value(half_bits(j8 * 0.125));
   row.push_back(half_bits(std::max(half_value(half_bits(std::ldexp(k, 3))), std::abs(h))));
   row.push_back(half_bits(double(float(std::exp2(k)))));
-  row.push_back(uint32_t(int32_t(std::nearbyint(s))) + uint32_t(s >= d) + uint32_t((d > 0) - (d < 0) + 1) * 64);
+  row.push_back(uint32_t(int32_t(std::nearbyint(s))) + uint32_t(s >= d) +
+                uint32_t((d > 0) - (d < 0) + 1) * 64);
 }
 
 TEST_CASE("numbers of 8, 16 and 64 bits, halves and doubles give the bits that C++ gives") {
@@ -138,7 +150,14 @@ TEST_CASE("numbers of 8, 16 and 64 bits, halves and doubles give the bits that C
     add_functions(row, w);
     return row;
   });
-  for (Mixed& m : records) m = {int8_t(m.a + 1), uint8_t(m.b + 1), int16_t(m.c - 1), uint16_t(m.d ^ 0x8000), uint16_t(m.e - 1), m.f * 2, -m.g};
+  for (Mixed& m : records)
+    m = {int8_t(m.a + 1),
+         uint8_t(m.b + 1),
+         int16_t(m.c - 1),
+         uint16_t(m.d ^ 0x8000),
+         uint16_t(m.e - 1),
+         m.f * 2,
+         -m.g};
   CHECK(lab.buffers_after[11] == words_of(records));
 }
 

@@ -5,7 +5,9 @@
 #include <catch2/catch_all.hpp>
 namespace Catch {  // the names of 2.13
 using Matchers::Equals, Matchers::StartsWith;
-inline auto Contains(const std::string& text) { return Matchers::ContainsSubstring(text); }
+inline auto Contains(const std::string& text) {
+  return Matchers::ContainsSubstring(text);
+}
 }  // namespace Catch
 using Catch::Approx;
 #else

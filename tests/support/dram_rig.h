@@ -21,7 +21,8 @@ inline DramParams plain() {
 // One channel; addresses are chosen by bank group, bank in the group and row, with the mapping turned back.
 class DramRig {
  public:
-  explicit DramRig(const DramParams& params) : root(nullptr, "test"), params_(params), channel({params_, 256, 1000.0, &root}) {
+  explicit DramRig(const DramParams& params)
+      : root(nullptr, "test"), params_(params), channel({params_, 256, 1000.0, &root}) {
     DramMap map(params.banks, params.bank_groups, params.row_bytes, 256);
     for (Address local = 0; local < Address{params.banks} * params.row_bytes * 8; local += 256) {
       const DramLocation at = map.locate(local);

@@ -11,7 +11,9 @@ namespace glint::test {
 
 #if RTC_VERSION_MAJOR >= 4
 using EmbreeContext = RTCRayQueryContext;
-inline void start(EmbreeContext& context) { rtcInitRayQueryContext(&context); }
+inline void start(EmbreeContext& context) {
+  rtcInitRayQueryContext(&context);
+}
 inline void intersect(RTCScene scene, EmbreeContext& context, RTCRayHit& ray) {
   RTCIntersectArguments arguments;
   rtcInitIntersectArguments(&arguments);
@@ -20,8 +22,12 @@ inline void intersect(RTCScene scene, EmbreeContext& context, RTCRayHit& ray) {
 }
 #else
 using EmbreeContext = RTCIntersectContext;
-inline void start(EmbreeContext& context) { rtcInitIntersectContext(&context); }
-inline void intersect(RTCScene scene, EmbreeContext& context, RTCRayHit& ray) { rtcIntersect1(scene, &context, &ray); }
+inline void start(EmbreeContext& context) {
+  rtcInitIntersectContext(&context);
+}
+inline void intersect(RTCScene scene, EmbreeContext& context, RTCRayHit& ray) {
+  rtcIntersect1(scene, &context, &ray);
+}
 #endif
 
 }  // namespace glint::test

@@ -1,17 +1,17 @@
 // A memory for tests of other parts: every read is answered after the same number of cycles.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <fmt/format.h>
-
 #include <array>
 #include <deque>
+#include <fmt/format.h>
 #include <vector>
 
 #include "memsys/l1_port.h"
 
 namespace glint::mem {
 
-// Never refuses except past `accesses_per_cycle`, remembers every accepted request. Meets the contract of L1Port.
+// Never refuses except past `accesses_per_cycle`, remembers every accepted request. Meets the contract of
+// L1Port.
 class FixedLatencyMemory final : public L1Port {
  public:
   explicit FixedLatencyMemory(Cycle latency, uint32_t accesses_per_cycle = ~0u, uint32_t line_bytes = 128)
@@ -25,8 +25,10 @@ class FixedLatencyMemory final : public L1Port {
     }
     ++accesses_;
     log_.push_back(request);
-    if (!request.write && swallows_) ++swallowed_;
-    else if (!request.write) ready_[size_t(client)].push_back({now + latency_, request.token});
+    if (!request.write && swallows_)
+      ++swallowed_;
+    else if (!request.write)
+      ready_[size_t(client)].push_back({now + latency_, request.token});
     return true;
   }
   std::optional<Token> pop(Cycle now, Client client) override {
@@ -47,7 +49,9 @@ class FixedLatencyMemory final : public L1Port {
 
   // From now on reads are taken and never answered.
   void swallow() { swallows_ = true; }
-  std::string describe() const override { return fmt::format("  memory: {} reads never answered\n", swallowed_); }
+  std::string describe() const override {
+    return fmt::format("  memory: {} reads never answered\n", swallowed_);
+  }
 
   const std::vector<Request>& log() const { return log_; }  // accepted requests, in order
   uint64_t refused() const { return refused_; }

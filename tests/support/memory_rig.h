@@ -32,13 +32,17 @@ struct Answered {
 class MemoryRig {
  public:
   explicit MemoryRig(const Params& params, uint32_t cores = 1, double core_mhz = 1000.0)
-      : root_(nullptr, "test"), memory_(params, cores, core_mhz, &root_), cells_(memory_.cells()), channels_(memory_.channels()) {
+      : root_(nullptr, "test"),
+        memory_(params, cores, core_mhz, &root_),
+        cells_(memory_.cells()),
+        channels_(memory_.channels()) {
     window_ = memory_.shortest_latency();
   }
   void set_window(Cycle window) { window_ = window; }
   void set_step_every_cycle(bool step) { step_ = step; }
 
-  // Called per core and cycle after tick(); returns the next cycle at which it wants to be called (kNever: done).
+  // Called per core and cycle after tick(); returns the next cycle at which it wants to be called (kNever:
+  // done).
   using Driver = std::function<Cycle(uint32_t core, Cycle now)>;
 
   // Runs until nothing is in flight and every driver is done. Answers are collected in canonical order.
@@ -49,7 +53,8 @@ class MemoryRig {
       Cycle next = *std::min_element(wanted.begin(), wanted.end());
       for (ChannelBase* channel : channels_) next = std::min(next, channel->next_arrival());
       for (Cell* cell : cells_) next = std::min(next, cell->next_event(now_));
-      for (uint32_t c = 0; c < memory_.num_cores(); ++c) next = std::min(next, memory_.l1(c).next_event(now_));
+      for (uint32_t c = 0; c < memory_.num_cores(); ++c)
+        next = std::min(next, memory_.l1(c).next_event(now_));
       if (next == kNever) break;
       const Cycle from = step_ ? now_ : std::max(next, now_);
       const Cycle until = from + window_;
@@ -65,12 +70,14 @@ class MemoryRig {
   void drain() {
     run([](uint32_t, Cycle) { return kNever; });
   }
-  // Issues one read at `at` (not before now) on an otherwise idle system and returns the cycle its token came back.
+  // Issues one read at `at` (not before now) on an otherwise idle system and returns the cycle its token came
+  // back.
   Cycle read_latency(Address line, uint8_t sectors, bool write = false) {
     const Cycle start = now_;
     const size_t before = answers_.size();
     run([&](uint32_t core, Cycle now) {
-      if (core == 0 && now == start) memory_.l1(0).access(now, Client::Lsu, {line, sectors, write, Traffic::RtNode, 1});
+      if (core == 0 && now == start)
+        memory_.l1(0).access(now, Client::Lsu, {line, sectors, write, Traffic::RtNode, 1});
       return kNever;
     });
     return answers_.size() == before ? 0 : answers_.back().at - start;
@@ -97,7 +104,8 @@ class MemoryRig {
   }
   void collect(L1Cache& l1, uint32_t core, Cycle now) {
     for (const Client client : {Client::Lsu, Client::RtUnit})
-      while (const std::optional<Token> token = l1.pop(now, client)) answers_.push_back({now, core, client, *token});
+      while (const std::optional<Token> token = l1.pop(now, client))
+        answers_.push_back({now, core, client, *token});
   }
 
   stats::Group root_;

@@ -1,5 +1,5 @@
-// Scenes of everything that a structure can hold, and the hit of a ray found by testing all of it, without boxes around it.
-// SPDX-License-Identifier: Apache-2.0
+// Scenes of everything that a structure can hold, and the hit of a ray found by testing all of it, without
+// boxes around it. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstring>
 #include <deque>
@@ -48,37 +48,45 @@ struct BuiltScene {
   BuiltScene(const Scene& scene, const std::string& format) {
     BuildOptions options;
     options.format.name = format;
-    for (const BottomScene& b : scene.bottoms) bottoms.push_back(build_bottom(memory, "bottom", b.level, options));
+    for (const BottomScene& b : scene.bottoms)
+      bottoms.push_back(build_bottom(memory, "bottom", b.level, options));
     top = build_top(memory, "top", scene.instances, bottoms, options);
   }
 };
 
 // Every leaf of a structure, by the format's own decoding.
 template <class Visit>
-void for_each_leaf(const mem::AddressSpace& memory, const NodeFormat& format, Address structure, uint32_t block, Visit visit) {
+void for_each_leaf(const mem::AddressSpace& memory, const NodeFormat& format, Address structure,
+                   uint32_t block, Visit visit) {
   std::vector<DecodedChild> children(format.width());
-  const uint32_t count = format.decode(memory.find(structure + Address(block) * kBlockBytes, format.node_bytes()), children);
+  const uint32_t count =
+      format.decode(memory.find(structure + Address(block) * kBlockBytes, format.node_bytes()), children);
   for (uint32_t i = 0; i < count; ++i) {
     const NodeRef ref = children[i].node;
-    if (kind_of(ref) == NodeKind::Internal) for_each_leaf(memory, format, structure, block_of(ref), visit);
-    else visit(kind_of(ref), memory.find(structure + Address(block_of(ref)) * kBlockBytes, leaf_bytes(kind_of(ref))));
+    if (kind_of(ref) == NodeKind::Internal)
+      for_each_leaf(memory, format, structure, block_of(ref), visit);
+    else
+      visit(kind_of(ref),
+            memory.find(structure + Address(block_of(ref)) * kBlockBytes, leaf_bytes(kind_of(ref))));
   }
 }
 
-// Candidates of one ray, tested one by one. Written from Vulkan's rules anew; only the arithmetic of a transform, of a
-// box's entry and of a triangle is the unit's, whose bits are compared.
+// Candidates of one ray, tested one by one. Written from Vulkan's rules anew; only the arithmetic of a
+// transform, of a box's entry and of a triangle is the unit's, whose bits are compared.
 class BruteForce {
  public:
   BruteForce(const Scene& scene, const BuiltScene& built) : scene_(scene) {
-    for_each_leaf(built.memory, *make_format(built.top.format), built.top.address, kRootBlock, [&](NodeKind, const std::byte* bytes) {
-      InstanceLeaf leaf;
-      std::memcpy(&leaf, bytes, sizeof leaf);
-      leaves_.push_back(leaf);
-    });
+    for_each_leaf(built.memory, *make_format(built.top.format), built.top.address, kRootBlock,
+                  [&](NodeKind, const std::byte* bytes) {
+                    InstanceLeaf leaf;
+                    std::memcpy(&leaf, bytes, sizeof leaf);
+                    leaves_.push_back(leaf);
+                  });
   }
   size_t num_instances() const { return leaves_.size(); }
 
-  // All hits that shaders and rules accept, nearest first; of equals the lowest instance, geometry, primitive.
+  // All hits that shaders and rules accept, nearest first; of equals the lowest instance, geometry,
+  // primitive.
   std::vector<Hit> hits(const Ray& ray) const {
     std::vector<Hit> out;
     for (const InstanceLeaf& leaf : leaves_) {
@@ -86,10 +94,12 @@ class BruteForce {
       RaySpace space;
       enter(space, ray, leaf.world_to_object);
       const BottomScene& bottom = scene_.bottoms[scene_.instances[leaf.instance].bottom];
-      for (uint32_t g = 0; g < bottom.level.geometries.size(); ++g) test(ray, leaf, space, bottom.level.geometries[g], g, out);
+      for (uint32_t g = 0; g < bottom.level.geometries.size(); ++g)
+        test(ray, leaf, space, bottom.level.geometries[g], g, out);
     }
     std::sort(out.begin(), out.end(), [](const Hit& a, const Hit& b) {
-      return std::tuple(a.t, a.instance, a.geometry, a.primitive) < std::tuple(b.t, b.instance, b.geometry, b.primitive);
+      return std::tuple(a.t, a.instance, a.geometry, a.primitive) <
+             std::tuple(b.t, b.instance, b.geometry, b.primitive);
     });
     return out;
   }
@@ -98,14 +108,16 @@ class BruteForce {
   static void enter(RaySpace& space, const Ray& ray, const std::array<float, 12>& m) {
     std::array<float, 3> o, d;
     for (size_t r = 0; r < 3; ++r) {
-      o[r] = ((m[4 * r] * ray.origin[0] + m[4 * r + 1] * ray.origin[1]) + m[4 * r + 2] * ray.origin[2]) + m[4 * r + 3];
-      d[r] = (m[4 * r] * ray.direction[0] + m[4 * r + 1] * ray.direction[1]) + m[4 * r + 2] * ray.direction[2];
+      o[r] = ((m[4 * r] * ray.origin[0] + m[4 * r + 1] * ray.origin[1]) + m[4 * r + 2] * ray.origin[2]) +
+             m[4 * r + 3];
+      d[r] =
+          (m[4 * r] * ray.direction[0] + m[4 * r + 1] * ray.direction[1]) + m[4 * r + 2] * ray.direction[2];
     }
     enter_space(space, o, d);
   }
 
-  static void test(const Ray& ray, const InstanceLeaf& leaf, const RaySpace& space, const Geometry& geometry, uint32_t g,
-                   std::vector<Hit>& out) {
+  static void test(const Ray& ray, const InstanceLeaf& leaf, const RaySpace& space, const Geometry& geometry,
+                   uint32_t g, std::vector<Hit>& out) {
     const uint32_t flags = leaf.sbt_offset_and_flags >> 24;
     bool opaque = geometry.opaque;
     if (flags & instance_flag::kForceOpaque) opaque = true;
@@ -122,12 +134,13 @@ class BruteForce {
         test_box(ray, space, geometry.aabbs[hit.primitive], opaque, hit, out);
     } else if (!(ray.flags & ray_flag::kSkipTriangles)) {
       const uint32_t count = uint32_t(geometry.positions.size() / 36);
-      for (hit.primitive = 0; hit.primitive < count; ++hit.primitive) test_triangle(ray, flags, space, geometry, opaque, hit, out);
+      for (hit.primitive = 0; hit.primitive < count; ++hit.primitive)
+        test_triangle(ray, flags, space, geometry, opaque, hit, out);
     }
   }
 
-  static void test_triangle(const Ray& ray, uint32_t instance_flags, const RaySpace& space, const Geometry& geometry, bool opaque,
-                            Hit hit, std::vector<Hit>& out) {
+  static void test_triangle(const Ray& ray, uint32_t instance_flags, const RaySpace& space,
+                            const Geometry& geometry, bool opaque, Hit hit, std::vector<Hit>& out) {
     std::array<std::array<float, 3>, 3> p;
     std::memcpy(&p, &geometry.positions[size_t(hit.primitive) * 36], 36);
     for (const auto& corner : p)
@@ -145,7 +158,8 @@ class BruteForce {
     out.push_back(hit);
   }
 
-  static void test_box(const Ray& ray, const RaySpace& space, const Bounds& box, bool opaque, Hit hit, std::vector<Hit>& out) {
+  static void test_box(const Ray& ray, const RaySpace& space, const Bounds& box, bool opaque, Hit hit,
+                       std::vector<Hit>& out) {
     if (!std::isfinite(box.low[0])) return;
     float t_near = -INFINITY, t_far = INFINITY;
     for (size_t a = 0; a < 3; ++a) {
@@ -153,7 +167,8 @@ class BruteForce {
       clip_slab(backward ? box.high[a] : box.low[a], backward ? box.low[a] : box.high[a], space.origin[a],
                 space.inverse_direction[a], t_near, t_far);
     }
-    const float enter = std::fmax(widen_near(t_near), ray.t_min), leave = std::fmin(widen_far(t_far), ray.t_max);
+    const float enter = std::fmax(widen_near(t_near), ray.t_min),
+                leave = std::fmin(widen_far(t_far), ray.t_max);
     if (!(enter <= leave)) return;
     hit.t = enter + 0.01f * float(hit.primitive % 5);  // resolve()'s intersection shader
     hit.kind = hit.primitive & 0x7f;

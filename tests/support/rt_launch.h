@@ -54,9 +54,10 @@ struct Launch {
   uint64_t completions = 0;
 };
 
-// Runs all warps to their ends, submitting in order as soon as there is room; the unit is ticked every cycle or only at events.
-inline Launch launch(RtUnit& unit, mem::FixedLatencyMemory& l1, std::vector<WarpRays>& warps, bool every_cycle,
-                     Cycle limit = 10'000'000) {
+// Runs all warps to their ends, submitting in order as soon as there is room; the unit is ticked every cycle
+// or only at events.
+inline Launch launch(RtUnit& unit, mem::FixedLatencyMemory& l1, std::vector<WarpRays>& warps,
+                     bool every_cycle, Cycle limit = 10'000'000) {
   Launch out;
   out.completion.resize(warps.size());
   std::deque<uint32_t> waiting;

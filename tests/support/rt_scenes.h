@@ -20,7 +20,9 @@ struct Random {
   }
   float uniform(float low, float high) { return low + (high - low) * float(bits() >> 8) * 0x1p-24f; }
   uint32_t below(uint32_t n) { return uint32_t(uint64_t(bits()) * n >> 32); }
-  std::array<float, 3> point(float size) { return {uniform(-size, size), uniform(-size, size), uniform(-size, size)}; }
+  std::array<float, 3> point(float size) {
+    return {uniform(-size, size), uniform(-size, size), uniform(-size, size)};
+  }
 };
 
 using Positions = std::vector<std::array<float, 3>>;
@@ -51,9 +53,9 @@ inline std::array<float, 12> random_transform(Random& random, float scale, float
   length = std::sqrt(length);
   for (float& x : q) x /= length;
   const float w = q[0], x = q[1], y = q[2], z = q[3];
-  const float r[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),
-                      2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
-                      2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)};
+  const float r[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
+                      2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
+                      2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
   const auto t = random.point(distance);
   std::array<float, 12> m;
   for (size_t i = 0; i < 3; ++i) {
@@ -63,8 +65,8 @@ inline std::array<float, 12> random_transform(Random& random, float scale, float
   return m;
 }
 
-inline RayState ray_of(Address structure, std::array<float, 3> origin, std::array<float, 3> direction, float t_min = 0,
-                       float t_max = INFINITY, uint32_t flags = 0) {
+inline RayState ray_of(Address structure, std::array<float, 3> origin, std::array<float, 3> direction,
+                       float t_min = 0, float t_max = INFINITY, uint32_t flags = 0) {
   RayState state;
   state.ray.origin = origin;
   state.ray.direction = direction;
@@ -76,7 +78,8 @@ inline RayState ray_of(Address structure, std::array<float, 3> origin, std::arra
 }
 
 // A single instance of one geometry, with the identity transform.
-inline StructureInfo single(mem::AddressSpace& memory, const Geometry& geometry, const BuildOptions& options = {}) {
+inline StructureInfo single(mem::AddressSpace& memory, const Geometry& geometry,
+                            const BuildOptions& options = {}) {
   const StructureInfo bottom = build_bottom(memory, "bottom", {{geometry}}, options);
   return build_top(memory, "top", std::vector<Instance>(1), std::vector{bottom}, options);
 }

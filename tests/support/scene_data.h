@@ -1,19 +1,18 @@
 // Original scene data, where it stands beside the project: unpacked into a folder of its own for one test.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <unistd.h>
-
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <unistd.h>
 #include <vector>
 
 #include "tests/support/catch.h"
 
 namespace glint::test {
 
-// The archive shared/data/scenes/<name>.tar.zst and those of `others`, unpacked beside each other while the object lives.
-// Without one of them `path` is empty, and the test has said that it skips.
+// The archive shared/data/scenes/<name>.tar.zst and those of `others`, unpacked beside each other while the
+// object lives. Without one of them `path` is empty, and the test has said that it skips.
 struct SceneData {
   std::string path;  // of the folder that holds <name>/
 
@@ -21,13 +20,15 @@ struct SceneData {
     namespace fs = std::filesystem;
     std::vector<fs::path> archives;
     const auto add = [&](const std::string& scene) {
-      archives.push_back(fs::path(GLINT_SOURCE_DIR) / ".." / "shared" / "data" / "scenes" / (scene + ".tar.zst"));
+      archives.push_back(fs::path(GLINT_SOURCE_DIR) / ".." / "shared" / "data" / "scenes" /
+                         (scene + ".tar.zst"));
     };
     add(name);
     for (const std::string& other : others) add(other);
     for (const fs::path& archive : archives)
       if (!fs::exists(archive)) {
-        WARN("SKIPPED: " << archive.filename().string() << " is not there, so nothing is compared with the original data");
+        WARN("SKIPPED: " << archive.filename().string()
+                         << " is not there, so nothing is compared with the original data");
         return;
       }
     const fs::path folder = fs::temp_directory_path() / ("glint_" + name + "_" + std::to_string(getpid()));

@@ -10,16 +10,19 @@ namespace glint::test {
 
 inline const char* shader_folder(pipeline::Workload workload) {
   switch (workload) {
-    case pipeline::Workload::PathTracing: return "path_tracing";
-    case pipeline::Workload::Shadow: return "shadow";
-    case pipeline::Workload::AmbientOcclusion: return "ambient_occlusion";
+    case pipeline::Workload::PathTracing:
+      return "path_tracing";
+    case pipeline::Workload::Shadow:
+      return "shadow";
+    case pipeline::Workload::AmbientOcclusion:
+      return "ambient_occlusion";
   }
   return "";
 }
 
 // `size` x `size` pixels of a built-in scene on a small GPU of two cores.
-inline pipeline::RenderJob small_job(const std::string& scene, pipeline::Workload workload, uint32_t size, uint32_t samples,
-                                     const std::string& assets = {}) {
+inline pipeline::RenderJob small_job(const std::string& scene, pipeline::Workload workload, uint32_t size,
+                                     uint32_t samples, const std::string& assets = {}) {
   pipeline::RenderJob job;
   job.scene = scenes::load_scene(scene, {assets});
   job.workload = workload;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <fmt/format.h>
-
 #include <sstream>
 #include <string>
 
@@ -15,12 +14,17 @@ class Listing final : public stats::Visitor {
  public:
   void enter(const stats::Group& group) override { text += group.name() + "{"; }
   void leave(const stats::Group&) override { text += "}\n"; }
-  void visit(const stats::Counter& stat) override { text += fmt::format("{}={}\n", stat.name(), stat.value()); }
+  void visit(const stats::Counter& stat) override {
+    text += fmt::format("{}={}\n", stat.name(), stat.value());
+  }
   void visit(const stats::Ratio& stat) override { text += fmt::format("{}={}\n", stat.name(), stat.value()); }
   void visit(const stats::Value& stat) override { text += fmt::format("{}={}\n", stat.name(), stat.value()); }
-  void visit(const stats::Histogram& stat) override { text += fmt::format("{}={}\n", stat.name(), fmt::join(stat.counts(), ",")); }
+  void visit(const stats::Histogram& stat) override {
+    text += fmt::format("{}={}\n", stat.name(), fmt::join(stat.counts(), ","));
+  }
   void visit(const stats::BreakdownBase& stat) override {
-    for (const auto& [name, count] : stat.parts()) text += fmt::format("{}::{}={}\n", stat.name(), name, count);
+    for (const auto& [name, count] : stat.parts())
+      text += fmt::format("{}::{}={}\n", stat.name(), name, count);
   }
   std::string text;
 };

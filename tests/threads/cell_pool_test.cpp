@@ -13,7 +13,8 @@ namespace {
 // Notes its windows; sends a number to the next cell of a ring in each of them.
 class RingCell final : public Cell {
  public:
-  RingCell(Channel<uint64_t>* in, Channel<uint64_t>* out, Cycle latency, Cycle end) : in_(in), out_(out), latency_(latency), end_(end) {}
+  RingCell(Channel<uint64_t>* in, Channel<uint64_t>* out, Cycle latency, Cycle end)
+      : in_(in), out_(out), latency_(latency), end_(end) {}
   void advance(Cycle from, Cycle until) override {
     windows.push_back({from, until});
     if (from <= throws_at && throws_at < until) throw std::runtime_error("cell " + std::to_string(throws_at));
@@ -58,7 +59,8 @@ TEST_CASE("every cell advances once a window, with any number of threads") {
   for (uint32_t threads : {1u, 2u, 3u, 8u, 20u}) {
     std::vector<std::unique_ptr<RingCell>> cells;
     std::vector<Cell*> pointers;
-    for (int i = 0; i < 7; ++i) pointers.push_back(cells.emplace_back(std::make_unique<RingCell>(nullptr, nullptr, 1, 1)).get());
+    for (int i = 0; i < 7; ++i)
+      pointers.push_back(cells.emplace_back(std::make_unique<RingCell>(nullptr, nullptr, 1, 1)).get());
     CellPool pool(pointers, threads, {3, 1, 4, 1, 5});
     CHECK(pool.num_threads() == std::min(threads, 7u));
     std::vector<std::pair<Cycle, Cycle>> windows;
@@ -74,7 +76,8 @@ TEST_CASE("every cell advances once a window, with any number of threads") {
 TEST_CASE("what the first cell throws reaches the caller, and the pool goes on") {
   std::vector<std::unique_ptr<RingCell>> cells;
   std::vector<Cell*> pointers;
-  for (int i = 0; i < 4; ++i) pointers.push_back(cells.emplace_back(std::make_unique<RingCell>(nullptr, nullptr, 1, 1)).get());
+  for (int i = 0; i < 4; ++i)
+    pointers.push_back(cells.emplace_back(std::make_unique<RingCell>(nullptr, nullptr, 1, 1)).get());
   cells[3]->throws_at = 12;
   cells[1]->throws_at = 11;
   CellPool pool(pointers, 3);
@@ -90,7 +93,8 @@ TEST_CASE("neither threads nor windows nor homes change what cells tell each oth
   for (uint32_t threads : {0u, 2u, 4u})
     for (Cycle window : {Cycle{1}, Cycle{7}, Cycle{0}}) {
       CAPTURE(threads, window);
-      CHECK(run_ring(5, {.turn = 49, .threads = threads, .window = window, .homes = {1, 0, 0, 3, 2}}) == expected);
+      CHECK(run_ring(5, {.turn = 49, .threads = threads, .window = window, .homes = {1, 0, 0, 3, 2}}) ==
+            expected);
     }
 }
 
@@ -102,7 +106,8 @@ TEST_CASE("a turn is cut into windows that end with it") {
   engine.run([&](Cycle now) { return turns.push_back(now), EngineLoop::Next::NothingMore; });
 
   CHECK(turns == std::vector<Cycle>{0, 20, 40});
-  CHECK(cell.windows == std::vector<std::pair<Cycle, Cycle>>{{0, 8}, {8, 16}, {16, 20}, {20, 28}, {28, 36}, {36, 40}});
+  CHECK(cell.windows ==
+        std::vector<std::pair<Cycle, Cycle>>{{0, 8}, {8, 16}, {16, 20}, {20, 28}, {28, 36}, {36, 40}});
 }
 
 TEST_CASE("trying several threads stops when they are slower, and goes on when they are faster") {

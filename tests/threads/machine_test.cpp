@@ -1,5 +1,5 @@
-// The whole timing machine on several threads: the same bytes and numbers, whoever runs which cell for how long at a time.
-// SPDX-License-Identifier: Apache-2.0
+// The whole timing machine on several threads: the same bytes and numbers, whoever runs which cell for how
+// long at a time. SPDX-License-Identifier: Apache-2.0
 #include <cstring>
 
 #include "pipeline/scene_world.h"
@@ -16,12 +16,21 @@ namespace {
 
 // Ways to run a machine of 8 cores and 4 partitions, all but the plainest one.
 std::vector<HostOptions> ways() {
-  const std::vector<uint32_t> shuffled{5, 2, 7, 0, 1, 6, 3, 4, 2, 0, 1, 3}, crowded{0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1};
-  return {{.threads = 2}, {.threads = 4}, {.threads = 8}, {.threads = 0}, {.threads = 1, .window = 1}, {.threads = 2, .window = 7, .homes = shuffled},
-          {.threads = 4, .window = 48, .homes = crowded}, {.threads = 8, .window = 5, .homes = shuffled}};
+  const std::vector<uint32_t> shuffled{5, 2, 7, 0, 1, 6, 3, 4, 2, 0, 1, 3},
+      crowded{0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1};
+  return {{.threads = 2},
+          {.threads = 4},
+          {.threads = 8},
+          {.threads = 0},
+          {.threads = 1, .window = 1},
+          {.threads = 2, .window = 7, .homes = shuffled},
+          {.threads = 4, .window = 48, .homes = crowded},
+          {.threads = 8, .window = 5, .homes = shuffled}};
 }
 
-std::string name_of(const HostOptions& way) { return fmt::format("{} threads, window {}, {} homes", way.threads, way.window, way.homes.size()); }
+std::string name_of(const HostOptions& way) {
+  return fmt::format("{} threads, window {}, {} homes", way.threads, way.window, way.homes.size());
+}
 
 pipeline::GpuParams eight_cores() {
   pipeline::GpuParams params = test::preset("mobile");
@@ -53,7 +62,8 @@ Outcome run_frame(const pipeline::RenderJob& job, const HostOptions& host) {
   outcome.cycles = machine.run({});
   outcome.statistics = test::listing(machine.root());
   for (const auto image : {pipeline::SceneWorld::kPicture, pipeline::SceneWorld::kAccumulation})
-    for (const float value : scene.read_image(image)) outcome.memory.push_back(std::bit_cast<uint32_t>(value));
+    for (const float value : scene.read_image(image))
+      outcome.memory.push_back(std::bit_cast<uint32_t>(value));
   return outcome;
 }
 
@@ -63,8 +73,8 @@ void check_equal(const Outcome& a, const Outcome& b) {
   CHECK((a.memory == b.memory));
 }
 
-// Every thread: loads, stores, exchanges and adds that race with those of all others, and mix what they read into what
-// they write, so that any other order shows. Words 64 to 67 count adds of 1.
+// Every thread: loads, stores, exchanges and adds that race with those of all others, and mix what they read
+// into what they write, so that any other order shows. Words 64 to 67 count adds of 1.
 const std::string kRaces = R"(
     ld.param.b64 %rd2, [0];
     mad.lo.u32 %r4, %ctaid.x, %ntid.x, %tid.x;
@@ -95,9 +105,11 @@ LOOP:
     st.global.b32 [%rd8 + 2048], %r6;
     exit;
 )";
-const core::TextLaunch::Options kRacesGrid{.grid = {24, 1, 1}, .block = {64, 1, 1}, .buffer_words = 512 + 24 * 64};
+const core::TextLaunch::Options kRacesGrid{
+    .grid = {24, 1, 1}, .block = {64, 1, 1}, .buffer_words = 512 + 24 * 64};
 
-// A ticket lock: the first thread of each block adds 1 to word 2 and to word 40, which only the lock protects.
+// A ticket lock: the first thread of each block adds 1 to word 2 and to word 40, which only the lock
+// protects.
 const std::string kLock = R"(
     setp.ne.u32 %p1, %tid.x, 0;
     @%p1 exit;
@@ -120,8 +132,8 @@ WAIT:
     exit;
 )";
 
-// Two blocks, one a core: each stores to its word, and reads the other's behind a fence, in 40 places. It counts in word
-// 1000 + block how often it has read 0.
+// Two blocks, one a core: each stores to its word, and reads the other's behind a fence, in 40 places. It
+// counts in word 1000 + block how often it has read 0.
 const std::string kEachOther = R"(
     ld.param.b64 %rd2, [0];
     mov.b32 %r4, %ctaid.x;
@@ -168,7 +180,8 @@ TEST_CASE("racing loads, stores and atomics come out the same on any number of t
 }
 
 TEST_CASE("races come out the same whether idle time is skipped or not") {
-  check_equal(run_kernel(kRaces, kRacesGrid, {}), run_kernel(kRaces, kRacesGrid, {.threads = 2}, eight_cores(), true));
+  check_equal(run_kernel(kRaces, kRacesGrid, {}),
+              run_kernel(kRaces, kRacesGrid, {.threads = 2}, eight_cores(), true));
 }
 
 TEST_CASE("a lock between cores keeps them apart, and what it protects is seen by the next") {
@@ -182,7 +195,8 @@ TEST_CASE("a lock between cores keeps them apart, and what it protects is seen b
   }
 }
 
-TEST_CASE("of two cores that store and then read each other's word behind a fence, one at least reads the store") {
+TEST_CASE(
+    "of two cores that store and then read each other's word behind a fence, one at least reads the store") {
   pipeline::GpuParams params = eight_cores();
   params.core.fence.gpu = GENERATE(1, 289);
   const Outcome outcome = run_kernel(kEachOther, {.grid = {2, 1, 1}, .block = {32, 1, 1}}, {}, params);
@@ -200,7 +214,8 @@ TEST_CASE("a thread reads what its own atomic has made, on one core and on many"
       "    st.global.b32 [%rd2 + 4], %r6;\n    exit;\n";
   pipeline::GpuParams params = eight_cores();
   params.cores = GENERATE(1u, 8u);
-  const Outcome outcome = run_kernel("    setp.ne.u32 %p1, %tid.x, 0;\n    @%p1 exit;\n" + text, {.grid = {1, 1, 1}}, {}, params);
+  const Outcome outcome =
+      run_kernel("    setp.ne.u32 %p1, %tid.x, 0;\n    @%p1 exit;\n" + text, {.grid = {1, 1, 1}}, {}, params);
 
   CHECK(outcome.memory[0] == 14);
   CHECK(outcome.memory[1] == 15);
@@ -208,7 +223,8 @@ TEST_CASE("a thread reads what its own atomic has made, on one core and on many"
 
 TEST_CASE("a fault is the same one on any number of threads") {
   const std::string text =
-      "    ld.param.b64 %rd2, [0];\n    mad.wide.u32 %rd2, %ctaid.x, 65536, %rd2;\n    ld.global.b32 %r4, [%rd2];\n    exit;\n";
+      "    ld.param.b64 %rd2, [0];\n    mad.wide.u32 %rd2, %ctaid.x, 65536, %rd2;\n    ld.global.b32 %r4, "
+      "[%rd2];\n    exit;\n";
   const auto fault = [&](const HostOptions& host) -> std::string {
     try {
       run_kernel(text, {.grid = {40, 1, 1}}, host);

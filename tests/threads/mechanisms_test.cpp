@@ -1,5 +1,5 @@
-// Every preset, and every mechanism that keeps time of its own: stepping, skipping and threads give the same machine.
-// SPDX-License-Identifier: Apache-2.0
+// Every preset, and every mechanism that keeps time of its own: stepping, skipping and threads give the same
+// machine. SPDX-License-Identifier: Apache-2.0
 #include <functional>
 
 #include "pipeline/scene_world.h"
@@ -45,10 +45,13 @@ struct Mechanism {
 };
 
 const std::vector<Mechanism> kMechanisms = {
-    {"a short stack of four entries", [](GpuParams& p) { p.rt.stack = PolicyChoice<rt::StackModel>("short_stack"); }},
+    {"a short stack of four entries",
+     [](GpuParams& p) { p.rt.stack = PolicyChoice<rt::StackModel>("short_stack"); }},
     {"a restart trail", [](GpuParams& p) { p.rt.stack = PolicyChoice<rt::StackModel>("restart_trail"); }},
-    {"fetches shared across warps", [](GpuParams& p) { p.rt.coalescing = PolicyChoice<rt::Coalescer>("across_warps"); }},
-    {"fetches of each lane", [](GpuParams& p) { p.rt.coalescing = PolicyChoice<rt::Coalescer>("each_lane"); }},
+    {"fetches shared across warps",
+     [](GpuParams& p) { p.rt.coalescing = PolicyChoice<rt::Coalescer>("across_warps"); }},
+    {"fetches of each lane",
+     [](GpuParams& p) { p.rt.coalescing = PolicyChoice<rt::Coalescer>("each_lane"); }},
     {"deferred any-hit", [](GpuParams& p) { p.rt.any_hit = PolicyChoice<rt::AnyHitMode>("deferred"); }},
     {"result stores", [](GpuParams& p) { p.rt.result_store = true; }},
     {"two RT entries", [](GpuParams& p) { p.rt.mshr_entries = 2; }},
@@ -59,8 +62,10 @@ const std::vector<Mechanism> kMechanisms = {
      }},
     {"refresh of all banks", [](GpuParams& p) { p.memory.dram.refresh = "all_bank"; }},
     {"refresh bank by bank", [](GpuParams& p) { p.memory.dram.refresh = "per_bank"; }},
-    {"the simple DRAM model", [](GpuParams& p) { p.memory.dram.model = PolicyChoice<mem::DramModel>("simple"); }},
-    {"draining of writes", [](GpuParams& p) { p.memory.dram.scheduler = PolicyChoice<mem::DramScheduler>("write_drain"); }},
+    {"the simple DRAM model",
+     [](GpuParams& p) { p.memory.dram.model = PolicyChoice<mem::DramModel>("simple"); }},
+    {"draining of writes",
+     [](GpuParams& p) { p.memory.dram.scheduler = PolicyChoice<mem::DramScheduler>("write_drain"); }},
     {"one credit", [](GpuParams& p) { p.memory.noc.credits = 1; }},
     {"two sides of the chip", [](GpuParams& p) { p.memory.noc.sides = 2, p.memory.noc.far_latency = 30; }},
     {"two slices a partition", [](GpuParams& p) { p.memory.l2.slices = 2; }},
@@ -81,7 +86,8 @@ const std::vector<Mechanism> kMechanisms = {
 }  // namespace
 
 TEST_CASE("with every preset, stepping, skipping and two threads give the same cycles and statistics") {
-  const std::string preset = GENERATE("mobile", "desktop", "h200", "ideal-memory", "vulkan-sim-mobile", "vulkan-sim-desktop");
+  const std::string preset =
+      GENERATE("mobile", "desktop", "h200", "ideal-memory", "vulkan-sim-mobile", "vulkan-sim-desktop");
   CAPTURE(preset);
   GpuParams gpu = test::preset(preset);
   gpu.cores = std::min(gpu.cores, 4u);

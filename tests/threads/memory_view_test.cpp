@@ -1,5 +1,5 @@
-// What cores see of each other's stores and atomics within a turn, and in which order all of it reaches memory.
-// SPDX-License-Identifier: Apache-2.0
+// What cores see of each other's stores and atomics within a turn, and in which order all of it reaches
+// memory. SPDX-License-Identifier: Apache-2.0
 #include "core/memory_view.h"
 
 #include <cstring>
@@ -72,7 +72,8 @@ TEST_CASE("of stores to one place the latest stays, and of equally late ones the
 
 TEST_CASE("cores that store to different bytes of a line leave each other's alone") {
   TwoCores cores;
-  for (uint32_t word = 0; word < 16; ++word) cores.store(word % 2 ? cores.first : cores.second, 40 - word, word, word + 1);
+  for (uint32_t word = 0; word < 16; ++word)
+    cores.store(word % 2 ? cores.first : cores.second, 40 - word, word, word + 1);
   cores.end_turn();
 
   for (uint32_t word = 0; word < 16; ++word) CHECK(cores.in_memory(word) == word + 1);
@@ -94,7 +95,8 @@ TEST_CASE("atomics and stores of all cores take turns in order of cycle, then co
   CHECK(cores.in_memory(7) == 111);
 }
 
-TEST_CASE("only the bytes that an atomic changes wait for the turn's end, until a store of the core covers them") {
+TEST_CASE(
+    "only the bytes that an atomic changes wait for the turn's end, until a store of the core covers them") {
   TwoCores cores;
   cores.add(cores.first, 1, 7, 10, nullptr);
 
@@ -147,7 +149,8 @@ TEST_CASE("an access across two lines is read and stored in both") {
 TEST_CASE("a core keeps any number of lines apart, turn after turn") {
   TwoCores cores;
   for (uint32_t turn = 1; turn <= 3; ++turn) {
-    for (uint32_t line = 0; line < 4000; ++line) cores.store(cores.first, line, line * 16, turn * 10'000 + line);
+    for (uint32_t line = 0; line < 4000; ++line)
+      cores.store(cores.first, line, line * 16, turn * 10'000 + line);
     bool all = true;
     for (uint32_t line = 0; line < 4000; ++line) {
       all &= cores.seen(cores.first, line * 16) == turn * 10'000 + line;

@@ -8,7 +8,9 @@ namespace {
 
 using isa::Special;
 
-uint64_t stall(const OneCore& core, Stall reason) { return core.stats().stalls.count(reason); }
+uint64_t stall(const OneCore& core, Stall reason) {
+  return core.stats().stalls.count(reason);
+}
 
 // %r2 = laneid * stride: a shared address.
 void add_shared_address(Code& code, uint32_t stride) {
@@ -16,7 +18,8 @@ void add_shared_address(Code& code, uint32_t stride) {
 }
 
 // Cycles of one warp that loads from shared memory at a stride and uses the value.
-Cycle load_cycles(uint32_t stride, std::string_view op = "ld.shared.b32", const Params& params = quick_params()) {
+Cycle load_cycles(uint32_t stride, std::string_view op = "ld.shared.b32",
+                  const Params& params = quick_params()) {
   Code code;
   add_shared_address(code, stride);
   if (op.find(".cas.") != std::string_view::npos)
@@ -86,12 +89,16 @@ TEST_CASE("atomics on shared memory take turns where lanes meet") {
   CHECK(load_cycles(0, "atom.shared.add.u32") == base + 31 * 2);
 }
 
-TEST_CASE("a compare-and-swap and a floating-point addition in shared memory have times of their own, of whose turns some are hidden") {
+TEST_CASE(
+    "a compare-and-swap and a floating-point addition in shared memory have times of their own, of whose "
+    "turns some are hidden") {
   Params params = quick_params();
   params.shared.atomic_hidden = 12;
   params.shared.swap = {126, 4, 17};
   params.shared.float_add = {195, 94, 0};
-  const auto cycles = [&](uint32_t stride, std::string_view op) { return load_cycles(stride, op, params) - (4 + 2); };
+  const auto cycles = [&](uint32_t stride, std::string_view op) {
+    return load_cycles(stride, op, params) - (4 + 2);
+  };
 
   CHECK(cycles(4, "atom.shared.add.u32") == 76);
   CHECK(cycles(0, "atom.shared.add.u32") == 76 + 31 * 2 - 12);
@@ -264,7 +271,8 @@ TEST_CASE("blocks with barriers and conflicts take the same cycles whether idle 
     code.add("ld.shared.v4.b32", {reg(8), reg(9), reg(10), reg(11), zero});
     code.add("add.u32", {reg(12), reg(6), reg(8)});
     code.add("exit");
-    OneCore core(code, quick_params(), {.num_warps = 64, .no_skip = no_skip, .block_threads = 128, .shared_bytes = 1024});
+    OneCore core(code, quick_params(),
+                 {.num_warps = 64, .no_skip = no_skip, .block_threads = 128, .shared_bytes = 1024});
     const Cycle end = core.run();
     std::vector<uint64_t> out{end};
     for (int s = 0; s < int(Stall::Count); ++s) out.push_back(core.stats().stalls.count(Stall(s)));

@@ -15,7 +15,8 @@ using mem::Traffic;
 constexpr Cycle kMemory = 20;
 
 struct Rig {
-  explicit Rig(CodeCacheParams params = {}, uint32_t accesses_per_cycle = ~0u) : memory(kMemory, accesses_per_cycle), cache(params, 64, memory, stats) {}
+  explicit Rig(CodeCacheParams params = {}, uint32_t accesses_per_cycle = ~0u)
+      : memory(kMemory, accesses_per_cycle), cache(params, 64, memory, stats) {}
   // Steps until something comes, from `from` on; returns when.
   Cycle next_answer(Cycle from) {
     for (Cycle now = from;; ++now) {
@@ -100,7 +101,8 @@ TEST_CASE("a refused line is tried again, and the next event says when") {
 namespace {
 
 struct FetchRig : Rig {
-  explicit FetchRig(FetchParams params, size_t instructions = 1000) : Rig({.latency = 10}), fetch(params, 2, 0, instructions, cache, stats) {}
+  explicit FetchRig(FetchParams params, size_t instructions = 1000)
+      : Rig({.latency = 10}), fetch(params, 2, 0, instructions, cache, stats) {}
   // Cycle in which a warp of scheduler 0 that comes to `line` in cycle `now` can go on.
   Cycle come_to(uint32_t line, Cycle now) {
     if (fetch.come_to(0, line, now)) return now;
@@ -142,9 +144,9 @@ TEST_CASE("the stream buffer has the next lines, and as many again after each") 
   CHECK(rig.come_to(0, 0) == 10 + kMemory);
   CHECK(rig.stats.prefetches.value() == 2);
   for (Cycle at = 31; at < 100; ++at) rig.step(at);
-  CHECK(rig.come_to(1, 100) == 100);   // was fetched ahead
+  CHECK(rig.come_to(1, 100) == 100);  // was fetched ahead
   CHECK(rig.stats.prefetches.value() == 3);
-  CHECK(rig.come_to(3, 100) == 100 + 10 + kMemory);   // on its way since cycle 100
+  CHECK(rig.come_to(3, 100) == 100 + 10 + kMemory);  // on its way since cycle 100
   CHECK(rig.stats.prefetch_hits.value() == 1);
   CHECK(rig.stats.misses.value() == 2);
 }
@@ -169,9 +171,11 @@ TEST_CASE("a constant line misses once, and a warp waits for all of its lines") 
   std::vector<std::pair<Cycle, uint32_t>> served;
   for (Cycle now = 1; now < 100; ++now) {
     rig.cache.tick(now);
-    for (const auto& answer : rig.cache.answers()) constants.arrive(answer.line, [&](uint32_t slot) { served.push_back({now, slot}); });
+    for (const auto& answer : rig.cache.answers())
+      constants.arrive(answer.line, [&](uint32_t slot) { served.push_back({now, slot}); });
   }
-  CHECK(served == std::vector<std::pair<Cycle, uint32_t>>{{10 + kMemory + 1, 5}});  // the second line is looked up a cycle later
+  CHECK(served == std::vector<std::pair<Cycle, uint32_t>>{
+                      {10 + kMemory + 1, 5}});  // the second line is looked up a cycle later
   CHECK(rig.stats.constant_misses.value() == 3);
   CHECK(rig.memory.log().size() == 2);
   CHECK(constants.look_up(5, access, 0b100, 0, 200));

@@ -28,7 +28,9 @@ void add_line(Code& code, int n) {
   code.add("exit");
 }
 
-uint64_t stall(const OneCore& core, Stall reason) { return core.stats().stalls.count(reason); }
+uint64_t stall(const OneCore& core, Stall reason) {
+  return core.stats().stalls.count(reason);
+}
 
 }  // namespace
 
@@ -39,7 +41,8 @@ TEST_CASE("a warp waits for each line of instructions that nobody has fetched") 
     add_line(code, n);
     OneCore core(code, params_with_fetch(0), {});
 
-    CHECK(core.run() == (n == 7 ? 30u + 8 : 30u + 7 + 30 + 1));  // the second line is asked for when the eighth has issued
+    CHECK(core.run() ==
+          (n == 7 ? 30u + 8 : 30u + 7 + 30 + 1));  // the second line is asked for when the eighth has issued
     CHECK(stall(core, Stall::NoInstruction) == (n == 7 ? 30 : 30 + 29));
     CHECK(core.stats().instructions.value() == uint64_t(n) + 1);
   }
@@ -95,9 +98,9 @@ TEST_CASE("warps of all schedulers share the cache behind their own") {
 
 TEST_CASE("a constant that is not there comes with its line, and then takes its time") {
   Code code;
-  code.add("ld.const.b32", {reg(1), reg(0)}, 64);   // 0; the line in 30
-  code.add("ld.const.b32", {reg(2), reg(0)}, 68);   // 30, a hit
-  code.add("add.u32", {reg(3), reg(2), reg(2)});    // 56
+  code.add("ld.const.b32", {reg(1), reg(0)}, 64);  // 0; the line in 30
+  code.add("ld.const.b32", {reg(2), reg(0)}, 68);  // 30, a hit
+  code.add("add.u32", {reg(3), reg(2), reg(2)});   // 56
   code.add("exit");
   OneCore core(code, params_with_constants(), {});
 

@@ -1,5 +1,5 @@
-// Limits of a core that show in one cycle only: room for blocks, exits at barriers, accesses of no lane, records of calls, banks.
-// SPDX-License-Identifier: Apache-2.0
+// Limits of a core that show in one cycle only: room for blocks, exits at barriers, accesses of no lane,
+// records of calls, banks. SPDX-License-Identifier: Apache-2.0
 #include "pipeline/timing_machine.h"
 #include "tests/support/catch.h"
 #include "tests/support/small_jobs.h"
@@ -13,9 +13,11 @@ namespace {
 // One warp that loads twice from global memory at a stride and uses both values.
 Cycle two_loads(const Params& params, uint32_t stride) {
   mem::AddressSpace space;
-  const Address base = space.allocate("buffer", 1 << 16);  // the first allocation's address is the same in every space
+  const Address base =
+      space.allocate("buffer", 1 << 16);  // the first allocation's address is the same in every space
   Code code;
-  code.add("mad.wide.u32", {reg(2), special(isa::Special::LaneId), code.constant(stride), code.constant64(base)});
+  code.add("mad.wide.u32",
+           {reg(2), special(isa::Special::LaneId), code.constant(stride), code.constant64(base)});
   code.add("ld.global.b32", {reg(4), reg(2)});
   code.add("ld.global.b32", {reg(6), reg(2)}, 4096);
   code.add("add.u32", {reg(5), reg(4), reg(6)});
@@ -111,12 +113,15 @@ TEST_CASE("the last warp's exit opens a barrier for the others, 13 cycles later"
   const int last = code.add("exit");
   OneCore core(code, quick_params(), {.num_warps = 2, .block_threads = 64});
 
-  // Comparison 4, branch 4, twenty additions; the exit in cycle 8 + 19 * 4 + 1, and after the barrier the other's.
+  // Comparison 4, branch 4, twenty additions; the exit in cycle 8 + 19 * 4 + 1, and after the barrier the
+  // other's.
   CHECK(core.run() == 8 + 19 * 4 + 1 + 13 + 1);
   CHECK(last == 24);
 }
 
-TEST_CASE("loads that want several words of a bank hold the door that long, and more of the latency where turns take more") {
+TEST_CASE(
+    "loads that want several words of a bank hold the door that long, and more of the latency where turns "
+    "take more") {
   Params params = quick_params();
   params.lsu.bank_conflicts = true;
   params.lsu.lines_per_cycle = 8;
@@ -125,16 +130,21 @@ TEST_CASE("loads that want several words of a bank hold the door that long, and 
   params.lsu.accept_interval = 1;
   const Cycle base = two_loads(params, 4);
   CHECK(base == 4 + 1 + 12 + 20 + 2);
-  CHECK(two_loads(params, 8) == base + 2);        // two turns each: one more than the tags take
-  CHECK(two_loads(params, 32) == base + 2 * 7);   // eight turns
+  CHECK(two_loads(params, 8) == base + 2);       // two turns each: one more than the tags take
+  CHECK(two_loads(params, 32) == base + 2 * 7);  // eight turns
   params.shared.conflict_turn = 3;
-  CHECK(two_loads(params, 32) == base + 2 * 7 + 2 * 7);  // 21 cycles instead of 7, which overlap but for those of the door
+  CHECK(two_loads(params, 32) ==
+        base + 2 * 7 + 2 * 7);  // 21 cycles instead of 7, which overlap but for those of the door
   params.lsu.lines_per_cycle = 4;
   params.shared.conflict_turn = 1;
-  CHECK(two_loads(params, 32) == base + 2 * 7 + 1);  // the tags take two of the eight turns, of which the latency does not hide the second
+  CHECK(two_loads(params, 32) ==
+        base + 2 * 7 +
+            1);  // the tags take two of the eight turns, of which the latency does not hide the second
 }
 
-TEST_CASE("a fence among cores ends with the turn in which it was issued, and alone with its latency and its pipe") {
+TEST_CASE(
+    "a fence among cores ends with the turn in which it was issued, and alone with its latency and its "
+    "pipe") {
   const std::string fences = "    membar.gl;\n    membar.gl;\n    exit;\n";
   CHECK(machine_cycles(fences, 1) == 2 + 2 + 1);   // an instruction in two cycles
   CHECK(machine_cycles(fences, 2) == 2 * 49 + 1);  // turns of 49 cycles: the ways between cores and slices

@@ -7,17 +7,21 @@
 
 namespace glint::core {
 
-inline uint64_t stall(const OneCore& core, Stall reason) { return core.stats().stalls.count(reason); }
+inline uint64_t stall(const OneCore& core, Stall reason) {
+  return core.stats().stalls.count(reason);
+}
 
 // %rd2 = base + lane * stride: 4 cycles, at cycle 0.
 inline void add_address(Code& code, Address base, uint32_t stride) {
-  code.add("mad.wide.u32", {reg(2), special(isa::Special::LaneId), code.constant(stride), code.constant64(base)});
+  code.add("mad.wide.u32",
+           {reg(2), special(isa::Special::LaneId), code.constant(stride), code.constant64(base)});
 }
 
 // rt.trace of one ray a lane into `structure`.
 inline void add_trace(Code& code, isa::Slot structure) {
   const isa::Slot zero = code.constant(0), one = code.constant(std::bit_cast<uint32_t>(1.0f));
-  code.add("rt.trace", {0, structure, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, one, one, zero, zero});
+  code.add("rt.trace", {0, structure, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, one,
+                        one, zero, zero});
 }
 
 // A top level that rays may enter; the RT unit of these tests does not read it.

@@ -71,7 +71,8 @@ TEST_CASE("warps of one scheduler share its pipes, warps of different schedulers
 
 TEST_CASE("a load is ready for use after the unit's and the memory's latency") {
   mem::AddressSpace space;
-  const Address base = space.allocate("buffer", 4096);  // the first allocation's address is the same in every space
+  const Address base =
+      space.allocate("buffer", 4096);  // the first allocation's address is the same in every space
   Code code;
   add_address(code, base, 4);
   code.add("ld.global.b32", {reg(4), reg(2)});
@@ -117,19 +118,20 @@ TEST_CASE("a register that a load will write is not overwritten before") {
   CHECK(core.run() == 4 + 12 + 20 + 2);
 }
 
-TEST_CASE("a register that a load has read may be overwritten at once, and a warp drains before its slot is free") {
+TEST_CASE(
+    "a register that a load has read may be overwritten at once, and a warp drains before its slot is free") {
   mem::AddressSpace space;
   const Address base = space.allocate("buffer", 4096);
   Code code;
   add_address(code, base, 4);
-  code.add("ld.global.b32", {reg(4), reg(2)});   // 4
+  code.add("ld.global.b32", {reg(4), reg(2)});      // 4
   code.add("mov.b32", {reg(2), code.constant(7)});  // 5
-  code.add("exit");                              // 6
+  code.add("exit");                                 // 6
   OneCore core(code, quick_params(), {});
   REQUIRE(core.memory.allocate("buffer", 4096) == base);
 
-  CHECK(core.run() == 37);                       // the load comes back in cycle 36
-  CHECK(stall(core, Stall::Drain) == 29);        // 7 to 35
+  CHECK(core.run() == 37);                 // the load comes back in cycle 36
+  CHECK(stall(core, Stall::Drain) == 29);  // 7 to 35
 }
 
 TEST_CASE("a warp does not issue before its branch is resolved") {

@@ -1,5 +1,5 @@
-// Hazards beside the reading of results: registers that memory instructions still read, the order of writes, register banks.
-// SPDX-License-Identifier: Apache-2.0
+// Hazards beside the reading of results: registers that memory instructions still read, the order of writes,
+// register banks. SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.h"
 #include "tests/unit/core/one_core.h"
 
@@ -15,9 +15,14 @@ Address first_buffer() {
 }
 
 // %rd2 = buffer + 4 * lane, at cycle 0: 4 cycles.
-void add_address(Code& code) { code.add("mad.wide.u32", {reg(2), special(Special::LaneId), code.constant(4), code.constant64(first_buffer())}); }
+void add_address(Code& code) {
+  code.add("mad.wide.u32",
+           {reg(2), special(Special::LaneId), code.constant(4), code.constant64(first_buffer())});
+}
 
-uint64_t stall(const OneCore& core, Stall reason) { return core.stats().stalls.count(reason); }
+uint64_t stall(const OneCore& core, Stall reason) {
+  return core.stats().stalls.count(reason);
+}
 
 // Runs with a buffer in memory.
 struct WithBuffer : OneCore {
@@ -36,8 +41,8 @@ TEST_CASE("a load's address can be overwritten its latency after it, not a cycle
     CAPTURE(latency);
     Code code;
     add_address(code);
-    code.add("ld.global.b32", {reg(4), reg(2)});        // 4
-    code.add("mov.b32", {reg(2), code.constant(7)});    // 4 + latency
+    code.add("ld.global.b32", {reg(4), reg(2)});      // 4
+    code.add("mov.b32", {reg(2), code.constant(7)});  // 4 + latency
     code.add("exit");
     Params params = quick_params();
     params.lsu.war_latency = latency;
@@ -53,7 +58,7 @@ TEST_CASE("a store holds its data as well, and its guard it does not") {
     Code code;
     add_address(code);
     const uint8_t always = guard ? 1 : isa::kNoGuard;
-    code.add("setp.eq.u32", {1, reg(7), reg(7)});       // 2
+    code.add("setp.eq.u32", {1, reg(7), reg(7)});  // 2
     code.add("st.global.b32", {reg(2), reg(4)}, 0, always);
     if (guard)
       code.add("setp.eq.u32", {1, reg(7), reg(8)});
@@ -117,8 +122,8 @@ TEST_CASE("a result need not wait for an earlier one of its register that comes 
     for (const bool order : {false, true}) {
       CAPTURE(crossing, order);
       Code code;
-      code.add("sin.f32", {reg(1), reg(0)});            // 0, done in 21
-      code.add("add.u32", {reg(1), reg(2), reg(2)});    // 18, done in 22; in order: 21
+      code.add("sin.f32", {reg(1), reg(0)});          // 0, done in 21
+      code.add("add.u32", {reg(1), reg(2), reg(2)});  // 18, done in 22; in order: 21
       code.add("exit");
       Params params = quick_params();
       params.pipe_crossing = crossing;
@@ -172,14 +177,15 @@ TEST_CASE("registers of one bank are read one a cycle, within the window") {
   CHECK(run(19, 21, 2) == 3);
   CHECK(run(18, 21, 2) == 4);
   CHECK(run(18, 20, 2) == 5);
-  CHECK(run(18, 20, 0) == 3);   // no banks
-  CHECK(run(18, 22, 4) == 3);   // of four banks: 10, 14, 18 and 22 in one, two an instruction
+  CHECK(run(18, 20, 0) == 3);  // no banks
+  CHECK(run(18, 22, 4) == 3);  // of four banks: 10, 14, 18 and 22 in one, two an instruction
   CHECK(run(18, 22, 4, 2) == 4);
 }
 
 TEST_CASE("constants take no port of the register file") {
   Code code;
-  for (int i = 0; i < 4; ++i) code.add("fma.rn.f32", {reg(11 + i), reg(10), code.constant(1), code.constant(2)});
+  for (int i = 0; i < 4; ++i)
+    code.add("fma.rn.f32", {reg(11 + i), reg(10), code.constant(1), code.constant(2)});
   code.add("exit");
   Params params = quick_params();
   params.units.fp32.interval = 1;

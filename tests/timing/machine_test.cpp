@@ -1,5 +1,5 @@
-// Both machines over a whole frame: no mechanism of a core and no layout of threads changes a picture, nor do skipping and threads cycles.
-// SPDX-License-Identifier: Apache-2.0
+// Both machines over a whole frame: no mechanism of a core and no layout of threads changes a picture, nor do
+// skipping and threads cycles. SPDX-License-Identifier: Apache-2.0
 #include "core/warp_layout.h"
 #include "tests/support/catch.h"
 #include "tests/support/small_jobs.h"
@@ -48,7 +48,9 @@ TEST_CASE("a picture is the same with every layout of threads, on both machines"
     }
 }
 
-TEST_CASE("with every mechanism of a core on, a frame takes longer and is the same, stepped, skipped and on threads") {
+TEST_CASE(
+    "with every mechanism of a core on, a frame takes longer and is the same, stepped, skipped and on "
+    "threads") {
   pipeline::RenderJob job = frame();
   const pipeline::RenderResult plain = pipeline::render(job);
   job.gpu.core = all_on(job.gpu.core);

@@ -1,5 +1,5 @@
-// Times of single ops, crossings between pipes, guards, and words that meet in a bank of the L1: to the cycle.
-// SPDX-License-Identifier: Apache-2.0
+// Times of single ops, crossings between pipes, guards, and words that meet in a bank of the L1: to the
+// cycle. SPDX-License-Identifier: Apache-2.0
 #include "core/op_times.h"
 
 #include <cmath>
@@ -65,29 +65,38 @@ TEST_CASE("an op of the table has its own latency, and results reach another pip
   const Params params = hopper_params();
   CHECK(chain(params, [](Code& c) { c.add("mul.hi.u32", {reg(1), reg(1), reg(2)}); }) == 10 * 9);
   CHECK(chain(params, [](Code& c) { c.add("add.u32", {reg(1), reg(1), reg(2)}); }) == 10 * 5);
-  CHECK(chain(params, [](Code& c) { c.add("prmt.b32", {reg(1), reg(1), reg(2), reg(3)}); }) == 10 * 4 + 1);  // the last add
+  CHECK(chain(params, [](Code& c) {
+          c.add("prmt.b32", {reg(1), reg(1), reg(2), reg(3)});
+        }) == 10 * 4 + 1);  // the last add
   CHECK(chain(params, [](Code& c) {
           c.add("and.b32", {reg(1), reg(1), reg(2)});
           c.add("add.u32", {reg(1), reg(1), reg(3)});
         }) == 10 * 10);
 }
 
-TEST_CASE("with a latch in front of each pipe an instruction issues to a busy one, and the pipe loses no cycle to others") {
-  // Two of two cycles each, and what a free pipe takes: the third of the same pipe waits until the second has entered.
+TEST_CASE(
+    "with a latch in front of each pipe an instruction issues to a busy one, and the pipe loses no cycle to "
+    "others") {
+  // Two of two cycles each, and what a free pipe takes: the third of the same pipe waits until the second has
+  // entered.
   const auto cycles = [](bool latch, const std::vector<const char*>& ops) {
     Params params = hopper_params();
     params.dispatch_latch = latch;
     params.units.integer = {4, 2};
     Code code;
-    for (size_t i = 0; i < ops.size(); ++i) code.add(ops[i], {reg(uint16_t(1 + i)), reg(20), reg(21), reg(22)});
+    for (size_t i = 0; i < ops.size(); ++i)
+      code.add(ops[i], {reg(uint16_t(1 + i)), reg(20), reg(21), reg(22)});
     code.add("exit");
     return OneCore(code, params, {}).run();
   };
-  const auto added = [&](bool latch, const std::vector<const char*>& ops) { return cycles(latch, ops) - cycles(latch, {"fma.rn.f32"}); };
+  const auto added = [&](bool latch, const std::vector<const char*>& ops) {
+    return cycles(latch, ops) - cycles(latch, {"fma.rn.f32"});
+  };
   // At 0, 2, 4, 5 without; at 0, 1, 3, 4 with.
   CHECK(added(false, {"prmt.b32", "prmt.b32", "prmt.b32", "fma.rn.f32"}) == 5);
   CHECK(added(true, {"prmt.b32", "prmt.b32", "prmt.b32", "fma.rn.f32"}) == 4);
-  // At 0, 2, 3, 5 without: the pipe is free at 4 when the other issues at 3; with, 0, 1, 2, 3: the third enters at 4.
+  // At 0, 2, 3, 5 without: the pipe is free at 4 when the other issues at 3; with, 0, 1, 2, 3: the third
+  // enters at 4.
   CHECK(added(false, {"prmt.b32", "prmt.b32", "fma.rn.f32", "fma.rn.f32"}) == 4);
   CHECK(added(true, {"prmt.b32", "prmt.b32", "fma.rn.f32", "fma.rn.f32"}) == 3);
   // What waited in front of its pipe is as much later.
@@ -117,7 +126,8 @@ TEST_CASE("a predicate guards later than it selects") {
         }) == 10 * (13 + 5));
 }
 
-TEST_CASE("an interval of two cycles and three quarters is kept on average, to the cycle, and is not saved up") {
+TEST_CASE(
+    "an interval of two cycles and three quarters is kept on average, to the cycle, and is not saved up") {
   const auto products = [](int n) {
     Code code;
     for (int i = 0; i < n; ++i) code.add("mul.wide.u32", {reg(2 * i + 8), reg(0), reg(1)});
@@ -139,7 +149,9 @@ TEST_CASE("an interval of two cycles and three quarters is kept on average, to t
 }
 
 TEST_CASE("a sequence takes an issue slot for each of its instructions and ends after the op's latency") {
-  CHECK(chain(hopper_params(), [](Code& c) { c.add("div.u32", {reg(1), reg(1), reg(2)}); }) == 10 * 124 + 1);  // the last add
+  CHECK(chain(hopper_params(), [](Code& c) {
+          c.add("div.u32", {reg(1), reg(1), reg(2)});
+        }) == 10 * 124 + 1);  // the last add
 
   Code code;
   code.add("div.u32", {reg(1), reg(2), reg(3)});

@@ -7,7 +7,9 @@
 namespace glint::core {
 namespace {
 
-uint64_t slots(const OneCore& core, uint32_t pc, Stall reason) { return core.cell->profile()->of(pc).slots[size_t(reason)]; }
+uint64_t slots(const OneCore& core, uint32_t pc, Stall reason) {
+  return core.cell->profile()->of(pc).slots[size_t(reason)];
+}
 
 }  // namespace
 
@@ -30,7 +32,8 @@ TEST_CASE("a wait is charged to the instruction that waits, an issue to the one 
 }
 
 TEST_CASE("of several warps that wait for the same, the one that goes on first is charged") {
-  // Warps 0 and 4 of one scheduler: the younger is an instruction behind, so the wait belongs to the older one.
+  // Warps 0 and 4 of one scheduler: the younger is an instruction behind, so the wait belongs to the older
+  // one.
   Code code;
   code.add("sin.f32", {reg(1), reg(1)});
   code.add("sin.f32", {reg(2), reg(1)});
@@ -46,7 +49,7 @@ TEST_CASE("of several warps that wait for the same, the one that goes on first i
     for (size_t i = 0; i < size_t(Stall::Count); ++i) sum += core.cell->profile()->of(pc).slots[i];
   CHECK(sum == core.stats().cycles.value());
   CHECK(core.cell->profile()->of(0).issues == 2);
-  CHECK(slots(core, 0, Stall::MathThrottle) == 7);   // the second warp's turn on the pipe
+  CHECK(slots(core, 0, Stall::MathThrottle) == 7);  // the second warp's turn on the pipe
   CHECK(slots(core, 1, Stall::RawSfu) == core.stats().stalls.count(Stall::RawSfu));
 }
 
@@ -75,7 +78,8 @@ TEST_CASE("profiles of stepping and skipping are the same, and so are those of a
 TEST_CASE("a profile changes no cycle and no statistic") {
   const auto run = [](bool profiled) {
     Code code;
-    for (int i = 0; i < 20; ++i) code.add(i % 3 ? "fma.rn.f32" : "sin.f32", {reg(i % 5 + 1), reg(i % 4), reg(0), reg(0)});
+    for (int i = 0; i < 20; ++i)
+      code.add(i % 3 ? "fma.rn.f32" : "sin.f32", {reg(i % 5 + 1), reg(i % 4), reg(0), reg(0)});
     code.add("exit");
     OneCore core(code, quick_params(), {.num_warps = 9});
     core.profile = profiled;
@@ -93,7 +97,8 @@ TEST_CASE("a core whose memory never answers is stuck, and says which warp waits
   code.add("add.u32", {reg(4), reg(1), reg(1)});
   code.add("exit");
   mem::AddressSpace probe;
-  const Address at = probe.allocate("buffer", 4096);  // the first allocation lies at the same place in every space
+  const Address at =
+      probe.allocate("buffer", 4096);  // the first allocation lies at the same place in every space
   code.program().constants[1] = uint32_t(at);
   code.program().constants[2] = uint32_t(at >> 32);
   OneCore core(code, quick_params(), {});

@@ -56,8 +56,15 @@ Outcome run_mixture(Params params, OneCore::Options options) {
   const Cycle cycles = core.run();
   CHECK_FALSE(core.cell->fault());
   const CoreStats& s = core.stats();
-  return {cycles, s.stalls.parts(), s.latency.parts(), s.by_class.parts(), s.resident_cycles.value(), s.sectors.value(),
-          s.lane_instructions.value(), core.l1.log().size(), s.stalls.total()};
+  return {cycles,
+          s.stalls.parts(),
+          s.latency.parts(),
+          s.by_class.parts(),
+          s.resident_cycles.value(),
+          s.sectors.value(),
+          s.lane_instructions.value(),
+          core.l1.log().size(),
+          s.stalls.total()};
 }
 
 }  // namespace
@@ -101,7 +108,8 @@ TEST_CASE("skipping changes nothing where every mechanism costs cycles") {
       CAPTURE(policy, warps);
       Params params = costly_params();
       params.issue = PolicyChoice<IssueScheduler>(policy.c_str());
-      CHECK(run_mixture(params, {.num_warps = warps, .no_skip = true}) == run_mixture(params, {.num_warps = warps}));
+      CHECK(run_mixture(params, {.num_warps = warps, .no_skip = true}) ==
+            run_mixture(params, {.num_warps = warps}));
       CHECK(run_mixture(params, {.num_warps = warps, .accesses_per_cycle = 1}) ==
             run_mixture(params, {.num_warps = warps, .no_skip = true, .accesses_per_cycle = 1}));
     }
@@ -118,8 +126,10 @@ TEST_CASE("skipping cycles in which nothing happens changes nothing") {
         params.lsu.queue = 2;
         params.lsu.accesses = 8;
         params.launch_latency = 1000;
-        const Outcome stepped = run_mixture(params, {.num_warps = warps, .no_skip = true, .rt_capacity = rt_capacity});
-        const Outcome skipped = run_mixture(params, {.num_warps = warps, .no_skip = false, .rt_capacity = rt_capacity});
+        const Outcome stepped =
+            run_mixture(params, {.num_warps = warps, .no_skip = true, .rt_capacity = rt_capacity});
+        const Outcome skipped =
+            run_mixture(params, {.num_warps = warps, .no_skip = false, .rt_capacity = rt_capacity});
 
         CHECK(stepped == skipped);
       }

@@ -83,7 +83,8 @@ TEST_CASE("samples take the texture units a cycle for as many as there are units
     Cycle first, second;
   };
   // The interval of 4 is the least; the last sample is the access's.
-  for (const auto& [rate, samples, first, second] : {Case{4, 16, 35, 39}, {4, 17, 36, 41}, {4, 32, 39, 47}, {4, 4, 32, 36}, {0, 32, 32, 36}}) {
+  for (const auto& [rate, samples, first, second] :
+       {Case{4, 16, 35, 39}, {4, 17, 36, 41}, {4, 32, 39, 47}, {4, 4, 32, 36}, {0, 32, 32, 36}}) {
     CAPTURE(rate, samples);
     mem::FixedLatencyMemory memory(kMemory);
     Lsu lsu(unit_params({rate, 5, true}), memory);
@@ -96,7 +97,8 @@ TEST_CASE("samples take the texture units a cycle for as many as there are units
 TEST_CASE("a fetch is a sample a lane, and one between two levels is two") {
   const auto cycles = [](const char* op, uint32_t rate, LaneMask lanes) {
     Code code;
-    code.add("setp.lt.u32", {0, special(isa::Special::LaneId), code.constant(uint32_t(std::popcount(lanes)))});
+    code.add("setp.lt.u32",
+             {0, special(isa::Special::LaneId), code.constant(uint32_t(std::popcount(lanes)))});
     const isa::Slot half = code.constant(bits(0.5f));
     code.add(op, {reg(1), reg(2), reg(3), reg(4), code.constant(0), half, half, half}, 0, 0);
     code.add("add.u32", {reg(7), reg(4), reg(4)});
@@ -118,14 +120,17 @@ TEST_CASE("a fetch is a sample a lane, and one between two levels is two") {
   };
 
   const Cycle plain = cycles("tex.level.2d.v4.f32.f32", 0, kAllLanes);
-  CHECK(cycles("tex.level.2d.v4.f32.f32", 4, kAllLanes) == plain + 64 / 4 - 1);  // half way between levels: 8 texels a lane
+  CHECK(cycles("tex.level.2d.v4.f32.f32", 4, kAllLanes) ==
+        plain + 64 / 4 - 1);  // half way between levels: 8 texels a lane
   CHECK(cycles("tex.level.2d.v4.f32.f32", 8, kAllLanes) == plain + 64 / 8 - 1);
   CHECK(cycles("tex.level.2d.v4.f32.f32", 4, 0xff) == plain + 16 / 4 - 1);
 }
 
 TEST_CASE("a full queue of textures holds back textures only") {
   Code code;
-  for (int i = 0; i < 6; ++i) code.add("tex.1d.v4.f32.f32", {reg(4 * i), reg(4 * i + 1), reg(4 * i + 2), reg(4 * i + 3), code.constant(0), code.constant(bits(0.5f))});
+  for (int i = 0; i < 6; ++i)
+    code.add("tex.1d.v4.f32.f32", {reg(4 * i), reg(4 * i + 1), reg(4 * i + 2), reg(4 * i + 3),
+                                   code.constant(0), code.constant(bits(0.5f))});
   code.add("add.u32", {reg(60), reg(61), reg(61)});
   code.add("exit");
   Params params = quick_params();

@@ -1,8 +1,7 @@
 // Random structured programs, lane by lane against the interpreter.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
 #include <random>
 
@@ -17,7 +16,8 @@ namespace glint::test::torture {
 namespace {
 
 std::vector<uint32_t> compile_glsl(const std::string& text, bool is_compute) {
-  static const std::filesystem::path folder = std::filesystem::temp_directory_path() / fmt::format("glint_torture_{}", std::random_device()());
+  static const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / fmt::format("glint_torture_{}", std::random_device()());
   std::filesystem::create_directories(folder);
   const std::filesystem::path file = folder / (is_compute ? "program.comp" : "program.rgen");
   std::ofstream(file) << text;
@@ -35,7 +35,8 @@ Trial trial_of(const ProgramTree& program) {
   trial.launch.steps_a_lane = 30'000;
   Random random(program.seed ^ 0x5eed);
   auto& inputs = trial.launch.buffers[kInputBinding];
-  for (uint32_t i = 0; i < kInputWords; ++i) inputs.push_back(random.chance(60) ? random.below(16) : uint32_t(random.bits()));
+  for (uint32_t i = 0; i < kInputWords; ++i)
+    inputs.push_back(random.chance(60) ? random.below(16) : uint32_t(random.bits()));
   trial.launch.buffers[kResultBinding].assign(lanes, 0xdead'0000);
   auto& own = trial.launch.buffers[kOwnBinding];
   for (uint32_t i = 0; i < lanes * kOwnWords; ++i) own.push_back(uint32_t(random.bits()) & 0xff);
@@ -43,8 +44,9 @@ Trial trial_of(const ProgramTree& program) {
 }
 
 std::vector<Way> ways_of(const ProgramTree& program) {
-  static const std::vector<Way> kRotating = {{16, true, false, true}, {16, false, false, true}, {255, true, false, true}, {64, false, false, true},
-                                             {64, true, true, true}, {16, true, true, true}, {24, true, false, true}, {20, false, false, true}};
+  static const std::vector<Way> kRotating = {
+      {16, true, false, true}, {16, false, false, true}, {255, true, false, true}, {64, false, false, true},
+      {64, true, true, true},  {16, true, true, true},   {24, true, false, true},  {20, false, false, true}};
   std::vector<Way> ways{{64, true, false, true}, kRotating[program.seed % kRotating.size()]};
   if (program.spirv && program.functions.size() == 1) {
     ways.push_back({64, true, false, false});
@@ -97,7 +99,8 @@ class Minimiser {
   // Differences are alike; other problems by their first words.
   static std::string kind_of(const std::string& problem) {
     if (problem.find("expected 0x") != std::string::npos) return "difference";
-    return problem.substr(0, 12) + problem.substr(std::min(problem.size(), problem.find("machine, ") + 9)).substr(0, 60);
+    return problem.substr(0, 12) +
+           problem.substr(std::min(problem.size(), problem.find("machine, ") + 9)).substr(0, 60);
   }
   // Statement number `at` in the order of reading.
   static bool remove(std::vector<Stmt>& list, size_t& at, bool unwrap) {
@@ -120,7 +123,8 @@ class Minimiser {
 };
 
 void torture(bool spirv, uint64_t default_first, uint64_t default_count) {
-  const uint64_t first = setting("GLINT_TORTURE_SEED", default_first), count = setting("GLINT_TORTURE_COUNT", default_count);
+  const uint64_t first = setting("GLINT_TORTURE_SEED", default_first),
+                 count = setting("GLINT_TORTURE_COUNT", default_count);
   const uint64_t most_failures = setting("GLINT_TORTURE_FAILURES", 1);
   uint64_t skipped = 0, failures = 0, statements = 0, divergent = 0;
   for (uint64_t seed = first; seed < first + count && failures < most_failures; ++seed) {
@@ -149,12 +153,18 @@ void torture(bool spirv, uint64_t default_first, uint64_t default_count) {
   CHECK((count < 100 || divergent * 10 >= count * 5));  // else one lane would have done
 }
 
-TEST_CASE("Random GLSL programs compute in every lane what the interpreter computes") { torture(false, 1, 300); }
+TEST_CASE("Random GLSL programs compute in every lane what the interpreter computes") {
+  torture(false, 1, 300);
+}
 
-TEST_CASE("Random SPIR-V control flow computes in every lane what the interpreter computes") { torture(true, 1, 500); }
+TEST_CASE("Random SPIR-V control flow computes in every lane what the interpreter computes") {
+  torture(true, 1, 500);
+}
 
 // A selection whose one arm leaves for the continue target, which nothing else reaches.
-TEST_CASE("SPIR-V programs that once found mistakes compute what the interpreter computes") { torture(true, 2356, 1); }
+TEST_CASE("SPIR-V programs that once found mistakes compute what the interpreter computes") {
+  torture(true, 2356, 1);
+}
 
 }  // namespace
 }  // namespace glint::test::torture

@@ -48,50 +48,78 @@ Id FunctionWriter::binary(const Expr& e) {
   Id b = value(e.args[1]);
   const Id word = word_type(), truth = w_.bool_type(), number = w_.float_type();
   switch (e.op) {
-    case Op::Add: return op(OpIAdd, word, {a, b});
-    case Op::Sub: return op(OpISub, word, {a, b});
-    case Op::Mul: return op(OpIMul, word, {a, b});
-    case Op::And: return op(OpBitwiseAnd, word, {a, b});
-    case Op::Or: return op(OpBitwiseOr, word, {a, b});
-    case Op::Xor: return op(OpBitwiseXor, word, {a, b});
-    case Op::Shl: return op(OpShiftLeftLogical, word, {a, masked(b, 31)});
-    case Op::Shr: return op(OpShiftRightLogical, word, {a, masked(b, 31)});
+    case Op::Add:
+      return op(OpIAdd, word, {a, b});
+    case Op::Sub:
+      return op(OpISub, word, {a, b});
+    case Op::Mul:
+      return op(OpIMul, word, {a, b});
+    case Op::And:
+      return op(OpBitwiseAnd, word, {a, b});
+    case Op::Or:
+      return op(OpBitwiseOr, word, {a, b});
+    case Op::Xor:
+      return op(OpBitwiseXor, word, {a, b});
+    case Op::Shl:
+      return op(OpShiftLeftLogical, word, {a, masked(b, 31)});
+    case Op::Shr:
+      return op(OpShiftRightLogical, word, {a, masked(b, 31)});
     case Op::Div:
     case Op::Mod:
       b = op(OpBitwiseOr, word, {b, w_.word(1)});
       return op(e.op == Op::Div ? OpUDiv : OpUMod, word, {a, b});
-    case Op::Less: return op(OpULessThan, truth, {a, b});
-    case Op::SignedLess: return op(OpSLessThan, truth, {a, b});
-    case Op::Equal: return op(OpIEqual, truth, {a, b});
-    case Op::FloatLess: return op(OpFOrdLessThan, truth, {a, b});
-    case Op::Both: return op(OpLogicalAnd, truth, {a, b});
-    case Op::Either: return op(OpLogicalOr, truth, {a, b});
-    case Op::FloatAdd: return op(OpFAdd, number, {a, b});
-    default: return op(OpFMul, number, {a, b});
+    case Op::Less:
+      return op(OpULessThan, truth, {a, b});
+    case Op::SignedLess:
+      return op(OpSLessThan, truth, {a, b});
+    case Op::Equal:
+      return op(OpIEqual, truth, {a, b});
+    case Op::FloatLess:
+      return op(OpFOrdLessThan, truth, {a, b});
+    case Op::Both:
+      return op(OpLogicalAnd, truth, {a, b});
+    case Op::Either:
+      return op(OpLogicalOr, truth, {a, b});
+    case Op::FloatAdd:
+      return op(OpFAdd, number, {a, b});
+    default:
+      return op(OpFMul, number, {a, b});
   }
 }
 
 Id FunctionWriter::value(const Expr& e) {
   using Storage = spv::StorageClass;
   switch (e.op) {
-    case Op::Constant: return w_.word(e.value);
-    case Op::FloatConstant: return w_.declare(OpConstant, {w_.float_type(), e.value}, true);
+    case Op::Constant:
+      return w_.word(e.value);
+    case Op::FloatConstant:
+      return w_.declare(OpConstant, {w_.float_type(), e.value}, true);
     case Op::Variable:
     case Op::BoolVariable:
-    case Op::FloatVariable: return get(e.value);
-    case Op::Lane: return lane_;
-    case Op::Input: return load_from(Storage::StorageBuffer, ids_.inputs, {w_.word(0), masked(value(e.args[0]), kInputWords - 1)});
-    case Op::Element: return load_from(Storage::Function, elements_, {masked(value(e.args[0]), kElements - 1)});
-    case Op::Own: return op(OpLoad, word_type(), {own_word(value(e.args[0]))});
+    case Op::FloatVariable:
+      return get(e.value);
+    case Op::Lane:
+      return lane_;
+    case Op::Input:
+      return load_from(Storage::StorageBuffer, ids_.inputs,
+                       {w_.word(0), masked(value(e.args[0]), kInputWords - 1)});
+    case Op::Element:
+      return load_from(Storage::Function, elements_, {masked(value(e.args[0]), kElements - 1)});
+    case Op::Own:
+      return op(OpLoad, word_type(), {own_word(value(e.args[0]))});
     case Op::Select:
     case Op::FloatSelect: {
       const Id condition = value(e.args[0]), yes = value(e.args[1]), no = value(e.args[2]);
       return op(OpSelect, type_of(e.op == Op::Select ? Sort::Word : Sort::Float), {condition, yes, no});
     }
-    case Op::Truncate: return op(OpConvertFToU, word_type(), {value(e.args[0])});
-    case Op::ToFloat: return op(OpConvertUToF, w_.float_type(), {value(e.args[0])});
-    case Op::Not: return op(OpLogicalNot, w_.bool_type(), {value(e.args[0])});
-    default: return binary(e);
+    case Op::Truncate:
+      return op(OpConvertFToU, word_type(), {value(e.args[0])});
+    case Op::ToFloat:
+      return op(OpConvertUToF, w_.float_type(), {value(e.args[0])});
+    case Op::Not:
+      return op(OpLogicalNot, w_.bool_type(), {value(e.args[0])});
+    default:
+      return binary(e);
   }
 }
 
@@ -106,12 +134,18 @@ void FunctionWriter::leave_function(Id result) {
 
 BlockCode* FunctionWriter::exit_target(Kind kind, const Targets& t) {
   switch (kind) {
-    case Kind::Break: return t.nearest_merge;
-    case Kind::Continue: return t.loop_continue;
-    case Kind::LoopBreak: return t.loop_merge;
-    case Kind::Leave: return t.leave;
-    case Kind::NextCase: return t.next_case;
-    default: return nullptr;
+    case Kind::Break:
+      return t.nearest_merge;
+    case Kind::Continue:
+      return t.loop_continue;
+    case Kind::LoopBreak:
+      return t.loop_merge;
+    case Kind::Leave:
+      return t.leave;
+    case Kind::NextCase:
+      return t.next_case;
+    default:
+      return nullptr;
   }
 }
 
@@ -124,10 +158,12 @@ void FunctionWriter::list(const std::vector<Stmt>& stmts, const Targets& targets
 
 void FunctionWriter::statement(const Stmt& s, const Targets& targets) {
   switch (s.kind) {
-    case Kind::Assign: return set(s.value, value(s.args[0]));
+    case Kind::Assign:
+      return set(s.value, value(s.args[0]));
     case Kind::Trace: {
       const Id mixed = op(OpBitwiseXor, word_type(), {get(0), value(s.args[0])});
-      return set(0, op(OpIAdd, word_type(), {op(OpIMul, word_type(), {mixed, w_.word(2654435761u)}), w_.word(s.value)}));
+      return set(0, op(OpIAdd, word_type(),
+                       {op(OpIMul, word_type(), {mixed, w_.word(2654435761u)}), w_.word(s.value)}));
     }
     case Kind::SetElement: {
       const Id index = masked(value(s.args[0]), kElements - 1), what = value(s.args[1]);
@@ -137,24 +173,31 @@ void FunctionWriter::statement(const Stmt& s, const Targets& targets) {
       const Id index = value(s.args[0]), what = value(s.args[1]);
       return store(own_word(index), what);
     }
-    case Kind::If: return branch_statement(s, targets);
-    case Kind::Loop: return s.style == Style::Single ? single_block_loop(s) : loop(s, targets);
-    case Kind::Switch: return choice(s, targets);
+    case Kind::If:
+      return branch_statement(s, targets);
+    case Kind::Loop:
+      return s.style == Style::Single ? single_block_loop(s) : loop(s, targets);
+    case Kind::Switch:
+      return choice(s, targets);
     case Kind::Call: {
       const Id x = value(s.args[0]), y = value(s.args[1]);
       return set(s.value, op(OpFunctionCall, word_type(), {ids_.functions[s.other], x, y}));
     }
-    case Kind::Exchange: return exchange(s);
-    case Kind::Return: return leave_function(op(OpBitwiseXor, word_type(), {get(0), value(s.args[0])}));
+    case Kind::Exchange:
+      return exchange(s);
+    case Kind::Return:
+      return leave_function(op(OpBitwiseXor, word_type(), {get(0), value(s.args[0])}));
     default:
-      if (BlockCode* to = exit_target(s.kind, targets)) branch(to);  // none: the minimiser took its construct away
+      if (BlockCode* to = exit_target(s.kind, targets))
+        branch(to);  // none: the minimiser took its construct away
       return;
   }
 }
 
 void FunctionWriter::exchange(const Stmt& s) {
   const auto barrier = [&] {
-    const auto semantics = uint32_t(spv::MemorySemanticsMask::AcquireRelease) | uint32_t(spv::MemorySemanticsMask::WorkgroupMemory);
+    const auto semantics = uint32_t(spv::MemorySemanticsMask::AcquireRelease) |
+                           uint32_t(spv::MemorySemanticsMask::WorkgroupMemory);
     const Id scope = w_.word(uint32_t(spv::Scope::Workgroup));
     append(here_->code, OpControlBarrier, {scope, scope, w_.word(semantics)});
   };
@@ -162,8 +205,10 @@ void FunctionWriter::exchange(const Stmt& s) {
   const Id local = op(OpCompositeExtract, word_type(), {op(OpLoad, vector, {ids_.local_id}), 0});
   store(chain(spv::StorageClass::Workgroup, ids_.slots, {local}), get(0));
   barrier();
-  const Id other = op(OpUMod, word_type(), {op(OpIAdd, word_type(), {local, w_.word(s.value)}), w_.word(program_.group)});
-  set(1, op(OpBitwiseXor, word_type(), {get(1), load_from(spv::StorageClass::Workgroup, ids_.slots, {other})}));
+  const Id other =
+      op(OpUMod, word_type(), {op(OpIAdd, word_type(), {local, w_.word(s.value)}), w_.word(program_.group)});
+  set(1,
+      op(OpBitwiseXor, word_type(), {get(1), load_from(spv::StorageClass::Workgroup, ids_.slots, {other})}));
   set(0, op(OpIAdd, word_type(), {op(OpIMul, word_type(), {get(0), w_.word(31)}), get(1)}));
   barrier();
 }
@@ -199,7 +244,9 @@ void FunctionWriter::choice(const Stmt& s, Targets targets) {
   BlockCode* end_of_switch = new_block();
   std::vector<BlockCode*> cases;
   for (size_t c = 0; c < s.bodies.size(); ++c) cases.push_back(new_block());
-  BlockCode* otherwise = s.default_case >= 0 && s.default_case < int(cases.size()) ? cases[size_t(s.default_case)] : end_of_switch;
+  BlockCode* otherwise = s.default_case >= 0 && s.default_case < int(cases.size())
+                             ? cases[size_t(s.default_case)]
+                             : end_of_switch;
   Words operands{selector, otherwise->label};
   edge(otherwise);
   for (size_t c = 0; c < cases.size(); ++c)
@@ -242,7 +289,8 @@ void FunctionWriter::single_block_loop(const Stmt& s) {
 }
 
 void FunctionWriter::loop(const Stmt& s, Targets targets) {
-  BlockCode *header = new_block(false), *body = new_block(), *target = new_block(), *merge_block = new_block();
+  BlockCode *header = new_block(false), *body = new_block(), *target = new_block(),
+            *merge_block = new_block();
   set(s.value, w_.word(0));
   branch(header);
   begin(header);

@@ -20,8 +20,8 @@ struct Phi {
   Words operands;
 };
 
-// SSA while writing, by Braun et al., "Simple and Efficient Construction of Static Single Assignment Form" (2013);
-// phis that only pass one value on are kept.
+// SSA while writing, by Braun et al., "Simple and Efficient Construction of Static Single Assignment Form"
+// (2013); phis that only pass one value on are kept.
 struct BlockCode {
   Id label = 0;
   bool is_sealed = true, is_closed = false;  // all predecessors are known; ends with a terminator
@@ -41,20 +41,28 @@ struct Targets {
 class FunctionWriter {
  public:
   FunctionWriter(SpirvWriter& writer, ModuleIds& ids, const ProgramTree& program, size_t number)
-      : w_(writer), ids_(ids), program_(program), tree_(program.functions[number]), is_entry_(number + 1 == program.functions.size()) {}
+      : w_(writer),
+        ids_(ids),
+        program_(program),
+        tree_(program.functions[number]),
+        is_entry_(number + 1 == program.functions.size()) {}
 
   Id run();
 
  private:
   Id word_type() { return w_.int_type(); }
-  Id type_of(Sort sort) { return sort == Sort::Word ? word_type() : sort == Sort::Bool ? w_.bool_type() : w_.float_type(); }
+  Id type_of(Sort sort) {
+    return sort == Sort::Word ? word_type() : sort == Sort::Bool ? w_.bool_type() : w_.float_type();
+  }
   Id op(spv::Op what, Id type, Words operands) {
     const Id id = w_.new_id();
     operands.insert(operands.begin(), {type, id});
     append(here_->code, what, operands);
     return id;
   }
-  Id load_from(spv::StorageClass storage, Id base, Words indices) { return op(spv::Op::OpLoad, word_type(), {chain(storage, base, std::move(indices))}); }
+  Id load_from(spv::StorageClass storage, Id base, Words indices) {
+    return op(spv::Op::OpLoad, word_type(), {chain(storage, base, std::move(indices))});
+  }
   Id chain(spv::StorageClass storage, Id base, Words indices) {
     indices.insert(indices.begin(), base);
     return op(spv::Op::OpAccessChain, w_.pointer_to(storage, word_type()), indices);
@@ -62,7 +70,8 @@ class FunctionWriter {
   void store(Id pointer, Id value) { append(here_->code, spv::Op::OpStore, {pointer, value}); }
   Id own_word(Id index) {
     const Id first = op(spv::Op::OpIMul, word_type(), {lane_, w_.word(kOwnWords)});
-    return chain(spv::StorageClass::StorageBuffer, ids_.own, {w_.word(0), op(spv::Op::OpIAdd, word_type(), {first, masked(index, kOwnWords - 1)})});
+    return chain(spv::StorageClass::StorageBuffer, ids_.own,
+                 {w_.word(0), op(spv::Op::OpIAdd, word_type(), {first, masked(index, kOwnWords - 1)})});
   }
   Id masked(Id x, uint32_t mask) { return op(spv::Op::OpBitwiseAnd, word_type(), {x, w_.word(mask)}); }
 
@@ -86,7 +95,8 @@ class FunctionWriter {
     here_->is_closed = true;
   }
   void edge(BlockCode* to) {
-    if (std::find(to->predecessors.begin(), to->predecessors.end(), here_) == to->predecessors.end()) to->predecessors.push_back(here_);
+    if (std::find(to->predecessors.begin(), to->predecessors.end(), here_) == to->predecessors.end())
+      to->predecessors.push_back(here_);
   }
   void branch(BlockCode* to) {
     if (here_->is_closed) return;
@@ -99,13 +109,16 @@ class FunctionWriter {
     end(spv::Op::OpBranchConditional, {condition, yes->label, no->label});
   }
   void merge(BlockCode* at) { append(here_->code, spv::Op::OpSelectionMerge, {at->label, 0}); }
-  void loop_merge(BlockCode* at, BlockCode* target) { append(here_->code, spv::Op::OpLoopMerge, {at->label, target->label, 0}); }
+  void loop_merge(BlockCode* at, BlockCode* target) {
+    append(here_->code, spv::Op::OpLoopMerge, {at->label, target->label, 0});
+  }
 
   Id read(uint32_t variable, BlockCode* block);
   void fill(BlockCode* block, size_t phi);
   void seal(BlockCode* block);
   Id get(uint32_t variable) {
-    if (memory_[variable]) return op(spv::Op::OpLoad, type_of(tree_.variables[variable]), {memory_[variable]});
+    if (memory_[variable])
+      return op(spv::Op::OpLoad, type_of(tree_.variables[variable]), {memory_[variable]});
     return read(variable, here_);
   }
   void set(uint32_t variable, Id value) {
@@ -125,7 +138,9 @@ class FunctionWriter {
   void single_block_loop(const Stmt& s);
   Id goes_on(const Stmt& s);
   void exchange(const Stmt& s);
-  void count(uint32_t variable) { set(variable, op(spv::Op::OpIAdd, word_type(), {get(variable), w_.word(1)})); }
+  void count(uint32_t variable) {
+    set(variable, op(spv::Op::OpIAdd, word_type(), {get(variable), w_.word(1)}));
+  }
 
   SpirvWriter& w_;
   ModuleIds& ids_;

@@ -76,19 +76,29 @@ class Generator {
 
 Expr Generator::word(int depth) {
   if (depth <= 0 || random_.chance(25)) switch (random_.below(6)) {
-      case 0: return make(Op::Lane, {});
-      case 1: return make(Op::Constant, {}, random_.chance(70) ? random_.below(8) : uint32_t(random_.bits()));
-      default: return make(Op::Variable, {}, word_variable());
+      case 0:
+        return make(Op::Lane, {});
+      case 1:
+        return make(Op::Constant, {}, random_.chance(70) ? random_.below(8) : uint32_t(random_.bits()));
+      default:
+        return make(Op::Variable, {}, word_variable());
     }
   switch (random_.below(10)) {
-    case 0: return make(Op::Input, {word(depth - 1)});
-    case 1: return make(Op::Element, {word(depth - 1)});
-    case 2: return make(Op::Own, {word(depth - 1)});
-    case 3: return make(Op::Select, {condition(depth - 1), word(depth - 1), word(depth - 1)});
-    case 4: return make(Op::Truncate, {number(depth - 1)});
-    default: break;
+    case 0:
+      return make(Op::Input, {word(depth - 1)});
+    case 1:
+      return make(Op::Element, {word(depth - 1)});
+    case 2:
+      return make(Op::Own, {word(depth - 1)});
+    case 3:
+      return make(Op::Select, {condition(depth - 1), word(depth - 1), word(depth - 1)});
+    case 4:
+      return make(Op::Truncate, {number(depth - 1)});
+    default:
+      break;
   }
-  static constexpr Op kBinary[] = {Op::Add, Op::Sub, Op::Mul, Op::And, Op::Or, Op::Xor, Op::Shl, Op::Shr, Op::Div, Op::Mod};
+  static constexpr Op kBinary[] = {Op::Add, Op::Sub, Op::Mul, Op::And, Op::Or,
+                                   Op::Xor, Op::Shl, Op::Shr, Op::Div, Op::Mod};
   const Op op = kBinary[random_.below(std::size(kBinary))];
   return make(op, {word(depth - 1), word(depth - 1)});
 }
@@ -97,17 +107,27 @@ Expr Generator::condition(int depth) {
   if (depth <= 0 || random_.chance(20)) {
     if (random_.chance(40)) return make(Op::BoolVariable, {}, kWords + random_.below(kBools));
     // A bit of the lane or of data: part of the warp each time.
-    const Expr bit = make(Op::And, {make(Op::Shr, {word(0), make(Op::Constant, {}, random_.below(5))}), make(Op::Constant, {}, 1 + random_.below(3))});
+    const Expr bit = make(Op::And, {make(Op::Shr, {word(0), make(Op::Constant, {}, random_.below(5))}),
+                                    make(Op::Constant, {}, 1 + random_.below(3))});
     return make(Op::Equal, {bit, make(Op::Constant, {}, 0)});
   }
   switch (random_.below(8)) {
-    case 0: return make(Op::Both, {condition(depth - 1), condition(depth - 1)});
-    case 1: return make(Op::Either, {condition(depth - 1), condition(depth - 1)});
-    case 2: return make(Op::Not, {condition(depth - 1)});
-    case 3: return make(Op::FloatLess, {number(depth - 1), number(depth - 1)});
-    case 4: return make(Op::Equal, {make(Op::And, {word(1), make(Op::Constant, {}, 3)}), make(Op::Constant, {}, random_.below(4))});
-    case 5: return make(Op::SignedLess, {word(depth - 1), word(depth - 1)});
-    default: return make(Op::Less, {make(Op::And, {word(depth - 1), make(Op::Constant, {}, 7)}), make(Op::Constant, {}, random_.below(8))});
+    case 0:
+      return make(Op::Both, {condition(depth - 1), condition(depth - 1)});
+    case 1:
+      return make(Op::Either, {condition(depth - 1), condition(depth - 1)});
+    case 2:
+      return make(Op::Not, {condition(depth - 1)});
+    case 3:
+      return make(Op::FloatLess, {number(depth - 1), number(depth - 1)});
+    case 4:
+      return make(Op::Equal, {make(Op::And, {word(1), make(Op::Constant, {}, 3)}),
+                              make(Op::Constant, {}, random_.below(4))});
+    case 5:
+      return make(Op::SignedLess, {word(depth - 1), word(depth - 1)});
+    default:
+      return make(Op::Less, {make(Op::And, {word(depth - 1), make(Op::Constant, {}, 7)}),
+                             make(Op::Constant, {}, random_.below(8))});
   }
 }
 
@@ -117,10 +137,14 @@ Expr Generator::number(int depth) {
     return make(Op::FloatVariable, {}, kWords + kBools + random_.below(kFloats));
   }
   switch (random_.below(4)) {
-    case 0: return make(Op::FloatAdd, {number(depth - 1), number(depth - 1)});
-    case 1: return make(Op::FloatMul, {number(depth - 1), number(depth - 1)});
-    case 2: return make(Op::FloatSelect, {condition(depth - 1), number(depth - 1), number(depth - 1)});
-    default: return make(Op::ToFloat, {word(depth - 1)});
+    case 0:
+      return make(Op::FloatAdd, {number(depth - 1), number(depth - 1)});
+    case 1:
+      return make(Op::FloatMul, {number(depth - 1), number(depth - 1)});
+    case 2:
+      return make(Op::FloatSelect, {condition(depth - 1), number(depth - 1), number(depth - 1)});
+    default:
+      return make(Op::ToFloat, {word(depth - 1)});
   }
 }
 
@@ -219,7 +243,9 @@ Stmt Generator::loop(Place place) {
   s.value = declare(Sort::Word);
   s.args = {word(1), condition(2)};
   const bool stays_uniform = place.is_uniform && s.style != Style::Single && random_.chance(50);
-  if (stays_uniform) s.args = {make(Op::Constant, {}, random_.below(3)), make(Op::Less, {make(Op::Constant, {}, 0), make(Op::Constant, {}, 1)})};
+  if (stays_uniform)
+    s.args = {make(Op::Constant, {}, random_.below(3)),
+              make(Op::Less, {make(Op::Constant, {}, 0), make(Op::Constant, {}, 1)})};
   ++place.depth;
   place.in_loop = true;
   place.switch_is_nearer = place.may_leave = place.may_fall = false;
@@ -302,7 +328,8 @@ ProgramTree generate(uint64_t seed, bool spirv) {
   for (uint32_t i = 0; i < functions; ++i) {
     program.functions.push_back(Generator(random, spirv, i, false, false).run(4 + random.below(10)));
   }
-  program.functions.push_back(Generator(random, spirv, functions, true, exchanges).run(10 + random.below(30)));
+  program.functions.push_back(
+      Generator(random, spirv, functions, true, exchanges).run(10 + random.below(30)));
   return program;
 }
 

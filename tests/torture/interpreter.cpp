@@ -3,7 +3,6 @@
 #include "tests/torture/interpreter.h"
 
 #include <fmt/format.h>
-
 #include <stdexcept>
 
 namespace glint::test::torture {
@@ -12,7 +11,9 @@ using enum spv::Op;
 
 namespace {
 
-[[noreturn]] void fail(const std::string& what) { throw std::runtime_error("interpreter: " + what); }
+[[noreturn]] void fail(const std::string& what) {
+  throw std::runtime_error("interpreter: " + what);
+}
 
 constexpr uint32_t kHeaderWords = 5;
 
@@ -28,7 +29,8 @@ bool has_result(spv::Op op, bool* has_type) {
 Interpreter::Interpreter(const std::vector<uint32_t>& words) {
   decode(words);
   if (entry_ == 0) fail("no entry point");
-  for (size_t axis = 0; axis < local_size_ids_.size(); ++axis) local_size_[axis] = uint32_t(constants_.at(local_size_ids_[axis]).part[0]);
+  for (size_t axis = 0; axis < local_size_ids_.size(); ++axis)
+    local_size_[axis] = uint32_t(constants_.at(local_size_ids_[axis]).part[0]);
   check_layout();
 }
 
@@ -59,7 +61,8 @@ void Interpreter::decode(const std::vector<uint32_t>& words) {
       declare(inst);
     } else if (inst.op == OpFunctionParameter) {
       function->parameters.push_back(inst.result);
-    } else if (inst.op != OpLine && inst.op != OpNoLine && inst.op != OpSelectionMerge && inst.op != OpLoopMerge) {
+    } else if (inst.op != OpLine && inst.op != OpNoLine && inst.op != OpSelectionMerge &&
+               inst.op != OpLoopMerge) {
       if (inst.op == OpLabel) function->at_label[inst.result] = uint32_t(function->code.size());
       function->code.push_back(std::move(inst));
     }
@@ -79,7 +82,8 @@ void Interpreter::declare(const Decoded& inst) {
       if (spv::ExecutionMode(o[1]) == spv::ExecutionMode::LocalSize) local_size_ = {o[2], o[3], o[4]};
       break;
     case OpExecutionModeId:
-      if (spv::ExecutionMode(o[1]) == spv::ExecutionMode::LocalSizeId) local_size_ids_ = {o.begin() + 2, o.end()};
+      if (spv::ExecutionMode(o[1]) == spv::ExecutionMode::LocalSizeId)
+        local_size_ids_ = {o.begin() + 2, o.end()};
       break;
     case OpDecorate:
       if (spv::Decoration(o[1]) == spv::Decoration::Binding) binding_of_[o[0]] = o[2];
@@ -158,11 +162,13 @@ void Interpreter::declare_constant(const Decoded& inst) {
       break;
     case OpConstant:
       value.count = 1;
-      value.part[0] = cut(o.size() > 1 ? uint64_t(o[1]) << 32 | o[0] : o[0], types_.at(inst.type).scalar.width);
+      value.part[0] =
+          cut(o.size() > 1 ? uint64_t(o[1]) << 32 | o[0] : o[0], types_.at(inst.type).scalar.width);
       break;
     case OpConstantComposite:
       for (Id part : o)
-        for (uint32_t i = 0; i < constants_.at(part).count; ++i) value.part.at(value.count++) = constants_[part].part[i];
+        for (uint32_t i = 0; i < constants_.at(part).count; ++i)
+          value.part.at(value.count++) = constants_[part].part[i];
       break;
     case OpConstantNull:
     case OpUndef:
@@ -178,7 +184,8 @@ void Interpreter::declare_constant(const Decoded& inst) {
 // Buffers must be dense arrays of words, so that a scalar's number is its word's.
 void Interpreter::check_layout() const {
   for (const auto& [id, stride] : array_stride_)
-    if (types_.count(id) && stride != 4 * types_.at(types_.at(id).element).scalars) fail("an array that is not dense");
+    if (types_.count(id) && stride != 4 * types_.at(types_.at(id).element).scalars)
+      fail("an array that is not dense");
   for (const auto& [member, offset] : member_offset_) {
     Id type = member.first;
     if (offset != 4 * first_scalar(&type, member.second)) fail("a struct that is not dense");
@@ -193,7 +200,8 @@ uint32_t Interpreter::first_scalar(Id* type, uint32_t index) const {
     *type = info.members.at(index);
     return first;
   }
-  if (info.op != OpTypeRuntimeArray && index >= info.count) fail(fmt::format("element {} of {}", index, info.count));
+  if (info.op != OpTypeRuntimeArray && index >= info.count)
+    fail(fmt::format("element {} of {}", index, info.count));
   *type = info.element;
   return index * types_.at(info.element).scalars;
 }

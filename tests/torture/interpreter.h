@@ -1,5 +1,5 @@
-// A scalar interpreter of SPIR-V: one invocation at a time, on its own reading of the words; shares no code with the frontend.
-// SPDX-License-Identifier: Apache-2.0
+// A scalar interpreter of SPIR-V: one invocation at a time, on its own reading of the words; shares no code
+// with the frontend. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstdint>
@@ -28,10 +28,10 @@ struct Scalar {
 
 struct TypeInfo {
   spv::Op op{};
-  Scalar scalar;                       // of the first part
-  Id element = 0;                      // of vectors, matrices, arrays; the pointee of pointers
-  uint32_t count = 0;                  // elements; 0 in a runtime array
-  uint32_t scalars = 0;                // of a value
+  Scalar scalar;         // of the first part
+  Id element = 0;        // of vectors, matrices, arrays; the pointee of pointers
+  uint32_t count = 0;    // elements; 0 in a runtime array
+  uint32_t scalars = 0;  // of a value
   std::vector<Id> members;
 };
 
@@ -48,7 +48,8 @@ struct FunctionCode {
   std::map<Id, uint32_t> at_label;
 };
 
-// The launch that a module is run with. Buffers are of 32-bit words, by binding in set 0, and are written in place.
+// The launch that a module is run with. Buffers are of 32-bit words, by binding in set 0, and are written in
+// place.
 struct ScalarLaunch {
   std::array<uint32_t, 3> threads{1, 1, 1};
   std::map<uint32_t, std::vector<uint32_t>> buffers;
@@ -60,7 +61,8 @@ class Interpreter {
   // std::runtime_error names what it does not know.
   explicit Interpreter(const std::vector<uint32_t>& words);
 
-  // Every invocation to its end, those of a workgroup in turns from barrier to barrier. Returns the longest's steps.
+  // Every invocation to its end, those of a workgroup in turns from barrier to barrier. Returns the longest's
+  // steps.
   uint64_t run(ScalarLaunch& launch) const;
 
  private:
@@ -102,13 +104,14 @@ class Interpreter {
 };
 
 // What an op without memory or control computes, part by part; false when it is none of those known.
-bool compute(const Decoded& inst, Scalar to, Scalar from, const std::vector<const Value*>& arguments, Value* result);
+bool compute(const Decoded& inst, Scalar to, Scalar from, const std::vector<const Value*>& arguments,
+             Value* result);
 bool compute_glsl(uint32_t function, Scalar to, const std::vector<const Value*>& arguments, Value* result);
 
 // Bits and numbers.
 float float_of(uint64_t bits);
 double double_of(uint64_t bits);
-uint64_t bits_of(float x);   // a NaN is the canonical one of PTX
+uint64_t bits_of(float x);  // a NaN is the canonical one of PTX
 uint64_t bits_of(double x);
 int64_t extended(uint64_t x, uint32_t width);  // by its sign
 uint64_t cut(uint64_t x, uint32_t width);

@@ -1,8 +1,7 @@
 // The walk of invocations through a module: control, calls, memory, composites.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 #include <stdexcept>
 
 #include "tests/torture/interpreter.h"
@@ -13,7 +12,9 @@ using enum spv::Op;
 
 namespace {
 
-[[noreturn]] void fail(const std::string& what) { throw std::runtime_error("interpreter: " + what); }
+[[noreturn]] void fail(const std::string& what) {
+  throw std::runtime_error("interpreter: " + what);
+}
 
 constexpr size_t kMostFrames = 20;
 
@@ -46,7 +47,8 @@ struct Interpreter::Invocation {
   }
 };
 
-// The scalars that all lanes of a group see come first, then those of each lane: numbers are the same in all lanes.
+// The scalars that all lanes of a group see come first, then those of each lane: numbers are the same in all
+// lanes.
 uint64_t Interpreter::run(ScalarLaunch& launch) const {
   Memories shared, own;
   std::vector<Value> constants = constants_;
@@ -64,7 +66,8 @@ uint64_t Interpreter::run(ScalarLaunch& launch) const {
         const auto& words = launch.buffers.at(binding_of_.at(v.id));
         list.back().assign(words.begin(), words.end());
       }
-      if (v.initializer) std::copy_n(constants_.at(v.initializer).part.begin(), list.back().size(), list.back().begin());
+      if (v.initializer)
+        std::copy_n(constants_.at(v.initializer).part.begin(), list.back().size(), list.back().begin());
     }
   const std::array<uint32_t, 3> group = local_size_[0] ? local_size_ : launch.threads;
   std::array<uint32_t, 3> groups{};
@@ -161,13 +164,17 @@ bool Interpreter::step(Invocation& lane) const {
   if (step_control(lane, inst) || step_memory(lane, inst) || step_composite(lane, inst)) return !lane.ended;
   const bool is_glsl = inst.op == OpExtInst && inst.operands[0] == glsl_;
   std::vector<const Value*> arguments;
-  for (size_t i = is_glsl ? 2 : 0; i < inst.operands.size(); ++i) arguments.push_back(&f.values.at(inst.operands[i]));
+  for (size_t i = is_glsl ? 2 : 0; i < inst.operands.size(); ++i)
+    arguments.push_back(&f.values.at(inst.operands[i]));
   Value result;
   const Scalar to = inst.type ? types_.at(inst.type).scalar : Scalar{};
   const Id first = inst.operands.empty() ? 0 : type_of_.at(inst.operands[is_glsl ? 2 : 0]);
   const Scalar from = first ? types_.at(first).scalar : Scalar{};
-  const bool done = is_glsl ? compute_glsl(inst.operands[1], to, arguments, &result) : compute(inst, to, from, arguments, &result);
-  if (!done) fail(fmt::format("opcode {}{}", uint32_t(inst.op), is_glsl ? fmt::format(", function {}", inst.operands[1]) : ""));
+  const bool done = is_glsl ? compute_glsl(inst.operands[1], to, arguments, &result)
+                            : compute(inst, to, from, arguments, &result);
+  if (!done)
+    fail(fmt::format("opcode {}{}", uint32_t(inst.op),
+                     is_glsl ? fmt::format(", function {}", inst.operands[1]) : ""));
   f.values[inst.result] = result;
   return true;
 }
@@ -201,7 +208,8 @@ bool Interpreter::step_control(Invocation& lane, const Decoded& inst) const {
       for (size_t i = 1; i < o.size(); ++i) arguments.push_back(f.values[o[i]]);
       const FunctionCode& callee = functions_.at(o[0]);
       lane.enter(callee, inst.result);  // `f` is no more
-      for (size_t i = 0; i < arguments.size(); ++i) lane.frames.back().values[callee.parameters[i]] = arguments[i];
+      for (size_t i = 0; i < arguments.size(); ++i)
+        lane.frames.back().values[callee.parameters[i]] = arguments[i];
       return true;
     }
     case OpReturn:
@@ -227,7 +235,8 @@ bool Interpreter::step_memory(Invocation& lane, const Decoded& inst) const {
   Value& result = f.values[inst.result];
   const auto cells = [&](const Value& pointer, uint32_t count) {
     auto& memory = lane.memory(pointer.part[0]);
-    if (pointer.part[1] + count > memory.size()) fail(fmt::format("scalar {} of {}", pointer.part[1], memory.size()));
+    if (pointer.part[1] + count > memory.size())
+      fail(fmt::format("scalar {} of {}", pointer.part[1], memory.size()));
     return memory.begin() + long(pointer.part[1]);
   };
   switch (inst.op) {
@@ -235,14 +244,16 @@ bool Interpreter::step_memory(Invocation& lane, const Decoded& inst) const {
       result.count = 2;
       result.part = {lane.shared->size() + lane.own.size(), 0};
       lane.own.emplace_back(types_.at(types_.at(inst.type).element).scalars);
-      if (o.size() > 1) std::copy_n(f.values[o[1]].part.begin(), lane.own.back().size(), lane.own.back().begin());
+      if (o.size() > 1)
+        std::copy_n(f.values[o[1]].part.begin(), lane.own.back().size(), lane.own.back().begin());
       return true;
     }
     case OpAccessChain:
     case OpInBoundsAccessChain: {
       Value pointer = f.values[o[0]];
       Id type = types_.at(type_of_[o[0]]).element;
-      for (size_t i = 1; i < o.size(); ++i) pointer.part[1] += first_scalar(&type, uint32_t(f.values[o[i]].part[0]));
+      for (size_t i = 1; i < o.size(); ++i)
+        pointer.part[1] += first_scalar(&type, uint32_t(f.values[o[i]].part[0]));
       result = pointer;
       return true;
     }
@@ -253,7 +264,8 @@ bool Interpreter::step_memory(Invocation& lane, const Decoded& inst) const {
       return true;
     }
     case OpStore:
-      std::copy_n(f.values[o[1]].part.begin(), f.values[o[1]].count, cells(f.values[o[0]], f.values[o[1]].count));
+      std::copy_n(f.values[o[1]].part.begin(), f.values[o[1]].count,
+                  cells(f.values[o[0]], f.values[o[1]].count));
       return true;
     case OpMemoryBarrier:
     case OpNop:
@@ -300,7 +312,9 @@ bool Interpreter::step_composite(Invocation& lane, const Decoded& inst) const {
       Value whole;
       const Value a = values[o[0]], b = values[o[1]];
       for (size_t i = 2; i < o.size(); ++i)
-        whole.part.at(whole.count++) = o[i] == 0xffff'ffff ? 0 : o[i] < a.count ? a.part[o[i]] : b.part.at(o[i] - a.count);
+        whole.part.at(whole.count++) = o[i] == 0xffff'ffff ? 0
+                                       : o[i] < a.count    ? a.part[o[i]]
+                                                           : b.part.at(o[i] - a.count);
       result = whole;
       return true;
     }

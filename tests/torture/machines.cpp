@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/torture/machines.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstring>
+#include <fmt/format.h>
 #include <stdexcept>
 
 #include "core/image.h"
@@ -22,7 +21,8 @@ constexpr uint64_t kBudget = 4'000'000;  // instructions a warp
 
 isa::Program compile(Trial& trial, const Way& way) {
   Diagnostics diagnostics;
-  if (way.simplified && trial.simplified.empty()) trial.simplified = frontend::simplify(trial.spirv, trial.name, diagnostics);
+  if (way.simplified && trial.simplified.empty())
+    trial.simplified = frontend::simplify(trial.spirv, trial.name, diagnostics);
   const auto& words = way.simplified ? trial.simplified : trial.spirv;
   isa::Program program = frontend::lower(words, trial.name, {way.max_registers, way.schedule});
   isa::verify(program, diagnostics);
@@ -89,8 +89,9 @@ std::string difference(Trial& trial, const ScalarLaunch& expected, const Way& wa
   for (const auto& [binding, words] : expected.buffers)
     for (size_t i = 0; i < words.size(); ++i)
       if (words[i] != after.at(binding)[i])
-        return fmt::format("{}: binding {} word {} (lane {} if results): {:#010x}, expected {:#010x}", way.to_string(), binding, i,
-                           i / trial.words_a_lane, after.at(binding)[i], words[i]);
+        return fmt::format("{}: binding {} word {} (lane {} if results): {:#010x}, expected {:#010x}",
+                           way.to_string(), binding, i, i / trial.words_a_lane, after.at(binding)[i],
+                           words[i]);
   return {};
 }
 
@@ -105,18 +106,22 @@ Verdict judge(Trial& trial, const std::vector<Way>& ways) {
     return verdict;
   }
   const auto& results = expected.buffers.at(kResultBinding);
-  verdict.lanes_differ = std::any_of(results.begin(), results.end(), [&](uint32_t x) { return x != results[0]; });
+  verdict.lanes_differ =
+      std::any_of(results.begin(), results.end(), [&](uint32_t x) { return x != results[0]; });
   for (const Way& way : ways) {
     verdict.problem = difference(trial, expected, way);
     if (verdict.problem.empty()) continue;
-    // The optimiser's inlining into a continue target may make an invalid module; the frontend then refuses the calls.
+    // The optimiser's inlining into a continue target may make an invalid module; the frontend then refuses
+    // the calls.
     if (verdict.problem.find("OpFunctionCall") != std::string::npos) return {{}, true, verdict.steps, false};
     if (!way.simplified) return verdict;
     ScalarLaunch again = trial.launch;  // whose mistake?
     try {
       Interpreter(trial.simplified).run(again);
-      verdict.problem += again.buffers == expected.buffers ? "\n(the interpreter agrees with itself on the simplified module)"
-                                                           : "\n(the interpreter differs on the simplified module: the optimiser's mistake)";
+      verdict.problem +=
+          again.buffers == expected.buffers
+              ? "\n(the interpreter agrees with itself on the simplified module)"
+              : "\n(the interpreter differs on the simplified module: the optimiser's mistake)";
     } catch (const std::exception& error) {
       verdict.problem += fmt::format("\n(on the simplified module: {})", error.what());
     }

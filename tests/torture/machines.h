@@ -1,5 +1,5 @@
-// Runs one module on the interpreter and on both machines, in all the ways a program may be compiled, and compares.
-// SPDX-License-Identifier: Apache-2.0
+// Runs one module on the interpreter and on both machines, in all the ways a program may be compiled, and
+// compares. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
 #include <string>
@@ -13,7 +13,8 @@ struct Way {
   uint32_t max_registers = 64;
   bool schedule = true;
   bool timing = false;
-  bool simplified = true;  // by the optimiser's passes; else lowered as it is, which a module without calls can be
+  bool simplified =
+      true;  // by the optimiser's passes; else lowered as it is, which a module without calls can be
   std::string to_string() const;
 };
 
@@ -28,15 +29,15 @@ struct Trial {
 // The buffers after the launch. glint::Error for whatever goes wrong.
 std::map<uint32_t, std::vector<uint32_t>> run_machine(Trial& trial, const Way& way);
 
-// What differs from the interpreter's run of the same words, or is thrown; empty when nothing is. `expected` is
-// the launch after the interpreter's run.
+// What differs from the interpreter's run of the same words, or is thrown; empty when nothing is. `expected`
+// is the launch after the interpreter's run.
 std::string difference(Trial& trial, const ScalarLaunch& expected, const Way& way);
 
 // The whole comparison, on every way given; the first difference.
 struct Verdict {
-  std::string problem;   // empty: all agree
-  bool skipped = false;  // it runs too long, or the validator refuses it: nothing was compared
-  uint64_t steps = 0;      // of the longest lane
+  std::string problem;        // empty: all agree
+  bool skipped = false;       // it runs too long, or the validator refuses it: nothing was compared
+  uint64_t steps = 0;         // of the longest lane
   bool lanes_differ = false;  // in their results
 };
 Verdict judge(Trial& trial, const std::vector<Way>& ways);

@@ -35,11 +35,17 @@ class SpirvWriter {
   }
   Id void_type() { return declare(spv::Op::OpTypeVoid, {}); }
   Id bool_type() { return declare(spv::Op::OpTypeBool, {}); }
-  Id int_type(uint32_t width = 32, bool is_signed = false) { return declare(spv::Op::OpTypeInt, {width, is_signed}); }
+  Id int_type(uint32_t width = 32, bool is_signed = false) {
+    return declare(spv::Op::OpTypeInt, {width, is_signed});
+  }
   Id float_type(uint32_t width = 32) { return declare(spv::Op::OpTypeFloat, {width}); }
-  Id pointer_to(spv::StorageClass storage, Id type) { return declare(spv::Op::OpTypePointer, {uint32_t(storage), type}); }
+  Id pointer_to(spv::StorageClass storage, Id type) {
+    return declare(spv::Op::OpTypePointer, {uint32_t(storage), type});
+  }
   Id word(uint32_t value) { return declare(spv::Op::OpConstant, {int_type(), value}, true); }
-  Id truth(bool value) { return declare(value ? spv::Op::OpConstantTrue : spv::Op::OpConstantFalse, {bool_type()}, true); }
+  Id truth(bool value) {
+    return declare(value ? spv::Op::OpConstantTrue : spv::Op::OpConstantFalse, {bool_type()}, true);
+  }
   Id undefined(Id type) { return declare(spv::Op::OpUndef, {type}, true); }
   Id array_of_words(uint32_t count) { return declare(spv::Op::OpTypeArray, {int_type(), word(count)}); }
 
@@ -78,16 +84,21 @@ class SpirvWriter {
   }
 
   // The module of a compute shader.
-  Words assemble(Id entry, uint32_t local_size, Id glsl_import, const std::vector<spv::Capability>& capabilities) const {
+  Words assemble(Id entry, uint32_t local_size, Id glsl_import,
+                 const std::vector<spv::Capability>& capabilities) const {
     Words words{spv::MagicNumber, 0x0001'0600, 0, next_, 0};
     for (spv::Capability c : capabilities) append(words, spv::Op::OpCapability, {uint32_t(c)});
-    if (glsl_import) append(words, spv::Op::OpExtInstImport, {glsl_import, 0x4c53'4c47, 0x6474'732e, 0x3035'342e, 0});
-    append(words, spv::Op::OpMemoryModel, {uint32_t(spv::AddressingModel::Logical), uint32_t(spv::MemoryModel::GLSL450)});
+    if (glsl_import)
+      append(words, spv::Op::OpExtInstImport, {glsl_import, 0x4c53'4c47, 0x6474'732e, 0x3035'342e, 0});
+    append(words, spv::Op::OpMemoryModel,
+           {uint32_t(spv::AddressingModel::Logical), uint32_t(spv::MemoryModel::GLSL450)});
     Words point{uint32_t(spv::ExecutionModel::GLCompute), entry, 0x6e69'616d, 0};  // "main"
     point.insert(point.end(), interface_.begin(), interface_.end());
     append(words, spv::Op::OpEntryPoint, point);
-    append(words, spv::Op::OpExecutionMode, {entry, uint32_t(spv::ExecutionMode::LocalSize), local_size, 1, 1});
-    for (const Words* part : {&decorations, &globals_, &code}) words.insert(words.end(), part->begin(), part->end());
+    append(words, spv::Op::OpExecutionMode,
+           {entry, uint32_t(spv::ExecutionMode::LocalSize), local_size, 1, 1});
+    for (const Words* part : {&decorations, &globals_, &code})
+      words.insert(words.end(), part->begin(), part->end());
     return words;
   }
 

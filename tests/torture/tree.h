@@ -29,11 +29,40 @@ enum class Sort : uint8_t { Word, Bool, Float };
 struct Expr {
   enum class Op : uint8_t {
     // words
-    Constant, Variable, Lane, Input, Element, Own, Add, Sub, Mul, And, Or, Xor, Shl, Shr, Div, Mod, Select, Truncate,
+    Constant,
+    Variable,
+    Lane,
+    Input,
+    Element,
+    Own,
+    Add,
+    Sub,
+    Mul,
+    And,
+    Or,
+    Xor,
+    Shl,
+    Shr,
+    Div,
+    Mod,
+    Select,
+    Truncate,
     // bools
-    BoolVariable, Less, SignedLess, Equal, FloatLess, Both, Either, Not,
+    BoolVariable,
+    Less,
+    SignedLess,
+    Equal,
+    FloatLess,
+    Both,
+    Either,
+    Not,
     // floats
-    FloatVariable, FloatConstant, FloatAdd, FloatMul, ToFloat, FloatSelect
+    FloatVariable,
+    FloatConstant,
+    FloatAdd,
+    FloatMul,
+    ToFloat,
+    FloatSelect
   } op = Op::Constant;
   uint32_t value = 0;  // constant's bits or variable's number
   std::vector<Expr> args;
@@ -46,14 +75,16 @@ struct Stmt {
     SetElement,  // element args[0] of the local array = args[1]
     SetOwn,      // word args[0] of the lane's own part of a buffer = args[1]
     If,          // args[0]; bodies: then, else
-    Loop,        // at most (args[0] & 3) + 1 times, while args[1]; counter `value`; bodies: body, continue target
-    Switch,      // args[0] & 7; bodies: the cases
-    Call,        // variable `value` = function `other` (args[0], args[1])
-    Exchange,    // words through shared memory, between barriers, with the lane `value` further
-    Break, Continue, Return,
-    LoopBreak,   // from inside a switch out of the loop around it. SPIR-V only, as all below
-    Leave,       // to the end of the `if` whose branch this list is
-    NextCase,    // to the next case of the switch whose case this list is
+    Loop,    // at most (args[0] & 3) + 1 times, while args[1]; counter `value`; bodies: body, continue target
+    Switch,  // args[0] & 7; bodies: the cases
+    Call,    // variable `value` = function `other` (args[0], args[1])
+    Exchange,  // words through shared memory, between barriers, with the lane `value` further
+    Break,
+    Continue,
+    Return,
+    LoopBreak,  // from inside a switch out of the loop around it. SPIR-V only, as all below
+    Leave,      // to the end of the `if` whose branch this list is
+    NextCase,   // to the next case of the switch whose case this list is
   } kind = Kind::Trace;
   // Loops. Single: one block. SkipFirst: the header goes to the body or to the continue target.
   enum class Style : uint8_t { While, HeaderTest, DoWhile, Endless, Single, SkipFirst } style = Style::While;
@@ -68,15 +99,16 @@ struct Stmt {
 };
 
 struct FunctionTree {
-  std::vector<Sort> variables;  // word 0 is the hash; words 1 and 2 start as the arguments, or the lane and an input
+  std::vector<Sort>
+      variables;  // word 0 is the hash; words 1 and 2 start as the arguments, or the lane and an input
   std::vector<uint8_t> in_memory;
   std::vector<Stmt> body;
 };
 
 struct ProgramTree {
   uint64_t seed = 0;
-  bool spirv = true;           // may have shapes that GLSL has not
-  bool is_compute = true;      // else ray generation
+  bool spirv = true;       // may have shapes that GLSL has not
+  bool is_compute = true;  // else ray generation
   uint32_t group = 32, groups = 2;
   std::vector<FunctionTree> functions;  // the last is the entry point; each calls those before it
 };

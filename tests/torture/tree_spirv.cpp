@@ -22,23 +22,39 @@ Id FunctionWriter::run() {
       append(w_.code, OpFunctionParameter, {word_type(), parameters.back()});
     }
   begin(new_block());
-  const auto local_variable = [&](Id pointee) { return op(OpVariable, w_.pointer_to(spv::StorageClass::Function, pointee), {uint32_t(spv::StorageClass::Function)}); };
+  const auto local_variable = [&](Id pointee) {
+    return op(OpVariable, w_.pointer_to(spv::StorageClass::Function, pointee),
+              {uint32_t(spv::StorageClass::Function)});
+  };
   elements_ = local_variable(w_.array_of_words(kElements));
-  for (size_t v = 0; v < tree_.variables.size(); ++v) memory_.push_back(tree_.in_memory[v] ? local_variable(type_of(tree_.variables[v])) : 0);
+  for (size_t v = 0; v < tree_.variables.size(); ++v)
+    memory_.push_back(tree_.in_memory[v] ? local_variable(type_of(tree_.variables[v])) : 0);
   const Id vector = w_.declare(OpTypeVector, {word_type(), 3});
   lane_ = op(OpCompositeExtract, word_type(), {op(OpLoad, vector, {ids_.global_id}), 0});
-  for (uint32_t i = 0; i < kElements; ++i) store(chain(spv::StorageClass::Function, elements_, {w_.word(i)}), i == 0 ? lane_ : w_.word(i));
+  for (uint32_t i = 0; i < kElements; ++i)
+    store(chain(spv::StorageClass::Function, elements_, {w_.word(i)}), i == 0 ? lane_ : w_.word(i));
   for (uint32_t v = 0; v < tree_.variables.size(); ++v) switch (tree_.variables[v]) {
       case Sort::Word:
-        if (v == 1 && is_entry_) set(v, lane_);
-        else if (v == 2 && is_entry_) set(v, load_from(spv::StorageClass::StorageBuffer, ids_.inputs, {w_.word(0), masked(lane_, kInputWords - 1)}));
-        else set(v, v == 1 || v == 2 ? parameters[v - 1] : w_.word(v));
+        if (v == 1 && is_entry_)
+          set(v, lane_);
+        else if (v == 2 && is_entry_)
+          set(v, load_from(spv::StorageClass::StorageBuffer, ids_.inputs,
+                           {w_.word(0), masked(lane_, kInputWords - 1)}));
+        else
+          set(v, v == 1 || v == 2 ? parameters[v - 1] : w_.word(v));
         break;
-      case Sort::Bool: set(v, w_.truth(false)); break;
-      case Sort::Float: set(v, w_.declare(OpConstant, {w_.float_type(), 0x3f80'0000}, true)); break;
+      case Sort::Bool:
+        set(v, w_.truth(false));
+        break;
+      case Sort::Float:
+        set(v, w_.declare(OpConstant, {w_.float_type(), 0x3f80'0000}, true));
+        break;
     }
   list(tree_.body, {});
-  if (!here_->is_closed) leave_function(op(OpBitwiseXor, word_type(), {get(0), op(OpIAdd, word_type(), {op(OpIMul, word_type(), {get(3), w_.word(31)}), get(4)})}));
+  if (!here_->is_closed)
+    leave_function(
+        op(OpBitwiseXor, word_type(),
+           {get(0), op(OpIAdd, word_type(), {op(OpIMul, word_type(), {get(3), w_.word(31)}), get(4)})}));
   for (const BlockCode* block : order_) {
     append(w_.code, OpLabel, {block->label});
     for (const Phi& phi : block->phis) {
@@ -74,7 +90,8 @@ std::vector<uint32_t> to_spirv(const ProgramTree& program) {
     ids.local_id = writer.input(spv::BuiltIn::LocalInvocationId, vector);
     ids.slots = writer.variable(spv::StorageClass::Workgroup, writer.array_of_words(program.group));
   }
-  for (size_t f = 0; f < program.functions.size(); ++f) ids.functions.push_back(FunctionWriter(writer, ids, program, f).run());
+  for (size_t f = 0; f < program.functions.size(); ++f)
+    ids.functions.push_back(FunctionWriter(writer, ids, program, f).run());
   return writer.assemble(ids.functions.back(), program.group, 0, {spv::Capability::Shader});
 }
 

@@ -1,5 +1,5 @@
-// Compares a record with the recorded one; what differs is explained by a rule that is checked, or is different.
-// SPDX-License-Identifier: Apache-2.0
+// Compares a record with the recorded one; what differs is explained by a rule that is checked, or is
+// different. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <map>
 #include <string>
@@ -10,13 +10,13 @@ namespace glint::vulkan_rt {
 
 // Where exact arithmetic sees a primitive on the line of a ray.
 struct Exact {
-  bool on_line = false;       // the line meets the plane, or the sphere
-  double t = 0;               // of the plane; of the nearer root
-  double t_far = 0;           // sphere: of the farther root
-  double u = 0, v = 0;        // triangle: weights of the second and third corner
-  double slope = 1;           // triangle: cosine between normal and ray; sphere: root of the relative discriminant
-  // What one rounding to 24 bits of the largest number on the way does to t, to a weight (triangle) and to the normal
-  // (sphere), to first order.
+  bool on_line = false;  // the line meets the plane, or the sphere
+  double t = 0;          // of the plane; of the nearer root
+  double t_far = 0;      // sphere: of the farther root
+  double u = 0, v = 0;   // triangle: weights of the second and third corner
+  double slope = 1;      // triangle: cosine between normal and ray; sphere: root of the relative discriminant
+  // What one rounding to 24 bits of the largest number on the way does to t, to a weight (triangle) and to
+  // the normal (sphere), to first order.
   double t_unit = 0, weight_unit = 0;
 };
 Exact exact(const Recording& r, const Ray& ray, uint32_t instance, uint32_t geometry, uint32_t primitive);

@@ -1,9 +1,8 @@
 // The recorded conformance set, its shaders unchanged: every ray of every mode, and the picture.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <cmath>
 #include <cstring>
+#include <fmt/format.h>
 #include <iostream>
 
 #include "tests/support/catch.h"
@@ -15,19 +14,21 @@ namespace {
 
 bool skipped() {
   if (has_recording()) return false;
-  std::cout << "SKIPPED: no recording in " << recording_folder() << "; GLINT_VULKAN_RT_DIR names another folder\n";
+  std::cout << "SKIPPED: no recording in " << recording_folder()
+            << "; GLINT_VULKAN_RT_DIR names another folder\n";
   return true;
 }
 
-// But for what depends on how many candidates were looked at before the hit was known. Where any-hit shaders ignore all
-// (mode 2), each candidate is looked at once.
+// But for what depends on how many candidates were looked at before the hit was known. Where any-hit shaders
+// ignore all (mode 2), each candidate is looked at once.
 bool same_hit(Record a, Record b, const Mode& mode) {
   a.inters = b.inters = 0;
   if (mode.any_hit_mode != 2) a.anyhits = b.anyhits = a.hash = b.hash = 0;
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-TEST_CASE("every recorded ray of every mode finds what the recorded driver found, or a checked rule says why not") {
+TEST_CASE(
+    "every recorded ray of every mode finds what the recorded driver found, or a checked rule says why not") {
   if (skipped()) return;
   const Recording& r = recording();
   const auto any_hit = GENERATE(as<std::string>(), "immediate", "deferred");
@@ -40,7 +41,8 @@ TEST_CASE("every recorded ray of every mode finds what the recorded driver found
     // Only where rays aim at edges, or any hit will do, may more than a few differ by choice.
     const bool any_first = (r.modes[m].ray_flags & 4) || r.modes[m].any_hit_mode == 3;
     const auto edges = tally.explained.find("shared edge"), firsts = tally.explained.find("any first hit");
-    const uint32_t by_choice = (edges == tally.explained.end() ? 0 : edges->second) + (firsts == tally.explained.end() ? 0 : firsts->second);
+    const uint32_t by_choice = (edges == tally.explained.end() ? 0 : edges->second) +
+                               (firsts == tally.explained.end() ? 0 : firsts->second);
     CHECK((any_first || r.modes[m].pattern == 3 || by_choice <= r.rays_per_pattern / 1000));
   }
 }
@@ -50,9 +52,12 @@ TEST_CASE("both any-hit modes find the same hit for every ray of every mode") {
   const Recording& r = recording();
   uint32_t differ = 0, rays = 0;
   for (const Mode& mode : r.modes) {
-    const std::vector<Record> immediate = run_mode(r, mode, "immediate"), deferred = run_mode(r, mode, "deferred");
-    const bool terminates = mode.any_hit_mode == 3;  // terminateRayEXT ends at whichever candidate comes first
-    for (size_t i = 0; i < immediate.size(); ++i) differ += !terminates && !same_hit(immediate[i], deferred[i], mode);
+    const std::vector<Record> immediate = run_mode(r, mode, "immediate"),
+                              deferred = run_mode(r, mode, "deferred");
+    const bool terminates =
+        mode.any_hit_mode == 3;  // terminateRayEXT ends at whichever candidate comes first
+    for (size_t i = 0; i < immediate.size(); ++i)
+      differ += !terminates && !same_hit(immediate[i], deferred[i], mode);
     rays += terminates ? 0 : uint32_t(immediate.size());
   }
   std::cout << "any-hit modes  " << rays << " rays, " << differ << " with different hits\n";
@@ -66,7 +71,8 @@ TEST_CASE("the timing machine's records of a mode are those of the functional ma
   Recording r = recording();
   const size_t last = std::min<size_t>(r.modes.size(), 1);
   for (size_t m = 0; m < last; ++m) {
-    const std::vector<Record> functional = run_mode(r, r.modes[m], any_hit), timing = run_mode(r, r.modes[m], any_hit, true);
+    const std::vector<Record> functional = run_mode(r, r.modes[m], any_hit),
+                              timing = run_mode(r, r.modes[m], any_hit, true);
     CHECK(std::memcmp(functional.data(), timing.data(), functional.size() * sizeof functional[0]) == 0);
   }
 }

@@ -41,7 +41,8 @@ rt::StructureInfo build_scene(const Recording& r, mem::AddressSpace& memory, con
       geometry.no_duplicate_any_hit = true;
       geometry.stride = sizeof r.vertices[0];
       if (g.triangles)
-        geometry.positions = std::as_bytes(std::span(r.vertices).subspan(g.first_vertex, size_t(g.count) * 3));
+        geometry.positions =
+            std::as_bytes(std::span(r.vertices).subspan(g.first_vertex, size_t(g.count) * 3));
       else
         geometry.aabbs = std::span(boxes).first(g.count);
       level.geometries.push_back(geometry);
@@ -49,7 +50,8 @@ rt::StructureInfo build_scene(const Recording& r, mem::AddressSpace& memory, con
     bottoms.push_back(rt::build_bottom(memory, "bottom level", level, options));
   }
   std::vector<rt::Instance> instances;
-  for (const Instance& i : r.instances) instances.push_back({i.transform, i.custom, i.mask, i.sbt_offset, i.flags, i.bottom});
+  for (const Instance& i : r.instances)
+    instances.push_back({i.transform, i.custom, i.mask, i.sbt_offset, i.flags, i.bottom});
   return rt::build_top(memory, "top level", instances, bottoms, options);
 }
 
@@ -89,7 +91,8 @@ class Host {
     const auto [it, is_new] = shader_of_.emplace(file, uint32_t(programs_.size()));
     if (is_new) {
       Diagnostics diagnostics;
-      programs_.push_back(frontend::compile_file((recording_.folder / "shaders" / file).string(), {}, {}, diagnostics));
+      programs_.push_back(
+          frontend::compile_file((recording_.folder / "shaders" / file).string(), {}, {}, diagnostics));
       isa::verify(programs_.back(), diagnostics);
       diagnostics.throw_if_errors();
     }
@@ -100,7 +103,9 @@ class Host {
     return uint32_t(table.groups.size() - 1);
   }
   uint32_t hit_group(const std::string& closest, const std::string& any, const std::string& intersection) {
-    const auto or_none = [&](const std::string& file) { return file.empty() ? core::kNoShader : shader(file); };
+    const auto or_none = [&](const std::string& file) {
+      return file.empty() ? core::kNoShader : shader(file);
+    };
     table.groups.push_back({core::kNoShader, {or_none(closest), or_none(any), or_none(intersection)}});
     return uint32_t(table.groups.size() - 1);
   }
@@ -148,21 +153,27 @@ TableRecord callable_record(uint32_t group, uint32_t tag) {
 }  // namespace
 
 const std::vector<RecordData>& hit_records() {
-  // Tags and bases from the records: tag of each hit, normals of each triangle. Alpha from which hits are missing where
-  // any-hit shaders run. Colours: the only ones that give the picture (a linear system; each pixel one equation).
+  // Tags and bases from the records: tag of each hit, normals of each triangle. Alpha from which hits are
+  // missing where any-hit shaders run. Colours: the only ones that give the picture (a linear system; each
+  // pixel one equation).
   static const std::vector<RecordData> kRecords = [] {
     std::vector<RecordData> records;
     const uint32_t bases[5] = {0, 360, 600, 0, 1464};
-    const std::array<float, 4> colors[5] = {
-        {0.9f, 0.3f, 0.2f, 1}, {0.2f, 0.8f, 0.3f, 1}, {0.3f, 0.4f, 0.9f, 1}, {0.9f, 0.8f, 0.2f, 1}, {0.6f, 0.6f, 0.6f, 1}};
+    const std::array<float, 4> colors[5] = {{0.9f, 0.3f, 0.2f, 1},
+                                            {0.2f, 0.8f, 0.3f, 1},
+                                            {0.3f, 0.4f, 0.9f, 1},
+                                            {0.9f, 0.8f, 0.2f, 1},
+                                            {0.6f, 0.6f, 0.6f, 1}};
     for (uint32_t i = 0; i < 10; ++i)
-      records.push_back({(i < 5 ? 1000u : 2000u) + i % 5, bases[i % 5], i == 0 || i == 7 ? 1u : 0u, 0, colors[i % 5]});
+      records.push_back(
+          {(i < 5 ? 1000u : 2000u) + i % 5, bases[i % 5], i == 0 || i == 7 ? 1u : 0u, 0, colors[i % 5]});
     return records;
   }();
   return kRecords;
 }
 
-std::vector<Record> run_mode(const Recording& r, const Mode& mode, const std::string& any_hit, bool timing, const std::string& format, bool software) {
+std::vector<Record> run_mode(const Recording& r, const Mode& mode, const std::string& any_hit, bool timing,
+                             const std::string& format, bool software) {
   Host host(r, format);
   host.world.any_hit = Registry<rt::AnyHitMode>::instance().entry(any_hit).make_default({});
   host.table.raygen = {host.general("rec.rgen"), {}};
@@ -170,15 +181,24 @@ std::vector<Record> run_mode(const Recording& r, const Mode& mode, const std::st
   const uint32_t triangles = host.hit_group("rec_tri.rchit", "tri.rahit", "");
   const uint32_t spheres = host.hit_group("rec_sph.rchit", "sph.rahit", "sph.rint");
   host.hit_records(triangles, spheres, hit_records());
-  host.table.callable.records = {callable_record(host.general("c0.rcall"), 3000), callable_record(host.general("c1.rcall"), 3001)};
+  host.table.callable.records = {callable_record(host.general("c0.rcall"), 3000),
+                                 callable_record(host.general("c1.rcall"), 3001)};
   // A set may hold later rays of a launch: the ones before are launched too, and not looked at.
   const uint32_t first = r.first_launch_index, count = first + r.rays_per_pattern;
   std::vector<Ray> rays(first, r.rays.front());
   rays.insert(rays.end(), r.rays.begin(), r.rays.end());
   host.upload(kRays, "rays", rays);
   const Address out = host.upload(kRecords, "records", std::vector<Record>(count));
-  const uint32_t push[10] = {mode.ray_flags, mode.mask, mode.sbt_offset, mode.sbt_stride, mode.miss_index, mode.any_hit_mode,
-                             mode.pattern * r.rays_per_pattern, 0, mode.callable, 0};
+  const uint32_t push[10] = {mode.ray_flags,
+                             mode.mask,
+                             mode.sbt_offset,
+                             mode.sbt_stride,
+                             mode.miss_index,
+                             mode.any_hit_mode,
+                             mode.pattern * r.rays_per_pattern,
+                             0,
+                             mode.callable,
+                             0};
   std::memcpy(host.world.constant_bank.data() + isa::kPushConstantOffset, push, sizeof push);
   host.world.launch_size = {count, 1, 1};
   host.run(timing, software);
@@ -190,7 +210,8 @@ std::vector<float> run_image(const Recording& r, uint32_t size, const std::vecto
   Host host(r);
   host.table.raygen = {host.general("img.rgen"), {}};
   host.table.miss.records = {{host.general("img.rmiss"), {}}, {host.general("shadow.rmiss"), {}}};
-  host.hit_records(host.hit_group("img_tri.rchit", "img_tri.rahit", ""), host.hit_group("img_sph.rchit", "", "sph.rint"), records);
+  host.hit_records(host.hit_group("img_tri.rchit", "img_tri.rahit", ""),
+                   host.hit_group("img_sph.rchit", "", "sph.rint"), records);
   const Address texels = host.memory.allocate("picture", uint64_t(size) * size * 16);
   host.world.images.push_back({core::ImageView::Format::Rgba32Float, size, size, texels, "picture"});
   host.bind(kImage, 0, 1);

@@ -18,12 +18,13 @@ struct RecordData {  // struct SbtData of shaders/common.glsl
 // What the recording does not hold: the data of the hit records (see README.md).
 const std::vector<RecordData>& hit_records();
 
-// Compiles the set's shaders, as they are, and runs a mode with structures of a node format; one record a ray.
-// `software`: rays are walked in code.
-std::vector<Record> run_mode(const Recording& recording, const Mode& mode, const std::string& any_hit, bool timing = false,
-                             const std::string& format = "bvh6", bool software = false);
+// Compiles the set's shaders, as they are, and runs a mode with structures of a node format; one record a
+// ray. `software`: rays are walked in code.
+std::vector<Record> run_mode(const Recording& recording, const Mode& mode, const std::string& any_hit,
+                             bool timing = false, const std::string& format = "bvh6", bool software = false);
 
 // The picture, RGBA, `size` x `size`. The records' data may be given.
-std::vector<float> run_image(const Recording& recording, uint32_t size, const std::vector<RecordData>& records = hit_records());
+std::vector<float> run_image(const Recording& recording, uint32_t size,
+                             const std::vector<RecordData>& records = hit_records());
 
 }  // namespace glint::vulkan_rt

@@ -1,8 +1,7 @@
 // The recorded conformance set in every node format: the same records for every ray of every mode.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <cstring>
+#include <fmt/format.h>
 #include <iostream>
 
 #include "base/registry.h"
@@ -16,8 +15,8 @@ namespace {
 
 constexpr uint32_t kAnyHitIgnores = 2, kAnyHitTerminates = 3;  // any-hit modes of the recording's shaders
 
-// But for what depends on the order of visits: how many candidates were looked at before the hit was known. Where any-hit
-// shaders ignore all, each candidate is looked at once.
+// But for what depends on the order of visits: how many candidates were looked at before the hit was known.
+// Where any-hit shaders ignore all, each candidate is looked at once.
 bool same_hit(Record a, Record b, const Mode& mode) {
   a.inters = b.inters = 0;
   if (mode.any_hit_mode != kAnyHitIgnores) a.anyhits = b.anyhits = a.hash = b.hash = 0;
@@ -30,7 +29,8 @@ Recording first_rays(const Recording& all, uint32_t rays) {
   const auto cut = [&](const auto& from) {
     auto out = from;
     out.clear();
-    for (size_t at = 0; at < from.size(); at += all.rays_per_pattern) out.insert(out.end(), from.begin() + ptrdiff_t(at), from.begin() + ptrdiff_t(at + rays));
+    for (size_t at = 0; at < from.size(); at += all.rays_per_pattern)
+      out.insert(out.end(), from.begin() + ptrdiff_t(at), from.begin() + ptrdiff_t(at + rays));
     return out;
   };
   Recording out = all;
@@ -49,7 +49,8 @@ void check_formats(const Recording& r, const std::string& any_hit) {
       for (size_t i = 0; i < ours.size(); ++i)
         differ += mode.any_hit_mode != kAnyHitTerminates && !same_hit(ours[i], reference[i], mode);
       const Tally tally = compare(r, mode, ours.data(), recorded);
-      std::cout << fmt::format("{:<10} {:<10} {}, {} unlike bvh6\n", format, any_hit, tally.line(mode.name), differ);
+      std::cout << fmt::format("{:<10} {:<10} {}, {} unlike bvh6\n", format, any_hit, tally.line(mode.name),
+                               differ);
       INFO(format << ' ' << any_hit << ' ' << tally.line(mode.name) << tally.first_different);
       CHECK(tally.different == 0);
       CHECK(differ == 0);
@@ -59,7 +60,8 @@ void check_formats(const Recording& r, const std::string& any_hit) {
 
 bool skipped() {
   if (has_recording()) return false;
-  std::cout << "SKIPPED: no recording in " << recording_folder() << "; GLINT_VULKAN_RT_DIR names another folder\n";
+  std::cout << "SKIPPED: no recording in " << recording_folder()
+            << "; GLINT_VULKAN_RT_DIR names another folder\n";
   return true;
 }
 

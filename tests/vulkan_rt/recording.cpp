@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/vulkan_rt/recording.h"
 
-#include <zstd.h>
-
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -11,6 +9,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <zstd.h>
 
 namespace glint::vulkan_rt {
 namespace {
@@ -36,7 +35,8 @@ std::string unpacked(const std::string& packed, const std::string& name) {
 template <class T>
 std::vector<T> array(const std::filesystem::path& path) {
   const bool plain = std::filesystem::exists(path);
-  const std::string bytes = plain ? bytes_of(path) : unpacked(bytes_of(path.string() + ".zst"), path.string());
+  const std::string bytes =
+      plain ? bytes_of(path) : unpacked(bytes_of(path.string() + ".zst"), path.string());
   if (bytes.size() % sizeof(T)) throw std::runtime_error(path.string() + " ends within an element");
   std::vector<T> out(bytes.size() / sizeof(T));
   std::memcpy(out.data(), bytes.data(), bytes.size());
@@ -61,18 +61,22 @@ Recording load(const std::filesystem::path& folder) {
   for (const Json& s : scene.at("spheres")) r.spheres.push_back({s[0], s[1], s[2], s[3]});
   for (const Json& b : scene.at("blas")) r.bottoms.push_back(bottom(b));
   for (const Json& i : scene.at("instances"))
-    r.instances.push_back({i.at("blas"), i.at("mask"), i.at("customIndex"), i.at("sbtOffset"), i.at("flags"), i.at("xform")});
+    r.instances.push_back(
+        {i.at("blas"), i.at("mask"), i.at("customIndex"), i.at("sbtOffset"), i.at("flags"), i.at("xform")});
   for (const Json& m : scene.at("modes"))
-    r.modes.push_back({m.at("name"), m.at("pattern"), m.at("rayFlags"), m.at("mask"), m.at("sbtOffset"), m.at("sbtStride"),
-                       m.at("missIndex"), m.at("ahMode"), m.at("callable")});
+    r.modes.push_back({m.at("name"), m.at("pattern"), m.at("rayFlags"), m.at("mask"), m.at("sbtOffset"),
+                       m.at("sbtStride"), m.at("missIndex"), m.at("ahMode"), m.at("callable")});
   r.rays_per_pattern = scene.at("raysPerPattern");
   r.first_launch_index = scene.value("launchIndexOfFirstRay", 0u);
   r.rays = array<Ray>(folder / "rays.bin");
   r.records = array<Record>(folder / "records.bin");
   for (const Mode& m : r.modes)
-    if (size_t(m.pattern + 1) * r.rays_per_pattern > r.rays.size()) throw std::runtime_error("rays.bin lacks rays of mode " + m.name);
-  if (r.records.size() != r.modes.size() * r.rays_per_pattern) throw std::runtime_error("records.bin does not hold one record a mode and ray");
-  const bool has_image = std::filesystem::exists(folder / "image.raw") || std::filesystem::exists(folder / "image.raw.zst");
+    if (size_t(m.pattern + 1) * r.rays_per_pattern > r.rays.size())
+      throw std::runtime_error("rays.bin lacks rays of mode " + m.name);
+  if (r.records.size() != r.modes.size() * r.rays_per_pattern)
+    throw std::runtime_error("records.bin does not hold one record a mode and ray");
+  const bool has_image =
+      std::filesystem::exists(folder / "image.raw") || std::filesystem::exists(folder / "image.raw.zst");
   if (has_image) r.image = array<float>(folder / "image.raw");
   r.image_size = uint32_t(std::lround(std::sqrt(double(r.image.size()) / 4)));
   return r;
@@ -86,7 +90,9 @@ std::filesystem::path recording_folder() {
   return std::filesystem::path(GLINT_SOURCE_DIR) / "../shared/data/vulkan-rt";
 }
 
-bool has_recording() { return std::filesystem::exists(recording_folder() / "scene.json"); }
+bool has_recording() {
+  return std::filesystem::exists(recording_folder() / "scene.json");
+}
 
 const Recording& recording() {
   static const Recording kRecording = load(recording_folder());

@@ -40,7 +40,8 @@ struct Instance {
 
 struct Mode {
   std::string name;
-  uint32_t pattern = 0, ray_flags = 0, mask = 0, sbt_offset = 0, sbt_stride = 0, miss_index = 0, any_hit_mode = 0, callable = 0;
+  uint32_t pattern = 0, ray_flags = 0, mask = 0, sbt_offset = 0, sbt_stride = 0, miss_index = 0,
+           any_hit_mode = 0, callable = 0;
 };
 
 struct Recording {
@@ -53,9 +54,11 @@ struct Recording {
   std::vector<Ray> rays;        // [pattern][ray]
   std::vector<Record> records;  // [mode][ray]
   uint32_t image_size = 0;
-  std::vector<float> image;     // RGBA
+  std::vector<float> image;  // RGBA
 
-  const Ray& ray(const Mode& mode, uint32_t i) const { return rays[size_t(mode.pattern) * rays_per_pattern + i]; }
+  const Ray& ray(const Mode& mode, uint32_t i) const {
+    return rays[size_t(mode.pattern) * rays_per_pattern + i];
+  }
 };
 
 // GLINT_VULKAN_RT_DIR, or the folder beside the repository.

@@ -1,5 +1,5 @@
-// The recorded conformance set with rays walked in code: the records of the traversal that the machines share, bit for bit.
-// SPDX-License-Identifier: Apache-2.0
+// The recorded conformance set with rays walked in code: the records of the traversal that the machines
+// share, bit for bit. SPDX-License-Identifier: Apache-2.0
 #include <cstring>
 #include <iostream>
 
@@ -10,15 +10,18 @@
 namespace glint::vulkan_rt {
 namespace {
 
-TEST_CASE("the traversal program gives every ray of every mode the record that the shared traversal gives it") {
+TEST_CASE(
+    "the traversal program gives every ray of every mode the record that the shared traversal gives it") {
   if (!has_recording()) {
-    std::cout << "SKIPPED: no recording in " << recording_folder() << "; GLINT_VULKAN_RT_DIR names another folder\n";
+    std::cout << "SKIPPED: no recording in " << recording_folder()
+              << "; GLINT_VULKAN_RT_DIR names another folder\n";
     return;
   }
   const Recording& r = recording();
   uint64_t rays = 0;
   for (const Mode& mode : r.modes) {
-    const std::vector<Record> unit = run_mode(r, mode, "immediate"), code = run_mode(r, mode, "immediate", false, "bvh6", true);
+    const std::vector<Record> unit = run_mode(r, mode, "immediate"),
+                              code = run_mode(r, mode, "immediate", false, "bvh6", true);
     uint32_t differ = 0;
     for (size_t i = 0; i < unit.size(); ++i) differ += std::memcmp(&unit[i], &code[i], sizeof unit[i]) != 0;
     INFO(mode.name << ": " << differ << " of " << unit.size() << " differ");

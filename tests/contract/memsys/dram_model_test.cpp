@@ -38,7 +38,8 @@ Outcome exercise(const std::string& name, bool often) {
       REQUIRE(out.back.emplace(read.line, read.ready).second);
     }
     if (added == 2000 && model->finished()) break;
-    if (now >= next_burst && burst == 0) burst = uint32_t(1 + random() % 90), next_burst = now + 200 + random() % 2000;
+    if (now >= next_burst && burst == 0)
+      burst = uint32_t(1 + random() % 90), next_burst = now + 200 + random() % 2000;
     for (; burst > 0 && added < 2000 && !model->full(); --burst, ++added) {
       const bool write = random() % 4 == 0;
       if (!write) asked[added * 128] = now;
@@ -85,7 +86,9 @@ std::vector<Cycle> at_once(const char* settings, uint32_t count) {
 
 }  // namespace
 
-TEST_CASE("every model of a memory channel answers each read once, counts each clock once and needs no extra calls") {
+TEST_CASE(
+    "every model of a memory channel answers each read once, counts each clock once and needs no extra "
+    "calls") {
   REQUIRE(Registry<DramModel>::names() == std::vector<std::string>{"banked", "simple"});
   for (const std::string& name : Registry<DramModel>::names()) {
     INFO(name);
@@ -97,9 +100,11 @@ TEST_CASE("every model of a memory channel answers each read once, counts each c
 
 TEST_CASE("the simple model takes its latency and then one transfer after another") {
   // 4 clocks of data each; seen at the next clock.
-  CHECK(at_once("latency = 30.0\nefficiency = 1.0", 3) == std::vector<Cycle>{11 + 30 + 4, 11 + 34 + 4, 11 + 38 + 4});
+  CHECK(at_once("latency = 30.0\nefficiency = 1.0", 3) ==
+        std::vector<Cycle>{11 + 30 + 4, 11 + 34 + 4, 11 + 38 + 4});
   CHECK(at_once("latency = 31.0\nefficiency = 1.0", 1) == std::vector<Cycle>{11 + 31 + 4});
-  CHECK(at_once("latency = 30.0\nefficiency = 0.5", 3) == std::vector<Cycle>{11 + 30 + 4, 11 + 38 + 4, 11 + 46 + 4});
+  CHECK(at_once("latency = 30.0\nefficiency = 0.5", 3) ==
+        std::vector<Cycle>{11 + 30 + 4, 11 + 38 + 4, 11 + 46 + 4});
 }
 
 TEST_CASE("the simple model meets an efficiency that is no whole number of clocks in the long run") {

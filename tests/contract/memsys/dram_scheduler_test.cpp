@@ -1,10 +1,11 @@
 // The contract of DramScheduler, for every registered policy.
 // SPDX-License-Identifier: Apache-2.0
+#include "memsys/dram_scheduler.h"
+
 #include <random>
 #include <vector>
 
 #include "base/registry.h"
-#include "memsys/dram_scheduler.h"
 #include "tests/support/catch.h"
 
 using namespace glint;
@@ -32,7 +33,8 @@ std::vector<uint32_t> exercise(const std::string& name, uint32_t seed) {
     if (random() % 2 && age < 3000) continue;
     uint32_t answered = 0;
     for (uint32_t bank = 0; bank < kBanks; ++bank) {
-      const uint32_t picked = scheduler->pick(bank, random() % 5 == 4 ? DramScheduler::kClosed : random() % 4);
+      const uint32_t picked =
+          scheduler->pick(bank, random() % 5 == 4 ? DramScheduler::kClosed : random() % 4);
       if (picked == DramScheduler::kNone) continue;
       REQUIRE(picked < kSlots);
       REQUIRE(in[picked]);

@@ -17,14 +17,16 @@ struct Tried {
   Client client = Client::Lsu;
 };
 
-// A random mix of reads and writes, at most one accepted a cycle; refused requests are tried again as they are.
+// A random mix of reads and writes, at most one accepted a cycle; refused requests are tried again as they
+// are.
 class Mix {
  public:
   Cycle step(L1Port& port, Cycle now) {
     if (token_ == kRequests) return kNever;
     if (!pending_) {
       const auto sectors = uint8_t(1 + random_() % 15);
-      request_ = {random_() % 64 * port.line_bytes(), sectors, random_() % 5 == 0, Traffic(random_() % 9), token_};
+      request_ = {random_() % 64 * port.line_bytes(), sectors, random_() % 5 == 0, Traffic(random_() % 9),
+                  token_};
       client_ = Client(random_() % 2);
       pending_ = true;
     }

@@ -1,8 +1,7 @@
 // Every PTX form that a GPU has recorded, compiled from its text and run on all SIMD paths: the same bits.
 //
-// GLINT_PTX_GOLDEN_DIR names the folder of the recordings, GLINT_GOLDEN_FORMS a part of the names of the forms to run:
-// then each prints a line.
-// SPDX-License-Identifier: Apache-2.0
+// GLINT_PTX_GOLDEN_DIR names the folder of the recordings, GLINT_GOLDEN_FORMS a part of the names of the
+// forms to run: then each prints a line. SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -27,9 +26,11 @@ bool is_missing(const std::string& op) {
   return std::any_of(kMissing.begin(), kMissing.end(), [&](const Missing& m) { return op == m.op; });
 }
 
-// Approximations may be off by 2 ulp, or, near zeros of the function, by an absolute error: the hardware's own largest
-// against the exact function (measured over all mantissas).
-bool is_approximate(const std::string& op) { return op.find(".approx") != std::string::npos || op.find("div.full") != std::string::npos; }
+// Approximations may be off by 2 ulp, or, near zeros of the function, by an absolute error: the hardware's
+// own largest against the exact function (measured over all mantissas).
+bool is_approximate(const std::string& op) {
+  return op.find(".approx") != std::string::npos || op.find("div.full") != std::string::npos;
+}
 double absolute_bound(const std::string& op) {
   if (op.starts_with("sin.")) return 3.5e-7;
   if (op.starts_with("cos.")) return 4.0e-7;
@@ -50,15 +51,18 @@ FloatFormat format_of(const std::string& type) {
 
 double as_double(uint64_t bits, FloatFormat f) {
   const int exponents = f.bits - 1 - f.mantissa, bias = (1 << (exponents - 1)) - 1;
-  const uint64_t exponent = bits >> f.mantissa & ((1ull << exponents) - 1), fraction = bits & ((1ull << f.mantissa) - 1);
-  const double value = exponent ? std::ldexp(double(fraction | 1ull << f.mantissa), int(exponent) - bias - f.mantissa)
-                                : std::ldexp(double(fraction), 1 - bias - f.mantissa);
+  const uint64_t exponent = bits >> f.mantissa & ((1ull << exponents) - 1),
+                 fraction = bits & ((1ull << f.mantissa) - 1);
+  const double value =
+      exponent ? std::ldexp(double(fraction | 1ull << f.mantissa), int(exponent) - bias - f.mantissa)
+               : std::ldexp(double(fraction), 1 - bias - f.mantissa);
   return bits >> (f.bits - 1) & 1 ? -value : value;
 }
 
 // Distance in units of the last place; huge between NaN and anything else.
 double ulps(uint64_t a, uint64_t b, FloatFormat f) {
-  const uint64_t sign = 1ull << (f.bits - 1), infinity = ((1ull << (f.bits - 1 - f.mantissa)) - 1) << f.mantissa;
+  const uint64_t sign = 1ull << (f.bits - 1), infinity = ((1ull << (f.bits - 1 - f.mantissa)) - 1)
+                                                         << f.mantissa;
   if ((a & ~sign) > infinity || (b & ~sign) > infinity) return a == b ? 0 : 1e30;
   const auto key = [&](uint64_t x) { return x & sign ? -double(x & ~sign) : double(x); };
   return std::abs(key(a) - key(b));
@@ -90,7 +94,8 @@ std::string lane_text(const Recording& r, const Form& form, uint32_t lane) {
   std::string text = "lane " + std::to_string(lane) + ": (";
   char number[32];
   for (size_t i = 0; i < form.inputs.size(); ++i) {
-    std::snprintf(number, sizeof number, "%s%llx", i ? ", " : "", static_cast<unsigned long long>(r.input(form, i, lane)));
+    std::snprintf(number, sizeof number, "%s%llx", i ? ", " : "",
+                  static_cast<unsigned long long>(r.input(form, i, lane)));
     text += number;
   }
   return text + ")";
@@ -108,18 +113,23 @@ Comparison compare(const Recording& r, const Form& form) {
         const uint64_t got = outcome.outputs[p][i][lane], expected = r.output(form, i, lane);
         if (got == expected) continue;
         ++different;
-        const bool near = is_approximate(form.op) && is_near(form.op, form.outputs[i].type, got, expected, worst);
+        const bool near =
+            is_approximate(form.op) && is_near(form.op, form.outputs[i].type, got, expected, worst);
         if (near || wrong++) continue;
         char text[160];
-        std::snprintf(text, sizeof text, " D%zu: recorded %llx, got %llx (%s)", i, static_cast<unsigned long long>(expected),
-                      static_cast<unsigned long long>(got), std::string(isa::name_of(outcome.paths[p])).c_str());
+        std::snprintf(text, sizeof text, " D%zu: recorded %llx, got %llx (%s)", i,
+                      static_cast<unsigned long long>(expected), static_cast<unsigned long long>(got),
+                      std::string(isa::name_of(outcome.paths[p])).c_str());
         out.line = lane_text(r, form, lane) + text;
       }
   out.verdict = wrong ? Verdict::Differs : different ? Verdict::Near : Verdict::Equal;
   const double values = double(r.lanes) * double(form.outputs.size() * outcome.paths.size());
   char text[96];
-  if (different && is_approximate(form.op)) std::snprintf(text, sizeof text, "  %.2f %% equal, at most %.6g ulp", 100 * (1 - different / values), worst);
-  else std::snprintf(text, sizeof text, "  %u of %.0f differ", different, values);
+  if (different && is_approximate(form.op))
+    std::snprintf(text, sizeof text, "  %.2f %% equal, at most %.6g ulp", 100 * (1 - different / values),
+                  worst);
+  else
+    std::snprintf(text, sizeof text, "  %u of %.0f differ", different, values);
   out.line += text;
   return out;
 }
@@ -133,10 +143,13 @@ void compare_all(const Recording& r, const std::string& what) {
     if (filter && form.op.find(filter) == std::string::npos) continue;
     const Comparison c = compare(r, form);
     ++count[size_t(c.verdict)];
-    if (filter || c.verdict != Verdict::Equal) std::printf("%-10s %-36s %s\n", kWords[size_t(c.verdict)], form.op.c_str(), c.line.c_str());
-    if (c.verdict == Verdict::Differs || (c.verdict == Verdict::Missing) != is_missing(form.op)) unexpected += "  " + form.op;
+    if (filter || c.verdict != Verdict::Equal)
+      std::printf("%-10s %-36s %s\n", kWords[size_t(c.verdict)], form.op.c_str(), c.line.c_str());
+    if (c.verdict == Verdict::Differs || (c.verdict == Verdict::Missing) != is_missing(form.op))
+      unexpected += "  " + form.op;
   }
-  std::printf("%s: %u forms equal, %u within ulp, %u differ, %u not supported\n", what.c_str(), count[0], count[1], count[2], count[3]);
+  std::printf("%s: %u forms equal, %u within ulp, %u differ, %u not supported\n", what.c_str(), count[0],
+              count[1], count[2], count[3]);
   INFO("forms that should not differ or be missing:" << unexpected);
   CHECK(unexpected.empty());
 }
@@ -145,7 +158,9 @@ void compare_all(const Recording& r, const std::string& what) {
 
 TEST_CASE("every form of the recordings gives the bits of a GPU on every path, approximations within 2 ulp") {
   const char* const named = std::getenv("GLINT_PTX_GOLDEN_DIR");
-  const std::filesystem::path folder = named ? std::filesystem::path(named) : std::filesystem::path(GLINT_SOURCE_DIR) / "../shared/data/ptx-golden";
+  const std::filesystem::path folder =
+      named ? std::filesystem::path(named)
+            : std::filesystem::path(GLINT_SOURCE_DIR) / "../shared/data/ptx-golden";
   if (!std::filesystem::exists(folder / "manifest.json")) {
     WARN("SKIPPED: no recordings of a GPU in " << folder.string());
     return;
@@ -157,7 +172,9 @@ TEST_CASE("every form of the extract gives the bits of a GPU on every path, appr
   compare_all(load_extract(std::filesystem::path(GLINT_SOURCE_DIR) / "tests/isa/golden/data"), "extract");
 }
 
-// Rows that the recordings above leave out, recorded by tools/record_vectors.py on an H200: the rest of the cross product.
+// Rows that the recordings above leave out, recorded by tools/record_vectors.py on an H200: the rest of the
+// cross product.
 TEST_CASE("every form of the further extract gives the bits of a GPU on every path") {
-  compare_all(load_extract(std::filesystem::path(GLINT_SOURCE_DIR) / "tests/isa/golden/further"), "further extract");
+  compare_all(load_extract(std::filesystem::path(GLINT_SOURCE_DIR) / "tests/isa/golden/further"),
+              "further extract");
 }

@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/isa/golden/recording.h"
 
-#include <fmt/format.h>
-#include <zstd.h>
-
 #include <cstring>
+#include <fmt/format.h>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <zstd.h>
 
 #include "frontend/ptx/ptx.h"
 #include "pipeline/functional_machine.h"
@@ -91,7 +90,9 @@ Recording load_extract(const std::filesystem::path& folder) {
     }
     out.forms.push_back(std::move(form));
   }
-  if (at != lanes.size()) throw UserError(fmt::format("{}: {} bytes of lanes, the forms take {}", folder.string(), lanes.size(), at));
+  if (at != lanes.size())
+    throw UserError(
+        fmt::format("{}: {} bytes of lanes, the forms take {}", folder.string(), lanes.size(), at));
   out.inputs = out.outputs = lanes;
   return out;
 }
@@ -120,7 +121,8 @@ std::string kernel_text(const Form& form) {
     const Array& a = form.inputs[i];
     parameter(kInputs[i]);
     declarations += fmt::format("  .reg .{} {};\n", register_type(a), kInputs[i]);
-    loads += address(kInputs[i], a.bytes) + fmt::format("  ld.global.b{} {}, [%at];\n", a.bytes * 8, kInputs[i]);
+    loads +=
+        address(kInputs[i], a.bytes) + fmt::format("  ld.global.b{} {}, [%at];\n", a.bytes * 8, kInputs[i]);
     // No op may look at the upper half of the register that holds a 16-bit value.
     if (a.bytes == 2) loads += fmt::format("  or.b32 {0}, {0}, 0x7fc50000;\n", kInputs[i]);
   }
@@ -129,14 +131,18 @@ std::string kernel_text(const Form& form) {
     parameter(kOutputs[i]);
     declarations += fmt::format("  .reg .{} {};\n", register_type(a), kOutputs[i]);
     stores += address(kOutputs[i], a.bytes);
-    if (a.type == "pred") stores += fmt::format("  selp.u32 %bit, 1, 0, {};\n  st.global.b8 [%at], %bit;\n", kOutputs[i]);
-    else stores += fmt::format("  st.global.b{} [%at], {};\n", a.bytes * 8, kOutputs[i]);
+    if (a.type == "pred")
+      stores += fmt::format("  selp.u32 %bit, 1, 0, {};\n  st.global.b8 [%at], %bit;\n", kOutputs[i]);
+    else
+      stores += fmt::format("  st.global.b{} [%at], {};\n", a.bytes * 8, kOutputs[i]);
   }
   parameter("TMP");
   return fmt::format(
       ".version 8.0\n.target sm_90\n.address_size 64\n.visible .entry form({})\n{{\n{}"
-      "  .reg .b64 %at, TMP;\n  .reg .b32 %index, %thread, %bit, SHM;\n  .reg .pred PP;\n  .shared .align 8 .b8 scratch[256];\n"
-      "  mov.u32 %thread, %tid.x;\n  mov.u32 %index, %ctaid.x;\n  mad.lo.u32 %index, %index, 32, %thread;\n{}{}  mov.u64 TMP, %at;\n"
+      "  .reg .b64 %at, TMP;\n  .reg .b32 %index, %thread, %bit, SHM;\n  .reg .pred PP;\n  .shared .align 8 "
+      ".b8 scratch[256];\n"
+      "  mov.u32 %thread, %tid.x;\n  mov.u32 %index, %ctaid.x;\n  mad.lo.u32 %index, %index, 32, "
+      "%thread;\n{}{}  mov.u64 TMP, %at;\n"
       "  mov.u32 SHM, scratch;\n  mad.lo.u32 SHM, %thread, 8, SHM;\n  {}\n{}  ret;\n}}\n",
       parameters, declarations, loads, address("TMP", 8), form.text, stores);
 }
@@ -154,7 +160,8 @@ Outcome run(const Recording& recording, const Form& form) {
     const isa::Path path = isa::Path(p);
     if (!isa::is_supported(path)) continue;
     pipeline::KernelWorld world(kernel);
-    for (size_t i = 0; i < world.image.rows.size(); ++i) world.image.rows[i] = &isa::op_table(path)[world.image.code[i].op];
+    for (size_t i = 0; i < world.image.rows.size(); ++i)
+      world.image.rows[i] = &isa::op_table(path)[world.image.code[i].op];
     world.set_grid({{recording.lanes / 32, 1, 1}, {32, 1, 1}, 0});
     std::vector<std::vector<std::byte>> arguments;
     std::vector<Address> at;
@@ -164,7 +171,8 @@ Outcome run(const Recording& recording, const Form& form) {
       return at.back();
     };
     for (const Array& a : form.inputs)
-      world.memory().write(buffer("input", uint64_t{recording.lanes} * a.bytes), recording.inputs.data() + a.offset, uint64_t{recording.lanes} * a.bytes);
+      world.memory().write(buffer("input", uint64_t{recording.lanes} * a.bytes),
+                           recording.inputs.data() + a.offset, uint64_t{recording.lanes} * a.bytes);
     const size_t first_output = at.size();
     for (const Array& a : form.outputs) buffer("output", uint64_t{recording.lanes} * a.bytes);
     buffer("scratch", uint64_t{recording.lanes} * 8);
@@ -179,7 +187,8 @@ Outcome run(const Recording& recording, const Form& form) {
       Array array = form.outputs[i];
       array.offset = 0;
       values.emplace_back();
-      for (uint32_t lane = 0; lane < recording.lanes; ++lane) values.back().push_back(Recording::value(data, array, lane));
+      for (uint32_t lane = 0; lane < recording.lanes; ++lane)
+        values.back().push_back(Recording::value(data, array, lane));
     }
     out.outputs.push_back(std::move(values));
   }

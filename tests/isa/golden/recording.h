@@ -11,13 +11,13 @@
 namespace glint::golden {
 
 struct Array {
-  std::string type;   // f32, u16, pred ...
-  uint32_t bytes = 0; // a lane
-  size_t offset = 0;  // in the recording's inputs or outputs
+  std::string type;    // f32, u16, pred ...
+  uint32_t bytes = 0;  // a lane
+  size_t offset = 0;   // in the recording's inputs or outputs
 };
 
-// One form: text with operands A, B, C, E (inputs), D0, D1 (outputs), TMP and SHM (8 bytes of global and of shared
-// memory a lane), PP (a predicate).
+// One form: text with operands A, B, C, E (inputs), D0, D1 (outputs), TMP and SHM (8 bytes of global and of
+// shared memory a lane), PP (a predicate).
 struct Form {
   std::string op, text;
   std::vector<Array> inputs, outputs;
@@ -28,8 +28,12 @@ struct Recording {
   std::string inputs, outputs;
   std::vector<Form> forms;
 
-  uint64_t input(const Form& form, size_t operand, uint32_t lane) const { return value(inputs, form.inputs[operand], lane); }
-  uint64_t output(const Form& form, size_t operand, uint32_t lane) const { return value(outputs, form.outputs[operand], lane); }
+  uint64_t input(const Form& form, size_t operand, uint32_t lane) const {
+    return value(inputs, form.inputs[operand], lane);
+  }
+  uint64_t output(const Form& form, size_t operand, uint32_t lane) const {
+    return value(outputs, form.outputs[operand], lane);
+  }
   static uint64_t value(const std::string& data, const Array& array, uint32_t lane);
 };
 

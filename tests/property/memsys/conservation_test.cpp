@@ -1,5 +1,5 @@
-// Random traffic: counts against a trivially simple reference, and independence of windows, skipping and repetition.
-// SPDX-License-Identifier: Apache-2.0
+// Random traffic: counts against a trivially simple reference, and independence of windows, skipping and
+// repetition. SPDX-License-Identifier: Apache-2.0
 #include <map>
 #include <random>
 #include <set>
@@ -25,7 +25,8 @@ Params cramped(uint32_t variant) {
   p.l1.allocate = variant % 2 ? "on_miss" : "on_fill";
   p.l1.write_allocate = variant % 3 == 1, p.l1.global_write_back = variant % 5 == 2;
   p.l1.fill_takes_access = variant % 4 < 2;
-  p.noc.credits = variant % 4, p.noc.sides = variant % 6 == 5 ? 2 : 1, p.noc.far_latency = variant % 6 == 5 ? 9 : 0;
+  p.noc.credits = variant % 4, p.noc.sides = variant % 6 == 5 ? 2 : 1,
+  p.noc.far_latency = variant % 6 == 5 ? 9 : 0;
   p.noc.core_reply_bytes = 16, p.noc.partition_request_bytes = 12;
   p.l2.slice_size = 16 * 128, p.l2.ways = variant % 2 ? 16 : 4;
   p.l2.mshr_entries = 4, p.l2.mshr_merges = 2, p.l2.dram_queue = 8;
@@ -37,7 +38,9 @@ Params cramped(uint32_t variant) {
   p.dram.bus_bytes = variant % 4 == 3 ? 4 : variant % 4 == 2 ? 1 : 2;
   p.dram.dual_command_bus = variant % 2;
   p.dram.latency = variant % 2 ? 0 : 10;
-  p.dram.scheduler = PolicyChoice<DramScheduler>(variant % 3 == 2 ? "fcfs" : variant % 4 == 3 ? "write_drain" : "frfcfs");
+  p.dram.scheduler = PolicyChoice<DramScheduler>(variant % 3 == 2   ? "fcfs"
+                                                 : variant % 4 == 3 ? "write_drain"
+                                                                    : "frfcfs");
   p.dram.refresh = variant % 3 == 0 ? "none" : variant % 3 == 1 ? "all_bank" : "per_bank";
   p.dram.activate_clocks = 1 + variant % 2;
   if (variant == 11) p.dram.model = PolicyChoice<DramModel>("simple");
@@ -59,12 +62,15 @@ struct CoreTraffic {
       if (!pending) {
         const Address line = (random() % 4 ? random() % 48 : random() % 4096) * 128;
         const bool write = random() % 4 == 0;
-        pending = Request{line, uint8_t(1 + random() % 15), write, Traffic(random() % uint32_t(Traffic::Count)), next};
+        pending = Request{line, uint8_t(1 + random() % 15), write,
+                          Traffic(random() % uint32_t(Traffic::Count)), next};
         if (write && random() % 2) pending->words = WordMask(random() | (random() % 2 ? 0xffffu : 0u));
       }
       if (!l1.access(now, Client(next % 2), *pending)) continue;
-      if (pending->write) ++writes;
-      else ++reads, lines_read.insert(pending->line);
+      if (pending->write)
+        ++writes;
+      else
+        ++reads, lines_read.insert(pending->line);
       pending.reset();
       ++next;
     }
@@ -120,12 +126,14 @@ Outcome simulate(uint32_t variant, Cycle window, bool step, uint32_t seed = 5) {
   for (uint32_t p = 0; p < rig.memory().num_partitions(); ++p) {
     const Partition& partition = rig.memory().partition(p);
     const DramStats& d = partition.dram().stats();
-    for (uint32_t i = 0; i < partition.num_slices(); ++i) CHECK(partition.slice(i).stats().cycles.total() == kEnd);
+    for (uint32_t i = 0; i < partition.num_slices(); ++i)
+      CHECK(partition.slice(i).stats().cycles.total() == kEnd);
     CHECK(d.use.total() == partition.dram().clocks().clock_at(kEnd));
     CHECK(d.requests.value() == d.reads.value() + d.writes.value());
     CHECK(d.picks.value() == d.requests.value());
     CHECK(d.busy_clocks.value() == d.requests.value() * partition.dram().data_clocks());
-    if (variant != 11) CHECK(d.activates.value() + d.row_hits.value() == d.picks.value() + d.reopened.value());
+    if (variant != 11)
+      CHECK(d.activates.value() + d.row_hits.value() == d.picks.value() + d.reopened.value());
   }
   Outcome out{rig.answers(), {}};
   Collect collect;
@@ -167,12 +175,15 @@ TEST_CASE("without reuse every read fetches its sectors once, through L2 and DRA
   Token next = 0;
   std::optional<Request> pending;
   rig.run([&](uint32_t, Cycle now) {
-    if (!pending) pending = Request{Address{next} * 128, uint8_t(1 + random() % 15), false, Traffic::RtNode, next};
-    if (rig.l1().access(now, Client::RtUnit, *pending)) sectors += num_sectors(pending->sectors), pending.reset(), ++next;
+    if (!pending)
+      pending = Request{Address{next} * 128, uint8_t(1 + random() % 15), false, Traffic::RtNode, next};
+    if (rig.l1().access(now, Client::RtUnit, *pending))
+      sectors += num_sectors(pending->sectors), pending.reset(), ++next;
     return next == kLines ? kNever : now + 1;
   });
   uint64_t dram_reads = 0;
-  for (uint32_t p = 0; p < rig.memory().num_partitions(); ++p) dram_reads += rig.memory().partition(p).dram().stats().reads.value();
+  for (uint32_t p = 0; p < rig.memory().num_partitions(); ++p)
+    dram_reads += rig.memory().partition(p).dram().stats().reads.value();
   CHECK(dram_reads == sectors);
   CHECK(rig.l1().stats().misses.count(Traffic::RtNode) == kLines);
   CHECK(rig.l1().stats().cold_misses.count(Traffic::RtNode) == kLines);

@@ -1,5 +1,5 @@
-// Rays recorded through a real Vulkan driver find the same here: instance, primitive, kind, distance, any-hit calls.
-// SPDX-License-Identifier: Apache-2.0
+// Rays recorded through a real Vulkan driver find the same here: instance, primitive, kind, distance, any-hit
+// calls. SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -15,14 +15,16 @@ std::vector<char> unpack(const std::filesystem::path& path) {
   FILE* pipe = popen(("zstd -dcq --long=27 '" + path.string() + "'").c_str(), "r");
   REQUIRE(pipe);
   std::vector<char> out, block(1 << 16);
-  for (size_t n; (n = fread(block.data(), 1, block.size(), pipe)) > 0;) out.insert(out.end(), block.begin(), block.begin() + long(n));
+  for (size_t n; (n = fread(block.data(), 1, block.size(), pipe)) > 0;)
+    out.insert(out.end(), block.begin(), block.begin() + long(n));
   CAPTURE(path);
   REQUIRE(pclose(pipe) == 0);  // needs the program zstd
   return out;
 }
 
 struct Record {  // struct Rec of the recording's shaders
-  uint32_t kind, instance, custom, primitive, geometry, hit_kind, tag, flags, any_hits, any_hit_hash, inters, call;
+  uint32_t kind, instance, custom, primitive, geometry, hit_kind, tag, flags, any_hits, any_hit_hash, inters,
+      call;
   float t, u, v, t_min, origin[3], nx, direction[3], ny;
 };
 static_assert(sizeof(Record) == 96);
@@ -59,7 +61,8 @@ struct Recording {
       for (const auto& g : level["geoms"]) {
         Geometry geometry;
         if (g["type"] == "tri")
-          geometry.positions = std::as_bytes(std::span(vertices).subspan(g["firstVert"], 3 * size_t(g["tris"])));
+          geometry.positions =
+              std::as_bytes(std::span(vertices).subspan(g["firstVert"], 3 * size_t(g["tris"])));
         else
           geometry.aabbs = boxes;
         geometry.opaque = g["opaque"] != 0;
@@ -78,18 +81,22 @@ struct Recording {
   struct Found {
     RayState state;
     uint32_t any_hits = 0, hash = 0;
-    bool tangent = false;  // a sphere was met within rounding of its rim: the driver's compiler may decide otherwise
+    bool tangent =
+        false;  // a sphere was met within rounding of its rim: the driver's compiler may decide otherwise
   };
   void any_hit(Found& f, const nlohmann::json& mode) const {
     const Hit& c = f.state.candidate;
     ++f.any_hits;
-    f.hash += (c.instance * 73856093u) ^ (c.primitive * 19349663u) ^ (c.geometry * 83492791u) ^ (c.kind << 20);
+    f.hash +=
+        (c.instance * 73856093u) ^ (c.primitive * 19349663u) ^ (c.geometry * 83492791u) ^ (c.kind << 20);
     const int rule = mode["ahMode"];
     if (rule == 2) return ignore_candidate(f.state);
     if (rule == 3) return terminate_candidate(f.state);
     // the recording's hit records with an alpha test
-    const uint32_t record = c.sbt_record + c.geometry * uint32_t(mode["sbtStride"]) + uint32_t(mode["sbtOffset"]);
-    const bool hole = (record == 0 || record == 7) && !f.state.candidate_procedural && ((int(c.u * 4) + int(c.v * 4)) & 1);
+    const uint32_t record =
+        c.sbt_record + c.geometry * uint32_t(mode["sbtStride"]) + uint32_t(mode["sbtOffset"]);
+    const bool hole =
+        (record == 0 || record == 7) && !f.state.candidate_procedural && ((int(c.u * 4) + int(c.v * 4)) & 1);
     hole ? ignore_candidate(f.state) : accept_candidate(f.state);
   }
   void intersect(Found& f, const nlohmann::json& mode) const {
@@ -98,7 +105,8 @@ struct Recording {
     const auto& o = s.space.origin;
     const auto& d = s.space.direction;
     float a = 0, b = 0, c = -sphere[3] * sphere[3];
-    for (size_t k = 0; k < 3; ++k) a += d[k] * d[k], b += (o[k] - sphere[k]) * d[k], c += (o[k] - sphere[k]) * (o[k] - sphere[k]);
+    for (size_t k = 0; k < 3; ++k)
+      a += d[k] * d[k], b += (o[k] - sphere[k]) * d[k], c += (o[k] - sphere[k]) * (o[k] - sphere[k]);
     const float discriminant = b * b - a * c;
     f.tangent |= std::fabs(discriminant) < 1e-4f * b * b;
     for (uint32_t kind = 1; discriminant >= 0 && kind < 3; ++kind) {
@@ -111,8 +119,9 @@ struct Recording {
   }
   Found trace(const RecordedRay& ray, const nlohmann::json& mode) const {
     Found f;
-    f.state = ray_of(top.address, {ray.origin[0], ray.origin[1], ray.origin[2]}, {ray.direction[0], ray.direction[1], ray.direction[2]},
-                     ray.t_min, ray.t_max, mode["rayFlags"]);
+    f.state = ray_of(top.address, {ray.origin[0], ray.origin[1], ray.origin[2]},
+                     {ray.direction[0], ray.direction[1], ray.direction[2]}, ray.t_min, ray.t_max,
+                     mode["rayFlags"]);
     f.state.ray.cull_mask = mode["mask"];
     REQUIRE(begin(f.state, memory));
     while (f.state.status != RayStatus::Done) {
@@ -145,13 +154,18 @@ Tally compare_mode(const Recording& recording, size_t m) {
       continue;
     }
     tally.outcome += hit != ours.valid();
-    if (mode["ahMode"] == 2) tally.calls += theirs.any_hits != found.any_hits || theirs.any_hit_hash != found.hash;
+    if (mode["ahMode"] == 2)
+      tally.calls += theirs.any_hits != found.any_hits || theirs.any_hit_hash != found.hash;
     if (!hit || !ours.valid() || !closest || any) continue;
-    const bool same = ours.instance == theirs.instance && ours.primitive == theirs.primitive && ours.geometry == theirs.geometry;
-    tally.primitive += !same && std::fabs(ours.t - theirs.t) > 1e-5f * theirs.t;  // on an edge either neighbour is right
+    const bool same = ours.instance == theirs.instance && ours.primitive == theirs.primitive &&
+                      ours.geometry == theirs.geometry;
+    tally.primitive +=
+        !same && std::fabs(ours.t - theirs.t) > 1e-5f * theirs.t;  // on an edge either neighbour is right
     if (!same) continue;
-    const bool values = ours.custom_index == theirs.custom && ours.kind == theirs.hit_kind && std::fabs(ours.t - theirs.t) < 1e-4f * std::fmax(1.f, theirs.t) &&
-                        (theirs.kind != 1 || (std::fabs(ours.u - theirs.u) < 1e-3f && std::fabs(ours.v - theirs.v) < 1e-3f));
+    const bool values =
+        ours.custom_index == theirs.custom && ours.kind == theirs.hit_kind &&
+        std::fabs(ours.t - theirs.t) < 1e-4f * std::fmax(1.f, theirs.t) &&
+        (theirs.kind != 1 || (std::fabs(ours.u - theirs.u) < 1e-3f && std::fabs(ours.v - theirs.v) < 1e-3f));
     tally.values += !values;
   }
   return tally;

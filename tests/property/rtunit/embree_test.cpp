@@ -1,10 +1,11 @@
 // Closest hits of random scenes agree with Embree's own intersector.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "rtunit/validate.h"
-#include "tests/support/rt_scenes.h"
-#include "tests/support/catch.h"
 #include "tests/support/embree.h"
+
+#include "rtunit/validate.h"
+#include "tests/support/catch.h"
+#include "tests/support/rt_scenes.h"
 
 namespace glint::rt::test {
 namespace {
@@ -31,10 +32,11 @@ class Oracle {
       RTCScene object = rtcNewScene(device_);
       rtcSetSceneFlags(object, RTC_SCENE_FLAG_ROBUST);
       RTCGeometry mesh = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-      void* v = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, part.positions.size());
+      void* v = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12,
+                                        part.positions.size());
       std::memcpy(v, part.positions.data(), part.positions.size() * 12);
-      auto* i = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12,
-                                                               part.positions.size() / 3));
+      auto* i = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
+          mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, part.positions.size() / 3));
       for (uint32_t k = 0; k < part.positions.size(); ++k) i[k] = k;
       rtcCommitGeometry(mesh);
       rtcAttachGeometry(object, mesh);
@@ -57,8 +59,18 @@ class Oracle {
   }
   RTCRayHit intersect(const Ray& ray) const {
     RTCRayHit out{};
-    out.ray = {ray.origin[0], ray.origin[1], ray.origin[2], ray.t_min, ray.direction[0], ray.direction[1], ray.direction[2], 0,
-               ray.t_max, ~0u, 0, 0};
+    out.ray = {ray.origin[0],
+               ray.origin[1],
+               ray.origin[2],
+               ray.t_min,
+               ray.direction[0],
+               ray.direction[1],
+               ray.direction[2],
+               0,
+               ray.t_max,
+               ~0u,
+               0,
+               0};
     out.hit.geomID = out.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     glint::test::EmbreeContext context;
     glint::test::start(context);
@@ -72,11 +84,12 @@ class Oracle {
 };
 
 struct Comparison {
-  uint32_t hits = 0, misses = 0, same = 0, decided = 0, wrong = 0;  // decided: they differ, and exact arithmetic finds no fault
+  uint32_t hits = 0, misses = 0, same = 0, decided = 0,
+           wrong = 0;  // decided: they differ, and exact arithmetic finds no fault
 };
 
-// The hit of one triangle in double precision, and how far float rounding may move it: `blur` grows for grazing rays
-// and for slivers, relative to the scene's size and the triangle's.
+// The hit of one triangle in double precision, and how far float rounding may move it: `blur` grows for
+// grazing rays and for slivers, relative to the scene's size and the triangle's.
 struct Exact {
   double t = 0, margin = 0, blur = 0;
 };
@@ -90,7 +103,8 @@ Exact exact_hit(const Ray& ray, const Part& part, uint32_t primitive) {
       for (int k = 0; k < 3; ++k) p[c][r] += double(m[size_t(4 * r + k)]) * v[size_t(k)];
       reach = std::fmax(reach, std::fmax(std::fabs(p[c][r]), std::fabs(ray.origin[size_t(r)])));
     }
-  for (int r = 0; r < 3; ++r) e1[r] = p[1][r] - p[0][r], e2[r] = p[2][r] - p[0][r], s[r] = ray.origin[size_t(r)] - p[0][r];
+  for (int r = 0; r < 3; ++r)
+    e1[r] = p[1][r] - p[0][r], e2[r] = p[2][r] - p[0][r], s[r] = ray.origin[size_t(r)] - p[0][r];
   const auto& d = ray.direction;
   const auto cross = [](const double* a, const double* b, double* out) {
     for (int r = 0; r < 3; ++r) out[r] = a[(r + 1) % 3] * b[(r + 2) % 3] - a[(r + 2) % 3] * b[(r + 1) % 3];
@@ -111,19 +125,22 @@ Exact exact_hit(const Ray& ray, const Part& part, uint32_t primitive) {
   return out;
 }
 
-// Rounding of t: the weights' blur times the triangle's extent along the ray is bounded by reach / (|d| sine).
+// Rounding of t: the weights' blur times the triangle's extent along the ray is bounded by reach / (|d|
+// sine).
 double t_blur(const Exact& e, const Ray& ray, float size) {
   double d = 0;
   for (float x : ray.direction) d += double(x) * x;
   return e.blur * size / std::sqrt(d) + 1e-5 * std::fabs(e.t);
 }
 
-void compare(const Hit& ours, const RTCRayHit& theirs, const Ray& ray, const std::vector<Part>& parts, float size,
-             Comparison& c) {
+void compare(const Hit& ours, const RTCRayHit& theirs, const Ray& ray, const std::vector<Part>& parts,
+             float size, Comparison& c) {
   const bool hit = theirs.hit.geomID != RTC_INVALID_GEOMETRY_ID;
   ++(ours.valid() ? c.hits : c.misses);
-  const bool same_primitive = ours.valid() && hit && ours.instance == theirs.hit.instID[0] && ours.primitive == theirs.hit.primID;
-  if ((!hit && !ours.valid()) || (same_primitive && std::fabs(ours.t - theirs.ray.tfar) <= 1e-5f * std::fabs(ours.t))) {
+  const bool same_primitive =
+      ours.valid() && hit && ours.instance == theirs.hit.instID[0] && ours.primitive == theirs.hit.primID;
+  if ((!hit && !ours.valid()) ||
+      (same_primitive && std::fabs(ours.t - theirs.ray.tfar) <= 1e-5f * std::fabs(ours.t))) {
     ++c.same;
     return;
   }
@@ -141,8 +158,8 @@ void compare(const Hit& ours, const RTCRayHit& theirs, const Ray& ray, const std
   ++(wrong ? c.wrong : c.decided);
 }
 
-Comparison run_scene(uint64_t seed, uint32_t num_parts, uint32_t count, float size, float edge, uint32_t num_rays,
-                     bool identity) {
+Comparison run_scene(uint64_t seed, uint32_t num_parts, uint32_t count, float size, float edge,
+                     uint32_t num_rays, bool identity) {
   Random random{seed};
   std::vector<Part> parts;
   mem::AddressSpace memory;
@@ -150,7 +167,8 @@ Comparison run_scene(uint64_t seed, uint32_t num_parts, uint32_t count, float si
   std::vector<Instance> instances;
   for (uint32_t p = 0; p < num_parts; ++p) {
     const float scale = random.uniform(0.2f, 2) * (random.below(2) ? 1.f : -1.f);
-    parts.push_back({soup(random, count, size, edge), identity ? kIdentity : random_transform(random, scale, size)});
+    parts.push_back(
+        {soup(random, count, size, edge), identity ? kIdentity : random_transform(random, scale, size)});
     bottoms.push_back(build_bottom(memory, "bottom", {{triangles(parts.back().positions)}}));
     instances.emplace_back();
     instances.back().transform = parts.back().transform;

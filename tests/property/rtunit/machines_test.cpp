@@ -19,7 +19,8 @@ struct Zoo {
     alpha = soup(random, 100, 10, 3);
     for (int i = 0; i < 60; ++i) {
       const auto p = random.point(10), s = random.point(1);
-      boxes.push_back({{p[0], p[1], p[2]}, {p[0] + std::fabs(s[0]), p[1] + std::fabs(s[1]), p[2] + std::fabs(s[2])}});
+      boxes.push_back(
+          {{p[0], p[1], p[2]}, {p[0] + std::fabs(s[0]), p[1] + std::fabs(s[1]), p[2] + std::fabs(s[2])}});
     }
     Geometry procedural;
     procedural.aabbs = boxes;
@@ -29,7 +30,8 @@ struct Zoo {
         build_bottom(memory, "alpha", {{triangles(alpha, false)}})};
     std::vector<Instance> instances(12);
     for (size_t i = 0; i < instances.size(); ++i) {
-      instances[i].transform = random_transform(random, random.uniform(0.3f, 1.5f) * (i % 2 ? 1.f : -1.f), 15);
+      instances[i].transform =
+          random_transform(random, random.uniform(0.3f, 1.5f) * (i % 2 ? 1.f : -1.f), 15);
       instances[i].bottom = uint32_t(i % 3 == 2);
       instances[i].flags = random.below(16);
       instances[i].mask = 1u << random.below(8) | 0x80;
@@ -37,7 +39,8 @@ struct Zoo {
     top = build_top(memory, "top", instances, bottoms);
   }
   RayState ray() {
-    RayState state = ray_of(top.address, random.point(20), random.point(1), random.uniform(0, 1), random.below(4) ? 100.f : 3.f);
+    RayState state = ray_of(top.address, random.point(20), random.point(1), random.uniform(0, 1),
+                            random.below(4) ? 100.f : 3.f);
     static constexpr uint32_t kFlags[] = {0, 0, 0, 1, 2, 4, 0x10, 0x20, 0x40, 0x80, 0x100, 0x200, 5};
     state.ray.flags = kFlags[random.below(13)];
     state.ray.cull_mask = random.below(2) ? 0xff : random.bits() & 0xff;
@@ -68,7 +71,8 @@ void check_same(const RayState& a, const RayState& b) {
 // Gives the rays of a warp tables and starts them again. Their hit may not depend on which is found first.
 struct Tables {
   std::vector<std::array<CandidateTable, kLanes>> of_warp;
-  Tables(std::vector<WarpRays>& warps, uint32_t rows, const mem::AddressSpace& memory) : of_warp(warps.size()) {
+  Tables(std::vector<WarpRays>& warps, uint32_t rows, const mem::AddressSpace& memory)
+      : of_warp(warps.size()) {
     for (size_t w = 0; w < warps.size(); ++w)
       for (size_t lane = 0; lane < kLanes; ++lane) {
         of_warp[w][lane].row.resize(rows);
@@ -87,7 +91,9 @@ void check_same_hit(const RayState& a, const RayState& b) {
           std::tuple(b.committed.instance, b.committed.geometry, b.committed.primitive));
 }
 
-TEST_CASE("rays that gather candidates find the hit of rays that stop at each, whatever the table's size and the order") {
+TEST_CASE(
+    "rays that gather candidates find the hit of rays that stop at each, whatever the table's size and the "
+    "order") {
   for (uint64_t seed = 0; seed < 6; ++seed) {
     Zoo zoo(seed);
     const uint32_t rows = std::array{1u, 2u, 3u, 5u, 8u, 32u}[seed];
@@ -130,7 +136,8 @@ TEST_CASE("the timed unit gathers what run gathers, writes it to memory once, an
     Zoo zoo(seed);
     const uint32_t rows = 2 + uint32_t(seed);
     std::vector<WarpRays> functional = zoo.rays(5), timed = functional, skipped = functional;
-    const Tables of_functional(functional, rows, zoo.memory), of_timed(timed, rows, zoo.memory), of_skipped(skipped, rows, zoo.memory);
+    const Tables of_functional(functional, rows, zoo.memory), of_timed(timed, rows, zoo.memory),
+        of_skipped(skipped, rows, zoo.memory);
     Params params;
     params.warps = 1 + uint32_t(seed % 3);
     params.result_store = seed % 2;
@@ -209,7 +216,8 @@ TEST_CASE("the timed unit finds what run finds, under every scheduler, memory an
     CHECK(s.finished.value() + s.suspended.value() == s.rays.value() + s.resumed.value());
     CHECK(done.completions == s.warps.value());
     CHECK(s.cycles.total() == s.unit_cycles.value());
-    CHECK(s.nodes.value() == s.internal_nodes.value() + s.instance_leaves.value() + s.triangle_leaves.value() + s.procedural_leaves.value());
+    CHECK(s.nodes.value() == s.internal_nodes.value() + s.instance_leaves.value() +
+                                 s.triangle_leaves.value() + s.procedural_leaves.value());
     CHECK(s.nodes.value() == s.fetches.value() + s.merged_lanes.value());
   }
 }

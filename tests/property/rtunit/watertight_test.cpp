@@ -6,19 +6,22 @@
 namespace glint::rt::test {
 namespace {
 
-// An octahedron split `levels` times, its vertices moved to distances of 1 to 1.3 by a rule that neighbours share.
+// An octahedron split `levels` times, its vertices moved to distances of 1 to 1.3 by a rule that neighbours
+// share.
 Positions bumpy_sphere(int levels, float size, const std::array<float, 3>& center) {
   Positions faces;
   for (int i = 0; i < 8; ++i) {
     const float x = i & 1 ? -1.f : 1.f, y = i & 2 ? -1.f : 1.f, z = i & 4 ? -1.f : 1.f;
-    for (const std::array<float, 3>& p : {std::array{x, 0.f, 0.f}, {0.f, y, 0.f}, {0.f, 0.f, z}}) faces.push_back(p);
+    for (const std::array<float, 3>& p : {std::array{x, 0.f, 0.f}, {0.f, y, 0.f}, {0.f, 0.f, z}})
+      faces.push_back(p);
   }
   for (int level = 0; level < levels; ++level) {
     Positions next;
     for (size_t t = 0; t < faces.size(); t += 3) {
       std::array<std::array<float, 3>, 6> p{faces[t], faces[t + 1], faces[t + 2]};
       for (size_t e = 0; e < 3; ++e)
-        for (size_t k = 0; k < 3; ++k) p[3 + e][k] = (p[e][k] + p[(e + 1) % 3][k]) / 2;  // exact: the same from both sides
+        for (size_t k = 0; k < 3; ++k)
+          p[3 + e][k] = (p[e][k] + p[(e + 1) % 3][k]) / 2;  // exact: the same from both sides
       for (size_t k : {0, 3, 5, 3, 1, 4, 5, 4, 2, 3, 4, 5}) next.push_back(p[k]);
     }
     faces = next;
@@ -32,8 +35,8 @@ Positions bumpy_sphere(int levels, float size, const std::array<float, 3>& cente
   return faces;
 }
 
-uint32_t leaks(const Positions& mesh, Address top, const mem::AddressSpace& memory, const std::array<float, 3>& center, float size,
-               uint32_t num_rays, uint64_t seed) {
+uint32_t leaks(const Positions& mesh, Address top, const mem::AddressSpace& memory,
+               const std::array<float, 3>& center, float size, uint32_t num_rays, uint64_t seed) {
   Random random{seed};
   uint32_t out = 0;
   for (uint32_t i = 0; i < num_rays; ++i) {

@@ -1,5 +1,5 @@
-// Refresh to the clock: when it begins, what it closes, how long its banks wait, and what the clocks are counted as.
-// SPDX-License-Identifier: Apache-2.0
+// Refresh to the clock: when it begins, what it closes, how long its banks wait, and what the clocks are
+// counted as. SPDX-License-Identifier: Apache-2.0
 #include <string_view>
 
 #include "tests/support/catch.h"
@@ -19,7 +19,9 @@ DramParams refreshed(const char* mode) {
   return p;
 }
 
-uint64_t use(const DramRig& rig, DramUse what) { return rig.channel.stats().use.count(what); }
+uint64_t use(const DramRig& rig, DramUse what) {
+  return rig.channel.stats().use.count(what);
+}
 
 }  // namespace
 
@@ -27,7 +29,7 @@ TEST_CASE("a request that comes while all banks refresh waits until exactly the 
   DramRig rig(refreshed("all_bank"));
   rig.idle_until(1100);
   CHECK(rig.read_alone(3, 1) == 100 + 15 + 14 + kData);  // activate at clock 1200
-  rig.idle_until(2216 - kEdge);  // the row that was opened must be closed first
+  rig.idle_until(2216 - kEdge);                          // the row that was opened must be closed first
   CHECK(rig.read_alone(3, 1) == kEdge + 15 + 14 + kData);
   rig.idle_until(3216 - kEdge - 1);
   CHECK(rig.read_alone(3, 1) == kEdge + 1 + 15 + 14 + kData);
@@ -35,7 +37,8 @@ TEST_CASE("a request that comes while all banks refresh waits until exactly the 
 
 TEST_CASE("a refresh waits for an open row to be closed, and no longer") {
   DramRig rig(refreshed("all_bank"));
-  rig.add(980 - kEdge, 0, 1, false, 1);   // activate at 980: closed at 1010 at the earliest, refreshed from 1026 on
+  rig.add(980 - kEdge, 0, 1, false,
+          1);  // activate at 980: closed at 1010 at the earliest, refreshed from 1026 on
   rig.add(1100, 5, 1, false, 2);
   CHECK(rig.run()[2] == 980 + 30 + 16 + 200 + 15 + 14 + kData);
   CHECK(rig.channel.stats().refreshes.value() == 1);
@@ -121,7 +124,8 @@ TEST_CASE("a stream loses the share of refresh and of opening its rows again, an
   };
   const Cycle without = clocks("none"), with = clocks("all_bank");
   CHECK(without >= 4000 * kData);
-  // 16,000 clocks of data in pieces of at most 800 less the drain: 20 refreshes at least, each 200 and at most tRAS + tRP
+  // 16,000 clocks of data in pieces of at most 800 less the drain: 20 refreshes at least, each 200 and at
+  // most tRAS + tRP
   // + tRCD + tCL more.
   CHECK(with > without + 20 * 200);
   CHECK(with < without + 22 * (200 + 30 + 16 + 15 + 14 + 20));
@@ -134,7 +138,8 @@ TEST_CASE("while the bus turns, waiting column commands are counted as turnaroun
   rig.add(9000, 1, 1, false, 2);
   rig.run();
   rig.channel.finish(10'000);
-  // The write goes at 9001 and moves data for 4 clocks by the split's count; the read at 9001 + WL + data + tWTR.
+  // The write goes at 9001 and moves data for 4 clocks by the split's count; the read at 9001 + WL + data +
+  // tWTR.
   CHECK(use(rig, DramUse::Turnaround) == (4 + kData + 8) - kData);
   CHECK(rig.channel.stats().use.total() == 10'000);
 }
@@ -154,15 +159,16 @@ TEST_CASE("the bus stays idle for as many clocks as it takes to turn from readin
   CHECK(third(0) == third(2) - 2);
 }
 
-TEST_CASE("an activate of two clocks keeps the next command off a single bus, and only rows off a bus for rows") {
+TEST_CASE(
+    "an activate of two clocks keeps the next command off a single bus, and only rows off a bus for rows") {
   const auto second = [](uint32_t clocks, bool dual) {
     DramParams params = plain();
     params.activate_clocks = clocks, params.dual_command_bus = dual;
     params.rrd_s = params.rrd_l = 1;
     DramRig rig(params);
     rig.read_alone(1, 1);
-    rig.add(9000, 0, 1, false, 1);       // activate at 9001
-    rig.add(9001, 1, 1, false, 2);       // its row is open: read at 9002 when the bus is free
+    rig.add(9000, 0, 1, false, 1);  // activate at 9001
+    rig.add(9001, 1, 1, false, 2);  // its row is open: read at 9002 when the bus is free
     return rig.run()[2];
   };
   const Cycle free = 9002 + 14 + kData;

@@ -50,7 +50,8 @@ TEST_CASE("activates are spaced by tRRD and the fifth waits for the window of fo
   DramParams params = plain();
   params.dual_command_bus = true;
   DramRig rig(params);
-  for (uint32_t i = 0; i < 5; ++i) rig.add(0, i, 1, false, i + 1);  // banks 0 to 3 in groups 0 to 3, bank 4 in group 0
+  for (uint32_t i = 0; i < 5; ++i)
+    rig.add(0, i, 1, false, i + 1);  // banks 0 to 3 in groups 0 to 3, bank 4 in group 0
   auto at = rig.run();
   const Cycle first = kEdge + 15 + 14 + kData;
   CHECK(at[1] == first);
@@ -187,7 +188,8 @@ TEST_CASE("every command clock is attributed and the ratios follow their definit
   CHECK(s.use.total() == 1000);
   CHECK(s.use.count(DramUse::Data) == 2 * kData);
   CHECK(s.utilisation.value() == Approx(0.008));
-  // Clock 1: both banks take a request. 16 and 21: their reads. Bank 0's row may run its tRC to clock 47, bank 1's to 52.
+  // Clock 1: both banks take a request. 16 and 21: their reads. Bank 0's row may run its tRC to clock 47,
+  // bank 1's to 52.
   CHECK(s.any_bank_clocks.value() == 20);
   CHECK(s.bank_clocks.value() == 15 + 20);
   CHECK(s.active_clocks.value() == 51);

@@ -10,8 +10,11 @@ namespace {
 
 constexpr Cycle kL2Hit = 160;
 
-Request read(Address line, Token token, uint8_t sectors = 1) { return {line, sectors, false, Traffic::RtNode, token}; }
-Request write(Address line, uint8_t sectors = 1, Traffic traffic = Traffic::ShaderGlobal, WordMask words = kAllWords) {
+Request read(Address line, Token token, uint8_t sectors = 1) {
+  return {line, sectors, false, Traffic::RtNode, token};
+}
+Request write(Address line, uint8_t sectors = 1, Traffic traffic = Traffic::ShaderGlobal,
+              WordMask words = kAllWords) {
   return {line, sectors, true, traffic, 0, words};
 }
 }  // namespace
@@ -39,7 +42,8 @@ TEST_CASE("a fill keeps its bank from an access in its cycle, and neither anothe
   }
 }
 
-TEST_CASE("with allocation on a miss, a set whose lines are all on the way refuses another until one has come") {
+TEST_CASE(
+    "with allocation on a miss, a set whose lines are all on the way refuses another until one has come") {
   Params params = bare();
   params.l1.size = 2 * 128;
   params.l1.allocate = "on_miss";
@@ -71,7 +75,8 @@ TEST_CASE("streaming takes as many misses as MSHRs, whatever the size of the cac
   CHECK(rig.l1().stats().refusals.total() == 0);
 }
 
-TEST_CASE("allocation on a miss gives up the oldest line when the miss leaves, streaming when the data comes") {
+TEST_CASE(
+    "allocation on a miss gives up the oldest line when the miss leaves, streaming when the data comes") {
   const auto hits_meanwhile = [](const char* allocate) {
     Params params = bare();
     params.l1.size = 2 * 128;
@@ -111,7 +116,8 @@ TEST_CASE("a write allocates the sectors it covers when asked to, and no others"
     Params params = bare();
     params.l1.write_allocate = allocate;
     MemoryRig rig(params);
-    REQUIRE(rig.l1().access(0, Client::Lsu, write(0, 0b0011, Traffic::ShaderGlobal, 0x0fff)));  // half of sector 1
+    REQUIRE(rig.l1().access(0, Client::Lsu,
+                            write(0, 0b0011, Traffic::ShaderGlobal, 0x0fff)));  // half of sector 1
     rig.drain();
     CHECK(rig.l1().packets_sent() == 1);  // written through all the same
     CHECK(rig.read_latency(0, 0b0001) == (allocate ? params.l1.hit_latency : kL2Hit));

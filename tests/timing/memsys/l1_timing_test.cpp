@@ -15,7 +15,9 @@ Cycle l2_hit_round_trip(const Params& p) {
   return p.l1.miss_latency + 1 + p.noc.request_latency + p.l2.latency + 1 + p.noc.reply_latency;
 }
 
-Request read(Address line, Token token, uint8_t sectors = 1) { return {line, sectors, false, Traffic::RtNode, token}; }
+Request read(Address line, Token token, uint8_t sectors = 1) {
+  return {line, sectors, false, Traffic::RtNode, token};
+}
 Request write(Address line, uint8_t sectors = 1, Traffic traffic = Traffic::ShaderGlobal) {
   return {line, sectors, true, traffic, 0};
 }
@@ -43,7 +45,8 @@ TEST_CASE("an unloaded L2 hit takes the sum of its parts, 160 cycles by default"
   CHECK(rig.read_latency(kLine, 1) == l2_hit_round_trip(params));
 }
 
-TEST_CASE("a wider reply takes a port cycle more for each 40 bytes and a slice cycle more for each two sectors") {
+TEST_CASE(
+    "a wider reply takes a port cycle more for each 40 bytes and a slice cycle more for each two sectors") {
   Params params;
   MemoryRig rig(params);
   rig.read_latency(kLine, 0b1111, true);
@@ -77,7 +80,8 @@ TEST_CASE("an unloaded DRAM access takes the L2 path, the way to DRAM, and activ
   params.dram.rcd = 15, params.dram.cl = 14;
   MemoryRig same_clock(params, 1, 1000.0);
   // The request is seen at the clock edge after it arrives; data of 16 transfers take 4 clocks.
-  CHECK(same_clock.read_latency(kLine, 1) == l2_hit_round_trip(params) + params.dram.latency + 1 + 15 + 14 + 4);
+  CHECK(same_clock.read_latency(kLine, 1) ==
+        l2_hit_round_trip(params) + params.dram.latency + 1 + 15 + 14 + 4);
 }
 
 TEST_CASE("misses of different lines leave the request port one a cycle") {
@@ -100,8 +104,8 @@ TEST_CASE("a narrow request port spaces write packets by their bytes") {
   params.noc.core_request_bytes = 8;
   MemoryRig rig(params);
   const Cycle start = rig.now();
-  REQUIRE(rig.l1().access(start, Client::Lsu, write(kLine, 0b1111)));          // 136 bytes: 17 cycles
-  REQUIRE(rig.l1().access(start + 1, Client::Lsu, write(kLine + 128, 0b1)));   // ready a cycle later, waits 16
+  REQUIRE(rig.l1().access(start, Client::Lsu, write(kLine, 0b1111)));         // 136 bytes: 17 cycles
+  REQUIRE(rig.l1().access(start + 1, Client::Lsu, write(kLine + 128, 0b1)));  // ready a cycle later, waits 16
   rig.drain();
   CHECK(rig.l1().stats().request_bytes.value() == 136 + 40);
   CHECK(rig.l1().stats().request_wait.value() == 16);

@@ -14,8 +14,12 @@ namespace {
 constexpr Address kLine = 128 * 1000;
 constexpr Cycle kL2Hit = 160;
 
-Request read(Address line, Token token, uint8_t sectors = 1) { return {line, sectors, false, Traffic::RtNode, token}; }
-Request write(Address line, uint8_t sectors, WordMask words) { return {line, sectors, true, Traffic::ShaderGlobal, 0, words}; }
+Request read(Address line, Token token, uint8_t sectors = 1) {
+  return {line, sectors, false, Traffic::RtNode, token};
+}
+Request write(Address line, uint8_t sectors, WordMask words) {
+  return {line, sectors, true, Traffic::ShaderGlobal, 0, words};
+}
 
 // Lines of one slice, a partition's first.
 std::vector<Address> lines_of(const PartitionMap& map, uint32_t slice, uint32_t count) {
@@ -27,7 +31,8 @@ std::vector<Address> lines_of(const PartitionMap& map, uint32_t slice, uint32_t 
 
 uint64_t dram_reads(MemoryRig& rig) {
   uint64_t sum = 0;
-  for (uint32_t p = 0; p < rig.memory().num_partitions(); ++p) sum += rig.memory().partition(p).dram().stats().reads.value();
+  for (uint32_t p = 0; p < rig.memory().num_partitions(); ++p)
+    sum += rig.memory().partition(p).dram().stats().reads.value();
   return sum;
 }
 const L2Stats& slice_of(MemoryRig& rig, Address line) {
@@ -37,7 +42,9 @@ const L2Stats& slice_of(MemoryRig& rig, Address line) {
 
 }  // namespace
 
-TEST_CASE("a slice on the far side is reached later by the far latency, each way, and one on the near side is not") {
+TEST_CASE(
+    "a slice on the far side is reached later by the far latency, each way, and one on the near side is "
+    "not") {
   Params params = bare();
   params.noc.sides = 2, params.noc.far_latency = 78;  // cores 0, 1 and slices 0, 1 against 2, 3 and 2, 3
   MemoryRig rig(params, 4);
@@ -85,7 +92,8 @@ TEST_CASE("slices of a partition share its DRAM channel, and each line lives in 
   rig.memory().check_drained();
 }
 
-TEST_CASE("a core with one credit sends its next packet to a slice when the credit is back, not a cycle before") {
+TEST_CASE(
+    "a core with one credit sends its next packet to a slice when the credit is back, not a cycle before") {
   const auto second = [](uint32_t credits) {
     Params params = bare();
     params.noc.credits = credits;
@@ -101,7 +109,8 @@ TEST_CASE("a core with one credit sends its next packet to a slice when the cred
   };
   CHECK(second(2) == kL2Hit + 1);
   CHECK(second(0) == kL2Hit + 1);
-  // The first is served at 20 + 1 + 48, its credit is back 1 + 48 later; then the second's 1 + 48, slice and way back.
+  // The first is served at 20 + 1 + 48, its credit is back 1 + 48 later; then the second's 1 + 48, slice and
+  // way back.
   CHECK(second(1) == (20 + 49) + 49 + 49 + 42 + 49);
 }
 
@@ -127,7 +136,8 @@ TEST_CASE("a sector written in part is fetched when it is read, and only then") 
   Params params = bare();
   params.l2.write_masks = true;
   MemoryRig rig(params);
-  REQUIRE(rig.l1().access(rig.now(), Client::Lsu, write(kLine, 0b0011, 0x0000'0fff)));  // sector 0 whole, half of sector 1
+  REQUIRE(rig.l1().access(rig.now(), Client::Lsu,
+                          write(kLine, 0b0011, 0x0000'0fff)));  // sector 0 whole, half of sector 1
   rig.drain();
   CHECK(dram_reads(rig) == 0);
   CHECK(slice_of(rig, kLine).partial_writes.value() == 1);
@@ -171,7 +181,9 @@ TEST_CASE("a sector written in part takes the slice for its interval, a whole on
   CHECK(part.first - whole.first == 9 - 1);    // the read behind it
 }
 
-TEST_CASE("a write takes the slice for its visit and its sectors, in sixteenths of a cycle that add up over those that wait") {
+TEST_CASE(
+    "a write takes the slice for its visit and its sectors, in sixteenths of a cycle that add up over those "
+    "that wait") {
   // Writes that come a cycle apart and wait for each other: when the last has been served.
   const auto end = [](uint32_t writes, uint8_t sectors, WordMask words) {
     Params params = bare();
@@ -180,11 +192,14 @@ TEST_CASE("a write takes the slice for its visit and its sectors, in sixteenths 
     MemoryRig rig(params);
     const std::vector<Address> lines = lines_of(rig.memory().map(), 0, writes);
     const Cycle start = rig.now();
-    for (uint32_t i = 0; i < writes; ++i) REQUIRE(rig.l1().access(start + i, Client::Lsu, write(lines[i], sectors, words)));
+    for (uint32_t i = 0; i < writes; ++i)
+      REQUIRE(rig.l1().access(start + i, Client::Lsu, write(lines[i], sectors, words)));
     rig.drain();
     return rig.memory().written_until() - start;
   };
-  const auto cost = [&](uint32_t writes, uint8_t sectors, WordMask words, Cycle one) { return end(writes, sectors, words) - end(1, sectors, words) + one; };
+  const auto cost = [&](uint32_t writes, uint8_t sectors, WordMask words, Cycle one) {
+    return end(writes, sectors, words) - end(1, sectors, words) + one;
+  };
   // 16 writes of one sector in part: 16 x (1.25 + 1.3125) = 41; 2: 5.125, 3: 7.6875, rounded up once.
   CHECK(cost(16, 1, 0x01, 3) == 41);
   CHECK(cost(2, 1, 0x01, 3) == 6);
@@ -219,8 +234,11 @@ TEST_CASE("a sector written in part is written back on eviction without having b
   rig.memory().check_drained();
 }
 
-TEST_CASE("a sector from DRAM takes the slice a cycle when they share a port: who is served in that cycle waits for one") {
-  // A miss, and a hit in the same slice that is asked for `after` cycles later: when each has its token. 0: no hit.
+TEST_CASE(
+    "a sector from DRAM takes the slice a cycle when they share a port: who is served in that cycle waits "
+    "for one") {
+  // A miss, and a hit in the same slice that is asked for `after` cycles later: when each has its token. 0:
+  // no hit.
   const auto tokens = [](bool shared, Cycle after) {
     Params params = bare();
     params.l2.fill_takes_service = shared;
@@ -238,8 +256,8 @@ TEST_CASE("a sector from DRAM takes the slice a cycle when they share a port: wh
     for (const Answered& a : rig.answers()) at[a.token] = a.at - start;
     return at;
   };
-  const Cycle fill = tokens(true, 0)[0] - 49;      // 1 + 48 before its token
-  const Cycle same = fill - (20 + 49);             // asked for then, a packet is served in the cycle of the fill
+  const Cycle fill = tokens(true, 0)[0] - 49;  // 1 + 48 before its token
+  const Cycle same = fill - (20 + 49);         // asked for then, a packet is served in the cycle of the fill
   for (const bool shared : {false, true}) {
     CHECK(tokens(shared, same - 1)[1] == same - 1 + kL2Hit);
     // The slice answers a cycle later.

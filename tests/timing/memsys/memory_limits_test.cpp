@@ -11,9 +11,15 @@ namespace {
 constexpr Address kLine = 128 * 1000;
 constexpr Cycle kL2Hit = 160;
 
-Request request(Address line, uint8_t sectors, Token token, bool write, Traffic traffic) { return {line, sectors, write, traffic, token}; }
-Request read(Address line, Token token, uint8_t sectors = 1) { return request(line, sectors, token, false, Traffic::RtNode); }
-Request atomic(Address line, Token token, uint8_t sectors = 1) { return request(line, sectors, token, false, Traffic::ShaderAtomic); }
+Request request(Address line, uint8_t sectors, Token token, bool write, Traffic traffic) {
+  return {line, sectors, write, traffic, token};
+}
+Request read(Address line, Token token, uint8_t sectors = 1) {
+  return request(line, sectors, token, false, Traffic::RtNode);
+}
+Request atomic(Address line, Token token, uint8_t sectors = 1) {
+  return request(line, sectors, token, false, Traffic::ShaderAtomic);
+}
 
 // From the request to its token, of sectors that the L2 holds.
 Cycle l2_latency(const Params& params, const Request& request) {
@@ -28,7 +34,8 @@ Cycle l2_latency(const Params& params, const Request& request) {
 // When each token came, from the start on; all are asked for in the first cycle, token i by core i.
 std::vector<Cycle> together(const Params& params, const std::vector<Request>& requests) {
   MemoryRig rig(params, uint32_t(requests.size()));
-  for (uint32_t core = 0; core < requests.size(); ++core) REQUIRE(rig.l1(core).access(0, Client::Lsu, requests[core]));
+  for (uint32_t core = 0; core < requests.size(); ++core)
+    REQUIRE(rig.l1(core).access(0, Client::Lsu, requests[core]));
   rig.drain();
   std::vector<Cycle> at(requests.size());
   for (const Answered& a : rig.answers()) at[a.token] = a.at;
@@ -38,7 +45,8 @@ std::vector<Cycle> together(const Params& params, const std::vector<Request>& re
 }  // namespace
 
 TEST_CASE("writes and atomics leave the L1 at its miss latency, as reads do") {
-  for (const Request& what : {read(kLine, 1), atomic(kLine, 1), request(kLine, 1, 0, true, Traffic::ShaderGlobal)}) {
+  for (const Request& what :
+       {read(kLine, 1), atomic(kLine, 1), request(kLine, 1, 0, true, Traffic::ShaderGlobal)}) {
     MemoryRig rig(bare());
     REQUIRE(rig.l1().access(0, Client::Lsu, what));
     CHECK(rig.l1().next_event(0) == bare().l1.miss_latency);
@@ -48,13 +56,19 @@ TEST_CASE("writes and atomics leave the L1 at its miss latency, as reads do") {
 TEST_CASE("a port is as wide as it says, to the byte") {
   const auto narrower = [](uint32_t NocParams::*port, const Request& request) {
     Params wide = bare();
-    for (uint32_t NocParams::*p : {&NocParams::core_request_bytes, &NocParams::core_reply_bytes, &NocParams::partition_request_bytes,
-                                   &NocParams::partition_reply_bytes})
+    for (uint32_t NocParams::*p : {&NocParams::core_request_bytes, &NocParams::core_reply_bytes,
+                                   &NocParams::partition_request_bytes, &NocParams::partition_reply_bytes})
       wide.noc.*p = 400;
     wide.noc.*port = 72;  // two sectors and a header
     Params narrow = wide;
     narrow.noc.*port = 71;
-    CHECK(l2_latency(wide, request) == l2_latency([&] { Params p = wide; p.noc.*port = 400; return p; }(), request));
+    CHECK(l2_latency(wide, request) == l2_latency(
+                                           [&] {
+                                             Params p = wide;
+                                             p.noc.*port = 400;
+                                             return p;
+                                           }(),
+                                           request));
     return l2_latency(narrow, request) - l2_latency(wide, request);
   };
   CHECK(narrower(&NocParams::core_reply_bytes, read(kLine, 1, 0b11)) == 1);
@@ -77,7 +91,8 @@ TEST_CASE("lanes of an atomic that take turns take the slice's time for each, an
   params.l2.atomic_interval = 5;
   Request turns = atomic(kLine, 1);
   turns.atomic = {.lanes = 32, .turns = 3};
-  // Three sectors' worth of data on the way there: 104 bytes are two cycles more of the 40-byte port than 40 are.
+  // Three sectors' worth of data on the way there: 104 bytes are two cycles more of the 40-byte port than 40
+  // are.
   CHECK(l2_latency(params, turns) == kL2Hit + 3 * 5 - 1 + 2);
   params.l2.atomic_lane_interval = 0.125;
   CHECK(l2_latency(params, turns) == kL2Hit + 3 * 5 + 4 - 1 + 2);
@@ -149,7 +164,8 @@ TEST_CASE("the way to DRAM holds as many sectors as it says") {
     Params params = bare();
     params.dram.channels = 1, params.l2.dram_queue = places;
     MemoryRig rig(params, 3);
-    for (uint32_t core = 0; core < 3; ++core) REQUIRE(rig.l1(core).access(0, Client::Lsu, read(core * 128, core, 0b1111)));
+    for (uint32_t core = 0; core < 3; ++core)
+      REQUIRE(rig.l1(core).access(0, Client::Lsu, read(core * 128, core, 0b1111)));
     rig.drain();
     return rig.memory().partition(0).slice(0).stats().cycles.count(SliceCycle::QueueFull) > 0;
   };
@@ -157,12 +173,14 @@ TEST_CASE("the way to DRAM holds as many sectors as it says") {
   CHECK(blocked(11));
 }
 
-TEST_CASE("latencies of reads are counted by class and bucket, and percentiles are the upper ends of buckets") {
+TEST_CASE(
+    "latencies of reads are counted by class and bucket, and percentiles are the upper ends of buckets") {
   for (Cycle latency = 0; latency < 5000; ++latency) {
     const uint32_t bucket = Latencies::bucket_of(latency);
     CHECK(Latencies::low_of(bucket) <= latency);
     CHECK(latency < Latencies::low_of(bucket + 1));
-    if (latency >= 16) CHECK(8 * (Latencies::low_of(bucket + 1) - Latencies::low_of(bucket)) <= Latencies::low_of(bucket));
+    if (latency >= 16)
+      CHECK(8 * (Latencies::low_of(bucket + 1) - Latencies::low_of(bucket)) <= Latencies::low_of(bucket));
   }
   CHECK(Latencies::bucket_of(~Cycle{0} >> 1) == Latencies::kBuckets - 1);
   stats::Group root(nullptr, "test");
@@ -174,7 +192,7 @@ TEST_CASE("latencies of reads are counted by class and bucket, and percentiles a
   b.add(Traffic::RtNode, 1000);
   CHECK(stats.reads(Traffic::RtNode) == 100);
   CHECK(stats.reads(Traffic::ShaderGlobal) == 0);
-  CHECK(stats.percentile(Traffic::RtNode, 50) == 21);   // 20 and 21
+  CHECK(stats.percentile(Traffic::RtNode, 50) == 21);  // 20 and 21
   CHECK(stats.percentile(Traffic::RtNode, 90) == 21);
   CHECK(stats.percentile(Traffic::RtNode, 91) == 175);  // 160 to 175
   CHECK(stats.percentile(Traffic::RtNode, 99) == 175);
@@ -187,9 +205,11 @@ TEST_CASE("the L1 times hits, misses, merged reads and atomics, each under its c
   rig.read_latency(kLine, 1, true);
   const Cycle start = rig.now();
   REQUIRE(rig.l1().access(start, Client::Lsu, read(kLine, 1)));
-  REQUIRE(rig.l1().access(start + 10, Client::Lsu, request(kLine, 1, 2, false, Traffic::ShaderGlobal)));  // merges
+  REQUIRE(rig.l1().access(start + 10, Client::Lsu,
+                          request(kLine, 1, 2, false, Traffic::ShaderGlobal)));  // merges
   rig.drain();
-  REQUIRE(rig.l1().access(rig.now(), Client::Lsu, request(kLine, 1, 3, false, Traffic::ShaderLocal)));    // hits
+  REQUIRE(
+      rig.l1().access(rig.now(), Client::Lsu, request(kLine, 1, 3, false, Traffic::ShaderLocal)));  // hits
   rig.drain();
   REQUIRE(rig.l1().access(rig.now(), Client::Lsu, atomic(kLine, 4)));
   rig.drain();

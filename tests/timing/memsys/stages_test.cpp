@@ -1,8 +1,7 @@
 // Where the time of a miss goes: each stage to the cycle, and their sum.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <array>
+#include <fmt/format.h>
 
 #include "tests/support/catch.h"
 #include "tests/support/memory_rig.h"
@@ -90,7 +89,8 @@ TEST_CASE("packets that meet at a slice wait in its queue, and the stages add up
   std::array<uint32_t, 4> sent{};
   rig.run([&](uint32_t core, Cycle now) {  // all of one partition, four sectors each
     const Address line = Address{256} * params.dram.channels * (sent[core] + core * 1000);
-    if (rig.l1(core).access(now, Client::RtUnit, {line, 0xf, false, Traffic::RtNode, sent[core]})) ++sent[core];
+    if (rig.l1(core).access(now, Client::RtUnit, {line, 0xf, false, Traffic::RtNode, sent[core]}))
+      ++sent[core];
     return sent[core] == 100 ? kNever : now + 1;
   });
   Split all{};
@@ -116,7 +116,8 @@ TEST_CASE("an L1 that waits says for how many reads, and what stands first in it
   MemoryRig rig(params);
   CHECK(rig.l1().describe() == "");
   REQUIRE(rig.l1().access(0, Client::Lsu, {kLine, 3, false, Traffic::RtNode, 1}));
-  CHECK(rig.l1().describe() == fmt::format("  L1: 1 reads without an answer, 1 lines on the way, 0 of 2 sectors have come\n"
-                                           "  L1: 1 packets wait to leave, the first reads line {:#x} for partition {}\n",
-                                           kLine, rig.memory().map().partition(kLine)));
+  CHECK(rig.l1().describe() ==
+        fmt::format("  L1: 1 reads without an answer, 1 lines on the way, 0 of 2 sectors have come\n"
+                    "  L1: 1 packets wait to leave, the first reads line {:#x} for partition {}\n",
+                    kLine, rig.memory().map().partition(kLine)));
 }

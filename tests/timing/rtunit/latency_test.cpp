@@ -41,9 +41,11 @@ TEST_CASE("a lone ray takes its fetches and tests in sequence, and two cycles to
     const Cycle extra = 64 / params.request_bytes - 1, extra_instance = 128 / params.request_bytes - 1;
     const Cycle expected = 1 + s.internal_nodes.value() * (latency + extra + params.box.latency) +
                            s.triangle_leaves.value() * (latency + extra + params.triangle.latency) +
-                           s.instance_leaves.value() * (latency + extra_instance + params.transform.latency) + 1;
+                           s.instance_leaves.value() * (latency + extra_instance + params.transform.latency) +
+                           1;
     CHECK(done.last_completion == expected);
-    CHECK(s.requests.value() == (s.internal_nodes.value() + s.triangle_leaves.value()) * (extra + 1) + s.instance_leaves.value() * (extra_instance + 1));
+    CHECK(s.requests.value() == (s.internal_nodes.value() + s.triangle_leaves.value()) * (extra + 1) +
+                                    s.instance_leaves.value() * (extra_instance + 1));
     CHECK(s.warp_latency_sum.value() == expected);
     CHECK(s.cycles.count(Stall::NodeRequest) == s.requests.value());
     CHECK(s.cycles.count(Stall::WaitingMemory) == s.fetches.value() * (latency - 1));
@@ -185,7 +187,9 @@ TEST_CASE("a refused request is tried again until it is taken, and the cycles ar
   const Scene scene;
   class Stubborn final : public mem::L1Port {  // takes a request in every eighth cycle only
    public:
-    bool access(Cycle now, mem::Client client, const mem::Request& r) override { return now % 8 == 0 && inner.access(now, client, r); }
+    bool access(Cycle now, mem::Client client, const mem::Request& r) override {
+      return now % 8 == 0 && inner.access(now, client, r);
+    }
     std::optional<mem::Token> pop(Cycle now, mem::Client client) override { return inner.pop(now, client); }
     void tick(Cycle) override {}
     Cycle next_event(Cycle now) const override { return inner.next_event(now); }

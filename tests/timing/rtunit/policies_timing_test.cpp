@@ -1,5 +1,5 @@
-// Cycles of the RT unit's policies, exactly: entries for reads, stacks that leave the chip, restarts, sharing across warps.
-// SPDX-License-Identifier: Apache-2.0
+// Cycles of the RT unit's policies, exactly: entries for reads, stacks that leave the chip, restarts, sharing
+// across warps. SPDX-License-Identifier: Apache-2.0
 #include "memsys/memory_system.h"
 #include "tests/support/catch.h"
 #include "tests/support/rt_launch.h"
@@ -57,7 +57,8 @@ Params plain() {
 
 // Cycles of a lone ray: its nodes one after the other, one cycle to enter and one to leave.
 Cycle time_of(const RtStats& s, const Params& p, Cycle latency) {
-  return 2 + s.internal_nodes.value() * (latency + p.box.latency) + s.triangle_leaves.value() * (latency + p.triangle.latency) +
+  return 2 + s.internal_nodes.value() * (latency + p.box.latency) +
+         s.triangle_leaves.value() * (latency + p.triangle.latency) +
          s.instance_leaves.value() * (latency + 1 + p.transform.latency);
 }
 
@@ -73,7 +74,9 @@ struct LoneRun {
   std::vector<WarpRays> warps;
 };
 
-TEST_CASE("no more reads wait for the L1 than there are entries, and the next leaves in the cycle that one is free") {
+TEST_CASE(
+    "no more reads wait for the L1 than there are entries, and the next leaves in the cycle that one is "
+    "free") {
   const Thicket scene;
   for (const uint32_t entries : {1u, 4u, 19u}) {
     Params params = plain();
@@ -103,7 +106,8 @@ TEST_CASE("a spill costs the port a cycle and a fill the L1's latency") {
     const LoneRun run(scene, params, seed, latency);
     const RtStats& s = run.unit.stats();
     CHECK(s.stack_spills.value() == s.stack_fills.value());
-    CHECK(run.cycles == time_of(s, params, latency) + s.stack_spills.value() + s.stack_fills.value() * latency);
+    CHECK(run.cycles ==
+          time_of(s, params, latency) + s.stack_spills.value() + s.stack_fills.value() * latency);
     uint64_t sectors = 0;
     for (const mem::Request& request : run.l1.log())
       if (request.traffic == mem::Traffic::RtStack) {
@@ -168,7 +172,8 @@ TEST_CASE("without a re-test a ray visits what lies behind its hit, and finds th
     params.retest = false;
     const LoneRun without(scene, params, seed, 10);
     CHECK(with.unit.stats().stale_nodes.value() == 0);
-    CHECK(without.unit.stats().nodes.value() == with.unit.stats().nodes.value() + without.unit.stats().stale_nodes.value());
+    CHECK(without.unit.stats().nodes.value() ==
+          with.unit.stats().nodes.value() + without.unit.stats().stale_nodes.value());
     CHECK(without.warps[0][5].committed.t == with.warps[0][5].committed.t);
     CHECK(without.cycles == time_of(without.unit.stats(), params, 10));
     stale += without.unit.stats().stale_nodes.value();
@@ -210,10 +215,12 @@ TEST_CASE("a node that lies in the L1 comes after exactly the L1's hit latency")
     Cycle now = 0;
     const Cycle first = time_on(memory, unit, scene.ray(3), now);
     const RtStats& s = unit.stats();
-    const uint64_t internal = s.internal_nodes.value(), leaves = s.triangle_leaves.value(), instances = s.instance_leaves.value();
+    const uint64_t internal = s.internal_nodes.value(), leaves = s.triangle_leaves.value(),
+                   instances = s.instance_leaves.value();
     const Cycle second = time_on(memory, unit, scene.ray(3), now);
     REQUIRE(s.internal_nodes.value() == 2 * internal);
-    CHECK(second == 2 + internal * (hit_latency + params.box.latency) + leaves * (hit_latency + params.triangle.latency) +
+    CHECK(second == 2 + internal * (hit_latency + params.box.latency) +
+                        leaves * (hit_latency + params.triangle.latency) +
                         instances * (hit_latency + params.transform.latency));
     CHECK(first > second);
   }

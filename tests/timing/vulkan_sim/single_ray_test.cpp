@@ -1,8 +1,8 @@
-// The published simulator's RT unit, one ray at a time: cycles under its presets as its own arithmetic gives them.
-// SPDX-License-Identifier: Apache-2.0
+// The published simulator's RT unit, one ray at a time: cycles under its presets as its own arithmetic gives
+// them. SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.h"
-#include "tests/support/rt_launch.h"
 #include "tests/support/preset.h"
+#include "tests/support/rt_launch.h"
 
 namespace glint::rt::test {
 namespace {
@@ -42,18 +42,21 @@ struct Scene {
   }
 };
 
-// Cycles from a ray's first request to the end of its last test, all hits: a record of n requests whose test takes L
-// keeps the ray for n + L - 1 cycles, as the test begins with the last request and the next request goes out when it ends.
+// Cycles from a ray's first request to the end of its last test, all hits: a record of n requests whose test
+// takes L keeps the ray for n + L - 1 cycles, as the test begins with the last request and the next request
+// goes out when it ends.
 Cycle sum_of_records(const RtStats& s) {
   const uint64_t instances = s.instance_leaves.value(), entered = s.headers.value() - s.rays.value();
   return 5 * s.rays.value() + 9 * s.internal_nodes.value() + 11 * instances + 5 * entered +
          (4 + 9) * (s.triangle_leaves.value() + s.procedural_leaves.value());
 }
 uint64_t sum_of_requests(const RtStats& s) {
-  return 2 * s.headers.value() + 2 * s.internal_nodes.value() + 4 * s.instance_leaves.value() + (1 + 2) * (s.triangle_leaves.value() + s.procedural_leaves.value());
+  return 2 * s.headers.value() + 2 * s.internal_nodes.value() + 4 * s.instance_leaves.value() +
+         (1 + 2) * (s.triangle_leaves.value() + s.procedural_leaves.value());
 }
 
-TEST_CASE("a lone ray that misses takes header 5, internal node 9, instance 11 and 5, triangle 4 and 9 cycles") {
+TEST_CASE(
+    "a lone ray that misses takes header 5, internal node 9, instance 11 and 5, triangle 4 and 9 cycles") {
   for (const char* name : {"vulkan-sim-desktop", "vulkan-sim-mobile"}) {
     const pipeline::GpuParams gpu = preset(name);
     const Scene scene(gpu.bvh);
@@ -105,7 +108,8 @@ TEST_CASE("each triangle met is a store at a place of its own that takes the por
   CHECK(hits > 20);
 }
 
-TEST_CASE("a store that is the last thing of a ray keeps its warp for exactly the way of the acknowledgement") {
+TEST_CASE(
+    "a store that is the last thing of a ray keeps its warp for exactly the way of the acknowledgement") {
   pipeline::GpuParams gpu = preset("vulkan-sim-desktop");
   const Positions positions{{-1, -1, 5}, {1, -1, 5}, {0, 1, 5}};
   mem::AddressSpace memory;
@@ -165,7 +169,7 @@ TEST_CASE("32 rays that share nothing are bound by the port: a request a cycle")
   CHECK(s.cycles.count(Stall::NodeRequest) == sent);
   CHECK(done.last_completion >= sent);
   CHECK(double(done.last_completion) < 1.15 * double(sent));  // the tail, in which few rays are left
-  CHECK(s.cycles.count(Stall::TestBusy) == 0);  // tests have no limit
+  CHECK(s.cycles.count(Stall::TestBusy) == 0);                // tests have no limit
   for (size_t w = 0; w < 4; ++w)
     for (size_t lane = 0; lane < kLanes; ++lane) {  // none of the shortcuts changes a hit
       run_to_end(expected[w][lane], scene.memory);
@@ -185,9 +189,11 @@ TEST_CASE("without the switches nothing but nodes is read and nothing stored") {
   const Launch done = launch(unit, l1, warps, true);
   const RtStats& s = unit.stats();
   CHECK(s.headers.value() + s.descriptors.value() + s.hit_writes.value() == 0);
-  CHECK(s.requests.value() == 2 * (s.internal_nodes.value() + s.triangle_leaves.value()) + 4 * s.instance_leaves.value());
+  CHECK(s.requests.value() ==
+        2 * (s.internal_nodes.value() + s.triangle_leaves.value()) + 4 * s.instance_leaves.value());
   // a node of 64 B: two requests, and the second answer after 7 cycles
-  CHECK(done.last_completion == 1 + (s.internal_nodes.value() + s.triangle_leaves.value()) * (1 + 7 + 8) + s.instance_leaves.value() * (3 + 7 + 8) + 1);
+  CHECK(done.last_completion == 1 + (s.internal_nodes.value() + s.triangle_leaves.value()) * (1 + 7 + 8) +
+                                    s.instance_leaves.value() * (3 + 7 + 8) + 1);
 }
 
 }  // namespace

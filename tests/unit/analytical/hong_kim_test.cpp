@@ -24,7 +24,8 @@ HongKimInputs small() {
 
 }  // namespace
 
-TEST_CASE("The worked example of Hong and Kim's paper comes out as it stands there, up to its rounding", "[analytical]") {
+TEST_CASE("The worked example of Hong and Kim's paper comes out as it stands there, up to its rounding",
+          "[analytical]") {
   HongKimInputs in;
   in.cores = 16, in.warps = 20, in.repetitions = 1;
   in.instructions = 27 + 6, in.memory_instructions = 6, in.accesses = 32;
@@ -73,11 +74,15 @@ TEST_CASE("LumiBench's adjustment multiplies the latency by the miss rate", "[an
 TEST_CASE("A run without statistics of the timing machine is refused by name", "[analytical]") {
   RunRecord run;
   run.add_stats("path,value,unit,doc\ngpu.rays,1,ray,x\n", "stats.csv");
-  CHECK_THROWS_WITH(hong_kim_inputs(run, "out/x"), Catch::Contains("out/x") && Catch::Contains("timing machine"));
+  CHECK_THROWS_WITH(hong_kim_inputs(run, "out/x"),
+                    Catch::Contains("out/x") && Catch::Contains("timing machine"));
 }
 
 TEST_CASE("R2 is blind to a factor, the mean error is not", "[analytical]") {
-  const ModelTable table{{"twice", "constant"}, {{"A", 100, {200, 150}, {{"in", 1.5}}}, {"B", 200, {400, 150}, {{"in", 2}}}, {"C", 400, {800, 150}, {{"in", 3}}}}};
+  const ModelTable table{{"twice", "constant"},
+                         {{"A", 100, {200, 150}, {{"in", 1.5}}},
+                          {"B", 200, {400, 150}, {{"in", 2}}},
+                          {"C", 400, {800, 150}, {{"in", 3}}}}};
   const ModelScore twice = table.score(0), constant = table.score(1);
   CHECK(std::abs(twice.r2 - 1) < 1e-12);
   CHECK(std::abs(twice.mean_error - 1) < 1e-12);
@@ -88,16 +93,21 @@ TEST_CASE("R2 is blind to a factor, the mean error is not", "[analytical]") {
 }
 
 TEST_CASE("A table of models reads back as it was", "[analytical]") {
-  const ModelTable table{{"a", "b, c"}, {{"A", 100, {200.125, 150}, {{"in", 1.5}, {"more", 7}}}, {"B", 200, {400, 1e9 / 3}, {{"in", 2}, {"more", 8}}}}};
+  const ModelTable table{{"a", "b, c"},
+                         {{"A", 100, {200.125, 150}, {{"in", 1.5}, {"more", 7}}},
+                          {"B", 200, {400, 1e9 / 3}, {{"in", 2}, {"more", 8}}}}};
   const ModelTable read = parse_models(model_csv(table), "models.csv");
   CHECK(model_csv(read) == model_csv(table));
   CHECK(models_json(read) == models_json(table));
-  CHECK_THROWS_WITH(parse_models("workload,ipc\nA,1\n", "x.csv"), Catch::Contains("x.csv:1") && Catch::Contains("no table of models"));
+  CHECK_THROWS_WITH(parse_models("workload,ipc\nA,1\n", "x.csv"),
+                    Catch::Contains("x.csv:1") && Catch::Contains("no table of models"));
 }
 
-TEST_CASE("A table of models that lost its rows, or has a run without cycles, is refused with the line", "[analytical]") {
+TEST_CASE("A table of models that lost its rows, or has a run without cycles, is refused with the line",
+          "[analytical]") {
   const auto refused = [](const std::string& rows, const char* line, const char* why) {
-    CHECK_THROWS_WITH(parse_models("workload,cycles,model:a,in\n" + rows, "x.csv"), Catch::Contains(line) && Catch::Contains(why));
+    CHECK_THROWS_WITH(parse_models("workload,cycles,model:a,in\n" + rows, "x.csv"),
+                      Catch::Contains(line) && Catch::Contains(why));
   };
   refused("", "x.csv:1", "no workload");
   for (const char* cycles : {"nan", "inf", "-5", "0"}) {
@@ -105,6 +115,7 @@ TEST_CASE("A table of models that lost its rows, or has a run without cycles, is
     refused(std::string("A,100,") + cycles + ",0\n", "x.csv:2", "are no cycles");
   }
   refused("A,12x,90,0\n", "x.csv:2", "is no number");
-  CHECK_THROWS_WITH(parse_models("workload,cycles,mod\n", "x.csv"), Catch::Contains("x.csv:1") && Catch::Contains("model:"));
+  CHECK_THROWS_WITH(parse_models("workload,cycles,mod\n", "x.csv"),
+                    Catch::Contains("x.csv:1") && Catch::Contains("model:"));
   CHECK(parse_models("workload,cycles,model:a,in\nA,100,90,0\n", "x.csv").rows.size() == 1);
 }

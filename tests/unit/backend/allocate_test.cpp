@@ -1,9 +1,10 @@
 // Register limits, pairs, coalescing and liveness.
 // SPDX-License-Identifier: Apache-2.0
+#include "frontend/backend/allocate.h"
+
 #include <algorithm>
 
 #include "base/diagnostics.h"
-#include "frontend/backend/allocate.h"
 #include "frontend/backend/liveness.h"
 #include "tests/support/catch.h"
 #include "tests/unit/backend/code_builder.h"
@@ -119,7 +120,8 @@ TEST_CASE("A loop variable and its next value share a register: no move is left"
 
 TEST_CASE("Packing values made for the purpose costs nothing") {
   CodeBuilder code;
-  const Operand low = code.word(0), high = code.word(4), both = code.fresh(RegisterClass::B64), address = code.pair(8);
+  const Operand low = code.word(0), high = code.word(4), both = code.fresh(RegisterClass::B64),
+                address = code.pair(8);
   code.add("pack.b64", {both, low, high});
   code.add("st.global.b64", {address, both});
   code.add("exit");
@@ -128,13 +130,15 @@ TEST_CASE("Packing values made for the purpose costs nothing") {
 
 TEST_CASE("A guarded definition that only its own guard reads is dead above") {
   CodeBuilder code;
-  const Operand flag = code.fresh(RegisterClass::Predicate), value = code.fresh(RegisterClass::B32), address = code.pair();
+  const Operand flag = code.fresh(RegisterClass::Predicate), value = code.fresh(RegisterClass::B32),
+                address = code.pair();
   code.add("setp.eq.u32", {flag, code.word(), Operand::value(0)});
   code.add("ld.global.b32", {value, address}).guard = flag.reg;
   code.add("st.global.b32", {address, value}, 4).guard = flag.reg;
   code.add("exit");
   REQUIRE_FALSE(find_liveness(code.program).in[0].contains(value.reg));
-  code.program.blocks[0].code[3].guard_negate = true;  // written under the opposite guard: the old value is read
+  code.program.blocks[0].code[3].guard_negate =
+      true;  // written under the opposite guard: the old value is read
   REQUIRE(find_liveness(code.program).in[0].contains(value.reg));
 }
 

@@ -48,8 +48,8 @@ TEST_CASE("A short arm becomes guarded instructions") {
   s.open_merge();
   s.code.add("exit");
   const isa::Program program = s.code.assembled(kInOrder);
-  REQUIRE(names_of(program) == Names{"ld.const.b64", "ld.const.b32", "setp.eq.u32", "st.global.b32", "st.global.b32",
-                                     "st.global.b32", "st.global.b32", "exit"});
+  REQUIRE(names_of(program) == Names{"ld.const.b64", "ld.const.b32", "setp.eq.u32", "st.global.b32",
+                                     "st.global.b32", "st.global.b32", "st.global.b32", "exit"});
   for (size_t i = 3; i < 7; ++i) REQUIRE(int(program.code[i].guard) == 0);
 }
 
@@ -79,8 +79,8 @@ TEST_CASE("Two arms that choose a value become selp") {
   s.code.add("st.global.b32", {s.address, chosen});
   s.code.add("exit");
   const isa::Program program = s.code.assembled(kInOrder);
-  REQUIRE(names_of(program) == Names{"ld.const.b64", "ld.const.b32", "setp.eq.u32", "ld.const.b32", "ld.const.b32", "selp.b32",
-                                     "st.global.b32", "exit"});
+  REQUIRE(names_of(program) == Names{"ld.const.b64", "ld.const.b32", "setp.eq.u32", "ld.const.b32",
+                                     "ld.const.b32", "selp.b32", "st.global.b32", "exit"});
   REQUIRE(program.code[5].operand[1] == program.code[3].operand[0]);  // the flag is true in `then`
   REQUIRE(program.code[5].operand[2] == program.code[4].operand[0]);
 }
@@ -96,7 +96,8 @@ TEST_CASE("A value that one arm only passes on is changed in place by the other"
   s.code.add("st.global.b32", {s.address, chosen});
   s.code.add("exit");
   const isa::Program program = s.code.assembled(kInOrder);
-  REQUIRE(names_of(program) == Names{"ld.const.b64", "ld.const.b32", "setp.eq.u32", "ld.const.b32", "not.b32", "st.global.b32", "exit"});
+  REQUIRE(names_of(program) == Names{"ld.const.b64", "ld.const.b32", "setp.eq.u32", "ld.const.b32", "not.b32",
+                                     "st.global.b32", "exit"});
   REQUIRE(program.code[4].operand[0] == program.code[4].operand[1]);
   REQUIRE(int(program.code[4].guard) == 0);
 }
@@ -131,7 +132,8 @@ TEST_CASE("A join where two paths meet stays") {
 
 TEST_CASE("A loop that tests at its top branches once an iteration") {
   CodeBuilder code;
-  const Operand i = code.fresh(RegisterClass::B32), more = code.fresh(RegisterClass::Predicate), address = code.pair();
+  const Operand i = code.fresh(RegisterClass::B32), more = code.fresh(RegisterClass::Predicate),
+                address = code.pair();
   code.add("mov.b32", {i, Operand::value(0)});
   code.add("ssy").target = 3;
   code.program.blocks[0].successors = {1};
@@ -149,8 +151,8 @@ TEST_CASE("A loop that tests at its top branches once an iteration") {
   code.add("join");
   code.add("exit");
   const isa::Program program = code.assembled(kInOrder);
-  REQUIRE(names_of(program) == Names{"ld.const.b64", "mov.b32", "ssy", "setp.lt.u32", "bra", "st.global.b32", "add.u32",
-                                     "setp.lt.u32", "bra", "join", "exit"});
+  REQUIRE(names_of(program) == Names{"ld.const.b64", "mov.b32", "ssy", "setp.lt.u32", "bra", "st.global.b32",
+                                     "add.u32", "setp.lt.u32", "bra", "join", "exit"});
   REQUIRE(program.code[8].imm == 5);
   REQUIRE(int(program.code[8].guard) == 0);
   REQUIRE(int(program.code[4].guard) == isa::kGuardNegate);
@@ -159,7 +161,8 @@ TEST_CASE("A loop that tests at its top branches once an iteration") {
 
 TEST_CASE("Writes under opposite guards end the old value, writes under equal guards do not") {
   CodeBuilder code;
-  const Operand flag = code.fresh(RegisterClass::Predicate), value = code.fresh(RegisterClass::B32), address = code.pair();
+  const Operand flag = code.fresh(RegisterClass::Predicate), value = code.fresh(RegisterClass::B32),
+                address = code.pair();
   code.add("setp.eq.u32", {flag, code.word(), Operand::value(0)});
   code.add("mov.b32", {value, Operand::value(1)}).guard = flag.reg;
   code.add("mov.b32", {value, Operand::value(2)}).guard = flag.reg;

@@ -1,8 +1,9 @@
 // Simplification, scheduling, layout: the exact code that comes out.
 // SPDX-License-Identifier: Apache-2.0
+#include "frontend/backend/emit.h"
+
 #include <algorithm>
 
-#include "frontend/backend/emit.h"
 #include "isa/verify.h"
 #include "tests/support/catch.h"
 #include "tests/unit/backend/code_builder.h"
@@ -38,7 +39,8 @@ TEST_CASE("Copies, constants and dead results leave no instructions") {
 TEST_CASE("Integer products and sums become one instruction") {
   CodeBuilder code;
   const Operand base = code.pair(), index = code.word(8);
-  const Operand wide = code.fresh(RegisterClass::B64), shifted = code.fresh(RegisterClass::B64), address = code.fresh(RegisterClass::B64);
+  const Operand wide = code.fresh(RegisterClass::B64), shifted = code.fresh(RegisterClass::B64),
+                address = code.fresh(RegisterClass::B64);
   code.add("cvt.u64.u32", {wide, index});
   code.add("shl.b64", {shifted, wide, Operand::value(4)});
   code.add("add.u64", {address, base, shifted});
@@ -50,7 +52,8 @@ TEST_CASE("Integer products and sums become one instruction") {
   code.add("st.global.b32", {moved, sum}, 4);
   code.add("exit");
   const isa::Program program = code.assembled(kInOrder);
-  REQUIRE(names_of(program) == Names{"ld.const.b64", "ld.const.b32", "mad.wide.u32", "mad.lo.u32", "st.global.b32", "exit"});
+  REQUIRE(names_of(program) ==
+          Names{"ld.const.b64", "ld.const.b32", "mad.wide.u32", "mad.lo.u32", "st.global.b32", "exit"});
   REQUIRE(program.code[4].imm == 36);
   REQUIRE(program.constants[program.code[2].operand[2] & isa::kSlotIndexMask] == 16);
 }
@@ -72,7 +75,8 @@ TEST_CASE("Branches are inverted, threaded and dropped where control falls throu
   code.block("done");
   code.add("exit");
   const isa::Program program = code.assembled(kInOrder);
-  REQUIRE(names_of(program) == Names{"ld.const.b64", "ld.const.b32", "setp.eq.u32", "bra", "st.global.b32", "exit"});
+  REQUIRE(names_of(program) ==
+          Names{"ld.const.b64", "ld.const.b32", "setp.eq.u32", "bra", "st.global.b32", "exit"});
   REQUIRE(int(program.code[3].guard) == isa::kGuardNegate);  // @!%p0
   REQUIRE(program.code[3].imm == 5);
   REQUIRE(program.labels == std::vector<std::pair<uint32_t, std::string>>{{5, "done"}});
@@ -80,7 +84,8 @@ TEST_CASE("Branches are inverted, threaded and dropped where control falls throu
 
 TEST_CASE("A negated predicate turns the guard around instead") {
   CodeBuilder code;
-  const Operand flag = code.fresh(RegisterClass::Predicate), no = code.fresh(RegisterClass::Predicate), address = code.pair();
+  const Operand flag = code.fresh(RegisterClass::Predicate), no = code.fresh(RegisterClass::Predicate),
+                address = code.pair();
   code.add("setp.eq.u32", {flag, code.word(8), Operand::value(0)});
   code.add("not.pred", {no, flag});
   code.add("st.global.b32", {address, Operand::value(1)}).guard = no.reg;
@@ -136,7 +141,8 @@ TEST_CASE("Scheduling keeps the order of a store and a load that may overlap") {
   code.add("st.local.b32", {Operand::stack_pointer(), value});
   code.add("exit");
   const Names names = names_of(code.assembled());
-  REQUIRE(std::find(names.begin(), names.end(), "st.global.b32") < std::find(names.begin(), names.end(), "ld.global.b32"));
+  REQUIRE(std::find(names.begin(), names.end(), "st.global.b32") <
+          std::find(names.begin(), names.end(), "ld.global.b32"));
 }
 
 TEST_CASE("Whatever is assembled passes the verifier") {

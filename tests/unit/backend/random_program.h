@@ -1,5 +1,5 @@
-// Random structured programs over virtual registers: every op without effects, memory, branches, loops, calls.
-// SPDX-License-Identifier: Apache-2.0
+// Random structured programs over virtual registers: every op without effects, memory, branches, loops,
+// calls. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <random>
@@ -12,9 +12,9 @@ namespace glint::frontend::test {
 
 struct Shape {
   int statements = 40;
-  int values = 12;             // values of each class to start with: how much is live
+  int values = 12;  // values of each class to start with: how much is live
   bool control = true, calls = true, memory = true;
-  bool wide_traces = false;    // rt.trace with all operands in registers: not for few registers
+  bool wide_traces = false;  // rt.trace with all operands in registers: not for few registers
 };
 
 class RandomProgram {
@@ -86,16 +86,19 @@ class RandomProgram {
   Operand source(isa::OperandKind kind) {
     if (kind == isa::OperandKind::SrcPred) return Operand::of(any(RegisterClass::Predicate));
     const bool wide = kind == isa::OperandKind::Src64;
-    if (pick(4) == 0) return Operand::value(wide ? uint64_t{random_()} << pick(33) : pick(2) ? pick(34) : random_());
+    if (pick(4) == 0)
+      return Operand::value(wide ? uint64_t{random_()} << pick(33) : pick(2) ? pick(34) : random_());
     if (!wide && pick(12) == 0) return Operand::of(isa::Special(1 + pick(3)));
     return Operand::of(any(wide ? RegisterClass::B64 : RegisterClass::B32));
   }
 
   void define_inputs() {
-    const VirtualRegister word = program_.new_register(RegisterClass::B32), pair = program_.new_register(RegisterClass::B64);
+    const VirtualRegister word = program_.new_register(RegisterClass::B32),
+                          pair = program_.new_register(RegisterClass::B64);
     const VirtualRegister flag = program_.new_register(RegisterClass::Predicate);
     const VirtualRegister address = program_.new_register(RegisterClass::B64);
-    add("mad.wide.u32", {Operand::of(address), Operand::of(isa::Special::LaunchX), Operand::value(64), Operand::value(0x10000 + 8 * pick(64))});
+    add("mad.wide.u32", {Operand::of(address), Operand::of(isa::Special::LaunchX), Operand::value(64),
+                         Operand::value(0x10000 + 8 * pick(64))});
     add("ld.global.b32", {Operand::of(word), Operand::of(address)}, 4);
     add("ld.global.b64", {Operand::of(pair), Operand::of(address)}, 8);
     add("setp.lt.s32", {Operand::of(flag), Operand::of(word), Operand::value(pick(2) ? 0 : 0x40000000)});
@@ -121,13 +124,20 @@ class RandomProgram {
   void statements(int count, int depth) {
     for (int i = 0; i < count; ++i) {
       const uint32_t choice = pick(20);
-      if (choice == 0 && shape_.control && depth < 3) selection(depth);
-      else if (choice == 1 && shape_.control && depth < 2) loop(depth);
-      else if (choice == 2 && shape_.calls) call();
-      else if (choice == 3 && shape_.calls) trace();
-      else if (choice <= 6 && shape_.memory) memory();
-      else if (choice <= 11) familiar();
-      else plain();
+      if (choice == 0 && shape_.control && depth < 3)
+        selection(depth);
+      else if (choice == 1 && shape_.control && depth < 2)
+        loop(depth);
+      else if (choice == 2 && shape_.calls)
+        call();
+      else if (choice == 3 && shape_.calls)
+        trace();
+      else if (choice <= 6 && shape_.memory)
+        memory();
+      else if (choice <= 11)
+        familiar();
+      else
+        plain();
     }
   }
 
@@ -138,9 +148,10 @@ class RandomProgram {
 
   // The ops that the backend knows by name, more often than chance would have them.
   void familiar() {
-    static constexpr const char* kNames[] = {"mov.b32", "mov.b64", "mov.pred", "not.pred", "pack.b64", "unpack.b64", "cvt.u32.u64",
-                                             "cvt.u64.u32", "cvt.s64.s32", "selp.b32", "selp.b64", "add.u32", "add.u64", "mul.lo.u32",
-                                             "mul.wide.u32", "mul.wide.s32", "shl.b32", "shl.b64", "setp.ne.u32", "add.s32"};
+    static constexpr const char* kNames[] = {
+        "mov.b32",      "mov.b64",      "mov.pred", "not.pred", "pack.b64",    "unpack.b64", "cvt.u32.u64",
+        "cvt.u64.u32",  "cvt.s64.s32",  "selp.b32", "selp.b64", "add.u32",     "add.u64",    "mul.lo.u32",
+        "mul.wide.u32", "mul.wide.s32", "shl.b32",  "shl.b64",  "setp.ne.u32", "add.s32"};
     add_with_operands(isa::op_index(kNames[pick(std::size(kNames))]));
   }
 
@@ -148,10 +159,14 @@ class RandomProgram {
     std::vector<Operand> operands;
     for (isa::OperandKind kind : isa::op_table()[op].operands.view())
       for (int i = 0; i < isa::slots_of(kind); ++i) {
-        if (kind == isa::OperandKind::Dst64) operands.push_back(Operand::of(another(RegisterClass::B64, operands)));
-        else if (kind == isa::OperandKind::DstPred) operands.push_back(Operand::of(another(RegisterClass::Predicate, operands)));
-        else if (isa::is_destination(kind)) operands.push_back(Operand::of(another(RegisterClass::B32, operands)));
-        else operands.push_back(source(kind));
+        if (kind == isa::OperandKind::Dst64)
+          operands.push_back(Operand::of(another(RegisterClass::B64, operands)));
+        else if (kind == isa::OperandKind::DstPred)
+          operands.push_back(Operand::of(another(RegisterClass::Predicate, operands)));
+        else if (isa::is_destination(kind))
+          operands.push_back(Operand::of(another(RegisterClass::B32, operands)));
+        else
+          operands.push_back(source(kind));
       }
     const bool defines_fresh = !fresh_.empty();
     VirtualInst& inst = add_op(op, std::move(operands));
@@ -173,21 +188,28 @@ class RandomProgram {
 
   void memory() {
     const bool local = pick(2);
-    static constexpr const char* kLocal[] = {"ld.local.b32", "ld.local.v2.b32", "ld.local.v4.b32", "ld.local.b64",
-                                             "st.local.b32", "st.local.v2.b32", "st.local.v4.b32", "st.local.b64"};
-    static constexpr const char* kGlobal[] = {"ld.global.b32", "ld.global.v2.b32", "ld.global.v4.b32", "ld.global.b64",
-                                              "st.global.b32", "st.global.v2.b32", "st.global.v4.b32", "st.global.b64"};
+    static constexpr const char* kLocal[] = {"ld.local.b32",    "ld.local.v2.b32", "ld.local.v4.b32",
+                                             "ld.local.b64",    "st.local.b32",    "st.local.v2.b32",
+                                             "st.local.v4.b32", "st.local.b64"};
+    static constexpr const char* kGlobal[] = {"ld.global.b32",    "ld.global.v2.b32", "ld.global.v4.b32",
+                                              "ld.global.b64",    "st.global.b32",    "st.global.v2.b32",
+                                              "st.global.v4.b32", "st.global.b64"};
     const uint16_t op = isa::op_index(local ? kLocal[pick(8)] : kGlobal[pick(8)]);
     const int32_t imm = int32_t(pick(3) * 16);
     const Operand base = local ? local_base() : global_base();
     std::vector<Operand> operands;
     for (isa::OperandKind kind : isa::op_table()[op].operands.view())
       for (int i = 0; i < isa::slots_of(kind); ++i) {
-        if (kind == isa::OperandKind::Address32 || kind == isa::OperandKind::Address64) operands.push_back(base);
-        else if (kind == isa::OperandKind::Dst64) operands.push_back(Operand::of(destination(RegisterClass::B64)));
-        else if (isa::is_destination(kind)) operands.push_back(Operand::of(another(RegisterClass::B32, operands)));
-        else if (kind == isa::OperandKind::Src64) operands.push_back(source(kind));
-        else operands.push_back(source(isa::OperandKind::Src32));
+        if (kind == isa::OperandKind::Address32 || kind == isa::OperandKind::Address64)
+          operands.push_back(base);
+        else if (kind == isa::OperandKind::Dst64)
+          operands.push_back(Operand::of(destination(RegisterClass::B64)));
+        else if (isa::is_destination(kind))
+          operands.push_back(Operand::of(another(RegisterClass::B32, operands)));
+        else if (kind == isa::OperandKind::Src64)
+          operands.push_back(source(kind));
+        else
+          operands.push_back(source(isa::OperandKind::Src32));
       }
     add_op(op, std::move(operands), local ? imm % int32_t(kVariables - 15) : imm);
     publish_fresh();
@@ -199,9 +221,11 @@ class RandomProgram {
     return Operand::of(base);
   }
   Operand global_base() {
-    const VirtualRegister index = program_.new_register(RegisterClass::B32), base = program_.new_register(RegisterClass::B64);
+    const VirtualRegister index = program_.new_register(RegisterClass::B32),
+                          base = program_.new_register(RegisterClass::B64);
     add("and.b32", {Operand::of(index), Operand::of(any(RegisterClass::B32)), Operand::value(0x70)});
-    add(pick(2) ? "mad.wide.u32" : "mad.wide.s32", {Operand::of(base), Operand::of(index), Operand::value(1), Operand::value(0x30000)});
+    add(pick(2) ? "mad.wide.u32" : "mad.wide.s32",
+        {Operand::of(base), Operand::of(index), Operand::value(1), Operand::value(0x30000)});
     const VirtualRegister sum = program_.new_register(RegisterClass::B64);
     add("add.u64", {Operand::of(sum), Operand::of(base), Operand::value(16 * pick(3))});
     return Operand::of(sum);
@@ -241,7 +265,8 @@ class RandomProgram {
   }
 
   void loop(int depth) {
-    const VirtualRegister counter = program_.new_register(RegisterClass::B32), more = program_.new_register(RegisterClass::Predicate);
+    const VirtualRegister counter = program_.new_register(RegisterClass::B32),
+                          more = program_.new_register(RegisterClass::Predicate);
     add("mov.b32", {Operand::of(counter), Operand::value(1 + pick(3))});
     add("ssy", {});
     const BlockId before = current_;
@@ -267,7 +292,8 @@ class RandomProgram {
 
   // A trace that never has to ask a shader.
   void call() {
-    std::vector<Operand> operands{Operand::of(program_.new_register(RegisterClass::Predicate)), Operand::of(any(RegisterClass::B64))};
+    std::vector<Operand> operands{Operand::of(program_.new_register(RegisterClass::Predicate)),
+                                  Operand::of(any(RegisterClass::B64))};
     for (int i = 0; i < 15; ++i) operands.push_back(Operand::value(pick(99)));
     marker(VirtualInst::Kind::SaveLive);
     add("rt.trace", std::move(operands));
@@ -282,7 +308,9 @@ class RandomProgram {
     std::vector<Operand> operands{Operand::of(waits)};
     operands.push_back(Operand::of(any(RegisterClass::B64)));
     for (int i = 0; i < 15; ++i)
-      operands.push_back(shape_.wide_traces ? source(isa::OperandKind::Src32) : i == 7 ? Operand::of(any(RegisterClass::B32)) : Operand::value(pick(99)));
+      operands.push_back(shape_.wide_traces ? source(isa::OperandKind::Src32)
+                         : i == 7           ? Operand::of(any(RegisterClass::B32))
+                                            : Operand::value(pick(99)));
     marker(VirtualInst::Kind::SaveLive);
     add("rt.trace", std::move(operands));
     add("ssy", {});

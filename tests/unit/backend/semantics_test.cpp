@@ -19,7 +19,8 @@ void check_same(uint32_t seed, const Shape& shape, const BackendOptions& options
     const LaneWorld expected = VirtualRun(original, lane).world(), &actual = got.lanes[size_t(lane)];
     INFO("lane " << lane);
     REQUIRE(!expected.log.empty());
-    const auto differ = std::mismatch(expected.log.begin(), expected.log.end(), actual.log.begin(), actual.log.end());
+    const auto differ =
+        std::mismatch(expected.log.begin(), expected.log.end(), actual.log.begin(), actual.log.end());
     INFO("expected " << (differ.first == expected.log.end() ? "the end" : *differ.first));
     INFO("got " << (differ.second == actual.log.end() ? "the end" : *differ.second));
     REQUIRE((differ.first == expected.log.end() && differ.second == actual.log.end()));
@@ -66,8 +67,8 @@ TEST_CASE("Eight registers suffice for everything but wide traces") {
 }
 
 TEST_CASE("A spilled guard keeps one name from a guarded write to the store behind it") {
-  // Found by seed 18: with a reload of the guard for each, the written temporary looked live from the entry on, and
-  // enough of them left no register.
+  // Found by seed 18: with a reload of the guard for each, the written temporary looked live from the entry
+  // on, and enough of them left no register.
   check_same(18, {.statements = 1000, .values = 50, .calls = false}, {.max_registers = 64});
 }
 

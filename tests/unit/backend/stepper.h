@@ -1,6 +1,6 @@
-// Steps virtual programs lane by lane and assembled ones as a diverging warp, with the op table's own handlers, and
-// records what each lane does to the world: the measure of whether assembling has kept a program's meaning.
-// SPDX-License-Identifier: Apache-2.0
+// Steps virtual programs lane by lane and assembled ones as a diverging warp, with the op table's own
+// handlers, and records what each lane does to the world: the measure of whether assembling has kept a
+// program's meaning. SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <map>
@@ -24,7 +24,8 @@ class Bytes {
     uint64_t value = 0;
     for (int i = 0; i < bytes; ++i) {
       const auto at = bytes_.find(address + uint64_t(i));
-      const uint64_t byte = at != bytes_.end() ? at->second : ((address + uint64_t(i)) * 0x9e3779b97f4a7c15u) >> 56;
+      const uint64_t byte =
+          at != bytes_.end() ? at->second : ((address + uint64_t(i)) * 0x9e3779b97f4a7c15u) >> 56;
       value |= byte << (8 * i);
     }
     return value;
@@ -50,11 +51,14 @@ class Machine {
   static constexpr size_t kMaxSteps = 400'000;  // a program that runs longer is stuck
 
   Machine(size_t registers, size_t constants)
-      : registers_(registers * kLanes + 16), constants_(constants * kLanes + 16), specials_(isa::kNumSpecials * kLanes + 16) {
+      : registers_(registers * kLanes + 16),
+        constants_(constants * kLanes + 16),
+        specials_(isa::kNumSpecials * kLanes + 16) {
     warp_ = std::make_unique<isa::Warp>();
     warp_->bank = {aligned(registers_), aligned(constants_), aligned(specials_)};
     for (int s = 0; s < isa::kNumSpecials; ++s)
-      for (int lane = 0; lane < kLanes; ++lane) warp_->bank[2][s * kLanes + lane] = 0x1000u + 77u * uint32_t(s) + 1013u * uint32_t(lane);
+      for (int lane = 0; lane < kLanes; ++lane)
+        warp_->bank[2][s * kLanes + lane] = 0x1000u + 77u * uint32_t(s) + 1013u * uint32_t(lane);
   }
 
   std::array<LaneWorld, kLanes> lanes;
@@ -118,13 +122,16 @@ class Machine {
     Bytes& memory = row.memory.space == isa::Space::Local ? world.local : world.global;
     const int bytes = row.memory.bytes;
     if (is_store) {
-      const uint64_t value = read(slot, lane, bytes == 8) & (bytes == 8 ? ~uint64_t{0} : (uint64_t{1} << (8 * bytes)) - 1);
+      const uint64_t value =
+          read(slot, lane, bytes == 8) & (bytes == 8 ? ~uint64_t{0} : (uint64_t{1} << (8 * bytes)) - 1);
       memory.store(address, bytes, value);
-      if (row.memory.space == isa::Space::Global) world.log.push_back(fmt::format("st {:x} {} {:x}", address, bytes, value));
+      if (row.memory.space == isa::Space::Global)
+        world.log.push_back(fmt::format("st {:x} {} {:x}", address, bytes, value));
       return;
     }
     uint64_t value = memory.load(address, bytes);
-    if (row.memory.sign_extend && bytes < 4 && (value >> (8 * bytes - 1)) & 1) value |= ~uint64_t{0} << (8 * bytes);
+    if (row.memory.sign_extend && bytes < 4 && (value >> (8 * bytes - 1)) & 1)
+      value |= ~uint64_t{0} << (8 * bytes);
     reg(slot, lane) = uint32_t(value);
     if (bytes == 8) reg(isa::Slot(slot + 1), lane) = uint32_t(value >> 32);
   }
@@ -136,7 +143,10 @@ class Machine {
 class VirtualRun : public Machine {
  public:
   VirtualRun(const VirtualProgram& program, int lane)
-      : Machine(2 + 2 * program.registers.size(), 64), program_(program), lane_(lane), predicates_(program.registers.size()) {
+      : Machine(2 + 2 * program.registers.size(), 64),
+        program_(program),
+        lane_(lane),
+        predicates_(program.registers.size()) {
     for (BlockId block = 0; block != kNoBlock;) block = run_block(block);
   }
   const LaneWorld& world() const { return lanes[size_t(lane_)]; }
@@ -163,7 +173,8 @@ class VirtualRun : public Machine {
     coded.imm = inst.imm;
     size_t slot = 0, constants = 0;
     for (isa::OperandKind kind : row.operands.view())
-      for (int i = 0; i < isa::slots_of(kind); ++i, ++slot) coded.operand[slot] = place(inst.operands[slot], slot, constants);
+      for (int i = 0; i < isa::slots_of(kind); ++i, ++slot)
+        coded.operand[slot] = place(inst.operands[slot], slot, constants);
     perform(coded, LaneMask{1} << lane_);
     slot = 0;
     for (isa::OperandKind kind : row.operands.view()) {
@@ -187,9 +198,11 @@ class VirtualRun : public Machine {
         reg(isa::Slot(row + 1), lane_) = uint32_t(o.constant >> 32);
         return row;
       }
-      case VirtualOperand::Kind::Special: return isa::Slot(isa::kSpecialBank + int(o.special));
+      case VirtualOperand::Kind::Special:
+        return isa::Slot(isa::kSpecialBank + int(o.special));
       case VirtualOperand::Kind::StackPointer:
-      case VirtualOperand::Kind::None: break;
+      case VirtualOperand::Kind::None:
+        break;
     }
     return isa::kStackPointer;
   }
@@ -199,11 +212,12 @@ class VirtualRun : public Machine {
   std::vector<bool> predicates_;
 };
 
-// Runs an assembled Program for a whole warp (docs/abi.md, "Control flow"). A call destroys every register but %r0,
-// every predicate, and the stack above the frame.
+// Runs an assembled Program for a whole warp (docs/abi.md, "Control flow"). A call destroys every register
+// but %r0, every predicate, and the stack above the frame.
 class ProgramRun : public Machine {
  public:
-  explicit ProgramRun(const isa::Program& program) : Machine(program.num_registers, program.constants.size()), program_(program) {
+  explicit ProgramRun(const isa::Program& program)
+      : Machine(program.num_registers, program.constants.size()), program_(program) {
     for (int lane = 0; lane < kLanes; ++lane) {
       for (size_t row = 0; row < program.constants.size(); ++row)
         reg(isa::Slot(isa::kConstantBank + row), lane) = program.constants[row];
@@ -220,7 +234,8 @@ class ProgramRun : public Machine {
     const isa::Inst& inst = program_.code[stack_.pc];
     const isa::OpRow& row = isa::op_table()[inst.op];
     LaneMask exec = stack_.active;
-    if (inst.guard != isa::kNoGuard) exec &= inst.guard & isa::kGuardNegate ? ~predicate(inst.guard & 7) : predicate(inst.guard & 7);
+    if (inst.guard != isa::kNoGuard)
+      exec &= inst.guard & isa::kGuardNegate ? ~predicate(inst.guard & 7) : predicate(inst.guard & 7);
     const uint32_t pc = stack_.pc++;
     if (row.effect == isa::Effect::Branch) {
       branch(exec, uint32_t(inst.imm));
@@ -259,7 +274,8 @@ class ProgramRun : public Machine {
       GLINT_CHECK_LE(program_.local_bytes, reg(0, lane));
       for (uint32_t r = 1; r < program_.num_registers; ++r) reg(isa::Slot(r), lane) = 0xbad0'0000 + r;
       for (size_t p = 0; p < isa::kNumPredicates; ++p) set_predicate(p, lane, (p + steps_) % 2);
-      for (uint32_t offset = 0; offset < 64; offset += 4) lanes[size_t(lane)].local.store(reg(0, lane) + offset, 4, 0xbad1'0000 + offset);
+      for (uint32_t offset = 0; offset < 64; offset += 4)
+        lanes[size_t(lane)].local.store(reg(0, lane) + offset, 4, 0xbad1'0000 + offset);
     });
   }
 

@@ -123,11 +123,13 @@ TEST_CASE("descriptions carry dotted keys, present values, units and ranges in d
   CHECK(infos[4].key == "x.dog.factor");
 }
 
-TEST_CASE("keys of a policy that is not chosen are described as they were read, with the choice that they need") {
+TEST_CASE(
+    "keys of a policy that is not chosen are described as they were read, with the choice that they need") {
   Diagnostics diagnostics;
   const auto infos = describe_params(read("animal = \"snail\"\n[dog]\nfactor = 4\n", diagnostics), "x.");
 
-  const auto dog = std::find_if(infos.begin(), infos.end(), [](const ParamInfo& info) { return info.key == "x.dog.factor"; });
+  const auto dog = std::find_if(infos.begin(), infos.end(),
+                                [](const ParamInfo& info) { return info.key == "x.dog.factor"; });
   REQUIRE(dog != infos.end());
   CHECK(dog->value == "4");
   CHECK(dog->needs == "x.animal = \"dog\"");

@@ -1,12 +1,11 @@
-// The characterisation against values of numpy, SciPy and scikit-learn (reference.py), and what it does with odd tables.
-// SPDX-License-Identifier: Apache-2.0
-#include "report/characterize/characterization.h"
-
+// The characterisation against values of numpy, SciPy and scikit-learn (reference.py), and what it does with
+// odd tables. SPDX-License-Identifier: Apache-2.0
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "base/diagnostics.h"
+#include "report/characterize/characterization.h"
 #include "report/characterize/characterization_files.h"
 #include "tests/support/catch.h"
 
@@ -38,7 +37,8 @@ double difference(const Eigen::MatrixXd& values, const nlohmann::json& rows) {
   REQUIRE(size_t(values.cols()) == rows[0].size());
   double most = 0;
   for (Eigen::Index i = 0; i < values.rows(); ++i)
-    for (Eigen::Index j = 0; j < values.cols(); ++j) most = std::max(most, std::abs(values(i, j) - rows[size_t(i)][size_t(j)].get<double>()));
+    for (Eigen::Index j = 0; j < values.cols(); ++j)
+      most = std::max(most, std::abs(values(i, j) - rows[size_t(i)][size_t(j)].get<double>()));
   return most;
 }
 
@@ -61,7 +61,8 @@ std::string message_of(const std::string& csv) {
 
 }  // namespace
 
-TEST_CASE("The columns that take part are those that vary, have every number and say something new", "[characterize]") {
+TEST_CASE("The columns that take part are those that vary, have every number and say something new",
+          "[characterize]") {
   CHECK(suite().metrics == expected()["metrics"].get<std::vector<std::string>>());
   CHECK(suite().rows() == 46);
   const auto why = [](const std::string& name) {
@@ -80,7 +81,8 @@ TEST_CASE("Eigenvalues, loadings and scores are scikit-learn's", "[characterize]
   const PrincipalComponents pca = principal_components(suite().standardised);
   const auto eigenvalues = expected()["eigenvalues"].get<std::vector<double>>();
   REQUIRE(pca.kept == expected()["kept"].get<int>());
-  for (size_t i = 0; i < eigenvalues.size() && i < size_t(pca.eigenvalues.size()); ++i) CHECK(std::abs(pca.eigenvalues[Eigen::Index(i)] - eigenvalues[i]) < 1e-10 * eigenvalues[0]);
+  for (size_t i = 0; i < eigenvalues.size() && i < size_t(pca.eigenvalues.size()); ++i)
+    CHECK(std::abs(pca.eigenvalues[Eigen::Index(i)] - eigenvalues[i]) < 1e-10 * eigenvalues[0]);
   CHECK(std::abs(pca.eigenvalues.sum() - double(suite().columns())) < 1e-9);
   CHECK(difference(pca.loadings, expected()["loadings"]) < 1e-9);
   CHECK(difference(pca.scores, expected()["scores"]) < 1e-8);
@@ -119,7 +121,8 @@ TEST_CASE("Trees, their leaves and their cuts are SciPy's with every linkage", "
 
 TEST_CASE("A set of metrics is worth the correlation that numpy gives it", "[characterize]") {
   const DistanceFitness fitness(suite().standardised);
-  CHECK(std::abs(fitness({0, 1, 2, 3, 4, 5, 6, 7}) - expected()["fitness_of_first_eight"].get<double>()) < 1e-10);
+  CHECK(std::abs(fitness({0, 1, 2, 3, 4, 5, 6, 7}) - expected()["fitness_of_first_eight"].get<double>()) <
+        1e-10);
   std::vector<int> all;
   for (int i = 0; i < int(fitness.metrics()); ++i) all.push_back(i);
   CHECK(std::abs(fitness(all) - 1) < 1e-12);
@@ -129,7 +132,8 @@ TEST_CASE("The genetic algorithm finds the best three of ten metrics, with every
   const nlohmann::json& small = expected()["small"];
   const DistanceFitness fitness(suite().standardised.leftCols(small["columns"].get<int>()));
   for (uint64_t seed = 1; seed <= 5; ++seed) {
-    const ChosenMetrics found = choose_metrics(fitness, {.count = 3, .seed = seed, .islands = 2, .population = 20, .patience = 30});
+    const ChosenMetrics found =
+        choose_metrics(fitness, {.count = 3, .seed = seed, .islands = 2, .population = 20, .patience = 30});
     std::vector<int> columns;
     for (const ChosenMetrics::Metric& metric : found.metrics) columns.push_back(metric.column);
     std::ranges::sort(columns);
@@ -139,7 +143,8 @@ TEST_CASE("The genetic algorithm finds the best three of ten metrics, with every
   }
 }
 
-TEST_CASE("The genetic algorithm finds the best four of twenty metrics without trying all", "[characterize]") {
+TEST_CASE("The genetic algorithm finds the best four of twenty metrics without trying all",
+          "[characterize]") {
   constexpr int kColumns = 20;
   const DistanceFitness fitness(suite().standardised.leftCols(kColumns));
   double best = -1;
@@ -148,12 +153,14 @@ TEST_CASE("The genetic algorithm finds the best four of twenty metrics without t
     for (int b = a + 1; b < kColumns; ++b)
       for (int c = b + 1; c < kColumns; ++c)
         for (int d = c + 1; d < kColumns; ++d, ++sets) best = std::max(best, fitness({a, b, c, d}));
-  const ChosenMetrics found = choose_metrics(fitness, {.count = 4, .islands = 2, .population = 24, .patience = 30});
+  const ChosenMetrics found =
+      choose_metrics(fitness, {.count = 4, .islands = 2, .population = 24, .patience = 30});
   CHECK(std::abs(found.fitness - best) < 1e-12);
   CHECK(found.evaluations < sets);
 }
 
-TEST_CASE("The same seed gives the same eight metrics, and no exchange of one makes them better", "[characterize]") {
+TEST_CASE("The same seed gives the same eight metrics, and no exchange of one makes them better",
+          "[characterize]") {
   const DistanceFitness fitness(suite().standardised);
   const ChosenMetrics first = choose_metrics(fitness, {}), second = choose_metrics(fitness, {});
   std::vector<int> columns;
@@ -172,8 +179,11 @@ TEST_CASE("The same seed gives the same eight metrics, and no exchange of one ma
     }
 }
 
-TEST_CASE("A subset has one workload of each cluster and no scene twice where others are left", "[characterize]") {
-  const Characterization result = characterize(suite(), {.search = {.generations = 1}, .reference = {"SHIP_SH", "CHSNT_PT", "NOT_THERE"}, .reference_name = "two"});
+TEST_CASE("A subset has one workload of each cluster and no scene twice where others are left",
+          "[characterize]") {
+  const Characterization result = characterize(suite(), {.search = {.generations = 1},
+                                                         .reference = {"SHIP_SH", "CHSNT_PT", "NOT_THERE"},
+                                                         .reference_name = "two"});
   REQUIRE(result.chosen.size() == 8);
   std::vector<std::string> scenes;
   for (size_t i = 0; i < result.chosen.size(); ++i) {
@@ -190,27 +200,34 @@ TEST_CASE("A subset has one workload of each cluster and no scene twice where ot
 }
 
 TEST_CASE("Speed-ups of a subset are those of its own workloads", "[characterize]") {
-  const std::string before = "workload,cycles\nA,100\nB,200\nC,400\nD,5\n", after = "workload,cycles\nA,50\nB,200\nC,100\n";
+  const std::string before = "workload,cycles\nA,100\nB,200\nC,400\nD,5\n",
+                    after = "workload,cycles\nA,50\nB,200\nC,100\n";
   const SpeedUps found = speed_ups(before, "before", after, "after", {"A", "B"});
   CHECK(std::abs(found.all.mean - 2) < 1e-12);  // of 2, 1 and 4
   CHECK(found.all.fastest == "C");
   CHECK(std::abs(found.subset.mean - std::sqrt(2.0)) < 1e-12);
   CHECK(found.subset.slowest == "B");
-  CHECK_THROWS_WITH(speed_ups(before, "before", after, "after", {"D"}), Catch::Contains("after: error: has no cycles of D"));
+  CHECK_THROWS_WITH(speed_ups(before, "before", after, "after", {"D"}),
+                    Catch::Contains("after: error: has no cycles of D"));
 }
 
 TEST_CASE("Tables that cannot be compared are refused with the reason", "[characterize]") {
   CHECK(message_of("").find("no header") != std::string::npos);
-  CHECK(message_of("workload,a,b\nX,1,2\nY,2,1\n").find("2 workloads, expected at least 3") != std::string::npos);
-  CHECK(message_of("workload,a,b\nX,1,2\nY,2,1\nX,3,1\n").find("'X' stands there twice") != std::string::npos);
+  CHECK(message_of("workload,a,b\nX,1,2\nY,2,1\n").find("2 workloads, expected at least 3") !=
+        std::string::npos);
+  CHECK(message_of("workload,a,b\nX,1,2\nY,2,1\nX,3,1\n").find("'X' stands there twice") !=
+        std::string::npos);
   CHECK(message_of("workload,a,b\nX,1,2\nY,2\nZ,3,1\n").find("table.csv:3") != std::string::npos);
-  CHECK(message_of("workload,a,b\nX,1,7\nY,2,7\nZ,3,7\n").find("1 columns of numbers that vary") != std::string::npos);
+  CHECK(message_of("workload,a,b\nX,1,7\nY,2,7\nZ,3,7\n").find("1 columns of numbers that vary") !=
+        std::string::npos);
   CHECK(message_of("workload,a,b\n\"X,1,2\nY,2,1\n").find("a quote is not closed") != std::string::npos);
 }
 
 TEST_CASE("Files hold what was computed, to the last bit", "[characterize]") {
-  const FeatureTable table = feature_table("name,a,b,c\nX_PT,1,2,0.1\nY_SH,2,1,0.7\n\"Z,AO\",3,1,0.2\nW_PT,9,1,0.3\n", "t");
-  const Characterization result = characterize(table, {.clusters = 2, .search = {.count = 2}, .reference = {}, .reference_name = {}});
+  const FeatureTable table =
+      feature_table("name,a,b,c\nX_PT,1,2,0.1\nY_SH,2,1,0.7\n\"Z,AO\",3,1,0.2\nW_PT,9,1,0.3\n", "t");
+  const Characterization result =
+      characterize(table, {.clusters = 2, .search = {.count = 2}, .reference = {}, .reference_name = {}});
   for (const auto& [name, content] : characterization_files(result)) {
     if (name == "scores.csv") CHECK(content.find("\"Z,AO\",") != std::string::npos);
     if (name == "linkage.csv") CHECK(std::ranges::count(content, '\n') == 4);

@@ -1,9 +1,8 @@
 // Loads and stores of every width in every space, and generic addresses of each window.
 // SPDX-License-Identifier: Apache-2.0
-#include "isa/generic_address.h"
-
 #include <fmt/format.h>
 
+#include "isa/generic_address.h"
 #include "tests/support/catch.h"
 #include "tests/unit/core/text_launch.h"
 
@@ -12,7 +11,9 @@ namespace {
 
 // One thread stores and loads in all widths at the base that `place` writes down, and leaves ten words.
 std::string all_widths(const std::string& space, const std::string& base, int offset) {
-  const auto at = [&](int n) { return base.empty() ? fmt::format("[{}]", n) : fmt::format("[{} + {}]", base, offset + n); };
+  const auto at = [&](int n) {
+    return base.empty() ? fmt::format("[{}]", n) : fmt::format("[{} + {}]", base, offset + n);
+  };
   std::string text;
   text += fmt::format("    st{}.b32 {}, 0x818283f4;\n", space, at(0));
   text += fmt::format("    st{}.b8 {}, 0x1ff;\n", space, at(1));
@@ -33,8 +34,8 @@ std::string all_widths(const std::string& space, const std::string& base, int of
     exit;
 )";
 }
-const std::vector<uint32_t> kAllWidths = {0x2345'fff4, 0xffff'fff4, 0xf4, 0xffff'fff4, 0xffff'fff4, 0xffff'ffff,
-                                          0x45,        0x23,        0xfff4, 7,          3,           4};
+const std::vector<uint32_t> kAllWidths = {
+    0x2345'fff4, 0xffff'fff4, 0xf4, 0xffff'fff4, 0xffff'fff4, 0xffff'ffff, 0x45, 0x23, 0xfff4, 7, 3, 4};
 
 constexpr const char* kBuffer = "    ld.param.b64 %rd2, [0];\n";
 
@@ -67,8 +68,9 @@ TEST_CASE("constants and parameters load in every width, by a generic address to
                                            {"    cvta.param.u64 %rd4, 8;\n", "", "%rd4"},
                                            {"    cvta.const.u64 %rd4, 16392;\n", "", "%rd4"}}) {
     CAPTURE(setup, space);
-    TextLaunch launch(kBuffer + setup + "    ld" + space + ".b64 %rd10, [" + base + "];\n    ld" + space + ".v2.s16 {%r12, %r13}, [" +
-                          base + "];\n    st.global.v4.b32 [%rd2], {%r10, %r11, %r12, %r13};\n    exit;\n",
+    TextLaunch launch(kBuffer + setup + "    ld" + space + ".b64 %rd10, [" + base + "];\n    ld" + space +
+                          ".v2.s16 {%r12, %r13}, [" + base +
+                          "];\n    st.global.v4.b32 [%rd2], {%r10, %r11, %r12, %r13};\n    exit;\n",
                       {.block = {1, 1, 1}});
     const uint64_t value = 0x1234'5678'8001'7ffe;
     std::memcpy(launch.world.constant_bank.data() + isa::kPushConstantOffset + 8, &value, 8);
@@ -147,15 +149,18 @@ TEST_CASE("isspacep tells the windows apart, and conversions undo each other") {
 
 TEST_CASE("an access that is not aligned to its size is a fault") {
   const auto fault = [](const std::string& instruction) {
-    TextLaunch launch(kBuffer + ("    " + instruction) + "\n    exit;\n", {.block = {1, 1, 1}, .shared_bytes = 64, .local_bytes = 64});
+    TextLaunch launch(kBuffer + ("    " + instruction) + "\n    exit;\n",
+                      {.block = {1, 1, 1}, .shared_bytes = 64, .local_bytes = 64});
     return launch.fault();
   };
   for (const auto& [instruction, text] :
        {std::pair{"ld.global.b32 %r4, [%rd2 + 2];", "which is no multiple of 4"},
         {"st.global.v4.b32 [%rd2 + 8], {1, 2, 3, 4};", "which is no multiple of 16"},
-        {"mov.b32 %r6, 4; ld.shared.b64 %rd4, [%r6];", "reads 8 bytes at shared address 0x4, which is no multiple of 8"},
+        {"mov.b32 %r6, 4; ld.shared.b64 %rd4, [%r6];",
+         "reads 8 bytes at shared address 0x4, which is no multiple of 8"},
         {"mov.b32 %r6, 1; ld.local.b16 %r4, [%r6];", "which is no multiple of 2"},
-        {"mov.b32 %r6, 4; ld.param.b64 %rd4, [%r6];", "reads 8 bytes at parameter address 0x4, which is no multiple of 8"}}) {
+        {"mov.b32 %r6, 4; ld.param.b64 %rd4, [%r6];",
+         "reads 8 bytes at parameter address 0x4, which is no multiple of 8"}}) {
     CAPTURE(instruction);
     CHECK(fault(instruction).find(text) != std::string::npos);
   }

@@ -16,9 +16,12 @@ struct Outcome {
 };
 Outcome run_one(const std::string& op, bool wide, uint64_t old, uint64_t b, uint64_t c = 0) {
   const bool swap = op.find(".cas.") != std::string::npos;
-  std::string text = "    ld.param.b64 %rd2, [0];\n    ld.param.b64 %rd4, [8];\n    ld.param.b64 %rd6, [16];\n";
-  text += wide ? "    " + op + " %rd8, [%rd2], %rd4" + (swap ? ", %rd6" : "") + ";\n    st.global.b64 [%rd2 + 8], %rd8;\n"
-               : "    " + op + " %r8, [%rd2], %r4" + (swap ? ", %r6" : "") + ";\n    st.global.b32 [%rd2 + 8], %r8;\n";
+  std::string text =
+      "    ld.param.b64 %rd2, [0];\n    ld.param.b64 %rd4, [8];\n    ld.param.b64 %rd6, [16];\n";
+  text += wide ? "    " + op + " %rd8, [%rd2], %rd4" + (swap ? ", %rd6" : "") +
+                     ";\n    st.global.b64 [%rd2 + 8], %rd8;\n"
+               : "    " + op + " %r8, [%rd2], %r4" + (swap ? ", %r6" : "") +
+                     ";\n    st.global.b32 [%rd2 + 8], %r8;\n";
   TextLaunch launch(text + "    exit;\n", {.block = {1, 1, 1}});
   launch.memory.write(launch.buffer, &old, 8);
   std::memcpy(launch.world.constant_bank.data() + isa::kPushConstantOffset + 8, &b, 8);
@@ -27,8 +30,12 @@ Outcome run_one(const std::string& op, bool wide, uint64_t old, uint64_t b, uint
   const auto memory = launch.memory.view<uint64_t>(launch.buffer, 2);
   return {memory[1], memory[0]};
 }
-uint32_t bits(float x) { return std::bit_cast<uint32_t>(x); }
-uint64_t bits(double x) { return std::bit_cast<uint64_t>(x); }
+uint32_t bits(float x) {
+  return std::bit_cast<uint32_t>(x);
+}
+uint64_t bits(double x) {
+  return std::bit_cast<uint64_t>(x);
+}
 
 }  // namespace
 
@@ -49,9 +56,11 @@ TEST_CASE("integer atomics return the old value and leave the new one") {
 }
 
 TEST_CASE("atomics of 16 bits leave the neighbouring half word alone") {
-  CHECK(run_one("atom.global.cas.b16", false, 0xabcd'0006, 0x1111'0006, 0x2222'0009) == Outcome{6, 0xabcd'0009});
+  CHECK(run_one("atom.global.cas.b16", false, 0xabcd'0006, 0x1111'0006, 0x2222'0009) ==
+        Outcome{6, 0xabcd'0009});
   CHECK(run_one("atom.global.add.noftz.f16", false, 0xabcd'3c00, 0x3c00) == Outcome{0x3c00, 0xabcd'4000});
-  CHECK(run_one("atom.global.add.noftz.bf16x2", false, 0x3f80'3f80, 0x3f80'0000) == Outcome{0x3f80'3f80, 0x4000'3f80});
+  CHECK(run_one("atom.global.add.noftz.bf16x2", false, 0x3f80'3f80, 0x3f80'0000) ==
+        Outcome{0x3f80'3f80, 0x4000'3f80});
 }
 
 TEST_CASE("float atomics add, and take the number of a number and a NaN") {
@@ -62,7 +71,8 @@ TEST_CASE("float atomics add, and take the number of a number and a NaN") {
   CHECK(run_one("atom.global.min.f32", false, bits(-1.0f), bits(-2.0f)) == Outcome{bits(-1.0f), bits(-2.0f)});
   CHECK(run_one("atom.global.max.f64", true, bits(-1.0), bits(3.0)) == Outcome{bits(-1.0), bits(3.0)});
   CHECK(run_one("atom.global.max.f32", false, 0x7fc0'0000, bits(-2.0f)) == Outcome{0x7fc0'0000, bits(-2.0f)});
-  CHECK(run_one("atom.global.min.f64", true, bits(2.0), 0xfff8'0000'0000'0001) == Outcome{bits(2.0), bits(2.0)});
+  CHECK(run_one("atom.global.min.f64", true, bits(2.0), 0xfff8'0000'0000'0001) ==
+        Outcome{bits(2.0), bits(2.0)});
 }
 
 TEST_CASE("the adder of global memory flushes subnormals, that of shared memory keeps them") {
@@ -86,7 +96,7 @@ TEST_CASE("the adder of global memory flushes subnormals, that of shared memory 
 
 TEST_CASE("every lane of every warp gets a turn, and a value of its own") {
   for (const std::string op : {"atom.global.add.u32 %r8, [%rd2], 1", "atom.add.u32 %r8, [%rd2], 1",
-                                "atom.global.inc.u32 %r8, [%rd2], 1000"}) {
+                               "atom.global.inc.u32 %r8, [%rd2], 1000"}) {
     TextLaunch launch(R"(
     ld.param.b64 %rd2, [0];
     )" + op + R"(;
@@ -160,7 +170,8 @@ NEXT:
 }
 
 TEST_CASE("an atomic on local memory, and a misaligned one, are faults") {
-  TextLaunch local("    cvta.local.u64 %rd2, 8;\n    red.add.u32 [%rd2], 1;\n    exit;\n", {.local_bytes = 64});
+  TextLaunch local("    cvta.local.u64 %rd2, 8;\n    red.add.u32 [%rd2], 1;\n    exit;\n",
+                   {.local_bytes = 64});
   TextLaunch odd("    ld.param.b64 %rd2, [0];\n    red.global.add.u32 [%rd2 + 2], 1;\n    exit;\n", {});
 
   CHECK(local.fault().find("an atomic on local memory") != std::string::npos);

@@ -6,7 +6,9 @@
 namespace glint::core {
 namespace {
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 // Sums the thread numbers of a block of any size into word %ctaid.x: a tree over shared memory.
 const std::string kReduce = R"(
@@ -101,7 +103,8 @@ TEST_CASE("a program reads lane masks, warp numbers and the sizes of shared memo
                     {.block = {96, 1, 1}, .shared_bytes = 24, .dynamic_bytes = 100});
   launch.run();
 
-  for (uint32_t thread = 0; thread < 96; ++thread) CHECK(launch.word(thread) == (24u << 24 | thread / 32 << 16 | 3u << 8 | 32u));
+  for (uint32_t thread = 0; thread < 96; ++thread)
+    CHECK(launch.word(thread) == (24u << 24 | thread / 32 << 16 | 3u << 8 | 32u));
 }
 
 TEST_CASE("shared memory is the block's own and starts as zeros") {
@@ -191,7 +194,8 @@ DONE:
                     {.block = {256, 1, 1}});
 
   const std::string fault = launch.fault();
-  CHECK(contains(fault, "3 of 8 warps wait at bar.sync 2 (test (instruction 3: bar.sync)), the others have ended"));
+  CHECK(contains(fault,
+                 "3 of 8 warps wait at bar.sync 2 (test (instruction 3: bar.sync)), the others have ended"));
 }
 
 TEST_CASE("warps that wait at different barriers are a fault that names both") {
@@ -226,7 +230,8 @@ DONE:
 )",
                     {});
 
-  CHECK(contains(launch.fault(), "16 of the 32 lanes of the warp come to bar.sync: all have to come together"));
+  CHECK(
+      contains(launch.fault(), "16 of the 32 lanes of the warp come to bar.sync: all have to come together"));
 }
 
 TEST_CASE("barriers that are not there and counts that cannot be are faults") {
@@ -254,7 +259,9 @@ TEST_CASE("a trap is a fault") {
 TEST_CASE("shared memory ends where the block's ends") {
   TextLaunch launch("    mov.b32 %r6, 64;\n    ld.shared.b32 %r4, [%r6];\n    exit;\n", {.shared_bytes = 64});
 
-  CHECK(contains(launch.fault(), "reads 4 bytes at shared address 0x40: 0 bytes past the end of the block's shared memory (64 bytes)"));
+  CHECK(contains(
+      launch.fault(),
+      "reads 4 bytes at shared address 0x40: 0 bytes past the end of the block's shared memory (64 bytes)"));
 }
 
 }  // namespace glint::core

@@ -127,10 +127,15 @@ MEET:
   CHECK(launch.fault().find("entry 2 of a table") != std::string::npos);
 }
 
-TEST_CASE("a function that an any-hit shader calls decides nothing about its candidate; the shader's own return does") {
+TEST_CASE(
+    "a function that an any-hit shader calls decides nothing about its candidate; the shader's own return "
+    "does") {
   std::vector<isa::Program> programs;
-  programs.push_back(isa::parse(".program \"caller\"\n.stage ray_generation\n.registers 8\n\n    nop_place: exit;\n    exit;\n", "caller"));
-  programs.push_back(isa::parse(".program \"hit\"\n.stage any_hit\n.registers 8\n\n    call F;\n    ret;\nF:\n    ret;\n", "hit"));
+  programs.push_back(isa::parse(
+      ".program \"caller\"\n.stage ray_generation\n.registers 8\n\n    nop_place: exit;\n    exit;\n",
+      "caller"));
+  programs.push_back(isa::parse(
+      ".program \"hit\"\n.stage any_hit\n.registers 8\n\n    call F;\n    ret;\nF:\n    ret;\n", "hit"));
   const Image image = link(programs);
   mem::AddressSpace memory;
   World world;
@@ -147,7 +152,8 @@ TEST_CASE("a function that an any-hit shader calls decides nothing about its can
   rt::RayState& state = warp.frame().ray[0];
   state.status = rt::RayStatus::NeedsAnyHit;
   state.candidate.t = 1.0f;
-  // As call.sbt.candidate leaves it: the caller waits at its second instruction, lane 0 runs the any-hit shader.
+  // As call.sbt.candidate leaves it: the caller waits at its second instruction, lane 0 runs the any-hit
+  // shader.
   warp.simt.push_call(1, kAllLanes & ~1u, 1, 0);
   warp.simt.active = 1;
   warp.simt.pc = image.shaders[1].entry;

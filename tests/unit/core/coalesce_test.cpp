@@ -55,7 +55,8 @@ TEST_CASE_METHOD(Fixture, "lanes that are off ask for nothing") {
   CHECK(list.lines()[1].line == memory.physical(base) + 31 * 128);
 }
 
-TEST_CASE_METHOD(Fixture, "a turn of an atomic takes the lanes of a sector in order, up to a word that it has") {
+TEST_CASE_METHOD(Fixture,
+                 "a turn of an atomic takes the lanes of a sector in order, up to a word that it has") {
   const auto turns = [&](auto word, LaneMask lanes = kAllLanes, uint32_t bytes = 4, bool returns = true) {
     for (size_t i = 0; i < kLanes; ++i) access.address[i] = base + 4 * word(i);
     list.clear();
@@ -63,12 +64,13 @@ TEST_CASE_METHOD(Fixture, "a turn of an atomic takes the lanes of a sector in or
     count_turns(list, memory, access, bytes, true, returns);
     return list.lines()[0].atomic;
   };
-  CHECK(int(turns([](size_t i) { return i; }).turns) == 4);          // a sector each eight lanes
-  CHECK(int(turns([](size_t i) { return i * 8; }).turns) == 4);      // a line has four sectors of one lane
+  CHECK(int(turns([](size_t i) { return i; }).turns) == 4);      // a sector each eight lanes
+  CHECK(int(turns([](size_t i) { return i * 8; }).turns) == 4);  // a line has four sectors of one lane
   CHECK(int(turns([](size_t i) { return i * 8; }).lanes) == 4);
   CHECK(int(turns([](size_t) { return 3; }).turns) == 32);
   CHECK(int(turns([](size_t i) { return i % 2; }).turns) == 16);
-  CHECK(int(turns([](size_t i) { return i / 4; }).turns) == 25);     // 0, 0, 0, 0+1, 1, 1, 1+2, ...: but for the first of each
+  CHECK(int(turns([](size_t i) { return i / 4; }).turns) ==
+        25);  // 0, 0, 0, 0+1, 1, 1, 1+2, ...: but for the first of each
   CHECK(int(turns([](size_t i) { return i % 8; }).turns) == 4);
   CHECK(int(turns([](size_t i) { return i % 8 * 2; }, 0xff, 8).turns) == 2);  // two sectors of four
   CHECK(int(turns([](size_t) { return 3; }, 0x101).turns) == 2);
@@ -116,7 +118,8 @@ TEST_CASE_METHOD(Fixture, "four words of local memory are four lines, one for ea
   for (size_t i = 0; i < 4; ++i) CHECK(list.lines()[i].line == 0x10000 + (4 + i) * 128);
 }
 
-TEST_CASE_METHOD(Fixture, "the parts of a line that are touched whole are known, and those touched in part are not") {
+TEST_CASE_METHOD(Fixture,
+                 "the parts of a line that are touched whole are known, and those touched in part are not") {
   with_stride(8, 4, 0x0000'000f);
   CHECK(list.lines()[0].words == 0b0101'0101);
 

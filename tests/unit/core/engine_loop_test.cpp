@@ -27,7 +27,9 @@ class RelayCell final : public Cell {
       }
     }
   }
-  Cycle next_event(Cycle from) const override { return next_ < work_.size() ? std::max(from, work_[next_]) : kNever; }
+  Cycle next_event(Cycle from) const override {
+    return next_ < work_.size() ? std::max(from, work_[next_]) : kNever;
+  }
   bool finished() const override { return next_ == work_.size() && !never_finishes; }
   uint64_t progress() const override { return progress_; }
   std::string describe_stall() const override { return "relay holds one request\n"; }
@@ -44,7 +46,9 @@ class RelayCell final : public Cell {
   uint64_t progress_ = 0;
 };
 
-EngineLoop::Next nothing_more(Cycle) { return EngineLoop::Next::NothingMore; }
+EngineLoop::Next nothing_more(Cycle) {
+  return EngineLoop::Next::NothingMore;
+}
 
 }  // namespace
 
@@ -59,7 +63,8 @@ TEST_CASE("messages arrive in their cycle whatever the order of the cells and wi
       engine.add(channel);
       const Cycle end = engine.run(nothing_more);
 
-      CHECK(consumer.received == std::vector<std::pair<Cycle, int>>{{32, 0}, {37, 5}, {72, 40}, {1032, 1000}});
+      CHECK(consumer.received ==
+            std::vector<std::pair<Cycle, int>>{{32, 0}, {37, 5}, {72, 40}, {1032, 1000}});
       CHECK(end == 1056);
     }
 }
@@ -112,7 +117,8 @@ TEST_CASE("a run ends at once when it is told to") {
   EngineLoop engine({32, false, 100'000});
   engine.add(cell);
 
-  const Cycle end = engine.run([](Cycle now) { return now >= 32 ? EngineLoop::Next::Stop : EngineLoop::Next::Continue; });
+  const Cycle end =
+      engine.run([](Cycle now) { return now >= 32 ? EngineLoop::Next::Stop : EngineLoop::Next::Continue; });
 
   CHECK(end == 32);
 }

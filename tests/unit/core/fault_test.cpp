@@ -19,12 +19,15 @@ FaultLog passed(TextLaunch& launch) {
 }  // namespace
 
 TEST_CASE("loads that go nowhere give 0 in all their registers, in every space") {
-  for (const std::string& load : {"ld.global.v2.b32 {%r10, %r11}, [%rd2 + 4096];", "mov.b32 %r6, 64; ld.shared.v2.b32 {%r10, %r11}, [%r6];",
+  for (const std::string& load : {"ld.global.v2.b32 {%r10, %r11}, [%rd2 + 4096];",
+                                  "mov.b32 %r6, 64; ld.shared.v2.b32 {%r10, %r11}, [%r6];",
                                   "mov.b32 %r6, 1048576; ld.const.v2.b32 {%r10, %r11}, [%r6];",
                                   "mov.b32 %r6, 1048576; ld.param.v2.b32 {%r10, %r11}, [%r6];",
-                                  "atom.global.add.u64 %rd10, [%rd2 + 4096], 1;", "cvta.local.u64 %rd4, 0; atom.add.u64 %rd10, [%rd4], 1;"}) {
+                                  "atom.global.add.u64 %rd10, [%rd2 + 4096], 1;",
+                                  "cvta.local.u64 %rd4, 0; atom.add.u64 %rd10, [%rd4], 1;"}) {
     CAPTURE(load);
-    TextLaunch launch("    ld.param.b64 %rd2, [0];\n    mov.b32 %r10, 5;\n    mov.b32 %r11, 6;\n    " + load + "\n" + kStore,
+    TextLaunch launch("    ld.param.b64 %rd2, [0];\n    mov.b32 %r10, 5;\n    mov.b32 %r11, 6;\n    " + load +
+                          "\n" + kStore,
                       {.block = {1, 1, 1}, .shared_bytes = 64, .local_bytes = 64});
     launch.word(0) = launch.word(1) = 9;
     const FaultLog log = passed(launch);
@@ -40,7 +43,8 @@ TEST_CASE("a store to the constant bank is dropped and told") {
 }
 
 TEST_CASE("a misaligned store goes to the multiple of its size below") {
-  TextLaunch launch("    ld.param.b64 %rd2, [0];\n    st.global.b32 [%rd2 + 7], 3;\n    exit;\n", {.block = {1, 1, 1}});
+  TextLaunch launch("    ld.param.b64 %rd2, [0];\n    st.global.b32 [%rd2 + 7], 3;\n    exit;\n",
+                    {.block = {1, 1, 1}});
   const FaultLog log = passed(launch);
   CHECK(log.count(FaultKind::Misaligned) == 1);
   CHECK(launch.words(0, 3) == std::vector<uint32_t>{0, 3, 0});
@@ -48,9 +52,11 @@ TEST_CASE("a misaligned store goes to the multiple of its size below") {
 
 TEST_CASE("a frame that does not fit into the stack ends the run whether faults are let pass or not") {
   for (const OnFault on_fault : {OnFault::Stop, OnFault::Warn}) {
-    TextLaunch launch("    mov.b32 %r0, 48;\n    st.local.b32 [%r0 + 28], 1;\n    exit;\n", {.block = {1, 1, 1}, .local_bytes = 64});
+    TextLaunch launch("    mov.b32 %r0, 48;\n    st.local.b32 [%r0 + 28], 1;\n    exit;\n",
+                      {.block = {1, 1, 1}, .local_bytes = 64});
     launch.world.on_fault = on_fault;
-    CHECK_THAT(launch.fault(), Contains("the stack of a lane has 64 bytes, and it overflows: 48 are in use and the shader's frame takes 64"));
+    CHECK_THAT(launch.fault(), Contains("the stack of a lane has 64 bytes, and it overflows: 48 are in use "
+                                        "and the shader's frame takes 64"));
   }
 }
 
@@ -61,8 +67,11 @@ TEST_CASE("a trap ends the run whether faults are let pass or not") {
 }
 
 TEST_CASE("robust buffers give 0 and drop stores outside without noting it") {
-  TextLaunch launch("    ld.param.b64 %rd2, [0];\n    st.global.b32 [%rd2 + 4096], 1;\n    ld.global.v2.b32 {%r10, %r11}, [%rd2 + 4096];\n" + kStore,
-                    {.block = {1, 1, 1}});
+  TextLaunch launch(
+      "    ld.param.b64 %rd2, [0];\n    st.global.b32 [%rd2 + 4096], 1;\n    ld.global.v2.b32 {%r10, %r11}, "
+      "[%rd2 + 4096];\n" +
+          kStore,
+      {.block = {1, 1, 1}});
   launch.world.robust_buffers = true;
   launch.word(0) = 9;
   CHECK(launch.fault() == "");

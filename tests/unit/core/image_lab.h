@@ -12,9 +12,15 @@
 
 namespace glint::core {
 
-inline uint32_t bits(float x) { return std::bit_cast<uint32_t>(x); }
-inline float number(uint32_t x) { return std::bit_cast<float>(x); }
-inline Words floats(float r, float g, float b, float a) { return {bits(r), bits(g), bits(b), bits(a)}; }
+inline uint32_t bits(float x) {
+  return std::bit_cast<uint32_t>(x);
+}
+inline float number(uint32_t x) {
+  return std::bit_cast<float>(x);
+}
+inline Words floats(float r, float g, float b, float a) {
+  return {bits(r), bits(g), bits(b), bits(a)};
+}
 
 class ImageLab {
  public:
@@ -45,8 +51,10 @@ class ImageLab {
   }
   static Column all(float x) { return all(bits(x)); }
 
-  // Runs `op` on the sources, in the order of its operands; the columns of its results. A fault stays in `fault`.
-  std::vector<Column> run(std::string_view op, const std::vector<Column>& sources, LaneMask exec = kAllLanes) {
+  // Runs `op` on the sources, in the order of its operands; the columns of its results. A fault stays in
+  // `fault`.
+  std::vector<Column> run(std::string_view op, const std::vector<Column>& sources,
+                          LaneMask exec = kAllLanes) {
     isa::Program program;
     program.code.resize(2);
     program.code[0].op = isa::op_index(op);
@@ -57,7 +65,8 @@ class ImageLab {
       if (isa::is_destination(kind)) results += size_t(isa::slots_of(kind));
       slots += size_t(isa::slots_of(kind));
     }
-    if (slots - results != sources.size()) throw std::logic_error(std::string(op) + ": wrong number of sources");
+    if (slots - results != sources.size())
+      throw std::logic_error(std::string(op) + ": wrong number of sources");
     for (size_t i = 0; i < slots; ++i) program.code[0].operand[i] = isa::Slot(i);
     const Image linked = link({program});
     world.image = &linked;

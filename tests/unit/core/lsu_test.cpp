@@ -30,7 +30,8 @@ class HalfTimeMemory final : public mem::L1Port {
 };
 
 // An access of `lines` whole lines.
-void take(Lsu& lsu, uint32_t scheduler, Cycle now, uint32_t lines, bool write = false, bool texture = false, uint32_t bytes = 128) {
+void take(Lsu& lsu, uint32_t scheduler, Cycle now, uint32_t lines, bool write = false, bool texture = false,
+          uint32_t bytes = 128) {
   REQUIRE(lsu.can_take(scheduler, texture));
   MemoryAccess& access = lsu.take(scheduler, now, texture);
   access.write = write;
@@ -177,7 +178,8 @@ TEST_CASE("stepping from event to event completes accesses in the same cycles as
         lsu.tick(now);
         for (uint32_t id : lsu.completed()) done.push_back(now), lsu.release(id);
         for (; next < todo.size() && todo[next].first == now && lsu.can_take(todo[next].second % 4); ++next)
-          take(lsu, todo[next].second % 4, now, 1 + todo[next].second % 7, todo[next].second & 8, todo[next].second & 16);
+          take(lsu, todo[next].second % 4, now, 1 + todo[next].second % 7, todo[next].second & 8,
+               todo[next].second & 16);
         if (next < todo.size() && todo[next].first == now) ++todo[next].first;  // no room: a cycle later
         const Cycle event = std::min(lsu.next_event(now), std::max(now + 1, memory.next_event(now)));
         now = skip ? std::min(event, next < todo.size() ? todo[next].first : kNever) : now + 1;

@@ -49,8 +49,12 @@ class FixedLatencyRays final : public rt::RtPort {
   std::vector<LaneMask> lanes_;
 };
 
-inline isa::Slot reg(int n) { return isa::Slot(n); }
-inline isa::Slot special(isa::Special s) { return isa::Slot(isa::kSpecialBank + int(s)); }
+inline isa::Slot reg(int n) {
+  return isa::Slot(n);
+}
+inline isa::Slot special(isa::Special s) {
+  return isa::Slot(isa::kSpecialBank + int(s));
+}
 
 // A compute shader, instruction by instruction.
 class Code {
@@ -66,7 +70,8 @@ class Code {
     return low;
   }
   // Returns the instruction's index.
-  int add(std::string_view op, std::initializer_list<isa::Slot> operands = {}, int imm = 0, uint8_t guard = isa::kNoGuard) {
+  int add(std::string_view op, std::initializer_list<isa::Slot> operands = {}, int imm = 0,
+          uint8_t guard = isa::kNoGuard) {
     isa::Inst inst;
     inst.op = isa::op_index(op);
     inst.guard = guard;
@@ -116,7 +121,10 @@ struct OneCore {
   };
 
   OneCore(Code& code, const Params& params, Options options)
-      : params_(params), options_(options), l1(kMemoryLatency, options.accesses_per_cycle), rays(kRayLatency, options.rt_capacity) {
+      : params_(params),
+        options_(options),
+        l1(kMemoryLatency, options.accesses_per_cycle),
+        rays(kRayLatency, options.rt_capacity) {
     std::vector<isa::Program> programs;
     programs.push_back(code.program());
     image = link(programs);
@@ -127,12 +135,14 @@ struct OneCore {
     world.launch_size = {options.num_warps * uint32_t(kLanes), 1, 1};
     world.local_bytes = options.local_bytes;
     if (options.block_threads)
-      set_blocks(world, {options.num_warps * uint32_t(kLanes) / options.block_threads, 1, 1}, {options.block_threads, 1, 1},
-                 options.shared_bytes);
+      set_blocks(world, {options.num_warps * uint32_t(kLanes) / options.block_threads, 1, 1},
+                 {options.block_threads, 1, 1}, options.shared_bytes);
   }
   // Runs to the end; returns the cycle after the core's last activity.
   Cycle run() {
-    cell = std::make_unique<CoreCell>(params_, CoreCell::Context{world, l1, rays, kLocalBase, &root, "core", options_.no_skip, 0, 1, 0.0, 0, options_.code, options_.constants});
+    cell = std::make_unique<CoreCell>(
+        params_, CoreCell::Context{world, l1, rays, kLocalBase, &root, "core", options_.no_skip, 0, 1, 0.0, 0,
+                                   options_.code, options_.constants});
     if (profile) cell->start_profile();
     EngineLoop engine({options_.window, options_.no_skip, 100'000});
     engine.add(*cell);

@@ -12,7 +12,8 @@ namespace {
 using F = TexelFormat;
 using isa::ImageShape;
 
-ImageView view(ImageShape shape, F format, uint32_t width, uint32_t height = 1, uint32_t depth = 1, uint32_t layers = 1) {
+ImageView view(ImageShape shape, F format, uint32_t width, uint32_t height = 1, uint32_t depth = 1,
+               uint32_t layers = 1) {
   ImageView out;
   out.shape = shape;
   out.format = format;
@@ -59,7 +60,8 @@ TEST_CASE("stored texels lie where the geometry says, and loads give them back")
   for (const auto& c : cases) {
     ImageLab lab;
     const bool one = c.image == ImageShape::Buffer || c.image == ImageShape::D1 || c.image == ImageShape::A1d;
-    const uint32_t handle = lab.add(view(c.image, F::R32Sint, 8, one ? 1 : 4, c.image == ImageShape::D3 ? 3 : 1, 6));
+    const uint32_t handle =
+        lab.add(view(c.image, F::R32Sint, 8, one ? 1 : 4, c.image == ImageShape::D3 ? 3 : 1, 6));
     const std::string name = "." + std::string(names[size_t(c.op)]) + ".v4.b32.trap";
     std::vector<uint32_t> sources{handle};
     sources.insert(sources.end(), c.place.begin(), c.place.end());
@@ -75,7 +77,8 @@ TEST_CASE("stored texels lie where the geometry says, and loads give them back")
   }
 }
 
-TEST_CASE("outside of an image .trap faults, .zero reads 0 and drops stores, .clamp takes the nearest texel") {
+TEST_CASE(
+    "outside of an image .trap faults, .zero reads 0 and drops stores, .clamp takes the nearest texel") {
   ImageLab lab;
   const uint32_t handle = lab.add(view(ImageShape::D2, F::R32Uint, 4, 2));
   lab.put(handle, {3, 0}, {33, 0, 0, 0});
@@ -119,12 +122,14 @@ TEST_CASE("suld.b and sust.b move bytes as they are and count x in bytes") {
   CHECK(lab.run_one("suld.b.2d.b8.trap", {handle, 13, 1})[0] == 6);
   CHECK(lab.run_one("suld.b.2d.b16.trap", {handle, 14, 1})[0] == 0x0807);
   CHECK(lab.run_one("suld.b.2d.b32.trap", {handle, 8, 1})[0] == 0x0403'0201);
-  CHECK(lab.run_one("suld.b.2d.v4.b32.trap", {handle, 0, 1}) == std::vector<uint32_t>{0, 0, 0x0403'0201, 0x0807'0605});
+  CHECK(lab.run_one("suld.b.2d.v4.b32.trap", {handle, 0, 1}) ==
+        std::vector<uint32_t>{0, 0, 0x0403'0201, 0x0807'0605});
   lab.run_one("suld.b.2d.b32.trap", {handle, 13, 1});
   CHECK(lab.fault);  // not aligned
   lab.run_one("suld.b.2d.b32.trap", {handle, 16, 1});
   CHECK(lab.fault);  // past the row
-  CHECK(lab.run_one("suld.b.2d.v2.b32.clamp", {handle, 104, 1}) == std::vector<uint32_t>{0x0403'0201, 0x0807'0605});
+  CHECK(lab.run_one("suld.b.2d.v2.b32.clamp", {handle, 104, 1}) ==
+        std::vector<uint32_t>{0x0403'0201, 0x0807'0605});
   lab.run_one("sust.b.2d.b8.trap", {handle, 0, 0, 0x1ff});
   CHECK(word_at(lab, handle, 0) == 0xff);
 }
@@ -155,14 +160,16 @@ TEST_CASE("32 lanes that change one texel take turns, the lowest first") {
   CHECK(run("suatom.p.xor.2d.b32.trap", 0, lanes) == Result{0, 0, 31, 0});
   CHECK(run("suatom.p.exch.2d.b32.trap", 77, lanes) == Result{77, 0, 30, 31});
   lab.image(handle).format = F::R32Float;
-  CHECK(run("suatom.p.add.2d.f32.trap", bits(0.5f), lab.all(0.25f)) == Result{bits(0.5f), bits(0.75f), bits(8.25f), bits(8.5f)});
+  CHECK(run("suatom.p.add.2d.f32.trap", bits(0.5f), lab.all(0.25f)) ==
+        Result{bits(0.5f), bits(0.75f), bits(8.25f), bits(8.5f)});
 }
 
 TEST_CASE("compare and swap changes a texel for the lane that expects its value only") {
   ImageLab lab;
   const uint32_t handle = lab.add(view(ImageShape::Buffer, F::R32Sint, 8));
   ImageLab::Column expected, swap;
-  for (size_t lane = 0; lane < kLanes; ++lane) expected[lane] = uint32_t(lane), swap[lane] = uint32_t(lane + 1);
+  for (size_t lane = 0; lane < kLanes; ++lane)
+    expected[lane] = uint32_t(lane), swap[lane] = uint32_t(lane + 1);
   const auto old = lab.run("suatom.p.cas.buffer.b32.trap", {lab.all(handle), lab.all(3u), expected, swap});
   CHECK(old[0] == expected);
   CHECK(word_at(lab, handle, 12) == 32);
@@ -188,7 +195,8 @@ TEST_CASE("an atomic on a format that is not one word of 32 bits is a fault") {
 TEST_CASE("a core charges image ops for the lines they touch, and none when all texels are border") {
   for (const bool border : {false, true}) {
     Code code;
-    code.add("tex.1d.v4.f32.f32", {reg(1), reg(2), reg(3), reg(4), code.constant(0), code.constant(bits(border ? 9.0f : 0.5f))});
+    code.add("tex.1d.v4.f32.f32",
+             {reg(1), reg(2), reg(3), reg(4), code.constant(0), code.constant(bits(border ? 9.0f : 0.5f))});
     code.add("txq.width.b32", {reg(5), code.constant(0)});
     code.add("suatom.p.add.1d.u32.trap", {reg(6), code.constant(1), code.constant(1), reg(5)});
     code.add("add.u32", {reg(7), reg(4), reg(6)});

@@ -63,7 +63,8 @@ TEST_CASE("sRGB texels decode by the curve, alpha linearly") {
 TEST_CASE("texels of 16 and 32 bits decode to the numbers that Vulkan says") {
   CHECK(decoded<uint16_t>(F::R16Unorm, {13107}) == floats(0.2f, 0, 0, 1));
   CHECK(decoded<uint16_t>(F::Rg16Unorm, {65535, 1}) == floats(1, 1 / 65535.0f, 0, 1));
-  CHECK(decoded<uint16_t>(F::Rgba16Unorm, {0, 1, 2, 3}) == floats(0, 1 / 65535.0f, 2 / 65535.0f, 3 / 65535.0f));
+  CHECK(decoded<uint16_t>(F::Rgba16Unorm, {0, 1, 2, 3}) ==
+        floats(0, 1 / 65535.0f, 2 / 65535.0f, 3 / 65535.0f));
   CHECK(decoded<uint16_t>(F::R16Snorm, {0x8000}) == floats(-1, 0, 0, 1));
   CHECK(decoded<uint16_t>(F::Rg16Snorm, {0x7fff, 0xffff}) == floats(1, -1 / 32767.0f, 0, 1));
   CHECK(decoded<uint16_t>(F::Rgba16Snorm, {0, 1, 0x8001, 0x8000}) == floats(0, 1 / 32767.0f, -1, -1));
@@ -75,7 +76,8 @@ TEST_CASE("texels of 16 and 32 bits decode to the numbers that Vulkan says") {
   CHECK(decoded<uint16_t>(F::Rgba16Sint, {1, 2, 3, 0xfffe}) == Words{1, 2, 3, uint32_t(-2)});
   CHECK(decoded<uint16_t>(F::R16Float, {0x3c00}) == floats(1, 0, 0, 1));
   CHECK(decoded<uint16_t>(F::Rg16Float, {0xc000, 0x7bff}) == floats(-2, 65504, 0, 1));
-  CHECK(decoded<uint16_t>(F::Rgba16Float, {0x0001, 0x7c00, 0xfc00, 0x8000}) == floats(0x1p-24f, kInf, -kInf, -0.0f));
+  CHECK(decoded<uint16_t>(F::Rgba16Float, {0x0001, 0x7c00, 0xfc00, 0x8000}) ==
+        floats(0x1p-24f, kInf, -kInf, -0.0f));
   CHECK(decoded<uint32_t>(F::R32Uint, {0xffff'ffff}) == Words{~0u, 0, 0, 1});
   CHECK(decoded<uint32_t>(F::Rg32Sint, {7, 0x8000'0000}) == Words{7, 0x8000'0000, 0, 1});
   CHECK(decoded<float>(F::R32Float, {-0.5f}) == floats(-0.5f, 0, 0, 1));
@@ -85,8 +87,10 @@ TEST_CASE("texels of 16 and 32 bits decode to the numbers that Vulkan says") {
 
 TEST_CASE("packed texels decode channel by channel, the first lowest") {
   CHECK(decoded<uint32_t>(F::R11g11b10Float, {0x3c0 | 0x400 << 11 | 0x1c0u << 22}) == floats(1, 2, 0.5f, 1));
-  CHECK(decoded<uint32_t>(F::R11g11b10Float, {0x001 | 0x7bf << 11 | 0x3e0u << 22}) == floats(0x1p-20f, 65024, kInf, 1));
-  CHECK(decoded<uint32_t>(F::Rgb10a2Unorm, {1023 | 1 << 10 | 0 << 20 | 2u << 30}) == floats(1, 1 / 1023.0f, 0, 2 / 3.0f));
+  CHECK(decoded<uint32_t>(F::R11g11b10Float, {0x001 | 0x7bf << 11 | 0x3e0u << 22}) ==
+        floats(0x1p-20f, 65024, kInf, 1));
+  CHECK(decoded<uint32_t>(F::Rgb10a2Unorm, {1023 | 1 << 10 | 0 << 20 | 2u << 30}) ==
+        floats(1, 1 / 1023.0f, 0, 2 / 3.0f));
   CHECK(decoded<uint32_t>(F::Rgb10a2Uint, {1023 | 1 << 10 | 7 << 20 | 2u << 30}) == Words{1023, 1, 7, 2});
   CHECK(decoded<uint32_t>(F::Rgb9e5Float, {0x8001'0100}) == floats(1, 0.5f, 0, 1));
   CHECK(decoded<uint32_t>(F::Rgb9e5Float, {511 | 31u << 27}) == floats(65408, 0, 0, 1));
@@ -99,9 +103,12 @@ TEST_CASE("stores clamp, round to nearest even, and make 0 of NaN") {
   CHECK(encoded<uint8_t>(F::Rgba8Uint, {0, 255, 256, ~0u}) == Bytes{0, 255, 255, 255});
   CHECK(encoded<uint8_t>(F::Rgba8Sint, {uint32_t(-129), 200, uint32_t(-1), 5}) == Bytes{0x80, 127, 0xff, 5});
   CHECK(encoded<uint16_t>(F::Rg16Unorm, floats(0.5f, 2, 0, 0)) == Halves{32768, 65535});
-  CHECK(encoded<uint16_t>(F::Rg16Float, floats(1 + 0x1p-11f, 1 + 3 * 0x1p-11f, 0, 0)) == Halves{0x3c00, 0x3c02});
-  CHECK(encoded<uint16_t>(F::Rgba16Float, floats(65520, 65519.996f, 0x1p-25f, -0x1.8p-25f)) == Halves{0x7c00, 0x7bff, 0, 0x8001});
-  CHECK(encoded<uint32_t>(F::R11g11b10Float, floats(-3, 1e9f, 0.5f, 0)) == Longs{0x7bfu << 11 | 0x1c0u << 22});
+  CHECK(encoded<uint16_t>(F::Rg16Float, floats(1 + 0x1p-11f, 1 + 3 * 0x1p-11f, 0, 0)) ==
+        Halves{0x3c00, 0x3c02});
+  CHECK(encoded<uint16_t>(F::Rgba16Float, floats(65520, 65519.996f, 0x1p-25f, -0x1.8p-25f)) ==
+        Halves{0x7c00, 0x7bff, 0, 0x8001});
+  CHECK(encoded<uint32_t>(F::R11g11b10Float, floats(-3, 1e9f, 0.5f, 0)) ==
+        Longs{0x7bfu << 11 | 0x1c0u << 22});
   CHECK(encoded<uint32_t>(F::R11g11b10Float, floats(kInf, kNan, -kInf, 0)) == Longs{0x7c0u | 0x7ffu << 11});
   CHECK(encoded<uint32_t>(F::Rgb10a2Unorm, floats(1, 0, 2, 0.7f)) == Longs{1023u | 1023u << 20 | 2u << 30});
   CHECK(encoded<uint32_t>(F::Rgb10a2Uint, {5000, 1, 2, 9}) == Longs{1023u | 1u << 10 | 2u << 20 | 3u << 30});
@@ -134,7 +141,8 @@ TEST_CASE("every texel survives decoding and encoding, in every format") {
       for (uint32_t word : words) skip |= !is_integer(info) && info.bits != 32 && std::isnan(number(word));
       if (info.numeric == Numeric::Snorm)
         for (uint32_t word : words) skip |= number(word) == -1.0f;
-      if (format == F::Rgb9e5Float) skip |= (std::to_integer<uint32_t>(texel[0]) | (std::to_integer<uint32_t>(texel[1]) & 1) << 8) < 256;
+      if (format == F::Rgb9e5Float)
+        skip |= (std::to_integer<uint32_t>(texel[0]) | (std::to_integer<uint32_t>(texel[1]) & 1) << 8) < 256;
       if (skip) continue;
       ++tried;
       encode(format, words, again.data());

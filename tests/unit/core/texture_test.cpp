@@ -1,5 +1,5 @@
-// Sampling: addressing, filtering, levels, cubes, gathers and queries, against hand-made values and plain doubles.
-// SPDX-License-Identifier: Apache-2.0
+// Sampling: addressing, filtering, levels, cubes, gathers and queries, against hand-made values and plain
+// doubles. SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <limits>
 
@@ -13,7 +13,8 @@ namespace {
 using F = TexelFormat;
 using isa::ImageShape;
 
-ImageView view(ImageShape shape, uint32_t width, uint32_t height = 1, uint32_t depth = 1, F format = F::R32Float) {
+ImageView view(ImageShape shape, uint32_t width, uint32_t height = 1, uint32_t depth = 1,
+               F format = F::R32Float) {
   ImageView out;
   out.shape = shape;
   out.width = width;
@@ -45,7 +46,8 @@ uint32_t add_pattern(ImageLab& lab, const ImageView& image) {
     for (at.layer = 0; at.layer < image.layers; ++at.layer)
       for (at.z = 0; at.z < image.extent(2, at.level); ++at.z)
         for (at.y = 0; at.y < image.extent(1, at.level); ++at.y)
-          for (at.x = 0; at.x < image.extent(0, at.level); ++at.x) lab.put(handle, at, floats(pattern(at), 0, 0, 0));
+          for (at.x = 0; at.x < image.extent(0, at.level); ++at.x)
+            lab.put(handle, at, floats(pattern(at), 0, 0, 0));
   return handle;
 }
 
@@ -69,7 +71,8 @@ double linear(const ImageView& image, uint32_t level, const double* at, int axes
 }  // namespace
 
 TEST_CASE("each wrap mode finds its texel on both sides of the edges") {
-  const std::pair<Wrap, std::vector<float>> expected[] = {  // of texels -5 to 8
+  const std::pair<Wrap, std::vector<float>> expected[] = {
+      // of texels -5 to 8
       {Wrap::Repeat, {3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0}},
       {Wrap::MirroredRepeat, {3, 3, 2, 1, 0, 0, 1, 2, 3, 3, 2, 1, 0, 0}},
       {Wrap::ClampToEdge, {0, 0, 0, 0, 0, 0, 1, 2, 3, 3, 3, 3, 3, 3}},
@@ -88,8 +91,11 @@ TEST_CASE("each wrap mode finds its texel on both sides of the edges") {
 }
 
 TEST_CASE("a linear filter mixes the edge with what its wrap mode puts beyond it") {
-  for (const auto& [mode, left] : {std::pair{Wrap::Repeat, 3.0f}, {Wrap::MirroredRepeat, 0.0f}, {Wrap::ClampToEdge, 0.0f},
-                                   {Wrap::ClampToBorder, 9.0f}, {Wrap::MirrorClampToEdge, 0.0f}}) {
+  for (const auto& [mode, left] : {std::pair{Wrap::Repeat, 3.0f},
+                                   {Wrap::MirroredRepeat, 0.0f},
+                                   {Wrap::ClampToEdge, 0.0f},
+                                   {Wrap::ClampToBorder, 9.0f},
+                                   {Wrap::MirrorClampToEdge, 0.0f}}) {
     ImageLab lab;
     const uint32_t handle = add_ramp(lab, mode, Filter::Linear);
     CHECK(number(lab.run_one("tex.1d.v4.f32.f32", {handle, bits(0.0f)})[0]) == left / 2);
@@ -98,10 +104,13 @@ TEST_CASE("a linear filter mixes the edge with what its wrap mode puts beyond it
 }
 
 TEST_CASE("coordinates that are not numbers, infinite or huge read some texel and fault nowhere") {
-  for (Wrap mode : {Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge, Wrap::ClampToBorder, Wrap::MirrorClampToEdge})
-    for (float x : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -3e38f, 1e20f, -1e10f}) {
+  for (Wrap mode :
+       {Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge, Wrap::ClampToBorder, Wrap::MirrorClampToEdge})
+    for (float x : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -3e38f,
+                    1e20f, -1e10f}) {
       ImageLab lab;
-      const float texel = number(lab.run_one("tex.1d.v4.f32.f32", {add_ramp(lab, mode, Filter::Linear), bits(x)})[0]);
+      const float texel =
+          number(lab.run_one("tex.1d.v4.f32.f32", {add_ramp(lab, mode, Filter::Linear), bits(x)})[0]);
       CHECK(!lab.fault);
       CHECK((texel >= 0 && texel <= 9));
     }
@@ -110,7 +119,10 @@ TEST_CASE("coordinates that are not numbers, infinite or huge read some texel an
 TEST_CASE("bilinear and trilinear filters equal plain doubles") {
   for (int axes = 1; axes <= 3; ++axes) {
     ImageLab lab;
-    ImageView image = view(axes == 1 ? ImageShape::D1 : axes == 2 ? ImageShape::D2 : ImageShape::D3, 16, axes > 1 ? 8 : 1, axes > 2 ? 4 : 1);
+    ImageView image = view(axes == 1   ? ImageShape::D1
+                           : axes == 2 ? ImageShape::D2
+                                       : ImageShape::D3,
+                           16, axes > 1 ? 8 : 1, axes > 2 ? 4 : 1);
     image.levels = 4;
     image.sampler.mag = image.sampler.min = image.sampler.mip = Filter::Linear;
     image.sampler.wrap.fill(Wrap::Repeat);
@@ -118,10 +130,12 @@ TEST_CASE("bilinear and trilinear filters equal plain doubles") {
     std::vector<ImageLab::Column> sources{lab.all(handle)};
     for (int axis = 0; axis < axes; ++axis) {
       sources.push_back({});
-      for (int lane = 0; lane < kLanes; ++lane) sources.back()[size_t(lane)] = bits(float((lane * 29 + axis * 7) % 64) / 23.0f - 1.0f);
+      for (int lane = 0; lane < kLanes; ++lane)
+        sources.back()[size_t(lane)] = bits(float((lane * 29 + axis * 7) % 64) / 23.0f - 1.0f);
     }
     sources.push_back({});
-    for (int lane = 0; lane < kLanes; ++lane) sources.back()[size_t(lane)] = bits(float(lane) / 10.0f);  // levels 0 to 3.1
+    for (int lane = 0; lane < kLanes; ++lane)
+      sources.back()[size_t(lane)] = bits(float(lane) / 10.0f);  // levels 0 to 3.1
     const std::string name = std::string("tex.level.") + "123"[axes - 1] + "d.v4.f32.f32";
     const auto out = lab.run(name, sources);
     for (size_t lane = 0; lane < kLanes; ++lane) {
@@ -144,10 +158,14 @@ TEST_CASE("the level of detail comes from the level, its bias and its limits, or
   const uint32_t handle = lab.add(image);
   for (TexelIndex at; at.level < 4; ++at.level)
     for (at.y = 0; at.y < image.extent(1, at.level); ++at.y)
-      for (at.x = 0; at.x < image.extent(0, at.level); ++at.x) lab.put(handle, at, floats(float(at.level), 0, 0, 0));
-  const auto level = [&](float lod) { return number(lab.run_one("tex.level.2d.v4.f32.f32", {handle, bits(0.3f), bits(0.3f), bits(lod)})[0]); };
+      for (at.x = 0; at.x < image.extent(0, at.level); ++at.x)
+        lab.put(handle, at, floats(float(at.level), 0, 0, 0));
+  const auto level = [&](float lod) {
+    return number(lab.run_one("tex.level.2d.v4.f32.f32", {handle, bits(0.3f), bits(0.3f), bits(lod)})[0]);
+  };
   const auto grad = [&](float ux, float vx, float uy, float vy) {
-    return number(lab.run_one("tex.grad.2d.v4.f32.f32", {handle, bits(0.3f), bits(0.3f), bits(ux), bits(vx), bits(uy), bits(vy)})[0]);
+    return number(lab.run_one("tex.grad.2d.v4.f32.f32",
+                              {handle, bits(0.3f), bits(0.3f), bits(ux), bits(vx), bits(uy), bits(vy)})[0]);
   };
   Sampler& sampler = lab.image(handle).sampler;
   CHECK(level(-1) == 0);
@@ -208,10 +226,12 @@ TEST_CASE("the axes of a cube meet its six faces, turned as Vulkan's table says"
   struct {
     float x, y, z;
     uint32_t face, s, t;
-  } const cases[] = {{1, 0.5f, 0.5f, 0, 0, 0},  {1, -0.5f, 0.5f, 0, 0, 1}, {-1, 0.5f, 0.5f, 1, 1, 0}, {0.5f, 1, 0.5f, 2, 1, 1},
-                     {-0.5f, 1, 0.5f, 2, 0, 1}, {0.5f, -1, 0.5f, 3, 1, 0}, {0.5f, 0.5f, 1, 4, 1, 0},  {0.5f, 0.5f, -1, 5, 0, 0}};
+  } const cases[] = {{1, 0.5f, 0.5f, 0, 0, 0}, {1, -0.5f, 0.5f, 0, 0, 1}, {-1, 0.5f, 0.5f, 1, 1, 0},
+                     {0.5f, 1, 0.5f, 2, 1, 1}, {-0.5f, 1, 0.5f, 2, 0, 1}, {0.5f, -1, 0.5f, 3, 1, 0},
+                     {0.5f, 0.5f, 1, 4, 1, 0}, {0.5f, 0.5f, -1, 5, 0, 0}};
   for (const auto& c : cases)
-    CHECK(number(lab.run_one("tex.cube.v4.f32.f32", {handle, bits(c.x), bits(c.y), bits(c.z)})[0]) == pattern({c.s, c.t, 0, c.face, 0}));
+    CHECK(number(lab.run_one("tex.cube.v4.f32.f32", {handle, bits(c.x), bits(c.y), bits(c.z)})[0]) ==
+          pattern({c.s, c.t, 0, c.face, 0}));
 }
 
 TEST_CASE("a linear filter crosses the edges of a cube, and a corner is the average of its three faces") {
@@ -239,12 +259,18 @@ TEST_CASE("the texel across an edge of a cube is the nearest one of the other fa
   const auto direction = [&](uint32_t face, int64_t x, int64_t y) {
     const double s = double(2 * x + 1) / kSize - 1, t = double(2 * y + 1) / kSize - 1;
     switch (face) {
-      case 0: return std::array{1.0, -t, -s};
-      case 1: return std::array{-1.0, -t, s};
-      case 2: return std::array{s, 1.0, t};
-      case 3: return std::array{s, -1.0, -t};
-      case 4: return std::array{s, -t, 1.0};
-      default: return std::array{-s, -t, -1.0};
+      case 0:
+        return std::array{1.0, -t, -s};
+      case 1:
+        return std::array{-1.0, -t, s};
+      case 2:
+        return std::array{s, 1.0, t};
+      case 3:
+        return std::array{s, -1.0, -t};
+      case 4:
+        return std::array{s, -t, 1.0};
+      default:
+        return std::array{-s, -t, -1.0};
     }
   };
   const auto closeness = [](const std::array<double, 3>& a, const std::array<double, 3>& b) {
@@ -253,15 +279,18 @@ TEST_CASE("the texel across an edge of a cube is the nearest one of the other fa
   };
   for (uint32_t face = 0; face < 6; ++face)
     for (int64_t i = 1; i + 1 < kSize; ++i)
-      for (const auto& [inside, outside] : {std::pair{std::pair{int64_t{0}, i}, std::pair{int64_t{-1}, i}}, {{kSize - 1, i}, {kSize, i}},
-                                            {{i, int64_t{0}}, {i, int64_t{-1}}}, {{i, kSize - 1}, {i, kSize}}}) {
+      for (const auto& [inside, outside] : {std::pair{std::pair{int64_t{0}, i}, std::pair{int64_t{-1}, i}},
+                                            {{kSize - 1, i}, {kSize, i}},
+                                            {{i, int64_t{0}}, {i, int64_t{-1}}},
+                                            {{i, kSize - 1}, {i, kSize}}}) {
         const auto from = direction(face, inside.first, inside.second);
         std::array<int64_t, 3> best{};
         double best_closeness = -2;
         for (uint32_t other = 0; other < 6; ++other)
           for (int64_t y = 0; y < kSize; ++y)
             for (int64_t x = 0; x < kSize; ++x)
-              if (const double c = closeness(from, direction(other, x, y)); other != face && c > best_closeness) {
+              if (const double c = closeness(from, direction(other, x, y));
+                  other != face && c > best_closeness) {
                 best_closeness = c;
                 best = {other, x, y};
               }
@@ -290,10 +319,12 @@ TEST_CASE("gradients of cubes choose the level of the face") {
   for (TexelIndex at; at.level < 4; ++at.level)
     for (at.layer = 0; at.layer < 6; ++at.layer)
       for (at.y = 0; at.y < image.extent(1, at.level); ++at.y)
-        for (at.x = 0; at.x < image.extent(0, at.level); ++at.x) lab.put(handle, at, floats(float(at.level), 0, 0, 0));
+        for (at.x = 0; at.x < image.extent(0, at.level); ++at.x)
+          lab.put(handle, at, floats(float(at.level), 0, 0, 0));
   // s = 0.5 x / z + 0.5: a step of 1 in x is half of the face, 4 texels, at z = 1; 2 texels at z = 2.
   const auto level = [&](float z) {
-    return number(lab.run_one("tex.grad.cube.v4.f32.f32", {handle, bits(0.1f), bits(0.2f), bits(z), bits(1.0f), 0, 0, 0, 0, 0})[0]);
+    return number(lab.run_one("tex.grad.cube.v4.f32.f32",
+                              {handle, bits(0.1f), bits(0.2f), bits(z), bits(1.0f), 0, 0, 0, 0, 0})[0]);
   };
   CHECK(level(1) == Catch::Approx(2));
   CHECK(level(-2) == Catch::Approx(1));
@@ -303,34 +334,43 @@ TEST_CASE("a gather gives one component of four texels, counter-clockwise from t
   ImageLab lab;
   const uint32_t handle = lab.add(view(ImageShape::D2, 2, 2, 1, F::Rgba32Float));
   for (uint32_t y = 0; y < 2; ++y)
-    for (uint32_t x = 0; x < 2; ++x) lab.put(handle, {x, y}, floats(float(10 * y + x), float(100 + 10 * y + x), 0, 7));
+    for (uint32_t x = 0; x < 2; ++x)
+      lab.put(handle, {x, y}, floats(float(10 * y + x), float(100 + 10 * y + x), 0, 7));
   const std::vector<uint32_t> middle{handle, bits(0.5f), bits(0.5f)};
   CHECK(lab.run_one("tld4.r.2d.v4.f32.f32", middle) == std::vector{bits(10), bits(11), bits(1), bits(0)});
-  CHECK(lab.run_one("tld4.g.2d.v4.f32.f32", middle) == std::vector{bits(110), bits(111), bits(101), bits(100)});
+  CHECK(lab.run_one("tld4.g.2d.v4.f32.f32", middle) ==
+        std::vector{bits(110), bits(111), bits(101), bits(100)});
   CHECK(lab.run_one("tld4.a.2d.v4.f32.f32", middle) == std::vector{bits(7), bits(7), bits(7), bits(7)});
-  CHECK(lab.run_one("tld4.offset.r.2d.v4.f32.f32", {handle, bits(0.5f), bits(0.5f), 1}) == std::vector{bits(11), bits(11), bits(1), bits(1)});
+  CHECK(lab.run_one("tld4.offset.r.2d.v4.f32.f32", {handle, bits(0.5f), bits(0.5f), 1}) ==
+        std::vector{bits(11), bits(11), bits(1), bits(1)});
   lab.image(handle).sampler.compare = Comparison::Less;
-  CHECK(lab.run_one("tld4.compare.r.2d.v4.f32.f32", {handle, bits(0.5f), bits(0.5f), bits(5.0f)}) == std::vector{bits(1), bits(1), bits(0), bits(0)});
+  CHECK(lab.run_one("tld4.compare.r.2d.v4.f32.f32", {handle, bits(0.5f), bits(0.5f), bits(5.0f)}) ==
+        std::vector{bits(1), bits(1), bits(0), bits(0)});
 }
 
 TEST_CASE("comparisons happen before the filter") {
-  const std::pair<Comparison, std::array<float, 3>> expected[] = {  // reference below, at, above the texel
-      {Comparison::Never, {0, 0, 0}},   {Comparison::Less, {1, 0, 0}},     {Comparison::Equal, {0, 1, 0}},
-      {Comparison::LessOrEqual, {1, 1, 0}}, {Comparison::Greater, {0, 0, 1}}, {Comparison::NotEqual, {1, 0, 1}},
+  const std::pair<Comparison, std::array<float, 3>> expected[] = {
+      // reference below, at, above the texel
+      {Comparison::Never, {0, 0, 0}},          {Comparison::Less, {1, 0, 0}},
+      {Comparison::Equal, {0, 1, 0}},          {Comparison::LessOrEqual, {1, 1, 0}},
+      {Comparison::Greater, {0, 0, 1}},        {Comparison::NotEqual, {1, 0, 1}},
       {Comparison::GreaterOrEqual, {0, 1, 1}}, {Comparison::Always, {1, 1, 1}}};
   ImageLab lab;
   const uint32_t handle = add_ramp(lab, Wrap::ClampToEdge, Filter::Nearest);
   for (const auto& [comparison, results] : expected) {
     lab.image(handle).sampler.compare = comparison;
     for (size_t i = 0; i < 3; ++i)
-      CHECK(number(lab.run_one("tex.compare.1d.f32.f32", {handle, bits(0.6f), bits(1.0f + float(i))})[0]) == results[i]);
+      CHECK(number(lab.run_one("tex.compare.1d.f32.f32", {handle, bits(0.6f), bits(1.0f + float(i))})[0]) ==
+            results[i]);
   }
   lab.image(handle).sampler.compare = Comparison::Less;
   lab.image(handle).sampler.mag = Filter::Linear;
   CHECK(number(lab.run_one("tex.compare.1d.f32.f32", {handle, bits(0.5f), bits(1.5f)})[0]) == 0.5f);
 }
 
-TEST_CASE("texel fetches read the level and layer they name; outside they fault, or give 0 when images are robust") {
+TEST_CASE(
+    "texel fetches read the level and layer they name; outside they fault, or give 0 when images are "
+    "robust") {
   ImageLab lab;
   ImageView image = view(ImageShape::A2d, 4, 2, 1, F::Rgba8Uint);
   image.layers = 2;
@@ -339,8 +379,11 @@ TEST_CASE("texel fetches read the level and layer they name; outside they fault,
   lab.put(handle, {1, 0, 0, 1, 1}, {1, 2, 3, 4});
   CHECK(lab.run_one("tex.level.a2d.v4.u32.s32", {handle, 1, 1, 0, 1}) == std::vector<uint32_t>{1, 2, 3, 4});
   CHECK(lab.run_one("tex.a2d.v4.u32.s32", {handle, 1, 1, 0}) == std::vector<uint32_t>{0, 0, 0, 0});
-  for (const std::vector<uint32_t>& at : {std::vector<uint32_t>{handle, 0, 4, 0, 0}, {handle, 0, ~0u, 0, 0}, {handle, 2, 0, 0, 0},
-                                          {handle, 0, 2, 0, 1}, {handle, 0, 0, 0, 2}}) {
+  for (const std::vector<uint32_t>& at : {std::vector<uint32_t>{handle, 0, 4, 0, 0},
+                                          {handle, 0, ~0u, 0, 0},
+                                          {handle, 2, 0, 0, 0},
+                                          {handle, 0, 2, 0, 1},
+                                          {handle, 0, 0, 0, 2}}) {
     lab.world.robust_images = false;
     lab.run_one("tex.level.a2d.v4.u32.s32", at);
     REQUIRE(lab.fault);
@@ -359,7 +402,9 @@ TEST_CASE("queries tell the size of an image and of its levels") {
   ImageView cubes = view(ImageShape::Acube, 4, 4, 1, F::Bgra8Srgb);
   cubes.layers = 12;
   const uint32_t cube = lab.add(cubes);
-  const auto query = [&](std::string_view op, std::vector<uint32_t> sources) { return lab.run_one(op, sources)[0]; };
+  const auto query = [&](std::string_view op, std::vector<uint32_t> sources) {
+    return lab.run_one(op, sources)[0];
+  };
   CHECK(query("txq.width.b32", {volume}) == 9);
   CHECK(query("txq.height.b32", {volume}) == 6);
   CHECK(query("txq.depth.b32", {volume}) == 3);
@@ -382,14 +427,16 @@ TEST_CASE("a handle may name a sampler of its own") {
   Sampler linear_filter;
   lab.world.samplers.push_back(linear_filter);
   CHECK(number(lab.run_one("tex.1d.v4.f32.f32", {handle, bits(0.5f)})[0]) == 2.0f);
-  CHECK(number(lab.run_one("tex.1d.v4.f32.f32", {handle | 1u << isa::kHandleSamplerShift, bits(0.5f)})[0]) == 1.5f);
+  CHECK(number(lab.run_one("tex.1d.v4.f32.f32", {handle | 1u << isa::kHandleSamplerShift, bits(0.5f)})[0]) ==
+        1.5f);
   lab.run_one("tex.1d.v4.f32.f32", {handle | 2u << isa::kHandleSamplerShift, bits(0.5f)});
   CHECK(lab.fault);
 }
 
 TEST_CASE("each lane has its own image, and idle lanes keep their registers") {
   ImageLab lab;
-  const uint32_t a = add_ramp(lab, Wrap::ClampToEdge, Filter::Nearest), b = add_pattern(lab, view(ImageShape::D1, 4));
+  const uint32_t a = add_ramp(lab, Wrap::ClampToEdge, Filter::Nearest),
+                 b = add_pattern(lab, view(ImageShape::D1, 4));
   ImageLab::Column handle;
   for (size_t lane = 0; lane < kLanes; ++lane) handle[lane] = lane % 2 ? b : a;
   const auto out = lab.run("tex.1d.v4.f32.f32", {handle, lab.all(0.4f)}, 0x0000'ffff);
@@ -405,7 +452,8 @@ TEST_CASE("what no sampler can do is a fault that names the image") {
     return lab.fault ? lab.fault->what : "";
   };
   CHECK(fault_of("tex.2d.v4.u32.f32", {integers, 0, 0}).empty());
-  CHECK_THAT(fault_of("tex.2d.v4.f32.f32", {integers, 0, 0}), Catch::Contains("reads floats") && Catch::Contains("image 0"));
+  CHECK_THAT(fault_of("tex.2d.v4.f32.f32", {integers, 0, 0}),
+             Catch::Contains("reads floats") && Catch::Contains("image 0"));
   lab.image(integers).sampler.mag = Filter::Linear;
   CHECK_THAT(fault_of("tex.2d.v4.u32.f32", {integers, 0, 0}), Catch::Contains("neither filtered"));
   CHECK_THAT(fault_of("tex.3d.v4.u32.f32", {integers, 0, 0, 0}), Catch::Contains("which is 2d, as 3d"));

@@ -105,20 +105,27 @@ TEST_CASE("glslang's SPIR-V is version 1.6 and valid, and so is the simplified m
 }
 
 TEST_CASE("SPIR-V text becomes the newest version under which it is valid") {
-  const std::string start = "OpCapability Shader\nOpMemoryModel Logical GLSL450\nOpEntryPoint GLCompute %main \"main\"\n"
-                            "OpExecutionMode %main LocalSize 1 1 1\n";
-  const std::string types = "%void = OpTypeVoid\n%f = OpTypeFunction %void\n%uint = OpTypeInt 32 0\n%block = OpTypeStruct %uint\n"
-                            "%pointer = OpTypePointer Uniform %block\n%b = OpVariable %pointer Uniform\n";
+  const std::string start =
+      "OpCapability Shader\nOpMemoryModel Logical GLSL450\nOpEntryPoint GLCompute %main \"main\"\n"
+      "OpExecutionMode %main LocalSize 1 1 1\n";
+  const std::string types =
+      "%void = OpTypeVoid\n%f = OpTypeFunction %void\n%uint = OpTypeInt 32 0\n%block = OpTypeStruct %uint\n"
+      "%pointer = OpTypePointer Uniform %block\n%b = OpVariable %pointer Uniform\n";
   const std::string body = "%main = OpFunction %void None %f\n%entry = OpLabel\nOpReturn\nOpFunctionEnd\n";
-  const std::string place = "OpMemberDecorate %block 0 Offset 0\nOpDecorate %b DescriptorSet 0\nOpDecorate %b Binding 0\n";
+  const std::string place =
+      "OpMemberDecorate %block 0 Offset 0\nOpDecorate %b DescriptorSet 0\nOpDecorate %b Binding 0\n";
   CHECK(assemble_spirv(start + "OpDecorate %block Block\n" + place + types + body, "x")[1] == 0x00010600);
-  const auto old = assemble_spirv(start + "OpDecorate %block BufferBlock\n" + place + types + body, "x");  // gone since 1.4
+  const auto old = assemble_spirv(start + "OpDecorate %block BufferBlock\n" + place + types + body,
+                                  "x");  // gone since 1.4
   CHECK(old[1] == 0x00010300);
   CHECK(validate_spirv(old).empty());
   CHECK_THROWS_AS(assemble_spirv("OpNonsense\n", "x"), UserError);
-  const std::string beyond = "%one = OpConstant %uint 1\n%pair = OpTypeVector %uint 2\n%both = OpSpecConstantComposite %pair %one %one\n"
-                             "%third = OpSpecConstantOp %uint CompositeExtract %both 2\n";
-  CHECK_THAT(validate_spirv(assemble_spirv(start + "OpDecorate %block Block\n" + place + types + beyond + body, "x")),
+  const std::string beyond =
+      "%one = OpConstant %uint 1\n%pair = OpTypeVector %uint 2\n%both = OpSpecConstantComposite %pair %one "
+      "%one\n"
+      "%third = OpSpecConstantOp %uint CompositeExtract %both 2\n";
+  CHECK_THAT(validate_spirv(
+                 assemble_spirv(start + "OpDecorate %block Block\n" + place + types + beyond + body, "x")),
              Contains("component 2 of a vector of 2"));
 }
 

@@ -127,7 +127,8 @@ TEST_CASE("ignore and terminate end an any-hit shader, also inside of a loop") {
 TEST_CASE("everything unsupported is listed at once, with op, file and line") {
   const std::string body =
       "#extension GL_ARB_sparse_texture2 : require\nlayout(binding = 0) buffer B { uint n; float f; } b;\n"
-      "layout(binding = 1) uniform sampler2D flat_image;\nlayout(local_size_x = 1) in;\nvoid main() {\n  vec4 t;\n"
+      "layout(binding = 1) uniform sampler2D flat_image;\nlayout(local_size_x = 1) in;\nvoid main() {\n  "
+      "vec4 t;\n"
       "  b.n = uint(sparseTextureLodARB(flat_image, vec2(b.f), 0.0, t));\n"
       "  b.n += uint(sparseTexelFetchARB(flat_image, ivec2(0), 0, t));\n  b.f = t.x;\n}\n";
   std::string message;
@@ -136,7 +137,8 @@ TEST_CASE("everything unsupported is listed at once, with op, file and line") {
   } catch (const UnsupportedError& error) {
     message = error.what();
   }
-  for (const char* expected : {":11: OpImageSparseSampleExplicitLod", ":12: OpImageSparseFetch", "SparseResidency"})
+  for (const char* expected :
+       {":11: OpImageSparseSampleExplicitLod", ":12: OpImageSparseFetch", "SparseResidency"})
     CHECK_THAT(message, Contains(expected));
 }
 

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/source_lines.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <filesystem>
+#include <fmt/format.h>
 #include <set>
 
 #include "frontend/compile.h"
@@ -35,7 +34,9 @@ void main() {
 }
 )";
 
-std::vector<uint32_t> words_of(const std::string& glsl) { return glsl_text_to_spirv(glsl, "nested.comp", isa::Stage::Compute, {}); }
+std::vector<uint32_t> words_of(const std::string& glsl) {
+  return glsl_text_to_spirv(glsl, "nested.comp", isa::Stage::Compute, {});
+}
 
 isa::Program compiled(const std::vector<uint32_t>& words) {
   Diagnostics warnings;
@@ -46,8 +47,10 @@ isa::Program compiled(const std::vector<uint32_t>& words) {
 
 // "main:12 twice:8 square:5"
 std::string stack_of(const isa::Program& program, const isa::Line& line) {
-  std::string out = fmt::format("{}:{}", line.scope ? program.scopes[line.scope - 1].function : "?", line.line);
-  for (uint32_t scope = line.scope; scope && program.scopes[scope - 1].caller; scope = program.scopes[scope - 1].caller) {
+  std::string out =
+      fmt::format("{}:{}", line.scope ? program.scopes[line.scope - 1].function : "?", line.line);
+  for (uint32_t scope = line.scope; scope && program.scopes[scope - 1].caller;
+       scope = program.scopes[scope - 1].caller) {
     const isa::Scope& row = program.scopes[scope - 1];
     out = fmt::format("{}:{} ", program.scopes[row.caller - 1].function, row.call.line) + out;
   }
@@ -60,7 +63,8 @@ std::vector<uint32_t> with_foreign_set(std::vector<uint32_t> words) {
   std::vector<uint32_t> import{0, words[3]++};
   for (size_t i = 0; i <= name.size() / 4; ++i) {
     uint32_t word = 0;
-    for (size_t k = 0; k < 4 && 4 * i + k < name.size(); ++k) word |= uint32_t(uint8_t(name[4 * i + k])) << 8 * k;
+    for (size_t k = 0; k < 4 && 4 * i + k < name.size(); ++k)
+      word |= uint32_t(uint8_t(name[4 * i + k])) << 8 * k;
     import.push_back(word);
   }
   import[0] = uint32_t(import.size()) << 16 | uint32_t(spv::Op::OpExtInstImport);
@@ -72,7 +76,9 @@ std::vector<uint32_t> with_foreign_set(std::vector<uint32_t> words) {
 
 // Of the listing: what is run, without constants that only marks need.
 size_t rows_of_functions(const isa::Program& program) {
-  const auto is_head = [](const isa::SpirvLine& line) { return line.text.find("= OpFunction ") != std::string::npos; };
+  const auto is_head = [](const isa::SpirvLine& line) {
+    return line.text.find("= OpFunction ") != std::string::npos;
+  };
   return size_t(program.spirv.end() - std::find_if(program.spirv.begin(), program.spirv.end(), is_head));
 }
 
@@ -82,16 +88,19 @@ TEST_CASE("after inlining every instruction says under which calls it stands, a 
   const isa::Program program = compiled(words_of(kNested));
   std::multiset<std::string> sines;
   for (size_t i = 0; i < program.code.size(); ++i)
-    if (isa::to_text(program, program.code[i]).find("cos") == std::string::npos && program.lines[i].line == 5) sines.insert(stack_of(program, program.lines[i]));
+    if (isa::to_text(program, program.code[i]).find("cos") == std::string::npos && program.lines[i].line == 5)
+      sines.insert(stack_of(program, program.lines[i]));
   const std::set<std::string> stacks(sines.begin(), sines.end());
   CHECK(stacks == std::set<std::string>{"main:12 twice:8 square:5", "main:13 square:5"});
-  CHECK(sines.count("main:12 twice:8 square:5") == 2 * sines.count("main:13 square:5"));  // called twice in that line
+  CHECK(sines.count("main:12 twice:8 square:5") ==
+        2 * sines.count("main:13 square:5"));  // called twice in that line
   for (const isa::Line& line : program.lines)
     if (line.line >= 11) CHECK(stack_of(program, line) == fmt::format("main:{}", line.line));
 }
 
 TEST_CASE("marks of functions change no instruction, no constant and no line") {
-  std::vector<std::string> sources{"path_tracing/raygen.rgen", "path_tracing/triangle.rchit", "ambient_occlusion/raygen.rgen"};
+  std::vector<std::string> sources{"path_tracing/raygen.rgen", "path_tracing/triangle.rchit",
+                                   "ambient_occlusion/raygen.rgen"};
   for (const std::string& name : sources) {
     GlslOptions options;
     options.include_dirs = {GLINT_SOURCE_DIR "/shaders/include"};
@@ -104,7 +113,8 @@ TEST_CASE("marks of functions change no instruction, no constant and no line") {
   }
 }
 
-TEST_CASE("every instruction names a SPIR-V instruction of its own line, and the listing numbers them in order") {
+TEST_CASE(
+    "every instruction names a SPIR-V instruction of its own line, and the listing numbers them in order") {
   const isa::Program program = compiled(words_of(kNested));
   size_t known = 0;
   for (const isa::Line& line : program.lines) {
@@ -122,7 +132,8 @@ TEST_CASE("every instruction names a SPIR-V instruction of its own line, and the
     ++sines;
     CHECK(line.line.line == 5);
     const auto number = uint32_t(&line - program.spirv.data()) + 1;
-    CHECK(std::any_of(program.lines.begin(), program.lines.end(), [&](const isa::Line& each) { return each.spirv == number; }));
+    CHECK(std::any_of(program.lines.begin(), program.lines.end(),
+                      [&](const isa::Line& each) { return each.spirv == number; }));
   }
   CHECK(sines == 3);
   CHECK(program.spirv.front().text.find("OpCapability") == 0);
@@ -130,11 +141,15 @@ TEST_CASE("every instruction names a SPIR-V instruction of its own line, and the
 }
 
 TEST_CASE("texts with line ends in a module do not shift its listing") {
-  const std::vector<uint32_t> words = words_of("#version 460\n#extension GL_EXT_debug_printf : require\nvoid main() {\n  debugPrintfEXT(\"a\\nb\\n%u\", gl_GlobalInvocationID.x);\n}\n");
+  const std::vector<uint32_t> words = words_of(
+      "#version 460\n#extension GL_EXT_debug_printf : require\nvoid main() {\n  "
+      "debugPrintfEXT(\"a\\nb\\n%u\", gl_GlobalInvocationID.x);\n}\n");
   const Module module = Module::parse(words, "print.comp");
   const std::vector<std::string> listing = listing_of(words);
   REQUIRE(listing.size() == module.lines.size());
-  const auto print = std::find_if(listing.begin(), listing.end(), [](const std::string& line) { return line.find("OpExtInst ") != std::string::npos; });
+  const auto print = std::find_if(listing.begin(), listing.end(), [](const std::string& line) {
+    return line.find("OpExtInst ") != std::string::npos;
+  });
   REQUIRE(print != listing.end());
   CHECK(module.lines[size_t(print - listing.begin())].line == 4);
 }
@@ -197,7 +212,8 @@ TEST_CASE("modules without lines, of older versions or with unknown sets are lef
   CHECK(!with_inline_scopes(with_foreign_set(words)).has_value());
   std::vector<uint32_t> bare(words.begin(), words.begin() + 5);
   for (size_t i = 5; i < words.size(); i += words[i] >> 16)
-    if (spv::Op(words[i] & 0xffff) != spv::Op::OpLine) bare.insert(bare.end(), words.begin() + long(i), words.begin() + long(i + (words[i] >> 16)));
+    if (spv::Op(words[i] & 0xffff) != spv::Op::OpLine)
+      bare.insert(bare.end(), words.begin() + long(i), words.begin() + long(i + (words[i] >> 16)));
   CHECK(!with_inline_scopes(bare).has_value());
   words[1] = 0x10500;
   CHECK(!with_inline_scopes(words).has_value());

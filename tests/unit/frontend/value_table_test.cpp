@@ -11,13 +11,17 @@ namespace glint::frontend::lab {
 namespace {
 
 std::string function(const std::string& expression) {
-  return "uint bits(float x) { return floatBitsToUint(x); }\nuint bits(uint x) { return x; }\nuint bits(int x) { return uint(x); }\n"
+  return "uint bits(float x) { return floatBitsToUint(x); }\nuint bits(uint x) { return x; }\nuint bits(int "
+         "x) { return uint(x); }\n"
          "uint bits(bool x) { return x ? 1u : 0u; }\n"
-         "uint compute(uint A, uint B, uint C) { float a = uintBitsToFloat(A), b = uintBitsToFloat(B), c = uintBitsToFloat(C);"
-         " int i = int(A), j = int(B), k = int(C); return bits(" + expression + "); }\n";
+         "uint compute(uint A, uint B, uint C) { float a = uintBitsToFloat(A), b = uintBitsToFloat(B), c = "
+         "uintBitsToFloat(C);"
+         " int i = int(A), j = int(B), k = int(C); return bits(" +
+         expression + "); }\n";
 }
 
-std::vector<uint32_t> from_memory(const std::string& expression, const std::vector<Case>& cases, const std::string& globals) {
+std::vector<uint32_t> from_memory(const std::string& expression, const std::vector<Case>& cases,
+                                  const std::string& globals) {
   std::string tables;
   const auto table = [&](char name, uint32_t Case::*member) {
     tables += fmt::format("const uint k{}[{}] = uint[](", name, cases.size());
@@ -30,20 +34,26 @@ std::vector<uint32_t> from_memory(const std::string& expression, const std::vect
   return run(indices, "y = compute(kA[x], kB[x], kC[x]);", globals + function(expression) + tables);
 }
 
-std::vector<uint32_t> folded(const std::string& expression, const std::vector<Case>& cases, const std::string& globals) {
+std::vector<uint32_t> folded(const std::string& expression, const std::vector<Case>& cases,
+                             const std::string& globals) {
   std::string constants, statements = "switch (x) {";
   std::vector<uint32_t> indices;
   for (uint32_t i = 0; i < cases.size(); ++i) {
     const auto [a, b, c, result] = cases[i];
-    constants += fmt::format("layout(constant_id = {0}) const uint A{3} = {4}u;\nlayout(constant_id = {1}) const uint B{3} = {5}u;\n"
-                             "layout(constant_id = {2}) const uint C{3} = {6}u;\n", 3 * i, 3 * i + 1, 3 * i + 2, i, a, b, c);
+    constants += fmt::format(
+        "layout(constant_id = {0}) const uint A{3} = {4}u;\nlayout(constant_id = {1}) const uint B{3} = "
+        "{5}u;\n"
+        "layout(constant_id = {2}) const uint C{3} = {6}u;\n",
+        3 * i, 3 * i + 1, 3 * i + 2, i, a, b, c);
     statements += fmt::format("case {0}u: y = compute(A{0}, B{0}, C{0}); break;\n", i);
     indices.push_back(i);
   }
   return run(indices, statements + "}", globals + function(expression) + constants);
 }
 
-bool is_nan(uint32_t bits) { return (bits & kIntMax) > kInf; }
+bool is_nan(uint32_t bits) {
+  return (bits & kIntMax) > kInf;
+}
 
 // Those that differ.
 std::string differences(const std::vector<uint32_t>& got, const std::vector<Case>& cases) {

@@ -1,8 +1,7 @@
-// The interval model: what it counts is what is executed, its parts take the times of the configuration, and it predicts.
-// SPDX-License-Identifier: Apache-2.0
-#include "pipeline/interval/interval_machine.h"
-
+// The interval model: what it counts is what is executed, its parts take the times of the configuration, and
+// it predicts. SPDX-License-Identifier: Apache-2.0
 #include "pipeline/functional_machine.h"
+#include "pipeline/interval/interval_machine.h"
 #include "pipeline/scene_world.h"
 #include "pipeline/timing_machine.h"
 #include "tests/support/catch.h"
@@ -62,7 +61,8 @@ TEST_CASE("What is read before it has come waits for it", "[interval]") {
   CHECK(memory.read(0, 0, 1, 1010, Asker::Shader) == ready);
 }
 
-TEST_CASE("Local memory that a core writes and reads again stays in its L1 until it is displaced", "[interval]") {
+TEST_CASE("Local memory that a core writes and reads again stays in its L1 until it is displaced",
+          "[interval]") {
   const GpuParams gpu = test::preset("mobile");
   MemoryModel memory(gpu.memory, 1, gpu.clock_mhz);
   memory.write(0, 0, 15, 1000, true);
@@ -89,7 +89,8 @@ TEST_CASE("The pass executes what the functional machine does and leaves its pic
   CHECK(first.read_image(SceneWorld::kPicture) == second.read_image(SceneWorld::kPicture));
 }
 
-TEST_CASE("The prediction is within a fifth of the timing machine, above every bound, and the same each time", "[interval]") {
+TEST_CASE("The prediction is within a fifth of the timing machine, above every bound, and the same each time",
+          "[interval]") {
   const std::string scene = GENERATE("WKND", "SHIP");
   const auto workload = GENERATE(Workload::PathTracing, Workload::Shadow);
   const RenderJob job = mobile_job(scene, workload, 64);
@@ -123,5 +124,6 @@ TEST_CASE("Launches that the model does not know are refused", "[interval]") {
   SceneWorld scene(job);
   job.gpu.rt.scheduler = "round_robin";
   job.gpu.rt.result_store = true;
-  CHECK_THROWS_WITH(IntervalMachine(job.gpu, scene.world), Catch::Contains("rt.scheduler") && Catch::Contains("rt.result_store"));
+  CHECK_THROWS_WITH(IntervalMachine(job.gpu, scene.world),
+                    Catch::Contains("rt.scheduler") && Catch::Contains("rt.result_store"));
 }

@@ -1,5 +1,5 @@
-// The verifier's walk over paths: regions, traces, what is written where, frames, stages; and what it must accept.
-// SPDX-License-Identifier: Apache-2.0
+// The verifier's walk over paths: regions, traces, what is written where, frames, stages; and what it must
+// accept. SPDX-License-Identifier: Apache-2.0
 #include <chrono>
 #include <fmt/format.h>
 
@@ -38,10 +38,12 @@ TEST_CASE("lanes meet only inside a region that is open, and regions nest on eve
   CHECK_THAT(verdict("setp.eq.u32 %p0, %laneid, 1; @%p0 bra A; A: join; exit;"),
              Contains("instruction 1 (bra): comes to the join at 2 outside its region"));
   CHECK_THAT(verdict("setp.eq.u32 %p0, %laneid, 1; @%p0 bra N; ssy A; N: mov.b32 %r1, 1; A: join; exit;"),
-             Contains("comes to instruction 3 with") && Contains("inside the region of join 4") && Contains("nothing open"));
+             Contains("comes to instruction 3 with") && Contains("inside the region of join 4") &&
+                 Contains("nothing open"));
   CHECK_THAT(verdict("LOOP: ssy A; bra LOOP; A: join; exit;"),
              Contains("instruction 1 (bra): comes to instruction 0 with inside the region of join 2"));
-  CHECK_THAT(verdict("ssy A; ssy B; A: join; B: join; exit;"), Contains("comes to the join at 3 outside its region"));
+  CHECK_THAT(verdict("ssy A; ssy B; A: join; B: join; exit;"),
+             Contains("comes to the join at 3 outside its region"));
   CHECK_THAT(verdict("ssy A; exit; A: join; exit;"), Contains("no path leads to the join at 2"));
   CHECK_THAT(verdict("setp.eq.u32 %p0, %laneid, 1; @%p0 ssy A; A: join; exit;"),
              Contains("a guard, and the op moves all lanes of the warp"));
@@ -53,7 +55,8 @@ TEST_CASE("code that no lane reaches and code that runs off its end are refused"
   CHECK(verdict("setp.eq.u32 %p0, %laneid, 1; @%p0 bra END; mov.b32 %r1, 1; END: exit;") == "");
   CHECK_THAT(verdict("exit; exit;"), Contains("instruction 1 (exit): no path leads here"));
   CHECK_THAT(verdict("mov.b32 %r1, 1;"), Contains("the code can run off its end here"));
-  CHECK_THAT(verdict("setp.eq.u32 %p0, %laneid, 1; @%p0 exit;"), Contains("the code can run off its end here"));
+  CHECK_THAT(verdict("setp.eq.u32 %p0, %laneid, 1; @%p0 exit;"),
+             Contains("the code can run off its end here"));
 }
 
 TEST_CASE("a register or predicate that nothing has written on a path is not read") {
@@ -73,14 +76,19 @@ TEST_CASE("a guarded write serves the lanes of its guard") {
   const std::string p = "setp.eq.u32 %p0, %laneid, 1; setp.eq.u32 %p1, %laneid, 2; ";
   CHECK(verdict(p + "@%p0 mov.b32 %r1, 1; @!%p0 mov.b32 %r1, 2; mov.b32 %r2, %r1; exit;") == "");
   CHECK(verdict(p + "@%p0 mov.b32 %r1, 1; @%p0 mov.b32 %r2, %r1; exit;") == "");
-  CHECK(verdict(p + "@%p0 mov.b32 %r1, 1; @!%p0 exit; mov.b32 %r2, %r1; exit;").find("%r1") != std::string::npos);
+  CHECK(verdict(p + "@%p0 mov.b32 %r1, 1; @!%p0 exit; mov.b32 %r2, %r1; exit;").find("%r1") !=
+        std::string::npos);
   CHECK(verdict(p + "@%p0 mov.b32 %r1, 1; @!%p0 bra N; mov.b32 %r2, %r1; N: exit;") == "");
-  CHECK_THAT(verdict(p + "@%p0 mov.b32 %r1, 1; @%p0 bra N; mov.b32 %r2, %r1; N: exit;"),
-             Contains("instruction 4 (mov.b32): %r1 is read by all lanes, and only those of a guard have written it"));
+  CHECK_THAT(
+      verdict(p + "@%p0 mov.b32 %r1, 1; @%p0 bra N; mov.b32 %r2, %r1; N: exit;"),
+      Contains(
+          "instruction 4 (mov.b32): %r1 is read by all lanes, and only those of a guard have written it"));
 }
 
 TEST_CASE("shaders that are called use every register and predicate but the stack pointer") {
-  const std::string call = std::string(kTrace) + "mov.b32 %r1, 7; add.u32 %r0, %r0, 48; call.sbt.hit; rt.end; sub.u32 %r0, %r0, 48; ";
+  const std::string call =
+      std::string(kTrace) +
+      "mov.b32 %r1, 7; add.u32 %r0, %r0, 48; call.sbt.hit; rt.end; sub.u32 %r0, %r0, 48; ";
   CHECK(verdict(call + "exit;", kRaygen) == "");
   CHECK_THAT(verdict(call + "mov.b32 %r2, %r1; exit;", kRaygen), Contains("%r1 is read"));
   CHECK_THAT(verdict(call + "@%p0 exit; exit;", kRaygen), Contains("%p0 is read"));
@@ -92,7 +100,8 @@ TEST_CASE("functions are called, not fallen into, and may have written what they
   if (find_op("call") < 0) return;
   CHECK(verdict("call F; mov.b32 %r2, %r1; exit; F: mov.b32 %r1, 1; ret;") == "");
   CHECK_THAT(verdict("call F; mov.b32 %r2, %r3; exit; F: mov.b32 %r1, 1; ret;"), Contains("%r3 is read"));
-  CHECK_THAT(verdict("call F; F: mov.b32 %r1, 1; ret;"), Contains("comes to instruction 1 with nothing open"));
+  CHECK_THAT(verdict("call F; F: mov.b32 %r1, 1; ret;"),
+             Contains("comes to instruction 1 with nothing open"));
 }
 
 TEST_CASE("ops of a trace stand inside it") {
@@ -107,36 +116,45 @@ TEST_CASE("ops of a trace stand inside it") {
 TEST_CASE("lanes that part inside a trace meet before its end") {
   const std::string part = "@%p0 bra A; rt.end; exit; A: rt.end; exit;";
   CHECK_THAT(verdict(kTrace + part, kRaygen), Contains("instruction 1 (bra): lanes may part inside a trace"));
-  CHECK(verdict(std::string(kTrace) + "ssy A; @%p0 bra A; mov.b32 %r1, 1; A: join; rt.end; exit;", kRaygen) == "");
+  CHECK(verdict(std::string(kTrace) + "ssy A; @%p0 bra A; mov.b32 %r1, 1; A: join; rt.end; exit;", kRaygen) ==
+        "");
 }
 
 TEST_CASE("ops and specials stand in shaders of their stages") {
-  CHECK_THAT(verdict("rt.ignore;", ".stage closest_hit"), Contains("stage closest_hit, and belongs in any_hit"));
+  CHECK_THAT(verdict("rt.ignore;", ".stage closest_hit"),
+             Contains("stage closest_hit, and belongs in any_hit"));
   CHECK_THAT(verdict("rt.report %p0, 0f3F800000, 1; exit;", kRaygen), Contains("belongs in intersection"));
-  CHECK_THAT(verdict(kTrace + std::string("rt.end; exit;")), Contains("belongs in ray_generation, closest_hit, miss"));
+  CHECK_THAT(verdict(kTrace + std::string("rt.end; exit;")),
+             Contains("belongs in ray_generation, closest_hit, miss"));
   CHECK_THAT(verdict("exit;", kMiss), Contains("belongs in ray_generation, compute"));
   CHECK_THAT(verdict("ret;"), Contains("a return outside a function"));
   CHECK(verdict("ret;", kMiss) == "");
   CHECK_THAT(verdict("mov.b32 %r1, %payload; exit;"), Contains("belongs in any_hit, closest_hit, miss"));
-  CHECK_THAT(verdict("mov.b32 %r1, %hit.u; ret;", kMiss), Contains("belongs in intersection, any_hit, closest_hit"));
+  CHECK_THAT(verdict("mov.b32 %r1, %hit.u; ret;", kMiss),
+             Contains("belongs in intersection, any_hit, closest_hit"));
   CHECK(verdict("mov.b32 %r1, %hit.t; ret;", kMiss) == "");
   CHECK_THAT(verdict("mov.b32 %r1, %tid.x; ret;", kMiss), Contains("belongs in compute"));
 }
 
 TEST_CASE("frames, shared memory and the constant bank are not left by a known displacement") {
   CHECK(verdict("st.local.b32 [%r0 + 12], 1; ret;", kMiss) == "");
-  CHECK_THAT(verdict("st.local.b32 [%r0 + 16], 1; ret;", kMiss), Contains("touches bytes 16 to 19 of the frame, which has 16"));
+  CHECK_THAT(verdict("st.local.b32 [%r0 + 16], 1; ret;", kMiss),
+             Contains("touches bytes 16 to 19 of the frame, which has 16"));
   CHECK_THAT(verdict("st.local.v2.b32 [%r0 + 12], {1, 2}; ret;", kMiss), Contains("touches bytes 12 to 19"));
   CHECK_THAT(verdict("st.local.b32 [%r0 - 4], 1; ret;", kMiss), Contains("touches bytes -4 to -1"));
   CHECK(verdict("add.u32 %r0, %r0, 16; st.local.b32 [%r0 - 4], 1; sub.u32 %r0, %r0, 16; ret;", kMiss) == "");
-  CHECK_THAT(verdict("add.u32 %r0, %r0, 16; ret;", kMiss), Contains("%r0 is 16 bytes from its value at entry"));
+  CHECK_THAT(verdict("add.u32 %r0, %r0, 16; ret;", kMiss),
+             Contains("%r0 is 16 bytes from its value at entry"));
   CHECK(verdict(fmt::format("ld.const.b32 %r1, [{}]; exit;", kLargestBankBytes - 4)) == "");
-  CHECK_THAT(verdict(fmt::format("ld.const.b32 %r1, [{}]; exit;", kLargestBankBytes)), Contains(fmt::format("and there are {}", kLargestBankBytes)));
+  CHECK_THAT(verdict(fmt::format("ld.const.b32 %r1, [{}]; exit;", kLargestBankBytes)),
+             Contains(fmt::format("and there are {}", kLargestBankBytes)));
   CHECK_THAT(verdict("ld.local.b32 %r1, [0]; exit;"), Contains("touches bytes 0 to 3, and there are 0"));
   if (find_op("ld.shared.b32") < 0) return;
   CHECK(verdict("ld.shared.b32 %r1, [60]; exit;", ".shared_bytes 64") == "");
-  CHECK_THAT(verdict("ld.shared.b32 %r1, [64]; exit;", ".shared_bytes 64"), Contains("touches bytes 64 to 67"));
-  CHECK_THAT(verdict("ld.shared.b32 %r1, [0]; ret;", ".stage miss\n.shared_bytes 64"), Contains("belongs in compute"));
+  CHECK_THAT(verdict("ld.shared.b32 %r1, [64]; exit;", ".shared_bytes 64"),
+             Contains("touches bytes 64 to 67"));
+  CHECK_THAT(verdict("ld.shared.b32 %r1, [0]; ret;", ".stage miss\n.shared_bytes 64"),
+             Contains("belongs in compute"));
 }
 
 TEST_CASE("no instruction writes a register twice") {
@@ -148,7 +166,8 @@ TEST_CASE("a program twice as long takes about twice the time") {
   const auto seconds = [](int blocks) {
     std::string code = "setp.eq.u32 %p0, %laneid, 1;\nmov.b32 %r1, 1;\n";
     for (int i = 0; i < blocks; ++i)
-      code += fmt::format("L{0}: ssy J{0};\n@%p0 bra J{0};\nadd.u32 %r1, %r1, %r1;\nJ{0}: join;\n@%p0 bra L{0};\n", i);
+      code += fmt::format(
+          "L{0}: ssy J{0};\n@%p0 bra J{0};\nadd.u32 %r1, %r1, %r1;\nJ{0}: join;\n@%p0 bra L{0};\n", i);
     const Program p = parse(".registers 32\n" + code + "exit;\n", "long");
     double best = 1e9;
     for (int run = 0; run < 3; ++run) {

@@ -61,7 +61,9 @@ TEST_CASE("a fault message names the nearest allocation and the distance to it")
   CHECK(space.explain(a + 1216, 4) == "16 bytes past the end of 'binding 4 (Vertices)' (1200 bytes)");
   CHECK(space.explain(b - 4, 4) == "4 bytes before the start of 'image' (16 bytes)");
   CHECK(space.explain(a - 8, 4) == "8 bytes before the start of 'binding 4 (Vertices)' (1200 bytes)");
-  CHECK(space.explain(a + 1198, 4) == "4 bytes across the end of 'binding 4 (Vertices)' (1200 bytes), 2 of them past it");
-  CHECK(space.explain(8, 4) == "a null pointer plus 8 bytes: nothing is bound there, or the address was never set");
+  CHECK(space.explain(a + 1198, 4) ==
+        "4 bytes across the end of 'binding 4 (Vertices)' (1200 bytes), 2 of them past it");
+  CHECK(space.explain(8, 4) ==
+        "a null pointer plus 8 bytes: nothing is bound there, or the address was never set");
   CHECK(space.explain(Address{77} << 32, 4) == "no allocation is near");
 }

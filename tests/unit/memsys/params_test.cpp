@@ -1,9 +1,8 @@
 // Impossible configurations are reported with what was expected; peaks match data sheets.
 // SPDX-License-Identifier: Apache-2.0
-#include "memsys/peak.h"
-
 #include <functional>
 
+#include "memsys/peak.h"
 #include "tests/support/catch.h"
 
 using namespace glint;
@@ -27,10 +26,13 @@ TEST_CASE("errors name the section that the parameters stand in before every key
   Diagnostics diagnostics;
   check(params, diagnostics, "memory.");
   REQUIRE(diagnostics.messages().size() == 1);
-  CHECK_THAT(diagnostics.messages()[0], Catch::Contains("'memory.dram.row_bytes' is 1000, expected a multiple of 'memory.interleave'"));
+  CHECK_THAT(diagnostics.messages()[0],
+             Catch::Contains("'memory.dram.row_bytes' is 1000, expected a multiple of 'memory.interleave'"));
 }
 
-TEST_CASE("the default memory system is possible") { CHECK(errors([](Params&) {}).empty()); }
+TEST_CASE("the default memory system is possible") {
+  CHECK(errors([](Params&) {}).empty());
+}
 
 TEST_CASE("each impossible value is reported once with what was expected") {
   const auto one = [](const std::function<void(Params&)>& change, const std::string& expected) {
@@ -42,12 +44,20 @@ TEST_CASE("each impossible value is reported once with what was expected") {
   one([](Params& p) { p.l2.mshr_merges = 0; }, "'l2.mshr_merges' is 0, expected at least 1");
   one([](Params& p) { p.l1.ports = 0; }, "'l1.ports' is 0, expected at least 1");
   one([](Params& p) { p.l1.size = 64; }, "'l1.size' is 64 bytes, expected at least one line of 128 bytes");
-  one([](Params& p) { p.l2.slice_size = 1024; }, "expected at least one set: 16 ways x 128 bytes = 2048 bytes");
+  one([](Params& p) { p.l2.slice_size = 1024; },
+      "expected at least one set: 16 ways x 128 bytes = 2048 bytes");
   one([](Params& p) { p.l2.slice_size = 3000; }, "expected a multiple of 2048 bytes");
   one([](Params& p) { p.line = 96; }, "'line' is 96 bytes, expected a power of two");
-  one([](Params& p) { p.interleave = 384; p.dram.row_bytes = 768; }, "'interleave' is 384 bytes, expected a power of two");
-  one([](Params& p) { p.dram.row_bytes = 1000; }, "'dram.row_bytes' is 1000, expected a multiple of 'interleave' = 256");
-  one([](Params& p) { p.dram.banks = 15; }, "'dram.banks' is 15, expected a multiple of 'dram.bank_groups' = 4");
+  one(
+      [](Params& p) {
+        p.interleave = 384;
+        p.dram.row_bytes = 768;
+      },
+      "'interleave' is 384 bytes, expected a power of two");
+  one([](Params& p) { p.dram.row_bytes = 1000; },
+      "'dram.row_bytes' is 1000, expected a multiple of 'interleave' = 256");
+  one([](Params& p) { p.dram.banks = 15; },
+      "'dram.banks' is 15, expected a multiple of 'dram.bank_groups' = 4");
   one([](Params& p) { p.dram.bus_bytes = 3; }, "is 48 bytes, expected a power of two");
   one([](Params& p) { p.l2.dram_queue = 4; }, "'l2.dram_queue' is 4, expected at least 8");
   one([](Params& p) { p.dram.channels = 0; }, "'dram.channels' is 0, expected at least 1");
@@ -59,13 +69,31 @@ TEST_CASE("each further impossible value is reported once with what was expected
     REQUIRE(messages.size() == 1);
     CHECK_THAT(messages[0], Catch::Contains(expected));
   };
-  one([](Params& p) { p.l1.allocate = "on_miss"; p.l1.miss_queue = 1; }, "'l1.miss_queue' is 1, expected at least 2");
-  one([](Params& p) { p.l1.write_allocate = true; p.l1.miss_queue = 1; }, "'l1.miss_queue' is 1, expected at least 2");
+  one(
+      [](Params& p) {
+        p.l1.allocate = "on_miss";
+        p.l1.miss_queue = 1;
+      },
+      "'l1.miss_queue' is 1, expected at least 2");
+  one(
+      [](Params& p) {
+        p.l1.write_allocate = true;
+        p.l1.miss_queue = 1;
+      },
+      "'l1.miss_queue' is 1, expected at least 2");
   one([](Params& p) { p.noc.sides = 5; }, "'noc.sides' is 5, expected at most the 4 slices");
   one([](Params& p) { p.noc.far_latency = 5; }, "'noc.far_latency' is 5, and 'noc.sides' is 1");
   one([](Params& p) { p.dram.refi = 165.0; }, "'dram.refi' is 165 ns, expected more than the 165.9 ns");
-  one([](Params& p) { p.dram.refresh = "per_bank"; p.dram.refi = 100.0; }, "of 'dram.rfc_bank', 'dram.ras' and 'dram.rp'");
-  CHECK(errors([](Params& p) { p.dram.refresh = "none"; p.dram.refi = 1.0; }).empty());
+  one(
+      [](Params& p) {
+        p.dram.refresh = "per_bank";
+        p.dram.refi = 100.0;
+      },
+      "of 'dram.rfc_bank', 'dram.ras' and 'dram.rp'");
+  CHECK(errors([](Params& p) {
+          p.dram.refresh = "none";
+          p.dram.refi = 1.0;
+        }).empty());
 }
 
 TEST_CASE("a level that delivers more than the next carries is warned of, with both bandwidths") {
@@ -81,9 +109,15 @@ TEST_CASE("a level that delivers more than the next carries is warned of, with b
   // A port of 10 bytes a cycle moves a line and its header in 14 cycles.
   const auto narrow = warnings([](Params& p) { p.noc.partition_reply_bytes = 10; });
   REQUIRE(narrow.size() == 1);
-  CHECK_THAT(narrow[0], Catch::Contains("DRAM could deliver 56.0 GB/s and the slices' reply ports carry 49.9 GB/s ('memory.noc.partition_reply_bytes')"));
+  CHECK_THAT(narrow[0], Catch::Contains("DRAM could deliver 56.0 GB/s and the slices' reply ports carry 49.9 "
+                                        "GB/s ('memory.noc.partition_reply_bytes')"));
   CHECK(warnings([](Params& p) { p.noc.partition_reply_bytes = 14; }).empty());
-  CHECK(warnings([](Params& p) { p.dram.bus_bytes = 4; p.dram.burst = 8; p.dram.transfers_per_clock = 8; p.dram.clock_mhz = 7000; }).size() == 3);
+  CHECK(warnings([](Params& p) {
+          p.dram.bus_bytes = 4;
+          p.dram.burst = 8;
+          p.dram.transfers_per_clock = 8;
+          p.dram.clock_mhz = 7000;
+        }).size() == 3);
 }
 
 TEST_CASE("the defaults are the kind gddr6_7000, and each kind is possible and as fast as its name says") {
@@ -96,7 +130,11 @@ TEST_CASE("the defaults are the kind gddr6_7000, and each kind is possible and a
   named.rcd = 1.0, named.banks = 8;
   apply_dram_kind(named, "gddr6_7000");
   CHECK(listing(named) == listing(DramParams{}));
-  for (const auto& [kind, gigabytes] : {std::pair{"gddr6_7000", 14.0}, {"gddr6_14000", 28.0}, {"gddr6_14000_1v25", 28.0}, {"lpddr5_6400", 12.8}, {"hbm3_6400", 25.6}}) {
+  for (const auto& [kind, gigabytes] : {std::pair{"gddr6_7000", 14.0},
+                                        {"gddr6_14000", 28.0},
+                                        {"gddr6_14000_1v25", 28.0},
+                                        {"lpddr5_6400", 12.8},
+                                        {"hbm3_6400", 25.6}}) {
     INFO(kind);
     CHECK(errors([&, name = kind](Params& p) { apply_dram_kind(p.dram, name); }).empty());
     Params params;
@@ -119,7 +157,8 @@ TEST_CASE("a kind of DRAM sets what a file does not name, whatever the order of 
     CHECK(diagnostics.messages().empty());
     return params.dram;
   };
-  for (const char* text : {"[dram]\nkind = \"hbm3_6400\"\nrcd = 20.5\n", "[dram]\nrcd = 20.5\nkind = \"hbm3_6400\"\n"}) {
+  for (const char* text :
+       {"[dram]\nkind = \"hbm3_6400\"\nrcd = 20.5\n", "[dram]\nrcd = 20.5\nkind = \"hbm3_6400\"\n"}) {
     const DramParams d = read(text);
     CHECK(d.kind == "hbm3_6400");
     CHECK(d.rcd == 20.5);
@@ -140,7 +179,9 @@ TEST_CASE("peaks of the mobile part are those of its data sheet") {
 
 TEST_CASE("every parameter can be read from a configuration and unknown policies are refused") {
   Config config;
-  config.add_text("test", "line = 64\n[l1]\nways = 4\n[dram]\nrcd = 14.5\nscheduler = \"fcfs\"\n[dram.frfcfs]\nhit_cap = 3\n");
+  config.add_text(
+      "test",
+      "line = 64\n[l1]\nways = 4\n[dram]\nrcd = 14.5\nscheduler = \"fcfs\"\n[dram.frfcfs]\nhit_cap = 3\n");
   Diagnostics diagnostics;
   ConfigTable root = config.root(diagnostics);
   Params params;

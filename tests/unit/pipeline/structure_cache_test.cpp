@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/structure_cache.h"
 
-#include <unistd.h>
-
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <unistd.h>
 
 #include "tests/support/catch.h"
 
@@ -42,11 +41,13 @@ struct Strip {
 };
 
 bool equal(const rt::EncodedBottom& a, const rt::EncodedBottom& b) {
-  return a.bytes == b.bytes && a.info.nodes == b.info.nodes && a.info.leaves == b.info.leaves && a.info.depth == b.info.depth &&
+  return a.bytes == b.bytes && a.info.nodes == b.info.nodes && a.info.leaves == b.info.leaves &&
+         a.info.depth == b.info.depth &&
          std::memcmp(&a.info.bounds, &b.info.bounds, sizeof a.info.bounds) == 0;
 }
 
-bool is_found(const Folder& folder, const rt::BottomLevel& level, const rt::BuildOptions& options = {}, const std::string& build = "build 1") {
+bool is_found(const Folder& folder, const rt::BottomLevel& level, const rt::BuildOptions& options = {},
+              const std::string& build = "build 1") {
   StructureCache cache = folder.cache(2, build);
   const rt::EncodedBottom out = cache.encode("it", level, options);
   CHECK(equal(out, rt::encode_bottom("it", level, options)));
@@ -76,7 +77,8 @@ TEST_CASE("other positions, indices, flags, transforms, formats and builders fin
   wide.format.name = "bvh8";
   single.pair_triangles = false;
 
-  for (const rt::BottomLevel& other : {moved.level(), wound.level(), not_opaque, placed, two}) CHECK_FALSE(is_found(folder, other));
+  for (const rt::BottomLevel& other : {moved.level(), wound.level(), not_opaque, placed, two})
+    CHECK_FALSE(is_found(folder, other));
   for (const rt::BuildOptions& other : {wide, single}) CHECK_FALSE(is_found(folder, strip.level(), other));
   CHECK_FALSE(is_found(folder, strip.level(), {}, "build 2"));
   CHECK(is_found(folder, strip.level()));

@@ -12,11 +12,17 @@
 namespace glint::report {
 namespace {
 
-// Lines 1 and 2 of a.rgen; two SPIR-V instructions, of which the second became two; the last instruction comes from nowhere.
+// Lines 1 and 2 of a.rgen; two SPIR-V instructions, of which the second became two; the last instruction
+// comes from nowhere.
 ProgramListing program() {
   ProgramListing out{"a.rgen", "ray_generation", {"a.rgen"}, {}, {}, {{"main", 0, 0, 0}}};
-  out.spirv = {{"%main = OpFunction %void None %3", 0, 0, 0, 0}, {"%8 = OpFAdd %float %6 %7", 0, 1, 0, 0}, {"OpStore %9 %8", 0, 2, 0, 0}};
-  out.isa = {{"add.f32 %r1, %r2, %r3;", 0, 1, 2, 1}, {"mov.b32 %r4, %r1;", 0, 2, 3, 1}, {"st.global.b32 [%rd6], %r4;", 0, 2, 3, 1}, {"exit;", 0, 0, 0, 0}};
+  out.spirv = {{"%main = OpFunction %void None %3", 0, 0, 0, 0},
+               {"%8 = OpFAdd %float %6 %7", 0, 1, 0, 0},
+               {"OpStore %9 %8", 0, 2, 0, 0}};
+  out.isa = {{"add.f32 %r1, %r2, %r3;", 0, 1, 2, 1},
+             {"mov.b32 %r4, %r1;", 0, 2, 3, 1},
+             {"st.global.b32 [%rd6], %r4;", 0, 2, 3, 1},
+             {"exit;", 0, 0, 0, 0}};
   return out;
 }
 
@@ -32,7 +38,8 @@ ProfileTable profile() {
   for (uint32_t i = 0; i < 4; ++i) {
     const ListedLine line = program().isa[i];
     ProfileRow& row = out.rows.emplace_back();
-    row.shader = "a.rgen", row.stage = "ray_generation", row.file = line.line ? "a.rgen" : "", row.line = line.line, row.spirv = line.spirv, row.index = i;
+    row.shader = "a.rgen", row.stage = "ray_generation", row.file = line.line ? "a.rgen" : "",
+    row.line = line.line, row.spirv = line.spirv, row.index = i;
     row.issues = 2, row.lanes = 32, row.sectors = i == 2 ? 8 : 0, row.slots = {2, waits[i]};
   }
   ProfileRow& nowhere = out.rows.emplace_back();
@@ -40,13 +47,16 @@ ProfileTable profile() {
   return out;
 }
 
-SourceMap map() { return source_map({program()}, text_of); }
+SourceMap map() {
+  return source_map({program()}, text_of);
+}
 
 // The shares at the beginning of lines that have them, without the heading's.
 double shares(const std::string& text) {
   double sum = 0;
   const std::regex share("\\n *([0-9.]+) %");
-  for (std::sregex_iterator at(text.begin(), text.end(), share), end; at != end; ++at) sum += std::stod((*at)[1]);
+  for (std::sregex_iterator at(text.begin(), text.end(), share), end; at != end; ++at)
+    sum += std::stod((*at)[1]);
   return sum;
 }
 
@@ -60,7 +70,8 @@ TEST_CASE("annotated SPIR-V and ISA have all cycles of instructions, GLSL those 
   CHECK(shares(annotator.spirv(0)) == Approx(100).margin(0.2));
   CHECK(shares(annotator.file(source.files[0])) == Approx(87.8).margin(0.2));  // 86 of 98
   CHECK(annotator.file(source.files[0]).find("a.rgen: 87.8 %") == 0);
-  CHECK(annotator.isa(0).find("73.5 %       2   16.0        8  long_scoreboard 97.2 %      2  st.global.b32 [%rd6], %r4;       3  a.rgen:2") != std::string::npos);
+  CHECK(annotator.isa(0).find("73.5 %       2   16.0        8  long_scoreboard 97.2 %      2  st.global.b32 "
+                              "[%rd6], %r4;       3  a.rgen:2") != std::string::npos);
   CHECK(annotator.spirv(0).find("(of no SPIR-V instruction)") != std::string::npos);
 }
 
@@ -68,7 +79,8 @@ TEST_CASE("the view of everything has the SPIR-V below its line and the ISA belo
   const ProfileTable profiled = profile();
   const SourceMap source = map();
   const std::string text = Annotator(profiled, source, {"issues", "long_scoreboard"}, {}).all(0);
-  const size_t line = text.find("     4               80       2      out_x = x;"), spirv = text.find("OpStore"), isa = text.find("st.global");
+  const size_t line = text.find("     4               80       2      out_x = x;"),
+               spirv = text.find("OpStore"), isa = text.find("st.global");
   CHECK(text.find("issues  long_scoreboard  number") != std::string::npos);
   CHECK(line < spirv);
   CHECK(spirv < isa);
@@ -76,7 +88,9 @@ TEST_CASE("the view of everything has the SPIR-V below its line and the ISA belo
   CHECK(text.find("exit;") == std::string::npos);  // of no line
 }
 
-TEST_CASE("a program that comes from no SPIR-V has its ISA below its lines, and says so where SPIR-V is asked for") {
+TEST_CASE(
+    "a program that comes from no SPIR-V has its ISA below its lines, and says so where SPIR-V is asked "
+    "for") {
   ProgramListing kernel = program();
   kernel.spirv.clear();
   for (ListedLine& line : kernel.isa) line.spirv = 0;
@@ -94,15 +108,21 @@ TEST_CASE("a file whose text is not known shows the lines with figures, and no o
   CHECK(std::count(text.begin(), text.end(), '\n') == 5);  // heading, columns, two lines, an empty one
 }
 
-TEST_CASE("heat is coloured on terminals that can, and a measure that does not exist is refused with those that do") {
+TEST_CASE(
+    "heat is coloured on terminals that can, and a measure that does not exist is refused with those that "
+    "do") {
   const ProfileTable profiled = profile();
   const SourceMap source = map();
   CHECK(Annotator(profiled, source, kUsualMeasures, {}).isa(0).find('\x1b') == std::string::npos);
-  CHECK(Annotator(profiled, source, kUsualMeasures, {.utf8 = true, .colour = true}).isa(0).find("\x1b[1;31m73.5 %") != std::string::npos);
-  CHECK_THROWS_WITH(Annotator(profiled, source, {"heat"}, {}), Catch::Contains("'heat'") && Catch::Contains("long_scoreboard"));
+  CHECK(Annotator(profiled, source, kUsualMeasures, {.utf8 = true, .colour = true})
+            .isa(0)
+            .find("\x1b[1;31m73.5 %") != std::string::npos);
+  CHECK_THROWS_WITH(Annotator(profiled, source, {"heat"}, {}),
+                    Catch::Contains("'heat'") && Catch::Contains("long_scoreboard"));
 }
 
-TEST_CASE("a source document that is written and read again says the same, texts that are not known included") {
+TEST_CASE(
+    "a source document that is written and read again says the same, texts that are not known included") {
   ProgramListing two = program();
   two.files = {"gone.glsl", "a.rgen"};
   for (ListedLine& line : two.isa) line.file = line.line == 2 ? 1 : 0;

@@ -38,11 +38,12 @@ float over(float a) { return over(int(a)); }
 )";
 
 CallTree tree() {
-  return CallTree({"a.rgen", "b.glsl", "gone.glsl"}, [](const std::string& file) -> std::optional<std::string> {
-    if (file == "a.rgen") return kMain;
-    if (file == "b.glsl") return kInclude;
-    return std::nullopt;
-  });
+  return CallTree({"a.rgen", "b.glsl", "gone.glsl"},
+                  [](const std::string& file) -> std::optional<std::string> {
+                    if (file == "a.rgen") return kMain;
+                    if (file == "b.glsl") return kInclude;
+                    return std::nullopt;
+                  });
 }
 using Frames = std::vector<std::string>;
 
@@ -51,13 +52,16 @@ using Frames = std::vector<std::string>;
 TEST_CASE("a line stands under the calls that lead to it") {
   CHECK(tree().frames("a.rgen", 11) == Frames{"main", "a.rgen:11"});
   CHECK(tree().frames("b.glsl", 7) == Frames{"main", "a.rgen:11", "shade", "b.glsl:7"});
-  CHECK(tree().frames("b.glsl", 2) == Frames{"main", "a.rgen:11", "shade", "b.glsl:6", "fresnel", "b.glsl:2"});
+  CHECK(tree().frames("b.glsl", 2) ==
+        Frames{"main", "a.rgen:11", "shade", "b.glsl:6", "fresnel", "b.glsl:2"});
 }
 
 TEST_CASE("a function that is called from several places, has overloads or calls itself begins its stack") {
   CHECK(tree().frames("a.rgen", 5) == Frames{"twice", "a.rgen:5"});
   CHECK(tree().frames("b.glsl", 9) == Frames{"over", "b.glsl:9"});
-  const CallTree self({"c"}, [](const std::string&) { return std::optional<std::string>("void f(int n) {\n  f(n - 1);\n}\n"); });
+  const CallTree self({"c"}, [](const std::string&) {
+    return std::optional<std::string>("void f(int n) {\n  f(n - 1);\n}\n");
+  });
   CHECK(self.frames("c", 2) == Frames{"f", "c:2"});
 }
 
@@ -67,7 +71,9 @@ TEST_CASE("a line outside of all functions, or of a file that cannot be read, st
 }
 
 TEST_CASE("functions that call each other end their stack") {
-  const CallTree two({"c"}, [](const std::string&) { return std::optional<std::string>("void f() {\n  g();\n}\nvoid g() {\n  f();\n}\n"); });
+  const CallTree two({"c"}, [](const std::string&) {
+    return std::optional<std::string>("void f() {\n  g();\n}\nvoid g() {\n  f();\n}\n");
+  });
   CHECK(two.frames("c", 2).size() <= 6);
 }
 
@@ -79,7 +85,9 @@ TEST_CASE("stacks of a profile have the stage, the calls and the reason") {
   profile.rows.push_back(row);
   row.file = "a.rgen", row.line = 11, row.slots = {5, 0};
   profile.rows.push_back(row);
-  const std::string folded = profile_folded(profile, [](const std::string& file) { return std::optional<std::string>(file == "a.rgen" ? kMain : kInclude); });
+  const std::string folded = profile_folded(profile, [](const std::string& file) {
+    return std::optional<std::string>(file == "a.rgen" ? kMain : kInclude);
+  });
   CHECK(folded ==
         "raygen;main;a.rgen:11;issued 5\n"
         "raygen;main;a.rgen:11;shade;b.glsl:6;fresnel;b.glsl:2;issued 3\n"

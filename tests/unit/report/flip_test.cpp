@@ -26,7 +26,9 @@ Picture make(const Channel& channel) {
 }
 
 Picture noise(uint32_t seed) {
-  return make([&](uint32_t x, uint32_t y, uint32_t c) { return float((x * 37 + y * 101 + c * 53 + x * y * 7 + seed * 71) % 97) / 96.0f; });
+  return make([&](uint32_t x, uint32_t y, uint32_t c) {
+    return float((x * 37 + y * 101 + c * 53 + x * y * 7 + seed * 71) % 97) / 96.0f;
+  });
 }
 Picture edge(uint32_t at) {
   return make([&](uint32_t x, uint32_t, uint32_t) { return x >= at ? 0.75f : 0.25f; });
@@ -41,14 +43,17 @@ std::pair<Picture, Picture> pair(const std::string& name) {
   if (name == "edge") return {edge(9), edge(11)};
   if (name == "ends") return {plain(0), plain(1)};
   const auto red = [](bool spot) {
-    return make([=](uint32_t x, uint32_t y, uint32_t c) { return c == (spot && x >= 6 && x < 13 && y >= 4 && y < 9 ? 1u : 0u) ? 1.0f : 0.0f; });
+    return make([=](uint32_t x, uint32_t y, uint32_t c) {
+      return c == (spot && x >= 6 && x < 13 && y >= 4 && y < 9 ? 1u : 0u) ? 1.0f : 0.0f;
+    });
   };
   return {red(false), red(true)};
 }
 
 }  // namespace
 
-TEST_CASE("FLIP is what the paper's formulas give, pixel by pixel and in the mean, at three viewing distances") {
+TEST_CASE(
+    "FLIP is what the paper's formulas give, pixel by pixel and in the mean, at three viewing distances") {
   std::ifstream file(GLINT_SOURCE_DIR "/tests/unit/report/flip_values.csv");
   std::string line, name, before;
   REQUIRE(std::getline(file, line));
@@ -73,7 +78,8 @@ TEST_CASE("FLIP is what the paper's formulas give, pixel by pixel and in the mea
 }
 
 TEST_CASE("FLIP of a picture and itself is 0, and it is the same both ways round") {
-  const report::Flip same = report::flip(noise(3), noise(3)), there = report::flip(noise(1), edge(9)), back = report::flip(edge(9), noise(1));
+  const report::Flip same = report::flip(noise(3), noise(3)), there = report::flip(noise(1), edge(9)),
+                     back = report::flip(edge(9), noise(1));
   CHECK(same.mean == 0);
   CHECK(std::all_of(same.map.begin(), same.map.end(), [](float v) { return v == 0; }));
   CHECK(there.map == back.map);
@@ -81,7 +87,8 @@ TEST_CASE("FLIP of a picture and itself is 0, and it is the same both ways round
 }
 
 TEST_CASE("FLIP of black and white is near its end, nearer than of greys, and no value leaves 0 to 1") {
-  const double ends = report::flip(plain(0), plain(1)).mean, greys = report::flip(plain(0.4f), plain(0.5f)).mean;
+  const double ends = report::flip(plain(0), plain(1)).mean,
+               greys = report::flip(plain(0.4f), plain(0.5f)).mean;
   CHECK(ends > 0.96);
   CHECK(ends <= 1.0);
   CHECK(greys > 0.05);
@@ -89,7 +96,9 @@ TEST_CASE("FLIP of black and white is near its end, nearer than of greys, and no
   for (const float v : report::flip(noise(1), noise(2), 5).map) CHECK((v >= 0 && v <= 1));
 }
 
-TEST_CASE("FLIP sees less of fine noise from far away than from near, and has no mean with what is not finite in one picture only") {
+TEST_CASE(
+    "FLIP sees less of fine noise from far away than from near, and has no mean with what is not finite in "
+    "one picture only") {
   CHECK(report::flip(noise(1), noise(2), 200).mean < report::flip(noise(1), noise(2), 20).mean);
   Picture broken = plain(0);
   broken.rgb[7] = std::nanf("");
@@ -101,7 +110,8 @@ TEST_CASE("FLIP sees less of fine noise from far away than from near, and has no
   CHECK(beyond.map[1] == 0);
 }
 
-TEST_CASE("FLIP refuses pictures of two sizes and absurd viewing distances, and draws its map from dark to light") {
+TEST_CASE(
+    "FLIP refuses pictures of two sizes and absurd viewing distances, and draws its map from dark to light") {
   CHECK_THROWS_AS(report::flip(plain(0), Picture{1, 1, {0, 0, 0}}), UserError);
   CHECK_THROWS_AS(report::flip(plain(0), plain(1), 0), UserError);
   const Picture drawn = report::flip_picture({3, 1, {}}, {0.5, {0, 0.5f, 1}});

@@ -17,7 +17,9 @@ using report::Picture;
 
 namespace {
 
-Picture plain(uint32_t width, uint32_t height, float value) { return {width, height, std::vector<float>(size_t(width) * height * 3, value)}; }
+Picture plain(uint32_t width, uint32_t height, float value) {
+  return {width, height, std::vector<float>(size_t(width) * height * 3, value)};
+}
 
 Picture noise(uint32_t width, uint32_t height, unsigned seed) {
   std::mt19937 random(seed);
@@ -43,12 +45,16 @@ double ssim_as_defined(const Picture& a, const Picture& b) {
       const auto mean = [&](auto&& value) {
         double sum = 0;
         for (int y = -5; y <= 5; ++y)
-          for (int x = -5; x <= 5; ++x) sum += weight(x, y) / weight_sum * value(cx + size_t(x + 5) - 5, cy + size_t(y + 5) - 5);
+          for (int x = -5; x <= 5; ++x)
+            sum += weight(x, y) / weight_sum * value(cx + size_t(x + 5) - 5, cy + size_t(y + 5) - 5);
         return sum;
       };
-      const double ma = mean([&](size_t x, size_t y) { return grey(a, x, y); }), mb = mean([&](size_t x, size_t y) { return grey(b, x, y); });
-      const double va = mean([&](size_t x, size_t y) { return std::pow(grey(a, x, y) - ma, 2); }), vb = mean([&](size_t x, size_t y) { return std::pow(grey(b, x, y) - mb, 2); });
-      const double cov = mean([&](size_t x, size_t y) { return (grey(a, x, y) - ma) * (grey(b, x, y) - mb); });
+      const double ma = mean([&](size_t x, size_t y) { return grey(a, x, y); }),
+                   mb = mean([&](size_t x, size_t y) { return grey(b, x, y); });
+      const double va = mean([&](size_t x, size_t y) { return std::pow(grey(a, x, y) - ma, 2); }),
+                   vb = mean([&](size_t x, size_t y) { return std::pow(grey(b, x, y) - mb, 2); });
+      const double cov =
+          mean([&](size_t x, size_t y) { return (grey(a, x, y) - ma) * (grey(b, x, y) - mb); });
       all += (2 * ma * mb + 1e-4) * (2 * cov + 9e-4) / ((ma * ma + mb * mb + 1e-4) * (va + vb + 9e-4));
     }
   return all / double(windows);
@@ -82,8 +88,11 @@ TEST_CASE("one channel of one pixel that is 0.5 off gives the error worked out b
   CHECK(shown.rgb[3 * 8] == 0.0f);
 }
 
-TEST_CASE("what is not finite in one picture only is apart and leaves no measure, and what is the same in both adds nothing") {
-  constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
+TEST_CASE(
+    "what is not finite in one picture only is apart and leaves no measure, and what is the same in both "
+    "adds nothing") {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN(),
+                  kInf = std::numeric_limits<float>::infinity();
   const Picture black = plain(12, 11, 0);
   Picture broken = black;
   broken.rgb[3 * 5] = kNan;
@@ -118,7 +127,8 @@ TEST_CASE("structural similarity is that of the paper's definition") {
 
   CHECK(report::difference(a, b).ssim == Approx(ssim_as_defined(a, b)).epsilon(1e-9));
   CHECK(report::difference(a, b).ssim < 0.99);
-  CHECK(report::difference(plain(11, 11, 0.2f), plain(11, 11, 0.6f)).ssim == Approx((2 * 0.12 + 1e-4) / (0.04 + 0.36 + 1e-4)).epsilon(1e-6));
+  CHECK(report::difference(plain(11, 11, 0.2f), plain(11, 11, 0.6f)).ssim ==
+        Approx((2 * 0.12 + 1e-4) / (0.04 + 0.36 + 1e-4)).epsilon(1e-6));
   CHECK(std::isnan(report::difference(plain(10, 11, 0), plain(10, 11, 1)).ssim));
 }
 
@@ -133,7 +143,8 @@ TEST_CASE("pictures of two sizes are refused, and so are damaged files") {
 }
 
 TEST_CASE("what a run writes as PFM and PNG reads back as it was") {
-  const std::vector<float> rgba = {0, 0.5f, 1, 1, 0.25f, 2.5f, -1, 1, 0.1f, 0.2f, 0.3f, 1, 0.4f, 0.6f, 0.8f, 1};
+  const std::vector<float> rgba = {0,    0.5f, 1,    1, 0.25f, 2.5f, -1,   1,
+                                   0.1f, 0.2f, 0.3f, 1, 0.4f,  0.6f, 0.8f, 1};
   const report::ImageView view{2, 2, rgba};
   const std::string base = (std::filesystem::temp_directory_path() / "glint_image_compare_test").string();
   std::ofstream(base + ".pfm", std::ios::binary) << report::pfm_bytes(view);

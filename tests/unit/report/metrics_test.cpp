@@ -31,8 +31,11 @@ RunRecord small_run() {
       "gpu.rt_unit[0].rt.max_ray_nodes,7,node,a\n"
       "gpu.rt_unit[1].rt.max_ray_nodes,9,node,a\n",
       "stats.csv");
-  run.add_facts(R"({"scene": {"name": "SHIP", "triangles": 6255}, "structures": {"top_depth": 1, "bottom_depth": 11}, "width": 16})", "run.json");
-  run.add_config("cores = 8  # [core] of = 3\nname = \"8\"\n[core]\nwarps = 32 # a\n[rt.box]\nlatency = 13\n");
+  run.add_facts(
+      R"({"scene": {"name": "SHIP", "triangles": 6255}, "structures": {"top_depth": 1, "bottom_depth": 11}, "width": 16})",
+      "run.json");
+  run.add_config(
+      "cores = 8  # [core] of = 3\nname = \"8\"\n[core]\nwarps = 32 # a\n[rt.box]\nlatency = 13\n");
   return run;
 }
 
@@ -49,7 +52,8 @@ TEST_CASE("a formula multiplies before it adds, from left to right, and keeps pa
   const RunRecord run = small_run();
   CHECK(evaluate("1 + 2 * 3 - 8 / 4 / 2", run) == 6.0);
   CHECK(evaluate("(1 + 2) * 3", run) == 9.0);
-  CHECK(evaluate("run(scene.triangles) - config(cores) * config(core.warps) + config(rt.box.latency)", run) == 6255.0 - 256 + 13);
+  CHECK(evaluate("run(scene.triangles) - config(cores) * config(core.warps) + config(rt.box.latency)", run) ==
+        6255.0 - 256 + 13);
 }
 
 TEST_CASE("a formula has no value where a statistic, a fact or a divisor is missing") {
@@ -75,7 +79,9 @@ bool stands_alone(std::string_view text) {
   return true;
 }
 
-TEST_CASE("there are 35 metrics of the GPU, 29 of the RT unit and 23 of the scene, each name once, each with a formula or a reason") {
+TEST_CASE(
+    "there are 35 metrics of the GPU, 29 of the RT unit and 23 of the scene, each name once, each with a "
+    "formula or a reason") {
   std::set<std::string_view> names;
   std::vector<size_t> sizes;
   for (const MetricGroup& group : metric_groups()) {
@@ -116,8 +122,10 @@ TEST_CASE("Vulkan-Sim's names are each once, and what has no value is a comment 
     CAPTURE(stat.name);
     CHECK(names.insert(stat.name).second);
     CHECK(stands_alone(stat.note));
-    if (stat.formula.empty()) CHECK(!stat.note.empty());
-    else CHECK_NOTHROW(paths_in(std::string(stat.formula)));
+    if (stat.formula.empty())
+      CHECK(!stat.note.empty());
+    else
+      CHECK_NOTHROW(paths_in(std::string(stat.formula)));
   }
   const std::string text = vulkan_sim_text(small_run());
   CHECK(text.find("gpu_tot_ipc = 2\n") != std::string::npos);
@@ -128,7 +136,8 @@ TEST_CASE("Vulkan-Sim's names are each once, and what has no value is a comment 
 TEST_CASE("files that no run has written are refused with the file's name") {
   RunRecord run;
   CHECK_THROWS_WITH(run.add_stats("a,b\n", "some.csv"), Catch::Contains("some.csv"));
-  CHECK_THROWS_WITH(run.add_stats("path,value,unit,doc\nx,none,u,d\n", "some.csv"), Catch::Contains("some.csv:2"));
+  CHECK_THROWS_WITH(run.add_stats("path,value,unit,doc\nx,none,u,d\n", "some.csv"),
+                    Catch::Contains("some.csv:2"));
   CHECK_THROWS_WITH(run.add_facts("[1]", "some.json"), Catch::Contains("some.json"));
   CHECK_THROWS_AS(RunRecord::read("/nowhere"), UserError);
 }

@@ -18,7 +18,9 @@ namespace {
 
 report::RunRecord run(const std::string& cycles, const std::string& lanes) {
   report::RunRecord out;
-  out.add_stats("path,value,unit,doc\ngpu.cycles," + cycles + ",cycle,\ngpu.core[0].lane_instructions," + lanes + ",instruction,\n", "stats.csv");
+  out.add_stats("path,value,unit,doc\ngpu.cycles," + cycles + ",cycle,\ngpu.core[0].lane_instructions," +
+                    lanes + ",instruction,\n",
+                "stats.csv");
   return out;
 }
 
@@ -33,7 +35,9 @@ TEST_CASE("base64 pads as RFC 4648 shows") {
 }
 
 TEST_CASE("a configuration file reads back with units and strings, whatever stands in a comment") {
-  const auto rows = report::config_rows("# title = 1\ncores = 8  # [core] Cores = many. (1 to 256)\n\n[core.units]\nissue = \"g#to\"  # Which # warp.\n");
+  const auto rows = report::config_rows(
+      "# title = 1\ncores = 8  # [core] Cores = many. (1 to 256)\n\n[core.units]\nissue = \"g#to\"  # Which "
+      "# warp.\n");
 
   REQUIRE(rows.size() == 2);
   CHECK(rows[0].key == "cores");
@@ -46,7 +50,8 @@ TEST_CASE("a configuration file reads back with units and strings, whatever stan
 }
 
 TEST_CASE("only keys with another value than the preset's are changes") {
-  const auto changes = report::config_changes(report::config_rows("a = 1\nb = 2\nc = 3\n"), report::config_rows("a = 1\nb = 5\n"));
+  const auto changes = report::config_changes(report::config_rows("a = 1\nb = 2\nc = 3\n"),
+                                              report::config_rows("a = 1\nb = 5\n"));
 
   REQUIRE(changes.size() == 2);
   CHECK(changes[0].row.key == "b");
@@ -56,7 +61,8 @@ TEST_CASE("only keys with another value than the preset's are changes") {
 }
 
 TEST_CASE("instances of a unit stand side by side, and what is zero everywhere is one zero") {
-  const Json stats = Json::parse(R"({"gpu": {"core[0]": {"hits": {"value": {"a": 1, "b": 0}, "unit": "x", "doc": "d"}, "late": {"value": [1, 0, 2, 0], "unit": "y", "doc": "e"}},
+  const Json stats = Json::parse(
+      R"({"gpu": {"core[0]": {"hits": {"value": {"a": 1, "b": 0}, "unit": "x", "doc": "d"}, "late": {"value": [1, 0, 2, 0], "unit": "y", "doc": "e"}},
                                               "core[1]": {"hits": {"value": {"a": 0, "b": 0}, "unit": "x", "doc": "d"}, "late": {"value": [0, 0, 0, 0], "unit": "y", "doc": "e"}}}})");
   Json docs = Json::object();
 
@@ -71,7 +77,10 @@ TEST_CASE("instances of a unit stand side by side, and what is zero everywhere i
 TEST_CASE("a statistic without a number is damage, in its table as in its tree") {
   Json docs = Json::object();
   for (const char* value : {"null", "\"x\"", "[1, null]", "{\"a\": true}"})
-    CHECK_THROWS_AS(report::page_stats(Json::parse(R"({"gpu": {"hits": {"value": )" + std::string(value) + R"(, "unit": "x", "doc": "d"}}})"), docs), UserError);
+    CHECK_THROWS_AS(report::page_stats(Json::parse(R"({"gpu": {"hits": {"value": )" + std::string(value) +
+                                                   R"(, "unit": "x", "doc": "d"}}})"),
+                                       docs),
+                    UserError);
   for (const char* value : {"nan", "inf", "", "12x"}) CHECK_THROWS_AS(run(value, "3000"), UserError);
 }
 
@@ -83,14 +92,18 @@ TEST_CASE("metrics that only one run has are named") {
   CHECK(text.find("metrics only A has: insn, ipc") != std::string::npos);
   CHECK(text.find("only B") == std::string::npos);
   CHECK(text.find("cycles") == std::string::npos);
-  CHECK(report::uncompared_text(cut, run("1000", "3000")).find("metrics only B has: insn, ipc") != std::string::npos);
+  CHECK(report::uncompared_text(cut, run("1000", "3000")).find("metrics only B has: insn, ipc") !=
+        std::string::npos);
   CHECK(report::uncompared_text(cut, cut) == "");
 }
 
 TEST_CASE("changes are relative to the first run, and the largest comes first") {
   const auto changes = report::changes(run("1000", "3000"), run("900", "3000"));
 
-  const auto of = [&](const std::string& name) { return *std::find_if(changes.begin(), changes.end(), [&](const auto& c) { return c.metric->name == name; }); };
+  const auto of = [&](const std::string& name) {
+    return *std::find_if(changes.begin(), changes.end(),
+                         [&](const auto& c) { return c.metric->name == name; });
+  };
   CHECK(*of("cycles").relative == Approx(-0.1));
   CHECK(*of("ipc").relative == Approx(1.0 / 9));
   CHECK(*of("insn").relative == 0);
@@ -110,13 +123,19 @@ TEST_CASE("a condition holds on one side of its bound only") {
 }
 
 TEST_CASE("a condition that is none is refused with the form that is expected") {
-  for (const char* text : {"ipc", "ipc<2", "<2%", "ipc<x%", "ipc<%", "ipc<nan%", "ipc>inf%", "ipcc<2%"}) CHECK_THROWS_AS(report::parse_condition(text), UserError);
+  for (const char* text : {"ipc", "ipc<2", "<2%", "ipc<x%", "ipc<%", "ipc<nan%", "ipc>inf%", "ipcc<2%"})
+    CHECK_THROWS_AS(report::parse_condition(text), UserError);
 }
 
 TEST_CASE("no text of a run can end the page's script") {
-  const Json data = Json::parse(R"({"runs": [{"directory": "</script><b>", "run": {"scene": {"name": "<i>"}, "shader": "s", "config": {"name": "c"}}, "stats": {}, "metrics": {}, "config": {},
+  const Json data = Json::parse(
+      R"({"runs": [{"directory": "</script><b>", "run": {"scene": {"name": "<i>"}, "shader": "s", "config": {"name": "c"}}, "stats": {}, "metrics": {}, "config": {},
                                               "preset": {"name": "<u>", "changes": {}}}], "stat_docs": {}, "metric_docs": [], "key_docs": {}})");
-  const report::PageParts parts{.frame = "<!--title--><!--style--><!--noscript--><!--sections--><!--data--><!--script-->", .style = "", .script = "run()", .unpack = ""};
+  const report::PageParts parts{
+      .frame = "<!--title--><!--style--><!--noscript--><!--sections--><!--data--><!--script-->",
+      .style = "",
+      .script = "run()",
+      .unpack = ""};
 
   const std::string page = report::page(data, parts);
 
@@ -131,11 +150,16 @@ TEST_CASE("no text of a suite can end the page's script or be read as HTML") {
       "characterizations": [{"source": "</script><b>", "missing": "glint characterize <u>"}],
       "models": [{"source": "<s>", "models": [{"name": "<i>", "r2": 1, "mape": 0, "ratio": 1, "worst": "<em>", "worst_error": 0}],
                   "workloads": [{"name": "<q>", "cycles": 2, "predicted": [3]}]}]})");
-  const report::PageParts parts{.frame = "<!--title--><!--style--><!--noscript--><!--sections--><!--data--><!--script-->", .style = "", .script = "run()", .unpack = ""};
+  const report::PageParts parts{
+      .frame = "<!--title--><!--style--><!--noscript--><!--sections--><!--data--><!--script-->",
+      .style = "",
+      .script = "run()",
+      .unpack = ""};
 
   const std::string page = report::page(data, parts);
 
-  for (const char* text : {"</script><b>", "<u>", "<s>", "<i>", "<em>", "<q>"}) CHECK(page.find(text) == std::string::npos);
+  for (const char* text : {"</script><b>", "<u>", "<s>", "<i>", "<em>", "<q>"})
+    CHECK(page.find(text) == std::string::npos);
   CHECK(page.find("&lt;q&gt;") != std::string::npos);
   CHECK(page.find("id=\"configuration\"") == std::string::npos);
 }

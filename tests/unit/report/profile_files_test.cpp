@@ -1,8 +1,9 @@
 // The files of a profile: what is written is read again, and nothing is lost on the way.
 // SPDX-License-Identifier: Apache-2.0
+#include "report/profile_files.h"
+
 #include "base/diagnostics.h"
 #include "report/annotate.h"
-#include "report/profile_files.h"
 #include "tests/support/catch.h"
 
 namespace glint::report {
@@ -10,7 +11,8 @@ namespace {
 
 ProfileRow row(const std::string& file, uint32_t line, uint32_t index, std::vector<uint64_t> slots) {
   ProfileRow out;
-  out.shader = "a.rgen", out.stage = "raygen", out.op = "ld.global.u32", out.file = file, out.line = line, out.index = index;
+  out.shader = "a.rgen", out.stage = "raygen", out.op = "ld.global.u32", out.file = file, out.line = line,
+  out.index = index;
   out.issues = slots[0], out.lanes = slots[0] * 16, out.sectors = 4, out.slots = std::move(slots);
   return out;
 }
@@ -19,7 +21,8 @@ ProfileRow row(const std::string& file, uint32_t line, uint32_t index, std::vect
 ProfileTable sample() {
   ProfileTable out;
   out.reasons = {"issued", "long_scoreboard", "no_warp"};
-  out.rows = {row("x, \"y\".glsl", 3, 0, {10, 90, 0}), row("x, \"y\".glsl", 3, 1, {10, 40, 0}), row("b.glsl", 1, 2, {5, 45, 0}), row("", 0, 3, {1, 0, 0})};
+  out.rows = {row("x, \"y\".glsl", 3, 0, {10, 90, 0}), row("x, \"y\".glsl", 3, 1, {10, 40, 0}),
+              row("b.glsl", 1, 2, {5, 45, 0}), row("", 0, 3, {1, 0, 0})};
   ProfileRow nowhere;
   nowhere.slots = {0, 0, 99};
   out.rows.push_back(nowhere);
@@ -67,9 +70,16 @@ TEST_CASE("folded stacks have each cycle once") {
         "raygen;x, \"y\".glsl:3;long_scoreboard 130\n");
 }
 
-TEST_CASE("folded stacks follow the calls that the compiler kept, each chain by itself, and end where they are unknown") {
+TEST_CASE(
+    "folded stacks follow the calls that the compiler kept, each chain by itself, and end where they are "
+    "unknown") {
   ProfileTable profile = sample();
-  profile.programs = {{"a.rgen", "raygen", {"a.rgen", "b.glsl"}, {}, {}, {{"main", 0, 0, 0}, {"shade", 1, 0, 7}, {"shade", 1, 0, 9}}}};
+  profile.programs = {{"a.rgen",
+                       "raygen",
+                       {"a.rgen", "b.glsl"},
+                       {},
+                       {},
+                       {{"main", 0, 0, 0}, {"shade", 1, 0, 7}, {"shade", 1, 0, 9}}}};
   profile.rows[0].scope = 2, profile.rows[1].scope = 3, profile.rows[2].scope = 1;
   const std::string folded = profile_folded(profile);
   CHECK(folded.find("raygen;main;a.rgen:7;shade;x, \"y\".glsl:3;issued 10\n") != std::string::npos);

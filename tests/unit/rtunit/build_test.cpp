@@ -34,13 +34,16 @@ TEST_CASE("the two triangles of a quad share a leaf") {
   std::vector<uint32_t> indices;
   for (uint32_t i = 0; i < 50; ++i) {
     const float x = 3 * float(i);
-    for (const std::array<float, 3>& p : {std::array{x, 0.f, 0.f}, {x + 1, 0.f, 0.f}, {x + 1, 1.f, 0.f}, {x, 1.f, 0.f}}) quads.push_back(p);
+    for (const std::array<float, 3>& p :
+         {std::array{x, 0.f, 0.f}, {x + 1, 0.f, 0.f}, {x + 1, 1.f, 0.f}, {x, 1.f, 0.f}})
+      quads.push_back(p);
     for (uint32_t k : {0, 1, 2, 0, 2, 3}) indices.push_back(4 * i + k);
   }
   Geometry g = triangles(quads);
   g.indices = indices;
   mem::AddressSpace memory;
-  const StructureInfo paired = build_bottom(memory, "p", {{g}}), single = build_bottom(memory, "s", {{g}}, {"bvh6", false});
+  const StructureInfo paired = build_bottom(memory, "p", {{g}}),
+                      single = build_bottom(memory, "s", {{g}}, {"bvh6", false});
   CHECK(paired.leaves == 50);
   CHECK(single.leaves == 100);
   CHECK(paired.primitives == 100);
@@ -48,11 +51,13 @@ TEST_CASE("the two triangles of a quad share a leaf") {
   const StructureInfo top = build_top(memory, "t", std::vector<Instance>(1), std::vector{paired});
   for (uint32_t i = 0; i < 100; ++i) {
     const bool second = i % 2;
-    RayState state = ray_of(top.address, {3 * float(i / 2) + (second ? 0.25f : 0.75f), second ? 0.75f : 0.25f, 5}, {0, 0, -1});
+    RayState state = ray_of(
+        top.address, {3 * float(i / 2) + (second ? 0.25f : 0.75f), second ? 0.75f : 0.25f, 5}, {0, 0, -1});
     REQUIRE(begin(state, memory));
     run(state, memory);
     CHECK(state.committed.primitive == i);
-    CHECK(state.committed.u == (second ? 0.25f : 0.5f));  // weights in the order of the triangle's own corners
+    CHECK(state.committed.u ==
+          (second ? 0.25f : 0.5f));  // weights in the order of the triangle's own corners
     CHECK(state.committed.v == (second ? 0.5f : 0.25f));
   }
 }
@@ -61,13 +66,15 @@ TEST_CASE("the same geometry gives the same bytes") {
   Random random{2};
   const Positions positions = soup(random, 20000, 10, 0.2f);
   mem::AddressSpace a, b;
-  CHECK(bytes_of(a, build_bottom(a, "b", {{triangles(positions)}})) == bytes_of(b, build_bottom(b, "b", {{triangles(positions)}})));
+  CHECK(bytes_of(a, build_bottom(a, "b", {{triangles(positions)}})) ==
+        bytes_of(b, build_bottom(b, "b", {{triangles(positions)}})));
 }
 
 TEST_CASE("thousands of identical triangles still make a tree that a ray's stack can hold") {
   Positions positions;
   for (int i = 0; i < 5000; ++i)
-    for (const std::array<float, 3>& p : {std::array{0.f, 0.f, 0.f}, {1.f, 0.f, 0.f}, {0.f, 1.f, 0.f}}) positions.push_back(p);
+    for (const std::array<float, 3>& p : {std::array{0.f, 0.f, 0.f}, {1.f, 0.f, 0.f}, {0.f, 1.f, 0.f}})
+      positions.push_back(p);
   mem::AddressSpace memory;
   const StructureInfo info = build_bottom(memory, "b", {{triangles(positions)}}, {"bvh6", false});
   CHECK(info.stack_need <= kStackEntries);
@@ -123,10 +130,12 @@ TEST_CASE("input that cannot be built is refused with its index") {
   const StructureInfo bottom = build_bottom(memory, "b", {{triangles(positions)}});
   std::vector<Instance> instances(2);
   instances[1].transform = {1, 0, 0, 0, 2, 0, 0, 0, 0, 0, 1, 0};
-  CHECK_THROWS_WITH(build_top(memory, "t", instances, std::vector{bottom}), Catch::Contains("instance 1 cannot be inverted"));
+  CHECK_THROWS_WITH(build_top(memory, "t", instances, std::vector{bottom}),
+                    Catch::Contains("instance 1 cannot be inverted"));
   instances[1] = {};
   instances[1].bottom = 1;
-  CHECK_THROWS_WITH(build_top(memory, "t", instances, std::vector{bottom}), Catch::Contains("instance 1 names bottom level 1 of 1"));
+  CHECK_THROWS_WITH(build_top(memory, "t", instances, std::vector{bottom}),
+                    Catch::Contains("instance 1 names bottom level 1 of 1"));
 }
 
 // Must fail: each kind of damage turns the validator red.
@@ -144,11 +153,11 @@ TEST_CASE("the validator finds damage") {
     view[offset] = before;
     return !errors.empty();
   };
-  CHECK(damaged(0, std::byte{1}));                     // the magic number
-  CHECK(damaged(32, std::byte{99}));                   // number of primitives
-  CHECK(damaged(64 + 12, std::byte{200}));             // the first child's block
-  CHECK(damaged(64 + 16, std::byte{1}));               // an exponent: the boxes shrink
-  CHECK(damaged(64 + 19, std::byte{1}));               // five children lost
+  CHECK(damaged(0, std::byte{1}));          // the magic number
+  CHECK(damaged(32, std::byte{99}));        // number of primitives
+  CHECK(damaged(64 + 12, std::byte{200}));  // the first child's block
+  CHECK(damaged(64 + 16, std::byte{1}));    // an exponent: the boxes shrink
+  CHECK(damaged(64 + 19, std::byte{1}));    // five children lost
 }
 
 }  // namespace

@@ -30,7 +30,8 @@ struct Layers {
       wall = {{-1, -1, z}, {3, -1, z}, {-1, 3, z}};
       level.geometries.push_back(triangles(wall));
     }
-    top = build_top(memory, "top", std::vector<Instance>(1), std::vector{build_bottom(memory, "bottom", level)});
+    top = build_top(memory, "top", std::vector<Instance>(1),
+                    std::vector{build_bottom(memory, "bottom", level)});
     table.row.resize(rows);
   }
   RayState shoot(uint32_t flags = 0) {
@@ -58,7 +59,9 @@ TEST_CASE("a ray runs past candidates and stops at its end with all of them in t
   CHECK(world.table.overflows == 0);
 }
 
-TEST_CASE("a full table stops the ray, which goes on when all of it is decided, and no candidate is lost or seen twice") {
+TEST_CASE(
+    "a full table stops the ray, which goes on when all of it is decided, and no candidate is lost or seen "
+    "twice") {
   Layers world(20, 4);
   RayState state = world.shoot();
   std::vector<float> seen;

@@ -7,7 +7,9 @@ namespace glint::rt::test {
 namespace {
 
 // Counterclockwise seen from +z: a ray along -z sees its front (normal towards the origin of the ray).
-Positions triangle_at(float z) { return {{-1, -1, z}, {3, -1, z}, {-1, 3, z}}; }
+Positions triangle_at(float z) {
+  return {{-1, -1, z}, {3, -1, z}, {-1, 3, z}};
+}
 
 struct World {
   mem::AddressSpace memory;
@@ -84,7 +86,8 @@ TEST_CASE("a triangle at the ray's end stays out when a box's hit lies there") {
   mem::AddressSpace memory;
   Instance of_triangle, of_box;
   of_box.bottom = 1;
-  const std::vector built{build_bottom(memory, "triangle", {{triangles(p, true)}}), build_bottom(memory, "box", {{procedural}})};
+  const std::vector built{build_bottom(memory, "triangle", {{triangles(p, true)}}),
+                          build_bottom(memory, "box", {{procedural}})};
   const StructureInfo top = build_top(memory, "top", std::vector{of_triangle, of_box}, built);
   RayState state = ray_of(top.address, {0, 0, 10}, {0, 0, -1}, 0, 10, 0);
   REQUIRE(begin(state, memory));
@@ -338,7 +341,8 @@ TEST_CASE("a ray ends as broken when overwritten nodes lead outside memory") {
 }
 
 TEST_CASE("triangles of no area are never hit") {
-  const Positions flat{{-1, 0, 0}, {1, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {1, 1, 0}, {1, 1, 0}, {-1, -1, 0}};
+  const Positions flat{{-1, 0, 0}, {1, 0, 0}, {0, 0, 0}, {0, 0, 0},  {0, 0, 0},
+                       {0, 0, 0},  {1, 1, 0}, {1, 1, 0}, {-1, -1, 0}};
   const World world({{triangles(flat)}});
   CHECK(world.top.primitives == 0);
   CHECK_FALSE(world.shoot().committed.valid());

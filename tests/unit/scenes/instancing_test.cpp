@@ -19,7 +19,8 @@ Model pyramid() {
   add_vertex(model, {2, 0, 0}, {}, 0, {1, 0});
   add_vertex(model, {0, 3, 0}, {}, 0, {0, 1});
   add_vertex(model, {0, 0, 5}, {}, 0, {1, 1});
-  for (const auto& t : {std::array<uint32_t, 3>{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}) add_triangle(model, t[0], t[1], t[2]);
+  for (const auto& t : {std::array<uint32_t, 3>{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}})
+    add_triangle(model, t[0], t[1], t[2]);
   compute_smooth_normals(model);
   return model;
 }
@@ -58,7 +59,8 @@ TEST_CASE("a flat body is moved with its normal, a line is not moved at all") {
   REQUIRE(found);
   const Model again = moved(flat, *found);
   for (size_t i = 0; i < 4; ++i)
-    for (size_t axis = 0; axis < 3; ++axis) CHECK(std::fabs(again.vertices[i].position[axis] - copy.vertices[i].position[axis]) < 1e-4f);
+    for (size_t axis = 0; axis < 3; ++axis)
+      CHECK(std::fabs(again.vertices[i].position[axis] - copy.vertices[i].position[axis]) < 1e-4f);
   Model line = flat;
   for (Vertex& v : line.vertices) v.position[1] = 0;
   CHECK_FALSE(affine_between(line, moved(line, kMatrix)));
@@ -80,7 +82,8 @@ TEST_CASE("copies become instances, in the order of the models, and count as tri
   Model repainted = moved(pyramid(), kMatrix), same_paint = repainted;
   for (Vertex& v : repainted.vertices) v.material = 2;
   for (Vertex& v : same_paint.vertices) v.material = 1;
-  Scene scene = scene_of({pyramid(), repainted, make_sphere("ball", {0, 0, 0}, 1, 0), same_paint, make_sphere("ball", {0, 0, 0}, 1, 0)});
+  Scene scene = scene_of({pyramid(), repainted, make_sphere("ball", {0, 0, 0}, 1, 0), same_paint,
+                          make_sphere("ball", {0, 0, 0}, 1, 0)});
   const uint64_t triangles = scene.triangles();
   share_copies(scene);
   REQUIRE(scene.models.size() == 4);  // spheres stay: their place is no matrix

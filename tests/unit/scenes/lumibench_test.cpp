@@ -24,26 +24,26 @@ namespace {
 struct Expected {
   const char* name;
   size_t models, textures;
-  double triangles;         // of the paper
+  double triangles;            // of the paper
   double low_hits, high_hits;  // of primary rays through pixel centres, %
   uint64_t hash;
 };
 
-constexpr Expected kBuiltIn[] = {
-    {"SPNZA", 1, 24, 262'267, 99, 100, 0x3a6b0fd54c7c813a},
-    {"CHSNT", 1, 2, 313'000, 45, 85, 0x64c669021d226a01},
-    {"BATH", 47, 0, 423'821, 99, 100, 0x43dfd01290e9907e},
-    {"CRNVL", 1, 0, 449'600, 50, 85, 0xe767d43ce1505ede},
-    {"FOX", 37, 0, 1'600'000, 20, 55, 0x07a9972b124c2b5e},
-    {"PARTY", 320, 0, 1'700'000, 88, 100, 0x403e36e30f5a2439},
-    {"SPRNG", 51, 0, 1'900'000, 99, 100, 0xb3696c2bf5569d87},
-    {"LANDS", 26, 0, 3'300'000, 99, 100, 0x5f9b0afc917735e2},
-    {"FRST", 283, 0, 4'200'000, 55, 75, 0x99968063edde6fde},
-    {"PARK", 37, 0, 6'000'000, 70, 92, 0x9025469eea9d2e4b},
-    {"CAR", 302, 244, 12'700'000, 55, 80, 0x30f847318d21ff0d},
-    {"ROBOT", 248, 0, 20'600'000, 45, 70, 0x51baddf7e4c15ec6}};
+constexpr Expected kBuiltIn[] = {{"SPNZA", 1, 24, 262'267, 99, 100, 0x3a6b0fd54c7c813a},
+                                 {"CHSNT", 1, 2, 313'000, 45, 85, 0x64c669021d226a01},
+                                 {"BATH", 47, 0, 423'821, 99, 100, 0x43dfd01290e9907e},
+                                 {"CRNVL", 1, 0, 449'600, 50, 85, 0xe767d43ce1505ede},
+                                 {"FOX", 37, 0, 1'600'000, 20, 55, 0x07a9972b124c2b5e},
+                                 {"PARTY", 320, 0, 1'700'000, 88, 100, 0x403e36e30f5a2439},
+                                 {"SPRNG", 51, 0, 1'900'000, 99, 100, 0xb3696c2bf5569d87},
+                                 {"LANDS", 26, 0, 3'300'000, 99, 100, 0x5f9b0afc917735e2},
+                                 {"FRST", 283, 0, 4'200'000, 55, 75, 0x99968063edde6fde},
+                                 {"PARK", 37, 0, 6'000'000, 70, 92, 0x9025469eea9d2e4b},
+                                 {"CAR", 302, 244, 12'700'000, 55, 80, 0x30f847318d21ff0d},
+                                 {"ROBOT", 248, 0, 20'600'000, 45, 70, 0x51baddf7e4c15ec6}};
 
-constexpr double kQuick = 2e6;  // triangles; larger scenes only with GLINT_LARGE_SCENES, they take seconds and gigabytes
+constexpr double kQuick =
+    2e6;  // triangles; larger scenes only with GLINT_LARGE_SCENES, they take seconds and gigabytes
 
 reference::Ray primary_ray(const Camera& camera, float x, float y) {
   const Vec3 forward = normalized(camera.target - camera.eye), right = normalized(cross(forward, camera.up));
@@ -59,7 +59,10 @@ double hits(const Scene& scene) {
   int count = 0;
   for (int y = 0; y < kSize; ++y)
     for (int x = 0; x < kSize; ++x)
-      count += !intersector->closest(primary_ray(scene.camera, (float(x) + 0.5f) / kSize * 2 - 1, (float(y) + 0.5f) / kSize * 2 - 1)).missed();
+      count += !intersector
+                    ->closest(primary_ray(scene.camera, (float(x) + 0.5f) / kSize * 2 - 1,
+                                          (float(y) + 0.5f) / kSize * 2 - 1))
+                    .missed();
   return 100.0 * count / (kSize * kSize);
 }
 
@@ -68,7 +71,9 @@ bool all_indices_valid(const Scene& scene) {
     for (const uint32_t index : model.indices)
       if (index >= model.vertices.size()) return false;
     for (const Vertex& v : model.vertices)
-      if (v.material < 0 || size_t(v.material) >= scene.materials.size() || !std::isfinite(v.position[0] + v.position[1] + v.position[2])) return false;
+      if (v.material < 0 || size_t(v.material) >= scene.materials.size() ||
+          !std::isfinite(v.position[0] + v.position[1] + v.position[2]))
+        return false;
   }
   for (const Material& material : scene.materials)
     if (material.texture >= int32_t(scene.textures.size())) return false;
@@ -96,7 +101,9 @@ struct Original {
 
 }  // namespace
 
-TEST_CASE("every built-in scene has the original's models, textures and within 10 % its triangles, and the hash recorded") {
+TEST_CASE(
+    "every built-in scene has the original's models, textures and within 10 % its triangles, and the hash "
+    "recorded") {
   for (const Expected& e : chosen()) {
     INFO(e.name);
     const Scene scene = load_scene(e.name, {});
@@ -115,10 +122,12 @@ TEST_CASE("every built-in scene has the original's models, textures and within 1
   }
 }
 
-TEST_CASE("the partial originals give the models, triangles and primary hits that the data's own survey counted") {
-  const Original o = GENERATE(Original{"BATH", "original", 47, 423'821, 100}, Original{"FOX", "partial", 22, 101'909, 23.9},
-                              Original{"LANDS", "partial", 19, 64'340, 100}, Original{"FRST", "partial", 266, 2'724'530, 65.3},
-                              Original{"CHSNT", "stand-in", 1, 306'024, -1}, Original{"SPNZA", "stand-in", 1, 271'708, 100});
+TEST_CASE(
+    "the partial originals give the models, triangles and primary hits that the data's own survey counted") {
+  const Original o = GENERATE(
+      Original{"BATH", "original", 47, 423'821, 100}, Original{"FOX", "partial", 22, 101'909, 23.9},
+      Original{"LANDS", "partial", 19, 64'340, 100}, Original{"FRST", "partial", 266, 2'724'530, 65.3},
+      Original{"CHSNT", "stand-in", 1, 306'024, -1}, Original{"SPNZA", "stand-in", 1, 271'708, 100});
   const glint::test::SceneData data(o.name);
   if (data.path.empty()) return;
   INFO(o.name);
@@ -150,7 +159,8 @@ TEST_CASE("the original bathroom's materials are overridden by file and index") 
   CHECK(material("robinet_002", 0).model == MaterialModel::Metallic);
 }
 
-TEST_CASE("a folder's scene finds the application's own layout, reads files in parts and says what is absent") {
+TEST_CASE(
+    "a folder's scene finds the application's own layout, reads files in parts and says what is absent") {
   namespace fs = std::filesystem;
   const fs::path assets = fs::temp_directory_path() / ("glint_layout_" + std::to_string(getpid()));
   const fs::path folder = assets / "Scenes/Blender_2.90";
@@ -179,7 +189,8 @@ TEST_CASE("a copy's normals stay perpendicular to its triangles, mirrored or str
   add_vertex(part, {1, 0, 0}, {0, 0.6f, 0.8f}, 3);
   add_vertex(part, {0, 0.8f, -0.6f}, {0, 0.6f, 0.8f}, 3);
   add_triangle(part, 0, 1, 2);
-  const Affine matrix = GENERATE(Affine{2, 0, 0, 5, 0, 3, 0, 0, 0, 0, 1, 0}, Affine{-1, 0, 0, 0, 0, 1, 0.5f, 0, 0, 0, 2, 1});
+  const Affine matrix =
+      GENERATE(Affine{2, 0, 0, 5, 0, 3, 0, 0, 0, 0, 1, 0}, Affine{-1, 0, 0, 0, 0, 1, 0.5f, 0, 0, 0, 2, 1});
   Model copy;
   append_copy(copy, part, matrix, 7);
   for (size_t k = 0; k < 3; ++k) {
@@ -202,6 +213,7 @@ TEST_CASE("the chestnut's triangles ask for the any-hit shader and show a textur
   const Scene scene = load_scene("CHSNT", {});
   CHECK(scene.alpha_test);
   size_t textured = 0;
-  for (const Vertex& v : scene.models[0].vertices) textured += scene.materials[size_t(v.material)].texture == 1;
+  for (const Vertex& v : scene.models[0].vertices)
+    textured += scene.materials[size_t(v.material)].texture == 1;
   CHECK(textured > scene.models[0].vertices.size() / 2);
 }

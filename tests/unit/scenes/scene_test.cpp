@@ -93,7 +93,8 @@ TEST_CASE("generated meshes say what they are and have the original's size and n
     uint64_t triangles, tolerance;
     size_t materials;
   };
-  for (const Expected& e : {Expected{"BUNNY", "built-in", 144058, 1500, 5}, {"REF", "built-in", 448912, 4500, 6},
+  for (const Expected& e : {Expected{"BUNNY", "built-in", 144058, 1500, 5},
+                            {"REF", "built-in", 448912, 4500, 6},
                             {"SHIP", "built-in", 6255, 60, 11}}) {
     const Scene scene = load_scene(e.name, {});
     INFO(e.name << ": " << scene.triangles());
@@ -153,7 +154,8 @@ TEST_CASE("a scene's hash is the same on every machine and changes with every fi
 }
 
 TEST_CASE("building a scene twice gives the same bytes") {
-  for (const char* name : {"BUNNY", "SHIP"}) CHECK(load_scene(name, {}).hash() == load_scene(name, {}).hash());
+  for (const char* name : {"BUNNY", "SHIP"})
+    CHECK(load_scene(name, {}).hash() == load_scene(name, {}).hash());
 }
 
 TEST_CASE("an unknown scene is a user error that names the nearest one") {
