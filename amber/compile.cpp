@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "frontend/compile.h"
-#include "frontend/specialize.h"
-#include "frontend/spirv.h"
+#include "frontend/spirv/specialize.h"
+#include "frontend/spirv/spirv.h"
 
 namespace glint::amber {
 namespace {

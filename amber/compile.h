@@ -5,7 +5,7 @@
 
 #include "amber/script.h"
 #include "frontend/compile.h"
-#include "frontend/reflection.h"
+#include "frontend/spirv/reflection.h"
 #include "pipeline/params.h"
 
 namespace glint::amber {

@@ -130,18 +130,18 @@ class Check {
 
   // In units of 1/255, as the script gives them; integer texels as they are.
   std::array<double, 4> colour_at(uint32_t x, uint32_t y) const {
-    const core::FormatInfo& info = core::info_of(*buffer_.type.format);
+    const exec::FormatInfo& info = exec::info_of(*buffer_.type.format);
     const std::byte* at = buffer_.bytes.data() + (uint64_t{y} * buffer_.size[0] + x) * buffer_.layout.stride;
     std::array<double, 4> out{};
-    if (info.numeric == core::Numeric::Srgb) {  // Choice: the bytes as stored, as a screenshot holds them
+    if (info.numeric == exec::Numeric::Srgb) {  // Choice: the bytes as stored, as a screenshot holds them
       const bool is_swapped = info.name[0] == 'b';
       for (size_t c = 0; c < 4; ++c) out[is_swapped && c < 3 ? 2 - c : c] = double(at[c]);
       return out;
     }
-    const core::Words words = core::decode(*buffer_.type.format, at);
+    const exec::Words words = exec::decode(*buffer_.type.format, at);
     for (size_t c = 0; c < 4; ++c)
-      out[c] = info.numeric == core::Numeric::Uint   ? double(words[c])
-               : info.numeric == core::Numeric::Sint ? double(int32_t(words[c]))
+      out[c] = info.numeric == exec::Numeric::Uint   ? double(words[c])
+               : info.numeric == exec::Numeric::Sint ? double(int32_t(words[c]))
                                                      : double(std::bit_cast<float>(words[c]) * 255.0f);
     return out;
   }

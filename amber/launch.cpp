@@ -6,7 +6,7 @@
 #include <cstring>
 #include <fmt/format.h>
 
-#include "core/block.h"
+#include "exec/block.h"
 #include "isa/descriptors.h"
 #include "pipeline/binding_table.h"
 #include "pipeline/description/modules.h"
@@ -36,7 +36,7 @@ class Launch {
     std::vector<isa::Program> programs;
     for (const CompiledShader& shader : shaders) programs.push_back(shader.program);
     pipeline::add_traversal(programs, options.gpu, options.cache);
-    image_ = core::link(programs);
+    image_ = exec::link(programs);
     world_.image = &image_;
     plan_parts();
     for (const Binding& binding : pipeline_.bindings) bind(binding);
@@ -85,7 +85,7 @@ class Launch {
   void write_descriptors(const Binding& binding, std::vector<std::array<uint64_t, 2>> all);
   void check_kind(const Binding& binding) const;
   const frontend::Binding* reflected(const Binding& binding) const;
-  core::ImageView view_of(const Binding& binding, const Buffer& buffer, size_t element);
+  exec::ImageView view_of(const Binding& binding, const Buffer& buffer, size_t element);
   void plan_parts();
   Address upload(const Buffer& buffer, uint64_t offset);
   Address build(const std::string& top_level);
@@ -101,8 +101,8 @@ class Launch {
   const rt::BuildOptions& bvh_;
   uint32_t stack_need_ = 0;  // of the deepest structure
   mem::AddressSpace memory_;
-  core::Image image_;
-  core::World world_;
+  exec::Image image_;
+  exec::World world_;
   std::set<pipeline::BindingPlace> bound_;
   std::map<std::string, std::vector<Part>> parts_;  // of buffers that something binds
   std::map<std::string, Address> structures_;       // of top levels
@@ -113,12 +113,12 @@ void Launch::set_compute() {
     throw UserError(pipeline_.where, fmt::format("pipeline '{}' has no shader", pipeline_.name));
   const isa::Program& program = shaders_[0].program;
   const auto& size = program.local_size;
-  if (uint64_t{size[0]} * size[1] * size[2] > core::kMaxBlockThreads)
+  if (uint64_t{size[0]} * size[1] * size[2] > exec::kMaxBlockThreads)
     throw UserError(pipeline_.where, fmt::format("blocks of {} x {} x {} threads: at most {} can be", size[0],
-                                                 size[1], size[2], core::kMaxBlockThreads));
+                                                 size[1], size[2], exec::kMaxBlockThreads));
   world_.raygen = 0;
   world_.local_bytes = pipeline::stack_bytes(image_, 1, 0);
-  core::set_blocks(world_, command_.size, size, program.shared_bytes);
+  exec::set_blocks(world_, command_.size, size, program.shared_bytes);
 }
 
 pipeline::TableRecord Launch::record(const std::string& group, pipeline::TableInput& input) {
@@ -307,14 +307,14 @@ void Launch::bind_buffers(const Binding& binding) {
   write_descriptors(binding, all);
 }
 
-core::ImageView Launch::view_of(const Binding& binding, const Buffer& buffer, size_t element) {
+exec::ImageView Launch::view_of(const Binding& binding, const Buffer& buffer, size_t element) {
   const bool is_texels = binding.kind == BindKind::UniformTexels || binding.kind == BindKind::StorageTexels;
   if (!buffer.type.format)
     throw UnsupportedError(
         fmt::format("{}: unsupported: images of {}", binding.where.to_string(), buffer.type.name));
-  if (buffer.layout.stride != core::info_of(*buffer.type.format).bytes)
+  if (buffer.layout.stride != exec::info_of(*buffer.type.format).bytes)
     throw UnsupportedError(fmt::format("{}: unsupported: texels with gaps", binding.where.to_string()));
-  core::ImageView view;
+  exec::ImageView view;
   view.name = buffer.name, view.format = *buffer.type.format;
   view.width = buffer.size[0] && !is_texels ? buffer.size[0] : uint32_t(buffer.elements);
   view.height = is_texels ? 1 : std::max(1u, buffer.size[1]),
@@ -331,7 +331,7 @@ core::ImageView Launch::view_of(const Binding& binding, const Buffer& buffer, si
   view.base = upload(buffer, 0) + (element < binding.offsets.size() ? binding.offsets[element] : 0);
   if (binding.base_level >= view.levels)
     throw UserError(binding.where, fmt::format("'{}' has {} levels", buffer.name, view.levels));
-  const core::ImageView whole = view;
+  const exec::ImageView whole = view;
   view.base += whole.bytes_before_level(binding.base_level);
   view.width = whole.extent(0, binding.base_level), view.height = whole.extent(1, binding.base_level),
   view.depth = whole.extent(2, binding.base_level);

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "amber/compile.h"
-#include "core/fault.h"
-#include "core/print_log.h"
+#include "exec/fault.h"
+#include "exec/print_log.h"
 
 namespace glint::amber {
 
@@ -12,8 +12,8 @@ struct LaunchOptions {
   bool timing = false;   // cycle by cycle; else every effect at once
   bool no_skip = false;  // of the timing machine
   uint32_t threads = 1;  // of the host, for it
-  core::OnFault on_fault = core::OnFault::Stop;
-  core::PrintLog* prints = nullptr;        // null: what shaders print is left out
+  exec::OnFault on_fault = exec::OnFault::Stop;
+  exec::PrintLog* prints = nullptr;        // null: what shaders print is left out
   frontend::ShaderCache* cache = nullptr;  // null: shaders are compiled anew
 };
 
@@ -21,7 +21,7 @@ struct LaunchOptions {
 // Errors as pipeline::render().
 struct Launched {
   uint64_t cycles = 0;    // 0 without timing
-  core::FaultLog faults;  // that were let pass
+  exec::FaultLog faults;  // that were let pass
 };
 Launched launch(Script& script, const Command& command, const std::vector<CompiledShader>& shaders,
                 const LaunchOptions& options);

@@ -195,32 +195,32 @@ void make(Parsing& p, Buffer& buffer, const Contents& contents) {
     put_values(buffer, contents.values);
 }
 
-core::Wrap wrap_named(Parsing& p, const std::string& name) {
-  const std::map<std::string, core::Wrap> names{{"repeat", core::Wrap::Repeat},
-                                                {"mirrored_repeat", core::Wrap::MirroredRepeat},
-                                                {"clamp_to_edge", core::Wrap::ClampToEdge},
-                                                {"clamp_to_border", core::Wrap::ClampToBorder},
-                                                {"mirror_clamp_to_edge", core::Wrap::MirrorClampToEdge}};
+exec::Wrap wrap_named(Parsing& p, const std::string& name) {
+  const std::map<std::string, exec::Wrap> names{{"repeat", exec::Wrap::Repeat},
+                                                {"mirrored_repeat", exec::Wrap::MirroredRepeat},
+                                                {"clamp_to_edge", exec::Wrap::ClampToEdge},
+                                                {"clamp_to_border", exec::Wrap::ClampToBorder},
+                                                {"mirror_clamp_to_edge", exec::Wrap::MirrorClampToEdge}};
   const auto found = names.find(name);
   if (found == names.end()) p.wrong(fmt::format("there is no address mode '{}'", name));
   return found->second;
 }
 
-core::Comparison comparison_named(Parsing& p, const std::string& name) {
+exec::Comparison comparison_named(Parsing& p, const std::string& name) {
   const std::vector<std::string> names{
       "never", "less", "equal", "less_or_equal", "greater", "not_equal", "greater_or_equal", "always"};
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) p.wrong(fmt::format("there is no comparison '{}'", name));
-  return core::Comparison(found - names.begin());
+  return exec::Comparison(found - names.begin());
 }
 
-core::Filter filter_named(Parsing& p, const std::string& name) {
+exec::Filter filter_named(Parsing& p, const std::string& name) {
   if (name != "nearest" && name != "linear") p.wrong(fmt::format("there is no filter '{}'", name));
-  return name == "linear" ? core::Filter::Linear : core::Filter::Nearest;
+  return name == "linear" ? exec::Filter::Linear : exec::Filter::Nearest;
 }
 
 // VkBorderColor. Floats and integers both, as the image's format will read them.
-core::Words border_named(Parsing& p, const std::string& name) {
+exec::Words border_named(Parsing& p, const std::string& name) {
   const uint32_t one = name.rfind("float", 0) == 0 ? 0x3f80'0000 : 1;
   if (name.ends_with("_transparent_black")) return {0, 0, 0, 0};
   if (name.ends_with("_opaque_black")) return {0, 0, 0, one};
@@ -268,9 +268,9 @@ void parse_buffer(Parsing& p, bool is_image) {
 
 void parse_sampler(Parsing& p) {
   const std::string name = p.tokens.word("the sampler's name");
-  core::Sampler sampler;
-  sampler.mag = sampler.min = core::Filter::Nearest;
-  sampler.wrap = {core::Wrap::Repeat, core::Wrap::Repeat, core::Wrap::Repeat};
+  exec::Sampler sampler;
+  sampler.mag = sampler.min = exec::Filter::Nearest;
+  sampler.wrap = {exec::Wrap::Repeat, exec::Wrap::Repeat, exec::Wrap::Repeat};
   sampler.max_lod = 1.0f;
   while (p.tokens.peek().is_word()) {
     const std::string key = p.tokens.next().text;

@@ -10,7 +10,7 @@
 
 #include "amber/type.h"
 #include "base/diagnostics.h"
-#include "core/image_view.h"
+#include "exec/image_view.h"
 #include "isa/program.h"
 #include "rtunit/build.h"
 
@@ -125,7 +125,7 @@ struct Script {
   std::map<std::string, Type> structs;
   std::map<std::string, Shader> shaders;
   std::map<std::string, Buffer> buffers;
-  std::map<std::string, core::Sampler> samplers;
+  std::map<std::string, exec::Sampler> samplers;
   std::map<std::string, BottomLevel> bottom_levels;
   std::map<std::string, TopLevel> top_levels;
   std::map<std::string, Pipeline> pipelines;

@@ -20,9 +20,9 @@ const std::map<std::string, Scalar>& scalar_names() {
   return names;
 }
 
-std::optional<core::TexelFormat> texel_format(const std::string& glint_name) {
-  for (size_t i = 0; i < size_t(core::TexelFormat::Count); ++i)
-    if (core::info_of(core::TexelFormat(i)).name == glint_name) return core::TexelFormat(i);
+std::optional<exec::TexelFormat> texel_format(const std::string& glint_name) {
+  for (size_t i = 0; i < size_t(exec::TexelFormat::Count); ++i)
+    if (exec::info_of(exec::TexelFormat(i)).name == glint_name) return exec::TexelFormat(i);
   return std::nullopt;
 }
 
@@ -43,7 +43,7 @@ std::optional<Scalar> channel_scalar(int bits, const std::string& numeric) {
 }
 
 // Texels of 64 bits are two channels of 32.
-constexpr auto kHalves = core::TexelFormat::Rg32Uint;
+constexpr auto kHalves = exec::TexelFormat::Rg32Uint;
 
 // Vulkan's names of formats without VK_FORMAT_.
 std::optional<Type> format_named(const std::string& name) {
@@ -80,7 +80,7 @@ std::optional<Type> format_named(const std::string& name) {
 }
 
 // The format whose texels are such numbers: an image of vec4<float> holds R32G32B32A32_SFLOAT.
-std::optional<core::TexelFormat> format_like(const Type& type) {
+std::optional<exec::TexelFormat> format_like(const Type& type) {
   if (type.columns != 1 || type.rows == 3) return std::nullopt;
   if (type.rows == 1 && (type.scalar == Scalar::I64 || type.scalar == Scalar::U64)) return kHalves;
   const char* channels = type.rows == 1 ? "r" : type.rows == 2 ? "rg" : "rgba";
@@ -211,7 +211,7 @@ bool parse_real(const std::string& text, double& out) {
 
 void put_real(Scalar scalar, double value, std::byte* at) {
   const float single = float(value);
-  const uint16_t half = core::to_half(single);
+  const uint16_t half = exec::to_half(single);
   if (scalar == Scalar::F64)
     std::memcpy(at, &value, 8);
   else if (scalar == Scalar::F32)
@@ -249,7 +249,7 @@ uint64_t get_bits(Scalar scalar, const std::byte* at) {
 
 double get_real(Scalar scalar, const std::byte* at) {
   const uint64_t bits = get_bits(scalar, at);
-  if (scalar == Scalar::F16) return double(core::from_half(uint16_t(bits)));
+  if (scalar == Scalar::F16) return double(exec::from_half(uint16_t(bits)));
   float f = 0;
   double d = 0;
   std::memcpy(&f, at, scalar == Scalar::F32 ? 4 : 0);

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/texture_format.h"
+#include "exec/texture_format.h"
 
 namespace glint::amber {
 
@@ -31,7 +31,7 @@ struct Type {
   Scalar scalar = Scalar::I32;
   uint32_t rows = 1, columns = 1;
   bool is_packed = false;                   // of a format: three channels take no room of a fourth
-  std::optional<core::TexelFormat> format;  // of texels: of formats, and of scalars and vectors like one
+  std::optional<exec::TexelFormat> format;  // of texels: of formats, and of scalars and vectors like one
   std::string name;
   std::vector<Member> members;
   std::optional<uint32_t> stride;  // of a struct

@@ -1,24 +1,36 @@
-# glint_library(name SOURCES ... HEADERS ... DEPENDS folder... LINKS target... POLICIES subfolder...)
+# glint_library(name FLOORS subfolder... DEPENDS folder... LINKS target... POLICIES subfolder... EXCEPT file...)
 #
-# One static library a folder, alias glint::<name>, with the project's flags and header checks. LINKS are
-# libraries from packages, seen by the folder's users only if its headers include them. POLICIES are the one
-# place where globbing is allowed: a policy is one file and stands in no list.
+# One static library a folder, alias glint::<name>, with the project's flags and header checks. Its sources and
+# headers are the files of its folder and of its FLOORS, so a file is found where it lies and stands in no list.
+# DEPENDS are folders of ours. LINKS are libraries from packages; the folder's users see them only if its headers
+# include them. POLICIES are folders in which each file registers one policy and nothing else refers to it.
+# EXCEPT are files that the caller adds under conditions of its own.
 function(glint_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;DEPENDS;LINKS;POLICIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "FLOORS;DEPENDS;LINKS;POLICIES;EXCEPT" ${ARGN})
   list(TRANSFORM ARG_DEPENDS PREPEND glint::)
-  add_library(glint_${name} STATIC ${ARG_SOURCES})
+  glint_glob(sources *.cpp . ${ARG_FLOORS})
+  glint_glob(headers *.h . ${ARG_FLOORS} ${ARG_POLICIES})
+  list(TRANSFORM ARG_EXCEPT PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+  list(REMOVE_ITEM sources ${ARG_EXCEPT})
+  add_library(glint_${name} STATIC ${sources})
   add_library(glint::${name} ALIAS glint_${name})
-  target_sources(glint_${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${ARG_HEADERS})
-  set_target_properties(glint_${name} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON)
+  target_sources(glint_${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${headers})
+  set_target_properties(glint_${name} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON LINKER_LANGUAGE CXX)
   target_link_libraries(glint_${name} PUBLIC ${ARG_DEPENDS} ${ARG_LINKS} PRIVATE glint_warnings)
   if(ARG_POLICIES)
-    list(TRANSFORM ARG_POLICIES APPEND /*.cpp)
-    list(TRANSFORM ARG_POLICIES PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
-    file(GLOB files CONFIGURE_DEPENDS ${ARG_POLICIES})
-    add_library(glint_${name}_policies STATIC ${files})
+    glint_glob(policies *.cpp ${ARG_POLICIES})
+    add_library(glint_${name}_policies STATIC ${policies})
     target_include_directories(glint_${name}_policies PRIVATE ${PROJECT_SOURCE_DIR})
     target_link_libraries(glint_${name}_policies PUBLIC ${ARG_DEPENDS} ${ARG_LINKS} PRIVATE glint_warnings)
     # Whole archive: a static library drops objects that nothing refers to, and with them the registrations.
     target_link_libraries(glint_${name} PUBLIC "$<LINK_LIBRARY:WHOLE_ARCHIVE,glint_${name}_policies>")
   endif()
+endfunction()
+
+# glint_glob(variable pattern subfolder...): the files below the caller's folder that match; "." is the folder itself.
+function(glint_glob variable pattern)
+  list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ OUTPUT_VARIABLE patterns)
+  list(TRANSFORM patterns APPEND /${pattern})
+  file(GLOB found CONFIGURE_DEPENDS ${patterns})
+  set(${variable} ${found} PARENT_SCOPE)
 endfunction()

@@ -7,16 +7,16 @@
 #include <span>
 
 #include "base/types.h"
-#include "core/image.h"
-#include "core/texel_list.h"
-#include "core/warp_context.h"
+#include "exec/image.h"
+#include "exec/texel_list.h"
+#include "exec/warp_context.h"
 #include "isa/op_row.h"
 #include "memsys/request.h"
 
 namespace glint::core {
 
 // The widest access: all texels of 32 lanes, each in a line of its own.
-inline constexpr uint32_t kMaxLines = kMaxTexels * kLanes;
+inline constexpr uint32_t kMaxLines = exec::kMaxTexels * kLanes;
 
 struct LineSectors {
   Address line = 0;           // physical

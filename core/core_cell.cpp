@@ -26,7 +26,7 @@ CoreCell::CoreCell(const Params& params, const Context& context)
       turn_(context.turn),
       holds_operands_(params.lsu.war_latency + params.lsu.shared_war_latency > 0),
       times_constants_(params.constant.serial || !params.constant.perfect),
-      view_(context.turn ? std::make_unique<MemoryView>() : nullptr),
+      view_(context.turn ? std::make_unique<exec::MemoryView>() : nullptr),
       lsu_(params, context.l1),
       schedulers_(params.schedulers),
       warps_(num_slots_),
@@ -68,21 +68,21 @@ CoreCell::CoreCell(const Params& params, const Context& context)
 
 CoreCell::~CoreCell() = default;
 
-uint64_t CoreCell::local_bytes(const Params& params, const World& world) {
+uint64_t CoreCell::local_bytes(const Params& params, const exec::World& world) {
   const LocalLayout layout{0, world.local_bytes / 4};
   return layout.bytes_per_warp() * occupancy(params, world.image->num_registers);
 }
 
-rt::TableLayout CoreCell::table_layout(const World& world, Address base) {
+rt::TableLayout CoreCell::table_layout(const exec::World& world, Address base) {
   return {base, world.any_hit ? world.any_hit->table_rows() : 0};
 }
 
-uint64_t CoreCell::table_bytes(const Params& params, const World& world) {
+uint64_t CoreCell::table_bytes(const Params& params, const exec::World& world) {
   return table_layout(world, 0).bytes_per_warp() * occupancy(params, world.image->num_registers);
 }
 
-LaunchNeeds CoreCell::needs_of(const World& world) {
-  return {world.image->num_registers, core::warps_per_block(world), world.shared_bytes,
+LaunchNeeds CoreCell::needs_of(const exec::World& world) {
+  return {world.image->num_registers, exec::warps_per_block(world), world.shared_bytes,
           world.block_size[0] != 0};
 }
 
@@ -199,7 +199,7 @@ void CoreCell::finish(Cycle end) {
     for (SchedulerState& scheduler : schedulers_) scheduler.reason = Stall::NoWarp;
   account_until(end);
   sampler_.finish(end);
-  const CandidateCounts& counts = executor_.candidates();
+  const exec::CandidateCounts& counts = executor_.candidates();
   for (int stage = 0; stage < kNumStages; ++stage)
     stats_.stage[size_t(stage)]->invocations += executor_.called_lanes(isa::Stage(stage));
   stats_.candidate_calls += counts.calls;
@@ -232,7 +232,7 @@ std::string CoreCell::describe_stall() const {
 std::string CoreCell::describe_warp(uint32_t slot) const {
   const SchedulerState& scheduler = schedulers_[slot % params_.schedulers];
   const uint32_t local = slot / params_.schedulers;
-  const WarpContext& warp = warps_[slot];
+  const exec::WarpContext& warp = warps_[slot];
   const Cycle ready = scheduler.ready_at[local];
   std::string out = fmt::format(
       "at {}, waits for {} {}, {} accesses in flight",
@@ -241,7 +241,7 @@ std::string CoreCell::describe_warp(uint32_t slot) const {
       outstanding_[slot]);
   if (warp.waiting_at_barrier) {
     std::vector<uint64_t> missing;
-    const Block& block = home_[slot]->block;
+    const exec::Block& block = home_[slot]->block;
     for (uint32_t w = 0; w < block.num_warps(); ++w)
       if ((block.live() & ~block.waiting()) >> w & 1) missing.push_back(block.warps[w]->warp_index);
     out += fmt::format(", at barrier {} for warps {}", warp.barrier, fmt::join(missing, ", "));

@@ -7,21 +7,21 @@
 #include <string>
 #include <vector>
 
-#include "base/engine.h"
 #include "base/interval_sampler.h"
 #include "core/constant_cache.h"
 #include "core/core_observer.h"
-#include "core/executor.h"
 #include "core/instruction_fetch.h"
 #include "core/issue_scheduler.h"
 #include "core/lsu.h"
-#include "core/memory_view.h"
 #include "core/params.h"
 #include "core/profile.h"
 #include "core/scoreboard.h"
 #include "core/sm_scheduler.h"
 #include "core/sm_stats.h"
 #include "core/units.h"
+#include "engine/engine.h"
+#include "exec/executor.h"
+#include "exec/memory_view.h"
 #include "memsys/l1_port.h"
 #include "memsys/latency.h"
 #include "rtunit/rt_port.h"
@@ -34,7 +34,7 @@ namespace glint::core {
 class CoreCell final : public Cell {
  public:
   struct Context {
-    const World& world;
+    const exec::World& world;
     mem::L1Port& l1;             // ticked here; its next_event covers what it waits for
     rt::RtPort& rt;              // ticked here
     Address local_physical = 0;  // of local_bytes() bytes: the stacks of this core's lanes
@@ -54,13 +54,13 @@ class CoreCell final : public Cell {
   ~CoreCell() override;
 
   // Simulated memory that a core's lanes need for their stacks, in bytes.
-  static uint64_t local_bytes(const Params& params, const World& world);
+  static uint64_t local_bytes(const Params& params, const exec::World& world);
   // And for candidates, in the deferred any-hit mode.
-  static rt::TableLayout table_layout(const World& world, Address base);
-  static uint64_t table_bytes(const Params& params, const World& world);
+  static rt::TableLayout table_layout(const exec::World& world, Address base);
+  static uint64_t table_bytes(const Params& params, const exec::World& world);
   // And, of all cores together, for instructions and constants; 0 where those are always there.
-  static uint64_t code_bytes(const Params& params, const World& world);
-  static uint64_t constant_bytes(const Params& params, const World& world);
+  static uint64_t code_bytes(const Params& params, const exec::World& world);
+  static uint64_t constant_bytes(const Params& params, const exec::World& world);
 
   // Launching, between windows only.
   uint32_t num_slots() const { return num_slots_; }
@@ -70,7 +70,7 @@ class CoreCell final : public Cell {
   // has.
   bool has_room() const;
   // Blocks and warps that fit at a time, and what limits them.
-  static LaunchNeeds needs_of(const World& world);
+  static LaunchNeeds needs_of(const exec::World& world);
   // Puts block `block_index` of the launch into the lowest free slots; its first instructions can issue at
   // `ready`.
   void launch(Cycle now, uint32_t block_index, Cycle ready);
@@ -83,25 +83,25 @@ class CoreCell final : public Cell {
            l1_.next_event(accounted_) == kNever;  // last writes have left
   }
   uint64_t progress() const override { return progress_; }
-  // Grows when a warp begins, ends or is handed to the RT unit, and with what Executor::changes() counts:
-  // what warps that spin for ever do not.
+  // Grows when a warp begins, ends or is handed to the RT unit, and with what exec::Executor::changes()
+  // counts: what warps that spin for ever do not.
   uint64_t changes() const {
     return num_launched_ - num_resident_ + num_launched_ + stats_.rt_warps.value() + executor_.changes();
   }
   std::string describe_stall() const override;
 
   // The first fault of a warp here; the cell does nothing from then on.
-  const std::optional<Fault>& fault() const { return fault_; }
+  const std::optional<exec::Fault>& fault() const { return fault_; }
   // What went wrong here and was let pass.
-  const FaultLog& passed() const { return executor_.passed(); }
+  const exec::FaultLog& passed() const { return executor_.passed(); }
   // Cycle after the last one in which anything happened here.
   Cycle active_until() const { return accounted_; }
   // Gives the cycles up to `end` to their reasons: once, at the end of the run. `end` >= active_until().
   void finish(Cycle end);
 
-  Executor& executor() { return executor_; }  // to listen to what retires
+  exec::Executor& executor() { return executor_; }  // to listen to what retires
   // What the core has done to global memory in the present turn; null without other cores.
-  MemoryView* view() { return view_.get(); }
+  exec::MemoryView* view() { return view_.get(); }
   const CoreStats& stats() const { return stats_; }
   // Counts by instruction too, from before the first launch on; otherwise there is no profile.
   void start_profile();
@@ -120,7 +120,7 @@ class CoreCell final : public Cell {
  private:
   // A block that is here: until all of its warps' accesses have ended.
   struct Resident {
-    Block block;
+    exec::Block block;
     uint32_t warps = 0;  // of it that hold a slot; 0: the place is free
   };
 
@@ -148,26 +148,26 @@ class CoreCell final : public Cell {
   void start_sequence(uint32_t slot, const IssueRow& row, uint32_t pc, Cycle now);
   void issue_rest(SchedulerState& scheduler, uint32_t slot, Cycle now);
   void refresh_sequence(SchedulerState& scheduler, uint32_t slot);
-  void count(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now);
+  void count(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now);
   void count_access(const isa::OpRow& op);
-  bool start_access(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now);
-  void collect_lines(MemoryAccess& access, const Issued& issued);
+  bool start_access(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now);
+  void collect_lines(MemoryAccess& access, const exec::Issued& issued);
   void collect_texels(MemoryAccess& access, LaneMask lanes);
   void collect_candidates(MemoryAccess& access, LaneMask lanes);
   void come_to_barrier(uint32_t slot, Cycle now, Cycle latency);
-  void pass_barrier(const Block& block, Cycle at);
+  void pass_barrier(const exec::Block& block, Cycle at);
   Cycle turn_end(Cycle now) const { return turn_ ? (now / turn_ + 1) * turn_ : 0; }
-  void start_fence(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now);
-  void collect_memory(MemoryAccess& access, const Issued& issued);
-  void start_rays(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now);
+  void start_fence(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now);
+  void collect_memory(MemoryAccess& access, const exec::Issued& issued);
+  void start_rays(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now);
   void complete(uint32_t access_id, Cycle now);
   void read_operands(uint32_t access_id, Cycle now);
   uint32_t war_latency(const MemoryAccess& access) const {
     return access.lines.lines().empty() ? params_.lsu.shared_war_latency : params_.lsu.war_latency;
   }
   void finish_constant(uint32_t slot, Cycle now);
-  void start_constant(SchedulerState& scheduler, uint32_t slot, const IssueRow& row, const Issued& issued,
-                      Cycle now);
+  void start_constant(SchedulerState& scheduler, uint32_t slot, const IssueRow& row,
+                      const exec::Issued& issued, Cycle now);
   void come_to_line(uint32_t slot);
   void take_code(Cycle now);
   void complete_rays(uint32_t slot, Cycle now);
@@ -177,7 +177,7 @@ class CoreCell final : public Cell {
   void refresh(uint32_t slot);
 
   const Params params_;
-  const World& world_;
+  const exec::World& world_;
   mem::L1Port& l1_;
   rt::RtPort& rt_;
   const bool no_skip_;
@@ -185,13 +185,13 @@ class CoreCell final : public Cell {
   const LocalLayout local_;
   const rt::TableLayout tables_;
   IssueTable table_;
-  Executor executor_;
+  exec::Executor executor_;
   const Cycle turn_;
   const bool holds_operands_, times_constants_;
-  std::unique_ptr<MemoryView> view_;
+  std::unique_ptr<exec::MemoryView> view_;
   Lsu lsu_;
   std::vector<SchedulerState> schedulers_;
-  std::vector<WarpContext> warps_;
+  std::vector<exec::WarpContext> warps_;
   std::vector<Scoreboard> scoreboards_;
   std::vector<Scoreboard::Ready>
       front_;                          // a slot: before this the warp issues nothing, whatever the registers
@@ -226,7 +226,7 @@ class CoreCell final : public Cell {
   uint32_t num_resident_ = 0;
   uint64_t num_launched_ = 0, progress_ = 0;
   Cycle accounted_ = 0;  // every cycle before has been given to a reason
-  std::optional<Fault> fault_;
+  std::optional<exec::Fault> fault_;
   CoreStats stats_;
   std::unique_ptr<CodeStats> code_stats_;  // null where instructions and constants are always there, as is:
   std::unique_ptr<Code> code_;

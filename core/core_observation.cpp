@@ -6,7 +6,7 @@ namespace glint::core {
 
 void CoreCell::observe(CoreObserver& observer) {
   observers_.push_back(&observer);
-  executor_.called.listen([this, &observer](const Called& called) {
+  executor_.called.listen([this, &observer](const exec::Called& called) {
     observer.call(uint32_t(&called.warp - warps_.data()), called.stage, called.lanes);
   });
 }

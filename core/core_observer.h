@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "base/types.h"
-#include "core/executor.h"
 #include "core/stall.h"
+#include "exec/executor.h"
 
 namespace glint::core {
 
@@ -20,13 +20,13 @@ class CoreObserver {
  public:
   virtual ~CoreObserver() = default;
   // The warp holds the slot from cycle `now` on.
-  virtual void start_warp(Cycle /*now*/, uint32_t /*slot*/, const WarpContext&) {}
+  virtual void start_warp(Cycle /*now*/, uint32_t /*slot*/, const exec::WarpContext&) {}
   // The instruction at `pc` of the warp is about to issue. It waited for `wait` until `ready`, and from then
   // on for its turn at `door` (Stall::Issued: at the scheduler, or a pipe).
   virtual void select(Cycle /*now*/, uint32_t /*slot*/, Cycle /*ready*/, Stall /*wait*/, Stall /*door*/,
                       uint32_t /*pc*/) {}
   // It was executed.
-  virtual void issue(Cycle /*now*/, uint32_t /*slot*/, const Issued&) {}
+  virtual void issue(Cycle /*now*/, uint32_t /*slot*/, const exec::Issued&) {}
   // Lanes begin a shader of that stage, called by another.
   virtual void call(uint32_t /*slot*/, isa::Stage, LaneMask) {}
   // Rays of these lanes travel from now on; they have stopped.

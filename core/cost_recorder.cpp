@@ -10,7 +10,7 @@
 namespace glint::core {
 namespace {
 
-size_t num_threads(const World& world) {
+size_t num_threads(const exec::World& world) {
   const uint64_t threads = uint64_t{world.launch_size[0]} * world.launch_size[1] * world.launch_size[2];
   if (threads > LaunchCosts::kMaxThreads)
     throw UserError({}, fmt::format("a launch of {} threads is too large for maps of cost", threads),
@@ -20,15 +20,15 @@ size_t num_threads(const World& world) {
 
 }  // namespace
 
-LaunchCosts::LaunchCosts(const World& world) : world_(world), threads_(num_threads(world)) {
+LaunchCosts::LaunchCosts(const exec::World& world) : world_(world), threads_(num_threads(world)) {
 }
 
-void CostRecorder::start_warp(Cycle, uint32_t slot, const WarpContext& warp) {
+void CostRecorder::start_warp(Cycle, uint32_t slot, const exec::WarpContext& warp) {
   slots_[slot] = {};
   slots_[slot].warp_index = warp.warp_index;
 }
 
-void CostRecorder::issue(Cycle now, uint32_t slot, const Issued& issued) {
+void CostRecorder::issue(Cycle now, uint32_t slot, const exec::Issued& issued) {
   Slot& warp = slots_[slot];
   for_each_lane(warp.last,
                 [&](int lane) { warp.lane[size_t(lane)].active_cycles += uint32_t(now - warp.last_issue); });

@@ -30,10 +30,10 @@ struct ThreadCost {
 class LaunchCosts {
  public:
   // UserError where the launch has more threads than kMaxThreads.
-  explicit LaunchCosts(const World& world);
+  explicit LaunchCosts(const exec::World& world);
   static constexpr uint64_t kMaxThreads = 1 << 25;
 
-  const World& world() const { return world_; }
+  const exec::World& world() const { return world_; }
   uint32_t width() const { return world_.launch_size[0]; }
   uint32_t height() const { return world_.launch_size[1]; }
   ThreadCost& at(const std::array<uint32_t, 3>& id) {
@@ -42,7 +42,7 @@ class LaunchCosts {
   const std::vector<ThreadCost>& threads() const { return threads_; }
 
  private:
-  const World& world_;
+  const exec::World& world_;
   std::vector<ThreadCost> threads_;
 };
 
@@ -51,8 +51,8 @@ class CostRecorder final : public CoreObserver {
  public:
   CostRecorder(LaunchCosts& costs, uint32_t slots) : costs_(costs), slots_(slots) {}
 
-  void start_warp(Cycle now, uint32_t slot, const WarpContext& warp) override;
-  void issue(Cycle now, uint32_t slot, const Issued& issued) override;
+  void start_warp(Cycle now, uint32_t slot, const exec::WarpContext& warp) override;
+  void issue(Cycle now, uint32_t slot, const exec::Issued& issued) override;
   void call(uint32_t slot, isa::Stage stage, LaneMask lanes) override;
   void start_rays(uint32_t slot, LaneMask lanes, const rt::RayState* states) override;
   void end_rays(uint32_t slot, LaneMask lanes, const rt::RayState* states) override;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-#include "core/block.h"
+#include "exec/block.h"
 
 namespace glint::core {
 namespace {
@@ -48,9 +48,9 @@ void check(const Params& params, uint32_t num_registers, Diagnostics& diagnostic
 
 void check_block(const Params& params, uint32_t num_registers, uint64_t threads, uint32_t shared_bytes,
                  Diagnostics& diagnostics) {
-  if (threads > kMaxBlockThreads)
-    diagnostics.error({},
-                      fmt::format("a block of {} threads, expected at most {}", threads, kMaxBlockThreads));
+  if (threads > exec::kMaxBlockThreads)
+    diagnostics.error(
+        {}, fmt::format("a block of {} threads, expected at most {}", threads, exec::kMaxBlockThreads));
   const uint64_t warps = (threads + kLanes - 1) / kLanes, fit = occupancy(params, num_registers);
   if (fit > 0 && warps > fit)
     diagnostics.error({}, fmt::format("a block has {} warps, and {} fit into a core", warps, fit),

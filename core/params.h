@@ -12,7 +12,7 @@
 #include "core/code_params.h"
 #include "core/issue_scheduler.h"
 #include "core/op_times.h"
-#include "core/warp_layout.h"
+#include "exec/warp_layout.h"
 #include "isa/op_row.h"
 
 namespace glint::core {
@@ -260,7 +260,7 @@ struct Params {
   uint32_t launch_latency = 5000;  // Vulkan-Sim, -gpgpu_kernel_launch_latency
   uint32_t warp_launch_latency = 0;
   uint32_t block_interval = 1;  // GPGPU-Sim and Accel-Sim: a core takes one block a cycle (issue_block2core)
-  PolicyChoice<WarpLayout> layout{"linear"};
+  PolicyChoice<exec::WarpLayout> layout{"linear"};
   uint64_t instruction_budget = 100'000'000;
   // Choice: 15 ms of a GPU; nothing but warps that spin is known to do so little for so long.
   uint64_t livelock_budget = 20'000'000;

@@ -21,11 +21,11 @@ CoreCell::Code::Code(const Params& params, const Context& context, CodeStats& st
                                         context.world.constant_bank.size(), kConstantClient, cache, stats);
 }
 
-uint64_t CoreCell::code_bytes(const Params& params, const World& world) {
+uint64_t CoreCell::code_bytes(const Params& params, const exec::World& world) {
   return params.fetch.perfect ? 0 : uint64_t{world.image->code.size()} * kInstructionBytes;
 }
 
-uint64_t CoreCell::constant_bytes(const Params& params, const World& world) {
+uint64_t CoreCell::constant_bytes(const Params& params, const exec::World& world) {
   return params.constant.perfect ? 0 : world.constant_bank.size();
 }
 
@@ -56,7 +56,7 @@ void CoreCell::take_code(Cycle now) {
 
 // A load that misses waits in front of its warp, and is looked up again when its lines have come.
 void CoreCell::start_constant(SchedulerState& scheduler, uint32_t slot, const IssueRow& row,
-                              const Issued& issued, Cycle now) {
+                              const exec::Issued& issued, Cycle now) {
   const isa::Access& access = warps_[slot].regs.access;
   const Cycle turns = params_.constant.serial ? different_words(access, issued.lanes) : 1;
   scheduler.take(row.pipe, now, turns * row.interval);

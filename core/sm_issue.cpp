@@ -101,9 +101,9 @@ void CoreCell::issue(SchedulerState& scheduler, uint32_t local, Cycle now) {
   if (!observers_.empty()) [[unlikely]]
     tell_select(scheduler, slot, now);
   if (sequence_[slot].left > 0) return issue_rest(scheduler, slot, now);
-  WarpContext& warp = warps_[slot];
+  exec::WarpContext& warp = warps_[slot];
   const IssueRow& row = table_.row(warp.simt.pc);
-  const Issued issued = executor_.execute(warp, now);
+  const exec::Issued issued = executor_.execute(warp, now);
   if (executor_.fault()) {
     fault_ = executor_.fault();
     return;
@@ -170,7 +170,7 @@ void CoreCell::come_to_barrier(uint32_t slot, Cycle now, Cycle latency) {
 }
 
 // Warps of the block whose barrier has opened can issue from `at` on.
-void CoreCell::pass_barrier(const Block& block, Cycle at) {
+void CoreCell::pass_barrier(const exec::Block& block, Cycle at) {
   for (uint32_t w = 0; w < block.num_warps(); ++w) {
     if (!(block.live() >> w & 1) || block.warps[w]->waiting_at_barrier) continue;
     const auto slot = uint32_t(block.warps[w] - warps_.data());
@@ -182,7 +182,7 @@ void CoreCell::pass_barrier(const Block& block, Cycle at) {
 
 // A fence among cores lasts until they see what came before it, however short its latency.
 // Model: one of the whole system takes longer than any acknowledgement anyway.
-void CoreCell::start_fence(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now) {
+void CoreCell::start_fence(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now) {
   ++stats_.fences;
   const bool waits = outstanding_[slot] > 0,
              among_cores = isa::FenceScope(issued.row->detail) > isa::FenceScope::Block;
@@ -194,7 +194,7 @@ void CoreCell::start_fence(uint32_t slot, const IssueRow& row, const Issued& iss
   front_[slot] = {waits ? kNever : now + latency, Stall::Fence};
 }
 
-void CoreCell::count(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now) {
+void CoreCell::count(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now) {
   const uint64_t lanes = num_lanes(issued.lanes);
   if (profile_) profile_->issue(slot % params_.schedulers, issued.pc, lanes);
   for (CoreObserver* observer : observers_) observer->issue(now, slot, issued);
@@ -216,8 +216,8 @@ void CoreCell::count(uint32_t slot, const IssueRow& row, const Issued& issued, C
 }
 
 // Gives the rays of an rt.trace or rt.resume to the RT unit, or goes on at once when none has to travel.
-void CoreCell::start_rays(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now) {
-  WarpContext& warp = warps_[slot];
+void CoreCell::start_rays(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now) {
+  exec::WarpContext& warp = warps_[slot];
   LaneMask travelling = 0;
   if (warp.waiting_for_rays) {
     for_each_lane(issued.lanes, [&](int lane) {

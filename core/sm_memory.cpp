@@ -35,7 +35,7 @@ void CoreCell::count_access(const isa::OpRow& op) {
 }
 
 // Hands the access to the load-store unit; false when no lane makes one.
-bool CoreCell::start_access(uint32_t slot, const IssueRow& row, const Issued& issued, Cycle now) {
+bool CoreCell::start_access(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now) {
   if (issued.lanes == 0) return false;
   // Texels that are all border, or outside of their image, need no memory.
   if (row.is_texture && executor_.texels().empty()) return false;
@@ -65,7 +65,7 @@ bool CoreCell::start_access(uint32_t slot, const IssueRow& row, const Issued& is
   return true;
 }
 
-void CoreCell::collect_lines(MemoryAccess& access, const Issued& issued) {
+void CoreCell::collect_lines(MemoryAccess& access, const exec::Issued& issued) {
   const isa::Access& addresses = warps_[access.slot].regs.access;
   if (issued.row->effect == Effect::Texture) {
     access.traffic = mem::Traffic::ShaderTexture;
@@ -88,7 +88,7 @@ void CoreCell::collect_lines(MemoryAccess& access, const Issued& issued) {
 // then.
 void CoreCell::collect_candidates(MemoryAccess& access, LaneMask lanes) {
   if (tables_.rows == 0) return;
-  const TraceFrame& frame = warps_[access.slot].frame();
+  const exec::TraceFrame& frame = warps_[access.slot].frame();
   for_each_lane(lanes, [&](int lane) {
     access.lines.add(tables_.entry(access.slot, frame.ray[size_t(lane)].candidate_row, lane),
                      rt::kTableEntryBytes, lane);
@@ -98,7 +98,7 @@ void CoreCell::collect_candidates(MemoryAccess& access, LaneMask lanes) {
 
 // Loads, stores and atomics. Model: lanes of a generic access that are in local memory travel as global
 // traffic, and those in the constant bank take no time of their own.
-void CoreCell::collect_memory(MemoryAccess& access, const Issued& issued) {
+void CoreCell::collect_memory(MemoryAccess& access, const exec::Issued& issued) {
   using isa::Space;
   const isa::Access& addresses = warps_[access.slot].regs.access;
   const auto bytes = uint32_t(issued.row->memory.bytes * issued.row->memory.count);
@@ -123,7 +123,7 @@ void CoreCell::collect_texels(MemoryAccess& access, LaneMask lanes) {
   for (const auto& row : executor_.texels().rows())
     for_each_lane(lanes, [&](int lane) {
       const Address texel = row[size_t(lane)];
-      if (texel != TexelList::kNone) access.lines.add(world_.memory->physical(texel), 4, lane);
+      if (texel != exec::TexelList::kNone) access.lines.add(world_.memory->physical(texel), 4, lane);
     });
 }
 

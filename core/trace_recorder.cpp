@@ -49,7 +49,7 @@ std::vector<std::string> TraceRecorder::state_names() {
   return names;
 }
 
-TraceRecorder::TraceRecorder(const Image& image, uint32_t warp_slots, uint32_t rt_places, Cycle begin,
+TraceRecorder::TraceRecorder(const exec::Image& image, uint32_t warp_slots, uint32_t rt_places, Cycle begin,
                              Cycle end, uint64_t room)
     : image_(image),
       begin_(begin),
@@ -62,7 +62,7 @@ TraceRecorder::TraceRecorder(const Image& image, uint32_t warp_slots, uint32_t r
   slices_.reserve(room);
 }
 
-void TraceRecorder::start_warp(Cycle now, uint32_t slot, const WarpContext& warp) {
+void TraceRecorder::start_warp(Cycle now, uint32_t slot, const exec::WarpContext& warp) {
   slots_[slot] = {warp.warp_index, image_.shader_of[warp.simt.pc], now, now, now, now};
 }
 
@@ -103,7 +103,7 @@ void TraceRecorder::end_run(uint32_t slot, Cycle at) {
   warp.run_begin = at;
 }
 
-void TraceRecorder::issue(Cycle now, uint32_t slot, const Issued&) {
+void TraceRecorder::issue(Cycle now, uint32_t slot, const exec::Issued&) {
   slots_[slot].known = now + 1;
 }
 

@@ -18,16 +18,16 @@ class TraceRecorder final : public CoreObserver {
   static constexpr Cycle kShortWait = 4;
 
   // `room`: slices; at least least_room(). Nothing is allocated later.
-  TraceRecorder(const Image& image, uint32_t warp_slots, uint32_t rt_places, Cycle begin, Cycle end,
+  TraceRecorder(const exec::Image& image, uint32_t warp_slots, uint32_t rt_places, Cycle begin, Cycle end,
                 uint64_t room);
   // What all tracks may still add after the window has ended.
   static uint64_t least_room(uint32_t warp_slots, uint32_t rt_places) {
     return uint64_t{6} * warp_slots + 2 * rt_places;
   }
 
-  void start_warp(Cycle now, uint32_t slot, const WarpContext& warp) override;
+  void start_warp(Cycle now, uint32_t slot, const exec::WarpContext& warp) override;
   void select(Cycle now, uint32_t slot, Cycle ready, Stall wait, Stall door, uint32_t pc) override;
-  void issue(Cycle now, uint32_t slot, const Issued& issued) override;
+  void issue(Cycle now, uint32_t slot, const exec::Issued& issued) override;
   void end_warp(Cycle now, uint32_t slot) override;
   // A warp in a place of the RT unit's warp buffer.
   void enter_rt(Cycle now, uint32_t place, uint32_t slot, LaneMask lanes, const rt::RayState* states);
@@ -58,7 +58,7 @@ class TraceRecorder final : public CoreObserver {
   void end_run(uint32_t slot, Cycle at);
   void add(const TraceSlice& slice);
 
-  const Image& image_;
+  const exec::Image& image_;
   const Cycle begin_;
   Cycle end_;
   const uint64_t room_;

@@ -165,7 +165,7 @@ Pipe pipe_of(Unit unit) {
   GLINT_PANIC("unit {}", int(unit));
 }
 
-IssueTable::IssueTable(const Image& image, const Params& params) {
+IssueTable::IssueTable(const exec::Image& image, const Params& params) {
   const auto units = params.units.by_unit();
   const auto op_times = params.op_times.make({});
   rows_.reserve(image.code.size());

@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "core/image.h"
 #include "core/op_times.h"
 #include "core/params.h"
 #include "core/stall.h"
+#include "exec/image.h"
 #include "isa/op_row.h"
 
 namespace glint::core {
@@ -59,7 +59,7 @@ inline constexpr uint16_t kScoreboardEntries = kFirstPredicate + isa::kNumPredic
 // All instructions of an image. Read-only while running.
 class IssueTable {
  public:
-  IssueTable(const Image& image, const Params& params);
+  IssueTable(const exec::Image& image, const Params& params);
   const IssueRow& row(uint32_t pc) const { return rows_[pc]; }
   // Sources, guard and destinations: all have to be ready before issue.
   std::span<const uint16_t> uses(const IssueRow& row) const {

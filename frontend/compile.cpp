@@ -6,7 +6,7 @@
 
 #include "frontend/cache.h"
 #include "frontend/program_bytes.h"
-#include "frontend/specialize.h"
+#include "frontend/spirv/specialize.h"
 
 namespace glint::frontend {
 namespace {

@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "base/check.h"
-#include "base/engine.h"
+#include "engine/engine.h"
 
 namespace glint::mem {
 
-// A Channel (base/engine.h) with one outbox a producer. The consumer sees all messages in order of (arrival,
-// producer, sending order): the order depends on nothing but the messages, so neither the window nor the
-// threads change it.
+// A Channel (engine/engine.h) with one outbox a producer. The consumer sees all messages in order of
+// (arrival, producer, sending order): the order depends on nothing but the messages, so neither the window
+// nor the threads change it.
 template <class Message>
 class FanIn final : public ChannelBase {
  public:

@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "base/engine.h"
 #include "base/stats.h"
+#include "engine/engine.h"
 #include "memsys/address_map.h"
 #include "memsys/fan_in.h"
 #include "memsys/l1_cache.h"

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "base/engine.h"
 #include "base/interval_sampler.h"
 #include "base/probe.h"
 #include "base/stats.h"
+#include "engine/engine.h"
 #include "memsys/dram_model.h"
 #include "memsys/l2_slice.h"
 #include "memsys/params.h"

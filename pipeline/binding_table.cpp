@@ -11,7 +11,7 @@
 namespace glint::pipeline {
 namespace {
 
-using core::kHandleBytes;
+using exec::kHandleBytes;
 using isa::Stage;
 
 // shaderGroupHandleAlignment, shaderGroupBaseAlignment and maxShaderGroupStride of the driver that the
@@ -24,7 +24,7 @@ uint64_t round_up(uint64_t bytes, uint64_t to) {
 
 class Table {
  public:
-  Table(core::World& world, const TableInput& input) : world_(world), input_(input) {}
+  Table(exec::World& world, const TableInput& input) : world_(world), input_(input) {}
 
   void build(mem::AddressSpace& memory) {
     const TableRegion raygen{{input_.raygen}, {}};
@@ -90,20 +90,20 @@ class Table {
   }
 
   void check(uint32_t shader, Stage stage, const std::string& where) const {
-    if (shader == core::kNoShader) return;
+    if (shader == exec::kNoShader) return;
     if (shader >= world_.image->shaders.size())
       throw UserError(
           fmt::format("{} names shader {}: there are {}", where, shader, world_.image->shaders.size()));
-    const core::Shader& found = world_.image->shaders[shader];
+    const exec::Shader& found = world_.image->shaders[shader];
     if (found.stage != stage)
       throw UserError(fmt::format("{} wants a shader of stage {}: '{}' is of stage {}", where,
                                   isa::name_of(stage), found.name, isa::name_of(found.stage)));
   }
 
   uint32_t general(const TableRecord& record, const std::string& where, Stage stage) const {
-    if (record.group == kNoGroup) return core::kNoShader;
+    if (record.group == kNoGroup) return exec::kNoShader;
     const ShaderGroup& found = group(record, where);
-    if (found.general == core::kNoShader)
+    if (found.general == exec::kNoShader)
       throw UserError(fmt::format("{} names group {}, which is a hit group", where, record.group));
     check(found.general, stage, where);
     return found.general;
@@ -116,10 +116,10 @@ class Table {
     return out;
   }
 
-  core::HitGroup hit_group(const TableRecord& record, const std::string& where) const {
+  exec::HitGroup hit_group(const TableRecord& record, const std::string& where) const {
     if (record.group == kNoGroup) return {};
     const ShaderGroup& found = group(record, where);
-    if (found.general != core::kNoShader)
+    if (found.general != exec::kNoShader)
       throw UserError(fmt::format("{} names group {}, which is no hit group", where, record.group));
     check(found.hit.closest_hit, Stage::ClosestHit, where);
     check(found.hit.any_hit, Stage::AnyHit, where);
@@ -127,20 +127,20 @@ class Table {
     return found.hit;
   }
 
-  core::World& world_;
+  exec::World& world_;
   const TableInput& input_;
   std::vector<std::byte> bytes_;
 };
 
 }  // namespace
 
-void build_binding_table(core::World& world, mem::AddressSpace& memory, const TableInput& input) {
+void build_binding_table(exec::World& world, mem::AddressSpace& memory, const TableInput& input) {
   Table(world, input).build(memory);
 }
 
-uint32_t stack_bytes(const core::Image& image, uint32_t max_trace_depth, uint32_t max_callable_depth) {
+uint32_t stack_bytes(const exec::Image& image, uint32_t max_trace_depth, uint32_t max_callable_depth) {
   uint64_t largest[size_t(Stage::Compute) + 1] = {};
-  for (const core::Shader& shader : image.shaders) {
+  for (const exec::Shader& shader : image.shaders) {
     uint64_t& bytes = largest[size_t(shader.stage)];
     bytes = std::max<uint64_t>(bytes, shader.local_bytes);
   }

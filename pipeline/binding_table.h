@@ -5,17 +5,17 @@
 #include <optional>
 #include <vector>
 
-#include "core/image.h"
+#include "exec/image.h"
 
 namespace glint::pipeline {
 
 inline constexpr uint32_t kNoGroup = 0xffff'ffff;
 
-// VkRayTracingShaderGroupCreateInfoKHR: indices into Image::shaders, or core::kNoShader. A general group has
+// VkRayTracingShaderGroupCreateInfoKHR: indices into Image::shaders, or exec::kNoShader. A general group has
 // a ray generation, miss or callable shader; a hit group has the others.
 struct ShaderGroup {
-  uint32_t general = core::kNoShader;
-  core::HitGroup hit;
+  uint32_t general = exec::kNoShader;
+  exec::HitGroup hit;
 };
 
 struct TableRecord {
@@ -39,10 +39,10 @@ struct TableInput {
 // Writes the table into simulated memory and sets raygen, miss, hit, callable and table of the world, whose
 // image is linked. UserError: a group that there is not or that does not fit its region, a stride that Vulkan
 // forbids or that is too small for a record's data.
-void build_binding_table(core::World& world, mem::AddressSpace& memory, const TableInput& input);
+void build_binding_table(exec::World& world, mem::AddressSpace& memory, const TableInput& input);
 
 // The stack of a lane: the deepest chain of frames (Vulkan 1.3, "Ray Tracing Pipeline Stack", with the depths
 // given).
-uint32_t stack_bytes(const core::Image& image, uint32_t max_trace_depth, uint32_t max_callable_depth);
+uint32_t stack_bytes(const exec::Image& image, uint32_t max_trace_depth, uint32_t max_callable_depth);
 
 }  // namespace glint::pipeline

@@ -9,8 +9,8 @@
 
 namespace glint::pipeline {
 
-using core::Executor;
-using core::WarpContext;
+using exec::Executor;
+using exec::WarpContext;
 
 void answer_rays(Executor& executor, WarpContext& warp, RayCounts& counts) {
   for_each_lane(warp.ray_lanes, [&](int lane) {
@@ -33,11 +33,11 @@ constexpr uint64_t kQuantum = 10'000;
 
 class Runner {
  public:
-  Runner(const core::World& world, uint64_t instruction_budget, core::LaunchCosts* costs)
+  Runner(const exec::World& world, uint64_t instruction_budget, core::LaunchCosts* costs)
       : executor(world), world_(world), budget_(instruction_budget) {
     if (!costs) return;
     costs_ = std::make_unique<core::CostRecorder>(*costs, executor.warps_per_block());
-    executor.called.listen([this](const core::Called& called) {
+    executor.called.listen([this](const exec::Called& called) {
       costs_->call(called.warp.warp_in_block, called.stage, called.lanes);
     });
   }
@@ -62,7 +62,7 @@ class Runner {
   void run_warp(WarpContext& warp) {
     const uint64_t end = warp.instructions + kQuantum;
     for (bool finished = false; !finished && !warp.waiting_at_barrier && warp.instructions < end;) {
-      const core::Issued issued = executor.execute(warp, 0);
+      const exec::Issued issued = executor.execute(warp, 0);
       if (executor.fault()) throw Error(executor.fault()->exit(), executor.passed().with(*executor.fault()));
       ClassCounts& by_class = counts.by_class[size_t(issued.row->klass)];
       ++by_class.instructions;
@@ -73,7 +73,7 @@ class Runner {
       if (finished && costs_) costs_->end_warp(0, warp.warp_in_block);
       if (warp.instructions > budget_) [[unlikely]]
         throw Error(Exit::Fault,
-                    executor.passed().with(core::no_end_in_sight(world_, warp, issued.pc, budget_)));
+                    executor.passed().with(exec::no_end_in_sight(world_, warp, issued.pc, budget_)));
     }
   }
 
@@ -85,18 +85,18 @@ class Runner {
     if (costs_) costs_->end_rays(warp.warp_in_block, lanes, rays);
   }
 
-  const core::World& world_;
+  const exec::World& world_;
   const uint64_t budget_;
-  core::Block block_;
+  exec::Block block_;
   std::vector<WarpContext> warps_;
   std::unique_ptr<core::CostRecorder> costs_;  // null: not asked for
 };
 
 }  // namespace
 
-FunctionalCounts run_functional(const core::World& world, uint64_t instruction_budget,
+FunctionalCounts run_functional(const exec::World& world, uint64_t instruction_budget,
                                 const std::function<void(uint64_t, uint64_t)>& progress,
-                                const Probe<core::Retired>::Listener& listener, core::LaunchCosts* costs) {
+                                const Probe<exec::Retired>::Listener& listener, core::LaunchCosts* costs) {
   Runner runner(world, instruction_budget, costs);
   if (listener) runner.executor.retired.listen(listener);
   const uint32_t num_blocks = runner.executor.num_blocks(), warps = runner.executor.warps_per_block();

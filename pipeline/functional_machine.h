@@ -13,17 +13,17 @@ namespace glint::pipeline {
 struct FunctionalCounts {
   std::array<ClassCounts, size_t(isa::Class::Count)> by_class{};
   RayCounts rays;
-  core::FaultLog faults;  // that were let pass
+  exec::FaultLog faults;  // that were let pass
 };
 
 // Error(Exit::Fault) when a warp does something wrong or executes more than `instruction_budget`
 // instructions. `listener`, when given, hears of every retired instruction; `costs` is filled in.
-FunctionalCounts run_functional(const core::World& world, uint64_t instruction_budget,
+FunctionalCounts run_functional(const exec::World& world, uint64_t instruction_budget,
                                 const std::function<void(uint64_t done, uint64_t total)>& progress,
-                                const Probe<core::Retired>::Listener& listener = {},
+                                const Probe<exec::Retired>::Listener& listener = {},
                                 core::LaunchCosts* costs = nullptr);
 
 // Traverses the rays that `warp` waits for and answers them. Adds to `counts` what the traversal did.
-void answer_rays(core::Executor& executor, core::WarpContext& warp, RayCounts& counts);
+void answer_rays(exec::Executor& executor, exec::WarpContext& warp, RayCounts& counts);
 
 }  // namespace glint::pipeline

@@ -6,13 +6,13 @@
 #include <map>
 
 #include "base/diagnostics.h"
-#include "core/block.h"
+#include "exec/block.h"
 #include "isa/generic_address.h"
 
 namespace glint::pipeline {
 
 KernelWorld::KernelWorld(frontend::Kernel kernel) : kernel_(std::move(kernel)) {
-  image = core::link({kernel_.program});
+  image = exec::link({kernel_.program});
   world.image = &image;
   world.memory = &memory_;
   world.raygen = 0;
@@ -60,9 +60,9 @@ void KernelWorld::set_grid(const KernelGrid& grid) {
         throw UserError({}, fmt::format("kernel '{}': a grid of {} blocks of {} threads is empty", name,
                                         size(grid.grid), size(grid.block)));
   const uint64_t threads = uint64_t{grid.block[0]} * grid.block[1] * grid.block[2];
-  if (threads > core::kMaxBlockThreads)
+  if (threads > exec::kMaxBlockThreads)
     throw UserError({}, fmt::format("kernel '{}': {} threads a block, at most {} can be", name, threads,
-                                    core::kMaxBlockThreads));
+                                    exec::kMaxBlockThreads));
   if (kernel_.required_block && *kernel_.required_block != grid.block)
     throw UserError({}, fmt::format("kernel '{}' asks for blocks of {} threads (.reqntid), not {}", name,
                                     size(*kernel_.required_block), size(grid.block)));
@@ -72,7 +72,7 @@ void KernelWorld::set_grid(const KernelGrid& grid) {
       throw UserError({}, fmt::format("kernel '{}' takes blocks of at most {} threads (.maxntid), not {}",
                                       name, size(most), size(grid.block)));
   }
-  core::set_blocks(world, grid.grid, grid.block, kernel_.program.shared_bytes, grid.dynamic_shared_bytes);
+  exec::set_blocks(world, grid.grid, grid.block, kernel_.program.shared_bytes, grid.dynamic_shared_bytes);
 }
 
 void KernelWorld::set_arguments(const std::vector<std::vector<std::byte>>& arguments) {

@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/image.h"
+#include "exec/image.h"
 #include "frontend/ptx/ptx.h"
 #include "pipeline/render.h"
 
@@ -26,8 +26,8 @@ class KernelWorld {
   KernelWorld(const KernelWorld&) = delete;
   KernelWorld& operator=(const KernelWorld&) = delete;
 
-  core::World world;  // ready after set_grid and set_arguments
-  core::Image image;
+  exec::World world;  // ready after set_grid and set_arguments
+  exec::Image image;
   mem::AddressSpace& memory() { return memory_; }
   const frontend::Kernel& kernel() const { return kernel_; }
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <fmt/format.h>
 
-#include "core/block.h"
+#include "exec/block.h"
 #include "isa/descriptors.h"
 #include "pipeline/description/data.h"
 #include "pipeline/description/mesh.h"
@@ -59,7 +59,7 @@ void PipelineWorld::link(const GpuParams& gpu) {
   std::vector<isa::Program> programs;
   for (const ShaderModule& module : modules_.all()) programs.push_back(module.program);
   add_traversal(programs, gpu, description_.shaders.empty() ? nullptr : description_.shaders[0].glsl.cache);
-  image_ = core::link(programs);
+  image_ = exec::link(programs);
   world.image = &image_;
   const bool nested =
       traces_from(modules_, isa::Stage::ClosestHit) || traces_from(modules_, isa::Stage::Miss);
@@ -77,11 +77,11 @@ void PipelineWorld::set_launch() {
   world.raygen = modules_.index_of(description_.compute);
   const isa::Program& program = modules_.find(description_.compute).program;
   const auto& size = program.local_size;
-  if (uint64_t{size[0]} * size[1] * size[2] > core::kMaxBlockThreads)
+  if (uint64_t{size[0]} * size[1] * size[2] > exec::kMaxBlockThreads)
     throw UserError(description_.compute_where,
                     fmt::format("'{}' has blocks of {} x {} x {} threads: at most {} can be",
-                                description_.compute, size[0], size[1], size[2], core::kMaxBlockThreads));
-  core::set_blocks(world, description_.launch, size, program.shared_bytes);
+                                description_.compute, size[0], size[1], size[2], exec::kMaxBlockThreads));
+  exec::set_blocks(world, description_.launch, size, program.shared_bytes);
 }
 
 const BindingUse* PipelineWorld::use_of(const Slot& slot) const {

@@ -21,7 +21,7 @@ class PipelineWorld {
   PipelineWorld(const PipelineWorld&) = delete;
   PipelineWorld& operator=(const PipelineWorld&) = delete;
 
-  core::World world;
+  exec::World world;
   StructureCounts structures;
   std::vector<std::string> warnings;
   const Modules& modules() const { return modules_; }
@@ -30,7 +30,7 @@ class PipelineWorld {
 
   // What a buffer or an image holds; by its number in the description.
   std::span<const std::byte> buffer(size_t index) const;
-  const core::ImageView& image(size_t index) const { return world.images[image_handle_[index]]; }
+  const exec::ImageView& image(size_t index) const { return world.images[image_handle_[index]]; }
 
  private:
   void link(const GpuParams& gpu);
@@ -52,7 +52,7 @@ class PipelineWorld {
   const PipelineDescription description_;
   const Modules modules_;
   mem::AddressSpace memory_;
-  core::Image image_;
+  exec::Image image_;
   std::vector<Address> buffer_address_;
   std::vector<uint64_t> buffer_bytes_;
   std::vector<size_t> image_handle_;

@@ -20,7 +20,7 @@ const stats::Group& RenderResult::statistics() const {
   return stats->root();
 }
 
-RenderResult run_world(const core::World& world, const GpuParams& gpu, bool timing, bool no_skip,
+RenderResult run_world(const exec::World& world, const GpuParams& gpu, bool timing, bool no_skip,
                        uint32_t threads, const std::function<void(uint64_t, uint64_t)>& progress,
                        const Observation& observation) {
   RenderResult result;

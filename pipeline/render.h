@@ -12,7 +12,7 @@
 #include "base/profile_table.h"
 #include "base/stats.h"
 #include "base/trace_table.h"
-#include "core/executor.h"
+#include "exec/executor.h"
 #include "frontend/compile.h"
 #include "pipeline/params.h"
 #include "pipeline/run_profile.h"
@@ -35,10 +35,10 @@ struct RenderJob {
   StructureCache* structure_cache = nullptr;  // null: every structure is built
   std::string shader_dir;                     // folder with raygen.rgen, miss.rmiss, triangle.rchit and so on
   frontend::GlslOptions glsl;
-  core::PrintLog* prints = nullptr;  // what the shaders print
+  exec::PrintLog* prints = nullptr;  // what the shaders print
   // Told now and then how many of the launch's warps have ended.
   std::function<void(uint64_t done, uint64_t total)> progress;
-  core::OnFault on_fault = core::OnFault::Stop;
+  exec::OnFault on_fault = exec::OnFault::Stop;
   Observation observe;  // of the timing machine, but for `heat`
 };
 
@@ -76,7 +76,7 @@ struct RenderResult {
   RayCounts rays;
   StructureCounts structures;
   core::Residency residency;          // of each core, timing machine
-  core::FaultLog faults;              // that World::on_fault let pass
+  exec::FaultLog faults;              // that World::on_fault let pass
   std::vector<std::string> warnings;  // of compiling the shaders
   ProfileTable profile;               // of the timing machine, if it was asked for
   SeriesTable series;
@@ -90,7 +90,7 @@ struct RenderResult {
 // Runs the launch of a world on either machine; everything of the result but pictures, structures and
 // warnings. `no_skip` steps every cycle, `threads` of the host do it (HostOptions). `progress` hears how many
 // of the launch's warps have ended. Errors as render(). `observe`: what else to note of a timing run.
-RenderResult run_world(const core::World& world, const GpuParams& gpu, bool timing, bool no_skip,
+RenderResult run_world(const exec::World& world, const GpuParams& gpu, bool timing, bool no_skip,
                        uint32_t threads, const std::function<void(uint64_t done, uint64_t total)>& progress,
                        const Observation& observe = {});
 

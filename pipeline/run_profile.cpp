@@ -14,8 +14,8 @@ void add(ProfileRow& row, const core::InstructionCounts& counts) {
   row.add(counts, counts.slots);
 }
 
-ProfileRow row_of(const core::Image& image, uint32_t pc, size_t reasons) {
-  const core::Shader& shader = image.shaders[image.shader_of[pc]];
+ProfileRow row_of(const exec::Image& image, uint32_t pc, size_t reasons) {
+  const exec::Shader& shader = image.shaders[image.shader_of[pc]];
   const isa::Line& line = image.lines[pc];
   ProfileRow row;
   row.shader = shader.name;
@@ -85,7 +85,7 @@ void observe(TimingMachine& machine, const Observation& what) {
   }
 }
 
-ProfileTable profile_of(const TimingMachine& machine, const core::Image& image) {
+ProfileTable profile_of(const TimingMachine& machine, const exec::Image& image) {
   ProfileTable table;
   for (size_t i = 0; i < size_t(core::Stall::Count); ++i) table.reasons.emplace_back(name_of(core::Stall(i)));
   if (!machine.core(0).profile()) return table;

@@ -5,7 +5,7 @@
 
 #include "base/profile_table.h"
 #include "base/types.h"
-#include "core/image.h"
+#include "exec/image.h"
 #include "pipeline/trace_request.h"
 
 namespace glint::pipeline {
@@ -35,7 +35,7 @@ void observe(TimingMachine& machine, const Observation& what);
 
 // After the run, of all cores together. One row an instruction that cost anything, in program order, and a
 // last one for the cycles that had no warp. Without a profile: no rows.
-ProfileTable profile_of(const TimingMachine& machine, const core::Image& image);
+ProfileTable profile_of(const TimingMachine& machine, const exec::Image& image);
 
 // After the run. One row an interval; the last one may be shorter.
 SeriesTable series_of(TimingMachine& machine, Cycle interval);

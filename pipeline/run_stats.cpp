@@ -13,8 +13,8 @@ FunctionalStats::FunctionalStats(const FunctionalCounts& counts) : Group(nullptr
   nodes_ += counts.rays.nodes;
   box_tests_ += counts.rays.box_tests;
   triangle_tests_ += counts.rays.triangle_tests;
-  for (size_t kind = 0; kind < size_t(core::FaultKind::Count); ++kind)
-    faults_.add(core::FaultKind(kind), counts.faults.count(core::FaultKind(kind)));
+  for (size_t kind = 0; kind < size_t(exec::FaultKind::Count); ++kind)
+    faults_.add(exec::FaultKind(kind), counts.faults.count(exec::FaultKind(kind)));
 }
 
 }  // namespace glint::pipeline

@@ -24,7 +24,7 @@ class FunctionalStats : public stats::Group {
                               nodes_, rays_,           "Mean nodes visited by a ray."};
   stats::Counter box_tests_{this, "box_tests", "test", "Ray-box tests."};
   stats::Counter triangle_tests_{this, "triangle_tests", "test", "Ray-triangle tests."};
-  stats::Breakdown<core::FaultKind> faults_{this, "faults", "fault", core::kFaultsDoc};
+  stats::Breakdown<exec::FaultKind> faults_{this, "faults", "fault", exec::kFaultsDoc};
 };
 
 class RunStats {

@@ -102,7 +102,7 @@ void keep_within(TraceTable& table, uint64_t room) {
 
 }  // namespace
 
-TraceRecorders record_trace(TimingMachine& machine, const core::Image& image, const TraceRequest& request) {
+TraceRecorders record_trace(TimingMachine& machine, const exec::Image& image, const TraceRequest& request) {
   TraceRecorders recorders;
   const uint32_t cores = machine.num_cores(), places = machine.params().rt.warps,
                  slots = machine.core(0).num_slots();
@@ -134,7 +134,7 @@ TraceRecorders record_trace(TimingMachine& machine, const core::Image& image, co
   return recorders;
 }
 
-TraceTable trace_of(TimingMachine& machine, const core::Image& image, const TraceRequest& request,
+TraceTable trace_of(TimingMachine& machine, const exec::Image& image, const TraceRequest& request,
                     const TraceRecorders& recorders, Cycle interval) {
   TraceTable table;
   table.begin = request.begin;
@@ -142,7 +142,7 @@ TraceTable trace_of(TimingMachine& machine, const core::Image& image, const Trac
   table.limit = request.limit;
   for (const auto& recorder : recorders.cores) table.end = std::min(table.end, recorder->end());
   for (const auto& recorder : recorders.channels) table.end = std::min(table.end, recorder->end());
-  for (const core::Shader& shader : image.shaders) {
+  for (const exec::Shader& shader : image.shaders) {
     table.shaders.push_back(shader.name);
     table.stages.emplace_back(isa::name_of(shader.stage));
   }

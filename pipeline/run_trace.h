@@ -22,11 +22,11 @@ struct TraceRecorders {
 // Before the run: watches its cores, RT units and memory channels. Whoever calls keeps the recorders until
 // the run is over. Each core has an equal part of the limit less what counters and channels may take.
 // UserError where that is less than its tracks need.
-TraceRecorders record_trace(TimingMachine& machine, const core::Image& image, const TraceRequest& request);
+TraceRecorders record_trace(TimingMachine& machine, const exec::Image& image, const TraceRequest& request);
 
 // After the run, whose counters were sampled every `interval` cycles. It ends for all where the first had no
 // more room.
-TraceTable trace_of(TimingMachine& machine, const core::Image& image, const TraceRequest& request,
+TraceTable trace_of(TimingMachine& machine, const exec::Image& image, const TraceRequest& request,
                     const TraceRecorders& recorders, Cycle interval);
 
 }  // namespace glint::pipeline

@@ -86,13 +86,13 @@ void SceneWorld::link_shaders(const RenderJob& job) {
   WorkloadShaders shaders = compile_workload(job);
   add_traversal(shaders.programs, job.gpu, job.glsl.cache);
   warnings = shaders.warnings.messages();
-  image_ = core::link(shaders.programs);
+  image_ = exec::link(shaders.programs);
   world.image = &image_;
   world.raygen = shaders.raygen;
   world.miss = {shaders.miss};
   world.hit = {shaders.triangle, shaders.sphere};
   world.local_bytes = stack_bytes(image_, world.max_trace_depth, 0);
-  core::place_plain_table(world, memory_.allocate("shader binding table", core::plain_table_bytes(world)));
+  exec::place_plain_table(world, memory_.allocate("shader binding table", exec::plain_table_bytes(world)));
 }
 
 Address SceneWorld::upload(const std::string& name, const void* data, uint64_t bytes) {
@@ -131,15 +131,15 @@ void SceneWorld::upload_geometry(const scenes::Scene& scene) {
 }
 
 void SceneWorld::upload_images(const RenderJob& job) {
-  auto add = [&](std::string name, core::ImageView::Format format, uint32_t width, uint32_t height,
+  auto add = [&](std::string name, exec::ImageView::Format format, uint32_t width, uint32_t height,
                  const void* texels) {
-    const uint64_t bytes = uint64_t(width) * height * core::info_of(format).bytes;
+    const uint64_t bytes = uint64_t(width) * height * exec::info_of(format).bytes;
     const Address base = memory_.allocate(name, bytes);
     if (texels) memory_.write(base, texels, bytes);
     world.images.push_back({format, width, height, base, std::move(name)});
     return uint64_t(world.images.size() - 1);
   };
-  using Format = core::ImageView::Format;
+  using Format = exec::ImageView::Format;
   bind(kAccumulationImage,
        add("binding 1 (accumulation)", Format::Rgba32Float, job.frame.width, job.frame.height, nullptr), 1);
   bind(kPictureImage,
@@ -150,7 +150,7 @@ void SceneWorld::upload_images(const RenderJob& job) {
   for (const scenes::Texture& texture : job.scene.textures) {
     add("texture " + texture.name, texture.srgb ? Format::Rgba8Srgb : Format::Rgba8Unorm, texture.width,
         texture.height, texture.rgba.data());
-    if (texture.repeat) world.images.back().sampler.wrap.fill(core::Wrap::Repeat);
+    if (texture.repeat) world.images.back().sampler.wrap.fill(exec::Wrap::Repeat);
   }
   if (job.scene.textures.empty()) add("texture (white)", Format::Rgba8Unorm, 1, 1, kWhite);
   bind(kTextures, first, world.images.size() - first);
@@ -202,8 +202,8 @@ void SceneWorld::build_structures(const RenderJob& job) {
 }
 
 std::vector<float> SceneWorld::read_image(uint32_t handle) const {
-  const core::ImageView& image = world.images[handle];
-  GLINT_CHECK(image.format == core::ImageView::Format::Rgba32Float, "image {} is not float", image.name);
+  const exec::ImageView& image = world.images[handle];
+  GLINT_CHECK(image.format == exec::ImageView::Format::Rgba32Float, "image {} is not float", image.name);
   const auto texels = memory_.view<float>(image.base, uint64_t(image.width) * image.height * 4);
   return {texels.begin(), texels.end()};
 }

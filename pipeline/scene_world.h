@@ -11,7 +11,7 @@ namespace glint::pipeline {
 struct WorkloadShaders {
   std::vector<isa::Program> programs;
   uint32_t raygen = 0, miss = 0;
-  core::HitGroup triangle, sphere;
+  exec::HitGroup triangle, sphere;
   Diagnostics warnings;
 };
 WorkloadShaders compile_workload(const RenderJob& job);
@@ -23,7 +23,7 @@ class SceneWorld {
   SceneWorld(const SceneWorld&) = delete;
   SceneWorld& operator=(const SceneWorld&) = delete;
 
-  core::World world;
+  exec::World world;
   std::vector<std::string> warnings;  // of compiling
   StructureCounts structures;
   mem::AddressSpace& memory() { return memory_; }
@@ -40,7 +40,7 @@ class SceneWorld {
 
   mem::AddressSpace memory_;
   std::set<uint32_t> bound_;  // of set 0
-  core::Image image_;
+  exec::Image image_;
 };
 
 }  // namespace glint::pipeline

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <string_view>
 
-#include "core/warp_context.h"
+#include "exec/warp_context.h"
 #include "isa/op_row.h"
 #include "isa/ray_query.h"
 #include "pipeline/traversal_source.h"
@@ -39,7 +39,7 @@ void check(const GpuParams& gpu) {
 }
 
 // Ray queries that the image's shaders number at most.
-uint32_t num_queries(const core::Image& image) {
+uint32_t num_queries(const exec::Image& image) {
   uint32_t count = 0;
   for (size_t pc = 0; pc < image.code.size(); ++pc) {
     if (image.rows[pc]->effect != isa::Effect::Query ||
@@ -48,8 +48,8 @@ uint32_t num_queries(const core::Image& image) {
     const isa::Slot number = image.code[pc].operand[0];
     const bool is_constant = number >> isa::kBankShift == isa::kConstantBank >> isa::kBankShift;
     const uint32_t last =
-        is_constant ? image.constants[size_t(number & isa::kSlotIndexMask) * kLanes] : core::kMaxNumbered - 1;
-    count = std::max(count, std::min(last, core::kMaxNumbered - 1) + 1);
+        is_constant ? image.constants[size_t(number & isa::kSlotIndexMask) * kLanes] : exec::kMaxNumbered - 1;
+    count = std::max(count, std::min(last, exec::kMaxNumbered - 1) + 1);
   }
   return count;
 }
@@ -75,10 +75,10 @@ void add_traversal(std::vector<isa::Program>& programs, const GpuParams& gpu, fr
   programs.push_back(frontend::compile_module(spirv, name, {}, backend, warnings, cache).program);
 }
 
-void place_records(core::World& world, uint32_t stack_need) {
-  const std::vector<core::Shader>& shaders = world.image->shaders;
+void place_records(exec::World& world, uint32_t stack_need) {
+  const std::vector<exec::Shader>& shaders = world.image->shaders;
   if (shaders.empty() || shaders.back().name != kName) return;
-  core::TraversalCode& code = world.traversal;
+  exec::TraversalCode& code = world.traversal;
   code.shader = uint32_t(shaders.size() - 1);
   code.stack_entries = std::max(stack_need, 1u);
   code.queries = num_queries(*world.image);

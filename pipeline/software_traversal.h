@@ -3,7 +3,7 @@
 #pragma once
 #include <vector>
 
-#include "core/image.h"
+#include "exec/image.h"
 #include "frontend/compile.h"
 #include "pipeline/params.h"
 
@@ -18,6 +18,6 @@ void add_traversal(std::vector<isa::Program>& programs, const GpuParams& gpu, fr
 
 // After linking, with the depths and the stack of a lane known: where the records lie, if the program is
 // there. `stack_need`: entries that the worst ray needs in any structure.
-void place_records(core::World& world, uint32_t stack_need);
+void place_records(exec::World& world, uint32_t stack_need);
 
 }  // namespace glint::pipeline

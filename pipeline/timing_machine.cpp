@@ -12,7 +12,7 @@ namespace glint::pipeline {
 namespace {
 
 // Checked before anything is built from them.
-const GpuParams& checked(const GpuParams& params, const core::World& world) {
+const GpuParams& checked(const GpuParams& params, const exec::World& world) {
   Diagnostics diagnostics;
   check(params, diagnostics);
   core::check(params.core, world.image->num_registers, diagnostics);
@@ -27,9 +27,9 @@ const GpuParams& checked(const GpuParams& params, const core::World& world) {
 
 // A turn is as long as no message can be on its way: the cells of one are independent of each other.
 // Choice: stores are seen by other cores, and atomics done, at the end of the turn they were issued in, in
-// order of cycle and core (core/memory_view.h); PTX leaves the order of racing accesses open, and bounds it
+// order of cycle and core (exec/memory_view.h); PTX leaves the order of racing accesses open, and bounds it
 // by fences only. A machine of one core has nobody to wait for: its effects happen at issue.
-TimingMachine::TimingMachine(const GpuParams& params, const core::World& world, bool no_skip,
+TimingMachine::TimingMachine(const GpuParams& params, const exec::World& world, bool no_skip,
                              const HostOptions& host)
     : params_(checked(params, world)),
       world_(world),
@@ -62,7 +62,7 @@ TimingMachine::TimingMachine(const GpuParams& params, const core::World& world, 
                                 params_.cores, params_.clock_mhz, rt.tables.base, code, constants, turn}));
     access_latency_.add(cores_.back()->latencies());
     engine_.add(*cores_.back());
-    if (core::MemoryView* view = cores_.back()->view()) views_.push_back(view);
+    if (exec::MemoryView* view = cores_.back()->view()) views_.push_back(view);
   }
   for (Cell* cell : memory_.cells()) engine_.add(*cell);
   for (ChannelBase* channel : memory_.channels()) engine_.add(*channel);
@@ -71,12 +71,12 @@ TimingMachine::TimingMachine(const GpuParams& params, const core::World& world, 
 Cycle TimingMachine::run(const std::function<void(uint64_t, uint64_t)>& progress) {
   std::vector<core::CoreCell*> cores;
   for (auto& core : cores_) cores.push_back(core.get());
-  const core::Executor executor(world_);
+  const exec::Executor executor(world_);
   const uint32_t num_warps = executor.num_warps();
   core::Dispatcher dispatcher(params_.core, executor.num_blocks(), cores);
-  const core::Fault* fault = nullptr;
+  const exec::Fault* fault = nullptr;
   const Cycle quiet = engine_.run([&](Cycle now) {
-    watch_.look(now, core::MemoryView::commit(views_), [&] {
+    watch_.look(now, exec::MemoryView::commit(views_), [&] {
       uint64_t changes = 0;
       for (const auto& core : cores_) changes += core->changes();
       return changes;
@@ -105,9 +105,9 @@ Cycle TimingMachine::run(const std::function<void(uint64_t, uint64_t)>& progress
   root_.attributed += quiet;
   const std::string lost = broken(balances(*this));
   GLINT_CHECK(lost.empty(), "\n{}", lost);
-  const core::FaultLog faults = passed();
-  for (size_t kind = 0; kind < size_t(core::FaultKind::Count); ++kind)
-    root_.faults.add(core::FaultKind(kind), faults.count(core::FaultKind(kind)));
+  const exec::FaultLog faults = passed();
+  for (size_t kind = 0; kind < size_t(exec::FaultKind::Count); ++kind)
+    root_.faults.add(exec::FaultKind(kind), faults.count(exec::FaultKind(kind)));
   return end;
 }
 
@@ -122,8 +122,8 @@ void TimingMachine::throw_livelock(Cycle now) const {
   throw Error(Exit::Stuck, message + "note: core.livelock_budget says how long that may last; 0: for ever");
 }
 
-core::FaultLog TimingMachine::passed() const {
-  core::FaultLog all;
+exec::FaultLog TimingMachine::passed() const {
+  exec::FaultLog all;
   for (const auto& core : cores_) all.add(core->passed());
   return all;
 }

@@ -8,8 +8,8 @@
 #include "base/stats.h"
 #include "core/core_cell.h"
 #include "core/sm_dispatcher.h"
+#include "engine/engine_loop.h"
 #include "memsys/memory_system.h"
-#include "pipeline/engine_loop.h"
 #include "pipeline/livelock_watch.h"
 #include "pipeline/render.h"
 #include "rtunit/rt_unit.h"
@@ -28,7 +28,7 @@ struct HostOptions {
 class TimingMachine {
  public:
   // UserError lists every parameter that cannot be.
-  TimingMachine(const GpuParams& params, const core::World& world, bool no_skip,
+  TimingMachine(const GpuParams& params, const exec::World& world, bool no_skip,
                 const HostOptions& host = {});
 
   // Runs the launch to its end; returns its cycles. Errors as render().
@@ -38,7 +38,7 @@ class TimingMachine {
   Cycle attributed_cycles() const { return root_.attributed.value(); }
 
   // Of all cores: what went wrong and was let pass.
-  core::FaultLog passed() const;
+  exec::FaultLog passed() const;
 
   // Sums over the cores for the caller's result.
   void collect(RenderResult& result) const;
@@ -63,11 +63,11 @@ class TimingMachine {
     stats::Counter attributed{this, "attributed_cycles", "cycle",
                               "Until the last write was in memory as well, in whole windows: what the cycles "
                               "of every unit add up to."};
-    stats::Breakdown<core::FaultKind> faults{this, "faults", "fault", core::kFaultsDoc};
+    stats::Breakdown<exec::FaultKind> faults{this, "faults", "fault", exec::kFaultsDoc};
   };
 
   const GpuParams params_;
-  const core::World& world_;
+  const exec::World& world_;
   Root root_;
   mem::LatencyStats access_latency_{&root_, "access_latency",
                                     "Warp instructions that read memory through the L1, from their issue to "
@@ -76,7 +76,7 @@ class TimingMachine {
   std::vector<std::unique_ptr<stats::Group>> rt_groups_;
   std::vector<std::unique_ptr<rt::RtUnit>> rt_units_;
   std::vector<std::unique_ptr<core::CoreCell>> cores_;
-  std::vector<core::MemoryView*> views_;  // of all cores; none when there is one core
+  std::vector<exec::MemoryView*> views_;  // of all cores; none when there is one core
   LivelockWatch watch_;
   EngineLoop engine_;
 };

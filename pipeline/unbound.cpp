@@ -21,21 +21,21 @@ std::string title(const frontend::Binding& binding) {
                      binding.name.empty() ? "" : fmt::format(" ({})", binding.name));
 }
 
-core::ImageView unbound_image(const frontend::Binding& binding) {
-  core::ImageView out;
+exec::ImageView unbound_image(const frontend::Binding& binding) {
+  exec::ImageView out;
   out.name = title(binding), out.is_bound = false;
   return out;
 }
 
-core::Sampler unbound_sampler(const frontend::Binding& binding) {
-  core::Sampler out;
+exec::Sampler unbound_sampler(const frontend::Binding& binding) {
+  exec::Sampler out;
   out.unbound = title(binding);
   return out;
 }
 
 }  // namespace
 
-void write_descriptor(core::World& world, BindingPlace place, uint64_t address_or_handle,
+void write_descriptor(exec::World& world, BindingPlace place, uint64_t address_or_handle,
                       uint64_t bytes_or_count) {
   const uint64_t descriptor[2] = {address_or_handle, bytes_or_count};
   static_assert(sizeof(descriptor) == isa::kDescriptorBytes);
@@ -44,7 +44,7 @@ void write_descriptor(core::World& world, BindingPlace place, uint64_t address_o
   std::memcpy(world.constant_bank.data() + at, descriptor, sizeof(descriptor));
 }
 
-void mark_unbound(core::World& world, const frontend::Binding& binding) {
+void mark_unbound(exec::World& world, const frontend::Binding& binding) {
   const uint32_t count = std::clamp(binding.count, 1u, kMostPlaceholders);
   uint64_t value = isa::unbound_address(binding.set, binding.binding);
   switch (binding.kind) {
@@ -70,14 +70,14 @@ void mark_unbound(core::World& world, const frontend::Binding& binding) {
   write_descriptor(world, {binding.set, binding.binding}, value, 0);
 }
 
-void mark_unbound(core::World& world, const std::vector<frontend::Binding>& declared,
+void mark_unbound(exec::World& world, const std::vector<frontend::Binding>& declared,
                   const std::set<BindingPlace>& bound) {
   std::set<BindingPlace> done = bound;
   for (const frontend::Binding& binding : declared)
     if (done.insert({binding.set, binding.binding}).second) mark_unbound(world, binding);
 }
 
-void mark_rest_unbound(core::World& world, const frontend::Binding* array, size_t first) {
+void mark_rest_unbound(exec::World& world, const frontend::Binding* array, size_t first) {
   const size_t rest = array && array->count > first ? array->count - first : 0;
   if (rest && array->kind == BindingKind::Sampler)
     world.samplers.insert(world.samplers.end(), rest, unbound_sampler(*array));
@@ -85,7 +85,7 @@ void mark_rest_unbound(core::World& world, const frontend::Binding* array, size_
     world.images.insert(world.images.end(), rest, unbound_image(*array));
 }
 
-void mark_all_unbound(core::World& world, const std::set<uint32_t>& bound) {
+void mark_all_unbound(exec::World& world, const std::set<uint32_t>& bound) {
   for (uint32_t i = 0; i < isa::kBindingsPerSet; ++i) {
     if (bound.count(i)) continue;
     frontend::Binding binding;

@@ -1,6 +1,6 @@
 // The material models as plain records: what each leaves out is zero.
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/builders.h"
+#include "scenes/lumibench/builders.h"
 
 namespace glint::scenes {
 

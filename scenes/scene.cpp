@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "base/diagnostics.h"
-#include "scenes/builders.h"
+#include "scenes/import/scene_file.h"
 #include "scenes/instancing.h"
-#include "scenes/scene_file.h"
+#include "scenes/lumibench/builders.h"
 
 namespace glint::scenes {
 namespace {

@@ -11,8 +11,8 @@
 #include <system_error>
 #include <unistd.h>
 
+#include "apps/glint/options/suggest.h"
 #include "apps/glint/session.h"
-#include "apps/glint/suggest.h"
 #include "base/diagnostics.h"
 
 namespace glint::app {

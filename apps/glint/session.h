@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/glint/resources.h"
+#include "apps/glint/options/resources.h"
 #include "base/diagnostics.h"
-#include "report/table.h"
+#include "report/terminal/table.h"
 
 namespace CLI {
 class App;

@@ -18,8 +18,8 @@ RegisterClass class_of(const Type& type) {
                            : RegisterClass::B32;
 }
 
-Lowering::Lowering(const Module& module, const Function& entry, const PtxOptions& options, Kernel& kernel,
-                   Diagnostics& errors, Diagnostics& unsupported)
+KernelLowering::KernelLowering(const Module& module, const Function& entry, const PtxOptions& options,
+                               Kernel& kernel, Diagnostics& errors, Diagnostics& unsupported)
     : module_(module),
       entry_(entry),
       options_(options),
@@ -33,7 +33,7 @@ Lowering::Lowering(const Module& module, const Function& entry, const PtxOptions
   program_.files = {module.file};
 }
 
-VirtualProgram Lowering::run() {
+VirtualProgram KernelLowering::run() {
   scopes_.push_back({{}, {}, true});
   place_parameters();
   place_variables();
@@ -68,7 +68,7 @@ VirtualProgram Lowering::run() {
 
 // PTX leaves registers that nothing has written undefined; the backend wants a definition on every path.
 // Choice: they read as 0, false.
-void Lowering::zero_what_nobody_wrote(VirtualProgram& program) {
+void KernelLowering::zero_what_nobody_wrote(VirtualProgram& program) {
   std::vector<VirtualInst> zeros;
   const VirtualOperand zero = VirtualOperand::value(0);
   find_liveness(program).in.front().for_each([&](VirtualRegister r) {
@@ -94,7 +94,7 @@ uint64_t aligned(uint64_t at, uint64_t align) {
 
 }  // namespace
 
-void Lowering::place_parameters() {
+void KernelLowering::place_parameters() {
   uint64_t at = 0;
   for (const Declaration& d : entry_.parameters) {
     at = aligned(at, d.alignment());
@@ -111,8 +111,8 @@ void Lowering::place_parameters() {
 }
 
 // Names in the kernel and the functions that it may call, and the shared variables declared there.
-void Lowering::collect_names(const std::vector<Statement>& list, std::set<std::string>& used,
-                             std::set<const Function*>& seen) {
+void KernelLowering::collect_names(const std::vector<Statement>& list, std::set<std::string>& used,
+                                   std::set<const Function*>& seen) {
   const auto visit = [&](const Operand& o, auto&& self) -> void {
     used.insert(o.name);
     for (const Operand& part : o.parts) self(part, self);
@@ -128,7 +128,7 @@ void Lowering::collect_names(const std::vector<Statement>& list, std::set<std::s
   }
 }
 
-void Lowering::place_shared(const std::vector<const Declaration*>& declarations) {
+void KernelLowering::place_shared(const std::vector<const Declaration*>& declarations) {
   for (const Declaration* d : declarations) {
     const uint64_t at = aligned(static_shared_, d->alignment());
     shared_[d] = at;
@@ -136,7 +136,7 @@ void Lowering::place_shared(const std::vector<const Declaration*>& declarations)
   }
 }
 
-void Lowering::place_variables() {
+void KernelLowering::place_variables() {
   std::set<std::string> used;
   std::set<const Function*> seen;
   collect_names(entry_.body, used, seen);
@@ -166,7 +166,7 @@ void Lowering::place_variables() {
     if (used.contains(d.name)) placed_[d.name] = module_variable(d);
 }
 
-Symbol Lowering::module_variable(const Declaration& d) {
+Symbol KernelLowering::module_variable(const Declaration& d) {
   Symbol symbol;
   symbol.kind = Symbol::Kind::Variable;
   symbol.type = d.type;
@@ -199,19 +199,19 @@ Symbol Lowering::module_variable(const Declaration& d) {
   return symbol;
 }
 
-BlockId Lowering::new_block(const std::string& name) {
+BlockId KernelLowering::new_block(const std::string& name) {
   DraftBlock block;
   block.name = name;
   draft_.blocks.push_back(std::move(block));
   return BlockId(draft_.blocks.size() - 1);
 }
 
-void Lowering::begin(BlockId block) {
+void KernelLowering::begin(BlockId block) {
   draft_.layout.push_back(block);
   block_ = block;
 }
 
-void Lowering::end_goto(BlockId next) {
+void KernelLowering::end_goto(BlockId next) {
   if (block_ == kNoBlock) return;
   DraftBlock& b = draft_.blocks[block_];
   b.end = DraftBlock::End::Goto;
@@ -220,7 +220,8 @@ void Lowering::end_goto(BlockId next) {
   block_ = kNoBlock;
 }
 
-void Lowering::end_branch(VirtualRegister condition, bool negate, BlockId taken, BlockId next, bool uniform) {
+void KernelLowering::end_branch(VirtualRegister condition, bool negate, BlockId taken, BlockId next,
+                                bool uniform) {
   DraftBlock& b = draft_.blocks[block_];
   b.end = DraftBlock::End::Branch;
   b.condition = condition;
@@ -232,14 +233,14 @@ void Lowering::end_branch(VirtualRegister condition, bool negate, BlockId taken,
   block_ = kNoBlock;
 }
 
-void Lowering::end_exit() {
+void KernelLowering::end_exit() {
   if (block_ == kNoBlock) return;
   draft_.blocks[block_].end = DraftBlock::End::Exit;
   draft_.blocks[block_].line = line_;
   block_ = kNoBlock;
 }
 
-void Lowering::predeclare_labels(const std::vector<Statement>& list) {
+void KernelLowering::predeclare_labels(const std::vector<Statement>& list) {
   for (const Statement& s : list) {
     if (s.kind != Statement::Kind::Label && s.kind != Statement::Kind::Targets) continue;
     Symbol symbol;
@@ -251,7 +252,7 @@ void Lowering::predeclare_labels(const std::vector<Statement>& list) {
   }
 }
 
-void Lowering::statements(const std::vector<Statement>& list) {
+void KernelLowering::statements(const std::vector<Statement>& list) {
   for (const Statement& s : list) {
     switch (s.kind) {
       case Statement::Kind::Label: {
@@ -280,7 +281,7 @@ void Lowering::statements(const std::vector<Statement>& list) {
   }
 }
 
-void Lowering::declare(const Declaration& d) {
+void KernelLowering::declare(const Declaration& d) {
   Symbol symbol;
   symbol.type = d.type;
   symbol.space = d.space;
@@ -314,7 +315,7 @@ void Lowering::declare(const Declaration& d) {
 }
 
 // %r7 of `.reg .b32 %r<10>` comes into being when it is first named.
-Symbol* Lowering::find_range(Scope& scope, const std::string& name) {
+Symbol* KernelLowering::find_range(Scope& scope, const std::string& name) {
   for (const Declaration* d : scope.ranges) {
     if (!name.starts_with(d->name) || name.size() == d->name.size()) continue;
     const std::string digits = name.substr(d->name.size());
@@ -330,7 +331,7 @@ Symbol* Lowering::find_range(Scope& scope, const std::string& name) {
   return nullptr;
 }
 
-const Symbol* Lowering::find(const std::string& name) {
+const Symbol* KernelLowering::find(const std::string& name) {
   for (size_t i = scopes_.size(); i-- > 0;) {
     if (const auto at = scopes_[i].names.find(name); at != scopes_[i].names.end()) return &at->second;
     if (const Symbol* symbol = find_range(scopes_[i], name)) return symbol;
@@ -340,7 +341,7 @@ const Symbol* Lowering::find(const std::string& name) {
   return at == placed_.end() ? nullptr : &at->second;
 }
 
-void Lowering::lower(const Instruction& inst) {
+void KernelLowering::lower(const Instruction& inst) {
   line_.line = uint32_t(inst.place.line);
   guard_ = kNoRegister;
   guard_negate_ = inst.guard_negated;

@@ -1,4 +1,4 @@
-// Lowering of one kernel: from its text, with the functions it calls in place, to a graph of blocks.
+// Lowers one kernel from its text, with the functions it calls in place, to a graph of blocks.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <map>
@@ -45,10 +45,10 @@ struct LateMove {
   VirtualOperand to, from;
 };
 
-class Lowering {
+class KernelLowering {
  public:
-  Lowering(const Module& module, const Function& entry, const PtxOptions& options, Kernel& kernel,
-           Diagnostics& errors, Diagnostics& unsupported);
+  KernelLowering(const Module& module, const Function& entry, const PtxOptions& options, Kernel& kernel,
+                 Diagnostics& errors, Diagnostics& unsupported);
   // The program before register allocation. Mistakes are in the diagnostics.
   VirtualProgram run();
   uint64_t static_shared_bytes() const { return static_shared_; }

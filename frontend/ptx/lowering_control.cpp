@@ -7,7 +7,7 @@
 
 namespace glint::frontend::ptx {
 
-bool Lowering::lower_control(const Instruction& inst) {
+bool KernelLowering::lower_control(const Instruction& inst) {
   const std::string& op = inst.words[0];
   if (op == "bra")
     lower_branch(inst);
@@ -22,14 +22,14 @@ bool Lowering::lower_control(const Instruction& inst) {
   return true;
 }
 
-BlockId Lowering::label(const std::string& name, Place place) {
+BlockId KernelLowering::label(const std::string& name, Place place) {
   const Symbol* symbol = find(name);
   if (symbol && symbol->kind == Symbol::Kind::Label) return symbol->block;
   error(place, fmt::format("there is no label '{}' here", name));
   return new_block(name);
 }
 
-void Lowering::lower_branch(const Instruction& inst) {
+void KernelLowering::lower_branch(const Instruction& inst) {
   if (inst.operands.size() != 1 || inst.operands[0].kind != Operand::Kind::Name)
     return error(inst.place, "'bra' takes a label");
   const BlockId target = label(inst.operands[0].name, inst.operands[0].place);
@@ -41,7 +41,7 @@ void Lowering::lower_branch(const Instruction& inst) {
 
 // Model: a chain of comparisons, not a jump through a table. An index past the list goes to its last label;
 // PTX leaves that undefined.
-void Lowering::lower_indexed_branch(const Instruction& inst) {
+void KernelLowering::lower_indexed_branch(const Instruction& inst) {
   const Symbol* list = inst.operands.size() == 2 ? find(inst.operands[1].name) : nullptr;
   if (!list || list->kind != Symbol::Kind::Targets || list->targets->empty())
     return error(inst.place, "'brx.idx' takes an index and the name of a .branchtargets list");
@@ -63,7 +63,7 @@ void Lowering::lower_indexed_branch(const Instruction& inst) {
   if (guard_ != kNoRegister) begin(behind);
 }
 
-void Lowering::lower_return(const Instruction& inst, bool whole_kernel) {
+void KernelLowering::lower_return(const Instruction& inst, bool whole_kernel) {
   const bool in_call = !calls_.empty() && !whole_kernel;
   BlockId target = in_call ? calls_.back().second : kNoBlock;
   if (guard_ == kNoRegister) return in_call ? end_goto(target) : end_exit();
@@ -77,7 +77,7 @@ void Lowering::lower_return(const Instruction& inst, bool whole_kernel) {
   begin(next);
 }
 
-void Lowering::lower_call(const Instruction& inst) {
+void KernelLowering::lower_call(const Instruction& inst) {
   size_t at = 0;
   const std::vector<Operand> none;
   const bool has_results = !inst.operands.empty() && inst.operands[0].kind == Operand::Kind::List;
@@ -109,7 +109,7 @@ void Lowering::lower_call(const Instruction& inst) {
 
 // A parameter in .param space is its words: those of the variable that the caller names, or a copy of a
 // register or number. A parameter in a register is a register of its own.
-Symbol Lowering::bind_parameter(const Declaration& formal, const Operand* actual) {
+Symbol KernelLowering::bind_parameter(const Declaration& formal, const Operand* actual) {
   const Symbol* given = actual && actual->kind == Operand::Kind::Name ? find(actual->name) : nullptr;
   if (given && given->kind == Symbol::Kind::Parameter && formal.space == VariableSpace::Param) {
     if (given->elements.size() * 4 < formal.bytes())
@@ -143,8 +143,8 @@ Symbol Lowering::bind_parameter(const Declaration& formal, const Operand* actual
   return symbol;
 }
 
-void Lowering::inline_call(const Instruction& inst, const Function& callee,
-                           const std::vector<Operand>& results, const std::vector<Operand>& arguments) {
+void KernelLowering::inline_call(const Instruction& inst, const Function& callee,
+                                 const std::vector<Operand>& results, const std::vector<Operand>& arguments) {
   const BlockId behind = new_block("");
   if (guard_ != kNoRegister) {
     const BlockId inside = new_block("");

@@ -62,14 +62,14 @@ Operand integer_operand(uint64_t value, Place place) {
 
 }  // namespace
 
-void Lowering::report_no_row(const Instruction& inst) {
+void KernelLowering::report_no_row(const Instruction& inst) {
   const std::string name = joined(inst.words);
   const std::string near = nearest_row(name);
   no_support(inst.place, near.empty() ? fmt::format("no op '{}'", name)
                                       : fmt::format("no op '{}'; did you mean '{}'?", name, near));
 }
 
-void Lowering::lower_row(const Instruction& inst, int row, std::vector<const Operand*> operands) {
+void KernelLowering::lower_row(const Instruction& inst, int row, std::vector<const Operand*> operands) {
   const isa::OpRow& r = isa::op_table()[size_t(row)];
   const std::vector<Type> types = types_of(inst.words);
   const Type result = types.empty() ? Type{} : types.front(), input = types.empty() ? Type{} : types.back();
@@ -103,7 +103,8 @@ void Lowering::lower_row(const Instruction& inst, int row, std::vector<const Ope
   finish_moves();
 }
 
-void Lowering::note_free_arithmetic(const Instruction& inst, const std::vector<VirtualOperand>& operands) {
+void KernelLowering::note_free_arithmetic(const Instruction& inst,
+                                          const std::vector<VirtualOperand>& operands) {
   const std::string& op = inst.words[0];
   const bool ftz = inst.words.size() == 3 && inst.words[1] == "ftz";
   const auto type = type_of(inst.words.back());
@@ -115,28 +116,28 @@ void Lowering::note_free_arithmetic(const Instruction& inst, const std::vector<V
   free_[operands.front().reg] = {op[0], suffix};
 }
 
-void Lowering::lower_generic(const Instruction& inst) {
+void KernelLowering::lower_generic(const Instruction& inst) {
   const int row = find_row(inst.words);
   if (row < 0) return report_no_row(inst);
   lower_row(inst, row, flattened(inst.operands));
 }
 
-bool Lowering::lower_special(const Instruction& inst) {
-  using Handler = void (Lowering::*)(const Instruction&);
-  static const std::map<std::string, Handler> kHandlers{{"mov", &Lowering::lower_move},
-                                                        {"setp", &Lowering::lower_setp},
-                                                        {"cvta", &Lowering::lower_address_conversion},
-                                                        {"ld", &Lowering::lower_memory},
-                                                        {"ldu", &Lowering::lower_memory},
-                                                        {"st", &Lowering::lower_memory},
-                                                        {"atom", &Lowering::lower_memory},
-                                                        {"red", &Lowering::lower_memory},
-                                                        {"bar", &Lowering::lower_barrier},
-                                                        {"barrier", &Lowering::lower_barrier},
-                                                        {"membar", &Lowering::lower_fence},
-                                                        {"fence", &Lowering::lower_fence},
-                                                        {"vote", &Lowering::lower_old_warp_op},
-                                                        {"shfl", &Lowering::lower_old_warp_op}};
+bool KernelLowering::lower_special(const Instruction& inst) {
+  using Handler = void (KernelLowering::*)(const Instruction&);
+  static const std::map<std::string, Handler> kHandlers{{"mov", &KernelLowering::lower_move},
+                                                        {"setp", &KernelLowering::lower_setp},
+                                                        {"cvta", &KernelLowering::lower_address_conversion},
+                                                        {"ld", &KernelLowering::lower_memory},
+                                                        {"ldu", &KernelLowering::lower_memory},
+                                                        {"st", &KernelLowering::lower_memory},
+                                                        {"atom", &KernelLowering::lower_memory},
+                                                        {"red", &KernelLowering::lower_memory},
+                                                        {"bar", &KernelLowering::lower_barrier},
+                                                        {"barrier", &KernelLowering::lower_barrier},
+                                                        {"membar", &KernelLowering::lower_fence},
+                                                        {"fence", &KernelLowering::lower_fence},
+                                                        {"vote", &KernelLowering::lower_old_warp_op},
+                                                        {"shfl", &KernelLowering::lower_old_warp_op}};
   // Hints without a result.
   static const std::set<std::string> kNothing{"prefetch", "prefetchu",      "applypriority", "nanosleep",
                                               "pmevent",  "griddepcontrol", "setmaxnreg"};
@@ -153,7 +154,7 @@ bool Lowering::lower_special(const Instruction& inst) {
   return true;
 }
 
-void Lowering::lower_move(const Instruction& inst) {
+void KernelLowering::lower_move(const Instruction& inst) {
   if (inst.operands.size() == 2) {
     const bool joins = inst.operands[1].kind == Operand::Kind::Vector,
                splits = inst.operands[0].kind == Operand::Kind::Vector;
@@ -172,7 +173,8 @@ void Lowering::lower_move(const Instruction& inst) {
 // Selectors of prmt.b32 that put the low halves, or low bytes, of two registers side by side.
 constexpr uint64_t kLowHalves = 0x5410, kLowBytes = 0x0040;
 
-void Lowering::join_parts(const Instruction& inst, const Operand& to, const std::vector<Operand>& parts) {
+void KernelLowering::join_parts(const Instruction& inst, const Operand& to,
+                                const std::vector<Operand>& parts) {
   const std::vector<Type> types = types_of(inst.words);
   const uint32_t bits = types.empty() ? 0 : types[0].bits,
                  part = parts.empty() ? 0 : bits / uint32_t(parts.size());
@@ -199,7 +201,8 @@ void Lowering::join_parts(const Instruction& inst, const Operand& to, const std:
   finish_moves();
 }
 
-void Lowering::split_parts(const Instruction& inst, const std::vector<Operand>& parts, const Operand& from) {
+void KernelLowering::split_parts(const Instruction& inst, const std::vector<Operand>& parts,
+                                 const Operand& from) {
   const std::vector<Type> types = types_of(inst.words);
   const uint32_t bits = types.empty() ? 0 : types[0].bits,
                  part = parts.empty() ? 0 : bits / uint32_t(parts.size());
@@ -232,7 +235,7 @@ void Lowering::split_parts(const Instruction& inst, const std::vector<Operand>& 
 }
 
 // setp.CMP{.BOOL}.type p{|q}, a, b{, c}: p = (a CMP b) BOOL c, q = !(a CMP b) BOOL c.
-void Lowering::lower_setp(const Instruction& inst) {
+void KernelLowering::lower_setp(const Instruction& inst) {
   const int row = find_row(inst.words);
   const bool pair = !inst.operands.empty() && inst.operands[0].kind == Operand::Kind::Pair;
   if (row >= 0 && (!pair || num_destinations(isa::op_table()[size_t(row)]) == 2))
@@ -266,7 +269,7 @@ void Lowering::lower_setp(const Instruction& inst) {
 }
 
 // The condition code of PTX is a predicate that the row names: after the result, and behind the sources.
-void Lowering::lower_carry(const Instruction& inst) {
+void KernelLowering::lower_carry(const Instruction& inst) {
   const int row = find_row(inst.words);
   if (row < 0) return report_no_row(inst);
   if (!placed_.contains(kCarry)) {
@@ -287,7 +290,7 @@ void Lowering::lower_carry(const Instruction& inst) {
   lower_row(whole, row, flattened(whole.operands));
 }
 
-void Lowering::lower_address_conversion(const Instruction& inst) {
+void KernelLowering::lower_address_conversion(const Instruction& inst) {
   Words words = inst.words;
   for (std::string& word : words) word = word.substr(0, word.find("::"));
   if (has_word(words, "global") && has_word(words, "u64")) {
@@ -300,7 +303,7 @@ void Lowering::lower_address_conversion(const Instruction& inst) {
   lower_generic(plain);
 }
 
-void Lowering::lower_barrier(const Instruction& inst) {
+void KernelLowering::lower_barrier(const Instruction& inst) {
   Instruction plain = inst;
   plain.words = {"bar"};
   for (size_t i = 1; i < inst.words.size(); ++i)
@@ -319,7 +322,7 @@ void Lowering::lower_barrier(const Instruction& inst) {
   lower_row(plain, row, operands);
 }
 
-void Lowering::lower_fence(const Instruction& inst) {
+void KernelLowering::lower_fence(const Instruction& inst) {
   const char* scope = has_word(inst.words, "sys")   ? "membar.sys"
                       : has_word(inst.words, "cta") ? "membar.cta"
                                                     : "membar.gl";
@@ -327,7 +330,7 @@ void Lowering::lower_fence(const Instruction& inst) {
 }
 
 // vote and shfl without .sync: all lanes of the warp.
-void Lowering::lower_old_warp_op(const Instruction& inst) {
+void KernelLowering::lower_old_warp_op(const Instruction& inst) {
   if (has_word(inst.words, "sync")) return lower_generic(inst);
   Instruction modern = inst;
   modern.words.insert(modern.words.begin() + 1, "sync");

@@ -8,7 +8,7 @@ namespace glint::frontend::ptx {
 
 using isa::OperandKind;
 
-void Lowering::lower_memory(const Instruction& inst) {
+void KernelLowering::lower_memory(const Instruction& inst) {
   const auto form = memory_form(inst.words);
   if (!form) return report_no_row(inst);
   const int fence = isa::op_index("membar.gl");
@@ -17,7 +17,7 @@ void Lowering::lower_memory(const Instruction& inst) {
   if (form->acquires) emit(fence, {});
 }
 
-void Lowering::lower_atomic(const Instruction& inst, const MemoryForm& form) {
+void KernelLowering::lower_atomic(const Instruction& inst, const MemoryForm& form) {
   const int row = find_atomic_row(form);
   if (row < 0 || form.vector != 1) return report_no_row(inst);
   std::vector<const Operand*> operands;
@@ -28,7 +28,7 @@ void Lowering::lower_atomic(const Instruction& inst, const MemoryForm& form) {
   lower_row(inst, row, operands);
 }
 
-void Lowering::lower_access(const Instruction& inst, const MemoryForm& form) {
+void KernelLowering::lower_access(const Instruction& inst, const MemoryForm& form) {
   const bool load = form.op == "ld";
   if (inst.operands.size() < 2)
     return error(inst.place, fmt::format("'{}' takes a value and an address", joined(inst.words)));
@@ -47,8 +47,8 @@ void Lowering::lower_access(const Instruction& inst, const MemoryForm& form) {
   access_parts(inst, form, parts, at);
 }
 
-void Lowering::access_parts(const Instruction& inst, MemoryForm form,
-                            const std::vector<const Operand*>& parts, const Operand& at) {
+void KernelLowering::access_parts(const Instruction& inst, MemoryForm form,
+                                  const std::vector<const Operand*>& parts, const Operand& at) {
   const int row = find_access_row(form, uint32_t(parts.size()));
   if (row < 0) {
     if (parts.size() == 1) return report_no_row(inst);
@@ -77,8 +77,8 @@ void Lowering::access_parts(const Instruction& inst, MemoryForm form,
 }
 
 // The rows of pairs take each as two registers, low half first.
-void Lowering::access_pairs(const Instruction&, const MemoryForm& form, int row,
-                            const std::vector<const Operand*>& parts, const Operand& at) {
+void KernelLowering::access_pairs(const Instruction&, const MemoryForm& form, int row,
+                                  const std::vector<const Operand*>& parts, const Operand& at) {
   const bool load = form.op == "ld";
   const isa::OpRow& r = isa::op_table()[size_t(row)];
   int64_t imm = 0;
@@ -100,8 +100,8 @@ void Lowering::access_pairs(const Instruction&, const MemoryForm& form, int row,
   finish_moves();
 }
 
-void Lowering::access_words(const Instruction& inst, const MemoryForm& form, const Symbol& words,
-                            int64_t offset, const std::vector<const Operand*>& parts) {
+void KernelLowering::access_words(const Instruction& inst, const MemoryForm& form, const Symbol& words,
+                                  int64_t offset, const std::vector<const Operand*>& parts) {
   const uint32_t bytes = form.type.bits / 8;
   for (size_t i = 0; i < parts.size(); ++i) {
     const int64_t at = offset + int64_t(i * bytes);
@@ -114,7 +114,8 @@ void Lowering::access_words(const Instruction& inst, const MemoryForm& form, con
   }
 }
 
-void Lowering::load_word_part(const MemoryForm& form, const Symbol& words, uint32_t at, const Operand& to) {
+void KernelLowering::load_word_part(const MemoryForm& form, const Symbol& words, uint32_t at,
+                                    const Operand& to) {
   const VirtualOperand word = VirtualOperand::of(words.elements[at / 4]);
   const uint32_t bits = form.type.bits;
   if (bits == 64) {
@@ -130,8 +131,8 @@ void Lowering::load_word_part(const MemoryForm& form, const Symbol& words, uint3
   finish_moves();
 }
 
-void Lowering::store_word_part(const MemoryForm& form, const Symbol& words, uint32_t at,
-                               const Operand& from) {
+void KernelLowering::store_word_part(const MemoryForm& form, const Symbol& words, uint32_t at,
+                                     const Operand& from) {
   const VirtualOperand word = VirtualOperand::of(words.elements[at / 4]);
   const uint32_t bits = form.type.bits;
   if (bits == 64) {

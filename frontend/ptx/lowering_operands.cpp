@@ -18,7 +18,7 @@ bool is_wide(OperandKind kind) {
 
 }  // namespace
 
-VirtualInst& Lowering::emit(int op, std::vector<VirtualOperand> operands, int64_t imm) {
+VirtualInst& KernelLowering::emit(int op, std::vector<VirtualOperand> operands, int64_t imm) {
   VirtualInst inst;
   inst.op = uint16_t(op);
   inst.operands = std::move(operands);
@@ -31,42 +31,42 @@ VirtualInst& Lowering::emit(int op, std::vector<VirtualOperand> operands, int64_
   return code.back();
 }
 
-VirtualInst& Lowering::compute(std::string_view op, std::vector<VirtualOperand> operands, int64_t imm) {
+VirtualInst& KernelLowering::compute(std::string_view op, std::vector<VirtualOperand> operands, int64_t imm) {
   VirtualInst& inst = emit(isa::op_index(op), std::move(operands), imm);
   inst.guard = kNoRegister;
   inst.guard_negate = false;
   return inst;
 }
 
-VirtualOperand Lowering::compute32(std::string_view op, std::vector<VirtualOperand> sources) {
+VirtualOperand KernelLowering::compute32(std::string_view op, std::vector<VirtualOperand> sources) {
   const VirtualOperand to = VirtualOperand::of(temporary(RegisterClass::B32));
   sources.insert(sources.begin(), to);
   compute(op, std::move(sources));
   return to;
 }
 
-VirtualOperand Lowering::compute64(std::string_view op, std::vector<VirtualOperand> sources) {
+VirtualOperand KernelLowering::compute64(std::string_view op, std::vector<VirtualOperand> sources) {
   const VirtualOperand to = VirtualOperand::of(temporary(RegisterClass::B64));
   sources.insert(sources.begin(), to);
   compute(op, std::move(sources));
   return to;
 }
 
-VirtualOperand Lowering::compute_predicate(std::string_view op, std::vector<VirtualOperand> sources) {
+VirtualOperand KernelLowering::compute_predicate(std::string_view op, std::vector<VirtualOperand> sources) {
   const VirtualOperand to = VirtualOperand::of(temporary(RegisterClass::Predicate));
   sources.insert(sources.begin(), to);
   compute(op, std::move(sources));
   return to;
 }
 
-VirtualOperand Lowering::widened(VirtualOperand narrow, bool with_sign) {
+VirtualOperand KernelLowering::widened(VirtualOperand narrow, bool with_sign) {
   if (narrow.kind == VirtualOperand::Kind::Constant)
     return VirtualOperand::value(with_sign ? uint64_t(int64_t(int32_t(narrow.constant)))
                                            : uint64_t(uint32_t(narrow.constant)));
   return compute64(with_sign ? "cvt.s64.s32" : "cvt.u64.u32", {narrow});
 }
 
-const Symbol* Lowering::register_symbol(const Operand& o) {
+const Symbol* KernelLowering::register_symbol(const Operand& o) {
   const Symbol* symbol = find(o.name);
   if (!symbol) {
     error(o.place, fmt::format("'{}' is not declared", o.name));
@@ -77,7 +77,7 @@ const Symbol* Lowering::register_symbol(const Operand& o) {
   return symbol;
 }
 
-VirtualRegister Lowering::predicate_register(const std::string& name, Place place) {
+VirtualRegister KernelLowering::predicate_register(const std::string& name, Place place) {
   Operand o;
   o.name = name;
   o.place = place;
@@ -88,7 +88,7 @@ VirtualRegister Lowering::predicate_register(const std::string& name, Place plac
   return temporary(RegisterClass::Predicate);
 }
 
-VirtualOperand Lowering::predicate_source(const Operand& o) {
+VirtualOperand KernelLowering::predicate_source(const Operand& o) {
   if (o.kind == Operand::Kind::Integer) {
     const VirtualOperand zero = VirtualOperand::value(0);
     return compute_predicate("setp.ne.u32", {VirtualOperand::value(o.value != 0), zero});
@@ -102,7 +102,7 @@ VirtualOperand Lowering::predicate_source(const Operand& o) {
 }
 
 // Bits of a number as the instruction's type reads them.
-VirtualOperand Lowering::literal(const Operand& o, bool wide, const Type& type) {
+VirtualOperand KernelLowering::literal(const Operand& o, bool wide, const Type& type) {
   if (o.kind == Operand::Kind::Integer) return VirtualOperand::value(wide ? o.value : uint32_t(o.value));
   if (type.bits == 16 && o.kind == Operand::Kind::Float64)
     no_support(o.place, "decimal constants of 16-bit floats: write their bits");
@@ -113,7 +113,7 @@ VirtualOperand Lowering::literal(const Operand& o, bool wide, const Type& type) 
                                     : std::bit_cast<uint32_t>(float(std::bit_cast<double>(o.value))));
 }
 
-VirtualOperand Lowering::special_source(const Operand& o, bool wide, bool& found) {
+VirtualOperand KernelLowering::special_source(const Operand& o, bool wide, bool& found) {
   using isa::Special;
   found = true;
   const std::string name = o.element.empty() ? o.name : o.name + "." + o.element;
@@ -133,7 +133,7 @@ VirtualOperand Lowering::special_source(const Operand& o, bool wide, bool& found
   return wide ? widened(VirtualOperand::of(special), false) : VirtualOperand::of(special);
 }
 
-VirtualOperand Lowering::address_of(const Symbol& symbol, int64_t offset, bool wide) {
+VirtualOperand KernelLowering::address_of(const Symbol& symbol, int64_t offset, bool wide) {
   if (symbol.space != VariableSpace::Global) {
     const uint64_t base = symbol.space == VariableSpace::Const ? isa::kPushConstantOffset : 0;
     return VirtualOperand::value(base + symbol.address + uint64_t(offset));
@@ -145,7 +145,7 @@ VirtualOperand Lowering::address_of(const Symbol& symbol, int64_t offset, bool w
   return wide ? whole : compute32("cvt.u32.u64", {whole});
 }
 
-VirtualOperand Lowering::name_source(const Operand& o, bool wide) {
+VirtualOperand KernelLowering::name_source(const Operand& o, bool wide) {
   const Symbol* symbol = find(o.name);
   // `%tid.x` is no part of a scalar register %tid.
   if (symbol && symbol->kind == Symbol::Kind::Register && symbol->elements.empty() && !o.element.empty())
@@ -183,7 +183,7 @@ VirtualOperand Lowering::name_source(const Operand& o, bool wide) {
   return wide ? widened(value, symbol->type.kind == 's') : compute32("cvt.u32.u64", {value});
 }
 
-VirtualOperand Lowering::source(const Operand& o, OperandKind kind, const Type& type) {
+VirtualOperand KernelLowering::source(const Operand& o, OperandKind kind, const Type& type) {
   if (kind == OperandKind::SrcPred) return predicate_source(o);
   if (o.negated) error(o.place, "'!' stands before predicates only");
   switch (o.kind) {
@@ -199,7 +199,7 @@ VirtualOperand Lowering::source(const Operand& o, OperandKind kind, const Type& 
   }
 }
 
-VirtualOperand Lowering::destination(const Operand& o, OperandKind kind, const Type& type) {
+VirtualOperand KernelLowering::destination(const Operand& o, OperandKind kind, const Type& type) {
   const RegisterClass wanted = kind == OperandKind::DstPred ? RegisterClass::Predicate
                                : is_wide(kind)              ? RegisterClass::B64
                                                             : RegisterClass::B32;
@@ -231,13 +231,13 @@ VirtualOperand Lowering::destination(const Operand& o, OperandKind kind, const T
   return value;
 }
 
-void Lowering::finish_moves() {
+void KernelLowering::finish_moves() {
   for (const LateMove& move : late_) emit(move.op, {move.to, move.from});
   late_.clear();
 }
 
 // The base of `[base + offset]`; the displacement goes to `imm`.
-VirtualOperand Lowering::address(const Operand& o, bool wide, int64_t& imm) {
+VirtualOperand KernelLowering::address(const Operand& o, bool wide, int64_t& imm) {
   if (o.kind != Operand::Kind::Address || o.parts.size() != 1) {
     error(o.place, "expected an address such as [%rd1+4]");
     return VirtualOperand::value(0);

@@ -46,7 +46,7 @@ Kernel compile_ptx(std::string_view text, const std::string& file, const std::st
   kernel.required_block = function.required_block;
   kernel.largest_block = function.largest_block;
   Diagnostics errors, unsupported;
-  ptx::Lowering lowering(module, function, options, kernel, errors, unsupported);
+  ptx::KernelLowering lowering(module, function, options, kernel, errors, unsupported);
   VirtualProgram program = lowering.run();
   if (errors.has_errors()) {
     for (const std::string& message : unsupported.messages()) errors.error({}, message);

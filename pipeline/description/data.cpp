@@ -223,7 +223,7 @@ bool put_number(const std::string& name, const Value& value, const AddressOf& ad
   const double real = value.kind == Value::Kind::Bool ? double(value.flag) : value.real;
   if (type == "f32") return store(float(real), at), true;
   if (type == "f64") return store(real, at), true;
-  if (type == "f16") return store(core::to_half(float(real)), at), true;
+  if (type == "f16") return store(exec::to_half(float(real)), at), true;
   if (value.kind == Value::Kind::Real) return false;
   const int64_t whole = value.kind == Value::Kind::Bool ? int64_t(value.flag) : value.whole;
   std::memcpy(at, &whole, bytes_of_number(type));  // little endian: the low bits

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "frontend/block_type.h"
+#include "frontend/spirv/block_type.h"
 #include "pipeline/description/description.h"
 
 namespace glint::pipeline {

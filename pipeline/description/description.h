@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/image_view.h"
+#include "exec/image_view.h"
 #include "frontend/compile.h"
 #include "pipeline/description/value.h"
 #include "rtunit/build.h"
@@ -58,7 +58,7 @@ struct BufferDescription {
 struct SamplerDescription {
   std::string name;
   Slot slot;
-  core::Sampler sampler;
+  exec::Sampler sampler;
   SourceLocation where;
 };
 
@@ -66,7 +66,7 @@ struct ImageDescription {
   std::string name;
   Slot slot;
   std::vector<std::string> files;  // one a layer
-  std::optional<core::TexelFormat> format;
+  std::optional<exec::TexelFormat> format;
   std::array<uint32_t, 3> size{0, 0, 0};  // zeros: the file's, or the launch's
   uint32_t layers = 1, samples = 1;
   bool mipmaps = false;
@@ -74,7 +74,7 @@ struct ImageDescription {
   std::array<double, 4> value{0, 0, 0, 0};
   std::vector<double> data;  // the format's channels of each texel: x first, then y, z and layers
   uint64_t seed = 1;
-  core::Sampler sampler;
+  exec::Sampler sampler;
   std::vector<Save> saves;
   SourceLocation where;
 };
@@ -158,7 +158,7 @@ PipelineDescription read_pipeline(const std::string& path);
 PipelineDescription parse_pipeline(const std::string& text, const std::string& path);
 
 // "rgba8_unorm", or GLSL's "rgba8", "rgba32f", "r32ui".
-std::optional<core::TexelFormat> format_named(const std::string& name);
+std::optional<exec::TexelFormat> format_named(const std::string& name);
 std::vector<std::string> format_names();
 
 }  // namespace glint::pipeline

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <fmt/format.h>
 
-#include "scenes/obj_loader.h"
-#include "scenes/scene_file.h"
+#include "scenes/import/obj_loader.h"
+#include "scenes/import/scene_file.h"
 
 namespace glint::pipeline {
 

@@ -10,8 +10,8 @@
 #include <iterator>
 #include <regex>
 
-#include "core/image.h"
-#include "frontend/spirv.h"
+#include "exec/image.h"
+#include "frontend/spirv/spirv.h"
 #include "pipeline/description/data.h"
 
 namespace glint::pipeline {
@@ -164,10 +164,10 @@ const ShaderModule& Modules::find(const std::string& name) const {
 }
 
 uint32_t Modules::index_of(const std::string& name) const {
-  if (name.empty()) return core::kNoShader;
+  if (name.empty()) return exec::kNoShader;
   for (size_t i = 0; i < modules_.size(); ++i)
     if (modules_[i].name == name) return uint32_t(i);
-  return core::kNoShader;
+  return exec::kNoShader;
 }
 
 }  // namespace glint::pipeline

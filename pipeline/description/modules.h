@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "frontend/reflection.h"
-#include "frontend/specialize.h"
+#include "frontend/spirv/reflection.h"
+#include "frontend/spirv/specialize.h"
 #include "pipeline/description/description.h"
 #include "pipeline/params.h"
 

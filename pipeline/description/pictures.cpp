@@ -8,12 +8,12 @@
 #include <fmt/format.h>
 
 #include "pipeline/description/data.h"
-#include "scenes/picture_decoder.h"
+#include "scenes/import/picture_decoder.h"
 
 namespace glint::pipeline {
 namespace {
 
-using core::TexelFormat;
+using exec::TexelFormat;
 using isa::ImageShape;
 using Texel = std::array<double, 4>;  // floats, or integers where the format has them
 
@@ -65,7 +65,7 @@ Texel given(const ImageDescription& image, size_t index, size_t channels) {
   return out;
 }
 
-void check_data(const ImageDescription& image, const core::ImageView& view, size_t channels) {
+void check_data(const ImageDescription& image, const exec::ImageView& view, size_t channels) {
   const size_t wanted = size_t{view.width} * view.height * view.depth * view.layers * channels;
   if (image.data.size() != wanted)
     throw UserError(
@@ -75,15 +75,15 @@ void check_data(const ImageDescription& image, const core::ImageView& view, size
                     wanted));
 }
 
-core::Words words_of(const Texel& texel, const core::FormatInfo& info) {
-  core::Words out{};
+exec::Words words_of(const Texel& texel, const exec::FormatInfo& info) {
+  exec::Words out{};
   for (size_t c = 0; c < 4; ++c)
-    out[c] = core::is_integer(info) ? uint32_t(int64_t(texel[c])) : std::bit_cast<uint32_t>(float(texel[c]));
+    out[c] = exec::is_integer(info) ? uint32_t(int64_t(texel[c])) : std::bit_cast<uint32_t>(float(texel[c]));
   return out;
 }
 
 // The mean of the texels above, two in each direction that halves.
-std::vector<Texel> halved(const std::vector<Texel>& above, const core::ImageView& view, uint32_t level) {
+std::vector<Texel> halved(const std::vector<Texel>& above, const exec::ImageView& view, uint32_t level) {
   const uint32_t w = view.extent(0, level), h = view.extent(1, level), d = view.extent(2, level);
   const uint32_t aw = view.extent(0, level - 1), ah = view.extent(1, level - 1),
                  ad = view.extent(2, level - 1);
@@ -105,9 +105,9 @@ std::vector<Texel> halved(const std::vector<Texel>& above, const core::ImageView
   return out;
 }
 
-void check_format(const ImageDescription& image, const core::FormatInfo& info, const std::string& texel) {
-  const std::string found = info.numeric == core::Numeric::Uint   ? "u32"
-                            : info.numeric == core::Numeric::Sint ? "s32"
+void check_format(const ImageDescription& image, const exec::FormatInfo& info, const std::string& texel) {
+  const std::string found = info.numeric == exec::Numeric::Uint   ? "u32"
+                            : info.numeric == exec::Numeric::Sint ? "s32"
                                                                   : "f32";
   if (!texel.empty() && found != texel)
     throw UserError(image.where,
@@ -115,7 +115,7 @@ void check_format(const ImageDescription& image, const core::FormatInfo& info, c
                                 image.name, info.name, found, texel));
 }
 
-void check_shape(const ImageDescription& image, const core::ImageView& view) {
+void check_shape(const ImageDescription& image, const exec::ImageView& view) {
   const bool is_flat = view.depth == 1, is_line = view.height == 1 && is_flat;
   const char* wrong = nullptr;
   if (view.samples > 1 && (isa::num_coordinates(view.shape) != 2 || image.mipmaps))
@@ -139,7 +139,7 @@ void check_shape(const ImageDescription& image, const core::ImageView& view) {
 Picture make_picture(const ImageDescription& image, ImageShape shape, const std::string& texel,
                      std::array<uint32_t, 3> fallback, const std::string& declared) {
   Picture out;
-  core::ImageView& view = out.view;
+  exec::ImageView& view = out.view;
   const TexelFormat widest = texel == "u32"   ? TexelFormat::Rgba32Uint
                              : texel == "s32" ? TexelFormat::Rgba32Sint
                                               : TexelFormat::Rgba32Float;
@@ -147,7 +147,7 @@ Picture make_picture(const ImageDescription& image, ImageShape shape, const std:
   const bool is_hdr = !image.files.empty() && scenes::is_hdr_picture(image.files[0]);
   view.format = image.format.value_or(
       !image.files.empty() && !is_hdr && texel != "u32" && texel != "s32" ? TexelFormat::Rgba8Unorm : plain);
-  const core::FormatInfo& info = core::info_of(view.format);
+  const exec::FormatInfo& info = exec::info_of(view.format);
   check_format(image, info, texel);
   view.name = image.name, view.shape = shape, view.sampler = image.sampler,
   view.layers = image.layers * image.samples, view.samples = image.samples;
@@ -155,12 +155,12 @@ Picture make_picture(const ImageDescription& image, ImageShape shape, const std:
 
   std::vector<Texel> level;
   for (const std::string& file : image.files) {
-    Layer layer = load(file, core::is_integer(info), image.where);
+    Layer layer = load(file, exec::is_integer(info), image.where);
     if (!level.empty() && (layer.width != view.width || layer.height != view.height))
       throw UserError(image.where, fmt::format("'{}' is {} x {}, the files before it {} x {}", file,
                                                layer.width, layer.height, view.width, view.height));
     view.width = layer.width, view.height = layer.height;
-    if (info.numeric == core::Numeric::Srgb && !layer.is_float)
+    if (info.numeric == exec::Numeric::Srgb && !layer.is_float)
       for (Texel& t : layer.texels)
         for (size_t c = 0; c < 3; ++c) t[c] = to_linear(t[c]);
     level.insert(level.end(), layer.texels.begin(), layer.texels.end());
@@ -190,19 +190,19 @@ Picture make_picture(const ImageDescription& image, ImageShape shape, const std:
   std::byte* to = out.texels.data();
   for (uint32_t l = 0; l < view.levels; ++l) {
     if (l) level = halved(level, view, l);
-    for (const Texel& t : level) core::encode(view.format, words_of(t, info), to), to += info.bytes;
+    for (const Texel& t : level) exec::encode(view.format, words_of(t, info), to), to += info.bytes;
   }
   return out;
 }
 
-std::vector<float> texels_as_floats(const core::ImageView& view, const std::byte* data) {
-  const core::FormatInfo& info = core::info_of(view.format);
+std::vector<float> texels_as_floats(const exec::ImageView& view, const std::byte* data) {
+  const exec::FormatInfo& info = exec::info_of(view.format);
   std::vector<float> out;
   const size_t count = size_t{view.width} * view.height * view.depth * view.layers;
   for (size_t i = 0; i < count; ++i)
-    for (uint32_t word : core::decode(view.format, data + i * info.bytes))
-      out.push_back(info.numeric == core::Numeric::Uint   ? float(word)
-                    : info.numeric == core::Numeric::Sint ? float(int32_t(word))
+    for (uint32_t word : exec::decode(view.format, data + i * info.bytes))
+      out.push_back(info.numeric == exec::Numeric::Uint   ? float(word)
+                    : info.numeric == exec::Numeric::Sint ? float(int32_t(word))
                                                           : std::bit_cast<float>(word));
   return out;
 }

@@ -4,13 +4,13 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/image_view.h"
+#include "exec/image_view.h"
 #include "pipeline/description/description.h"
 
 namespace glint::pipeline {
 
 struct Picture {
-  core::ImageView view;  // without address
+  exec::ImageView view;  // without address
   std::vector<std::byte> texels;
 };
 
@@ -22,6 +22,6 @@ Picture make_picture(const ImageDescription& image, isa::ImageShape shape, const
                      std::array<uint32_t, 3> fallback, const std::string& declared = {});
 
 // A level-0 image as floats, four a texel, layer after layer: what is saved as a picture.
-std::vector<float> texels_as_floats(const core::ImageView& view, const std::byte* data);
+std::vector<float> texels_as_floats(const exec::ImageView& view, const std::byte* data);
 
 }  // namespace glint::pipeline

@@ -25,11 +25,11 @@ std::string name_of_slot(const char* kind, const Slot& slot) {
   return slot.is_bound() ? fmt::format("{}_{}_{}", kind, slot.set.value_or(0), *slot.binding) : kind;
 }
 
-core::Sampler read_sampler_keys(TableReader& t) {
-  core::Sampler out;
+exec::Sampler read_sampler_keys(TableReader& t) {
+  exec::Sampler out;
   const std::vector<std::string> filters{"nearest", "linear"};
   const auto filter = [&](const char* key, const std::string& fallback) {
-    return t.name(key, fallback, filters) == "linear" ? core::Filter::Linear : core::Filter::Nearest;
+    return t.name(key, fallback, filters) == "linear" ? exec::Filter::Linear : exec::Filter::Nearest;
   };
   const std::string both = t.name("filter", "linear", filters);
   out.mag = filter("mag_filter", both);
@@ -41,7 +41,7 @@ core::Sampler read_sampler_keys(TableReader& t) {
   const char* keys[] = {"wrap_u", "wrap_v", "wrap_w"};
   for (size_t i = 0; i < 3; ++i)
     out.wrap[i] =
-        core::Wrap(std::find(wraps.begin(), wraps.end(), t.name(keys[i], all, wraps)) - wraps.begin());
+        exec::Wrap(std::find(wraps.begin(), wraps.end(), t.name(keys[i], all, wraps)) - wraps.begin());
   const std::vector<double> border = t.numbers("border");
   for (size_t i = 0; i < std::min<size_t>(4, border.size()); ++i)
     out.border[i] = std::bit_cast<uint32_t>(float(border[i]));
@@ -51,7 +51,7 @@ core::Sampler read_sampler_keys(TableReader& t) {
   out.unnormalized = t.flag("unnormalized", false);
   const std::vector<std::string> compares{
       "never", "less", "equal", "less_or_equal", "greater", "not_equal", "greater_or_equal", "always"};
-  out.compare = core::Comparison(
+  out.compare = exec::Comparison(
       std::find(compares.begin(), compares.end(), t.name("compare", "never", compares)) - compares.begin());
   return out;
 }
@@ -167,17 +167,17 @@ void read_resources(Reading& r, TableReader& root) {
 
 std::vector<std::string> format_names() {
   std::vector<std::string> out;
-  for (size_t i = 0; i < size_t(core::TexelFormat::Count); ++i)
-    out.emplace_back(core::info_of(core::TexelFormat(i)).name);
+  for (size_t i = 0; i < size_t(exec::TexelFormat::Count); ++i)
+    out.emplace_back(exec::info_of(exec::TexelFormat(i)).name);
   return out;
 }
 
-std::optional<core::TexelFormat> format_named(const std::string& name) {
-  if (name == "r11f_g11f_b10f") return core::TexelFormat::R11g11b10Float;
-  if (name == "rgb10_a2") return core::TexelFormat::Rgb10a2Unorm;
-  if (name == "rgb10_a2ui") return core::TexelFormat::Rgb10a2Uint;
-  for (size_t i = 0; i < size_t(core::TexelFormat::Count); ++i) {
-    const std::string full(core::info_of(core::TexelFormat(i)).name);
+std::optional<exec::TexelFormat> format_named(const std::string& name) {
+  if (name == "r11f_g11f_b10f") return exec::TexelFormat::R11g11b10Float;
+  if (name == "rgb10_a2") return exec::TexelFormat::Rgb10a2Unorm;
+  if (name == "rgb10_a2ui") return exec::TexelFormat::Rgb10a2Uint;
+  for (size_t i = 0; i < size_t(exec::TexelFormat::Count); ++i) {
+    const std::string full(exec::info_of(exec::TexelFormat(i)).name);
     const size_t bar = full.find('_');
     const std::string channels = full.substr(0, bar),
                       kind = bar == std::string::npos ? "" : full.substr(bar + 1);
@@ -186,7 +186,7 @@ std::optional<core::TexelFormat> format_named(const std::string& name) {
                              : kind == "uint"  ? channels + "ui"
                              : kind == "sint"  ? channels + "i"
                                                : full;
-    if (name == full || name == glsl) return core::TexelFormat(i);
+    if (name == full || name == glsl) return exec::TexelFormat(i);
   }
   return {};
 }

@@ -21,7 +21,7 @@ namespace {
 constexpr Cycle kTurn = 48;
 
 // Refuses what the model would pass over in silence, all of it at once.
-const core::World& checked(const GpuParams& params, const core::World& world) {
+const exec::World& checked(const GpuParams& params, const exec::World& world) {
   const rt::Params& rt = params.rt;
   const std::pair<bool, std::string_view> unknown[] = {
       {world.block_size[0] != 0, "launches with blocks of threads"},
@@ -46,7 +46,7 @@ const core::World& checked(const GpuParams& params, const core::World& world) {
 }  // namespace
 
 struct IntervalMachine::Core {
-  Core(const GpuParams& params, const core::World& world, MemoryModel& memory, uint32_t core_index,
+  Core(const GpuParams& params, const exec::World& world, MemoryModel& memory, uint32_t core_index,
        uint32_t slots)
       : index(core_index),
         rays(params.rt, *world.memory, memory, core_index),
@@ -58,7 +58,7 @@ struct IntervalMachine::Core {
 
   uint32_t index;
   RayModel rays;
-  std::vector<core::WarpContext> warps;  // by slot
+  std::vector<exec::WarpContext> warps;  // by slot
   std::vector<Cycle> issue;              // of each scheduler: when all that it was given is issued
   double issue_work = 0;
   core::LineList lines;
@@ -67,7 +67,7 @@ struct IntervalMachine::Core {
   std::array<Cycle, core::kScoreboardEntries> ready{};  // of the warp that runs: its registers
 };
 
-IntervalMachine::IntervalMachine(const GpuParams& params, const core::World& world)
+IntervalMachine::IntervalMachine(const GpuParams& params, const exec::World& world)
     : params_(params),
       world_(checked(params, world)),
       executor_(world),
@@ -90,7 +90,7 @@ bool IntervalMachine::launch(Core& core, uint32_t slot, Cycle at) {
 
 // Runs a warp from `at` up to its next rays or its end, as if it were alone with its caches.
 void IntervalMachine::run_interval(Core& core, uint32_t slot, Cycle at) {
-  core::WarpContext& warp = core.warps[slot];
+  exec::WarpContext& warp = core.warps[slot];
   core.ready.fill(0);
   std::array<double, core::kNumPipes> pipe_free{}, work{};
   double slots = 0;
@@ -101,12 +101,12 @@ void IntervalMachine::run_interval(Core& core, uint32_t slot, Cycle at) {
     const core::IssueRow& row = table_.row(pc);
     for (const uint16_t use : table_.uses(row)) now = std::max(now, core.ready[use]);
     now = std::max(now, Cycle(pipe_free[size_t(row.pipe)]));
-    const core::Issued issued = executor_.execute(warp, now);
+    const exec::Issued issued = executor_.execute(warp, now);
     if (executor_.fault())
       throw Error(executor_.fault()->exit(), executor_.passed().with(*executor_.fault()));
     if (warp.instructions > params_.core.instruction_budget) [[unlikely]]
       throw Error(Exit::Fault, executor_.passed().with(
-                                   core::no_end_in_sight(world_, warp, pc, params_.core.instruction_budget)));
+                                   exec::no_end_in_sight(world_, warp, pc, params_.core.instruction_budget)));
     finished = issued.finished;
     ++estimate_.instructions;
     estimate_.lanes += num_lanes(issued.lanes);
@@ -132,7 +132,7 @@ void IntervalMachine::run_interval(Core& core, uint32_t slot, Cycle at) {
 }
 
 // When what an instruction loads is there; what it stores costs the warp nothing more.
-Cycle IntervalMachine::access(Core& core, uint32_t slot, const core::Issued& issued,
+Cycle IntervalMachine::access(Core& core, uint32_t slot, const exec::Issued& issued,
                               const core::IssueRow& row, Cycle at) {
   core.lines.clear();
   const isa::Access& addresses = core.warps[slot].regs.access;
@@ -142,7 +142,7 @@ Cycle IntervalMachine::access(Core& core, uint32_t slot, const core::Issued& iss
   if (row.is_texture) {
     for (const auto& texels : executor_.texels().rows())
       for_each_lane(issued.lanes, [&](int lane) {
-        if (texels[size_t(lane)] != core::TexelList::kNone)
+        if (texels[size_t(lane)] != exec::TexelList::kNone)
           core.lines.add(world_.memory->physical(texels[size_t(lane)]), 4, lane);
       });
   } else if (row.finish == Finish::CallRecord) {

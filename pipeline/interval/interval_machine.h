@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/executor.h"
 #include "core/units.h"
+#include "exec/executor.h"
 #include "pipeline/interval/memory_model.h"
 #include "pipeline/interval/ray_model.h"
 #include "pipeline/params.h"
@@ -43,7 +43,7 @@ class IntervalMachine {
  public:
   // UnsupportedError, with all reasons, for launches with blocks of threads and configurations whose
   // mechanisms the model lacks.
-  IntervalMachine(const GpuParams& params, const core::World& world);
+  IntervalMachine(const GpuParams& params, const exec::World& world);
   ~IntervalMachine();
 
   // Effects on memory are those of the functional machine. Error(Exit::Fault) as there.
@@ -60,14 +60,14 @@ class IntervalMachine {
 
   bool launch(Core& core, uint32_t slot, Cycle at);
   void run_interval(Core& core, uint32_t slot, Cycle at);
-  Cycle access(Core& core, uint32_t slot, const core::Issued& issued, const core::IssueRow& row, Cycle at);
+  Cycle access(Core& core, uint32_t slot, const exec::Issued& issued, const core::IssueRow& row, Cycle at);
   Cycle next(const Core& core) const;
   void advance(Core& core);
   IntervalEstimate collect() const;
 
   const GpuParams& params_;
-  const core::World& world_;
-  core::Executor executor_;
+  const exec::World& world_;
+  exec::Executor executor_;
   core::IssueTable table_;
   MemoryModel memory_;
   std::vector<std::unique_ptr<Core>> cores_;

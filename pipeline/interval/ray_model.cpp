@@ -26,14 +26,14 @@ RayModel::RayModel(const rt::Params& params, const mem::AddressSpace& memory, Me
       transform_{params.transform} {
 }
 
-void RayModel::submit(Cycle at, uint32_t slot, core::WarpContext& warp) {
+void RayModel::submit(Cycle at, uint32_t slot, exec::WarpContext& warp) {
   now_ = std::max(now_, at);
   if (std::ranges::any_of(traces_, [](const Trace& trace) { return !trace.used; }))
     return begin(at, slot, warp);
   waiting_.emplace_back(slot, &warp);
 }
 
-void RayModel::begin(Cycle at, uint32_t slot, core::WarpContext& warp) {
+void RayModel::begin(Cycle at, uint32_t slot, exec::WarpContext& warp) {
   const auto free = std::ranges::find_if(traces_, [](const Trace& trace) { return !trace.used; });
   *free = {.used = true, .slot = slot, .warp = &warp, .age = age_++, .begun = at};
   ++counts_.traces;

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/warp_context.h"
+#include "exec/warp_context.h"
 #include "memsys/address_space.h"
 #include "pipeline/interval/memory_model.h"
 #include "rtunit/params.h"
@@ -28,7 +28,7 @@ class RayModel {
   RayModel(const rt::Params& params, const mem::AddressSpace& memory, MemoryModel& caches, uint32_t core);
 
   // A warp's rays; `warp` stays where it is until it is done.
-  void submit(Cycle at, uint32_t slot, core::WarpContext& warp);
+  void submit(Cycle at, uint32_t slot, exec::WarpContext& warp);
   // When advance() has something to do; kNever without rays.
   Cycle next() const;
   // Does what is due at next().
@@ -45,7 +45,7 @@ class RayModel {
   struct Trace {
     bool used = false;
     uint32_t slot = 0;
-    core::WarpContext* warp = nullptr;
+    exec::WarpContext* warp = nullptr;
     LaneMask wanting = 0, travelling = 0;
     uint64_t age = 0;
     Cycle begun = 0;
@@ -64,7 +64,7 @@ class RayModel {
     bool operator>(const Event& other) const { return at != other.at ? at > other.at : order > other.order; }
   };
 
-  void begin(Cycle at, uint32_t slot, core::WarpContext& warp);
+  void begin(Cycle at, uint32_t slot, exec::WarpContext& warp);
   void send(Cycle now);
   void test(const Event& event);
   void go_on(uint32_t index, LaneMask lanes, Cycle now);
@@ -78,7 +78,7 @@ class RayModel {
   MemoryModel& caches_;
   const uint32_t core_;
   std::vector<Trace> traces_;
-  std::deque<std::pair<uint32_t, core::WarpContext*>> waiting_;
+  std::deque<std::pair<uint32_t, exec::WarpContext*>> waiting_;
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
   std::vector<std::pair<uint32_t, Cycle>> done_;
   Pipe box_, triangle_, transform_;

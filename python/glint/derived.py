@@ -94,7 +94,7 @@ def _look_up(function: str, name: str, run: Any) -> float | None:
     return sum(values) / (len(values) if function == "mean" else 1)
 
 
-# What the functional machine's statistics call what the timing machine counts by core and RT unit, as report/formula.cpp has it.
+# What the functional machine's statistics call what the timing machine counts by core and RT unit, as report/metrics/formula.cpp has it.
 _FUNCTIONAL = {"core.lane_instructions": "gpu.lanes::*", "core.instructions": "gpu.instructions::*", "rt.rays": "gpu.rays", "rt.nodes": "gpu.nodes",
                "rt.box_tests": "gpu.box_tests", "rt.triangle_tests": "gpu.triangle_tests"}
 _BY_CLASS = "core.instructions_by_class::"

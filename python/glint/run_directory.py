@@ -16,7 +16,7 @@ from .patterns import near
 from .statistics import Stats
 from .table import Table
 
-SCHEMA = 1  # of run.json, as report/run_directory.cpp writes it
+SCHEMA = 1  # of run.json, as report/files/run_directory.cpp writes it
 SHADERS = ("pt", "sh", "ao")  # of scenes; pipelines and kernels list their own files
 _LAST_TABLE = "compiler"  # of config.toml: a file without it was cut short
 

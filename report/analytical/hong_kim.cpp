@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/diagnostics.h"
-#include "report/formula.h"
+#include "report/metrics/formula.h"
 
 namespace glint::report {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "report/run_record.h"
+#include "report/files/run_record.h"
 
 namespace glint::report {
 

@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "base/diagnostics.h"
-#include "report/csv_field.h"
-#include "report/csv_table.h"
-#include "report/table.h"
+#include "report/files/csv_field.h"
+#include "report/files/csv_table.h"
+#include "report/terminal/table.h"
 
 namespace glint::report {
 namespace {

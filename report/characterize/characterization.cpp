@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <set>
 
-#include "report/table.h"
+#include "report/terminal/table.h"
 
 namespace glint::report {
 namespace {

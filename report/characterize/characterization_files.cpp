@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "report/csv_field.h"
+#include "report/files/csv_field.h"
 
 namespace glint::report {
 namespace {

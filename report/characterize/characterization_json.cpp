@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "report/metrics.h"
-#include "report/page_suite.h"
+#include "report/metrics/metrics.h"
+#include "report/page/suite.h"
 
 namespace glint::report {
 namespace {

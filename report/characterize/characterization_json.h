@@ -16,7 +16,7 @@ struct CharacterizationSource {
 
 // {"kind": "characterization", "schema", "workloads", "eigenvalues", "kept", "joins", "leaves", "clusters",
 // "axes", ...}: the numbers of characterization_files(), to the same bits; docs/characterization.md has the
-// fields. read_characterization() of report/page_suite.h checks kind and schema.
+// fields. read_characterization() of report/page/suite.h checks kind and schema.
 nlohmann::ordered_json characterization_json(const Characterization& result,
                                              const CharacterizationSource& source);
 

@@ -10,8 +10,8 @@
 #include <string_view>
 
 #include "base/diagnostics.h"
-#include "report/csv_field.h"
-#include "report/csv_table.h"
+#include "report/files/csv_field.h"
+#include "report/files/csv_table.h"
 
 namespace glint::report {
 namespace {

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "base/diagnostics.h"
-#include "report/csv_table.h"
+#include "report/files/csv_table.h"
 
 namespace glint::report {
 namespace {

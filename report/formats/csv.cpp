@@ -1,8 +1,8 @@
 // Statistics as comma-separated values for spreadsheets: header `path,value,unit,doc`.
 // SPDX-License-Identifier: Apache-2.0
-#include "report/csv_field.h"
-#include "report/stat_rows.h"
-#include "report/stat_writer.h"
+#include "report/files/csv_field.h"
+#include "report/files/stat_rows.h"
+#include "report/files/stat_writer.h"
 
 namespace glint::report {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/check.h"
-#include "report/stat_writer.h"
+#include "report/files/stat_writer.h"
 
 namespace glint::report {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-#include "report/stat_rows.h"
-#include "report/stat_writer.h"
+#include "report/files/stat_rows.h"
+#include "report/files/stat_writer.h"
 
 namespace glint::report {
 namespace {

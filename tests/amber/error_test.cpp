@@ -139,7 +139,7 @@ TEST_CASE("under robustBufferAccess a store outside of a buffer is dropped and i
 
 TEST_CASE("a fault that is let pass is told with the lines of RUN and of the shader", "[amber]") {
   LaunchOptions options;
-  options.on_fault = core::OnFault::Warn;
+  options.on_fault = exec::OnFault::Warn;
   const Outcome outcome =
       run_script(parse_script("#!amber\n" + kPipeline + "RUN p 1 1 1\n", "t.amber"), options);
   CHECK(outcome.exit == Exit::Ok);
@@ -202,7 +202,7 @@ TEST_CASE("the use of a binding that nobody bound is a fault that names set, bin
 
 TEST_CASE("the use of a binding that nobody bound, let pass, reads 0 and writes nothing", "[amber]") {
   LaunchOptions options;
-  options.on_fault = core::OnFault::Warn;
+  options.on_fault = exec::OnFault::Warn;
   for (const auto& [declarations, statement] : kUnbound) {
     const Outcome outcome =
         run_script(parse_script("#!amber\n" + unbound_script(declarations, statement), "t.amber"), options);

@@ -3,8 +3,8 @@
 #include <set>
 #include <tuple>
 
-#include "core/executor.h"
 #include "core/params.h"
+#include "exec/executor.h"
 #include "tests/support/catch.h"
 #include "tests/unit/core/one_core.h"
 

@@ -28,7 +28,7 @@ uint64_t mix(uint64_t hash, uint64_t value) {
   return (hash ^ value) * 0x9e3779b97f4a7c15ull + (hash >> 29);
 }
 
-uint64_t result_of(const core::Retired& retired) {
+uint64_t result_of(const exec::Retired& retired) {
   uint64_t hash = 1;
   size_t slot = 0;
   for (isa::OperandKind kind : retired.issued.row->operands.view()) {
@@ -51,17 +51,17 @@ uint64_t result_of(const core::Retired& retired) {
   return hash;
 }
 
-void record(History& history, const core::Retired& retired) {
+void record(History& history, const exec::Retired& retired) {
   history[retired.warp.warp_index].push_back({retired.issued.pc, retired.issued.lanes, result_of(retired)});
 }
 
-std::string describe(const core::World& world, const Step& step) {
+std::string describe(const exec::World& world, const Step& step) {
   return fmt::format("{} lanes {:08x} result {:016x}", world.image->place_of(step.pc), step.lanes,
                      step.result);
 }
 
 // "" when equal, otherwise the first difference.
-std::string first_difference(const core::World& world, const History& a, const History& b) {
+std::string first_difference(const exec::World& world, const History& a, const History& b) {
   for (size_t warp = 0; warp < a.size(); ++warp)
     for (size_t i = 0; i < std::max(a[warp].size(), b[warp].size()); ++i) {
       if (i < a[warp].size() && i < b[warp].size() && a[warp][i] == b[warp][i]) continue;
@@ -74,13 +74,13 @@ std::string first_difference(const core::World& world, const History& a, const H
 
 std::string compare_machines(const pipeline::RenderJob& job) {
   pipeline::SceneWorld for_functional(job), for_timing(job);
-  const uint32_t warps = core::Executor(for_functional.world).num_warps();
+  const uint32_t warps = exec::Executor(for_functional.world).num_warps();
   History functional(warps), timing(warps);
   pipeline::run_functional(for_functional.world, job.gpu.core.instruction_budget, {},
-                           [&](const core::Retired& retired) { record(functional, retired); });
+                           [&](const exec::Retired& retired) { record(functional, retired); });
   pipeline::TimingMachine machine(job.gpu, for_timing.world, false);
   for (uint32_t c = 0; c < machine.num_cores(); ++c)
-    machine.core(c).executor().retired.listen([&](const core::Retired& retired) { record(timing, retired); });
+    machine.core(c).executor().retired.listen([&](const exec::Retired& retired) { record(timing, retired); });
   machine.run({});
   std::string difference = first_difference(for_functional.world, functional, timing);
   if (difference.empty() && for_functional.read_image(pipeline::SceneWorld::kPicture) !=

@@ -11,7 +11,7 @@ namespace glint::test {
 
 using Catch::Matchers::Contains;
 
-LabOptions fault_options(bool timing, core::OnFault on_fault) {
+LabOptions fault_options(bool timing, exec::OnFault on_fault) {
   LabOptions options;
   options.timing = timing;
   options.on_fault = on_fault;
@@ -20,7 +20,7 @@ LabOptions fault_options(bool timing, core::OnFault on_fault) {
 
 std::string fault_of(const std::string& code, const LabOptions& options, const RunWrong& run) {
   try {
-    core::FaultLog faults;
+    exec::FaultLog faults;
     run(code, options, faults);
   } catch (const Error& error) {
     CHECK(error.exit() == Exit::Fault);
@@ -38,14 +38,14 @@ void check_mistake(const Mistake& mistake, const std::string& place, const RunWr
     const auto& [x, y, z] = mistake.first;
     CHECK_THAT(message, Contains(fmt::format("launch id ({}, {}, {})", x, y, z)));
 
-    core::FaultLog faults;
+    exec::FaultLog faults;
     const std::vector<uint32_t> results =
-        run(mistake.code, fault_options(timing, core::OnFault::Warn), faults);
+        run(mistake.code, fault_options(timing, exec::OnFault::Warn), faults);
     for (uint32_t lane = 0; lane < results.size(); ++lane) {
       CAPTURE(lane);
       CHECK(results[lane] == mistake.result(lane));
     }
-    const std::vector<core::FaultLog::Entry> all = faults.in_order();
+    const std::vector<exec::FaultLog::Entry> all = faults.in_order();
     REQUIRE(!all.empty());
     CHECK(all[0].kind == mistake.kind);
     CHECK(all[0].count == mistake.count);

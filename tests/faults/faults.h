@@ -12,7 +12,7 @@ namespace glint::test {
 struct Mistake {
   std::string code;  // what WRONG stands for
   std::string what;  // part of the message
-  core::FaultKind kind = core::FaultKind::OutOfBounds;
+  exec::FaultKind kind = exec::FaultKind::OutOfBounds;
   uint64_t count = 0;  // lanes that do it
   std::array<uint32_t, 3> first{};
   std::function<uint32_t(uint32_t lane)> result;  // of a run that goes on
@@ -20,10 +20,10 @@ struct Mistake {
 
 // Runs WRONG = `code` and returns the results; what was let pass goes to `faults`.
 using RunWrong = std::function<std::vector<uint32_t>(const std::string& code, const LabOptions& options,
-                                                     core::FaultLog& faults)>;
+                                                     exec::FaultLog& faults)>;
 // `place`: the end of the shader's file name, and the line.
 void check_mistake(const Mistake& mistake, const std::string& place, const RunWrong& run);
-LabOptions fault_options(bool timing, core::OnFault on_fault = core::OnFault::Stop);
+LabOptions fault_options(bool timing, exec::OnFault on_fault = exec::OnFault::Stop);
 // The message of the fault that ends a run; "" when none does.
 std::string fault_of(const std::string& code, const LabOptions& options, const RunWrong& run);
 

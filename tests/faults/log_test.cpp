@@ -1,6 +1,6 @@
 // The log of faults: one entry a place and kind, whatever the order in which lanes come.
 // SPDX-License-Identifier: Apache-2.0
-#include "core/fault.h"
+#include "exec/fault.h"
 #include "tests/support/catch.h"
 
 namespace glint::core {

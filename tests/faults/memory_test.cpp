@@ -8,12 +8,12 @@ namespace glint::test {
 namespace {
 
 using Catch::Matchers::Contains;
-using core::FaultKind;
+using exec::FaultKind;
 
 constexpr uint32_t kThreads = 64, kWords = 40;  // two blocks; elements of `data`: word i is 100 + i
 const std::string kPlace = "glsl/faults/memory.comp:21";
 
-std::vector<uint32_t> run_wrong(const std::string& code, const LabOptions& options, core::FaultLog& faults) {
+std::vector<uint32_t> run_wrong(const std::string& code, const LabOptions& options, exec::FaultLog& faults) {
   ComputeLab lab("faults/memory.comp");
   lab.grid = {kThreads / 32, 1, 1};
   lab.buffers[0] = Words(kThreads);
@@ -22,7 +22,7 @@ std::vector<uint32_t> run_wrong(const std::string& code, const LabOptions& optio
   lab.buffer_arrays[2] = {Words{1}, Words{2}};
   for (const uint32_t binding : {3u, 4u}) {
     LabImage image;
-    image.view.format = core::TexelFormat::R32Uint;
+    image.view.format = exec::TexelFormat::R32Uint;
     image.view.width = image.view.height = 4;
     image.texels.assign(16, 5);
     lab.images[binding] = {image};
@@ -175,7 +175,7 @@ TEST_CASE("a ray query in what is no structure names what lies there, and finds 
 TEST_CASE("a program without end stops also when faults are let pass, after those that were") {
   for (const bool timing : {false, true}) {
     const std::string message = fault_of("got = data[i]; while (data[0] != 0u) data[1] += 1u;",
-                                         fault_options(timing, core::OnFault::Warn), run_wrong);
+                                         fault_options(timing, exec::OnFault::Warn), run_wrong);
     CHECK_THAT(message, Contains("no end in sight: the warp has executed more than") && Contains(kPlace));
     if (!timing) continue;
     CHECK_THAT(message, Contains("past the end of 'binding 1' (160 bytes)") &&

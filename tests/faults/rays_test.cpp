@@ -7,7 +7,7 @@ namespace glint::test {
 namespace {
 
 using Catch::Matchers::Contains;
-using core::FaultKind;
+using exec::FaultKind;
 
 const std::string kPlace = "glsl/faults/rays.rgen:16";
 constexpr const char* kClosest = "faults/rays.rchit";
@@ -15,7 +15,7 @@ constexpr const char* kClosest = "faults/rays.rchit";
 // Two miss records, one callable, and hit records 0 to 3: that of the boxes, 4, and more are not there.
 // Nothing lies in columns 0 and 1; quads of records 0 and 1 in 2 to 5.
 std::vector<uint32_t> run_with(const std::string& closest, const std::string& code, const LabOptions& options,
-                               core::FaultLog& faults) {
+                               exec::FaultLog& faults) {
   LabShaders shaders{
       "faults/rays.rgen", {"faults/rays.rmiss", "faults/rays.rmiss"}, {}, {}, {"faults/rays.rcall"}};
   for (int record = 0; record < 4; ++record)
@@ -28,7 +28,7 @@ std::vector<uint32_t> run_with(const std::string& closest, const std::string& co
   return results;
 }
 
-std::vector<uint32_t> run_wrong(const std::string& code, const LabOptions& options, core::FaultLog& faults) {
+std::vector<uint32_t> run_wrong(const std::string& code, const LabOptions& options, exec::FaultLog& faults) {
   return run_with(kClosest, code, options, faults);
 }
 
@@ -95,7 +95,7 @@ TEST_CASE("a trace into what is no structure names what lies there, and misses w
 
 TEST_CASE("a ray that is not a number misses and is no fault") {
   for (const bool timing : {false, true}) {
-    core::FaultLog faults;
+    exec::FaultLog faults;
     const auto results =
         run_wrong("traceRayEXT(top, 0, 0xff, 0u, 1u, 0u, origin / 0.0 * 0.0, 0.0, down, 100.0, 0);",
                   fault_options(timing), faults);
@@ -105,7 +105,7 @@ TEST_CASE("a ray that is not a number misses and is no fault") {
 
 TEST_CASE("traces deeper than the pipeline allows stop the run also when faults are let pass") {
   for (const bool timing : {false, true}) {
-    const std::string message = fault_of(trace("top", "0u", "0u"), fault_options(timing, core::OnFault::Warn),
+    const std::string message = fault_of(trace("top", "0u", "0u"), fault_options(timing, exec::OnFault::Warn),
                                          [](const auto& code, const auto& options, auto& faults) {
                                            return run_with("faults/again.rchit", code, options, faults);
                                          });

@@ -80,7 +80,7 @@ struct Scene {
   }
 };
 
-void bind(core::World& world, uint32_t binding, uint64_t address, uint64_t bytes) {
+void bind(exec::World& world, uint32_t binding, uint64_t address, uint64_t bytes) {
   const uint64_t descriptor[2] = {address, bytes};
   std::memcpy(world.constant_bank.data() + binding * isa::kDescriptorBytes, descriptor, sizeof(descriptor));
 }
@@ -96,8 +96,8 @@ std::string run(const isa::Program& program, uint64_t max_instructions) {
   static const isa::Program driver = isa::parse(kDriver, "driver");
   scene.restore();
   const bool is_entry = program.stage == isa::Stage::RayGeneration || program.stage == isa::Stage::Compute;
-  core::World world;
-  const core::Image image = core::link({is_entry ? program : driver, program});
+  exec::World world;
+  const exec::Image image = exec::link({is_entry ? program : driver, program});
   world.image = &image;
   world.memory = &scene.memory;
   world.constant_bank.resize(isa::kConstantBankBytes);
@@ -110,12 +110,12 @@ std::string run(const isa::Program& program, uint64_t max_instructions) {
   world.images[0].base = scene.buffer;
   world.images[0].name = "image";
   world.raygen = 0;
-  const auto only = [&](isa::Stage stage) { return program.stage == stage ? 1u : core::kNoShader; };
+  const auto only = [&](isa::Stage stage) { return program.stage == stage ? 1u : exec::kNoShader; };
   world.miss = {only(isa::Stage::Miss)};
   world.hit = {{only(isa::Stage::ClosestHit), only(isa::Stage::AnyHit), only(isa::Stage::Intersection)}};
   world.callable = {only(isa::Stage::Callable)};
   world.max_callable_depth = kMaxTraceDepth;
-  core::place_plain_table(world, scene.binding_table);
+  exec::place_plain_table(world, scene.binding_table);
   world.launch_size = {kLaunchWidth, 1, 1};
   world.local_bytes = (kDriverBytes + kMaxTraceDepth * (program.local_bytes + 16) + 15) / 16 * 16;
   world.max_trace_depth = kMaxTraceDepth;

@@ -6,7 +6,7 @@ import re
 import subprocess
 import sys
 
-SOURCE_FOLDERS = ["base", "isa", "frontend", "memsys", "rtunit", "core", "scenes", "pipeline", "amber", "report", "apps", "bench"]
+SOURCE_FOLDERS = ["base", "engine", "isa", "frontend", "memsys", "rtunit", "exec", "core", "scenes", "pipeline", "amber", "report", "apps", "bench"]
 LIBRARIES = [folder for folder in SOURCE_FOLDERS if folder not in ("apps", "bench")]
 MAX_FILE_LINES, MAX_FUNCTION_LINES = 450, 90  # the aim is 400 and 60; what lies between is reported, not failed
 # Functions that may be longer, each with the reason.
@@ -161,7 +161,7 @@ def wording(root):
                 problems.append(f"{name}:{number}: loose end: {line.strip()}")
             code = line.split("//")[0]
             if library and re.search(r"\bgetenv\s*\(|\bstd::cout\b|\bstd::cerr\b|(?<!\w)(std::)?printf\s*\(|\bfmt::print\b|\bstd::rand\b", code):
-                if not (name == "report/progress.cpp" and "fmt::print(stream_" in code):
+                if not (name == "report/terminal/progress.cpp" and "fmt::print(stream_" in code):
                     problems.append(f"{name}:{number}: a library does not print or read the environment: {line.strip()}")
             if re.search(r"#include\s+<(ranges|expected|format|source_location)>", code):
                 problems.append(f"{name}:{number}: not in both compilers: {line.strip()}")
@@ -180,7 +180,7 @@ def policies(root, glint):
         match = re.search(r"POLICIES ([\w ]+)", cmake.read_text())
         if match:
             globbed |= {f"{cmake.parent.name}/{sub}" for sub in match.group(1).split()}
-    problems = [f"{folder}: not known to `glint list policies` (apps/glint/policies.cpp)" for folder in sorted(globbed - set(registered))]
+    problems = [f"{folder}: not known to `glint list policies` (apps/glint/options/policies.cpp)" for folder in sorted(globbed - set(registered))]
     for folder, count in sorted(registered.items()):
         in_folder = len(list((root / folder).glob("*.cpp")))
         if in_folder != count:

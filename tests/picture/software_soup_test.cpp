@@ -94,14 +94,14 @@ std::vector<uint32_t> hits_of(uint64_t seed, std::string_view unit, uint32_t max
   std::vector<isa::Program> programs{
       frontend::compile_module(spirv, "soup.comp", {}, backend, warnings, nullptr).program};
   pipeline::add_traversal(programs, gpu, nullptr);
-  const core::Image image = core::link(programs);
-  core::World world;
+  const exec::Image image = exec::link(programs);
+  exec::World world;
   world.image = &image;
   world.memory = &built.memory;
   world.raygen = 0;
   world.constant_bank.resize(isa::kConstantBankBytes);
   world.local_bytes = pipeline::stack_bytes(image, 1, 0);
-  core::set_blocks(world, {kRays / 64, 1, 1}, {64, 1, 1}, 0);
+  exec::set_blocks(world, {kRays / 64, 1, 1}, {64, 1, 1}, 0);
   pipeline::place_records(world, built.top.stack_need);
   const std::vector<uint32_t> rays = rays_of(seed + 1);
   const Address from = built.memory.allocate("rays", rays.size() * 4),

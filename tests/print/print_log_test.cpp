@@ -1,6 +1,6 @@
 // The log of prints keeps the same lines in whatever order they come.
 // SPDX-License-Identifier: Apache-2.0
-#include "core/print_log.h"
+#include "exec/print_log.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -25,7 +25,7 @@ std::string expected(uint64_t threads, uint64_t limit) {
 }
 
 // Adds every line, in two parts each, threads taking turns at random.
-void add_all(core::PrintLog& log, uint64_t first, uint64_t threads, uint64_t stride, uint32_t seed) {
+void add_all(exec::PrintLog& log, uint64_t first, uint64_t threads, uint64_t stride, uint32_t seed) {
   std::vector<uint64_t> turns;
   for (uint64_t t = first; t < threads; t += stride) turns.insert(turns.end(), 2 * (t % 4), t);
   std::mt19937 random(seed);
@@ -44,7 +44,7 @@ TEST_CASE("the first lines by thread are kept, whatever order they come in, and 
   for (uint32_t seed = 0; seed < 40; ++seed)
     for (const uint64_t limit : {0, 1, 7, 59, 60, 61, 1000}) {
       INFO("seed " << seed << " limit " << limit);
-      core::PrintLog log(limit);
+      exec::PrintLog log(limit);
       add_all(log, 0, 41, 1, seed);
       CHECK(log.take() == expected(41, limit));
       CHECK(log.take().empty());
@@ -53,7 +53,7 @@ TEST_CASE("the first lines by thread are kept, whatever order they come in, and 
 
 TEST_CASE("threads of the host that add at once leave the same log") {
   for (uint32_t round = 0; round < 10; ++round) {
-    core::PrintLog log(100);
+    exec::PrintLog log(100);
     std::vector<std::thread> hosts;
     for (uint64_t h = 0; h < 4; ++h) hosts.emplace_back([&, h] { add_all(log, h, 400, 4, round); });
     for (std::thread& host : hosts) host.join();
@@ -62,7 +62,7 @@ TEST_CASE("threads of the host that add at once leave the same log") {
 }
 
 TEST_CASE("a line that has not ended is shown, as a fault may have stopped its thread") {
-  core::PrintLog log(2);
+  exec::PrintLog log(2);
   log.add(5, "half a line", false);
   CHECK(log.take() == "half a line\n");
 }

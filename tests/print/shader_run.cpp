@@ -25,10 +25,10 @@ isa::Program compile_text(const ShaderRun& run, const std::string& text) {
 
 std::string run_program(ShaderRun& run, const isa::Program& program) {
   constexpr uint64_t kBudget = 1'000'000;
-  const core::Image image = core::link({program});
+  const exec::Image image = exec::link({program});
   mem::AddressSpace memory;
-  core::PrintLog prints(run.print_limit);
-  core::World world;
+  exec::PrintLog prints(run.print_limit);
+  exec::World world;
   world.image = &image;
   world.memory = &memory;
   world.prints = &prints;
@@ -36,10 +36,10 @@ std::string run_program(ShaderRun& run, const isa::Program& program) {
   world.raygen = 0;
   world.local_bytes = (program.local_bytes + 15) / 16 * 16;
   if (run.stage == isa::Stage::Compute)
-    core::set_blocks(world, run.size, program.local_size, program.shared_bytes);
+    exec::set_blocks(world, run.size, program.local_size, program.shared_bytes);
   else
     world.launch_size = run.size;
-  core::place_plain_table(world, memory.allocate("binding table", core::plain_table_bytes(world)));
+  exec::place_plain_table(world, memory.allocate("binding table", exec::plain_table_bytes(world)));
   const uint64_t bytes = run.words.size() * 4;
   const Address at = memory.allocate("words", std::max<uint64_t>(bytes, 4));
   memory.write(at, run.words.data(), bytes);

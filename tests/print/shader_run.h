@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/print_log.h"
+#include "exec/print_log.h"
 #include "frontend/compile.h"
 #include "isa/program.h"
 

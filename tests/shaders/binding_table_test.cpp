@@ -14,10 +14,10 @@ using Catch::Matchers::Contains;
 // Shaders 0 to 4: ray generation, miss, closest-hit, intersection, callable; a group for each, the fourth
 // with both of hits.
 struct Bench {
-  core::World world;
+  exec::World world;
   mem::AddressSpace memory;
-  core::Image image =
-      core::link({compile_lab("table.rgen"), compile_lab("table.rmiss"), compile_lab("tag1.rchit"),
+  exec::Image image =
+      exec::link({compile_lab("table.rgen"), compile_lab("table.rmiss"), compile_lab("tag1.rchit"),
                   compile_lab("pair.rint"), compile_lab("rt/twice.rcall")});
   pipeline::TableInput input;
 
@@ -26,8 +26,8 @@ struct Bench {
     world.memory = &memory;
     input.groups = {{0, {}},
                     {1, {}},
-                    {core::kNoShader, {2, core::kNoShader, core::kNoShader}},
-                    {core::kNoShader, {2, core::kNoShader, 3}},
+                    {exec::kNoShader, {2, exec::kNoShader, exec::kNoShader}},
+                    {exec::kNoShader, {2, exec::kNoShader, 3}},
                     {4, {}}};
     input.raygen = {0, data(1)};
     input.miss.records = {{1, {}}, {}};
@@ -51,7 +51,7 @@ TEST_CASE(
     "it") {
   Bench b;
   REQUIRE(b.error() == "no error");
-  const core::BindingTable& t = b.world.table;
+  const exec::BindingTable& t = b.world.table;
   CHECK(t.miss.stride == 32);
   CHECK(t.hit.stride == 96);
   for (const Address base : {t.raygen, t.miss.base, t.hit.base, t.callable.base}) CHECK(base % 64 == 0);
@@ -61,10 +61,10 @@ TEST_CASE(
   CHECK(b.word(t.hit.address(0)) != b.word(t.hit.address(1)));  // handles
   CHECK(b.word(t.hit.address(2)) == 0);
   CHECK(b.world.raygen == 0);
-  CHECK(b.world.miss == std::vector<uint32_t>{1, core::kNoShader});
-  CHECK(b.world.hit[0].intersection == core::kNoShader);
+  CHECK(b.world.miss == std::vector<uint32_t>{1, exec::kNoShader});
+  CHECK(b.world.hit[0].intersection == exec::kNoShader);
   CHECK(b.world.hit[1].intersection == 3);
-  CHECK(b.world.hit[2].closest_hit == core::kNoShader);
+  CHECK(b.world.hit[2].closest_hit == exec::kNoShader);
   CHECK(b.world.callable == std::vector<uint32_t>{4});
 }
 

@@ -11,7 +11,7 @@
 #include <set>
 #include <zstd.h>
 
-#include "core/image.h"
+#include "exec/image.h"
 #include "frontend/compile.h"
 #include "isa/verify.h"
 #include "memsys/address_space.h"
@@ -81,9 +81,9 @@ Words run_all(const fs::path& shader, const Recorded& recorded) {
   const isa::Program program = frontend::compile_file(shader.string(), {}, {}, diagnostics);
   isa::verify(program, diagnostics);
   diagnostics.throw_if_errors();
-  const core::Image image = core::link({program});
+  const exec::Image image = exec::link({program});
   mem::AddressSpace memory;
-  core::World world;
+  exec::World world;
   world.image = &image;
   world.memory = &memory;
   world.constant_bank.resize(isa::kConstantBankBytes);

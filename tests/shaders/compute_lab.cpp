@@ -14,7 +14,7 @@ namespace {
 constexpr uint64_t kBudget = 2'000'000;  // instructions a warp
 
 struct Bench {
-  core::World world;
+  exec::World world;
   mem::AddressSpace memory;
 
   void bind(uint32_t binding, uint64_t address_or_number, uint64_t bytes_or_count) {
@@ -36,16 +36,16 @@ struct Bench {
 
 void ComputeLab::run(const LabOptions& options) {
   Bench bench;
-  core::World& world = bench.world;
+  exec::World& world = bench.world;
   const std::vector<isa::Program> programs{compile_lab(file_, glsl, options)};
-  const core::Image code = core::link(programs);
+  const exec::Image code = exec::link(programs);
   world.image = &code;
   world.memory = &bench.memory;
   world.constant_bank.resize(isa::kConstantBankBytes);
   world.raygen = 0;
   world.local_bytes = (programs[0].local_bytes + 15) / 16 * 16;
-  core::set_blocks(world, grid, programs[0].local_size, programs[0].shared_bytes);
-  core::place_plain_table(world, bench.memory.allocate("binding table", core::plain_table_bytes(world)));
+  exec::set_blocks(world, grid, programs[0].local_size, programs[0].shared_bytes);
+  exec::place_plain_table(world, bench.memory.allocate("binding table", exec::plain_table_bytes(world)));
 
   std::map<uint32_t, Address> address;
   for (const auto& [binding, words] : buffers) {

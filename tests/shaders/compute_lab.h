@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "core/image.h"
+#include "exec/image.h"
 #include "tests/shaders/ray_lab.h"
 
 namespace glint::test {
 
 struct LabImage {
-  core::ImageView view;          // its base is set when it runs
+  exec::ImageView view;          // its base is set when it runs
   std::vector<uint32_t> texels;  // as they lie in memory
 };
 
@@ -25,7 +25,7 @@ class ComputeLab {
   std::map<uint32_t, Words> buffers;
   std::map<uint32_t, std::vector<Words>> buffer_arrays;
   std::map<uint32_t, std::vector<LabImage>> images;
-  std::map<uint32_t, std::vector<core::Sampler>> samplers;
+  std::map<uint32_t, std::vector<exec::Sampler>> samplers;
   std::vector<uint32_t> addressed;  // bindings of `buffers` whose addresses are the push constants
   // A buffer of `count` nodes of `bytes` bytes, each of which begins with the address of the next; the last
   // with 0.
@@ -34,7 +34,7 @@ class ComputeLab {
   } linked;
   std::array<uint32_t, 3> grid{1, 1, 1};
   frontend::GlslOptions glsl;
-  core::FaultLog faults;  // that the last run let pass
+  exec::FaultLog faults;  // that the last run let pass
 
   explicit ComputeLab(std::string file) : file_(std::move(file)) {}
   void run(const LabOptions& options = {});

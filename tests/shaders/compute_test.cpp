@@ -64,8 +64,8 @@ TEST_CASE("atomics change buffers, shared memory and texels once for each thread
   lab.buffers[1] = wide;
   lab.buffers[2] = Words(64);
   LabImage picture{{}, Words(8)}, line{{}, Words(4)};
-  picture.view.format = core::TexelFormat::R32Uint, picture.view.width = 4, picture.view.height = 2;
-  line.view.format = core::TexelFormat::R32Sint, line.view.width = 4, line.view.shape = isa::ImageShape::D1;
+  picture.view.format = exec::TexelFormat::R32Uint, picture.view.width = 4, picture.view.height = 2;
+  line.view.format = exec::TexelFormat::R32Sint, line.view.width = 4, line.view.shape = isa::ImageShape::D1;
   lab.images[3] = {picture}, lab.images[4] = {line};
   each_machine(lab, [](ComputeLab& after) {
     const Words& u = after.buffers[0];

@@ -8,13 +8,13 @@
 namespace glint::test {
 namespace {
 
-using core::TexelFormat;
+using exec::TexelFormat;
 using isa::ImageShape;
 
 constexpr uint32_t kLanesUsed = 32, kRow = 32;
 
-core::Sampler sampler(core::Filter filter) {
-  core::Sampler s;
+exec::Sampler sampler(exec::Filter filter) {
+  exec::Sampler s;
   s.mag = s.min = filter;
   return s;
 }
@@ -23,12 +23,12 @@ core::Sampler sampler(core::Filter filter) {
 LabImage counting(ImageShape shape, std::array<uint32_t, 3> size, uint32_t layers, uint32_t levels,
                   float first) {
   LabImage image;
-  core::ImageView& view = image.view;
+  exec::ImageView& view = image.view;
   view.format = TexelFormat::R32Float;
   view.shape = shape;
   view.width = size[0], view.height = size[1], view.depth = size[2], view.layers = layers,
   view.levels = levels;
-  view.sampler = sampler(core::Filter::Nearest);
+  view.sampler = sampler(exec::Filter::Nearest);
   for (uint64_t i = 0; i < view.bytes() / 4; ++i)
     image.texels.push_back(std::bit_cast<uint32_t>(first + float(i)));
   return image;
@@ -46,7 +46,7 @@ ComputeLab lab_of_images() {
   seven.texels = {7}, nine.texels = {9};
   lab.images[5] = {seven, nine};
   lab.images[6] = {counting(ImageShape::D2, {2, 2, 1}, 1, 1, 10)};
-  lab.samplers[7] = {sampler(core::Filter::Nearest), sampler(core::Filter::Linear)};
+  lab.samplers[7] = {sampler(exec::Filter::Nearest), sampler(exec::Filter::Linear)};
   lab.images[8] = {counting(ImageShape::Buffer, {32, 1, 1}, 1, 1, 500)};
   lab.images[9] = {counting(ImageShape::D3, {2, 2, 2}, 1, 1, 20)};
   LabImage layers = counting(ImageShape::A2d, {2, 1, 1}, 3, 1, 0);
@@ -59,7 +59,7 @@ ComputeLab lab_of_images() {
   lab.images[12] = {counting(ImageShape::D1, {4, 1, 1}, 1, 1, 40)};
   LabImage shadow = counting(ImageShape::D2, {2, 2, 1}, 1, 1, 0);
   shadow.texels = Words(4, std::bit_cast<uint32_t>(0.5f));
-  shadow.view.sampler.compare = core::Comparison::Less;
+  shadow.view.sampler.compare = exec::Comparison::Less;
   lab.images[13] = {shadow};
   lab.images[14] = {counting(ImageShape::Cube, {1, 1, 1}, 6, 1, 0)};
   return lab;

@@ -73,8 +73,8 @@ TEST_CASE("extensions younger than the compiler mean what they say: hints, rotat
 
 LabImage samples(isa::ImageShape shape, uint32_t layers, uint32_t number) {
   LabImage image;
-  core::ImageView& view = image.view;
-  view.format = core::TexelFormat::R32Uint, view.shape = shape;
+  exec::ImageView& view = image.view;
+  view.format = exec::TexelFormat::R32Uint, view.shape = shape;
   view.width = view.height = 2, view.layers = layers * number, view.samples = number;
   for (uint32_t i = 0; i < view.bytes() / 4; ++i) image.texels.push_back(i);
   return image;
@@ -114,7 +114,7 @@ TEST_CASE("texels of 64 bits are loaded, stored, fetched and changed by every at
     ComputeLab lab("compute/wide_texels.comp");
     lab.buffers[0] = Words(64);
     LabImage image;
-    image.view.format = core::TexelFormat::Rg32Uint;
+    image.view.format = exec::TexelFormat::Rg32Uint;
     image.view.width = 32, image.view.height = 1;
     image.texels = Words(64);
     lab.images[1] = {image};

@@ -21,7 +21,7 @@ namespace {
 
 constexpr uint64_t kBudget = 2'000'000;  // instructions a warp: far more than any shader here needs
 
-void bind(core::World& world, uint32_t set, uint32_t binding, uint64_t address_or_handle,
+void bind(exec::World& world, uint32_t set, uint32_t binding, uint64_t address_or_handle,
           uint64_t bytes_or_count) {
   const uint64_t descriptor[2] = {address_or_handle, bytes_or_count};
   std::memcpy(world.constant_bank.data() + set * isa::kSetBytes + binding * isa::kDescriptorBytes, descriptor,
@@ -86,7 +86,7 @@ struct Shaders {
   std::map<std::string, uint32_t> index;
 
   uint32_t shader(const std::string& file, const LabShaders& shaders, const LabOptions& options) {
-    if (file.empty()) return core::kNoShader;
+    if (file.empty()) return exec::kNoShader;
     const auto [it, is_new] = index.emplace(file, uint32_t(programs.size()));
     if (is_new) programs.push_back(compile_lab(file, shaders.glsl, options));
     return it->second;
@@ -106,7 +106,7 @@ pipeline::TableInput make_table(const RayLab& lab, const LabShaders& files, Shad
   for (const std::string& file : files.callable) add(table.callable, general(file), lab.callable_data);
   for (const LabShaders::Group& group : files.hit) {
     table.groups.push_back(
-        {core::kNoShader,
+        {exec::kNoShader,
          {shaders.shader(group.closest, files, options), shaders.shader(group.any, files, options),
           shaders.shader(group.intersection, files, options)}});
     add(table.hit, uint32_t(table.groups.size() - 1), lab.hit_data);
@@ -114,8 +114,8 @@ pipeline::TableInput make_table(const RayLab& lab, const LabShaders& files, Shad
   return table;
 }
 
-void add_images(core::World& world, mem::AddressSpace& memory) {
-  using Format = core::ImageView::Format;
+void add_images(exec::World& world, mem::AddressSpace& memory) {
+  using Format = exec::ImageView::Format;
   const Address storage = memory.allocate("image", RayLab::kImageWidth * RayLab::kImageHeight * 16);
   world.images.push_back({Format::Rgba32Float, RayLab::kImageWidth, RayLab::kImageHeight, storage, "image"});
   bind(world, 0, 2, 0, 1);
@@ -149,7 +149,7 @@ isa::Program compile_lab(const std::string& file, const frontend::GlslOptions& g
 
 std::vector<uint32_t> RayLab::run(const LabOptions& options) {
   Shaders shaders;
-  core::World world;
+  exec::World world;
   mem::AddressSpace memory;
   world.memory = &memory;
   world.constant_bank.resize(isa::kConstantBankBytes);
@@ -163,7 +163,7 @@ std::vector<uint32_t> RayLab::run(const LabOptions& options) {
   gpu.compiler.max_registers = options.max_registers;
   gpu.rt.unit = options.software ? rt::kSoftware : rt::kHardware;
   pipeline::add_traversal(shaders.programs, gpu, shaders_.glsl.cache);
-  const core::Image linked = core::link(shaders.programs);
+  const exec::Image linked = exec::link(shaders.programs);
   world.image = &linked;
   pipeline::build_binding_table(world, memory, table);
   world.max_callable_depth = max_callable_depth;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/image.h"
+#include "exec/image.h"
 #include "frontend/compile.h"
 #include "pipeline/params.h"
 
@@ -29,7 +29,7 @@ struct LabOptions {
   bool schedule = true;
   bool timing = false;
   const char* any_hit = "immediate";
-  core::OnFault on_fault = core::OnFault::Stop;
+  exec::OnFault on_fault = exec::OnFault::Stop;
   const char* node_format = "bvh6";
   bool software = false;  // rays are walked in code
 };
@@ -64,7 +64,7 @@ class RayLab {
   // the buffers after the run are in `image` and `buffers_after`. Errors as pipeline::render().
   std::vector<uint32_t> run(const LabOptions& options = {});
   std::vector<float> image;
-  core::FaultLog faults;  // that were let pass
+  exec::FaultLog faults;  // that were let pass
   std::map<uint32_t, std::vector<uint32_t>> buffers_after;
 
  private:

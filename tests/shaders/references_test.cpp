@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <span>
 
-#include "frontend/by_reference.h"
 #include "frontend/compile.h"
-#include "frontend/spirv.h"
+#include "frontend/spirv/by_reference.h"
+#include "frontend/spirv/spirv.h"
 #include "tests/shaders/compute_lab.h"
 #include "tests/support/catch.h"
 

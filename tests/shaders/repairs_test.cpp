@@ -5,7 +5,7 @@
 
 #include "base/diagnostics.h"
 #include "frontend/compile.h"
-#include "frontend/module_repairs.h"
+#include "frontend/spirv/module_repairs.h"
 #include "tests/shaders/compute_lab.h"
 #include "tests/shaders/lane_checks.h"
 #include "tests/support/catch.h"
@@ -54,7 +54,7 @@ TEST_CASE("textureQueryLod tells the level of the wider step, held to the image'
   ComputeLab lab("compute/query_lod.comp");
   lab.buffers[0] = Words(64);
   LabImage image;
-  image.view.format = core::TexelFormat::R32Float;
+  image.view.format = exec::TexelFormat::R32Float;
   image.view.width = image.view.height = 4, image.view.levels = 3;
   image.texels.assign(16 + 4 + 1, 0);
   lab.images[1] = {image};

@@ -30,9 +30,9 @@ float real(uint32_t word) {
 // Three levels of 4 x 4, 2 x 2 and one texel, of 1, 2 and 3.
 LabImage levels() {
   LabImage image;
-  image.view.format = core::TexelFormat::R32Float;
+  image.view.format = exec::TexelFormat::R32Float;
   image.view.width = image.view.height = 4, image.view.levels = 3;
-  image.view.sampler.mip = core::Filter::Nearest;
+  image.view.sampler.mip = exec::Filter::Nearest;
   for (const auto& [count, value] : {std::pair{16, 1.0f}, {4, 2.0f}, {1, 3.0f}})
     image.texels.insert(image.texels.end(), size_t(count), std::bit_cast<uint32_t>(value));
   return image;
@@ -152,7 +152,7 @@ TEST_CASE("atomics that the ISA lacks happen once for each thread") {
   lab.buffers[0] = {0xfc00'7c00, 0x3c00'fc00};  // infinity, -infinity, -infinity, 1 in half precision
   lab.buffers[1] = Words(64);
   LabImage picture{{}, {std::bit_cast<uint32_t>(-1000.0f), std::bit_cast<uint32_t>(1000.0f)}};
-  picture.view.format = core::TexelFormat::R32Float, picture.view.width = 2;
+  picture.view.format = exec::TexelFormat::R32Float, picture.view.width = 2;
   lab.images[2] = {picture};
   each_machine(lab, [](ComputeLab& after) {
     CHECK(after.buffers[0][0] == 0x5160'cd00);  // 43 and -20

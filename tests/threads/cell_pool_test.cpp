@@ -1,10 +1,10 @@
 // Threads that advance cells: each cell once a window, whoever does it.
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/cell_pool.h"
+#include "engine/cell_pool.h"
 
 #include <stdexcept>
 
-#include "pipeline/engine_loop.h"
+#include "engine/engine_loop.h"
 #include "tests/support/catch.h"
 
 namespace glint {

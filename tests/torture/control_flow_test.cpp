@@ -6,7 +6,7 @@
 #include <random>
 
 #include "frontend/compile.h"
-#include "frontend/spirv.h"
+#include "frontend/spirv/spirv.h"
 #include "tests/support/catch.h"
 #include "tests/torture/machines.h"
 #include "tests/torture/settings.h"

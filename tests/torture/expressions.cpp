@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <spirv/unified1/GLSL.std.450.h>
 
-#include "frontend/spirv.h"
+#include "frontend/spirv/spirv.h"
 #include "tests/torture/spirv_writer.h"
 #include "tests/torture/tree.h"
 

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <stdexcept>
 
-#include "core/image.h"
+#include "exec/image.h"
 #include "frontend/compile.h"
 #include "isa/verify.h"
 #include "pipeline/functional_machine.h"
@@ -39,11 +39,11 @@ std::string Way::to_string() const {
 
 std::map<uint32_t, std::vector<uint32_t>> run_machine(Trial& trial, const Way& way) {
   const isa::Program program = compile(trial, way);
-  core::World world;
+  exec::World world;
   mem::AddressSpace memory;
   world.memory = &memory;
   world.constant_bank.resize(isa::kConstantBankBytes);
-  const core::Image image = core::link({program});
+  const exec::Image image = exec::link({program});
   world.image = &image;
   world.raygen = 0;
   world.local_bytes = (program.local_bytes + 15) / 16 * 16;
@@ -52,9 +52,9 @@ std::map<uint32_t, std::vector<uint32_t>> run_machine(Trial& trial, const Way& w
     const auto& block = program.local_size;
     std::array<uint32_t, 3> grid;
     for (size_t axis = 0; axis < 3; ++axis) grid[axis] = trial.launch.threads[axis] / block[axis];
-    core::set_blocks(world, grid, block, program.shared_bytes);
+    exec::set_blocks(world, grid, block, program.shared_bytes);
   }
-  core::place_plain_table(world, memory.allocate("binding table", core::plain_table_bytes(world)));
+  exec::place_plain_table(world, memory.allocate("binding table", exec::plain_table_bytes(world)));
   std::map<uint32_t, Address> places;
   for (const auto& [binding, words] : trial.launch.buffers) {
     const Address at = memory.allocate(fmt::format("binding {}", binding), words.size() * 4);

@@ -71,7 +71,7 @@ class Host {
   Host(const Host&) = delete;
   Host& operator=(const Host&) = delete;
 
-  core::World world;
+  exec::World world;
   mem::AddressSpace memory;
   pipeline::TableInput table;
 
@@ -104,9 +104,9 @@ class Host {
   }
   uint32_t hit_group(const std::string& closest, const std::string& any, const std::string& intersection) {
     const auto or_none = [&](const std::string& file) {
-      return file.empty() ? core::kNoShader : shader(file);
+      return file.empty() ? exec::kNoShader : shader(file);
     };
-    table.groups.push_back({core::kNoShader, {or_none(closest), or_none(any), or_none(intersection)}});
+    table.groups.push_back({exec::kNoShader, {or_none(closest), or_none(any), or_none(intersection)}});
     return uint32_t(table.groups.size() - 1);
   }
   // Records 3 and 8 are of the instance with spheres.
@@ -123,7 +123,7 @@ class Host {
     gpu.cores = 2;
     gpu.rt.unit = software ? rt::kSoftware : rt::kHardware;
     pipeline::add_traversal(programs_, gpu, nullptr);
-    image_ = core::link(programs_);
+    image_ = exec::link(programs_);
     world.image = &image_;
     pipeline::build_binding_table(world, memory, table);
     world.local_bytes = pipeline::stack_bytes(image_, world.max_trace_depth, world.max_callable_depth);
@@ -140,7 +140,7 @@ class Host {
   uint32_t stack_need_ = 0;
   std::vector<isa::Program> programs_;
   std::map<std::string, uint32_t> shader_of_;
-  core::Image image_;
+  exec::Image image_;
 };
 
 TableRecord callable_record(uint32_t group, uint32_t tag) {
@@ -213,7 +213,7 @@ std::vector<float> run_image(const Recording& r, uint32_t size, const std::vecto
   host.hit_records(host.hit_group("img_tri.rchit", "img_tri.rahit", ""),
                    host.hit_group("img_sph.rchit", "", "sph.rint"), records);
   const Address texels = host.memory.allocate("picture", uint64_t(size) * size * 16);
-  host.world.images.push_back({core::ImageView::Format::Rgba32Float, size, size, texels, "picture"});
+  host.world.images.push_back({exec::ImageView::Format::Rgba32Float, size, size, texels, "picture"});
   host.bind(kImage, 0, 1);
   host.world.launch_size = {size, size, 1};
   host.run(false);

@@ -1,4 +1,4 @@
-// Reads the page's document: undoes what report/page_columns.h did, run by run, and hands each run its pictures.
+// Reads the page's document: undoes what report/page/columns.h did, run by run, and hands each run its pictures.
 // SPDX-License-Identifier: Apache-2.0
 import { unpacked } from "./packed.js";
 

@@ -1,4 +1,4 @@
-// Unpacks what report/page_parts.h packed: base64 of a zlib stream of UTF-8, by the browser's own means (in all browsers since May 2023).
+// Unpacks what report/page/parts.h packed: base64 of a zlib stream of UTF-8, by the browser's own means (in all browsers since May 2023).
 // SPDX-License-Identifier: Apache-2.0
 
 export async function unpacked(id) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/check.h"
-#include "core/simt_stack.h"
+#include "exec/simt_stack.h"
 #include "frontend/virtual_program.h"
 
 namespace glint::frontend::test {
@@ -250,7 +250,7 @@ class ProgramRun : public Machine {
       if (row.effect == isa::Effect::CallHit || row.effect == isa::Effect::CallCandidate) call(row, exec);
       perform(inst, exec);
     }
-    core::SimtStack::Entry resumed;
+    exec::SimtStack::Entry resumed;
     if (stack_.active == 0) stack_.resume_next(&resumed);
   }
 
@@ -280,7 +280,7 @@ class ProgramRun : public Machine {
   }
 
   const isa::Program& program_;
-  core::SimtStack stack_;
+  exec::SimtStack stack_;
 };
 
 }  // namespace glint::frontend::test

@@ -1,6 +1,6 @@
 // Calls, recursion and indexed branches, with lanes that go different ways.
 // SPDX-License-Identifier: Apache-2.0
-#include "core/executor.h"
+#include "exec/executor.h"
 #include "tests/support/catch.h"
 #include "tests/unit/core/text_launch.h"
 

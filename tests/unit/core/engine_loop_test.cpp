@@ -1,6 +1,6 @@
 // Windows: who acts when, what is skipped, and when a machine counts as stuck.
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/engine_loop.h"
+#include "engine/engine_loop.h"
 
 #include "base/diagnostics.h"
 #include "tests/support/catch.h"

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/executor.h"
+#include "exec/executor.h"
 
 namespace glint::core {
 

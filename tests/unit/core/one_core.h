@@ -7,10 +7,10 @@
 #include <string_view>
 #include <vector>
 
-#include "base/engine.h"
 #include "core/core_cell.h"
 #include "core/sm_dispatcher.h"
-#include "pipeline/engine_loop.h"
+#include "engine/engine.h"
+#include "engine/engine_loop.h"
 #include "rtunit/structure.h"
 #include "tests/support/fixed_latency_memory.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "core/image.h"
+#include "exec/image.h"
 #include "isa/text.h"
 #include "isa/verify.h"
 #include "pipeline/functional_machine.h"

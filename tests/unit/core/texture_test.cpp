@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/texture_address.h"
+#include "exec/texture_address.h"
 #include "tests/support/catch.h"
 #include "tests/unit/core/image_lab.h"
 

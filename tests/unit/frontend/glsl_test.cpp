@@ -1,9 +1,9 @@
 // GLSL compilation: includes, defines, messages, debug lines, and what simplification leaves.
 // SPDX-License-Identifier: Apache-2.0
 #include "base/diagnostics.h"
-#include "frontend/module.h"
-#include "frontend/reflection.h"
-#include "frontend/spirv.h"
+#include "frontend/spirv/module.h"
+#include "frontend/spirv/reflection.h"
+#include "frontend/spirv/spirv.h"
 #include "tests/support/catch.h"
 #include "tests/unit/frontend/shader_lab.h"
 

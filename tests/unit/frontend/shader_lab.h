@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "frontend/compile.h"
-#include "frontend/lower.h"
+#include "frontend/lower/lowering.h"
 
 namespace glint::frontend::lab {
 

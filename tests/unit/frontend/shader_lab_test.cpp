@@ -8,8 +8,8 @@
 #include <fstream>
 #include <unistd.h>
 
-#include "core/executor.h"
-#include "core/image.h"
+#include "exec/executor.h"
+#include "exec/image.h"
 #include "isa/verify.h"
 #include "memsys/address_space.h"
 #include "tests/support/catch.h"
@@ -69,7 +69,7 @@ int count_markers(const VirtualProgram& program, VirtualInst::Kind kind) {
 
 namespace {
 
-void put_descriptor(core::World& world, uint32_t binding, uint64_t address, uint64_t bytes) {
+void put_descriptor(exec::World& world, uint32_t binding, uint64_t address, uint64_t bytes) {
   std::memcpy(world.constant_bank.data() + binding * isa::kDescriptorBytes, &address, 8);
   std::memcpy(world.constant_bank.data() + binding * isa::kDescriptorBytes + 8, &bytes, 8);
 }
@@ -89,9 +89,9 @@ std::vector<uint32_t> run(const std::vector<uint32_t>& inputs, const std::string
   isa::verify(program, diagnostics);
   diagnostics.throw_if_errors();
 
-  const core::Image image = core::link({program});
+  const exec::Image image = exec::link({program});
   mem::AddressSpace memory;
-  core::World world;
+  exec::World world;
   world.image = &image;
   world.memory = &memory;
   world.constant_bank.resize(isa::kConstantBankBytes);
@@ -104,8 +104,8 @@ std::vector<uint32_t> run(const std::vector<uint32_t>& inputs, const std::string
   put_descriptor(world, 0, in, bytes);
   put_descriptor(world, 1, out, bytes);
 
-  core::Executor executor(world);
-  core::WarpContext warp;
+  exec::Executor executor(world);
+  exec::WarpContext warp;
   for (uint32_t w = 0; w < executor.num_warps(); ++w) {
     executor.start(warp, w);
     for (uint64_t n = 0; !executor.execute(warp, 0).finished; ++n) {

@@ -1,6 +1,6 @@
 // Where ISA comes from: its SPIR-V instruction, its line, and the calls it stands under after inlining.
 // SPDX-License-Identifier: Apache-2.0
-#include "frontend/source_lines.h"
+#include "frontend/spirv/source_lines.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -8,9 +8,9 @@
 #include <set>
 
 #include "frontend/compile.h"
-#include "frontend/inline_scopes.h"
-#include "frontend/module.h"
-#include "frontend/spirv.h"
+#include "frontend/spirv/inline_scopes.h"
+#include "frontend/spirv/module.h"
+#include "frontend/spirv/spirv.h"
 #include "isa/text.h"
 #include "tests/support/catch.h"
 

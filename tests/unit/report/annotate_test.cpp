@@ -1,12 +1,12 @@
 // Annotated source: every view shows the same cycles, and source.json what was written into it.
 // SPDX-License-Identifier: Apache-2.0
-#include "report/annotate.h"
+#include "report/files/annotate.h"
 
 #include <nlohmann/json.hpp>
 #include <regex>
 
 #include "base/diagnostics.h"
-#include "report/page_source.h"
+#include "report/page/source.h"
 #include "tests/support/catch.h"
 
 namespace glint::report {

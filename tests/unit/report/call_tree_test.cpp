@@ -1,8 +1,8 @@
 // Stacks of calls from the text of a shader.
 // SPDX-License-Identifier: Apache-2.0
-#include "report/call_tree.h"
+#include "report/files/call_tree.h"
 
-#include "report/profile_files.h"
+#include "report/files/profile_files.h"
 #include "tests/support/catch.h"
 
 using namespace glint;

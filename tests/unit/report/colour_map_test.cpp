@@ -1,6 +1,6 @@
 // The colours of maps of cost: even, growing lighter, and apart without red or green.
 // SPDX-License-Identifier: Apache-2.0
-#include "report/colour_map.h"
+#include "report/picture/colour_map.h"
 
 #include <algorithm>
 #include <array>

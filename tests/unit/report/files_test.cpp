@@ -11,9 +11,9 @@
 #include <unistd.h>
 
 #include "base/config.h"
-#include "report/config_file.h"
-#include "report/image_files.h"
-#include "report/run_directory.h"
+#include "report/files/config_file.h"
+#include "report/files/run_directory.h"
+#include "report/picture/image_files.h"
 #include "tests/support/catch.h"
 
 namespace glint::report {

@@ -1,6 +1,6 @@
 // FLIP against values that flip_values.py works out from the paper's formulas, and its properties.
 // SPDX-License-Identifier: Apache-2.0
-#include "report/flip.h"
+#include "report/picture/flip.h"
 
 #include <cmath>
 #include <fstream>

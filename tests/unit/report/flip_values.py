@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """usage: flip_values.py > flip_values.csv
 
-Two-dimensional kernels, summed pixel by pixel; the matrix to XYZ in fractions. Nothing here is shared with report/flip.cpp.
+Two-dimensional kernels, summed pixel by pixel; the matrix to XYZ in fractions. Nothing here is shared with report/picture/flip.cpp.
 Columns: pair of pictures, pixels per degree, x, y, FLIP; the row with x = -1 has the mean.
 """
 import math

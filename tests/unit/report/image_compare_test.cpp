@@ -1,6 +1,6 @@
 // Differences of pictures against values worked out by hand and against the definition written out.
 // SPDX-License-Identifier: Apache-2.0
-#include "report/image_compare.h"
+#include "report/picture/image_compare.h"
 
 #include <cmath>
 #include <filesystem>
@@ -9,7 +9,7 @@
 #include <random>
 
 #include "base/diagnostics.h"
-#include "report/image_files.h"
+#include "report/picture/image_files.h"
 #include "tests/support/catch.h"
 
 using namespace glint;

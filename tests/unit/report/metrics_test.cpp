@@ -1,6 +1,6 @@
 // Formulas over a run, and the tables of metrics and of Vulkan-Sim's names that are made of them.
 // SPDX-License-Identifier: Apache-2.0
-#include "report/metrics.h"
+#include "report/metrics/metrics.h"
 
 #include <algorithm>
 #include <map>
@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "base/diagnostics.h"
-#include "report/formula.h"
-#include "report/vulkan_sim.h"
+#include "report/metrics/formula.h"
+#include "report/metrics/vulkan_sim.h"
 #include "tests/support/catch.h"
 
 namespace glint::report {

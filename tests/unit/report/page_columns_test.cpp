@@ -1,9 +1,8 @@
 // The report's document turned into columns.
 // SPDX-License-Identifier: Apache-2.0
-#include "report/page_columns.h"
-
 #include <nlohmann/json.hpp>
 
+#include "report/page/columns.h"
 #include "tests/support/catch.h"
 
 using namespace glint;

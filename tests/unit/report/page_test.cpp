@@ -1,14 +1,14 @@
 // The report's document and the comparison of runs, from texts.
 // SPDX-License-Identifier: Apache-2.0
-#include "report/page.h"
+#include "report/page/page.h"
 
 #include <nlohmann/json.hpp>
 
 #include "base/diagnostics.h"
-#include "report/base64.h"
-#include "report/compare.h"
-#include "report/config_rows.h"
-#include "report/page_stats.h"
+#include "report/files/base64.h"
+#include "report/files/config_rows.h"
+#include "report/metrics/compare.h"
+#include "report/page/stats.h"
 #include "tests/support/catch.h"
 
 using namespace glint;

@@ -1,9 +1,9 @@
 // The files of a profile: what is written is read again, and nothing is lost on the way.
 // SPDX-License-Identifier: Apache-2.0
-#include "report/profile_files.h"
+#include "report/files/profile_files.h"
 
 #include "base/diagnostics.h"
-#include "report/annotate.h"
+#include "report/files/annotate.h"
 #include "tests/support/catch.h"
 
 namespace glint::report {

@@ -1,9 +1,9 @@
 // The summary, bars, columns and the progress line as a terminal shows them.
 // SPDX-License-Identifier: Apache-2.0
-#include "report/summary.h"
+#include "report/terminal/summary.h"
 
-#include "report/progress.h"
-#include "report/table.h"
+#include "report/terminal/progress.h"
+#include "report/terminal/table.h"
 #include "tests/support/catch.h"
 
 namespace glint::report {

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/stats.h"
-#include "report/stat_rows.h"
-#include "report/stat_writer.h"
+#include "report/files/stat_rows.h"
+#include "report/files/stat_writer.h"
 #include "tests/support/catch.h"
 
 namespace glint::report {

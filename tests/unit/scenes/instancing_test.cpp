@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "scenes/asset_folder.h"
+#include "scenes/import/asset_folder.h"
 #include "scenes/mesh.h"
 
 namespace {

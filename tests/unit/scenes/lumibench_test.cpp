@@ -8,10 +8,10 @@
 #include <set>
 
 #include "base/diagnostics.h"
-#include "scenes/asset_folder.h"
+#include "scenes/generate/paintings.h"
+#include "scenes/import/asset_folder.h"
+#include "scenes/import/obj_loader.h"
 #include "scenes/mesh.h"
-#include "scenes/obj_loader.h"
-#include "scenes/paintings.h"
 #include "tests/reference/intersector.h"
 #include "tests/support/catch.h"
 #include "tests/support/scene_data.h"

@@ -9,9 +9,9 @@
 #include <set>
 
 #include "base/diagnostics.h"
-#include "scenes/distance_field.h"
+#include "scenes/generate/distance_field.h"
+#include "scenes/import/obj_loader.h"
 #include "scenes/mesh.h"
-#include "scenes/obj_loader.h"
 #include "tests/support/catch.h"
 #include "tests/support/scene_data.h"
 

@@ -5,8 +5,8 @@
 #include <random>
 #include <sstream>
 
+#include "scenes/generate/uniform_float.h"
 #include "scenes/scene.h"
-#include "scenes/uniform_float.h"
 #include "tests/support/catch.h"
 #include "tests/support/scene_data.h"
 

@@ -4,7 +4,7 @@ import { number } from "../format.js";
 import { gantt } from "../kinds/gantt.js";
 import { kGroups } from "./cpi_stack.js";
 
-const kFirstPlace = 1001; // thread of the RT unit's first place: report/trace_files.h
+const kFirstPlace = 1001; // thread of the RT unit's first place: report/files/trace_files.h
 const kStages = [
   { name: "intersection", colour: "yellow" }, { name: "any_hit", colour: "orange" }, { name: "closest_hit", colour: "blue" }, { name: "miss", colour: "grey" },
   { name: "callable", colour: "pink" }, { name: "ray_generation", colour: "dark" }, { name: "compute", colour: "dark" },

@@ -1,0 +1,130 @@
+// Planning of a suite.
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/glint/bench/plan.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "apps/glint/bench/estimate.h"
+#include "apps/glint/options/config.h"
+#include "apps/glint/options/image_size.h"
+#include "report/files/config_file.h"
+#include "report/files/run_directory.h"
+
+namespace glint::app {
+namespace {
+namespace fs = std::filesystem;
+
+constexpr const char* kMark = "workload.json";
+
+std::string bytes_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// Names and contents of the shaders: who edits one gets new results.
+uint64_t hash_of_shaders(const Resources& resources) {
+  std::vector<std::string> files;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(resources.shader_dir("")))
+    if (entry.is_regular_file()) files.push_back(entry.path().string());
+  std::sort(files.begin(), files.end());
+  std::string all;
+  for (const std::string& file : files) all += fs::path(file).filename().string() + "\n" + bytes_of(file);
+  return report::fnv1a(all);
+}
+
+// Everything that a result depends on. Two runs of the same key give the same statistics.
+std::string key_of(const Session& session, const BenchOptions& options) {
+  const pipeline::GpuParams gpu = read_config(session.resources, options.config, options.settings);
+  const scenes::RenderParams& frame = options.frame;
+  const std::string text = fmt::format(
+      "config {:016x} mode {} size {} spp {} bounces {} shadow {} ao {} seed {} assets '{}' version {} {} "
+      "program {:016x} shaders {:016x}",
+      report::fnv1a(report::config_key_values(describe_params(gpu))), options.mode, options.size,
+      frame.samples, frame.bounces, frame.shadow_rays, frame.ao_rays, frame.seed,
+      options.assets.empty() ? "" : fs::weakly_canonical(options.assets).string(), GLINT_VERSION, GLINT_GIT,
+      report::fnv1a(bytes_of("/proc/self/exe")), hash_of_shaders(session.resources));
+  return fmt::format("{:016x}", report::fnv1a(text));
+}
+
+nlohmann::json mark_of(const BenchTask& task) {
+  return nlohmann::json::parse(bytes_of(task.directory + "/" + kMark), nullptr, false);
+}
+
+bool is_complete(const BenchTask& task, const std::string& key) {
+  const nlohmann::json mark = mark_of(task);
+  if (!mark.is_object() || !mark.contains("key") || mark["key"] != key) return false;
+  return fs::exists(task.directory + "/stats.csv") && fs::exists(task.directory + "/run.json") &&
+         fs::exists(task.directory + "/config.toml");
+}
+
+std::vector<std::string> command_of(const BenchOptions& options, const BenchTask& task) {
+  const scenes::RenderParams& frame = options.frame;
+  std::vector<std::string> out = {"run",
+                                  task.workload.name(),
+                                  "--config=" + options.config,
+                                  "--size=" + options.size,
+                                  "--mode=" + options.mode,
+                                  fmt::format("--spp={}", frame.samples),
+                                  fmt::format("--bounces={}", frame.bounces),
+                                  fmt::format("--shadow-rays={}", frame.shadow_rays),
+                                  fmt::format("--ao-rays={}", frame.ao_rays),
+                                  fmt::format("--seed={}", frame.seed),
+                                  fmt::format("--threads={}", options.threads),
+                                  "--out=" + task.directory};
+  for (const std::string& setting : options.settings) out.push_back("--set=" + setting);
+  if (!options.assets.empty()) out.push_back("--assets=" + options.assets);
+  return out;
+}
+
+}  // namespace
+
+BenchPlan plan_bench(const Session& session, const BenchOptions& options) {
+  BenchPlan plan;
+  scenes::RenderParams frame = options.frame;
+  parse_size(options.size, frame);
+  const std::vector<std::string> names =
+      options.names.empty() ? std::vector<std::string>{"lumibench"} : options.names;
+  const std::vector<NamedWorkload> workloads = select_workloads(names);
+  plan.key = key_of(session, options);
+  plan.directory =
+      options.out.empty() ? "out/bench-" + fs::path(options.config).stem().string() : options.out;
+  const uint64_t pixels = uint64_t{frame.width} * frame.height;
+  for (const NamedWorkload& workload : workloads) {
+    BenchTask task{workload, plan.directory + "/" + workload.name(), {}};
+    task.process.arguments = command_of(options, task);
+    task.process.log = task.directory + "/log.txt";
+    task.process.memory = memory_estimate(workload, pixels, !options.assets.empty());
+    task.process.weight = time_weight(workload, options.mode == "timing", pixels, frame.samples);
+    task.is_complete = options.resume && is_complete(task, plan.key);
+    plan.tasks.push_back(std::move(task));
+  }
+  return plan;
+}
+
+void mark_complete(const BenchTask& task, const std::string& key, const Process& process) {
+  const nlohmann::ordered_json mark = {{"workload", task.workload.name()},
+                                       {"key", key},
+                                       {"wall_seconds", process.seconds},
+                                       {"peak_bytes", process.peak_bytes}};
+  report::RunDirectory(task.directory).write(kMark, mark.dump(2) + "\n");
+}
+
+void unmark(const BenchTask& task) {
+  std::error_code ignored;  // there may be none
+  fs::remove(task.directory + "/" + kMark, ignored);
+}
+
+void read_mark(const BenchTask& task, Process& process) {
+  const nlohmann::json mark = mark_of(task);
+  if (!mark.is_object()) return;
+  process.state = Process::State::Done;
+  process.seconds = mark.value("wall_seconds", 0.0);
+  process.peak_bytes = mark.value("peak_bytes", uint64_t{0});
+}
+
+}  // namespace glint::app

@@ -1,0 +1,78 @@
+// Tables and runs of a folder of `glint bench`.
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/glint/bench/tables.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+#include <set>
+
+#include "apps/glint/session.h"
+#include "base/diagnostics.h"
+#include "report/files/csv_table.h"
+
+namespace glint::app {
+
+namespace fs = std::filesystem;
+
+std::string metrics_file(const std::string& file_or_folder) {
+  if (!fs::is_directory(file_or_folder)) return file_or_folder;
+  const std::string path = (fs::path(file_or_folder) / "metrics.csv").string();
+  if (!fs::exists(path))
+    throw UserError({path}, "there is no such file", "`glint bench --out DIR` writes it into DIR");
+  return path;
+}
+
+namespace {
+
+std::set<std::string> workloads_of(const fs::path& metrics) {
+  std::set<std::string> out;
+  if (!fs::exists(metrics)) return out;
+  for (const std::vector<std::string>& row :
+       report::read_csv(read_file(metrics.string()), metrics.string()).rows)
+    out.insert(row.at(0));
+  return out;
+}
+
+}  // namespace
+
+std::vector<std::string> bench_runs(const std::string& folder) {
+  const std::set<std::string> members = workloads_of(fs::path(folder) / "metrics.csv");
+  std::vector<std::string> out, others;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (!fs::exists(entry.path() / "run.json")) continue;
+    const std::string name = entry.path().filename().string();
+    if (members.empty() || members.contains(name))
+      out.push_back(entry.path().string());
+    else
+      others.push_back(name);
+  }
+  std::ranges::sort(out);
+  std::ranges::sort(others);
+  if (!others.empty())
+    fmt::print(stderr, "warning: {}: left out, not in its metrics.csv (failed, or of an earlier bench): {}\n",
+               folder, fmt::join(others, " "));
+  return out;
+}
+
+std::vector<std::pair<std::string, std::string>> finished_runs(const std::string& folder) {
+  const auto is_run = [](const fs::path& path) {
+    return fs::exists(path / "run.json") && fs::exists(path / "stats.csv");
+  };
+  const auto name_of = [](const fs::path& path) {
+    return (path.has_filename() ? path : path.parent_path()).filename().string();
+  };
+  if (!fs::is_directory(folder))
+    throw UserError({}, fmt::format("'{}' is no folder", folder),
+                    "`glint run --out DIR` and `glint bench --out DIR` make some");
+  if (fs::exists(fs::path(folder) / "run.json")) return {{name_of(fs::absolute(folder)), folder}};
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const std::string& run : bench_runs(folder))
+    if (is_run(run)) out.emplace_back(name_of(run), run);
+  if (out.empty())
+    throw UserError({}, fmt::format("'{}' holds no finished run", folder),
+                    "`glint run --out DIR` and `glint bench --out DIR` make some");
+  return out;
+}
+
+}  // namespace glint::app

@@ -1,0 +1,105 @@
+// Drawing of a suite in progress and of its summary.
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/glint/bench/view.h"
+
+#include <cstdio>
+#include <fmt/format.h>
+
+#include "apps/glint/options/resources.h"
+#include "report/metrics/formula.h"
+#include "report/metrics/metrics.h"
+
+namespace glint::app {
+namespace {
+
+constexpr int kNameWidth = 9;  // "SPRNG_PT"
+constexpr int kBarWidth = 24;
+
+// One metric of docs/metrics.md as text; "" when the run has none.
+std::string shown(const std::vector<report::MetricValue>& metrics, std::string_view name, int digits,
+                  double scale = 1) {
+  for (const report::MetricValue& metric : metrics)
+    if (metric.metric->name == name)
+      return metric.value ? fmt::format("{:.{}f}", *metric.value * scale, digits) : "";
+  return "";
+}
+
+std::string whole(const std::vector<report::MetricValue>& metrics, std::string_view name) {
+  for (const report::MetricValue& metric : metrics)
+    if (metric.metric->name == name)
+      return metric.value ? report::with_thousands(uint64_t(*metric.value)) : "";
+  return "";
+}
+
+}  // namespace
+
+std::string gigabytes(uint64_t bytes) {
+  return fmt::format("{:.2f} GB", double(bytes) / 1e9);
+}
+
+std::string figures_of(const report::RunRecord& run) {
+  const std::vector<report::MetricValue> metrics = report::metrics_of(run);
+  if (run.text("mode") == "functional") {
+    const std::optional<double> nodes = report::evaluate("sum(gpu.nodes) / sum(gpu.rays)", run);
+    return fmt::format("{} rays{}",
+                       report::with_thousands(uint64_t(report::evaluate("sum(gpu.rays)", run).value_or(0))),
+                       nodes ? fmt::format("  {:.1f} nodes/ray", *nodes) : "");
+  }
+  return fmt::format("{:>11} cycles  IPC {:>6}  {:>5} nodes/ray", whole(metrics, "cycles"),
+                     shown(metrics, "ipc", 1), shown(metrics, "avg_nodes_per_ray", 1));
+}
+
+void BenchView::ended(const BenchTask& task, const Process& process, const std::string& figures) {
+  clear();
+  ++ended_;
+  const bool is_well = process.state == Process::State::Done;
+  if (!is_well) ++failed_;
+  const std::string head = fmt::format("{:>2}/{} {:<{}}", ended_, total_, task.workload.name(), kNameWidth);
+  if (is_well)
+    print_output("{} {}  {:>11}  {}\n", head, figures, report::seconds(process.seconds),
+                 gigabytes(process.peak_bytes));
+  else
+    print_output("{} {}\n", head, figures);
+}
+
+void BenchView::draw(const ProcessPool& pool, const std::vector<std::string>& names) {
+  if (!is_live_) return;
+  clear();
+  std::string lines;
+  for (const size_t index : pool.running()) {
+    const Process& process = pool.processes()[index];
+    lines += fmt::format(" {:<{}} {:<9} [{}] {:3.0f} %  {}\n", names[index], kNameWidth, process.phase,
+                         report::bar(process.progress, kBarWidth, terminal_), 100 * process.progress,
+                         report::seconds(process.seconds));
+    ++drawn_;
+  }
+  const double left = pool.time_left();
+  print_output("{} {} of {} ended{}  {}{}\n", lines, ended_, total_,
+               failed_ ? fmt::format(", {} failed", failed_) : "", report::seconds(pool.elapsed()),
+               left < 0 ? "" : "  ETA " + report::seconds(left));
+  ++drawn_;
+}
+
+// Up by the lines drawn, then erase to the end of the screen (ECMA-48: CUU, ED).
+void BenchView::clear() {
+  if (drawn_ == 0) return;
+  print_output("\x1b[{}A\x1b[J", drawn_);
+  drawn_ = 0;
+}
+
+std::string summary_table(const std::vector<BenchRow>& rows) {
+  std::vector<std::vector<std::string>> cells = {
+      {"", "cycles", "IPC", "SIMT", "RT warps", "RT rays", "RT misses", "DRAM", "rays", "nodes", "", ""},
+      {"workload", "", "", "%", "%", "%", "%", "%", "", "a ray", "time", "memory"}};
+  for (const BenchRow& row : rows) {
+    const std::vector<report::MetricValue> m = report::metrics_of(row.run);
+    cells.push_back({row.task->workload.name(), whole(m, "cycles"), shown(m, "ipc", 1),
+                     shown(m, "simt_efficiency", 1, 100), shown(m, "rt_occupancy", 1, 100),
+                     shown(m, "rt_efficiency", 1, 100), shown(m, "rt_miss_rate", 1, 100),
+                     shown(m, "dram_util", 1, 100), whole(m, "rays_total"), shown(m, "avg_nodes_per_ray", 1),
+                     report::seconds(row.process->seconds), gigabytes(row.process->peak_bytes)});
+  }
+  return report::table(cells, "<>>>>>>>>>>>");
+}
+
+}  // namespace glint::app

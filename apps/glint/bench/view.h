@@ -1,0 +1,47 @@
+// What `glint bench` shows: a line for each workload that has ended, and on a terminal below them those that
+// run. SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+#include "apps/glint/bench/plan.h"
+#include "report/files/run_record.h"
+#include "report/terminal/table.h"
+
+namespace glint::app {
+
+class BenchView {
+ public:
+  // `is_live`: stdout is a terminal whose cursor can be moved; else only finished lines are printed.
+  BenchView(const report::Terminal& terminal, bool is_live, size_t total)
+      : terminal_(terminal), is_live_(is_live), total_(total) {}
+  ~BenchView() { clear(); }
+  BenchView(const BenchView&) = delete;
+  BenchView& operator=(const BenchView&) = delete;
+
+  // `figures`: of a workload that has ended well; else how it ended.
+  void ended(const BenchTask& task, const Process& process, const std::string& figures);
+  void draw(const ProcessPool& pool, const std::vector<std::string>& names);
+  void clear();  // what is live
+
+ private:
+  report::Terminal terminal_;
+  bool is_live_;
+  size_t total_, ended_ = 0, failed_ = 0;
+  int drawn_ = 0;  // lines
+};
+
+// "376 565 cycles  IPC 132.9  43.3 nodes/ray" of a finished run; in functional mode what there is.
+std::string figures_of(const report::RunRecord& run);
+
+// The table at the end, a row a workload that has results.
+struct BenchRow {
+  const BenchTask* task;
+  const Process* process;
+  report::RunRecord run;
+};
+std::string summary_table(const std::vector<BenchRow>& rows);
+
+std::string gigabytes(uint64_t bytes);  // "1.24 GB", "0.08 GB"
+
+}  // namespace glint::app

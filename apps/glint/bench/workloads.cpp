@@ -1,0 +1,96 @@
+// Look-up of shader sets and workloads by name.
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/glint/bench/workloads.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "base/diagnostics.h"
+#include "scenes/scene.h"
+
+namespace glint::app {
+namespace {
+
+// LumiBench, Figure 7: by triangles, from few to many.
+constexpr std::string_view kScenes[] = {"WKND", "SHIP",  "BUNNY", "SPNZA", "CHSNT", "BATH", "REF", "CRNVL",
+                                        "FOX",  "PARTY", "SPRNG", "LANDS", "FRST",  "PARK", "CAR", "ROBOT"};
+// LumiBench, Table 2: one of each cluster.
+constexpr std::string_view kSubset[] = {"SPNZA_AO", "BUNNY_AO", "WKND_PT", "SHIP_SH",
+                                        "ROBOT_SH", "BATH_PT",  "PARK_PT", "CHSNT_PT"};
+// Its leaves are cut out by an any-hit shader; the paper runs it with path tracing only.
+constexpr std::string_view kPathTracingOnly = "CHSNT";
+
+std::string upper(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) c = char(std::toupper(uint8_t(c)));
+  return out;
+}
+
+bool is_called(const NamedWorkload& workload, const std::string& name) {
+  return name == "LUMIBENCH" || (name == "SUBSET" && workload.in_subset) || name == workload.scene ||
+         name == upper(workload.shader) || name == workload.name();
+}
+
+}  // namespace
+
+const WorkloadInfo& find_workload(const std::string& name) {
+  std::vector<std::string> names;
+  for (const WorkloadInfo& info : kWorkloads) {
+    if (info.name == name) return info;
+    names.emplace_back(info.name);
+  }
+  const std::string guess = nearest(name, names);
+  throw UserError({}, "no shader set '" + name + "', expected pt, sh or ao",
+                  guess.empty() ? "" : "did you mean '" + guess + "'?");
+}
+
+std::string NamedWorkload::name() const {
+  return std::string(scene) + "_" + upper(shader);
+}
+
+std::vector<NamedWorkload> lumibench() {
+  std::vector<NamedWorkload> out;
+  for (const std::string_view scene : kScenes)
+    for (const WorkloadInfo& shader : kWorkloads) {
+      if (scene == kPathTracingOnly && shader.workload != scenes::Workload::PathTracing) continue;
+      NamedWorkload made{scene, shader.name};
+      made.in_subset = std::find(std::begin(kSubset), std::end(kSubset), made.name()) != std::end(kSubset);
+      out.push_back(made);
+    }
+  return out;
+}
+
+std::vector<NamedWorkload> select_workloads(const std::vector<std::string>& names) {
+  const std::vector<NamedWorkload> all = lumibench();
+  std::vector<bool> chosen(all.size(), false);
+  for (const std::string& name : names) {
+    bool found = false;
+    for (size_t i = 0; i < all.size(); ++i)
+      if (is_called(all[i], upper(name))) chosen[i] = found = true;
+    if (found) continue;
+    std::vector<std::string> known = {"lumibench", "subset"};
+    for (const std::string_view scene : kScenes) known.emplace_back(scene);
+    for (const NamedWorkload& workload : all) known.push_back(workload.name());
+    const std::string guess = nearest(upper(name), known);
+    throw UserError({}, "no workload or suite '" + name + "'",
+                    guess.empty() ? "'glint list workloads' names them; suites are lumibench and subset"
+                                  : "did you mean '" + guess + "'?");
+  }
+  std::vector<NamedWorkload> out;
+  for (size_t i = 0; i < all.size(); ++i)
+    if (chosen[i]) out.push_back(all[i]);
+  return out;
+}
+
+std::optional<SceneAndShader> split_workload(const std::string& name) {
+  const size_t bar = name.rfind('_');
+  if (bar == std::string::npos) return std::nullopt;
+  const std::string scene = upper(name.substr(0, bar)), shader = upper(name.substr(bar + 1));
+  for (const scenes::SceneInfo& info : scenes::scene_list())
+    for (const WorkloadInfo& set : kWorkloads)
+      if (info.name == scene && upper(set.name) == shader)
+        return SceneAndShader{scene, std::string(set.name)};
+  return std::nullopt;
+}
+
+}  // namespace glint::app

@@ -1,0 +1,146 @@
+// `glint annotate RUN [FILE]`: the programs of a profiled run, as GLSL, SPIR-V or ISA, with what each line
+// cost. SPDX-License-Identifier: Apache-2.0
+#include "report/files/annotate.h"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+#include <memory>
+
+#include "apps/glint/session.h"
+#include "report/files/profile_files.h"
+#include "report/files/run_record.h"
+#include "report/files/source_files.h"
+
+namespace glint::app {
+namespace {
+
+struct Options {
+  std::string run, file, view = "glsl";
+  std::vector<std::string> measures = report::kUsualMeasures;
+};
+
+std::optional<std::string> text_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return std::nullopt;
+  return std::string{std::istreambuf_iterator<char>(in), {}};
+}
+
+ProfileTable read_profile(const std::string& path) {
+  const std::optional<std::string> text = text_of(path);
+  if (!text)
+    throw UserError({}, fmt::format("cannot read '{}'", path),
+                    "`glint run ... --profile` writes profile.csv into the run directory");
+  return report::parse_profile(*text, path);
+}
+
+// source.json beside the profile; without it the files as they are now, which is enough for GLSL.
+report::SourceMap read_source(const std::string& path, const ProfileTable& profile, const std::string& view) {
+  if (const std::optional<std::string> text = text_of(path)) return report::parse_source(*text, path);
+  if (view != "glsl")
+    throw UserError({}, fmt::format("cannot read '{}'", path),
+                    "SPIR-V and ISA stand there: give the run directory, not the profile alone");
+  ProgramListing files;
+  for (const report::FileShare& file : report::files_of(profile)) files.files.push_back(file.file);
+  report::SourceMap out = report::source_map({files}, text_of);
+  out.programs.clear();
+  return out;
+}
+
+// Whether the user means `file`: its path, or the end of it.
+bool means(const std::string& wanted, const std::string& file) {
+  return wanted.empty() || file == wanted || file.ends_with("/" + wanted);
+}
+
+// Views of files, the costliest first.
+std::string files_text(const Options& options, const ProfileTable& profile, const report::SourceMap& map,
+                       const report::Annotator& annotator) {
+  std::string out, names;
+  for (const report::FileShare& share : report::files_of(profile)) {
+    names += (names.empty() ? "" : ", ") + share.file;
+    if (!means(options.file, share.file)) continue;
+    for (size_t i = 0; i < map.files.size(); ++i) {
+      const report::SourceFile& file = map.files[i];
+      if (file.path != share.file) continue;
+      if (!file.is_known)
+        fmt::print(stderr, "warning: the text of '{}' is not known: its lines are shown without it\n",
+                   file.path);
+      out += options.view == "all" ? annotator.all(i) : annotator.file(file);
+    }
+  }
+  if (!options.file.empty() && out.empty())
+    throw UserError({}, fmt::format("no line of '{}' has run", options.file),
+                    names.empty() ? "the run knows no source lines" : "files with cycles: " + names);
+  return out;
+}
+
+// Whether a program is the shader FILE or has code of it.
+bool has_code_of(const report::SourceMap& map, uint32_t number, const std::string& wanted) {
+  const ProgramListing& program = map.programs[number];
+  if (means(wanted, program.shader)) return true;
+  for (const ListedLine& line : program.isa)
+    if (line.line && means(wanted, map.files[line.file].path)) return true;
+  return false;
+}
+
+std::string programs_text(const Options& options, const ProfileTable& profile, const report::SourceMap& map,
+                          const report::Annotator& annotator) {
+  std::string out, names;
+  for (const uint32_t number : report::programs_of(profile)) {
+    if (number >= map.programs.size())
+      throw UserError({}, "profile.csv and source.json are of two runs", "run it again with --profile");
+    names += (names.empty() ? "" : ", ") + map.programs[number].shader;
+    if (has_code_of(map, number, options.file))
+      out += options.view == "isa" ? annotator.isa(number) : annotator.spirv(number);
+  }
+  if (out.empty())
+    throw UserError({}, fmt::format("no shader with code of '{}' has run", options.file),
+                    "shaders with cycles: " + names);
+  return out;
+}
+
+Exit annotate(const Session& session, const Options& options) {
+  const bool is_directory = std::filesystem::is_directory(options.run);
+  if (is_directory) report::check_finished(options.run);
+  const ProfileTable profile = read_profile(is_directory ? options.run + "/profile.csv" : options.run);
+  const std::string folder =
+      is_directory ? options.run : std::filesystem::path(options.run).parent_path().string();
+  const report::SourceMap map =
+      read_source((folder.empty() ? "." : folder) + "/source.json", profile, options.view);
+  const report::Annotator annotator(profile, map, options.measures, session.terminal);
+  std::string out = options.view == "glsl" || options.view == "all"
+                        ? files_text(options, profile, map, annotator)
+                        : programs_text(options, profile, map, annotator);
+  if (options.file.empty()) out = report::reason_table(profile, session.terminal) + out;
+  write_output("", out);
+  return Exit::Ok;
+}
+
+}  // namespace
+
+void add_annotate(CLI::App& app, Session& session) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "annotate", "Print GLSL, SPIR-V or ISA of a run with --profile with what each line cost");
+  command->add_option("RUN", options->run, "Run directory, or its profile.csv")->required();
+  command->add_option("FILE", options->file,
+                      "Source file or shader, or the end of its path (default: all, the costliest first)");
+  command
+      ->add_option("--view", options->view,
+                   "What to print: source lines; SPIR-V after optimisation; ISA; or all, each below what it "
+                   "comes from")
+      ->check(CLI::IsMember({"glsl", "spirv", "isa", "all"}))
+      ->capture_default_str();
+  command
+      ->add_option("--measures", options->measures,
+                   "Columns, by commas: cycles, issues, lanes, accesses, requests, sectors, latency, waits, "
+                   "and the name of any reason of docs/profiling.md")
+      ->delimiter(',')
+      ->capture_default_str();
+  command->callback(
+      [&session, options] { session.action = [&session, options] { return annotate(session, *options); }; });
+}
+
+}  // namespace glint::app

@@ -1,0 +1,39 @@
+// `glint asm FILE`: reads the ISA's text, verifies it, prints it again.
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <memory>
+
+#include "apps/glint/options/resources.h"
+#include "apps/glint/session.h"
+#include "isa/text.h"
+#include "isa/verify.h"
+
+namespace glint::app {
+namespace {
+
+Exit assemble(const std::string& file, const std::string& output) {
+  const isa::Program program = isa::parse(read_file(file), file);
+  Diagnostics diagnostics;
+  isa::verify(program, diagnostics);
+  diagnostics.throw_if_errors();
+  write_output(output, isa::to_text(program));
+  return Exit::Ok;
+}
+
+}  // namespace
+
+void add_asm(CLI::App& app, Session& session) {
+  struct Options {
+    std::string file, output;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("asm", "Assemble and verify a program in the ISA's text");
+  command->add_option("FILE", options->file, "Text as 'glint compile' prints it")->required();
+  command->add_option("-o,--output", options->output, "File to write instead of stdout")->type_name("FILE");
+  command->callback([&session, options] {
+    session.action = [options] { return assemble(options->file, options->output); };
+  });
+}
+
+}  // namespace glint::app

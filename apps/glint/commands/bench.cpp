@@ -1,0 +1,216 @@
+// `glint bench [SUITE|NAMES...]`: runs workloads of LumiBench, each as a process of its own, and gathers
+// their metrics. SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <fmt/format.h>
+#include <fstream>
+#include <memory>
+#include <thread>
+
+#include "apps/glint/bench/estimate.h"
+#include "apps/glint/bench/plan.h"
+#include "apps/glint/bench/view.h"
+#include "apps/glint/options/frame_options.h"
+#include "apps/glint/options/number_range.h"
+#include "report/files/run_directory.h"
+#include "report/metrics/metrics.h"
+
+namespace glint::app {
+namespace {
+
+// The last line of a log that says something: what a failed workload ended with.
+std::string last_words(const std::string& log) {
+  std::ifstream in(log);
+  std::string line, error;
+  while (std::getline(in, line))
+    if (line.find("error:") != std::string::npos || error.empty()) error = line;
+  return error;
+}
+
+class Bench {
+ public:
+  Bench(const Session& session, const BenchOptions& options)
+      : options_(options),
+        plan_(plan_bench(session, options)),
+        csv_(plan_.tasks.size()),
+        is_live_(session.can_move_cursor),
+        terminal_(session.terminal) {}
+
+  Exit run() {
+    const report::RunDirectory directory(plan_.directory);
+    choose();
+    limits();
+    announce();
+    const bool whole = run_chosen(directory);
+    write_metrics(directory);  // also when nothing was left to run
+    return conclude(directory, whole);
+  }
+
+ private:
+  void choose() {
+    for (size_t i = 0; i < plan_.tasks.size(); ++i) {
+      BenchTask& task = plan_.tasks[i];
+      if (task.is_complete) {
+        read_mark(task, task.process);
+        csv_[i] = report::metrics_row(task.workload.name(), report::RunRecord::read(task.directory));
+      } else {
+        chosen_.push_back(i);
+      }
+    }
+  }
+
+  void limits() {
+    const uint64_t available = available_memory();
+    limits_.processes =
+        options_.processes > 0 ? options_.processes : std::max(1u, std::thread::hardware_concurrency());
+    limits_.memory = options_.memory > 0 ? uint64_t(options_.memory * 1e9) : available;
+  }
+
+  void announce() const {
+    uint64_t largest = 0, together = 0;
+    std::string name;
+    std::vector<uint64_t> needs;
+    for (const size_t i : chosen_) {
+      const BenchTask& task = plan_.tasks[i];
+      needs.push_back(task.process.memory);
+      if (task.process.memory > largest) largest = task.process.memory, name = task.workload.name();
+    }
+    std::sort(needs.rbegin(), needs.rend());
+    for (size_t i = 0; i < std::min<size_t>(needs.size(), limits_.processes); ++i) together += needs[i];
+    print_output(
+        "{} workloads{}: {}, {} spp, {} on {}, {} at a time, into {}\n", plan_.tasks.size(),
+        options_.resume ? fmt::format(", {} of them complete", plan_.tasks.size() - chosen_.size()) : "",
+        options_.size, options_.frame.samples, options_.mode, options_.config, limits_.processes,
+        plan_.directory);
+    if (chosen_.empty()) return;
+    print_output("memory, estimated: {} for {}, {} for the largest together; limit {}\n", gigabytes(largest),
+                 name, gigabytes(together), limits_.memory ? gigabytes(limits_.memory) : "not known");
+    if (limits_.memory && largest > limits_.memory)
+      fmt::print(stderr, "warning: {} may not fit into {}; it runs alone\n", name, gigabytes(limits_.memory));
+    else if (limits_.memory && together > limits_.memory)
+      print_output("fewer run together when they would not fit\n");
+  }
+
+  bool run_chosen(const report::RunDirectory& directory) {
+    std::vector<Process> processes;
+    std::vector<std::string> names;
+    for (const size_t i : chosen_) {
+      const report::RunDirectory made(plan_.tasks[i].directory);
+      unmark(plan_.tasks[i]);
+      processes.push_back(plan_.tasks[i].process);
+      names.push_back(plan_.tasks[i].workload.name());
+    }
+    ProcessPool pool(std::move(processes), limits_);
+    BenchView view(terminal_, is_live_, chosen_.size());
+    pool.on_time = [&] { view.draw(pool, names); };
+    pool.on_end = [&](size_t index) { take(chosen_[index], pool.processes()[index], view, directory); };
+    const bool whole = pool.run();
+    for (size_t k = 0; k < chosen_.size(); ++k)
+      plan_.tasks[chosen_[k]].process.state = pool.processes()[k].state;
+    return whole;
+  }
+
+  // A process has ended: its figures, its mark, and the metrics up to now.
+  void take(size_t index, const Process& process, BenchView& view, const report::RunDirectory& directory) {
+    BenchTask& task = plan_.tasks[index];
+    task.process = process;
+    std::string figures = process.state == Process::State::Stopped
+                              ? "stopped"
+                              : fmt::format("FAILED, {}: {}", process.end, last_words(process.log));
+    if (process.state == Process::State::Done) {
+      const report::RunRecord record = report::RunRecord::read(task.directory);
+      figures = figures_of(record);
+      csv_[index] = report::metrics_row(task.workload.name(), record);
+      mark_complete(task, plan_.key, process);
+      write_metrics(directory);
+    }
+    view.ended(task, task.process, figures);
+  }
+
+  std::vector<BenchRow> rows() const {
+    std::vector<BenchRow> out;
+    for (const BenchTask& task : plan_.tasks)
+      if (task.process.state == Process::State::Done)
+        out.push_back({&task, &task.process, report::RunRecord::read(task.directory)});
+    return out;
+  }
+
+  void write_metrics(const report::RunDirectory& directory) const {
+    std::string csv = report::metrics_header();
+    for (const std::string& row : csv_) csv += row;
+    directory.write("metrics.csv", csv);
+  }
+
+  Exit conclude(const report::RunDirectory& directory, bool whole) const {
+    size_t done = 0, failed = 0;
+    std::string names;
+    for (const BenchTask& task : plan_.tasks) {
+      done += task.process.state == Process::State::Done;
+      if (task.process.state != Process::State::Failed) continue;
+      ++failed;
+      names += " " + task.workload.name();
+    }
+    const std::string table = summary_table(rows());
+    directory.write("summary.txt", table);
+    print_output("\n{}\n{} of {} workloads complete, metrics in {}\n", table, done, plan_.tasks.size(),
+                 directory.path_of("metrics.csv"));
+    if (failed)
+      fmt::print(stderr, "error: {} failed:{}\n  note: log.txt in the directory of each says why\n", failed,
+                 names);
+    if (!whole)
+      fmt::print(stderr, "error: interrupted\n  note: the same command with --resume goes on from here\n");
+    return failed || !whole ? Exit::Failure : Exit::Ok;
+  }
+
+  const BenchOptions& options_;
+  BenchPlan plan_;
+  PoolLimits limits_;
+  std::vector<size_t> chosen_;    // to run; the others are complete
+  std::vector<std::string> csv_;  // the row of each that is complete, by task
+  bool is_live_;
+  report::Terminal terminal_;
+};
+
+}  // namespace
+
+void add_bench(CLI::App& app, Session& session) {
+  auto options = std::make_shared<BenchOptions>();
+  CLI::App* command = app.add_subcommand("bench", "Run workloads of LumiBench and gather their metrics");
+  command->add_option("NAMES", options->names,
+                      "lumibench (all 46, the default), subset (8), a scene, pt, sh, ao, or workloads: "
+                      "'glint list workloads'");
+  command->add_option("-j,--jobs", options->processes, "Processes at a time; 0: one for each processor")
+      ->check(CLI::Range(0u, 1024u))
+      ->capture_default_str();
+  command->add_flag("--resume", options->resume,
+                    "Leave out what is complete: the same configuration, options, program and shaders");
+  command
+      ->add_option("--memory", options->memory, "GB that all may take together (default: what is available)")
+      ->check(number_range(0.001, 1e6));
+  command->add_option("--config", options->config, "Preset or TOML file")->capture_default_str();
+  command->add_option("--set", options->settings, "Override of a key, repeatable: core.warps=16")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--mode", options->mode, "timing: cycle by cycle; functional: picture and counts only")
+      ->check(CLI::IsMember({"timing", "functional"}))
+      ->capture_default_str();
+  command->add_option("--assets", options->assets, "Folder of original scene data")
+      ->type_name("DIR")
+      ->envname("GLINT_ASSETS");
+  command
+      ->add_option("--out", options->out,
+                   "Folder of the results, a folder a workload (default: out/bench-CONFIG)")
+      ->type_name("DIR");
+  command->add_option("--threads", options->threads, "Threads of each process")
+      ->check(CLI::Range(0u, 256u))
+      ->capture_default_str();
+  command->add_option("--size", options->size, "Image size in pixels")
+      ->type_name("WxH")
+      ->capture_default_str();
+  add_frame_options(*command, options->frame);
+  command->callback([&session, options] {
+    session.action = [&session, options] { return Bench(session, *options).run(); };
+  });
+}
+
+}  // namespace glint::app

@@ -1,0 +1,55 @@
+// `glint compare A B`: what changed from one run to another, with an exit code for scripts.
+// SPDX-License-Identifier: Apache-2.0
+#include "report/metrics/compare.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <memory>
+
+#include "apps/glint/session.h"
+
+namespace glint::app {
+namespace {
+
+Exit compare(const std::string& before, const std::string& after, const std::vector<std::string>& fail_on,
+             bool all) {
+  std::vector<report::Condition> conditions;
+  for (const std::string& text : fail_on) conditions.push_back(report::parse_condition(text));
+  const report::RunRecord was = report::RunRecord::read(before), is = report::RunRecord::read(after);
+  const std::vector<report::Change> changes = report::changes(was, is);
+  write_output("", report::changes_text(changes, all) + report::uncompared_text(was, is));
+  Exit exit = Exit::Ok;
+  for (const report::Condition& condition : conditions) {
+    if (!report::holds(condition, changes)) continue;
+    fmt::print(stderr, "failed: {}\n", condition.text);
+    exit = Exit::Failure;
+  }
+  return exit;
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app, Session& session) {
+  struct Options {
+    std::string before, after;
+    std::vector<std::string> fail_on;
+    bool all = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("compare", "Print what changed from one finished run to another");
+  command->add_option("A", options->before, "Run directory: what was")->required();
+  command->add_option("B", options->after, "Run directory: what is")->required();
+  command
+      ->add_option(
+          "--fail-on", options->fail_on,
+          "Exit with 1 when a metric changed by less or more than this: 'ipc<-2%', 'cycles>1%'; repeatable")
+      ->allow_extra_args(false);
+  command->add_flag("--all", options->all, "Metrics that did not change as well");
+  command->callback([&session, options] {
+    session.action = [options] {
+      return compare(options->before, options->after, options->fail_on, options->all);
+    };
+  });
+}
+
+}  // namespace glint::app

@@ -1,0 +1,82 @@
+// `glint compile FILE...`: GLSL or SPIR-V to SPIR-V, as words or text, or to the ISA's text.
+// SPDX-License-Identifier: Apache-2.0
+#include "frontend/compile.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <fmt/format.h>
+#include <memory>
+
+#include "apps/glint/options/resources.h"
+#include "apps/glint/options/shader_options.h"
+#include "apps/glint/session.h"
+#include "frontend/spirv/inline_scopes.h"
+#include "isa/text.h"
+
+namespace glint::app {
+namespace {
+
+struct Options {
+  std::vector<std::string> files;
+  std::string emit = "isa", output, entry_point;
+  ShaderOptions shaders;
+  frontend::BackendOptions backend;
+};
+
+std::string text_of(const Options& options, const std::string& file, const frontend::GlslOptions& glsl,
+                    Diagnostics& warnings) {
+  if (options.emit == "isa")
+    return isa::to_text(frontend::compile_file(file, glsl, options.backend, warnings));
+  std::vector<uint32_t> words = frontend::spirv_of_file(file, glsl);
+  if (options.emit == "simplified") words = frontend::simplify(std::move(words), file, warnings);
+  if (options.emit == "spv")
+    return {reinterpret_cast<const char*>(words.data()), words.size() * sizeof words[0]};
+  return frontend::disassemble_spirv(frontend::with_plain_lines(words));
+}
+
+Exit compile(const Options& options) {
+  if (options.emit == "spv" && options.files.size() > 1)
+    throw UserError({}, "--emit spv writes one module, and there are several files");
+  const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(options.shaders);
+  frontend::GlslOptions glsl = glsl_options(options.shaders, cache.get());
+  glsl.entry_point = options.entry_point;
+  std::string out;
+  Diagnostics warnings;
+  for (const std::string& file : options.files) out += text_of(options, file, glsl, warnings);
+  for (const std::string& warning : warnings.messages()) fmt::print(stderr, "{}\n", warning);
+  write_output(options.output, out);
+  return Exit::Ok;
+}
+
+}  // namespace
+
+void add_compile(CLI::App& app, Session& session) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("compile", "Compile shaders, GLSL or SPIR-V, and print the result");
+  command
+      ->add_option("FILE", options->files,
+                   "Shaders; the stage is the file's ending: .rgen .rchit .rmiss .rahit .rint .rcall .comp; "
+                   "or .spv, .spvasm")
+      ->required();
+  command
+      ->add_option("--emit", options->emit,
+                   "What to print: the ISA's text; SPIR-V as text (spvasm; spirv is the same) or as words "
+                   "(spv); SPIR-V as it is lowered (simplified)")
+      ->check(CLI::IsMember({"isa", "spvasm", "spirv", "spv", "simplified"}))
+      ->capture_default_str();
+  command->add_option("--entry", options->entry_point, "Entry point, of a module with several")
+      ->type_name("NAME");
+  add_shader_options(*command, options->shaders);
+  command->add_option("-o,--output", options->output, "File to write instead of stdout")->type_name("FILE");
+  command
+      ->add_option("--registers", options->backend.max_registers,
+                   "32-bit registers a thread before values spill")
+      ->check(CLI::Range(16, 255))
+      ->capture_default_str();
+  command->callback([&session, options] {
+    options->backend.contract = options->shaders.contract;
+    session.action = [options] { return compile(*options); };
+  });
+}
+
+}  // namespace glint::app

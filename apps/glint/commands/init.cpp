@@ -1,0 +1,46 @@
+// `glint init FILE.toml SHADER...`: writes a description of a pipeline that runs as it is.
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fmt/format.h>
+#include <memory>
+
+#include "apps/glint/options/resources.h"
+#include "apps/glint/options/shader_options.h"
+#include "apps/glint/session.h"
+#include "pipeline/description/defaults.h"
+
+namespace glint::app {
+namespace {
+
+struct Options {
+  std::string file;
+  std::vector<std::string> shaders;
+  bool force = false;
+  ShaderOptions compile;
+};
+
+Exit init(const Options& options) {
+  std::error_code failed;
+  if (!options.force && std::filesystem::exists(options.file, failed))
+    throw UserError({options.file, 0, 0}, "the file is there already", "--force writes over it");
+  const std::string folder = std::filesystem::path(options.file).parent_path().string();
+  write_output(options.file, pipeline::default_description(options.shaders, folder,
+                                                           glsl_options(options.compile, nullptr)));
+  return Exit::Ok;
+}
+
+}  // namespace
+
+void add_init(CLI::App& app, Session& session) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("init", "Write a pipeline file from what shaders declare");
+  command->add_option("FILE", options->file, "TOML file to write")->required();
+  command->add_option("SHADER", options->shaders, "One ray generation or compute shader, and those it calls")
+      ->required();
+  add_source_options(*command, options->compile);
+  command->add_flag("--force", options->force, "Write over a file that is there");
+  command->callback([&session, options] { session.action = [options] { return init(*options); }; });
+}
+
+}  // namespace glint::app

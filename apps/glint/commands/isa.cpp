@@ -1,0 +1,84 @@
+// `glint isa [OP]`: the reference of the instruction set, from its table.
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "apps/glint/options/config.h"
+#include "apps/glint/options/resources.h"
+#include "apps/glint/session.h"
+#include "isa/op_row.h"
+#include "isa/paths.h"
+#include "isa/reference.h"
+
+namespace glint::app {
+namespace {
+
+struct Options {
+  std::string op, table, page;
+  bool index = false, pages = false;
+};
+
+isa::PresetTimes times_of(const Resources& resources, const std::string& preset) {
+  isa::PresetTimes out{preset, {}};
+  const auto units = read_preset(resources, preset).core.units.by_unit();
+  for (size_t i = 0; i < units.size(); ++i) out.unit[i] = {units[i].latency, units[i].interval};
+  return out;
+}
+
+std::vector<isa::PresetTimes> all_presets(const Resources& resources) {
+  std::vector<isa::PresetTimes> out;
+  for (const std::string& name : resources.config_names()) out.push_back(times_of(resources, name));
+  return out;
+}
+
+// Of presets that load; why another does not is told on stderr.
+std::vector<isa::PresetTimes> sound_presets(const Resources& resources) {
+  std::vector<isa::PresetTimes> out;
+  for (const std::string& name : resources.config_names()) {
+    try {
+      out.push_back(times_of(resources, name));
+    } catch (const Error& error) {
+      fmt::print(stderr, "warning: preset '{}' is left out: {}\n", name, error.what());
+    }
+  }
+  return out;
+}
+
+std::string text_of(const Resources& resources, const Options& options) {
+  if (!options.table.empty()) return isa::instruction_table(times_of(resources, options.table));
+  if (!options.page.empty()) return isa::reference_page(options.page, all_presets(resources));
+  if (options.index) return isa::reference_index(all_presets(resources));
+  if (!options.op.empty()) return isa::describe_op(options.op, sound_presets(resources));
+  if (!options.pages) return isa::list_ops();
+  std::string names;
+  for (const isa::Family& family : isa::families()) names += isa::page_name(family.name) + "\n";
+  return names;
+}
+
+}  // namespace
+
+void add_isa(CLI::App& app, Session& session) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("isa", "Explain the instruction set, or one op");
+  CLI::Option* op = command->add_option("OP", options->op,
+                                        "An op's full name, fma.rn.f32, or its beginning (default: all ops)");
+  CLI::Option* table = command->add_option("--table", options->table,
+                                           "Unit, latency and interval of every op of a preset, as CSV");
+  CLI::Option* page =
+      command->add_option("--page", options->page, "The page of a family, as docs/isa/FAMILY.md");
+  CLI::Option* index = command->add_flag("--index", options->index, "As docs/isa.md");
+  CLI::Option* pages = command->add_flag("--pages", options->pages, "The names of the families' pages");
+  table->type_name("PRESET");
+  page->type_name("FAMILY");
+  for (CLI::Option* option : {op, table, page, index, pages})
+    for (CLI::Option* other : {op, table, page, index, pages})
+      if (option != other) option->excludes(other);
+  command->callback([&session, options] {
+    session.action = [&session, options] {
+      write_output("", text_of(session.resources, *options));
+      return Exit::Ok;
+    };
+  });
+}
+
+}  // namespace glint::app

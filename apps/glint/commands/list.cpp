@@ -1,0 +1,122 @@
+// `glint list WHAT`: scenes, shaders, workloads, configs, policies, ops, stats, metrics.
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <memory>
+
+#include "apps/glint/bench/workloads.h"
+#include "apps/glint/options/policies.h"
+#include "apps/glint/options/stat_list.h"
+#include "apps/glint/session.h"
+#include "isa/op_row.h"
+#include "report/metrics/metrics.h"
+#include "report/metrics/vulkan_sim.h"
+#include "report/terminal/table.h"
+#include "scenes/scene.h"
+
+namespace glint::app {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+Rows scene_rows() {
+  Rows rows;
+  for (const scenes::SceneInfo& info : scenes::scene_list()) rows.push_back({info.name, info.doc});
+  return rows;
+}
+
+Rows shader_rows() {
+  Rows rows;
+  for (const WorkloadInfo& info : kWorkloads) rows.push_back({std::string(info.name), std::string(info.doc)});
+  return rows;
+}
+
+Rows workload_rows() {
+  Rows rows;
+  for (const NamedWorkload& workload : lumibench())
+    rows.push_back({workload.name(), std::string(workload.scene), std::string(workload.shader),
+                    workload.in_subset ? "subset" : ""});
+  return rows;
+}
+
+std::string metrics_page() {
+  return report::metrics_markdown() +
+         "\n## Vulkan-Sim's names\n\n`glint stats RUN --format vulkan-sim` prints them.\n\n" +
+         report::vulkan_sim_markdown();
+}
+
+Rows metric_rows() {
+  Rows rows;
+  for (const report::MetricGroup& group : report::metric_groups())
+    for (const report::Metric& metric : group.metrics)
+      rows.push_back({std::string(metric.name), std::string(metric.unit), std::string(metric.doc)});
+  return rows;
+}
+
+// The first comment line of a preset says what it is.
+Rows config_rows(const Resources& resources) {
+  Rows rows;
+  for (const std::string& name : resources.config_names()) {
+    const std::string text = read_file(resources.config_path(name));
+    const bool comment = text.rfind("# ", 0) == 0;
+    rows.push_back({name, comment ? text.substr(2, text.find('\n') - 2) : ""});
+  }
+  return rows;
+}
+
+Rows policy_rows() {
+  Rows rows;
+  for (const PolicyInfo& info : all_policies()) rows.push_back({info.folder, info.key, info.name, info.doc});
+  return rows;
+}
+
+Rows op_rows() {
+  Rows rows;
+  for (const isa::OpRow& row : isa::op_table())
+    rows.push_back({std::string(row.name), std::string(name_of(row.klass)), std::string(name_of(row.unit)),
+                    std::string(row.doc)});
+  return rows;
+}
+
+Exit list(const Session& session, const std::string& what, bool markdown) {
+  if (what == "stats") {
+    write_output("", markdown ? stat_list_markdown() : stat_list());
+    return Exit::Ok;
+  }
+  if (what == "metrics" && markdown) {
+    write_output("", metrics_page());
+    return Exit::Ok;
+  }
+  const Rows rows = what == "scenes"      ? scene_rows()
+                    : what == "shaders"   ? shader_rows()
+                    : what == "workloads" ? workload_rows()
+                    : what == "configs"   ? config_rows(session.resources)
+                    : what == "ops"       ? op_rows()
+                    : what == "metrics"   ? metric_rows()
+                                          : policy_rows();
+  write_output("", report::table(rows, ""));
+  return Exit::Ok;
+}
+
+}  // namespace
+
+void add_list(CLI::App& app, Session& session) {
+  struct Options {
+    std::string what;
+    bool markdown = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("list", "List scenes, shaders, workloads, configs, policies, ops, stats or metrics");
+  command->add_option("WHAT", options->what, "What to list")
+      ->required()
+      ->check(CLI::IsMember(
+          {"scenes", "shaders", "workloads", "configs", "policies", "ops", "stats", "metrics"}));
+  command->add_flag("--markdown", options->markdown,
+                    "Of stats and metrics: as docs/stats.md and docs/metrics.md");
+  command->callback([&session, options] {
+    session.action = [&session, options] { return list(session, options->what, options->markdown); };
+  });
+}
+
+}  // namespace glint::app

@@ -1,0 +1,183 @@
+// `glint model RUN...`: cycles that analytical models predict, beside those that were simulated.
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <fmt/format.h>
+#include <memory>
+
+#include "apps/glint/bench/tables.h"
+#include "apps/glint/bench/workloads.h"
+#include "apps/glint/options/config.h"
+#include "apps/glint/options/shader_options.h"
+#include "apps/glint/session.h"
+#include "pipeline/interval/interval_machine.h"
+#include "pipeline/scene_world.h"
+#include "pipeline/structure_cache.h"
+#include "report/analytical/hong_kim.h"
+#include "report/analytical/model_table.h"
+#include "report/files/run_directory.h"
+#include "report/terminal/progress.h"
+
+namespace glint::app {
+namespace {
+
+struct Options {
+  std::vector<std::string> runs;
+  std::string out, assets;
+  bool statistics_only = false, inputs = false;
+  ShaderOptions shaders;
+};
+
+using Columns = std::vector<std::pair<std::string, double>>;
+
+double fact(const report::RunRecord& run, const std::string& directory, const std::string& name) {
+  if (const std::optional<double> value = run.fact(name)) return *value;
+  throw UserError({directory + "/run.json"}, fmt::format("has no '{}'", name),
+                  "the interval model takes runs of scenes; --statistics-only leaves it out");
+}
+
+// The launch that a run has made, again.
+pipeline::RenderJob job_of(const Session& session, const Options& options, const report::RunRecord& run,
+                           const std::string& directory) {
+  const WorkloadInfo& workload = find_workload(run.text("shader"));
+  pipeline::RenderJob job;
+  job.gpu = read_config(session.resources, directory + "/config.toml", {});
+  job.workload = workload.workload;
+  const auto number = [&](const char* name) { return fact(run, directory, name); };
+  job.frame.width = uint32_t(number("width"));
+  job.frame.height = uint32_t(number("height"));
+  job.frame.samples = uint32_t(number("samples"));
+  job.frame.seed = uint32_t(number("seed"));
+  job.frame.bounces = uint32_t(number("rays.bounces"));
+  job.frame.shadow_rays = uint32_t(number("rays.shadow_rays"));
+  job.frame.ao_rays = uint32_t(number("rays.ao_rays"));
+  job.shader_dir = session.resources.shader_dir(std::string(workload.folder));
+  job.scene = scenes::load_scene(run.text("scene.name"), {options.assets, false, {}});
+  if (fmt::format("{:016x}", job.scene.hash()) != run.text("scene.hash"))
+    throw UserError(
+        {directory + "/run.json"},
+        fmt::format("the run's scene is '{}', and here it is '{}'", run.text("scene.form"), job.scene.form),
+        "--assets names the folder that the run was given");
+  return job;
+}
+
+Columns columns_of(const pipeline::IntervalEstimate& estimate, double seconds) {
+  Columns out = {{"interval_rays", double(estimate.rays.rays)},
+                 {"interval_nodes", double(estimate.rays.nodes)},
+                 {"interval_traces", double(estimate.rays.traces)},
+                 {"interval_trace_cycles", double(estimate.rays.trace_cycles)},
+                 {"interval_l1_shader_reads", double(estimate.l1[0].reads)},
+                 {"interval_l1_shader_misses", double(estimate.l1[0].misses)},
+                 {"interval_l1_rt_reads", double(estimate.l1[1].reads)},
+                 {"interval_l1_rt_misses", double(estimate.l1[1].misses)},
+                 {"interval_l2_reads", double(estimate.l2.reads)},
+                 {"interval_l2_misses", double(estimate.l2.misses)},
+                 {"interval_dram_sectors", double(estimate.dram_sectors)}};
+  for (const auto& [name, cycles] : estimate.bounds())
+    out.emplace_back(fmt::format("bound: {}", name), cycles);
+  out.emplace_back("interval_seconds", seconds);
+  return out;
+}
+
+double run_interval(const Session& session, const Options& options, const report::RunRecord& run,
+                    const std::string& directory, Columns& columns) {
+  const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(options.shaders);
+  const std::unique_ptr<pipeline::StructureCache> structures = open_structure_cache(options.shaders);
+  pipeline::RenderJob job = job_of(session, options, run, directory);
+  job.glsl = glsl_options(options.shaders, cache.get());
+  job.structure_cache = structures.get();
+  pipeline::SceneWorld scene(job);
+  pipeline::IntervalMachine machine(job.gpu, scene.world);
+  const auto begin = std::chrono::steady_clock::now();
+  const pipeline::IntervalEstimate estimate = machine.run({});
+  const Columns found =
+      columns_of(estimate, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  columns.insert(columns.end(), found.begin(), found.end());
+  double simulated = 0;
+  for (const double instructions : run.values("gpu.core[*].instructions")) simulated += instructions;
+  if (double(estimate.instructions) != simulated)
+    throw UserError(
+        {directory},
+        fmt::format("the run executed {:.0f} warp instructions, the same launch here {}", simulated,
+                    estimate.instructions),
+        "another version of Glint made the run, or options that run.json does not have: run it again");
+  return double(estimate.cycles);
+}
+
+report::ModelRow row_of(const Session& session, const Options& options, const std::string& workload,
+                        const std::string& directory) {
+  const report::RunRecord run = report::RunRecord::read(directory);
+  if (!options.statistics_only && !run.fact("rays.bounces"))
+    throw UserError(
+        {directory},
+        fmt::format("this is a run of {} '{}': models take runs of scenes",
+                    run.text("scene.form") == "pipeline" ? "the pipeline" : "the kernel",
+                    run.text("scene.name")),
+        "--statistics-only gives Hong and Kim's model alone, of any timing run that reads memory");
+  report::ModelRow row{.workload = workload, .cycles = 0, .predicted = {}, .inputs = {}};
+  const report::HongKimResult model = report::hong_kim(report::hong_kim_inputs(run, directory));
+  for (const double cycles : run.values("gpu.cycles")) row.cycles += cycles;
+  row.predicted.push_back(model.cycles);
+  row.inputs = report::hong_kim_columns(model);
+  if (!options.statistics_only)
+    row.predicted.push_back(run_interval(session, options, run, directory, row.inputs));
+  return row;
+}
+
+std::string inputs_text(const report::ModelTable& models) {
+  std::string out;
+  for (const report::ModelRow& row : models.rows) {
+    std::vector<std::vector<std::string>> rows;
+    for (const auto& [name, value] : row.inputs) rows.push_back({name, fmt::format("{:.6g}", value)});
+    out += fmt::format("\n{}\n{}", row.workload, report::table(rows, "<>", "  "));
+  }
+  return out;
+}
+
+Exit model(const Session& session, const Options& options) {
+  std::vector<std::pair<std::string, std::string>> runs;
+  for (const std::string& folder : options.runs)
+    for (const auto& run : finished_runs(folder)) runs.push_back(run);
+  report::ModelTable models;
+  models.models = {"Hong and Kim"};
+  if (!options.statistics_only) models.models.push_back("interval model");
+  report::Progress progress(session.on_terminal ? stdout : nullptr, "models", session.terminal);
+  for (const auto& [workload, directory] : runs) {
+    models.rows.push_back(row_of(session, options, workload, directory));
+    progress.update(models.rows.size(), runs.size());
+  }
+  std::string out = options.out;
+  if (out.empty()) out = options.runs.size() == 1 ? options.runs[0] + "/models.csv" : "models.csv";
+  write_output(out, report::model_csv(models));
+  if (out == "-") return Exit::Ok;
+  write_output("", report::model_text(models) + (options.inputs ? inputs_text(models) : ""));
+  print_output("\n{}\n`glint report {}` draws it\n", out,
+               options.out.empty() && options.runs.size() == 1 ? options.runs[0] : out);
+  return Exit::Ok;
+}
+
+}  // namespace
+
+void add_model(CLI::App& app, Session& session) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("model", "Predict cycles of finished runs by analytical models, and compare");
+  command->add_option("RUN", options->runs, "Directories of runs on the timing machine, or of `glint bench`")
+      ->required();
+  command
+      ->add_option("-o,--out", options->out,
+                   "Table with all inputs, or - (default: models.csv in the directory; with several, here)")
+      ->type_name("FILE");
+  command->add_flag("--inputs", options->inputs, "Print the inputs of each run as well");
+  command->add_flag("--statistics-only", options->statistics_only,
+                    "Hong and Kim's model alone: no pass over the scene");
+  command->add_option("--assets", options->assets, "Folder of original scene data, as the runs were given it")
+      ->type_name("DIR")
+      ->envname("GLINT_ASSETS");
+  add_shader_options(*command, options->shaders);
+  command->callback(
+      [&session, options] { session.action = [&session, options] { return model(session, *options); }; });
+}
+
+}  // namespace glint::app

@@ -1,0 +1,106 @@
+// `glint report RUN...`: one HTML page of finished runs and of what is known of suites.
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "apps/glint/options/config.h"
+#include "apps/glint/options/observe_options.h"
+#include "apps/glint/options/report_inputs.h"
+#include "apps/glint/session.h"
+#include "report/files/config_file.h"
+#include "report/files/run_record.h"
+#include "report/page/data.h"
+#include "report/page/page.h"
+
+namespace glint::app {
+namespace {
+
+constexpr const char* kDefaultPreset = "mobile";  // of --config
+
+// Glint's own preset to compare a run's configuration with: the one it names, else one that is the same, else
+// the default. A file of the user's is never read again: it may have changed since the run.
+std::string preset_of(const Resources& resources, const report::RunRecord& facts) {
+  const std::vector<std::string> presets = resources.config_names();
+  if (const std::string name = facts.text("config.name");
+      std::find(presets.begin(), presets.end(), name) != presets.end())
+    return name;
+  for (const std::string& preset : presets)
+    if (fmt::format("{:016x}", config_hash(read_preset(resources, preset))) == facts.text("config.hash"))
+      return preset;
+  return kDefaultPreset;
+}
+
+report::PageRun page_run(const Resources& resources, const std::string& directory) {
+  report::PageRun run{.directory = directory, .preset_name = {}, .preset = {}};
+  const std::string path = directory + "/run.json";
+  if (!std::filesystem::exists(path)) return run;  // page_data() says what is wrong
+  report::RunRecord facts;
+  facts.add_facts(read_file(path), path);
+  run.preset_name = preset_of(resources, facts);
+  run.preset = report::config_file(describe_params(read_preset(resources, run.preset_name)), run.preset_name);
+  return run;
+}
+
+Exit write_report(const Session& session, const std::vector<std::string>& named, const std::string& out,
+                  const std::optional<report::TimelineRequest>& timeline) {
+  const ReportInputs inputs = report_inputs(named);
+  std::vector<report::PageRun> runs;
+  for (const std::string& directory : inputs.runs) {
+    runs.push_back(page_run(session.resources, directory));
+    runs.back().timeline = timeline;
+  }
+  nlohmann::ordered_json data = report::page_data(runs, GLINT_VERSION);
+  add_suites(inputs, data);
+  const auto web = [&](const char* name) { return read_file(session.resources.web_file(name)); };
+  const std::string page = report::page(data, {.frame = web("report.html"),
+                                               .style = web("report.css"),
+                                               .script = web("report.js"),
+                                               .unpack = web("unpack.js")});
+  const std::string path = !out.empty() ? out
+                           : named.size() == 1 && std::filesystem::is_directory(named[0])
+                               ? named[0] + "/report.html"
+                               : "report.html";
+  write_output(path, page);
+  if (path != "-") print_output("{}\n", path);
+  return Exit::Ok;
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, Session& session) {
+  struct Options {
+    std::vector<std::string> runs;
+    std::string out;
+    report::TimelineRequest timeline;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("report", "Write a page of figures about finished runs");
+  command
+      ->add_option("RUN", options->runs,
+                   "Run directories, or folders of `glint bench`, with what `glint characterize` and `glint "
+                   "model` have left there; folders and tables of these two alone. "
+                   "With several runs, figures stand side by side and changes are against the first")
+      ->required();
+  command->add_option("-o,--out", options->out,
+                      "File, or - (default: report.html in the directory named; with several, here)");
+  add_cycle_window(*command, "--timeline",
+                   "Cycles of the warp timeline, of a run with --trace (default: as many around the middle "
+                   "of the trace as stay readable)",
+                   options->timeline.begin, options->timeline.end);
+  command->add_option("--timeline-sm", options->timeline.core, "SM of the warp timeline")
+      ->capture_default_str();
+  command->callback([&session, options, command] {
+    std::optional<report::TimelineRequest> timeline;
+    if (command->count("--timeline") + command->count("--timeline-sm") > 0) timeline = options->timeline;
+    session.action = [&session, options, timeline] {
+      return write_report(session, options->runs, options->out, timeline);
+    };
+  });
+}
+
+}  // namespace glint::app

@@ -1,0 +1,165 @@
+// Profile, time series, maps of cost and trace of a run.
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/glint/options/observe_options.h"
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cstdio>
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+#include <optional>
+
+#include "base/diagnostics.h"
+#include "report/files/heat_files.h"
+#include "report/files/profile_files.h"
+#include "report/files/source_files.h"
+#include "report/files/trace_files.h"
+
+namespace glint::app {
+namespace {
+
+std::optional<std::string> text_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return std::nullopt;
+  return std::string{std::istreambuf_iterator<char>(in), {}};
+}
+
+// "1 234 567"
+std::string grouped(uint64_t number) {
+  std::string out = std::to_string(number);
+  for (size_t at = out.size(); at > 3;) out.insert(at -= 3, " ");
+  return out;
+}
+
+// The machine goes on after the run's last cycle until its writes are in memory; a trace may show that too.
+std::string shown_cycles(const TraceTable& trace, Cycle run_end) {
+  if (trace.end <= run_end || trace.begin >= run_end)
+    return fmt::format("of cycles {} to {}", trace.begin, trace.end);
+  return fmt::format("of cycles {} to {}, and of writes on their way to memory until {}", trace.begin,
+                     run_end, trace.end);
+}
+
+void warn_of_cut(const TraceTable& trace, Cycle window_end, Cycle run_end) {
+  const Cycle wanted = trace.end < run_end ? std::min(trace.asked_end, run_end) : trace.asked_end;
+  const std::string rest =
+      fmt::format("{}:{}", trace.end, window_end > trace.asked_end ? "" : std::to_string(window_end));
+  fmt::print(stderr,
+             "warning: the trace ends at cycle {} instead of {}: more would be over the limit of {} "
+             "events\nnote: --trace-limit raises it, --trace-window {} goes on from there\n",
+             trace.end, wanted, grouped(trace.limit), rest);
+}
+
+std::string write_trace(const TraceTable& trace, Cycle window_end, Cycle run_end,
+                        const report::RunDirectory& directory) {
+  directory.write("trace.json.gz", report::trace_json_gz(trace));
+  if (trace.begin == trace.end && !trace.is_cut()) {
+    fmt::print(stderr,
+               "warning: the trace is empty: the run ended at cycle {}, and the window begins at {}\nnote: a "
+               "--trace-window that begins earlier has something to show\n",
+               run_end, trace.begin);
+    return fmt::format("trace      {} (EMPTY: the run ended at cycle {}, before its window begins)",
+                       directory.path_of("trace.json.gz"), run_end);
+  }
+  const std::string events = grouped(report::num_events(trace));
+  if (trace.is_cut()) warn_of_cut(trace, window_end, run_end);
+  if (trace.counters_left_out)
+    fmt::print(stderr,
+               "warning: the trace is without {} counters of single units: they would take more than a "
+               "quarter of {} events\nnote: --trace-limit raises it, --sample makes their intervals longer\n",
+               trace.counters_left_out, grouped(trace.limit));
+  return fmt::format("trace      {} ({} events {}{}; open it at ui.perfetto.dev)",
+                     directory.path_of("trace.json.gz"), events, shown_cycles(trace, run_end),
+                     trace.is_cut() ? ", CUT at the limit" : "");
+}
+
+}  // namespace
+
+CLI::Option* add_cycle_window(CLI::App& command, const std::string& name, const std::string& doc,
+                              Cycle& begin, Cycle& end) {
+  const auto read = [&begin, &end, name](const std::string& text) {
+    const auto refuse = [&](const char* what) {
+      return CLI::ValidationError(
+          name,
+          fmt::format("'{}' {}: expected FROM:TO in cycles, such as 10000:20000; FROM: goes up to the end",
+                      text, what));
+    };
+    const auto number = [&](const std::string& part, Cycle otherwise) {
+      Cycle value = otherwise;
+      const auto [last, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+      if (!part.empty() && (error != std::errc{} || last != part.data() + part.size()))
+        throw refuse("is no pair of numbers");
+      return value;
+    };
+    const size_t colon = text.find(':');
+    if (colon == std::string::npos) throw refuse("has no ':'");
+    begin = number(text.substr(0, colon), 0);
+    end = number(text.substr(colon + 1), kNever);
+    if (begin >= end) throw refuse("ends before it begins");
+  };
+  return command.add_option_function<std::string>(name, read, doc)->type_name("FROM:TO");
+}
+
+void add_observe_options(CLI::App& command, pipeline::Observation& observe) {
+  command.add_flag("--profile", observe.profile,
+                   "Count by instruction and source line: profile.csv, profile.folded, source.json; 'glint "
+                   "annotate' shows it");
+  command
+      .add_option("--sample", observe.sample,
+                  "Write series.csv: IPC, RT warps, miss rates and DRAM use of every so many cycles")
+      ->type_name("CYCLES")
+      ->check(CLI::PositiveNumber);
+  command.add_flag("--heat", observe.heat,
+                   "Write maps of what each pixel cost: heat/*.png and *.npy (cycles, rays, nodes, "
+                   "divergence, misses ...); functional runs have those without cycles");
+  CLI::Option* trace = command.add_flag(
+      "--trace", observe.trace.wanted,
+      "Write trace.json.gz for Perfetto: warps, shader stages, waits and RT units by cycle, with counters");
+  add_cycle_window(command, "--trace-window", "Cycles that the trace shows", observe.trace.begin,
+                   observe.trace.end)
+      ->needs(trace);
+  command
+      .add_option("--trace-limit", observe.trace.limit,
+                  "Most events of a trace; it ends where there would be more, and says so")
+      ->type_name("EVENTS")
+      ->check(CLI::Range(uint64_t{1}, uint64_t{100'000'000}))
+      ->capture_default_str()
+      ->needs(trace);
+}
+
+bool observes(const pipeline::Observation& observe) {
+  return observe.profile || observe.sample || observe.heat || observe.trace.wanted;
+}
+
+void check_observation(const pipeline::Observation& observe, bool timing) {
+  if (timing || (!observe.profile && observe.sample == 0 && !observe.trace.wanted)) return;
+  throw UserError({}, "--profile, --sample and --trace need cycles, and the functional machine has none",
+                  "leave --mode functional out");
+}
+
+std::vector<std::string> write_observation(const pipeline::Observation& observe,
+                                           const pipeline::RenderResult& result,
+                                           const report::RunDirectory& directory) {
+  std::vector<std::string> lines;
+  if (observe.profile) {
+    directory.write("profile.csv", report::profile_csv(result.profile));
+    directory.write("profile.folded", report::profile_folded(result.profile, text_of));
+    directory.write("source.json", report::source_json(report::source_map(result.profile.programs, text_of)));
+    lines.push_back("profile    " + directory.path_of("profile.csv") + " (glint annotate " +
+                    directory.path() + ")");
+  }
+  if (observe.sample) {
+    directory.write("series.csv", report::series_csv(result.series));
+    lines.push_back("series     " + directory.path_of("series.csv"));
+  }
+  if (observe.heat) {
+    for (const auto& [name, bytes] : report::heat_files(result.costs)) directory.write(name, bytes);
+    lines.push_back(fmt::format("heat       {} ({} maps, .png and .npy)", directory.path_of("heat"),
+                                result.costs.size()));
+  }
+  if (observe.trace.wanted)
+    lines.push_back(write_trace(result.trace, observe.trace.end, result.cycles, directory));
+  return lines;
+}
+
+}  // namespace glint::app

@@ -1,0 +1,115 @@
+// Finding runs, characterisations and models in folders.
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/glint/options/report_inputs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fmt/format.h>
+
+#include "apps/glint/bench/tables.h"
+#include "apps/glint/session.h"
+#include "base/diagnostics.h"
+#include "report/analytical/model_table.h"
+#include "report/page/suite.h"
+
+namespace glint::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t kLeastRuns = 3;      // that a characterisation takes (report/characterize/feature_table.h)
+constexpr double kCyclesTold = 1e-9;  // of the cycles: tables have them to the last bit, or nearly
+
+void add_models(const std::string& path, const std::string& source, const std::string& folder,
+                ReportInputs& out) {
+  nlohmann::ordered_json document = report::models_json(report::parse_models(read_file(path), path));
+  document["source"] = source;
+  out.models.push_back({folder, std::move(document)});
+}
+
+void add_characterization(const fs::path& file, const std::string& folder, ReportInputs& out) {
+  out.characterizations.push_back(
+      {folder, report::read_characterization(read_file(file.string()), file.string())});
+}
+
+void add_bench(const std::string& name, ReportInputs& out) {
+  const fs::path folder(name);
+  const std::vector<std::string> runs = bench_runs(name);
+  const auto missing = [&](const char* command) {
+    return SuiteInput{name, {{"source", name}, {"missing", fmt::format("{} {}", command, name)}}};
+  };
+  const bool has_models = fs::exists(folder / "models.csv"),
+             has_characterization = fs::exists(folder / "characterization/characterization.json");
+  if (runs.empty() && !has_models && !has_characterization)
+    throw UserError({name, 0, 0}, "it has metrics.csv and no run directory", "'glint bench' leaves both");
+  out.runs.insert(out.runs.end(), runs.begin(), runs.end());
+  if (has_characterization)
+    add_characterization(folder / "characterization/characterization.json", name, out);
+  else if (runs.size() >= kLeastRuns)
+    out.characterizations.push_back(missing("glint characterize"));
+  if (has_models)
+    add_models((folder / "models.csv").string(), name, name, out);
+  else if (runs.size() >= kLeastRuns)
+    out.models.push_back(missing("glint model"));
+}
+
+void add_named(const std::string& name, ReportInputs& out) {
+  const fs::path path(name);
+  const bool is_run = fs::exists(path / "run.json");
+  const bool has_models = fs::exists(path / "models.csv");
+  if (fs::is_regular_file(path)) return add_models(name, name, "", out);
+  if (!is_run && fs::exists(path / "characterization.json"))
+    return add_characterization(path / "characterization.json", "", out);
+  if (!is_run && fs::exists(path / "metrics.csv")) return add_bench(name, out);
+  if (is_run || !has_models) out.runs.push_back(name);
+  if (has_models) add_models((path / "models.csv").string(), name, name, out);
+}
+
+std::string full_path(const fs::path& path) {
+  const std::string text = fs::weakly_canonical(path).string();
+  return text.size() > 1 && text.ends_with('/') ? text.substr(0, text.size() - 1) : text;
+}
+
+// Runs of the page whose cycles are not those that a suite has for them.
+int differing(const SuiteInput& suite, const nlohmann::ordered_json& runs) {
+  const std::string folder = full_path(suite.folder);
+  int out = 0;
+  for (const nlohmann::ordered_json& one :
+       suite.document.value("workloads", nlohmann::ordered_json::array())) {
+    const nlohmann::ordered_json cycles = one.value("cycles", nlohmann::ordered_json());
+    const std::string name = one.value("name", "");
+    for (const nlohmann::ordered_json& run : runs) {
+      const std::string directory = full_path(run["directory"].get<std::string>());
+      const bool is_meant = directory == full_path(fs::path(folder) / name) ||
+                            (directory == folder && fs::path(folder).filename() == name);
+      if (!is_meant || !cycles.is_number() || !run["metrics"]["cycles"].is_number()) continue;
+      const double is = run["metrics"]["cycles"], was = cycles;
+      if (std::abs(is - was) > kCyclesTold * is) ++out;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+ReportInputs report_inputs(const std::vector<std::string>& named) {
+  ReportInputs out;
+  for (const std::string& name : named) add_named(name, out);
+  return out;
+}
+
+void add_suites(const ReportInputs& inputs, nlohmann::ordered_json& data) {
+  const auto list = [&](const std::vector<SuiteInput>& suites) {
+    nlohmann::ordered_json out = nlohmann::ordered_json::array();
+    for (const SuiteInput& suite : suites) {
+      out.push_back(suite.document);
+      if (!suite.folder.empty()) out.back()["differing"] = differing(suite, data["runs"]);
+    }
+    return out;
+  };
+  data["characterizations"] = list(inputs.characterizations);
+  data["models"] = list(inputs.models);
+}
+
+}  // namespace glint::app

@@ -1,0 +1,73 @@
+// Finding and reading of files.
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/glint/options/resources.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+
+#include "base/diagnostics.h"
+#include "report/files/run_directory.h"
+
+namespace glint::app {
+namespace fs = std::filesystem;
+namespace {
+
+bool is_root(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path / "configs/mobile.toml", ignored) &&
+         fs::is_directory(path / "shaders", ignored);
+}
+
+}  // namespace
+
+Resources Resources::find() {
+  std::error_code error;
+  const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
+  if (const fs::path installed = folder.parent_path() / "share/glint"; is_root(installed))
+    return Resources(installed.string());
+  for (fs::path path = folder; path.has_relative_path();
+       path = path.parent_path())  // from the build tree upwards
+    if (is_root(path)) return Resources(path.string());
+  return Resources(GLINT_SOURCE_DIR);
+}
+
+std::vector<std::string> Resources::config_names() const {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(root_ + "/configs", error))
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string Resources::config_path(const std::string& name_or_path) const {
+  const std::vector<std::string> names = config_names();
+  if (std::find(names.begin(), names.end(), name_or_path) != names.end())
+    return root_ + "/configs/" + name_or_path + ".toml";
+  std::error_code error;
+  if (fs::is_regular_file(name_or_path, error)) return name_or_path;
+  const std::string guess = nearest(name_or_path, names);
+  throw UserError({},
+                  fmt::format("no configuration '{}': neither a preset ({}) nor a file", name_or_path,
+                              fmt::join(names, ", ")),
+                  guess.empty() ? "" : fmt::format("did you mean '{}'?", guess));
+}
+
+std::string read_file(const std::string& path) {
+  std::error_code error;
+  std::ifstream in(path, std::ios::binary);
+  if (!in || fs::is_directory(path, error)) throw UserError({path}, "cannot read the file");
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void write_output(const std::string& path, const std::string& bytes) {
+  if (!path.empty() && path != "-") return report::write_file(path, bytes);
+  const bool is_written = std::fwrite(bytes.data(), 1, bytes.size(), stdout) == bytes.size();
+  if (std::fflush(stdout) != 0 || !is_written) throw OutputError();
+}
+
+}  // namespace glint::app

@@ -1,0 +1,85 @@
+// Include folders, macros, contraction, and where the caches of compiled shaders and built structures lie.
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/glint/options/shader_options.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <fmt/format.h>
+
+namespace glint::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value ? value : "";
+}
+
+std::string cache_folder(const std::string& kind) {
+  if (const std::string folder = variable("GLINT_CACHE"); !folder.empty()) return folder + "/" + kind;
+  // XDG Base Directory Specification: relative paths there are invalid and left out.
+  if (const std::string folder = variable("XDG_CACHE_HOME"); folder.starts_with('/'))
+    return folder + "/glint/" + kind;
+  if (const std::string home = variable("HOME"); !home.empty()) return home + "/.cache/glint/" + kind;
+  return {};  // only in memory
+}
+
+// Changes whenever the executable does, and with it perhaps what it compiles.
+std::string build_id() {
+  std::error_code failed;
+  const fs::path self = fs::read_symlink("/proc/self/exe", failed);
+  const uint64_t bytes = failed ? 0 : fs::file_size(self, failed);
+  const auto time = failed ? fs::file_time_type() : fs::last_write_time(self, failed);
+  return failed ? std::string()
+                : fmt::format("{} {} {}", GLINT_VERSION, bytes, time.time_since_epoch().count());
+}
+
+}  // namespace
+
+void add_source_options(CLI::App& command, ShaderOptions& options) {
+  command.add_option("-I,--include", options.include_dirs, "Folder to look for #include in")
+      ->type_name("DIR")
+      ->allow_extra_args(false);
+  command.add_option("-D,--define", options.defines, "Macro")
+      ->type_name("NAME[=VALUE]")
+      ->allow_extra_args(false);
+}
+
+void add_shader_options(CLI::App& command, ShaderOptions& options) {
+  add_source_options(command, options);
+  command.add_flag("--contract", options.contract,
+                   "Make a * b + c of GLSL one fma, as drivers do, but where it is `precise`");
+  command.add_flag("--no-cache", options.no_cache,
+                   "Compile shaders and build structures anew, and keep none");
+}
+
+frontend::GlslOptions glsl_options(const ShaderOptions& options, frontend::ShaderCache* cache) {
+  frontend::GlslOptions glsl;
+  glsl.cache = cache;
+  glsl.include_dirs = options.include_dirs;
+  for (const std::string& define : options.defines) {
+    const size_t equals = define.find('=');
+    const bool has_value = equals != std::string::npos;
+    glsl.defines.emplace_back(define.substr(0, equals), has_value ? define.substr(equals + 1) : "1");
+  }
+  return glsl;
+}
+
+std::unique_ptr<frontend::ShaderCache> open_shader_cache(const ShaderOptions& options) {
+  if (options.no_cache) return nullptr;
+  const std::string build = build_id();
+  // Where the executable cannot be told from another one, what it compiled stays in memory.
+  return std::make_unique<frontend::ShaderCache>(
+      frontend::ShaderCache::Options{build.empty() ? "" : cache_folder("shaders"), build});
+}
+
+std::unique_ptr<pipeline::StructureCache> open_structure_cache(const ShaderOptions& options) {
+  const std::string build = build_id();
+  if (options.no_cache || build.empty()) return nullptr;
+  return std::make_unique<pipeline::StructureCache>(
+      pipeline::StructureCache::Options{cache_folder("structures"), build});
+}
+
+}  // namespace glint::app

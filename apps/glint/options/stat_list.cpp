@@ -1,0 +1,56 @@
+// Builds a machine with an empty program just to ask it for its statistics.
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/glint/options/stat_list.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "exec/image.h"
+#include "isa/program.h"
+#include "pipeline/params.h"
+#include "pipeline/run_stats.h"
+#include "pipeline/timing_machine.h"
+#include "report/terminal/table.h"
+
+namespace glint::app {
+
+std::vector<report::StatRow> all_stats() {
+  isa::Program program;
+  program.name = "empty.rgen";
+  program.stage = isa::Stage::RayGeneration;
+  program.code.resize(1);
+  program.code[0].op = isa::op_index("exit");
+  program.lines.resize(1);
+  const exec::Image image = exec::link({program});
+  mem::AddressSpace memory;
+  exec::World world;
+  world.image = &image;
+  world.memory = &memory;
+  world.constant_bank.resize(isa::kConstantBankBytes);
+  world.raygen = 0;
+  pipeline::GpuParams params;
+  params.cores = 1;
+  std::vector<report::StatRow> out = report::stat_names(pipeline::TimingMachine(params, world, false).root());
+  for (report::StatRow& row : report::stat_names(pipeline::RunStats(pipeline::FunctionalCounts{}).root())) {
+    if (std::ranges::any_of(out, [&](const report::StatRow& have) { return have.path == row.path; }))
+      continue;
+    row.doc += " The functional machine's.";
+    out.push_back(std::move(row));
+  }
+  return out;
+}
+
+std::string stat_list() {
+  std::vector<std::vector<std::string>> cells;
+  for (const report::StatRow& row : all_stats()) cells.push_back({row.path, row.unit, row.doc});
+  return report::table(cells, "");
+}
+
+std::string stat_list_markdown() {
+  std::string out = "| statistic | unit | meaning |\n|---|---|---|\n";
+  for (const report::StatRow& row : all_stats())
+    out += fmt::format("| `{}` | {} | {} |\n", row.path, row.unit, row.doc);
+  return out;
+}
+
+}  // namespace glint::app

@@ -1,0 +1,289 @@
+// Reading launch files.
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/glint/run/launch_file.h"
+
+#include <fmt/format.h>
+
+#define TOML_EXCEPTIONS 1
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <toml++/toml.h>
+
+#include "pipeline/description/value.h"
+
+namespace glint::app {
+namespace {
+
+const std::vector<std::string> kTypes{"u8", "s8", "u16", "s16", "u32", "s32", "u64", "s64", "f32", "f64"};
+
+bool is_type(std::string_view name) {
+  return std::find(kTypes.begin(), kTypes.end(), name) != kTypes.end();
+}
+size_t bytes_of(const std::string& type) {
+  return std::stoul(type.substr(1)) / 8;
+}
+
+// Bytes of a number as that type; integers keep their low bits.
+std::vector<std::byte> number_bytes(const std::string& type, double real, int64_t whole) {
+  if (type == "f32") return pipeline::KernelWorld::argument(float(real));
+  if (type == "f64") return pipeline::KernelWorld::argument(real);
+  std::vector<std::byte> out = pipeline::KernelWorld::argument(whole);
+  out.resize(bytes_of(type));
+  return out;
+}
+
+// xorshift64*: the same numbers on every machine.
+uint64_t next_random(uint64_t& state) {
+  state ^= state >> 12;
+  state ^= state << 25;
+  state ^= state >> 27;
+  return state * 0x2545'f491'4f6c'dd1dull;
+}
+
+class Reader {
+ public:
+  explicit Reader(const std::string& path) : path_(path) {}
+
+  LaunchFile run() {
+    toml::table root;
+    try {
+      root = toml::parse_file(path_);
+    } catch (const toml::parse_error& error) {
+      throw UserError({path_, int(error.source().begin.line), int(error.source().begin.column)},
+                      std::string(error.description()));
+    }
+    reject_others(root, {"kernel", "entry", "grid", "block", "shared_bytes", "contract", "argument"},
+                  "a launch");
+    LaunchFile out;
+    out.kernel = beside(text(root, "kernel").value_or(""));
+    if (out.kernel.empty())
+      errors_.error({path_, 0, 0}, "'kernel' is missing: the path of the PTX file, from this file's folder");
+    out.entry = text(root, "entry").value_or("");
+    out.contract = flag(root, "contract", true);
+    size_of(root, "grid", out.grid.grid);
+    size_of(root, "block", out.grid.block);
+    out.grid.dynamic_shared_bytes = uint32_t(integer(root, "shared_bytes", 0, uint32_t(-1)).value_or(0));
+    if (const toml::node* list = root.get("argument")) {
+      if (!list->is_array_of_tables())
+        errors_.error(where(*list), "'argument' must be tables: [[argument]]");
+      else
+        for (const toml::node& each : *list->as_array()) out.arguments.push_back(argument(*each.as_table()));
+    }
+    errors_.throw_if_errors();
+    return out;
+  }
+
+ private:
+  SourceLocation where(const toml::node& node) const {
+    return {path_, int(node.source().begin.line), int(node.source().begin.column)};
+  }
+  std::string beside(const std::string& file) const {
+    return file.empty() ? file : (std::filesystem::path(path_).parent_path() / file).string();
+  }
+
+  void reject_others(const toml::table& table, const std::vector<std::string>& known,
+                     const std::string& what) {
+    for (const auto& [key, node] : table) {
+      const std::string name(key.str());
+      if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+      const std::string near = nearest(name, known);
+      errors_.error({path_, int(key.source().begin.line), int(key.source().begin.column)},
+                    fmt::format("'{}' is no key of {}", name, what),
+                    near.empty() ? "" : fmt::format("did you mean '{}'?", near));
+    }
+  }
+
+  std::optional<std::string> text(const toml::table& table, const char* key) {
+    const toml::node* node = table.get(key);
+    if (!node) return {};
+    if (!node->is_string()) errors_.error(where(*node), fmt::format("'{}' must be a string", key));
+    return node->value<std::string>();
+  }
+  std::optional<int64_t> integer(const toml::table& table, const char* key, int64_t least, int64_t most) {
+    const toml::node* node = table.get(key);
+    if (!node) return {};
+    const auto value = node->is_integer() ? node->value<int64_t>() : std::nullopt;
+    if (value && *value >= least && *value <= most) return value;
+    errors_.error(where(*node), fmt::format("'{}' must be a whole number from {} to {}", key, least, most));
+    return {};
+  }
+  bool flag(const toml::table& table, const char* key, bool fallback) {
+    const toml::node* node = table.get(key);
+    if (node && !node->is_boolean())
+      errors_.error(where(*node), fmt::format("'{}' must be true or false", key));
+    return node ? node->value<bool>().value_or(fallback) : fallback;
+  }
+  std::optional<double> number(const toml::table& table, const char* key) {
+    const toml::node* node = table.get(key);
+    if (!node) return {};
+    if (!node->is_number()) errors_.error(where(*node), fmt::format("'{}' must be a number", key));
+    return node->value<double>();
+  }
+
+  // A number, or up to three.
+  void size_of(const toml::table& table, const char* key, std::array<uint32_t, 3>& out) {
+    const toml::node* node = table.get(key);
+    if (!node) return;
+    const auto fail = [&] {
+      errors_.error(where(*node),
+                    fmt::format("'{}' must be a whole number, or a list of up to three, each from 1 to {}",
+                                key, pipeline::kMostOfAxis));
+    };
+    const auto axis = [&](const toml::node& n, size_t i) {
+      const auto value = n.is_integer() ? n.value<int64_t>() : std::nullopt;
+      if (value && *value >= 1 && *value <= pipeline::kMostOfAxis)
+        out[i] = uint32_t(*value);
+      else
+        fail();
+    };
+    const toml::array* list = node->as_array();
+    if (!list) return axis(*node, 0);
+    if (list->empty() || list->size() > 3) return fail();
+    for (size_t i = 0; i < list->size(); ++i) axis(*list->get(i), i);
+  }
+
+  LaunchArgument argument(const toml::table& table) {
+    LaunchArgument out;
+    out.where = where(table);
+    if (table.contains("buffer")) {
+      buffer(table, out);
+      return out;
+    }
+    reject_others(table, kTypes, "a number: it is TYPE = VALUE");
+    for (const std::string& type : kTypes) {
+      const auto value = number(table, type.c_str());
+      if (!value) continue;
+      const toml::node& node = *table.get(type);
+      if (type[0] != 'f' && !node.is_integer())
+        errors_.error(where(node), fmt::format("'{}' must be a whole number", type));
+      out.bytes = number_bytes(type, *value, node.value<int64_t>().value_or(0));
+      return out;
+    }
+    errors_.error(out.where, "an argument is a number (u32 = 7) or a buffer (buffer = \"name\")");
+    return out;
+  }
+
+  void buffer(const toml::table& table, LaunchArgument& out) {
+    reject_others(
+        table,
+        {"buffer", "type", "count", "bytes", "init", "value", "seed", "low", "high", "file", "save", "show"},
+        "a buffer");
+    out.is_buffer = true;
+    out.name = text(table, "buffer").value_or("");
+    out.type = text(table, "type").value_or("u8");
+    if (!is_type(out.type)) {
+      errors_.error(out.where,
+                    fmt::format("'{}' is no type; there are {}", out.type, fmt::join(kTypes, " ")));
+      out.type = "u8";
+    }
+    out.save = flag(table, "save", false);
+    out.show = uint32_t(integer(table, "show", 0, 1 << 20).value_or(0));
+    constexpr int64_t kMostBytes = int64_t{1} << 32;
+    const size_t element = bytes_of(out.type);
+    std::optional<int64_t> bytes = integer(table, "bytes", 1, kMostBytes);
+    if (const auto count = integer(table, "count", 1, kMostBytes / int64_t(element)))
+      bytes = *count * int64_t(element);
+    fill(table, out, bytes, element);
+  }
+
+  void fill(const toml::table& table, LaunchArgument& out, std::optional<int64_t> bytes, size_t element) {
+    const std::string init = text(table, "init")
+                                 .value_or(table.contains("file")    ? "file"
+                                           : table.contains("value") ? "value"
+                                                                     : "zero");
+    if (init == "file") return fill_from_file(table, out, bytes);
+    if (!bytes) {
+      errors_.error(out.where, "a buffer needs 'count' (of its type) or 'bytes'");
+      bytes = 0;
+    }
+    out.bytes.resize(size_t(*bytes));
+    const size_t count = out.bytes.size() / element;
+    const bool real = out.type[0] == 'f';
+    const double low = number(table, "low").value_or(0),
+                 high = number(table, "high").value_or(real ? 1 : 255);
+    const double value = number(table, "value").value_or(0);
+    uint64_t state =
+        uint64_t(integer(table, "seed", 0, INT64_MAX).value_or(1)) * 0x9e37'79b9'7f4a'7c15ull + 1;
+    const auto element_at = [&](size_t i) {
+      if (init == "iota") return number_bytes(out.type, double(i), int64_t(i));
+      if (init == "value") return number_bytes(out.type, value, int64_t(value));
+      const uint64_t r = next_random(state) >> 11;
+      const double unit = double(r) * 0x1p-53;
+      if (real) return number_bytes(out.type, low + (high - low) * unit, 0);
+      const uint64_t range = uint64_t(high - low) + 1;
+      return number_bytes(out.type, 0, int64_t(low) + int64_t(r % (range ? range : 1)));
+    };
+    if (init == "zero") return;
+    if (init != "iota" && init != "value" && init != "random")
+      return errors_.error(
+          out.where,
+          fmt::format("'{}' is no way to fill a buffer; there are zero, value, iota, random and file", init));
+    for (size_t i = 0; i < count; ++i) {
+      const std::vector<std::byte> one = element_at(i);
+      std::copy(one.begin(), one.end(), out.bytes.begin() + std::ptrdiff_t(i * element));
+    }
+  }
+
+  void fill_from_file(const toml::table& table, LaunchArgument& out, std::optional<int64_t> bytes) {
+    const std::string file = beside(text(table, "file").value_or(""));
+    std::ifstream in(file, std::ios::binary);
+    if (!in) return errors_.error(out.where, fmt::format("cannot read '{}'", file));
+    const std::string data{std::istreambuf_iterator<char>(in), {}};
+    out.bytes.resize(bytes ? size_t(*bytes) : data.size());
+    if (data.size() > out.bytes.size() || out.bytes.empty())
+      return errors_.error(
+          out.where, fmt::format("'{}' has {} bytes, the buffer {}", file, data.size(), out.bytes.size()));
+    std::memcpy(out.bytes.data(), data.data(), data.size());
+  }
+
+  const std::string path_;
+  Diagnostics errors_;
+};
+
+template <class T>
+std::string number_text(const std::byte* from) {
+  T value;
+  std::memcpy(&value, from, sizeof value);
+  return fmt::format("{}", value);
+}
+
+}  // namespace
+
+LaunchFile read_launch(const std::string& path) {
+  return Reader(path).run();
+}
+
+std::string first_values(const std::string& type, const std::byte* data, size_t bytes, uint32_t count) {
+  const size_t element = bytes_of(type);
+  std::string out;
+  for (size_t i = 0; i < count && (i + 1) * element <= bytes; ++i) {
+    const std::byte* at = data + i * element;
+    out += i ? " " : "";
+    if (type == "f32")
+      out += number_text<float>(at);
+    else if (type == "f64")
+      out += number_text<double>(at);
+    else if (type == "u8")
+      out += number_text<uint8_t>(at);
+    else if (type == "s8")
+      out += number_text<int8_t>(at);
+    else if (type == "u16")
+      out += number_text<uint16_t>(at);
+    else if (type == "s16")
+      out += number_text<int16_t>(at);
+    else if (type == "u32")
+      out += number_text<uint32_t>(at);
+    else if (type == "s32")
+      out += number_text<int32_t>(at);
+    else if (type == "u64")
+      out += number_text<uint64_t>(at);
+    else
+      out += number_text<int64_t>(at);
+  }
+  return out;
+}
+
+}  // namespace glint::app

@@ -1,0 +1,110 @@
+// Encoding of what a run keeps.
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/glint/run/outputs.h"
+
+#include <cstring>
+#include <filesystem>
+#include <fmt/format.h>
+
+#include "pipeline/description/data.h"
+#include "pipeline/description/pictures.h"
+#include "report/picture/image_files.h"
+#include "report/picture/npy.h"
+
+namespace glint::app {
+namespace {
+
+// "f32" of "float" and so on.
+std::string plain(const std::string& type) {
+  if (type == "float") return "f32";
+  if (type == "double") return "f64";
+  if (type == "uint") return "u32";
+  if (type == "int") return "s32";
+  return type[0] == 'i' ? "s" + type.substr(1) : type;
+}
+
+template <class T>
+std::string as(const std::byte* at) {
+  T value;
+  std::memcpy(&value, at, sizeof value);
+  return fmt::format("{}", value);
+}
+
+std::string number_text(const std::string& type, const std::byte* at) {
+  const uint32_t bytes = pipeline::bytes_of_number(type);
+  if (type[0] == 'f') {
+    if (bytes == 8) return as<double>(at);
+    if (bytes == 4) return as<float>(at);
+    uint16_t half;
+    std::memcpy(&half, at, 2);
+    return fmt::format("{}", exec::from_half(half));
+  }
+  const bool is_signed = type[0] == 's';
+  if (bytes == 1) return is_signed ? as<int8_t>(at) : as<uint8_t>(at);
+  if (bytes == 2) return is_signed ? as<int16_t>(at) : as<uint16_t>(at);
+  if (bytes == 4) return is_signed ? as<int32_t>(at) : as<uint32_t>(at);
+  return is_signed ? as<int64_t>(at) : as<uint64_t>(at);
+}
+
+std::string_view text_of(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+std::string ending_of(const std::string& file) {
+  return std::filesystem::path(file).extension().string();
+}
+
+}  // namespace
+
+std::string wrong_with_output(const std::string& file, bool is_image) {
+  const std::string ending = ending_of(file);
+  if (file.find('/') != std::string::npos) return "it goes to the run directory: give a name without folders";
+  if (ending == ".npy" || ending == ".csv" || ending == ".raw" || ending == ".bin") return "";
+  if (ending == ".png" || ending == ".pfm")
+    return is_image ? "" : "a buffer is no picture: .npy, .csv or .raw";
+  return is_image ? "expected .png, .pfm, .npy, .csv or .raw" : "expected .npy, .csv or .raw";
+}
+
+std::string first_numbers(const std::string& named, std::span<const std::byte> bytes, size_t count) {
+  const std::string type = plain(named);
+  const size_t each = pipeline::bytes_of_number(type);
+  std::string out;
+  for (size_t i = 0; i < count && (i + 1) * each <= bytes.size(); ++i)
+    out += (i ? " " : "") + number_text(type, bytes.data() + i * each);
+  return out;
+}
+
+std::string buffer_file(const std::string& file, const std::string& named, std::span<const std::byte> bytes) {
+  const std::string type = plain(named), ending = ending_of(file);
+  const size_t each = pipeline::bytes_of_number(type), count = bytes.size() / each;
+  if (ending == ".npy") {
+    const char kind = type[0] == 's' ? 'i' : type[0];
+    return report::npy_bytes(fmt::format("{}{}{}", each == 1 ? '|' : '<', kind, each),
+                             fmt::format("({},)", count), text_of(bytes.first(count * each)));
+  }
+  if (ending != ".csv") return std::string(text_of(bytes));
+  std::string out = "value\n";
+  for (size_t i = 0; i < count; ++i) out += number_text(type, bytes.data() + i * each) + "\n";
+  return out;
+}
+
+std::string image_file(const std::string& file, const exec::ImageView& view,
+                       std::span<const std::byte> bytes) {
+  const std::string ending = ending_of(file);
+  if (ending != ".png" && ending != ".pfm" && ending != ".npy" && ending != ".csv")
+    return std::string(text_of(bytes));
+  const std::vector<float> texels = pipeline::texels_as_floats(view, bytes.data());
+  const uint32_t rows = view.height * view.depth * view.layers;
+  if (ending == ".png") return report::png_bytes({view.width, rows, texels});
+  if (ending == ".pfm") return report::pfm_bytes({view.width, rows, texels});
+  if (ending == ".npy")
+    return report::npy_bytes("<f4", fmt::format("({}, {}, 4)", rows, view.width),
+                             text_of(std::as_bytes(std::span(texels))));
+  std::string out = "x,y,red,green,blue,alpha\n";
+  for (size_t i = 0; i + 4 <= texels.size(); i += 4)
+    out += fmt::format("{},{},{},{},{},{}\n", i / 4 % view.width, i / 4 / view.width, texels[i],
+                       texels[i + 1], texels[i + 2], texels[i + 3]);
+  return out;
+}
+
+}  // namespace glint::app

@@ -1,0 +1,176 @@
+// Running a described pipeline: shaders from anywhere, resources from the file, pictures and arrays kept.
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/glint/run/pipeline.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+
+#include "apps/glint/options/config.h"
+#include "apps/glint/options/observe_options.h"
+#include "apps/glint/run/outputs.h"
+#include "apps/glint/run/recorded_run.h"
+#include "pipeline/description/defaults.h"
+#include "pipeline/pipeline_world.h"
+#include "report/files/config_file.h"
+#include "report/files/run_directory.h"
+
+namespace glint::app {
+namespace {
+
+bool is_shader(const std::string& what) {
+  return frontend::stage_of_file(what).has_value() || what.ends_with(".spv") || what.ends_with(".spvasm");
+}
+
+// What the command line says comes after what the file says.
+pipeline::PipelineDescription with_options(pipeline::PipelineDescription description,
+                                           const frontend::GlslOptions& glsl) {
+  for (pipeline::ShaderFile& shader : description.shaders) {
+    auto& dirs = shader.glsl.include_dirs;
+    dirs.insert(dirs.end(), glsl.include_dirs.begin(), glsl.include_dirs.end());
+    auto& defines = shader.glsl.defines;
+    std::erase_if(defines, [&](const auto& d) {
+      return std::any_of(glsl.defines.begin(), glsl.defines.end(),
+                         [&](const auto& o) { return o.first == d.first; });
+    });
+    defines.insert(defines.end(), glsl.defines.begin(), glsl.defines.end());
+    shader.glsl.cache = glsl.cache;
+  }
+  return description;
+}
+
+pipeline::PipelineDescription read_description(const PipelineOptions& options,
+                                               const frontend::GlslOptions& glsl) {
+  if (!is_shader(options.what)) return with_options(pipeline::read_pipeline(options.what), glsl);
+  const std::vector<std::string> shaders = pipeline::with_companions(options.what);
+  const std::filesystem::path path(options.what);
+  const std::string name = (path.parent_path() / ("defaults of " + path.filename().string())).string();
+  pipeline::PipelineDescription out = pipeline::parse_pipeline(
+      pipeline::default_description(shaders, path.parent_path().string(), glsl), name);
+  out.name = path.filename().string();
+  return with_options(std::move(out), glsl);
+}
+
+void check_saves(const pipeline::PipelineDescription& d) {
+  Diagnostics errors;
+  const auto check = [&](const std::vector<pipeline::Save>& saves, bool is_image) {
+    for (const pipeline::Save& save : saves)
+      if (const std::string wrong = wrong_with_output(save.file, is_image); !wrong.empty())
+        errors.error(save.where, fmt::format("cannot save to '{}'", save.file), wrong);
+  };
+  for (const auto& buffer : d.buffers) check(buffer.saves, false);
+  for (const auto& image : d.images) check(image.saves, true);
+  errors.throw_if_errors();
+}
+
+// Writes what the file asks for; returns lines for the summary.
+std::vector<std::string> keep(pipeline::PipelineWorld& world, const report::RunDirectory& directory) {
+  std::vector<std::string> lines;
+  const pipeline::PipelineDescription& d = world.description();
+  for (size_t i = 0; i < d.images.size(); ++i)
+    for (const pipeline::Save& save : d.images[i].saves) {
+      const exec::ImageView& view = world.image(i);
+      const uint64_t bytes = view.bytes_before_level(1);
+      directory.write(save.file,
+                      image_file(save.file, view, {world.memory().find(view.base, bytes), size_t(bytes)}));
+      lines.push_back(fmt::format("{:<10} {}", d.images[i].name, directory.path_of(save.file)));
+    }
+  for (size_t i = 0; i < d.buffers.size(); ++i) {
+    const pipeline::BufferDescription& b = d.buffers[i];
+    for (const pipeline::Save& save : b.saves) {
+      directory.write(save.file, buffer_file(save.file, b.data.type, world.buffer(i)));
+      lines.push_back(fmt::format("{:<10} {}", b.name, directory.path_of(save.file)));
+    }
+    if (b.show > 0)
+      lines.push_back(fmt::format("{:<10} {}", b.name, first_numbers(b.data.type, world.buffer(i), b.show)));
+  }
+  return lines;
+}
+
+report::RunInfo describe_run(const Session& session, const pipeline::PipelineWorld& world,
+                             const pipeline::GpuParams& gpu, const std::string& config,
+                             const std::string& mode) {
+  report::RunInfo info = new_run_info(session, gpu, config, mode);
+  info.scene = world.description().name;
+  info.scene_form = "pipeline";
+  std::string everything;  // what the launch begins with
+  for (const auto& allocation : world.memory().allocations())
+    if (allocation.data)
+      everything.append(reinterpret_cast<const char*>(allocation.data), size_t(allocation.bytes));
+  info.scene_hash = report::fnv1a(everything);
+  for (const pipeline::ShaderModule& module : world.modules().all())
+    info.shader += (info.shader.empty() ? "" : " ") + module.name;
+  for (const auto& image : world.description().images)
+    for (const pipeline::Save& save : image.saves) info.saved.push_back(save.file);
+  for (const auto& buffer : world.description().buffers)
+    for (const pipeline::Save& save : buffer.saves) info.saved.push_back(save.file);
+  info.width = world.world.launch_size[0];
+  info.height = world.world.launch_size[1];
+  return info;
+}
+
+}  // namespace
+
+bool names_pipeline(const std::string& what) {
+  if (is_shader(what)) return true;
+  if (!what.ends_with(".toml")) return false;
+  return pipeline::read_toml(what).find("kernel") == nullptr;  // a kernel's launch file names it
+}
+
+Exit run_pipeline(const Session& session, const PipelineOptions& options) {
+  const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(options.shaders);
+  const pipeline::PipelineDescription description =
+      read_description(options, glsl_options(options.shaders, cache.get()));
+  check_saves(description);
+  const pipeline::MachineDescription& machine = description.machine;
+  const auto first = [](const std::string& a, const std::string& b, const char* c) {
+    return !a.empty() ? a : !b.empty() ? b : std::string(c);
+  };
+  const std::string mode = first(options.mode, machine.mode, "timing"),
+                    config = first(options.config, machine.config, "mobile");
+  std::vector<std::string> settings = machine.settings;
+  settings.insert(settings.end(), options.settings.begin(), options.settings.end());
+
+  pipeline::RenderJob job;
+  job.gpu = read_config(session.resources, config, settings);
+  const uint64_t budget = options.max_instructions ? options.max_instructions : machine.max_instructions;
+  if (budget) job.gpu.core.instruction_budget = budget;
+  job.timing = mode == "timing";
+  check_observation(options.observe, job.timing);
+  job.no_skip = options.no_skip;
+  pipeline::PipelineWorld world(description, job.gpu);
+  exec::PrintLog prints(options.print_limit);
+  world.world.prints = &prints;
+  world.world.on_fault = options.on_fault;
+  for (const std::string& warning : world.warnings) fmt::print(stderr, "{}\n", warning);
+
+  const auto& [x, y, z] = world.world.launch_size;
+  const std::string title = fmt::format("{}  {} x {} x {} {}, {} on {}", description.name, x, y, z,
+                                        description.compute.empty() ? "rays" : "threads", mode, config);
+  const report::RunDirectory directory(options.out.empty() ? fmt::format("out/{}-{}", description.name, mode)
+                                                           : options.out);
+  report::RunInfo info = describe_run(session, world, job.gpu, config, mode);
+  info.on_fault = exec::name_of(options.on_fault);
+  begin_directory(directory, info, job.gpu, title);
+  std::vector<std::string> files;
+  const pipeline::RenderResult result = run_recorded(
+      session, "running", directory, info,
+      [&](const ShowProgress& progress) {
+        return pipeline::run_pipeline(world, job.gpu, job.timing, job.no_skip, options.threads, progress,
+                                      options.observe);
+      },
+      [&](const pipeline::RenderResult& ended) {
+        directory.write_stats(ended.statistics());
+        files = keep(world, directory);
+        files.push_back("statistics " + directory.path_of("stats.txt"));
+        for (std::string& line : write_observation(options.observe, ended, directory))
+          files.push_back(std::move(line));
+      },
+      &prints);
+  print_result(session, options.json, job, result, title, std::move(files));
+  return Exit::Ok;
+}
+
+}  // namespace glint::app

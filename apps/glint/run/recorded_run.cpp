@@ -1,0 +1,123 @@
+// Records and prints runs.
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/glint/run/recorded_run.h"
+
+#include <chrono>
+#include <cstdio>
+#include <fmt/chrono.h>
+#include <new>
+
+#include "apps/glint/bench/progress_pipe.h"
+#include "apps/glint/options/config.h"
+#include "apps/glint/run/summary.h"
+#include "memsys/peak.h"
+#include "report/files/stat_writer.h"
+#include "report/terminal/progress.h"
+
+namespace glint::app {
+
+report::RunInfo new_run_info(const Session& session, const pipeline::GpuParams& gpu,
+                             const std::string& config, const std::string& mode) {
+  report::RunInfo info;
+  info.command = session.arguments;
+  info.version = GLINT_VERSION;
+  info.git = GLINT_GIT;
+  info.compiler = __VERSION__;
+  info.config = config;
+  info.config_hash = config_hash(gpu);
+  info.mode = mode;
+  const mem::Peak peak = mem::peak(gpu.memory, gpu.cores, gpu.clock_mhz);
+  info.memory_peaks = {
+      {"l1_bytes", double(peak.l1_bytes)},          {"l1_bytes_per_second", peak.l1_bandwidth},
+      {"network_bytes_per_second", peak.network()}, {"l2_bytes", double(peak.l2_bytes)},
+      {"l2_bytes_per_second", peak.l2_bandwidth},   {"dram_bytes_per_second", peak.dram_bandwidth}};
+  info.started =
+      fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
+                  fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
+  return info;
+}
+
+namespace {
+
+// What of the result stands in run.json.
+void add_result(const pipeline::RenderResult& result, report::RunInfo& info) {
+  for (const exec::FaultLog::Entry& fault : result.faults.in_order())
+    info.faults.push_back({std::string(exec::name_of(fault.kind)), fault.first.place, fault.first.what,
+                           fault.first.launch_id, fault.count});
+  if (result.residency.warps > 0)
+    info.residency = {result.residency.warps, result.residency.blocks,
+                      std::string(name_of(result.residency.limit))};
+}
+
+void keep_prints(const std::string& printed, const report::RunDirectory& directory) {
+  if (printed.empty()) return;
+  fmt::print(stderr, "{}", printed);
+  directory.write("printf.txt", printed);
+}
+
+}  // namespace
+
+void begin_directory(const report::RunDirectory& directory, const report::RunInfo& info,
+                     const pipeline::GpuParams& gpu, const std::string& title) {
+  directory.remove_results(info.saved);
+  directory.write_config(describe_params(gpu), "Resolved configuration of: " + title);
+}
+
+pipeline::RenderResult run_recorded(const Session& session, const std::string& what,
+                                    const report::RunDirectory& directory, report::RunInfo& info,
+                                    const std::function<pipeline::RenderResult(const ShowProgress&)>& run,
+                                    const std::function<void(const pipeline::RenderResult&)>& keep,
+                                    exec::PrintLog* prints) {
+  report::Progress progress(session.on_terminal ? stdout : nullptr, what, session.terminal);
+  ProgressPipe pipe(session.progress_descriptor, what);
+  const auto start = std::chrono::steady_clock::now();
+  const auto stop_watch = [&] {
+    info.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  const auto fail = [&](Exit exit, const std::string& message) {
+    if (info.wall_seconds == 0) stop_watch();
+    info.exit = int(exit);
+    info.message = message;
+    try {  // of two errors the first is told; a full disk has room again once the results are gone
+      directory.remove_results(info.saved);
+      keep_prints(prints ? prints->take() : "", directory);
+      directory.write_run(info);
+    } catch (const Error&) {
+    }
+  };
+  try {
+    pipeline::RenderResult result = run([&](uint64_t done, uint64_t total) {
+      progress.update(done, total);
+      pipe.update(done, total);
+    });
+    stop_watch();
+    add_result(result, info);
+    keep_prints(prints ? prints->take() : "", directory);
+    keep(result);
+    directory.write_run(info);
+    return result;
+  } catch (const Error& error) {
+    fail(error.exit(), error.what());
+    throw;
+  } catch (const std::bad_alloc&) {
+    fail(Exit::Failure, "out of memory");
+    throw;
+  }
+}
+
+void print_result(const Session& session, bool json, const pipeline::RenderJob& job,
+                  const pipeline::RenderResult& result, const std::string& title,
+                  std::vector<std::string> files) {
+  if (!result.faults.empty()) fmt::print(stderr, "{}\n", result.faults.to_string());
+  if (json) {
+    write_output("", Registry<report::StatWriter>::instance().entry("json").make_default({})->write(
+                         result.statistics()));
+    return;
+  }
+  report::Summary summary = summarise(job, result);
+  summary.title = title;
+  summary.files = std::move(files);
+  write_output("", report::format_summary(summary, session.terminal));
+}
+
+}  // namespace glint::app

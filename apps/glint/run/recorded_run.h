@@ -1,0 +1,39 @@
+// What every kind of run leaves behind and prints: run.json, also of a run that failed, and the summary.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "apps/glint/session.h"
+#include "pipeline/render.h"
+#include "report/files/run_directory.h"
+
+namespace glint::app {
+
+// Command, version, configuration and time of a run that begins now; what it runs is the caller's to add.
+report::RunInfo new_run_info(const Session& session, const pipeline::GpuParams& gpu,
+                             const std::string& config, const std::string& mode);
+
+// Removes what an earlier run left and writes config.toml with the title; nothing of it can be taken for this
+// run's.
+void begin_directory(const report::RunDirectory& directory, const report::RunInfo& info,
+                     const pipeline::GpuParams& gpu, const std::string& title);
+
+// Calls `run` with the function that shows progress on the terminal, under the name `what`, then `keep` to
+// write its files. Writes run.json last; an error of either leaves one too, without results, and is passed
+// on. What the shaders have printed goes to stderr and printf.txt.
+using ShowProgress = std::function<void(uint64_t done, uint64_t total)>;
+pipeline::RenderResult run_recorded(const Session& session, const std::string& what,
+                                    const report::RunDirectory& directory, report::RunInfo& info,
+                                    const std::function<pipeline::RenderResult(const ShowProgress&)>& run,
+                                    const std::function<void(const pipeline::RenderResult&)>& keep,
+                                    exec::PrintLog* prints = nullptr);
+
+// The faults that were let pass on stderr; statistics as JSON, or the summary of a run with lines about the
+// files that it left.
+void print_result(const Session& session, bool json, const pipeline::RenderJob& job,
+                  const pipeline::RenderResult& result, const std::string& title,
+                  std::vector<std::string> files);
+
+}  // namespace glint::app

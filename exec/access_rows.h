@@ -1,0 +1,57 @@
+// The registers of a load, a store or an atomic: which rows it fills or reads, and what a lane's part of them
+// is. SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#include "base/types.h"
+#include "exec/warp_context.h"
+#include "isa/op_row.h"
+
+namespace glint::exec {
+
+// Slot of the first value operand: loads write from slot 0, stores read after the address.
+inline constexpr size_t kLoadFirst = 0, kStoreFirst = 1;
+
+inline uint32_t narrow(const std::byte* from, const isa::Memory& shape) {
+  uint32_t value = 0;
+  std::memcpy(&value, from, shape.bytes);
+  if (!shape.sign_extend) return value;
+  return shape.bytes == 1 ? uint32_t(int32_t(int8_t(value))) : uint32_t(int32_t(int16_t(value)));
+}
+
+// Registers that an access fills or reads a lane: one a part, two for parts of 8 bytes.
+inline uint32_t rows_of(const isa::Memory& shape) {
+  return shape.bytes == 8 ? 2u * shape.count : shape.count;
+}
+// Bytes of each in memory.
+inline uint32_t row_bytes(const isa::Memory& shape) {
+  return shape.bytes == 8 ? 4u : shape.bytes;
+}
+// Register row of row `row`: a pair for 64-bit values, any registers for vectors.
+inline isa::Slot slot_of(const isa::Inst& inst, const isa::Memory& shape, size_t first, uint32_t row) {
+  return shape.bytes == 8 ? isa::Slot(inst.operand[first] + row) : inst.operand[first + row];
+}
+
+template <class Byte>  // const or not
+void load_rows(WarpContext& warp, const isa::Inst& inst, const isa::Memory& shape, LaneMask lanes,
+               const std::array<Byte*, kLanes>& from) {
+  const uint32_t bytes = row_bytes(shape);
+  for (uint32_t row = 0; row < rows_of(shape); ++row) {
+    uint32_t* to = warp.regs.write(slot_of(inst, shape, kLoadFirst, row));
+    if (bytes == 4)
+      for_each_lane(lanes, [&](int lane) { std::memcpy(to + lane, from[size_t(lane)] + row * 4, 4); });
+    else
+      for_each_lane(lanes, [&](int lane) { to[lane] = narrow(from[size_t(lane)] + row * bytes, shape); });
+  }
+}
+
+inline uint64_t read_operand(const isa::Warp& regs, isa::Slot slot, int lane, uint32_t bytes) {
+  const uint32_t* const low = regs.read(slot);
+  if (bytes == 8) return low[lane] | uint64_t(low[kLanes + lane]) << 32;
+  return bytes == 2 ? low[lane] & 0xffffu : low[lane];
+}
+
+}  // namespace glint::exec

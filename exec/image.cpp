@@ -1,0 +1,115 @@
+// Linking: code of all shaders end to end, branch targets and constants relocated.
+// SPDX-License-Identifier: Apache-2.0
+#include "exec/image.h"
+
+#include <cstdlib>
+#include <cstring>
+#include <fmt/format.h>
+
+#include "base/check.h"
+
+namespace glint::exec {
+namespace {
+
+bool has_label(const isa::OpRow& row) {
+  for (isa::OperandKind kind : row.operands.view())
+    if (kind == isa::OperandKind::Label) return true;
+  return false;
+}
+
+// Constant slots of `inst` move by `first_constant` rows, its label by `first_inst` instructions.
+isa::Inst relocate(isa::Inst inst, const isa::OpRow& row, uint32_t first_inst, uint32_t first_constant) {
+  int slot = 0;
+  for (isa::OperandKind kind : row.operands.view()) {
+    const bool predicate = kind == isa::OperandKind::SrcPred || kind == isa::OperandKind::DstPred;
+    for (int part = 0; part < isa::slots_of(kind); ++part, ++slot) {
+      isa::Slot& operand = inst.operand[size_t(slot)];
+      if (!predicate && operand >> isa::kBankShift == isa::kConstantBank >> isa::kBankShift)
+        operand = isa::Slot(operand + first_constant);
+    }
+  }
+  if (has_label(row)) inst.imm += int32_t(first_inst);
+  return inst;
+}
+
+void append(Image& image, const isa::Program& program, std::vector<uint32_t>& constants) {
+  const uint32_t first = uint32_t(image.code.size());
+  Shader shader;
+  shader.name = program.name;
+  shader.stage = program.stage;
+  shader.entry = first;
+  shader.end = first + uint32_t(program.code.size());
+  shader.local_bytes = program.local_bytes;
+  shader.specials_used = isa::specials_read_by(program.code);
+  for (const std::string& message : program.messages) shader.messages.push_back(isa::parse_message(message));
+  for (int s = int(isa::Special::Payload); s < isa::kNumSpecials; ++s) {
+    shader.uses_ray |= shader.specials_used[size_t(s)];
+    shader.uses_matrices |= s >= int(isa::Special::ObjectOriginX) && shader.specials_used[size_t(s)];
+  }
+  const uint32_t first_file = uint32_t(image.files.size());
+  for (size_t i = 0; i < program.code.size(); ++i) {
+    const isa::OpRow& row = isa::op_table()[program.code[i].op];
+    image.code.push_back(relocate(program.code[i], row, first, uint32_t(constants.size())));
+    image.rows.push_back(&row);
+    isa::Line line = i < program.lines.size() ? program.lines[i] : isa::Line{};
+    line.file = uint16_t(line.file + first_file);
+    image.lines.push_back(line);
+    image.shader_of.push_back(uint32_t(image.shaders.size()));
+  }
+  constants.insert(constants.end(), program.constants.begin(), program.constants.end());
+  GLINT_CHECK_LE(constants.size(), size_t(isa::kSlotIndexMask));
+  image.files.insert(image.files.end(), program.files.begin(), program.files.end());
+  image.num_registers = std::max(image.num_registers, program.num_registers);
+  image.shaders.push_back(std::move(shader));
+  image.programs.push_back(program);
+}
+
+}  // namespace
+
+Image link(const std::vector<isa::Program>& programs) {
+  Image image;
+  std::vector<uint32_t> constants;
+  for (const isa::Program& program : programs) append(image, program, constants);
+  for (size_t i = 0; i < image.code.size(); ++i) {
+    const bool branch = image.rows[i]->effect == isa::Effect::Branch;
+    image.target_is_join.push_back(branch &&
+                                   image.rows[size_t(image.code[i].imm)]->effect == isa::Effect::Join);
+  }
+  image.constants = allocate_rows(constants.size());
+  uint32_t* const table = image.constants.get();
+  for (size_t i = 0; i < constants.size(); ++i)
+    for (int lane = 0; lane < kLanes; ++lane) table[i * kLanes + size_t(lane)] = constants[i];
+  return image;
+}
+
+void set_blocks(World& world, std::array<uint32_t, 3> grid, std::array<uint32_t, 3> block,
+                uint32_t static_bytes, uint32_t dynamic_bytes) {
+  world.block_size = block;
+  for (size_t axis = 0; axis < 3; ++axis) world.launch_size[axis] = grid[axis] * block[axis];
+  world.shared_bytes = static_bytes + dynamic_bytes;
+  world.dynamic_shared_bytes = dynamic_bytes;
+}
+
+uint64_t plain_table_bytes(const World& world) {
+  return (1 + world.miss.size() + world.hit.size() + world.callable.size()) * uint64_t(kHandleBytes);
+}
+
+void place_plain_table(World& world, Address base) {
+  const auto after = [](Address first, size_t records) { return first + records * kHandleBytes; };
+  world.table.raygen = base;
+  world.table.miss = {after(base, 1), kHandleBytes};
+  world.table.hit = {after(world.table.miss.base, world.miss.size()), kHandleBytes};
+  world.table.callable = {after(world.table.hit.base, world.hit.size()), kHandleBytes};
+}
+
+std::string Image::place_of(uint32_t pc) const {
+  if (pc >= code.size()) return fmt::format("instruction {}", pc);
+  const isa::Line& line = lines[pc];
+  const Shader& shader = shaders[shader_of[pc]];
+  const std::string file = line.file < files.size() ? files[line.file] : shader.name;
+  return line.line
+             ? fmt::format("{}:{} (instruction {}: {})", file, line.line, pc - shader.entry, rows[pc]->name)
+             : fmt::format("{} (instruction {}: {})", file, pc - shader.entry, rows[pc]->name);
+}
+
+}  // namespace glint::exec

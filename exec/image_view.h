@@ -1,0 +1,76 @@
+// An image in simulated memory: its size, its format, where its texels lie, and how it is sampled.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "base/types.h"
+#include "exec/texture_format.h"
+#include "isa/image_access.h"
+
+namespace glint::exec {
+
+enum class Filter : uint8_t { Nearest, Linear };
+enum class Wrap : uint8_t { Repeat, MirroredRepeat, ClampToEdge, ClampToBorder, MirrorClampToEdge };
+enum class Comparison : uint8_t {
+  Never,
+  Less,
+  Equal,
+  LessOrEqual,
+  Greater,
+  NotEqual,
+  GreaterOrEqual,
+  Always
+};
+
+// Vulkan's VkSampler. Anisotropy is not modelled: sampling is isotropic.
+struct Sampler {
+  Filter mag = Filter::Linear, min = Filter::Linear, mip = Filter::Nearest;
+  std::array<Wrap, 3> wrap{Wrap::ClampToEdge, Wrap::ClampToEdge, Wrap::ClampToEdge};
+  Words border{};  // bits, in the kind of the format: floats or integers
+  float lod_bias = 0.0f, min_lod = 0.0f, max_lod = 1000.0f;
+  bool unnormalized = false;  // coordinates count texels; level 0 only
+  Comparison compare = Comparison::Never;
+  std::string unbound{};  // not empty: nobody bound it, and this is where it would be
+};
+
+struct TexelIndex {
+  uint32_t x = 0, y = 0, z = 0, layer = 0, level = 0;
+};
+
+// Model: texels lie in linear rows: x, then y, then z, then layer, then level, nothing between them. Hardware
+// swizzles. Cubes are six layers each: +x -x +y -y +z -z.
+struct ImageView {
+  using Format = TexelFormat;
+  Format format = Format::Rgba32Float;
+  uint32_t width = 1, height = 1;
+  Address base = 0;
+  std::string name;
+  isa::ImageShape shape = isa::ImageShape::D2;
+  uint32_t depth = 1, layers = 1, levels = 1;
+  uint32_t samples = 1;  // of a texel: that many layers each
+  Sampler sampler{};
+  bool is_bound = true;  // if not, its use is a fault and `name` says where it would be
+
+  uint32_t texel_bytes() const { return info_of(format).bytes; }
+  // Texels along an axis of a level: half of the level above, at least 1.
+  uint32_t extent(int axis, uint32_t level) const {
+    const uint32_t full = axis == 0 ? width : axis == 1 ? height : depth;
+    return level < 32 && full >> level > 1 ? full >> level : 1;
+  }
+  // Bytes of all layers of the levels before `level`; of `levels`: of the image.
+  uint64_t bytes_before_level(uint32_t level) const {
+    uint64_t texels = 0;
+    for (uint32_t l = 0; l < level; ++l)
+      texels += uint64_t{extent(0, l)} * extent(1, l) * extent(2, l) * layers;
+    return texels * texel_bytes();
+  }
+  uint64_t bytes() const { return bytes_before_level(levels); }
+  Address address_of(const TexelIndex& at) const {
+    const uint64_t row = (uint64_t{at.layer} * extent(2, at.level) + at.z) * extent(1, at.level) + at.y;
+    return base + bytes_before_level(at.level) + (row * extent(0, at.level) + at.x) * texel_bytes();
+  }
+};
+
+}  // namespace glint::exec

@@ -1,0 +1,37 @@
+// What the shaders of a launch print: ordered by launch id, then as each thread goes, whenever they ran.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace glint::exec {
+
+// Keeps the first `limit` lines in that order and counts the others. Any number of threads may add at once:
+// what is kept does not depend on who comes first, as long as each launch id adds its own lines in order.
+class PrintLog {
+ public:
+  explicit PrintLog(uint64_t limit = 1000) : limit_(limit) {}
+
+  // False: a line that `thread` (its place in the launch, x fastest) began now would not be kept.
+  bool wants(uint64_t thread) const;
+  // Adds to the thread's present line, and ends it if `ends`.
+  void add(uint64_t thread, const std::string& text, bool ends);
+
+  // The lines, each with an end of line, and a last one that counts those left out. Empties the log.
+  std::string take();
+  uint64_t dropped() const { return dropped_; }
+
+ private:
+  bool has_room(uint64_t thread) const;
+
+  const uint64_t limit_;
+  mutable std::mutex mutex_;
+  uint64_t kept_ = 0, dropped_ = 0;
+  std::map<uint64_t, std::vector<std::string>> lines_;  // by thread
+  std::map<uint64_t, std::string> open_;                // lines that have not ended
+};
+
+}  // namespace glint::exec

@@ -1,0 +1,298 @@
+// Conversions of texels, after the Vulkan specification's chapters "Fixed-Point Data Conversions" and
+// "Numbers". SPDX-License-Identifier: Apache-2.0
+#include "exec/texture_format.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "base/check.h"
+
+namespace glint::exec {
+namespace {
+
+using F = TexelFormat;
+using enum Numeric;
+
+// Orders of cl.h.
+constexpr uint16_t kR = 0x10b0, kRg = 0x10b2, kRgb = 0x10b4, kRgba = 0x10b5, kBgra = 0x10b6, kSrgba = 0x10c1,
+                   kSbgra = 0x10c2;
+
+constexpr FormatInfo kFormats[] = {
+    {"r8_unorm", 1, 1, 8, Unorm, 0x10d2, kR},
+    {"r8_snorm", 1, 1, 8, Snorm, 0x10d0, kR},
+    {"r8_uint", 1, 1, 8, Uint, 0x10da, kR},
+    {"r8_sint", 1, 1, 8, Sint, 0x10d7, kR},
+    {"rg8_unorm", 2, 2, 8, Unorm, 0x10d2, kRg},
+    {"rg8_snorm", 2, 2, 8, Snorm, 0x10d0, kRg},
+    {"rg8_uint", 2, 2, 8, Uint, 0x10da, kRg},
+    {"rg8_sint", 2, 2, 8, Sint, 0x10d7, kRg},
+    {"rgba8_unorm", 4, 4, 8, Unorm, 0x10d2, kRgba},
+    {"rgba8_snorm", 4, 4, 8, Snorm, 0x10d0, kRgba},
+    {"rgba8_uint", 4, 4, 8, Uint, 0x10da, kRgba},
+    {"rgba8_sint", 4, 4, 8, Sint, 0x10d7, kRgba},
+    {"rgba8_srgb", 4, 4, 8, Srgb, 0x10d2, kSrgba},
+    {"bgra8_unorm", 4, 4, 8, Unorm, 0x10d2, kBgra},
+    {"bgra8_srgb", 4, 4, 8, Srgb, 0x10d2, kSbgra},
+    {"r16_unorm", 2, 1, 16, Unorm, 0x10d3, kR},
+    {"r16_snorm", 2, 1, 16, Snorm, 0x10d1, kR},
+    {"r16_uint", 2, 1, 16, Uint, 0x10db, kR},
+    {"r16_sint", 2, 1, 16, Sint, 0x10d8, kR},
+    {"r16_float", 2, 1, 16, Float, 0x10dd, kR},
+    {"rg16_unorm", 4, 2, 16, Unorm, 0x10d3, kRg},
+    {"rg16_snorm", 4, 2, 16, Snorm, 0x10d1, kRg},
+    {"rg16_uint", 4, 2, 16, Uint, 0x10db, kRg},
+    {"rg16_sint", 4, 2, 16, Sint, 0x10d8, kRg},
+    {"rg16_float", 4, 2, 16, Float, 0x10dd, kRg},
+    {"rgba16_unorm", 8, 4, 16, Unorm, 0x10d3, kRgba},
+    {"rgba16_snorm", 8, 4, 16, Snorm, 0x10d1, kRgba},
+    {"rgba16_uint", 8, 4, 16, Uint, 0x10db, kRgba},
+    {"rgba16_sint", 8, 4, 16, Sint, 0x10d8, kRgba},
+    {"rgba16_float", 8, 4, 16, Float, 0x10dd, kRgba},
+    {"r32_uint", 4, 1, 32, Uint, 0x10dc, kR},
+    {"r32_sint", 4, 1, 32, Sint, 0x10d9, kR},
+    {"r32_float", 4, 1, 32, Float, 0x10de, kR},
+    {"rg32_uint", 8, 2, 32, Uint, 0x10dc, kRg},
+    {"rg32_sint", 8, 2, 32, Sint, 0x10d9, kRg},
+    {"rg32_float", 8, 2, 32, Float, 0x10de, kRg},
+    {"rgba32_uint", 16, 4, 32, Uint, 0x10dc, kRgba},
+    {"rgba32_sint", 16, 4, 32, Sint, 0x10d9, kRgba},
+    {"rgba32_float", 16, 4, 32, Float, 0x10de, kRgba},
+    {"r11g11b10_float", 4, 3, 0, Float, 0, kRgb},
+    {"rgb10a2_unorm", 4, 4, 0, Unorm, 0x10e0, kRgba},
+    {"rgb10a2_uint", 4, 4, 0, Uint, 0, kRgba},
+    {"rgb9e5_float", 4, 3, 0, Float, 0, kRgb},
+};
+static_assert(std::size(kFormats) == size_t(F::Count));
+
+uint32_t bits_of(float x) {
+  return std::bit_cast<uint32_t>(x);
+}
+float float_of(uint32_t bits) {
+  return std::bit_cast<float>(bits);
+}
+
+// Floats of 5 exponent bits, bias 15, without sign: halves, and the channels of 11 and 10 bits.
+constexpr int kBias = 15;
+float from_small(uint32_t bits, int mantissa_bits) {
+  const uint32_t mantissa = bits & ((1u << mantissa_bits) - 1);
+  const int exponent = int(bits >> mantissa_bits);
+  if (exponent == 31) return mantissa ? float_of(0x7fff'ffff) : float_of(0x7f80'0000);
+  if (exponent == 0) return std::ldexp(float(mantissa), 1 - kBias - mantissa_bits);
+  return std::ldexp(float(mantissa | 1u << mantissa_bits), exponent - kBias - mantissa_bits);
+}
+
+// To nearest even; what is too large becomes `largest`. `magnitude` is not NaN.
+uint32_t to_small(float magnitude, int mantissa_bits, uint32_t largest) {
+  if (magnitude >= 65536.0f) return std::isinf(magnitude) ? 31u << mantissa_bits : largest;
+  const int exponent = std::max(magnitude == 0.0f ? -126 : std::ilogb(magnitude), 1 - kBias);
+  // Units of the last place; a carry out of the mantissa steps the exponent up by itself.
+  const auto units = uint32_t(std::nearbyint(std::ldexp(double(magnitude), mantissa_bits - exponent)));
+  const uint32_t bits = units + (uint32_t(exponent + kBias - 1) << mantissa_bits);
+  return bits >= 31u << mantissa_bits ? largest : bits;
+}
+
+// Unsigned floats: negative numbers become 0, large ones the largest finite one, NaN stays.
+uint32_t to_unsigned_small(float x, int mantissa_bits) {
+  if (std::isnan(x)) return (32u << mantissa_bits) - 1;
+  return x > 0.0f ? to_small(x, mantissa_bits, (31u << mantissa_bits) - 1) : 0;
+}
+
+// Vulkan, "RGB to Shared Exponent Conversion": 9 bits a channel, 5 of exponent.
+constexpr int kSharedBits = 9;
+uint32_t to_shared_exponent(const Words& words) {
+  constexpr double kLargest = 65408.0;  // (2^9 - 1) / 2^9 * 2^16
+  std::array<double, 3> c;
+  for (size_t i = 0; i < 3; ++i)
+    c[i] = float_of(words[i]) > 0.0f ? std::min(double(float_of(words[i])), kLargest) : 0.0;
+  const double highest = std::max({c[0], c[1], c[2]});
+  int exponent = std::max(highest > 0.0 ? std::ilogb(highest) : -16, -kBias - 1) + 1 + kBias;
+  const auto scaled = [&](double x) {
+    return uint32_t(std::floor(std::ldexp(x, kBias + kSharedBits - exponent) + 0.5));
+  };
+  if (scaled(highest) == 1u << kSharedBits) ++exponent;
+  return scaled(c[0]) | scaled(c[1]) << 9 | scaled(c[2]) << 18 | uint32_t(exponent) << 27;
+}
+
+// Khronos Data Format specification 1.3, "sRGB EOTF" and its inverse.
+float from_srgb(uint8_t byte) {
+  static const std::array<float, 256> table = [] {
+    std::array<float, 256> out;
+    for (size_t i = 0; i < 256; ++i) {
+      const double x = double(i) / 255.0;
+      out[i] = float(x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4));
+    }
+    return out;
+  }();
+  return table[byte];
+}
+double to_srgb(double x) {
+  return x <= 0.0031308 ? x * 12.92 : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
+}
+
+uint32_t decode_channel(uint32_t bits, int width, Numeric numeric, bool is_alpha) {
+  const auto as_signed = int32_t(bits << (32 - width)) >> (32 - width);
+  const uint32_t highest = width == 32 ? ~0u : (1u << width) - 1;
+  switch (numeric) {
+    case Uint:
+      return bits;
+    case Sint:
+      return uint32_t(as_signed);
+    case Float:
+      return width == 32 ? bits : bits_of(from_half(uint16_t(bits)));
+    case Unorm:
+      return bits_of(float(bits) / float(highest));
+    case Snorm:
+      return bits_of(std::max(float(as_signed) / float(highest >> 1), -1.0f));
+    case Srgb:
+      return bits_of(is_alpha ? float(bits) / 255.0f : from_srgb(uint8_t(bits)));
+  }
+  return 0;
+}
+
+// In doubles: the product of a float and the highest integer is exact, so only one rounding takes place.
+uint32_t to_unorm(float x, int width, bool srgb = false) {
+  double clamped = x > 0.0f ? std::min(double(x), 1.0) : 0.0;
+  if (srgb) clamped = to_srgb(clamped);
+  return uint32_t(std::nearbyint(clamped * double((1u << width) - 1)));
+}
+
+uint32_t encode_channel(uint32_t word, int width, Numeric numeric, bool is_alpha) {
+  if (width == 32) return word;
+  const float x = float_of(word);
+  const int32_t highest = int32_t(1u << (width - 1)) - 1;
+  switch (numeric) {
+    case Uint:
+      return std::min(word, (1u << width) - 1);
+    case Sint:
+      return uint32_t(std::clamp(int32_t(word), -highest - 1, highest));
+    case Float:
+      return to_half(x);
+    case Unorm:
+      return to_unorm(x, width);
+    case Srgb:
+      return to_unorm(x, width, !is_alpha);
+    case Snorm: {
+      const double clamped = std::isnan(x) ? 0.0 : std::clamp(double(x), -1.0, 1.0);
+      return uint32_t(int32_t(std::nearbyint(clamped * double(highest))));
+    }
+  }
+  return 0;
+}
+
+// Formats whose channels differ in size: 32 bits, the first channel lowest.
+Words decode_packed(F format, uint32_t bits) {
+  const auto field = [&](int at, int width) { return bits >> at & ((1u << width) - 1); };
+  switch (format) {
+    case F::R11g11b10Float:
+      return {bits_of(from_small(field(0, 11), 6)), bits_of(from_small(field(11, 11), 6)),
+              bits_of(from_small(field(22, 10), 5)), bits_of(1.0f)};
+    case F::Rgb10a2Uint:
+      return {field(0, 10), field(10, 10), field(20, 10), field(30, 2)};
+    case F::Rgb10a2Unorm:
+      return {bits_of(float(field(0, 10)) / 1023.0f), bits_of(float(field(10, 10)) / 1023.0f),
+              bits_of(float(field(20, 10)) / 1023.0f), bits_of(float(field(30, 2)) / 3.0f)};
+    case F::Rgb9e5Float: {
+      Words words{0, 0, 0, bits_of(1.0f)};
+      for (int i = 0; i < 3; ++i)
+        words[size_t(i)] =
+            bits_of(std::ldexp(float(field(9 * i, 9)), int(field(27, 5)) - kBias - kSharedBits));
+      return words;
+    }
+    default:
+      GLINT_PANIC("format {} is not packed", info_of(format).name);
+  }
+}
+
+uint32_t encode_packed(F format, const Words& w) {
+  switch (format) {
+    case F::R11g11b10Float:
+      return to_unsigned_small(float_of(w[0]), 6) | to_unsigned_small(float_of(w[1]), 6) << 11 |
+             to_unsigned_small(float_of(w[2]), 5) << 22;
+    case F::Rgb10a2Uint:
+      return std::min(w[0], 1023u) | std::min(w[1], 1023u) << 10 | std::min(w[2], 1023u) << 20 |
+             std::min(w[3], 3u) << 30;
+    case F::Rgb10a2Unorm:
+      return to_unorm(float_of(w[0]), 10) | to_unorm(float_of(w[1]), 10) << 10 |
+             to_unorm(float_of(w[2]), 10) << 20 | to_unorm(float_of(w[3]), 2) << 30;
+    case F::Rgb9e5Float:
+      return to_shared_exponent(w);
+    default:
+      GLINT_PANIC("format {} is not packed", info_of(format).name);
+  }
+}
+
+bool is_bgra(F format) {
+  return format == F::Bgra8Unorm || format == F::Bgra8Srgb;
+}
+
+}  // namespace
+
+const FormatInfo& info_of(TexelFormat format) {
+  return kFormats[size_t(format)];
+}
+
+float from_half(uint16_t bits) {
+  const float magnitude = from_small(bits & 0x7fffu, 10);
+  return bits & 0x8000u ? -magnitude : magnitude;
+}
+
+uint16_t to_half(float value) {
+  const uint32_t sign = bits_of(value) >> 16 & 0x8000u;
+  if (std::isnan(value)) return uint16_t(sign | 0x7fffu);
+  return uint16_t(sign | to_small(std::fabs(value), 10, 0x7c00u));
+}
+
+Words decode(TexelFormat format, const std::byte* from) {
+  Words four;
+  if (format == F::Rgba32Float) {  // the two formats of most textures come first: they need no loop over bits
+    std::memcpy(four.data(), from, sizeof four);
+    return four;
+  }
+  if (format == F::Rgba8Unorm) {
+    for (size_t i = 0; i < 4; ++i) four[i] = bits_of(float(std::to_integer<int>(from[i])) / 255.0f);
+    return four;
+  }
+  const FormatInfo& info = info_of(format);
+  if (info.bits == 0) {
+    uint32_t bits;
+    std::memcpy(&bits, from, 4);
+    return decode_packed(format, bits);
+  }
+  Words words{0, 0, 0, is_integer(info) ? 1 : bits_of(1.0f)};
+  for (size_t i = 0; i < info.channels; ++i) {
+    uint32_t bits = 0;
+    std::memcpy(&bits, from + i * info.bits / 8, info.bits / 8);
+    words[i] = decode_channel(bits, info.bits, info.numeric, i == 3);
+  }
+  if (is_bgra(format)) std::swap(words[0], words[2]);
+  return words;
+}
+
+Words keep_channels(TexelFormat format, Words words) {
+  const FormatInfo& info = info_of(format);
+  for (size_t i = info.channels; i < 3; ++i) words[i] = 0;
+  if (info.channels < 4) words[3] = is_integer(info) ? 1 : bits_of(1.0f);
+  return words;
+}
+
+void encode(TexelFormat format, const Words& words, std::byte* to) {
+  if (format == F::Rgba32Float) {
+    std::memcpy(to, words.data(), sizeof words);
+    return;
+  }
+  const FormatInfo& info = info_of(format);
+  if (info.bits == 0) {
+    const uint32_t bits = encode_packed(format, words);
+    std::memcpy(to, &bits, 4);
+    return;
+  }
+  for (size_t i = 0; i < info.channels; ++i) {
+    const size_t channel = is_bgra(format) && i < 3 ? 2 - i : i;
+    const uint32_t bits = encode_channel(words[channel], info.bits, info.numeric, channel == 3);
+    std::memcpy(to + i * info.bits / 8, &bits, info.bits / 8);
+  }
+}
+
+}  // namespace glint::exec

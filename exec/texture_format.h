@@ -1,0 +1,95 @@
+// Formats of texels: what their bits mean, and conversion to and from the words of a register.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace glint::exec {
+
+// Named by Vulkan's channels and bits. In the order of the table in texture_format.cpp.
+enum class TexelFormat : uint8_t {
+  R8Unorm,
+  R8Snorm,
+  R8Uint,
+  R8Sint,
+  Rg8Unorm,
+  Rg8Snorm,
+  Rg8Uint,
+  Rg8Sint,
+  Rgba8Unorm,
+  Rgba8Snorm,
+  Rgba8Uint,
+  Rgba8Sint,
+  Rgba8Srgb,
+  Bgra8Unorm,
+  Bgra8Srgb,
+  R16Unorm,
+  R16Snorm,
+  R16Uint,
+  R16Sint,
+  R16Float,
+  Rg16Unorm,
+  Rg16Snorm,
+  Rg16Uint,
+  Rg16Sint,
+  Rg16Float,
+  Rgba16Unorm,
+  Rgba16Snorm,
+  Rgba16Uint,
+  Rgba16Sint,
+  Rgba16Float,
+  R32Uint,
+  R32Sint,
+  R32Float,
+  Rg32Uint,
+  Rg32Sint,
+  Rg32Float,
+  Rgba32Uint,
+  Rgba32Sint,
+  Rgba32Float,
+  R11g11b10Float,
+  Rgb10a2Unorm,
+  Rgb10a2Uint,
+  Rgb9e5Float,
+  Count
+};
+
+enum class Numeric : uint8_t { Unorm, Snorm, Uint, Sint, Float, Srgb };
+
+struct FormatInfo {
+  std::string_view name;  // "rgba8_unorm"
+  uint8_t bytes;          // of a texel: 1, 2, 4, 8 or 16
+  uint8_t channels;
+  uint8_t bits;  // of a channel; 0: channels differ, by hand
+  Numeric numeric;
+  uint16_t opencl_type;  // cl.h: CL_UNORM_INT8 and so on, which PTX's queries answer; 0: there is none
+  uint16_t opencl_order;
+};
+const FormatInfo& info_of(TexelFormat format);
+inline bool is_integer(const FormatInfo& info) {
+  return info.numeric == Numeric::Uint || info.numeric == Numeric::Sint;
+}
+// Texels that lie between 0 and 1, or -1 and 1.
+inline bool is_normalized(const FormatInfo& info) {
+  return !is_integer(info) && info.numeric != Numeric::Float;
+}
+
+// Red, green, blue, alpha: bits of floats, or integers where the format has them.
+using Words = std::array<uint32_t, 4>;
+
+// Channels that a format lacks are 0, alpha is 1 (Vulkan, "Conversion to RGBA").
+Words decode(TexelFormat format, const std::byte* from);
+// `words` without the channels that the format lacks: what a border colour becomes.
+Words keep_channels(TexelFormat format, Words words);
+
+// Floats are clamped to the range of normalised formats and rounded to nearest even, NaN becomes 0 there.
+// Choice: integers out of range are clamped, as Direct3D does; Vulkan leaves them undefined.
+void encode(TexelFormat format, const Words& words, std::byte* to);
+
+// Floats of 16 bits.
+float from_half(uint16_t bits);
+uint16_t to_half(float value);
+
+}  // namespace glint::exec

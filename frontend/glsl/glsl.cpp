@@ -1,0 +1,278 @@
+// GLSL to SPIR-V 1.6 through glslang in process: includes, defines, debug lines, messages with file and line.
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <glslang/Public/ResourceLimits.h>
+#include <glslang/Public/ShaderLang.h>
+#include <glslang/SPIRV/GlslangToSpv.h>
+#include <iterator>
+#include <memory>
+#include <sstream>
+
+#include "frontend/cache.h"
+#include "frontend/compile.h"
+#include "frontend/glsl/newer_glsl.h"
+#include "frontend/program_bytes.h"
+#include "frontend/spirv/known_positions.h"
+#include "frontend/spirv/spirv.h"
+
+namespace glint::frontend {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<std::string> read_text(const fs::path& path) {
+  std::error_code failed;
+  if (!fs::is_regular_file(path, failed)) return std::nullopt;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return std::nullopt;
+  return std::string(std::istreambuf_iterator<char>(file), {});
+}
+
+// Blanks out the #version lines of an included file: glslang wants the directive at the start of the main
+// file. Choice: shaders whose first line includes the file that has it compile, as with tools that paste
+// includes first; those without a #version of their own are of version 460 anyway.
+void blank_version(std::string& text) {
+  for (size_t line = 0; line < text.size();) {
+    const size_t end = std::min(text.find('\n', line), text.size());
+    size_t at = text.find_first_not_of(" \t", line);
+    if (at < end && text[at] == '#') {
+      at = text.find_first_not_of(" \t", at + 1);
+      if (at < end && text.compare(at, 7, "version") == 0)
+        std::fill(text.begin() + long(line), text.begin() + long(end), ' ');
+    }
+    line = end + 1;
+  }
+}
+
+// A file that was looked for, and what was there.
+struct Lookup {
+  std::string path;
+  bool is_there = false;
+  uint64_t hash = 0;
+};
+Lookup look_up(const std::string& path, const std::optional<std::string>& text) {
+  return {path, text.has_value(), text ? content_hash(*text) : 0};
+}
+
+// Looks next to the including file first, then in the include directories in order.
+class Includer final : public glslang::TShader::Includer {
+ public:
+  Includer(const std::vector<std::string>& dirs, isa::Stage stage) : dirs_(dirs), stage_(stage) {}
+
+  IncludeResult* includeLocal(const char* header, const char* includer, size_t) override {
+    if (std::string text = text_of_extension(header, stage_); !text.empty())
+      return keep(header, std::move(text));
+    return load(fs::path(includer).parent_path() / header);
+  }
+  IncludeResult* includeSystem(const char* header, const char*, size_t) override {
+    for (const std::string& dir : dirs_)
+      if (IncludeResult* found = load(fs::path(dir) / header)) return found;
+    return nullptr;
+  }
+  void releaseInclude(IncludeResult* result) override { delete result; }
+
+  const std::vector<Lookup>& lookups() const { return lookups_; }
+
+ private:
+  // The texts live as long as the includer: glslang names them in messages after it has released them.
+  IncludeResult* keep(const std::string& name, std::string text) {
+    texts_.push_back(std::make_unique<std::string>(std::move(text)));
+    return new IncludeResult(name, texts_.back()->data(), texts_.back()->size(), nullptr);
+  }
+
+  IncludeResult* load(const fs::path& path) {
+    std::optional<std::string> text = read_text(path);
+    lookups_.push_back(look_up(path.string(), text));
+    if (!text) return nullptr;
+    blank_version(*text);
+    say_extensions_anew(*text);
+    return keep(path.lexically_normal().string(), std::move(*text));
+  }
+
+  const std::vector<std::string>& dirs_;
+  const isa::Stage stage_;
+  std::vector<std::unique_ptr<std::string>> texts_;
+  std::vector<Lookup> lookups_;
+};
+
+std::string key_of(const std::string& source, const std::string& path, isa::Stage stage,
+                   const GlslOptions& options) {
+  ByteWriter key;
+  key.put(std::string("glsl"));
+  key.put(path);
+  key.put(stage);
+  key.put(options.include_dirs);
+  for (const auto& [name, value] : options.defines) key.put(name), key.put(value);
+  key.put(source);
+  return key.take();
+}
+
+// The module that the source gave before, if everything that it included, or looked for in vain, is as it
+// was.
+std::optional<std::vector<uint32_t>> find(ShaderCache& cache, const std::string& key) {
+  const std::optional<std::string> bytes = cache.find(key);
+  if (!bytes) return std::nullopt;
+  ByteReader in(*bytes);
+  for (uint64_t left = in.take<uint64_t>(); left > 0; --left) {
+    const auto path = in.take<std::string>();
+    const auto is_there = in.take<uint8_t>() != 0;
+    const auto hash = in.take<uint64_t>();
+    const Lookup now = look_up(path, read_text(path));
+    if (path.empty() || now.is_there != is_there || now.hash != hash) return std::nullopt;
+  }
+  auto words = in.take<std::vector<uint32_t>>();
+  return in.is_good() ? std::optional(std::move(words)) : std::nullopt;
+}
+
+void store(ShaderCache& cache, const std::string& key, const std::vector<Lookup>& lookups,
+           const std::vector<uint32_t>& words) {
+  ByteWriter out;
+  out.put(uint64_t(lookups.size()));
+  for (const Lookup& each : lookups) {
+    out.put(each.path);
+    out.put(uint8_t(each.is_there));
+    out.put(each.hash);
+  }
+  out.put(words);
+  cache.store(key, out.take());
+}
+
+// glslang keeps tables for the life of the process; the first compile makes them, exit frees them.
+struct Process {
+  Process() { glslang::InitializeProcess(); }
+  ~Process() { glslang::FinalizeProcess(); }
+};
+
+EShLanguage language_of(isa::Stage stage) {
+  switch (stage) {
+    case isa::Stage::RayGeneration:
+      return EShLangRayGen;
+    case isa::Stage::Intersection:
+      return EShLangIntersect;
+    case isa::Stage::AnyHit:
+      return EShLangAnyHit;
+    case isa::Stage::ClosestHit:
+      return EShLangClosestHit;
+    case isa::Stage::Miss:
+      return EShLangMiss;
+    case isa::Stage::Callable:
+      return EShLangCallable;
+    case isa::Stage::Compute:
+      return EShLangCompute;
+  }
+  return EShLangCompute;
+}
+
+constexpr int kLinesBeforeDefines = 1;  // of the preamble
+
+// The place of a message as people know it: glslang numbers what preamble() gives it "-1", and has no place
+// for what it finds when it links.
+std::string place_in_files(const std::string& place, const std::string& path, const GlslOptions& options) {
+  if (place.rfind("Linking ", 0) == 0) return path;
+  if (place.rfind("-1:", 0) != 0) return place;
+  const int define = std::atoi(place.c_str() + 3) - 1 - kLinesBeforeDefines;
+  if (define < 0 || define >= int(options.defines.size())) return path;
+  const auto& [name, value] = options.defines[size_t(define)];
+  return fmt::format("{}: -D {}={}", path, name, value);
+}
+
+// glslang writes "ERROR: file:line: 'token' : text"; ours is "file:line: error: 'token' : text". Lines that
+// only count the errors are left out.
+std::string in_our_form(const std::string& log, const std::string& path, const GlslOptions& options) {
+  std::istringstream lines(log);
+  std::string result;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty() || line.find("compilation errors.") != std::string::npos ||
+        line.find("compilation terminated") != std::string::npos)
+      continue;
+    const bool is_error = line.rfind("ERROR: ", 0) == 0;
+    const bool is_warning = line.rfind("WARNING: ", 0) == 0;
+    if (is_error || is_warning) {
+      const std::string text = line.substr(is_error ? 7 : 9);
+      const size_t end_of_place = text.find(": ");
+      const std::string severity = is_error ? "error: " : "warning: ";
+      line = end_of_place == std::string::npos ? severity + text
+                                               : place_in_files(text.substr(0, end_of_place), path, options) +
+                                                     ": " + severity + text.substr(end_of_place + 2);
+    }
+    if (!result.empty()) result += '\n';
+    result += line;
+  }
+  return result;
+}
+
+std::string preamble(const GlslOptions& options) {
+  std::string text = "#extension GL_GOOGLE_include_directive : require\n";
+  for (const auto& [name, value] : options.defines) text += fmt::format("#define {} {}\n", name, value);
+  return text;
+}
+
+constexpr int kDefaultGlslVersion = 460;  // GL_EXT_ray_tracing needs it
+
+std::vector<uint32_t> generate(glslang::TShader& shader, EShLanguage language, EShMessages messages,
+                               const std::string& path, const GlslOptions& glsl) {
+  glslang::TProgram program;
+  program.addShader(&shader);
+  if (!program.link(messages)) throw UserError(in_our_form(program.getInfoLog(), path, glsl));
+  glslang::SpvOptions options;
+  options.generateDebugInfo = true;
+  options.disableOptimizer = true;
+  options.validate = false;  // done below, with scalar block layout
+  std::vector<uint32_t> words;
+  spv::SpvBuildLogger log;
+  glslang::GlslangToSpv(*program.getIntermediate(language), words, &log, &options);
+  words = with_known_positions(std::move(words));
+  refuse_unknown_capabilities(words, path);
+  const std::string invalid = validate_spirv(words);
+  if (!invalid.empty()) throw UserError({path, 0, 0}, "glslang made invalid SPIR-V\n" + invalid);
+  return words;
+}
+
+}  // namespace
+
+std::vector<uint32_t> glsl_to_spirv(const std::string& path, const GlslOptions& options) {
+  const std::optional<isa::Stage> stage = stage_of_file(path);
+  if (!stage)
+    throw UserError({path, 0, 0}, "unknown shader stage",
+                    "name the file .rgen, .rint, .rahit, .rchit, .rmiss, .rcall or .comp");
+  const std::optional<std::string> source = read_text(path);
+  if (!source) throw UserError({path, 0, 0}, "cannot read the shader");
+  return glsl_text_to_spirv(*source, path, *stage, options);
+}
+
+std::vector<uint32_t> glsl_text_to_spirv(const std::string& source, const std::string& path, isa::Stage stage,
+                                         const GlslOptions& options) {
+  const std::string key = options.cache ? key_of(source, path, stage, options) : std::string();
+  if (options.cache)
+    if (std::optional<std::vector<uint32_t>> found = find(*options.cache, key)) return std::move(*found);
+  static const Process process;  // thread-safe since C++11
+  const EShLanguage language = language_of(stage);
+  glslang::TShader shader(language);
+  std::string main = source;
+  say_extensions_anew(main);
+  const char* text = main.c_str();
+  const int length = int(main.size());
+  const char* name = path.c_str();
+  shader.setStringsWithLengthsAndNames(&text, &length, &name, 1);
+  const std::string before = preamble(options);
+  shader.setPreamble(before.c_str());
+  shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, kDefaultGlslVersion);
+  shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
+  shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_6);
+  // Not setDebugInfo(true): glslang 12 would then open a debug scope for each block, of a set it never
+  // imports.
+  shader.setEnhancedMsgs();
+  const auto messages = EShMessages(EShMsgSpvRules | EShMsgVulkanRules | EShMsgDebugInfo | EShMsgEnhanced);
+  Includer includer(options.include_dirs, stage);
+  if (!shader.parse(GetDefaultResources(), kDefaultGlslVersion, ENoProfile, false, false, messages, includer))
+    throw UserError(in_our_form(shader.getInfoLog(), path, options));
+  std::vector<uint32_t> words = generate(shader, language, messages, path, options);
+  if (options.cache) store(*options.cache, key, includer.lookups(), words);
+  return words;
+}
+
+}  // namespace glint::frontend

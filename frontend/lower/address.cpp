@@ -1,0 +1,51 @@
+// Pointers compared and subtracted as addresses; hints to optimisers that say nothing of values.
+// SPDX-License-Identifier: Apache-2.0
+#include "frontend/lower/lowering.h"
+
+namespace glint::frontend {
+namespace {
+
+void compare(ModuleLowering& l, const Instruction& inst, const LoweringRow& row) {
+  const Operand a = l.scalar(inst.operands[0]), b = l.scalar(inst.operands[1]);
+  const bool is_64 = l.part_of(l.type_of(inst.operands[0])) == Part::Uint64;
+  l.set(inst.result, {l.emit().value(is_64 ? row.name64 : row.name32, {a, b})});
+}
+
+// In elements, so the quotient has no rest.
+void difference(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
+  Emitter& e = l.emit();
+  const Id pointer = l.type_of(inst.operands[0]);
+  const Type& type = l.module().type(pointer);
+  const uint32_t stride = type.array_stride != 0 ? type.array_stride : l.layout().size(type.element);
+  const Operand a = l.scalar(inst.operands[0]), b = l.scalar(inst.operands[1]);
+  const bool is_64 = l.part_of(pointer) == Part::Uint64,
+             to_64 = l.part_of(inst.type) == Part::Uint64 || l.part_of(inst.type) == Part::Int64;
+  Operand count = is_64 ? e.value("div.s64", {e.value("sub.u64", {a, b}), Operand::value(stride)})
+                        : e.value("div.s32", {e.value("sub.u32", {a, b}), Operand::value(stride)});
+  if (is_64 && !to_64) count = e.value("cvt.u32.u64", {count});
+  if (!is_64 && to_64) count = e.value("cvt.s64.s32", {count});
+  l.set(inst.result, {count});
+}
+
+void expect(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
+  l.set(inst.result, Operands(l.value(inst.operands[0])));
+}
+void nothing(ModuleLowering&, const Instruction&, const LoweringRow&) {
+}
+
+using enum spv::Op;
+constexpr LoweringRow kRows[] = {
+    {OpPtrEqual, compare, "setp.eq.u32", "setp.eq.u64"},
+    {OpPtrNotEqual, compare, "setp.ne.u32", "setp.ne.u64"},
+    {OpPtrDiff, difference, ""},
+    {OpExpectKHR, expect, ""},
+    {OpAssumeTrueKHR, nothing, ""},
+};
+
+}  // namespace
+
+std::span<const LoweringRow> address_rows() {
+  return kRows;
+}
+
+}  // namespace glint::frontend

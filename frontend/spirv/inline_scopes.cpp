@@ -1,0 +1,273 @@
+// Writing debug information of functions, and lines in their older form.
+// SPDX-License-Identifier: Apache-2.0
+#include "frontend/spirv/inline_scopes.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <span>
+#include <spirv/unified1/NonSemanticShaderDebugInfo100.h>
+#include <spirv/unified1/spirv.hpp11>
+#include <string>
+#include <string_view>
+
+#include "frontend/spirv/source_lines.h"
+
+namespace glint::frontend {
+namespace {
+
+constexpr size_t kHeaderWords = 5;  // SPIR-V specification, 2.3 Physical Layout
+constexpr size_t kVersionWord = 1, kBoundWord = 3;
+constexpr uint32_t kNonSemanticVersion = 0x10600;  // from which on such sets need no extension
+constexpr uint32_t kDwarfVersion = 5, kLanguageUnknown = 0;
+
+using Words = std::vector<uint32_t>;
+
+spv::Op op_of(uint32_t word) {
+  return spv::Op(word & 0xffff);
+}
+
+std::string text_at(std::span<const uint32_t> words) {
+  std::string text;
+  for (size_t i = 0; i < 4 * words.size(); ++i) {
+    const char c = char(words[i / 4] >> 8 * (i % 4));
+    if (c == 0) break;
+    text += c;
+  }
+  return text;
+}
+
+// Ends in a zero byte, as texts in a module do.
+Words words_of(std::string_view text) {
+  Words out(text.size() / 4 + 1);
+  for (size_t i = 0; i < text.size(); ++i) out[i / 4] |= uint32_t(uint8_t(text[i])) << 8 * (i % 4);
+  return out;
+}
+
+void append(Words& out, spv::Op op, std::initializer_list<uint32_t> operands, const Words& more = {}) {
+  out.push_back(uint32_t(1 + operands.size() + more.size()) << 16 | uint32_t(op));
+  for (const uint32_t word : operands) out.push_back(word);
+  for (const uint32_t word : more) out.push_back(word);
+}
+
+// What marking needs to know of a module.
+struct Survey {
+  struct Function {
+    uint32_t id = 0, file = 0, line = 0;  // file: its OpString
+  };
+  std::map<uint32_t, std::string> names;  // OpName
+  std::vector<Function> functions;
+  std::set<uint32_t> files, lines;
+  uint32_t void_type = 0, u32_type = 0;
+  bool has_other_set = false;
+};
+
+Survey survey(const Words& words) {
+  Survey out;
+  for (size_t i = kHeaderWords; i < words.size(); i += words[i] >> 16) {
+    const std::span<const uint32_t> inst(&words[i], words[i] >> 16);
+    switch (op_of(inst[0])) {
+      case spv::Op::OpExtInstImport:
+        out.has_other_set |= text_at(inst.subspan(2)).starts_with("NonSemantic.");
+        break;
+      case spv::Op::OpName:
+        out.names[inst[1]] = text_at(inst.subspan(2));
+        break;
+      case spv::Op::OpTypeVoid:
+        out.void_type = inst[1];
+        break;
+      case spv::Op::OpTypeInt:
+        if (inst[2] == 32 && inst[3] == 0) out.u32_type = inst[1];
+        break;
+      case spv::Op::OpFunction:
+        out.functions.push_back({inst[2], 0, 0});
+        break;
+      case spv::Op::OpLine:
+        if (out.functions.empty()) break;
+        out.files.insert(inst[1]);
+        out.lines.insert(inst[2]);
+        if (out.functions.back().file == 0)
+          out.functions.back().file = inst[1], out.functions.back().line = inst[2];
+        break;
+      default:
+        break;
+    }
+  }
+  return out;
+}
+
+// glslang: "shade(vf3;f1;".
+std::string function_name(const Survey& module, uint32_t id) {
+  const auto found = module.names.find(id);
+  const std::string name =
+      found == module.names.end() ? std::string() : found->second.substr(0, found->second.find('('));
+  return name.empty() ? "%" + std::to_string(id) : name;
+}
+
+// The three places where something is added, and the functions' marks.
+class Marks {
+ public:
+  Marks(const Survey& module, uint32_t bound) : module_(module), bound_(bound) {
+    set_ = fresh();
+    append(imports_, spv::Op::OpExtInstImport, {set_}, words_of(kDebugInfoSet));
+    if (module.u32_type == 0)
+      append(globals_, spv::Op::OpTypeInt, {u32_ = fresh(), 32, 0});
+    else
+      u32_ = module.u32_type;
+    for (const uint32_t file : module.files)
+      source_[file] = debug(globals_, NonSemanticShaderDebugInfo100DebugSource, {file});
+    const uint32_t unit = debug(globals_, NonSemanticShaderDebugInfo100DebugCompilationUnit,
+                                {number(NonSemanticShaderDebugInfo100Version), number(kDwarfVersion),
+                                 source_.begin()->second, number(kLanguageUnknown)});
+    const uint32_t type =
+        debug(globals_, NonSemanticShaderDebugInfo100DebugTypeFunction, {number(0), module.void_type});
+    for (const Survey::Function& function : module.functions) declare(function, unit, type);
+    for (const uint32_t line : module.lines) number(line);
+  }
+
+  const Words& imports() const { return imports_; }
+  const Words& strings() const { return strings_; }
+  const Words& globals() const { return globals_; }
+  uint32_t bound() const { return bound_; }
+
+  // For a block of a function: that it is of it. Nothing for functions without lines.
+  Words scope(uint32_t function) {
+    Words out;
+    if (const auto mark = function_.find(function); mark != function_.end())
+      debug(out, NonSemanticShaderDebugInfo100DebugScope, {mark->second});
+    return out;
+  }
+  // For OpLine: the optimiser forgets to write a scope before one that stands first in a block, but not
+  // before these.
+  Words line(uint32_t file, uint32_t line) {
+    Words out;
+    debug(out, NonSemanticShaderDebugInfo100DebugLine,
+          {source_.at(file), number(line), number(line), number(0), number(0)});
+    return out;
+  }
+  Words no_scope() {
+    Words out;
+    debug(out, NonSemanticShaderDebugInfo100DebugNoScope, {});
+    return out;
+  }
+
+ private:
+  uint32_t fresh() { return bound_++; }
+
+  uint32_t debug(Words& out, uint32_t kind, std::initializer_list<uint32_t> operands) {
+    const uint32_t id = fresh();
+    append(out, spv::Op::OpExtInst, {module_.void_type, id, set_, kind}, operands);
+    return id;
+  }
+  // Operands of this set that are numbers are constants.
+  uint32_t number(uint32_t value) {
+    const auto [at, is_new] = numbers_.try_emplace(value, 0);
+    if (is_new) append(globals_, spv::Op::OpConstant, {u32_, at->second = fresh(), value});
+    return at->second;
+  }
+  void declare(const Survey::Function& function, uint32_t unit, uint32_t type) {
+    if (function.file == 0) return;
+    const uint32_t name = fresh();
+    append(strings_, spv::Op::OpString, {name}, words_of(function_name(module_, function.id)));
+    const uint32_t line = number(function.line), zero = number(0);
+    // Name, type, source, line, column, parent, linkage name, flags, line of the body.
+    function_[function.id] =
+        debug(globals_, NonSemanticShaderDebugInfo100DebugFunction,
+              {name, type, source_.at(function.file), line, zero, unit, name, zero, line});
+  }
+
+  const Survey& module_;
+  uint32_t bound_;
+  uint32_t set_ = 0, u32_ = 0;
+  Words imports_, strings_, globals_;
+  std::map<uint32_t, uint32_t> source_, numbers_, function_;
+};
+
+// Of the sections of a module's logical layout (SPIR-V specification, 2.4) those before debug information.
+bool is_before_strings(spv::Op op) {
+  return op == spv::Op::OpCapability || op == spv::Op::OpExtension || op == spv::Op::OpExtInstImport ||
+         op == spv::Op::OpMemoryModel || op == spv::Op::OpEntryPoint || op == spv::Op::OpExecutionMode ||
+         op == spv::Op::OpExecutionModeId;
+}
+
+bool may_stand_first(spv::Op op) {
+  return op == spv::Op::OpPhi || op == spv::Op::OpVariable;
+}
+
+}  // namespace
+
+std::optional<Words> with_inline_scopes(const Words& words) {
+  const Survey module = survey(words);
+  if (words[kVersionWord] < kNonSemanticVersion || module.has_other_set || module.files.empty() ||
+      module.void_type == 0)
+    return std::nullopt;
+  Marks marks(module, words[kBoundWord]);
+  Words out(words.begin(), words.begin() + kHeaderWords);
+  const auto add = [&](const Words& more) { out.insert(out.end(), more.begin(), more.end()); };
+  uint32_t function = 0;
+  bool has_strings = false;
+  size_t body =
+      0;  // in `out`, where a block's instructions begin behind phis and variables; 0: outside, or marked
+  for (size_t i = kHeaderWords; i < words.size(); i += words[i] >> 16) {
+    const spv::Op op = op_of(words[i]);
+    if (op == spv::Op::OpMemoryModel) add(marks.imports());
+    if (!has_strings && !is_before_strings(op)) add(marks.strings()), has_strings = true;
+    if (op == spv::Op::OpFunction) {
+      if (function == 0) add(marks.globals());
+      function = words[i + 2];
+    }
+    if (body != 0 && !may_stand_first(op) && op != spv::Op::OpLine && op != spv::Op::OpNoLine) {
+      const Words scope = marks.scope(function);
+      out.insert(out.begin() + long(body), scope.begin(), scope.end());
+      body = 0;
+    }
+    // What the optimiser reads goes on across blocks, and it writes no scope for a block whose label has it:
+    // so labels must not.
+    if (op == spv::Op::OpLabel || op == spv::Op::OpFunctionEnd) add(marks.no_scope());
+    if (op == spv::Op::OpLine && function != 0)
+      add(marks.line(words[i + 1], words[i + 2]));
+    else
+      out.insert(out.end(), words.begin() + long(i), words.begin() + long(i + (words[i] >> 16)));
+    if (op == spv::Op::OpLabel || (body != 0 && may_stand_first(op))) body = out.size();
+  }
+  out[kBoundWord] = marks.bound();
+  return out;
+}
+
+Words without_stray_lines(const Words& words) {
+  Words out(words.begin(), words.begin() + kHeaderWords);
+  std::set<uint32_t> sets;
+  for (size_t i = kHeaderWords; i < words.size(); i += words[i] >> 16) {
+    const std::span<const uint32_t> inst(&words[i], words[i] >> 16);
+    if (op_of(inst[0]) == spv::Op::OpExtInstImport && text_at(inst.subspan(2)) == kDebugInfoSet)
+      sets.insert(inst[1]);
+    const bool is_stray = op_of(inst[0]) == spv::Op::OpExtInst && sets.count(inst[3]) &&
+                          inst[4] == NonSemanticShaderDebugInfo100DebugNoLine;
+    if (!is_stray) out.insert(out.end(), inst.begin(), inst.end());
+  }
+  return out;
+}
+
+Words with_plain_lines(const Words& words) {
+  Words out(words.begin(), words.begin() + kHeaderWords);
+  std::set<uint32_t> sets;
+  std::map<uint32_t, uint32_t> files, numbers;  // DebugSource: its string; OpConstant: its low word
+  for (size_t i = kHeaderWords; i < words.size(); i += words[i] >> 16) {
+    const std::span<const uint32_t> inst(&words[i], words[i] >> 16);
+    const spv::Op op = op_of(inst[0]);
+    if (op == spv::Op::OpConstant) numbers[inst[2]] = inst[3];
+    if (op == spv::Op::OpExtInstImport && text_at(inst.subspan(2)) == kDebugInfoSet) {
+      sets.insert(inst[1]);
+    } else if (op == spv::Op::OpExtInst && sets.count(inst[3])) {
+      if (inst[4] == NonSemanticShaderDebugInfo100DebugSource && inst.size() > 5) files[inst[2]] = inst[5];
+      const bool is_line = inst[4] == NonSemanticShaderDebugInfo100DebugLine && inst.size() > 6;
+      if (is_line && files.count(inst[5]))
+        append(out, spv::Op::OpLine, {files[inst[5]], numbers[inst[6]], 0});
+    } else {
+      out.insert(out.end(), inst.begin(), inst.end());
+    }
+  }
+  return out;
+}
+
+}  // namespace glint::frontend

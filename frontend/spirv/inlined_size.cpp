@@ -1,0 +1,107 @@
+// Counting calls along the call graph.
+// SPDX-License-Identifier: Apache-2.0
+#include "frontend/spirv/inlined_size.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <map>
+#include <span>
+#include <spirv/unified1/spirv.hpp11>
+
+#include "base/diagnostics.h"
+
+namespace glint::frontend {
+namespace {
+
+constexpr uint64_t kMany = uint64_t{1} << 40;  // nothing counts beyond it
+
+struct Function {
+  uint64_t instructions = 0;
+  std::vector<uint32_t> callees;  // one a call
+  uint64_t copies = 0;
+  int calls_left = 0;  // callers' calls that were not yet counted
+};
+
+struct CallGraph {
+  std::map<uint32_t, Function> functions;
+  std::map<uint32_t, std::string> names;
+  std::vector<uint32_t> entries;
+};
+
+CallGraph read(const std::vector<uint32_t>& spirv) {
+  constexpr size_t kHeaderWords = 5;  // SPIR-V specification, 2.3 Physical Layout
+  CallGraph out;
+  Function* current = nullptr;
+  for (size_t at = kHeaderWords; at < spirv.size(); at += spirv[at] >> 16) {
+    const uint32_t* const words = &spirv[at];
+    switch (spv::Op(words[0] & 0xffff)) {
+      case spv::Op::OpName:
+        out.names[words[1]] = reinterpret_cast<const char*>(words + 2);
+        break;
+      case spv::Op::OpEntryPoint:
+        out.entries.push_back(words[2]);
+        break;
+      case spv::Op::OpFunction:
+        current = &out.functions[words[2]];
+        break;
+      case spv::Op::OpFunctionEnd:
+        current = nullptr;
+        break;
+      case spv::Op::OpLine:
+      case spv::Op::OpNoLine:
+        break;
+      case spv::Op::OpFunctionCall:
+        if (current) current->callees.push_back(words[3]);
+        [[fallthrough]];
+      default:
+        if (current) ++current->instructions;
+    }
+  }
+  return out;
+}
+
+// Callers before callees. What calls itself is left out: it is refused elsewhere.
+void count_copies(CallGraph& graph) {
+  for (const auto& [id, function] : graph.functions)
+    for (const uint32_t callee : function.callees) ++graph.functions.at(callee).calls_left;
+  std::vector<uint32_t> ready;
+  for (auto& [id, function] : graph.functions)
+    if (function.calls_left == 0) ready.push_back(id);
+  for (const uint32_t entry : graph.entries) graph.functions.at(entry).copies = 1;
+  while (!ready.empty()) {
+    const Function& caller = graph.functions.at(ready.back());
+    ready.pop_back();
+    for (const uint32_t id : caller.callees) {
+      Function& callee = graph.functions.at(id);
+      callee.copies = std::min(kMany, callee.copies + caller.copies);
+      if (--callee.calls_left == 0) ready.push_back(id);
+    }
+  }
+}
+
+}  // namespace
+
+void check_inlined_size(const std::vector<uint32_t>& spirv, const std::string& name) {
+  CallGraph graph = read(spirv);
+  count_copies(graph);
+  uint64_t all = 0, most = 0;
+  uint32_t largest = 0;
+  for (const auto& [id, function] : graph.functions) {
+    const uint64_t size =
+        std::min(kMany, function.copies) * std::min<uint64_t>(function.instructions, 1u << 20);
+    all = std::min(kMany, all + size);
+    if (size > most) most = size, largest = id;
+  }
+  if (all <= kMostInlined) return;
+  const auto amount = [](uint64_t n) {
+    return n >= kMany ? std::string("more than a million million") : fmt::format("{}", n);
+  };
+  std::string function = graph.names.count(largest) ? graph.names.at(largest) : fmt::format("%{}", largest);
+  function = function.substr(0, function.find('('));  // glslang's names end in the parameters' types
+  throw UnsupportedError(fmt::format(
+      "{}: not supported:\n  {}: calls that, put in place, make {} instructions (at most {}): '{}' is there "
+      "{} times",
+      name, name, amount(all), kMostInlined, function, amount(graph.functions.at(largest).copies)));
+}
+
+}  // namespace glint::frontend

@@ -1,0 +1,227 @@
+// Reflection from the parsed module: descriptor kinds by storage class and type.
+// SPDX-License-Identifier: Apache-2.0
+#include "frontend/spirv/reflection.h"
+
+#include <algorithm>
+
+#include "base/diagnostics.h"
+#include "frontend/compile.h"
+#include "frontend/lower/layout.h"
+#include "frontend/spirv/module.h"
+
+namespace glint::frontend {
+namespace {
+
+using Storage = spv::StorageClass;
+
+BindingKind kind_of(const Type& type, Storage storage) {
+  switch (type.kind) {
+    case Type::Kind::Struct:
+      return storage == Storage::Uniform && !type.is_buffer_block ? BindingKind::UniformBuffer
+                                                                  : BindingKind::StorageBuffer;
+    case Type::Kind::SampledImage:
+      return BindingKind::SampledImage;
+    case Type::Kind::Sampler:
+      return BindingKind::Sampler;
+    case Type::Kind::AccelerationStructure:
+      return BindingKind::AccelerationStructure;
+    case Type::Kind::Image:
+      return type.is_storage_image ? BindingKind::StorageImage : BindingKind::SampledImage;
+    default:
+      return BindingKind::Other;
+  }
+}
+
+isa::ImageShape shape_of(const Type& image) {
+  using isa::ImageShape;
+  switch (image.dim) {
+    case spv::Dim::Dim1D:
+      return image.is_arrayed ? ImageShape::A1d : ImageShape::D1;
+    case spv::Dim::Dim3D:
+      return ImageShape::D3;
+    case spv::Dim::Cube:
+      return image.is_arrayed ? ImageShape::Acube : ImageShape::Cube;
+    case spv::Dim::Buffer:
+      return ImageShape::Buffer;
+    default:
+      return image.is_arrayed ? ImageShape::A2d : ImageShape::D2;
+  }
+}
+
+// As GLSL names formats of storage images; empty where none is declared or the enumeration has grown.
+std::string_view format_name(spv::ImageFormat format) {
+  using enum spv::ImageFormat;
+  switch (format) {
+    case Rgba32f:
+      return "rgba32f";
+    case Rgba16f:
+      return "rgba16f";
+    case R32f:
+      return "r32f";
+    case Rgba8:
+      return "rgba8";
+    case Rgba8Snorm:
+      return "rgba8_snorm";
+    case Rg32f:
+      return "rg32f";
+    case Rg16f:
+      return "rg16f";
+    case R11fG11fB10f:
+      return "r11f_g11f_b10f";
+    case R16f:
+      return "r16f";
+    case Rgba16:
+      return "rgba16";
+    case Rgb10A2:
+      return "rgb10_a2";
+    case Rg16:
+      return "rg16";
+    case Rg8:
+      return "rg8";
+    case R16:
+      return "r16";
+    case R8:
+      return "r8";
+    case Rgba16Snorm:
+      return "rgba16_snorm";
+    case Rg16Snorm:
+      return "rg16_snorm";
+    case Rg8Snorm:
+      return "rg8_snorm";
+    case R16Snorm:
+      return "r16_snorm";
+    case R8Snorm:
+      return "r8_snorm";
+    case Rgba32i:
+      return "rgba32i";
+    case Rgba16i:
+      return "rgba16i";
+    case Rgba8i:
+      return "rgba8i";
+    case R32i:
+      return "r32i";
+    case Rg32i:
+      return "rg32i";
+    case Rg16i:
+      return "rg16i";
+    case Rg8i:
+      return "rg8i";
+    case R16i:
+      return "r16i";
+    case R8i:
+      return "r8i";
+    case Rgba32ui:
+      return "rgba32ui";
+    case Rgba16ui:
+      return "rgba16ui";
+    case Rgba8ui:
+      return "rgba8ui";
+    case R32ui:
+      return "r32ui";
+    case R64ui:
+    case R64i:
+      return "rg32ui";  // its halves
+    case Rgb10a2ui:
+      return "rgb10_a2ui";
+    case Rg32ui:
+      return "rg32ui";
+    case Rg16ui:
+      return "rg16ui";
+    case Rg8ui:
+      return "rg8ui";
+    case R16ui:
+      return "r16ui";
+    case R8ui:
+      return "r8ui";
+    default:
+      return {};
+  }
+}
+
+void reflect_image(const Module& module, Id type, Binding& binding) {
+  const Type* image = &module.type(type);
+  if (image->kind == Type::Kind::SampledImage) image = &module.type(image->element);
+  if (image->kind != Type::Kind::Image) return;
+  binding.shape = shape_of(*image);
+  binding.multisampled = image->is_multisampled;
+  const Type& texel = module.type(image->element);
+  binding.format = format_name(image->format);
+  binding.texel = texel.kind == Type::Kind::Float        ? "f32"
+                  : texel.is_signed && texel.width == 32 ? "s32"
+                                                         : "u32";
+}
+
+Binding binding_of(const Module& module, const Variable& variable, const Decorations& d) {
+  Binding binding;
+  binding.set = d.set.value_or(0), binding.binding = d.binding.value_or(0);
+  Id type = module.type(variable.type).element;
+  if (module.type(type).kind == Type::Kind::Array || module.type(type).kind == Type::Kind::RuntimeArray) {
+    binding.count = module.type(type).kind == Type::Kind::Array ? module.type(type).count : 0;
+    type = module.type(type).element;
+  }
+  binding.kind = kind_of(module.type(type), variable.storage);
+  if (module.type(type).kind == Type::Kind::Struct) binding.block = block_type(module, type);
+  reflect_image(module, type, binding);
+  const auto name = module.names.find(variable.id);
+  binding.name = name != module.names.end() && !name->second.empty() ? name->second : module.type(type).name;
+  return binding;
+}
+
+// Empty of payloads so large that no list of their scalars helps.
+std::string scalars_of(Layout& layout, Id type) {
+  constexpr uint32_t kMostBytes = 4096;
+  std::string out;
+  if (layout.size(type) > kMostBytes) return out;
+  for (const Leaf& leaf : layout.leaves(type, {}, 0)) {
+    out += is_float(leaf.part) ? 'f' : leaf.part == Part::Bool ? 'b' : 'i';
+    out += char('0' + bytes_of(leaf.part));
+  }
+  return out;
+}
+
+}  // namespace
+
+Reflection reflect(const std::vector<uint32_t>& spirv, const std::string& name) {
+  const Module module = Module::parse(spirv, name);
+  Layout layout(module);
+  Reflection result;
+  if (module.entry_points.empty()) throw UserError({name, 0, 0}, "the module has no entry point");
+  result.stage = stage_of(module.entry_points[0].model).value_or(isa::Stage::Compute);
+  result.entry_point = module.entry_points[0].name;
+  result.local_size = module.entry_points[0].local_size;
+  for (const auto& [id, variable] : module.variables) {
+    const uint32_t bytes = layout.size(module.type(variable.type).element);
+    switch (variable.storage) {
+      case Storage::IncomingRayPayloadKHR:
+        result.incoming_payload_bytes = std::max(result.incoming_payload_bytes, bytes);
+        result.incoming_payload = scalars_of(layout, module.type(variable.type).element);
+        break;
+      case Storage::RayPayloadKHR:
+        result.largest_payload_bytes = std::max(result.largest_payload_bytes, bytes);
+        result.handed_payloads.push_back(scalars_of(layout, module.type(variable.type).element));
+        break;
+      case Storage::HitAttributeKHR:
+        result.attribute_bytes = std::max(result.attribute_bytes, bytes);
+        break;
+      case Storage::PushConstant:
+        result.push_constant_bytes = bytes;
+        result.push_constants = block_type(module, module.type(variable.type).element);
+        break;
+      case Storage::ShaderRecordBufferKHR:
+        result.shader_record = block_type(module, module.type(variable.type).element);
+        break;
+      default: {
+        const auto d = module.decorations.find(id);
+        if (d != module.decorations.end() && d->second.binding)
+          result.bindings.push_back(binding_of(module, variable, d->second));
+        break;
+      }
+    }
+  }
+  std::sort(result.bindings.begin(), result.bindings.end(), [](const Binding& a, const Binding& b) {
+    return std::pair(a.set, a.binding) < std::pair(b.set, b.binding);
+  });
+  return result;
+}
+
+}  // namespace glint::frontend

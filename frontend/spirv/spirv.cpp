@@ -1,0 +1,238 @@
+// Validation and disassembly of SPIR-V through SPIRV-Tools.
+// SPDX-License-Identifier: Apache-2.0
+#include "frontend/spirv/spirv.h"
+
+#include <cstring>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <spirv-tools/libspirv.hpp>
+#include <spirv/unified1/spirv.hpp11>
+
+#include "frontend/compile.h"
+#include "frontend/spirv/known_positions.h"
+
+namespace glint::frontend {
+
+namespace {
+
+// Modules that glslang and the optimiser make and the validator rejects, though their meaning is plain:
+// - two variables for one built-in (glslang makes one for gl_ObjectToWorldEXT and one for
+// gl_ObjectToWorld3x4EXT);
+// - conversions of a float to its own width (glslang, halves);
+// - pointers to buffers in local variables whose decoration the optimiser dropped;
+// - barriers and atomics of device scope without the capability (glslang, Vulkan memory model without scope
+// semantics).
+bool is_false_alarm(std::string_view message) {
+  for (const std::string_view part :
+       {"has more than one BuiltIn", "already has the same BuiltIn",
+        "VUID-StandaloneSpirv-OpEntryPoint-09658", "Expected component type bit width to be different",
+        "bit width of Value to be different", "expected AliasedPointer or RestrictPointer",
+        "requires the VulkanMemoryModelDeviceScopeKHR capability"})
+    if (message.find(part) != std::string_view::npos) return true;
+  return false;
+}
+
+// Constants made of a component that a vector lacks: the validator passes them, the optimiser crashes on
+// them.
+std::string missing_components(const std::vector<uint32_t>& words) {
+  constexpr size_t kHeaderWords = 5;
+  std::map<uint32_t, uint32_t> components, type_of;  // of vector types; of constants
+  for (size_t i = kHeaderWords; i < words.size(); i += words[i] >> 16) {
+    const auto op = spv::Op(words[i] & 0xffff);
+    const size_t length = words[i] >> 16;
+    if (op == spv::Op::OpFunction) break;
+    if (op == spv::Op::OpTypeVector) components[words[i + 1]] = words[i + 3];
+    if (op == spv::Op::OpSpecConstantComposite || op == spv::Op::OpConstantComposite)
+      type_of[words[i + 2]] = words[i + 1];
+    if (op != spv::Op::OpSpecConstantOp || length != 6 ||
+        spv::Op(words[i + 3]) != spv::Op::OpCompositeExtract)
+      continue;
+    const auto type = type_of.find(words[i + 4]);
+    const auto count = type == type_of.end() ? components.end() : components.find(type->second);
+    if (count != components.end() && words[i + 5] >= count->second)
+      return fmt::format("word {}: component {} of a vector of {}\n", i, words[i + 5], count->second);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string validate_spirv(const std::vector<uint32_t>& words) {
+  std::string messages;
+  bool only_false_alarms = false;
+  spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_3);
+  tools.SetMessageConsumer(
+      [&](spv_message_level_t level, const char*, const spv_position_t& at, const char* text) {
+        if (level > SPV_MSG_ERROR) return;
+        if (is_false_alarm(text))
+          only_false_alarms = true;
+        else
+          messages += fmt::format("word {}: {}\n", at.index, text);
+      });
+  spvtools::ValidatorOptions options;
+  options.SetScalarBlockLayout(true);
+  options.SetWorkgroupScalarBlockLayout(true);
+  if (tools.Validate(words.data(), words.size(), options)) return missing_components(words);
+  if (messages.empty() && only_false_alarms) return {};
+  return messages.empty() ? "the SPIR-V validator rejected the module without a message\n" : messages;
+}
+
+void refuse_unknown_capabilities(const std::vector<uint32_t>& words, const std::string& name) {
+  constexpr size_t kHeaderWords = 5;  // SPIR-V specification, 2.3 Physical Layout
+  std::string unknown, extensions;
+  for (size_t at = kHeaderWords; at < words.size() && words[at] >> 16 != 0; at += words[at] >> 16) {
+    const auto op = spv::Op(words[at] & 0xffff);
+    if (op == spv::Op::OpFunction) break;
+    if (op == spv::Op::OpExtension)
+      extensions += fmt::format(" {}", reinterpret_cast<const char*>(&words[at + 1]));
+    if (op != spv::Op::OpCapability || at + 1 == words.size()) continue;
+    if (const std::string number = fmt::format("{}", words[at + 1]);
+        name_of_capability(words[at + 1]) == number)
+      unknown +=
+          fmt::format("\n  {}: capability {}, which the installed SPIRV-Tools do not know", name, number);
+  }
+  if (!unknown.empty())
+    throw UnsupportedError(
+        fmt::format("{}: not supported:{}\n  extensions of the module:{}", name, unknown, extensions));
+}
+
+bool is_spirv_file(const std::string& path) {
+  const std::string ending = std::filesystem::path(path).extension().string();
+  return ending == ".spv" || ending == ".spvasm";
+}
+
+std::vector<uint32_t> read_spirv(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes(std::istreambuf_iterator<char>(file), {});
+  if (!file) throw UserError({path, 0, 0}, "cannot read the shader");
+  std::vector<uint32_t> words(bytes.size() / 4);
+  if (std::filesystem::path(path).extension() == ".spvasm") {
+    words = assemble_spirv(bytes, path);
+  } else if (bytes.size() % 4 != 0) {
+    throw UserError({path, 0, 0}, "not a SPIR-V module: it does not consist of words");
+  } else {
+    std::memcpy(words.data(), bytes.data(), bytes.size());
+  }
+  words = with_known_positions(std::move(words));
+  refuse_unknown_capabilities(words, path);
+  const std::string invalid = validate_spirv(words);
+  if (!invalid.empty()) throw UserError({path, 0, 0}, "invalid SPIR-V\n" + invalid);
+  return words;
+}
+
+namespace {
+
+bool assemble_as(spv_target_env version, const std::string& text, std::vector<uint32_t>* words,
+                 SourceLocation* where, std::string* message) {
+  spvtools::SpirvTools tools(version);
+  tools.SetMessageConsumer(
+      [&](spv_message_level_t level, const char*, const spv_position_t& at, const char* said) {
+        if (level <= SPV_MSG_ERROR)
+          *message = said, where->line = int(at.line) + 1, where->column = int(at.column) + 1;
+      });
+  return tools.Assemble(text, words, SPV_TEXT_TO_BINARY_OPTION_PRESERVE_NUMERIC_IDS);
+}
+
+}  // namespace
+
+std::vector<uint32_t> assemble_spirv(const std::string& text, const std::string& name) {
+  // Choice: text has the newest version under which it is valid, for its own version stands in a comment if
+  // anywhere. 1.6 dropped BufferBlock, 1.4 put all variables into the interface; 1.0 is what tools without an
+  // option write.
+  std::vector<uint32_t> newest;
+  for (const spv_target_env version : {SPV_ENV_VULKAN_1_3, SPV_ENV_UNIVERSAL_1_3, SPV_ENV_UNIVERSAL_1_0}) {
+    SourceLocation where{name, 0, 0};
+    std::string message = "cannot be assembled";
+    std::vector<uint32_t> words;
+    const bool done = assemble_as(version, text, &words, &where, &message);
+    if (!done && newest.empty()) throw UserError(where, message);
+    if (done && validate_spirv(words).empty()) return words;
+    if (newest.empty()) newest = std::move(words);
+  }
+  return newest;  // the caller says what is wrong with it
+}
+
+std::string name_of_opcode(uint32_t opcode) {
+  const char* name = spvOpcodeString(opcode);
+  if (name == nullptr || std::string_view(name) == "unknown") return fmt::format("OpUnknown({})", opcode);
+  return fmt::format("Op{}", name);
+}
+
+namespace {
+
+// SPIRV-Tools tells names of enumerants only in text: so an instruction is disassembled, behind others that
+// it needs. Empty when its operands are not what the op wants.
+std::string text_of(spv::Op op, const std::vector<uint32_t>& operands,
+                    const std::vector<uint32_t>& before = {}) {
+  std::vector<uint32_t> words{spv::MagicNumber, 0x0001'0600, 0, 100,
+                              0};  // header: version 1.6, ids below 100
+  words.insert(words.end(), before.begin(), before.end());
+  words.push_back(uint32_t(operands.size() + 1) << 16 | uint32_t(op));
+  words.insert(words.end(), operands.begin(), operands.end());
+  std::string text;
+  const spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_3);
+  return tools.Disassemble(words, &text, SPV_BINARY_TO_TEXT_OPTION_NO_HEADER) ? text : std::string();
+}
+
+// The word of `text` that follows `start`, or the number when there is none.
+std::string word_after(const std::string& text, std::string_view start, uint32_t number) {
+  const size_t at = text.find(start);
+  if (at == std::string::npos) return fmt::format("{}", number);
+  const size_t begin = at + start.size();
+  return text.substr(begin, text.find_first_of(" \n", begin) - begin);
+}
+
+// Older SPIRV-Tools print the names of the vendor's extension that the ray-tracing extension grew from.
+std::string with_khr(std::string name) {
+  if (name.ends_with("NV")) name.replace(name.size() - 2, 2, "KHR");
+  return name;
+}
+
+}  // namespace
+
+std::string name_of_capability(uint32_t capability) {
+  return word_after(text_of(spv::Op::OpCapability, {capability}), "OpCapability ", capability);
+}
+
+std::string name_of_storage_class(uint32_t storage) {
+  return with_khr(word_after(text_of(spv::Op::OpVariable, {1, 2, storage}), "OpVariable %1 ", storage));
+}
+
+std::string name_of_builtin(uint32_t builtin) {
+  const auto decoration = uint32_t(spv::Decoration::BuiltIn);
+  return with_khr(word_after(text_of(spv::Op::OpDecorate, {1, decoration, builtin}), "BuiltIn ", builtin));
+}
+
+std::string name_of_execution_model(uint32_t model) {
+  return with_khr(word_after(text_of(spv::Op::OpEntryPoint, {model, 1, 0}), "OpEntryPoint ", model));
+}
+
+std::string name_of_glsl_function(uint32_t function) {
+  const std::vector<uint32_t> import{6u << 16 | uint32_t(spv::Op::OpExtInstImport),
+                                     1,
+                                     0x4c53'4c47,
+                                     0x6474'732e,
+                                     0x3035'342e,
+                                     0};  // %1 = OpExtInstImport "GLSL.std.450"
+  std::string text;
+  std::vector<uint32_t> operands{2, 3, 1, function};
+  for (int arguments = 0; arguments < 4 && text.empty(); ++arguments) {
+    text = text_of(spv::Op::OpExtInst, operands, import);
+    operands.push_back(4);
+  }
+  return "GLSL.std.450 " + word_after(text, "OpExtInst %2 %1 ", function);
+}
+
+std::string disassemble_spirv(const std::vector<uint32_t>& words) {
+  std::string text;
+  const spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_3);
+  const uint32_t options = SPV_BINARY_TO_TEXT_OPTION_INDENT | SPV_BINARY_TO_TEXT_OPTION_FRIENDLY_NAMES;
+  if (!tools.Disassemble(words, &text, options))
+    throw UserError("error: not a SPIR-V module: it cannot be disassembled");
+  return text;
+}
+
+}  // namespace glint::frontend

@@ -1,0 +1,128 @@
+// Reading back what a run has written.
+// SPDX-License-Identifier: Apache-2.0
+#include "report/files/run_record.h"
+
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string_view>
+
+#include "base/diagnostics.h"
+#include "report/files/csv_field.h"
+#include "report/files/run_directory.h"
+#include "report/files/stat_rows.h"
+
+namespace glint::report {
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r'))
+    text.remove_suffix(1);
+  return text;
+}
+
+std::string whole_file(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw UserError({path}, "cannot read the file", "is this the directory of a finished run?");
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void flatten(const nlohmann::json& json, const std::string& name, std::map<std::string, double>& numbers,
+             std::map<std::string, std::string>& texts) {
+  if (json.is_object()) {
+    for (const auto& [key, value] : json.items())
+      flatten(value, name.empty() ? key : name + "." + key, numbers, texts);
+  } else if (json.is_number()) {
+    numbers[name] = json.get<double>();
+  } else if (json.is_string()) {
+    texts[name] = json.get<std::string>();
+  }
+}
+
+}  // namespace
+
+void RunRecord::add_finished(const std::string& directory) {
+  const std::string file = directory + "/run.json";
+  add_facts(whole_file(file), file);
+  if (const double schema = fact("schema").value_or(0); schema != kRunSchema)
+    throw UserError({file}, fmt::format("schema {}, expected {}", schema, kRunSchema),
+                    "another version of Glint wrote it: run it again with this one");
+  if (const double exit = fact("exit").value_or(0); exit != 0)
+    throw UserError({file}, fmt::format("the run failed with exit code {}: {}", exit, text("message")),
+                    "it left no results: run it again");
+}
+
+void check_finished(const std::string& directory) {
+  RunRecord().add_finished(directory);
+}
+
+RunRecord RunRecord::read(const std::string& directory) {
+  RunRecord record;
+  record.add_finished(directory);
+  record.add_stats(whole_file(directory + "/stats.csv"), directory + "/stats.csv");
+  record.add_config(whole_file(directory + "/config.toml"));
+  return record;
+}
+
+// Paths and values of stats.csv are never quoted: neither holds a comma.
+void RunRecord::add_stats(const std::string& csv, const std::string& name) {
+  std::istringstream in(csv);
+  std::string line;
+  if (!std::getline(in, line) || line.rfind("path,value,", 0) != 0)
+    throw UserError({name, 1}, "this is no table of statistics", "expected the header path,value,unit,doc");
+  for (int row = 2; std::getline(in, line); ++row) {
+    const size_t first = line.find(','), second = line.find(',', first + 1);
+    const std::optional<double> value =
+        second == std::string::npos
+            ? std::nullopt
+            : finite_number(std::string_view(line).substr(first + 1, second - first - 1));
+    if (!value)
+      throw UserError({name, row}, "this row has no value, or none that is finite",
+                      "the file is damaged; run it again");
+    stats_.emplace_back(line.substr(0, first), *value);
+  }
+}
+
+void RunRecord::add_facts(const std::string& json, const std::string& name) {
+  const nlohmann::json parsed = nlohmann::json::parse(json, nullptr, false);
+  if (!parsed.is_object()) throw UserError({name}, "this is no JSON object");
+  flatten(parsed, "", facts_, texts_);
+}
+
+// Reads what config_file() writes: tables of dotted names, one key a line, comments behind; numbers only.
+void RunRecord::add_config(const std::string& toml) {
+  std::istringstream in(toml);
+  std::string line, table;
+  while (std::getline(in, line)) {
+    const std::string_view text = trimmed(std::string_view(line).substr(0, line.find('#')));
+    const size_t equals = text.find('=');
+    if (text.size() > 2 && text.front() == '[' && text.back() == ']') {
+      table = std::string(text.substr(1, text.size() - 2)) + ".";
+    } else if (equals != std::string_view::npos) {
+      if (const auto value = finite_number(trimmed(text.substr(equals + 1))))
+        config_[table + std::string(trimmed(text.substr(0, equals)))] = *value;
+    }
+  }
+}
+
+std::vector<double> RunRecord::values(const std::string& pattern) const {
+  std::vector<double> out;
+  for (const auto& [path, value] : stats_)
+    if (path_matches(pattern, path)) out.push_back(value);
+  return out;
+}
+
+std::string RunRecord::text(const std::string& name) const {
+  const auto found = texts_.find(name);
+  return found == texts_.end() ? "" : found->second;
+}
+
+std::optional<double> RunRecord::find(const std::map<std::string, double>& map, const std::string& name) {
+  const auto found = map.find(name);
+  return found == map.end() ? std::nullopt : std::optional(found->second);
+}
+
+}  // namespace glint::report

@@ -1,0 +1,180 @@
+// Gathering run directories into the report's document.
+// SPDX-License-Identifier: Apache-2.0
+#include "report/page/data.h"
+
+#include <charconv>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
+
+#include "base/diagnostics.h"
+#include "report/files/base64.h"
+#include "report/files/config_rows.h"
+#include "report/files/heat_files.h"
+#include "report/files/profile_files.h"
+#include "report/files/run_directory.h"
+#include "report/metrics/metrics.h"
+#include "report/page/heat.h"
+#include "report/page/profile.h"
+#include "report/page/source.h"
+#include "report/page/stats.h"
+#include "report/page/timeline.h"
+
+namespace glint::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::optional<std::string> bytes_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return std::nullopt;
+  return std::string{std::istreambuf_iterator<char>(in), {}};
+}
+
+Json json_of(const std::string& path) {
+  const std::optional<std::string> text = bytes_of(path);
+  if (!text) throw UserError({path}, "cannot read the file", "the run has not finished; run it again");
+  Json parsed = Json::parse(*text, nullptr, false);
+  if (!parsed.is_object())
+    throw UserError({path}, "this is no JSON object", "the file is damaged; run it again");
+  return parsed;
+}
+
+// run.json of a run whose statistics can be shown.
+Json facts_of(const std::string& directory) {
+  if (!std::filesystem::is_directory(directory))
+    throw UserError({}, fmt::format("'{}' is no run directory", directory),
+                    "`glint run SCENE --out DIRECTORY` makes one");
+  const std::string path = directory + "/run.json";
+  if (!std::filesystem::exists(path))
+    throw UserError({path}, "there is no such file",
+                    "the directory is not of a run, or the run was ended before it finished");
+  Json facts = json_of(path);
+  if (const int schema = facts.value("schema", 0); schema != kRunSchema)
+    throw UserError({path}, fmt::format("schema {}, expected {}", schema, kRunSchema),
+                    "another version of Glint wrote it: run it again with this one");
+  if (facts.value("exit", 0) != 0)
+    throw UserError({path}, fmt::format("the run failed: {}", facts.value("message", "no message")),
+                    "a report needs a run that finished");
+  if (const std::string mode = facts.value("mode", ""); mode != "timing")
+    throw UserError({path}, fmt::format("mode '{}' has no cycles", mode),
+                    "a report shows runs of the timing machine: --mode timing");
+  return facts;
+}
+
+Json number_or_text(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc{} && end == text.data() + text.size() && !text.empty()) return value;
+  return text;
+}
+
+// A CSV of numbers by column.
+Json columns_of(const std::string& csv, const std::string& name) {
+  std::istringstream in(csv);
+  std::string line;
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> columns;
+  for (int row = 1; std::getline(in, line); ++row) {
+    std::istringstream cells(line);
+    std::string cell;
+    size_t i = 0;
+    for (; std::getline(cells, cell, ','); ++i) {
+      if (row == 1) {
+        names.push_back(cell);
+        continue;
+      }
+      const Json value = number_or_text(cell);
+      if (i >= names.size() || !value.is_number())
+        throw UserError({name, row}, fmt::format("'{}' is no number of a time series", cell));
+      columns[i].push_back(value.get<double>());
+    }
+    if (row == 1)
+      columns.resize(names.size());
+    else if (i != names.size())
+      throw UserError({name, row}, fmt::format("{} cells, expected {}", i, names.size()));
+  }
+  Json out = Json::object();
+  for (size_t i = 0; i < names.size(); ++i) out[names[i]] = columns[i];
+  return out;
+}
+
+Json metrics_json(const RunRecord& record) {
+  Json out = Json::object();
+  for (const MetricValue& metric : metrics_of(record))
+    out[std::string(metric.metric->name)] = metric.value ? Json(*metric.value) : Json(nullptr);
+  return out;
+}
+
+void add_config(const PageRun& run, const std::string& toml, Json& out, Json& docs) {
+  const std::vector<ConfigRow> rows = config_rows(toml);
+  for (const ConfigRow& row : rows) {
+    out["config"][row.key] = number_or_text(row.value);
+    docs[row.key] = {{"unit", row.unit}, {"doc", row.doc}};
+  }
+  out["preset"] = {{"name", run.preset_name}, {"changes", Json::object()}};
+  for (const ConfigChange& change : config_changes(rows, config_rows(run.preset)))
+    out["preset"]["changes"][change.row.key] =
+        change.preset.empty() ? Json(nullptr) : number_or_text(change.preset);
+}
+
+void add_timeline(const PageRun& run, Json& out) {
+  const std::string path = run.directory + "/trace.json.gz";
+  if (std::filesystem::exists(path))
+    out["timeline"] = page_timeline(read_timeline(path, run.timeline.value_or(TimelineRequest{})));
+  else if (run.timeline)
+    throw UserError({run.directory}, "the run has no trace, and so no timeline", "run it again with --trace");
+}
+
+Json run_json(const PageRun& run, Json& stat_docs, Json& key_docs) {
+  const std::string& directory = run.directory;
+  Json out = {{"directory", directory}, {"run", facts_of(directory)}};
+  out["stats"] = page_stats(json_of(directory + "/stats.json"), stat_docs);
+  if (!out["stats"].contains("gpu.cycles"))
+    throw UserError({directory + "/stats.json"}, "has no gpu.cycles",
+                    "another version of Glint wrote it: run it again with this one");
+  out["metrics"] = metrics_json(RunRecord::read(directory));
+  add_config(run, *bytes_of(directory + "/config.toml"), out, key_docs);  // RunRecord has read it
+  if (const auto csv = bytes_of(directory + "/series.csv"))
+    out["series"] = columns_of(*csv, directory + "/series.csv");
+  if (const auto csv = bytes_of(directory + "/profile.csv")) {
+    const ProfileTable profile = parse_profile(*csv, directory + "/profile.csv");
+    out["profile"] = page_profile(profile);
+    if (const auto source = bytes_of(directory + "/source.json"))
+      out["source"] = page_source(profile, parse_source(*source, directory + "/source.json"));
+  }
+  if (const std::vector<CostMap> maps = read_heat(directory); !maps.empty()) out["heat"] = page_heat(maps);
+  add_timeline(run, out);
+  if (const auto png = bytes_of(directory + "/image.png"))
+    out["picture"] = "data:image/png;base64," + base64(*png);
+  return out;
+}
+
+}  // namespace
+
+nlohmann::ordered_json page_data(const std::vector<PageRun>& runs, const std::string& version) {
+  Json stat_docs = Json::object(), key_docs = Json::object(), list = Json::array(),
+       metric_docs = Json::array();
+  for (const PageRun& run : runs) list.push_back(run_json(run, stat_docs, key_docs));
+  for (const MetricGroup& group : metric_groups())
+    for (const Metric& metric : group.metrics)
+      metric_docs.push_back({{"name", metric.name},
+                             {"unit", metric.unit},
+                             {"doc", metric.doc},
+                             {"group", group.title},
+                             {"paper", metric.paper},
+                             {"known", !metric.formula.empty()}});
+  return {{"schema", 2},
+          {"version", version},
+          {"runs", std::move(list)},
+          {"stat_docs", std::move(stat_docs)},
+          {"metric_docs", std::move(metric_docs)},
+          {"key_docs", std::move(key_docs)},
+          {"heat_scale", page_heat_scale()}};
+}
+
+}  // namespace glint::report

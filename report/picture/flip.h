@@ -1,0 +1,27 @@
+// FLIP: how different two pictures look to a person who flips between them, pixel by pixel.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <vector>
+
+#include "report/picture/image_compare.h"
+
+namespace glint::report {
+
+// Of an observer 0.70 m away from a screen 0.70 m wide with 3840 pixels (Andersson et al. 2020, sec. 5).
+inline constexpr double kPixelsPerDegree = 67;
+
+struct Flip {
+  double mean = 0;         // over pixels; not a number where a pixel is beyond measure (image_compare.h)
+  std::vector<float> map;  // one a pixel, row 0 on top; 0: looks the same, 1: as different as can be
+};
+
+// LDR-FLIP of Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild 2020, "FLIP: A Difference
+// Evaluator for Alternating Images". Values are sRGB, clamped to 0..1; those that are not finite count as 0,
+// and the map is 1 where pixels are beyond measure. Beyond the edges a picture goes on as its edge. UserError
+// unless the pictures have one size and `pixels_per_degree` lies between 1 and 1000.
+Flip flip(const Picture& a, const Picture& b, double pixels_per_degree = kPixelsPerDegree);
+
+// The map as colours from black over purple and orange to white, three floats a pixel.
+Picture flip_picture(const Picture& a, const Flip& flip);
+
+}  // namespace glint::report

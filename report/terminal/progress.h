@@ -1,0 +1,38 @@
+// A progress line with an estimate of the time left, redrawn in place; silent when stdout is no terminal.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+
+#include "report/terminal/table.h"
+
+namespace glint::report {
+
+// The line for `done` of `total` after `elapsed` seconds, without control characters.
+std::string progress_line(const std::string& label, uint64_t done, uint64_t total, double elapsed,
+                          const Terminal& terminal);
+
+// Redraws at most ten times a second: an update costs a clock read.
+class Progress {
+ public:
+  // `stream` null: says nothing.
+  Progress(std::FILE* stream, std::string label, Terminal terminal);
+  ~Progress() { clear(); }
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void update(uint64_t done, uint64_t total);
+  void clear();  // wipes the line, so that what is printed next starts clean
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::FILE* stream_;
+  std::string label_;
+  Terminal terminal_;
+  Clock::time_point start_, last_;
+  size_t drawn_ = 0;  // columns on screen
+};
+
+}  // namespace glint::report

@@ -1,0 +1,55 @@
+// What a person wants to know of a run, on one screen: time, instruction mix, caches, DRAM, RT unit, rays.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report/terminal/table.h"
+
+namespace glint::report {
+
+// One class of the instruction mix.
+struct MixRow {
+  std::string name;
+  uint64_t count = 0;    // warp instructions executed
+  uint64_t latency = 0;  // core cycles from issue to completion, summed over them; 0 in functional runs
+};
+
+struct HitRate {
+  uint64_t hits = 0, accesses = 0;
+};
+
+// Numbers of a timing run. Fractions are 0..1; what the machine cannot tell is absent, never zero.
+struct TimingSummary {
+  uint64_t cycles = 0;  // core clock
+  double clock_mhz = 0;
+  uint32_t resident_warps = 0,
+           warp_slots = 0;      // of a core: those that fit of the launch, those that there are
+  std::string residency_limit;  // what is used up first: "registers"
+  std::string memory_peaks;     // what the memory system could do at best, in one line
+  HitRate l1_rt, l1_shader, l2;
+  std::optional<double> dram_utilisation;  // data-bus cycles / DRAM cycles
+  std::optional<double> dram_efficiency;   // data-bus cycles / DRAM cycles with a request pending
+  std::optional<double> rt_occupancy;      // resident warps / warp slots, averaged over cycles with any
+  std::optional<double> rt_efficiency;     // active rays / lanes of resident warps
+};
+
+struct Summary {
+  std::string title;               // "WKND pt 128x128 2 spp on mobile"
+  std::string note;                // what differs from the original scene; "" = nothing
+  std::vector<std::string> files;  // paths written, picture first
+  uint64_t warp_instructions = 0;
+  double simt_efficiency = 0;  // active lanes / 32, averaged over instructions
+  std::vector<MixRow> mix;
+  uint64_t rays = 0;
+  double nodes_per_ray = 0;  // BVH nodes visited, average
+  uint32_t bvh_depth = 0;    // levels of the deepest path, top and bottom structure together
+  double wall_seconds = 0;
+  std::optional<TimingSummary> timing;  // absent: a functional run
+};
+
+std::string format_summary(const Summary& summary, const Terminal& terminal);
+
+}  // namespace glint::report

@@ -1,0 +1,99 @@
+// Textures that are generated: stone, bricks, planks, panels, cloth, bark and leaves.
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/generate/paintings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "scenes/generate/distance_field.h"
+#include "scenes/generate/solids.h"
+
+namespace glint::scenes {
+namespace {
+
+constexpr uint32_t kTile = 4;  // texels of a side that share a value of smooth noise
+
+uint8_t unorm(float value) {
+  return uint8_t(std::clamp(value, 0.0f, 1.0f) * 255 + 0.5f);
+}
+
+float grain(uint32_t x, uint32_t y, uint32_t seed) {
+  uint32_t h = x * 0x8da6b343u ^ y * 0xd8163841u ^ seed * 0xcb1ab31fu;
+  h = (h ^ h >> 15) * 0x2c1b3c6du;
+  return float((h ^ h >> 13) & 255) / 255;
+}
+
+// Rows of `rows` bricks with mortar, every other row moved by half a brick: 0 in the joint.
+float brick(float u, float v, float rows, float joint) {
+  const float row = std::floor(v * rows);
+  const float x = u * rows * 0.5f + (int(row) % 2 ? 0.5f : 0.0f), y = v * rows - row;
+  const float across = x - std::floor(x);
+  return std::min({across * 2, (1 - across) * 2, y, 1 - y}) < joint ? 0.55f : 1.0f;
+}
+
+float shade(Pattern pattern, float u, float v) {
+  switch (pattern) {
+    case Pattern::Stone:
+      return 1;
+    case Pattern::Bricks:
+      return brick(u, v, 16, 0.06f);
+    case Pattern::Planks:
+      return brick(v, u, 8, 0.03f) * (0.9f + 0.1f * wave(u * 60));
+    case Pattern::Panels:
+      return brick(u, v, 4, 0.02f);
+    case Pattern::Stripes:
+      return 0.75f + 0.25f * wave(u * 10);
+    case Pattern::Bark:
+      return 0.65f + 0.35f * wave(u * 14 + 0.4f * wave(v * 5));
+  }
+  return 1;
+}
+
+// Distance into the nearest leaflet, 0 and less outside; u, v in [0, 1], stem at the bottom.
+float leaf_depth(float u, float v) {
+  constexpr Vec2 kAxes[5] = {{0, 1}, {0.6f, 0.8f}, {-0.6f, 0.8f}, {0.96f, 0.28f}, {-0.96f, 0.28f}};
+  const float x = u - 0.5f, y = 0.75f - v;
+  float depth = std::abs(x) < 0.012f && y < 0 ? 0.2f : -1;  // the stem
+  for (const Vec2& axis : kAxes) {
+    const float along = x * axis[0] + y * axis[1], across = std::abs(x * axis[1] - y * axis[0]);
+    const float t = along / 0.48f;
+    if (t > 0 && t < 1) depth = std::max(depth, 1 - across / (0.55f * t * t * (1 - t) + 0.004f));
+  }
+  return depth;
+}
+
+}  // namespace
+
+Texture paint_texture(Pattern pattern, const Vec3& color, uint32_t width, uint32_t height, uint32_t seed) {
+  Texture texture{fmt::format("painted_{}", seed), width, height, {}};
+  texture.rgba.resize(4 * size_t(width) * height);
+  const uint32_t columns = width / kTile + 1;
+  std::vector<float> smooth(columns);
+  for (uint32_t y = 0; y < height; ++y) {
+    if (y % kTile == 0)
+      for (uint32_t x = 0; x < columns; ++x)
+        smooth[x] = 1 + 0.4f * fractal({float(x) * 0.05f, float(y / kTile) * 0.05f, float(seed) * 3.3f}, 2);
+    for (uint32_t x = 0; x < width; ++x) {
+      const float u = float(x) / float(width), v = float(y) / float(height);
+      const float light = shade(pattern, u, v) * smooth[x / kTile] * (0.92f + 0.08f * grain(x, y, seed));
+      uint8_t* texel = &texture.rgba[4 * (size_t(y) * width + x)];
+      for (size_t c = 0; c < 3; ++c) texel[c] = unorm(color[c] * light);
+      texel[3] = 255;
+    }
+  }
+  return texture;
+}
+
+Texture paint_leaf(const Vec3& color, uint32_t side, uint32_t seed) {
+  Texture texture = paint_texture(Pattern::Stone, color, side, side, seed);
+  texture.name = fmt::format("leaf_{}", seed);
+  for (uint32_t y = 0; y < side; ++y)
+    for (uint32_t x = 0; x < side; ++x) {
+      const float depth = leaf_depth((float(x) + 0.5f) / float(side), (float(y) + 0.5f) / float(side));
+      if (depth <= 0) texture.rgba[4 * (size_t(y) * side + x) + 3] = 0;
+    }
+  return texture;
+}
+
+}  // namespace glint::scenes

@@ -1,0 +1,204 @@
+// A scene made of all the OBJ files of a folder, one model a file, with its rules of colours by file name.
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/import/asset_folder.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "base/diagnostics.h"
+#include "scenes/import/obj_loader.h"
+#include "scenes/lumibench/builders.h"
+#include "scenes/mesh.h"
+
+namespace glint::scenes {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A file of the folder, or a copy of one.
+struct Source {
+  std::string file = {};  // an OBJ file that is there
+  bool is_copy = false;
+  Affine matrix{};
+};
+
+bool is_first_part(const fs::path& path) {
+  return path.extension() == ".aa" && path.stem().extension() == ".obj";
+}
+
+void read_copies(const fs::path& folder, std::map<std::string, Source>& sources) {
+  std::ifstream table(folder / "instances.tsv");
+  for (std::string line; std::getline(table, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream fields(line);
+    std::string name;
+    Source source{.is_copy = true};
+    fields >> name >> source.file;
+    for (float& value : source.matrix) fields >> value;
+    if (!fields)
+      throw UserError({(folder / "instances.tsv").string()}, "this line is not a copy: " + line,
+                      "expected: name, file, 12 numbers");
+    sources[fs::path(name).stem().string()] = source;
+  }
+}
+
+// By name, in order.
+std::map<std::string, Source> list_sources(const fs::path& folder) {
+  std::map<std::string, Source> sources;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const fs::path& path = entry.path();
+    if (path.extension() == ".obj") sources[path.stem().string()] = {.file = path.filename().string()};
+    if (is_first_part(path)) sources[path.stem().stem().string()] = {.file = path.stem().string()};
+  }
+  read_copies(folder, sources);
+  return sources;
+}
+
+class FolderLoader {
+ public:
+  FolderLoader(Scene& scene, const FolderRules& rules, fs::path folder)
+      : scene_(scene), rules_(rules), folder_(std::move(folder)), sources_(list_sources(folder_)) {
+    for (const auto& [name, source] : sources_)
+      if (source.is_copy) wanted_.insert(source.file);
+  }
+
+  uint64_t run(const LoadOptions& options) {
+    uint64_t models = 0;
+    size_t done = 0;
+    for (const auto& [name, source] : sources_) {
+      if (rules_.skip.empty() || name.find(rules_.skip) == std::string::npos) models += add(name, source);
+      if (options.progress) options.progress(double(++done) / double(sources_.size()));
+    }
+    return models;
+  }
+
+  // Material libraries without an OBJ file.
+  uint64_t absent() const {
+    uint64_t count = 0;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_))
+      count += entry.path().extension() == ".mtl" && !sources_.contains(entry.path().stem().string());
+    return count;
+  }
+
+ private:
+  bool add(const std::string& name, const Source& source) {
+    const size_t first = scene_.materials.size(), first_texture = scene_.textures.size();
+    Model model = source.is_copy ? copy(name, source) : load(source.file);
+    if (model.indices.empty()) {
+      scene_.materials.resize(first);
+      scene_.textures.resize(first_texture);
+      return false;
+    }
+    model.name = name;
+    if (rules_.scale != 1)
+      for (Vertex& vertex : model.vertices) vertex.position = vertex.position * rules_.scale;
+    scene_.models.push_back(std::move(model));
+    recolor(name, std::span(scene_.materials).subspan(first));
+    return true;
+  }
+
+  Model load(const std::string& file) {
+    const size_t first = scene_.materials.size();
+    Model model =
+        load_obj((folder_ / file).string(), scene_.materials, rules_.textures ? &scene_.textures : nullptr);
+    if (wanted_.contains(file)) keep(file, model, int32_t(first));
+    return model;
+  }
+
+  // Copies need their base with material indices that count from 0.
+  void keep(const std::string& file, const Model& model, int32_t first) {
+    Model& base = bases_[file] = model;
+    for (Vertex& vertex : base.vertices) vertex.material -= first;
+  }
+
+  Model copy(const std::string& name, const Source& source) {
+    if (!bases_.contains(source.file)) {
+      std::vector<Material> unused;
+      keep(source.file, load_obj((folder_ / source.file).string(), unused), 0);
+    }
+    const auto first = int32_t(scene_.materials.size());
+    const std::vector<Material> own = load_materials((folder_ / (name + ".mtl")).string());
+    scene_.materials.insert(scene_.materials.end(), own.begin(), own.end());
+    if (own.empty()) scene_.materials.push_back(lambertian(0.7f, 0.7f, 0.7f));
+    const auto last = int32_t(scene_.materials.size()) - 1;
+    Model model;
+    append_copy(model, bases_[source.file], source.matrix, -1);
+    for (Vertex& vertex : model.vertices) vertex.material = std::min(first + vertex.material, last);
+    return model;
+  }
+
+  void recolor(const std::string& name, std::span<Material> materials) {
+    const auto contains = [&](const std::string& part) { return name.find(part) != std::string::npos; };
+    for (const NameRule& rule : rules_.colors)
+      if (std::any_of(rule.parts.begin(), rule.parts.end(), contains)) {
+        std::fill(materials.begin(), materials.end(), rule.material);
+        break;
+      }
+    if (rules_.recolor) rules_.recolor(name, materials);
+  }
+
+  Scene& scene_;
+  const FolderRules& rules_;
+  fs::path folder_;
+  std::map<std::string, Source> sources_;
+  std::set<std::string> wanted_;
+  std::map<std::string, Model> bases_;
+};
+
+}  // namespace
+
+Material paint(int r, int g, int b) {
+  return lambertian(float(r) / 256, float(g) / 256, float(b) / 256);
+}
+
+void append_copy(Model& model, const Model& part, const Affine& matrix, int32_t material) {
+  const auto row = [&matrix](size_t i) -> Vec3 {
+    return {matrix[4 * i], matrix[4 * i + 1], matrix[4 * i + 2]};
+  };
+  const Vec3 rows[3] = {row(0), row(1), row(2)}, move{matrix[3], matrix[7], matrix[11]};
+  // the cofactors are the inverse transpose times the determinant, whose sign turns mirrored normals round
+  const Vec3 cofactors[3] = {cross(rows[1], rows[2]), cross(rows[2], rows[0]), cross(rows[0], rows[1])};
+  const float sign = dot(rows[0], cofactors[0]) < 0 ? -1.0f : 1.0f;
+  const auto first = uint32_t(model.vertices.size());
+  for (const Vertex& v : part.vertices) {
+    Vertex copy = v;
+    copy.position = Vec3{dot(rows[0], v.position), dot(rows[1], v.position), dot(rows[2], v.position)} + move;
+    copy.normal = normalized(
+        Vec3{dot(cofactors[0], v.normal), dot(cofactors[1], v.normal), dot(cofactors[2], v.normal)} * sign);
+    if (material >= 0) copy.material = material;
+    model.vertices.push_back(copy);
+  }
+  for (const uint32_t index : part.indices) model.indices.push_back(first + index);
+}
+
+std::string find_folder(const std::string& assets, const std::vector<std::string>& folders) {
+  for (const std::string& candidate : folders) {
+    const fs::path folder = fs::path(assets) / candidate;
+    std::error_code error;
+    if (!fs::is_directory(folder, error)) continue;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+      if (entry.path().extension() == ".obj") return folder.string();
+  }
+  return "";
+}
+
+void load_folder(Scene& scene, const LoadOptions& options, const FolderRules& rules) {
+  const std::string folder = find_folder(options.assets, rules.folders);
+  if (folder.empty())
+    throw UserError(
+        {}, fmt::format("no files for scene {} in the assets folder '{}'", scene.name, options.assets),
+        fmt::format("expected OBJ files in one of {} there; without an assets folder the scene is built in",
+                    fmt::join(rules.folders, ", ")));
+  FolderLoader loader(scene, rules, folder);
+  const uint64_t models = loader.run(options), absent = loader.absent();
+  scene.form = absent == 0 ? "original" : "partial";
+  scene.note = absent == 0 ? fmt::format("Complete: the original's {} models.", models)
+                           : fmt::format("{} models; {} files of the original are absent.", models, absent);
+}
+
+}  // namespace glint::scenes

@@ -1,0 +1,109 @@
+// Materials and textures of a glTF file.
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/import/gltf_materials.h"
+
+#include <map>
+#include <tiny_gltf.h>
+#include <tuple>
+
+#include "scenes/lumibench/builders.h"
+
+namespace glint::scenes {
+namespace {
+
+using Pixels = std::vector<unsigned char>;
+
+// A number of an extension's object, or `otherwise`.
+double number_of(const tinygltf::Material& m, const char* extension, const char* name, double otherwise) {
+  const auto found = m.extensions.find(extension);
+  if (found == m.extensions.end() || !found->second.IsObject() || !found->second.Has(name)) return otherwise;
+  return found->second.Get(name).GetNumberAsDouble();
+}
+
+class MaterialReader {
+ public:
+  MaterialReader(Scene& scene, const tinygltf::Model& file) : scene_(scene), file_(file) {}
+
+  Material read(const tinygltf::Material& m) {
+    const tinygltf::PbrMetallicRoughness& pbr = m.pbrMetallicRoughness;
+    const auto& c = pbr.baseColorFactor;
+    const Vec3 color = c.size() == 4 ? Vec3{float(c[0]), float(c[1]), float(c[2])} : Vec3{1, 1, 1};
+    const auto& e = m.emissiveFactor;
+    const auto strength = float(number_of(m, "KHR_materials_emissive_strength", "emissiveStrength", 1));
+    // Model: an emissive texture counts as if it were white.
+    if (e.size() == 3 && e[0] + e[1] + e[2] > 0)
+      return diffuse_light(float(e[0]) * strength, float(e[1]) * strength, float(e[2]) * strength);
+    if (number_of(m, "KHR_materials_transmission", "transmissionFactor", 0) > 0.5)
+      return dielectric(
+          float(number_of(m, "KHR_materials_ior", "ior", 1.5)));  // 1.5: the extension's default
+    const auto [metal, roughness] = metal_and_roughness(pbr);
+    // Model: a surface is all metal or none, and a metal's lobe is a ball of the radius of its roughness.
+    Material out = metal > 0.5 ? metallic(color[0], color[1], color[2], float(roughness))
+                               : lambertian(color[0], color[1], color[2]);
+    if (pbr.baseColorTexture.index >= 0) out.texture = texture(pbr.baseColorTexture.index, m);
+    return out;
+  }
+
+ private:
+  // Model: a map of metal and roughness counts with its mean.
+  std::pair<double, double> metal_and_roughness(const tinygltf::PbrMetallicRoughness& pbr) const {
+    double metal = pbr.metallicFactor, roughness = pbr.roughnessFactor;
+    if (pbr.metallicRoughnessTexture.index < 0) return {metal, roughness};
+    const Pixels& texels = image_of(file_.textures.at(size_t(pbr.metallicRoughnessTexture.index))).image;
+    double green = 0, blue = 0;
+    for (size_t i = 0; i + 3 < texels.size(); i += 4) green += texels[i + 1], blue += texels[i + 2];
+    const double scale = 4.0 / 255 / double(std::max<size_t>(texels.size(), 4));
+    return {metal * blue * scale, roughness * green * scale};
+  }
+
+  const tinygltf::Image& image_of(const tinygltf::Texture& texture) const {
+    return file_.images.at(size_t(texture.source));
+  }
+
+  // Choice: blending is a mask of one half: the shaders know only hits and misses.
+  int32_t texture(int index, const tinygltf::Material& m) {
+    const double cutoff = m.alphaMode == "MASK" ? m.alphaCutoff : m.alphaMode == "BLEND" ? 0.5 : -1;
+    const auto& c = m.pbrMetallicRoughness.baseColorFactor;
+    const double factor = c.size() == 4 ? c[3] : 1;
+    const auto [place, is_new] = known_.try_emplace({index, cutoff, factor}, int32_t(scene_.textures.size()));
+    if (!is_new) return place->second;
+    const tinygltf::Texture& source = file_.textures.at(size_t(index));
+    const tinygltf::Image& image = image_of(source);
+    Texture out{.name = image.name.empty() ? image.uri : image.name,
+                .width = uint32_t(image.width),
+                .height = uint32_t(image.height),
+                .rgba = image.image};
+    out.srgb = true;  // glTF 2.0, 3.9.2: base colours are sRGB
+    // Model: mirrored repetition repeats.
+    out.repeat = source.sampler < 0 ||
+                 file_.samplers.at(size_t(source.sampler)).wrapS != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+    for (size_t i = 3; i < out.rgba.size(); i += 4) {
+      const bool hidden = double(out.rgba[i]) * factor < cutoff * 255;
+      scene_.alpha_test |= hidden;
+      out.rgba[i] = hidden ? 0 : 255;
+    }
+    scene_.textures.push_back(std::move(out));
+    return place->second;
+  }
+
+  Scene& scene_;
+  const tinygltf::Model& file_;
+  std::map<std::tuple<int, double, double>, int32_t>
+      known_;  // texture, cutoff, alpha factor -> index in the scene
+};
+
+}  // namespace
+
+std::vector<int32_t> add_gltf_materials(Scene& scene, const tinygltf::Model& file) {
+  MaterialReader reader(scene, file);
+  std::vector<int32_t> indices;
+  const auto add = [&](const Material& material) {
+    indices.push_back(int32_t(scene.materials.size()));
+    scene.materials.push_back(material);
+  };
+  for (const tinygltf::Material& m : file.materials) add(reader.read(m));
+  add(lambertian(0.7f, 0.7f, 0.7f));  // Choice: as OBJ files without a library, not glTF's white
+  return indices;
+}
+
+}  // namespace glint::scenes

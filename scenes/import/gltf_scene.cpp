@@ -1,0 +1,225 @@
+// A glTF file's nodes as instances, with its camera and lamp.
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <map>
+#include <stdexcept>
+#include <tiny_gltf.h>
+
+#include "base/diagnostics.h"
+#include "scenes/import/gltf_materials.h"
+#include "scenes/import/gltf_mesh.h"
+#include "scenes/import/scene_file.h"
+#include "scenes/import/texture_loader.h"
+#include "scenes/lumibench/builders.h"
+#include "scenes/mesh.h"
+
+namespace glint::scenes {
+namespace {
+
+using Matrix = std::array<double, 16>;  // columns one after the other, as glTF has them
+constexpr Matrix kUnit{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+constexpr int kDeepest = 256;  // nodes above each other; more are a loop
+
+// What the picture may be without: extensions that change more are refused.
+constexpr std::array<std::string_view, 7> kKnownExtensions{
+    "KHR_lights_punctual", "KHR_materials_transmission",
+    "KHR_materials_ior",   "KHR_materials_emissive_strength",
+    "KHR_materials_unlit", "KHR_materials_specular",
+    "KHR_materials_volume"};
+
+Matrix product(const Matrix& a, const Matrix& b) {
+  Matrix out{};
+  for (size_t c = 0; c < 4; ++c)
+    for (size_t r = 0; r < 4; ++r)
+      for (size_t k = 0; k < 4; ++k) out[c * 4 + r] += a[k * 4 + r] * b[c * 4 + k];
+  return out;
+}
+
+// glTF 2.0, 3.5.3: a matrix, or translation * rotation (a quaternion x y z w) * scale.
+Matrix local_matrix(const tinygltf::Node& node) {
+  Matrix out = kUnit;
+  if (node.matrix.size() == 16) {
+    std::copy(node.matrix.begin(), node.matrix.end(), out.begin());
+    return out;
+  }
+  if (node.rotation.size() == 4) {
+    const double x = node.rotation[0], y = node.rotation[1], z = node.rotation[2], w = node.rotation[3];
+    out = {1 - 2 * (y * y + z * z),
+           2 * (x * y + z * w),
+           2 * (x * z - y * w),
+           0,
+           2 * (x * y - z * w),
+           1 - 2 * (x * x + z * z),
+           2 * (y * z + x * w),
+           0,
+           2 * (x * z + y * w),
+           2 * (y * z - x * w),
+           1 - 2 * (x * x + y * y),
+           0,
+           0,
+           0,
+           0,
+           1};
+  }
+  for (size_t c = 0; c < 3 && node.scale.size() == 3; ++c)
+    for (size_t r = 0; r < 3; ++r) out[c * 4 + r] *= node.scale[c];
+  for (size_t r = 0; r < 3 && node.translation.size() == 3; ++r) out[12 + r] = node.translation[r];
+  return out;
+}
+
+Affine affine(const Matrix& m) {
+  Affine out;
+  for (size_t r = 0; r < 3; ++r)
+    for (size_t c = 0; c < 4; ++c) out[4 * r + c] = float(m[4 * c + r]);
+  return out;
+}
+Vec3 column(const Matrix& m, size_t c) {
+  return {float(m[4 * c]), float(m[4 * c + 1]), float(m[4 * c + 2])};
+}
+
+class Nodes {
+ public:
+  Nodes(Scene& scene, const tinygltf::Model& file, const std::string& path, const LoadOptions& options)
+      : scene_(scene),
+        file_(file),
+        path_(path),
+        options_(options),
+        materials_(add_gltf_materials(scene, file)) {}
+
+  void add(int index, const Matrix& above, int depth) {
+    if (depth > kDeepest) throw UserError({path_}, "its nodes form a loop");
+    const tinygltf::Node& node = file_.nodes.at(size_t(index));
+    const Matrix matrix = product(above, local_matrix(node));
+    if (node.mesh >= 0) scene_.instances.push_back({model_of(node.mesh), affine(matrix)});
+    if (node.camera >= 0 && !has_camera_) camera(file_.cameras.at(size_t(node.camera)), matrix);
+    if (const auto light = node.extensions.find("KHR_lights_punctual");
+        light != node.extensions.end() && light->second.Has("light"))
+      lamp(file_.lights.at(size_t(light->second.Get("light").GetNumberAsInt())), matrix);
+    for (const int child : node.children) add(child, matrix, depth + 1);
+  }
+
+  // Where nothing of a kind was there; and instances without triangles go, for nothing could name them.
+  void finish() {
+    std::erase_if(scene_.instances,
+                  [&](const Instance& i) { return scene_.models[i.model].indices.empty(); });
+    if (scene_.instances.empty()) throw UserError({path_}, "its scene has no triangles");
+    if (has_lamp_) {
+      const float radius = std::max(kLampSize * extent(), 1e-6f);
+      scene_.materials.push_back(diffuse_light(kLampColor, kLampColor, kLampColor));
+      scene_.instances.push_back({uint32_t(scene_.models.size()), kIdentity});
+      scene_.models.push_back(
+          make_sphere("lamp", scene_.camera.light_position, radius, int32_t(scene_.materials.size()) - 1));
+      scene_.camera.light_radius = radius;
+    }
+    const auto glows = [&](const Material& m) { return m.model == MaterialModel::DiffuseLight; };
+    scene_.camera.has_sky = std::none_of(scene_.materials.begin(), scene_.materials.end(), glows);
+  }
+
+ private:
+  static constexpr float kLampSize =
+      0.05f;  // of the scene's extent. Choice: paths find a lamp by chance, so it is large
+  static constexpr float kLampColor = 15;  // as the lamps of LumiBench's scenes
+
+  uint32_t model_of(int mesh) {
+    const auto [place, is_new] = models_.try_emplace(mesh, uint32_t(scene_.models.size()));
+    if (is_new) {
+      scene_.models.push_back(read_mesh(file_, file_.meshes.at(size_t(mesh)), materials_, path_));
+      if (options_.progress) options_.progress(double(models_.size()) / double(file_.meshes.size()));
+    }
+    return place->second;
+  }
+
+  void camera(const tinygltf::Camera& source, const Matrix& m) {
+    if (source.type != "perspective") return;
+    has_camera_ = true;
+    Camera& out = scene_.camera;
+    out.eye = column(m, 3);
+    out.target = out.eye - normalized(column(m, 2));
+    out.up = normalized(column(m, 1));
+    out.field_of_view = float(source.perspective.yfov * 180 / M_PI);
+  }
+
+  // Model: a point or spot light is a glowing ball, the same in all directions; a directional one is the
+  // sky's.
+  void lamp(const tinygltf::Light& light, const Matrix& m) {
+    if (has_lamp_ || light.type == "directional") return;
+    has_lamp_ = true;
+    scene_.camera.light_position = column(m, 3);
+  }
+
+  float extent() const {
+    const Bounds box = world_bounds(scene_);
+    return length(box.upper - box.lower);
+  }
+
+  Scene& scene_;
+  const tinygltf::Model& file_;
+  const std::string& path_;
+  const LoadOptions& options_;
+  const std::vector<int32_t> materials_;
+  std::map<int, uint32_t> models_;
+  bool has_camera_ = false, has_lamp_ = false;
+};
+
+bool decode(tinygltf::Image* image, int, std::string* error, std::string*, int, int,
+            const unsigned char* bytes, int size, void*) {
+  try {
+    Texture texture = decode_texture(image->uri.empty() ? image->name : image->uri, {bytes, size_t(size)});
+    image->width = int(texture.width), image->height = int(texture.height);
+    image->component = 4, image->bits = 8;
+    image->image = std::move(texture.rgba);
+    return true;
+  } catch (const UserError& failure) {
+    *error += failure.what();
+    return false;
+  }
+}
+
+std::string note_of(const tinygltf::Model& file) {
+  std::string note = "From a glTF file.";
+  if (!file.skins.empty() || !file.animations.empty()) note += " Skins and animations are not read.";
+  const auto blends = [](const tinygltf::Material& m) { return m.alphaMode == "BLEND"; };
+  if (std::any_of(file.materials.begin(), file.materials.end(), blends))
+    note += " Blending is a mask of one half.";
+  return note;
+}
+
+tinygltf::Model read_file(const std::string& path) {
+  tinygltf::TinyGLTF loader;
+  loader.SetImageLoader(decode, nullptr);
+  tinygltf::Model file;
+  std::string error, warning;
+  const bool good = path.ends_with(".glb") ? loader.LoadBinaryFromFile(&file, &error, &warning, path)
+                                           : loader.LoadASCIIFromFile(&file, &error, &warning, path);
+  if (!good)
+    throw UserError({path},
+                    fmt::format("this file cannot be read: {}", error.empty() ? "it is no glTF 2.0" : error));
+  for (const std::string& name : file.extensionsRequired)
+    if (std::find(kKnownExtensions.begin(), kKnownExtensions.end(), name) == kKnownExtensions.end())
+      throw UserError({path}, fmt::format("it requires the extension {}, which is not read", name),
+                      "export it without compression or quantisation");
+  return file;
+}
+
+}  // namespace
+
+Scene load_gltf(const std::string& path, const LoadOptions& options) {
+  const tinygltf::Model file = read_file(path);
+  Scene scene;
+  try {
+    Nodes nodes(scene, file, path, options);
+    if (file.scenes.empty()) throw UserError({path}, "it has no scene");
+    for (const int node : file.scenes.at(size_t(std::max(0, file.defaultScene))).nodes)
+      nodes.add(node, kUnit, 0);
+    nodes.finish();
+  } catch (const std::out_of_range&) {
+    throw UserError({path}, "it names something that is not there");
+  }
+  scene.note = note_of(file);
+  return scene;
+}
+
+}  // namespace glint::scenes

@@ -1,0 +1,177 @@
+// Wavefront OBJ files as models, by the rules of LumiBench's application.
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/import/obj_loader.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <map>
+#include <tiny_obj_loader.h>
+#include <unordered_map>
+
+#include "base/diagnostics.h"
+#include "scenes/import/texture_loader.h"
+#include "scenes/lumibench/builders.h"
+#include "scenes/mesh.h"
+
+namespace glint::scenes {
+namespace {
+
+// What makes two corners the same vertex: the values, not the file's indices.
+struct VertexHash {
+  size_t operator()(const Vertex& v) const {
+    uint64_t state = uint64_t(uint32_t(v.material)) + 0x9e3779b97f4a7c15;
+    const auto mix = [&state](float value) {
+      // + 0.0f: the two zeros are equal and must hash alike
+      state = (state ^ std::bit_cast<uint32_t>(value + 0.0f)) * 0xff51afd7ed558ccd;
+      state ^= state >> 32;
+    };
+    for (const float value : v.position) mix(value);
+    for (const float value : v.normal) mix(value);
+    for (const float value : v.texture_coordinate) mix(value);
+    return size_t(state);
+  }
+};
+struct VertexEqual {
+  bool operator()(const Vertex& a, const Vertex& b) const {
+    return a.position == b.position && a.normal == b.normal && a.texture_coordinate == b.texture_coordinate &&
+           a.material == b.material;
+  }
+};
+
+Vertex corner_of(const tinyobj::attrib_t& attributes, const tinyobj::index_t& index, int32_t material) {
+  const auto at = [](const std::vector<float>& values, int i) { return values[size_t(i)]; };
+  Vertex vertex;
+  const auto triple = [&at](const std::vector<float>& values, int i) -> Vec3 {
+    return {at(values, 3 * i), at(values, 3 * i + 1), at(values, 3 * i + 2)};
+  };
+  vertex.position = triple(attributes.vertices, index.vertex_index);
+  if (index.normal_index >= 0) vertex.normal = triple(attributes.normals, index.normal_index);
+  if (index.texcoord_index >= 0)
+    vertex.texture_coordinate = {at(attributes.texcoords, 2 * index.texcoord_index),
+                                 1 - at(attributes.texcoords, 2 * index.texcoord_index + 1)};
+  vertex.material = material;
+  return vertex;
+}
+
+std::string contents(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+bool parse(tinyobj::ObjReader& reader, const std::string& path) {
+  tinyobj::ObjReaderConfig config;
+  config.triangulate = false;  // the loader's own triangulation is not a fan
+  config.vertex_color = false;
+  const std::vector<std::string> parts = parts_of(path);
+  if (parts.empty()) return reader.ParseFromFile(path, config);
+  std::string text;
+  for (const std::string& part : parts) text += contents(part);
+  return reader.ParseFromString(
+      text, contents(std::filesystem::path(path).replace_extension(".mtl").string()), config);
+}
+
+tinyobj::ObjReader read(const std::string& path) {
+  tinyobj::ObjReader reader;
+  if (!parse(reader, path))
+    throw UserError({path}, "this OBJ file cannot be read: " + reader.Error(),
+                    "expected a Wavefront OBJ file");
+  // A named material library that is absent would silently turn every colour grey.
+  if (reader.Warning().find("not found") != std::string::npos && reader.GetMaterials().empty())
+    throw UserError({path}, "its material library cannot be read: " + reader.Warning(),
+                    "put the .mtl file beside the .obj file");
+  return reader;
+}
+
+Material material_of(const tinyobj::material_t& m) {
+  return lambertian(float(m.diffuse[0]), float(m.diffuse[1]), float(m.diffuse[2]));
+}
+
+// `folder` is the library's: texture names are relative to it.
+void add_texture(Material& material, std::string name, const std::filesystem::path& folder,
+                 std::vector<Texture>& textures) {
+  if (name.empty()) return;
+  while (std::isspace(static_cast<unsigned char>(name.back()))) name.pop_back();
+  std::replace(name.begin(), name.end(), '\\', '/');
+  textures.push_back(load_texture((folder / name).string()));
+  material.texture = int32_t(textures.size() - 1);
+  if (material.diffuse == Vec4{0, 0, 0, 1}) material.diffuse = {1, 1, 1, 1};
+}
+
+}  // namespace
+
+std::vector<std::string> parts_of(const std::string& path) {
+  std::vector<std::string> parts;
+  std::error_code error;
+  if (std::filesystem::exists(path, error)) return parts;
+  for (char first = 'a'; first <= 'z'; ++first)
+    for (char second = 'a'; second <= 'z'; ++second) {
+      std::string part = path + '.' + first + second;
+      if (!std::filesystem::is_regular_file(part, error)) return parts;
+      parts.push_back(std::move(part));
+    }
+  return parts;
+}
+
+std::vector<Material> load_materials(const std::string& path) {
+  std::ifstream file(path);
+  std::map<std::string, int> names;
+  std::vector<tinyobj::material_t> read;
+  std::string warning, error;
+  if (file) tinyobj::LoadMtl(&names, &read, &file, &warning, &error);
+  if (!file.is_open() || !error.empty())
+    throw UserError({path}, "this material library cannot be read: " + error, "expected an MTL file");
+  std::vector<Material> materials;
+  for (const tinyobj::material_t& m : read) materials.push_back(material_of(m));
+  return materials;
+}
+
+std::string find_asset(const std::string& assets, const std::string& scene,
+                       const std::vector<std::string>& candidates) {
+  for (const std::string& candidate : candidates) {
+    const std::filesystem::path path = std::filesystem::path(assets) / candidate;
+    std::error_code error;
+    if (std::filesystem::is_regular_file(path, error)) return path.string();
+  }
+  throw UserError({}, fmt::format("no file for scene {} in the assets folder '{}'", scene, assets),
+                  fmt::format("expected one of {} there; without an assets folder the scene is built in",
+                              fmt::join(candidates, ", ")));
+}
+
+Model load_obj(const std::string& path, std::vector<Material>& materials, std::vector<Texture>* textures) {
+  const tinyobj::ObjReader reader = read(path);
+  const auto base = int32_t(materials.size());
+  for (const tinyobj::material_t& m : reader.GetMaterials()) {
+    materials.push_back(material_of(m));
+    if (textures)
+      add_texture(materials.back(), m.diffuse_texname, std::filesystem::path(path).parent_path(), *textures);
+  }
+  if (reader.GetMaterials().empty()) materials.push_back(lambertian(0.7f, 0.7f, 0.7f));
+
+  Model model;
+  model.name = std::filesystem::path(path).stem().string();
+  std::unordered_map<Vertex, uint32_t, VertexHash, VertexEqual> known;
+  const auto index_of = [&](const Vertex& vertex) {
+    const auto [place, is_new] = known.try_emplace(vertex, uint32_t(model.vertices.size()));
+    if (is_new) model.vertices.push_back(vertex);
+    return place->second;
+  };
+  const tinyobj::attrib_t& attributes = reader.GetAttrib();
+  for (const tinyobj::shape_t& shape : reader.GetShapes()) {
+    const tinyobj::index_t* corner = shape.mesh.indices.data();
+    for (size_t face = 0; face < shape.mesh.num_face_vertices.size(); ++face) {
+      const size_t corners = shape.mesh.num_face_vertices[face];
+      const int32_t material = base + std::max(0, shape.mesh.material_ids[face]);
+      for (size_t k = 2; k < corners; ++k)
+        for (const size_t i : {size_t{0}, k - 1, k})
+          model.indices.push_back(index_of(corner_of(attributes, corner[i], material)));
+      corner += corners;
+    }
+  }
+  if (attributes.normals.empty()) compute_smooth_normals(model);
+  return model;
+}
+
+}  // namespace glint::scenes

@@ -1,0 +1,100 @@
+// Choice of loader, and the camera of files that have none.
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/import/scene_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "base/diagnostics.h"
+#include "scenes/import/asset_folder.h"
+#include "scenes/import/obj_loader.h"
+#include "scenes/mesh.h"
+
+namespace glint::scenes {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr float kFieldOfView = 40;           // degrees, of a camera that a file does not have
+constexpr Vec3 kFromThere{0.55f, 0.35f, 1};  // it looks from the right, a little above
+
+std::string ending_of(const std::string& name) {
+  std::string ending = fs::path(name).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  return ending;
+}
+
+// Sees the whole box, wherever it lies.
+Camera camera_around(const Bounds& box) {
+  const Vec3 centre = (box.lower + box.upper) * 0.5f;
+  const float radius = std::max(length(box.upper - box.lower) * 0.5f, 1e-6f);
+  Camera camera;
+  camera.field_of_view = kFieldOfView;
+  camera.target = centre;
+  camera.eye = centre + normalized(kFromThere) * (radius / sine(double(kFieldOfView) / 360 * M_PI));
+  return camera;
+}
+
+Scene load_obj_scene(const std::string& path) {
+  Scene scene;
+  scene.models.push_back(load_obj(path, scene.materials, &scene.textures));
+  if (scene.models[0].indices.empty()) throw UserError({path}, "this file has no triangles");
+  scene.models[0].name = fs::path(path).stem().string();
+  return scene;
+}
+
+}  // namespace
+
+bool names_scene_file(const std::string& name) {
+  const std::string ending = ending_of(name);
+  return ending == ".obj" || ending == ".gltf" || ending == ".glb";
+}
+
+Model flattened(const Scene& scene) {
+  Model out;
+  for (const Instance& instance : instances_of(scene))
+    if (const Model& model = scene.models[instance.model]; !model.is_procedural())
+      append_copy(out, model, instance.to_world, -1);
+  return out;
+}
+
+Bounds world_bounds(const Scene& scene) {
+  constexpr float kMost = std::numeric_limits<float>::max();
+  Bounds out{{kMost, kMost, kMost}, {-kMost, -kMost, -kMost}};
+  const auto add = [&out](const Model& model, const Affine& m) {
+    const Bounds box = bounds(model);  // a sphere's vertices are those of its tessellation
+    for (size_t corner = 0; corner < 8; ++corner)
+      for (size_t r = 0; r < 3; ++r) {
+        float x = m[4 * r + 3];
+        for (size_t k = 0; k < 3; ++k) x += m[4 * r + k] * (corner >> k & 1 ? box.upper[k] : box.lower[k]);
+        out.lower[r] = std::min(out.lower[r], x);
+        out.upper[r] = std::max(out.upper[r], x);
+      }
+  };
+  for (const Instance& instance : instances_of(scene))
+    if (!scene.models[instance.model].vertices.empty()) add(scene.models[instance.model], instance.to_world);
+  return out;
+}
+
+Scene load_scene_file(const std::string& path, const LoadOptions& options) {
+  std::error_code failed;
+  if (!fs::is_regular_file(path, failed)) throw UserError({path}, "there is no such file");
+  Scene scene = ending_of(path) == ".obj" ? load_obj_scene(path) : load_gltf(path, options);
+  scene.name = fs::path(path).stem().string();
+  scene.form = "file";
+  if (scene.camera.eye == scene.camera.target) {
+    const bool has_sky = scene.camera.has_sky;
+    const Vec3 light = scene.camera.light_position;
+    const float radius = scene.camera.light_radius;
+    scene.camera = camera_around(world_bounds(scene));
+    scene.camera.has_sky = has_sky, scene.camera.light_position = light, scene.camera.light_radius = radius;
+    scene.note += " The file has no camera: this one sees all of it.";
+  }
+  return scene;
+}
+
+}  // namespace glint::scenes

@@ -1,0 +1,33 @@
+// SHIP: a schooner against the sky, from the original file or built in.
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/import/obj_loader.h"
+#include "scenes/lumibench/builders.h"
+#include "scenes/mesh.h"
+
+namespace glint::scenes {
+
+Scene build_ship(const LoadOptions& options) {
+  Scene scene;
+  scene.name = "SHIP";
+  scene.camera = {.eye = {378, 278, 500}, .target = {178, 278, 0}, .field_of_view = 50};
+  Model ship;
+  if (options.assets.empty()) {
+    ship = make_schooner(scene.materials);
+    scene.form = "built-in";
+    scene.note =
+        "A procedural schooner with the original's bounds, number of materials and about its triangle count "
+        "(6,255).";
+  } else {
+    const std::string path = find_asset(options.assets, scene.name,
+                                        {"assets/models/karimSchooner.obj", "models/karimSchooner.obj",
+                                         "SHIP/karimSchooner.obj", "karimSchooner.obj"});
+    ship = load_obj(path, scene.materials);
+    scene.form = "original";
+    scene.note = "Complete: the original mesh from the assets folder.";
+  }
+  place(ship, {.translation = {173, -9, -377}, .scale = 100, .rotation_y = 75});
+  scene.models.push_back(std::move(ship));
+  return scene;
+}
+
+}  // namespace glint::scenes
