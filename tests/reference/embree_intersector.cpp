@@ -1,6 +1,8 @@
-// Both intersectors on one Embree tree: geometry i is model i; spheres, and for the exact one triangles too,
-// are user geometry whose candidates go through tests/reference/shapes.cpp. SPDX-License-Identifier:
-// Apache-2.0
+// Both intersectors on one Embree tree.
+// SPDX-License-Identifier: Apache-2.0
+//
+// Geometry i of the tree is model i. Spheres are user geometry whose candidates tests/reference/shapes.cpp
+// decides; the exact intersector treats triangles in the same way.
 #include <algorithm>
 #include <cstring>
 #include <limits>
