@@ -94,7 +94,7 @@ def statement(item, text):
     return add
 
 
-@statement(4, "the RT units of PARK_PT, BUNNY_AO and SHIP_SH come to their 4 warps (certain when the mean is above 3)")
+@statement(4, "the RT units of PARK_PT, BUNNY_AO and SHIP_SH reach their limit of 4 warps (certain when the mean is above 3)")
 def _(t, **_):
     means = {name: 4 * t.get(name, "rt_occupancy") for name in ("PARK_PT", "BUNNY_AO", "SHIP_SH")}
     text = ", ".join(f"{name} {mean:.2f} warps on average" for name, mean in means.items())
@@ -104,7 +104,7 @@ def _(t, **_):
 
 
 def drift(rows, value, weight):
-    """How far the mean of all that has passed still is from the last one, as a fraction: at most in the first quarter, and in the second half."""
+    """How far the running mean is from its last value, as a fraction: the largest in the first quarter, and the largest in the second half."""
     rows = [row for row in rows if row["instructions"] > 0]
     total = weights = 0.0
     means = []
@@ -118,8 +118,8 @@ def drift(rows, value, weight):
     return max(off[:len(off) // 4]), max(off[len(off) // 2:])
 
 
-@statement(4, "IPC and L1D miss rate become stable after fluctuating at first (the mean of what has passed: within 10 % of the last "
-              "in the second half, farther off in the first quarter)")
+@statement(4, "IPC and L1D miss rate become stable after fluctuating at first (the running mean stays within 10 % of its last "
+              "value in the second half, and is farther from it in the first quarter)")
 def _(t, series=None, **_):
     if not series:
         raise Missing("needs --series, the series.csv of a run with --sample")
@@ -147,7 +147,7 @@ def _(t, **_):
                                                    f"{t.get('PARTY_PT', 'triangles'):.0f} triangles (rank {mine['triangles'] + 1:g})")
 
 
-@statement(5, "FRST has more triangles than SPRNG and about its depth (within 20 %)")
+@statement(5, "FRST has more triangles than SPRNG and about the same depth (within 20 %)")
 def _(t, **_):
     more, depth = t.get("FRST_PT", "triangles") > t.get("SPRNG_PT", "triangles"), [t.get(n, "bvh_depth") for n in ("FRST_PT", "SPRNG_PT")]
     return more and abs(depth[0] - depth[1]) <= 0.2 * depth[1], f"depths {depth[0]:.0f} and {depth[1]:.0f}"
@@ -159,7 +159,7 @@ def _(t, **_):
     return depth[0] >= 0.8 * depth[1] and triangles[0] < triangles[1] / 4, f"depths {depth[0]:.0f} and {depth[1]:.0f}, triangles {triangles[0]:.0f} and {triangles[1]:.0f}"
 
 
-@statement(5, "PT cycles follow none of triangles, instances and depth (each |r| below 0.7)")
+@statement(5, "PT cycles correlate with none of triangles, instances and depth (each r between -0.7 and 0.7)")
 def _(t, **_):
     whole(t)
     r = {m: correlation(t.values("cycles", "PT"), t.values(m, "PT")) for m in ("triangles", "instances", "bvh_depth")}
@@ -173,7 +173,7 @@ def _(t, **_):
     return not wrong, f"{t.mean('ins_alu%'):.1f} % on average" + (", but not in " + " ".join(wrong) if wrong else "")
 
 
-@statement(6, "latency goes to RT most, then to Mem (means over the workloads)")
+@statement(6, "RT has the largest share of the latency and Mem the second largest (means over the workloads)")
 def _(t, **_):
     rt, mem, alu = (t.mean(m) for m in ("lat_rt%", "lat_mem%", "lat_alu%"))
     return rt > mem > alu, f"RT {rt:.1f} %, Mem {mem:.1f} %, ALU {alu:.1f} %"
@@ -184,7 +184,7 @@ def _(t, **_):
     return t.get("PARK_PT", "lat_rt%") > 50, f"RT {t.get('PARK_PT', 'lat_rt%'):.1f} %"
 
 
-@statement(6, "WKND_PT's latency is Mem's more than RT's")
+@statement(6, "Mem has a larger share of WKND_PT's latency than RT")
 def _(t, **_):
     return t.get("WKND_PT", "lat_mem%") > t.get("WKND_PT", "lat_rt%"), f"Mem {t.get('WKND_PT', 'lat_mem%'):.1f} %, RT {t.get('WKND_PT', 'lat_rt%'):.1f} %"
 
@@ -201,7 +201,7 @@ def by_shader(t, metric):
     return pt < ao < sh, f"PT {percent(pt)}, AO {percent(ao)}, SH {percent(sh)}"
 
 
-@statement(7, "RT efficiency: PT lowest, AO between, SH highest (means)")
+@statement(7, "RT efficiency is lowest for PT, higher for AO and highest for SH (means)")
 def _(t, **_):
     return by_shader(t, "rt_efficiency")
 
@@ -220,7 +220,7 @@ def _(t, **_):
     return t.get("PARK_PT", "rt_efficiency") < t.mean("rt_efficiency", "PT"), f"{percent(t.get('PARK_PT', 'rt_efficiency'))}, mean of PT {percent(t.mean('rt_efficiency', 'PT'))}"
 
 
-@statement(7, "SIMT efficiency: the same order, PT, AO, SH (means)")
+@statement(7, "SIMT efficiency has the same order: PT, AO, SH (means)")
 def _(t, **_):
     return by_shader(t, "simt_efficiency")
 
@@ -243,24 +243,24 @@ def _(t, **_):
     return 0.4 <= t.mean("rt_miss_rate") <= 0.6, f"{percent(t.mean('rt_miss_rate'))}"
 
 
-@statement(9, "PARK_PT's miss more than the average")
+@statement(9, "traceRay's reads in PARK_PT miss more often than the average")
 def _(t, **_):
     return t.get("PARK_PT", "rt_miss_rate") > t.mean("rt_miss_rate"), f"{percent(t.get('PARK_PT', 'rt_miss_rate'))}, paper 66 %"
 
 
-@statement(9, "the L2 misses like the L1 (means within 15 points)")
+@statement(9, "the L2 misses about as often as the L1 (means within 15 points)")
 def _(t, **_):
     l1, l2 = t.mean("l1d_miss_rate"), t.mean("l2_miss_rate")
     return abs(l1 - l2) <= 0.15, f"L1D {percent(l1)}, L2 {percent(l2)}"
 
 
-@statement(9, "BUNNY_AO's misses are mostly the shaders'")
+@statement(9, "most misses of BUNNY_AO come from the shaders")
 def _(t, **_):
     rt, shader = rt_and_shader_misses(t, "BUNNY_AO")
     return shader > rt, f"shaders {percent(shader / (rt + shader))}"
 
 
-@statement(9, "PARK_PT's misses are mostly the traversal's")
+@statement(9, "most misses of PARK_PT come from the traversal")
 def _(t, **_):
     rt, shader = rt_and_shader_misses(t, "PARK_PT")
     return rt > shader, f"traversal {percent(rt / (rt + shader))}"
@@ -290,7 +290,7 @@ def _(t, **_):
     return t.get("PARTY_PT", "dram_eff") < t.mean("dram_eff"), f"{percent(t.get('PARTY_PT', 'dram_eff'))}, mean {percent(t.mean('dram_eff'))}"
 
 
-@statement(10, "DRAM utilisation is close below efficiency (mean difference within 7 points +- 5)")
+@statement(10, "DRAM utilisation lies a little below efficiency (mean difference within 7 points +- 5)")
 def _(t, **_):
     difference = t.mean("dram_eff") - t.mean("dram_util")
     return 0.02 <= difference <= 0.12, f"{100 * difference:.1f} points"
@@ -310,7 +310,7 @@ def _(t, desktop=None, **_):
     return all(b <= 0.75 * a for a, b in pairs), ", ".join(f"{name} {percent(a)} and {percent(b)}" for name, (a, b) in zip(("efficiency", "utilisation"), pairs))
 
 
-@statement(10, "DRAM bandwidth hardly changes PARTY_PT's cycles (double it: within 10 %)")
+@statement(10, "DRAM bandwidth hardly changes PARTY_PT's cycles (twice the bandwidth: within 10 %)")
 def _(t, bandwidth=None, **_):
     if bandwidth is None:
         raise Missing("needs --bandwidth, a metrics.csv of PARTY_PT with twice the bandwidth")
@@ -318,7 +318,7 @@ def _(t, bandwidth=None, **_):
     return abs(b - a) <= 0.1 * a, f"{a:.0f} and {b:.0f} cycles"
 
 
-@statement(11, "SHIP_SH and PARK_PT fetch many more leaves (share of RT reads above 1.25 times the mean)")
+@statement(11, "SHIP_SH and PARK_PT fetch many more leaves than the others (share of RT reads above 1.25 times the mean)")
 def _(t, **_):
     whole(t)
 

@@ -194,9 +194,9 @@ class Paper(unittest.TestCase):
         return [verdict for _, text, verdict, _ in check_paper.evaluate(table, **others) if part in text]
 
     def test_an_order_that_is_there_holds_and_one_that_is_not_does_not(self):
-        self.assertEqual(self.verdicts(self.table(), "RT efficiency: PT lowest"), ["holds"])
+        self.assertEqual(self.verdicts(self.table(), "RT efficiency is lowest for PT"), ["holds"])
         broken = self.table(cells={("BUNNY_AO", "rt_efficiency"): "0.9"})
-        self.assertEqual(self.verdicts(broken, "RT efficiency: PT lowest"), ["does not hold"])
+        self.assertEqual(self.verdicts(broken, "RT efficiency is lowest for PT"), ["does not hold"])
         self.assertEqual(self.verdicts(self.table(), "ALU is the most frequent"), ["holds"])
         self.assertEqual(self.verdicts(self.table(cells={("WKND_PT", "ins_mem%"): "71"}), "ALU is the most frequent"), ["does not hold"])
 
