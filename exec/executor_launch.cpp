@@ -104,7 +104,7 @@ Executor::Executor(const World& world, double clock_mhz)
 }
 
 uint32_t Executor::warps_per_block() const {
-  return core::warps_per_block(world_);
+  return exec::warps_per_block(world_);
 }
 
 uint32_t Executor::num_blocks() const {
