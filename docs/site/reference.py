@@ -29,7 +29,7 @@ def commands(glint: str) -> str:
     """Every command's own help."""
     top = _run(glint, "--help")
     names = re.findall(r"^  (\w+) {2,}\S", top.split("Subcommands:")[1], re.M)
-    pages = ["# Commands\n\nWhat `glint COMMAND --help` prints. Exit codes: [errors](../errors.md). Asked-for data goes to stdout, all else to stderr.\n", _help_tables(top.split("Usage:", 1)[1])]
+    pages = ["# Commands\n\nThis page has what `glint COMMAND --help` prints. The page [errors](../errors.md) explains exit codes. A command writes the data that you asked for to stdout, and everything else to stderr.\n", _help_tables(top.split("Usage:", 1)[1])]
     for name in names:
         summary, _, rest = _run(glint, name, "--help").strip().partition("Usage:")
         usage, _, rest = rest.partition("\n")
@@ -72,7 +72,7 @@ def policies(glint: str) -> str:
         folder, key, name, doc = re.split(r" {2,}", line.strip(), maxsplit=3)
         by_key.setdefault(key, []).append((name, doc))
         folders[key] = folder
-    text = ["# Policies\n\nWhat the configuration chooses by name. Each is one file of the folder; [how to add one](../howto/policy.md). `glint list policies` prints them.\n"]
+    text = ["# Policies\n\nA policy is a choice that the configuration makes by name. Each policy is one file of its folder; [this page](../howto/policy.md) shows how to add one. `glint list policies` prints all of them.\n"]
     for key, rows in by_key.items():
         title = f"`{key}`" if not key.startswith("(") else "Statistics files"
         text.append(f"## {title}\n\nFolder `{folders[key]}`.\n\n| name | what it does |\n|---|---|")
@@ -85,7 +85,7 @@ def presets(glint: str, root: pathlib.Path) -> str:
     names = [line.split()[0] for line in _run(glint, "list", "configs").splitlines()]
     values = {name: _values(_run(glint, "describe", "--markdown", "--config", name)) for name in names}
     differ = [key for key in values[names[0]] if len({values[name].get(key) for name in names}) > 1]
-    text = [f"# Presets\n\nThe {len(differ)} of {len(values[names[0]])} keys in which the presets differ; each number's source stands in its file in `configs/`.\n", "| preset | what it is |\n|---|---|"]
+    text = [f"# Presets\n\nThe presets differ in {len(differ)} of {len(values[names[0]])} keys. The source of each number stands in the preset's file in `configs/`.\n", "| preset | what it is |\n|---|---|"]
     text += [f"| `{line.split()[0]}` | {line.split(maxsplit=1)[1]} |" for line in _run(glint, "list", "configs").splitlines()]
     text.append(f"\n| key | {' | '.join(names)} |\n|---|{'---|' * len(names)}")
     text += [f"| `{key}` | {' | '.join(values[name].get(key, '').replace('_', '_<wbr>') for name in names)} |" for key in differ]  # so that all columns fit
@@ -112,7 +112,7 @@ def python() -> str:
     left = set(glint.__all__) - {"plot"} - {name for names in _PYTHON.values() for name in names}
     if left:
         raise SystemExit(f"error: docs/site/reference.py has no section for glint's {', '.join(sorted(left))}")
-    text = ["# Python package\n\nGenerated from the package; the [guide](../python.md) comes first.\n"]
+    text = ["# Python package\n\nThis page is generated from the package. Read the [guide](../python.md) first.\n"]
     text += [f"## {title}\n\n" + "".join(_documented(glint, "glint", name) for name in names) for title, names in _PYTHON.items()]
     figures = sorted(glint.plot.__all__, key=lambda name: (name != "save", name.isupper(), name))
     return "\n".join(text) + f"\n## Figures\n\n{glint.plot.__doc__}\n" + "".join(_documented(glint.plot, "glint.plot", name) for name in figures)
@@ -133,4 +133,4 @@ def _link_instructions(source: pathlib.Path) -> None:
     names = sorted(path.name for path in (source / "instructions").glob("*.csv"))
     if names:
         with open(source / "isa.md", "a", encoding="utf-8") as page:
-            page.write("\n## Times by preset\n\nUnit, latency and interval of every op, as CSV: " + ", ".join(f"{{download}}`{name} <instructions/{name}>`" for name in names) + ".\n")
+            page.write("\n## Times by preset\n\nThese CSV files have unit, latency and interval of every op: " + ", ".join(f"{{download}}`{name} <instructions/{name}>`" for name in names) + ".\n")
