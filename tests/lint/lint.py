@@ -104,8 +104,10 @@ def headers(root):
 
 
 def readmes(root):
-    """Every folder of sources explains itself in at most 40 lines."""
-    problems = []
+    """Every folder of sources explains itself in at most 40 lines, and tests/README.md names every folder of tests."""
+    listed = (root / "tests/README.md").read_text() if (root / "tests/README.md").exists() else ""
+    folders = sorted(path.name for path in (root / "tests").iterdir() if path.is_dir() and path.name != "__pycache__")
+    problems = [f"tests/README.md: does not name {folder}/" for folder in folders if f"`{folder}/`" not in listed]
     for folder in LIBRARIES + ["apps/glint", "configs", "shaders", "python"]:
         readme = root / folder / "README.md"
         if not readme.exists():

@@ -55,6 +55,12 @@ class LintNotices(unittest.TestCase):
         self.write("isa/a.h", "int x;\n")
         self.assertEqual(len(lint.headers(self.root)), 3)
 
+    def test_a_folder_of_tests_that_its_readme_does_not_name(self):
+        self.write("tests/README.md", "| `lint/` | rules |\n| `old/` | what was there once |\n")
+        self.write("tests/other/a_test.cpp", HEAD)
+        found = [problem for problem in lint.readmes(self.root) if problem.startswith("tests/")]
+        self.assertEqual(found, ["tests/README.md: does not name other/"])
+
     def test_a_rule_whose_test_does_not_exist_and_one_without_a_test(self):
         self.write("tests/a_test.cpp", HEAD + 'TEST_CASE("one is one") {}\n')
         self.write("tests/b_test.py", "def test_two(self):\n")
