@@ -9,18 +9,13 @@
 
 namespace glint::core {
 
-mem::TagArray make_tags(uint32_t size, uint32_t ways, uint32_t line) {
-  const uint32_t lines = std::max(size / line, 1u), each = ways == 0 ? lines : std::min(ways, lines);
-  return mem::TagArray(lines / each, each, line);
-}
-
 CodeCache::CodeCache(const CodeCacheParams& params, uint32_t most, mem::L1Port& l1, CodeStats& stats)
     : there_(params.latency / 2),
       back_(params.latency - params.latency / 2),
       line_bytes_(l1.line_bytes()),
       l1_(l1),
       stats_(stats),
-      tags_(make_tags(params.size, params.ways, line_bytes_)),
+      tags_(mem::cache_shape(params.size, params.ways, line_bytes_), params.replacement),
       asked_(most),
       hits_(most),
       fills_(most),

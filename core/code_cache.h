@@ -13,9 +13,6 @@
 
 namespace glint::core {
 
-// Sets and ways of a cache; 0 ways: one set of all lines.
-mem::TagArray make_tags(uint32_t size, uint32_t ways, uint32_t line);
-
 // Looks up one line a cycle, in the order asked. A line on its way is asked for once, whoever waits for it.
 class CodeCache {
  public:

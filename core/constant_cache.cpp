@@ -24,7 +24,7 @@ ConstantCache::ConstantCache(const ConstantParams& params, Address base, uint64_
       bytes_(bytes),
       cache_(cache),
       stats_(stats),
-      tags_(make_tags(params.size, params.ways, line_bytes_)) {
+      tags_(mem::cache_shape(params.size, params.ways, line_bytes_), params.replacement) {
   waits_.reserve(kMost);
 }
 

@@ -17,7 +17,8 @@ InstructionFetch::InstructionFetch(const FetchParams& params, uint32_t scheduler
       cache_(cache),
       stats_(stats) {
   for (uint32_t s = 0; s < schedulers; ++s) {
-    l0_.emplace_back(make_tags(params.size, params.ways, cache.line_bytes()));
+    l0_.emplace_back(
+        mem::TagArray(mem::cache_shape(params.size, params.ways, cache.line_bytes()), params.replacement));
     l0_.back().in_flight.reserve(most_in_flight(1));
   }
 }

@@ -7,13 +7,6 @@
 #include <utility>
 
 namespace glint::mem {
-namespace {
-
-uint32_t num_ways(uint64_t size, uint32_t ways, uint32_t line) {
-  return ways ? ways : uint32_t(size / line);
-}
-
-}  // namespace
 
 L1Cache::L1Cache(const Params& params, uint16_t core, const PartitionMap& map, L1Links links,
                  stats::Group* parent)
@@ -25,8 +18,7 @@ L1Cache::L1Cache(const Params& params, uint16_t core, const PartitionMap& map, L
       links_(std::move(links)),
       credits_left_(links_.requests.size(), params.noc.credits),
       stats_(parent),
-      tags_(uint32_t(params_.size / line_bytes_) / num_ways(params_.size, params_.ways, line_bytes_),
-            num_ways(params_.size, params_.ways, line_bytes_), line_bytes_),
+      tags_(cache_shape(params_.size, params_.ways, line_bytes_), params_.replacement),
       mshr_(params_.mshr_entries, params_.mshr_merges),
       passing_(params_.mshr_entries),
       miss_queue_(params_.miss_queue),

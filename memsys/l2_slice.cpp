@@ -14,10 +14,6 @@ Cycle parts_of(double cycles, Cycle parts) {
   return Cycle(cycles * double(parts) + 0.5);
 }
 
-uint32_t num_ways(uint64_t size, uint32_t ways, uint32_t line) {
-  return ways ? ways : uint32_t(size / line);
-}
-
 }  // namespace
 
 L2Slice::L2Slice(const Params& params, uint32_t index, const PartitionMap& map, SliceLinks links,
@@ -33,9 +29,7 @@ L2Slice::L2Slice(const Params& params, uint32_t index, const PartitionMap& map, 
       map_(map),
       links_(std::move(links)),
       stats_(parent, name),
-      tags_(uint32_t(params_.slice_size / line_bytes_) /
-                num_ways(params_.slice_size, params_.ways, line_bytes_),
-            num_ways(params_.slice_size, params_.ways, line_bytes_), line_bytes_),
+      tags_(cache_shape(params_.slice_size, params_.ways, line_bytes_), params_.replacement),
       words_(params_.write_masks ? params_.slice_size / line_bytes_ : 0),
       mshr_(params_.mshr_entries, params_.mshr_merges),
       request_port_(params.noc.partition_request_bytes),

@@ -7,7 +7,9 @@
 
 #include "base/diagnostics.h"
 #include "base/params.h"
+#include "base/registry.h"
 #include "memsys/dram_params.h"
+#include "memsys/replacement.h"
 
 namespace glint::mem {
 
@@ -18,7 +20,8 @@ std::vector<std::string> partition_hashes();  // mixed, none
 struct L1Params {
   uint64_t size = 32 * 1024;  // Vulkan-Sim MOBILE: S:1:128:256
   uint32_t ways = 0;
-  uint32_t hit_latency = 20;   // Vulkan-Sim: gpgpu_l1_latency
+  PolicyChoice<Replacement> replacement{"lru"};  // Vulkan-Sim: "L"
+  uint32_t hit_latency = 20;                     // Vulkan-Sim: gpgpu_l1_latency
   uint32_t miss_latency = 20;  // the same: its tags are looked up at the end of the pipeline
   uint32_t ports = 1;          // one 128 B line a cycle, as Volta's L1 delivers
   uint32_t banks = 1;
@@ -37,6 +40,7 @@ struct L1Params {
         param(&L1Params::size, "size", "byte", "Capacity of the data array.", 0, uint64_t{1} << 30),
         param(&L1Params::ways, "ways", "way", "Lines of a set; 0 makes the cache fully associative.", 0,
               1 << 20),
+        policy(&L1Params::replacement, "replacement", "Which line of a set makes way for a new line."),
         param(&L1Params::hit_latency, "hit_latency", "cycle",
               "From an access to its token when all sectors are present.", 0, 10000),
         param(&L1Params::miss_latency, "miss_latency", "cycle",
@@ -107,9 +111,10 @@ struct L2Params {
   uint32_t slices = 1;               // Vulkan-Sim MOBILE: one sub-partition
   uint64_t slice_size = 128 * 1024;  // Vulkan-Sim: S:64:128:16 a partition
   uint32_t ways = 16;
-  uint32_t latency = 42;           // see NocParams::request_latency
-  uint32_t sectors_per_cycle = 2;  // measured on H100: two sectors a clock and slice
-  uint32_t mshr_entries = 192;     // Vulkan-Sim: A:192:4
+  PolicyChoice<Replacement> replacement{"lru"};  // Vulkan-Sim: "L"
+  uint32_t latency = 42;                         // see NocParams::request_latency
+  uint32_t sectors_per_cycle = 2;                // measured on H100: two sectors a clock and slice
+  uint32_t mshr_entries = 192;                   // Vulkan-Sim: A:192:4
   uint32_t mshr_merges = 4;
   uint32_t dram_queue = 64;      // Vulkan-Sim: dram_partition_queues
   uint32_t atomic_interval = 2;  // Choice: unpublished; an H200: 2, and an eighth a lane (docs/validation.md)
@@ -127,6 +132,7 @@ struct L2Params {
         param(&L2Params::slice_size, "slice_size", "byte", "Capacity of one slice.", 0, uint64_t{1} << 32),
         param(&L2Params::ways, "ways", "way", "Lines of a set; 0 makes the slice fully associative.", 0,
               1 << 20),
+        policy(&L2Params::replacement, "replacement", "Which line of a set makes way for a new line."),
         param(&L2Params::latency, "latency", "cycle",
               "From service to the reply of a hit, or to the miss's way to DRAM.", 1, 10000),
         param(&L2Params::sectors_per_cycle, "sectors_per_cycle", "sector/cycle",

@@ -25,9 +25,8 @@ double most(const List& list, Work work) {
 
 }  // namespace
 
-MemoryModel::Cache::Cache(uint64_t size, uint32_t ways, uint32_t line)
-    : tags(ways ? uint32_t(size / line / ways) : 1, ways ? ways : uint32_t(size / line), line),
-      fills(size / line) {
+MemoryModel::Cache::Cache(const mem::CacheShape& shape, const PolicyChoice<mem::Replacement>& replacement)
+    : tags(shape, replacement), fills(size_t{shape.sets} * shape.ways) {
 }
 
 MemoryModel::MemoryModel(const mem::Params& params, uint32_t num_cores, double core_mhz)
@@ -37,9 +36,16 @@ MemoryModel::MemoryModel(const mem::Params& params, uint32_t num_cores, double c
       partitions_(params.dram.channels, params.l2.slices, params.interleave, params.hash == "mixed"),
       dram_map_(params.dram.banks, params.dram.bank_groups, params.dram.row_bytes, params.interleave) {
   for (uint32_t i = 0; i < num_cores; ++i)
-    cores_.push_back({Cache(params.l1.size, params.l1.ways, params.line), {}, {}, {}});
+    cores_.push_back(
+        {Cache(mem::cache_shape(params.l1.size, params.l1.ways, params.line), params.l1.replacement),
+         {},
+         {},
+         {}});
   for (uint32_t i = 0; i < params.num_slices(); ++i)
-    slices_.push_back({Cache(params.l2.slice_size, params.l2.ways, params.line), {}, {}});
+    slices_.push_back(
+        {Cache(mem::cache_shape(params.l2.slice_size, params.l2.ways, params.line), params.l2.replacement),
+         {},
+         {}});
   for (uint32_t i = 0; i < params.dram.channels; ++i)
     channels_.push_back({std::vector<Bank>(params.dram.banks), {}});
 }

@@ -54,7 +54,7 @@ class MemoryModel {
     }
   };
   struct Cache {
-    Cache(uint64_t size, uint32_t ways, uint32_t line);
+    Cache(const mem::CacheShape& shape, const PolicyChoice<mem::Replacement>& replacement);
     mem::TagArray tags;
     std::vector<Fill> fills;  // by line of the tag array: what was fetched last
   };

@@ -105,3 +105,19 @@ TEST_CASE("with every mechanism, stepping, skipping and two threads give the sam
     for (const pipeline::RenderJob& job : frames(gpu)) check_equal(job);
   }
 }
+
+TEST_CASE("with every replacement policy, stepping, skipping and two threads give the same statistics") {
+  for (const std::string& name : Registry<mem::Replacement>::names()) {
+    CAPTURE(name);
+    const PolicyChoice<mem::Replacement> choice(name.c_str());
+    GpuParams gpu = test::preset("mobile");
+    gpu.cores = 3;
+    gpu.core.launch_latency = 100;
+    gpu.memory.l1.replacement = gpu.memory.l2.replacement = gpu.core.fetch.replacement =
+        gpu.core.constant.replacement = gpu.core.code_cache.replacement = choice;
+    gpu.memory.l1.size = 4096, gpu.memory.l2.slice_size = 16384;
+    gpu.core.fetch.size = gpu.core.constant.size = 512, gpu.core.code_cache.size = 2048;
+    gpu.core.fetch.ways = gpu.core.constant.ways = gpu.core.code_cache.ways = 4;
+    check_equal(frames(gpu)[0]);
+  }
+}

@@ -8,6 +8,7 @@
 #include "exec/warp_layout.h"
 #include "memsys/dram_model.h"
 #include "memsys/dram_scheduler.h"
+#include "memsys/replacement.h"
 #include "report/files/stat_writer.h"
 #include "rtunit/any_hit_mode.h"
 #include "rtunit/child_order.h"
@@ -34,6 +35,7 @@ std::vector<PolicyInfo> all_policies() {
   add<exec::WarpLayout>(out, "core.warp_layout", "exec/warp_layouts");
   add<mem::DramModel>(out, "memory.dram.model", "memsys/dram_models");
   add<mem::DramScheduler>(out, "memory.dram.scheduler", "memsys/dram_schedulers");
+  add<mem::Replacement>(out, "*.replacement", "memsys/replacement");
   add<rt::AnyHitMode>(out, "rt.any_hit", "rtunit/any_hit");
   add<rt::RayScheduler>(out, "rt.scheduler", "rtunit/schedulers");
   add<rt::ChildOrder>(out, "rt.child_order", "rtunit/child_orders");

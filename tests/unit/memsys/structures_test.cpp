@@ -4,6 +4,7 @@
 #include <random>
 #include <set>
 
+#include "base/registry.h"
 #include "memsys/address_map.h"
 #include "memsys/dram_timing.h"
 #include "memsys/fan_in.h"
@@ -34,7 +35,7 @@ TEST_CASE("a line table agrees with std::map over random insertions and erasures
 }
 
 TEST_CASE("the least recently used line of a set is the victim") {
-  TagArray tags(1, 3, 128);
+  TagArray tags({1, 3, 128}, "lru");
   for (const Address line : {0, 128, 256}) tags.insert(line).valid = 1;
   tags.touch(tags.find(0));
   CHECK(tags.victim(384).address == 128);
@@ -45,7 +46,7 @@ TEST_CASE("the least recently used line of a set is the victim") {
 }
 
 TEST_CASE("a set-associative array replaces only inside a line's set") {
-  TagArray tags(4, 2, 128);
+  TagArray tags({4, 2, 128}, "lru");
   std::set<Address> present;
   for (Address line = 0; line < 64 * 128; line += 128) {
     const TagArray::Line& victim = tags.victim(line);
@@ -147,7 +148,7 @@ TEST_CASE("strides of the number of partitions still reach every partition") {
 }
 
 TEST_CASE("a line that is held is no victim, and a set of such lines has none") {
-  TagArray tags(1, 2, 128);
+  TagArray tags({1, 2, 128}, "lru");
   tags.insert(0).held = true;
   tags.insert(128).valid = 1;
   tags.touch(tags.find(128));

@@ -1,0 +1,51 @@
+// Policy: which line of a set makes way for a new line.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <span>
+
+#include "base/types.h"
+
+namespace glint::mem {
+
+// A line of a cache. Each mask has one bit for each sector of 32 bytes.
+struct CacheLine {
+  Address address = 0;
+  uint8_t valid = 0;  // sectors that are present
+  uint8_t dirty = 0;  // sectors that are newer than the level below, also sectors written only in part
+  bool held = false;  // the data of the line is on the way, so the line is never a victim
+  bool used() const { return valid || dirty || held; }
+};
+
+// A slot is the place of one line: slot = set * ways + way.
+//
+// Contract (tests/contract/memsys/replacement_test.cpp):
+//  - victim() returns a slot of the set whose line is not held, or kNone when every line of the set is held;
+//  - victim() changes nothing: asked again, it returns the same slot until a call reports an event of the
+//  set;
+//  - the answer depends on the lines of the set and on the events of the set, so that one set never changes
+//    the choice in another set, and no thread or window changes any choice;
+//  - there is no heap traffic after construction.
+class Replacement {
+ public:
+  struct Context {
+    uint32_t sets = 1, ways = 1;
+  };
+  static constexpr uint32_t kNone = ~0u;
+
+  virtual ~Replacement() = default;
+  // The slot whose line makes way. `lines` holds all lines of the cache, by slot.
+  virtual uint32_t victim(uint32_t set, std::span<const CacheLine> lines) const = 0;
+  virtual void filled(uint32_t slot) = 0;   // the slot got a new line
+  virtual void touched(uint32_t slot) = 0;  // an access found its line in the slot
+  virtual void emptied(uint32_t) {}         // the line in the slot lost its last sector
+};
+
+// The first slot from `first` to `first + ways - 1` that holds no line, or kNone.
+inline uint32_t first_unused(std::span<const CacheLine> lines, uint32_t first, uint32_t ways) {
+  for (uint32_t slot = first; slot < first + ways; ++slot)
+    if (!lines[slot].used()) return slot;
+  return Replacement::kNone;
+}
+
+}  // namespace glint::mem

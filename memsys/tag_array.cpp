@@ -1,0 +1,24 @@
+// Construction of a tag array: its shape, and the policy that replaces its lines.
+// SPDX-License-Identifier: Apache-2.0
+#include "memsys/tag_array.h"
+
+#include <algorithm>
+
+#include "base/registry.h"
+
+namespace glint::mem {
+
+CacheShape cache_shape(uint64_t bytes, uint32_t ways, uint32_t line_bytes) {
+  const auto lines = uint32_t(std::max<uint64_t>(bytes / line_bytes, 1));
+  const uint32_t in_set = ways == 0 ? lines : std::min(ways, lines);
+  return {lines / in_set, in_set, line_bytes};
+}
+
+TagArray::TagArray(const CacheShape& shape, const PolicyChoice<Replacement>& replacement)
+    : shape_(shape),
+      lines_(size_t{shape.sets} * shape.ways),
+      index_(lines_.size()),
+      replacement_(replacement.make({shape.sets, shape.ways})) {
+}
+
+}  // namespace glint::mem
