@@ -1,4 +1,5 @@
-// Checks for our own mistakes: always on, they print both values and abort. Never for user input.
+// Declares the checks for Glint's own mistakes. They are always on, print both values and abort. User input
+// is never tested with them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Merging TOML layers and reading typed keys out of them.
+// Merges layers of TOML and reads typed keys out of them.
 // SPDX-License-Identifier: Apache-2.0
 #include "base/config.h"
 
@@ -11,8 +11,8 @@
 namespace glint {
 
 struct ConfigTable::State {
-  std::string path;   // dotted, "" for the root
-  toml::table table;  // a copy: what is left is what nobody has taken
+  std::string path;   // dotted; "" for the root
+  toml::table table;  // a copy, from which every key that is read is taken away
   std::set<std::string> known;
   SourceLocation place;
   Diagnostics* diagnostics = nullptr;
@@ -24,7 +24,7 @@ struct Config::Layers {
 
 namespace {
 
-// The key's place, not the value's: copying a value forgets where it stood.
+// Returns the place of the key and not of the value, because a copy of a value forgets its place.
 SourceLocation location(const toml::key& key) {
   const toml::source_region& region = key.source();
   return {region.path ? *region.path : std::string(), int(region.begin.line), int(region.begin.column)};
@@ -49,7 +49,7 @@ SourceLocation location(const toml::table& table, std::string_view key) {
   return it == table.end() ? SourceLocation{} : location(it->first);
 }
 
-// Copies node by node so that each key keeps the file and line it came from.
+// Copies node by node, so that each key keeps the file and line it came from.
 void merge(toml::table& into, const toml::table& from) {
   for (const auto& [from_key, node] : from) {
     const toml::key& key = from_key;  // clang 14 captures no structured bindings
@@ -58,7 +58,7 @@ void merge(toml::table& into, const toml::table& from) {
       merge(*old, *node.as_table());
     else
       node.visit([&](const auto& value) {
-        into.erase(key);  // assigning would keep the old key, and with it the old place
+        into.erase(key);  // an assignment would keep the old key, and with it the old place
         into.insert(key, value);
       });
   }

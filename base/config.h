@@ -1,4 +1,4 @@
-// Reading configuration: TOML presets, overlays and --set, with the source place of every key.
+// Reads configurations: TOML presets, overlays and --set, with the source place of every key.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -11,8 +11,9 @@
 
 namespace glint {
 
-// One TOML table being read. Each take_* marks its key as known; reject_the_rest() reports all others with
-// the nearest known name. Errors go to the Diagnostics given to Config; values stay at their defaults then.
+// Holds one TOML table while it is read. Each take_*() marks its key as known, and reject_the_rest() reports
+// all other keys with the nearest known name. Errors go to the Diagnostics given to Config; a value with an
+// error stays at its default.
 class ConfigTable {
  public:
   struct State;
@@ -27,23 +28,24 @@ class ConfigTable {
   std::string take_string(std::string_view key, const std::string& fallback);
   ConfigTable take_table(std::string_view key);  // an empty table when absent
   bool has(std::string_view key) const;
-  SourceLocation where(std::string_view key) const;  // of the key, or of the table when absent
+  // Returns the place of the key, or of the table when the key is absent.
+  SourceLocation where(std::string_view key) const;
   void reject_the_rest();
 
  private:
   std::shared_ptr<State> state_;
 };
 
-// A merged configuration: later layers win key by key.
+// Holds a merged configuration. A later layer overrides an earlier one key by key.
 class Config {
  public:
   Config();
   ~Config();
   Config(Config&&) noexcept;
-  void add_file(const std::string& path);  // UserError when absent or not TOML
+  void add_file(const std::string& path);  // throws UserError when the file is absent or not TOML
   void add_text(const std::string& name, const std::string& toml);
-  void add_setting(
-      const std::string& key_value);  // "core.warps=16"; the value in TOML's spelling, bare words are strings
+  // Takes a setting such as "core.warps=16". The value has TOML's spelling, and a bare word is a string.
+  void add_setting(const std::string& key_value);
   ConfigTable root(Diagnostics& diagnostics) const;
 
  private:
@@ -51,7 +53,7 @@ class Config {
   std::unique_ptr<Layers> layers_;
 };
 
-// TOML spelling of a value.
+// Returns the TOML spelling of a value.
 std::string config_text(bool value);
 std::string config_text(double value);
 std::string config_text(const std::string& value);

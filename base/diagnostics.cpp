@@ -1,4 +1,4 @@
-// Formatting and collecting of diagnostics.
+// Formats and collects diagnostics.
 // SPDX-License-Identifier: Apache-2.0
 #include "base/diagnostics.h"
 

@@ -1,5 +1,5 @@
-// The five kinds of error and how they travel: user input, unsupported shader, fault of the simulated
-// program, stuck machine, and (base/check.h) our own bugs.
+// Declares the five kinds of error and how they travel: wrong user input, an unsupported shader, a fault of
+// the simulated program, a stuck machine, and (base/check.h) Glint's own bugs.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <stdexcept>
@@ -8,19 +8,21 @@
 
 namespace glint {
 
-// Process exit codes (docs/errors.md). Ok = finished; the others say whose move it is.
+// Names the exit codes of the process (docs/errors.md). Ok means that the run finished; each other code says
+// who has to act.
 enum class Exit : int { Ok = 0, Failure = 1, UserInput = 2, Unsupported = 3, Fault = 4, Stuck = 5 };
 
-// A place in a user's file. Line and column count from 1; 0 means "not known".
+// Names a place in a user's file. Line and column count from 1; 0 means that the number is not known.
 struct SourceLocation {
   std::string file;
   int line = 0;
   int column = 0;
-  std::string to_string() const;  // "file:line:column", leaving out what is not known; "" without a file
+  std::string to_string()
+      const;  // "file:line:column" without the parts that are not known; "" without a file
 };
 
-// An error that ends loading or running. Thrown only between main and the end of loading, or by a run
-// loop after the machine has stopped; never inside the cycle loop.
+// An error that ends loading or running. It is thrown only between main and the end of loading, or by a run
+// loop after the machine has stopped, and never inside the cycle loop.
 class Error : public std::runtime_error {
  public:
   Error(Exit exit, const std::string& message) : std::runtime_error(message), exit_(exit) {}
@@ -30,14 +32,15 @@ class Error : public std::runtime_error {
   Exit exit_;
 };
 
-// Bad input. The message is complete: "file:line:col: error: what was found, what was expected\nnote: fix".
+// Reports bad input. The message is complete: "file:line:col: error: what was found, what was expected\nnote:
+// fix".
 class UserError : public Error {
  public:
   explicit UserError(const std::string& message) : Error(Exit::UserInput, message) {}
   UserError(const SourceLocation& where, const std::string& what, const std::string& note = {});
 };
 
-// Valid input that Glint does not support (yet); the message lists all of it.
+// Reports valid input that Glint does not support. The message lists everything that is not supported.
 class UnsupportedError : public Error {
  public:
   explicit UnsupportedError(const std::string& message) : Error(Exit::Unsupported, message) {}
@@ -50,14 +53,15 @@ class Diagnostics {
   void warning(const SourceLocation& where, const std::string& what);
   bool has_errors() const { return num_errors_ > 0; }
   const std::vector<std::string>& messages() const { return messages_; }
-  void throw_if_errors() const;  // UserError with every message, one a line
+  void throw_if_errors() const;  // throws a UserError with every message, one per line
 
  private:
   std::vector<std::string> messages_;
   int num_errors_ = 0;
 };
 
-// The candidate nearest to `word` by edit distance, or "" when none is near: for "did you mean".
+// Returns the candidate nearest to `word` by edit distance, or "" when no candidate is near. Messages use it
+// for "did you mean".
 std::string nearest(const std::string& word, const std::vector<std::string>& candidates);
 
 }  // namespace glint

@@ -1,4 +1,5 @@
-// Files of a store: header, key, value; and keeping the folder small.
+// Writes and reads the files of a store, each with a header, its key and its value, and keeps the folder
+// small.
 // SPDX-License-Identifier: Apache-2.0
 #include "base/file_store.h"
 
@@ -17,7 +18,7 @@ namespace fs = std::filesystem;
 
 struct Header {
   char magic[8] = {'g', 'l', 'i', 'n', 't', 's', 'h', '1'};
-  uint64_t key_bytes = 0, value_bytes = 0, hash = 0;  // of key and value
+  uint64_t key_bytes = 0, value_bytes = 0, hash = 0;  // `hash` covers key and value
 };
 
 Header header_of(const std::string& key, std::string_view value) {
@@ -27,7 +28,7 @@ Header header_of(const std::string& key, std::string_view value) {
   return header;
 }
 
-// Keeps the newest of a folder's entries, up to `max_bytes`.
+// Removes the oldest files with this ending until the folder holds at most `max_bytes` of such files.
 void remove_oldest(const std::string& folder, const std::string& ending, uint64_t max_bytes) {
   struct Entry {
     fs::file_time_type time;
@@ -128,7 +129,8 @@ void FileStore::store(const std::string& given, std::string_view value) {
   sweep(key.size() + value.size());
 }
 
-// The folder is looked through now and then only: it may exceed the limit by an eighth for each process.
+// Limits the size of the folder. The folder is only searched from time to time, so it may exceed its limit by
+// an eighth for each process.
 void FileStore::sweep(uint64_t written) {
   written_bytes_ += written;
   if (swept_ && written_bytes_ < options_.max_bytes / 8) return;

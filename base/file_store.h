@@ -1,4 +1,5 @@
-// Values in files of a folder, found again by the whole of their key: what caches keep beyond a process.
+// Stores values in the files of a folder and finds them by their whole key. Caches use it to keep values
+// longer than a process lives.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -8,28 +9,30 @@
 
 namespace glint {
 
-// FNV-1a (Fowler, Noll, Vo), 8 bytes a step, with a fold of the high half, which a step of 8 bytes does not
-// reach down from. `seed` goes on from earlier bytes.
+// Hashes bytes with FNV-1a (Fowler, Noll, Vo), eight bytes per step. Each step also folds the high half of
+// the hash into the low half, because the multiplication carries bits only upwards. `seed` continues the hash
+// of earlier bytes.
 uint64_t content_hash(std::string_view bytes, uint64_t seed = 0xcbf2'9ce4'8422'2325);
 
-// Any number of processes may use one folder at a time: files appear whole, by renaming. A file that is
-// damaged, or belongs to another key of the same hash, counts as not there and is written again. What cannot
-// be written is only slower next time: no error. One object is for one thread at a time.
+// A folder of values. Any number of processes may use one folder at a time, because a file appears whole, by
+// renaming. A file that is damaged, or that belongs to another key with the same hash, counts as absent and
+// is written again. A value that cannot be written causes no error, only more work next time. Only one thread
+// at a time may use a FileStore.
 class FileStore {
  public:
   struct Options {
-    std::string folder;  // made when first needed; empty: nothing is kept
-    std::string ending;  // of the files: ".shader"
-    std::string build;   // of the program that makes the values: those of another one are not found
-    uint64_t max_bytes =
-        0;  // of the folder's files with this ending; beyond it those not read for longest go
+    std::string folder;  // made at the first store; empty: nothing is kept
+    std::string ending;  // file name extension, such as ".shader"
+    std::string build;   // of the program that makes the values; values of other builds are not found
+    // Limit for all files of the folder with this ending. Above it, the files that were read longest ago go.
+    uint64_t max_bytes = 0;
   };
   explicit FileStore(Options options) : options_(std::move(options)) {}
 
   std::optional<std::string> find(const std::string& key);
   void store(const std::string& key, std::string_view value);
   std::string file_of(const std::string& key) const;
-  uint64_t damaged() const { return damaged_; }  // files found so by find()
+  uint64_t damaged() const { return damaged_; }  // number of damaged files that find() met
 
  private:
   void sweep(uint64_t written);

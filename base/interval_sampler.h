@@ -1,5 +1,6 @@
-// Reads a cell's counters every so many cycles of simulated time, whatever windows or skipping its cell runs
-// in. SPDX-License-Identifier: Apache-2.0
+// Reads the counters of a cell at a fixed interval of simulated time, independent of windows and skipped
+// cycles.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
 #include <utility>
@@ -9,12 +10,13 @@
 
 namespace glint {
 
-// Off until start(). The cell calls reach(now) before it changes anything in cycle `now`: what changes only
-// in such cycles was the same in all cycles since the last, so a sample at a cycle that was skipped is exact
-// too.
+// Takes samples once start() was called. The cell calls reach(now) before it changes anything in cycle `now`.
+// Counters change only in such cycles and were constant since the last one, so a sample at a skipped cycle is
+// exact too.
 class IntervalSampler {
  public:
-  // The counters as they are at the start of cycle `at`. Always the same number of them.
+  // Returns the values of the counters at the start of cycle `at`. Every call returns the same number of
+  // values.
   using Read = std::function<std::vector<uint64_t>(Cycle at)>;
 
   void start(Cycle interval, Read read) {
@@ -27,12 +29,12 @@ class IntervalSampler {
         next_ += interval_;
       }
   }
-  // The end of the run: a last sample, unless one was just taken.
+  // Takes a last sample at the end of the run, unless a sample was just taken.
   void finish(Cycle end) {
     reach(end);
     if (read_ && end % interval_ != 0) samples_.push_back(read_(end));
   }
-  // Sample i is of cycle (i + 1) * interval; the last one of the end.
+  // Sample i was taken at cycle (i + 1) * interval, and the last sample at the end of the run.
   const std::vector<std::vector<uint64_t>>& samples() const { return samples_; }
 
  private:

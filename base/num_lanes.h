@@ -5,8 +5,8 @@
 
 namespace glint {
 
-// Set bits of `mask`. std::popcount would call a library function where the compiler may not assume the
-// instruction.
+// Returns the number of set bits of `mask`. std::popcount is not used because it calls a library function
+// where the compiler may not assume the instruction.
 constexpr uint32_t num_lanes(LaneMask mask) {
   mask -= (mask >> 1) & 0x5555'5555u;
   mask = (mask & 0x3333'3333u) + ((mask >> 2) & 0x3333'3333u);

@@ -1,4 +1,5 @@
-// Tunables: one declaration gives the default, the TOML key, the legal range, the unit and the doc.
+// Declares parameters: one declaration gives the default, the TOML key, the legal range, the unit and the
+// doc.
 //
 //   struct Params {
 //     uint32_t warps = 32;
@@ -23,14 +24,14 @@
 
 namespace glint {
 
-// An integer, floating or boolean field with a legal range (inclusive).
+// Declares an integer, floating-point or boolean field with an inclusive legal range.
 template <class Owner, class T>
 struct Param {
   T Owner::*field;
   std::string_view name, unit, doc;
   T min, max;
 };
-// A factory, not aggregate deduction: clang 14 has no CTAD for aggregates.
+// These are factory functions because clang 14 cannot deduce the template arguments of an aggregate.
 template <class Owner, class T>
 constexpr Param<Owner, T> param(T Owner::*field, std::string_view name, std::string_view unit,
                                 std::string_view doc, std::type_identity_t<T> min,
@@ -42,7 +43,8 @@ constexpr Param<Owner, bool> flag(bool Owner::*field, std::string_view name, std
   return {field, name, "", doc, false, true};
 }
 
-// A name out of a list that is known at run time (registered policies).
+// Declares a field that names an entry of a list that is known only at run time, such as the registered
+// policies.
 template <class Owner>
 struct Choice {
   std::string Owner::*field;
@@ -55,7 +57,7 @@ constexpr Choice<Owner> choice(std::string Owner::*field, std::string_view name,
   return {field, name, doc, names};
 }
 
-// A nested struct with its own params(): a TOML table.
+// Declares a nested struct with its own params(), which is a table in TOML.
 template <class Owner, class T>
 struct Section {
   T Owner::*field;
@@ -66,9 +68,9 @@ constexpr Section<Owner, T> section(T Owner::*field, std::string_view name, std:
   return {field, name, doc};
 }
 
-// One described key: what `glint describe` and docs/config.md show. `needs`: the choice of policy that gives
-// it a meaning, where another is made; such a key counts for nothing and belongs in no resolved
-// configuration.
+// Describes one key for `glint describe` and docs/config.md. `needs` is set for a parameter of a policy that
+// is not chosen: it names the choice that would give the key a meaning. Such a key has no effect and is
+// absent from resolved configurations.
 struct ParamInfo {
   std::string key, unit, doc, value, range, needs = {};
 };
@@ -109,17 +111,17 @@ template <class Owner, class T>
 void describe_param(std::vector<ParamInfo>& out, const std::string& prefix, const Owner& o,
                     const Section<Owner, T>& s);
 
-// read_param and describe_param are found by argument-dependent lookup: registry.h adds `policy`.
+// Calls find read_param and describe_param by argument-dependent lookup, so registry.h can add PolicyParam.
 
-// Fills `out` from the table; keys that are absent keep their value. Wrong types, values out of range and
-// keys that nobody declared are collected in the table's Diagnostics.
+// Fills `out` from the table. A field whose key is absent keeps its value. Wrong types, values out of range
+// and undeclared keys are collected in the table's Diagnostics.
 template <class P>
 void read_params(ConfigTable& table, P& out) {
   std::apply([&](const auto&... p) { (read_param(table, out, p), ...); }, P::params());
   table.reject_the_rest();
 }
 
-// Every key of P with its present value, in declaration order; nested keys are "section.key".
+// Returns every key of P with its present value, in declaration order. Nested keys are written "section.key".
 template <class P>
 std::vector<ParamInfo> describe_params(const P& values, const std::string& prefix = {}) {
   std::vector<ParamInfo> out;

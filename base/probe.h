@@ -1,4 +1,4 @@
-// A place in the model where something happens. Costs one branch while nobody listens.
+// Defines a probe: a place in the model where something happens. It costs one branch while nobody listens.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
@@ -13,7 +13,8 @@ class Probe {
   void listen(Listener listener) { listeners_.push_back(std::move(listener)); }
 
   template <class Make>
-  void fire(Make&& make) const {  // `make` builds the event, and runs only when somebody listens
+  // `make` builds the event and runs only when somebody listens.
+  void fire(Make&& make) const {
     if (listeners_.empty()) [[likely]]
       return;
     const Event event = make();

@@ -1,5 +1,6 @@
-// What a profile tells of each instruction and what a time series tells of each interval: plain tables for
-// every writer. SPDX-License-Identifier: Apache-2.0
+// Holds what a profile tells of each instruction and a time series of each interval, as plain tables for
+// every writer.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <string>
@@ -9,15 +10,15 @@
 
 namespace glint {
 
-// What is counted of an instruction, but for the cycles by reason.
+// Holds the counts of an instruction, without its cycles by reason.
 struct ProfileCounts {
   uint64_t issues = 0;    // warp instructions
-  uint64_t lanes = 0;     // that executed them, summed
-  uint64_t accesses = 0;  // of them, those that went to the L1
-  uint64_t requests = 0;  // lines asked for by these
-  uint64_t sectors = 0;   // of 32 B
-  uint64_t ended = 0;     // accesses and traces that came back
-  uint64_t latency = 0;   // issue to completion of these, cycles, summed
+  uint64_t lanes = 0;     // lanes that executed the instruction, summed over issues
+  uint64_t accesses = 0;  // issues that accessed the L1
+  uint64_t requests = 0;  // cache lines that these accesses asked for
+  uint64_t sectors = 0;   // 32 B sectors that these accesses asked for
+  uint64_t ended = 0;     // accesses and traces that completed
+  uint64_t latency = 0;   // cycles from issue to completion, summed over those that completed
 
   ProfileCounts& operator+=(const ProfileCounts& more) {
     issues += more.issues;
@@ -31,20 +32,19 @@ struct ProfileCounts {
   }
 };
 
-// An instruction, or all instructions of a source line.
+// A row holds the counts of an instruction, or of all instructions of a source line.
 struct ProfileRow : ProfileCounts {
-  std::string shader, stage;  // both empty: cycles that belong to no instruction
+  std::string shader, stage;  // both are empty for cycles that belong to no instruction
   std::string file;           // as the compiler was given it; empty when unknown
   uint32_t line = 0;          // 0: unknown
   uint32_t index = 0;         // of the instruction in its shader
   std::string op;
-  uint32_t program = 0;  // of ProfileTable::programs
-  uint32_t spirv = 0;    // line of its SPIR-V, from 1; 0: unknown
-  uint32_t scope = 0;    // of its program's scopes, from 1; 0: unknown
-  std::vector<uint64_t>
-      slots;  // cycles of schedulers, by reason as in ProfileTable::reasons; the first is issuing
+  uint32_t program = 0;         // index into ProfileTable::programs
+  uint32_t spirv = 0;           // line of its SPIR-V, from 1; 0: unknown
+  uint32_t scope = 0;           // row of ProgramListing::scopes, from 1; 0: unknown
+  std::vector<uint64_t> slots;  // scheduler cycles by ProfileTable::reasons; the first reason is issuing
 
-  // Adds what was counted and the cycles of each reason; the row stays whose it is.
+  // Adds counts and the cycles of each reason. The row still names the same instruction afterwards.
   template <class Slots>
   void add(const ProfileCounts& counts, const Slots& by_reason) {
     *this += counts;
@@ -60,11 +60,13 @@ struct ProfileRow : ProfileCounts {
 
 struct ProfileTable {
   std::vector<std::string> reasons;
-  std::vector<ProfileRow> rows;  // in program order; the slots of all rows are the cycles of all schedulers
-  std::vector<ProgramListing> programs;  // what ran; empty when the profile comes from a file of its own
+  std::vector<ProfileRow>
+      rows;  // in program order; the slots of all rows add up to the cycles of all schedulers
+  std::vector<ProgramListing>
+      programs;  // programs that ran; empty when the profile comes from a file of its own
 };
 
-// One row an interval, `columns` long each.
+// Holds one row per interval; each row has as many values as `columns`.
 struct SeriesTable {
   std::vector<std::string> columns;
   std::vector<std::vector<double>> rows;

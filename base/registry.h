@@ -1,7 +1,7 @@
-// Name -> factory for policies, filled by static objects in the implementation files.
+// Maps names to factories of policies. Static objects in the implementation files fill the map.
 //
-// `const Register<RayScheduler, OldestFirst> registered;` at the end of an implementation file is the whole
-// of the wiring. Impl has kName, kDoc, Params (base/params.h) and a constructor (Params, Interface::Context).
+// An implementation file registers itself with `const Register<RayScheduler, OldestFirst> registered;` at its
+// end. The class has kName, kDoc, Params (base/params.h) and a constructor (Params, Interface::Context).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
@@ -16,16 +16,18 @@
 
 namespace glint {
 
-// A policy chosen by a configuration: its name and how to make it with the parameters that were read.
+// Holds a policy chosen by a configuration: its name, and a function that makes it with the parameters that
+// were read.
 template <class Interface>
 struct PolicyChoice {
   using Make = std::function<std::unique_ptr<Interface>(typename Interface::Context)>;
   std::string name;
-  Make maker;                                            // empty: the policy's default parameters
-  std::vector<ParamInfo> params;                         // the policy's parameters as read
-  std::map<std::string, std::vector<ParamInfo>> others;  // those of the policies not chosen
+  Make maker;                     // empty: the policy is made with its default parameters
+  std::vector<ParamInfo> params;  // parameters of the policy, as read
+  std::map<std::string, std::vector<ParamInfo>> others;  // parameters of the policies not chosen
 
-  PolicyChoice(const char* default_name) : name(default_name) {}  // NOLINT: reads as a default value
+  // The constructor is implicit, so that a default value is written as a name.
+  PolicyChoice(const char* default_name) : name(default_name) {}  // NOLINT
   std::unique_ptr<Interface> make(typename Interface::Context context) const;
 };
 
@@ -34,12 +36,12 @@ class Registry {
  public:
   struct Entry {
     std::string_view doc;
-    // Reads the policy's parameters into `choice`: how to make it, and what to describe.
+    // Reads the policy's parameters into `choice`: the maker and the list of parameters.
     void (*read)(ConfigTable&, PolicyChoice<Interface>&);
     std::vector<ParamInfo> (*defaults)();
     std::unique_ptr<Interface> (*make_default)(typename Interface::Context);
   };
-  // Function-local: no static initialisation order to get wrong.
+  // The object is local to the function, so it exists before the first static object registers a policy.
   static Registry& instance() {
     static Registry registry;
     return registry;
@@ -90,7 +92,8 @@ struct Register {
   }
 };
 
-// Declares a policy key: `name = "gto"` chooses, and the table `[<section>.gto]` holds its parameters.
+// Declares the key of a policy: `name = "gto"` chooses the policy, and the table `[<section>.gto]` holds its
+// parameters.
 template <class Owner, class Interface>
 struct PolicyParam {
   PolicyChoice<Interface> Owner::*field;
@@ -107,7 +110,8 @@ void read_param(ConfigTable& table, Owner& out, const PolicyParam<Owner, Interfa
   PolicyChoice<Interface>& choice = out.*p.field;
   PolicyChoice<Interface> chosen(table.take_name(p.name, choice.name, Registry<Interface>::names()).c_str());
   for (const auto& [name, entry] : Registry<Interface>::instance().entries()) {
-    ConfigTable params = table.take_table(name);  // the tables of policies not chosen are checked too
+    // The tables of policies that are not chosen are checked too.
+    ConfigTable params = table.take_table(name);
     PolicyChoice<Interface> read("");
     entry.read(params, read);
     if (name == chosen.name) {

@@ -1,4 +1,4 @@
-// Registration and visiting of statistics.
+// Registers statistics with their groups and visits them.
 // SPDX-License-Identifier: Apache-2.0
 #include "base/stats.h"
 

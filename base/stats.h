@@ -1,8 +1,9 @@
-// Statistics: declared once as members, visited by every writer.
+// Defines statistics, which are declared once as members and visited by every writer.
 //
-// A stat is a member with name, unit and sentence; it registers with its Group, and the tree of groups is the
-// tree of instances. Ratios are computed when read. No format knows a unit of hardware, no unit knows a
-// format. SPDX-License-Identifier: Apache-2.0
+// A statistic is a member with a name, a unit and a sentence. It registers with its Group, and the tree of
+// groups is the tree of instances. Ratios are computed when they are read. No format knows a unit of
+// hardware, and no unit knows a format.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstdint>
@@ -17,8 +18,8 @@ namespace glint::stats {
 class Group;
 class Visitor;
 
-// A named, described, unit-carrying value. Members register themselves with their Group, so a stat
-// exists in every output format as soon as it is declared, and in no list anywhere else.
+// A named value with a unit and a description. A member registers itself with its Group, so a statistic
+// appears in every output format once it is declared, and no other list names it.
 class Stat {
  public:
   Stat(Group* group, std::string_view name, std::string_view unit, std::string_view doc);
@@ -53,7 +54,7 @@ class Counter final : public Stat {
   uint64_t value_ = 0;
 };
 
-// A quotient of two counters, computed when read: it can never disagree with its parts.
+// The quotient of two counters. It is computed when it is read, so it cannot disagree with the counters.
 class Ratio final : public Stat {
  public:
   Ratio(Group* group, std::string_view name, std::string_view unit, const Counter& num, const Counter& den,
@@ -67,7 +68,8 @@ class Ratio final : public Stat {
   const Counter& den_;
 };
 
-// A value computed when read from anything else the unit holds (a sum over instances, a peak).
+// A value that is computed, when it is read, from anything else in the unit, such as a sum over instances or
+// a peak.
 class Value final : public Stat {
  public:
   Value(Group* group, std::string_view name, std::string_view unit, std::function<double()> read,
@@ -80,7 +82,7 @@ class Value final : public Stat {
   std::function<double()> read_;
 };
 
-// Equal-width bins over [low, high); below and above fall into the first and last bin.
+// Defines bins of equal width over [low, high). Values below and above count in the first and last bin.
 struct Bins {
   uint64_t low, high, step;
 };
@@ -93,7 +95,8 @@ class Histogram final : public Stat {
   Histogram(Group* group, std::string_view name, std::string_view unit, Bins bins, std::string_view doc)
       : Stat(group, name, unit, doc), bins_(bins), counts_((bins.high - bins.low) / bins.step) {}
   void add(uint64_t x) { ++counts_[bin_of(x)]; }
-  // Takes back an add() of the same value: what was counted goes on and is counted again at its end.
+  // Takes back an add() of the same value. A unit uses it when something counted goes on and will be counted
+  // again at its end.
   void remove(uint64_t x) { --counts_[bin_of(x)]; }
   const Bins& bins() const { return bins_; }
   const std::vector<uint64_t>& counts() const { return counts_; }
@@ -114,7 +117,7 @@ class Histogram final : public Stat {
   std::vector<uint64_t> counts_;
 };
 
-// The visitor's view of a Breakdown of any enum.
+// The part of a Breakdown that a visitor sees, the same for every enum.
 class BreakdownBase : public Stat {
  public:
   using Stat::Stat;
@@ -122,8 +125,9 @@ class BreakdownBase : public Stat {
   void accept(Visitor& visitor) const override;
 };
 
-// One counter per value of an enum. For cycle accounting: every cycle is added to exactly one reason.
-template <class Enum>  // needs: Enum::Count, and a constexpr name_of(Enum) found by ADL
+// Holds one counter for each value of an enum. Cycle accounting uses it and adds every cycle to exactly one
+// reason.
+template <class Enum>  // Enum needs a value Enum::Count and a constexpr name_of(Enum) found by ADL
 class Breakdown final : public BreakdownBase {
  public:
   using BreakdownBase::BreakdownBase;

@@ -1,4 +1,4 @@
-// Plain units of the model: cycles, addresses, lane masks, and the size of a warp.
+// Defines the plain units of the model: cycles, addresses, lane masks, and the size of a warp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
@@ -12,7 +12,7 @@ using LaneMask = uint32_t;  // bit i = lane i of a warp
 
 inline constexpr int kLanes = 32;                   // lanes of a warp
 inline constexpr LaneMask kAllLanes = 0xffff'ffff;  // every lane of a warp
-inline constexpr Cycle kNever = ~Cycle{0};          // "no event is scheduled"
+inline constexpr Cycle kNever = ~Cycle{0};          // marks that no event is scheduled
 
 // Calls `visit(lane)` for each set bit, lowest lane first.
 template <class Visit>

@@ -1,4 +1,4 @@
-// Reading of configurations: layers, types, ranges, places and suggestions.
+// Tests how configurations are read: layers, types, ranges, places and suggestions.
 // SPDX-License-Identifier: Apache-2.0
 #include "base/config.h"
 

@@ -1,4 +1,4 @@
-// Wording of diagnostics and the choice of "did you mean".
+// Tests the wording of diagnostics and the choice of "did you mean".
 // SPDX-License-Identifier: Apache-2.0
 #include "base/diagnostics.h"
 

@@ -1,4 +1,4 @@
-// Declared parameters and registered policies: reading, describing, refusing.
+// Tests how declared parameters and registered policies are read, described and refused.
 // SPDX-License-Identifier: Apache-2.0
 #include "base/params.h"
 
@@ -44,7 +44,8 @@ class Snail final : public Animal {
   Snail(Params, Context) {}
   int speed() const override { return 1; }
 };
-const Register<Animal, Snail> snail;  // registered before the dog: listing sorts
+// Registered before the dog, so that the test of the sorted listing can fail.
+const Register<Animal, Snail> snail;
 const Register<Animal, Dog> dog;
 
 struct Inner {

@@ -1,4 +1,4 @@
-// Statistics: registration, bins, ratios and the order of a visit.
+// Tests statistics: registration, bins, ratios and the order of a visit.
 // SPDX-License-Identifier: Apache-2.0
 #include "base/stats.h"
 
