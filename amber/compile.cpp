@@ -1,4 +1,4 @@
-// Compiling shaders of scripts: GLSL, SPIR-V as text, as hexadecimal words and as a file.
+// Compiles the shaders of scripts: GLSL, and SPIR-V as text, as hexadecimal words and as a file.
 // SPDX-License-Identifier: Apache-2.0
 #include "amber/compile.h"
 
@@ -13,8 +13,8 @@
 namespace glint::amber {
 namespace {
 
-// SPIR-V's version in the form of a module's second word, of a target environment as the SPIR-V tools name
-// it. A shader without one begins at spv1.0.
+// Returns the SPIR-V version that a target environment of the SPIR-V tools names, in the form of a module's
+// second word. A shader without a target environment has spv1.0.
 uint32_t version_of(const Shader& shader) {
   const std::map<std::string, uint32_t> versions{
       {"", 0x1'0000},          {"spv1.0", 0x1'0000},          {"spv1.1", 0x1'0100},
@@ -42,7 +42,7 @@ std::vector<uint32_t> from_hex(const Shader& shader) {
     const uint64_t value = std::strtoull(word.c_str(), &rest, 16);
     if (*rest || value > 0xffff'ffff)
       throw UserError({shader.path, 0, 0},
-                      fmt::format("shader '{}': '{}' is no word of 32 bits", shader.name, word));
+                      fmt::format("shader '{}': '{}' is not a word of 32 bits", shader.name, word));
     words.push_back(uint32_t(value));
     at = end;
   }
@@ -69,8 +69,9 @@ void add_attachments(const Script& script, const Pipeline& pipeline, std::vector
     add_attachments(script, script.pipelines.at(library), out);
 }
 
-// Choice: text that is invalid in the version of its TARGET_ENV but valid in a later one is of that version.
-// Scripts leave out TARGET_ENV and ask for VK_KHR_spirv_1_4, or use what a device's Vulkan brings along.
+// Returns why a module is invalid, or an empty text. Choice: a module that is invalid in the version of its
+// TARGET_ENV but valid in a later version is treated as one of the later version. Scripts leave out
+// TARGET_ENV and ask for VK_KHR_spirv_1_4, or use what a device's Vulkan version includes.
 std::string why_invalid(std::vector<uint32_t>& words) {
   const std::string first = frontend::validate_spirv(words);
   if (first.empty()) return first;
@@ -120,7 +121,8 @@ std::vector<uint32_t> spirv_of(const Shader& shader, isa::Stage stage, frontend:
   try {
     return assemble_or_compile(shader, stage, cache);
   } catch (const UserError& error) {
-    // Newer than the assembler and the GLSL compiler that Glint was built with: no mistake of the script.
+    // The shader needs a newer assembler or GLSL compiler than Glint was built with, which is no mistake of
+    // the script.
     const std::string message = error.what();
     for (const char* unknown : {"Invalid capability '", "Invalid Opcode name '", "extension not supported: "})
       if (message.find(unknown) != std::string::npos)
@@ -149,7 +151,7 @@ CompiledShader compile(const Script& script, const Attachment& attachment,
                                          notes, cache)
                     .program;
   if (out.program.stage != *attachment.stage)
-    throw UserError({shader.path, 0, 0}, fmt::format("entry point '{}' of shader '{}' is of another stage",
+    throw UserError({shader.path, 0, 0}, fmt::format("entry point '{}' of shader '{}' has another stage",
                                                      attachment.entry, title));
   return out;
 }

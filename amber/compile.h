@@ -1,4 +1,4 @@
-// From a script's shader to a program.
+// Compiles a script's shader to a program.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <vector>
@@ -16,20 +16,20 @@ struct CompiledShader {
   frontend::Reflection reflection;
 };
 
-// SPIR-V words, not yet validated. UserError when the text is wrong.
+// Returns SPIR-V words that are not yet validated. Throws UserError when the text is wrong.
 std::vector<uint32_t> spirv_of(const Shader& shader, isa::Stage stage,
                                frontend::ShaderCache* cache = nullptr);
 
-// UserError and UnsupportedError as frontend::lower().
+// Throws UserError and UnsupportedError in the same cases as frontend::lower().
 CompiledShader compile(const Script& script, const Attachment& attachment,
                        const pipeline::CompilerParams& compiler, frontend::ShaderCache* cache = nullptr);
 
-// Every shader of a pipeline and of the libraries that it uses.
+// Compiles every shader of a pipeline and of the libraries that it uses.
 std::vector<CompiledShader> compile(const Script& script, const Pipeline& pipeline,
                                     const pipeline::CompilerParams& compiler,
                                     frontend::ShaderCache* cache = nullptr);
 
-// Groups of a pipeline and of its libraries, by name.
+// Returns the groups of a pipeline and of its libraries, with their names.
 std::vector<std::pair<std::string, std::vector<std::string>>> all_groups(const Script& script,
                                                                          const Pipeline& pipeline);
 

@@ -1,4 +1,4 @@
-// Comparing buffers with values, with colours and with each other.
+// Compares buffers with values, with colours and with each other.
 // SPDX-License-Identifier: Apache-2.0
 #include "amber/expect.h"
 
@@ -11,8 +11,8 @@
 namespace glint::amber {
 namespace {
 
-// Amber's verifier: floats are equal when they differ by at most this many percent. About one and a half
-// units of the last place of a 32-bit float.
+// Two floats are equal when they differ by at most this many percent, as in Amber's verifier. For a 32-bit
+// float this is about one and a half units in the last place.
 constexpr double kEqualPercent = 0.000009;
 
 bool is_near(double found, double expected, double tolerance, bool is_percent) {
@@ -69,7 +69,7 @@ class Check {
  private:
   [[noreturn]] void wrong(const std::string& what) const { throw UserError(where_, what); }
 
-  // Index of the slot at a byte of an element; the first where none begins there.
+  // Returns the index of the slot that begins at byte `offset` of an element, or 0 when none begins there.
   size_t slot_at(uint64_t offset) const {
     const auto& slots = buffer_.layout.slots;
     for (size_t i = 0; i < slots.size(); ++i)
@@ -81,8 +81,8 @@ class Check {
     const Layout& layout = expect_.as ? *expect_.as : buffer_.layout;
     uint64_t element = expect_.as ? expect_.x : expect_.x / layout.stride * layout.stride;
     size_t slot = expect_.as ? 0 : slot_at(expect_.x - element);
-    const uint64_t shift =
-        expect_.x - element - layout.slots[slot].offset;  // of data that lie across elements
+    // The distance from the slot is not 0 for values that lie across slots or elements.
+    const uint64_t shift = expect_.x - element - layout.slots[slot].offset;
     for (size_t i = 0; i < expect_.values.size(); ++i) {
       const Slot& at = layout.slots[slot];
       const uint64_t offset = element + shift + at.offset;
@@ -115,25 +115,27 @@ class Check {
       return holds(expect_.comparator, is_equal, found < real);
     }
     std::byte bytes[8]{};
-    if (!put(scalar, text, bytes)) wrong(fmt::format("'{}' is no integer", text));
+    if (!put(scalar, text, bytes)) wrong(fmt::format("'{}' is not an integer", text));
     const uint64_t a = get_bits(scalar, at), b = get_bits(scalar, bytes);
     const bool is_unsigned = scalar == Scalar::U64;
     return holds(expect_.comparator, a == b, is_unsigned ? a < b : int64_t(a) < int64_t(b));
   }
 
-  // One for all components, or one each; those that have none must be equal.
+  // Returns the tolerance of a component and whether it is in percent. A script gives one tolerance for all
+  // components or one for each; a component without a tolerance must be equal.
   std::pair<double, bool> tolerance_of(size_t component) const {
     const auto& all = expect_.tolerances;
     if (all.size() == 1) return all[0];
     return component < all.size() ? all[component] : std::pair(kEqualPercent, true);
   }
 
-  // In units of 1/255, as the script gives them; integer texels as they are.
+  // Returns the colour in units of 1/255, as the script gives it. Integer texels are returned unchanged.
   std::array<double, 4> colour_at(uint32_t x, uint32_t y) const {
     const exec::FormatInfo& info = exec::info_of(*buffer_.type.format);
     const std::byte* at = buffer_.bytes.data() + (uint64_t{y} * buffer_.size[0] + x) * buffer_.layout.stride;
     std::array<double, 4> out{};
-    if (info.numeric == exec::Numeric::Srgb) {  // Choice: the bytes as stored, as a screenshot holds them
+    // Choice: an sRGB colour is compared as stored, because a screenshot also holds the stored bytes.
+    if (info.numeric == exec::Numeric::Srgb) {
       const bool is_swapped = info.name[0] == 'b';
       for (size_t c = 0; c < 4; ++c) out[is_swapped && c < 3 ? 2 - c : c] = double(at[c]);
       return out;
@@ -177,7 +179,7 @@ class Check {
                         buffer_.bytes.size(), other_->bytes.size()));
   }
 
-  // Calls with the scalar, its bytes in both buffers, its offset and its number in the element.
+  // Calls `call` with each scalar, its bytes in both buffers, its offset, and its number within the element.
   template <class F>
   void each_value(const F& call) const {
     check_alike();
@@ -220,12 +222,13 @@ class Check {
                        buffer_.name, other_->name, only_tolerance(), found);
   }
 
-  // Earth mover's distance of the histograms of each channel of bytes: the work of moving one into the other,
-  // in parts of all texels and of the range. The channel with the largest counts.
+  // Compares histograms by the earth mover's distance: the work of moving one histogram into the other, as a
+  // fraction of all texels and of the range. Each channel of bytes has a histogram, and the largest distance
+  // counts.
   std::string histograms() const {
     std::array<std::array<int64_t, 256>, 4> bins{};
     each_value([&](Scalar scalar, const std::byte* a, const std::byte* b, uint64_t, size_t i) {
-      if (scalar != Scalar::U8 || i >= 4) wrong("histograms are of one to four bytes a texel");
+      if (scalar != Scalar::U8 || i >= 4) wrong("histograms need texels of one to four bytes");
       ++bins[i][size_t(*a)], --bins[i][size_t(*b)];
     });
     double found = 0;

@@ -1,4 +1,4 @@
-// EXPECT: what a buffer must hold.
+// Checks EXPECT: what a buffer must hold.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
@@ -7,8 +7,9 @@
 
 namespace glint::amber {
 
-// Empty when the buffers are as expected; else what was expected and what was found. UserError when the
-// question makes no sense: a place outside of the buffer, a comparison that its type does not have.
+// Returns an empty text when the buffers are as expected, and otherwise what was expected and what was found.
+// Throws UserError when the command makes no sense: its place is outside the buffer, or the buffer's type
+// does not have its comparison.
 std::string check(const Script& script, const Command& command);
 
 }  // namespace glint::amber

@@ -1,4 +1,4 @@
-// Uploading what a pipeline binds, running it, reading it back.
+// Uploads what a pipeline binds, runs the pipeline and reads the buffers back.
 // SPDX-License-Identifier: Apache-2.0
 #include "amber/launch.h"
 
@@ -17,7 +17,8 @@
 namespace glint::amber {
 namespace {
 
-// Choice: scripts cannot say how deep callables nest; Vulkan leaves it to the stack's size.
+// Choice: this is the depth to which callables may nest. Scripts cannot say it, and Vulkan leaves it to the
+// size of the stack.
 constexpr uint32_t kCallableDepth = 8;
 
 class Launch {
@@ -67,8 +68,8 @@ class Launch {
   }
 
  private:
-  // Bytes of a buffer that lie in memory as an allocation of their own, so that what is past them is past its
-  // end.
+  // Names bytes of a buffer that are an allocation of their own in memory, so that an access past the part's
+  // end is outside all allocations.
   struct Part {
     uint64_t first = 0, end = 0;
     Address address = 0;  // 0: not yet in memory
@@ -99,7 +100,7 @@ class Launch {
   const Pipeline& pipeline_;
   const std::vector<CompiledShader>& shaders_;
   const rt::BuildOptions& bvh_;
-  uint32_t stack_need_ = 0;  // of the deepest structure
+  uint32_t stack_need_ = 0;  // bytes for the deepest structure
   mem::AddressSpace memory_;
   exec::Image image_;
   exec::World world_;
@@ -114,8 +115,9 @@ void Launch::set_compute() {
   const isa::Program& program = shaders_[0].program;
   const auto& size = program.local_size;
   if (uint64_t{size[0]} * size[1] * size[2] > exec::kMaxBlockThreads)
-    throw UserError(pipeline_.where, fmt::format("blocks of {} x {} x {} threads: at most {} can be", size[0],
-                                                 size[1], size[2], exec::kMaxBlockThreads));
+    throw UserError(pipeline_.where,
+                    fmt::format("blocks of {} x {} x {} threads are too large: the limit is {}", size[0],
+                                size[1], size[2], exec::kMaxBlockThreads));
   world_.raygen = 0;
   world_.local_bytes = pipeline::stack_bytes(image_, 1, 0);
   exec::set_blocks(world_, command_.size, size, program.shared_bytes);
@@ -149,7 +151,8 @@ std::vector<pipeline::TableRecord> Launch::records(const std::string& table, pip
   return out;
 }
 
-// Without a table every index calls nothing (Vulkan: a region at address 0).
+// Returns the region of a binding table. Without a table every index calls nothing, as with a Vulkan region
+// at address 0.
 pipeline::TableRegion Launch::region(const std::string& table, pipeline::TableInput& input) {
   pipeline::TableRegion out;
   out.records = records(table, input);
@@ -203,7 +206,7 @@ void Launch::write_descriptor(const Binding& binding, uint64_t first, uint64_t s
   pipeline::write_descriptor(world_, {binding.set, binding.binding}, first, second);
 }
 
-// docs/abi.md: arrays of buffers and of structures have their descriptors in a table in global memory.
+// Writes the descriptors of an array of buffers or structures to a table in global memory (docs/abi.md).
 void Launch::write_descriptors(const Binding& binding, std::vector<std::array<uint64_t, 2>> all) {
   const frontend::Binding* use = reflected(binding);
   if (!use || use->count == 1) return write_descriptor(binding, all[0][0], all[0][1]);
@@ -216,8 +219,8 @@ void Launch::write_descriptors(const Binding& binding, std::vector<std::array<ui
   write_descriptor(binding, table, all.size());
 }
 
-// Scripts may bind anything to anything; what the shader would not take is a mistake of the script. Aliases
-// of other kinds at one place are none.
+// Throws UserError when the kind of a binding is not what the shader declares. Aliases of different kinds at
+// one place are allowed; one of them has to match.
 void Launch::check_kind(const Binding& binding) const {
   using frontend::BindingKind;
   const auto takes = [&](BindingKind kind) {
@@ -245,12 +248,13 @@ void Launch::check_kind(const Binding& binding) const {
   if (other && !binding.names.empty())
     throw UserError(
         binding.where,
-        fmt::format("set {} binding {}: the shader declares the {} '{}', and '{}' is none", binding.set,
+        fmt::format("set {} binding {}: the shader declares the {} '{}', but '{}' is not one", binding.set,
                     binding.binding, pipeline::name_of(other->kind), other->name, binding.names[0]));
 }
 
-// A buffer is uploaded in the parts that descriptors name, so that an access past the range of one is a
-// fault. Choice: where parts overlap, all of the buffer is one: shaders may see a byte through both.
+// Uploads a buffer in the parts that descriptors name, so that an access past the range of a descriptor is a
+// fault. Choice: where parts overlap, the whole buffer is one part, because a shader may see the same byte
+// through both descriptors.
 void Launch::plan_parts() {
   for (const Binding& binding : pipeline_.bindings) {
     if (binding.kind == BindKind::Sampler || binding.kind == BindKind::Structure ||
@@ -276,7 +280,7 @@ void Launch::plan_parts() {
   }
 }
 
-// Where byte `offset` of a buffer is.
+// Returns the address of byte `offset` of a buffer, which is uploaded at the first call.
 Address Launch::upload(const Buffer& buffer, uint64_t offset) {
   std::vector<Part>& parts = parts_.at(buffer.name);
   Part& part = *std::prev(std::upper_bound(parts.begin(), parts.end(), offset,
@@ -340,7 +344,7 @@ exec::ImageView Launch::view_of(const Binding& binding, const Buffer& buffer, si
   return view;
 }
 
-// Images of an array have consecutive numbers.
+// The images of an array have consecutive numbers.
 void Launch::bind_images(const Binding& binding) {
   write_descriptor(binding, world_.images.size(), binding.names.size());
   for (size_t i = 0; i < binding.names.size(); ++i)
@@ -402,8 +406,8 @@ void Launch::set_push_constants(const Binding& binding) {
 
 Launched launch(Script& script, const Command& command, const std::vector<CompiledShader>& shaders,
                 const LaunchOptions& options) {
-  if (command.size[0] == 0 || command.size[1] == 0 || command.size[2] == 0)
-    return {};  // Vulkan: does nothing
+  // In Vulkan such a launch does nothing.
+  if (command.size[0] == 0 || command.size[1] == 0 || command.size[2] == 0) return {};
   return Launch(script, command, shaders, options).run(options);
 }
 

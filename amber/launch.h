@@ -1,4 +1,5 @@
-// One RUN: the script's resources in simulated memory, the machine, and the resources back.
+// Performs one RUN: puts the script's resources into simulated memory, runs the machine and reads the
+// resources back.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "amber/compile.h"
@@ -9,19 +10,20 @@ namespace glint::amber {
 
 struct LaunchOptions {
   pipeline::GpuParams gpu;
-  bool timing = false;   // cycle by cycle; else every effect at once
-  bool no_skip = false;  // of the timing machine
-  uint32_t threads = 1;  // of the host, for it
+  // True: the timing machine; false: the functional machine, where every effect is immediate.
+  bool timing = false;
+  bool no_skip = false;  // for the timing machine
+  uint32_t threads = 1;  // threads of the host, for the timing machine
   exec::OnFault on_fault = exec::OnFault::Stop;
-  exec::PrintLog* prints = nullptr;        // null: what shaders print is left out
-  frontend::ShaderCache* cache = nullptr;  // null: shaders are compiled anew
+  exec::PrintLog* prints = nullptr;        // null: the output of shaders is left out
+  frontend::ShaderCache* cache = nullptr;  // null: every shader is compiled anew
 };
 
-// Runs `command` with shaders of its pipeline and leaves the buffers of `script` as they are afterwards.
-// Errors as pipeline::render().
+// Runs `command` with the shaders of its pipeline and leaves the buffers of `script` as they are afterwards.
+// Throws the same errors as pipeline::render().
 struct Launched {
   uint64_t cycles = 0;    // 0 without timing
-  exec::FaultLog faults;  // that were let pass
+  exec::FaultLog faults;  // faults that were reported as warnings
 };
 Launched launch(Script& script, const Command& command, const std::vector<CompiledShader>& shaders,
                 const LaunchOptions& options);

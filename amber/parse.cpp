@@ -1,4 +1,4 @@
-// The top level of a script.
+// Reads the top level of a script.
 // SPDX-License-Identifier: Apache-2.0
 #include "amber/parse.h"
 
@@ -44,7 +44,7 @@ bool parse_declaration(Parsing& p, const std::string& name) {
   return true;
 }
 
-// Choice: time limits of fences mean nothing here; the instruction budget ends what has no end.
+// Choice: time limits of fences are ignored; the limit on instructions ends a shader that would never end.
 void parse_engine_data(Parsing& p) {
   const std::string what = p.tokens.word("'ENGINE_DATA'");
   if (what != "ENGINE_DATA") p.unsupported("SET " + what);

@@ -1,4 +1,4 @@
-// The steps of reading a script, one a family of commands.
+// Declares the steps of reading a script, one for each family of commands.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <fmt/format.h>
@@ -17,9 +17,9 @@ struct Parsing {
     throw UnsupportedError(fmt::format("{}: unsupported: {}", tokens.here().to_string(), what));
   }
   std::string beside(const std::string& file) const;  // relative paths start at the script's folder
-  std::string read_file(const std::string& file);     // a virtual one first
+  std::string read_file(const std::string& file);     // a virtual file comes before a real one
 
-  // What is declared by that name; UserError when there is none.
+  // Returns what is declared by that name. Throws UserError when there is no such declaration.
   template <class T>
   T& find(std::map<std::string, T>& in, const std::string& name, const char* kind) {
     const auto found = in.find(name);
@@ -35,9 +35,9 @@ struct Parsing {
 };
 
 isa::Stage stage_named(Parsing& p, const std::string& name);
-// A shader's text so that its lines count from `first_line` on.
+// Returns a shader's text with lines that count from `first_line` on.
 std::string at_line(const std::string& text, int first_line);
-// One number, with whether it counts percent.
+// Returns one number and whether it is in percent.
 std::pair<double, bool> parse_tolerance(Parsing& p);
 
 // parse_shader.cpp
@@ -53,10 +53,11 @@ void parse_structure(Parsing& p);
 // parse_pipeline.cpp
 void parse_pipeline(Parsing& p);
 void parse_derived_pipeline(Parsing& p);
-// parse_sections.cpp: the older language, whose scripts are divided by lines as [compute shader] and [test]
+// parse_sections.cpp reads the older language, whose scripts have sections such as [compute shader] and
+// [test].
 bool has_sections(const std::string& text);
 void parse_sections(Script& script, const std::string& text);
-// parse_command.cpp: false when `name` is none of these
+// parse_command.cpp: parse_command() returns false when `name` is none of its commands.
 bool parse_command(Parsing& p, const std::string& name, std::vector<Command>& to);
 
 }  // namespace glint::amber

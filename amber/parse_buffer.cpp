@@ -1,4 +1,4 @@
-// BUFFER, IMAGE, STRUCT and SAMPLER: types, sizes and first contents.
+// Reads BUFFER, IMAGE, STRUCT and SAMPLER: types, sizes and first contents.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstring>
@@ -9,7 +9,7 @@
 namespace glint::amber {
 namespace {
 
-constexpr uint64_t kMostBytes = uint64_t{1} << 31;  // of a buffer: beyond it a script's size is a mistake
+constexpr uint64_t kMostBytes = uint64_t{1} << 31;  // limit for a buffer; a larger size is a mistake
 
 Type find_type(Parsing& p, const std::string& name) {
   if (const auto found = p.script.structs.find(name); found != p.script.structs.end()) return found->second;
@@ -19,14 +19,14 @@ Type find_type(Parsing& p, const std::string& name) {
   p.wrong(fmt::format("there is no data type '{}'", name));
 }
 
-// "float[4]" is "float" and 4.
+// Takes the length of an array from a type's name: "float[4]" becomes "float" and 4.
 std::optional<uint32_t> take_count(Parsing& p, std::string& text) {
   const size_t open = text.find('[');
   if (open == std::string::npos) return std::nullopt;
   int64_t count = 0;
   if (text.back() != ']' || !parse_integer(text.substr(open + 1, text.size() - open - 2), count) ||
       count < 1 || count > 0x100'0000)
-    p.wrong(fmt::format("'{}' has no length of an array", text));
+    p.wrong(fmt::format("'{}' has no valid array length", text));
   text.resize(open);
   return uint32_t(count);
 }
@@ -51,7 +51,7 @@ Member parse_member(Parsing& p, std::string type) {
   return member;
 }
 
-// Everything that a line on a buffer says before its contents are made.
+// Holds everything that a line on a buffer says before the buffer's contents are made.
 struct Contents {
   std::string kind;  // FILL, SERIES_FROM, DATA, FILE or nothing
   std::vector<std::string> values;
@@ -117,8 +117,9 @@ void put_values(Buffer& buffer, const std::vector<std::string>& values) {
   for (size_t i = 0; i < values.size() && i / each < buffer.elements; ++i) {
     const Slot& slot = buffer.layout.slots[i % each];
     if (!put(slot.scalar, values[i], buffer.bytes.data() + i / each * buffer.layout.stride + slot.offset))
-      throw UserError(buffer.where, fmt::format("value {} of buffer '{}' is '{}': no {}", i, buffer.name,
-                                                values[i], is_float(slot.scalar) ? "number" : "integer"));
+      throw UserError(buffer.where,
+                      fmt::format("value {} of buffer '{}' is '{}', which is not a {}", i, buffer.name,
+                                  values[i], is_float(slot.scalar) ? "number" : "integer"));
   }
 }
 
@@ -129,7 +130,7 @@ void fill(Parsing& p, Buffer& buffer, const Contents& contents) {
   const bool is_whole =
       parse_integer(contents.values[0], whole) && (!is_series || parse_integer(contents.values[1], step));
   if (!parse_real(contents.values[0], real) || (is_series && !parse_real(contents.values[1], real_step)))
-    p.wrong(fmt::format("'{}' is no number", contents.values[0]));
+    p.wrong(fmt::format("'{}' is not a number", contents.values[0]));
   for (uint64_t i = 0; i < buffer.elements; ++i)
     for (const Slot& slot : buffer.layout.slots) {
       std::byte* at = buffer.bytes.data() + i * buffer.layout.stride + slot.offset;
@@ -179,9 +180,9 @@ void make(Parsing& p, Buffer& buffer, const Contents& contents) {
     p.wrong(
         fmt::format("'{}' has {} texels and SIZE {}", buffer.name, texels_of(buffer, 0), buffer.elements));
   if (buffer.samples > 1 && (buffer.levels > 1 || buffer.dimensions != 2))
-    p.wrong(fmt::format("'{}' has several samples and is not DIM_2D with one level", buffer.name));
+    p.wrong(fmt::format("'{}' has several samples but is not DIM_2D with one level", buffer.name));
   if (buffer.samples > 1 && contents.kind != "" && contents.kind != "FILL")
-    p.unsupported("contents of images of several samples, but FILL");
+    p.unsupported("contents of images of several samples, except FILL");
   uint64_t texels = buffer.elements *= buffer.samples;
   for (uint32_t level = 1; level < buffer.levels; ++level) texels += texels_of(buffer, level);
   if (texels > kMostBytes / buffer.layout.stride)
@@ -219,7 +220,8 @@ exec::Filter filter_named(Parsing& p, const std::string& name) {
   return name == "linear" ? exec::Filter::Linear : exec::Filter::Nearest;
 }
 
-// VkBorderColor. Floats and integers both, as the image's format will read them.
+// Returns the words of a VkBorderColor. It may be of floats or of integers, and the image's format decides
+// how the words are read.
 exec::Words border_named(Parsing& p, const std::string& name) {
   const uint32_t one = name.rfind("float", 0) == 0 ? 0x3f80'0000 : 1;
   if (name.ends_with("_transparent_black")) return {0, 0, 0, 0};

@@ -1,4 +1,4 @@
-// RUN, EXPECT, COPY and REPEAT.
+// Reads RUN, EXPECT, COPY and REPEAT.
 // SPDX-License-Identifier: Apache-2.0
 #include "amber/parse.h"
 
@@ -84,7 +84,7 @@ void parse_expect(Parsing& p, Command& command) {
   if (!has_comparator) p.wrong("a comparison is missing");
   const bool is_colour = expect.comparator == Comparator::Rgb || expect.comparator == Comparator::Rgba;
   if (is_colour && expect.values.size() != (expect.comparator == Comparator::Rgb ? 3 : 4))
-    p.wrong("a colour has three or four numbers");
+    p.wrong("EQ_RGB takes three numbers and EQ_RGBA takes four");
   if (is_colour && expect.width == 0) p.wrong("SIZE is missing");
   if (expect.other.empty() && expect.values.empty()) p.wrong("the values are missing");
 }
@@ -106,9 +106,10 @@ void parse_copy(Parsing& p, Command& command) {
   command.to = p.tokens.word("the buffer");
   const Buffer& from = p.find(p.script.buffers, command.from, "buffer");
   const Buffer& to = p.find(p.script.buffers, command.to, "buffer");
-  if (command.from == command.to) p.wrong("a buffer is copied to itself");
+  if (command.from == command.to) p.wrong("a buffer cannot be copied to itself");
   if (from.type.name != to.type.name)
-    p.wrong(fmt::format("'{}' holds {}, '{}' {}", from.name, from.type.name, to.name, to.type.name));
+    p.wrong(
+        fmt::format("'{}' holds {}, but '{}' holds {}", from.name, from.type.name, to.name, to.type.name));
 }
 
 }  // namespace
@@ -118,7 +119,7 @@ std::pair<double, bool> parse_tolerance(Parsing& p) {
   const bool is_percent = text.ends_with('%');
   if (is_percent) text.pop_back();
   double value = 0;
-  if (!parse_real(text, value)) p.wrong(fmt::format("'{}' is no tolerance", text));
+  if (!parse_real(text, value)) p.wrong(fmt::format("'{}' is not a tolerance", text));
   return {value, is_percent};
 }
 

@@ -1,4 +1,4 @@
-// PIPELINE and DERIVE_PIPELINE: shaders, groups, tables and what is bound.
+// Reads PIPELINE and DERIVE_PIPELINE: shaders, groups, tables and bindings.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstring>
@@ -19,7 +19,7 @@ void parse_constant(Parsing& p, Attachment& attachment) {
   const std::optional<Type> type = type_named(name);
   std::byte bytes[8]{};
   if (!type || type->rows != 1 || type->columns != 1 || !put(type->scalar, value, bytes))
-    p.wrong(fmt::format("'{}' is no {}", value, name));
+    p.wrong(fmt::format("'{}' is not a {}", value, name));
   uint64_t bits = 0;
   std::memcpy(&bits, bytes, sizeof bits);
   attachment.constants[id] = bits;
@@ -43,7 +43,7 @@ void parse_attach(Parsing& p, Pipeline& pipeline) {
   }
   if (!attachment.stage) p.wrong(fmt::format("'{}' is a multi shader: TYPE is missing", attachment.shader));
   if ((*attachment.stage == isa::Stage::Compute) == pipeline.is_ray_tracing)
-    p.wrong(fmt::format("'{}' is no shader for this kind of pipeline", attachment.shader));
+    p.wrong(fmt::format("'{}' is not a shader for this kind of pipeline", attachment.shader));
   if (!pipeline.is_ray_tracing && !pipeline.shaders.empty()) p.wrong("a compute pipeline has one shader");
   pipeline.shaders.push_back(attachment);
 }
@@ -89,7 +89,7 @@ bool is_attribute(const std::string& word) {
   return false;
 }
 
-// Several lists of offsets add up.
+// Adds a list of bytes to `to`, element by element, because a binding may have several lists of offsets.
 void parse_bytes(Parsing& p, std::vector<uint64_t>& to) {
   for (size_t i = 0; p.tokens.peek().is_word() && !is_attribute(p.tokens.peek().text); ++i) {
     int64_t value = 0;
@@ -150,7 +150,8 @@ void parse_bind(Parsing& p, Pipeline& pipeline) {
   for (const std::string& name : binding.samplers) p.find(p.script.samplers, name, "sampler");
   if (binding.kind == BindKind::CombinedImage && binding.samplers.size() != binding.names.size())
     p.wrong("each combined image needs one SAMPLER");
-  std::erase_if(pipeline.bindings, [&](const Binding& other) {  // what a derived pipeline binds anew
+  // A derived pipeline replaces the parent's binding.
+  std::erase_if(pipeline.bindings, [&](const Binding& other) {
     return other.kind == BindKind::PushConstants || binding.kind == BindKind::PushConstants
                ? other.kind == binding.kind
                : other.set == binding.set && other.binding == binding.binding;
@@ -175,13 +176,13 @@ void parse_group(Parsing& p, Pipeline& pipeline) {
   while (p.tokens.peek().is_word()) {
     shaders.push_back(p.tokens.next().text);
     if (p.find(p.script.shaders, shaders.back(), "shader").stage == isa::Stage::Compute)
-      p.wrong("a compute shader in a group");
+      p.wrong("a group cannot hold a compute shader");
   }
   if (shaders.empty()) p.wrong(fmt::format("group '{}' has no shader", name));
   pipeline.groups.emplace_back(name, shaders);
 }
 
-// A list on the line, or on the lines up to END.
+// Reads a list that stands on the line, or on the lines up to END.
 std::vector<std::string> parse_list(Parsing& p) {
   std::vector<std::string> out;
   const bool is_long = !p.tokens.peek().is_word();
@@ -202,7 +203,7 @@ bool parse_ray_tracing_line(Parsing& p, const std::string& name, Pipeline& pipel
   else if (name == "SHADER_BINDING_TABLE")
     parse_table(p, pipeline);
   else if (name == "MAX_RAY_PAYLOAD_SIZE" || name == "MAX_RAY_HIT_ATTRIBUTE_SIZE")
-    p.tokens.number("the size");  // what the shaders have counts
+    p.tokens.number("the size");  // ignored: the sizes in the shaders count
   else if (name == "MAX_RAY_RECURSION_DEPTH")
     pipeline.max_trace_depth = uint32_t(p.tokens.integer("the depth", 0, 31));
   else if (name == "FLAGS") {
@@ -216,7 +217,8 @@ bool parse_ray_tracing_line(Parsing& p, const std::string& name, Pipeline& pipel
   return true;
 }
 
-// Passes of the optimizer change nothing but one, which puts limits to the places that a shader accesses.
+// Reads SHADER_OPTIMIZATION. Passes of the optimizer are ignored, except the one that bounds the addresses a
+// shader accesses.
 void parse_optimization(Parsing& p, Pipeline& pipeline) {
   int unused = 0;
   p.find(p.script.shaders, p.tokens.word("the shader"), "shader");

@@ -1,5 +1,6 @@
-// Scripts in sections, Amber's older language (VkScript): its compute commands, as buffers and commands of a
-// Script. SPDX-License-Identifier: Apache-2.0
+// Reads scripts in sections, which are Amber's older language (VkScript), and turns their compute commands
+// into buffers and commands of a Script.
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstring>
 #include <regex>
@@ -11,10 +12,10 @@ namespace glint::amber {
 namespace {
 
 constexpr const char* kPushConstants = "push constants";
-constexpr uint64_t kMostBytes = uint64_t{1} << 31;  // of a buffer: beyond it a script's size is a mistake
+constexpr uint64_t kMostBytes = uint64_t{1} << 31;  // limit for a buffer; a larger size is a mistake
 
 struct Section {
-  std::string title, text;  // with empty lines before it, so that its lines are the script's
+  std::string title, text;  // begins with empty lines, so that its line numbers are the script's
 };
 
 std::vector<Section> split(const std::string& script) {
@@ -32,7 +33,7 @@ std::vector<Section> split(const std::string& script) {
   return out;
 }
 
-// "u16vec3", "mat2x4", "int8_t" in Amber's names.
+// Returns the type of a name such as "u16vec3", "mat2x4" or "int8_t" by way of Amber's name for it.
 std::optional<Type> type_of(const std::string& name) {
   std::smatch m;
   if (std::regex_match(name, m, std::regex("(u?int(?:8|16|64))_t|float16_t")))
@@ -61,7 +62,7 @@ Layout parse_type(Parsing& p, bool std140) {
   return lay_out(*type, std140);
 }
 
-// "3" or "1:3", as the name of its buffer.
+// Returns a place, written "3" or "1:3", as the name of its buffer.
 std::string parse_place(Parsing& p) {
   const std::string text = p.tokens.word("the binding");
   const size_t colon = text.find(':');
@@ -69,7 +70,7 @@ std::string parse_place(Parsing& p) {
   const bool is_good = (colon == std::string::npos || parse_integer(text.substr(0, colon), set)) &&
                        parse_integer(colon == std::string::npos ? text : text.substr(colon + 1), binding) &&
                        set >= 0 && set < isa::kMaxSets && binding >= 0 && binding < isa::kMaxBindings;
-  if (!is_good) p.wrong(fmt::format("'{}' is no binding", text));
+  if (!is_good) p.wrong(fmt::format("'{}' is not a binding", text));
   return fmt::format("{}:{}", set, binding);
 }
 
@@ -161,7 +162,7 @@ class Sections {
     pipeline.shaders.push_back(attachment);
   }
 
-  // The buffer of that name, with at least so many bytes.
+  // Returns the buffer of that name and makes it at least `bytes` long.
   Buffer& buffer(Parsing& p, const std::string& name, BindKind kind, uint64_t bytes) {
     if (bytes > kMostBytes) p.wrong(fmt::format("buffer {} has more than {} bytes", name, kMostBytes));
     Buffer& out = script_.buffers[name];
@@ -175,13 +176,13 @@ class Sections {
         binding.set = uint32_t(std::stoul(name)),
         binding.binding = uint32_t(std::stoul(name.substr(colon + 1)));
     }
-    if (bindings_[name].kind != kind) p.wrong(fmt::format("buffer {} is of another kind", name));
+    if (bindings_[name].kind != kind) p.wrong(fmt::format("buffer {} has another kind", name));
     if (out.bytes.size() < bytes) out.bytes.resize(bytes);
     out.elements = out.bytes.size();
     return out;
   }
 
-  // TYPE OFFSET VALUES
+  // Reads a write: TYPE OFFSET VALUES.
   void parse_write(Parsing& p, const std::string& name, BindKind kind) {
     Command& command = add(p, Command::Kind::Write);
     const Layout layout = parse_type(p, kind == BindKind::Uniform);
@@ -194,9 +195,10 @@ class Sections {
       command.bytes.resize(std::max(command.bytes.size(), at + bytes_of(slot.scalar)));
       const std::string text = p.tokens.next().text;
       if (!put(slot.scalar, text, command.bytes.data() + at))
-        p.wrong(fmt::format("'{}' is no number of this type", text));
+        p.wrong(fmt::format("'{}' is not a number of this type", text));
     }
-    if (count == 0 || count % each) p.wrong(fmt::format("{} values: the type needs {} each", count, each));
+    if (count == 0 || count % each)
+      p.wrong(fmt::format("found {} values, but the type needs a multiple of {}", count, each));
     buffer(p, name, kind, uint64_t{command.offset} + command.bytes.size());
   }
 
@@ -235,7 +237,7 @@ class Sections {
   const std::string path_;
   std::string entry_ = "main";
   std::vector<std::pair<double, bool>> tolerances_;
-  std::map<std::string, Binding> bindings_;  // by buffer
+  std::map<std::string, Binding> bindings_;  // by name of the buffer
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// SHADER, VIRTUAL_FILE, and what a script asks of the device.
+// Reads SHADER, VIRTUAL_FILE, and what a script asks of the device.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
@@ -7,8 +7,9 @@
 namespace glint::amber {
 namespace {
 
-// What shaders need of a device they say themselves, and the compiler refuses by name what it lacks: scripts
-// name many features without need. These alone change what a launch does, and nothing else would tell.
+// Returns whether a device feature makes a script unsupported. For most features the answer is no: scripts
+// name many that they do not need, and the compiler refuses by name what a shader uses and Glint lacks. The
+// features listed here change what a launch does, and nothing in the shader would tell.
 bool is_lacking(const std::string& name) {
   for (const char* part : {"sparse", "nullDescriptor", "protectedMemory", "robustBufferAccess2",
                            "robustImageAccess2", "RoundingModeRTZ", "DenormFlushToZero"})
@@ -27,7 +28,7 @@ Language language_named(Parsing& p, const std::string& name) {
 
 }  // namespace
 
-// GLSL ES wants #version before anything else.
+// GLSL ES requires #version before anything else, so the #line directive comes after it.
 std::string at_line(const std::string& text, int first_line) {
   const size_t end = text.find('\n');
   const bool is_es = text.rfind("#version", 0) == 0 && end != std::string::npos &&

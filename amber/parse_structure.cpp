@@ -1,4 +1,4 @@
-// ACCELERATION_STRUCTURE: geometries of bottom levels, instances of top levels.
+// Reads ACCELERATION_STRUCTURE: geometries of bottom levels and instances of top levels.
 // SPDX-License-Identifier: Apache-2.0
 #include "amber/parse.h"
 
@@ -26,13 +26,13 @@ void parse_geometry(Parsing& p, BottomLevel& level) {
   }
   for (; token.is_word() && token.text != "END"; token = p.tokens.next_after_line_ends()) {
     double value = 0;
-    if (!parse_real(token.text, value)) p.wrong(fmt::format("'{}' is no coordinate", token.text));
+    if (!parse_real(token.text, value)) p.wrong(fmt::format("'{}' is not a coordinate", token.text));
     numbers.push_back(float(value));
   }
   if (!token.is_word()) p.wrong("END is missing");
   const size_t each = kind == "TRIANGLES" ? 9 : 6;
   if (numbers.empty() || numbers.size() % each)
-    p.wrong(fmt::format("{} coordinates: {} need {} each", numbers.size(), kind, each));
+    p.wrong(fmt::format("found {} coordinates, but {} need {} each", numbers.size(), kind, each));
   if (kind == "TRIANGLES")
     geometry.vertices = numbers;
   else
@@ -40,7 +40,7 @@ void parse_geometry(Parsing& p, BottomLevel& level) {
       geometry.boxes.push_back(
           {{numbers[i], numbers[i + 1], numbers[i + 2]}, {numbers[i + 3], numbers[i + 4], numbers[i + 5]}});
   if (!level.geometries.empty() && level.geometries[0].boxes.empty() != geometry.boxes.empty())
-    p.wrong("triangles and AABBs in one bottom level");
+    p.wrong("a bottom level cannot hold both triangles and AABBs");
   level.geometries.push_back(std::move(geometry));
 }
 
@@ -57,7 +57,7 @@ uint32_t flag_named(Parsing& p, const std::string& name) {
   return uint32_t(number);
 }
 
-// Flags stand on the line; or, if nothing does, on the lines up to END.
+// Reads flags that stand on the line or, if the line has no flags, on the lines up to END.
 void parse_flags(Parsing& p, rt::Instance& instance) {
   if (p.tokens.peek().is_word()) {
     while (p.tokens.peek().is_word()) instance.flags |= flag_named(p, p.tokens.next().text);

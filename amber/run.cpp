@@ -1,4 +1,4 @@
-// The commands of a script, one after the other, up to the first that fails.
+// Runs the commands of a script one after the other, up to the first that fails.
 // SPDX-License-Identifier: Apache-2.0
 #include "amber/run.h"
 
@@ -16,7 +16,7 @@ class Runner {
   Runner(Script& script, const LaunchOptions& options, Outcome& outcome)
       : script_(script), options_(options), outcome_(outcome) {}
 
-  // False: an expectation does not hold.
+  // Returns false when an expectation does not hold.
   bool run(const std::vector<Command>& commands) {
     for (const Command& command : commands)
       if (!run(command)) return false;
@@ -84,7 +84,7 @@ class Runner {
   Script& script_;
   const LaunchOptions& options_;
   Outcome& outcome_;
-  std::map<std::string, std::vector<CompiledShader>> compiled_;  // by pipeline
+  std::map<std::string, std::vector<CompiledShader>> compiled_;  // by name of the pipeline
 };
 
 void note(Outcome& outcome, const Error& error) {

@@ -12,15 +12,15 @@ enum class Verdict : uint8_t { Passed, Failed, Unsupported };
 
 struct Outcome {
   Verdict verdict = Verdict::Passed;
-  Exit exit = Exit::Ok;             // Failure: an expectation does not hold; else the kind of error
+  Exit exit = Exit::Ok;             // Failure: an expectation does not hold; otherwise the kind of error
   std::string message;              // with file and line; empty when passed
-  std::vector<std::string> faults;  // of each launch, what OnFault::Warn let pass
-  std::string printed;              // by the shaders of all launches, one launch after the other
-  uint64_t cycles = 0;              // of all launches, of the timing machine
+  std::vector<std::string> faults;  // faults of all launches that OnFault::Warn let pass
+  std::string printed;              // output of the shaders of all launches, in order of the launches
+  uint64_t cycles = 0;              // cycles of all launches on the timing machine
   uint32_t launches = 0, expectations = 0;
 };
 
-// Throws nothing for what is wrong with the script.
+// Runs a script. It throws nothing for mistakes in the script.
 Outcome run_script(const std::string& path, const LaunchOptions& options);
 Outcome run_script(Script script, const LaunchOptions& options);
 

@@ -1,4 +1,5 @@
-// An Amber script as read: shaders, buffers, pipelines and the commands on them. Nothing is compiled yet.
+// Holds an Amber script as it was read: shaders, buffers, pipelines and the commands on them. Nothing is
+// compiled yet.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -20,11 +21,11 @@ enum class Language : uint8_t { Glsl, SpirvText, SpirvHex, SpirvBinary };
 
 struct Shader {
   std::string name;
-  std::optional<isa::Stage> stage;  // none: several, each ATTACH says which
+  std::optional<isa::Stage> stage;  // none: several stages, and each ATTACH says which
   Language language = Language::Glsl;
-  std::string text;        // with empty lines before it, so that its lines are the script's
+  std::string text;        // begins with empty lines, so that its line numbers are the script's
   std::string target_env;  // empty: spv1.0 for SPIR-V
-  std::string path;        // of the file that the lines count in
+  std::string path;        // file to which the line numbers belong
 };
 
 struct Buffer {
@@ -33,7 +34,7 @@ struct Buffer {
   Layout layout;
   bool is_image = false;
   uint32_t dimensions = 0;                // of an image
-  std::array<uint32_t, 3> size{0, 0, 0};  // texels; of buffers with WIDTH too
+  std::array<uint32_t, 3> size{0, 0, 0};  // texels; also set for buffers with WIDTH
   uint32_t levels = 1, samples = 1;
   uint64_t elements = 0;
   std::vector<std::byte> bytes;
@@ -49,14 +50,15 @@ struct BottomLevel {
   std::vector<Geometry> geometries;
 };
 struct TopLevel {
-  std::vector<std::pair<std::string, rt::Instance>> instances;  // with its bottom level
+  // Each instance with the name of its bottom level.
+  std::vector<std::pair<std::string, rt::Instance>> instances;
 };
 
 struct Attachment {
   std::string shader;
   std::string entry = "main";
   std::optional<isa::Stage> stage;
-  std::map<uint32_t, uint64_t> constants;  // bits by constant_id
+  std::map<uint32_t, uint64_t> constants;  // bits, by constant_id
 };
 
 enum class BindKind : uint8_t {
@@ -74,9 +76,9 @@ enum class BindKind : uint8_t {
 
 struct Binding {
   BindKind kind = BindKind::Storage;
-  std::vector<std::string> names, samplers;  // more than one: an array of descriptors
+  std::vector<std::string> names, samplers;  // more than one name: an array of descriptors
   uint32_t set = 0, binding = 0, base_level = 0;
-  std::vector<uint64_t> offsets, ranges;  // bytes, one a name or none
+  std::vector<uint64_t> offsets, ranges;  // bytes, one for each name or none
   SourceLocation where;
 };
 
@@ -84,9 +86,9 @@ struct Pipeline {
   std::string name;
   bool is_ray_tracing = false;
   bool is_robust = false;           // accesses outside of buffers and images are no faults
-  std::vector<Attachment> shaders;  // one of a compute pipeline
+  std::vector<Attachment> shaders;  // a compute pipeline has one
   std::vector<std::pair<std::string, std::vector<std::string>>> groups;
-  std::map<std::string, std::vector<std::string>> tables;  // of groups
+  std::map<std::string, std::vector<std::string>> tables;  // names of groups, by name of the table
   std::vector<std::string> libraries;
   std::vector<Binding> bindings;
   uint32_t max_trace_depth = 1;
@@ -98,23 +100,23 @@ enum class Comparator : uint8_t { Eq, Ne, Lt, Le, Gt, Ge, Rgb, Rgba, Buffer, Rms
 struct Expectation {
   std::string buffer, other;
   Comparator comparator = Comparator::Eq;
-  uint32_t x = 0, y = 0, width = 0, height = 0;     // x: bytes, but of pixels in pixels
-  std::optional<Layout> as;                         // of the values, from x on; else the buffer's
-  std::vector<std::pair<double, bool>> tolerances;  // with whether it counts percent
+  uint32_t x = 0, y = 0, width = 0, height = 0;  // a place in bytes; for colours, in pixels
+  std::optional<Layout> as;  // layout of the values from x on; none: the layout of the buffer
+  std::vector<std::pair<double, bool>> tolerances;  // each with whether it is in percent
   std::vector<std::string> values;
 };
 
 struct Command {
   enum class Kind : uint8_t { Run, Expect, Copy, Write, Repeat } kind = Kind::Run;
   SourceLocation where;
-  std::string pipeline;  // Run
+  std::string pipeline;  // for Run
   std::array<uint32_t, 3> size{1, 1, 1};
-  std::string raygen, miss, hit, callable;  // tables
+  std::string raygen, miss, hit, callable;  // for Run: names of tables
   Expectation expect;
-  std::string from, to;          // Copy; Write: to
-  uint32_t offset = 0;           // Write
-  std::vector<std::byte> bytes;  // Write
-  uint32_t count = 1;            // Repeat
+  std::string from, to;          // Copy uses both, Write only `to`
+  uint32_t offset = 0;           // for Write
+  std::vector<std::byte> bytes;  // for Write
+  uint32_t count = 1;            // for Repeat
   std::vector<Command> body;
 };
 
@@ -132,8 +134,8 @@ struct Script {
   std::vector<Command> commands;
 };
 
-// Language: docs/amber.md. UserError with file and line where the script is wrong; UnsupportedError with
-// file, line and the name of what Glint lacks.
+// Reads a script in the language of docs/amber.md. Throws UserError with file and line where the script is
+// wrong, and UnsupportedError with file, line and the name of what Glint lacks.
 Script parse_script(const std::string& text, const std::string& path);
 Script read_script(const std::string& path);
 

@@ -1,4 +1,4 @@
-// Splitting a script into words.
+// Splits a script into words.
 // SPDX-License-Identifier: Apache-2.0
 #include "amber/tokens.h"
 
@@ -22,7 +22,7 @@ Token Tokens::next() {
     if (at_ >= text_.size()) return {Token::Kind::EndOfText, "", line_};
     if (text_[at_] == '#')
       at_ = std::min(text_.find('\n', at_), text_.size());
-    else if (text_[at_] == '\\') {  // up to and with the line's end
+    else if (text_[at_] == '\\') {  // skips up to and including the line end
       at_ = std::min(text_.find('\n', at_), text_.size());
       if (at_ < text_.size()) ++at_, ++line_;
     } else

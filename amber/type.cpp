@@ -1,4 +1,4 @@
-// Reading names of types, GLSL's layout rules, and numbers to bytes and back.
+// Reads names of types, applies GLSL's layout rules, and turns numbers into bytes and back.
 // SPDX-License-Identifier: Apache-2.0
 #include "amber/type.h"
 
@@ -42,10 +42,10 @@ std::optional<Scalar> channel_scalar(int bits, const std::string& numeric) {
   }
 }
 
-// Texels of 64 bits are two channels of 32.
+// A texel of 64 bits is stored as two channels of 32 bits.
 constexpr auto kHalves = exec::TexelFormat::Rg32Uint;
 
-// Vulkan's names of formats without VK_FORMAT_.
+// Reads Vulkan's names of formats, without VK_FORMAT_.
 std::optional<Type> format_named(const std::string& name) {
   Type type;
   type.name = name, type.is_packed = true;
@@ -79,7 +79,7 @@ std::optional<Type> format_named(const std::string& name) {
   return type;
 }
 
-// The format whose texels are such numbers: an image of vec4<float> holds R32G32B32A32_SFLOAT.
+// Returns the format whose texels are such numbers: an image of vec4<float> holds R32G32B32A32_SFLOAT.
 std::optional<exec::TexelFormat> format_like(const Type& type) {
   if (type.columns != 1 || type.rows == 3) return std::nullopt;
   if (type.rows == 1 && (type.scalar == Scalar::I64 || type.scalar == Scalar::U64)) return kHalves;
@@ -96,7 +96,7 @@ uint32_t round_up(uint32_t value, uint32_t to) {
   return (value + to - 1) / to * to;
 }
 
-// Khronos GLSL 4.60 specification, 7.6.2.2 "Standard Uniform Block Layout", rules 1 to 10.
+// Applies the Khronos GLSL 4.60 specification, 7.6.2.2 "Standard Uniform Block Layout", rules 1 to 10.
 class LayoutMaker {
  public:
   explicit LayoutMaker(bool std140) : std140_(std140) {}
@@ -134,7 +134,7 @@ class LayoutMaker {
     const uint32_t a = aggregate(alignment(*m.type));
     return m.array_stride.value_or(round_up(size(*m.type, m.matrix_stride), a));
   }
-  // Calls for every member and every element of its array; returns the end of the last.
+  // Calls `call` for every member and every element of its array. Returns the end of the last one.
   template <class F>
   uint32_t walk(const Type& t, const F& call) const {
     uint32_t end = 0;
@@ -181,8 +181,8 @@ std::optional<Type> type_named(const std::string& name) {
   return type;
 }
 
-// Choice: elements of a buffer of scalars or vectors follow each other as in std430 in both layouts, a vector
-// of three with room for a fourth: as the reference implementation does.
+// Choice: in both layouts, the elements of a buffer of scalars or vectors follow each other as in std430, and
+// a vector of three has room for a fourth component. The reference implementation does the same.
 Layout lay_out(const Type& type, bool std140) {
   LayoutMaker maker(std140);
   maker.add(type, 0);
@@ -226,7 +226,7 @@ void put_integer(Scalar scalar, int64_t value, std::byte* at) {
   if (is_float(scalar))
     put_real(scalar, double(value), at);
   else
-    std::memcpy(at, &value, bytes_of(scalar));  // little-endian hosts, as all that Glint runs on
+    std::memcpy(at, &value, bytes_of(scalar));  // Glint runs only on little-endian hosts
 }
 
 bool put(Scalar scalar, const std::string& text, std::byte* at) {

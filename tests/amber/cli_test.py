@@ -1,4 +1,4 @@
-# `glint run` with Amber scripts: exit codes and the line that counts.
+# Tests `glint run` with Amber scripts: the exit codes and the messages.
 # SPDX-License-Identifier: Apache-2.0
 """usage: cli_test.py GLINT SOURCE_DIR"""
 import pathlib

@@ -1,4 +1,4 @@
-// Scripts that are wrong, and scripts that ask for what Glint lacks: each is told with its line.
+// Tests scripts that are wrong, and scripts that ask for what Glint lacks. Each error names its line.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/amber/support.h"
 #include "tests/support/catch.h"
@@ -54,7 +54,7 @@ TEST_CASE("a script that is wrong fails as bad input at the line of the mistake"
        {kShader + "PIPELINE compute p\n BIND BUFFER b AS storage DESCRIPTOR_SET 99 BINDING 0\nEND\n",
         "the set is '99'"},
        {kShader + "PIPELINE compute p\n ATTACH s\n", "END is missing"},
-       {kShader + "PIPELINE raytracing p\n ATTACH s\nEND\n", "no shader for this kind of pipeline"},
+       {kShader + "PIPELINE raytracing p\n ATTACH s\nEND\n", "not a shader for this kind of pipeline"},
        {kShader + "DERIVE_PIPELINE q FROM p\nEND\n", "there is no pipeline 'p'"},
        {kPipeline + "RUN p 1 1\n", "t.amber:12: error: the size is missing"},
        {kPipeline + "RUN p 1 1 1 1\n", "'1' does not belong here"},
@@ -63,10 +63,10 @@ TEST_CASE("a script that is wrong fails as bad input at the line of the mistake"
        {kShader + "EXPECT b IDX 0 EQ\n", "the values are missing"},
        {kShader + "EXPECT b IDX 8 EQ 1\n", "byte 8 is past the end of buffer 'b' (8 bytes)"},
        {kShader + "EXPECT b IDX 0 0 SIZE 1 1 EQ_RGB 1 2 3\n", "'b' has no width"},
-       {kShader + "COPY b TO b\n", "copied to itself"},
+       {kShader + "COPY b TO b\n", "cannot be copied to itself"},
        {kShader + "REPEAT 2\nCOPY b TO c\n", "there is no buffer 'c'"},
        {"ACCELERATION_STRUCTURE BOTTOM_LEVEL a\n GEOMETRY TRIANGLES\n 0 0 0 1 0 0\n END\nEND\n",
-        "6 coordinates"},
+        "found 6 coordinates"},
        {"ACCELERATION_STRUCTURE TOP_LEVEL a\n BOTTOM_LEVEL_INSTANCE b\n END\nEND\n",
         "there is no bottom level 'b'"}},
       Verdict::Failed, Exit::UserInput);
@@ -148,7 +148,7 @@ TEST_CASE("a fault that is let pass is told with the lines of RUN and of the sha
   CHECK(contains(outcome.faults[0], "t.amber:5 "));
 }
 
-// One shader a kind of binding, at set 1 binding 3; nothing is bound there.
+// Each entry declares a binding of one kind at set 1 binding 3 and uses it. Nothing is bound there.
 const std::vector<std::pair<std::string, std::string>> kUnbound = {
     {"layout(set = 1, binding = 3) buffer U { uint u[]; };", "v[0] = u[1]"},
     {"layout(set = 1, binding = 3) uniform U { uint u; };", "v[0] = u"},
@@ -250,7 +250,7 @@ TEST_CASE("an access past the range of a descriptor is a fault though the buffer
                  script((near + far).c_str(), "EXPECT x IDX 0 EQ 4 2\nEXPECT x IDX 252 EQ 64 0 66\n"));
   CHECK(robust.message == "");
   CHECK(robust.exit == Exit::Ok);
-  // Ranges that overlap: the buffer's end counts.
+  // When the ranges overlap, the end of the buffer is the limit.
   const std::string all = " BIND BUFFER x AS storage DESCRIPTOR_SET 0 BINDING 1\n";
   CHECK(outcome_of(script((near + all).c_str(), "EXPECT x IDX 0 EQ 5\n")).exit == Exit::Ok);
 }
@@ -262,7 +262,7 @@ TEST_CASE("a buffer bound where the shader declares an image is an error of the 
       "BUFFER b DATA_TYPE uint32 DATA 1 2 END\nPIPELINE compute p\n ATTACH s\n BIND BUFFER b AS storage "
       "DESCRIPTOR_SET 0 BINDING 0\nEND\nRUN p 1 1 1\n");
   CHECK(outcome.exit == Exit::UserInput);
-  CHECK(contains(outcome.message, "the shader declares the storage image 'i', and 'b' is none"));
+  CHECK(contains(outcome.message, "the shader declares the storage image 'i', but 'b' is not one"));
 }
 
 }  // namespace

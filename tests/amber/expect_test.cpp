@@ -1,4 +1,4 @@
-// Expectations that do not hold: what is said and where.
+// Tests expectations that do not hold: what the message says and which line it names.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/amber/support.h"
 #include "tests/support/catch.h"

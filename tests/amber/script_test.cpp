@@ -1,4 +1,4 @@
-// Whole scripts on both machines.
+// Runs whole scripts on both machines.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/amber/support.h"
 #include "tests/support/catch.h"

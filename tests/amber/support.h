@@ -1,4 +1,4 @@
-// Scripts as texts and their outcomes.
+// Runs scripts given as text and returns their outcomes.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
