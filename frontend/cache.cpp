@@ -1,4 +1,4 @@
-// Compiled shaders in memory, before the files.
+// Keeps compiled shaders in memory, in front of the files of the store.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/cache.h"
 

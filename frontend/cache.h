@@ -1,5 +1,5 @@
-// What compiling has made before, found again by the whole of what it was made from: in memory and in a
-// folder. SPDX-License-Identifier: Apache-2.0
+// Finds earlier results of the compiler by everything they were made from, in memory and in a folder.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <map>
@@ -11,13 +11,15 @@
 
 namespace glint::frontend {
 
-// Any number of threads may use one at a time, and any number of processes its folder (base/file_store.h).
+// Any number of threads may use one ShaderCache at a time, and any number of processes may use its folder
+// (base/file_store.h).
 class ShaderCache {
  public:
   struct Options {
-    std::string folder;                        // made when first needed; empty: memory only
-    std::string build;                         // of the compiler: entries of another one are not found
-    uint64_t max_bytes = uint64_t{256} << 20;  // of the folder; beyond it the files not read for longest go
+    std::string folder;  // made when first needed; empty: memory only
+    std::string build;   // identifies the compiler; entries of another build are not found
+    // The folder's size limit in bytes. Above it, the files that were read longest ago go.
+    uint64_t max_bytes = uint64_t{256} << 20;
   };
   struct Counts {
     uint64_t found = 0, missing = 0, damaged = 0;

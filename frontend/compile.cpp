@@ -1,4 +1,4 @@
-// The whole way from a shader file to a program, and which stage a file name means.
+// Compiles a shader file to a program, and tells which stage a file name means.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/compile.h"
 
@@ -60,8 +60,8 @@ CompiledModule compile_module(const std::vector<uint32_t>& spirv, const std::str
   const size_t warnings_before = warnings.messages().size();
   out.simplified = simplify(spirv, name, warnings);
   out.program = lower(out.simplified, name, options, entry_point);
-  if (cache &&
-      warnings.messages().size() == warnings_before) {  // what warns is compiled again, and warns again
+  // A module with warnings is not stored, so that its next compilation gives the same warnings.
+  if (cache && warnings.messages().size() == warnings_before) {
     ByteWriter bytes;
     bytes.put(out.simplified);
     put_program(bytes, out.program);

@@ -1,11 +1,11 @@
-// The fields of a program, in order.
+// Lists the fields of a program in the order in which they are stored.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/program_bytes.h"
 
 namespace glint::frontend {
 namespace {
 
-// All fields, of a program to write or to read.
+// Visits all fields of a program that is written or read.
 template <class Program, class Visit>
 void for_each_field(Program& p, const Visit& visit) {
   visit(p.name);

@@ -1,5 +1,6 @@
-// Values as bytes and back, for the cache: numbers, texts, lists, programs. Only the build that wrote them
-// reads them. SPDX-License-Identifier: Apache-2.0
+// Turns values into bytes and back for the cache: numbers, texts, lists, programs. Only the build that wrote
+// the bytes can read them.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <cstring>
@@ -45,8 +46,8 @@ class ByteWriter {
   std::string bytes_;
 };
 
-// Reads what a ByteWriter wrote, in the same order. What does not fit reads as nothing, and is_good() is
-// false then.
+// Reads what a ByteWriter wrote, in the same order. A value that does not fit into the bytes left reads as
+// empty, and is_good() is false afterwards.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}
@@ -69,7 +70,7 @@ class ByteReader {
   void get(std::vector<T>& list) {
     uint64_t size = 0;
     get(size);
-    if (!has(size)) return;  // each element takes a byte at least
+    if (!has(size)) return;  // each element takes at least one byte
     list.resize(size);
     for (T& each : list) get(each);
   }

@@ -1,4 +1,4 @@
-// The code between lowering and register allocation: ISA ops over unlimited virtual registers.
+// Holds the code between lowering and register allocation: ISA ops over unlimited virtual registers.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -18,7 +18,7 @@ inline constexpr VirtualRegister kNoRegister = 0xffff'ffff;
 struct VirtualOperand {
   enum class Kind : uint8_t { None, Register, Constant, Special, StackPointer } kind = Kind::None;
   VirtualRegister reg = kNoRegister;
-  uint64_t constant = 0;  // 32- or 64-bit, by the op's operand kind
+  uint64_t constant = 0;  // 32 or 64 bits, by the op's operand kind
   isa::Special special = isa::Special::LaneId;
 
   static VirtualOperand of(VirtualRegister r) { return {Kind::Register, r, 0, {}}; }
@@ -31,28 +31,28 @@ using BlockId = uint32_t;
 inline constexpr BlockId kNoBlock = 0xffff'ffff;
 
 struct VirtualInst {
-  // Real: `op` is a row. SaveLive/RestoreLive bracket a region with calls: the allocator stores every value
-  // that is live across the region to the frame at SaveLive and loads it back at RestoreLive; between them
-  // all registers and predicates (but %r0) die at each call.sbt.*.
+  // A Real instruction has an op of the table. SaveLive and RestoreLive enclose a region with calls: the
+  // allocator stores every value that is live across the region to the frame at SaveLive and loads it back at
+  // RestoreLive. Within the region, each call.sbt.* destroys all registers and predicates except %r0.
   enum class Kind : uint8_t { Real, SaveLive, RestoreLive } kind = Kind::Real;
   uint16_t op = 0;
-  VirtualRegister guard = kNoRegister;  // a Predicate register
+  VirtualRegister guard = kNoRegister;  // a register of class Predicate
   bool guard_negate = false;
-  int32_t imm = 0;                       // byte displacement
-  BlockId target = kNoBlock;             // of a Label operand
-  std::vector<VirtualOperand> operands;  // one a slot, in the order of OpRow::operands
+  int32_t imm = 0;                       // displacement in bytes
+  BlockId target = kNoBlock;             // block of a Label operand
+  std::vector<VirtualOperand> operands;  // one for each operand, in the order of OpRow::operands
   isa::Line line;
 };
 
-// A straight run of instructions: control enters at the top and leaves only through the last instructions
-// (guarded bra, then bra, ret, exit, rt.ignore, rt.terminate) or by falling into the next block.
+// Holds a straight run of instructions. Control enters at the top and leaves only through the last
+// instructions (guarded bra, then bra, ret, exit, rt.ignore, rt.terminate) or by falling into the next block.
 struct VirtualBlock {
   std::string name;
   std::vector<VirtualInst> code;
-  std::vector<BlockId> successors;  // all blocks control may go to next, for liveness
+  std::vector<BlockId> successors;  // all blocks that control may go to next
 };
 
-// Not SSA: phis have become moves. Every use is reached by a definition on every path.
+// The program is not in SSA form: phis have become moves. On every path, a definition reaches every use.
 struct VirtualProgram {
   std::string name;
   isa::Stage stage = isa::Stage::Compute;
@@ -60,11 +60,12 @@ struct VirtualProgram {
   std::vector<VirtualBlock> blocks;  // in layout order; block 0 is the entry
   std::vector<std::string> files;
   std::vector<isa::Scope> scopes;     // isa::Line::scope numbers them from 1
-  std::vector<isa::SpirvLine> spirv;  // and isa::Line::spirv these
-  uint32_t local_bytes = 0;           // variables and payloads; spills and saves are placed after them
+  std::vector<isa::SpirvLine> spirv;  // isa::Line::spirv numbers them from 1
+  // The bytes of variables and payloads. Spills and saved values are placed after them.
+  uint32_t local_bytes = 0;
   uint32_t payload_bytes = 0, attribute_bytes = 0;
   std::array<uint32_t, 3> local_size{1, 1, 1};
-  uint32_t shared_bytes = 0;          // of a block
+  uint32_t shared_bytes = 0;          // bytes per block of threads
   std::vector<std::string> messages;  // formats of print and print.part
 
   VirtualRegister new_register(RegisterClass c) {
@@ -73,8 +74,8 @@ struct VirtualProgram {
   }
 };
 
-// Schedules each block for latency, allocates registers (linear scan, spills to local memory), saves and
-// restores live values around calls, lays out code and resolves labels.
+// Schedules each block for latency, allocates registers (linear scan, with spills to local memory), saves and
+// restores live values around calls, lays out the code and resolves labels.
 struct BackendOptions;
 isa::Program assemble(VirtualProgram program, const BackendOptions& options);
 

@@ -1,4 +1,4 @@
-// Renames a set of extended instructions, and its one instruction.
+// Renames a set of extended instructions and the number of its one instruction.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/glsl/debug_print.h"
 
@@ -45,7 +45,7 @@ std::vector<uint32_t> renamed(const std::vector<uint32_t>& words, std::string_vi
       out[first] = uint32_t(out.size() - first) << 16 | uint32_t(op);
     } else {
       out.insert(out.end(), words.begin() + long(i), words.begin() + long(i + length));
-      // OpExtInst: result type, result, set, number of the instruction, operands
+      // OpExtInst has the words: result type, result, set, number of the instruction, operands.
       if (op == spv::Op::OpExtInst && sets.count(words[i + 3]) && words[i + 4] == old_number)
         out[first + 4] = new_number;
     }

@@ -1,4 +1,5 @@
-// GLSL to SPIR-V 1.6 through glslang in process: includes, defines, debug lines, messages with file and line.
+// Compiles GLSL to SPIR-V 1.6 through glslang in process: includes, defines, debug lines, and messages with
+// file and line.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstdlib>
@@ -32,9 +33,9 @@ std::optional<std::string> read_text(const fs::path& path) {
   return std::string(std::istreambuf_iterator<char>(file), {});
 }
 
-// Blanks out the #version lines of an included file: glslang wants the directive at the start of the main
-// file. Choice: shaders whose first line includes the file that has it compile, as with tools that paste
-// includes first; those without a #version of their own are of version 460 anyway.
+// Blanks out the #version lines of an included file, because glslang wants the directive at the start of the
+// main file. Choice: a shader whose first line includes the file with the #version compiles, as it does with
+// tools that paste includes first. A shader without a #version of its own has version 460 in any case.
 void blank_version(std::string& text) {
   for (size_t line = 0; line < text.size();) {
     const size_t end = std::min(text.find('\n', line), text.size());
@@ -48,7 +49,7 @@ void blank_version(std::string& text) {
   }
 }
 
-// A file that was looked for, and what was there.
+// Records a file that was looked for, and what was found.
 struct Lookup {
   std::string path;
   bool is_there = false;
@@ -58,7 +59,7 @@ Lookup look_up(const std::string& path, const std::optional<std::string>& text) 
   return {path, text.has_value(), text ? content_hash(*text) : 0};
 }
 
-// Looks next to the including file first, then in the include directories in order.
+// Looks first next to the including file, then in the include directories in order.
 class Includer final : public glslang::TShader::Includer {
  public:
   Includer(const std::vector<std::string>& dirs, isa::Stage stage) : dirs_(dirs), stage_(stage) {}
@@ -78,7 +79,8 @@ class Includer final : public glslang::TShader::Includer {
   const std::vector<Lookup>& lookups() const { return lookups_; }
 
  private:
-  // The texts live as long as the includer: glslang names them in messages after it has released them.
+  // The texts live as long as the includer, because glslang names them in messages after it has released
+  // them.
   IncludeResult* keep(const std::string& name, std::string text) {
     texts_.push_back(std::make_unique<std::string>(std::move(text)));
     return new IncludeResult(name, texts_.back()->data(), texts_.back()->size(), nullptr);
@@ -111,8 +113,8 @@ std::string key_of(const std::string& source, const std::string& path, isa::Stag
   return key.take();
 }
 
-// The module that the source gave before, if everything that it included, or looked for in vain, is as it
-// was.
+// Returns the module that was stored for this source. It returns nothing when a file that the source
+// included, or looked for without success, has changed since.
 std::optional<std::vector<uint32_t>> find(ShaderCache& cache, const std::string& key) {
   const std::optional<std::string> bytes = cache.find(key);
   if (!bytes) return std::nullopt;
@@ -141,7 +143,8 @@ void store(ShaderCache& cache, const std::string& key, const std::vector<Lookup>
   cache.store(key, out.take());
 }
 
-// glslang keeps tables for the life of the process; the first compile makes them, exit frees them.
+// Owns glslang's tables, which live as long as the process: the first compilation makes them, and exit frees
+// them.
 struct Process {
   Process() { glslang::InitializeProcess(); }
   ~Process() { glslang::FinalizeProcess(); }
@@ -167,10 +170,10 @@ EShLanguage language_of(isa::Stage stage) {
   return EShLangCompute;
 }
 
-constexpr int kLinesBeforeDefines = 1;  // of the preamble
+constexpr int kLinesBeforeDefines = 1;  // lines of the preamble before the first define
 
-// The place of a message as people know it: glslang numbers what preamble() gives it "-1", and has no place
-// for what it finds when it links.
+// Returns the place of a message in terms of the user's files. glslang calls the text of preamble() "-1", and
+// gives no place for errors of linking.
 std::string place_in_files(const std::string& place, const std::string& path, const GlslOptions& options) {
   if (place.rfind("Linking ", 0) == 0) return path;
   if (place.rfind("-1:", 0) != 0) return place;
@@ -180,8 +183,8 @@ std::string place_in_files(const std::string& place, const std::string& path, co
   return fmt::format("{}: -D {}={}", path, name, value);
 }
 
-// glslang writes "ERROR: file:line: 'token' : text"; ours is "file:line: error: 'token' : text". Lines that
-// only count the errors are left out.
+// Rewrites glslang's messages from "ERROR: file:line: 'token' : text" to "file:line: error: 'token' : text".
+// Lines that only count the errors are left out.
 std::string in_our_form(const std::string& log, const std::string& path, const GlslOptions& options) {
   std::istringstream lines(log);
   std::string result;
@@ -211,7 +214,7 @@ std::string preamble(const GlslOptions& options) {
   return text;
 }
 
-constexpr int kDefaultGlslVersion = 460;  // GL_EXT_ray_tracing needs it
+constexpr int kDefaultGlslVersion = 460;  // the version that GL_EXT_ray_tracing needs
 
 std::vector<uint32_t> generate(glslang::TShader& shader, EShLanguage language, EShMessages messages,
                                const std::string& path, const GlslOptions& glsl) {
@@ -221,7 +224,7 @@ std::vector<uint32_t> generate(glslang::TShader& shader, EShLanguage language, E
   glslang::SpvOptions options;
   options.generateDebugInfo = true;
   options.disableOptimizer = true;
-  options.validate = false;  // done below, with scalar block layout
+  options.validate = false;  // validated below, with scalar block layout
   std::vector<uint32_t> words;
   spv::SpvBuildLogger log;
   glslang::GlslangToSpv(*program.getIntermediate(language), words, &log, &options);
@@ -263,8 +266,8 @@ std::vector<uint32_t> glsl_text_to_spirv(const std::string& source, const std::s
   shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, kDefaultGlslVersion);
   shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
   shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_6);
-  // Not setDebugInfo(true): glslang 12 would then open a debug scope for each block, of a set it never
-  // imports.
+  // setDebugInfo(true) is not used: with it, glslang 12 opens a debug scope for each block from a set that it
+  // does not import.
   shader.setEnhancedMsgs();
   const auto messages = EShMessages(EShMsgSpvRules | EShMsgVulkanRules | EShMsgDebugInfo | EShMsgEnhanced);
   Includer includer(options.include_dirs, stage);

@@ -1,4 +1,4 @@
-// The extensions, each as macros and functions of extensions that glslang 12 has.
+// Holds GLSL extensions as macros and functions of the extensions that glslang 12 has.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/glsl/newer_glsl.h"
 
@@ -9,12 +9,13 @@ namespace {
 
 constexpr std::string_view kPrefix = "extension:";
 
-// Hints to the compiler.
+// These are hints to the compiler, which it may ignore.
 constexpr std::string_view kExpectAssume = R"(
 #define expectEXT(value, expected) (value)
 #define assumeTrueEXT(condition)
 )";
-// The name of the attribute is all that differs for us: glslang passes over those it does not know.
+// For Glint the extension only adds the name of an attribute, and glslang skips attributes that it does not
+// know.
 constexpr std::string_view kMaximalReconvergence = R"(
 #extension GL_EXT_subgroup_uniform_control_flow : enable
 )";
@@ -29,7 +30,7 @@ constexpr std::string_view kSubgroupRotate = R"(
   (gl_SubgroupInvocationID & ~(uint(size) - 1u)) | ((gl_SubgroupInvocationID + uint(delta)) & (uint(size) - 1u)))
 )";
 
-// Sums modulo 2^32; the saturating ones are what 64 bits would hold, clamped.
+// The sums are modulo 2^32. A saturating sum is the sum in 64 bits, clamped to 32.
 constexpr std::string_view kDotProduct = R"(
 #ifndef GLINT_DOT_PRODUCT
 #define GLINT_DOT_PRODUCT
@@ -58,7 +59,8 @@ uint dotPacked4x8AccSatEXT(uint a, uint b, uint c) { uint sum = dotPacked4x8EXT(
 #endif
 )";
 
-// Numbers of SPV_KHR_ray_tracing_position_fetch: known_positions.h makes SPIR-V of it that SPIRV-Tools know.
+// Uses the numbers of SPV_KHR_ray_tracing_position_fetch. known_positions.h turns the result into SPIR-V that
+// SPIRV-Tools know.
 constexpr std::string_view kPositionsOfQueries = R"(
 #extension GL_EXT_spirv_intrinsics : enable
 #extension GL_EXT_ray_query : enable
@@ -69,7 +71,7 @@ vec3[3] glint_positions_of(spirv_by_reference rayQueryEXT query, int intersectio
 #define rayQueryGetIntersectionTriangleVertexPositionsEXT(query, committed, positions) positions = glint_positions_of(query, int(committed))
 #endif
 )";
-// In hit shaders besides.
+// Holds what hit shaders get in addition to kPositionsOfQueries.
 constexpr std::string_view kPositionsOfHits = R"(
 #ifndef GLINT_HIT_POSITIONS
 #define GLINT_HIT_POSITIONS
@@ -78,7 +80,7 @@ spirv_decorate(extensions = ["SPV_KHR_ray_tracing_position_fetch"], capabilities
 #endif
 )";
 
-// GL_NV_shader_invocation_reorder under the names that it became an extension of several vendors with.
+// Gives GL_NV_shader_invocation_reorder the names of its later multi-vendor extension.
 constexpr std::string_view kInvocationReorder = R"(
 #extension GL_NV_shader_invocation_reorder : enable
 #define hitObjectEXT hitObjectNV
@@ -132,7 +134,7 @@ constexpr Extension kExtensions[] = {
 
 constexpr std::string_view kBlanks = " \t";
 
-// Takes `word` from the start of `text`, blanks before it too.
+// Takes `word` and the blanks before it from the start of `text`.
 bool accept(std::string_view& text, std::string_view word) {
   text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
   if (!text.starts_with(word)) return false;

@@ -1,4 +1,4 @@
-// GLSL extensions that the installed glslang is too old for, said in GLSL that it knows.
+// Provides GLSL extensions that are newer than the installed glslang, written in GLSL that it knows.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
@@ -8,10 +8,11 @@
 
 namespace glint::frontend {
 
-// `#extension` lines that turn such an extension on become `#include` lines; all lines keep their numbers.
+// Replaces `#extension` lines that enable such an extension by `#include` lines. All lines keep their
+// numbers.
 void say_extensions_anew(std::string& text);
 
-// What such an `#include` line names; empty for every other header.
+// Returns the text for such an `#include` line, and an empty text for every other header.
 std::string text_of_extension(std::string_view header, isa::Stage stage);
 
 }  // namespace glint::frontend

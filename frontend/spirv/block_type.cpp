@@ -1,4 +1,4 @@
-// Walking a block's type with its decorations.
+// Walks a block's type with its decorations.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/spirv/block_type.h"
 

@@ -1,4 +1,5 @@
-// The layout of a buffer block as a host sees it: members by name, with offsets, strides and number types.
+// Describes the layout of a buffer block as a host sees it: members by name, with offsets, strides and number
+// types.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -13,12 +14,13 @@ struct BlockMember;
 
 struct BlockType {
   enum class Kind : uint8_t { Numbers, Array, Struct } kind = Kind::Numbers;
-  // Numbers: a scalar, vector or matrix (column after column).
-  std::string number;                // "f32", "u8", "s64", "f16"; addresses are "u64"
-  std::vector<uint32_t> offsets;     // bytes, one a number
+  // The fields `number` and `offsets` hold a scalar, vector or matrix; a matrix is stored column after
+  // column.
+  std::string number;                // "f32", "u8", "s64", "f16"; an address is "u64"
+  std::vector<uint32_t> offsets;     // byte offset of each number
   uint32_t count = 0, stride = 0;    // Array: elements (0: a runtime array) and bytes from one to the next
-  uint32_t bytes = 0;                // static size; a runtime array has none
-  std::vector<BlockType> element;    // Array: one
+  uint32_t bytes = 0;                // static size; 0 for a runtime array
+  std::vector<BlockType> element;    // Array: its one element type
   std::vector<BlockMember> members;  // Struct
 };
 
@@ -28,10 +30,11 @@ struct BlockMember {
   BlockType type;
 };
 
-// Of a type with an explicit layout, usually a block's struct.
+// Returns the layout of a type with explicit layout decorations, usually a block's struct.
 BlockType block_type(const Module& module, Id type);
 
-// "color: f32 x 3 at 16" and so on, one line a member: for listings. Members of members are dotted.
+// Returns one line for each member, such as "color: f32 x 3 at 16", for listings. The names of nested members
+// are dotted.
 std::vector<std::string> describe_members(const BlockType& block);
 
 }  // namespace glint::frontend

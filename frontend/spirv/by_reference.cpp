@@ -1,4 +1,4 @@
-// Finds copies around calls block by block and drops them.
+// Finds copies around calls, block by block, and drops them.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/spirv/by_reference.h"
 
@@ -15,7 +15,7 @@ constexpr size_t kHeaderWords = 5;  // SPIR-V specification, 2.3 Physical Layout
 
 struct Code {
   spv::Op op;
-  size_t at;  // first word
+  size_t at;  // index of the first word
   std::span<const uint32_t> words;
   uint32_t operator[](size_t i) const { return words[i]; }
 };
@@ -44,7 +44,7 @@ class Copies {
   }
 
  private:
-  // Variables and pointer parameters of functions, and how often any word may name an id.
+  // Finds the variables and pointer parameters of functions, and counts how often any word may name an id.
   void count_uses() {
     std::set<uint32_t> local_pointers;
     for (const Code& c : code_) {
@@ -54,7 +54,7 @@ class Copies {
       if (is_local && local_pointers.count(c[1]))
         locals_[c[2]] = c.op == spv::Op::OpVariable && c.words.size() == 4;
       if (c.op == spv::Op::OpName || c.op == spv::Op::OpMemberName || c.op == spv::Op::OpLine) continue;
-      // Words that are no ids count as uses, too: that only keeps copies that could go.
+      // Words that are not ids count as uses, too. This can only keep a copy that could have gone.
       for (size_t w = 1; w < c.words.size(); ++w) ++uses_[c[w]];
     }
   }
@@ -63,20 +63,20 @@ class Copies {
     return op == spv::Op::OpLabel || op == spv::Op::OpFunctionEnd || op == spv::Op::OpFunction;
   }
 
-  // The only instruction between `call` and its block's start that stores to `variable`.
+  // Returns the only instruction between the start of the block and `call` that stores to `variable`.
   const Code* copy_in(size_t call, uint32_t variable, uint32_t* value) const {
     for (size_t i = call; i-- > 0 && !ends_block(code_[i].op);)
       if (code_[i].op == spv::Op::OpStore && code_[i][1] == variable) return *value = code_[i][2], &code_[i];
     return nullptr;
   }
 
-  // Whether between two places of a block something may write a local variable or ask for its address.
+  // Returns true when nothing between two places of a block may write a local variable or take its address.
   bool is_untouched(size_t from, size_t to, uint32_t variable) const {
     for (size_t i = from + 1; i < to; ++i) {
       const Code& c = code_[i];
       if (c.op == spv::Op::OpLoad && c[3] == variable) continue;
       if (c.op == spv::Op::OpFunctionCall || c.op == spv::Op::OpCopyMemory) return false;
-      // Through a chain that an earlier instruction made of it.
+      // This store goes through an access chain, which may lead to the variable.
       if (c.op == spv::Op::OpStore && !locals_.count(c[1])) return false;
       if (std::find(c.words.begin() + 1, c.words.end(), variable) != c.words.end()) return false;
     }
@@ -88,13 +88,13 @@ class Copies {
     for (size_t word = 4; word < code_[call].words.size(); ++word) pass(call, word, passed);
   }
 
-  // A parameter's variable is stored once, passed once and loaded once, and what is loaded goes where the
-  // stored came from.
+  // Passes the caller's variable instead of its copy if the copy is stored once, passed once and loaded once,
+  // and the loaded value returns to the variable that the stored value came from.
   void pass(size_t call, size_t word, std::set<uint32_t>& passed) {
     const uint32_t copy = code_[call][word];
     const auto local = locals_.find(copy);
-    if (local == locals_.end() || !local->second || uses_[copy] != 4)
-      return;  // its definition and three uses
+    // The copy has one definition and three uses.
+    if (local == locals_.end() || !local->second || uses_[copy] != 4) return;
     uint32_t value = 0;
     const Code* const store = copy_in(call, copy, &value);
     if (!store || uses_[value] != 2) return;
@@ -121,10 +121,13 @@ class Copies {
 
   const std::vector<uint32_t>& words_;
   std::vector<Code> code_;
-  std::map<uint32_t, bool> locals_;  // in Function storage; whether a variable without initialiser
+  // The ids of variables and parameters in Function storage. The value is true for a variable without
+  // initialiser.
+  std::map<uint32_t, bool> locals_;
   std::map<uint32_t, uint32_t> uses_;
-  std::set<size_t> dropped_;                                // first words of instructions
-  std::map<size_t, std::map<size_t, uint32_t>> arguments_;  // of calls: word, variable
+  std::set<size_t> dropped_;  // first words of instructions
+  // By the first word of a call, the words of its arguments and the variables to pass.
+  std::map<size_t, std::map<size_t, uint32_t>> arguments_;
 };
 
 }  // namespace

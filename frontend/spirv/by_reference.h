@@ -1,4 +1,4 @@
-// Arguments that are copied in and out become the caller's own variables.
+// Turns arguments that are copied in and out into the caller's own variables.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -6,9 +6,9 @@
 
 namespace glint::frontend {
 
-// GLSL's `inout` copies a variable to a parameter and back around each call; inlined, an array of N elements
-// costs 4 N accesses a call. Where nothing else can tell the difference, the call takes the address of the
-// variable itself.
+// GLSL's `inout` copies a variable to a parameter and back around each call. After inlining, an array of N
+// elements costs 4 N accesses per call. Where nothing can tell the difference, the call takes the address of
+// the variable itself.
 std::vector<uint32_t> with_references(const std::vector<uint32_t>& spirv);
 
 }  // namespace glint::frontend

@@ -1,4 +1,4 @@
-// Writing debug information of functions, and lines in their older form.
+// Writes debug information of functions, and writes lines in their older form.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/spirv/inline_scopes.h"
 
@@ -18,7 +18,7 @@ namespace {
 
 constexpr size_t kHeaderWords = 5;  // SPIR-V specification, 2.3 Physical Layout
 constexpr size_t kVersionWord = 1, kBoundWord = 3;
-constexpr uint32_t kNonSemanticVersion = 0x10600;  // from which on such sets need no extension
+constexpr uint32_t kNonSemanticVersion = 0x10600;  // the first version in which such sets need no extension
 constexpr uint32_t kDwarfVersion = 5, kLanguageUnknown = 0;
 
 using Words = std::vector<uint32_t>;
@@ -37,7 +37,7 @@ std::string text_at(std::span<const uint32_t> words) {
   return text;
 }
 
-// Ends in a zero byte, as texts in a module do.
+// Returns the words of a text. They end in a zero byte, as texts in a module do.
 Words words_of(std::string_view text) {
   Words out(text.size() / 4 + 1);
   for (size_t i = 0; i < text.size(); ++i) out[i / 4] |= uint32_t(uint8_t(text[i])) << 8 * (i % 4);
@@ -50,12 +50,12 @@ void append(Words& out, spv::Op op, std::initializer_list<uint32_t> operands, co
   for (const uint32_t word : more) out.push_back(word);
 }
 
-// What marking needs to know of a module.
+// Holds what marking needs to know of a module.
 struct Survey {
   struct Function {
-    uint32_t id = 0, file = 0, line = 0;  // file: its OpString
+    uint32_t id = 0, file = 0, line = 0;  // `file` is the id of an OpString
   };
-  std::map<uint32_t, std::string> names;  // OpName
+  std::map<uint32_t, std::string> names;  // from OpName
   std::vector<Function> functions;
   std::set<uint32_t> files, lines;
   uint32_t void_type = 0, u32_type = 0;
@@ -96,7 +96,7 @@ Survey survey(const Words& words) {
   return out;
 }
 
-// glslang: "shade(vf3;f1;".
+// Returns a function's name without the parameter types that glslang adds, as in "shade(vf3;f1;".
 std::string function_name(const Survey& module, uint32_t id) {
   const auto found = module.names.find(id);
   const std::string name =
@@ -104,7 +104,7 @@ std::string function_name(const Survey& module, uint32_t id) {
   return name.empty() ? "%" + std::to_string(id) : name;
 }
 
-// The three places where something is added, and the functions' marks.
+// Builds the instructions that are added in three places of the module, and the marks of the functions.
 class Marks {
  public:
   Marks(const Survey& module, uint32_t bound) : module_(module), bound_(bound) {
@@ -130,15 +130,16 @@ class Marks {
   const Words& globals() const { return globals_; }
   uint32_t bound() const { return bound_; }
 
-  // For a block of a function: that it is of it. Nothing for functions without lines.
+  // Returns the instructions that say to which function a block belongs. They are empty for a function
+  // without lines.
   Words scope(uint32_t function) {
     Words out;
     if (const auto mark = function_.find(function); mark != function_.end())
       debug(out, NonSemanticShaderDebugInfo100DebugScope, {mark->second});
     return out;
   }
-  // For OpLine: the optimiser forgets to write a scope before one that stands first in a block, but not
-  // before these.
+  // Returns the DebugLine that replaces an OpLine. Before an OpLine at the start of a block, the optimiser
+  // forgets to write the scope; before a DebugLine it does not.
   Words line(uint32_t file, uint32_t line) {
     Words out;
     debug(out, NonSemanticShaderDebugInfo100DebugLine,
@@ -159,7 +160,7 @@ class Marks {
     append(out, spv::Op::OpExtInst, {module_.void_type, id, set_, kind}, operands);
     return id;
   }
-  // Operands of this set that are numbers are constants.
+  // Returns a constant, because numbers are constants when they are operands of this set.
   uint32_t number(uint32_t value) {
     const auto [at, is_new] = numbers_.try_emplace(value, 0);
     if (is_new) append(globals_, spv::Op::OpConstant, {u32_, at->second = fresh(), value});
@@ -170,7 +171,8 @@ class Marks {
     const uint32_t name = fresh();
     append(strings_, spv::Op::OpString, {name}, words_of(function_name(module_, function.id)));
     const uint32_t line = number(function.line), zero = number(0);
-    // Name, type, source, line, column, parent, linkage name, flags, line of the body.
+    // DebugFunction has the operands: name, type, source, line, column, parent, linkage name, flags, line of
+    // the body.
     function_[function.id] =
         debug(globals_, NonSemanticShaderDebugInfo100DebugFunction,
               {name, type, source_.at(function.file), line, zero, unit, name, zero, line});
@@ -183,7 +185,8 @@ class Marks {
   std::map<uint32_t, uint32_t> source_, numbers_, function_;
 };
 
-// Of the sections of a module's logical layout (SPIR-V specification, 2.4) those before debug information.
+// Returns true for the sections of a module's logical layout (SPIR-V specification, 2.4) that stand before
+// debug information.
 bool is_before_strings(spv::Op op) {
   return op == spv::Op::OpCapability || op == spv::Op::OpExtension || op == spv::Op::OpExtInstImport ||
          op == spv::Op::OpMemoryModel || op == spv::Op::OpEntryPoint || op == spv::Op::OpExecutionMode ||
@@ -206,8 +209,9 @@ std::optional<Words> with_inline_scopes(const Words& words) {
   const auto add = [&](const Words& more) { out.insert(out.end(), more.begin(), more.end()); };
   uint32_t function = 0;
   bool has_strings = false;
-  size_t body =
-      0;  // in `out`, where a block's instructions begin behind phis and variables; 0: outside, or marked
+  // The place in `out` where a block's instructions begin, after phis and variables. It is 0 outside of a
+  // block and after the block was marked.
+  size_t body = 0;
   for (size_t i = kHeaderWords; i < words.size(); i += words[i] >> 16) {
     const spv::Op op = op_of(words[i]);
     if (op == spv::Op::OpMemoryModel) add(marks.imports());
@@ -221,8 +225,8 @@ std::optional<Words> with_inline_scopes(const Words& words) {
       out.insert(out.begin() + long(body), scope.begin(), scope.end());
       body = 0;
     }
-    // What the optimiser reads goes on across blocks, and it writes no scope for a block whose label has it:
-    // so labels must not.
+    // Labels must have no scope: a scope that the optimiser reads continues across blocks, and it writes none
+    // for a block whose label already has it.
     if (op == spv::Op::OpLabel || op == spv::Op::OpFunctionEnd) add(marks.no_scope());
     if (op == spv::Op::OpLine && function != 0)
       add(marks.line(words[i + 1], words[i + 2]));

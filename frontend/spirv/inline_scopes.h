@@ -1,5 +1,5 @@
-// Marks every function of a module, so that its instructions still say after inlining under which calls they
-// stand. SPDX-License-Identifier: Apache-2.0
+// Marks every function of a module, so that its instructions still name their calls after inlining.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -7,18 +7,18 @@
 
 namespace glint::frontend {
 
-// The module with a DebugFunction a function and a DebugScope a block (NonSemantic.Shader.DebugInfo.100): the
-// optimiser's inlining adds a DebugInlinedAt a call to them, with the line of the call. Nothing that is
-// computed changes. None where that cannot be: modules below version 1.6, without lines, or with instructions
-// of another non-semantic set.
+// Returns the module with a DebugFunction for each function and a DebugScope for each block
+// (NonSemantic.Shader.DebugInfo.100). When the optimiser inlines a call, it adds a DebugInlinedAt with the
+// line of the call to them. The computation stays the same. It returns nothing for modules that cannot be
+// marked: those below version 1.6, without lines, or with instructions of another non-semantic set.
 std::optional<std::vector<uint32_t>> with_inline_scopes(const std::vector<uint32_t>& words);
 
-// A module that was marked and then optimised, without what the optimiser writes where it must not stand
-// (DebugNoLine).
+// Returns a marked and then optimised module without the DebugNoLine that the optimiser writes in places
+// where it is not allowed.
 std::vector<uint32_t> without_stray_lines(const std::vector<uint32_t>& words);
 
-// The module with lines as OpLine where it has DebugLine, and without other debug information of that set; of
-// modules without it a copy.
+// Returns the module with an OpLine for each DebugLine and without other debug information of that set. A
+// module without such debug information is returned unchanged.
 std::vector<uint32_t> with_plain_lines(const std::vector<uint32_t>& words);
 
 }  // namespace glint::frontend

@@ -1,4 +1,4 @@
-// Counting calls along the call graph.
+// Counts calls along the call graph.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/spirv/inlined_size.h"
 
@@ -13,13 +13,13 @@
 namespace glint::frontend {
 namespace {
 
-constexpr uint64_t kMany = uint64_t{1} << 40;  // nothing counts beyond it
+constexpr uint64_t kMany = uint64_t{1} << 40;  // all counts saturate at this value
 
 struct Function {
   uint64_t instructions = 0;
-  std::vector<uint32_t> callees;  // one a call
+  std::vector<uint32_t> callees;  // one for each call
   uint64_t copies = 0;
-  int calls_left = 0;  // callers' calls that were not yet counted
+  int calls_left = 0;  // calls of this function that were not yet counted
 };
 
 struct CallGraph {
@@ -60,7 +60,8 @@ CallGraph read(const std::vector<uint32_t>& spirv) {
   return out;
 }
 
-// Callers before callees. What calls itself is left out: it is refused elsewhere.
+// Counts the copies of each function, callers before callees. Functions that call themselves are left out,
+// because they are refused elsewhere.
 void count_copies(CallGraph& graph) {
   for (const auto& [id, function] : graph.functions)
     for (const uint32_t callee : function.callees) ++graph.functions.at(callee).calls_left;
@@ -97,9 +98,10 @@ void check_inlined_size(const std::vector<uint32_t>& spirv, const std::string& n
     return n >= kMany ? std::string("more than a million million") : fmt::format("{}", n);
   };
   std::string function = graph.names.count(largest) ? graph.names.at(largest) : fmt::format("%{}", largest);
-  function = function.substr(0, function.find('('));  // glslang's names end in the parameters' types
+  // glslang's names end in the types of the parameters, which are dropped.
+  function = function.substr(0, function.find('('));
   throw UnsupportedError(fmt::format(
-      "{}: not supported:\n  {}: calls that, put in place, make {} instructions (at most {}): '{}' is there "
+      "{}: not supported:\n  {}: inlining all calls makes {} instructions (the limit is {}): '{}' is inlined "
       "{} times",
       name, name, amount(all), kMostInlined, function, amount(graph.functions.at(largest).copies)));
 }

@@ -38,7 +38,7 @@ class Rewrite {
   void for_each(const Visit& visit) const {
     for (size_t at = kHeaderWords; at < words_.size();) {
       const size_t length = words_[at] >> 16;
-      if (length == 0 || length > words_.size() - at) return;  // the validator says so
+      if (length == 0 || length > words_.size() - at) return;  // the validator reports this
       visit(spv::Op(words_[at] & 0xffff), std::span(words_).subspan(at, length));
       at += length;
     }
@@ -59,7 +59,7 @@ class Rewrite {
     if (op == OpConstant && w.size() == 4) constants_[w[2]] = {w[1], w[3]};
   }
 
-  // Types and constants of the instructions that follow: they stand before the first function.
+  // Declares the types and constants of the instructions that follow, before the first function.
   void declare() {
     for_each([&](spv::Op op, std::span<const uint32_t> w) {
       if (op != kGetIntersectionTriangleVertexPositions || w.size() != 5) return;
@@ -108,8 +108,9 @@ class Rewrite {
 
   const std::vector<uint32_t>& words_;
   std::vector<uint32_t> out_;
-  std::map<uint32_t, uint32_t> matrix_of_, element_of_,
-      shifted_;                                            // by column type; by array type; by constant
+  std::map<uint32_t, uint32_t> matrix_of_;                 // by column type
+  std::map<uint32_t, uint32_t> element_of_;                // by array type
+  std::map<uint32_t, uint32_t> shifted_;                   // by constant
   std::map<uint32_t, std::array<uint32_t, 2>> constants_;  // type and value
   bool has_declared_ = false;
 };

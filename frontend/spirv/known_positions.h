@@ -1,4 +1,5 @@
-// Positions of hit triangles (SPV_KHR_ray_tracing_position_fetch) said in SPIR-V that older SPIRV-Tools know.
+// Expresses position fetches of hit triangles (SPV_KHR_ray_tracing_position_fetch) in SPIR-V that older
+// SPIRV-Tools know.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -7,19 +8,19 @@
 
 namespace glint::frontend {
 
-// Numbers of SPV_KHR_ray_tracing_position_fetch, which the headers of Debian 12 lack.
+// These numbers of SPV_KHR_ray_tracing_position_fetch are missing in the headers of Debian 12.
 inline constexpr auto kHitTriangleVertexPositions = spv::BuiltIn(5335);
 inline constexpr auto kRayTracingPositionFetch = spv::Capability(5336);
 inline constexpr auto kGetIntersectionTriangleVertexPositions = spv::Op(5340);
 inline constexpr auto kRayQueryPositionFetch = spv::Capability(5391);
 
-// The instruction becomes OpRayQueryGetIntersectionObjectToWorldKHR of an intersection this much larger than
-// 0 or 1.
+// The fetch becomes OpRayQueryGetIntersectionObjectToWorldKHR with this number added to its intersection
+// operand, which is 0 or 1.
 inline constexpr uint32_t kPositionsOfIntersection = 2;
 
-// The built-in variable gets its number as a Location, which no other input of these stages has; the
-// instruction becomes a matrix whose first columns are the corners. Modules that use neither come back as
-// they are.
+// Rewrites a module. The built-in variable becomes an input whose Location is the built-in's number, which no
+// other input of these stages has. The instruction becomes one that gives a matrix whose first columns are
+// the corners. Modules that use neither are returned unchanged.
 std::vector<uint32_t> with_known_positions(std::vector<uint32_t> spirv);
 
 }  // namespace glint::frontend

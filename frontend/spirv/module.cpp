@@ -198,7 +198,7 @@ void Parser::decorate(std::span<const uint32_t> args) {
       module_.types[args[0]].is_buffer_block |= spv::Decoration(args[1]) == spv::Decoration::BufferBlock;
       break;
     default:
-      break;  // the others change nothing here: RelaxedPrecision, NoContraction (never contracted), ...
+      break;  // all other decorations have no effect here: RelaxedPrecision, ...
   }
 }
 
@@ -271,7 +271,7 @@ bool Parser::declare_type(const Instruction& inst) {
   using Kind = Type::Kind;
   const auto& args = inst.operands;
   if (inst.type != 0 || inst.result == 0) return false;
-  Type& type = module_.types[inst.result];  // decorations may have made it already
+  Type& type = module_.types[inst.result];  // a decoration may have made the entry already
   type.op = inst.op;
   type.name = module_.names.count(inst.result) ? module_.names[inst.result] : "";
   switch (inst.op) {
@@ -364,7 +364,8 @@ void Parser::in_function(Instruction inst) {
     default:
       break;
   }
-  if (inst.op == spv::Op::OpFunctionParameter) return;  // only functions that nothing calls keep theirs
+  // Only functions that nothing calls still have parameters.
+  if (inst.op == spv::Op::OpFunctionParameter) return;
   if (function_->blocks.empty()) malformed("an instruction stands before the first label of a function");
   Block& block = function_->blocks.back();
   if (inst.op == spv::Op::OpSelectionMerge || inst.op == spv::Op::OpLoopMerge) {

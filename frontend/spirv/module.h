@@ -1,4 +1,5 @@
-// A parsed SPIR-V module: types with layout, constants, variables with decorations, blocks with source lines.
+// Holds a parsed SPIR-V module: types with layout, constants, variables with decorations, blocks with source
+// lines.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -39,19 +40,20 @@ struct Type {
   bool is_signed = false;  // Int
   Id element = 0;  // Vector, Matrix (column), arrays, Pointer (pointee), SampledImage (image), Image (texel)
   uint32_t count = 0;           // Vector, Matrix (columns), Array: elements
-  uint32_t array_stride = 0;    // bytes; 0 = not decorated
+  uint32_t array_stride = 0;    // bytes; 0: not decorated
   spv::StorageClass storage{};  // Pointer
   spv::Dim dim{};               // Image
   spv::ImageFormat format{};    // Image
   bool is_storage_image = false, is_arrayed = false, is_multisampled = false;  // Image
-  bool is_block = false;         // Struct: decorated Block or BufferBlock
-  bool is_buffer_block = false;  // Struct: decorated BufferBlock, a storage buffer of storage class Uniform
+  bool is_block = false;  // Struct: decorated Block or BufferBlock
+  // Struct: decorated BufferBlock, which makes a storage buffer of storage class Uniform.
+  bool is_buffer_block = false;
   struct Member {
     Id type = 0;
     std::optional<uint32_t> offset;  // bytes
     uint32_t matrix_stride = 0;      // bytes
     bool row_major = false;
-    bool is_volatile = false;  // or coherent
+    bool is_volatile = false;  // also true for coherent members
     std::optional<spv::BuiltIn> builtin;
     std::string name;
   };
@@ -63,20 +65,20 @@ struct Type {
 struct Instruction {
   spv::Op op{};
   Id type = 0, result = 0;
-  std::vector<uint32_t> operands;  // the words after type and result
+  std::vector<uint32_t> operands;  // words after type and result
   uint32_t literal_words = 1;      // OpSwitch: words of a literal, by the width of the selector
   isa::Line line;
 };
 
 struct Block {
   Id label = 0;
-  std::vector<Instruction> code;   // phis first; the last one is the terminator
+  std::vector<Instruction> code;   // phis first; the last instruction is the terminator
   spv::Op merge = spv::Op::OpNop;  // OpSelectionMerge, OpLoopMerge or OpNop
   Id merge_block = 0, continue_block = 0;
   isa::Line merge_line;
 
   const Instruction& terminator() const { return code.back(); }
-  std::vector<Id> successors() const;  // in the terminator's order, duplicates kept
+  std::vector<Id> successors() const;  // in the terminator's order, with duplicates
 };
 
 struct Function {
@@ -85,7 +87,7 @@ struct Function {
 };
 
 struct Variable {
-  Id id = 0, type = 0;  // of the pointer
+  Id id = 0, type = 0;  // `type` is the type of the pointer
   spv::StorageClass storage{};
   Id initializer = 0;
   isa::Line line;
@@ -104,10 +106,10 @@ struct EntryPoint {
   Id function = 0;
   std::string name;
   std::array<uint32_t, 3> local_size{1, 1, 1};
-  std::set<Id> interface;  // since SPIR-V 1.4 every variable at module level that it uses
+  std::set<Id> interface;  // since SPIR-V 1.4: all variables at module level that the entry point uses
 };
 
-// The stage that an execution model means; empty for those Glint has no stage for.
+// Returns the stage of an execution model; empty for models that have no stage in Glint.
 std::optional<isa::Stage> stage_of(spv::ExecutionModel model);
 
 struct Module {
@@ -115,27 +117,29 @@ struct Module {
   uint32_t version = 0;  // 0x10600 is 1.6
   std::vector<std::pair<spv::Capability, isa::Line>> capabilities;
   std::map<Id, Type> types;
-  std::map<Id, Instruction> constants;  // OpConstant*, OpSpecConstant* (unfrozen), OpUndef at module level
-  std::map<Id, Variable> variables;     // module level
+  // Holds OpConstant*, OpSpecConstant* that are not frozen, and OpUndef at module level.
+  std::map<Id, Instruction> constants;
+  std::map<Id, Variable> variables;  // variables at module level
   std::map<Id, Decorations> decorations;
   std::map<Id, std::string> names;
-  std::map<Id, std::string> imports;  // OpExtInstImport
-  std::map<Id, std::string> strings;  // OpString: names of files, formats of prints
+  std::map<Id, std::string> imports;  // from OpExtInstImport
+  std::map<Id, std::string> strings;  // from OpString: names of files, formats of prints
   std::vector<EntryPoint> entry_points;
   std::vector<Function> functions;
-  // What isa::Line::file, ::spirv and ::scope of instructions number.
+  // The numbers isa::Line::file, ::spirv and ::scope of instructions refer to these lists.
   std::vector<std::string> files;
   std::vector<isa::Line> lines;
   std::vector<isa::Scope> scopes;
 
-  // Throws UserError when the words are not a well-formed module. The words should have been validated.
+  // Parses a module, which should have been validated. Throws UserError when the words are not well formed.
   static Module parse(const std::vector<uint32_t>& words, const std::string& name);
 
   const Type& type(Id id) const;
-  std::optional<uint32_t> constant_u32(Id id) const;  // of a 32-bit integer constant
-  std::string name_of(Id id) const;                   // debug name, or "%id"
+  std::optional<uint32_t> constant_u32(Id id) const;  // value of a 32-bit integer constant
+  std::string name_of(Id id) const;                   // the debug name, or "%id"
   const Function* function(Id id) const;
-  // The entry point of that name; an empty name means the only one. UserError with the names there are.
+  // Returns the entry point of that name; an empty name means the only one. Throws UserError with the names
+  // of the module's entry points.
   const EntryPoint& entry_point(const std::string& wanted, const std::string& file) const;
 };
 

@@ -1,4 +1,4 @@
-// What is asked of a parsed module: types, constants, names, entry points, successors of blocks.
+// Answers questions about a parsed module: types, constants, names, entry points, successors of blocks.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <fmt/format.h>
@@ -63,7 +63,7 @@ const EntryPoint& Module::entry_point(const std::string& wanted, const std::stri
     if (entry.name == wanted || (wanted.empty() && entry_points.size() == 1)) return entry;
     known += (known.empty() ? "" : ", ") + entry.name;
   }
-  // Choice: of several, the one that GLSL would have.
+  // Choice: of several entry points, an unnamed request gets "main", which is the only name that GLSL has.
   const auto is_main = [](const EntryPoint& entry) { return entry.name == "main"; };
   if (wanted.empty() && std::count_if(entry_points.begin(), entry_points.end(), is_main) == 1)
     return *std::find_if(entry_points.begin(), entry_points.end(), is_main);

@@ -52,8 +52,8 @@ bool has_calls(const std::vector<uint32_t>& spirv) {
 }
 
 std::vector<uint32_t> with_positive_lengths(std::vector<uint32_t> spirv, std::vector<std::string>* names) {
-  std::map<uint32_t, uint32_t> zeros,
-      ones;  // constant to its type; constant 0 to the constant 1 in its place
+  std::map<uint32_t, uint32_t> zeros;  // type of each constant 0
+  std::map<uint32_t, uint32_t> ones;   // constant 1 that replaces a constant 0
   std::map<uint32_t, std::string> name;
   for_each(spirv, [&](spv::Op op, std::span<const uint32_t> w) {
     if (op == OpName && w.size() > 2) name[w[1]] = reinterpret_cast<const char*>(&w[2]);

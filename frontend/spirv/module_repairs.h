@@ -1,5 +1,6 @@
-// Changes to SPIR-V that let the optimiser through: they keep what a module does, and what it does not keep
-// is said. SPDX-License-Identifier: Apache-2.0
+// Changes SPIR-V so that the optimiser accepts it. A module keeps its behaviour; where it does not, the user
+// is told.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <string>
@@ -7,19 +8,20 @@
 
 namespace glint::frontend {
 
-// True where the length of an array hangs on specialisation constants.
+// Returns true when the length of an array depends on specialisation constants.
 bool has_specialised_lengths(const std::vector<uint32_t>& spirv);
 
-// Arrays whose length is a constant 0 get one element: specialisation constants that nobody set make such
-// lengths, and the validator refuses them. `names` gets the names of the constants or arrays as far as the
-// module tells them.
+// Gives one element to arrays whose length is a constant 0. Specialisation constants that nobody set make
+// such lengths, and the validator refuses them. `names` gets the names of the constants or arrays, as far as
+// the module has names.
 std::vector<uint32_t> with_positive_lengths(std::vector<uint32_t> spirv, std::vector<std::string>* names);
 
-// Ends of any-hit shaders inside functions become the vendor's instructions, which are no terminators, with a
-// return behind them: functions that end a shader are not inlined into the continue construct of a loop.
+// Replaces the instructions that end any-hit shaders inside functions by the vendor's instructions, which are
+// not terminators, followed by a return. The optimiser does not inline functions that end a shader into the
+// continue construct of a loop.
 std::vector<uint32_t> with_ends_that_return(const std::vector<uint32_t>& spirv);
 
-// Calls are left in the module.
+// Returns true when the module still has calls.
 bool has_calls(const std::vector<uint32_t>& spirv);
 
 }  // namespace glint::frontend

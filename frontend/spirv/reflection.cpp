@@ -1,4 +1,4 @@
-// Reflection from the parsed module: descriptor kinds by storage class and type.
+// Reflects a parsed module: storage class and type give the kinds of descriptors.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/spirv/reflection.h"
 
@@ -48,7 +48,8 @@ isa::ImageShape shape_of(const Type& image) {
   }
 }
 
-// As GLSL names formats of storage images; empty where none is declared or the enumeration has grown.
+// Returns GLSL's name for the format of a storage image, or an empty text when the image has no format or
+// SPIR-V has gained a new one.
 std::string_view format_name(spv::ImageFormat format) {
   using enum spv::ImageFormat;
   switch (format) {
@@ -120,7 +121,7 @@ std::string_view format_name(spv::ImageFormat format) {
       return "r32ui";
     case R64ui:
     case R64i:
-      return "rg32ui";  // its halves
+      return "rg32ui";  // a 64-bit texel is stored as two halves
     case Rgb10a2ui:
       return "rgb10_a2ui";
     case Rg32ui:
@@ -167,7 +168,7 @@ Binding binding_of(const Module& module, const Variable& variable, const Decorat
   return binding;
 }
 
-// Empty of payloads so large that no list of their scalars helps.
+// Returns the scalars of a payload, or an empty text for a payload that is too large for such a list to help.
 std::string scalars_of(Layout& layout, Id type) {
   constexpr uint32_t kMostBytes = 4096;
   std::string out;

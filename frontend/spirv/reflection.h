@@ -1,4 +1,5 @@
-// What a shader asks of its pipeline: bindings with their layouts, payload and hit-attribute sizes.
+// Describes what a shader needs of its pipeline: bindings with their layouts, payload and hit-attribute
+// sizes.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -16,7 +17,7 @@ enum class BindingKind : uint8_t {
   UniformBuffer,
   StorageBuffer,
   StorageImage,
-  SampledImage,  // with its sampler; a separate one and a texel buffer too
+  SampledImage,  // combined with its sampler or separate; also a texel buffer
   AccelerationStructure,
   Sampler,
   Other
@@ -25,14 +26,16 @@ enum class BindingKind : uint8_t {
 struct Binding {
   uint32_t set = 0, binding = 0;
   BindingKind kind = BindingKind::Other;
-  std::string name;                             // the variable's, or its block's
-  uint32_t count = 1;                           // array length; 0 = runtime array
+  std::string name;                             // name of the variable or of its block
+  uint32_t count = 1;                           // array length; 0: runtime array
   BlockType block{};                            // of buffers
   isa::ImageShape shape = isa::ImageShape::D2;  // of images
   std::string texel{};                          // of images: "f32", "u32", "s32"
   bool multisampled = false;                    // of images
-  std::string format{};  // of storage images, as GLSL names it: "r32ui"; empty: none is declared
-  bool operator==(const Binding& o) const {  // layouts aside
+  // The format of a storage image as GLSL names it, such as "r32ui". It is empty when the shader declares no
+  // format.
+  std::string format{};
+  bool operator==(const Binding& o) const {  // compares everything but the layouts
     return set == o.set && binding == o.binding && kind == o.kind && name == o.name && count == o.count;
   }
 };
@@ -40,21 +43,21 @@ struct Binding {
 struct Reflection {
   isa::Stage stage = isa::Stage::Compute;
   std::string entry_point;
-  std::vector<Binding> bindings;  // sorted by set, binding
+  std::vector<Binding> bindings;  // sorted by set and binding
   std::array<uint32_t, 3> local_size{1, 1, 1};
   uint32_t push_constant_bytes = 0;
-  uint32_t incoming_payload_bytes = 0;  // scalar-packed, bool as 4 bytes
+  uint32_t incoming_payload_bytes = 0;  // scalars are packed, and a bool has 4 bytes
   uint32_t largest_payload_bytes = 0;   // of the payloads that the shader declares for its own traces
-  // Scalars of the payload that the shader reads, and of those that it declares for its own traces: a letter
-  // each, f float, i integer, b bool, and its bytes as a digit.
+  // The scalars of the payload that the shader reads, and of each payload that it declares for its own
+  // traces. Each scalar is written as a letter (f float, i integer, b bool) and a digit (its bytes).
   std::string incoming_payload;
   std::vector<std::string> handed_payloads;
   uint32_t attribute_bytes = 0;
-  BlockType push_constants, shader_record;  // without members: there is none
+  BlockType push_constants, shader_record;  // without members when the shader has none
 };
 
-// Reflects one module, before or after simplification (before: names and unused bindings are still there).
-// UserError when the words are malformed or hold no entry point.
+// Reflects one module before or after simplification. Before it, names and unused bindings are still present.
+// Throws UserError when the words are malformed or have no entry point.
 Reflection reflect(const std::vector<uint32_t>& spirv, const std::string& name);
 
 }  // namespace glint::frontend

@@ -1,4 +1,5 @@
-// Pass list R1 of SPIRV-Tools: everything inlined, scalarised and in SSA form, nothing numerically changed.
+// Runs the pass list R1 of SPIRV-Tools: everything is inlined, scalarised and in SSA form, and no result of
+// arithmetic changes.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstdio>
@@ -19,24 +20,24 @@
 namespace glint::frontend {
 namespace {
 
-constexpr const char* kStripForeign =
-    "--strip-nonsemantic";  // always first: imports of such sets make later passes skip the module
+// This pass is always first, because imports of non-semantic sets make later passes skip the module.
+constexpr const char* kStripForeign = "--strip-nonsemantic";
 
-// Left out on purpose: the passes behind -O that merge loads of volatile built-ins across
-// reportIntersectionEXT (redundancy elimination), contract a*b+c to Fma (simplify-instructions), fold sin and
-// cos with the host's libm (ccp) or remove divergence that hardware has (if-conversion).
+// Some passes of -O are left out on purpose. Redundancy elimination merges loads of volatile built-ins across
+// reportIntersectionEXT, simplify-instructions contracts a*b+c to Fma, ccp folds sin and cos with the host's
+// libm, and if-conversion removes divergence that hardware has.
 const std::vector<std::string>& pass_list() {
   static const std::vector<std::string> kPasses = {
       kStripForeign, "--freeze-spec-const", "--fold-spec-const-op-composite", "--wrap-opkill",
       "--eliminate-dead-branches", "--merge-return",
-      // Each function on its own first: what is in SSA form before it is copied into its callers costs little
-      // there.
+      // Each function is optimised on its own first, because code that is already in SSA form costs little in
+      // the copies that inlining makes.
       "--eliminate-dead-functions", "--eliminate-local-single-block", "--eliminate-local-single-store",
       "--scalar-replacement=100", "--convert-local-access-chains", "--eliminate-local-single-block",
       "--eliminate-local-single-store", "--ssa-rewrite",
-      // Not here: removal of dead code, which crashes on calls that take addresses of buffers; and merging of
-      // blocks, which moves calls into continue constructs, where functions that end an any-hit shader are
-      // not inlined.
+      // Two passes are left out here. Removal of dead code crashes on calls that take addresses of buffers.
+      // Merging of blocks moves calls into continue constructs, where functions that end an any-hit shader
+      // are not inlined.
       "--inline-entry-points-exhaustive", "--eliminate-dead-functions", "--eliminate-dead-code-aggressive",
       "--private-to-local", "--eliminate-local-single-block", "--eliminate-local-single-store",
       "--eliminate-dead-code-aggressive", "--scalar-replacement=100", "--convert-local-access-chains",
@@ -47,14 +48,14 @@ const std::vector<std::string>& pass_list() {
   return kPasses;
 }
 
-// Constants alone, before lengths of arrays are looked at.
+// These passes only fold constants, before lengths of arrays are looked at.
 const std::vector<std::string>& constants_only() {
   static const std::vector<std::string> kPasses = {kStripForeign, "--freeze-spec-const",
                                                    "--fold-spec-const-op-composite"};
   return kPasses;
 }
 
-// When R1 makes a module that is not valid: functions inlined and nothing else.
+// These passes are used when R1 makes an invalid module. They only inline functions.
 const std::vector<std::string>& inlining_only() {
   static const std::vector<std::string> kPasses = {kStripForeign,
                                                    "--freeze-spec-const",
@@ -68,8 +69,9 @@ const std::vector<std::string>& inlining_only() {
 
 constexpr size_t kHeaderWords = 5;  // SPIR-V specification, 2.3 Physical Layout
 
-// Many passes skip a whole module that declares an extension they do not list, and say nothing. The
-// capability that the extension allows stays, so the declaration is only needed again for validation.
+// Removes declarations of extensions, because many passes silently skip a module that declares an extension
+// they do not list. The capability that the extension allows stays, so the declaration is needed again only
+// for validation.
 std::vector<uint32_t> without_extensions(const std::vector<uint32_t>& words, std::vector<uint32_t>* removed) {
   std::vector<uint32_t> kept(words.begin(), words.begin() + kHeaderWords);
   for (size_t i = kHeaderWords; i < words.size();) {
@@ -82,7 +84,8 @@ std::vector<uint32_t> without_extensions(const std::vector<uint32_t>& words, std
   return kept;
 }
 
-// The optimiser leaves calls of functions marked so, and nothing here calls.
+// Removes the marks that keep functions from being inlined, because calls are not supported after the
+// optimiser.
 void allow_inlining(std::vector<uint32_t>& words) {
   for (size_t i = kHeaderWords; i < words.size(); i += words[i] >> 16)
     if (spv::Op(words[i] & 0xffff) == spv::Op::OpFunction)
@@ -97,7 +100,7 @@ std::vector<uint32_t> with_extensions(std::vector<uint32_t> words, const std::ve
   return words;
 }
 
-// The module after `passes`; empty, and `messages` says why, when they fail.
+// Returns the module after `passes`. When they fail, it returns nothing, and `messages` says why.
 std::vector<uint32_t> after_passes(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes,
                                    std::string* messages) {
   std::vector<uint32_t> extensions, output;
@@ -111,12 +114,12 @@ std::vector<uint32_t> after_passes(const std::vector<uint32_t>& spirv, const std
   if (!optimizer.RegisterPassesFromFlags(passes))
     throw Error(Exit::Failure, "SPIRV-Tools lacks a pass of R1: " + *messages);
   spvtools::OptimizerOptions options;
-  options.set_run_validator(false);  // done here, with the extensions in place
+  options.set_run_validator(false);  // the module is validated later, with the extensions in place
   if (!optimizer.Run(input.data(), input.size(), &output, options)) return {};
   return with_extensions(std::move(output), extensions);
 }
 
-// The same; empty, too, when what the passes make is not valid.
+// Returns the module after `passes`, or nothing when they fail or their result is not valid.
 std::vector<uint32_t> valid_after_passes(const std::vector<uint32_t>& spirv,
                                          const std::vector<std::string>& passes, std::string* messages) {
   std::vector<uint32_t> output = after_passes(spirv, passes, messages);
@@ -127,13 +130,14 @@ std::vector<uint32_t> valid_after_passes(const std::vector<uint32_t>& spirv,
   return after.empty() ? output : std::vector<uint32_t>{};
 }
 
-// The same, of a module whose functions are marked, where they can be, so that what is inlined says where it
-// was called.
+// Returns the valid module after `passes`. Functions are marked first, if possible, so that inlined code
+// names its calls.
 std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes,
                                 std::string* messages) {
   const std::vector<uint32_t> input = with_plain_lines(with_known_prints(spirv));
   if (const std::optional<std::vector<uint32_t>> marked = with_inline_scopes(input)) {
-    // What strips foreign sets strips the marks, too; and there are marks only where there are no such sets.
+    // The first pass strips foreign sets and would strip the marks, too. It is not needed for a marked
+    // module, which has no other such sets.
     std::string of_marks;
     std::vector<uint32_t> output = valid_after_passes(*marked, {passes.begin() + 1, passes.end()}, &of_marks);
     if (!output.empty()) return output;
@@ -141,7 +145,7 @@ std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, const std::v
   return valid_after_passes(input, passes, messages);
 }
 
-// Lengths that are 0 because nobody set a specialisation constant are 1 from here on.
+// Changes array lengths from 0 to 1 when they are 0 because nobody set a specialisation constant.
 std::vector<uint32_t> with_lengths(std::vector<uint32_t> spirv, const std::string& name,
                                    Diagnostics& warnings) {
   if (!has_specialised_lengths(spirv)) return spirv;
@@ -153,7 +157,7 @@ std::vector<uint32_t> with_lengths(std::vector<uint32_t> spirv, const std::strin
   if (output.size() == folded.size()) return spirv;
   warnings.warning(
       {name, 0, 0},
-      fmt::format("lengths of arrays are 0 by the defaults of specialisation constants, and taken as 1{}{}; "
+      fmt::format("array lengths that specialisation constants set to 0 by default are taken as 1{}{}; "
                   "set the constants to run the shader",
                   names.empty() ? "" : ": ", fmt::join(names, ", ")));
   return output;
@@ -176,7 +180,7 @@ std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& n
     return again.empty() || has_calls(again) ? output : again;
   }
   warnings.warning({name, 0, 0},
-                   "the SPIR-V optimiser failed, going on with the module as it was: " + messages);
+                   "the SPIR-V optimiser failed and the module is used unoptimised: " + messages);
   return spirv;
 }
 

@@ -1,4 +1,4 @@
-// Reading debug information, and the listing that its numbers mean.
+// Reads debug information, and writes the listing to which its line numbers refer.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/spirv/source_lines.h"
 
@@ -12,7 +12,8 @@ namespace glint::frontend {
 namespace {
 
 constexpr size_t kHeaderWords = 5;  // SPIR-V specification, 2.3 Physical Layout
-constexpr int kMaxDepth = 1000;     // of scopes: more is a module whose scopes contain themselves
+// The depth limit of scopes. A module beyond it has scopes that contain themselves.
+constexpr int kMaxDepth = 1000;
 
 std::string text_at(std::span<const uint32_t> words) {
   std::string text;
@@ -29,7 +30,7 @@ spv::Op op_of(uint32_t word) {
   return spv::Op(word & 0xffff);
 }
 
-// Names, lines and sources: nothing that is computed.
+// Returns true for names, lines and sources, which do not take part in the computation.
 bool is_about_source(spv::Op op) {
   switch (op) {
     case spv::Op::OpLine:
@@ -63,8 +64,8 @@ bool SourceLines::read(std::span<const uint32_t> words) {
   if (op == spv::Op::OpLine && words.size() > 2) place(strings_[words[1]], words[2]);
   if (op == spv::Op::OpString && words.size() > 2) strings_[words[1]] = text_at(words.subspan(2));
   if (op == spv::Op::OpConstant && words.size() > 3) numbers_[words[2]] = words[3];
-  // Choice: a scope holds until the next one, as lines do: the optimiser leaves out some of terminators and
-  // new blocks.
+  // Choice: like a line, a scope holds until the next one, because the optimiser leaves out some scopes of
+  // terminators and new blocks.
   if (op == spv::Op::OpFunction) line_.scope = 0;
   line_.spirv = 0;
   if (is_debug_set(words))
@@ -78,7 +79,7 @@ bool SourceLines::read(std::span<const uint32_t> words) {
   return op == spv::Op::OpLine;
 }
 
-// OpExtInst: result type, result, set, number of the instruction, operands.
+// OpExtInst has the words: result type, result, set, number of the instruction, operands.
 bool SourceLines::read_debug(std::span<const uint32_t> words) {
   const uint32_t kind = words[4];
   const std::span<const uint32_t> operands = words.subspan(5);
@@ -93,8 +94,8 @@ bool SourceLines::read_debug(std::span<const uint32_t> words) {
 
 void SourceLines::declare(uint32_t result, uint32_t kind, std::span<const uint32_t> operands) {
   if (kind == NonSemanticShaderDebugInfo100DebugSource && !operands.empty()) sources_[result] = operands[0];
-  // Name, type, source, ...; source, line, column, parent; line, scope and, inside of another inlining, that
-  // one.
+  // DebugFunction has the operands name, type, source, ...; DebugLexicalBlock has source, line, column,
+  // parent; DebugInlinedAt has line, scope and, within another inlining, that inlining.
   if (kind == NonSemanticShaderDebugInfo100DebugFunction && operands.size() > 2)
     functions_[result] = {strings_[operands[0]], operands[2]};
   if (kind == NonSemanticShaderDebugInfo100DebugLexicalBlock && operands.size() > 3)
@@ -103,7 +104,8 @@ void SourceLines::declare(uint32_t result, uint32_t kind, std::span<const uint32
     inlined_[result] = {number(operands[0]), operands[1], operands.size() > 2 ? operands[2] : 0};
 }
 
-// The line holds until the next one, also in following blocks: glslang writes it only when it changes.
+// A line holds until the next one, also in following blocks, because glslang writes a line only when it
+// changes.
 void SourceLines::place(const std::string& file, uint32_t line) {
   line_.file = file_index(file);
   line_.line = line;
@@ -120,7 +122,8 @@ uint32_t SourceLines::number(uint32_t id) const {
   return found == numbers_.end() ? 0 : found->second;
 }
 
-// The row of the function around the scope `id`, inlined by `inlined`; 0 when the module does not say.
+// Returns the row of the function around the scope `id`, inlined by `inlined`, or 0 when the module does not
+// say.
 uint32_t SourceLines::scope_of(uint32_t id, uint32_t inlined, int depth) {
   if (depth > kMaxDepth) return 0;
   for (auto up = parents_.find(id); up != parents_.end() && depth < kMaxDepth;
@@ -147,7 +150,8 @@ uint32_t SourceLines::scope_of(uint32_t id, uint32_t inlined, int depth) {
 
 namespace {
 
-// The module in a form whose disassembly has a line an instruction: texts without line ends, and no sources.
+// Returns the module in a form whose disassembly has one line per instruction: its texts have no line ends,
+// and sources are left out.
 std::vector<uint32_t> with_plain_texts(const std::vector<uint32_t>& words) {
   std::vector<uint32_t> out(words.begin(), words.begin() + kHeaderWords);
   for (size_t i = kHeaderWords; i < words.size(); i += std::max(1u, words[i] >> 16)) {

@@ -1,4 +1,4 @@
-// Finding OpSpecConstant* by their SpecId and writing literals into them.
+// Finds OpSpecConstant* by their SpecId and writes literals into them.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/spirv/specialize.h"
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr size_t kHeaderWords = 5;  // SPIR-V specification, 2.3 Physical Layout
 
-// Calls visit(op, words of the instruction) for each; false when a length is wrong.
+// Calls visit(op, words of the instruction) for each instruction. Returns false when a length is wrong.
 template <class Words, class Visit>
 bool for_each_instruction(Words& words, const Visit& visit) {
   for (size_t i = kHeaderWords; i < words.size();) {

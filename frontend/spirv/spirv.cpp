@@ -1,4 +1,4 @@
-// Validation and disassembly of SPIR-V through SPIRV-Tools.
+// Validates and disassembles SPIR-V through SPIRV-Tools.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/spirv/spirv.h"
 
@@ -18,10 +18,11 @@ namespace glint::frontend {
 
 namespace {
 
-// Modules that glslang and the optimiser make and the validator rejects, though their meaning is plain:
+// Returns true for messages on modules that glslang and the optimiser make and the validator rejects,
+// although their meaning is plain:
 // - two variables for one built-in (glslang makes one for gl_ObjectToWorldEXT and one for
 // gl_ObjectToWorld3x4EXT);
-// - conversions of a float to its own width (glslang, halves);
+// - conversions of a half to its own width (glslang);
 // - pointers to buffers in local variables whose decoration the optimiser dropped;
 // - barriers and atomics of device scope without the capability (glslang, Vulkan memory model without scope
 // semantics).
@@ -35,8 +36,8 @@ bool is_false_alarm(std::string_view message) {
   return false;
 }
 
-// Constants made of a component that a vector lacks: the validator passes them, the optimiser crashes on
-// them.
+// Reports constants made from a component that a vector lacks. The validator accepts them, and the optimiser
+// crashes on them.
 std::string missing_components(const std::vector<uint32_t>& words) {
   constexpr size_t kHeaderWords = 5;
   std::map<uint32_t, uint32_t> components, type_of;  // of vector types; of constants
@@ -139,9 +140,9 @@ bool assemble_as(spv_target_env version, const std::string& text, std::vector<ui
 }  // namespace
 
 std::vector<uint32_t> assemble_spirv(const std::string& text, const std::string& name) {
-  // Choice: text has the newest version under which it is valid, for its own version stands in a comment if
-  // anywhere. 1.6 dropped BufferBlock, 1.4 put all variables into the interface; 1.0 is what tools without an
-  // option write.
+  // Choice: text gets the newest version in which it is valid, because its own version stands at most in a
+  // comment. Version 1.6 dropped BufferBlock, 1.4 put all variables into the interface, and 1.0 is what tools
+  // write without an option.
   std::vector<uint32_t> newest;
   for (const spv_target_env version : {SPV_ENV_VULKAN_1_3, SPV_ENV_UNIVERSAL_1_3, SPV_ENV_UNIVERSAL_1_0}) {
     SourceLocation where{name, 0, 0};
@@ -152,7 +153,7 @@ std::vector<uint32_t> assemble_spirv(const std::string& text, const std::string&
     if (done && validate_spirv(words).empty()) return words;
     if (newest.empty()) newest = std::move(words);
   }
-  return newest;  // the caller says what is wrong with it
+  return newest;  // the caller reports what is wrong with it
 }
 
 std::string name_of_opcode(uint32_t opcode) {
@@ -163,12 +164,12 @@ std::string name_of_opcode(uint32_t opcode) {
 
 namespace {
 
-// SPIRV-Tools tells names of enumerants only in text: so an instruction is disassembled, behind others that
-// it needs. Empty when its operands are not what the op wants.
+// Returns the text of an instruction, disassembled after other instructions that it needs. SPIRV-Tools give
+// names of enumerants only in text. The text is empty when the operands do not fit the op.
 std::string text_of(spv::Op op, const std::vector<uint32_t>& operands,
                     const std::vector<uint32_t>& before = {}) {
-  std::vector<uint32_t> words{spv::MagicNumber, 0x0001'0600, 0, 100,
-                              0};  // header: version 1.6, ids below 100
+  // The header says version 1.6 and ids below 100.
+  std::vector<uint32_t> words{spv::MagicNumber, 0x0001'0600, 0, 100, 0};
   words.insert(words.end(), before.begin(), before.end());
   words.push_back(uint32_t(operands.size() + 1) << 16 | uint32_t(op));
   words.insert(words.end(), operands.begin(), operands.end());
@@ -177,7 +178,7 @@ std::string text_of(spv::Op op, const std::vector<uint32_t>& operands,
   return tools.Disassemble(words, &text, SPV_BINARY_TO_TEXT_OPTION_NO_HEADER) ? text : std::string();
 }
 
-// The word of `text` that follows `start`, or the number when there is none.
+// Returns the word of `text` that follows `start`, or the number when there is none.
 std::string word_after(const std::string& text, std::string_view start, uint32_t number) {
   const size_t at = text.find(start);
   if (at == std::string::npos) return fmt::format("{}", number);
@@ -185,7 +186,8 @@ std::string word_after(const std::string& text, std::string_view start, uint32_t
   return text.substr(begin, text.find_first_of(" \n", begin) - begin);
 }
 
-// Older SPIRV-Tools print the names of the vendor's extension that the ray-tracing extension grew from.
+// Replaces the vendor's suffix, because older SPIRV-Tools print the names of the vendor's extension from
+// which the ray-tracing extension grew.
 std::string with_khr(std::string name) {
   if (name.ends_with("NV")) name.replace(name.size() - 2, 2, "KHR");
   return name;
@@ -211,12 +213,9 @@ std::string name_of_execution_model(uint32_t model) {
 }
 
 std::string name_of_glsl_function(uint32_t function) {
-  const std::vector<uint32_t> import{6u << 16 | uint32_t(spv::Op::OpExtInstImport),
-                                     1,
-                                     0x4c53'4c47,
-                                     0x6474'732e,
-                                     0x3035'342e,
-                                     0};  // %1 = OpExtInstImport "GLSL.std.450"
+  // These are the words of: %1 = OpExtInstImport "GLSL.std.450"
+  const std::vector<uint32_t> import{
+      6u << 16 | uint32_t(spv::Op::OpExtInstImport), 1, 0x4c53'4c47, 0x6474'732e, 0x3035'342e, 0};
   std::string text;
   std::vector<uint32_t> operands{2, 3, 1, function};
   for (int arguments = 0; arguments < 4 && text.empty(); ++arguments) {

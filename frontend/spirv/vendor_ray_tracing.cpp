@@ -43,7 +43,7 @@ class Rewriter {
       }
       if (!calls && op != spv::Op::OpTraceNV && op != spv::Op::OpTraceMotionNV) return;
       const std::optional<uint32_t> variable = find(out.back(), calls);
-      if (!variable) return;  // reported when it is lowered
+      if (!variable) return;  // the lowering reports it
       out.back() = *variable;
       const spv::Op standard = calls                      ? spv::Op::OpExecuteCallableKHR
                                : op == spv::Op::OpTraceNV ? spv::Op::OpTraceRayKHR
@@ -79,7 +79,7 @@ class Rewriter {
     });
   }
 
-  // The variable of a location: one of the shader's own, else the incoming one.
+  // Returns the variable of a location: the shader's own if there is one, otherwise the incoming one.
   std::optional<uint32_t> find(uint32_t constant, bool calls) const {
     const auto wanted = constant_.find(constant);
     if (wanted == constant_.end()) return std::nullopt;
@@ -111,7 +111,7 @@ class Rewriter {
       bound_ += 3;
     });
   }
-  // Before the first function: types and variables end there.
+  // Types and variables are declared before the first function, because there their section ends.
   void declare(std::vector<uint32_t>& out) {
     if (std::exchange(are_declared_, true)) return;
     for (const Missing& m : missing_) {
