@@ -1,4 +1,4 @@
-// Pointers compared and subtracted as addresses; hints to optimisers that say nothing of values.
+// Lowers comparisons and differences of pointers as addresses, and hints to optimisers that compute nothing.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower/lowering.h"
 
@@ -11,7 +11,7 @@ void compare(ModuleLowering& l, const Instruction& inst, const LoweringRow& row)
   l.set(inst.result, {l.emit().value(is_64 ? row.name64 : row.name32, {a, b})});
 }
 
-// In elements, so the quotient has no rest.
+// Subtracts two pointers. The result counts elements, so the division leaves no remainder.
 void difference(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   Emitter& e = l.emit();
   const Id pointer = l.type_of(inst.operands[0]);

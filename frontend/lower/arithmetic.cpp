@@ -1,4 +1,5 @@
-// Arithmetic and bits, part by part; dot and matrix products as multiplies and adds in order.
+// Lowers arithmetic and bit operations part by part, and dot and matrix products as multiplies and adds in
+// order.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower/lowering.h"
 #include "frontend/lower/typed.h"
@@ -6,7 +7,7 @@
 namespace glint::frontend {
 namespace {
 
-// Notes an op that no row of the ISA computes.
+// Returns whether the ISA has the op, and reports it as unsupported when no row computes it.
 bool has_op(ModuleLowering& l, std::string_view name, Part part) {
   if (has_typed(name, part)) return true;
   l.unsupported("no op " + with_bits(name, 8 * bytes_of(part)));
@@ -31,8 +32,8 @@ void binary(ModuleLowering& l, const Instruction& inst, const LoweringRow& row) 
   l.set(inst.result, std::move(result));
 }
 
-// The count may have another width than the base. Beyond the base's width everything is shifted out, as PTX
-// does (Choice).
+// Lowers a shift, whose count may have another width than the base. Choice: a count of the base's width or
+// more shifts all bits out, as in PTX.
 void shift(ModuleLowering& l, const Instruction& inst, const LoweringRow& row) {
   Emitter& e = l.emit();
   const Part part = l.part_of(inst.type), count_part = l.part_of(l.type_of(inst.operands[1]));
@@ -49,7 +50,7 @@ void shift(ModuleLowering& l, const Instruction& inst, const LoweringRow& row) {
   l.set(inst.result, std::move(result));
 }
 
-// SMod: the remainder with the divisor's sign. rem.s32 has the dividend's.
+// Lowers SMod, the remainder with the divisor's sign. rem.s32 has the dividend's sign.
 void signed_modulo(ModuleLowering& l, const Instruction& inst, const LoweringRow& row) {
   Emitter& e = l.emit();
   const Part part = l.part_of(inst.type);
@@ -67,8 +68,9 @@ void signed_modulo(ModuleLowering& l, const Instruction& inst, const LoweringRow
   l.set(inst.result, std::move(result));
 }
 
-// FMod = x - y * floor(x / y), FRem with trunc (Vulkan, "Precision and Operation of SPIR-V Instructions").
-// The product is not rounded: it is close to x, and what it lost would be most of the result.
+// Lowers FMod as x - y * floor(x / y), and FRem with trunc (Vulkan, "Precision and Operation of SPIR-V
+// Instructions"). The product is not rounded: it is close to x, so its rounding error would be a large part
+// of the result.
 void float_modulo(ModuleLowering& l, const Instruction& inst, const LoweringRow& row) {
   Emitter& e = l.emit();
   const Part part = l.part_of(inst.type);
@@ -90,7 +92,7 @@ void times_scalar(ModuleLowering& l, const Instruction& inst, const LoweringRow&
   l.set(inst.result, std::move(result));
 }
 
-// Sum of a[i * step_a] * b[i], left to right, no contraction.
+// Returns the sum of a[i * step_a] * b[i], added left to right without contraction.
 Operand dot(Emitter& e, Part part, const Operands& a, size_t first_a, size_t step_a, const Operands& b,
             size_t first_b, size_t n) {
   const auto product = [&](size_t i) {
@@ -106,8 +108,8 @@ void dot_product(ModuleLowering& l, const Instruction& inst, const LoweringRow&)
   l.set(inst.result, {dot(l.emit(), l.part_of(inst.type), a, 0, 1, b, 0, a.size())});
 }
 
-// All three products: the left operand has `rows` x `inner` entries by columns, the right `inner` x
-// `columns`.
+// Lowers all three matrix products. The left operand has `rows` x `inner` entries, the right one `inner` x
+// `columns`, both stored by columns.
 void matrix_product(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   const Operands a = l.value(inst.operands[0]), b = l.value(inst.operands[1]);
   const Type& left = l.module().type(l.type_of(inst.operands[0]));
@@ -140,7 +142,7 @@ void transpose(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   l.set(inst.result, std::move(result));
 }
 
-// The base must have 32 bits in Vulkan.
+// Returns whether the operands have 32 bits, which Vulkan requires of the base.
 bool has_32_bits(ModuleLowering& l, const Instruction& inst) {
   if (bytes_of(l.part_of(inst.type)) == 4 && bytes_of(l.part_of(l.type_of(inst.operands[0]))) == 4)
     return true;
@@ -152,7 +154,7 @@ void count_or_reverse(ModuleLowering& l, const Instruction& inst, const Lowering
   if (has_32_bits(l, inst)) unary(l, inst, row);
 }
 
-// bfe base, offset, count.
+// Lowers a bit-field extraction to: bfe base, offset, count.
 void extract_bits(ModuleLowering& l, const Instruction& inst, const LoweringRow& row) {
   if (!has_32_bits(l, inst)) return;
   const Operand offset = l.scalar(inst.operands[1]), count = l.scalar(inst.operands[2]);
@@ -162,7 +164,7 @@ void extract_bits(ModuleLowering& l, const Instruction& inst, const LoweringRow&
   l.set(inst.result, std::move(result));
 }
 
-// PTX's bfi puts its first source into its second.
+// Lowers a bit-field insertion. PTX's bfi inserts its first source into its second.
 void insert_bits(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   if (!has_32_bits(l, inst)) return;
   const Operands base = l.value(inst.operands[0]), insert = l.value(inst.operands[1]);
@@ -173,7 +175,8 @@ void insert_bits(ModuleLowering& l, const Instruction& inst, const LoweringRow&)
   l.set(inst.result, std::move(result));
 }
 
-// Results {low, carry or high}: all of the first member's parts, then all of the second's.
+// Lowers ops with the result {low, carry or high}: all parts of the first member come before those of the
+// second.
 void extended(ModuleLowering& l, const Instruction& inst, const LoweringRow& row) {
   Emitter& e = l.emit();
   const std::string_view high = inst.op == spv::Op::OpSMulExtended ? "mul.hi.s32" : "mul.hi.u32";
@@ -181,7 +184,7 @@ void extended(ModuleLowering& l, const Instruction& inst, const LoweringRow& row
   const Operands a = l.value(inst.operands[0]), b = l.value(inst.operands[1]);
   Operands first, second;
   for (size_t i = 0; i < a.size(); ++i) {
-    if (bytes_of(part) < 4 && inst.op != spv::Op::OpISubBorrow) {  // all of it lies in 32 bits
+    if (bytes_of(part) < 4 && inst.op != spv::Op::OpISubBorrow) {  // 32 bits hold the whole result
       const bool is_signed = inst.op == spv::Op::OpSMulExtended;
       const Operand whole =
           e.value(row.name32, {widened(e, part, a[i], is_signed), widened(e, part, b[i], is_signed)});

@@ -1,4 +1,4 @@
-// Atomic reads, writes and changes of memory and of texels; barriers.
+// Lowers atomic reads, writes and changes of memory and of texels, and barriers.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
@@ -8,13 +8,15 @@
 namespace glint::frontend {
 namespace {
 
-// "add.u32" by the width of the type; the ISA adds halves as .noftz.f16.
+// Returns the end of an op's name for the width of the type, such as "add.u32". The ISA adds halves with
+// .noftz.f16.
 std::string op_suffix(std::string_view name32, Part part) {
   if (part == Part::Float16) return name32 == "add.f32" ? "add.noftz.f16" : with_bits(name32, 16);
   return bytes_of(part) == 8 ? with_bits(name32, 64) : std::string(name32);
 }
 
-// The ISA's op on that place, which it may lack; empty for memory of one lane.
+// Returns the name of the ISA's op for that place, which the ISA may lack. The name is empty for memory of
+// one lane.
 std::string op_name(const Pointer& pointer, const std::string& suffix) {
   const size_t dot = suffix.find('.');
   switch (pointer.place) {
@@ -29,7 +31,7 @@ std::string op_name(const Pointer& pointer, const std::string& suffix) {
   }
 }
 
-// The old value.
+// Emits the atomic op and returns the old value.
 Operand atomic_op(ModuleLowering& l, const std::string& name, const Pointer& pointer, Part part,
                   const Operands& operands) {
   const bool is_texel = pointer.place == Place::Texel;
@@ -46,21 +48,21 @@ Operand atomic_op(ModuleLowering& l, const std::string& name, const Pointer& poi
   return old;
 }
 
-// What an op that the ISA lacks leaves, of the old value and the operand.
+// Returns what an op that the ISA lacks would store, from the old value and the operand.
 Operand combined(ModuleLowering& l, std::string_view name32, Part part, const Operand& old,
                  const Operand& x) {
   if (name32 == "exch.b32") return x;
   return typed(l.emit(), name32 == "add.f32" ? "add.rn.f32" : name32, part, {old, x});
 }
 
-// As a loop: compare and swap until nobody came in between.
+// Emits an atomic change as a loop: compare and swap until no other thread came in between.
 Operand change_by_loop(ModuleLowering& l, const std::string& compare, const Pointer& pointer, Part part,
                        std::string_view name32, const Operand& x) {
   Emitter& e = l.emit();
   const Operand old = Operand::of(l.program().new_register(class_of(part)));
   const BlockId again = e.new_block("atomic_again"), retry = e.new_block("atomic_retry"),
                 done = e.new_block("atomic_done");
-  // Putting 0 where 0 stands reads and changes nothing.
+  // Exchanging 0 for 0 reads the value and changes nothing.
   e.copy(old.reg, class_of(part),
          atomic_op(l, compare, pointer, part, {Operand::value(0), Operand::value(0)}));
   e.push_reconvergence(done);
@@ -76,7 +78,8 @@ Operand change_by_loop(ModuleLowering& l, const std::string& compare, const Poin
   return old;
 }
 
-// The old value. Where the ISA has neither such an op nor a comparing one, it is noted.
+// Emits an atomic change and returns the old value. It reports the op as unsupported when the ISA has neither
+// the op nor a compare-and-swap of that width.
 Operand change(ModuleLowering& l, const Pointer& pointer, Part part, std::string_view name32,
                const Operands& operands) {
   const std::string name = op_name(pointer, op_suffix(name32, part));
@@ -92,7 +95,7 @@ Operand change(ModuleLowering& l, const Pointer& pointer, Part part, std::string
   return Operand::value(0);
 }
 
-// Operands: pointer, scope, semantics, value.
+// The operands are: pointer, scope, semantics, value.
 void read_modify_write(ModuleLowering& l, const Instruction& inst, const LoweringRow& row) {
   const Part part = l.part_of(inst.type);
   l.set(inst.result,
@@ -113,7 +116,7 @@ void step(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   l.set(inst.result, {change(l, l.pointer(inst.operands[0]), part, "add.u32", {by})});
 }
 
-// Operands: pointer, scope, semantics if equal, semantics if not, value, comparator.
+// The operands are: pointer, scope, semantics if equal, semantics if unequal, value, comparator.
 void compare_exchange(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   const Operands operands{l.scalar(inst.operands[5]), l.scalar(inst.operands[4])};
   l.set(inst.result, {change(l, l.pointer(inst.operands[0]), l.part_of(inst.type), "cas.b32", operands)});
@@ -139,7 +142,7 @@ void atomic_store(ModuleLowering& l, const Instruction& inst, const LoweringRow&
   l.store(p, {value});
 }
 
-// Values of memory that other threads may have changed are not used again.
+// Forgets values of memory that other threads may have changed, so that they are loaded again.
 void forget_memory(ModuleLowering& l) {
   l.note_store(Place::Global);
   l.note_store(Place::Shared);
@@ -168,8 +171,8 @@ void memory_barrier(ModuleLowering& l, const Instruction& inst, const LoweringRo
   fence(l, spv::Scope(l.module().constant_u32(inst.operands[0]).value_or(uint32_t(spv::Scope::Device))));
 }
 
-// Operands: scope of execution, scope of memory, semantics. A barrier of the block also orders what the block
-// sees.
+// The operands are: scope of execution, scope of memory, semantics. A barrier of the block also orders the
+// memory accesses that the block sees.
 void control_barrier(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   const auto execution =
       spv::Scope(l.module().constant_u32(inst.operands[0]).value_or(uint32_t(spv::Scope::Workgroup)));

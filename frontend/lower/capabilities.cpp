@@ -1,4 +1,4 @@
-// The capabilities that modules may ask for.
+// Lists the capabilities that modules may ask for.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 

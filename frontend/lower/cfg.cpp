@@ -1,5 +1,6 @@
-// Dominators by the iterative method of Cooper, Harvey and Kennedy, "A Simple, Fast Dominance Algorithm"
-// (2001). SPDX-License-Identifier: Apache-2.0
+// Computes dominators by the iterative method of Cooper, Harvey and Kennedy, "A Simple, Fast Dominance
+// Algorithm" (2001).
+// SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower/cfg.h"
 
 #include <algorithm>
@@ -21,7 +22,7 @@ ControlGraph::ControlGraph(const Function& function)
 std::vector<uint32_t> ControlGraph::reverse_postorder() const {
   std::vector<uint32_t> order;
   std::vector<uint8_t> seen(num_blocks(), 0);
-  std::vector<std::pair<uint32_t, size_t>> stack{{0, 0}};  // block, next successor
+  std::vector<std::pair<uint32_t, size_t>> stack{{0, 0}};  // block, next successor to visit
   seen[0] = 1;
   while (!stack.empty()) {
     const uint32_t b = stack.back().first;

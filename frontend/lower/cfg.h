@@ -1,4 +1,5 @@
-// The control-flow graph of one function: reachable blocks, dominators, and which construct ends where.
+// Describes the control-flow graph of one function: reachable blocks, dominators, and which construct ends
+// where.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <map>
@@ -11,14 +12,14 @@
 
 namespace glint::frontend {
 
-// A region whose lanes meet again: a selection or loop (at its merge block), or the part of a loop before
-// its continue target (at that target).
+// A region whose lanes meet again. It is a selection or loop, which ends at its merge block, or the part of a
+// loop before its continue target, which ends at that target.
 struct Construct {
-  uint32_t header = 0;  // block index
+  uint32_t header = 0;  // index of a block
   bool is_continue = false;
 };
 
-// Blocks are numbered in module order; block 0 is the entry.
+// Numbers the blocks in module order. Block 0 is the entry.
 class ControlGraph {
  public:
   explicit ControlGraph(const Function& function);
@@ -31,13 +32,13 @@ class ControlGraph {
   bool dominates(uint32_t a, uint32_t b) const;  // every block dominates itself
   std::optional<uint32_t> only_predecessor(uint32_t b) const;
 
-  // Merge block and continue target of header b where lanes can meet: empty when there is none, when nothing
-  // reaches it, or when a loop's header is its own continue target.
+  // Return the merge block and the continue target of header b if lanes can meet there. They are empty when b
+  // has none, when nothing reaches it, and when a loop's header is its own continue target.
   std::optional<uint32_t> merge_of(uint32_t b) const;
   std::optional<uint32_t> continue_of(uint32_t b) const;
-  // Innermost first.
+  // Returns the constructs that end at block b, innermost first.
   const std::vector<Construct>& constructs_ending_at(uint32_t b) const { return ends_[b]; }
-  // Does b lie in the construct, before its end?
+  // Returns whether b lies in the construct, before its end.
   bool contains(const Construct& construct, uint32_t b) const;
 
  private:
@@ -49,12 +50,12 @@ class ControlGraph {
   std::map<Id, uint32_t> index_;
   std::vector<std::vector<uint32_t>> predecessors_;  // reachable ones, each once
   std::vector<uint32_t> reachable_;
-  std::vector<uint32_t> dominator_;           // immediate
-  std::vector<uint32_t> depth_;               // in the dominator tree, entry 1; 0 = unreachable
+  std::vector<uint32_t> dominator_;  // immediate dominator
+  std::vector<uint32_t> depth_;      // in the dominator tree: 1 for the entry, 0 for unreachable blocks
   std::vector<std::vector<Construct>> ends_;  // constructs that end at each block
 };
 
-// The join of the construct with that header.
+// Returns the join of the construct with that header.
 BlockId cfg_join(const std::vector<std::pair<Construct, BlockId>>& joins, uint32_t header);
 
 }  // namespace glint::frontend

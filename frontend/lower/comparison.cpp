@@ -1,4 +1,4 @@
-// Comparisons and logic: results are predicates.
+// Lowers comparisons and logic, whose results are predicates.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower/lowering.h"
 #include "frontend/lower/typed.h"
@@ -32,7 +32,7 @@ void logic(ModuleLowering& l, const Instruction& inst, const LoweringRow& row) {
   l.set(inst.result, std::move(result));
 }
 
-// Any, All: over the parts of a bool vector.
+// Lowers Any and All, which combine the parts of a bool vector.
 void reduce(ModuleLowering& l, const Instruction& inst, const LoweringRow& row) {
   const Operands a = l.value(inst.operands[0]);
   Operand all = a[0];
@@ -40,7 +40,7 @@ void reduce(ModuleLowering& l, const Instruction& inst, const LoweringRow& row) 
   l.set(inst.result, {all});
 }
 
-// The condition is one bool, or one a component.
+// Lowers OpSelect. The condition is one bool, or one bool for each component.
 void select(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   if (l.module().type(inst.type).kind == Type::Kind::Pointer && !l.layout().is_address(inst.type))
     return l.unsupported("OpSelect of pointers");

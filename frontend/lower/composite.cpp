@@ -1,4 +1,4 @@
-// Vectors, structs, arrays and matrices as values: picking and joining lists of parts; no code but for
+// Lowers ops that pick and join parts of vectors, structs, arrays and matrices. They emit no code, except for
 // dynamic component indices.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower/lowering.h"
@@ -6,7 +6,7 @@
 namespace glint::frontend {
 namespace {
 
-// First part and type of what a list of literal indices reaches from `type`.
+// Returns the number of the first part, and the type, of what a list of literal indices reaches from `type`.
 std::pair<uint32_t, Id> walk(ModuleLowering& l, Id type, std::span<const uint32_t> indices) {
   uint32_t first = 0;
   for (uint32_t index : indices) {
@@ -45,7 +45,7 @@ void shuffle(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   const Operands second = l.value(inst.operands[1]);
   both.insert(both.end(), second.begin(), second.end());
   Operands result;
-  for (size_t i = 2; i < inst.operands.size(); ++i)  // 0xffffffff: no source, undefined
+  for (size_t i = 2; i < inst.operands.size(); ++i)  // 0xffffffff: no source, so the component is undefined
     result.push_back(inst.operands[i] < both.size() ? both[inst.operands[i]] : Operand::value(0));
   l.set(inst.result, std::move(result));
 }
@@ -58,7 +58,8 @@ void copy(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
 }
 
 void undefined(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
-  l.set(inst.result, Operands(l.layout().num_parts(inst.type), Operand::value(0)));  // Choice: undefined is 0
+  // Choice: an undefined value is 0.
+  l.set(inst.result, Operands(l.layout().num_parts(inst.type), Operand::value(0)));
 }
 
 Operand choose(ModuleLowering& l, Part part, const Operand& predicate, const Operand& a, const Operand& b) {
@@ -66,7 +67,7 @@ Operand choose(ModuleLowering& l, Part part, const Operand& predicate, const Ope
   return l.emit().value(class_of(part) == RegisterClass::B64 ? "selp.b64" : "selp.b32", {a, b, predicate});
 }
 
-// A chain of selects; an index out of range gives the first component.
+// Lowers to a chain of selects. An index out of range gives the first component.
 void extract_dynamic(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   const Operands from = l.value(inst.operands[0]);
   const Operand index = l.scalar(inst.operands[1]);

@@ -1,4 +1,5 @@
-// Built-ins of compute shaders and of subgroups: where the invocation stands in its warp, block and grid.
+// Lowers built-ins of compute shaders and subgroups: the position of the invocation in its warp, block and
+// grid.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower/lowering.h"
 
@@ -20,7 +21,7 @@ Operands mask(Special lanes) {
   return {Operand::of(lanes), Operand::value(0), Operand::value(0), Operand::value(0)};
 }
 
-// In the block: 0 along an axis where the block is one thread wide.
+// Returns the position in the block. It is 0 along an axis where the block is one thread wide.
 Operands local_id(ModuleLowering& l) {
   Operands id = vector(Special::TidX);
   for (uint32_t i = 0; i < 3; ++i)

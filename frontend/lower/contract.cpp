@@ -1,4 +1,4 @@
-// Products and sums that become one fused op, where the shader's author lets the compiler choose.
+// Fuses products and sums into one op where the shader's author lets the compiler choose.
 // SPDX-License-Identifier: Apache-2.0
 #include <optional>
 #include <string>
@@ -12,7 +12,7 @@ std::string_view name_of(const VirtualInst& inst) {
   return inst.kind == VirtualInst::Kind::Real ? isa::op_table()[inst.op].name : std::string_view();
 }
 
-// ".rn.f32" of "add.rn.f32"; empty: another op.
+// Returns what follows the verb in an op's name, such as ".rn.f32" for "add.rn.f32"; empty for another op.
 std::string_view suffix_after(std::string_view name, std::string_view verb) {
   if (!name.starts_with(verb)) return {};
   const std::string_view suffix = name.substr(verb.size());
@@ -27,7 +27,7 @@ class Contraction {
       for (const VirtualInst& inst : block.code) {
         if (inst.guard != kNoRegister) ++uses_[inst.guard];
         for (const Operand& operand : inst.operands)
-          if (operand.kind == Operand::Kind::Register) ++uses_[operand.reg];  // its definition too
+          if (operand.kind == Operand::Kind::Register) ++uses_[operand.reg];  // counts the definition, too
       }
   }
 
@@ -47,7 +47,7 @@ class Contraction {
   }
 
  private:
-  // Choice: of two products the left one, as NVIDIA's compiler does (frontend/ptx/contraction.h).
+  // Choice: of two products the left one is fused, as NVIDIA's compiler does (frontend/ptx/contraction.h).
   void fuse(VirtualInst& inst, std::string_view suffix, bool is_difference, std::vector<VirtualInst>& code) {
     for (size_t side = 1; side <= 2; ++side) {
       const Operand product = inst.operands[side];
@@ -78,8 +78,8 @@ class Contraction {
 
   VirtualProgram& program_;
   const std::set<VirtualRegister>& free_;
-  std::vector<uint32_t> uses_;                       // and the definition
-  std::map<VirtualRegister, VirtualInst> products_;  // of the block so far
+  std::vector<uint32_t> uses_;                       // number of uses, plus one for the definition
+  std::map<VirtualRegister, VirtualInst> products_;  // products of the block so far
 };
 
 }  // namespace

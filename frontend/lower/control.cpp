@@ -1,4 +1,4 @@
-// Structured control flow: reconvergence pairs, branches, switches, and phis as copies on edges.
+// Lowers structured control flow: reconvergence pairs, branches, switches, and phis as copies on edges.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <fmt/format.h>
@@ -11,8 +11,9 @@
 namespace glint::frontend {
 namespace {
 
-// The virtual blocks of one SPIR-V block, in layout order. Joins: one for each construct that ends here,
-// innermost first. Before: opens a loop's merge region. Top: opens an iteration; back edges go there.
+// Holds the virtual blocks of one SPIR-V block, in layout order. `joins` has one block for each construct
+// that ends here, innermost first. `before` opens a loop's merge region. `top` opens an iteration and is the
+// target of back edges.
 struct Parts {
   std::vector<std::pair<Construct, BlockId>> joins;
   BlockId before = kNoBlock, top = kNoBlock, body = kNoBlock;
@@ -45,7 +46,7 @@ class ControlFlow {
   void make_parts(uint32_t b);
   void declare_phis(uint32_t b);
   void lower_block(uint32_t b);
-  // Pointers that are no values.
+  // Returns true for pointers that are not values.
   bool is_place(Id type) const {
     return lowering_.module().type(type).kind == Type::Kind::Pointer && !lowering_.layout().is_address(type);
   }
@@ -70,7 +71,7 @@ class ControlFlow {
     BlockId block;
     uint32_t from, to;
   };
-  std::vector<Edge> edges_;  // split edges of the present terminator, not yet placed
+  std::vector<Edge> edges_;  // split edges of the present terminator that are not yet placed
 };
 
 void ControlFlow::make_parts(uint32_t b) {
@@ -159,7 +160,7 @@ void ControlFlow::finish_shader(spv::Op op) {
     case spv::Op::OpReturn:
       emit_.end(leave);
       break;
-    case spv::Op::OpUnreachable:  // never reached by a valid program
+    case spv::Op::OpUnreachable:  // a valid program never reaches it
       emit_.effect("trap", {});
       emit_.end(leave);
       break;
@@ -183,7 +184,8 @@ void ControlFlow::conditional(uint32_t b, const Instruction& last) {
   const Operand condition = lowering_.scalar(last.operands[0]);
   if (condition.kind == Operand::Kind::Constant) return go(b, condition.constant ? if_true : if_false);
   if (if_true == if_false) return go(b, if_true);
-  // Lanes that leave for a join wait there at once; so that side is the taken one wherever it can be.
+  // A lane that branches to a join waits there at once. If one side does so, it becomes the taken side of the
+  // branch.
   const auto leaves_at_once = [&](uint32_t to) {
     const BlockId at = target(b, to);
     return copies(b, to).empty() && at != parts_[to].after_joins() && at != parts_[to].top;
@@ -197,7 +199,7 @@ void ControlFlow::conditional(uint32_t b, const Instruction& last) {
   go(b, other);
 }
 
-// Is the edge's target the next block in the layout, so that it needs no branch?
+// Returns whether the edge's target is the next block in the layout, so that no branch is needed.
 bool ControlFlow::is_next(uint32_t from, uint32_t to) {
   const auto& order = cfg_.reachable();
   const auto after = std::upper_bound(order.begin(), order.end(), from);
@@ -206,13 +208,14 @@ bool ControlFlow::is_next(uint32_t from, uint32_t to) {
   return target(from, to) == (parts.joins.empty() ? parts.after_joins() : parts.joins.front().second);
 }
 
-// A chain of compares: one guarded branch for each target, for all of its literals together.
+// Lowers a switch to a chain of compares with one guarded branch for each target, which covers all of its
+// literals.
 void ControlFlow::choose(uint32_t b, const Instruction& last) {
   const uint32_t otherwise = cfg_.index_of(last.operands[1]);
   const Operand selector = lowering_.scalar(last.operands[0]);
   const uint32_t bytes = bytes_of(lowering_.layout().parts(lowering_.type_of(last.operands[0]))[0]);
-  const uint64_t mask = bytes < 8 ? (uint64_t{1} << 8 * bytes) - 1
-                                  : ~uint64_t{0};   // literals carry their sign beyond their width
+  // Literals carry their sign beyond their width, so they are masked.
+  const uint64_t mask = bytes < 8 ? (uint64_t{1} << 8 * bytes) - 1 : ~uint64_t{0};
   std::vector<std::pair<uint32_t, Operand>> cases;  // target, predicate
   const uint32_t words = last.literal_words;
   for (size_t i = 2; i + words < last.operands.size(); i += 1 + words) {
@@ -237,8 +240,8 @@ void ControlFlow::choose(uint32_t b, const Instruction& last) {
   go(b, otherwise);
 }
 
-// The virtual block where the edge enters: an iteration's top for back edges, the join of the innermost
-// construct that holds `from` and ends at `to`, or the block behind the joins.
+// Returns the virtual block where the edge enters: the top of the iteration for back edges, the join of the
+// innermost construct that holds `from` and ends at `to`, or the block after the joins.
 BlockId ControlFlow::target(uint32_t from, uint32_t to) const {
   const Parts& parts = parts_[to];
   if (parts.top != kNoBlock && cfg_.dominates(to, from)) return parts.top;
@@ -266,8 +269,8 @@ std::vector<Copy> ControlFlow::copies(uint32_t from, uint32_t to) {
   return result;
 }
 
-// Parallel copies one after the other: a copy may run once no other still reads its destination; a cycle is
-// cut by saving one destination.
+// Emits parallel copies one after the other. A copy may run once no other copy still reads its destination; a
+// cycle is broken by saving one destination.
 void ControlFlow::copy_all(std::vector<Copy> pending) {
   const auto is_read = [&](VirtualRegister r) {
     return std::any_of(pending.begin(), pending.end(), [&](const Copy& c) {
@@ -297,7 +300,8 @@ void ControlFlow::go(uint32_t from, uint32_t to) {
   emit_.branch(target(from, to));
 }
 
-// The target of a branch that does not end its block: the destination, or a block of its own with the copies.
+// Returns the target of a branch that does not end its block: the destination itself, or a new block with the
+// copies of the edge.
 BlockId ControlFlow::edge(uint32_t from, uint32_t to) {
   if (copies(from, to).empty()) return target(from, to);
   edges_.push_back(

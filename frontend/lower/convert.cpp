@@ -1,4 +1,4 @@
-// Conversions between types of numbers, and of bits between shapes.
+// Lowers conversions between types of numbers, and of bits between shapes.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 namespace glint::frontend {
 namespace {
 
-// As PTX names a type of 32 bits and more; narrow integers are converted as 32-bit ones.
+// Returns PTX's name for a type of 32 bits and more. Narrow integers are converted as 32-bit integers.
 std::string type_name(Part part, bool is_signed) {
   const uint32_t bits = 8 * bytes_of(part);
   if (is_float(part)) return fmt::format("f{}", bits);
@@ -23,7 +23,8 @@ void each_part(ModuleLowering& l, const Instruction& inst, auto&& convert) {
   l.set(inst.result, std::move(result));
 }
 
-// Towards 0. Choice: numbers out of range become the nearest integer that there is, NaN 0, as PTX has it.
+// Converts towards 0. Choice: as in PTX, a number out of range becomes the nearest integer of the type, and
+// NaN becomes 0.
 void float_to_integer(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   const bool is_signed = inst.op == spv::Op::OpConvertFToS;
   each_part(l, inst, [&](Emitter& e, Part to, Part from, const Operand& x) {
@@ -48,14 +49,14 @@ void float_to_float(ModuleLowering& l, const Instruction& inst, const LoweringRo
   });
 }
 
-// To half precision and back. Subnormal halves may become 0 and are kept (Choice).
+// Converts to half precision and back. Choice: subnormal halves are kept, although they may become 0.
 void quantize(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   each_part(l, inst, [](Emitter& e, Part, Part, const Operand& x) {
     return e.value("cvt.f32.f16", {e.value("cvt.rn.f16.f32", {x})});
   });
 }
 
-// UConvert, SConvert: copies of the sign or zeros above, or a cut.
+// Lowers UConvert and SConvert, which extend with zeros or with the sign, or cut off high bits.
 void change_width(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   const bool is_signed = inst.op == spv::Op::OpSConvert;
   each_part(l, inst, [&](Emitter& e, Part to, Part from, const Operand& x) {
@@ -67,7 +68,8 @@ void change_width(ModuleLowering& l, const Instruction& inst, const LoweringRow&
   });
 }
 
-// The parts as 32-bit words, the first part lowest. Narrow ones that do not fill a word stay as they are.
+// Returns the parts as 32-bit words, with the first part in the lowest bits. Narrow parts that do not fill a
+// word stay as they are.
 Operands words_of(Emitter& e, Part part, const Operands& parts) {
   Operands words;
   const size_t bytes = bytes_of(part);

@@ -1,4 +1,4 @@
-// Removes instructions whose results are never needed: marks from effects backwards, over all definitions.
+// Removes instructions whose results are never needed. It marks backwards from effects over all definitions.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
@@ -28,7 +28,8 @@ size_t num_destinations(const VirtualInst& inst) {
   return slots;  // destinations come first in every row
 }
 
-// An atomic whose old value nobody reads is a reduction, which hardware sends without waiting for an answer.
+// Turns an atomic whose old value nobody reads into a reduction, which hardware sends without waiting for an
+// answer.
 void drop_result(VirtualInst* inst) {
   const isa::OpRow& row = isa::op_table()[inst->op];
   constexpr std::string_view kAtomic = "atom.";

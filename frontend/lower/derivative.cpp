@@ -1,5 +1,6 @@
-// Derivatives of compute shaders: differences between the lanes of a quad
-// (SPV_NV_compute_shader_derivatives). SPDX-License-Identifier: Apache-2.0
+// Lowers derivatives of compute shaders: differences between the lanes of a quad
+// (SPV_NV_compute_shader_derivatives).
+// SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower/derivative.h"
 
 #include <algorithm>
@@ -17,22 +18,24 @@ bool asks_for(ModuleLowering& l, spv::Capability wanted) {
   return std::any_of(all.begin(), all.end(), [&](const auto& entry) { return entry.first == wanted; });
 }
 
-// Lanes between the neighbours of a quad in y; empty, and noted, where they are in no warp together.
+// Returns the distance in lanes between vertical neighbours of a quad. It is empty, and reported as
+// unsupported, where they are not in one warp.
 std::optional<uint32_t> row_distance(ModuleLowering& l) {
   if (asks_for(l, spv::Capability::ComputeDerivativeGroupLinearNV))
-    return 2;  // quads are four threads in their order
+    return 2;  // a quad is four consecutive threads
   if (!asks_for(l, spv::Capability::ComputeDerivativeGroupQuadsNV)) {
     l.unsupported("a derivative without a derivative group");
     return std::nullopt;
   }
-  // Model: threads lie in warps by their index, so that quads are whole only in blocks of such widths.
+  // Model: threads are assigned to warps by their index, so quads are whole only in blocks of these widths.
   const uint32_t width = l.program().local_size[0];
   if (width == 2 || width == 4 || width == 8 || width == 16) return width;
   l.unsupported("derivatives in quads of blocks whose width is not 2, 4, 8 or 16");
   return std::nullopt;
 }
 
-// right - left, or below - above: of the lane's own row or column, or of the quad's first for coarse ones.
+// Returns right - left, or below - above. Fine derivatives use the lane's own row or column, and coarse ones
+// use the first of the quad.
 Operand difference(ModuleLowering& l, Part part, const Operand& x, uint32_t distance,
                    std::optional<uint32_t> other_axis) {
   Emitter& e = l.emit();

@@ -1,4 +1,4 @@
-// Dot products of integers: products at full width, summed in 64 bits, then cut or saturated.
+// Lowers dot products of integers: products at full width are summed in 64 bits, then cut or saturated.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower/lowering.h"
 #include "frontend/lower/typed.h"
@@ -29,7 +29,7 @@ Operand widened_64(Emitter& e, Part part, const Operand& x, bool is_signed) {
   return e.value(is_signed ? "cvt.s64.s32" : "cvt.u64.u32", {widened(e, part, x, is_signed)});
 }
 
-// The components as 64-bit integers; a lone 32-bit integer holds four of 8 bits.
+// Returns the components as 64-bit integers. A single 32-bit integer holds four components of 8 bits.
 Operands components(ModuleLowering& l, Id id, bool is_signed) {
   Emitter& e = l.emit();
   const Operands parts = l.value(id);
@@ -46,7 +46,7 @@ Operands components(ModuleLowering& l, Id id, bool is_signed) {
   return result;
 }
 
-// Choice: the sum before saturation wraps at 64 bits, which sums of products of up to 32 bits cannot reach.
+// Choice: the sum wraps at 64 bits before saturation. Sums of products of up to 32 bits cannot reach that.
 Operand saturated(Emitter& e, Part part, const Operand& sum, bool is_signed) {
   const uint32_t bits = 8 * bytes_of(part);
   if (bits == 64) return sum;

@@ -19,14 +19,15 @@ RegisterClass class_of_kind(OperandKind kind) {
   return RegisterClass::B32;
 }
 
-// One operand kind a slot: vectors repeated.
+// Returns one operand kind for each operand slot; a vector has several slots of its kind.
 std::vector<OperandKind> kinds_by_slot(const isa::OpRow& row) {
   std::vector<OperandKind> kinds;
   for (OperandKind kind : row.operands.view()) kinds.insert(kinds.end(), size_t(isa::slots_of(kind)), kind);
   return kinds;
 }
 
-// 1/x where that is exact and normal: x a power of two. Then x / y and x * (1/y) round the same real number.
+// Returns 1/x where it is exact and normal, which requires that x is a power of two. Then x / y and x * (1/y)
+// round the same real number.
 std::optional<uint32_t> exact_reciprocal(uint32_t bits) {
   const uint32_t exponent = bits >> 23 & 0xff;
   if ((bits & 0x7f'ffff) != 0 || exponent < 1 || exponent > 253) return std::nullopt;
@@ -45,8 +46,8 @@ std::vector<uint64_t> load_key(std::string_view op, const Operand& base, int32_t
   return key;
 }
 
-// Conditions that turned out constant leave blocks that nothing branches to, and constructs whose end no lane
-// reaches: there no lanes meet.
+// Drops blocks that nothing branches to, and constructs whose end no lane reaches, because no lanes meet
+// there. Branches whose conditions turned out constant leave such blocks.
 void drop_unreachable(VirtualProgram& program, std::vector<BlockId>& layout) {
   std::vector<uint8_t> reached(program.blocks.size(), 0);
   std::vector<BlockId> work{layout.front()};
@@ -99,7 +100,7 @@ VirtualInst& Emitter::append(std::string_view op, Operands operands, int32_t dis
   inst.imm = displacement;
   inst.operands = std::move(operands);
   inst.line = line_;
-  // Predicates are always registers, and so is each part of a vector.
+  // A predicate is always in a register, and so is each part of a vector.
   const isa::OpRow& row = isa::op_table()[inst.op];
   const std::vector<OperandKind> kinds = kinds_by_slot(row);
   GLINT_CHECK(kinds.size() == inst.operands.size(), "{} takes {} operands, got {}", op, kinds.size(),
@@ -128,7 +129,7 @@ Operand Emitter::value(std::string_view op, Operands sources) {
   if (op == "div.rn.f32" && sources[1].kind == Operand::Kind::Constant)
     if (const auto reciprocal = exact_reciprocal(uint32_t(sources[1].constant)))
       return value("mul.rn.f32", {sources[0], Operand::value(*reciprocal)});
-  if (op == "mul.lo.u32" || op == "mul.lo.s32") {  // x * 2^k: the factor stands on either side
+  if (op == "mul.lo.u32" || op == "mul.lo.s32") {  // x * 2^k: the factor may stand on either side
     for (int i = 0; i < 2; ++i)
       if (sources[i].kind == Operand::Kind::Constant && std::has_single_bit(sources[i].constant))
         return value("shl.b32",
@@ -219,7 +220,8 @@ void Emitter::branch(BlockId to) {
 
 void Emitter::branch_if(const Operand& predicate, bool when, BlockId to) {
   Operand guard = in_register(predicate, RegisterClass::Predicate);
-  // The source of a negation is still what it was: a phi's register changes only on the edges into its block.
+  // The source of a negation still has the same value, because a phi's register changes only on the edges
+  // into its block.
   for (auto it = negation_of_.find(guard.reg); it != negation_of_.end(); it = negation_of_.find(guard.reg)) {
     guard.reg = it->second;
     when = !when;

@@ -1,4 +1,5 @@
-// Constant folding and identities of single ops; every rule gives the bits that the op itself would give.
+// Folds constants and applies identities of single ops. Every rule gives the bits that the op itself would
+// give.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 
@@ -21,7 +22,7 @@ bool both_constant(const Operands& s) {
   return s[0].kind == Operand::Kind::Constant && s[1].kind == Operand::Kind::Constant;
 }
 
-// Those that tell signed from unsigned, and division where its result is defined.
+// Folds the ops that distinguish signed from unsigned, and division where its result is defined.
 Folded fold_signed(std::string_view op, int32_t a, int32_t b) {
   if (op == "shr.s32") return yes(uint32_t(a >> (uint32_t(b) > 31 ? 31 : b)));
   if (op == "setp.lt.s32") return yes(a < b);
@@ -31,13 +32,13 @@ Folded fold_signed(std::string_view op, int32_t a, int32_t b) {
   if (b == 0) return no();
   if (op == "div.u32") return yes(uint32_t(a) / uint32_t(b));
   if (op == "rem.u32") return yes(uint32_t(a) % uint32_t(b));
-  if (b == -1) return no();  // the lowest number has no negative
+  if (b == -1) return no();  // the lowest number has no negative counterpart
   if (op == "div.s32") return yes(uint32_t(a / b));
   if (op == "rem.s32") return yes(uint32_t(a % b));
   return no();
 }
 
-// The integer ops of two 32-bit sources over constants.
+// Folds the integer ops of two 32-bit constants.
 Folded fold_constants(std::string_view op, uint32_t a, uint32_t b) {
   if (op == "add.u32" || op == "add.s32") return yes(uint32_t(a + b));
   if (op == "sub.u32" || op == "sub.s32") return yes(uint32_t(a - b));
@@ -72,7 +73,7 @@ Folded fold_identity(std::string_view op, const Operand& a, const Operand& b) {
   if ((op == "div.u32" || op == "div.s32") && is_constant(b, 1)) return yes(a);
   if (op == "and.b32" && (is_constant(a, 0) || is_constant(b, 0))) return yes(0);
   if (op == "and.b32" && is_constant(b, 0xffff'ffff)) return yes(a);
-  constexpr uint64_t kOne = 0x3f80'0000;  // x * 1.0f is x for every x; x + 0.0f is not (-0)
+  constexpr uint64_t kOne = 0x3f80'0000;  // x * 1.0f is x for every x; x + 0.0f is not, because of -0
   if (op == "mul.rn.f32" && is_constant(b, kOne)) return yes(a);
   if (op == "mul.rn.f32" && is_constant(a, kOne)) return yes(b);
   if (op == "div.rn.f32" && is_constant(b, kOne)) return yes(a);

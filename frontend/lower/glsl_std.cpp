@@ -1,4 +1,4 @@
-// GLSL.std.450: each function as the sequence of ISA ops that computes it; IEEE order.
+// Lowers GLSL.std.450: each function becomes the sequence of ISA ops that computes it, in IEEE order.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <fmt/format.h>
@@ -15,9 +15,9 @@ namespace {
 using Arguments = std::vector<Operands>;
 using Scalars = std::vector<Operand>;
 
-// Functions that work part by part: `compute` gets one scalar of each argument (a scalar argument repeats).
-// Half precision is computed in single precision and rounded; narrow integers are widened, by their sign if
-// `name` says s32.
+// Holds a function that works part by part. `compute` gets one scalar of each argument; a scalar argument
+// repeats. Half precision is computed in single precision and rounded. Narrow integers are widened, with
+// their sign if `name` says s32.
 struct Componentwise {
   uint32_t function;
   Operand (*compute)(Arithmetic&, const Scalars&, std::string_view name);
@@ -29,7 +29,7 @@ Operand op(Arithmetic& a, const Scalars& x, std::string_view name) {
   return a.op(name, x);
 }
 
-// min(max(x, low), high), also where low > high (Choice).
+// Returns min(max(x, low), high). Choice: the same formula holds where low > high.
 Operand clamp_f32(Arithmetic& a, const Scalars& x, std::string_view) {
   return a.min(a.max(x[0], x[1]), x[2]);
 }
@@ -39,7 +39,7 @@ Operand clamp_s32(Arithmetic& a, const Scalars& x, std::string_view) {
 Operand clamp_u32(Arithmetic& a, const Scalars& x, std::string_view) {
   return a.op("min.u32", {a.op("max.u32", {x[0], x[1]}), x[2]});
 }
-// x (1 - a) + y a; the second product is not rounded, as in hardware: the sum may cancel.
+// Returns x (1 - a) + y a. The second product is not rounded, as in hardware, because the sum may cancel.
 Operand mix(Arithmetic& a, const Scalars& x, std::string_view) {
   return a.fma(x[1], x[2], a.mul(x[0], a.sub(a.constant(1), x[2])));
 }
@@ -75,7 +75,7 @@ Operand smooth_step(Arithmetic& a, const Scalars& x, std::string_view) {
   const Operand t = clamp_f32(a, {ratio, a.constant(0), a.constant(1)}, {});
   return a.mul(a.mul(t, t), a.sub(a.constant(3), a.mul(a.constant(2), t)));
 }
-// x & -x keeps the lowest bit; of 0 gives -1
+// Returns the number of the lowest set bit, which x & -x isolates; 0 gives -1.
 Operand find_lsb(Arithmetic& a, const Scalars& x, std::string_view) {
   return a.op("bfind.u32", {a.op("and.b32", {x[0], a.op("neg.s32", {x[0]})})});
 }
@@ -146,7 +146,7 @@ constexpr Componentwise kComponentwise[] = {
     {GLSLstd450NClamp, clamp_f32, ""},
 };
 
-// Functions over whole vectors.
+// These functions work on whole vectors.
 Operands length(Arithmetic& a, const Arguments& x) {
   if (x[0].size() == 1) return {a.magnitude(x[0][0])};
   return {a.sqrt(math::dot(a, x[0], x[0]))};
@@ -156,7 +156,7 @@ Operands distance(Arithmetic& a, const Arguments& x) {
   for (size_t i = 0; i < x[0].size(); ++i) difference.push_back(a.sub(x[0][i], x[1][i]));
   return length(a, {difference});
 }
-// Correctly rounded square root and division, not the 2-ulp reciprocal root of hardware.
+// Uses a correctly rounded square root and division, and not the 2-ulp reciprocal root of hardware.
 Operands normalize(Arithmetic& a, const Arguments& x) {
   const Operand norm = length(a, x)[0];
   Operands result;
@@ -167,14 +167,14 @@ Operands cross(Arithmetic& a, const Arguments& x) {
   const auto term = [&](int i, int j) { return a.sub(a.mul(x[0][i], x[1][j]), a.mul(x[1][i], x[0][j])); };
   return {term(1, 2), term(2, 0), term(0, 1)};
 }
-// I - 2 * dot(N, I) * N
+// Returns I - 2 * dot(N, I) * N.
 Operands reflect(Arithmetic& a, const Arguments& x) {
   const Operand twice = a.mul(a.constant(2), math::dot(a, x[1], x[0]));
   Operands result;
   for (size_t i = 0; i < x[0].size(); ++i) result.push_back(a.sub(x[0][i], a.mul(twice, x[1][i])));
   return result;
 }
-// k = 1 - eta^2 (1 - dot(N, I)^2); k < 0: 0, else eta * I - (eta * dot(N, I) + sqrt(k)) * N
+// With k = 1 - eta^2 (1 - dot(N, I)^2), returns 0 for k < 0, else eta * I - (eta * dot(N, I) + sqrt(k)) * N.
 Operands refract(Arithmetic& a, const Arguments& x) {
   const Operand eta = x[2][0], one = a.constant(1);
   const Operand d = math::dot(a, x[1], x[0]);
@@ -187,14 +187,15 @@ Operands refract(Arithmetic& a, const Arguments& x) {
         a.select(total_reflection, a.constant(0), a.sub(a.mul(eta, x[0][i]), a.mul(along, x[1][i]))));
   return result;
 }
-// dot(Nref, I) < 0: N, else -N
+// Returns N if dot(Nref, I) < 0, and -N otherwise.
 Operands face_forward(Arithmetic& a, const Arguments& x) {
   const Operand keep = a.less(math::dot(a, x[2], x[1]), a.constant(0));
   Operands result;
   for (const Operand& part : x[0]) result.push_back(a.select(keep, part, a.negative(part)));
   return result;
 }
-// The struct {fraction, exponent} or {fraction, whole}: all of the first member's parts, then the second's.
+// Returns the struct {fraction, exponent} or {fraction, whole}: all parts of the first member, then those of
+// the second.
 template <math::Split (*kFunction)(Arithmetic&, Operand)>
 Operands split(Arithmetic& a, const Arguments& x) {
   Operands first, second;
@@ -259,15 +260,15 @@ const Whole* find_whole(uint32_t function) {
   return row == std::end(kWhole) ? nullptr : row;
 }
 
-// One call: its arguments widened to 32 bits where they are narrower, and the type of its first result.
+// Holds one call: its arguments, widened to 32 bits where they are narrower, and properties of the call.
 struct Call {
   uint32_t function;
   Arguments arguments;
-  bool is_wide = false;  // any argument or result of 64 bits
+  bool is_wide = false;  // an argument or result has 64 bits
 };
 
-// Of Ldexp: an integer of any width, as one of 32 bits. Beyond these limits every exponent gives 0 or
-// infinity.
+// Returns the exponent of Ldexp, which may be an integer of any width, as one of 32 bits. It is clamped to
+// limits beyond which every exponent gives 0 or infinity.
 Operand exponent(Emitter& e, Part part, const Operand& x) {
   if (bytes_of(part) < 8) return widened(e, part, x, true);
   constexpr int64_t kFar = 1 << 16;
@@ -305,7 +306,7 @@ Operands narrowed_parts(ModuleLowering& l, Id type, Operands parts) {
   return parts;
 }
 
-// Frexp and Modf store their second result through a pointer, the last argument.
+// Lowers Frexp and Modf, which store their second result through a pointer, their last argument.
 void lower_with_pointer(ModuleLowering& l, const Instruction& inst) {
   const Call call = read_call(l, inst, 1, false);
   Arithmetic a(l.emit(), call.is_wide);

@@ -1,5 +1,6 @@
-// Hit objects (SPV_NV_shader_invocation_reorder): traces whose hit is kept, made-up hits, their values, their
-// shaders. SPDX-License-Identifier: Apache-2.0
+// Lowers hit objects (SPV_NV_shader_invocation_reorder): traces whose hit is kept, hits made by the shader,
+// the values of hits and the calls of their shaders.
+// SPDX-License-Identifier: Apache-2.0
 #include "isa/hit_object.h"
 
 #include "frontend/lower/lowering.h"
@@ -9,7 +10,7 @@ namespace {
 
 using isa::HitObjectValue;
 
-// The number of an object among those of the shader.
+// Returns the number of an object among those of the shader.
 Operand object(ModuleLowering& l, Id id) {
   const Pointer p = l.pointer(id);
   if (p.place != Place::RayQuery) l.unsupported("a hit object that is not a variable");
@@ -23,12 +24,12 @@ void append(ModuleLowering& l, Operands& to, std::span<const uint32_t> values) {
   }
 }
 
-// The time that comes before the last operand of motion's forms.
+// Sets the time of a ray, which is the operand before the last in the forms with motion.
 void set_time(ModuleLowering& l, const Instruction& inst, size_t operand) {
   l.emit().effect("rt.time.set", {l.scalar(inst.operands[operand])});
 }
 
-// Operands: object, the ten arguments of a trace, time (in motion's form), payload.
+// The operands are: object, the ten arguments of a trace, time (in the form with motion), payload.
 void trace(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   const Operand which = object(l, inst.operands[0]);
   if (inst.op == spv::Op::OpHitObjectTraceRayMotionNV) set_time(l, inst, 11);
@@ -36,8 +37,8 @@ void trace(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
               [&] { l.emit().effect("ho.record", {which}); });
 }
 
-// Operands: object, structure, instance, primitive, geometry, kind, record (or offset and stride), origin, t
-// min, direction, t max, time (in motion's forms), attributes.
+// The operands are: object, structure, instance, primitive, geometry, kind, record (or offset and stride),
+// origin, t min, direction, t max, time (in the forms with motion), attributes.
 void record_hit(ModuleLowering& l, const Instruction& inst, const LoweringRow& row) {
   const size_t count = row.name32 == "ho.hit" ? 11 : 10;
   Operands operands{object(l, inst.operands[0])};
@@ -81,7 +82,7 @@ void get(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   l.set(inst.result, std::move(parts));
 }
 
-// Four columns of three rows; the values are row by row.
+// Returns four columns of three rows. The ISA's values are row by row.
 template <HitObjectValue kField>
 void get_matrix(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   Operands parts;
@@ -102,7 +103,8 @@ void get_attributes(ModuleLowering& l, const Instruction& inst, const LoweringRo
   l.note_store(Place::Local);
 }
 
-// Model: lanes keep their warps. A program cannot see more than that its hit shaders run less together.
+// Model: lanes stay in their warps. The only difference that a program can see is that fewer of its hit
+// shaders run together.
 void reorder(ModuleLowering&, const Instruction&, const LoweringRow&) {
 }
 

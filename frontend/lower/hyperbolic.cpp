@@ -1,5 +1,6 @@
-// Hyperbolic functions and their inverses. The coefficients are minimax fits made for this project by Remez
-// exchange; the comments give the largest error of the exact polynomial. SPDX-License-Identifier: Apache-2.0
+// Computes hyperbolic functions and their inverses. The coefficients are minimax fits made for this project
+// by Remez exchange; the comments give the largest error of the exact polynomial.
+// SPDX-License-Identifier: Apache-2.0
 #include <span>
 
 #include "frontend/lower/math.h"
@@ -10,8 +11,8 @@ namespace {
 constexpr float kLog2E = 1.44269504088896f;
 constexpr float kLn2 = 0.693147180559945f;
 
-// f(x) = x + x z P(z), z = x^2. Relative errors: 5.3e-9 for |x| <= 1, 2.6e-9 for |x| <= 0.6, 1.1e-9 for |x|
-// <= 0.5.
+// The polynomials approximate f(x) = x + x z P(z) with z = x^2. Their relative errors are 5.3e-9 for |x| <=
+// 1, 2.6e-9 for |x| <= 0.6 and 1.1e-9 for |x| <= 0.5.
 constexpr float kSinh[] = {0.1666666716337204f, 0.008333349600434303f, 0.0001983615948120132f,
                            2.8169511097075883e-06f};
 constexpr float kTanh[] = {-0.3333333134651184f,  0.13333246111869812f,  -0.0539521686732769f,
@@ -37,22 +38,22 @@ Operand with_sign(Emitter& e, Operand magnitude, Operand sign) {
   return e.value("copysign.f32", {sign, magnitude});
 }
 
-// e^x / 2: it overflows where sinh and cosh do, not before.
+// Returns e^x / 2, which overflows where sinh and cosh do, and not before.
 Operand half_exp(Emitter& e, Operand x) {
   return e.value("ex2.f32", {e.fma(x, constant_f32(kLog2E), constant_f32(-1))});
 }
 
-// ln(1 + u) + shift ln 2. What 1 + u loses comes back as c / (1 + u).
+// Returns ln(1 + u) + shift ln 2. The bits that 1 + u loses, c, come back as c / (1 + u).
 Operand log1p(Emitter& e, Operand u, Operand shift) {
   const Operand w = e.add(u, constant_f32(1));
   const Operand lost = e.sub(u, e.sub(w, constant_f32(1)));
-  const Operand exact =
-      e.value("setp.ge.f32", {u, constant_f32(16777216.0f)});  // 2^24, infinity: nothing to correct
+  // At 2^24 and at infinity nothing has to be corrected.
+  const Operand exact = e.value("setp.ge.f32", {u, constant_f32(16777216.0f)});
   const Operand correction = e.select(exact, constant_f32(0), e.div(lost, w));
   return e.fma(e.add(e.value("lg2.f32", {w}), shift), constant_f32(kLn2), correction);
 }
 
-// From here on x^2 dwarfs 1, and before long overflows.
+// Above this value 1 is negligible next to x^2, and x^2 soon overflows.
 constexpr float kHuge = 1048576.0f;  // 2^20
 
 }  // namespace
@@ -69,7 +70,7 @@ Operand cosh(Emitter& e, Operand x) {
   return e.add(half, e.div(constant_f32(0.25f), half));
 }
 
-// 1 - 2 / (e^2x + 1) away from 0.
+// Returns 1 - 2 / (e^2x + 1) away from 0.
 Operand tanh(Emitter& e, Operand x) {
   const Operand magnitude = abs(e, x);
   const Operand power = e.value("ex2.f32", {e.mul(magnitude, constant_f32(2 * kLog2E))});
@@ -77,7 +78,7 @@ Operand tanh(Emitter& e, Operand x) {
   return e.select(less(e, magnitude, kTanhReach), odd(e, x, kTanh), with_sign(e, large, x));
 }
 
-// ln(x + sqrt(x^2 + 1)) = log1p(x + x^2 / (1 + sqrt(x^2 + 1))).
+// Uses ln(x + sqrt(x^2 + 1)) = log1p(x + x^2 / (1 + sqrt(x^2 + 1))).
 Operand asinh(Emitter& e, Operand x) {
   const Operand magnitude = abs(e, x);
   const Operand square = e.mul(magnitude, magnitude);
@@ -89,7 +90,7 @@ Operand asinh(Emitter& e, Operand x) {
   return e.select(less(e, magnitude, kAsinhReach), odd(e, x, kAsinh), with_sign(e, large, x));
 }
 
-// With t = x - 1: ln(x + sqrt(x^2 - 1)) = log1p(t + sqrt(t (t + 2))).
+// With t = x - 1, uses ln(x + sqrt(x^2 - 1)) = log1p(t + sqrt(t (t + 2))).
 Operand acosh(Emitter& e, Operand x) {
   const Operand t = e.sub(x, constant_f32(1));
   const Operand u = e.add(t, e.value("sqrt.rn.f32", {e.mul(t, e.add(t, constant_f32(2)))}));
@@ -99,7 +100,7 @@ Operand acosh(Emitter& e, Operand x) {
   return e.select(less(e, x, 1), Operand::value(0x7fff'ffff), result);
 }
 
-// ln((1 + x) / (1 - x)) / 2 = log1p(2 x / (1 - x)) / 2.
+// Uses ln((1 + x) / (1 - x)) / 2 = log1p(2 x / (1 - x)) / 2.
 Operand atanh(Emitter& e, Operand x) {
   const Operand magnitude = abs(e, x);
   const Operand u = e.div(e.add(magnitude, magnitude), e.sub(constant_f32(1), magnitude));

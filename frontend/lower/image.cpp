@@ -1,4 +1,4 @@
-// Images by texels: reads and writes of storage images, fetches, queries, handles.
+// Lowers images by texels: reads and writes of storage images, fetches, queries, handles.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower/image.h"
 
@@ -13,7 +13,8 @@ const Type& image_type(ModuleLowering& l, Id id) {
 
 std::optional<Geometry> geometry_of(ModuleLowering& l, Id id, bool single_texels) {
   const Type& type = image_type(l, id);
-  const bool layers = type.is_arrayed || type.is_multisampled;  // samples are layers: with_sample()
+  // Samples are addressed as layers: with_sample().
+  const bool layers = type.is_arrayed || type.is_multisampled;
   switch (type.dim) {
     case spv::Dim::Dim1D:
       return Geometry{layers ? "a1d" : "1d", 1, layers};
@@ -44,7 +45,7 @@ std::string_view texel_suffix(ModuleLowering& l, Id id) {
       return "u32";
     case Part::Int64:
     case Part::Uint64:
-      return "u32";  // halves: from_halves()
+      return "u32";  // in halves: from_halves()
     default:
       break;
   }
@@ -52,7 +53,8 @@ std::string_view texel_suffix(ModuleLowering& l, Id id) {
   return {};
 }
 
-// Model: the samples of a texel are consecutive layers; hardware keeps them together.
+// Adds the sample to the layer of a texel's place. Model: the samples of a texel are consecutive layers;
+// hardware keeps them together.
 Operands with_sample(ModuleLowering& l, Id id, const Operand& handle, Operands at,
                      const std::optional<Id>& sample) {
   const Type& type = image_type(l, id);
@@ -90,15 +92,15 @@ ImageOperands image_operands(const Instruction& inst, size_t at) {
   if (has(Mask::Offset)) result.offset = inst.operands.at(at++);
   if (has(Mask::ConstOffsets)) result.offsets = inst.operands.at(at++);
   if (has(Mask::Sample)) result.sample = inst.operands.at(at++);
-  return result;  // the others are the memory model's
+  return result;  // the other operands belong to the memory model
 }
 
 bool has_halves(ModuleLowering& l, Id id) {
   return bytes_of(l.part_of(image_type(l, id).element)) == 8;
 }
 
-// Texels of 64 bits lie in images as two channels of 32. Red is such a pair, green and blue are 0, alpha
-// is 1.
+// Returns a texel of 64 bits, which images store as two channels of 32 bits. Red is this pair, green and blue
+// are 0, and alpha is 1.
 Operands from_halves(ModuleLowering& l, const Operands& words) {
   return {l.emit().value("pack.b64", {words[0], words[1]}), Operand::value(0), Operand::value(0),
           Operand::value(1)};
@@ -124,8 +126,8 @@ Operands four_words(ModuleLowering& l, const std::string& name, const Operands& 
 
 namespace {
 
-// Vulkan drops stores to samples that an image lacks, without a feature; places that it lacks go the same way
-// then.
+// Returns how the op handles a place outside of the image. Vulkan drops stores to samples that an image
+// lacks, whatever features are enabled, so stores to multisampled images drop all places outside.
 std::string_view outside(ModuleLowering& l, Id type) {
   return image_type(l, type).is_multisampled ? "zero" : "trap";
 }
@@ -178,7 +180,7 @@ void fetch(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   l.set(inst.result, has_halves(l, type) ? from_halves(l, texel) : texel);
 }
 
-// Extents of a level or of the image, then the number of layers.
+// Lowers a query of the extents of a level or of the image, followed by the number of layers.
 void query_size(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   const Type& type = image_type(l, l.type_of(inst.operands[0]));
   const auto geometry = geometry_of(l, l.type_of(inst.operands[0]), false);
@@ -202,7 +204,7 @@ void query(ModuleLowering& l, const Instruction& inst, const LoweringRow& row) {
   l.set(inst.result, {l.emit().fresh(row.name32, {l.scalar(inst.operands[0])})});
 }
 
-// The image's part of the handle, and both parts together (isa/image_access.h).
+// Lowers the ops that take the image's part of a handle, and that join both parts (isa/image_access.h).
 void image_of(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   constexpr uint32_t kImagePart = (1u << isa::kHandleSamplerShift) - 1;
   l.set(inst.result, {l.emit().value("and.b32", {l.scalar(inst.operands[0]), Operand::value(kImagePart)})});

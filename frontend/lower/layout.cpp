@@ -1,4 +1,4 @@
-// Flattening of types and memory layout (SPIR-V specification 2.16.2, Vulkan "Offset and Stride Assignment").
+// Flattens types and lays out memory (SPIR-V specification 2.16.2, Vulkan "Offset and Stride Assignment").
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower/layout.h"
 
@@ -63,7 +63,7 @@ const std::vector<Part>& Layout::parts(Id id) {
       }
       break;
     case Kind::RuntimeArray:
-      break;  // never a value; a block's last member is reached by address only
+      break;  // never a value; as a block's last member it is reached only by address
     case Kind::Pointer:
       if (is_address(id)) result.push_back(scalar(id));
       break;

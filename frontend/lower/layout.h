@@ -1,4 +1,4 @@
-// How SPIR-V types become scalar parts, and where each part lies in memory.
+// Describes how SPIR-V types become scalar parts, and where each part lies in memory.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <map>
@@ -10,8 +10,9 @@
 
 namespace glint::frontend {
 
-// One scalar of a value: a 32-bit register, an even/odd pair, or a predicate (32-bit 0 or 1 in memory).
-// Values of 8 and 16 bits lie in the low bits of a register; the bits above are 0, whatever the sign.
+// Names the type of one scalar of a value: a 32-bit register, an even/odd pair, or a predicate (in memory, a
+// 32-bit 0 or 1). A value of 8 or 16 bits lies in the low bits of a register; the bits above are 0, even for
+// negative numbers.
 enum class Part : uint8_t {
   Bool,
   Int32,
@@ -27,7 +28,7 @@ enum class Part : uint8_t {
   Float16
 };
 
-// In memory, and of a register's bits that count.
+// Returns the bytes of a part in memory, which are also the significant bytes of its register.
 constexpr uint32_t bytes_of(Part part) {
   switch (part) {
     case Part::Int8:
@@ -63,9 +64,9 @@ constexpr RegisterClass class_of(Part part) {
   return bytes_of(part) == 8 ? RegisterClass::B64 : RegisterClass::B32;
 }
 
-// Where the matrix of an access chain keeps its parts; comes from the member that holds the matrix.
+// Describes where the matrix of an access chain keeps its parts. The member that holds the matrix gives it.
 struct MatrixLayout {
-  uint32_t stride = 0;  // bytes from column to column (row to row if row_major); 0 = columns packed
+  uint32_t stride = 0;  // bytes from column to column (row to row if row_major); 0: the columns are packed
   bool row_major = false;
 };
 
@@ -74,32 +75,35 @@ struct Leaf {
   Part part{};
 };
 
-// Buffers follow their decorations. Everything else (variables, payloads, hit attributes) has no decorated
-// layout. Choice: scalars packed in order, each aligned to its size, so that caller and callee of a trace
-// agree when their types do.
+// Lays out types. Buffers follow their decorations. Everything else (variables, payloads, hit attributes) has
+// no decorated layout. Choice: their scalars are packed in order, each aligned to its size, so that caller
+// and callee of a trace agree when their types do.
 class Layout {
  public:
   explicit Layout(const Module& module) : module_(module) {}
 
   const std::vector<Part>& parts(Id type);
   uint32_t num_parts(Id type) { return uint32_t(parts(type).size()); }
-  uint32_t first_part(Id type, uint32_t member);  // of member, element or column `member`
+  // Number of the first part of member, element or column `member`.
+  uint32_t first_part(Id type, uint32_t member);
   Id member_type(Id type, uint32_t member) const;
 
   uint32_t size(Id type, MatrixLayout matrix = {});       // bytes
-  uint32_t alignment(Id type);                            // bytes, of undecorated objects
+  uint32_t alignment(Id type);                            // bytes, of objects without decorations
   uint32_t member_offset(Id type, uint32_t member);       // bytes, Struct
   uint32_t element_stride(Id type, MatrixLayout matrix);  // bytes, arrays, Matrix, Vector
   MatrixLayout member_matrix(Id type, uint32_t member, MatrixLayout outer) const;
   std::vector<Leaf> leaves(Id type, MatrixLayout matrix, uint32_t component_stride);
 
-  // Pointers that are values: to buffers, 64 bits, and to shared memory, 32. Other pointers are places only.
+  // Returns whether a pointer is a value: 64 bits for a pointer to a buffer, 32 bits for one to shared
+  // memory. Other pointers only name places.
   bool is_address(Id type) const;
-  // Of a variable that is an array of buffers: a pointer to it is the address of a descriptor in a table.
+  // Returns true for the type of a variable that is an array of buffers. A pointer to it is the address of a
+  // descriptor in a table.
   bool is_array_of_blocks(Id pointee) const;
 
-  // Types met so far that no part can hold (floats of 128 bits, ...); they count as 32-bit words until
-  // reported.
+  // Returns the types met so far that no part can hold, such as floats of 128 bits. They count as 32-bit
+  // words until they are reported.
   const std::set<Id>& unsupported() const { return unsupported_; }
 
  private:

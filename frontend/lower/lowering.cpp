@@ -1,5 +1,6 @@
-// The driver of the lowering: entry point, constants, dispatch of instructions, the report of what is
-// missing. SPDX-License-Identifier: Apache-2.0
+// Drives the lowering: entry point, constants, dispatch of instructions, and the report of what is
+// unsupported.
+// SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower/lowering.h"
 
 #include <algorithm>
@@ -50,8 +51,8 @@ void ModuleLowering::choose_entry_point() {
     throw UserError({program_.name, 0, 0}, "the entry point has no function body");
 }
 
-// Before SPIR-V 1.4 interfaces list inputs and outputs only: then every variable may belong to the entry
-// point.
+// Returns whether a variable belongs to the entry point. Before SPIR-V 1.4, interfaces list only inputs and
+// outputs, so every variable may belong to it.
 bool ModuleLowering::is_in_interface(Id variable) const {
   constexpr uint32_t kVersion14 = 0x10400;
   return module_.version < kVersion14 || entry_.interface.count(variable) != 0;
@@ -61,7 +62,7 @@ void ModuleLowering::check_capabilities() {
   for (const auto& [capability, line] : module_.capabilities)
     if (!is_known_capability(capability))
       unsupported("capability " + name_of_capability(uint32_t(capability)), line);
-  // What is made of types that nothing is known of cannot be looked at further.
+  // The lowering stops here for values of these types, because it cannot handle anything made of them.
   constexpr auto kCooperativeMatrixKHR = spv::Op(4456);  // newer than the packaged headers
   for (const auto& [id, type] : module_.types)
     if (type.op == spv::Op::OpTypeCooperativeMatrixNV || type.op == kCooperativeMatrixKHR)
@@ -82,7 +83,7 @@ void ModuleLowering::index_definitions() {
     }
 }
 
-// Payload: the one it reads, or else the largest that it passes.
+// Notes the payload size: that of the payload the shader reads, otherwise the largest that it passes.
 void ModuleLowering::note_interface() {
   uint32_t incoming = 0, outgoing = 0;
   for (const auto& [id, variable] : module_.variables) {
@@ -102,8 +103,8 @@ void ModuleLowering::note_interface() {
     unsupported(fmt::format("hit attributes of {} bytes", program_.attribute_bytes));
 }
 
-// Operations on constants that do not fold (of 64 bits, of floats) are computed here, before all that uses
-// them.
+// Emits the code before the first instruction. It computes operations on constants that do not fold (64 bits,
+// floats) before anything uses them.
 void ModuleLowering::prologue() {
   for (const auto& [id, constant] : module_.constants)
     if (constant.op == spv::Op::OpSpecConstantOp) value(id);
@@ -115,8 +116,9 @@ void ModuleLowering::prologue() {
   for (const auto& [id, variable] : local_variables_) initialise(variable);
 }
 
-// An accepted report keeps its buffer of attributes, and the next one goes into the other: a shader that may
-// report more than once holds them in its frame and hands all of them over each time.
+// Decides where hit attributes live. An accepted report keeps its buffer of attributes, and the next report
+// uses the other buffer. A shader that may report more than once therefore keeps its attributes in its frame
+// and copies all of them for each report.
 void ModuleLowering::choose_attribute_place() {
   int reports = 0;
   bool has_loop = false;
@@ -142,7 +144,8 @@ void ModuleLowering::hand_over_attributes() {
 void ModuleLowering::instruction(const Instruction& inst) {
   emitter_.set_line(inst.line);
   if (inst.op == spv::Op::OpVariable) return;
-  // What functions are made of stays as it is: their errors were bounded with each rounding in its place.
+  // The expansions of extended functions are never fused: their errors were bounded with every rounding in
+  // place.
   emitter_.set_free(contract_ && inst.op != spv::Op::OpExtInst && !decorations(inst.result).no_contraction);
   if (inst.op == spv::Op::OpExtInst) {
     const auto import = module_.imports.find(inst.operands[0]);
@@ -167,7 +170,7 @@ void ModuleLowering::instruction(const Instruction& inst) {
     }
 }
 
-// After something unsupported the result still has a value, so that the search for more can go on.
+// Gives the result a value after something unsupported, so that the search for more can continue.
 void ModuleLowering::set_zero(const Instruction& inst) {
   if (inst.type == 0 || values_.count(inst.result) || pointers_.count(inst.result)) return;
   if (module_.type(inst.type).kind == Type::Kind::Pointer)
@@ -187,13 +190,14 @@ const Operands& ModuleLowering::value(Id id) {
   if (const auto it = values_.find(id); it != values_.end()) return it->second;
   if (module_.constants.count(id)) return values_[id] = constant_parts(id);
   if (const std::optional<Operand> address = address_of(id)) return values_[id] = {*address};
-  unsupported(fmt::format("{} as a value", module_.name_of(id)));  // a pointer where a value is wanted
+  unsupported(fmt::format("{} as a value", module_.name_of(id)));  // a pointer is used as a value
   const auto type = type_of_id_.find(id);
   const uint32_t parts = type == type_of_id_.end() ? 1 : layout_.num_parts(type->second);
   return values_[id] = Operands(std::max(parts, 1u), Operand::value(0));
 }
 
-// Of a pointer that is wanted as a value. Not kept: see pointer().
+// Returns the address of a pointer that is used as a value. The result is not kept, for the same reason as in
+// pointer().
 std::optional<Operand> ModuleLowering::address_of(Id id) {
   const bool is_variable = module_.variables.count(id) != 0;
   if (!is_variable && !pointers_.count(id)) return std::nullopt;
@@ -228,7 +232,7 @@ Operands ModuleLowering::constant_parts(Id id) {
     case spv::Op::OpSpecConstant: {
       uint64_t bits = constant.operands[0];
       if (constant.operands.size() > 1) bits |= uint64_t(constant.operands[1]) << 32;
-      // Literals of narrow signed types carry their sign beyond their width.
+      // A literal of a narrow signed type carries its sign beyond its width.
       if (const uint32_t bytes = bytes_of(part_of(constant.type)); bytes < 4) bits &= (1u << 8 * bytes) - 1;
       return {Operand::value(bits)};
     }
@@ -247,12 +251,13 @@ Operands ModuleLowering::constant_parts(Id id) {
       unsupported(name_of_opcode(uint32_t(constant.op)), constant.line);
       [[fallthrough]];
     case spv::Op::OpConstantNull:
-    case spv::Op::OpUndef:  // Choice: undefined values are 0
+    case spv::Op::OpUndef:  // Choice: an undefined value is 0
       return Operands(layout_.num_parts(constant.type), Operand::value(0));
   }
 }
 
-// The op as if it stood in the function: the emitter folds most, for all their operands are constants.
+// Lowers the op as if it stood in the function. The emitter folds most ops, because all their operands are
+// constants.
 Operands ModuleLowering::specialised_parts(const Instruction& constant) {
   Instruction inst = constant;
   inst.op = spv::Op(constant.operands[0]);

@@ -1,8 +1,9 @@
-// Lowers one SPIR-V module to a VirtualProgram: what the families of op-lowering functions share.
+// Lowers one SPIR-V module to a VirtualProgram. This file holds what the families of lowering functions
+// share.
 //
-// Every SSA value is a list of scalar operands. Each SPIR-V opcode has one row in a table; a row names a
-// function that reads the operands of one instruction and emits code. Whatever is not supported is noted
-// and given the value 0, so that one run finds all of it; lower_to_virtual() then throws.
+// Every SSA value is a list of scalar operands. Each SPIR-V opcode has one row in a table, and a row names a
+// function that reads the operands of one instruction and emits code. An unsupported op is noted and gets the
+// value 0, so that one run finds all unsupported ops; lower_to_virtual() then throws.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
@@ -20,13 +21,14 @@
 
 namespace glint::frontend {
 
-// The lowering without the backend: for tests and for `--emit virtual`. UnsupportedError as lower().
+// Runs the lowering without the backend, for tests and for `--emit virtual`. Throws UnsupportedError as
+// lower() does.
 VirtualProgram lower_to_virtual(const std::vector<uint32_t>& spirv, const std::string& name,
                                 const std::string& entry_point = {}, bool contract = false);
 
-// Where a pointer points. Attribute pairs: hit attributes of two floats, which hit shaders find in %hit.u and
-// %hit.v. Resource: a descriptor, of a buffer only while an index into an array of them is missing. Texel: of
-// a storage image, for atomics.
+// Says where a pointer points. AttributePair: hit attributes of two floats, which hit shaders find in %hit.u
+// and %hit.v. Resource: a descriptor; for a buffer only while the index into an array of descriptors is
+// missing. Texel: a texel of a storage image, for atomics.
 enum class Place : uint8_t {
   Local,
   Global,
@@ -41,23 +43,23 @@ enum class Place : uint8_t {
 };
 
 struct Pointer {
-  Id type = 0;  // of the pointee
+  Id type = 0;  // type of the pointee
   Place place = Place::Nowhere;
-  Operand base = Operand::value(
-      0);  // Local, Shared, Constant: 32-bit address; Global: 64-bit; Resource, RayQuery: index
-  int64_t displacement = 0;      // bytes; Builtin, AttributePair: parts
-  uint32_t alignment = 16;       // bytes, of base
-  uint32_t known_alignment = 0;  // bytes, of base and displacement together; 0 unless an instruction tells it
+  // Local, Shared, Constant: 32-bit address; Global: 64-bit address; Resource, RayQuery: index.
+  Operand base = Operand::value(0);
+  int64_t displacement = 0;       // bytes; for Builtin and AttributePair, parts
+  uint32_t alignment = 16;        // of base, in bytes
+  uint32_t known_alignment = 0;   // of base and displacement together, in bytes; 0: unknown
   uint32_t component_stride = 0;  // bytes; not 0 in a column of a row-major matrix
   MatrixLayout matrix;
-  Id variable = 0;                         // the root
-  bool is_constant = false;                // memory that no shader writes
-  bool is_volatile = false;                // two loads may differ
+  Id variable = 0;                         // variable that the pointer leads to
+  bool is_constant = false;                // no shader writes the memory
+  bool is_volatile = false;                // two loads may give different values
   Operand part_index = Operand::value(0);  // Builtin, AttributePair: dynamic part index
-  Operand entry;                           // Global, of an array of buffers: the address of its descriptor
-  Operand table;   // Resource, of a pointer that is a value: the address of the descriptor with index 0
-  Operands texel;  // Texel: handle, then the layer of arrays and coordinates
-  std::string_view shape;  // Texel: the geometry as image ops name it
+  Operand entry;                           // Global, in an array of buffers: address of the descriptor
+  Operand table;                           // Resource, from a pointer value: address of descriptor 0
+  Operands texel;                          // Texel: handle, layer of an array, coordinates
+  std::string_view shape;                  // Texel: the geometry as image ops name it
 };
 
 inline Pointer nowhere(Id pointee) {
@@ -70,10 +72,10 @@ class ModuleLowering;
 struct LoweringRow {
   spv::Op op;
   void (*lower)(ModuleLowering&, const Instruction&, const LoweringRow&);
-  std::string_view name32;  // the ISA op for 32-bit parts, where the family uses one; see lower_typed.h
+  std::string_view name32;  // ISA op for 32-bit parts, if the family uses one; see typed.h
   std::string_view name64 = {};
 };
-// One table a family; find_lowering_row() searches them all.
+// Each family has one table; find_lowering_row() searches them all.
 std::span<const LoweringRow> arithmetic_rows();
 std::span<const LoweringRow> conversion_rows();
 std::span<const LoweringRow> comparison_rows();
@@ -91,36 +93,38 @@ std::span<const LoweringRow> ray_query_rows();
 std::span<const LoweringRow> hit_object_rows();
 const LoweringRow* find_lowering_row(spv::Op op);
 
-// The GLSL.std.450 instruction set: operands[0] is the import, operands[1] the function's number.
+// Lowers a function of the GLSL.std.450 instruction set. operands[0] is the import and operands[1] the
+// function's number.
 void lower_glsl_std(ModuleLowering& lowering, const Instruction& inst);
-// Of a vendor's set; false where it is not known.
+// Lowers a function of a vendor's set. Returns false where the function is unknown.
 bool lower_vendor_set(ModuleLowering& lowering, const std::string& set, const Instruction& inst);
-// NonSemantic.DebugPrintf: operands[2] is the format. UserError when it does not fit its arguments.
+// Lowers NonSemantic.DebugPrintf, whose format is operands[2]. Throws UserError when the format does not fit
+// its arguments.
 void lower_print(ModuleLowering& lowering, const Instruction& inst);
 
 class ModuleLowering {
  public:
-  // `contract`: products and sums may become one op (lower_contract.cpp).
+  // `contract` allows products and sums to become one op (contract.cpp).
   ModuleLowering(const Module& module, const std::string& name, const EntryPoint& entry,
                  bool contract = false);
   VirtualProgram run();
 
-  // --- Control: called block by block by lower_control()
-  void prologue();                            // initialisers of variables
-  void instruction(const Instruction& inst);  // neither phi nor terminator
+  // --- Control. lower_control() calls these functions block by block.
+  void prologue();                            // emits initialisers of variables
+  void instruction(const Instruction& inst);  // lowers any instruction except phis and terminators
   const Function& function() const { return *function_; }
 
   // --- Values
-  const Operands& value(Id id);  // constants appear on first use
+  const Operands& value(Id id);  // a constant is made at its first use
   Operand scalar(Id id) { return value(id).at(0); }
-  Operand word(Id id);  // an integer as 32 bits: 64 are cut, narrow signed ones extended
+  Operand word(Id id);  // an integer as 32 bits: 64 bits are cut, narrow signed integers are extended
   void set(Id id, Operands parts);
   Pointer pointer(Id id);
   void set_pointer(Id id, Pointer pointer) { pointers_[id] = pointer; }
   Id type_of(Id id) const { return type_of_id_.at(id); }
   const Instruction* definition(Id id) const;  // in the function; null for constants and variables
 
-  // The type of the first part; parts of one value are alike but in structs.
+  // Returns the type of the first part. All parts of one value have the same type, except in structs.
   Part part_of(Id type);
 
   // --- Memory
@@ -128,16 +132,17 @@ class ModuleLowering {
   void store(const Pointer& pointer, const Operands& parts);
   Operands load_builtin(spv::BuiltIn builtin, Id type);
   std::optional<Operand> address_of(Id pointer);  // none: not a pointer that is a value
-  std::optional<Operands> load_compute_builtin(
-      spv::BuiltIn builtin);  // none: not a built-in of compute or subgroups
-  Operand buffer_entry(
-      const Pointer& pointer);  // the address of the descriptor that the index of a buffer in an array means
-  Pointer buffer_element(Pointer pointer);  // from the index of a buffer in an array to the buffer
-  uint32_t local_offset(Id variable);       // bytes in the frame; allotted on first use
-  uint32_t ray_query(
-      Id variable);             // the first query or hit object of a variable; numbers are given on first use
-  void hand_over_attributes();  // to the buffer that the next report reads
-  uint32_t attribute_buffers();  // bytes in the frame of the two buffers of 64 bytes
+  // Returns none for a built-in that is not of compute shaders or subgroups.
+  std::optional<Operands> load_compute_builtin(spv::BuiltIn builtin);
+  // Returns the address of the descriptor for an index into an array of buffers.
+  Operand buffer_entry(const Pointer& pointer);
+  // Turns the index of a buffer in an array into a pointer to that buffer.
+  Pointer buffer_element(Pointer pointer);
+  uint32_t local_offset(Id variable);  // bytes in the frame; allocated at the first use
+  // Returns the number of the first query or hit object of a variable, which is assigned at the first use.
+  uint32_t ray_query(Id variable);
+  void hand_over_attributes();   // copies to the buffer that the next report reads
+  uint32_t attribute_buffers();  // offset in the frame of the two buffers of 64 bytes
   void note_store(Place place);  // loads of that place are not reused any more
 
   // --- Reports
@@ -178,43 +183,45 @@ class ModuleLowering {
   std::map<Id, Pointer> pointers_;
   std::map<Id, Id> type_of_id_;
   std::map<Id, const Instruction*> definition_;
-  std::map<Id, Variable> local_variables_;  // Function storage
-  std::map<Id, uint32_t> frame_;            // variable to byte offset
-  std::map<Id, uint32_t> shared_;           // the same for shared memory
-  std::map<Id, uint32_t> ray_queries_;      // variable to its first query
+  std::map<Id, Variable> local_variables_;  // variables of Function storage
+  std::map<Id, uint32_t> frame_;            // byte offset of each variable
+  std::map<Id, uint32_t> shared_;           // byte offset of each variable in shared memory
+  std::map<Id, uint32_t> ray_queries_;      // first query of each variable
   uint32_t num_ray_queries_ = 0;
   uint32_t attribute_buffers_ = 0xffff'ffff;
-  bool attributes_in_frame_ = false;  // of an intersection shader that may report more than once
-  uint64_t local_version_ = 1, global_version_ = 1, shared_version_ = 1;  // of memory, for the reuse of loads
+  bool attributes_in_frame_ = false;  // set for an intersection shader that may report more than once
+  // The versions of memory decide whether a load may be reused.
+  uint64_t local_version_ = 1, global_version_ = 1, shared_version_ = 1;
   uint64_t& version_of(Place place);
-  std::map<std::tuple<uint16_t, uint32_t, std::string>, int> unsupported_;  // file, line, what: how often
+  std::map<std::tuple<uint16_t, uint32_t, std::string>, int> unsupported_;  // file, line, what: count
   std::set<Id> reported_types_;
 };
 
-// A trace (docs/abi.md, Calls and rays). Arguments: structure, flags, mask, offset, stride, miss index,
-// origin, t min, direction, t max. `finish` is emitted when the rays have found what they find.
+// Lowers a trace (docs/abi.md, Calls and rays). The arguments are: structure, flags, mask, offset, stride,
+// miss index, origin, t min, direction, t max. `finish` emits the code that runs after the traversal.
 void lower_trace(ModuleLowering& lowering, std::span<const uint32_t> arguments, const Pointer& payload,
                  const std::function<void()>& finish);
-// The lane's local address that a pointer means, in a register.
+// Returns the lane's local address of a pointer, in a register.
 Operand local_address(ModuleLowering& lowering, const Pointer& pointer);
 Operand attribute_buffers_address(ModuleLowering& lowering);
-// After shaders have run: nothing that was read from memory or computed before is used again.
+// Forgets everything that was read from memory or computed, because other shaders have run.
 void forget_after_call(ModuleLowering& lowering);
 
 // Lowers all reachable blocks of the entry function: phis, structured control flow, terminators.
 void lower_control(ModuleLowering& lowering);
 
-// Capabilities that add nothing to lower, or only opcodes that are reported one by one where they stand.
+// Returns true for capabilities that need no lowering, or that only add opcodes which are reported where they
+// are used.
 bool is_known_capability(spv::Capability capability);
 
-// A displacement that the 32-bit field of an instruction cannot hold goes into the base.
+// Adds a displacement to the base if the 32-bit field of an instruction cannot hold it.
 Pointer in_reach(ModuleLowering& lowering, Pointer pointer);
 
-// Fuses sums with products that nothing else reads; both of `free`, the registers of products and sums that
-// may fuse.
+// Fuses sums with products that nothing else reads. `free` holds the results of products and sums that may
+// fuse.
 void contract(VirtualProgram* program, const std::set<VirtualRegister>& free);
 
-// Removes instructions whose results nobody reads and that do nothing else.
+// Removes instructions that have no effect and whose results nobody reads.
 void remove_dead_code(VirtualProgram* program);
 
 }  // namespace glint::frontend

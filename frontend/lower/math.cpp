@@ -1,5 +1,5 @@
-// Inverse circular functions, exponentials and logarithms. The coefficients are minimax fits made for this
-// project by Remez exchange; the comments give the largest error of the exact polynomial.
+// Computes inverse circular functions, exponentials and logarithms. The coefficients are minimax fits made
+// for this project by Remez exchange; the comments give the largest error of the exact polynomial.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower/math.h"
 
@@ -15,15 +15,15 @@ constexpr float kHalfPiRest = -4.37113900019e-8f;
 constexpr float kLog2E = 1.44269504088896f;
 constexpr float kLn2 = 0.693147180559945f;
 
-// asin(x) = x + x z P(z), z = x^2 <= 1/4; relative error below 5.1e-9.
+// Coefficients of asin(x) = x + x z P(z) with z = x^2 <= 1/4; the relative error is below 5.1e-9.
 constexpr float kAsin[] = {0.16666750609874725f, 0.07495343685150146f, 0.04546626657247543f,
                            0.02419474720954895f, 0.04214620217680931f};
-// atan(x) = x + x z P(z), z = x^2 <= 1; relative error below 2.7e-9.
+// Coefficients of atan(x) = x + x z P(z) with z = x^2 <= 1; the relative error is below 2.7e-9.
 constexpr float kAtan[] = {-0.33333301544189453f, 0.19998574256896973f,  -0.14264485239982605f,
                            0.10953346639871597f,  -0.08406593650579453f, 0.05800812318921089f,
                            -0.03122559003531933f, 0.01093909703195095f,  -0.0017988847102969885f};
 
-// x + x * z * P(z) with z = x^2
+// Returns x + x * z * P(z), where z = x^2.
 Operand odd(Emitter& e, Operand x, Operand z, std::span<const float> coefficients) {
   Operand p = constant_f32(coefficients.back());
   for (size_t i = coefficients.size() - 1; i-- > 0;) p = e.fma(p, z, constant_f32(coefficients[i]));
@@ -40,7 +40,7 @@ Operand with_sign(Emitter& e, Operand magnitude, Operand sign) {
   return e.value("copysign.f32", {sign, magnitude});
 }
 
-// For |x| > 1/2: asin(x) = pi/2 - 2 asin(sqrt((1 - |x|) / 2)). Returns asin of |x| or of the root.
+// For |x| > 1/2, asin(x) = pi/2 - 2 asin(sqrt((1 - |x|) / 2)). `value` is the asin of |x| or of this root.
 struct Reduced {
   Operand is_large, value;
 };
@@ -52,7 +52,7 @@ Reduced reduced_asin(Emitter& e, Operand magnitude) {
   return {is_large, odd(e, x, z, kAsin)};
 }
 
-// Of 0 <= x <= 1.
+// Returns the arctangent for 0 <= x <= 1.
 Operand atan_of_unit(Emitter& e, Operand x) {
   return odd(e, x, e.mul(x, x), kAtan);
 }
@@ -65,7 +65,8 @@ Operand dot(Arithmetic& a, const Operands& x, const Operands& y) {
   return sum;
 }
 
-// pi/2 - r = kHalfPi - (r - kHalfPiRest), which rounds once more but keeps the constant's lost bits.
+// Computes pi/2 - r as kHalfPi - (r - kHalfPiRest), which rounds once more but keeps the bits that the
+// constant lost.
 Operand asin(Emitter& e, Operand x) {
   const Reduced r = reduced_asin(e, abs(e, x));
   const Operand twice = e.fma(r.value, constant_f32(2), constant_f32(-kHalfPiRest));
@@ -91,18 +92,18 @@ Operand atan(Emitter& e, Operand x) {
   return with_sign(e, e.select(is_large, large, t), x);
 }
 
-// t = atan of the ratio of the smaller to the larger magnitude. By octants the result is t, pi/2 - t, pi/2 +
-// t or pi - t: a constant in two parts plus t or -t.
+// Computes t, the arctangent of the smaller magnitude divided by the larger. Depending on the octant the
+// result is t, pi/2 - t, pi/2 + t or pi - t, which is a constant in two parts plus t or -t.
 Operand atan2(Emitter& e, Operand y, Operand x) {
   const Operand ax = abs(e, x), ay = abs(e, y);
   const Operand larger = e.value("max.f32", {ax, ay}), smaller = e.value("min.f32", {ax, ay});
-  // 0/0 and inf/inf: equal magnitudes stand for 0 and for 1.
+  // The ratio is 0 for 0/0 and 1 for inf/inf, where both magnitudes are equal.
   const Operand is_zero = e.value("setp.eq.f32", {larger, constant_f32(0)});
   const Operand ratio =
       e.select(is_zero, constant_f32(0),
                e.select(e.value("setp.eq.f32", {ax, ay}), constant_f32(1), e.div(smaller, larger)));
   const Operand t = atan_of_unit(e, ratio);
-  const Operand is_left = e.value("setp.lt.s32", {x, Operand::value(0)});  // the sign bit, also of -0
+  const Operand is_left = e.value("setp.lt.s32", {x, Operand::value(0)});  // tests the sign bit, so -0 counts
   const Operand is_steep = greater(e, ay, ax);
   const auto by_octant = [&](float steep, float left) {
     return e.select(is_steep, constant_f32(steep), e.select(is_left, constant_f32(left), constant_f32(0)));
@@ -110,7 +111,7 @@ Operand atan2(Emitter& e, Operand y, Operand x) {
   const Operand falls = e.value("xor.pred", {is_steep, is_left});
   const Operand turned = e.select(falls, e.value("neg.f32", {t}), t);
   const Operand sum = e.add(by_octant(kHalfPi, kPi), e.add(turned, by_octant(kHalfPiRest, kPiRest)));
-  const Operand both = e.add(ax, ay);  // min and max drop one NaN
+  const Operand both = e.add(ax, ay);  // NaN if either is NaN; min and max drop a NaN
   return e.select(e.value("testp.notanumber.f32", {both}), both, with_sign(e, sum, y));
 }
 
@@ -125,7 +126,8 @@ Operand pow(Emitter& e, Operand x, Operand y) {
   if (is_constant(y, 0) || is_constant(y, 0x8000'0000)) return constant_f32(1);  // both zeros
   const Operand power = e.value("ex2.f32", {e.mul(y, e.value("lg2.f32", {x}))});
   if (y.kind == Operand::Kind::Constant) return power;
-  return e.select(e.value("setp.eq.f32", {y, constant_f32(0)}), constant_f32(1), power);  // 0 * lg2(0) is NaN
+  // Without the selection, a zero y could give 0 * lg2(0), which is NaN.
+  return e.select(e.value("setp.eq.f32", {y, constant_f32(0)}), constant_f32(1), power);
 }
 
 }  // namespace glint::frontend::math

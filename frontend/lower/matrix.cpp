@@ -1,11 +1,11 @@
-// Determinants and inverses of square matrices by cofactors, in the order of the formula.
+// Computes determinants and inverses of square matrices by cofactors, in the order of the formula.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower/math.h"
 
 namespace glint::frontend::math {
 namespace {
 
-// The determinant of the rows and columns named; m is n x n by columns.
+// Returns the determinant of the named rows and columns. m is an n x n matrix stored by columns.
 Operand minor_of(Arithmetic& a, const Operands& m, size_t n, const std::vector<size_t>& rows,
                  const std::vector<size_t>& columns) {
   if (rows.size() == 1) return m[columns[0] * n + rows[0]];
@@ -44,7 +44,7 @@ Operands inverse(Arithmetic& a, const std::vector<Operands>& arguments) {
   const Operand scale = a.div(a.constant(1), determinant(a, arguments)[0]);
   Operands result;
   for (size_t column = 0; column < n; ++column)
-    for (size_t row = 0; row < n; ++row) {  // the transposed cofactor: of row `column`, column `row`
+    for (size_t row = 0; row < n; ++row) {  // transposed: the cofactor of row `column` and column `row`
       const Operand cofactor = a.mul(minor_of(a, m, n, all_but(n, column), all_but(n, row)), scale);
       result.push_back((row + column) % 2 ? a.negative(cofactor) : cofactor);
     }

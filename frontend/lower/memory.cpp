@@ -1,4 +1,4 @@
-// Loads and stores of whole values, as few vector accesses as their alignment allows.
+// Lowers loads and stores of whole values with as few vector accesses as their alignment allows.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <bit>
@@ -23,7 +23,7 @@ std::string_view space_of(Place place) {
   }
 }
 
-// Consecutive 32-bit leaves from `first` that one access of 4, 2 or 1 words can move.
+// Returns how many consecutive 32-bit leaves from `first` on one access can move: 4, 2 or 1.
 int words_together(const std::vector<Leaf>& leaves, size_t first, const Pointer& p) {
   const uint32_t alignment = std::max(p.alignment, p.known_alignment);
   const int64_t displacement = p.known_alignment > p.alignment ? 0 : p.displacement;
@@ -39,8 +39,8 @@ int words_together(const std::vector<Leaf>& leaves, size_t first, const Pointer&
   return 1;
 }
 
-// The end of the op's name for `words` leaves like this one. Loads of narrow values fill the bits above with
-// zeros.
+// Returns the end of the op's name for `words` leaves like this one. Loads of narrow values fill the bits
+// above with zeros.
 std::string_view shape_of(Part part, int words, bool is_load) {
   switch (bytes_of(part)) {
     case 1:
@@ -69,8 +69,8 @@ Operands slice(ModuleLowering& l, const Pointer& p, const Operands& parts) {
   return result;
 }
 
-// docs/abi.md: arrays of buffers and of acceleration structures have their descriptors in a table in global
-// memory.
+// Returns the address of a descriptor in an array. Arrays of buffers and of acceleration structures have
+// their descriptors in a table in global memory (docs/abi.md).
 Operand descriptor_in_table(ModuleLowering& l, const Operand& table, const Operand& index) {
   return l.emit().value("mad.wide.u32", {index, Operand::value(isa::kDescriptorBytes), table});
 }
@@ -204,7 +204,7 @@ Pointer ModuleLowering::buffer_element(Pointer p) {
 uint32_t ModuleLowering::shared_offset(Id variable) {
   if (const auto it = shared_.find(variable); it != shared_.end()) return it->second;
   const Id type = module_.type(type_of(variable)).element;
-  // SPV_KHR_workgroup_memory_explicit_layout: all blocks begin at the same place.
+  // With SPV_KHR_workgroup_memory_explicit_layout, all blocks begin at the same place.
   const bool is_block = module_.type(type).is_block;
   constexpr uint32_t kAlign = 16;
   const uint32_t at = is_block ? 0 : (program_.shared_bytes + kAlign - 1) / kAlign * kAlign;
@@ -214,12 +214,12 @@ uint32_t ModuleLowering::shared_offset(Id variable) {
 
 uint32_t ModuleLowering::local_offset(Id variable) {
   if (const auto it = frame_.find(variable); it != frame_.end()) return it->second;
-  constexpr uint32_t kAlign = 16;  // so that vectors of four words can be moved at once
+  constexpr uint32_t kAlign = 16;  // lets one access move a vector of four words
   const uint32_t at = (program_.local_bytes + kAlign - 1) / kAlign * kAlign;
   program_.local_bytes = at + layout_.size(module_.type(type_of(variable)).element);
   const auto global = module_.variables.find(variable);
   if (global != module_.variables.end() && global->second.storage == spv::StorageClass::HitObjectAttributeNV)
-    program_.local_bytes = at + 64;  // ho.attributes stores them all (docs/abi.md)
+    program_.local_bytes = at + 64;  // ho.attributes stores all 64 bytes (docs/abi.md)
   return frame_[variable] = at;
 }
 

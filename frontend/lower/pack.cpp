@@ -1,4 +1,4 @@
-// Packing; the formulas of GLSL 4.60, 8.4 "Floating-Point Pack and Unpack Functions".
+// Packs and unpacks floats with the formulas of GLSL 4.60, 8.4 "Floating-Point Pack and Unpack Functions".
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower/pack.h"
 
@@ -9,7 +9,7 @@ Operand word(uint32_t bits) {
   return Operand::value(bits);
 }
 
-// Joins fields of `width` bits, the first lowest. The fields above it must be clean.
+// Joins fields of `width` bits, the first in the lowest bits. The bits above a field must be 0.
 Operands join(Emitter& e, const Operands& fields, uint32_t width) {
   Operand all = fields[0];
   for (uint32_t i = 1; i < fields.size(); ++i)
@@ -23,7 +23,8 @@ Operands pack_normalised(Emitter& e, const Operands& x, uint32_t width, bool is_
   Operands fields;
   for (const Operand& part : x) {
     const Operand low = constant_f32(is_signed ? -1.0f : 0.0f);
-    // NaN becomes 1 where signed and 0 where not, as on hardware: min and max give their other operand.
+    // NaN becomes 1 in signed formats and 0 in unsigned ones, as on hardware, because min and max return the
+    // other operand.
     const Operand clamped = is_signed
                                 ? e.value("max.f32", {e.value("min.f32", {part, constant_f32(1)}), low})
                                 : e.value("min.f32", {e.value("max.f32", {part, low}), constant_f32(1)});
@@ -40,7 +41,8 @@ Operands unpack_normalised(Emitter& e, const Operand& x, uint32_t width, bool is
     const Operand field = e.value(is_signed ? "bfe.s32" : "bfe.u32", {x, word(at), word(width)});
     const Operand number = e.value(is_signed ? "cvt.rn.f32.s32" : "cvt.rn.f32.u32", {field});
     const Operand ratio = e.div(number, constant_f32(float(is_signed ? mask >> 1 : mask)));
-    result.push_back(is_signed ? e.value("max.f32", {ratio, constant_f32(-1)}) : ratio);  // never above 1
+    // The ratio is never above 1.
+    result.push_back(is_signed ? e.value("max.f32", {ratio, constant_f32(-1)}) : ratio);
   }
   return result;
 }

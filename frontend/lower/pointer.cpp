@@ -1,4 +1,4 @@
-// Pointers: variables, access chains, and the ops that read and write through them.
+// Lowers pointers: variables, access chains, and the ops that read and write through them.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <bit>
@@ -13,8 +13,8 @@ namespace glint::frontend {
 Pointer ModuleLowering::buffer_pointer(const Variable& variable, Pointer p) {
   const Decorations& d = decorations(variable.id);
   const uint32_t descriptor = isa::descriptor_offset(d.set.value_or(0), d.binding.value_or(0));
-  p.alignment =
-      16;  // Choice: buffers are bound at multiples of 16 bytes (Vulkan minStorageBufferOffsetAlignment)
+  // Choice: buffers are bound at multiples of 16 bytes (Vulkan minStorageBufferOffsetAlignment).
+  p.alignment = 16;
   const Type* block = &module_.type(p.type);
   while (block->kind == Type::Kind::Array || block->kind == Type::Kind::RuntimeArray)
     block = &module_.type(block->element);
@@ -30,7 +30,7 @@ Pointer ModuleLowering::buffer_pointer(const Variable& variable, Pointer p) {
 
 namespace {
 
-// Objects that lie in the machine, not in memory: numbers mean them.
+// Returns true for types of objects that are held in machine state, not in memory, and are named by an index.
 bool is_numbered(const Module& module, Id type) {
   while (module.type(type).kind == Type::Kind::Array) type = module.type(type).element;
   return module.type(type).kind == Type::Kind::RayQuery || module.type(type).op == spv::Op::OpTypeHitObjectNV;
@@ -72,7 +72,7 @@ Pointer ModuleLowering::variable_pointer(const Variable& variable) {
       p.place = Place::Global;
       p.base = emitter_.value("pack.b64",
                               {Operand::of(isa::Special::Record), Operand::of(isa::Special::RecordHi)});
-      p.is_constant = true;  // Vulkan: shaders only read it
+      p.is_constant = true;  // in Vulkan, shaders only read the shader record
       return p;
     case Storage::HitAttributeKHR: {
       const bool is_pair = layout_.parts(p.type) == std::vector<Part>{Part::Float32, Part::Float32};
@@ -110,8 +110,8 @@ Pointer ModuleLowering::variable_pointer(const Variable& variable) {
   }
 }
 
-// Not kept for variables: the base of a buffer is loaded again in each block that uses it, for a load from
-// the constant bank is cheaper than a register pair that lives across a trace.
+// Returns the pointer of an id. Pointers of variables are not kept: each block loads the base of a buffer
+// again, because a load from the constant bank is cheaper than a register pair that lives across a trace.
 Pointer ModuleLowering::pointer(Id id) {
   if (const auto it = pointers_.find(id); it != pointers_.end()) return it->second;
   if (const auto it = module_.variables.find(id); it != module_.variables.end())
@@ -135,14 +135,14 @@ Pointer ModuleLowering::pointer_from_value(Id id) {
   }
   p.place = type.storage == spv::StorageClass::Workgroup ? Place::Shared : Place::Global;
   p.base = scalar(id);
-  p.alignment = 4;  // what every access has that says nothing: wider parts have ops of their own
+  p.alignment = 4;  // the default of every access; wider parts have ops of their own
   return p;
 }
 
 namespace {
 
-// index = rest + addend, following additions of constants. Choice: the sum is taken as if it did not wrap,
-// which differs only for indices outside of any buffer of 4 GiB.
+// Splits an index into rest + addend by following additions of constants. Choice: the sum is taken as if it
+// did not wrap, which differs only for indices outside of any buffer of 4 GiB.
 struct SplitIndex {
   Operand rest;
   int64_t addend = 0;
@@ -201,7 +201,7 @@ void step_memory(ModuleLowering& l, Pointer* p, Id index) {
   p->type = type.element;
 }
 
-// Built-ins and attribute pairs: displacement counts parts.
+// Steps into a built-in or an attribute pair, where the displacement counts parts.
 void step_parts(ModuleLowering& l, Pointer* p, Id index) {
   const auto constant = l.module().constant_u32(index);
   const Id element = l.layout().member_type(p->type, constant.value_or(0));
@@ -221,7 +221,8 @@ uint32_t flat_count(const Module& module, Id type) {
   return count;
 }
 
-// An element of an array of descriptors or of ray queries, which count through all dimensions.
+// Steps to an element of an array of descriptors or of ray queries. The elements are numbered through all
+// dimensions.
 void step_number(ModuleLowering& l, Pointer* p, Id index) {
   const Id element = l.module().type(p->type).element;
   const Operand stride = Operand::value(flat_count(l.module(), element));
@@ -262,8 +263,8 @@ void access_chain(ModuleLowering& l, const Instruction& inst, const LoweringRow&
   walk_chain(l, inst, l.pointer(inst.operands[0]), 1);
 }
 
-// SPIR-V, "Memory Object Layout": shared memory has the strides that are stated only where its variables are
-// blocks.
+// Returns whether the stated strides apply. In shared memory they apply only where its variables are blocks
+// (SPIR-V, "Memory Object Layout").
 bool has_stated_strides(const ModuleLowering& l, Place place) {
   if (place != Place::Shared) return true;
   for (const auto& [id, variable] : l.module().variables)
@@ -273,7 +274,7 @@ bool has_stated_strides(const ModuleLowering& l, Place place) {
   return false;
 }
 
-// The pointer's own element first: pointers to arrays' elements.
+// Lowers OpPtrAccessChain, whose first index steps over the pointer's own element.
 void pointer_access_chain(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   Pointer p = l.pointer(inst.operands[0]);
   const Type& type = l.module().type(l.type_of(inst.operands[0]));
@@ -284,8 +285,8 @@ void pointer_access_chain(ModuleLowering& l, const Instruction& inst, const Lowe
   walk_chain(l, inst, p, 2);
 }
 
-// What memory operands from `operand` on say: that a value must not be kept from an earlier access, and the
-// alignment.
+// Returns the pointer with what the memory operands from `operand` on say: whether the value of an earlier
+// access must not be reused, and the alignment.
 Pointer accessed(ModuleLowering& l, const Instruction& inst, Id pointer, size_t operand) {
   Pointer p = l.pointer(pointer);
   if (inst.operands.size() <= operand) return p;
@@ -309,7 +310,8 @@ void copy_memory(ModuleLowering& l, const Instruction& inst, const LoweringRow&)
   l.store(l.pointer(inst.operands[0]), l.load(l.pointer(inst.operands[1])));
 }
 
-// (bytes of the buffer - offset of the array) / stride; the descriptor's second word pair holds the bytes.
+// Computes (bytes of the buffer - offset of the array) / stride. The second register pair of the descriptor
+// holds the bytes.
 void array_length(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   const Pointer p = l.pointer(inst.operands[0]);
   const Decorations& d = l.decorations(p.variable);

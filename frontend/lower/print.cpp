@@ -1,4 +1,5 @@
-// debugPrintfEXT: the format is matched with its arguments here; vectors become their components.
+// Lowers debugPrintfEXT. The format is matched with its arguments at compile time, and vectors become their
+// components.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <fmt/format.h>
@@ -40,7 +41,7 @@ class Print {
     throw UserError({file, int(line.line), 0}, fmt::format("debugPrintfEXT(\"{}\"): {}", format_, what));
   }
 
-  // One conversion, "%1.2v4f"; returns where the text goes on.
+  // Reads one conversion, such as "%1.2v4f". Returns where the text goes on.
   size_t conversion(size_t first) {
     isa::Conversion c;
     size_t at = isa::parse_flags(format_, first + 1, c);
@@ -50,8 +51,8 @@ class Print {
       at += 2;
     }
     const size_t lengths = at;
-    while (at < format_.size() && (format_[at] == 'l' || format_[at] == 'h'))
-      ++at;  // the argument knows its width
+    // The length is skipped, because the argument has a known width.
+    while (at < format_.size() && (format_[at] == 'l' || format_[at] == 'h')) ++at;
     const bool has_length = at != lengths;
     const std::string spelled = format_.substr(first, at + 1 - first);
     c.letter = at < format_.size() ? format_[at] : '\0';
@@ -74,8 +75,9 @@ class Print {
     const Id id = arguments_[next_++];
     const Part part = l_.part_of(l_.type_of(id));
     const Operands parts = l_.value(id);
-    // Choice: what is given is printed as what it is, where the specification leaves it undefined: all
-    // components, and floats under %d as floats. Drivers take such formats, and shaders have them.
+    // Choice: an argument is printed as what it is where the specification leaves the result undefined: all
+    // components of a vector are printed, and a float under %d is printed as a float. Drivers accept such
+    // formats, and shaders contain them.
     if (is_float(part) != isa::is_float(c)) c.letter = is_float(part) ? 'f' : is_signed(part) ? 'd' : 'u';
     c.is_wide = bytes_of(part) == 8;
     for (size_t i = 0; i < parts.size(); ++i) {
@@ -115,8 +117,8 @@ class Print {
   ModuleLowering& l_;
   const std::string& format_;
   const std::vector<Id> arguments_;
-  size_t next_ = 0;   // argument
-  std::string text_;  // of the message so far
+  size_t next_ = 0;   // number of the next argument
+  std::string text_;  // text of the message so far
   Operands words_;
 };
 

@@ -1,4 +1,4 @@
-// Brackets for rq.proceed.
+// Encloses each rq.proceed in a call region.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower/query_calls.h"
 

@@ -1,11 +1,13 @@
-// Ray queries whose rays are walked in code: rq.proceed as a call that keeps no register.
+// Turns rq.proceed into a call that preserves no register, for ray queries whose rays are traversed in shader
+// code.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "frontend/virtual_program.h"
 
 namespace glint::frontend {
 
-// Makes a call region of each rq.proceed, so that values that live across it lie in the frame meanwhile.
+// Makes a call region of each rq.proceed, so that values that live across it are in the frame during the
+// call.
 void make_queries_calls(VirtualProgram& program);
 
 }  // namespace glint::frontend

@@ -1,4 +1,5 @@
-// Ray queries (SPV_KHR_ray_query): one ISA op an instruction, or one a scalar of its result.
+// Lowers ray queries (SPV_KHR_ray_query): each instruction becomes one ISA op, or one op for each scalar of
+// its result.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower/lowering.h"
 #include "frontend/spirv/known_positions.h"
@@ -7,7 +8,7 @@
 namespace glint::frontend {
 namespace {
 
-// The number of a query among those of the shader.
+// Returns the number of a query among those of the shader.
 Operand query(ModuleLowering& l, const Instruction& inst) {
   const Pointer p = l.pointer(inst.operands[0]);
   if (p.place != Place::RayQuery) l.unsupported("a ray query that is not a variable of a function");
@@ -16,8 +17,8 @@ Operand query(ModuleLowering& l, const Instruction& inst) {
 
 void initialize(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   Operands operands{query(l, inst)};
-  for (size_t i = 1; i < inst.operands.size();
-       ++i) {  // structure, flags, mask, origin, t min, direction, t max
+  // The operands are: structure, flags, mask, origin, t min, direction, t max.
+  for (size_t i = 1; i < inst.operands.size(); ++i) {
     const Operands parts = l.value(inst.operands[i]);
     operands.insert(operands.end(), parts.begin(), parts.end());
   }
@@ -36,13 +37,13 @@ void generate(ModuleLowering& l, const Instruction& inst, const LoweringRow& row
   l.emit().effect(row.name32, {query(l, inst), l.scalar(inst.operands[1])});
 }
 
-// ".candidate" or ".committed", by the constant of SPIR-V's Intersection operand.
+// Returns ".candidate" or ".committed", by the constant of SPIR-V's Intersection operand.
 std::string suffix(const ModuleLowering& l, const Instruction& inst) {
   return l.module().constant_u32(inst.operands[1]).value_or(0) % kPositionsOfIntersection ? ".committed"
                                                                                           : ".candidate";
 }
 
-// A scalar of a hit, and one of the ray itself.
+// Lowers a query of one scalar of a hit, or of the ray itself.
 void of_hit(ModuleLowering& l, const Instruction& inst, const LoweringRow& row) {
   l.set(inst.result, {l.emit().fresh(std::string(row.name32) + suffix(l, inst), {query(l, inst)})});
 }
@@ -78,8 +79,8 @@ void vector_of_ray(ModuleLowering& l, const Instruction& inst, const LoweringRow
   l.set(inst.result, vector(l, std::string(row.name32), "", query(l, inst)));
 }
 
-// mat4x3 in GLSL: four columns of three rows; the ISA counts row by row. Corners of triangles come as the
-// first three columns of such a matrix (known_positions.h).
+// Returns a matrix, GLSL's mat4x3: four columns of three rows. The ISA numbers its values row by row. The
+// corners of a triangle are the first three columns of such a matrix (known_positions.h).
 void matrix_of_hit(ModuleLowering& l, const Instruction& inst, const LoweringRow& row) {
   const Operand which = query(l, inst);
   Operands parts;

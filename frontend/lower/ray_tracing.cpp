@@ -1,4 +1,4 @@
-// Ray tracing: traces, reports and built-ins, as the shader ABI lays them down.
+// Lowers ray tracing: traces, reports and built-ins, as the shader ABI defines them.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
@@ -20,7 +20,7 @@ void trace(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
               [&] { l.emit().effect("call.sbt.hit", {}); });
 }
 
-// Model: nothing moves: the time of a ray is what shaders read back, and no more.
+// Model: nothing moves. The time of a ray is only a value that shaders read back.
 void trace_motion(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   l.emit().effect("rt.time.set", {l.scalar(inst.operands[10])});
   lower_trace(l, std::span(inst.operands).first(10), l.pointer(inst.operands[11]),
@@ -36,8 +36,8 @@ void execute_callable(ModuleLowering& l, const Instruction& inst, const Lowering
   forget_after_call(l);
 }
 
-// In SPV_NV_ray_tracing these are no terminators: code follows that no lane runs. A guard that always holds
-// keeps it well formed.
+// Lowers the end of an any-hit shader. In SPV_NV_ray_tracing the instruction is not a terminator, and code
+// that no lane runs follows it. A guard that always holds keeps the block well formed.
 void end_any_hit(ModuleLowering& l, const Instruction&, const LoweringRow& row) {
   const Operand always =
       l.emit().fresh("setp.ne.u32", {Operand::of(Special::LaneId), Operand::value(0xffff'ffff)});
@@ -45,7 +45,7 @@ void end_any_hit(ModuleLowering& l, const Instruction&, const LoweringRow& row) 
   end.guard = always.reg;
 }
 
-// From the address in 64 bits or in two words.
+// Makes a structure from its address, which is given in 64 bits or in two words.
 void structure_from_address(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   const Operands parts = l.value(inst.operands[0]);
   l.set(inst.result, {parts.size() == 2 ? l.emit().value("pack.b64", parts) : parts.at(0)});
@@ -69,7 +69,7 @@ void report(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   l.set(inst.result, {e.fresh("rt.accepted", {})});
 }
 
-// Model: a 64-bit clock whose upper half is 0.
+// Model: the clock has 64 bits, and its upper half is 0.
 void read_clock(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   const Operand low = l.emit().fresh("mov.b32", {Operand::of(Special::Clock)});
   if (l.layout().num_parts(inst.type) == 2)
@@ -84,7 +84,7 @@ Operands vector(Special first, uint32_t count) {
   return parts;
 }
 
-// mat4x3 in GLSL: four columns of three rows; the specials are row by row.
+// Returns a matrix, GLSL's mat4x3: four columns of three rows. The special registers are numbered row by row.
 Operands matrix(Special first) {
   Operands parts;
   for (uint32_t column = 0; column < 4; ++column)
@@ -106,7 +106,7 @@ constexpr LoweringRow kRows[] = {
 
 }  // namespace
 
-// In a register: SaveLive moves the stack pointer.
+// Returns the address in a register, because SaveLive moves the stack pointer.
 Operand local_address(ModuleLowering& l, const Pointer& p) {
   if (p.place != Place::Local) {
     l.unsupported("a payload that is not in local memory");
@@ -127,7 +127,7 @@ Operand attribute_buffers_address(ModuleLowering& l) {
 void forget_after_call(ModuleLowering& l) {
   l.note_store(Place::Local);
   l.note_store(Place::Global);
-  l.emit().forget();  // what is computed again need not be saved
+  l.emit().forget();  // a value that is computed again need not be saved
 }
 
 void lower_trace(ModuleLowering& l, std::span<const uint32_t> arguments, const Pointer& payload,
@@ -189,7 +189,7 @@ Operands ModuleLowering::load_builtin(spv::BuiltIn builtin, Id type) {
       return {special(Special::RayTmin)};
     case spv::BuiltIn::RayTmaxKHR:
     case spv::BuiltIn::HitTNV:
-      // The end of the ray moves with each report, so an intersection shader reads it anew each time.
+      // The end of the ray moves with each report, so an intersection shader reads it again each time.
       if (stage() == isa::Stage::Intersection) return {emitter_.fresh("mov.b32", {special(Special::HitT)})};
       return {special(Special::HitT)};
     case spv::BuiltIn::IncomingRayFlagsKHR:

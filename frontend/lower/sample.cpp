@@ -1,4 +1,4 @@
-// Filtered reads of images: samples with levels, gradients, offsets and references, and gathers.
+// Lowers filtered reads of images: samples with levels, gradients, offsets and references, and gathers.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
@@ -25,7 +25,7 @@ bool is_implicit(spv::Op op) {
          op == OpImageSampleProjImplicitLod || op == OpImageSampleProjDrefImplicitLod;
 }
 
-// Handle, layer as an integer (Vulkan: rounded to nearest even), coordinates.
+// Returns the handle, the layer as an integer (in Vulkan, rounded to nearest even) and the coordinates.
 Operands float_place(Emitter& e, const Geometry& geometry, const Operand& handle, const Operands& at) {
   Operands place{handle};
   if (geometry.has_layers) place.push_back(e.value("cvt.rni.s32.f32", {at.at(geometry.coordinates)}));
@@ -33,7 +33,7 @@ Operands float_place(Emitter& e, const Geometry& geometry, const Operand& handle
   return place;
 }
 
-// Offsets in texels, a byte each.
+// Packs offsets in texels into one word, with a byte for each.
 Operand packed_offset(Emitter& e, const Operands& offset) {
   Operand word = Operand::value(0);
   for (size_t i = 0; i < offset.size() && i < 3; ++i) {
@@ -51,7 +51,8 @@ struct Sample {
   ImageOperands extra;
 };
 
-// What samples and gathers share: combined image, coordinates, reference where there is one.
+// Reads what samples and gathers share: the combined image, the coordinates, and the reference if there is
+// one.
 std::optional<Sample> sample_of(ModuleLowering& l, const Instruction& inst, size_t num_fixed) {
   Emitter& e = l.emit();
   const Id type = l.type_of(inst.operands[0]);
@@ -74,8 +75,9 @@ std::optional<Sample> sample_of(ModuleLowering& l, const Instruction& inst, size
   return s;
 }
 
-// An implicit level is that of the gradients between lanes, where a module puts them into quads (a bias
-// scales them), and else level 0, as GLSL has it outside of fragment shaders.
+// Lowers a sample. An implicit level comes from the gradients between lanes where the module groups threads
+// into quads, and a bias scales the gradients. Otherwise the level is 0, as in GLSL outside of fragment
+// shaders.
 void sample(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   const bool compares = has_reference(inst.op);
   const auto s = sample_of(l, inst, compares ? 3 : 2);
@@ -111,8 +113,9 @@ void sample(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   l.set(inst.result, {l.emit().fresh(name, sources)});
 }
 
-// The level that an implicit sample would read, held to the image's levels, and the level before that.
-// Model: without the sampler's bias and limits, and not rounded for samplers that take the nearest level.
+// Returns the level that an implicit sample would read, clamped to the image's levels, and the level before
+// clamping. Model: the sampler's bias and limits are ignored, and the level is not rounded for samplers that
+// take the nearest level.
 void query_lod(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   Emitter& e = l.emit();
   const auto geometry = geometry_of(l, l.type_of(inst.operands[0]), false);
@@ -151,7 +154,8 @@ Operands gather_at(ModuleLowering& l, const Sample& s, uint32_t component,
   return four_words(l, name, sources);
 }
 
-// Four texels, or with four offsets the texel (i0, j0) of each: the last of its four.
+// Lowers a gather of four texels. With four offsets it takes one texel for each offset, (i0, j0), which is
+// the last of four.
 void gather(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   const auto s = sample_of(l, inst, 3);
   if (!s) return;

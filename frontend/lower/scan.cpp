@@ -1,4 +1,5 @@
-// Reductions and scans by pointer jumping: each lane knows the member before it, and adds what that one has.
+// Builds reductions and scans by pointer jumping: each lane knows the member before it, and adds the value of
+// that member.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower/scan.h"
 
@@ -16,7 +17,7 @@ using enum spv::Op;
 Operand word(uint32_t bits) {
   return Operand::value(bits);
 }
-constexpr uint32_t kNobody = 0xffff'ffff;  // what bfind gives for no bits
+constexpr uint32_t kNobody = 0xffff'ffff;  // what bfind returns when no bit is set
 
 Operand shuffle_word(ModuleLowering& l, std::string_view op, const Operand& x, const Operand& lane,
                      const Operand& segment) {
@@ -26,7 +27,7 @@ Operand shuffle_word(ModuleLowering& l, std::string_view op, const Operand& x, c
   return result;
 }
 
-// Bits of an integer whose sign bit alone is set, all ones, ...: by the width of the type.
+// Returns an integer of all ones in the width of the type.
 uint64_t ones(Part part) {
   return bytes_of(part) == 8 ? ~uint64_t{0} : (uint64_t{1} << 8 * bytes_of(part)) - 1;
 }
@@ -39,7 +40,7 @@ uint64_t float_bits(Part part, uint16_t half, float single, double full) {
   return part == Part::Float64 ? std::bit_cast<uint64_t>(full) : std::bit_cast<uint32_t>(single);
 }
 
-// What the first lane's exclusive scan gives.
+// Returns the identity of an operation, which the first lane gets from an exclusive scan.
 uint64_t identity(spv::Op op, Part part) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   switch (op) {
@@ -63,19 +64,19 @@ uint64_t identity(spv::Op op, Part part) {
   }
 }
 
-// The lanes of the cluster that holds each lane.
+// Returns the lanes of the cluster that holds each lane.
 Operand cluster_mask(Emitter& e, uint32_t size) {
   if (size >= 32) return word(0xffff'ffff);
   const Operand first = e.value("and.b32", {Operand::of(Special::LaneId), word(~(size - 1))});
   return e.value("shl.b32", {word((1u << size) - 1), first});
 }
 
-// Those that may be combined for a lane, whether they execute or not.
+// Returns the lanes that may be combined for a lane, whether they execute or not.
 Operand group_mask(Emitter& e, const Lanes& lanes) {
   return lanes.partition ? *lanes.partition : cluster_mask(e, lanes.cluster);
 }
 
-// And, or, exclusive or of predicates: the ballot tells all of it.
+// Combines predicates by and, or, exclusive or; one ballot has all the information.
 Operand combine_bools(ModuleLowering& l, spv::Op op, const Operand& x, const Lanes& lanes) {
   Emitter& e = l.emit();
   Operand range = e.value("and.b32", {group_mask(e, lanes), e.fresh("activemask.b32", {})});
@@ -87,8 +88,9 @@ Operand combine_bools(ModuleLowering& l, spv::Op op, const Operand& x, const Lan
   return e.value("setp.ne.u32", {e.value("and.b32", {e.value("popc.b32", {votes}), word(1)}), word(0)});
 }
 
-// Five steps of pointer jumping; fewer in small clusters. Whoever executes, the member before a lane is the
-// highest bit below it. Choice: the order of combining floats, which SPIR-V leaves open.
+// Emits an inclusive scan in five steps of pointer jumping, or fewer in small clusters. Whichever lanes
+// execute, the member before a lane is the highest bit below it. Choice: the order in which floats are
+// combined, which SPIR-V leaves open.
 Operand inclusive(ModuleLowering& l, std::string_view name32, Part part, Operand x, Operand before,
                   uint32_t cluster) {
   Emitter& e = l.emit();

@@ -1,4 +1,4 @@
-// Values combined over lanes: all of a warp, of clusters, of partitions, or those up to each lane.
+// Combines values over lanes: all lanes of a warp, of a cluster or of a partition, or those up to each lane.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
@@ -9,24 +9,25 @@ namespace glint::frontend::scan {
 
 enum class Scope : uint8_t { All, UpToSelf, BeforeSelf };
 
-// Which executing lanes are combined for a lane.
+// Says which executing lanes are combined for a lane.
 struct Lanes {
   Scope scope = Scope::All;
   uint32_t cluster = 32;             // lanes of a cluster, a power of two
-  std::optional<Operand> partition;  // a mask: the lanes of the part that holds the lane
+  std::optional<Operand> partition;  // mask of the lanes in the same part as the lane
 };
 
-// `name32` as for typed(); `op` tells the value for no lanes, and the logical operations.
+// Combines `x` over lanes. `name32` is a name for typed(); `op` gives the value for no lanes, and selects
+// logical operations.
 Operand combine(ModuleLowering& l, spv::Op op, std::string_view name32, Part part, const Operand& x,
                 const Lanes& lanes);
 
-// A shuffle of a value of any type; `segment` is the ISA's last operand but the mask.
+// Shuffles a value of any type. `segment` is the ISA's operand before the mask.
 Operand shuffle(ModuleLowering& l, std::string_view op, Part part, const Operand& x, const Operand& lane,
                 const Operand& segment);
-// The value of that lane.
+// Returns the value of that lane.
 Operand from_lane(ModuleLowering& l, Part part, const Operand& x, const Operand& lane);
 
-// The number of the lowest bit that is set; -1 where none is.
+// Returns the number of the lowest set bit, or -1 where none is set.
 Operand lowest(ModuleLowering& l, const Operand& bits);
 
 }  // namespace glint::frontend::scan

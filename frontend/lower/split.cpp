@@ -1,4 +1,4 @@
-// Floats taken apart and put together: ldexp, frexp, modf.
+// Takes floats apart and puts them together: ldexp, frexp, modf.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower/math.h"
 
@@ -9,11 +9,11 @@ Operand word(int64_t value) {
   return Operand::value(uint32_t(value));
 }
 
-// What ldexp and frexp must know of a format.
+// Holds what ldexp and frexp must know of a format.
 struct Format {
   int fraction_bits;
   int bias;
-  // 2^n of a normal exponent. A double's high word alone holds it.
+  // Returns 2^n with a normal exponent. The high word of a double holds all of it.
   Operand power(Emitter& e, Operand n) const {
     const Operand exponent = e.value("add.s32", {n, word(bias)});
     if (fraction_bits == 23) return e.value("shl.b32", {exponent, word(23)});
@@ -28,15 +28,15 @@ Operand clamped(Emitter& e, Operand n, int low, int high) {
 
 }  // namespace
 
-// Three factors, for 2^n alone may lie far outside of the format. The one that may leave it comes last, so
-// that the result is rounded once: when n is small enough to make the result subnormal, all products before
-// are exact or the result is 0.
+// Multiplies by three factors, because 2^n itself may lie far outside of the format. The factor that may make
+// the result subnormal comes last, so the result is rounded once: all products before it are exact, or the
+// result is 0.
 Operand ldexp(Arithmetic& a, Operand x, Operand n) {
   const Format& format = a.is_double() ? kDouble : kSingle;
   Emitter& e = a.emit();
   const int lowest = 1 - format.bias, highest = format.bias;
-  const int reach =
-      2 * format.bias + format.fraction_bits + 1;  // from one end of the format to past the other
+  // This is the distance from one end of the format to past the other.
+  const int reach = 2 * format.bias + format.fraction_bits + 1;
   const Operand all = clamped(e, n, -reach, reach);
   const Operand last = clamped(e, all, lowest, highest);
   const Operand rest = e.value("sub.s32", {all, last});
@@ -49,17 +49,17 @@ Operand ldexp(Arithmetic& a, Operand x, Operand n) {
 Split frexp(Arithmetic& a, Operand x) {
   const Format& format = a.is_double() ? kDouble : kSingle;
   Emitter& e = a.emit();
-  const int up = format.fraction_bits + 1;  // subnormals are made normal first
+  const int up = format.fraction_bits + 1;  // subnormals are first made normal
   const double smallest_normal = a.is_double() ? 0x1p-1022 : 0x1p-126;
   const Operand magnitude = a.magnitude(x);
   const Operand is_subnormal = a.less(magnitude, a.constant(smallest_normal));
   const Operand normal = a.select(is_subnormal, a.mul(x, a.constant(double(1ull << up))), x);
   const Operand high =
       a.is_double() ? e.value("cvt.u32.u64", {e.value("shr.u64", {normal, word(32)})}) : normal;
-  const int high_bits = a.is_double() ? 20 : 23;  // of the fraction, in the word with the exponent
+  const int high_bits = a.is_double() ? 20 : 23;  // fraction bits in the word that holds the exponent
   const Operand biased = e.value("bfe.u32", {high, word(high_bits), word(a.is_double() ? 11 : 8)});
   const Operand bias = e.select(is_subnormal, word(format.bias - 1 + up), word(format.bias - 1));
-  // The exponent field becomes that of 1/2.
+  // The exponent field is replaced by that of 1/2.
   const Operand kept = e.value("and.b32", {high, word((1ll << high_bits) - 1 + 0x8000'0000ll)});
   const Operand half = e.value("or.b32", {kept, word(int64_t(format.bias - 1) << high_bits)});
   const Operand fraction =
@@ -72,7 +72,7 @@ Split frexp(Arithmetic& a, Operand x) {
 
 Split modf(Arithmetic& a, Operand x) {
   const Operand whole = a.op("cvt.rzi.f32.f32", {x});
-  const Operand is_whole = a.op("setp.eq.f32", {x, whole});  // infinity, too
+  const Operand is_whole = a.op("setp.eq.f32", {x, whole});  // true for infinity, too
   return {a.with_sign(a.select(is_whole, a.constant(0), a.sub(x, whole)), x), whole};
 }
 

@@ -1,7 +1,7 @@
-// Subgroup operations: votes, ballots, shuffles, reductions and scans over the lanes of a warp that execute
-// them.
+// Lowers subgroup operations: votes, ballots, shuffles, reductions and scans over the executing lanes of a
+// warp.
 //
-// None of them is reused or folded, for another place in the code may be executed by other lanes.
+// No result is reused or folded, because other lanes may execute at another place in the code.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower/lowering.h"
 #include "frontend/lower/scan.h"
@@ -16,9 +16,10 @@ using enum spv::Op;
 Operand word(uint32_t bits) {
   return Operand::value(bits);
 }
+// Returns the mask of all lanes. Lanes that do not execute never take part.
 Operand all_lanes() {
   return word(0xffff'ffff);
-}  // of the mask; those that do not execute never take part
+}
 Operands ballot_of(const Operand& lanes) {
   return {lanes, word(0), word(0), word(0)};
 }
@@ -29,7 +30,7 @@ bool is_subgroup(ModuleLowering& l, const Instruction& inst) {
   return false;
 }
 
-// Each part of operand `at`, with what `f` makes of it.
+// Calls `f` for each part of operand `at` and collects the results.
 template <class F>
 void each_part(ModuleLowering& l, const Instruction& inst, size_t at, F&& f) {
   const Part part = l.part_of(inst.type);
@@ -52,7 +53,7 @@ void vote(ModuleLowering& l, const Instruction& inst, const LoweringRow& row) {
   l.set(inst.result, {l.emit().fresh(row.name32, {l.scalar(inst.operands.back()), all_lanes()})});
 }
 
-// Against the first lane's value. Floats are compared as numbers, as == does.
+// Compares with the first lane's value. Floats are compared as numbers, as == does.
 void all_equal(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   Emitter& e = l.emit();
   const Part part = l.part_of(l.type_of(inst.operands.back()));
@@ -82,7 +83,7 @@ void inverse_ballot(ModuleLowering& l, const Instruction& inst, const LoweringRo
   l.set(inst.result, {bit_of(l.emit(), l.value(inst.operands[1])[0], Operand::of(Special::LaneId))});
 }
 
-// Bits past the 32 lanes are 0: a shift by more than 31 gives 0.
+// Extracts a bit of a ballot. Bits beyond the 32 lanes are 0, because a shift by more than 31 gives 0.
 void ballot_bit(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   l.set(inst.result, {bit_of(l.emit(), l.value(inst.operands[1])[0], l.scalar(inst.operands[2]))});
 }
@@ -104,7 +105,7 @@ void find_highest(ModuleLowering& l, const Instruction& inst, const LoweringRow&
   l.set(inst.result, {l.emit().value("bfind.u32", {l.value(inst.operands[1])[0]})});
 }
 
-// Operands end with the value and the lane, its difference or distance. Older ops have no scope.
+// The last two operands are the value, and the lane, its difference or its distance. Older ops have no scope.
 void shuffle(ModuleLowering& l, const Instruction& inst, const LoweringRow& row) {
   const size_t at = inst.operands.size() - 2;
   const Operand lane = l.word(inst.operands[at + 1]);
@@ -127,7 +128,7 @@ void quad_broadcast(ModuleLowering& l, const Instruction& inst, const LoweringRo
   each_part(l, inst, 1, [&](Part part, const Operand& x) { return scan::from_lane(l, part, x, lane); });
 }
 
-// Direction: 0 horizontal, 1 vertical, 2 diagonal.
+// The direction is 0 for horizontal, 1 for vertical and 2 for diagonal.
 void quad_swap(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   const Operand difference = word(l.module().constant_u32(inst.operands[2]).value_or(0) + 1);
   each_part(l, inst, 1, [&](Part part, const Operand& x) {
@@ -146,7 +147,7 @@ void rotate(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   each_part(l, inst, 1, [&](Part part, const Operand& x) { return scan::from_lane(l, part, x, lane); });
 }
 
-// Lanes with the same value in all components.
+// Returns the lanes that have the same value in all components.
 void partition(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   Emitter& e = l.emit();
   const Part part = l.part_of(l.type_of(inst.operands[0]));
@@ -160,7 +161,7 @@ void partition(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   l.set(inst.result, ballot_of(lanes));
 }
 
-// Operands: scope, operation, value, then the size of clusters or the ballot of the partition.
+// The operands are: scope, operation, value, then the size of clusters or the ballot of the partition.
 void arithmetic(ModuleLowering& l, const Instruction& inst, const LoweringRow& row) {
   if (!is_subgroup(l, inst)) return;
   scan::Lanes lanes;
@@ -193,7 +194,7 @@ void arithmetic(ModuleLowering& l, const Instruction& inst, const LoweringRow& r
   });
 }
 
-// Older names of the same, of SPV_AMD_shader_ballot.
+// Maps the older names of SPV_AMD_shader_ballot to the standard ops.
 struct Older {
   spv::Op op, standard;
 };

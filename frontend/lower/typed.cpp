@@ -1,4 +1,4 @@
-// Names of ops by width, and narrow types in wider registers.
+// Finds names of ops by width, and computes narrow types in wider registers.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower/typed.h"
 

@@ -1,4 +1,4 @@
-// Ops of any type of numbers from the names of their 32-bit forms.
+// Emits ops for any type of numbers from the names of their 32-bit forms.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
@@ -10,23 +10,24 @@
 
 namespace glint::frontend {
 
-// "add.rn.f32" of 64 bits is "add.rn.f64": every 32 in the name changes.
+// Returns an op's name for another width: "add.rn.f32" becomes "add.rn.f64" for 64 bits. Every 32 in the name
+// changes.
 std::string with_bits(std::string_view name32, uint32_t bits);
 
-// A narrow value as 32 bits: floats converted (exact), integers with copies of their sign or zeros above.
-// Others stay.
+// Returns a narrow value as 32 bits: floats are converted exactly, and integers get copies of their sign or
+// zeros above. Wider values stay as they are.
 Operand widened(Emitter& e, Part part, const Operand& x, bool sign_extend);
-// The way back: floats rounded to nearest even, integers cut.
+// Reverses widened(): floats are rounded to nearest even, and integers are cut.
 Operand narrowed(Emitter& e, Part part, const Operand& x);
 
-// The op on operands of type `part`; its name says whether integers are signed ("min.s32"). Narrow types use
-// the op of their own width where there is one, else that of 32 bits. The result has the same type, or is a
-// predicate.
+// Emits the op on operands of type `part`. Its name says whether integers are signed ("min.s32"). A narrow
+// type uses the op of its own width if there is one, and otherwise the op of 32 bits. The result has the same
+// type, or is a predicate.
 Operand typed(Emitter& e, std::string_view name32, Part part, const Operands& sources);
-// Whether there is such an op.
+// Returns whether there is such an op.
 bool has_typed(std::string_view name32, Part part);
 
-// Arithmetic in single or double precision: what the elementary functions are made of.
+// Emits arithmetic in single or double precision, from which the elementary functions are built.
 class Arithmetic {
  public:
   Arithmetic(Emitter& e, bool is_double) : e_(e), is_double_(is_double) {}

@@ -1,4 +1,5 @@
-// Instruction sets of SPV_AMD_*: minima and maxima of three, exchanges between lanes, faces of cubes.
+// Lowers the instruction sets of SPV_AMD_*: minima and maxima of three, exchanges between lanes, faces of
+// cubes.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 #include <spirv/unified1/AMD_gcn_shader.h>
@@ -19,7 +20,7 @@ Operand self() {
   return Operand::of(isa::Special::LaneId);
 }
 
-// f(part, the arguments' scalars) for each part of the result; a scalar argument repeats.
+// Calls f(part, the arguments' scalars) for each part of the result. A scalar argument repeats.
 template <class F>
 void each_part(ModuleLowering& l, const Instruction& inst, size_t num_arguments, F&& f) {
   std::vector<Operands> arguments;
@@ -34,7 +35,7 @@ void each_part(ModuleLowering& l, const Instruction& inst, size_t num_arguments,
   l.set(inst.result, std::move(result));
 }
 
-// The middle one is max(min(x, y), min(max(x, y), z)).
+// Lowers minima, maxima and medians of three. The median is max(min(x, y), min(max(x, y), z)).
 bool trinary(ModuleLowering& l, const Instruction& inst) {
   const uint32_t function = inst.operands[1];
   if (function < AMD_shader_trinary_minmaxFMin3AMD || function > AMD_shader_trinary_minmaxSMid3AMD)
@@ -53,7 +54,7 @@ bool trinary(ModuleLowering& l, const Instruction& inst) {
   return true;
 }
 
-// The first argument as that lane has it; 0 from lanes that do not execute.
+// Returns the first argument's value in that lane, or 0 if the lane does not execute.
 void from_lane(ModuleLowering& l, const Instruction& inst, const Operand& lane) {
   Emitter& e = l.emit();
   const Operand bit =
@@ -64,7 +65,7 @@ void from_lane(ModuleLowering& l, const Instruction& inst, const Operand& lane) 
   });
 }
 
-// offset[self & 3] is the lane within the group of four.
+// Returns the source lane of a swizzle: offset[self & 3] is the lane within the group of four.
 Operand swizzled_lane(ModuleLowering& l, const Operands& offset) {
   Emitter& e = l.emit();
   const Operand at = e.value("and.b32", {self(), word(3)});
@@ -73,7 +74,7 @@ Operand swizzled_lane(ModuleLowering& l, const Operands& offset) {
   return e.value("or.b32", {e.value("and.b32", {self(), word(~3u)}), lane});
 }
 
-// ((self & and) | or) ^ xor, in groups of 32.
+// Returns ((self & and) | or) ^ xor, within groups of 32 lanes.
 Operand masked_lane(ModuleLowering& l, const Operands& mask) {
   Emitter& e = l.emit();
   const Operand lane = e.value("or.b32", {e.value("and.b32", {self(), mask.at(0)}), mask.at(1)});
@@ -94,7 +95,7 @@ bool ballot(ModuleLowering& l, const Instruction& inst) {
       each_part(l, inst, 2, [&](Part, const Operands& x) { return e.select(chosen, x[1], x[0]); });
       return true;
     }
-    case AMD_shader_ballotMbcntAMD: {  // bits of the lanes below, of which there are 32
+    case AMD_shader_ballotMbcntAMD: {  // counts bits of the lanes below, among 32
       const Operand lanes = e.value("cvt.u32.u64", {l.scalar(inst.operands.at(2))});
       l.set(inst.result,
             {e.value("popc.b32", {e.value("and.b32", {lanes, Operand::of(isa::Special::LanemaskLt)})})});
@@ -105,7 +106,8 @@ bool ballot(ModuleLowering& l, const Instruction& inst) {
   }
 }
 
-// Vulkan, "Cube Map Face Selection": z rules over y, y over x. Faces are numbered from +x, -x, +y.
+// Holds a cube's face and coordinates (Vulkan, "Cube Map Face Selection"): z takes precedence over y, and y
+// over x. Faces are numbered from +x, -x, +y.
 struct Cube {
   Operand face, s, t, major;
 };
@@ -131,7 +133,8 @@ Cube cube_of(Emitter& e, const Operands& p) {
 
 bool gcn(ModuleLowering& l, const Instruction& inst) {
   Emitter& e = l.emit();
-  if (inst.operands[1] == AMD_gcn_shaderTimeAMD) {  // Model: a 64-bit clock whose upper half is 0
+  // Model: the clock has 64 bits, and its upper half is 0.
+  if (inst.operands[1] == AMD_gcn_shaderTimeAMD) {
     l.set(inst.result, {e.value("cvt.u64.u32", {e.fresh("mov.b32", {Operand::of(isa::Special::Clock)})})});
     return true;
   }
