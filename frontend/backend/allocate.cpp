@@ -1,6 +1,6 @@
-// Chaitin-Briggs colouring with optimistic selection, for a file of single registers and aligned pairs.
-// (G. Chaitin, "Register allocation and spilling via graph coloring", 1982; P. Briggs, K. Cooper, L. Torczon,
-// "Improvements to graph coloring register allocation", 1994.)
+// Colours registers by Chaitin and Briggs with optimistic selection, for a file of single registers and
+// aligned pairs. (G. Chaitin, "Register allocation and spilling via graph coloring", 1982; P. Briggs, K.
+// Cooper, L. Torczon, "Improvements to graph coloring register allocation", 1994.)
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/backend/allocate.h"
 
@@ -19,8 +19,8 @@ namespace {
 constexpr uint16_t kNoSlot = 0xffff;
 constexpr float kNeverSpill = std::numeric_limits<float>::infinity();
 
-// What it costs, in estimated executed instructions, to keep a value in memory rather than in a register.
-// Below 0 for values that are saved and restored around more calls than they have accesses.
+// Estimates, in executed instructions, what it costs to keep a value in memory and not in a register. The
+// cost is below 0 for a value that is saved and restored around more calls than it has accesses.
 class SpillCosts {
  public:
   SpillCosts(const VirtualProgram& program, const Liveness& liveness, const std::vector<float>& weights,
@@ -32,7 +32,7 @@ class SpillCosts {
         for_each_def(inst, count);
         for_each_use(inst, count);
       }
-    // A save and a restore move four registers an instruction.
+    // One instruction saves or restores four registers.
     constexpr float kInstructionsASavedWord = 2.0f / 4.0f;
     for (const CallRegion& region : find_call_regions(program, liveness))
       region.live.for_each([&](VirtualRegister r) {
@@ -41,7 +41,7 @@ class SpillCosts {
       });
   }
 
-  // Adds up the costs of merged registers.
+  // Adds the costs of merged registers.
   void merge(const InterferenceGraph& graph) {
     for (VirtualRegister r = 0; r < cost_.size(); ++r) {
       if (!graph.has(r)) continue;
@@ -56,7 +56,7 @@ class SpillCosts {
   std::vector<float> cost_;
 };
 
-// One attempt to colour one file.
+// Makes one attempt to colour one register file.
 class Colouring {
  public:
   Colouring(const InterferenceGraph& graph, const std::vector<RegisterClass>& classes,
@@ -69,7 +69,8 @@ class Colouring {
         degree_(classes.size()),
         state_(classes.size(), State::Waiting) {}
 
-  // True when every value has a slot; else spilled() says what to spill, or is empty: there is no way.
+  // Returns true when every value has a slot. Otherwise spilled() says what to spill; when it is empty, there
+  // is no solution.
   bool run() {
     for (VirtualRegister r : graph_.nodes())
       if (costs_.of(r) < 0) spilled_.push_back(r);
@@ -98,7 +99,8 @@ class Colouring {
   }
   bool surely_fits(VirtualRegister r) const { return degree_[r] < slots_for(classes_[r], max_registers_); }
 
-  // Orders the values so that each one's neighbours below it in the stack leave it a slot, if possible.
+  // Pushes the values on a stack, in an order in which the neighbours below a value leave it a slot, if
+  // possible.
   void simplify() {
     std::vector<VirtualRegister> ready;
     for (VirtualRegister r : graph_.nodes()) {
@@ -128,8 +130,8 @@ class Colouring {
     }
   }
 
-  // The best candidate to spill; values that must not spill come last, single registers before pairs, so that
-  // pairs are coloured first.
+  // Returns the best candidate to spill. Values that must not spill come last. Single registers come before
+  // pairs, so that pairs are coloured first.
   VirtualRegister cheapest_waiting() const {
     VirtualRegister best = kNoRegister;
     float best_cost = 0;
@@ -170,7 +172,7 @@ class Colouring {
     for (int slot = 0; best == kNoSlot && slot < int(max_registers_) && slot <= isa::kMaxRegisters; ++slot)
       if (is_free(taken, c, slot)) best = uint16_t(slot);
     if (best == kNoSlot) return best;
-    // A single register goes next to a used one rather than into an untouched pair.
+    // A single register goes next to a used one and not into an unused pair.
     if (c == RegisterClass::B32 && best != 1 && best % 2 == 0 && !taken[best + 1u] && wished_nothing_)
       for (int slot = best + 1; slot <= highest_; ++slot)
         if (is_free(taken, c, slot) && taken[size_t(slot ^ 1)]) {
@@ -181,7 +183,7 @@ class Colouring {
     return best;
   }
 
-  // The free slot that the most weight of wishes asks for.
+  // Returns the free slot whose wishes have the largest total weight.
   uint16_t wished(VirtualRegister r, const Taken& taken) {
     std::array<float, isa::kMaxRegisters + 1> votes{};
     uint16_t best = kNoSlot;
@@ -197,7 +199,8 @@ class Colouring {
     return best;
   }
 
-  // No slot is left: `r` is spilled, or, when it must not be, the cheapest of those in its way.
+  // Handles a value without a free slot: it is spilled or, when it must not be, the cheapest neighbour that
+  // blocks it is.
   void give_up_on(VirtualRegister r) {
     if (costs_.of(r) != kNeverSpill) {
       spilled_.push_back(r);
@@ -226,7 +229,8 @@ class Colouring {
   bool wished_nothing_ = true, stuck_ = false;
 };
 
-// Colours one file, or changes the program so that the next attempt is easier. True when done.
+// Colours one file, or changes the program so that the next attempt is easier. Returns true when the file is
+// coloured.
 bool colour_file(VirtualProgram& program, RegisterFile file, uint32_t max_registers, const Ops& ops,
                  std::vector<bool>& unspillable, Allocation& out) {
   const Liveness liveness = find_liveness(program);

@@ -1,4 +1,4 @@
-// The backend's pass list.
+// Runs the passes of the backend.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/backend/calls.h"
 #include "frontend/backend/emit.h"

@@ -1,4 +1,4 @@
-// Branch clean-up over encoded blocks.
+// Cleans up branches over encoded blocks.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/backend/branches.h"
 
@@ -42,7 +42,8 @@ class BranchCleaner {
     return block;
   }
 
-  // A branch to an unguarded branch goes to that one's target. An endless ring of branches stays as it is.
+  // Redirects a branch that leads to an unguarded branch to that branch's target. An endless ring of branches
+  // stays as it is.
   void thread() {
     for (std::vector<Coded>& block : code_)
       for (Coded& c : block) {
@@ -100,14 +101,15 @@ class BranchCleaner {
     } else if (first_code(choice.target) != first_code(block.back().target)) {
       return false;
     } else {
-      std::swap(choice, block.back());  // both ways lead to the same place: the guarded one goes
+      // Both branches lead to the same place, so the guarded one is removed.
+      std::swap(choice, block.back());
     }
     block.pop_back();
     return true;
   }
 
-  // Edges that lead to each block by a branch, and ssy instructions that name it; empty blocks pass theirs
-  // on.
+  // Counts the branches that lead to each block and the ssy instructions that name it. Those of an empty
+  // block count for the next block with code.
   struct Edges {
     uint32_t branches = 0, ssys = 0;
     size_t from = 0;  // block of the last branch
@@ -147,7 +149,7 @@ class BranchCleaner {
   bool drop_lone_joins() {
     const std::vector<Edges> edges = count_edges();
     bool changed = false;
-    size_t before = code_.size();  // the block that precedes in layout
+    size_t before = code_.size();  // the previous block in the layout
     for (size_t b = first_code(0); b < code_.size(); before = b, b = first_code(b + 1)) {
       if (code_[b].front().inst.op != ops_.join || edges[b].ssys != 1) continue;
       const bool falls_in = before < code_.size() && falls_through(before);
@@ -157,20 +159,21 @@ class BranchCleaner {
         return c.inst.op == ops_.ssy && first_code(c.target) == b;
       });
       if (ssy == from.end()) continue;
-      // A region opened behind it, which the edge leaves, would stay open without the join.
+      // If a region was opened after this ssy, the edge leaves that region, which would stay open without the
+      // join.
       if (std::any_of(ssy + 1, from.end(), [&](const Coded& c) { return c.inst.op == ops_.ssy; })) continue;
       code_[b].erase(code_[b].begin());
       from.erase(ssy);
       changed = true;
-      if (from.empty() || code_[b].empty()) break;  // its edges lead elsewhere now
+      if (from.empty() || code_[b].empty()) break;  // the edges of this block now lead elsewhere
     }
     return changed;
   }
 
-  // `bra H` at the end of a loop, where H is a few plain instructions and `@p bra out`, falling into the
-  // body: a copy of them with `@!p bra body` takes the branch's place.
+  // Rotates a loop that ends in `bra H`, where H is a few plain instructions and `@p bra out` that falls
+  // through into the body. A copy of these instructions with `@!p bra body` replaces the branch.
   bool rotate_loops() {
-    constexpr size_t kLongestTest = 5;  // instructions copied, the branch included
+    constexpr size_t kLongestTest = 5;  // instructions copied, with the branch
     bool changed = false;
     for (size_t b = 0; b < code_.size(); ++b) {
       std::vector<Coded>& block = code_[b];
@@ -203,8 +206,8 @@ class BranchCleaner {
     return changed;
   }
 
-  // Splits a block behind its first `length` instructions; the rest moves to the block behind it, which must
-  // be free.
+  // Splits a block after its first `length` instructions. The rest moves to the next block, which must be
+  // free.
   BlockId split_behind(size_t block, size_t length) {
     if (length == code_[block].size()) {
       const size_t next = first_code(block + 1);

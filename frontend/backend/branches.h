@@ -1,4 +1,4 @@
-// Encoded blocks, and the removal of control flow that they do not need.
+// Removes control flow that encoded blocks do not need.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <vector>
@@ -8,21 +8,23 @@
 
 namespace glint::frontend {
 
-// An encoded instruction whose label is still a block.
+// Holds an encoded instruction whose label is still a block.
 struct Coded {
   isa::Inst inst;
   isa::Line line;
   BlockId target = kNoBlock;
 };
-using Code = std::vector<std::vector<Coded>>;  // one a block, in layout order
+using Code = std::vector<std::vector<Coded>>;  // one vector for each block, in layout order
 
-// To a fixed point:
+// Repeats these changes until nothing changes any more:
 //   branches to branches go straight to the end; branches to the next instruction disappear
 //   `@p bra A; bra B; A:` becomes `@!p bra B; A:`
-//   unreachable blocks are emptied; a block that only its predecessor in layout enters joins that one
-//   `ssy M` and the `join` at M disappear when all lanes reach M over one edge out of the block of the ssy:
-//   they have never parted
-// Last, a loop that tests at its top gets a second test at its bottom, which saves a branch an iteration.
+//   unreachable blocks are emptied
+//   a block that is entered only from the block before it is appended to that block
+//   `ssy M` and the `join` at M disappear when all lanes reach M over one edge out of the block of the ssy,
+//   because these lanes have never diverged
+// After that, a loop that tests at its top gets a second test at its bottom, which saves a branch per
+// iteration.
 void clean_branches(Code& code, const Ops& ops);
 
 }  // namespace glint::frontend

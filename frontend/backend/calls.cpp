@@ -1,4 +1,4 @@
-// Finds call regions and turns them into stores, loads and stack-pointer moves.
+// Finds call regions and turns them into stores, loads and moves of the stack pointer.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/backend/calls.h"
 
@@ -15,19 +15,20 @@ namespace {
 
 using Operand = VirtualOperand;
 
-constexpr uint32_t kFrameAlignment = 16;  // bytes: a vector of four words lies in one 16-byte piece
+constexpr uint32_t kFrameAlignment = 16;  // bytes; a vector of four words lies in one 16-byte piece
 
 uint32_t round_up(uint32_t bytes) {
   return (bytes + kFrameAlignment - 1) / kFrameAlignment * kFrameAlignment;
 }
 
-// Physical registers that hold the region's values, ascending. Values merged by the allocator share one.
+// Returns the physical registers that hold the region's values, in ascending order. Values merged by the
+// allocator share a register.
 std::vector<uint16_t> registers_of(const CallRegion& region, const VirtualProgram& program,
                                    const Allocation& allocation) {
   std::bitset<isa::kMaxRegisters + 1> used;
   region.live.for_each([&](VirtualRegister r) {
-    // A predicate that is live only now was not when keep_predicates_across_calls looked: spilling has given
-    // guards new names since, so a value that no lane reads again looks as if some lanes might.
+    // A live predicate here was not live when keep_predicates_across_calls() looked: spilling has renamed
+    // guards since, so a value that no lane reads again looks as if some lanes might read it.
     if (program.registers[r] == RegisterClass::Predicate) return;
     used.set(allocation.slot[r]);
     if (program.registers[r] == RegisterClass::B64) used.set(allocation.slot[r] + 1u);
@@ -38,7 +39,7 @@ std::vector<uint16_t> registers_of(const CallRegion& region, const VirtualProgra
   return out;
 }
 
-// Appends one instruction for every four registers, then for two and one.
+// Appends one instruction for every four registers, then one for two registers and one for the last.
 class Transfer {
  public:
   Transfer(VirtualProgram& program, Allocation& allocation, uint32_t offset)
@@ -59,7 +60,7 @@ class Transfer {
   }
 
  private:
-  // A virtual register that is known to lie in the physical one.
+  // Makes a virtual register that is known to lie in the physical one.
   VirtualRegister name(uint16_t physical) {
     allocation_.slot.push_back(physical);
     return program_.new_register(RegisterClass::B32);
@@ -90,13 +91,13 @@ void move_stack_pointer(std::vector<VirtualInst>& out, uint16_t op, uint32_t fra
 
 namespace {
 
-// Predicates that cross more calls than they have accesses become words for good.
+// Turns predicates that cross more calls than they have accesses into words in the whole program.
 void demote_predicates(VirtualProgram& program, const Ops& ops) {
   std::vector<float> gain(program.registers.size());  // estimated executed instructions
   const std::vector<float> weights = block_weights(program);
   for (const CallRegion& region : find_call_regions(program, find_liveness(program)))
-    region.live.for_each(
-        [&](VirtualRegister r) { gain[r] += 2 * weights[region.save.block]; });  // selp and setp
+    // A predicate that crosses a region costs a selp and a setp.
+    region.live.for_each([&](VirtualRegister r) { gain[r] += 2 * weights[region.save.block]; });
   for (BlockId b = 0; b < program.blocks.size(); ++b)
     for (const VirtualInst& inst : program.blocks[b].code) {
       for_each_def(inst, [&](VirtualRegister r) { gain[r] -= weights[b]; });
@@ -118,7 +119,7 @@ void demote_predicates(VirtualProgram& program, const Ops& ops) {
 void keep_predicates_across_calls(VirtualProgram& program, const Ops& ops) {
   demote_predicates(program, ops);
   const std::vector<CallRegion> regions = find_call_regions(program, find_liveness(program));
-  // What to insert before each SaveLive and after each RestoreLive, by block and index.
+  // These instructions are inserted before each SaveLive and after each RestoreLive, by block and index.
   std::map<std::pair<BlockId, size_t>, std::vector<VirtualInst>> before, after;
   for (const CallRegion& region : regions) {
     const isa::Line line = program.blocks[region.save.block].code[region.save.index].line;
@@ -148,7 +149,8 @@ void keep_predicates_across_calls(VirtualProgram& program, const Ops& ops) {
 void expand_calls(VirtualProgram& program, Allocation& allocation, const Ops& ops) {
   const std::vector<CallRegion> regions = find_call_regions(program, find_liveness(program));
   const std::vector<bool> enters_inside = enters_in_region(program);
-  std::map<std::pair<BlockId, size_t>, std::vector<uint16_t>> moved;  // at each SaveLive and RestoreLive
+  // The registers moved at each SaveLive and RestoreLive.
+  std::map<std::pair<BlockId, size_t>, std::vector<uint16_t>> moved;
   const uint32_t save_area = round_up(program.local_bytes);
   uint32_t frame = save_area;
   for (const CallRegion& region : regions) {

@@ -1,4 +1,4 @@
-// Where a program's registers are written and read, for passes over values that are written once.
+// Tells where a program's registers are written and read, for passes over values that are written once.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace glint::frontend {
 
-// By register. Holds as long as instructions change in place only; a pass that changes operands keeps the
-// counts.
+// Holds counts by register. They stay valid while instructions are changed in place; a pass that changes
+// operands updates the counts.
 struct DefUse {
   explicit DefUse(VirtualProgram& program)
       : definitions(program.registers.size()),
@@ -25,15 +25,15 @@ struct DefUse {
       }
   }
 
-  // The one definition of a register; nothing when it has several or a guarded one, and of what is no
-  // register.
+  // Returns the one definition of a register. It returns nothing for a register with several definitions or a
+  // guarded one, and for an operand that is not a register.
   VirtualInst* definition(const VirtualOperand& o) const {
     return is_register(o) && definitions[o.reg] == 1 ? last[o.reg] : nullptr;
   }
   bool is_used_once(const VirtualOperand& o) const { return is_register(o) && uses[o.reg] == 1; }
 
   std::vector<uint32_t> definitions, uses;
-  std::vector<VirtualInst*> last;  // definition; null: guarded, or none
+  std::vector<VirtualInst*> last;  // the definition; null: guarded, or none
 };
 
 }  // namespace glint::frontend

@@ -1,4 +1,4 @@
-// Encoding, layout and label resolution.
+// Encodes instructions, lays out blocks and resolves labels.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/backend/emit.h"
 
@@ -44,7 +44,8 @@ class Encoder {
   }
 
  private:
-  // What the allocation has made useless: moves onto themselves, in all their spellings.
+  // Returns true for instructions that the allocation has made useless: moves of a register onto itself, in
+  // all their spellings.
   bool does_nothing(const VirtualInst& inst) const {
     const auto at = [&](size_t slot) {
       const VirtualOperand& o = inst.operands[slot];

@@ -1,4 +1,5 @@
-// From allocated virtual code to isa::Program: operand slots, constant rows, layout, branches and labels.
+// Turns allocated virtual code into an isa::Program: operand slots, constant rows, layout, branches and
+// labels.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <map>
@@ -7,7 +8,7 @@
 
 namespace glint::frontend {
 
-// Constant rows of a program, each value once.
+// Holds the constant rows of a program, each value once.
 class ConstantTable {
  public:
   isa::Slot word(uint32_t value);  // one row
@@ -20,9 +21,9 @@ class ConstantTable {
   std::map<uint64_t, isa::Slot> pairs_;
 };
 
-// Encodes `program`, in which no SaveLive or RestoreLive is left. Instructions that the allocation has made
-// useless (moves onto themselves), blocks that control cannot reach and branches to the next instruction are
-// left out; branches to branches go straight to the end.
+// Encodes `program`, which has no SaveLive or RestoreLive left. It omits instructions that the allocation has
+// made useless (moves of a register onto itself), blocks that control cannot reach, and branches to the next
+// instruction. Branches to branches go straight to the end.
 isa::Program emit(const VirtualProgram& program, const Allocation& allocation, const Ops& ops);
 
 }  // namespace glint::frontend

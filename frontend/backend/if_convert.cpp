@@ -23,7 +23,8 @@ class Converter {
   }
 
   void run() {
-    // Inner selections come later in layout: from the back, so that what encloses them sees them converted.
+    // The blocks are visited from the back: inner selections come later in the layout and are converted
+    // before the selection around them.
     for (BlockId b = BlockId(program_.blocks.size()); b-- > 0;)
       while (convert(b)) {
       }
@@ -31,17 +32,17 @@ class Converter {
 
  private:
   struct Selection {
-    size_t ssy = 0, branch = 0;  // indices in the head's code
+    size_t ssy = 0, branch = 0;  // indices in the code of the head block
     BlockId taken = kNoBlock, other = kNoBlock, merge = kNoBlock;
     VirtualRegister condition = kNoRegister;
-    bool negate = false;  // of the branch
+    bool negate = false;  // negation of the branch's guard
   };
 
   bool is_plain_branch(const VirtualInst& inst) const {
     return is_real(inst) && inst.op == ops_.bra && !is_guarded(inst);
   }
 
-  // The selection that ends the block, if one does.
+  // Finds the selection that ends the block. Returns false when there is none.
   bool find(BlockId head, Selection& out) const {
     const Instructions& code = program_.blocks[head].code;
     size_t end = code.size();
@@ -61,7 +62,7 @@ class Converter {
     return out.merge != head && out.taken != out.other;
   }
 
-  // The instructions of an arm; false when it cannot be guarded.
+  // Gets the instructions of an arm. Returns false when the arm cannot be guarded.
   bool arm(BlockId block, BlockId head, const Selection& selection, Instructions& out) const {
     if (block == selection.merge) return true;
     const VirtualBlock& b = program_.blocks[block];
@@ -82,8 +83,8 @@ class Converter {
     return true;
   }
 
-  // `add t, a, b; mov x, t` is `add x, a, b` when nothing else reads t, and nothing between touches x.
-  // Temporaries of an arm that anything outside reads are not renamed.
+  // Turns `add t, a, b; mov x, t` into `add x, a, b` when nothing else reads t and nothing between touches x.
+  // A temporary that is read outside of the arm is not renamed.
   void write_results_directly(Instructions& arm) const {
     for (size_t m = 0; m < arm.size(); ++m) {
       if (!ops_.is_move(arm[m].op) || !is_register(arm[m].operands[1])) continue;
@@ -110,7 +111,7 @@ class Converter {
     }
   }
 
-  // Mentions of a register in the whole program.
+  // Counts how often the whole program mentions a register.
   size_t count(VirtualRegister wanted) const {
     size_t mentions = 0;
     const auto visit = [&](VirtualRegister r) { mentions += r == wanted; };
@@ -177,8 +178,9 @@ class Converter {
            effect == isa::Effect::Ignore || effect == isa::Effect::Terminate;
   }
 
-  // True when all lanes may run `arm` before the lanes of `rest` run that one: it consists of moves to
-  // registers that `rest` writes too and does not read. Unguarded moves can be coalesced.
+  // Returns true when all lanes may run `arm` before the lanes of `rest` run `rest`. This holds if `arm`
+  // consists of moves to registers that `rest` also writes and does not read. Moves without guards can be
+  // coalesced.
   bool may_run_first(const Instructions& arm, const Instructions& rest) const {
     for (const VirtualInst& inst : arm) {
       if (!ops_.is_move(inst.op)) return false;
@@ -206,14 +208,15 @@ class Converter {
     return found;
   }
 
-  // Takes moves at the ends of both arms that write the same register, as selp instructions.
+  // Removes moves at the ends of both arms that write the same register, and returns them as selp
+  // instructions.
   Instructions select_moves(Instructions& taken, Instructions& other, const Selection& s) const {
     Instructions out;
     while (!taken.empty() && !other.empty()) {
       const VirtualInst &a = taken.back(), &b = other.back();
       if (a.op != b.op || (a.op != ops_.mov_b32 && a.op != ops_.mov_b64)) break;
       if (a.operands[0].reg != b.operands[0].reg) break;
-      // A source made in an arm exists only under the guard.
+      // A source that an arm computes exists only under the guard.
       if (is_written(taken, a.operands[1]) || is_written(other, b.operands[1])) break;
       const auto& [yes, no] = s.negate ? std::pair{b, a} : std::pair{a, b};
       out.insert(out.begin(),

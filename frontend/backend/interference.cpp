@@ -49,7 +49,7 @@ void InterferenceGraph::scan_block(const VirtualProgram& program, const Register
   const std::vector<VirtualInst>& code = program.blocks[block].code;
   for (size_t i = code.size(); i-- > 0;) {
     const VirtualInst& inst = code[i];
-    // The ends of a move hold the same value: that the source lives on is no reason to keep them apart.
+    // The ends of a move hold the same value, so they may share a register even while the source lives on.
     const bool is_copy =
         is_real(inst) && ops.is_move(inst.op) && !is_guarded(inst) && is_register(inst.operands[1]);
     add_edges(inst, walk.live(), is_copy ? inst.operands[1].reg : kNoRegister);
@@ -128,7 +128,7 @@ bool InterferenceGraph::safe_to_merge(VirtualRegister a, VirtualRegister b, uint
       visited_[n] = visit_;
       if (neighbours_[n].size() + 1 < slots_for(classes_[n], max_registers)) continue;
       significant += blocked_by(self, classes_[n]);
-      if (significant >= slots) return false;  // most moves of large shaders, after a few neighbours
+      if (significant >= slots) return false;  // decides most moves of large shaders after a few neighbours
     }
   return true;
 }

@@ -1,4 +1,5 @@
-// Backward dataflow over bit sets; call regions found by walking control flow from each SaveLive.
+// Computes liveness by backward dataflow over bit sets, and finds call regions by following control flow from
+// each SaveLive.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/backend/liveness.h"
 
@@ -52,7 +53,7 @@ void LiveWalk::step(const VirtualInst& inst) {
     } else if (live_.contains(r) && !is_conditional(r)) {
       conditional_.push_back({r, inst.guard, !inst.guard_negate});
     }
-    // A guard that changes here was another one before: what was read under it counts as read by all lanes.
+    // The guard changes here and was another one before, so reads under it count as reads by all lanes.
     std::erase_if(conditional_, [&](const Conditional& c) { return c.guard == r; });
   });
   for_each_use(inst, [&](VirtualRegister r) {
@@ -90,7 +91,8 @@ std::vector<float> block_weights(const VirtualProgram& program) {
   constexpr float kTripsOfALoop = 8.0f;  // Choice: unknown trip counts count as 8
   constexpr float kMost = 8.0f * 8.0f * 8.0f * 8.0f;
   std::vector<float> weights(program.blocks.size(), 1.0f);
-  std::vector<BlockId> last_latch(program.blocks.size(), kNoBlock);  // of the loop that a block heads
+  // Last block of the loop that a block heads.
+  std::vector<BlockId> last_latch(program.blocks.size(), kNoBlock);
   for (BlockId b = 0; b < program.blocks.size(); ++b)
     for (BlockId next : program.blocks[b].successors)
       if (next <= b) last_latch[next] = b;
@@ -131,7 +133,7 @@ std::vector<bool> enters_in_region(const VirtualProgram& program) {
 
 namespace {
 
-// The RestoreLive that control reaches from a SaveLive; the blocks between have been visited once each.
+// Returns the RestoreLive that control reaches from a SaveLive. It visits each block between them once.
 Place find_restore(const VirtualProgram& program, Place save) {
   std::vector<bool> seen(program.blocks.size());
   std::vector<Place> work{{save.block, save.index + 1}};

@@ -1,8 +1,10 @@
-// Which virtual registers are live where, and the other facts about control flow that the backend needs.
+// Tells which virtual registers are live where, and the other facts about control flow that the backend
+// needs.
 //
-// A lane is a thread of its own to this analysis: ops write only the lanes that execute them, so the values
-// of waiting lanes stay in their registers whatever the others do, and liveness along each lane's path
-// suffices. SPDX-License-Identifier: Apache-2.0
+// The analysis treats each lane as a thread of its own. An op writes only the lanes that execute it, so the
+// values of waiting lanes stay in their registers whatever the other lanes do, and liveness along each lane's
+// path suffices.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
 #include <cstdint>
@@ -12,7 +14,7 @@
 
 namespace glint::frontend {
 
-// A set of virtual registers, one bit each.
+// A set of virtual registers with one bit for each.
 class RegisterSet {
  public:
   RegisterSet() = default;
@@ -21,7 +23,7 @@ class RegisterSet {
   bool contains(VirtualRegister r) const { return (words_[r / 64] >> (r % 64)) & 1; }
   void insert(VirtualRegister r) { words_[r / 64] |= uint64_t{1} << (r % 64); }
   void erase(VirtualRegister r) { words_[r / 64] &= ~(uint64_t{1} << (r % 64)); }
-  bool unite(const RegisterSet& other);  // true when it grew
+  bool unite(const RegisterSet& other);  // returns true when the set grew
   void intersect(const RegisterSet& other);
   size_t size() const;
 
@@ -38,15 +40,15 @@ class RegisterSet {
 };
 
 struct Liveness {
-  std::vector<RegisterSet> in, out;  // one a block
+  std::vector<RegisterSet> in, out;  // one set for each block
 };
 
 Liveness find_liveness(const VirtualProgram& program);
 
-// Walks a block backwards, keeping the set of registers that are live before what it has passed.
+// Walks a block backwards and keeps the set of registers that are live before the instructions it has passed.
 //
-// A guarded write does not end the old value, since lanes whose guard is false keep it, unless those lanes
-// never look: because every read behind it stands under the same guard, or because a write under the opposite
+// A guarded write does not end the old value, because lanes whose guard is false keep it. It does end the old
+// value if those lanes never read it: every later read is under the same guard, or a write under the opposite
 // guard follows.
 class LiveWalk {
  public:
@@ -55,7 +57,7 @@ class LiveWalk {
   const RegisterSet& live() const { return live_; }
 
  private:
-  // A live register whose present value only lanes with this guard will read.
+  // Names a live register whose present value is read only by lanes with this guard.
   struct Conditional {
     VirtualRegister reg, guard;
     bool negate;
@@ -68,22 +70,23 @@ class LiveWalk {
   std::vector<Conditional> conditional_;
 };
 
-// How often a block runs, estimated: 8 times its surroundings for each loop around it, capped at 8^4.
+// Estimates how often each block runs: 8 times its surroundings for each loop around it, capped at 8^4.
 // Choice: a backward branch in layout order makes a loop of everything between its ends.
 std::vector<float> block_weights(const VirtualProgram& program);
 
-// For each block, whether control enters it between a SaveLive and its RestoreLive. Our own bug if paths
-// disagree.
+// Returns for each block whether control enters it between a SaveLive and its RestoreLive. It is a bug in
+// Glint if paths disagree.
 std::vector<bool> enters_in_region(const VirtualProgram& program);
 
-// The place of an instruction.
+// Names the place of an instruction.
 struct Place {
   BlockId block = kNoBlock;
   size_t index = 0;
   bool operator==(const Place&) const = default;
 };
 
-// A SaveLive, its RestoreLive, and what must survive between them: live after both.
+// Holds a SaveLive, its RestoreLive, and the registers that must survive between them because they are live
+// after both.
 struct CallRegion {
   Place save, restore;
   RegisterSet live;

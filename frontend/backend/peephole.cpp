@@ -1,4 +1,4 @@
-// Def-use simplifications over registers with a single definition.
+// Simplifies code by definitions and uses of registers that have a single definition.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/backend/peephole.h"
 
@@ -12,12 +12,12 @@ namespace {
 
 using Operand = VirtualOperand;
 
-// Specials whose value never changes while a shader runs.
+// Returns true for special registers whose value never changes while a shader runs.
 bool is_fixed(isa::Special s) {
   return s == isa::Special::LaneId || (s >= isa::Special::LaunchX && s <= isa::Special::LaunchSizeZ);
 }
 
-// One sweep over the program. Instructions change in place, none is added or removed.
+// Makes one sweep over the program. It changes instructions in place and neither adds nor removes any.
 class Sweep {
  public:
   Sweep(VirtualProgram& program, const Ops& ops) : program_(program), ops_(ops), registers_(program) {}
@@ -43,13 +43,13 @@ class Sweep {
 
  private:
   const VirtualInst* definition(const Operand& o) const { return registers_.definition(o); }
-  // True when the operand means the same at every place that its user's definition reaches.
+  // Returns true when the operand has the same value at every place that the definition of its user reaches.
   bool is_stable(const Operand& o) const {
     return is_constant(o) || definition(o) != nullptr ||
            (o.kind == Operand::Kind::Special && is_fixed(o.special));
   }
-  // True when the operand still means at `inst` what it meant at `source`: it is stable, or both stand in one
-  // block and nothing between them writes it.
+  // Returns true when the operand has the same value at `inst` as at `source`: it is stable, or both are in
+  // one block and nothing between them writes it.
   bool is_unchanged(const Operand& o, const VirtualInst& source, const VirtualInst& inst) const {
     if (is_stable(o)) return true;
     const VirtualInst* const first = block_->code.data();
@@ -129,8 +129,8 @@ class Sweep {
     }
   }
 
-  // Choice: 32-bit displacements stay within [0, 16 MiB), so that base + displacement cannot wrap where the
-  // 32-bit addition did not.
+  // Adds bytes to the displacement. Choice: displacements of 32-bit addresses stay within [0, 16 MiB), so
+  // that base + displacement cannot wrap where the 32-bit addition did not.
   bool add_displacement(VirtualInst& inst, int64_t bytes, isa::OperandKind kind) {
     constexpr int64_t kMostLocal = 1 << 24;
     constexpr int64_t kMost = std::numeric_limits<int32_t>::max(),
@@ -144,7 +144,7 @@ class Sweep {
     return true;
   }
 
-  // Rewrites the instruction to `op` with these sources behind its destination.
+  // Changes the instruction to `op` with its old destination and these sources.
   void become(VirtualInst& inst, uint16_t op, const std::vector<Operand>& sources) {
     for_each_use(inst, [&](VirtualRegister r) { --registers_.uses[r]; });
     inst.op = op;
@@ -179,7 +179,7 @@ class Sweep {
     return true;
   }
 
-  // add.u64 of mul.wide, or of a widened 32-bit value that may have been shifted.
+  // Fuses an add.u64 with a mul.wide, or with a widened 32-bit value that may have been shifted.
   bool fuse_wide(VirtualInst& inst, const VirtualInst& first, const Operand& addend) {
     const VirtualInst* source = &first;
     uint64_t shift = 0;
@@ -206,7 +206,8 @@ class Sweep {
     return true;
   }
 
-  // The low word of a pack is what was packed. (unpack writes two registers: unpack_packs() handles it.)
+  // Takes the low word of a pack from the pack's source. (unpack writes two registers: unpack_packs() handles
+  // it.)
   void split_pair(VirtualInst& inst) {
     if (inst.op != ops_.low_word) return;
     const VirtualInst* source = definition(inst.operands[1]);
@@ -218,14 +219,15 @@ class Sweep {
   VirtualProgram& program_;
   const Ops& ops_;
   DefUse registers_;
-  const VirtualBlock* block_ = nullptr;  // that the sweep is in
+  const VirtualBlock* block_ = nullptr;  // the block that the sweep is in
   bool inside_region_ = false, changed_ = false;
 };
 
-// unpack {x, y} of a pair that was packed becomes two moves.
+// Turns unpack {x, y} of a packed pair into two moves.
 bool unpack_packs(VirtualProgram& program, const Ops& ops) {
   std::vector<uint32_t> definitions(program.registers.size());
-  std::vector<std::vector<Operand>> packed(program.registers.size());  // sources of the pack that defines it
+  // Sources of the pack that defines a register.
+  std::vector<std::vector<Operand>> packed(program.registers.size());
   for (const VirtualBlock& block : program.blocks)
     for (const VirtualInst& inst : block.code)
       for_each_def(inst, [&](VirtualRegister r) {
@@ -283,7 +285,7 @@ bool drop_dead_code(VirtualProgram& program) {
 }
 
 void simplify_code(VirtualProgram& program, const Ops& ops) {
-  constexpr int kMostRounds = 16;  // each round shortens chains of copies: real programs need three or four
+  constexpr int kMostRounds = 16;  // each round shortens chains of copies; real programs need three or four
   for (int round = 0; round < kMostRounds; ++round) {
     bool changed = Sweep(program, ops).run();
     changed |= unpack_packs(program, ops);

@@ -1,4 +1,4 @@
-// Dependence graph and list scheduler for straight runs of movable instructions.
+// Builds the dependence graph of straight runs of movable instructions and schedules them by list scheduling.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/backend/schedule.h"
 
@@ -9,10 +9,11 @@
 namespace glint::frontend {
 namespace {
 
-// Cycles from issue to use that the order is tuned for. It does not change results, only how well latencies
-// overlap. Arithmetic: 4 cycles on Volta and later (Z. Jia et al., "Dissecting the NVIDIA Volta GPU
-// architecture via microbenchmarking", 2018, table 4.1); loads: an L1 hit of about 28 cycles (the same,
-// table 3.1). Choice: multi-pass and texture latencies are round numbers of the right order.
+// Returns the cycles from issue to use for which the order is tuned. They do not change results, only how
+// well latencies overlap. Arithmetic takes 4 cycles on Volta and later (Z. Jia et al., "Dissecting the NVIDIA
+// Volta GPU architecture via microbenchmarking", 2018, table 4.1); loads take about 28 cycles for an L1 hit
+// (the same paper, table 3.1). Choice: multi-pass and texture latencies are round numbers of the right order
+// of magnitude.
 uint32_t latency_of(const VirtualInst& inst) {
   switch (row_of(inst).unit) {
     case isa::Unit::Int:
@@ -46,7 +47,7 @@ uint32_t latency_of(const VirtualInst& inst) {
   return 1;
 }
 
-// How much of the register files values take: 32-bit registers and predicates.
+// Counts how much of the register files values take: 32-bit registers and predicates.
 struct Pressure {
   int words = 0, predicates = 0;
   Pressure& operator+=(Pressure o) { return words += o.words, predicates += o.predicates, *this; }
@@ -63,17 +64,17 @@ Pressure pressure_of(RegisterClass c) {
 Pressure larger(Pressure a, Pressure b) {
   return {std::max(a.words, b.words), std::max(a.predicates, b.predicates)};
 }
-// Whether there is room for `growth` beside `now`; where nothing grows there always is.
+// Returns whether `growth` fits in addition to `now`. It always does where nothing grows.
 bool fits(Pressure now, Pressure growth, Pressure limit) {
   return (growth.words <= 0 || now.words + growth.words <= limit.words) &&
          (growth.predicates <= 0 || now.predicates + growth.predicates <= limit.predicates);
 }
 
-// A memory access as dependences see it.
+// Describes a memory access for the search for dependences.
 struct MemoryUse {
   bool any = false, writes = false, in_frame = false;
   isa::Space space = isa::Space::None;
-  int64_t begin = 0, end = 0;  // of the frame, bytes
+  int64_t begin = 0, end = 0;  // byte range in the frame
 };
 
 MemoryUse memory_use(const VirtualInst& inst) {
@@ -110,10 +111,10 @@ bool reads_clock(const VirtualInst& inst) {
   });
 }
 
-// One run of movable instructions.
+// Schedules one run of movable instructions.
 class Run {
  public:
-  // `behind`: the guard of what follows the run, kNoRegister without.
+  // `behind` is the guard of the first guarded instruction after the run, or kNoRegister.
   Run(const VirtualProgram& program, std::vector<VirtualInst> code, RegisterSet live_out,
       uint32_t guard_latency, VirtualRegister behind)
       : program_(program),
@@ -134,7 +135,8 @@ class Run {
     }
   }
 
-  // The new order; the old one when it needs fewer registers and the new one does not fit `comfortable`.
+  // Returns the new order, or the old order when it needs fewer registers and the new one does not fit
+  // `comfortable`.
   std::vector<VirtualInst> schedule(Pressure comfortable) {
     const Pressure old_peak = peak(code_);
     std::vector<VirtualInst> ordered = list_schedule(comfortable);
@@ -148,14 +150,14 @@ class Run {
  private:
   struct Edge {
     size_t to;
-    uint32_t delay;  // cycles between the issues
+    uint32_t delay;  // cycles from issue to issue
   };
   struct Node {
     std::vector<Edge> after;
     uint32_t waits_for = 0, height = 0, earliest = 0;
   };
   struct LastAccess {
-    std::vector<size_t> writers, readers;  // writers: the last whole write and guarded ones since
+    std::vector<size_t> writers, readers;  // writers: the last unguarded write and the guarded ones since
   };
 
   void depend(size_t from, size_t to, uint32_t delay) {
@@ -198,7 +200,7 @@ class Run {
     }
   }
 
-  // Most registers that are live at once.
+  // Returns the largest number of registers that are live at once.
   Pressure peak(const std::vector<VirtualInst>& code) const {
     RegisterSet live = live_out_;
     Pressure now = count(live), most = now;
@@ -232,7 +234,7 @@ class Run {
     return all;
   }
 
-  // What becomes live less what dies when instruction `i` issues next.
+  // Returns the growth of the pressure when instruction `i` issues next: what becomes live minus what dies.
   Pressure growth(size_t i, const RegisterSet& live,
                   const std::vector<std::pair<VirtualRegister, uint32_t>>& uses_left) const {
     Pressure more;
@@ -248,7 +250,7 @@ class Run {
     return more;
   }
 
-  // Instructions still to come that read `r`.
+  // Returns how many instructions still to come read `r`.
   static uint32_t uses_of(const std::vector<std::pair<VirtualRegister, uint32_t>>& uses, VirtualRegister r) {
     const auto at = std::lower_bound(uses.begin(), uses.end(), r,
                                      [](const auto& a, VirtualRegister b) { return a.first < b; });
@@ -309,7 +311,8 @@ class Run {
                  Pressure comfortable) const {
     const bool a_fits = fits(now, a_growth, comfortable), b_fits = fits(now, b_growth, comfortable);
     if (a_fits != b_fits) return a_fits;
-    if (!a_fits || now.words >= comfortable.words) {  // no room: what frees most, else the old order
+    // Without room, the instruction that frees most comes first, and ties keep the old order.
+    if (!a_fits || now.words >= comfortable.words) {
       if (a_growth.sum() != b_growth.sum()) return a_growth.sum() < b_growth.sum();
       return a < b;
     }
@@ -346,12 +349,13 @@ class Run {
 }  // namespace
 
 void schedule(VirtualProgram& program, uint32_t max_registers, uint32_t guard_latency) {
-  // Room that allocation wants beyond the words that are live: the stack pointer, gaps between pairs, what it
-  // spills through.
+  // Register allocation needs this room in addition to the live words: the stack pointer, gaps between pairs,
+  // and the registers of spill code.
   constexpr uint32_t kReserve = 4;
-  constexpr size_t kShortestRun = 3, kLongestRun = 2000;  // longer ones are cut: the search is quadratic
+  constexpr size_t kShortestRun = 3, kLongestRun = 2000;  // longer runs are cut: the search is quadratic
   const uint32_t words = max_registers > 2 * kReserve ? max_registers - kReserve : max_registers / 2;
-  const Pressure comfortable{int(std::max(words, 1u)), isa::kNumPredicates - 1};  // one predicate, the same
+  // One predicate is kept free for spill code, too.
+  const Pressure comfortable{int(std::max(words, 1u)), isa::kNumPredicates - 1};
   const Liveness liveness = find_liveness(program);
   const std::vector<bool> enters_inside = enters_in_region(program);
   for (BlockId b = 0; b < program.blocks.size(); ++b) {
@@ -364,7 +368,7 @@ void schedule(VirtualProgram& program, uint32_t max_registers, uint32_t guard_la
       moves[i] = !inside && is_movable(code[i]) && !reads_clock(code[i]);
     }
     LiveWalk walk(liveness.out[b]);
-    VirtualRegister guard = kNoRegister;  // of the first guarded instruction behind
+    VirtualRegister guard = kNoRegister;  // guard of the first guarded instruction after the run
     for (size_t end = code.size(); end > 0;) {
       if (!moves[end - 1]) {
         walk.step(code[--end]);

@@ -1,5 +1,5 @@
-// Operands of a virtual instruction one register at a time: what it defines, what it uses, and the ops that
-// the backend itself emits or knows.
+// Visits the operands of a virtual instruction one register at a time: those that it defines and those that
+// it uses. It also names the ops that the backend itself emits or knows.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace glint::frontend {
 
-// Row indices of the ops that the backend names.
+// Holds the row indices of the ops that the backend names.
 struct Ops {
   uint16_t mov_b32 = isa::op_index("mov.b32"), mov_b64 = isa::op_index("mov.b64");
   uint16_t mov_pred = isa::op_index("mov.pred"), not_pred = isa::op_index("not.pred");
@@ -50,7 +50,8 @@ inline bool is_constant(const VirtualOperand& o) {
   return o.kind == VirtualOperand::Kind::Constant;
 }
 
-// Calls visit(slot, kind) for each operand slot; parts of a vector come one by one as Dst32 or Src32.
+// Calls visit(slot, kind) for each operand slot. The parts of a vector are visited one by one as Dst32 or
+// Src32.
 template <class Visit>
 void for_each_slot(const isa::OpRow& row, Visit&& visit) {
   using isa::OperandKind;
@@ -72,7 +73,7 @@ void for_each_def(const VirtualInst& inst, Visit&& visit) {
   });
 }
 
-// Calls visit(register) for each register that the instruction reads, its guard included.
+// Calls visit(register) for each register that the instruction reads, with its guard.
 template <class Visit>
 void for_each_use(const VirtualInst& inst, Visit&& visit) {
   if (inst.guard != kNoRegister) visit(inst.guard);
@@ -82,7 +83,8 @@ void for_each_use(const VirtualInst& inst, Visit&& visit) {
   });
 }
 
-// True for ops whose only effect is what they write: they may be dropped when nothing reads it.
+// Returns true for ops whose only effect is what they write. Such an op may be dropped when nothing reads its
+// results.
 inline bool is_pure(const VirtualInst& inst) {
   if (!is_real(inst)) return false;
   const isa::Effect effect = row_of(inst).effect;
@@ -90,7 +92,7 @@ inline bool is_pure(const VirtualInst& inst) {
          effect == isa::Effect::SurfaceLoad;
 }
 
-// True for ops that neither steer lanes nor touch rays or calls: the only ones that may be moved.
+// Returns true for ops that neither steer lanes nor touch rays or calls. Only these ops may be moved.
 inline bool is_movable(const VirtualInst& inst) {
   if (is_pure(inst)) return true;
   if (!is_real(inst)) return false;

@@ -1,4 +1,5 @@
-// Spill code: a load before each use, a store after each definition, under the definition's guard.
+// Inserts spill code: a load before each use, and a store after each definition, under the definition's
+// guard.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/backend/spill.h"
 
@@ -9,13 +10,13 @@ namespace {
 
 using Operand = VirtualOperand;
 
-// What stands for a spilled group.
+// Says where a spilled group is kept.
 struct Home {
   bool planned = false;
   bool is_constant = false;
   uint64_t constant = 0;
-  uint32_t offset = 0;                 // in the frame
-  VirtualRegister word = kNoRegister;  // predicates: the 32-bit register
+  uint32_t offset = 0;                 // offset in the frame
+  VirtualRegister word = kNoRegister;  // for predicates: the 32-bit register
 };
 
 class Spiller {
@@ -36,7 +37,7 @@ class Spiller {
 
  private:
   Home* home_of(VirtualRegister r) {
-    // Registers made while rewriting lie behind the plan.
+    // Registers made while rewriting have numbers beyond the plan.
     if (r == kNoRegister || r >= plan_.group.size() || plan_.group[r] == kNoRegister) return nullptr;
     return &homes_[plan_.group[r]];
   }
@@ -46,7 +47,8 @@ class Spiller {
     return program_.new_register(c);
   }
 
-  // A group whose every definition moves the same constant is named again instead of stored.
+  // A group is not stored when all its definitions move the same constant; each use then moves the constant
+  // again.
   void find_constants() {
     std::vector<bool> varies(homes_.size());
     for (const VirtualBlock& block : program_.blocks)
@@ -116,7 +118,8 @@ class Spiller {
            int32_t(home.offset), after, true);
   }
 
-  // A move to or from a spilled register is the store or the load itself. True when that was the case.
+  // Turns a move to or from a spilled register into the store or the load itself. Returns true for such a
+  // move.
   bool rewrite_move(const VirtualInst& inst) {
     if (!is_real(inst) || (inst.op != ops_.mov_b32 && inst.op != ops_.mov_b64)) return false;
     if (home_of(inst.guard)) return false;
@@ -140,8 +143,8 @@ class Spiller {
     return false;
   }
 
-  // Instructions in a row with the same spilled guard share one reload. This is not thrift alone: a temporary
-  // that is written and read under one guard is dead above only as long as that guard has one name
+  // Consecutive instructions with the same spilled guard share one reload. This does not only save loads: a
+  // temporary that is written and read under one guard is dead before it only if that guard has one name
   // (LiveWalk).
   void reload_guard(VirtualInst& inst) {
     if (!home_of(inst.guard)) {
@@ -158,7 +161,7 @@ class Spiller {
       guard_ = {};
       return;
     }
-    std::vector<std::pair<VirtualRegister, VirtualRegister>> loaded;  // spilled, its temporary
+    std::vector<std::pair<VirtualRegister, VirtualRegister>> loaded;  // spilled register, its temporary
     const auto use = [&](VirtualRegister& r) {
       if (!home_of(r)) return;
       for (const auto& [spilled, value] : loaded)
@@ -201,7 +204,7 @@ class Spiller {
   std::vector<VirtualInst> out_;
   struct Guard {
     VirtualRegister group = kNoRegister, value = kNoRegister;
-  } guard_;  // reloaded for the instruction before
+  } guard_;  // reloaded for the previous instruction
 };
 
 }  // namespace

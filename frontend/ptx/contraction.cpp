@@ -1,4 +1,4 @@
-// Fusing products into sums.
+// Fuses products into sums.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/ptx/contraction.h"
 
@@ -40,7 +40,7 @@ class Contraction {
   }
 
  private:
-  // The register of a free result that is written once; else kNoRegister.
+  // Returns the register of a free result that is written once, or kNoRegister.
   VirtualRegister result_of(const VirtualInst& inst) const {
     if (!is_real(inst) || inst.operands.empty() || inst.operands[0].kind != VirtualOperand::Kind::Register)
       return kNoRegister;
@@ -48,7 +48,7 @@ class Contraction {
     if (!free_.contains(to) || definitions_[to] != 1 || is_guarded(inst)) return kNoRegister;
     return inst.operands.size() == 3 ? to : kNoRegister;
   }
-  // Whether the operands still hold the same values later.
+  // Returns whether the operands still hold the same values later.
   bool reads_fixed(const VirtualInst& inst) const {
     for (size_t i = 1; i < inst.operands.size(); ++i)
       if (is_register(inst.operands[i]) && definitions_[inst.operands[i].reg] != 1) return false;
@@ -91,7 +91,7 @@ class Contraction {
   const FreeArithmetic& free_;
   VirtualProgram& program_;
   std::vector<uint32_t> definitions_, uses_;
-  std::map<VirtualRegister, VirtualInst> products_;  // of the block so far
+  std::map<VirtualRegister, VirtualInst> products_;  // products of the block so far
 };
 
 }  // namespace

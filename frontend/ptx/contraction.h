@@ -1,4 +1,4 @@
-// Products and sums that may become one fused operation.
+// Finds products and sums that may become one fused operation.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <map>
@@ -8,16 +8,17 @@
 
 namespace glint::frontend::ptx {
 
-// Results of mul, add and sub that were written without a rounding modifier, by their registers.
+// Describes a result of mul, add or sub that was written without a rounding modifier. The map's keys are
+// registers.
 struct FreeResult {
-  char op = 'm';       // of mul, add, sub
+  char op = 'm';       // first letter of mul, add or sub
   std::string suffix;  // ".f32", ".ftz.f32"
 };
 using FreeArithmetic = std::map<VirtualRegister, FreeResult>;
 
-// Fuses each such sum with a product that nothing else reads, of the same block and kind. Where both operands
-// are products the left one is fused, as measured: `mul x, a, b; mul y, c, d; sub z, x, y` is fma(a, b, -y)
-// on the hardware.
+// Fuses each such sum with a product of the same block and kind that nothing else reads. Where both operands
+// are products the left one is fused, as measured: on the hardware, `mul x, a, b; mul y, c, d; sub z, x, y`
+// is fma(a, b, -y).
 void contract(Draft& draft, const FreeArithmetic& free, VirtualProgram& program);
 
 }  // namespace glint::frontend::ptx

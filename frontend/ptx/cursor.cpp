@@ -1,4 +1,4 @@
-// Constant expressions and operands.
+// Reads constant expressions and operands.
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <fmt/format.h>
@@ -43,7 +43,7 @@ std::string Cursor::expect_word(const std::string& what) {
 
 namespace {
 
-// Binding strength of the operators of constant expressions; 0: no such operator.
+// Returns the binding strength of an operator of constant expressions, or 0 when there is no such operator.
 int strength_of(const std::string& mark) {
   static constexpr std::pair<std::string_view, int> kStrength[] = {
       {"||", 1}, {"&&", 2}, {"|", 3},  {"^", 4},  {"&", 5}, {"==", 6}, {"!=", 6}, {"<", 7},  {">", 7},
@@ -53,7 +53,8 @@ int strength_of(const std::string& mark) {
   return 0;
 }
 
-// Choice: 64-bit two's complement; division and comparison signed, as for literals without a U.
+// Choice: constant expressions use 64-bit two's complement. Division and comparison are signed, as for
+// literals without a U.
 uint64_t apply(const std::string& op, uint64_t a, uint64_t b) {
   const int64_t x = int64_t(a), y = int64_t(b);
   if (op == "+") return a + b;
@@ -166,7 +167,7 @@ Operand Cursor::number_operand() {
     return out;
   }
   out.kind = Operand::Kind::Integer;
-  // `|` after a number belongs to no operand of PTX: constant expressions may use it.
+  // No operand of PTX has `|` after a number, so a constant expression may use it here.
   out.value = constant("an operand");
   return out;
 }

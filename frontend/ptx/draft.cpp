@@ -1,4 +1,4 @@
-// From the graph to a list of blocks.
+// Turns the graph into a list of blocks.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/ptx/draft.h"
 
@@ -17,7 +17,7 @@ bool is_plain_exit(const DraftBlock& block) {
   return block.code.empty() && block.end == DraftBlock::End::Exit;
 }
 
-// Ends of blocks become instructions. `after` is the block behind in layout.
+// Turns the ends of a block into instructions. `after` is the next block in the layout.
 void append_end(VirtualBlock& out, const DraftBlock& block, const std::vector<DraftBlock>& all,
                 BlockId after) {
   if (block.end == DraftBlock::End::Branch) {
@@ -46,7 +46,7 @@ std::vector<VirtualBlock> lay_out(Draft draft) {
     DraftBlock& block = draft.blocks[draft.layout[i]];
     out[i].name = block.name;
     out[i].code = std::move(block.code);
-    block.code.resize(out[i].code.empty() ? 0 : 1);  // whether there was any still matters
+    block.code.resize(out[i].code.empty() ? 0 : 1);  // its size still tells whether the block had code
     append_end(out[i], block, draft.blocks, i + 1 < draft.layout.size() ? draft.layout[i + 1] : kNoBlock);
     for (VirtualInst& inst : out[i].code)
       if (inst.target != kNoBlock) inst.target = place[inst.target];

@@ -1,4 +1,4 @@
-// A kernel as a graph of blocks with explicit ends, before lanes that part are told where to meet.
+// Holds a kernel as a graph of blocks with explicit ends, before diverging lanes are told where to meet.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
@@ -13,12 +13,12 @@ struct DraftBlock {
   std::string name;
   std::vector<VirtualInst> code;
   End end = End::Exit;
-  VirtualRegister condition = kNoRegister;  // Branch: lanes where it holds go to `taken`
+  VirtualRegister condition = kNoRegister;  // Branch: lanes in which it holds go to `taken`
   bool negate = false;
   bool uniform = false;  // Branch: the text promises that lanes agree
   BlockId taken = kNoBlock;
-  BlockId next = kNoBlock;  // Goto; Branch: the other lanes
-  isa::Line line;           // of the end
+  BlockId next = kNoBlock;  // Goto; Branch: for the other lanes
+  isa::Line line;           // line of the end
 
   std::vector<BlockId> successors() const {
     if (end == End::Exit) return {};
@@ -29,20 +29,22 @@ struct DraftBlock {
 
 struct Draft {
   std::vector<DraftBlock> blocks;  // any order
-  std::vector<BlockId>
-      layout;  // the order in memory; the first is the entry, which ends in a Goto; none leads to it
+  // The order in memory. The first block is the entry, which ends in a Goto and to which no block leads.
+  std::vector<BlockId> layout;
 };
 
-// Where lanes part, and the place where they meet again at the latest: PTX has no instructions for that.
+// Finds where lanes diverge and the place where they meet again at the latest, for which PTX has no
+// instructions.
 //
-// A branch X whose lanes may part has P, its immediate post-dominator. S(P) are those branches and all blocks
-// that they reach before P; every edge that leaves S(P) leads to P. So `ssy` stands on the edges into S(P),
-// `join` on those from it to P, and each ssy is completed by one join. Sets that overlap are made to nest:
-// see the .cpp file. Branches to early ends do not count as ways round P: lanes that have ended need not be
-// waited for.
+// A branch X whose lanes may diverge has an immediate post-dominator P. S(P) is the set of those branches and
+// all blocks that they reach before P, so every edge that leaves S(P) leads to P. Therefore `ssy` stands on
+// the edges into S(P), `join` stands on the edges from S(P) to P, and each ssy is completed by one join. Sets
+// that overlap are made to nest (see the .cpp file). Branches to early ends do not count as ways round P,
+// because lanes that have ended need not be waited for.
 void add_reconvergence(Draft& draft);
 
-// The blocks in layout order, with branches where the next block is not the next place.
+// Returns the blocks in layout order, with a branch wherever control does not go to the next block of the
+// layout.
 std::vector<VirtualBlock> lay_out(Draft draft);
 
 }  // namespace glint::frontend::ptx

@@ -1,4 +1,4 @@
-// Dominators by iteration over the graph, loops by their branches back.
+// Computes dominators by iteration over the graph, and finds loops by their back edges.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/ptx/flow_graph.h"
 
@@ -41,7 +41,7 @@ Edges reversed(const Edges& next) {
   return out;
 }
 
-// K. Cooper, T. Harvey, K. Kennedy, "A simple, fast dominance algorithm" (2001).
+// Uses K. Cooper, T. Harvey, K. Kennedy, "A simple, fast dominance algorithm" (2001).
 std::vector<BlockId> immediate_dominators(const Edges& next, BlockId root) {
   const Edges before = reversed(next);
   const std::vector<BlockId> postorder = postorder_of(next, root);

@@ -1,4 +1,4 @@
-// Who comes before whom in a graph of blocks: dominators, and the loops that they show.
+// Computes dominators and natural loops of a graph of blocks.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <set>
@@ -8,23 +8,25 @@
 
 namespace glint::frontend::ptx {
 
-using Edges = std::vector<std::vector<BlockId>>;  // by block: where its edges lead
+using Edges = std::vector<std::vector<BlockId>>;  // by block: the blocks to which its edges lead
 using Blocks = std::set<BlockId>;
 
-// The same edges, the other way.
+// Returns the same edges in the other direction.
 Edges reversed(const Edges& next);
 
-// By block, the last block that every way from `root` to it passes; the root's is itself, kNoBlock where no
-// way leads. Of the reversed edges, from the end, these are the immediate post-dominators.
+// Returns, for each block, the last other block that every way from `root` to it passes. The result is the
+// root itself for the root, and kNoBlock for a block that no way reaches. With reversed edges and the end as
+// root, these are the immediate post-dominators.
 std::vector<BlockId> immediate_dominators(const Edges& next, BlockId root);
 
-// A natural loop: every way into it is through its head.
+// A natural loop, which is entered only through its head.
 struct Loop {
   BlockId head = kNoBlock;
-  Blocks body;  // with the head
+  Blocks body;  // contains the head
 };
 
-// One loop a head, inner ones before those around them. Cycles with several ways in are none.
+// Returns one loop for each head; inner loops come before the loops around them. A cycle with several entries
+// is not a natural loop.
 std::vector<Loop> natural_loops(const Edges& next, BlockId entry);
 
 }  // namespace glint::frontend::ptx

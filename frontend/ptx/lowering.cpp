@@ -1,4 +1,4 @@
-// Names, blocks and statements.
+// Lowers names, blocks and statements.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/ptx/lowering.h"
 
@@ -50,8 +50,8 @@ VirtualProgram KernelLowering::run() {
   for (const DraftBlock& block : draft_.blocks)
     for (BlockId next : block.successors())
       if (std::find(draft_.layout.begin(), draft_.layout.end(), next) == draft_.layout.end())
-        error(entry_.place,
-              fmt::format("label '{}' is branched to but stands nowhere", draft_.blocks[next].name));
+        error(entry_.place, fmt::format("label '{}' is the target of a branch but is not defined",
+                                        draft_.blocks[next].name));
   if (errors_.has_errors()) return std::move(program_);
   if (options_.contract) contract(draft_, free_, program_);
   if (options_.shape) {
@@ -66,8 +66,8 @@ VirtualProgram KernelLowering::run() {
   return std::move(program_);
 }
 
-// PTX leaves registers that nothing has written undefined; the backend wants a definition on every path.
-// Choice: they read as 0, false.
+// Sets registers that nothing has written to 0, because the backend wants a definition on every path and PTX
+// leaves them undefined. Choice: they read as 0 or false.
 void KernelLowering::zero_what_nobody_wrote(VirtualProgram& program) {
   std::vector<VirtualInst> zeros;
   const VirtualOperand zero = VirtualOperand::value(0);
@@ -110,7 +110,8 @@ void KernelLowering::place_parameters() {
   bank_bytes_ = uint32_t(aligned(at, 8));
 }
 
-// Names in the kernel and the functions that it may call, and the shared variables declared there.
+// Collects the names in the kernel and in the functions that it may call, and the shared variables declared
+// there.
 void KernelLowering::collect_names(const std::vector<Statement>& list, std::set<std::string>& used,
                                    std::set<const Function*>& seen) {
   const auto visit = [&](const Operand& o, auto&& self) -> void {
@@ -140,7 +141,7 @@ void KernelLowering::place_variables() {
   std::set<std::string> used;
   std::set<const Function*> seen;
   collect_names(entry_.body, used, seen);
-  // Variables that others point to are used too.
+  // A variable to which a used variable points is used, too.
   for (bool grew = true; grew;) {
     grew = false;
     for (const auto& [name, d] : module_variables_)
@@ -157,7 +158,7 @@ void KernelLowering::place_variables() {
       place_shared({&d});
     }
   }
-  // Dynamic shared memory begins behind the static part; all of its names mean that place.
+  // Dynamic shared memory begins after the static part, and all of its names refer to that place.
   uint64_t align = 16;
   for (const Declaration* d : open) align = std::max<uint64_t>(align, d->alignment());
   if (!open.empty()) static_shared_ = aligned(static_shared_, align);
@@ -176,7 +177,9 @@ Symbol KernelLowering::module_variable(const Declaration& d) {
     return symbol;
   }
   if (d.is_extern)
-    no_support(d.place, fmt::format("variable '{}' belongs to another module: Glint links none", d.name));
+    no_support(
+        d.place,
+        fmt::format("variable '{}' belongs to another module, and Glint does not link modules", d.name));
   ModuleVariable variable;
   variable.name = d.name;
   variable.bytes = d.bytes();
@@ -248,7 +251,7 @@ void KernelLowering::predeclare_labels(const std::vector<Statement>& list) {
     if (symbol.kind == Symbol::Kind::Label) symbol.block = new_block(s.label);
     symbol.targets = &s.targets;
     if (!scopes_.back().names.emplace(s.label, symbol).second)
-      error(s.place, fmt::format("label '{}' stands here twice", s.label));
+      error(s.place, fmt::format("label '{}' is defined twice", s.label));
   }
 }
 
@@ -272,7 +275,7 @@ void KernelLowering::statements(const std::vector<Statement>& list) {
         scopes_.pop_back();
         break;
       case Statement::Kind::Instruction:
-        if (block_ == kNoBlock) begin(new_block(""));  // behind a branch, without a label: nothing gets here
+        if (block_ == kNoBlock) begin(new_block(""));  // unreachable: after a branch and without a label
         lower(s.instruction);
         break;
       case Statement::Kind::Targets:
@@ -314,7 +317,7 @@ void KernelLowering::declare(const Declaration& d) {
   scopes_.back().names[d.name] = symbol;
 }
 
-// %r7 of `.reg .b32 %r<10>` comes into being when it is first named.
+// Makes a register of a range when it is first named, such as %r7 of `.reg .b32 %r<10>`.
 Symbol* KernelLowering::find_range(Scope& scope, const std::string& name) {
   for (const Declaration* d : scope.ranges) {
     if (!name.starts_with(d->name) || name.size() == d->name.size()) continue;

@@ -1,4 +1,4 @@
-// Lowers one kernel from its text, with the functions it calls in place, to a graph of blocks.
+// Lowers one kernel from its text to a graph of blocks, with the functions that it calls inlined.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <map>
@@ -15,31 +15,32 @@
 
 namespace glint::frontend::ptx {
 
-// What a name means.
+// Says what a name means.
 struct Symbol {
   enum class Kind : uint8_t {
-    Register,   // reg; .v2 and .v4: elements
+    Register,   // held in `reg`, or in `elements` for .v2 and .v4
     Variable,   // at `address` of its space
-    Parameter,  // of a function: elements are its 32-bit words
-    Label,      // block
+    Parameter,  // of a function; `elements` are its 32-bit words
+    Label,      // of `block`
     Targets     // list of a brx.idx
   } kind = Kind::Register;
   Type type;
   VirtualRegister reg = kNoRegister;
   std::vector<VirtualRegister> elements;
   VariableSpace space = VariableSpace::Global;
-  uint64_t address = 0;  // Global: place of its address in the constant bank, from kPushConstantOffset
+  // Global: the place of the variable's address in the constant bank, from kPushConstantOffset.
+  uint64_t address = 0;
   BlockId block = kNoBlock;
   const std::vector<std::string>* targets = nullptr;
 };
 
 struct Scope {
   std::map<std::string, Symbol> names;
-  std::vector<const Declaration*> ranges;  // .reg .b32 %r<10>
-  bool is_function = false;                // names outside are the module's
+  std::vector<const Declaration*> ranges;  // such as .reg .b32 %r<10>
+  bool is_function = false;                // names not found here are looked up in the module
 };
 
-// Where an instruction's results go when the register is wider or narrower than the row's.
+// Holds a move of a result to a register that is wider or narrower than the row's.
 struct LateMove {
   uint16_t op;
   VirtualOperand to, from;
@@ -49,12 +50,12 @@ class KernelLowering {
  public:
   KernelLowering(const Module& module, const Function& entry, const PtxOptions& options, Kernel& kernel,
                  Diagnostics& errors, Diagnostics& unsupported);
-  // The program before register allocation. Mistakes are in the diagnostics.
+  // Returns the program before register allocation. Mistakes are reported to the diagnostics.
   VirtualProgram run();
   uint64_t static_shared_bytes() const { return static_shared_; }
 
  private:
-  // lowering.cpp: names, blocks, statements
+  // These functions are in lowering.cpp: names, blocks, statements.
   void place_variables();
   void collect_names(const std::vector<Statement>& statements, std::set<std::string>& used,
                      std::set<const Function*>& seen);
@@ -81,9 +82,10 @@ class KernelLowering {
   }
   void no_support(Place place, const std::string& what) { unsupported_.error(where(place), what); }
 
-  // lowering_operands.cpp
+  // These functions are in lowering_operands.cpp.
   VirtualRegister temporary(RegisterClass c) { return program_.new_register(c); }
-  // Appends under the guard of the instruction; compute() appends without one, for temporaries.
+  // emit() appends an instruction under the guard of the PTX instruction. compute() appends one without a
+  // guard, for temporaries.
   VirtualInst& emit(int op, std::vector<VirtualOperand> operands, int64_t imm = 0);
   VirtualInst& compute(std::string_view op, std::vector<VirtualOperand> operands, int64_t imm = 0);
   VirtualOperand compute32(std::string_view op, std::vector<VirtualOperand> sources);
@@ -102,7 +104,7 @@ class KernelLowering {
   const Symbol* register_symbol(const Operand& o);
   void finish_moves();
 
-  // lowering_instructions.cpp
+  // These functions are in lowering_instructions.cpp.
   bool lower_special(const Instruction& inst);
   void lower_row(const Instruction& inst, int row, std::vector<const Operand*> operands);
   void lower_generic(const Instruction& inst);
@@ -119,7 +121,7 @@ class KernelLowering {
   void report_no_row(const Instruction& inst);
   void note_free_arithmetic(const Instruction& inst, const std::vector<VirtualOperand>& operands);
 
-  // lowering_memory.cpp
+  // These functions are in lowering_memory.cpp.
   void lower_memory(const Instruction& inst);
   void lower_atomic(const Instruction& inst, const MemoryForm& form);
   void lower_access(const Instruction& inst, const MemoryForm& form);
@@ -132,7 +134,7 @@ class KernelLowering {
   void load_word_part(const MemoryForm& form, const Symbol& words, uint32_t at, const Operand& to);
   void store_word_part(const MemoryForm& form, const Symbol& words, uint32_t at, const Operand& from);
 
-  // lowering_control.cpp
+  // These functions are in lowering_control.cpp.
   bool lower_control(const Instruction& inst);
   void lower_branch(const Instruction& inst);
   void lower_indexed_branch(const Instruction& inst);
@@ -151,23 +153,23 @@ class KernelLowering {
   Diagnostics& unsupported_;
   VirtualProgram program_;
   Draft draft_;
-  BlockId block_ = kNoBlock;  // that grows; kNoBlock: what follows is unreachable
+  BlockId block_ = kNoBlock;  // block under construction; kNoBlock: the code that follows is unreachable
   std::vector<Scope> scopes_;
   std::map<std::string, const Declaration*> module_variables_;
   std::map<std::string, const Function*> functions_;
   std::map<const Declaration*, uint64_t> shared_;  // offsets of static shared variables
   std::map<std::string, Symbol> placed_;           // variables of the module that the kernel uses
-  uint32_t bank_bytes_ = 0;                        // used, from kPushConstantOffset
+  uint32_t bank_bytes_ = 0;                        // bytes used, from kPushConstantOffset
   uint64_t static_shared_ = 0;
-  std::vector<std::pair<const Function*, BlockId>> calls_;  // open ones and where they return
+  std::vector<std::pair<const Function*, BlockId>> calls_;  // open calls and the blocks to which they return
   VirtualRegister guard_ = kNoRegister;
   bool guard_negate_ = false;
   isa::Line line_;
-  std::vector<LateMove> late_;  // after the instruction
+  std::vector<LateMove> late_;  // emitted after the instruction
   FreeArithmetic free_;
 };
 
-// PTX registers of 8, 16 and 32 bits are one of ours, those of 64 a pair.
+// Returns the class of a PTX register: 8, 16 and 32 bits need one register of the ISA, 64 bits need a pair.
 RegisterClass class_of(const Type& type);
 
 }  // namespace glint::frontend::ptx

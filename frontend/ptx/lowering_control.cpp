@@ -1,4 +1,4 @@
-// Branches, calls and ends.
+// Lowers branches, calls and ends.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <fmt/format.h>
@@ -39,8 +39,8 @@ void KernelLowering::lower_branch(const Instruction& inst) {
   begin(next);
 }
 
-// Model: a chain of comparisons, not a jump through a table. An index past the list goes to its last label;
-// PTX leaves that undefined.
+// Lowers an indexed branch. Model: it becomes a chain of comparisons, not a jump through a table. An index
+// past the list goes to the last label, which PTX leaves undefined.
 void KernelLowering::lower_indexed_branch(const Instruction& inst) {
   const Symbol* list = inst.operands.size() == 2 ? find(inst.operands[1].name) : nullptr;
   if (!list || list->kind != Symbol::Kind::Targets || list->targets->empty())
@@ -95,20 +95,22 @@ void KernelLowering::lower_call(const Instruction& inst) {
   }
   const Function& callee = *f->second;
   if (!callee.has_body)
-    return no_support(name.place,
-                      fmt::format("function '{}' has no body in this module: Glint links none", name.name));
+    return no_support(
+        name.place,
+        fmt::format("function '{}' has no body in this module, and Glint does not link modules", name.name));
   if (std::any_of(calls_.begin(), calls_.end(), [&](const auto& open) { return open.first == &callee; }))
-    return no_support(name.place,
-                      fmt::format("'{}' calls itself: functions become part of their caller", name.name));
+    return no_support(
+        name.place, fmt::format("'{}' calls itself, but functions are inlined into their caller", name.name));
   if (callee.parameters.size() != arguments.size() || callee.results.size() != results.size())
-    return error(inst.place, fmt::format("'{}' takes {} parameters and gives {} results; here are {} and {}",
-                                         name.name, callee.parameters.size(), callee.results.size(),
-                                         arguments.size(), results.size()));
+    return error(
+        inst.place,
+        fmt::format("'{}' takes {} parameters and gives {} results, but the call has {} and {}", name.name,
+                    callee.parameters.size(), callee.results.size(), arguments.size(), results.size()));
   inline_call(inst, callee, results, arguments);
 }
 
-// A parameter in .param space is its words: those of the variable that the caller names, or a copy of a
-// register or number. A parameter in a register is a register of its own.
+// Binds a parameter of a function. A parameter in .param space is a list of words: those of the variable that
+// the caller names, or a copy of a register or number. A parameter in a register is a register of its own.
 Symbol KernelLowering::bind_parameter(const Declaration& formal, const Operand* actual) {
   const Symbol* given = actual && actual->kind == Operand::Kind::Name ? find(actual->name) : nullptr;
   if (given && given->kind == Symbol::Kind::Parameter && formal.space == VariableSpace::Param) {
@@ -156,8 +158,8 @@ void KernelLowering::inline_call(const Instruction& inst, const Function& callee
   scope.is_function = true;
   for (size_t i = 0; i < arguments.size(); ++i)
     scope.names[callee.parameters[i].name] = bind_parameter(callee.parameters[i], &arguments[i]);
-  std::vector<std::pair<Symbol, const Operand*>>
-      copies;  // results in registers go to the caller's afterwards
+  // Results in registers are copied to the caller's registers afterwards.
+  std::vector<std::pair<Symbol, const Operand*>> copies;
   for (size_t i = 0; i < results.size(); ++i) {
     const Symbol* given = find(results[i].name);
     const bool same_words =

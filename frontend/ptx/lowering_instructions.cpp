@@ -1,4 +1,4 @@
-// Instructions: most are a row of the table, some need more than one or other operands.
+// Lowers instructions. Most of them are one row of the table; some need several rows or other operands.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <fmt/format.h>
@@ -11,9 +11,9 @@ using isa::OperandKind;
 
 namespace {
 
-constexpr const char* kCarry = "%carry";  // not a name that PTX text can have
+constexpr const char* kCarry = "%carry";  // PTX text cannot contain this name
 
-// The types in an opcode, in order.
+// Returns the types in an opcode, in order.
 std::vector<Type> types_of(const Words& words) {
   std::vector<Type> out;
   for (size_t i = 1; i < words.size(); ++i)
@@ -21,7 +21,7 @@ std::vector<Type> types_of(const Words& words) {
   return out;
 }
 
-// a|b counts as two operands.
+// Returns the operands, where a|b counts as two.
 std::vector<const Operand*> flattened(const std::vector<Operand>& operands) {
   std::vector<const Operand*> out;
   for (const Operand& o : operands) {
@@ -138,7 +138,7 @@ bool KernelLowering::lower_special(const Instruction& inst) {
                                                         {"fence", &KernelLowering::lower_fence},
                                                         {"vote", &KernelLowering::lower_old_warp_op},
                                                         {"shfl", &KernelLowering::lower_old_warp_op}};
-  // Hints without a result.
+  // These instructions are hints without a result.
   static const std::set<std::string> kNothing{"prefetch", "prefetchu",      "applypriority", "nanosleep",
                                               "pmevent",  "griddepcontrol", "setmaxnreg"};
   const std::string& op = inst.words[0];
@@ -170,7 +170,7 @@ void KernelLowering::lower_move(const Instruction& inst) {
   lower_generic(inst);
 }
 
-// Selectors of prmt.b32 that put the low halves, or low bytes, of two registers side by side.
+// These selectors of prmt.b32 put the low halves, or the low bytes, of two registers side by side.
 constexpr uint64_t kLowHalves = 0x5410, kLowBytes = 0x0040;
 
 void KernelLowering::join_parts(const Instruction& inst, const Operand& to,
@@ -226,7 +226,7 @@ void KernelLowering::split_parts(const Instruction& inst, const std::vector<Oper
       split(high, 2);
     }
   } else if (bits == 32 && (part == 16 || part == 8)) {
-    // A copy: one of the parts may be written where the whole is read.
+    // The value is copied first, because one of the parts may be written where the whole is read.
     split(compute32("mov.b32", {source(from, OperandKind::Src32, types[0])}), 0);
   } else {
     no_support(inst.place, fmt::format("'{}' into {} parts", joined(inst.words), parts.size()));
@@ -234,7 +234,7 @@ void KernelLowering::split_parts(const Instruction& inst, const std::vector<Oper
   finish_moves();
 }
 
-// setp.CMP{.BOOL}.type p{|q}, a, b{, c}: p = (a CMP b) BOOL c, q = !(a CMP b) BOOL c.
+// Lowers setp.CMP{.BOOL}.type p{|q}, a, b{, c}: p = (a CMP b) BOOL c, q = !(a CMP b) BOOL c.
 void KernelLowering::lower_setp(const Instruction& inst) {
   const int row = find_row(inst.words);
   const bool pair = !inst.operands.empty() && inst.operands[0].kind == Operand::Kind::Pair;
@@ -251,7 +251,7 @@ void KernelLowering::lower_setp(const Instruction& inst) {
   const int comparison = find_row(plain);
   if (comparison < 0) return report_no_row(inst);
   if (inst.operands.size() != (combine.empty() ? 3u : 4u))
-    return error(inst.place, fmt::format("'{}' takes other operands", joined(inst.words)));
+    return error(inst.place, fmt::format("'{}' has the wrong number of operands", joined(inst.words)));
   const OperandKind kind = isa::op_table()[size_t(comparison)].operands.kind[1];
   const Type type = types_of(inst.words).back();
   const VirtualOperand a = source(inst.operands[1], kind, type), b = source(inst.operands[2], kind, type);
@@ -268,7 +268,7 @@ void KernelLowering::lower_setp(const Instruction& inst) {
   }
 }
 
-// The condition code of PTX is a predicate that the row names: after the result, and behind the sources.
+// The condition code of PTX becomes a predicate operand of the row: after the result, and after the sources.
 void KernelLowering::lower_carry(const Instruction& inst) {
   const int row = find_row(inst.words);
   if (row < 0) return report_no_row(inst);
@@ -294,7 +294,7 @@ void KernelLowering::lower_address_conversion(const Instruction& inst) {
   Words words = inst.words;
   for (std::string& word : words) word = word.substr(0, word.find("::"));
   if (has_word(words, "global") && has_word(words, "u64")) {
-    Instruction move = inst;  // a generic address of global memory is the global one
+    Instruction move = inst;  // a generic address of global memory equals the global address
     move.words = {"mov", "b64"};
     return lower_generic(move);
   }
@@ -311,7 +311,7 @@ void KernelLowering::lower_barrier(const Instruction& inst) {
   const int row = isa::find_op(joined(plain.words));
   if (row < 0) return report_no_row(inst);
   std::vector<const Operand*> operands = flattened(inst.operands);
-  // The number of threads may be left out: all of the block.
+  // The number of threads may be left out, and then means the whole block.
   const Operand all = integer_operand(0, inst.place);
   const size_t count = isa::op_table()[size_t(row)].operands.count;
   const bool is_warp = has_word(plain.words, "warp");
@@ -329,7 +329,7 @@ void KernelLowering::lower_fence(const Instruction& inst) {
   emit(isa::op_index(scope), {});
 }
 
-// vote and shfl without .sync: all lanes of the warp.
+// Lowers vote and shfl without .sync, which mean all lanes of the warp.
 void KernelLowering::lower_old_warp_op(const Instruction& inst) {
   if (has_word(inst.words, "sync")) return lower_generic(inst);
   Instruction modern = inst;

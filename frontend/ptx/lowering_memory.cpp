@@ -1,4 +1,4 @@
-// Loads, stores and atomics, and the parameters of functions, which are registers.
+// Lowers loads, stores and atomics, and parameters of functions, which are registers.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
@@ -39,7 +39,7 @@ void KernelLowering::lower_access(const Instruction& inst, const MemoryForm& for
   else
     parts.push_back(&value);
   if (parts.size() != form.vector)
-    return error(value.place, fmt::format("'{}' moves {} values, here are {}", joined(inst.words),
+    return error(value.place, fmt::format("'{}' moves {} values, but the operand has {}", joined(inst.words),
                                           form.vector, parts.size()));
   if (at.kind == Operand::Kind::Address && at.parts.size() == 1 && at.parts[0].kind == Operand::Kind::Name)
     if (const Symbol* symbol = find(at.parts[0].name); symbol && symbol->kind == Symbol::Kind::Parameter)
@@ -52,7 +52,7 @@ void KernelLowering::access_parts(const Instruction& inst, MemoryForm form,
   const int row = find_access_row(form, uint32_t(parts.size()));
   if (row < 0) {
     if (parts.size() == 1) return report_no_row(inst);
-    // Vectors without a row of their own go part by part.
+    // A vector without a row of its own is moved in parts.
     const size_t half = parts.size() / 2;
     Operand behind = at;
     behind.offset += int64_t(half * form.type.bits / 8);
@@ -76,7 +76,7 @@ void KernelLowering::access_parts(const Instruction& inst, MemoryForm form,
   finish_moves();
 }
 
-// The rows of pairs take each as two registers, low half first.
+// Rows of pairs take each 64-bit value as two registers, low half first.
 void KernelLowering::access_pairs(const Instruction&, const MemoryForm& form, int row,
                                   const std::vector<const Operand*>& parts, const Operand& at) {
   const bool load = form.op == "ld";
@@ -106,7 +106,7 @@ void KernelLowering::access_words(const Instruction& inst, const MemoryForm& for
   for (size_t i = 0; i < parts.size(); ++i) {
     const int64_t at = offset + int64_t(i * bytes);
     if (at < 0 || at % bytes != 0 || size_t(at) + bytes > words.elements.size() * 4 || bytes > 8)
-      return error(inst.place, fmt::format("{} bytes at {} lie outside the parameter", bytes, at));
+      return error(inst.place, fmt::format("{} bytes at offset {} are outside the parameter", bytes, at));
     if (form.op == "ld")
       load_word_part(form, words, uint32_t(at), *parts[i]);
     else

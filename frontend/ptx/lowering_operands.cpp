@@ -1,4 +1,4 @@
-// Operands: registers, literals, special registers, addresses, and the conversions between widths.
+// Lowers operands: registers, literals, special registers, addresses, and the conversions between widths.
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <fmt/format.h>
@@ -71,7 +71,7 @@ const Symbol* KernelLowering::register_symbol(const Operand& o) {
   if (!symbol) {
     error(o.place, fmt::format("'{}' is not declared", o.name));
   } else if (symbol->kind != Symbol::Kind::Register) {
-    error(o.place, fmt::format("'{}' is no register", o.name));
+    error(o.place, fmt::format("'{}' is not a register", o.name));
     return nullptr;
   }
   return symbol;
@@ -84,7 +84,7 @@ VirtualRegister KernelLowering::predicate_register(const std::string& name, Plac
   const Symbol* symbol = register_symbol(o);
   if (!symbol) return temporary(RegisterClass::Predicate);
   if (symbol->type.kind == 'p') return symbol->reg;
-  error(place, fmt::format("'{}' is no predicate", name));
+  error(place, fmt::format("'{}' is not a predicate", name));
   return temporary(RegisterClass::Predicate);
 }
 
@@ -101,7 +101,7 @@ VirtualOperand KernelLowering::predicate_source(const Operand& o) {
   return o.negated ? compute_predicate("not.pred", {p}) : p;
 }
 
-// Bits of a number as the instruction's type reads them.
+// Returns the bits of a number as the instruction's type reads them.
 VirtualOperand KernelLowering::literal(const Operand& o, bool wide, const Type& type) {
   if (o.kind == Operand::Kind::Integer) return VirtualOperand::value(wide ? o.value : uint32_t(o.value));
   if (type.bits == 16 && o.kind == Operand::Kind::Float64)
@@ -147,7 +147,7 @@ VirtualOperand KernelLowering::address_of(const Symbol& symbol, int64_t offset, 
 
 VirtualOperand KernelLowering::name_source(const Operand& o, bool wide) {
   const Symbol* symbol = find(o.name);
-  // `%tid.x` is no part of a scalar register %tid.
+  // `%tid.x` is not a part of a scalar register named %tid.
   if (symbol && symbol->kind == Symbol::Kind::Register && symbol->elements.empty() && !o.element.empty())
     symbol = nullptr;
   if (!symbol) {
@@ -165,11 +165,11 @@ VirtualOperand KernelLowering::name_source(const Operand& o, bool wide) {
   }
   if (symbol->kind == Symbol::Kind::Variable) return address_of(*symbol, o.offset, wide);
   if (symbol->kind != Symbol::Kind::Register) {
-    error(o.place, fmt::format("'{}' is no operand of this instruction", o.name));
+    error(o.place, fmt::format("'{}' is not an operand of this instruction", o.name));
     return VirtualOperand::value(0);
   }
   if (symbol->type.kind == 'p') {
-    error(o.place, fmt::format("'{}' is a predicate; the instruction takes a number", o.name));
+    error(o.place, fmt::format("'{}' is a predicate, but the instruction takes a number", o.name));
     return VirtualOperand::value(0);
   }
   VirtualRegister reg = symbol->reg;
@@ -185,7 +185,7 @@ VirtualOperand KernelLowering::name_source(const Operand& o, bool wide) {
 
 VirtualOperand KernelLowering::source(const Operand& o, OperandKind kind, const Type& type) {
   if (kind == OperandKind::SrcPred) return predicate_source(o);
-  if (o.negated) error(o.place, "'!' stands before predicates only");
+  if (o.negated) error(o.place, "'!' is allowed only before predicates");
   switch (o.kind) {
     case Operand::Kind::Integer:
     case Operand::Kind::Float32:
@@ -219,9 +219,9 @@ VirtualOperand KernelLowering::destination(const Operand& o, OperandKind kind, c
   if (has == wanted) return VirtualOperand::of(reg);
   const VirtualOperand value = VirtualOperand::of(temporary(wanted));
   if (has == RegisterClass::Predicate || wanted == RegisterClass::Predicate) {
-    error(o.place, fmt::format("'{}' is {} predicate, the result is {}", o.name,
-                               has == RegisterClass::Predicate ? "a" : "no",
-                               wanted == RegisterClass::Predicate ? "one" : "a number"));
+    error(o.place, fmt::format("'{}' is {} predicate, but the result is {}", o.name,
+                               has == RegisterClass::Predicate ? "a" : "not a",
+                               wanted == RegisterClass::Predicate ? "a predicate" : "a number"));
     return value;
   }
   const char* op = has == RegisterClass::B32 ? "cvt.u32.u64"
@@ -236,7 +236,7 @@ void KernelLowering::finish_moves() {
   late_.clear();
 }
 
-// The base of `[base + offset]`; the displacement goes to `imm`.
+// Returns the base of `[base + offset]` and stores the displacement in `imm`.
 VirtualOperand KernelLowering::address(const Operand& o, bool wide, int64_t& imm) {
   if (o.kind != Operand::Kind::Address || o.parts.size() != 1) {
     error(o.place, "expected an address such as [%rd1+4]");
@@ -258,7 +258,8 @@ VirtualOperand KernelLowering::address(const Operand& o, bool wide, int64_t& imm
     out = wide ? compute64("add.u64", {out, far}) : compute32("add.u32", {out, far});
     imm = 0;
   }
-  // The row adds the displacement, so constants are 0 and a displacement where one may be.
+  // The row adds a displacement, so a constant address becomes base 0 and a displacement where the row allows
+  // it.
   if (out.kind == VirtualOperand::Kind::Constant) {
     const uint64_t whole = out.constant + uint64_t(imm);
     if (!wide && whole == uint64_t(int32_t(whole))) {

@@ -1,4 +1,4 @@
-// Predicates into comparisons, products into sums, words into vectors, branches into exits.
+// Turns predicates into comparisons, products into sums, words into vectors, and branches into exits.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/ptx/machine.h"
 
@@ -40,7 +40,8 @@ class Shaping {
   }
 
  private:
-  // The one definition, which then comes before every use, with operands that hold the same value there.
+  // Returns the one definition of an operand. It comes before every use, and its operands hold the same
+  // values there.
   VirtualInst* definition(const Operand& o) const { return registers_.definition(o); }
   bool is_stable(const Operand& o) const { return is_constant(o) || definition(o); }
   bool is_unchanged(const VirtualBlock& block, const Operand& o, const VirtualInst& from,
@@ -55,8 +56,8 @@ class Shaping {
     return !changes;
   }
 
-  // What a comparison's name gets for the op that combines its result with another predicate; null: no such
-  // op.
+  // Returns the suffix that a comparison's name gets for the op that combines its result with another
+  // predicate. It is null when there is no such op.
   const char* combination(uint16_t op) const {
     return op == and_pred_ ? ".and" : op == or_pred_ ? ".or" : op == xor_pred_ ? ".xor" : nullptr;
   }
@@ -92,7 +93,8 @@ class Shaping {
     return program_.new_register(RegisterClass::Predicate);
   }
 
-  // A product that only sums read, and more than one of them: the backend fuses those that one reads.
+  // Fuses a product that only sums read, if there are several sums. The backend fuses a product that one sum
+  // reads.
   void spread(const VirtualInst& product, VirtualRegister r) {
     const uint16_t mad = fused(product);
     if (mad == 0 || registers_.uses[r] < 2) return;
@@ -131,7 +133,7 @@ class Shaping {
     return times == 1;
   }
 
-  // A power of two that divides the value.
+  // Returns a power of two that divides the value.
   uint64_t alignment(const Operand& o, int depth = 0) const {
     constexpr uint64_t kMost = 4096;
     constexpr int kDeepest = 8;
@@ -157,7 +159,7 @@ class Shaping {
     return definition(inst.operands[0]) && definition(inst.operands[1]);
   }
 
-  // Nothing between the loads of a group writes memory or waits.
+  // Merges loads into vectors. Nothing between the loads of a group writes memory or waits.
   void merge_loads(VirtualBlock& block) {
     for (size_t begin = 0; begin < block.code.size(); ++begin) {
       if (!is_word_load(block.code[begin])) continue;
@@ -171,7 +173,7 @@ class Shaping {
         if (merge(group, words)) break;
     }
   }
-  // The first of the group and those behind or before it in the same vector.
+  // Merges the first load of the group with the loads before and after it in the same vector.
   bool merge(const std::vector<VirtualInst*>& group, size_t words) {
     VirtualInst& first = *group.front();
     const auto bytes = int32_t(4 * words);
@@ -218,7 +220,7 @@ void exit_at_branches(Draft& draft) {
     DraftBlock copy;
     copy.name = taken.name;
     copy.line = taken.line;
-    // Not the last: the way on is the one to the last exit.
+    // The copy is not placed last, because the last exit is where lanes meet.
     draft.layout.insert(draft.layout.begin() + 1, BlockId(draft.blocks.size()));
     draft.blocks[b].taken = BlockId(draft.blocks.size());
     draft.blocks.push_back(std::move(copy));
@@ -227,7 +229,7 @@ void exit_at_branches(Draft& draft) {
 
 namespace {
 
-// Whether a branch back, in the order of the layout, goes round `inside` and not round `outside`.
+// Returns whether a backward branch, in layout order, makes a loop around `inside` but not around `outside`.
 bool is_out_of_loop(const VirtualProgram& program, BlockId outside, BlockId inside) {
   for (BlockId last = inside; last < program.blocks.size(); ++last)
     for (BlockId first : program.blocks[last].successors)
@@ -235,7 +237,7 @@ bool is_out_of_loop(const VirtualProgram& program, BlockId outside, BlockId insi
   return false;
 }
 
-// -(a * b) is (-a) * b, to the bit.
+// Replaces -(a * b) by (-a) * b, which gives the same bits.
 void negate_factors(VirtualProgram& program) {
   const uint16_t neg = isa::op_index("neg.f32"), mul = isa::op_index("mul.rn.f32");
   struct Home {

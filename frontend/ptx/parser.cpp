@@ -1,4 +1,4 @@
-// The parser: modules, functions, declarations and statements.
+// Parses modules, functions, declarations and statements.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/ptx/parser.h"
 
@@ -116,7 +116,7 @@ class Parser {
       in_.expect("{");
       f.body = statements();
     }
-    // A declaration ahead of its definition, or after it, is the same function.
+    // A declaration before or after its definition is the same function.
     for (Function& other : module_.functions)
       if (other.name == f.name) {
         if (other.has_body && f.has_body)
@@ -139,7 +139,7 @@ class Parser {
       (directive == "maxntid" ? f.largest_block : f.required_block) = size;
     } else if (directive == "pragma") {
       skip_to_semicolon();
-    } else {  // .minnctapersm 2, .maxnreg 64, .noreturn, .abi_preserve 8 ...: hints
+    } else {  // hints: .minnctapersm 2, .maxnreg 64, .noreturn, .abi_preserve 8 ...
       while (in_.is(Token::Kind::Integer) || in_.is_mark(",")) in_.next();
     }
   }
@@ -157,7 +157,7 @@ class Parser {
     return out;
   }
 
-  // `.shared .align 16 .b8`: everything before the name.
+  // Reads everything before the name, such as `.shared .align 16 .b8`.
   Declaration declaration_head() {
     Declaration d;
     d.place = in_.peek().place;
@@ -171,7 +171,7 @@ class Parser {
       } else if (word == "v2" || word == "v4") {
         d.vector = word == "v2" ? 2 : 4;
       } else if (word == "ptr") {
-        is_pointer_ = true;  // what follows describes what it points to
+        is_pointer_ = true;  // the words that follow describe what the pointer points to
       } else if (word == "attribute") {
         in_.expect("(");
         while (!in_.at_end() && !in_.accept(")")) in_.next();
@@ -179,7 +179,7 @@ class Parser {
         d.type = *type;
         has_type = true;
       } else if (!is_pointer_ || !space_of(word)) {
-        in_.fail(d.place, fmt::format("'.{}' is no type of a variable that Glint knows", word));
+        in_.fail(d.place, fmt::format("'.{}' is not a type of variable that Glint knows", word));
       }
     }
     is_pointer_ = false;
@@ -187,7 +187,7 @@ class Parser {
     return d;
   }
 
-  // `name`, `name<10>`, `name[4][2]`, `= { 1, 2 }`.
+  // Reads `name`, `name<10>`, `name[4][2]` and an initialiser such as `= { 1, 2 }`.
   void declarator(Declaration& d) {
     d.place = in_.peek().place;
     d.name = in_.expect_word("a name");
@@ -255,7 +255,7 @@ class Parser {
     return out;
   }
 
-  // Up to and with the closing brace.
+  // Reads statements up to and including the closing brace.
   std::vector<Statement> statements() {
     std::vector<Statement> out;
     while (!in_.accept("}")) {

@@ -1,5 +1,6 @@
-// The parser's tools that declarations and statements share: a cursor over tokens, constant expressions,
-// operands. SPDX-License-Identifier: Apache-2.0
+// Declares the tools that the parsers of declarations and statements share: a cursor over tokens, constant
+// expressions, operands.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <string>
@@ -23,18 +24,18 @@ class Cursor {
     return peek().kind == Token::Kind::DotWord && peek().text == text;
   }
   bool is(Token::Kind kind) const { return peek().kind == kind; }
-  bool accept(std::string_view mark);      // takes the mark if it stands here
-  bool accept_dot(std::string_view word);  // takes the `.word` if it stands here
+  bool accept(std::string_view mark);      // takes the mark if it is next
+  bool accept_dot(std::string_view word);  // takes the `.word` if it is next
   void expect(std::string_view mark);
   std::string expect_word(const std::string& what);
   uint64_t expect_integer(const std::string& what) { return constant(what); }
 
-  // A constant expression of integers; precedence as in C.
+  // Reads a constant expression of integers. Operators have the precedence of C.
   uint64_t constant(const std::string& what) { return binary(0, what); }
-  // An operand of an instruction.
+  // Reads an operand of an instruction.
   Operand operand();
 
-  [[noreturn]] void fail(const std::string& expected) const;  // "expected X, found Y" here
+  [[noreturn]] void fail(const std::string& expected) const;  // throws "expected X, found Y" at this place
   [[noreturn]] void fail(Place at, const std::string& message) const;
 
  private:

@@ -1,4 +1,4 @@
-// The door of the PTX front end.
+// Implements the entry points of the PTX front end.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/ptx/ptx.h"
 
@@ -40,7 +40,8 @@ Kernel compile_ptx(std::string_view text, const std::string& file, const std::st
   const ptx::Module module = ptx::parse(text, file);
   if (module.address_size != 64)
     throw UnsupportedError(
-        fmt::format("{}: error: addresses of {} bits: Glint has 64", file, module.address_size));
+        fmt::format("{}: error: the module has addresses of {} bits, but Glint supports only 64", file,
+                    module.address_size));
   const ptx::Function& function = find_entry(module, entry);
   Kernel kernel;
   kernel.required_block = function.required_block;

@@ -1,5 +1,6 @@
-// PTX text in, one kernel's isa::Program out, with what a launch must know: parameters, variables, shared
-// memory. SPDX-License-Identifier: Apache-2.0
+// Compiles one kernel of PTX text to an isa::Program, with what a launch must know: parameters, variables,
+// shared memory.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstddef>
@@ -13,26 +14,27 @@
 
 namespace glint::frontend {
 
-// A parameter of a kernel, in PTX's layout; `offset` counts from isa::kPushConstantOffset of the constant
-// bank.
+// Describes a parameter of a kernel, in PTX's layout. `offset` counts from isa::kPushConstantOffset of the
+// constant bank.
 struct KernelParameter {
   std::string name;
   uint32_t offset = 0, bytes = 0;
 };
 
-// A variable of the module, which the launch must place and fill.
+// Describes a variable of the module, which the launch must place and fill.
 struct ModuleVariable {
-  // The address of `symbol` plus `addend`, 8 bytes, stands at `at`.
+  // Says that the address of `symbol` plus `addend`, 8 bytes, is stored at `at`.
   struct Pointer {
     uint64_t at = 0;
     std::string symbol;
     uint64_t addend = 0;
   };
   std::string name;
-  bool is_constant = false;  // lies in the constant bank at `offset`; else in global memory
-  uint32_t offset = 0;       // global: the constant bank holds its address, 8 bytes, at `offset`
+  // True: the variable lies in the constant bank at `offset`. False: it lies in global memory.
+  bool is_constant = false;
+  uint32_t offset = 0;  // global: place in the constant bank of its 8-byte address
   uint64_t bytes = 0;
-  std::vector<std::byte> initial;  // zeros after its end
+  std::vector<std::byte> initial;  // the bytes after its end are 0
   std::vector<Pointer> pointers;
 };
 
@@ -40,26 +42,26 @@ struct Kernel {
   isa::Program program;  // shared_bytes: the static part
   std::vector<KernelParameter> parameters;
   std::vector<ModuleVariable> variables;
-  uint32_t constant_bank_bytes = isa::kConstantBankBytes;                // the least that it needs
+  uint32_t constant_bank_bytes = isa::kConstantBankBytes;                // the minimum that the kernel needs
   std::optional<std::array<uint32_t, 3>> required_block, largest_block;  // .reqntid, .maxntid
 };
 
 struct PtxOptions {
   BackendOptions backend;
-  // mul, then add or sub, none with a rounding modifier, become fma where nothing else reads the product.
-  // Choice: PTX allows it ("may be optimized aggressively"), and NVIDIA's assembler does it unless told
-  // -fmad=false.
+  // A mul followed by an add or sub, all without a rounding modifier, becomes fma where nothing else reads
+  // the product. Choice: PTX allows it ("may be optimized aggressively"), and NVIDIA's assembler does it
+  // unless -fmad=false is given.
   bool contract = true;
-  // What the hardware's assembler does besides (frontend/ptx/machine.h): fewer instructions, the same
-  // results.
+  // The program is changed as by the hardware's assembler (frontend/ptx/machine.h), which gives fewer
+  // instructions and the same results.
   bool shape = true;
 };
 
-// Kernels of a module, in the order of the text.
+// Returns the names of a module's kernels, in the order of the text.
 std::vector<std::string> kernel_names(std::string_view text, const std::string& file);
 
-// Compiles one kernel; functions that it calls become part of it. `entry` may be empty when there is one
-// kernel only. UserError or UnsupportedError list every mistake at once, with file, line and column.
+// Compiles one kernel with the functions that it calls inlined. `entry` may be empty when the module has only
+// one kernel. A UserError or UnsupportedError lists every mistake, with file, line and column.
 Kernel compile_ptx(std::string_view text, const std::string& file, const std::string& entry,
                    const PtxOptions& options);
 

@@ -1,15 +1,16 @@
-// Post-dominators, and the regions whose lanes must meet.
+// Computes post-dominators and the regions whose lanes must meet.
 //
-// Nesting. Let P1 lie in S(P2). If S(P1) and S(P2) overlap, S(P1) is added to S(P2): its blocks are
-// post-dominated by P1, so also by P2, and edges out of it still lead into S(P2). After that any two sets are
-// nested or disjoint: of two that share a block, the one whose P comes first on the way to the end lies in
-// the other.
+// Nesting: let P1 lie in S(P2). If S(P1) and S(P2) overlap, S(P1) is added to S(P2). The blocks of S(P1) are
+// post-dominated by P1, so also by P2, and edges out of S(P1) still lead into S(P2). After that any two sets
+// are nested or disjoint: if two sets share a block, the set whose P comes first on the way to the end lies
+// in the other set.
 //
-// Loops. A branch of which both ways stay in a loop is looked at within one turn of it: ways out of the loop
-// do not count, and what leads back to the head leads to one new block, the turn's end. So lanes that went on
-// to the next turn wait there for those that are still in this one. Source: counts of executed loads of a
-// traversal loop on an H200 (docs/validation.md). Lanes that leave the loop leave S(P) without its join, and
-// wait at the join of a region around the loop: `is_sound`. SPDX-License-Identifier: Apache-2.0
+// Loops: a branch with both ways inside a loop is analysed within one turn of the loop. Ways out of the loop
+// do not count, and all edges back to the head lead to one new block, the turn's end. There, lanes that are
+// done with the turn wait for lanes that are still in it. Source: counts of executed loads of a traversal
+// loop on an H200 (docs/validation.md). Lanes that leave the loop leave S(P) without its join and wait at the
+// join of a region around the loop, which is_sound() checks.
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <map>
 #include <set>
@@ -31,7 +32,8 @@ class Reconvergence {
  public:
   explicit Reconvergence(Draft& draft) : draft_(draft), end_(BlockId(draft.blocks.size())) {}
 
-  // Heads of the loops in which lanes part and meet nowhere before the turn's end, which so needs a block.
+  // Returns the loops in which lanes diverge and do not meet before the end of the turn, so that the turn
+  // needs an end block.
   std::vector<Loop> loops_without_end() {
     find_edges();
     std::vector<Loop> out;
@@ -45,7 +47,8 @@ class Reconvergence {
     return out;
   }
 
-  // With `in_turns`, false and nothing done when the regions would not be sound.
+  // Inserts the regions and returns true. With `in_turns`, it returns false and changes nothing when the
+  // regions would not be sound.
   bool run(bool in_turns) {
     find_edges();
     find_regions(in_turns);
@@ -58,7 +61,7 @@ class Reconvergence {
  private:
   DraftBlock& block(BlockId b) { return draft_.blocks[b]; }
 
-  // Edges that count: those to early ends are dropped where there is another way.
+  // Finds the edges that count. Edges to early ends are dropped where there is another way.
   void find_edges() {
     next_.resize(size_t{end_} + 1);
     reachable_.assign(size_t{end_} + 1, false);
@@ -82,7 +85,8 @@ class Reconvergence {
     connect_ends();
   }
 
-  // Every block gets a way to the virtual end: exits one edge, endless loops one from a block of theirs.
+  // Gives every block a way to the virtual end: an exit gets an edge, and an endless loop gets one from one
+  // of its blocks.
   void connect_ends() {
     for (BlockId b : draft_.layout)
       if (reachable_[b] && next_[b].empty()) next_[b].push_back(end_);
@@ -95,7 +99,7 @@ class Reconvergence {
     }
   }
 
-  // Which blocks have a way to `target`; with `counted`, over the edges that count.
+  // Returns which blocks have a way to `target`. With `counted`, only edges that count are followed.
   std::vector<bool> blocks_before(BlockId target, bool counted = false) {
     std::vector<std::vector<BlockId>> before(size_t{end_} + 1);
     for (BlockId b : draft_.layout)
@@ -119,7 +123,7 @@ class Reconvergence {
            edges[b].size() == 2;
   }
 
-  // Within the loop: its head, reached again, is the virtual end.
+  // Returns the edges within the loop, where an edge back to its head leads to the virtual end.
   Edges edges_of_turn(const Loop& loop) const {
     Edges turn(next_.size());
     for (BlockId b : loop.body)
@@ -151,8 +155,8 @@ class Reconvergence {
     find(next_);
   }
 
-  // Whether any two regions are nested or disjoint, and lanes that leave one by another way than its meeting
-  // place come to one around it before they could come back.
+  // Returns whether any two regions are nested or disjoint, and whether lanes that leave a region by another
+  // way than its meeting place come to a meeting place around it before they could come back.
   bool is_sound() {
     for (const auto& [p, s] : regions_) {
       if (s.contains(p)) return false;
@@ -203,8 +207,8 @@ class Reconvergence {
     }
   }
 
-  // Meeting places of the regions that an edge enters, outermost first. `from` is a block, or with
-  // `behind_join` the join of `to`, which lies in a region exactly when all of S(to) does.
+  // Returns the meeting places of the regions that an edge enters, outermost first. `from` is a block. With
+  // `behind_join` the edge starts at the join of `to`, which lies in a region exactly when all of S(to) does.
   std::vector<BlockId> entered(BlockId from, BlockId to, bool behind_join) const {
     std::vector<BlockId> out;
     for (const auto& [p, s] : regions_) {
@@ -270,11 +274,11 @@ class Reconvergence {
     draft_.layout = std::move(layout);
   }
 
-  // Leads the edges into block `to` through its join and the ssys they need.
+  // Leads the edges into block `to` through its join and the ssy instructions that they need.
   void connect(BlockId to, const std::vector<Edge>& edges) {
     const bool has_join = joins_.contains(to);
     const std::vector<BlockId> behind_join = has_join ? entered(to, to, true) : std::vector<BlockId>{};
-    // What every way into the block enters is pushed in the block itself, just before it ends.
+    // If all ways into the block enter the same regions, the block itself pushes them, just before it ends.
     const std::vector<BlockId>& first = has_join ? behind_join : edges.front().enters;
     const bool same = std::all_of(edges.begin(), edges.end(),
                                   [&](const Edge& e) { return e.to_join || e.enters == first; });
@@ -291,7 +295,7 @@ class Reconvergence {
         } else {
           const BlockId between = new_block("", to, from.line);
           push_all(block(between).code, edge.enters, block(edge.from).line);
-          DraftBlock& again = block(edge.from);  // new_block may have moved it
+          DraftBlock& again = block(edge.from);  // new_block() may have moved the block
           (edge.taken ? again.taken : again.next) = between;
           behind_[edge.from].push_back(between);
         }
@@ -301,15 +305,15 @@ class Reconvergence {
 
   Draft& draft_;
   const BlockId end_;  // the virtual end
-  Edges next_;         // edges that count
+  Edges next_;         // the edges that count
   std::vector<bool> reachable_;
   std::map<BlockId, Blocks> regions_;                         // S(P) by P
   std::map<BlockId, BlockId> joins_;                          // join block of P
-  std::map<BlockId, std::vector<BlockId>> at_end_, on_edge_;  // ssys that a block pushes before it ends
-  std::map<BlockId, std::vector<BlockId>> behind_;  // new blocks, by the block behind which they lie
+  std::map<BlockId, std::vector<BlockId>> at_end_, on_edge_;  // regions that a block pushes before it ends
+  std::map<BlockId, std::vector<BlockId>> behind_;            // new blocks, by the block after which they lie
 };
 
-// All branches back to the loop's head go to a new block, which goes there.
+// Makes all branches back to the loop's head go to a new block, which goes to the head.
 void end_turns(Draft& draft, const Loop& loop) {
   const auto turn_end = BlockId(draft.blocks.size());
   DraftBlock block;

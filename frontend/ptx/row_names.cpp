@@ -1,4 +1,4 @@
-// Canonical spellings of opcodes.
+// Normalises the spelling of opcodes.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/ptx/row_names.h"
 
@@ -35,13 +35,13 @@ bool is_float(const std::string& word) {
   return type && type->kind == 'f';
 }
 
-// Place of a modifier of floating-point arithmetic in the canonical order, PTX's own.
+// Returns the place of a modifier of floating-point arithmetic in the canonical order, which is that of PTX.
 int rank_of(const std::string& word) {
   static constexpr std::array<std::string_view, 15> kOrder{"approx", "full",    "rn",  "rz",        "rm",
                                                            "rp",     "rna",     "ftz", "sat",       "relu",
                                                            "NaN",    "xorsign", "abs", "satfinite", "oob"};
   const auto at = std::find(kOrder.begin(), kOrder.end(), word);
-  if (at == kOrder.end()) return 100;  // types stay behind
+  if (at == kOrder.end()) return 100;  // types come last
   const int rank = int(at - kOrder.begin());
   return rank >= 2 && rank <= 6 ? 2 : rank;
 }
@@ -60,7 +60,7 @@ Words with_float_defaults(Words words) {
   return words;
 }
 
-// setp.lo.u32 and setp.lt.u32 are one, and so on.
+// Gives comparisons that mean the same one name: setp.lo.u32 becomes setp.lt.u32, and so on.
 Words with_common_comparison(Words words) {
   static constexpr std::pair<std::string_view, std::string_view> kSame[] = {
       {"lo", "lt"}, {"ls", "le"}, {"hi", "gt"}, {"hs", "ge"}};
@@ -70,7 +70,7 @@ Words with_common_comparison(Words words) {
   return words;
 }
 
-// Ops whose result does not depend on what the bits of their first type mean.
+// Returns true for ops whose result does not depend on how the bits of their first type are interpreted.
 bool ignores_type(const Words& words) {
   static constexpr std::array<std::string_view, 16> kBitOps{"mov",  "selp", "slct", "and", "or",  "xor",
                                                             "not",  "cnot", "shl",  "add", "sub", "addc",
@@ -95,7 +95,7 @@ int find_with_other_types(const Words& words) {
       other[i] = kind + std::to_string(type->bits);
       if (const int row = row_of(other); row >= 0) return row;
     }
-    // A register holds 16 bits as well as 32, and bits are all that a move or selection sees.
+    // A register holds 16 bits as well as 32, and a move or a selection only sees bits.
     if (type->bits == 16 && !integers_only && words[0] != "slct") {
       Words wide = words;
       wide[i] = "b32";
@@ -113,7 +113,7 @@ int find_row(const Words& words) {
   const Words canonical = with_common_comparison(with_float_defaults(words));
   if (const int row = row_of(canonical); row >= 0) return row;
   if (const int row = find_with_other_types(canonical); row >= 0) return row;
-  // Hints of the compiler, not of meaning.
+  // These words are hints to the compiler and have no meaning of their own.
   Words plain;
   for (const std::string& word : canonical)
     if (word != "aligned" && word != "uni" && word != "cta") plain.push_back(word);

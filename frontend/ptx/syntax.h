@@ -1,4 +1,4 @@
-// A PTX module as its text says it: declarations, functions, instructions. Nothing is resolved yet.
+// Holds a PTX module as its text says it: declarations, functions, instructions. Nothing is resolved yet.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -10,28 +10,29 @@
 
 namespace glint::frontend::ptx {
 
-// A fundamental type: b8..b128, u8..u64, s8..s64, f16, bf16, f16x2, bf16x2, f32, f64, pred and such.
+// A fundamental type: b8..b128, u8..u64, s8..s64, f16, bf16, f16x2, bf16x2, f32, f64, pred and similar ones.
 struct Type {
   char kind = 'b';  // b, u, s, f; p for pred
   uint32_t bits = 32;
 };
-// Nothing for words that are no type.
+// Returns the type that a word names, or nothing when the word is not a type.
 std::optional<Type> type_of(const std::string& word);
 
 struct Operand {
   enum class Kind : uint8_t {
     Sink,  // _
-    Name,  // register, variable, label, function; element: the x of %tid.x; offset: of `name + 4`
+    // A register, variable, label or function. `element` is the x of %tid.x, and `offset` the 4 of `x + 4`.
+    Name,
     Integer,
     Float32,
-    Float64,  // value holds bits
-    Vector,   // {a, b}: parts
+    Float64,  // `value` holds the bits
+    Vector,   // {a, b}: `parts`
     Address,  // [parts[0] + offset, more parts]
-    Pair,     // a|b: parts
-    List      // (a, b): parts, of a call
+    Pair,     // a|b: `parts`
+    List      // (a, b) of a call: `parts`
   } kind = Kind::Sink;
   std::string name, element;
-  bool negated = false;  // !name
+  bool negated = false;  // for !name
   uint64_t value = 0;
   int64_t offset = 0;
   std::vector<Operand> parts;
@@ -39,7 +40,7 @@ struct Operand {
 };
 
 struct Instruction {
-  std::vector<std::string> words;  // of the opcode: {"ld", "global", "f32"}
+  std::vector<std::string> words;  // words of the opcode, such as {"ld", "global", "f32"}
   std::vector<Operand> operands;
   std::string guard;  // name of a predicate, or empty
   bool guard_negated = false;
@@ -50,14 +51,14 @@ enum class VariableSpace : uint8_t { Register, Shared, Local, Const, Global, Par
 
 struct Initializer {
   uint64_t value = 0;  // bits of the element type
-  std::string symbol;  // or the address of that, plus value
+  std::string symbol;  // not empty: the value is the address of the symbol plus `value`
 };
 
 struct Declaration {
   VariableSpace space = VariableSpace::Register;
   Type type;
   uint32_t vector = 1;  // .v2, .v4
-  uint32_t align = 0;   // 0: natural
+  uint32_t align = 0;   // 0: natural alignment
   std::string name;
   uint32_t range = 0;  // %r<10>: 10 registers named %r0 to %r9
   std::vector<uint64_t> dimensions;
@@ -65,18 +66,18 @@ struct Declaration {
   std::vector<Initializer> initial;
   Place place;
 
-  uint64_t count() const;  // elements, of all dimensions
+  uint64_t count() const;  // number of elements over all dimensions
   uint64_t bytes() const { return count() * vector * type.bits / 8; }
   uint32_t alignment() const { return align ? align : vector * type.bits / 8; }
 };
 
 struct Statement {
   enum class Kind : uint8_t { Label, Instruction, Declaration, Scope, Targets } kind = Kind::Instruction;
-  std::string label;  // Label; Targets: name of the list
+  std::string label;  // of a Label; for Targets, the name of the list
   Instruction instruction;
   Declaration declaration;
-  std::vector<Statement> body;       // Scope
-  std::vector<std::string> targets;  // Targets
+  std::vector<Statement> body;       // of a Scope
+  std::vector<std::string> targets;  // of Targets
   Place place;
 };
 
@@ -96,7 +97,7 @@ struct Module {
   std::vector<Function> functions;
 };
 
-// Reads a module. UserError says what stands where something else was expected.
+// Reads a module. Throws UserError that says what was expected and what was found.
 Module parse(std::string_view text, const std::string& file);
 
 }  // namespace glint::frontend::ptx

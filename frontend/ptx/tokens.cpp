@@ -1,4 +1,4 @@
-// The tokenizer of PTX text.
+// Splits PTX text into tokens.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/ptx/tokens.h"
 
@@ -57,7 +57,8 @@ class Tokenizer {
 
  private:
   char peek(size_t ahead) const { return at_ + ahead < text_.size() ? text_[at_ + ahead] : '\0'; }
-  // Whether a word stands directly before: then `.2d` is its modifier, else `.5` would be a number.
+  // Returns whether a word stands directly before the dot. Then `.2d` is a modifier of the word; otherwise
+  // `.5` would be a number.
   bool glues() const { return at_ > 0 && (is_word_part(text_[at_ - 1])); }
 
   void advance() {
@@ -104,8 +105,8 @@ class Tokenizer {
       token.kind = kind == 'f' ? Token::Kind::Float32 : Token::Kind::Float64;
       token.value = digits_of(token, 2, 16);
       if (token.text.size() != 2 + digits)
-        fail(token.place, fmt::format("'{}' has {} digits, 0{} takes {}", token.text, token.text.size() - 2,
-                                      kind, digits));
+        fail(token.place, fmt::format("'{}' has {} digits, but 0{} takes {}", token.text,
+                                      token.text.size() - 2, kind, digits));
       return;
     }
     if (text_[at_] == '0' && (kind == 'x' || kind == 'b')) {
@@ -127,7 +128,7 @@ class Tokenizer {
       char* end = nullptr;
       token.kind = Token::Kind::Float64;
       token.value = std::bit_cast<uint64_t>(std::strtod(token.text.c_str(), &end));
-      if (*end != '\0') fail(token.place, fmt::format("'{}' is no number", token.text));
+      if (*end != '\0') fail(token.place, fmt::format("'{}' is not a number", token.text));
     } else {
       token.kind = Token::Kind::Integer;
       const bool octal = token.text.size() > 1 && token.text[0] == '0';
@@ -139,7 +140,7 @@ class Tokenizer {
     const std::string digits = token.text.substr(from, token.text.size() - from - (token.text.back() == 'U'));
     char* end = nullptr;
     const uint64_t value = std::strtoull(digits.c_str(), &end, base);
-    if (digits.empty() || *end != '\0') fail(token.place, fmt::format("'{}' is no number", token.text));
+    if (digits.empty() || *end != '\0') fail(token.place, fmt::format("'{}' is not a number", token.text));
     return value;
   }
 

@@ -1,4 +1,4 @@
-// PTX text as tokens: words, `.words`, numbers, strings and punctuation, each with its place.
+// Holds PTX text as tokens: words, `.words`, numbers, strings and punctuation, each with its place.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace glint::frontend::ptx {
 
-// A place in the PTX file; both count from 1.
+// Names a place in the PTX file. Line and column count from 1.
 struct Place {
   int line = 0, column = 0;
 };
@@ -18,10 +18,10 @@ struct Place {
 struct Token {
   enum class Kind : uint8_t {
     Word,     // add, %r1, $L__BB0_2, _ZZ6kernel
-    DotWord,  // .f32, .entry, .L1::no_allocate: text without the dot
-    Integer,  // value
-    Float32,  // 0f3F800000: value holds the bits
-    Float64,  // 0d3FF0000000000000 or 1.5: value holds the bits of the double
+    DotWord,  // .f32, .entry, .L1::no_allocate: the text has no dot
+    Integer,  // in `value`
+    Float32,  // 0f3F800000: `value` holds the bits
+    Float64,  // 0d3FF0000000000000 or 1.5: `value` holds the bits of the double
     String,
     Mark,  // one character of punctuation, or one of << >> == != <= >= && ||
     End
@@ -31,7 +31,8 @@ struct Token {
   Place place;
 };
 
-// Splits `text`; comments and line ends are gone. UserError names the place of what is no token.
+// Splits `text` and drops comments and line ends. Throws UserError with the place of text that is not a
+// token.
 std::vector<Token> tokenize(std::string_view text, const std::string& file);
 
 }  // namespace glint::frontend::ptx

@@ -16,13 +16,13 @@ namespace {
 
 using Operand = VirtualOperand;
 
-constexpr int64_t kTurns = 4;  // at a time; of the rest, two
-// Instructions of a body. Choice: with 64 an H200's counts of the calibration kernels come out, whose lanes
-// count alike; where they may not, it has copied a body of 20 instructions and left one of 45 alone (h_spmv,
-// h_chase of bench/held_out).
+constexpr int64_t kTurns = 4;  // turns unrolled at a time; of the rest, two
+// Limits the instructions of a body. Choice: with 64, the counts of the calibration kernels, in which all
+// lanes count alike, match an H200. In kernels whose lanes may count differently, the H200's compiler has
+// copied a body of 20 instructions and left one of 45 alone (h_spmv, h_chase of bench/held_out).
 constexpr size_t kMostCode = 64, kMostCodeOfEach = 32;
 
-// One loop: its block, and what its registers are in the copies.
+// Handles one loop: its block, and the registers of its copies.
 class CountedLoop {
  public:
   CountedLoop(Draft& draft, VirtualProgram& program, BlockId at)
@@ -51,7 +51,8 @@ class CountedLoop {
     return is_movable(inst) || row_of(inst).effect == isa::Effect::Barrier ||
            row_of(inst).effect == isa::Effect::Fence;
   }
-  // Else lanes of a warp may be in different copies, where they were in one turn.
+  // Returns false for instructions that involve other lanes. Unrolling could separate lanes of a warp that
+  // were in one turn into different copies.
   static bool is_a_lane_s_own(const VirtualInst& inst) {
     return is_pure(inst) && row_of(inst).unit != isa::Unit::Shuffle && row_of(inst).name != "activemask.b32";
   }
@@ -77,7 +78,7 @@ class CountedLoop {
     }
   }
 
-  // The constant that the instruction adds to a register which nothing else changes.
+  // Returns the constant that the instruction adds to a register which nothing else changes.
   std::optional<int64_t> step_of(const VirtualInst& inst) const {
     const bool narrow = inst.op == ops_.add_s32 || inst.op == ops_.add_u32,
                wide = inst.op == ops_.add_s64 || inst.op == ops_.add_u64;
@@ -90,8 +91,8 @@ class CountedLoop {
     return step > -kMost && step < kMost ? std::optional(step) : std::nullopt;
   }
 
-  // The last test: `setp.ne.s32 p, r, 0` behind r's step down, or `setp.lt.s32 p, r, bound` behind its step
-  // up.
+  // Finds the counter in the last test: `setp.ne.s32 p, r, 0` after r was decremented, or `setp.lt.s32 p, r,
+  // bound` after r was incremented.
   bool find_counter(const DraftBlock& block) {
     if (block.code.empty() || kept_.contains(block.condition)) return false;
     const VirtualInst& test = block.code.back();
@@ -111,12 +112,12 @@ class CountedLoop {
     return steps_[counter_] < 0 && is_constant(end) && end.constant == 0;
   }
 
-  // All lanes that are in the loop are in the same turn, and leave it together.
+  // Returns true when all lanes in the loop are in the same turn and leave the loop together.
   bool lanes_count_together() const {
     return is_uniform(Operand::of(counter_), true) && is_uniform(end_, false);
   }
-  // One value for all lanes: the constants, what is computed once from such, and the counter that starts with
-  // one.
+  // Returns true when the operand has one value for all lanes: it is a constant, is computed once from such
+  // operands, or is the counter and starts with such a value.
   bool is_uniform(const Operand& o, bool is_counter, int depth = 0) const {
     constexpr int kDeepest = 8;
     if (is_constant(o)) return true;
@@ -158,7 +159,7 @@ class CountedLoop {
 
   void copy_body(int64_t turn, bool last, std::vector<VirtualInst>& out) {
     const std::vector<VirtualInst> code = draft_.blocks[at_].code;
-    for (size_t i = 0; i + 1 < code.size(); ++i) {  // without the test
+    for (size_t i = 0; i + 1 < code.size(); ++i) {  // leaves out the test
       VirtualInst inst = code[i];
       if (const auto step = step_of(inst)) {
         const VirtualRegister from = inst.operands[0].reg;
@@ -186,7 +187,8 @@ class CountedLoop {
     }
   }
 
-  // A sum of a stepping register and one that stays: what the first turn had, and the steps since.
+  // Rewrites a sum of a stepping register and a constant one as the first turn's sum plus the steps since
+  // then.
   bool take_from_first(VirtualInst& inst, int64_t turn, size_t i) const {
     const bool wide = inst.op == ops_.add_s64 || inst.op == ops_.add_u64;
     if (turn == 0 || (!wide && inst.op != ops_.add_s32 && inst.op != ops_.add_u32) ||
@@ -197,7 +199,7 @@ class CountedLoop {
       if (!is_register(moving) || !steps_.contains(moving.reg) || !is_register(other) ||
           definitions_.contains(other.reg))
         continue;
-      // Both turns read it before its step, or both behind it.
+      // Both turns must read the register before its step, or both after it.
       const int64_t behind = stepped_.contains(moving.reg) && stepped_.at(moving.reg) > turn;
       if (behind != int64_t{is_behind(i, moving.reg)}) return false;
       inst.operands = {inst.operands[0], first_.at(i), constant_of(turn * steps_.at(moving.reg), wide)};
@@ -222,7 +224,8 @@ class CountedLoop {
     layout_.push_back(BlockId(draft_.blocks.size() - 1));
     return layout_.back();
   }
-  // Goes to `taken` when the counter lasts for `turns` more turns; with `negate`, when it does not.
+  // Ends a block with a test. It goes to `taken` when the counter lasts for `turns` more turns or, with
+  // `negate`, when it does not.
   void end_in_test(BlockId at, int64_t turns, bool negate, BlockId taken) {
     DraftBlock& block = draft_.blocks[at];
     block.end = DraftBlock::End::Branch;
@@ -233,8 +236,8 @@ class CountedLoop {
     block.negate = negate;
     block.taken = taken;
   }
-  // Where the counter must be before or beyond for that many turns. Saturated: a bound that no counter can be
-  // below.
+  // Returns the bound that the counter must not have reached if it is to last for `turns` turns. The
+  // subtraction saturates, so that no counter can be below the lowest bound.
   Operand limit(int64_t turns) {
     const int64_t way = steps_[counter_] * (turns - 1);
     if (!counts_up_) return constant_of(-way, false);
@@ -253,9 +256,9 @@ class CountedLoop {
     return Operand::of(found->second);
   }
 
-  // Model: a block each, so that loads stay in their turn: an H200 waits for memory once in each of the four
-  // (k_matmul, docs/validation.md), not once for all. Returns the first; the last goes to `next`, or to the
-  // block behind it.
+  // Appends copies of the body. Model: each copy is a block of its own, so that loads stay in their turn. An
+  // H200 waits for memory once in each of the four turns (k_matmul, docs/validation.md), not once for all of
+  // them. Returns the first copy. The last copy goes to `next`, or to the block after it.
   BlockId add_turns(int64_t turns, BlockId next = kNoBlock) {
     stepped_.clear(), names_.clear(), first_.clear();
     const auto body = BlockId(draft_.blocks.size());
@@ -267,8 +270,8 @@ class CountedLoop {
     return body;
   }
 
-  // Puts the copies in front of the loop, and their tests around them: fours, then two, then the loop itself.
-  // The first turn runs whatever the counter is.
+  // Puts the copies before the loop, with tests around them: fours, then two, then the loop itself. The first
+  // turn runs whatever the counter is.
   void append() {
     first_block_ = BlockId(draft_.blocks.size());
     const BlockId entry = add_block({}, first_block_ + 1);
@@ -297,17 +300,18 @@ class CountedLoop {
   const uint16_t setp_ne_s32_ = isa::op_index("setp.ne.s32"), setp_gt_s32_ = isa::op_index("setp.gt.s32");
   const uint16_t setp_lt_s32_ = isa::op_index("setp.lt.s32"), sub_sat_s32_ = isa::op_index("sub.sat.s32");
   VirtualRegister counter_ = kNoRegister;
-  Operand end_;  // what the counter runs to
+  Operand end_;  // bound of the counter
   bool counts_up_ = false;
-  std::map<int64_t, VirtualRegister> limits_;   // by turns, where the end is in a register
-  std::map<VirtualRegister, int> definitions_;  // in the loop
-  std::set<VirtualRegister> kept_;  // of those, what a turn takes from the last one or others read
-  std::map<VirtualRegister, int64_t> steps_,
-      stepped_;  // what a turn adds; turns of it done in the copies so far
-  std::map<VirtualRegister, VirtualRegister> names_;  // at the present place of the copies
-  std::map<size_t, Operand> first_;                   // what the first turn's instruction gave
-  BlockId first_block_ = kNoBlock;                    // of those that are new
-  std::vector<BlockId> layout_;                       // these
+  std::map<int64_t, VirtualRegister> limits_;   // by number of turns, if the bound is in a register
+  std::map<VirtualRegister, int> definitions_;  // number of definitions in the loop, by register
+  // The defined registers that the next turn or other blocks read.
+  std::set<VirtualRegister> kept_;
+  std::map<VirtualRegister, int64_t> steps_;          // constant that a turn adds
+  std::map<VirtualRegister, int64_t> stepped_;        // turns that the copies so far have done
+  std::map<VirtualRegister, VirtualRegister> names_;  // present name in the copies
+  std::map<size_t, Operand> first_;                   // result of each instruction in the first turn
+  BlockId first_block_ = kNoBlock;                    // first of the new blocks
+  std::vector<BlockId> layout_;                       // the new blocks, in order
 };
 
 }  // namespace

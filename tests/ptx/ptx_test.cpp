@@ -307,7 +307,7 @@ TEST_CASE("mistakes are told with file, line and column, all at once") {
   CHECK(message_of(storing("add.u32 %r1, %r2;")).find("takes 3 operands, not 2") != std::string::npos);
   CHECK(message_of(storing("add.u32 %r1 %r2;")).find("test.ptx:8:13: error: expected ',', found '%r2'") !=
         std::string::npos);
-  CHECK(message_of(storing("@%r1 bra X; X:")).find("'%r1' is no predicate") != std::string::npos);
+  CHECK(message_of(storing("@%r1 bra X; X:")).find("'%r1' is not a predicate") != std::string::npos);
   CHECK(message_of(storing("call f;", ".func f() { call f; ret; }\n")).find("'f' calls itself") !=
         std::string::npos);
   CHECK(message_of(storing("call printf;", ".extern .func printf();\n")).find("has no body") !=
