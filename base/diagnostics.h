@@ -17,8 +17,8 @@ struct SourceLocation {
   std::string file;
   int line = 0;
   int column = 0;
-  std::string to_string()
-      const;  // "file:line:column" without the parts that are not known; "" without a file
+  // Returns "file:line:column" without the parts that are not known, or "" without a file.
+  std::string to_string() const;
 };
 
 // An error that ends loading or running. It is thrown only between main and the end of loading, or by a run

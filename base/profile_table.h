@@ -60,10 +60,10 @@ struct ProfileRow : ProfileCounts {
 
 struct ProfileTable {
   std::vector<std::string> reasons;
-  std::vector<ProfileRow>
-      rows;  // in program order; the slots of all rows add up to the cycles of all schedulers
-  std::vector<ProgramListing>
-      programs;  // programs that ran; empty when the profile comes from a file of its own
+  // The rows are in program order. Their slots add up to the cycles of all schedulers.
+  std::vector<ProfileRow> rows;
+  // The programs that ran. The list is empty when the profile comes from a file of its own.
+  std::vector<ProgramListing> programs;
 };
 
 // Holds one row per interval; each row has as many values as `columns`.

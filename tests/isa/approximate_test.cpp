@@ -1,4 +1,4 @@
-// Tests of the special-function unit against hashes of recorded outputs, and of its forms against each other.
+// Tests the special-function unit against hashes of recorded outputs, and its forms against each other.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <cmath>
@@ -13,14 +13,14 @@ using namespace glint::isa;
 
 namespace {
 
-// One op run a warp at a time.
+// Runs one op, a warp at a time.
 class Runner {
  public:
   explicit Runner(std::string_view name)
       : row_(op_table()[op_index(name)]), inst_(spread(row_, op_index(name))) {
     fixture_.warp.exec = kAllLanes;
   }
-  // The results for inputs a(lane) and, where the op has two sources, b(lane).
+  // Returns the results for inputs a(lane) and, where the op has two sources, b(lane).
   template <class A, class B>
   const uint32_t* run(A&& a, B&& b) {
     for (int lane = 0; lane < kLanes; ++lane) {
@@ -41,7 +41,8 @@ class Runner {
   WarpFixture fixture_;
 };
 
-// What a GPU (sm_90) answered to the inputs first, first + step ...: a hash of all outputs, word by word.
+// Holds what a GPU (sm_90) answered to the inputs first, first + step, ...: a hash of all outputs, word by
+// word.
 struct Octave {
   std::string_view op;
   uint32_t first, step, count;
@@ -64,7 +65,7 @@ constexpr Octave kOctaves[] = {
     {"tanh.approx.f32", 0x3e00'0000, 1, kAll, 0x4ada'670d'afb6'c6e5},
     {"tanh.approx.f32", 0x3e80'0000, 1, kAll, 0x0bf2'ef9f'6a7f'5765},
     {"tanh.approx.f32", 0x3f00'0000, 1, kAll, 0xecb8'e846'da55'4505},
-    // From 2^-31 to 2^19 and more.
+    // The inputs go from 2^-31 to more than 2^19.
     {"ex2.approx.ftz.f32", 0x3000'0000, 127, kSampled, 0x2543'392f'3359'd1f9},
     {"ex2.approx.ftz.f32", 0xb000'0000, 127, kSampled, 0x9525'b416'35b9'14c4},
     {"sin.approx.ftz.f32", 0x3000'0000, 127, kSampled, 0x1db0'2881'7305'76d9},
@@ -73,7 +74,7 @@ constexpr Octave kOctaves[] = {
 
 uint64_t hash_of(const Octave& octave) {
   Runner op(octave.op);
-  uint64_t hash = 0xcbf2'9ce4'8422'2325ull;  // FNV-1a, words for bytes
+  uint64_t hash = 0xcbf2'9ce4'8422'2325ull;  // FNV-1a, with words in place of bytes
   for (uint32_t i = 0; i < octave.count; i += kLanes) {
     const uint32_t* const out =
         op.run([&](uint32_t lane) { return octave.first + (i + lane) * octave.step; });
@@ -88,7 +89,7 @@ float as_float(uint32_t bits) {
   return x;
 }
 
-// Floats of all signs and exponents, mantissas spread by an odd factor.
+// Returns floats of all signs and exponents. An odd factor spreads the mantissas.
 uint32_t sample(uint32_t i) {
   return i * 0x9e37'79b9u;
 }

@@ -1,4 +1,4 @@
-// Accuracy of the special functions against double precision, in units in the last place.
+// Tests the accuracy of the special functions against double precision, in units in the last place.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <bit>
@@ -13,14 +13,16 @@ using namespace glint::isa;
 
 namespace {
 
-// Distance of `got` from `exact` in ulps of the float nearest to `exact`; subnormals have the ulp 2^-149.
+// Returns the distance of `got` from `exact` in ulps of the float nearest to `exact`. Subnormals have the ulp
+// 2^-149.
 double error_ulps(float got, double exact) {
   int exponent = 0;
   std::frexp(exact, &exponent);
   return std::abs(double(got) - exact) / std::ldexp(1.0, std::max(exponent - 24, -149));
 }
 
-// Largest error of `name` over `count` floats from `first` on, `step` bits apart, both signs if asked.
+// Returns the largest error of `name` over `count` floats from `first` on, `step` bits apart, with both signs
+// if asked.
 template <class Exact>
 double max_error(const char* name, uint32_t first, uint32_t last, uint32_t step, bool both_signs,
                  Exact exact) {

@@ -1,4 +1,4 @@
-// Tests that follow from the rows of the op table alone: examples, masks, and bits equal on all SIMD paths.
+// Tests what follows from the rows of the op table alone: examples, masks, and equal bits on all SIMD paths.
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <set>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr LaneMask kSparse = 0x8421'0f07;
 
-// xorshift64*: the same inputs on every machine.
+// Uses xorshift64*, which gives the same inputs on every machine.
 uint64_t next_random(uint64_t& state) {
   state ^= state >> 12;
   state ^= state << 25;
@@ -23,7 +23,7 @@ uint64_t next_random(uint64_t& state) {
   return state * 0x2545'f491'4f6c'dd1dull;
 }
 
-// Bits that go wrong: zeros, ones, extremes of integers and floats, NaN, subnormals, shift counts.
+// These bits often go wrong: zeros, ones, extremes of integers and floats, NaN, subnormals, shift counts.
 constexpr uint32_t kCorners[] = {
     0,           1,           2,           7,           31,          32,          33,          63,
     64,          255,         0x7fff'ffff, 0x8000'0000, 0x8000'0001, 0xffff'ffff, 0xffff'fffe, 0x3f80'0000,
@@ -49,7 +49,7 @@ std::vector<Path> paths() {
   return out;
 }
 
-// Fills every register and predicate, runs the op, and returns all of them.
+// Fills every register and predicate, runs the op, and returns all registers and predicates.
 std::vector<uint32_t> run_random(const OpRow& row, uint16_t op, uint64_t seed, LaneMask exec) {
   WarpFixture w;
   for (LaneMask& p : w.warp.predicate) p = LaneMask(next_random(seed));
@@ -70,7 +70,8 @@ TEST_CASE("every row is complete: a name of its own, a sentence, a handler and t
     CHECK(row.doc.ends_with("."));
     CHECK(row.run != nullptr);
     CHECK(find_op(row.name) == &row - op_table().data());
-    if (is_value_op(row) && row.operands.count > 1) CHECK(row.examples.count >= 2);  // alone: activemask
+    // Activemask has only one operand.
+    if (is_value_op(row) && row.operands.count > 1) CHECK(row.examples.count >= 2);
     int slots = 0;
     for (const OperandKind kind : row.operands.view()) slots += slots_of(kind);
     CHECK(slots <= kMaxOperands);
@@ -149,7 +150,7 @@ TEST_CASE("every value op gives the same bits on every path for random and extre
 }
 
 TEST_CASE("results that only rounding lifts to the least normal number are flushed, on every path alike") {
-  // Normal sources and zeros, whose product, quotient or product and sum lies near 2^-126.
+  // The sources are normal numbers and zeros whose product, quotient or fused sum lies near 2^-126.
   const auto fill = [](WarpFixture& w, uint64_t seed) {
     for (int lane = 0; lane < kLanes; ++lane) {
       const uint64_t r = next_random(seed);
@@ -194,14 +195,15 @@ TEST_CASE("results that only rounding lifts to the least normal number are flush
     }
     CHECK(different == 0);
   }
-  CHECK(lifted > 1000);  // the sources do what they are for
+  CHECK(lifted > 1000);  // checks that the sources do reach such results
 }
 
 TEST_CASE("a masked run equals the full run on its lanes and changes nothing else") {
   for (const Path path : paths())
     for (size_t op = 0; op < op_table().size(); ++op) {
       const OpRow& row = op_table(path)[op];
-      if (!is_value_op(row) || row.unit == Unit::Shuffle) continue;  // those depend on who runs
+      // These ops depend on which lanes execute.
+      if (!is_value_op(row) || row.unit == Unit::Shuffle) continue;
       INFO(name_of(path) << " " << row.name);
       const auto full = run_random(row, uint16_t(op), 77, kAllLanes);
       const auto none = run_random(row, uint16_t(op), 77, 0);

@@ -1,5 +1,6 @@
-// The text of programs: what is printed parses to the identical program, and mistakes are named at their
-// place. SPDX-License-Identifier: Apache-2.0
+// Tests the text of programs: printed text parses to the identical program, and mistakes are reported at
+// their place.
+// SPDX-License-Identifier: Apache-2.0
 #include "isa/text.h"
 
 #include <algorithm>
@@ -16,7 +17,8 @@ using namespace glint::isa;
 
 namespace {
 
-// A register, constant or special for each source in turn, so that every bank stands in every kind of slot.
+// Returns a register, constant or special register for each source in turn, so that every bank appears in
+// every kind of slot.
 Slot some_source(Program& p, bool is_wide, uint32_t& turn) {
   ++turn;
   if (turn % 3 == 0) {
@@ -28,7 +30,8 @@ Slot some_source(Program& p, bool is_wide, uint32_t& turn) {
   return Slot(2 * (turn % 20));
 }
 
-// Every row of the table, guarded and not, then `exit`; labels point at the joins.
+// Returns a program with every row of the table, with and without guard, then `exit`. Labels point at the
+// joins.
 Program program_of_all_rows() {
   Program p;
   p.name = "all \"rows\".rgen";
@@ -81,8 +84,8 @@ Inst simple(std::string_view op, std::initializer_list<Slot> operands = {}, int3
   return inst;
 }
 
-// All registers and predicates written, then `op` in surroundings where it makes sense, in a shader of
-// `stage`.
+// Returns a program for a shader of `stage` that writes all registers and predicates and then executes `op`
+// in surroundings where it makes sense.
 Program program_of_one_row(uint16_t op, Stage stage) {
   Program p;
   p.name = "one row";
@@ -112,7 +115,7 @@ Program program_of_one_row(uint16_t op, Stage stage) {
     for (const int end = slot + slots_of(kind); slot < end; ++slot)
       inst.operand[size_t(slot)] = is_predicate ? Slot(number++ % kNumPredicates) : Slot(2 + 2 * number++);
   }
-  if (e == Effect::Print || e == Effect::PrintPart) {  // the message's number is a constant
+  if (e == Effect::Print || e == Effect::PrintPart) {  // the message's number must be a constant
     p.messages = {"%d \"%x\"\n"};
     inst.operand[0] = kConstantBank;
   }

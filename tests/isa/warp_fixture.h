@@ -1,4 +1,4 @@
-// A warp with registers, constants and predicates of its own: what the tests of op handlers run on.
+// Provides a warp with its own registers, constants and predicates, on which tests run op handlers.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace glint::isa {
 
-// Registers hold garbage that differs from row to row and lane to lane, so that a lost lane shows.
+// Fills registers with values that differ from row to row and from lane to lane, so that a lost lane shows.
 class WarpFixture {
  public:
   WarpFixture() {
@@ -19,7 +19,7 @@ class WarpFixture {
   }
   uint32_t& at(int row, int lane) { return warp.bank[0][row * kLanes + lane]; }
 
-  // Writes a value of the width of `kind` to the row (pair) or predicate of `slot`.
+  // Writes a value of the width of `kind` to the row (or pair of rows) or the predicate of `slot`.
   void set(OperandKind kind, Slot slot, int lane, uint64_t value) {
     if (kind == OperandKind::SrcPred || kind == OperandKind::DstPred) {
       const LaneMask bit = LaneMask{1} << lane;
@@ -33,10 +33,10 @@ class WarpFixture {
     if (kind == OperandKind::SrcPred || kind == OperandKind::DstPred) return warp.predicate[slot] >> lane & 1;
     return at(slot, lane) | (is_wide(kind) ? uint64_t{at(slot + 1, lane)} << 32 : 0);
   }
-  static bool is_wide(OperandKind kind) {  // DstVec2: unpack.b64, whose parts the tests put side by side
+  static bool is_wide(OperandKind kind) {  // DstVec2 of unpack.b64: tests put its parts side by side
     return kind == OperandKind::Dst64 || kind == OperandKind::Src64 || kind == OperandKind::DstVec2;
   }
-  // Every register and predicate, to compare whole warps.
+  // Returns every register and predicate, to compare whole warps.
   std::vector<uint32_t> snapshot() const {
     std::vector<uint32_t> out(warp.predicate.begin(), warp.predicate.end());
     out.insert(out.end(), warp.bank[0], warp.bank[0] + kRows * kLanes);
@@ -53,7 +53,7 @@ class WarpFixture {
   std::vector<Lanes> storage_ = std::vector<Lanes>(3 * kRows);
 };
 
-// An instruction of `row` whose operand number n lies at row 2n (predicate n).
+// Returns an instruction of `row` whose operand number n lies at row 2n, or is predicate n.
 inline Inst spread(const OpRow& row, uint16_t op) {
   Inst inst;
   inst.op = op;

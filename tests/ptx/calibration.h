@@ -1,4 +1,4 @@
-// The recorded inputs and outputs of the calibration kernels, which lie beside the repository.
+// Provides the recorded inputs and outputs of the calibration kernels, which lie next to the repository.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstring>
@@ -19,7 +19,8 @@ inline std::string read_file(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// The recorded outputs, by the first word of their lines in valid_out.txt; several of one name in order.
+// Holds the recorded outputs by the first word of their lines in valid_out.txt. Outputs of one name are in
+// order.
 class Outputs {
  public:
   explicit Outputs(const std::filesystem::path& folder) {
@@ -54,7 +55,7 @@ class Outputs {
   std::vector<Range> ranges_;
 };
 
-// The host program's generator, and its inputs in the order in which it drew them.
+// Holds the inputs of the host program. They come from its generator, in the order in which it drew them.
 struct Inputs {
   static constexpr uint32_t kCount = 1 << 18;
   uint32_t state = 12345;

@@ -1,8 +1,9 @@
-// Fourteen kernels as nvcc compiled them, on the inputs of the program that ran them on a GPU: the same
-// outputs.
+// Runs fourteen kernels as nvcc compiled them, on the inputs of the program that ran them on a GPU, and
+// expects the same outputs.
+// SPDX-License-Identifier: Apache-2.0
 //
-// The data lie beside the repository: valid.ptx, valid_out.bin.zst and valid_out.txt, which lists the
-// outputs. SPDX-License-Identifier: Apache-2.0
+// The data lie next to the repository: valid.ptx, valid_out.bin.zst and valid_out.txt, which lists the
+// outputs.
 #include "tests/ptx/calibration.h"
 
 #include <cstdio>

@@ -1,7 +1,8 @@
-// Instructions and cycles of the calibration kernels on the preset `h200`, beside a GPU's counters.
+// Compares instructions and cycles of the calibration kernels on the preset `h200` with a GPU's counters.
+// SPDX-License-Identifier: Apache-2.0
 //
-// The kernels, their inputs and the counters lie beside the repository. `test_ptx_h200 [rays]` runs those
-// that take long. SPDX-License-Identifier: Apache-2.0
+// The kernels, their inputs and the counters lie next to the repository. `test_ptx_h200 [rays]` runs the
+// kernels that take long.
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -21,7 +22,8 @@ struct Counters {
   double cycles = 0, instructions = 0, global_loads = 0;
 };
 
-// By kernel; several launches of one kernel get " 2" and so on behind the name.
+// Returns the counters by name of the kernel. The second launch of a kernel has " 2" after its name, and so
+// on.
 std::map<std::string, Counters> read_counters(const std::filesystem::path& path) {
   std::map<std::string, Counters> out;
   std::istringstream lines(read_file(path));
@@ -41,11 +43,11 @@ std::map<std::string, Counters> read_counters(const std::filesystem::path& path)
       head = cells;
       continue;
     }
-    if (cells[0].empty()) continue;  // units
+    if (cells[0].empty()) continue;  // the row of units
     const auto number = [&](const char* name) {
       for (size_t i = 0; i < head.size() && i < cells.size(); ++i)
         if (head[i] == name) {
-          std::erase(cells[i], ',');  // of thousands
+          std::erase(cells[i], ',');  // thousands separators
           return std::atof(cells[i].c_str());
         }
       FAIL("no column " << name);
@@ -92,7 +94,7 @@ class Runs {
     std::fflush(stdout);
     INFO(name);
     CHECK(std::abs(instructions / real.instructions - 1) <= 0.05);
-    CHECK(global_loads == real.global_loads);  // warps' loads: lanes part and meet where they did
+    CHECK(global_loads == real.global_loads);  // loads by warps: lanes diverged and met at the same places
     sum_ += std::abs(error);
     ++count_;
   }

@@ -1,4 +1,4 @@
-// Kernels from PTX text, run on either machine with buffers on the host's side: for tests.
+// Runs kernels from PTX text on either machine, with buffers on the host's side, for tests.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace glint {
 
-// One kernel, its buffers and arguments in order.
+// Holds one kernel with its buffers and arguments, in order.
 class Launcher {
  public:
   Launcher(const std::string& text, const std::string& file, const std::string& entry,
@@ -39,7 +39,7 @@ class Launcher {
     return pipeline::TimingMachine(params, world_.world, false).run({});
   }
 
-  // What buffer `n`, counted among the buffers, holds.
+  // Returns the contents of buffer `n`, counted among the buffers.
   template <class T>
   std::vector<T> read(size_t n, size_t count) {
     const auto view = world_.memory().view<T>(buffers_.at(n), count);

@@ -1,4 +1,4 @@
-// The PTX front end by small kernels: what they compute, and how mistakes are told.
+// Tests the PTX front end by small kernels: what they compute, and how mistakes are reported.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 #include <fstream>
@@ -14,7 +14,7 @@ namespace {
 
 const std::string kHead = ".version 7.0\n.target sm_70\n.address_size 64\n";
 
-// A kernel `k` of one warp that stores %out of each thread, a word, to its parameter.
+// Returns a kernel `k` of one warp that stores the word %out of each thread to the buffer of its parameter.
 std::string storing(const std::string& body, const std::string& before = "") {
   return kHead + before +
          ".visible .entry k(.param .u64 to)\n{\n.reg .b32 %out, %lane, %r<40>; .reg .b64 %at, %rd<20>; .reg "
@@ -45,7 +45,7 @@ std::string message_of(const std::string& text) {
 
 const pipeline::KernelGrid kWarp{{1, 1, 1}, {32, 1, 1}, 0};
 
-// The kernel as it is run; its results are checked against those of the text as it stands.
+// Returns the kernel as it runs after shaping. Its results are checked against those of the unshaped text.
 std::string shaped(const std::string& body, const std::string& before = "") {
   const std::string text = storing(body, before);
   frontend::PtxOptions plain;
@@ -68,7 +68,8 @@ std::vector<uint32_t> expected(uint32_t (*of_lane)(uint32_t)) {
 }  // namespace
 
 TEST_CASE("lanes that part meet again where their paths must meet") {
-  // Half of the lanes take each side; inside, some take a further branch. Behind it a vote sees all.
+  // Half of the lanes take each side, and inside one side some take another branch. The vote after it sees
+  // all lanes.
   const std::string body = R"(
     setp.lt.u32 %p1, %lane, 16;
     @%p1 bra LOW;
@@ -189,7 +190,7 @@ TEST_CASE("a comparison takes in the predicate that it is combined with, unless 
   CHECK(count(text, "setp.eq.or.u32") == 1);
   CHECK(count(text, ".pred") == 0);
   CHECK(count(shaped(both + "@%p1 add.u32 %out,%out,1;@%p2 add.u32 %out,%out,2;\n"), "and.pred") == 1);
-  // What it compares has changed since.
+  // The register that the comparison reads has changed since.
   CHECK(count(shaped("mov.u32 %r1,%lane;setp.gt.u32 %p1,%r1,3;setp.ne.u32 %p2,%lane,9;add.u32 "
                      "%r1,%r1,%lane;and.pred %p3,%p1,%p2;\n"
                      "@%p1 add.u32 %out,%out,1;\n@%p3 add.u32 %out,%out,%r1;\n"),
@@ -201,7 +202,7 @@ TEST_CASE("a product that only sums read becomes part of each of them") {
       "mul.lo.u32 %r9,%lane,7;mul.wide.u32 %rd1,%r9,12;cvt.u64.u32 %rd4,%lane;add.s64 %rd2,%rd1,%rd4;add.s64 "
       "%rd3,%rd2,%rd1;xor.b64 %rd5,%rd2,%rd3;cvt.u32.u64 %out,%rd5;\n";
   const std::string text = shaped(body);
-  CHECK(count(text, "mad.wide.u32") == 3);  // and the one of the store
+  CHECK(count(text, "mad.wide.u32") == 3);  // one of them for the address of the store
   CHECK(count(text, "mul.wide.u32") == 0);
   const std::string read = shaped(body + "cvt.u32.u64 %r5,%rd1;add.u32 %out,%out,%r5;\n");
   CHECK(count(read, "mul.wide.u32") == 1);
@@ -210,7 +211,8 @@ TEST_CASE("a product that only sums read becomes part of each of them") {
 }
 
 TEST_CASE("a loop of one block that counts down runs four turns at a time, and any number of them") {
-  // Lanes count from different numbers of steps of 3; the pointer steps by 8, what it is added to stays.
+  // Lanes count from different multiples of 3. The pointer steps by 8, and the value that it is added to
+  // stays.
   const auto body = [](const std::string& start, const std::string& more = "") {
     return "mul.lo.u32 %r1,%lane,3;" + start +
            "mov.u64 %rd1,0;mul.wide.u32 %rd2,%lane,16;mov.u32 %r2,7;\n"
@@ -223,10 +225,10 @@ TEST_CASE("a loop of one block that counts down runs four turns at a time, and a
   };
   const std::string some = shaped(body("add.u32 %r1,%r1,3;"));
   CHECK(count(some, "mad.lo.u32 %r") >= 5);
-  CHECK(count(some, "setp.gt.s32") == 4);  // for four and for two, each before and behind
+  CHECK(count(some, "setp.gt.s32") == 4);  // for four and for two turns, each before and after
   shaped(body("mov.u32 %r1,12;"));
   shaped(body("mov.u32 %r1,15;"));
-  // Not where lanes read each other, or what ends the loop is read behind it.
+  // The loop is not unrolled where lanes read each other, or where the predicate that ends it is read later.
   CHECK(count(shaped(body("mov.u32 %r1,30;", "shfl.sync.bfly.b32 %r2,%r2,1,31,-1;")), "setp.gt.s32") == 0);
   CHECK(count(shaped(body("mov.u32 %r1,30;") + "@%p1 add.u32 %out,%out,1;\n"), "setp.gt.s32") == 0);
 }
@@ -234,7 +236,7 @@ TEST_CASE("a loop of one block that counts down runs four turns at a time, and a
 TEST_CASE(
     "a loop of one block that counts up to a bound runs four turns at a time, and any number of them, also "
     "where the bound less four turns has no name") {
-  // %r1 from `start` by 3 up to `bound`; each lane's turns are seen in %r2.
+  // The loop counts %r1 from `start` by 3 up to `bound`; %r2 shows the turns of each lane.
   const auto body = [](const std::string& start, const std::string& bound, const std::string& more = "") {
     return start + bound + "mov.u32 %r2,7;\nLOOP: mad.lo.u32 %r2,%r2,5,%r1;" + more +
            "add.s32 %r1,%r1,3;setp.lt.s32 %p1,%r1,%r6;@%p1 bra LOOP;\nadd.u32 %out,%r2,%r1;\n";
@@ -243,11 +245,11 @@ TEST_CASE(
   for (const std::string& text :
        {shaped(body(from_2, by_lane)), shaped(body("mov.u32 %r1,%lane;", "mov.u32 %r6,40;"))}) {
     CHECK(count(text, "mad.lo.u32 %r") >= 7);
-    CHECK(count(text, "setp.lt.s32") == 6);  // 4, 4, 2, 2, 1 and the loop's own
+    CHECK(count(text, "setp.lt.s32") == 6);  // for 4, 4, 2, 2 and 1 turns, and for the loop itself
   }
   for (const char* start : {"mov.u32 %r1,-2147483648;", "mov.u32 %r1,2147483640;", "mov.u32 %r1,0;"})
     shaped(body(start, "add.u32 %r6,%lane,-2147483648;"));
-  // Waiting for the block: only where all lanes count alike.
+  // A loop that waits for the block is unrolled only where all lanes count alike.
   const std::string waits = "bar.sync 0;";
   CHECK(count(shaped(body(from_2, "mov.u32 %r6,%ntid.x;", waits)), "setp.lt.s32") == 6);
   CHECK(count(shaped(body(from_2, "shr.u32 %r6,%lane,5;add.u32 %r6,%r6,40;", waits)), "setp.lt.s32") == 1);
@@ -317,7 +319,7 @@ TEST_CASE("mistakes are told with file, line and column, all at once") {
 
 namespace {
 
-// xorshift64*: the same graphs on every machine.
+// Uses xorshift64*, which gives the same graphs on every machine.
 struct Random {
   uint64_t state;
   uint32_t below(uint32_t n) {
@@ -328,11 +330,11 @@ struct Random {
   }
 };
 
-// A graph of blocks, any of which may lead to any others: block b adds its number to a hash, then ends the
-// lane, goes on, or branches by a bit of the hash. A budget of steps ends every walk.
+// Holds a graph of blocks in which any block may lead to any other. Block b adds its number to a hash. Then
+// it ends the lane, goes on, or branches by a bit of the hash. A limit on steps ends every walk.
 struct Maze {
   struct Block {
-    uint32_t kind = 0, bit = 0, taken = 0, next = 0;  // kind 0: end
+    uint32_t kind = 0, bit = 0, taken = 0, next = 0;  // kind 0 ends the lane
   };
   std::vector<Block> blocks;
 

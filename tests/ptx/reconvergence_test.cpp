@@ -1,4 +1,4 @@
-// Where lanes meet again in loops whose turns have several ways round and several ways out.
+// Tests where lanes meet again in loops whose turns have several ways through and several ways out.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
@@ -11,8 +11,8 @@ namespace {
 
 constexpr uint32_t kTurns = 8;
 
-// A kernel of one warp that stores %out of each lane. At AGAIN it counts in %out the turns, of the first
-// eight, in which the lanes at the loop's head are not all.
+// Returns a kernel of one warp that stores %out of each lane. At AGAIN, %out counts the turns, among the
+// first eight, in which some lanes are missing at the loop's head.
 std::string loop(const std::string& turn, const std::string& before = "") {
   return ".version 7.0\n.target sm_70\n.address_size 64\n.visible .entry k(.param .u64 to)\n{\n"
          ".reg .b32 %out, %lane, %turn, %here, %bit, %limit; .reg .b64 %at; .reg .pred %p<9>;\n"
@@ -41,7 +41,7 @@ const std::vector<uint32_t> kNone(32);
 TEST_CASE(
     "lanes that go on to a loop's next turn by one way wait for those that come by another, past the way "
     "out") {
-  // Even lanes + turns go round at once; the others may leave first.
+  // Lanes with an even sum of lane and turn go round at once; the others may leave first.
   const std::string text = loop(fmt::format(
       "@%p2 bra AGAIN;\nxor.b32 %bit, %bit, 3;\nsetp.gt.u32 %p3, %turn, {}; @%p3 bra END;\nbra AGAIN;\n",
       kTurns));
@@ -61,7 +61,7 @@ TEST_CASE("lanes wait at the end of a turn for those in a loop within it") {
 
 TEST_CASE(
     "lanes that leave two loops at once meet the others behind both, also when the outer loop runs again") {
-  // The inner loop's second way out leads out of both; the outer one goes round four times for the rest.
+  // The inner loop's second exit leaves both loops. The outer loop makes four turns for the other lanes.
   const std::string text =
       loop(fmt::format("@%p2 bra AGAIN;\nsetp.eq.u32 %p5, %turn, 14; @%p5 bra END;\nsetp.gt.u32 %p3, %turn, "
                        "{}; @%p3 bra OUTER;\nbra AGAIN;\n"

@@ -1,4 +1,4 @@
-// Binding tables: where records lie, what they hold, what they call, and what a host may not ask for.
+// Tests binding tables: where records lie, what they hold, what they call, and what a host may not ask for.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/binding_table.h"
 
@@ -11,8 +11,8 @@ namespace {
 
 using Catch::Matchers::Contains;
 
-// Shaders 0 to 4: ray generation, miss, closest-hit, intersection, callable; a group for each, the fourth
-// with both of hits.
+// Has shaders 0 to 4: ray generation, miss, closest-hit, intersection, callable. Each has a group, and the
+// fourth group has both hit shaders.
 struct Bench {
   exec::World world;
   mem::AddressSpace memory;

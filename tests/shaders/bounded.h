@@ -1,8 +1,10 @@
-// A number and how far a conforming implementation may be from it: Vulkan's table of precision as arithmetic.
+// Pairs a number with the distance that a conforming implementation may have from it: Vulkan's table of
+// precision as arithmetic.
+// SPDX-License-Identifier: Apache-2.0
 //
-// Vulkan specification, "Precision and Operation of SPIR-V Instructions": some operations have an error of
-// their own, others inherit that of a formula. A Bounded runs the formula and adds the errors up. Subnormal
-// results may be flushed. SPDX-License-Identifier: Apache-2.0
+// In the Vulkan specification, "Precision and Operation of SPIR-V Instructions", some operations have an
+// error of their own, and others inherit the error of a formula. A Bounded computes the formula and adds up
+// the errors. Subnormal results may be flushed.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -14,7 +16,7 @@ namespace glint::test {
 inline constexpr double kSmallestNormal = 0x1p-126, kLargest = 0x1.fffffep127;
 inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-// The distance of neighbouring floats around x.
+// Returns the distance of neighbouring floats around x.
 inline double ulp(double x) {
   if (!std::isfinite(x)) return kUnbounded;
   return std::ldexp(1.0, std::max(x == 0 ? -149 : std::ilogb(x) - 23, -149));
@@ -23,17 +25,18 @@ inline double ulp(double x) {
 struct Bounded {
   double v = 0, e = 0;
   Bounded() = default;
-  Bounded(double value, double error = 0) : v(value), e(error) {}  // NOLINT: numbers mix with Bounded
+  // NOLINTNEXTLINE: implicit, because numbers mix with Bounded
+  Bounded(double value, double error = 0) : v(value), e(error) {}
 };
 
-// A result with the error of its operands, rounded to within `ulps`.
+// Returns a result with the error of its operands, rounded to within `ulps`.
 inline Bounded rounded(double v, double e, double ulps) {
   if (std::isnan(v) || std::isnan(e) || std::abs(v) + e > kLargest) return {v, kUnbounded};
   const double largest = std::abs(v) + e;
   const double flushed = largest - 2 * e < kSmallestNormal && largest > 0 ? kSmallestNormal : 0;
   return {v, e + ulps * ulp(largest) + flushed};
 }
-// The largest change of f over the interval of x.
+// Returns the largest change of f over the interval of x.
 template <class F>
 double spread(const Bounded& x, F&& f) {
   const double middle = f(x.v),
@@ -56,7 +59,7 @@ inline Bounded operator*(const Bounded& x, const Bounded& y) {
 inline Bounded operator/(const Bounded& x, const Bounded& y) {
   const double nearest = std::abs(y.v) - y.e;
   if (nearest < 0x1p-126 || std::abs(y.v) > 0x1p126)
-    return {x.v / y.v, kUnbounded};  // where the table is silent
+    return {x.v / y.v, kUnbounded};  // the table gives no bound
   return rounded(x.v / y.v, (x.e + std::abs(x.v / y.v) * y.e) / nearest, 2.5);
 }
 
@@ -78,7 +81,7 @@ inline Bounded inversesqrt(const Bounded& x) {
   const auto f = [](double t) { return 1 / std::sqrt(t); };
   return rounded(f(x.v), spread(x, f), 2);
 }
-inline Bounded sqrt(const Bounded& x) {  // 1 / inversesqrt
+inline Bounded sqrt(const Bounded& x) {  // computed as 1 / inversesqrt
   if (x.v == 0 && x.e == 0) return {0};
   const auto f = [](double t) { return std::sqrt(t); };
   const double smallest = std::max(x.v - x.e, 0.0);
@@ -110,7 +113,7 @@ inline Bounded pow(const Bounded& x, const Bounded& y) {
   return exp2(y * log2(x));
 }
 
-// 2^-11 within [-pi, pi]; beyond, the table is silent.
+// The error is 2^-11 within [-pi, pi]; beyond, the table gives no bound.
 inline Bounded circular(const Bounded& x, double value) {
   return {value, std::abs(x.v) <= std::numbers::pi ? 0x1p-11 + x.e : kUnbounded};
 }
@@ -155,14 +158,14 @@ inline Bounded atanh(const Bounded& x) {
   return log((1.0 + x) / (1.0 - x)) * 0.5;
 }
 
-// `then` where x < y, else `other`; both when the errors leave it open.
+// Returns `then` where x < y, else `other`, or a value that covers both when the errors leave it open.
 inline Bounded if_less(const Bounded& x, const Bounded& y, const Bounded& then, const Bounded& other) {
   const Bounded& chosen = x.v < y.v ? then : other;
   const bool is_open = x.e + y.e > 0 && std::abs(x.v - y.v) <= x.e + y.e;
   return {chosen.v, is_open ? std::max(then.e, other.e) + std::abs(then.v - other.v) : chosen.e};
 }
 
-// The same names for the numbers themselves, exact to a double.
+// These names work on plain numbers, with the exactness of a double.
 using std::abs, std::floor, std::sqrt, std::exp2, std::exp, std::log2, std::log, std::pow, std::sin, std::cos,
     std::tan, std::asin, std::acos, std::sinh, std::cosh, std::tanh, std::asinh, std::acosh, std::atanh;
 inline double min(double x, double y) {

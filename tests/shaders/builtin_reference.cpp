@@ -1,4 +1,5 @@
-// The references of the float expressions, one line each: the same formula gives value and bound.
+// Holds the references of the float expressions, one line each. The same formula gives the value and its
+// bound.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/shaders/builtin_reference.h"
 
@@ -20,7 +21,7 @@ constexpr BuiltinReference in_order(std::string_view expression, F f) {
   reference.in_order = [](const Inputs& x) { return F{}(x.a, x.b, x.c); };
   return reference;
 }
-// Of the bits; correctly rounded.
+// Computes a function of the bits, correctly rounded.
 template <class F>
 constexpr BuiltinReference of_bits(std::string_view expression, F,
                                    bool (*is_defined)(const Inputs&) = nullptr) {
@@ -62,7 +63,7 @@ T refracted(T a, T b, T c) {
   const T d = dot(n, x), k = T(1.0) - eta * eta * (T(1.0) - d * d);
   return if_less(k, T(0.0), T(0.0), eta * x[0] - (eta * d + sqrt(k)) * n[0]);
 }
-// By columns; cofactors along the first row.
+// Computes the determinant of a matrix stored by columns, by cofactors along the first row.
 template <class T>
 T det2(T a, T b, T c, T d) {
   return a * d - b * c;

@@ -1,5 +1,6 @@
-// GLSL's built-ins, 138 expressions on 2,048 inputs, against those of a real driver, where its recordings are
-// at hand. SPDX-License-Identifier: Apache-2.0
+// Compares GLSL's built-ins, 138 expressions on 2,048 inputs, with the recordings of a real driver, if they
+// are present.
+// SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <cstdio>
 #include <cstdlib>
@@ -37,7 +38,7 @@ std::string text_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// The file as it is, or unpacked from the one with .zst at its end.
+// Returns the words of the file, or of its compressed form with the ending .zst.
 Words words_of(const fs::path& path) {
   std::string data;
   if (fs::exists(path)) {
@@ -74,8 +75,8 @@ struct Recorded {
   }
 };
 
-// Runs the shader once for each expression; set 0, binding 0 the inputs, 1 the outputs; push constants
-// {expression, lanes}.
+// Runs the shader once for each expression. In set 0, binding 0 has the inputs and binding 1 the outputs. The
+// push constants are {expression, lanes}.
 Words run_all(const fs::path& shader, const Recorded& recorded) {
   Diagnostics diagnostics;
   const isa::Program program = frontend::compile_file(shader.string(), {}, {}, diagnostics);
@@ -108,7 +109,8 @@ bool is_subnormal(float x) {
   return std::fpclassify(x) == FP_SUBNORMAL;
 }
 
-// Where integer results need not be the driver's, and why. `kept`: what they must be then, or null.
+// Lists where integer results may differ from the driver's, and why. `kept` gives the required results, or is
+// null.
 struct Exception {
   std::string_view expression, reason;
   bool (*applies)(const Inputs&);
@@ -154,7 +156,7 @@ constexpr Exception kExceptions[] = {
      [](const Inputs& x) { return uint32_t(x.a >= -1 && x.b >= -1 && x.c >= -1); }},
 };
 
-// What the lanes of one expression came to.
+// Summarises the lanes of one expression.
 struct Result {
   uint32_t equal = 0, within = 0, excepted = 0, open = 0, wrong = 0;
   double p99_ours = 0, p99_driver = 0;
@@ -197,7 +199,7 @@ bool is_moderate(float x) {
   return std::abs(x) >= 1e-3f && std::abs(x) <= 1e3f;
 }
 
-// The ulps of the moderate inputs, ascending; `n` of them count.
+// Returns the ulps of the moderate inputs in ascending order; `n` of them count.
 std::vector<double> moderate_ulps(const BuiltinReference& reference, const Recorded& recorded,
                                   const uint32_t* words) {
   std::vector<double> ulps;
@@ -218,12 +220,12 @@ double percentile_99(const std::vector<double>& ulps) {
   return ulps.empty() ? 0 : ulps[size_t(0.99 * double(ulps.size() - 1))];
 }
 
-constexpr double kOpenUlps =
-    4;  // where Vulkan bounds no error, ours is small all the same, but for the lanes counted as open
+// Where Vulkan bounds no error, the error is still this small, except for the lanes that are counted as open.
+constexpr double kOpenUlps = 4;
 
 bool is_near(float got, double v, double allowed) {
   if (std::isnan(v)) return std::isnan(got);
-  if (std::abs(v) >= kLargest + ulp(kLargest) / 2)  // overflows, give or take the error of the largest floats
+  if (std::abs(v) >= kLargest + ulp(kLargest) / 2)  // overflows, within the error of the largest floats
     return std::signbit(got) == std::signbit(v) &&
            double(std::abs(got)) >= std::min(kLargest, std::abs(v)) - allowed;
   return std::abs(double(got) - v) <= allowed;
@@ -236,7 +238,7 @@ Result compare_floats(const BuiltinReference& reference, const Recorded& recorde
                             driver_ulps = moderate_ulps(reference, recorded, driver);
   result.p99_ours = percentile_99(ulps);
   result.p99_driver = percentile_99(driver_ulps);
-  double p99_allowed = std::max(2 * result.p99_driver, 0.5);  // nothing is nearer than correct rounding
+  double p99_allowed = std::max(2 * result.p99_driver, 0.5);  // correct rounding is the best possible
   if (reference.in_order) {
     Words formula;
     for (uint32_t lane = 0; lane < kLanes; ++lane)

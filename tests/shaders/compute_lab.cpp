@@ -1,4 +1,4 @@
-// The world of a compute shader: memory, descriptors, images, blocks.
+// Builds the world of a compute shader: memory, descriptors, images, blocks.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/shaders/compute_lab.h"
 
@@ -11,7 +11,7 @@
 namespace glint::test {
 namespace {
 
-constexpr uint64_t kBudget = 2'000'000;  // instructions a warp
+constexpr uint64_t kBudget = 2'000'000;  // instructions per warp
 
 struct Bench {
   exec::World world;

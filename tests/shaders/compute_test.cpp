@@ -1,5 +1,6 @@
-// Compute shaders: blocks, shared memory, atomics, addresses, layouts, small types, constants and entry
-// points. SPDX-License-Identifier: Apache-2.0
+// Tests compute shaders: blocks, shared memory, atomics, addresses, layouts, small types, constants and entry
+// points.
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -18,7 +19,7 @@ uint32_t bits(float x) {
   return std::bit_cast<uint32_t>(x);
 }
 
-// Runs `lab` anew for every machine and register limit, and lets `check` look.
+// Runs `lab` anew for every machine and register limit, and calls `check` after each run.
 void each_machine(const ComputeLab& fresh, const std::function<void(ComputeLab&)>& check) {
   for (const LabOptions& options : compute_lab_options()) {
     INFO(to_string(options));
@@ -104,7 +105,7 @@ TEST_CASE("atomics change buffers, shared memory and texels once for each thread
   });
 }
 
-// Numbers as std140 lays them out: each column, row or element at a multiple of 16 bytes.
+// Returns numbers as std140 lays them out: each column, row or element at a multiple of 16 bytes.
 Words uniforms() {
   Words w(40);
   for (uint32_t r = 0; r < 3; ++r)
@@ -129,7 +130,7 @@ TEST_CASE(
   for (uint32_t i = 0; i < 64; ++i) lab.buffers[20][i] = 7 * i;
   lab.buffer_arrays[2] = {{5, 50, 51}, {6, 60, 61, 62}, {7, 70, 71, 72, 73}};
   lab.buffer_arrays[3] = {{0, 0, 0, bits(3.0f)}, {0, 0, 0, bits(4.0f)}};
-  lab.buffers[21] = Words(24);  // four nodes of 24 bytes; the addresses of the next come below
+  lab.buffers[21] = Words(24);  // four nodes of 24 bytes; the addresses of the next nodes follow below
   lab.addressed = {21, 20, 20};
   lab.linked = {21, 24, 4};
   for (uint32_t i = 0; i < 4; ++i)

@@ -1,4 +1,4 @@
-// Shaders that use much at once: they compile and verify with few registers and with many.
+// Compiles shaders that use many features at once and verifies them with few registers and with many.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/verify.h"
 #include "tests/shaders/ray_lab.h"

@@ -1,4 +1,4 @@
-// Images in shaders: what each kind of access gives, from textures whose texels tell where they lie.
+// Tests what each kind of image access gives, with textures whose texels tell where they lie.
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 
@@ -19,7 +19,7 @@ exec::Sampler sampler(exec::Filter filter) {
   return s;
 }
 
-// Texel n is `first` + n.
+// Returns an image whose texel n is `first` + n.
 LabImage counting(ImageShape shape, std::array<uint32_t, 3> size, uint32_t layers, uint32_t levels,
                   float first) {
   LabImage image;
@@ -65,12 +65,12 @@ ComputeLab lab_of_images() {
   return lab;
 }
 
-// What the lane's row holds; see the shader.
+// Returns what the lane's row must hold; the shader is images.comp.
 std::vector<float> expected_row(uint32_t id) {
   const uint32_t x = id & 3, y = id >> 2 & 3;
   const auto flat = [](uint32_t tx, uint32_t ty) { return 1.0f + float(4 * ty + tx); };
   const float level_1 = 17.0f + float(2 * (y / 2) + x / 2);
-  const uint32_t gx = x & 1, gy = y & 1;  // between texels gx, gx + 1
+  const uint32_t gx = x & 1, gy = y & 1;  // between texels gx and gx + 1
   const float gathered =
       flat(gx, gy + 1) + 100.0f * flat(gx + 1, gy + 1) + 10000.0f * flat(gx + 1, gy) + 0.01f * flat(gx, gy);
   const uint32_t axis = id % 3, face = 2 * axis + (id & 8 ? 1 : 0);

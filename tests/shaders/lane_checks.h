@@ -1,5 +1,6 @@
-// Comparing what each lane of a laboratory launch stored with what it should have, for all machines and
-// register limits. SPDX-License-Identifier: Apache-2.0
+// Compares what each lane of a laboratory launch stored with what it should have stored, for all machines and
+// register limits.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
 #include <cstdint>
@@ -14,7 +15,7 @@ namespace glint::test {
 inline uint32_t bits(float value) {
   return std::bit_cast<uint32_t>(value);
 }
-using Row = std::vector<uint32_t>;  // a lane's words, from the first; those left out are not checked
+using Row = std::vector<uint32_t>;  // a lane's words from the first on; missing words are not checked
 
 inline void check_lanes(RayLab& lab, const std::function<Row(uint32_t lane)>& expected) {
   for (const LabOptions& options : all_lab_options()) {
@@ -32,7 +33,7 @@ inline void check_lanes(RayLab& lab, const std::function<Row(uint32_t lane)>& ex
   }
 }
 
-// By the lane's column and row.
+// Checks lanes by their column and row.
 inline void check_pixels(RayLab& lab, const std::function<Row(uint32_t x, uint32_t y)>& expected) {
   check_lanes(lab, [&](uint32_t lane) { return expected(lane % RayLab::kWidth, lane / RayLab::kWidth); });
 }

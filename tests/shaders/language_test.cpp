@@ -1,4 +1,4 @@
-// The language without rays: control flow, memory layouts, arrays, constants and images, lane by lane.
+// Tests the language without rays: control flow, memory layouts, arrays, constants and images, lane by lane.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <functional>
@@ -114,15 +114,15 @@ TEST_CASE("loops, switches, early returns and short circuits take each lane wher
   check_lanes(lab, control);
 }
 
-// Word i of a buffer of floats is 1 + i.
+// Returns the words of a buffer of floats in which word i is 1 + i.
 std::vector<uint32_t> counting(uint32_t words) {
   std::vector<uint32_t> result;
   for (uint32_t i = 0; i < words; ++i) result.push_back(bits(float(i + 1)));
   return result;
 }
 
-// m[column][row] of matrices whose words count from `first`, `stride` words from one column (or row) to the
-// next.
+// Gives m[column][row] of a matrix whose words count from `first`, with `stride` words from one column (or
+// row) to the next.
 struct Words {
   uint32_t first, stride;
   bool by_rows;
@@ -134,7 +134,8 @@ struct Words {
 Row matrices(uint32_t lane) {
   const uint32_t i = lane & 3;
   const Words rows{0, 4, true}, columns{0, 4, false}, affine_rows{16, 4, true}, affine_columns{16, 4, false};
-  // mat2x3: 2 columns of 3 rows. Row-major std430: 3 rows of 8 bytes; column-major std140: 2 columns of 16.
+  // mat2x3 has 2 columns of 3 rows. In row-major std430 it has 3 rows of 8 bytes, and in column-major std140
+  // it has 2 columns of 16.
   const auto small_rows = [](uint32_t k) { return Words{28 + 6 * k, 2, true}; };
   const auto small_columns = [](uint32_t k) { return Words{32 + 8 * k, 4, false}; };
   const float v[4] = {1, 2, 3, float(i)}, weight[4] = {1, 10, 100, 1000};
@@ -157,7 +158,8 @@ Row matrices(uint32_t lane) {
   row.push_back(bits(affine_columns.at(i, 2) + affine_rows.at(i, 1) * 100));
   row.push_back(bits(small_rows(i % 3).at(1, 2) + 100 * small_columns(i % 3).at(1, 2)));
   row.push_back(bits(small_rows(2).at(i & 1, i % 3) + 100 * small_columns(2).at(i & 1, i % 3)));
-  // Scalar layout: head, then frames of 9 + 3 + 1 + 2 * 6 = 25 words; tail, written, written_rows.
+  // The scalar layout is: head, then frames of 9 + 3 + 1 + 2 * 6 = 25 words, then tail, written,
+  // written_rows.
   const auto frame = [](uint32_t f) { return 1 + 25 * f; };
   const uint32_t f = frame(i & 1);
   row.push_back(bits(Words{f, 3, false}.at(2, 1) + float(f + 9 + 2 + 1) * 100 + float(f + 12 + 1) * 10000));
@@ -200,9 +202,10 @@ TEST_CASE("matrices in buffers are read and written by majorness, stride and lay
 Row layouts(uint32_t lane) {
   const uint32_t one = lane & 1;
   const auto f = [](uint32_t word) { return float(word + 1); };
-  // std140: weights 3 x 4 words; outer at 12: head, inner at +4 of 8 words each, tail at +20, last at +23;
-  // flag at 36, pairs at 40 of 4 words each. std430: count, outers at 4: head 0, inner 4 and 12, tail 20,
-  // last 23, 24 words. scalar: count 0, normal 1, inner at 4 of 6 words.
+  // The words are in std140: weights at 0 with 3 x 4 words; outer at 12 with head, inner at +4 of 8 words
+  // each, tail at +20 and last at +23; flag at 36; pairs at 40 of 4 words each. In std430: count at 0; outers
+  // at 4 of 24 words each, with head at 0, inner at 4 and 12, tail at 20 and last at 23. In scalar layout:
+  // count at 0, normal at 1, inner at 4 of 6 words each.
   Row row;
   row.push_back(bits(f(4 * (lane % 3)) + f(12)));
   row.push_back(bits(f(16 + 8 * one + 3) + f(24 + 5) * 100));
@@ -232,12 +235,12 @@ TEST_CASE(
   lab.set1[5] = counting(10);
   lab.push_constants = counting(16);
   lab.buffers[12] = counting(4 + 4 * 6);
-  // Lane 3 writes inner[1] while others read it: keep the readers' words as they are.
+  // Lane 3 writes inner[1] while other lanes read it, so the readers' words are kept as they are.
   RayLab& l = lab;
   for (const LabOptions& options : all_lab_options()) {
     INFO(to_string(options));
     const std::vector<uint32_t> got = l.run(options);
-    for (uint32_t lane = 0; lane < 32; ++lane) {  // the first warp: its reads precede lane 3's write
+    for (uint32_t lane = 0; lane < 32; ++lane) {  // the first warp reads before lane 3 writes
       const Row row = layouts(lane);
       for (size_t i = 0; i < row.size(); ++i) {
         INFO("lane " << lane << " word " << i << " as float " << std::bit_cast<float>(got[lane * 16 + i]));

@@ -1,4 +1,4 @@
-// GLSL that is younger than glslang 12, and images of several samples.
+// Tests GLSL that is newer than glslang 12, and images of several samples.
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <limits>
@@ -10,7 +10,8 @@
 namespace glint::test {
 namespace {
 
-// The laboratory's quads: which triangle of which lane (x, y) looks at, and its corners in object space.
+// Describes the laboratory's quads: which triangle of which quad lane (x, y) looks at, and its corners in
+// object space.
 struct Triangle {
   float corner[3][3];
 };
@@ -29,7 +30,7 @@ TEST_CASE("hit shaders and ray queries read the corners of the triangle, candida
     if (x < 2 || x >= 6) return row;
     const Triangle t = triangle_of(x, y);
     for (size_t i = 0; i < 9; ++i) row[i] = row[11 + i] = bits(t.corner[i / 3][i % 3]);
-    if (x % 2 == 0) return row;  // opaque: nothing is asked
+    if (x % 2 == 0) return row;  // opaque: no any-hit shader runs
     const uint32_t corner = (x + y) % 3;
     row[9] = bits(t.corner[corner][0]), row[10] = bits(t.corner[2][corner]);
     row[20] = bits(t.corner[1][0] + t.corner[2][1]);
@@ -53,7 +54,8 @@ TEST_CASE("extensions younger than the compiler mean what they say: hints, rotat
     lab.buffers[0] = Words(256);
     lab.run(options);
     const Words& got = lab.buffers[0];
-    // Bytes of a: 1, 127, -1, -128, or 1, 127, 255, 128; of b: 3, -1, 2, 127, or 3, 255, 2, 127.
+    // The bytes of a are 1, 127, -1, -128 (unsigned 1, 127, 255, 128), and those of b are 3, -1, 2, 127
+    // (unsigned 3, 255, 2, 127).
     const int32_t both = 3 - 127 - 2 - 128 * 127, mixed = 3 + 127 * 255 - 2 - 128 * 127;
     const uint32_t none = 3 + 127 * 255 + 255 * 2 + 128 * 127;
     for (uint32_t lane = 0; lane < 32; ++lane) {
@@ -121,7 +123,7 @@ TEST_CASE("texels of 64 bits are loaded, stored, fetched and changed by every at
     lab.run(options);
     for (uint32_t lane = 0; lane < 32; ++lane) {
       INFO(to_string(options) << " lane " << lane);
-      // Every lane adds 2^32 + 1 to texel 0, which began as 2^32 - 1; the sum carries into the high half.
+      // Every lane adds 2^32 + 1 to texel 0, which began as 2^32 - 1. The sum carries into the high half.
       CHECK(lab.buffers[0][2 * lane] == (lane == 0 ? 31u : lane + 5));
       CHECK(lab.buffers[0][2 * lane + 1] == (lane == 0 ? 33u : 0x8000'0000u + lane));
     }

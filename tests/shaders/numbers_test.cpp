@@ -1,4 +1,4 @@
-// Bit tricks and packing: the bits that C++ gives, lane by lane.
+// Compares bit tricks and packing with the bits that C++ gives, lane by lane.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
@@ -40,7 +40,7 @@ Row bit_tricks(uint32_t lane) {
   const int32_t n = int32_t(lane) - 20;
   row.push_back(
       n < 0 ? 0
-            : uint32_t(n / 3 * 1000 + n % 3 + (n >> 1) * 7));  // % of a negative number: undefined in GLSL
+            : uint32_t(n / 3 * 1000 + n % 3 + (n >> 1) * 7));  // GLSL leaves % of a negative number undefined
   row.push_back(uint32_t(uint32_t(-n) > 5 ? std::abs(n) : (n > 0) - (n < 0)));
   row.push_back(uint32_t(std::max(0.0f, std::max(-3.7f, float(n)))) + 8);
   const uint64_t wide = uint64_t(s) * 0x9e3779b97f4a7c15ull + lane;
@@ -60,12 +60,12 @@ TEST_CASE("random number generators and bit tricks give the bits that C++ gives"
   lab.words_per_lane = 16;
   check_lanes(lab, [](uint32_t lane) {
     Row row = bit_tricks(lane);
-    if (lane < 20) row.resize(7);  // words from 7 on: negative operands of %
+    if (lane < 20) row.resize(7);  // from word 7 on, operands of % are negative
     return row;
   });
 }
 
-// By search: the half nearest to x, the even one of two.
+// Searches for the half nearest to x, and takes the even one of two.
 double half_value(uint32_t h) {
   const uint32_t exponent = h >> 10 & 31, fraction = h & 1023;
   const double magnitude =
@@ -76,7 +76,7 @@ uint32_t nearest_half(float x) {
   const uint32_t sign = std::signbit(x) ? 0x8000 : 0;
   const double magnitude = std::abs(double(x));
   if (std::isnan(x)) return sign | 0x7e00;
-  uint32_t low = 0;  // the largest that is not above; 0x7c00 counts as 65536
+  uint32_t low = 0;  // the largest half that is not above x; 0x7c00 counts as 65536
   for (uint32_t step = 0x4000; step; step /= 2)
     if (low + step <= 0x7c00 && half_value(low + step) <= magnitude) low += step;
   if (low == 0x7c00) return sign | low;

@@ -1,4 +1,4 @@
-// Ray queries in shaders: candidates, decisions and every value of the committed hit.
+// Tests ray queries in shaders: candidates, decisions and every value of the committed hit.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/shaders/lane_checks.h"
 #include "tests/support/catch.h"
@@ -6,8 +6,8 @@
 namespace glint::test {
 namespace {
 
-// The laboratory's scene as queries.rgen walks it: it takes triangle 0 of the quads that are not opaque, and
-// in boxes a hit at distance 9.75.
+// Returns the row of a lane for the laboratory's scene as queries.rgen walks it: it accepts triangle 0 of the
+// quads that are not opaque, and in boxes a hit at distance 9.75.
 Row walked(uint32_t x, uint32_t y) {
   const bool hits = x >= 2, box = x >= 6, opaque = x % 2 == 0;
   const uint32_t primitive = box ? y : y < 3 ? 0 : 1, instance = x < 4 ? 0 : x < 6 ? 1 : 2;

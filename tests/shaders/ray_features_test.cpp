@@ -1,4 +1,5 @@
-// Callables, data of records, nested any-hit decisions, ends of rays, the vendor's forms, and hit objects.
+// Tests callables, data of records, nested any-hit decisions, ends of rays, the vendor's forms, and hit
+// objects.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/shaders/lane_checks.h"
 #include "tests/support/catch.h"
@@ -20,7 +21,7 @@ struct Job {
   float sum[2]{};
 };
 
-// What callables.rgen and its shaders do.
+// Computes what callables.rgen and its shaders do.
 struct Callables {
   static constexpr uint32_t kAdd = 11, kMix = 13;
   uint32_t x = 0;

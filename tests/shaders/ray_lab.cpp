@@ -1,4 +1,4 @@
-// The laboratory's world: memory, structures, descriptors and stack sizes.
+// Builds the laboratory's world: memory, structures, descriptors and stack sizes.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/shaders/ray_lab.h"
 
@@ -19,7 +19,7 @@
 namespace glint::test {
 namespace {
 
-constexpr uint64_t kBudget = 2'000'000;  // instructions a warp: far more than any shader here needs
+constexpr uint64_t kBudget = 2'000'000;  // instructions per warp, far more than any shader here needs
 
 void bind(exec::World& world, uint32_t set, uint32_t binding, uint64_t address_or_handle,
           uint64_t bytes_or_count) {
@@ -119,7 +119,7 @@ void add_images(exec::World& world, mem::AddressSpace& memory) {
   const Address storage = memory.allocate("image", RayLab::kImageWidth * RayLab::kImageHeight * 16);
   world.images.push_back({Format::Rgba32Float, RayLab::kImageWidth, RayLab::kImageHeight, storage, "image"});
   bind(world, 0, 2, 0, 1);
-  // Texture t: every texel is (64 t + 16, 0, 255, 128) of 255.
+  // Every texel of texture t is (64 t + 16, 0, 255, 128) of 255.
   for (uint8_t t = 0; t < 2; ++t) {
     std::vector<uint8_t> texels;
     for (int i = 0; i < 4; ++i) texels.insert(texels.end(), {uint8_t(64 * t + 16), 0, 255, 128});
@@ -176,7 +176,8 @@ std::vector<uint32_t> RayLab::run(const LabOptions& options) {
   memory.write(structure_words, &top.address, 8);
   bind(world, 0, 30, structure_words, 8);
   const uint64_t structures[4] = {0, 0, top.address,
-                                  top.bytes};  // descriptors of a null structure and of the top level
+                                  // The table has the descriptors of a null structure and of the top level.
+                                  top.bytes};
   const Address array = memory.allocate("structures", sizeof structures);
   memory.write(array, structures, sizeof structures);
   bind(world, 0, 31, array, 2);

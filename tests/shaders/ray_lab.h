@@ -1,5 +1,6 @@
-// A small world built by hand for shaders: buffers, images, three instances and a binding table, on both
-// machines. SPDX-License-Identifier: Apache-2.0
+// Provides a small world built by hand for shaders: buffers, images, three instances and a binding table, on
+// both machines.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <map>
@@ -12,7 +13,7 @@
 
 namespace glint::test {
 
-// Shaders by their files in tests/shaders/glsl; an empty name is a null shader.
+// Names shaders by their files in tests/shaders/glsl. An empty name is a null shader.
 struct LabShaders {
   std::string raygen;
   std::vector<std::string> miss;
@@ -31,40 +32,44 @@ struct LabOptions {
   const char* any_hit = "immediate";
   exec::OnFault on_fault = exec::OnFault::Stop;
   const char* node_format = "bvh6";
-  bool software = false;  // rays are walked in code
+  bool software = false;  // rays are traversed in shader code
 };
 
-// The scene, seen from above along -z. Lanes (x, y) of a launch of kWidth x kHeight shoot at (x + 1/2, y +
-// 1/2):
+// Holds this scene, seen from above along -z. Lane (x, y) of a launch of kWidth x kHeight shoots at (x + 1/2,
+// y + 1/2):
 //   x 0, 1  nothing
-//   x 2     instance 0 (custom index 100, record 0, moved by (2, 0, 0)): geometry 0, an opaque quad [0,1] x
-//   [0,6], z 0 x 3     the same instance, geometry 1: the quad moved by one, not opaque x 4, 5  instance 1
-//   (custom index 200, record 0): the same quads at (4, 0, 2), z scaled by 3 x 6, 7  instance 2 (custom index
-//   300, record 4): boxes of one unit, z in [-1, 1], primitive y; geometry 0 opaque, geometry 1 not
-// A quad's triangles: corners (0,0) (1,0) (1,6) and (0,0) (1,6) (0,6).
+//   x 2     instance 0 (custom index 100, record 0, moved by (2, 0, 0)):
+//           geometry 0, an opaque quad [0,1] x [0,6], z 0
+//   x 3     the same instance, geometry 1: the quad moved by one, not opaque
+//   x 4, 5  instance 1 (custom index 200, record 0): the same quads at (4, 0, 2), z scaled by 3
+//   x 6, 7  instance 2 (custom index 300, record 4): boxes of one unit, z in [-1, 1], primitive y;
+//           geometry 0 opaque, geometry 1 not opaque
+// The triangles of a quad have the corners (0,0) (1,0) (1,6) and (0,0) (1,6) (0,6).
 class RayLab {
  public:
   static constexpr uint32_t kWidth = 8, kHeight = 6, kLanesUsed = kWidth * kHeight;
   static constexpr uint32_t kImageWidth = 8, kImageHeight = 6;
 
-  // Descriptor set 0: binding 0 the top level, 1 the results (uint[]), 2 a storage image of kImageWidth x
-  // kImageHeight, 3 two textures of 2 x 2 texels; more buffers by binding in `buffers`, any set in `set1`.
+  // Descriptor set 0 has: at binding 0 the top level, at 1 the results (uint[]), at 2 a storage image of
+  // kImageWidth x kImageHeight, and at 3 two textures of 2 x 2 texels. `buffers` adds buffers by binding, and
+  // `set1` fills set 1.
   std::map<uint32_t, std::vector<uint32_t>> buffers, set1;
   std::vector<uint32_t> push_constants;
   uint32_t words_per_lane = 8;
   uint32_t max_trace_depth = 1, max_callable_depth = 31;
-  // Words of the records' data, by record; those left out have none. Binding 30 holds the top level's
-  // address, binding 31 an array of a null structure and the top level.
+  // The data of records, in words and by record; a record that is left out has no data. Binding 30 holds the
+  // top level's address, and binding 31 an array of a null structure and the top level.
   std::vector<uint32_t> raygen_data;
   std::vector<std::vector<uint32_t>> miss_data, hit_data, callable_data;
 
   explicit RayLab(LabShaders shaders) : shaders_(std::move(shaders)) {}
 
-  // Compiles, verifies and runs the launch; returns the results, words_per_lane a lane. The storage image and
-  // the buffers after the run are in `image` and `buffers_after`. Errors as pipeline::render().
+  // Compiles, verifies and runs the launch, and returns the results, words_per_lane for each lane. After the
+  // run, `image` and `buffers_after` hold the storage image and the buffers. Throws the same errors as
+  // pipeline::render().
   std::vector<uint32_t> run(const LabOptions& options = {});
   std::vector<float> image;
-  exec::FaultLog faults;  // that were let pass
+  exec::FaultLog faults;  // faults that were let pass
   std::map<uint32_t, std::vector<uint32_t>> buffers_after;
 
  private:
@@ -76,7 +81,7 @@ isa::Program compile_lab(const std::string& file, const frontend::GlslOptions& g
                          const LabOptions& options = {});
 std::string lab_file(const std::string& file);
 
-// The machines and register limits that every check goes through.
+// Returns the machines and register limits with which every check runs.
 const std::vector<LabOptions>& all_lab_options();
 std::string to_string(const LabOptions& options);
 

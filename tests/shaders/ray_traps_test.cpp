@@ -1,5 +1,6 @@
-// Where ray tracing is not what one expects: ends of rays by stage, bits that do not count, payloads by two
-// names. SPDX-License-Identifier: Apache-2.0
+// Tests ray tracing where it surprises: ends of rays by stage, bits that do not count, payloads with two
+// names.
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/shaders/lane_checks.h"
 #include "tests/support/catch.h"
 
@@ -30,10 +31,10 @@ TEST_CASE(
       case 3:
       case 5:
         return Row{0, 0, 0, 0, quad, quad, quad, quad};
-      // Opaque: 9.5 is accepted, so that 9.75 lies beyond the end.
+      // The box is opaque: 9.5 is accepted, so 9.75 lies beyond the end.
       case 6:
         return Row{bits(64), bits(10.5f), bits(9.5f), bits(1009.5f), 0, 0, bits(9.5f), bits(9.5f)};
-      // Its any-hit shader ignores 9.5: the end stays where it was, and 9.75 is accepted.
+      // The any-hit shader ignores 9.5: the end stays where it was, and 9.75 is accepted.
       default:
         return Row{bits(64),    bits(10.5f), bits(10.5f), bits(9.75f),
                    bits(9.75f), bits(9.75f), bits(9.75f), bits(9.75f)};

@@ -1,4 +1,4 @@
-// Lanes meet again after every construct, and what must never be reached stops the run.
+// Tests that lanes meet again after every construct, and that reaching unreachable code stops the run.
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <functional>

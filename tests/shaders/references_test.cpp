@@ -1,4 +1,5 @@
-// Parameters that GLSL copies in and out: arrays passed by reference must look as if they had been copied.
+// Tests parameters that GLSL copies in and out: arrays passed by reference must look as if they had been
+// copied.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <filesystem>
@@ -38,15 +39,15 @@ std::array<uint32_t, 19> expected(uint32_t lane) {
   twice(a, lane);
   both(a, b);
   const uint32_t second = a[0] + b[0];
-  b[0] += b[0];     // both(b, b): what is copied back last stays
+  b[0] += b[0];     // both(b, b): the value that is copied back last stays
   a[3] = a[3] + 1;  // part: the element is copied back after the array
-  b[3] = 9;         // part_first: before it
+  b[3] = 9;         // part_first: the element is copied back before the array
   a[4] += 3;
   a[5] += a[4];
   std::array<uint32_t, 19> words{};
   for (uint32_t i = 0; i < 8; ++i) words[i] = a[i], words[8 + i] = b[i];
   words[16] = second;
-  words[17] = lane;  // a function does not see through the global variable what it wrote to its copy
+  words[17] = lane;  // the global variable does not show what a function wrote to its copy
   words[18] = 5;
   return words;
 }

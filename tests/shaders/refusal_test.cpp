@@ -1,4 +1,4 @@
-// What the frontend refuses: everything at once, by name, with file and line; and mistakes in included files.
+// Tests what the frontend refuses: everything at once, by name, with file and line, also in included files.
 // SPDX-License-Identifier: Apache-2.0
 #include "base/diagnostics.h"
 #include "tests/shaders/ray_lab.h"
@@ -51,7 +51,8 @@ TEST_CASE("a GLSL extension younger than the compiler is refused by name at its 
 }
 
 TEST_CASE("functions that would grow past all bounds when inlined are refused at once, by name and number") {
-  // Ten levels, each calling the next three times: 3 to the 10th copies of the last.
+  // The functions have ten levels, and each calls the next one three times, which makes 3 to the 10th copies
+  // of the last.
   std::string text =
       "#version 450\nlayout(binding = 0) buffer B { vec4 v[]; };\nvec4 last(vec4 x) { return sin(x) * v[3]; "
       "}\n";

@@ -1,5 +1,6 @@
-// What the optimiser is helped with: lengths of arrays that are 0 by default, any-hit shaders that end in
-// continue constructs; and levels that are asked for. SPDX-License-Identifier: Apache-2.0
+// Tests how the optimiser is helped: lengths of arrays that are 0 by default, any-hit shaders that end in
+// continue constructs, and queries of levels.
+// SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <cmath>
 

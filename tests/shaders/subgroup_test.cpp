@@ -1,4 +1,4 @@
-// Subgroup operations against sums over the lanes that take part, written out plainly.
+// Tests subgroup operations against plainly written sums over the lanes that take part.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <bit>
@@ -25,13 +25,13 @@ Words inputs() {
   return words;
 }
 
-// One warp, of whose lanes `active` execute.
+// Describes one warp, of whose lanes `active` execute.
 struct Warp {
   const uint32_t* x;
   uint32_t active;
 
   bool has(uint32_t lane) const { return (active >> lane & 1) != 0; }
-  // Combines f(x) over the lanes of `mask` that execute, in their order.
+  // Combines f(x) over the executing lanes of `mask`, in their order.
   template <class T, class F, class Op>
   T over(uint32_t mask, T start, F f, Op op) const {
     T sum = start;
@@ -48,7 +48,7 @@ struct Warp {
   }
 };
 
-// Functions over the same words that the shader's work() puts.
+// Applies functions to the same words that the shader's work() stores.
 class Reference {
  public:
   Reference(const Warp& warp, uint32_t lane) : warp_(warp), lane_(lane), x_(warp.x[lane]) {}
@@ -155,7 +155,7 @@ Words shuffles(const uint32_t* x, uint32_t lane) {
           x[lane ^ 1] + 1000 * x[lane ^ 2] + 1000000 * x[lane ^ 3]};
 }
 
-// Lanes 0..n of the loop: lane l runs it l % 7 + 1 times.
+// Returns the sum over the turns of the loop; lane l makes l % 7 + 1 turns.
 uint32_t loop_sum(uint32_t lane) {
   uint32_t sum = 0;
   for (uint32_t i = 0; i <= lane % 7; ++i)

@@ -1,5 +1,6 @@
-// Shaders of every stage with rays: payloads, built-ins, recursion, reports, any-hit decisions, the binding
-// table. SPDX-License-Identifier: Apache-2.0
+// Tests shaders of every stage with rays: payloads, built-ins, recursion, reports, any-hit decisions, the
+// binding table.
+// SPDX-License-Identifier: Apache-2.0
 #include <functional>
 
 #include "tests/shaders/lane_checks.h"
@@ -21,7 +22,7 @@ uint32_t primitive(uint32_t x, uint32_t y) {
   return is_box(x) ? y : y < 3 ? 0 : 1;
 }
 
-// Only exact numbers: weights of a triangle's corners are checked with a tolerance below.
+// Returns only exact numbers. Weights of a triangle's corners are checked with a tolerance below.
 Row info(uint32_t x, uint32_t y) {
   Row row(29, 0);
   row[28] = bits(float(y * 8 + x) * 0.5f);
@@ -100,8 +101,8 @@ TEST_CASE("shadow rays with their own payload leave the first payload alone and 
               {{"shadow.rchit", "", ""}, {}, {}, {}, {"shadow.rchit", "", "pair.rint"}},
               {}});
   const auto blocked = [](uint32_t x, uint32_t y, int side, bool without_second) {
-    // From z -8 along (side, 0, 1). Quads at z 0 and 2, boxes between z -1 and 1, whose shader reports 9
-    // always.
+    // The ray starts at z -8 and goes along (side, 0, 1). Quads are at z 0 and 2. Boxes are between z -1 and
+    // 1, and their shader always reports 9.
     (void)y;
     const auto column = [&](float dz) { return float(x) + 0.5f + float(side) * dz; };
     const float first = column(8), second = column(10);
@@ -121,7 +122,7 @@ TEST_CASE("shadow rays with their own payload leave the first payload alone and 
     const bool counted = misses(x) || is_box(x);
     const uint32_t low = y % 2 == 0 ? 3 : 0, high = y % 2 == 1 ? 3 : 0;
     const uint32_t counts = counted ? low | high << 8 | 1 << 16 : 0;
-    // Front-facing triangles are culled in the last trace; boxes are not.
+    // The last trace culls front-facing triangles, but not boxes.
     return Row{seen, bits(t), bits(t < 0 ? -2 : 10 - t), counts, (counted ? 1u : 0u) + (is_box(x) ? 0 : 1)};
   });
 }
@@ -177,7 +178,7 @@ TEST_CASE("hit and miss shaders that pass on their own payload share it with all
   const bool miss_traces = GENERATE(false, true);
   frontend::GlslOptions glsl;
   if (miss_traces) glsl.defines.push_back({"MISS_TRACES", "1"});
-  // Boxes only where the attribute is exact; quads have null shaders: they end the path.
+  // Boxes are used only where the attribute is exact. Quads have null shaders, which end the path.
   RayLab lab({"recursion.rgen",
               {"recursion.rmiss"},
               {{}, {}, {}, {}, {"own.rchit", "", "pair.rint"}, {"own.rchit", "", "pair.rint"}},
@@ -266,7 +267,8 @@ TEST_CASE("offset, stride and miss index pick the record of the binding table, l
     const uint32_t lane = y * 8 + x, tags[8] = {1, 2, 0, 3, 3, 1, 0, 0};
     if (misses(x)) return Row{lane % 2 ? 0u : 30u};
     const uint32_t record = (is_box(x) ? 4 : 0) + (x & 1) * (1 + (lane >> 1 & 1)) + (lane & 1);
-    return Row{record == 7 ? 30 * (1 - lane % 2) : tags[record]};  // no intersection shader: nothing there
+    // A box without intersection shader is never hit.
+    return Row{record == 7 ? 30 * (1 - lane % 2) : tags[record]};
   });
 }
 

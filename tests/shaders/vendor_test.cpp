@@ -1,5 +1,6 @@
-// Derivatives, AMD's instruction sets, atomics that are loops, wide constants, functions that ask to stay
-// apart. SPDX-License-Identifier: Apache-2.0
+// Tests derivatives, AMD's instruction sets, atomics that become loops, wide constants, and functions that
+// must not be inlined.
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -27,7 +28,7 @@ float real(uint32_t word) {
   return std::bit_cast<float>(word);
 }
 
-// Three levels of 4 x 4, 2 x 2 and one texel, of 1, 2 and 3.
+// Returns three levels of 4 x 4, 2 x 2 and one texel, with the values 1, 2 and 3.
 LabImage levels() {
   LabImage image;
   image.view.format = exec::TexelFormat::R32Float;
@@ -43,7 +44,8 @@ float field(uint32_t index) {
   return x * x + 100.0f * y * y + x * x * y * y;
 }
 
-// `right` and `below`: what the neighbour's index has that the quad's first lacks.
+// Checks derivatives. `right` and `below` are the bits that the neighbours' indices have and the index of the
+// quad's first lane lacks.
 void check_derivatives(const Words& results, uint32_t right, uint32_t below, float level, float biased) {
   for (uint32_t i = 0; i < 64; ++i) {
     INFO("thread " << i);
@@ -92,7 +94,7 @@ T middle(T a, T b, T c) {
   return std::max(std::min(a, b), std::min(std::max(a, b), c));
 }
 
-// Vulkan, "Cube Map Face Selection", case by case: face, s and t.
+// Returns face, s and t, case by case (Vulkan, "Cube Map Face Selection").
 std::array<float, 3> cube(float x, float y, float z) {
   const float ax = std::abs(x), ay = std::abs(y), az = std::abs(z);
   if (az >= ax && az >= ay)

@@ -1,4 +1,5 @@
-// Numbers of 8, 16 and 64 bits in shaders: what C++ gives, lane by lane, in registers and in memory.
+// Compares numbers of 8, 16 and 64 bits in shaders with what C++ gives, lane by lane, in registers and in
+// memory.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
@@ -10,7 +11,7 @@
 namespace glint::test {
 namespace {
 
-// The bits of the half nearest to x, the even one of two.
+// Returns the bits of the half nearest to x, and the even one of two.
 uint16_t half_bits(double x) {
   const uint16_t sign = std::signbit(x) ? 0x8000 : 0;
   const double magnitude = std::abs(x);
@@ -35,7 +36,7 @@ std::vector<uint32_t> inputs() {
   return words;
 }
 
-struct Mixed {  // scalar layout; as C++ lays it out
+struct Mixed {  // scalar layout, which is also that of C++
   int8_t a;
   uint8_t b;
   int16_t c;

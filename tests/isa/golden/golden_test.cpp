@@ -1,7 +1,9 @@
-// Every PTX form that a GPU has recorded, compiled from its text and run on all SIMD paths: the same bits.
+// Compiles every PTX form that a GPU has recorded from its text, runs it on all SIMD paths and expects the
+// same bits.
+// SPDX-License-Identifier: Apache-2.0
 //
-// GLINT_PTX_GOLDEN_DIR names the folder of the recordings, GLINT_GOLDEN_FORMS a part of the names of the
-// forms to run: then each prints a line. SPDX-License-Identifier: Apache-2.0
+// GLINT_PTX_GOLDEN_DIR names the folder of the recordings. GLINT_GOLDEN_FORMS selects forms by a part of
+// their names; each selected form then prints a line.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -15,7 +17,7 @@ using namespace glint::golden;
 
 namespace {
 
-// Forms that Glint does not have, and why.
+// Lists the forms that Glint does not have, and why.
 struct Missing {
   const char* op;
   const char* why;
@@ -26,8 +28,8 @@ bool is_missing(const std::string& op) {
   return std::any_of(kMissing.begin(), kMissing.end(), [&](const Missing& m) { return op == m.op; });
 }
 
-// Approximations may be off by 2 ulp, or, near zeros of the function, by an absolute error: the hardware's
-// own largest against the exact function (measured over all mantissas).
+// Returns true for approximations. They may be off by 2 ulp or, near zeros of the function, by an absolute
+// error: the hardware's own largest error against the exact function, measured over all mantissas.
 bool is_approximate(const std::string& op) {
   return op.find(".approx") != std::string::npos || op.find("div.full") != std::string::npos;
 }
@@ -59,7 +61,7 @@ double as_double(uint64_t bits, FloatFormat f) {
   return bits >> (f.bits - 1) & 1 ? -value : value;
 }
 
-// Distance in units of the last place; huge between NaN and anything else.
+// Returns the distance in units of the last place. It is huge between NaN and any other value.
 double ulps(uint64_t a, uint64_t b, FloatFormat f) {
   const uint64_t sign = 1ull << (f.bits - 1), infinity = ((1ull << (f.bits - 1 - f.mantissa)) - 1)
                                                          << f.mantissa;
@@ -68,7 +70,8 @@ double ulps(uint64_t a, uint64_t b, FloatFormat f) {
   return std::abs(key(a) - key(b));
 }
 
-// Worst difference of one value, x2 pairs half by half. True when it is within what the form may be off.
+// Computes the largest difference of one value; x2 pairs are compared half by half. Returns true when the
+// difference is allowed for the form.
 bool is_near(const std::string& op, const std::string& type, uint64_t got, uint64_t expected, double& worst) {
   const FloatFormat f = format_of(type);
   bool near = true;
@@ -87,7 +90,7 @@ enum class Verdict { Equal, Near, Differs, Missing };
 
 struct Comparison {
   Verdict verdict = Verdict::Equal;
-  std::string line;  // what is to be said of it
+  std::string line;  // report on the form
 };
 
 std::string lane_text(const Recording& r, const Form& form, uint32_t lane) {
@@ -172,8 +175,8 @@ TEST_CASE("every form of the extract gives the bits of a GPU on every path, appr
   compare_all(load_extract(std::filesystem::path(GLINT_SOURCE_DIR) / "tests/isa/golden/data"), "extract");
 }
 
-// Rows that the recordings above leave out, recorded by tools/record_vectors.py on an H200: the rest of the
-// cross product.
+// These rows are missing in the recordings above. tools/record_vectors.py recorded them on an H200: the rest
+// of the cross product.
 TEST_CASE("every form of the further extract gives the bits of a GPU on every path") {
   compare_all(load_extract(std::filesystem::path(GLINT_SOURCE_DIR) / "tests/isa/golden/further"),
               "further extract");

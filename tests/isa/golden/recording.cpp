@@ -1,4 +1,4 @@
-// Reading recordings and running their forms.
+// Reads recordings and runs their forms.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/isa/golden/recording.h"
 
@@ -31,7 +31,7 @@ std::string unpacked(const std::filesystem::path& path) {
   return out;
 }
 
-// Of a file or of its compressed form, whichever is there.
+// Returns the contents of a file, or of its compressed form if only that is present.
 std::string contents(const std::filesystem::path& path) {
   const std::filesystem::path packed = path.string() + ".zst";
   return std::filesystem::exists(packed) ? unpacked(packed) : read_file(path);
@@ -123,7 +123,8 @@ std::string kernel_text(const Form& form) {
     declarations += fmt::format("  .reg .{} {};\n", register_type(a), kInputs[i]);
     loads +=
         address(kInputs[i], a.bytes) + fmt::format("  ld.global.b{} {}, [%at];\n", a.bytes * 8, kInputs[i]);
-    // No op may look at the upper half of the register that holds a 16-bit value.
+    // No op may depend on the upper half of a register that holds a 16-bit value, so it is filled with other
+    // bits.
     if (a.bytes == 2) loads += fmt::format("  or.b32 {0}, {0}, 0x7fc50000;\n", kInputs[i]);
   }
   for (size_t i = 0; i < form.outputs.size(); ++i) {

@@ -1,4 +1,4 @@
-// PTX forms with inputs and outputs that a GPU has recorded, and their run on Glint.
+// Holds PTX forms with the inputs and outputs that a GPU has recorded, and runs them on Glint.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -12,12 +12,12 @@ namespace glint::golden {
 
 struct Array {
   std::string type;    // f32, u16, pred ...
-  uint32_t bytes = 0;  // a lane
+  uint32_t bytes = 0;  // per lane
   size_t offset = 0;   // in the recording's inputs or outputs
 };
 
-// One form: text with operands A, B, C, E (inputs), D0, D1 (outputs), TMP and SHM (8 bytes of global and of
-// shared memory a lane), PP (a predicate).
+// Holds one form: a text with the operands A, B, C, E (inputs), D0, D1 (outputs), TMP and SHM (8 bytes of
+// global and of shared memory per lane) and PP (a predicate).
 struct Form {
   std::string op, text;
   std::vector<Array> inputs, outputs;
@@ -37,15 +37,16 @@ struct Recording {
   static uint64_t value(const std::string& data, const Array& array, uint32_t lane);
 };
 
-// A folder with manifest.json and, plain or as .zst, inputs.bin and outputs.bin.
+// Reads a folder with manifest.json, inputs.bin and outputs.bin, which may be compressed as .zst.
 Recording load_folder(const std::filesystem::path& folder);
-// The extract that tools/make_golden_extract.py has made: forms.txt, lanes.bin.
+// Reads the extract made by tools/make_golden_extract.py: forms.txt and lanes.bin.
 Recording load_extract(const std::filesystem::path& folder);
 
-// The form as a kernel of a whole module.
+// Returns a whole module with the form as a kernel.
 std::string kernel_text(const Form& form);
 
-// Outputs of all lanes by each path, [path][operand][lane]; or, when the form does not compile, the message.
+// Holds the outputs of all lanes by each path, [path][operand][lane], or the message when the form does not
+// compile.
 struct Outcome {
   std::string refused;
   std::vector<isa::Path> paths;

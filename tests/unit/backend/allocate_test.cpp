@@ -1,4 +1,4 @@
-// Register limits, pairs, coalescing and liveness.
+// Tests register limits, pairs, coalescing and liveness.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/backend/allocate.h"
 
@@ -12,7 +12,7 @@
 namespace glint::frontend::test {
 namespace {
 
-// `values` words that are all live at once; the first is needed last.
+// Returns code with `values` words that are all live at once. The first word is needed last.
 CodeBuilder pressure(int values) {
   CodeBuilder code;
   const Operand address = code.pair();
@@ -71,7 +71,7 @@ TEST_CASE("Scheduling brings up no more comparisons than there are predicates to
   for (int i = 0; i < kChains; ++i) code.add("st.global.b32", {address, words[size_t(i)]}, 4 * i);
   code.add("exit");
   const std::vector<std::string> names = names_of(code.assembled());
-  // A predicate that has to leave is a selection into a word and a comparison to bring it back.
+  // A predicate that must be evicted becomes a selection into a word and a comparison that brings it back.
   REQUIRE(std::count(names.begin(), names.end(), "selp.b32") == kChains * kRounds);
   REQUIRE(std::count(names.begin(), names.end(), "setp.ne.u32") == 0);
   int live = 0, most = 0;
@@ -79,7 +79,7 @@ TEST_CASE("Scheduling brings up no more comparisons than there are predicates to
     live += name == "setp.lt.s32" ? 1 : name == "selp.b32" ? -1 : 0;
     most = std::max(most, live);
   }
-  REQUIRE(most == isa::kNumPredicates - 1);  // all but the one kept free, or latencies would not overlap
+  REQUIRE(most == isa::kNumPredicates - 1);  // one predicate is kept free, or latencies would not overlap
 }
 
 TEST_CASE("64-bit values lie in even pairs above the stack pointer") {
@@ -115,7 +115,7 @@ TEST_CASE("A loop variable and its next value share a register: no move is left"
   const BlockId done = code.block("done");
   code.program.blocks[loop].successors = {loop, done};
   code.add("exit");
-  REQUIRE(count_of(code.assembled(), "mov.b32") == 1);  // the initial one
+  REQUIRE(count_of(code.assembled(), "mov.b32") == 1);  // the initial move
 }
 
 TEST_CASE("Packing values made for the purpose costs nothing") {
@@ -137,8 +137,8 @@ TEST_CASE("A guarded definition that only its own guard reads is dead above") {
   code.add("st.global.b32", {address, value}, 4).guard = flag.reg;
   code.add("exit");
   REQUIRE_FALSE(find_liveness(code.program).in[0].contains(value.reg));
-  code.program.blocks[0].code[3].guard_negate =
-      true;  // written under the opposite guard: the old value is read
+  // The value is written under the opposite guard, so the old value is read.
+  code.program.blocks[0].code[3].guard_negate = true;
   REQUIRE(find_liveness(code.program).in[0].contains(value.reg));
 }
 

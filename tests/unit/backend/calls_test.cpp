@@ -1,4 +1,4 @@
-// What is saved around calls, and where.
+// Tests what is saved around calls, and where.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.h"
 #include "tests/unit/backend/code_builder.h"
@@ -23,7 +23,7 @@ TEST_CASE("Only values that are live across a call are saved, four words an inst
   const Operand dead = code.word(64);
   code.add("st.global.b32", {address, dead}, 100);
   call(code);
-  for (int k = 0; k < 2; ++k)  // two reads each: cheaper to save than to keep in memory
+  for (int k = 0; k < 2; ++k)  // with two reads each, saving is cheaper than keeping in memory
     for (const Operand& value : kept) code.add("st.global.b32", {address, value}, 4 * k);
   code.add("ret");
   const isa::Program program = code.assembled({.max_registers = 64, .schedule = false});

@@ -1,4 +1,4 @@
-// Writes small virtual programs by hand.
+// Helps tests to write small virtual programs by hand.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
@@ -34,7 +34,7 @@ class CodeBuilder {
     program.blocks.back().code.emplace_back();
     program.blocks.back().code.back().kind = kind;
   }
-  // A value that is loaded, so that nothing can fold it.
+  // Returns a loaded value, which nothing can fold.
   Operand word(int32_t offset = 0) {
     const Operand r = Operand::of(program.new_register(RegisterClass::B32));
     add("ld.const.b32", {r, Operand::value(0)}, offset);

@@ -1,4 +1,4 @@
-// Selections, joins and loops: the exact control flow that is left.
+// Tests the exact control flow that is left of selections, joins and loops.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/backend/liveness.h"
 #include "tests/support/catch.h"
@@ -10,7 +10,8 @@ namespace {
 using Names = std::vector<std::string>;
 const BackendOptions kInOrder{.max_registers = 64, .schedule = false};
 
-// ssy merge; @!flag bra (else or merge); then...; [else...;] merge: join. Blocks: entry, then, else, merge.
+// Builds: ssy merge; @!flag bra (else or merge); then...; [else...;] merge: join. The blocks are entry, then,
+// else and merge.
 struct Selection {
   CodeBuilder code;
   Operand address, flag;

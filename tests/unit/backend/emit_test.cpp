@@ -1,4 +1,4 @@
-// Simplification, scheduling, layout: the exact code that comes out.
+// Tests simplification, scheduling and layout by the exact code that comes out.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/backend/emit.h"
 

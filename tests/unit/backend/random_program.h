@@ -1,5 +1,6 @@
-// Random structured programs over virtual registers: every op without effects, memory, branches, loops,
-// calls. SPDX-License-Identifier: Apache-2.0
+// Makes random structured programs over virtual registers: every op without effects, memory, branches, loops,
+// calls.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <random>
@@ -12,9 +13,9 @@ namespace glint::frontend::test {
 
 struct Shape {
   int statements = 40;
-  int values = 12;  // values of each class to start with: how much is live
+  int values = 12;  // initial values of each class; they decide how much is live
   bool control = true, calls = true, memory = true;
-  bool wide_traces = false;  // rt.trace with all operands in registers: not for few registers
+  bool wide_traces = false;  // rt.trace has all operands in registers; not for few registers
 };
 
 class RandomProgram {
@@ -41,7 +42,7 @@ class RandomProgram {
   uint32_t pick(size_t n) { return uint32_t(random_() % n); }
   static bool is_plain(const isa::OpRow& row) {
     if (row.effect != isa::Effect::None || row.operands.count == 0) return false;
-    if (row.unit == isa::Unit::Shuffle) return false;  // lanes that meet in other orders read other values
+    if (row.unit == isa::Unit::Shuffle) return false;  // the result depends on which lanes execute together
     for (isa::OperandKind kind : row.operands.view())
       if (kind >= isa::OperandKind::Address64 || kind == isa::OperandKind::None) return false;
     return isa::is_destination(row.operands.kind[0]);
@@ -51,7 +52,8 @@ class RandomProgram {
     program_.blocks.push_back({name, {}, {}});
     return current_ = BlockId(program_.blocks.size() - 1);
   }
-  // Blocks are numbered in layout order, so targets of forward branches are set when they are opened.
+  // Blocks are numbered in layout order, so the targets of forward branches are set when their blocks are
+  // opened.
   VirtualInst& add_op(uint16_t op, std::vector<Operand> operands, int32_t imm = 0) {
     VirtualInst inst;
     inst.op = op;
@@ -146,7 +148,7 @@ class RandomProgram {
     add_with_operands(op);
   }
 
-  // The ops that the backend knows by name, more often than chance would have them.
+  // Emits the ops that the backend knows by name, which are too rare among random ops.
   void familiar() {
     static constexpr const char* kNames[] = {
         "mov.b32",      "mov.b64",      "mov.pred", "not.pred", "pack.b64",    "unpack.b64", "cvt.u32.u64",
@@ -170,13 +172,13 @@ class RandomProgram {
       }
     const bool defines_fresh = !fresh_.empty();
     VirtualInst& inst = add_op(op, std::move(operands));
-    if (!defines_fresh && pick(3) == 0) {  // a guarded write of a value that exists already
+    if (!defines_fresh && pick(3) == 0) {  // a guarded write of an existing value
       inst.guard = any(RegisterClass::Predicate);
       inst.guard_negate = pick(2);
     }
     publish_fresh();
   }
-  // No register twice among the destinations of one instruction.
+  // Returns a register that is not yet a destination of the instruction.
   VirtualRegister another(RegisterClass c, const std::vector<Operand>& so_far) {
     for (;;) {
       const VirtualRegister r = destination(c);
@@ -290,7 +292,7 @@ class RandomProgram {
     program_.blocks[head].successors = {body, done};
   }
 
-  // A trace that never has to ask a shader.
+  // Emits a trace that never needs a shader.
   void call() {
     std::vector<Operand> operands{Operand::of(program_.new_register(RegisterClass::Predicate)),
                                   Operand::of(any(RegisterClass::B64))};
@@ -302,7 +304,7 @@ class RandomProgram {
     marker(VirtualInst::Kind::RestoreLive);
   }
 
-  // docs/abi.md, "Calls and rays".
+  // Emits a trace as docs/abi.md, "Calls and rays", defines it.
   void trace() {
     const VirtualRegister waits = program_.new_register(RegisterClass::Predicate);
     std::vector<Operand> operands{Operand::of(waits)};
@@ -338,7 +340,8 @@ class RandomProgram {
   Shape shape_;
   VirtualProgram program_;
   std::vector<uint16_t> plain_;
-  std::array<std::vector<VirtualRegister>, 3> pools_;  // by RegisterClass: defined on every path to here
+  // By RegisterClass: registers that every path to this point has defined.
+  std::array<std::vector<VirtualRegister>, 3> pools_;
   std::vector<VirtualRegister> fresh_;
   BlockId current_ = 0;
 };

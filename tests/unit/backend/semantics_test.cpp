@@ -1,4 +1,5 @@
-// Assembled programs, run as diverging warps, do to the world what each lane of their virtual originals does.
+// Runs assembled programs as diverging warps and checks that they have the same effects as each lane of their
+// virtual originals.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
@@ -67,8 +68,8 @@ TEST_CASE("Eight registers suffice for everything but wide traces") {
 }
 
 TEST_CASE("A spilled guard keeps one name from a guarded write to the store behind it") {
-  // Found by seed 18: with a reload of the guard for each, the written temporary looked live from the entry
-  // on, and enough of them left no register.
+  // Seed 18 found this fault: when each instruction reloaded the guard, the written temporary looked live
+  // from the entry on, and many of them left no register.
   check_same(18, {.statements = 1000, .values = 50, .calls = false}, {.max_registers = 64});
 }
 

@@ -1,6 +1,7 @@
-// Steps virtual programs lane by lane and assembled ones as a diverging warp, with the op table's own
-// handlers, and records what each lane does to the world: the measure of whether assembling has kept a
-// program's meaning. SPDX-License-Identifier: Apache-2.0
+// Steps virtual programs lane by lane and assembled programs as a diverging warp, with the op table's own
+// handlers, and records what each lane does to memory and rays. Equal records show that assembling has kept a
+// program's meaning.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <map>
@@ -14,10 +15,10 @@
 
 namespace glint::frontend::test {
 
-// What left the lane, in order: "st.global 100 4 2a", "call.sbt.hit", "rt.trace ...".
+// Lists the effects of a lane in order: "st.global 100 4 2a", "call.sbt.hit", "rt.trace ...".
 using Log = std::vector<std::string>;
 
-// Bytes by address; a byte never written reads as a hash of its address.
+// Holds bytes by address. A byte that was never written reads as a hash of its address.
 class Bytes {
  public:
   uint64_t load(uint64_t address, int bytes) const {
@@ -38,14 +39,14 @@ class Bytes {
   std::map<uint64_t, uint8_t> bytes_;
 };
 
-// What one lane owns. Lanes share no memory here, so that their order cannot matter.
+// Holds what one lane owns. Lanes share no memory in this test, so their order cannot matter.
 struct LaneWorld {
   Log log;
   Bytes global, local;
-  int candidates = 0;  // intersection shaders that its ray still waits for
+  int candidates = 0;  // intersection shaders for which its ray still waits
 };
 
-// Registers of a warp and the effects of single instructions.
+// Holds the registers of a warp and performs single instructions.
 class Machine {
  public:
   static constexpr size_t kMaxSteps = 400'000;  // a program that runs longer is stuck
@@ -75,7 +76,7 @@ class Machine {
     return reg(slot, lane) | (is_pair ? uint64_t{reg(isa::Slot(slot + 1), lane)} << 32 : 0);
   }
 
-  // Runs the handler and what the op does beyond the registers, control flow apart.
+  // Runs the handler, and what the op does beyond its registers, except control flow.
   void perform(const isa::Inst& inst, LaneMask exec) {
     const isa::OpRow& row = isa::op_table()[inst.op];
     warp_->exec = exec;
@@ -139,7 +140,7 @@ class Machine {
   std::vector<uint32_t> registers_, constants_, specials_;
 };
 
-// Runs one lane of a VirtualProgram: every virtual register has rows of its own, and calls harm nobody.
+// Runs one lane of a VirtualProgram. Every virtual register has rows of its own, and calls destroy nothing.
 class VirtualRun : public Machine {
  public:
   VirtualRun(const VirtualProgram& program, int lane)
@@ -213,7 +214,7 @@ class VirtualRun : public Machine {
 };
 
 // Runs an assembled Program for a whole warp (docs/abi.md, "Control flow"). A call destroys every register
-// but %r0, every predicate, and the stack above the frame.
+// except %r0, every predicate, and the stack above the frame.
 class ProgramRun : public Machine {
  public:
   explicit ProgramRun(const isa::Program& program)

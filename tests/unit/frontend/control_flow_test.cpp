@@ -1,4 +1,4 @@
-// Control flow: reconvergence pairs, phis, and random structured programs against an interpreter.
+// Tests control flow: reconvergence pairs, phis, and random structured programs against an interpreter.
 // SPDX-License-Identifier: Apache-2.0
 #include <map>
 #include <random>
@@ -16,8 +16,8 @@ const std::string kBuffer =
     "layout(local_size_x = 32) in;\nlayout(binding = 0) buffer B { int a[]; } b;\nvoid main() {\n  int x = "
     "b.a[gl_GlobalInvocationID.x];\n";
 
-// Each ssy names a block that begins with join, each join is named by exactly one ssy, and no other ssy
-// can be repeated without its join in between: the pairs are counted, not the paths.
+// Checks that each ssy names a block that begins with join, and that exactly one ssy names each join. It
+// counts pairs and does not follow paths.
 void check_pairs(const VirtualProgram& program, int expected_pairs) {
   std::map<BlockId, int> named;
   std::set<BlockId> joins;
@@ -74,7 +74,7 @@ TEST_CASE("every block ends in a branch or falls into the next, and successors a
 }
 
 TEST_CASE("variables that swap around a loop keep their values apart") {
-  // The phis of a and b read each other: copied one after the other without care, one value is lost.
+  // The phis of a and b read each other, so copying them one after the other would lose a value.
   std::vector<uint32_t> in{0, 1, 2, 3, 4, 5}, expected;
   for (uint32_t x : in) {
     uint32_t a = 1, b = 2, c = 3;
@@ -125,11 +125,11 @@ TEST_CASE("early returns out of nested loops of an inlined function come back to
   CHECK(run(in, "y = search(x) * 3u + search(x / 2u);", f) == expected);
 }
 
-// --- Random structured programs: one tree, printed as GLSL and interpreted.
+// --- Random structured programs: one tree is printed as GLSL and interpreted.
 
 struct Node {
   enum Kind { Assign, If, For, While, Switch, Break, Continue, Return } kind = Assign;
-  int target = 0, left = 0, right = 0;  // variables
+  int target = 0, left = 0, right = 0;  // numbers of variables
   uint32_t constant = 0;
   int op = 0;
   std::vector<std::vector<Node>> bodies;
@@ -185,7 +185,7 @@ std::string v(int i) {
   return "v" + std::to_string(i);
 }
 
-// `number` makes the counters of loops distinct. Every loop runs at most 4 times.
+// Prints a tree. `number` makes the counters of loops distinct. Every loop runs at most 4 times.
 std::string print(const std::vector<Node>& nodes, int& number) {
   static const char* const kOps[] = {" + ", " * ", " ^ ", " - "};
   std::string text;

@@ -1,5 +1,6 @@
-// Compute shaders run from GLSL to results: integer and float ops, functions with their errors, memory
-// layouts. SPDX-License-Identifier: Apache-2.0
+// Runs compute shaders from GLSL to results: integer and float ops, functions with their errors, memory
+// layouts.
+// SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <cmath>
 #include <functional>
@@ -27,7 +28,7 @@ void check_words(const std::string& statements, const std::function<uint32_t(uin
   }
 }
 
-// Distance in units in the last place of the expected value, doubles rounded to float.
+// Returns the distance in units in the last place of the expected value. Doubles are rounded to float.
 double ulps(float got, double expected) {
   if (std::isnan(got) || std::isnan(expected)) return std::isnan(got) == std::isnan(expected) ? 0 : 1e30;
   if (std::isinf(float(expected)) || std::isinf(got)) return got == float(expected) ? 0 : 1e30;
@@ -179,8 +180,9 @@ TEST_CASE("geometric functions follow their GLSL formulas") {
         std::vector<float>{6.0f});
   CHECK(run_f32({3.0f}, "dot(reflect(vec3(f, -4, 5), vec3(0, 1, 0)), vec3(100, 10, 1))") ==
         std::vector<float>{345.0f});
+  // This is total reflection.
   CHECK(run_f32({2.0f}, "dot(refract(vec3(1, 0, 0), vec3(0, 1, 0), f), vec3(1))") ==
-        std::vector<float>{0.0f});  // total reflection
+        std::vector<float>{0.0f});
   CHECK(run_f32({1.0f}, "dot(refract(vec3(0, -1, 0), vec3(0, 1, 0), f), vec3(1, 10, 1))") ==
         std::vector<float>{-10.0f});
   CHECK(run_f32({1.0f}, "faceforward(vec2(f, 2), vec2(1), vec2(1)).y") == std::vector<float>{-2.0f});
@@ -221,7 +223,8 @@ TEST_CASE("dynamic indices reach the right component, element and column") {
 }
 
 TEST_CASE("buffers are read and written by their decorated layout") {
-  // One buffer under several layouts: binding 1 again, as structs of std430, scalar and std140 members.
+  // The test binds one buffer under several layouts: binding 1 again, as structs of std430, scalar and std140
+  // members.
   const std::string globals =
       "struct A { float a; vec3 b; };\nlayout(binding = 1, std430) buffer P { A p[]; } std430_view;\n"
       "layout(binding = 1, scalar) buffer Q { A q[]; } scalar_view;\nlayout(binding = 1, std430, row_major) "

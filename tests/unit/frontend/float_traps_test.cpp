@@ -1,5 +1,5 @@
-// Where arithmetic on floats is not what one expects: NaN, infinities, zeros, subnormals, ties, edges of
-// functions. SPDX-License-Identifier: Apache-2.0
+// Tests float arithmetic where it surprises: NaN, infinities, zeros, subnormals, ties, edges of functions.
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.h"
 #include "tests/unit/frontend/value_table.h"
 

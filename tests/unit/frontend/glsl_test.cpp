@@ -1,4 +1,4 @@
-// GLSL compilation: includes, defines, messages, debug lines, and what simplification leaves.
+// Tests the compilation of GLSL: includes, defines, messages, debug lines, and what simplification leaves.
 // SPDX-License-Identifier: Apache-2.0
 #include "base/diagnostics.h"
 #include "frontend/spirv/module.h"
@@ -116,7 +116,7 @@ TEST_CASE("SPIR-V text becomes the newest version under which it is valid") {
       "OpMemberDecorate %block 0 Offset 0\nOpDecorate %b DescriptorSet 0\nOpDecorate %b Binding 0\n";
   CHECK(assemble_spirv(start + "OpDecorate %block Block\n" + place + types + body, "x")[1] == 0x00010600);
   const auto old = assemble_spirv(start + "OpDecorate %block BufferBlock\n" + place + types + body,
-                                  "x");  // gone since 1.4
+                                  "x");  // version 1.4 removed it
   CHECK(old[1] == 0x00010300);
   CHECK(validate_spirv(old).empty());
   CHECK_THROWS_AS(assemble_spirv("OpNonsense\n", "x"), UserError);
@@ -136,7 +136,7 @@ TEST_CASE("words that are no valid module are refused") {
 }
 
 TEST_CASE("an extension that the optimiser does not know does not stop it") {
-  // SPV_KHR_ray_cull_mask makes most passes skip the module and say nothing.
+  // Without help, SPV_KHR_ray_cull_mask makes most passes skip the module silently.
   const std::string body =
       "#extension GL_EXT_ray_cull_mask : require\nlayout(location = 0) rayPayloadInEXT vec4 p;\n"
       "struct S { float a; vec2 b; };\nS make(uint m) { S s; s.a = float(m); s.b = vec2(s.a); return s; }\n"

@@ -1,5 +1,6 @@
-// Where integers are not what one expects: division by zero, the lowest number, shifts past the width, bit
-// fields. SPDX-License-Identifier: Apache-2.0
+// Tests integer arithmetic where it surprises: division by zero, the lowest number, shifts past the width,
+// bit fields.
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.h"
 #include "tests/unit/frontend/value_table.h"
 
@@ -10,7 +11,7 @@ constexpr uint32_t u(int32_t x) {
   return uint32_t(x);
 }
 const std::string kTypes = "#extension GL_EXT_shader_explicit_arithmetic_types : require\n";
-// 64 bits from two words; the result's halves.
+// Makes 64-bit integers from two words and takes the halves of the result.
 const std::string kWide = kTypes +
                           "uint64_t w(uint high, uint low) { return uint64_t(high) << 32 | low; }\n"
                           "uint low(uint64_t x) { return uint(x); } uint low(int64_t x) { return uint(x); }\n"

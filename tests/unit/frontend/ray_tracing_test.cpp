@@ -1,4 +1,4 @@
-// Ray tracing shaders as the shader ABI wants them, and the list of what is not supported.
+// Tests ray tracing shaders against the shader ABI, and the list of what is not supported.
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
 
@@ -14,7 +14,7 @@ using Catch::Contains;
 using lab::count;
 using lab::lowered;
 
-// The instructions in layout order, by name; SaveLive and RestoreLive as such.
+// Returns the names of the instructions in layout order, with SaveLive and RestoreLive.
 std::vector<std::string> names(const VirtualProgram& program) {
   std::vector<std::string> result;
   for (const VirtualBlock& block : program.blocks)

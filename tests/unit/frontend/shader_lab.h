@@ -1,4 +1,5 @@
-// A place to try shaders: source text to SPIR-V, to virtual code, and - for compute - to results in a buffer.
+// Lets tests try shaders: source text becomes SPIR-V, virtual code and, for compute shaders, results in a
+// buffer.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -12,7 +13,7 @@
 
 namespace glint::frontend::lab {
 
-// A folder that goes away with the object.
+// A folder that is removed with the object.
 class Folder {
  public:
   Folder();
@@ -25,19 +26,19 @@ class Folder {
   std::filesystem::path path_;
 };
 
-// `body` behind the #version line and the extensions that ray tracing needs. Line 1 of `body` is line
-// kFirstLine.
+// simplified() compiles `body` after a #version line and the extensions that ray tracing needs. Line 1 of
+// `body` is line kFirstLine of the shader.
 inline constexpr uint32_t kFirstLine = 5;
 std::string source(const std::string& body);
 
 std::vector<uint32_t> simplified(const std::string& ending, const std::string& body);  // ending: ".rgen"
 VirtualProgram lowered(const std::string& ending, const std::string& body);
-int count(const VirtualProgram& program, std::string_view op);  // instructions of that op
+int count(const VirtualProgram& program, std::string_view op);  // number of instructions with that op
 int count_markers(const VirtualProgram& program, VirtualInst::Kind kind);
 
-// Runs main's `statements` in a compute shader, one lane an element of `inputs` (at most 256): the uint `x`
-// is the lane's input, `float f` its bits as a float; what is assigned to `uint y` comes back. `globals`
-// precede main.
+// Runs the `statements` of main in a compute shader with one lane for each of at most 256 `inputs`. The uint
+// `x` is the lane's input, and `float f` has the same bits. The value assigned to `uint y` is returned.
+// `globals` precede main.
 std::vector<uint32_t> run(const std::vector<uint32_t>& inputs, const std::string& statements,
                           const std::string& globals = "", const BackendOptions& options = {});
 std::vector<float> run_f32(const std::vector<float>& inputs, const std::string& expression_of_f,

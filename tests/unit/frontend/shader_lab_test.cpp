@@ -1,4 +1,4 @@
-// The shader lab's own code, and a test that it tells right from wrong.
+// Implements the shader lab and tests that it detects a wrong result.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/unit/frontend/shader_lab.h"
 

@@ -1,4 +1,4 @@
-// Where ISA comes from: its SPIR-V instruction, its line, and the calls it stands under after inlining.
+// Tests where ISA instructions say they come from: SPIR-V instruction, line, and the calls after inlining.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/spirv/source_lines.h"
 
@@ -17,7 +17,7 @@
 namespace glint::frontend {
 namespace {
 
-// square() at line 5, twice() at 8, main() at 11 to 13.
+// In this text, square() is at line 5, twice() at 8, and main() at 11 to 13.
 const std::string kNested = R"(#version 460
 layout(local_size_x = 32) in;
 layout(set = 0, binding = 0) buffer B { float v[]; };
@@ -45,7 +45,7 @@ isa::Program compiled(const std::vector<uint32_t>& words) {
   return out;
 }
 
-// "main:12 twice:8 square:5"
+// Returns a stack of calls such as "main:12 twice:8 square:5".
 std::string stack_of(const isa::Program& program, const isa::Line& line) {
   std::string out =
       fmt::format("{}:{}", line.scope ? program.scopes[line.scope - 1].function : "?", line.line);
@@ -57,7 +57,7 @@ std::string stack_of(const isa::Program& program, const isa::Line& line) {
   return out;
 }
 
-// The module with a set of extended instructions that nothing knows: nothing is marked then.
+// Returns the module with an unknown set of extended instructions, because of which nothing is marked.
 std::vector<uint32_t> with_foreign_set(std::vector<uint32_t> words) {
   const std::string name = "NonSemantic.Other";
   std::vector<uint32_t> import{0, words[3]++};
@@ -74,7 +74,7 @@ std::vector<uint32_t> with_foreign_set(std::vector<uint32_t> words) {
   return words;
 }
 
-// Of the listing: what is run, without constants that only marks need.
+// Counts the rows of the listing that belong to functions, without constants that only marks need.
 size_t rows_of_functions(const isa::Program& program) {
   const auto is_head = [](const isa::SpirvLine& line) {
     return line.text.find("= OpFunction ") != std::string::npos;
@@ -92,8 +92,8 @@ TEST_CASE("after inlining every instruction says under which calls it stands, a 
       sines.insert(stack_of(program, program.lines[i]));
   const std::set<std::string> stacks(sines.begin(), sines.end());
   CHECK(stacks == std::set<std::string>{"main:12 twice:8 square:5", "main:13 square:5"});
-  CHECK(sines.count("main:12 twice:8 square:5") ==
-        2 * sines.count("main:13 square:5"));  // called twice in that line
+  // twice() calls square() two times, so its chain of calls has twice as many instructions.
+  CHECK(sines.count("main:12 twice:8 square:5") == 2 * sines.count("main:13 square:5"));
   for (const isa::Line& line : program.lines)
     if (line.line >= 11) CHECK(stack_of(program, line) == fmt::format("main:{}", line.line));
 }
@@ -155,7 +155,7 @@ TEST_CASE("texts with line ends in a module do not shift its listing") {
 }
 
 TEST_CASE("modules with debug information of their own keep their lines and get calls, too") {
-  // As glslang -gVS writes it: lines as DebugLine, numbers as constants.
+  // The module has the form that glslang -gVS writes: lines are DebugLine and numbers are constants.
   const std::string text = R"(
     OpCapability Shader
     OpExtension "SPV_KHR_non_semantic_info"

@@ -1,5 +1,6 @@
-// Tables of operands and results: each expression computed in registers and folded at compile time, bit by
-// bit. SPDX-License-Identifier: Apache-2.0
+// Checks tables of operands and results to the bit. Each expression is computed in registers and folded at
+// compile time.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
 #include <cmath>
@@ -17,14 +18,15 @@ inline uint32_t f(float x) {
   return std::bit_cast<uint32_t>(x);
 }
 
-// Three operands and the result, as bits. A result of kNan stands for every NaN.
+// Holds the bits of three operands and of the result. A result of kNan stands for every NaN.
 struct Case {
   uint32_t a, b, c, result;
 };
 
-// Checks `expression` for each case: once with operands from memory and once with operands that are
-// specialisation constants, so that the compiler sees them. In it, a, b, c are the operands as floats, A, B,
-// C as uints, i, j, k as ints; its value is a float, an int, a uint or a bool. `globals` precede it.
+// Checks `expression` for each case: once with operands from memory, and once with operands that are
+// specialisation constants, which the compiler can see. In the expression, a, b, c are the operands as
+// floats, A, B, C as uints, and i, j, k as ints. Its value is a float, an int, a uint or a bool. `globals`
+// precede the expression.
 void check_cases(const std::string& expression, const std::vector<Case>& cases,
                  const std::string& globals = "");
 

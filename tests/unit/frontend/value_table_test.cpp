@@ -1,4 +1,4 @@
-// How tables of operands and results become shaders, and that a wrong result would be seen.
+// Turns tables of operands and results into shaders, and tests that a wrong result is detected.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/unit/frontend/value_table.h"
 
@@ -55,7 +55,7 @@ bool is_nan(uint32_t bits) {
   return (bits & kIntMax) > kInf;
 }
 
-// Those that differ.
+// Returns the cases whose results differ.
 std::string differences(const std::vector<uint32_t>& got, const std::vector<Case>& cases) {
   std::string text;
   for (size_t i = 0; i < cases.size(); ++i) {

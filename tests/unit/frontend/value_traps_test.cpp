@@ -1,5 +1,6 @@
-// Where values come from that nobody wrote: variables without a value, indices out of range, constants folded
-// elsewhere. SPDX-License-Identifier: Apache-2.0
+// Tests values that no code wrote: variables without a value, indices out of range, constants folded
+// elsewhere.
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.h"
 #include "tests/unit/frontend/shader_lab.h"
 #include "tests/unit/frontend/value_table.h"

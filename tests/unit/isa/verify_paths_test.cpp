@@ -1,5 +1,6 @@
-// The verifier's walk over paths: regions, traces, what is written where, frames, stages; and what it must
-// accept. SPDX-License-Identifier: Apache-2.0
+// Tests the verifier's walk over paths: regions, traces, registers written on each path, frames, stages, and
+// programs that it must accept.
+// SPDX-License-Identifier: Apache-2.0
 #include <chrono>
 #include <fmt/format.h>
 
@@ -15,7 +16,7 @@ using Catch::Contains;
 
 namespace {
 
-// All messages about a program of the given header and code, one a line; "" for a sound one.
+// Returns all messages about a program with this header and code, one per line, or "" for a sound program.
 std::string verdict(const std::string& code, const std::string& header = "") {
   const Program p = parse(".registers 32\n" + header + "\n" + code, "paths");
   Diagnostics d;
@@ -67,7 +68,7 @@ TEST_CASE("a register or predicate that nothing has written on a path is not rea
   CHECK_THAT(verdict("mov.b32 %r2, 1; add.u64 %rd4, %rd2, 1; exit;"), Contains("%r3 is read"));
   CHECK_THAT(verdict("setp.eq.u32 %p0, %laneid, 1; @%p0 bra N; mov.b32 %r1, 1; N: mov.b32 %r2, %r1; exit;"),
              Contains("instruction 3 (mov.b32): %r1 is read, and on a path"));
-  // In a loop: written later is not written before.
+  // In a loop, a register that is written later counts as not written before.
   CHECK_THAT(verdict("L: add.u32 %r1, %r2, 1; mov.b32 %r2, 1; setp.eq.u32 %p0, %r1, 9; @%p0 bra L; exit;"),
              Contains("instruction 0 (add.u32): %r2 is read"));
 }
@@ -179,5 +180,5 @@ TEST_CASE("a program twice as long takes about twice the time") {
     }
     return best;
   };
-  CHECK(seconds(16000) < 16 * seconds(4000) + 0.01);  // quadratic would be 16 times, linear is 4
+  CHECK(seconds(16000) < 16 * seconds(4000) + 0.01);  // quadratic time would be 16 times, linear time 4 times
 }

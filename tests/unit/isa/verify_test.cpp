@@ -1,4 +1,4 @@
-// The verifier: each kind of mistake is reported once, at its instruction, and sound programs pass.
+// Tests the verifier: each kind of mistake is reported once, at its instruction, and sound programs pass.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/verify.h"
 
@@ -33,7 +33,7 @@ std::vector<std::string> messages_of(const Program& p) {
   return d.messages();
 }
 
-// The only message after `change` to the sound program.
+// Returns the only message after `change` was applied to the sound program.
 template <class Change>
 std::string complaint(Change change) {
   Program p = parse(kSound, "sound");
