@@ -1,4 +1,4 @@
-// Miss shader of ambient occlusion.
+// Runs as miss shader of ambient occlusion.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_ray_tracing : require

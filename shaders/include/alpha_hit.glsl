@@ -1,4 +1,4 @@
-// Any hit: passes the ray through texels whose alpha is exactly zero.
+// Lets a ray pass through texels whose alpha is exactly zero, in any-hit shaders.
 // SPDX-License-Identifier: Apache-2.0
 #include "geometry.glsl"
 

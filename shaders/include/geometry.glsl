@@ -1,13 +1,13 @@
-// Bindings 4 to 9: vertices, indices, materials, where each model starts, textures and spheres.
+// Declares bindings 4 to 9: vertices, indices, materials, where each model starts, textures and spheres.
 // SPDX-License-Identifier: Apache-2.0
 #ifndef GLINT_GEOMETRY_GLSL
 #define GLINT_GEOMETRY_GLSL
 #include "material.glsl"
 
-layout(set = 0, binding = 4, std430) readonly buffer Vertices { float vertex_words[]; };  // 9 a vertex
+layout(set = 0, binding = 4, std430) readonly buffer Vertices { float vertex_words[]; };  // 9 per vertex
 layout(set = 0, binding = 5, std430) readonly buffer Indices { uint indices[]; };
 layout(set = 0, binding = 6, std430) readonly buffer Materials { Material materials[]; };
-layout(set = 0, binding = 7, std430) readonly buffer Offsets { uvec2 model_offsets[]; };  // first index, vertex
+layout(set = 0, binding = 7, std430) readonly buffer Offsets { uvec2 model_offsets[]; };  // first index, first vertex
 layout(set = 0, binding = 8) uniform sampler2D textures[];
 layout(set = 0, binding = 9, std430) readonly buffer Spheres { vec4 spheres[]; };  // centre, radius; by model
 
@@ -30,7 +30,7 @@ Vertex load_vertex(uint vertex) {
   return result;
 }
 
-// A hit triangle's corners, its interpolated attributes, and the material of its first corner.
+// Holds a hit triangle's corners, its interpolated attributes, and the material of its first corner.
 struct Surface {
   vec3 normal;
   vec2 texture_coordinate;
@@ -47,7 +47,7 @@ Surface load_surface(uint model, uint primitive, vec2 barycentrics) {
   Surface surface;
   vec3 normal = v0.normal * weight.x + v1.normal * weight.y + v2.normal * weight.z;
 #ifdef GLINT_INSTANCES
-  normal = (normal * gl_WorldToObjectEXT).xyz;  // normals turn by the inverse transpose
+  normal = (normal * gl_WorldToObjectEXT).xyz;  // normals are transformed by the inverse transpose
 #endif
   surface.normal = normalize(normal);
   surface.texture_coordinate = v0.texture_coordinate * weight.x + v1.texture_coordinate * weight.y +

@@ -1,11 +1,11 @@
-// Binding 6: one material, 32 bytes (scenes/scene.h).
+// Declares binding 6, the materials of 32 bytes each (scenes/scene.h).
 // SPDX-License-Identifier: Apache-2.0
 #ifndef GLINT_MATERIAL_GLSL
 #define GLINT_MATERIAL_GLSL
 
 struct Material {
   vec4 diffuse;
-  int texture_index;  // negative = none
+  int texture_index;  // negative: no texture
   float fuzziness;
   float refraction_index;
   uint model;

@@ -1,9 +1,9 @@
-// Random numbers: the Tiny Encryption Algorithm as a hash, a linear congruential generator, and rejection.
+// Makes random numbers: the Tiny Encryption Algorithm as a hash, a linear congruential generator, and rejection.
 // SPDX-License-Identifier: Apache-2.0
 #ifndef GLINT_RANDOM_GLSL
 #define GLINT_RANDOM_GLSL
 
-// Wheeler and Needham 1994, 16 rounds; the key is LumiBench's. Returns the first word.
+// Hashes two words with the algorithm of Wheeler and Needham 1994 in 16 rounds and LumiBench's key. Returns the first word.
 uint hash_pair(uint first, uint second) {
   uint sum = 0u;
   for (int round = 0; round < 16; ++round) {
@@ -14,13 +14,13 @@ uint hash_pair(uint first, uint second) {
   return first;
 }
 
-// In [0, 1), from the low 24 bits of the next state.
+// Returns a number in [0, 1) from the low 24 bits of the next state.
 float random_float(inout uint state) {
   state = 1664525u * state + 1013904223u;
   return float(state & 0x00ffffffu) / 16777216.0;
 }
 
-// One draw a statement: GLSL leaves the order of evaluation inside a constructor open.
+// Each statement draws once, because GLSL does not define the order of evaluation inside a constructor.
 vec2 random_in_unit_disk(inout uint state) {
   vec2 point;
   do {

@@ -1,4 +1,4 @@
-// How each material model answers a ray: a colour, a next direction, and whether the path goes on.
+// Computes how each material model answers a ray: a colour, a next direction, and whether the path goes on.
 // SPDX-License-Identifier: Apache-2.0
 #ifndef GLINT_SCATTER_GLSL
 #define GLINT_SCATTER_GLSL
@@ -11,8 +11,8 @@ vec4 sample_texture(Material material, vec2 coordinate) {
   return textureLod(textures[nonuniformEXT(material.texture_index)], coordinate, 0.0);
 }
 
-// Schlick 1994. `cosine` may pass 1 when the ray leaves the body; the result is then not a number, no draw is
-// below it, and the ray is refracted: as in the original.
+// Uses Schlick 1994. `cosine` may exceed 1 when the ray leaves the body. The result is then NaN, no random number
+// is below it, and the ray is refracted, as in the original.
 float reflect_probability(float cosine, float refraction_index) {
   float r0 = (1.0 - refraction_index) / (1.0 + refraction_index);
   r0 = r0 * r0;

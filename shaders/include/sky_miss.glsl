@@ -1,4 +1,4 @@
-// Miss: a sky that fades from white to blue, or black indoors; the other fields of the payload stay.
+// Handles a miss: a sky that fades from white to blue, or black indoors. The other fields of the payload stay.
 // SPDX-License-Identifier: Apache-2.0
 #include "payload.glsl"
 #include "uniforms.glsl"

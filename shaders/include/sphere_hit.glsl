@@ -1,4 +1,4 @@
-// Closest hit on a procedural sphere; in every workload the scatter direction stays a direction.
+// Handles the closest hit on a procedural sphere. In every workload the scatter direction stays a direction.
 // SPDX-License-Identifier: Apache-2.0
 #include "scatter.glsl"
 

@@ -1,4 +1,4 @@
-// Intersection of a ray with a procedural sphere in world space (instances have no transform).
+// Intersects a ray with a procedural sphere in world space (instances have no transform).
 // SPDX-License-Identifier: Apache-2.0
 #include "geometry.glsl"
 
@@ -11,7 +11,7 @@ void main() {
   float t_min = gl_RayTminEXT;
   float t_max = gl_RayTmaxEXT;
 
-  // |origin + t direction - centre|^2 = radius^2, with half of the linear coefficient
+  // Solves |origin + t direction - centre|^2 = radius^2, with half of the linear coefficient.
   vec3 offset = origin - center_radius.xyz;
   float a = dot(direction, direction);
   float b = dot(offset, direction);

@@ -1,4 +1,4 @@
-// Closest hit on a triangle. GLINT_KEEP_HIT_POINT: also store where the ray hit and the normal towards it.
+// Handles the closest hit on a triangle. GLINT_KEEP_HIT_POINT: also store the hit point and the normal towards the ray.
 // SPDX-License-Identifier: Apache-2.0
 #include "scatter.glsl"
 

@@ -1,4 +1,4 @@
-// Binding 3: camera, light and counts of one frame, 320 bytes (scenes/camera.h writes them).
+// Declares binding 3: camera, light and counts of one frame, 320 bytes (scenes/camera.h writes them).
 // SPDX-License-Identifier: Apache-2.0
 #ifndef GLINT_UNIFORMS_GLSL
 #define GLINT_UNIFORMS_GLSL
@@ -16,7 +16,7 @@ layout(set = 0, binding = 3, std140) uniform FrameUniforms {
   uint total_samples;
   uint samples;
   uint bounces;
-  uint secondary_rays;  // shadow rays or ambient-occlusion rays a hit
+  uint secondary_rays;  // shadow rays or ambient-occlusion rays per hit
   uint random_seed;
   uint width;
   uint height;

@@ -1,4 +1,4 @@
-// Miss shader of path tracing.
+// Runs as miss shader of path tracing.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_ray_tracing : require

@@ -1,4 +1,4 @@
-// Closest-hit shader for triangles of path tracing.
+// Runs as closest-hit shader for triangles of path tracing.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_ray_tracing : require

@@ -1,4 +1,4 @@
-// Closest-hit shader for spheres of shadows.
+// Runs as closest-hit shader for spheres of shadows.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_ray_tracing : require

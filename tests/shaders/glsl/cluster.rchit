@@ -1,4 +1,4 @@
-// A built-in of an extension younger than the compiler, declared by hand.
+// Declares by hand a built-in of an extension that is newer than the compiler.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_ray_tracing : require

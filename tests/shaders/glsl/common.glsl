@@ -1,4 +1,4 @@
-// What most of the laboratory's shaders share. The name is relative to this folder.
+// Holds what most of the laboratory's shaders share. The included name is relative to this folder.
 // SPDX-License-Identifier: Apache-2.0
 #ifndef COMMON_GLSL
 #define COMMON_GLSL

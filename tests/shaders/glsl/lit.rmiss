@@ -1,4 +1,4 @@
-// The light is visible.
+// Notes that the light is visible.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_ray_tracing : enable

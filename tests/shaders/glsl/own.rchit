@@ -1,4 +1,4 @@
-// Traces on with the payload that it was given.
+// Traces again with the payload that it was given.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #include "common.glsl"

@@ -1,4 +1,4 @@
-// The primary ray met nothing.
+// Notes that the primary ray hit nothing.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #include "common.glsl"

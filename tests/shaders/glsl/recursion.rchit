@@ -1,4 +1,4 @@
-// Traces on with a payload of its own.
+// Traces again with a payload of its own.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #include "common.glsl"

@@ -1,4 +1,4 @@
-// Ends a path, or traces on with the payload that it was given.
+// Ends a path, or traces again with the payload that it was given.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #include "common.glsl"

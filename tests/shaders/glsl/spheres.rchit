@@ -1,4 +1,4 @@
-// The radius of the sphere that was hit, by an extension that the compiler does not know.
+// Returns the radius of the sphere that was hit, by an extension that the compiler does not know.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_ray_tracing : require

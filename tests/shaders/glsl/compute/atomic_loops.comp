@@ -10,7 +10,7 @@ layout(binding = 1) buffer Out { uint results[]; };
 layout(binding = 2, r32f) uniform image2D picture;
 shared float16_t least;
 
-// Ops that the ISA makes only of compare and swap.
+// The ISA has these ops only as loops of compare and swap.
 void main() {
   uint self = gl_LocalInvocationIndex;
   float x = float(self * 37u % 64u) - 20.0;

@@ -1,4 +1,4 @@
-// Every atomic, on buffers, on shared memory and on texels; old values are those of some order.
+// Uses every atomic, on buffers, on shared memory and on texels. Old values are those of some order.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_shader_atomic_float : require
@@ -21,7 +21,7 @@ void main() {
   atomicMin(u[1], 100 + (id * 37) % 64); atomicMax(u[2], (id * 37) % 64); atomicAnd(u[3], ~(1u << (id & 31)) | 0x80u);
   atomicOr(u[4], 1u << (id & 31)); atomicXor(u[5], id); atomicExchange(u[6], 77);
   uint seen = u[7];
-  for (uint tries = 0; tries < 200; ++tries) {  // adds by comparing and swapping
+  for (uint tries = 0; tries < 200; ++tries) {  // adds by compare and swap
     const uint was = atomicCompSwap(u[7], seen, seen + id);
     if (was == seen) break;
     seen = was;

@@ -9,7 +9,7 @@ layout(derivative_group_quadsNV) in;
 layout(binding = 0) buffer Out { float results[]; };
 layout(binding = 1) uniform sampler2D picture;  // three levels, each of one value
 
-// 8 words a thread, by its index.
+// Stores 8 words per thread, by the thread's index.
 void main() {
   uint at = gl_LocalInvocationIndex * 8;
   float x = float(gl_LocalInvocationID.x * gl_LocalInvocationID.x), y = float(gl_LocalInvocationID.y * gl_LocalInvocationID.y);
@@ -20,7 +20,7 @@ void main() {
   results[at + 3] = dFdxCoarse(f);
   results[at + 4] = dFdyCoarse(f);
   results[at + 5] = dFdyFine(vec2(f, -f)).y;
-  vec2 place = vec2(gl_LocalInvocationID.xy) * 0.5;  // two texels of level 0 apart
+  vec2 place = vec2(gl_LocalInvocationID.xy) * 0.5;  // neighbours are two texels of level 0 apart
   results[at + 6] = texture(picture, place).x;
   results[at + 7] = texture(picture, place, 1.0).x;
 }

@@ -1,4 +1,4 @@
-// Images of all geometries: levels, gradients, offsets, gathers, fetches, sizes, separate samplers, arrays by number.
+// Reads images of all geometries: levels, gradients, offsets, gathers, fetches, sizes, separate samplers, arrays by number.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_nonuniform_qualifier : require

@@ -1,4 +1,4 @@
-// Arrays whose lengths hang on specialisation constants, and are 0 by default; through a function with several returns.
+// Uses arrays whose lengths depend on specialisation constants and are 0 by default, in a function with several returns.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 layout(local_size_x = 32) in;

@@ -1,4 +1,4 @@
-// Addresses of buffers, tables of buffers, layouts, lengths.
+// Uses addresses of buffers, tables of buffers, layouts and lengths.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_buffer_reference : require
@@ -23,25 +23,25 @@ uint at(uint word) { return gl_GlobalInvocationID.x * 16 + word; }
 
 void main() {
   const uint id = gl_LocalInvocationID.x;
-  // A list, followed as far as the lane says.
+  // The list is followed for as many steps as the lane says.
   Node node = first;
   uint steps = 0;
   while (steps < id % 4 && uint64_t(node.next) != 0ul) { node = node.next; ++steps; }
   results[at(0)] = node.value;
   results[at(1)] = floatBitsToUint(node.color.z);
-  node.value += 1000;  // lanes write the same: the lowest four nodes gain once
-  // Arithmetic on addresses, from integers and pairs of words.
+  node.value += 1000;  // lanes write the same value: the lowest four nodes gain once
+  // Addresses are computed from integers and from pairs of words.
   Numbers there = Numbers(uint64_t(numbers) + 4ul * id);
   Numbers pair = Numbers(raw);
   results[at(2)] = there.n[1] + pair.n[id];
   results[at(3)] = floatBitsToUint((first + 1).color.z) + uint(uint64_t(first + 2) - uint64_t(first));
   Numbers chosen = (id & 1) == 0 ? numbers : there;
   results[at(4)] = chosen.n[id];
-  // Row-major matrices, arrays with strides, columns by number.
+  // These are row-major matrices, arrays with strides, and columns by number.
   results[at(5)] = floatBitsToUint(rows[id % 3][id % 2]);
   results[at(6)] = floatBitsToUint(inner[id % 2].m[1][0] + inner[1].b);
   results[at(7)] = floatBitsToUint(tail[id % 3] + inner[id % 2].a.y);
-  // Buffers by number.
+  // Buffers are chosen by number.
   const uint which = nonuniformEXT(id % 3);
   results[at(8)] = tables[which].words[id % 2] + tables[which].before;
   results[at(9)] = uint(tables[which].words.length());

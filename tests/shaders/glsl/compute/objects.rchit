@@ -1,4 +1,4 @@
-// Both forms of one built-in matrix, of which glslang makes two variables with one decoration.
+// Reads both forms of one built-in matrix, of which glslang makes two variables with one decoration.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_ray_tracing : require

@@ -1,4 +1,4 @@
-// The level that an implicit sample would read: one texel apart to the right, several down.
+// Queries the level that an implicit sample would read: one texel apart to the right, several down.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_NV_compute_shader_derivatives : require

@@ -1,4 +1,4 @@
-// Images of several samples: each is its own, sizes and numbers of samples are told, samples that are not there are not.
+// Uses images of several samples: each sample is separate, sizes and counts are told, and missing samples do not exist.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require

@@ -1,4 +1,4 @@
-// Blocks: shared memory, barriers, who is where; a sum by halves in each block.
+// Uses blocks: shared memory, barriers, positions of threads, and a sum by halves in each block.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_KHR_shader_subgroup_basic : require

@@ -1,4 +1,4 @@
-// Specialisation constants: sizes of blocks and arrays, operations on constants, values from outside.
+// Uses specialisation constants: sizes of blocks and arrays, operations on constants, values from outside.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 layout(local_size_x = 4, local_size_x_id = 0, local_size_y = 2) in;

@@ -1,4 +1,4 @@
-// Subgroup operations, by all lanes and by those that took a branch.
+// Uses subgroup operations in all lanes, and in the lanes that took a branch.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_KHR_shader_subgroup_basic : require
@@ -52,7 +52,7 @@ void main() {
   put(subgroupQuadBroadcast(x, 2)); put(subgroupQuadSwapHorizontal(x) + 1000 * subgroupQuadSwapVertical(x) + 1000000 * subgroupQuadSwapDiagonal(x));
   put_at = gl_GlobalInvocationID.x * (2 * WORDS) + WORDS;
   if ((lanes >> lane & 1) == 1) work(x);
-  // In a loop that lanes leave one by one: the sum over those that are still there.
+  // Lanes leave this loop one by one. The sum is over the lanes that are still in it.
   uint sum = 0;
   for (uint i = 0; i <= lane % 7; ++i) sum += subgroupAdd(1u) * (i + 1);
   results[gl_GlobalInvocationID.x * (2 * WORDS) + WORDS + 45] = sum;

@@ -8,7 +8,7 @@ layout(local_size_x = 32) in;
 layout(binding = 0) buffer Out { int results[]; };
 layout(binding = 1) buffer In { int values[]; };
 
-// 16 words a thread.
+// Stores 16 words per thread.
 void main() {
   uint self = gl_LocalInvocationIndex, at = self * 16;
   int a = values[self], b = values[(self + 7) & 31], c = values[(self + 19) & 31];

@@ -9,7 +9,7 @@ const bool kIsLess = kProduct < 0l;
 layout(local_size_x = 32) in;
 layout(binding = 0) buffer Out { uint64_t results[]; };
 
-// Operations on constants of 64 bits, which nothing before the lowering folds; used in both arms.
+// Nothing before the lowering folds these operations on constants of 64 bits. Both arms use them.
 void main() {
   uint at = gl_LocalInvocationIndex * 3;
   if ((gl_LocalInvocationIndex & 1) == 0) {

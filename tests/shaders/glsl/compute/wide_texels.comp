@@ -1,4 +1,4 @@
-// An image of 64-bit texels: sums that carry, and the greatest of numbers that differ in their high halves.
+// Uses an image of 64-bit texels: sums that carry, and the maximum of numbers that differ in their high halves.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require

@@ -1,4 +1,4 @@
-// Bytes, halves and 64-bit integers in buffers and shared memory; dot products; copies of whole structs.
+// Uses bytes, halves and 64-bit integers in buffers and shared memory, dot products, and copies of whole structs.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_shader_explicit_arithmetic_types : require

@@ -1,4 +1,4 @@
-// Traces on, whatever the depth.
+// Traces again, whatever the depth.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_ray_tracing : require

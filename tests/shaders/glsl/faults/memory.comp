@@ -1,4 +1,4 @@
-// One mistake a compilation: WRONG stands on line 21.
+// Makes one mistake per compilation: WRONG stands on line 21.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_buffer_reference : require

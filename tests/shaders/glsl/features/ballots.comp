@@ -1,4 +1,4 @@
-// The older ballots and votes, the Vulkan memory model, structs in shared memory.
+// Uses the older ballots and votes, the Vulkan memory model, and structs in shared memory.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_shared_memory_block : require

@@ -1,4 +1,4 @@
-// Blocks that share the same shared memory.
+// Declares blocks that overlap in the same shared memory.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_shared_memory_block : require

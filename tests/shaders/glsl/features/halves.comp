@@ -1,4 +1,4 @@
-// Halves, bytes and tables of them in buffers and shared memory, with vectors and matrices of halves.
+// Uses halves, bytes and tables of them in buffers and shared memory, with vectors and matrices of halves.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_shader_16bit_storage : require

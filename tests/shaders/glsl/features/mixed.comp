@@ -1,4 +1,4 @@
-// Image kinds, layouts, doubles, clocks, locks, loops and switches together.
+// Uses image kinds, layouts, doubles, clocks, locks, loops and switches together.
 // SPDX-License-Identifier: Apache-2.0
 #version 450
 #extension GL_ARB_shader_clock : require

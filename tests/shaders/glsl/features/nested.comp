@@ -1,4 +1,4 @@
-// Arrays and structs of locals and globals, textures passed to functions, loops left in several ways.
+// Uses arrays and structs of locals and globals, textures passed to functions, and loops left in several ways.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 layout(local_size_x = 32) in;

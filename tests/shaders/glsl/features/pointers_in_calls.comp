@@ -7,7 +7,7 @@ layout(buffer_reference, std430) buffer Node { Node next; uint value; };
 layout(push_constant) uniform Constants { Node head; uint count; };
 layout(binding = 0) buffer Out { uint results[]; };
 
-// Addresses as arguments and results of functions with early returns in loops.
+// Addresses are arguments and results of functions with early returns in loops.
 Node find(Node n, uint k) {
   for (uint i = 0; i < k; ++i) {
     if (uint64_t(n.next) == 0ul) return n;

@@ -1,4 +1,4 @@
-// A print in a function.
+// Prints in a function.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_debug_printf : require

@@ -1,4 +1,4 @@
-// Atomics on halves and doubles; subgroup operations on every width.
+// Uses atomics on halves and doubles, and subgroup operations on every width.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_shader_explicit_arithmetic_types : require

@@ -1,4 +1,4 @@
-// One end of an include chain.
+// Starts an include chain.
 // SPDX-License-Identifier: Apache-2.0
 #include "deep/factor.glsl"
 uint scaled(uint x) { return x * kFactor; }

@@ -1,4 +1,4 @@
-// Hints, rotations of subgroups and dot products of bytes.
+// Uses hints, rotations of subgroups and dot products of bytes.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_expect_assume : require

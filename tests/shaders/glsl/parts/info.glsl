@@ -1,4 +1,4 @@
-// A payload with everything in it: nested structs, arrays, bools and matrices.
+// Declares a payload of many types: nested structs, arrays, bools and matrices.
 // SPDX-License-Identifier: Apache-2.0
 struct Ids { uvec4 id; uint kind; bool front[2]; };
 struct Info {

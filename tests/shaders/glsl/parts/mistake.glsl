@@ -1,4 +1,4 @@
-// A mistake in line 6.
+// Has a mistake in line 6.
 // SPDX-License-Identifier: Apache-2.0
 
 int f() {

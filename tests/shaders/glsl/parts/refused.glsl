@@ -1,4 +1,4 @@
-// A function that the frontend does not support.
+// Has a function that the frontend does not support.
 // SPDX-License-Identifier: Apache-2.0
 
 float fetched(ivec2 at) {

@@ -1,4 +1,4 @@
-// Results of a lane: WORDS words.
+// Declares the results of a lane: WORDS words.
 // SPDX-License-Identifier: Apache-2.0
 #ifndef WORDS
 #define WORDS 8

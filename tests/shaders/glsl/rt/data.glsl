@@ -1,4 +1,4 @@
-// Callable data and record data of several types.
+// Declares callable data and record data of several types.
 // SPDX-License-Identifier: Apache-2.0
 struct Job {
   uint depth;

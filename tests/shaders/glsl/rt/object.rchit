@@ -1,4 +1,4 @@
-// Hands back what names the hit, and a weight.
+// Hands back the names of the hit, and a weight.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #include "../common.glsl"

@@ -1,4 +1,4 @@
-// Two incoming payloads, which are the same memory.
+// Declares two incoming payloads, which are the same memory.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #include "../common.glsl"

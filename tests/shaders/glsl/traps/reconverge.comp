@@ -1,4 +1,4 @@
-// Which lanes run together, in and after every construct.
+// Stores which lanes run together in and after every construct.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_KHR_shader_subgroup_basic : require
