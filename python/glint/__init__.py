@@ -1,6 +1,6 @@
-# Glint's runs in Python: read them, compare them, draw them, start them.
+# Reads, compares, draws and starts runs of Glint in Python.
 # SPDX-License-Identifier: Apache-2.0
-"""Reads what `glint` leaves. Only the standard library is needed; numpy, pandas and matplotlib where used.
+"""Reads the files that `glint` leaves. Reading needs only the standard library; some functions need numpy, pandas or matplotlib.
 
     >>> import glint
     >>> run = glint.run("SHIP_SH", out="out/ship", size=(64, 64))      # or glint.Run("out/ship")
@@ -30,6 +30,6 @@ __all__ = ["Bench", "Change", "Characterization", "CommandFailed", "Facts", "Gli
 
 
 def __getattr__(name: str) -> Any:
-    if name == "plot":  # its functions import matplotlib
+    if name == "plot":  # imported late, because its functions import matplotlib
         return importlib.import_module(".plot", __name__)
     raise AttributeError(f"module 'glint' has no attribute '{name}'")

@@ -1,6 +1,6 @@
-# Many runs: the folder of a `glint bench`, or of a sweep over configuration keys.
+# Reads many runs: the folder of a `glint bench`, or of a sweep over configuration keys.
 # SPDX-License-Identifier: Apache-2.0
-"""`Bench(directory)` and `Sweep(directory)`: runs by name, and one table of them all."""
+"""`Bench(directory)` and `Sweep(directory)` hold runs by name, and one table of all runs."""
 from __future__ import annotations
 
 import functools
@@ -19,13 +19,13 @@ from .table import Table
 
 
 class Runs(Mapping[str, Run]):
-    """The complete runs of a folder by name, in the order of the names (numbers in them by value).
+    """Holds the complete runs of a folder by name, sorted by name (numbers in names by value).
 
-    Statistics and configuration of every run are read at once: a run that has no whole ones is among the failed.
+    Statistics and configuration of every run are read at once. A run in which one of them is incomplete is listed as failed.
 
     Attributes:
-        directory: the folder.
-        failed: runs that cannot be read, with the reason: nothing is left out silently.
+        directory: The folder.
+        failed: The runs that cannot be read, with the reason. No run is left out silently.
     """
 
     def __init__(self, directory: str | pathlib.Path):
@@ -40,10 +40,10 @@ class Runs(Mapping[str, Run]):
             if self._takes(name):
                 self._read(name)
         if not found:
-            raise MissingFile(f"{self.directory}: holds no runs (folders with a run.json)")
+            raise MissingFile(f"{self.directory}: the folder holds no runs (folders with a run.json)")
 
     def _takes(self, name: str) -> bool:
-        """Whether the run of this name belongs to these; all in the folder do."""
+        """Returns whether the run of this name is one of these runs. Here, all runs in the folder are."""
         return True
 
     def _read(self, name: str) -> None:
@@ -55,9 +55,9 @@ class Runs(Mapping[str, Run]):
             self.failed[name] = str(error)
 
     def __getitem__(self, name: str) -> Run:
-        """UnknownName (a KeyError) with near names, or with the reason for which the run failed."""
+        """Raises UnknownName (a KeyError) with near names, or with the reason why the run failed."""
         if name not in self._runs:
-            reason = f"'{name}' cannot be read: {self.failed[name]}" if name in self.failed else f"no run '{name}'{near(name, self._runs)}"
+            reason = f"'{name}' cannot be read: {self.failed[name]}" if name in self.failed else f"there is no run '{name}'{near(name, self._runs)}"
             raise UnknownName(f"{self.directory}: {reason}")
         return self._runs[name]
 
@@ -72,27 +72,27 @@ class Runs(Mapping[str, Run]):
         return f"{type(self).__name__}('{self.directory}': {len(self)} runs{failed})"
 
     def point(self, name: str) -> dict[str, Any]:
-        """What names a run in tables."""
+        """Returns the columns that name a run in tables."""
         run = self[name]
         return {"run": name, "workload": run.workload, "config": run.config_name}
 
     def rows(self, columns: Iterable[str] | None = None) -> list[dict[str, Any]]:
-        """A dictionary a run: what names it, then metrics (docs/metrics.md; all without `columns`) or statistics, summed."""
+        """Returns a dictionary for each run: its name, then metrics (docs/metrics.md) or sums of statistics. Without `columns`, all metrics are returned."""
         names = list(columns) if columns is not None else list(metrics())
         return [{**self.point(name), **{column: _number(self[name], column) for column in names}} for name in self]
 
     def frame(self, columns: Iterable[str] | None = None) -> Any:
-        """`rows()` as a pandas.DataFrame; MissingPackage without pandas."""
+        """Returns `rows()` as a pandas.DataFrame. Raises MissingPackage without pandas."""
         return require("pandas", f"{type(self).__name__}.frame()").DataFrame(self.rows(columns))
 
 
 class Bench(Runs):
-    """The folder of a `glint bench`: a run a workload, and the table that it wrote.
+    """Holds the folder of a `glint bench`: a run for each workload, and the table that the bench wrote.
 
-    Its runs are the workloads of the table; all that the folder holds where a bench was stopped before it wrote one.
+    Its runs are the workloads of the table. If the bench was stopped before it wrote a table, they are all runs in the folder.
 
     Attributes:
-        others: complete runs in the folder that the table does not have, of an earlier bench, by name.
+        others: The names of complete runs of an earlier bench that are in the folder but not in the table.
     """
 
     def __init__(self, directory: str | pathlib.Path):
@@ -102,25 +102,25 @@ class Bench(Runs):
         for name in self.others:
             del self._runs[name]
         for name in sorted(known - set(self._runs) - set(self.failed)):
-            self.failed[name] = "metrics.csv has it, and its folder is not there"
+            self.failed[name] = "metrics.csv lists the run, but its folder is missing"
 
     @functools.cached_property
     def table(self) -> Table:
-        """metrics.csv as `glint bench` wrote it."""
+        """The table metrics.csv as `glint bench` wrote it."""
         path = self.directory / "metrics.csv"
         if not path.is_file():
-            raise MissingFile(f"{self.directory}: no metrics.csv: no folder of `glint bench`, or a bench that was stopped")
+            raise MissingFile(f"{self.directory}: there is no metrics.csv: this is no folder of `glint bench`, or the bench was stopped")
         return Table.read(path, needs=("workload", "config", "cycles"))
 
 
 class Sweep(Runs):
-    """The folder of a `glint.sweep(...)`; `rows()` and `frame()` have a column for each key that was swept.
+    """Holds the folder of a `glint.sweep(...)`. `rows()` and `frame()` have a column for each key that was swept.
 
     Its runs are the points of the last sweep into the folder, in their order.
 
     Attributes:
-        axes: values by key, as they were swept; {} of a folder without sweep.json, whose runs are all taken.
-        others: runs in the folder that are of earlier sweeps, by name.
+        axes: The swept values by key. They are {} for a folder without sweep.json, of which all runs are taken.
+        others: The names of runs in the folder that belong to earlier sweeps.
     """
 
     def __init__(self, directory: str | pathlib.Path):
@@ -130,11 +130,11 @@ class Sweep(Runs):
         plan = pathlib.Path(directory) / "sweep.json"
         if plan.is_file():
             tree = read_json(plan)
-            axes, names = tree.get("axes"), tree.get("runs")  # no "runs" before there were any
+            axes, names = tree.get("axes"), tree.get("runs")  # older files have no "runs"
             if not isinstance(axes, dict) or not all(isinstance(values, list) for values in axes.values()):
-                raise SchemaError(f"{plan}: no axes: the file is damaged")
+                raise SchemaError(f"{plan}: there are no axes: the file is damaged")
             if names is not None and not (isinstance(names, list) and all(isinstance(name, str) for name in names)):
-                raise SchemaError(f"{plan}: 'runs' is no list of names: the file is damaged")
+                raise SchemaError(f"{plan}: 'runs' is not a list of names: the file is damaged")
             self.axes, self._names = axes, names
         super().__init__(directory)
         for name in self._names or []:
@@ -154,7 +154,7 @@ class Sweep(Runs):
 
 
 def _natural(path: pathlib.Path) -> list[Any]:
-    """Sorts numbers in names by their value: rt.warps=4 before rt.warps=16."""
+    """Returns a sort key that orders numbers in names by their value: rt.warps=4 comes before rt.warps=16."""
     return [(int(part), "") if part.isdigit() else (-1, part) for part in re.split(r"(\d+)", str(path))]
 
 

@@ -1,6 +1,6 @@
-# What changed from one run to another, metric by metric.
+# Tells what changed from one run to another, metric by metric.
 # SPDX-License-Identifier: Apache-2.0
-"""`compare(a, b)`: the metrics that differ, the largest change first, as `glint compare` prints them."""
+"""`compare(a, b)` returns the metrics that differ, the largest change first, as `glint compare` prints them."""
 from __future__ import annotations
 
 import dataclasses
@@ -13,10 +13,10 @@ from .run_directory import Run
 
 @dataclasses.dataclass(frozen=True)
 class Change:
-    """A metric of two runs.
+    """Holds a metric of two runs.
 
     Attributes:
-        relative: (after - before) / before; None where `before` is 0 and `after` is not.
+        relative: The value (after - before) / before, or None when `before` is 0 and `after` is not.
     """
     metric: str
     unit: str
@@ -30,8 +30,10 @@ class Change:
 
 
 def compare(a: Run | str | pathlib.Path, b: Run | str | pathlib.Path, everything: bool = False) -> list[Change]:
-    """Metrics that both runs have and that changed (all with `everything`), the largest change first, on a scale of ratios:
-    half as much and twice as much are alike; what was 0, or is now, comes before all.
+    """Returns the metrics that both runs have and that changed, or all metrics with `everything`.
+
+    The largest change comes first. Changes are compared as ratios, so half as much and twice as much are equally large. A
+    metric that is 0 in one of the runs comes before all others.
 
     The speed of the host (`sim_rate`) is left out.
     """
@@ -51,9 +53,9 @@ def _distance(change: Change) -> float:
 
 
 def speedup(before: list[Run], after: list[Run]) -> float:
-    """Geometric mean of time before / time after, run by run; ValueError for lists of unequal length or none."""
+    """Returns the geometric mean of time before / time after, run by run. Raises ValueError when the lists are empty or of unequal length."""
     if not before or len(before) != len(after):
-        raise ValueError(f"{len(before)} runs before, {len(after)} after: as many are needed, and at least one")
+        raise ValueError(f"{len(before)} runs before and {len(after)} after: both lists need the same length of at least one")
     product = 1.0
     for one, other in zip(before, after):
         product *= one.seconds / other.seconds

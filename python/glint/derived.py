@@ -1,6 +1,6 @@
-# The 87 metrics of a run: formulas over its statistics, computed here as `glint stats --format metrics` does.
+# Computes the 87 metrics of a run: formulas over its statistics, evaluated as `glint stats --format metrics` does.
 # SPDX-License-Identifier: Apache-2.0
-"""`metrics.csv` beside this file is what `glint list metrics` says (generated; a test compares the values)."""
+"""`metrics.csv` next to this file is the generated output of `glint list metrics`; a test compares the values."""
 from __future__ import annotations
 
 import ast
@@ -19,7 +19,7 @@ from .patterns import near
 
 @dataclasses.dataclass(frozen=True)
 class Metric:
-    """A metric's name, unit, meaning and formula (docs/metrics.md)."""
+    """Holds a metric's name, unit, meaning and formula (docs/metrics.md)."""
     name: str
     unit: str
     doc: str
@@ -28,14 +28,14 @@ class Metric:
 
 @functools.lru_cache(maxsize=1)
 def metrics() -> dict[str, Metric]:
-    """All metrics by name, in the order of `metrics.csv` of `glint bench`."""
+    """Returns all metrics by name, in the order of `metrics.csv` of `glint bench`."""
     path = pathlib.Path(__file__).with_name("metrics.csv")
     with open(path, newline="", encoding="utf-8") as file:
         return {row["name"]: Metric(row["name"], row["unit"], row["meaning"], row["formula"]) for row in csv.DictReader(file)}
 
 
 class Metrics(Mapping[str, "float | None"]):
-    """The metrics of one run by name; None where the run has nothing to divide by, or, functional, does not count it."""
+    """Holds the metrics of one run by name. A metric is None when its divisor is 0, or when a functional run does not count it."""
 
     def __init__(self, run: Any):
         self._run = run
@@ -43,7 +43,7 @@ class Metrics(Mapping[str, "float | None"]):
 
     def __getitem__(self, name: str) -> float | None:
         if name not in metrics():
-            raise UnknownName(f"no metric '{name}'{near(name, metrics())} 'glint list metrics' shows all")
+            raise UnknownName(f"there is no metric '{name}'{near(name, metrics())} 'glint list metrics' shows all metrics")
         if name not in self._known:
             formula = metrics()[name].formula
             self._known[name] = evaluate(formula, self._run) if formula else None
@@ -56,7 +56,7 @@ class Metrics(Mapping[str, "float | None"]):
         return len(metrics())
 
     def about(self, name: str) -> Metric:
-        """Unit, meaning and formula; UnknownName without such a metric."""
+        """Returns unit, meaning and formula. Raises UnknownName when there is no such metric."""
         self[name]
         return metrics()[name]
 
@@ -67,9 +67,9 @@ _CALL = re.compile(r"(sum|max|mean|run|config)\(([^()]*)\)")
 
 
 def evaluate(formula: str, run: Any) -> float | None:
-    """A formula of docs/metrics.md over a run; None where a name is not there or something is divided by zero.
+    """Evaluates a formula of docs/metrics.md over a run. Returns None when a name is missing or a divisor is zero.
 
-    ValueError where the text is no formula.
+    Raises ValueError when the text is not a formula.
     """
     looked_up: list[float | None] = []
 
@@ -94,7 +94,7 @@ def _look_up(function: str, name: str, run: Any) -> float | None:
     return sum(values) / (len(values) if function == "mean" else 1)
 
 
-# What the functional machine's statistics call what the timing machine counts by core and RT unit, as report/metrics/formula.cpp has it.
+# Maps counters of the timing machine's cores and RT units to the functional machine's statistics, as report/metrics/formula.cpp does.
 _FUNCTIONAL = {"core.lane_instructions": "gpu.lanes::*", "core.instructions": "gpu.instructions::*", "rt.rays": "gpu.rays", "rt.nodes": "gpu.nodes",
                "rt.box_tests": "gpu.box_tests", "rt.triangle_tests": "gpu.triangle_tests"}
 _BY_CLASS = "core.instructions_by_class::"
@@ -119,4 +119,4 @@ def _value(node: ast.expr, looked_up: list[float | None], formula: str) -> float
         if left is None or right is None or (isinstance(node.op, ast.Div) and right == 0):
             return None
         return _OPERATORS[type(node.op)](left, right)
-    raise ValueError(f"'{formula}' is no formula")
+    raise ValueError(f"'{formula}' is not a formula")

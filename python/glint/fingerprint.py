@@ -1,6 +1,6 @@
-# What a run depends on beyond its command line: the program, the configuration's values, the contents of its files.
+# Finds what a run depends on besides its command line: the program, the configuration's values, the contents of its files.
 # SPDX-License-Identifier: Apache-2.0
-"""`Fingerprints` tell a sweep whether a complete point would come out the same today."""
+"""`Fingerprints` tell a sweep whether a complete point would give the same result today."""
 from __future__ import annotations
 
 import hashlib
@@ -12,18 +12,18 @@ from typing import Any, Mapping
 from .errors import CommandFailed
 
 _NAMED = re.compile(rb'"([^"\n]{1,255})"|([\w./+-]+\.\w+)')  # files that a text may name: quoted, or a word with an ending
-_SCANNED = 16 << 20  # bytes; names of other files stand in texts, which are smaller
+_SCANNED = 16 << 20  # bytes; only texts name other files, and texts are smaller
 
 
 class Fingerprints:
-    """Texts that differ where something differs that a run reads. Each file is read once."""
+    """Makes texts that differ when something that a run reads differs. Each file is read once."""
 
     def __init__(self, program: str):
         self._program = program
         self._known: dict[str, str] = {"program": _hash(pathlib.Path(program))}
 
     def of(self, workload: str, config: str, settings: Mapping[str, str]) -> str:
-        """Of a run; CommandFailed where the program refuses the configuration."""
+        """Returns the fingerprint of a run. Raises CommandFailed when the program refuses the configuration."""
         keys = f"config {config} {sorted(settings.items())}"
         if keys not in self._known:
             self._known[keys] = self._configuration(config, settings)
@@ -43,7 +43,7 @@ class Fingerprints:
 
 
 def files_of(path: pathlib.Path) -> list[pathlib.Path]:
-    """A file and those that it names, and they in turn: a pipeline's shaders and meshes, their includes; [] of a scene's name."""
+    """Returns a file and all files that it names directly or indirectly (shaders and meshes, their includes), or [] for a scene's name."""
     found: dict[pathlib.Path, None] = {}
     left = [path] if path.is_file() else []
     while left:
@@ -60,7 +60,7 @@ def files_of(path: pathlib.Path) -> list[pathlib.Path]:
 def _is_file(path: pathlib.Path) -> bool:
     try:
         return path.is_file()
-    except OSError:  # a text that can be no name
+    except OSError:  # the text cannot be a file's name
         return False
 
 

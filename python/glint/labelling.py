@@ -1,6 +1,6 @@
-# Short names of runs: of what differs between them, and no more than tells them apart.
+# Makes short names of runs from what differs between them, with no more words than needed.
 # SPDX-License-Identifier: Apache-2.0
-"""`labels(runs)`, and `named(runs)` with the two halves of a label: what ran, and what it ran on."""
+"""`labels(runs)` returns names; `named(runs)` also returns the two halves of a label: what ran, and what it ran on."""
 from __future__ import annotations
 
 import dataclasses
@@ -9,19 +9,19 @@ from typing import Any, Callable, Hashable, Sequence
 
 from .run_directory import Run
 
-BETWEEN = " · "  # words of a label
-_KEYS = 2  # more are not read; more are shown only where fewer would not tell runs apart
+BETWEEN = " · "  # separates the words of a label
+_KEYS = 2  # keys shown if runs differ in more; more are shown only if fewer would not tell runs apart
 _RAYS = {"rays.bounces": "bounces", "rays.shadow_rays": "shadow rays", "rays.ao_rays": "AO rays", "seed": "seed"}
 
 
 @dataclasses.dataclass(frozen=True)
 class Named:
-    """The names of a run among others.
+    """Holds the names of a run among other runs.
 
     Attributes:
-        label: tells it from all others.
-        task: what ran: the workload, and size, samples, seed where runs differ in them. The same for runs of the same work.
-        config: what it ran on: preset or file, and changed keys. Runs of one task have one each.
+        label: Tells the run from all others.
+        task: Says what ran: the workload, and size, samples and seed where runs differ in them. Runs of the same work have the same task.
+        config: Says what it ran on: preset or file, and changed keys. Each run of one task has its own.
     """
     label: str
     task: str
@@ -29,12 +29,12 @@ class Named:
 
 
 def labels(runs: Sequence[Run]) -> list[str]:
-    """Short names that tell runs apart: of what differs between them, the directory's where nothing does."""
+    """Returns short names made from what differs between the runs, or from their directories when nothing differs."""
     return [one.label for one in named(runs)]
 
 
 def named(runs: Sequence[Run]) -> list[Named]:
-    """Label, task and configuration of each run."""
+    """Returns label, task and configuration of each run."""
     runs = list(runs)
     keys = _changed_keys(runs)
     shown = _telling_apart(runs, keys)
@@ -59,12 +59,12 @@ def _differ(runs: Sequence[Run], of: Callable[[Run], Hashable]) -> bool:
 
 
 def _work(run: Run) -> tuple[Any, ...]:
-    """What tells the work of two runs apart, whatever it ran on."""
+    """Returns the facts that tell the work of two runs apart, whatever it ran on."""
     return tuple(str(run.info.get(name)) for name in ("scene.name", "scene.form", "scene.hash", "shader", "width", "height", "samples", *_RAYS))
 
 
 def _facts(runs: Sequence[Run]) -> list[list[str]]:
-    """Of each run the size, samples and the like, where runs differ in them; the shader where the workload does not name it."""
+    """Returns for each run size, samples and similar facts where runs differ in them, and the shader where the workload does not name it."""
     texts: list[Callable[[Run], str]] = [
         lambda run: f"{run.info['width']}x{run.info['height']}" if run.info.get("width") else "",
         lambda run: f"{run.info['samples']} spp" if run.info.get("samples") else ""]
@@ -78,7 +78,7 @@ def _facts(runs: Sequence[Run]) -> list[list[str]]:
 
 
 def _changed_keys(runs: Sequence[Run]) -> list[list[str]]:
-    """Of each run the keys that its label may show: set on its command line, or different from another run's of the same preset or file."""
+    """Returns for each run the keys that its label may show: those set on its command line, and those that differ from a run of the same preset or file."""
     names = list(dict.fromkeys([key for run in runs for key in _set(run)] + [key for run in runs for key in run.config]))
     values = {key: [_text(run.config.get(key)) for run in runs] for key in names}
     differing = [key for key in names if len(set(values[key])) > 1]
@@ -90,7 +90,7 @@ def _changed_keys(runs: Sequence[Run]) -> list[list[str]]:
 
 
 def _set(run: Run) -> list[str]:
-    """Keys that the command line of a run set."""
+    """Returns the keys that the command line of a run set."""
     words = run.info.get("command", [])
     words = words if isinstance(words, list) else []
     pairs = [word for option, word in zip(words, words[1:]) if option == "--set"] + [word.removeprefix("--set=") for word in words if str(word).startswith("--set=")]
@@ -98,7 +98,7 @@ def _set(run: Run) -> list[str]:
 
 
 def _telling_apart(runs: Sequence[Run], keys: list[list[str]]) -> list[str]:
-    """As many of the keys as tell the same configurations apart as all of them do, and two where there are two."""
+    """Returns as many keys as are needed to tell configurations apart as well as all keys do, and at least two if there are two."""
     shown: list[str] = []
     every = list(dict.fromkeys(key for own in keys for key in own))
 
@@ -113,7 +113,7 @@ def _telling_apart(runs: Sequence[Run], keys: list[list[str]]) -> list[str]:
 
 
 def _with_directories(names: list[str], runs: Sequence[Run]) -> list[str]:
-    """Behind names that several runs have the end of their directory, as much of it as differs."""
+    """Appends to names that several runs share the end of their directory, as much of it as differs."""
     out = list(names)
     for name in {name for name in names if names.count(name) > 1}:
         same = [i for i, one in enumerate(names) if one == name]
@@ -128,7 +128,7 @@ def _with_directories(names: list[str], runs: Sequence[Run]) -> list[str]:
 
 
 def _numbered(names: list[str], identities: list[Any]) -> list[str]:
-    """The names, with a number behind those of a second or later identity of the same name."""
+    """Returns the names, with a number after those of a second or later identity of the same name."""
     met: dict[str, list[Any]] = {}
     out = []
     for name, identity in zip(names, identities):
@@ -141,7 +141,7 @@ def _numbered(names: list[str], identities: list[Any]) -> list[str]:
 
 
 def _repeats(names: list[str], groups: list[str]) -> list[str]:
-    """The names, with a number behind the second and later ones of a group."""
+    """Returns the names, with a number after the second and later ones of a group."""
     met: dict[tuple[str, str], int] = {}
     out = []
     for name, group in zip(names, groups):

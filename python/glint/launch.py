@@ -1,6 +1,6 @@
-# Running `glint` from Python: one run, or a sweep over configuration keys.
+# Runs `glint` from Python: one run, or a sweep over configuration keys.
 # SPDX-License-Identifier: Apache-2.0
-"""`run(...)` and `sweep(...)` start the command `glint` and read what it leaves."""
+"""`run(...)` and `sweep(...)` start the command `glint` and read the files that it leaves."""
 from __future__ import annotations
 
 import hashlib
@@ -23,9 +23,9 @@ _IN_TREE = ("build/release/apps/glint/glint", "build/check/apps/glint/glint")
 
 
 def find_glint(glint: str | pathlib.Path | None = None) -> str:
-    """The command: `glint`, else $GLINT, else on PATH, else what ./demo or ./check built beside this package.
+    """Returns the command: the argument `glint`, else $GLINT, else the one on PATH, else the one that ./demo or ./check built next to this package.
 
-    Raises CommandFailed, which says where it looked.
+    Raises CommandFailed, which says where it was searched.
     """
     root = pathlib.Path(__file__).resolve().parents[2]
     for named in (glint, os.environ.get("GLINT")):
@@ -38,31 +38,31 @@ def find_glint(glint: str | pathlib.Path | None = None) -> str:
     for path in ([found] if found else []) + [str(root / name) for name in _IN_TREE]:
         if os.access(path, os.X_OK):
             return path
-    raise CommandFailed(f"no command `glint`: not on PATH and not in {root}/build; build it with ./demo or name it in $GLINT")
+    raise CommandFailed(f"the command `glint` is neither on PATH nor in {root}/build: build it with ./demo or name it in $GLINT")
 
 
 def run(scene: str | pathlib.Path, *, out: str | pathlib.Path, shader: str | None = None, config: str | pathlib.Path = "mobile",
         set: Mapping[str, Any] | None = None, size: tuple[int, int] | None = None, spp: int | None = None, mode: str | None = None,
         profile: bool = False, sample: int | None = None, options: Iterable[str] = (), glint: str | pathlib.Path | None = None) -> Run:
-    """`glint run`: renders a scene or workload, or launches a pipeline or kernel, and reads the run.
+    """Renders a scene or workload, or launches a pipeline or kernel, with `glint run`, and reads the run.
 
     Args:
-        scene: what `glint run` takes: a scene, a workload ("SHIP_SH"), or a file.
-        out: the run directory.
-        shader: "pt", "sh" or "ao".
-        config: a preset or TOML file.
-        set: configuration keys that differ, {"rt.warps": 8}.
-        size: (width, height) in pixels.
-        spp: samples a pixel.
-        mode: "timing" or "functional".
-        profile: count by instruction and line.
-        sample: cycles of an interval of the time series.
-        options: further options as on the command line.
-        glint: the command (see `find_glint`).
+        scene: The argument of `glint run`: a scene, a workload ("SHIP_SH"), or a file.
+        out: The run directory.
+        shader: One of "pt", "sh" and "ao".
+        config: A preset or TOML file.
+        set: The configuration keys that differ, {"rt.warps": 8}.
+        size: The picture's (width, height) in pixels.
+        spp: Samples per pixel.
+        mode: Either "timing" or "functional".
+        profile: Whether to count by instruction and line.
+        sample: Cycles per interval of the time series.
+        options: Further options, as on the command line.
+        glint: The command (see `find_glint`).
 
     Raises:
-        CommandFailed: with exit code and message of the command.
-        TypeError: `options` that is one text instead of a list of words.
+        CommandFailed: The command failed; the error has its exit code and message.
+        TypeError: `options` is one text instead of a list of words.
     """
     words = [find_glint(glint), "run", str(scene), "--config", str(config), "--out", str(out)]
     named = {"--shader": shader, "--spp": spp, "--mode": mode, "--sample": sample, "--size": "{}x{}".format(*size) if size else None}
@@ -76,20 +76,21 @@ def run(scene: str | pathlib.Path, *, out: str | pathlib.Path, shader: str | Non
 
 def sweep(workloads: str | pathlib.Path | Iterable[str | pathlib.Path], axes: Mapping[str, Iterable[Any]], *, out: str | pathlib.Path,
           progress: Callable[[str], None] | None = None, **options: Any) -> Sweep:
-    """Runs every workload at every point of the axes, one after another, into a folder a point.
+    """Runs every workload at every point of the axes, one after another. Each point has its own folder.
 
     Args:
-        workloads: what `glint run` takes, one or several.
-        axes: values by configuration key, {"rt.warps": [4, 8]}; the key "config" sweeps presets. NumPy's arrays are taken too.
-        out: the folder; points that are complete there, with the same command, are not run again, points of the same name and
-            another command are run anew. The same command is one of the same program, values of the configuration, and contents of
-            the workload's file and of those that it names. What earlier sweeps left there is kept and not given (`Sweep.others`).
-        progress: called with a line before each point.
-        options: those of `run`, for every point.
+        workloads: One or several arguments of `glint run`.
+        axes: The values by configuration key, {"rt.warps": [4, 8]}. The key "config" sweeps presets. NumPy arrays are accepted.
+        out: The folder. A point that is complete there with the same command is not run again; a point of the same name with
+            another command is. Commands are the same if the program, the values of the configuration, and the contents of the
+            workload's file and of the files that it names are the same. Points of earlier sweeps are kept but not returned
+            (`Sweep.others`).
+        progress: A function that is called with a line before each point.
+        options: Arguments of `run`, used for every point.
 
     Raises:
-        CommandFailed: at the first point that fails; the points before it are kept.
-        TypeError: an axis that is no list of values.
+        CommandFailed: A point failed. The points before it are kept.
+        TypeError: An axis is not a list of values.
     """
     folder = pathlib.Path(out)
     folder.mkdir(parents=True, exist_ok=True)
@@ -116,14 +117,14 @@ def sweep(workloads: str | pathlib.Path | Iterable[str | pathlib.Path], axes: Ma
 
 
 def _warn_of_idle_keys(found: Sweep) -> None:
-    """A key of a policy that no run chose changes nothing, which equal numbers would not tell."""
+    """Warns of keys that changed nothing because they belong to a policy that no run chose."""
     for key in found.axes:
         if key != "config" and found and not any(key in run.config for run in found.values()):
-            warnings.warn(f"'{key}' has no meaning with the policies of these runs, its values changed nothing: `glint describe {key}` tells what it needs", stacklevel=3)
+            warnings.warn(f"'{key}' has no meaning with the policies of these runs, so its values changed nothing: `glint describe {key}` tells what it needs", stacklevel=3)
 
 
 def _points(names: list[str], values: Mapping[str, list[Any]], options: Mapping[str, Any]) -> dict[str, tuple[str, dict[str, Any], str]]:
-    """By folder, no two the same: workload, options of `run`, and both as text, of every different point."""
+    """Returns every different point by its folder, which is unique: the workload, the options of `run`, and both as text."""
     stems = [_stem(name, names) for name in names]
     found: dict[str, tuple[str, dict[str, Any], str]] = {}
     for (name, stem), *point in itertools.product(zip(names, stems), *([(key, value) for value in axis] for key, axis in values.items())):
@@ -131,7 +132,7 @@ def _points(names: list[str], values: Mapping[str, list[Any]], options: Mapping[
         more = {**options, "set": keys, **{key: value for key, value in point if key == "config"}}
         wanted = json.dumps([name, {key: str(value) for key, value in more.items()}], sort_keys=True)
         if any(wanted == known for _, _, known in found.values()):
-            continue  # named twice
+            continue  # the point was named twice
         there = "-".join([stem, *(f"{key}={value}" for key, value in point)]).replace("/", "_").replace("\\", "_")
         if len(there) > _LONGEST or there in found:
             there = f"{there[:_LONGEST]}-{hashlib.sha256(wanted.encode()).hexdigest()[:8]}"
@@ -140,7 +141,7 @@ def _points(names: list[str], values: Mapping[str, list[Any]], options: Mapping[
 
 
 def _stem(name: str, names: Iterable[str]) -> str:
-    """The file's name without its ending; with as much of the folders before it as tells the workloads apart."""
+    """Returns the file's name without its ending, with as many of the folders before it as are needed to tell the workloads apart."""
     paths = {pathlib.PurePath(other).with_suffix("").parts for other in names}
     mine = pathlib.PurePath(name).with_suffix("").parts
     for count in range(1, len(mine)):
@@ -150,14 +151,14 @@ def _stem(name: str, names: Iterable[str]) -> str:
 
 
 def _axis(key: str, values: Any) -> list[Any]:
-    """The values of an axis as numbers and texts of Python."""
+    """Returns the values of an axis as Python's numbers and texts."""
     if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
         raise TypeError(f"axes['{key}'] is {values!r}: a list of values is needed, [{values!r}] for one")
     return [_plain(value) for value in values]
 
 
 def _plain(value: Any) -> Any:
-    """NumPy's numbers as Python's, paths as texts."""
+    """Returns NumPy's numbers as Python's, and paths as texts."""
     if isinstance(value, pathlib.PurePath):
         return str(value)
     return value.item() if hasattr(value, "item") else value

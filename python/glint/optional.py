@@ -1,6 +1,6 @@
-# Packages that only some functions need, imported when they do.
+# Imports packages that only some functions need, at the time they need them.
 # SPDX-License-Identifier: Apache-2.0
-"""numpy, pandas and matplotlib are not needed to read runs; what needs them asks here."""
+"""Reading runs does not need numpy, pandas or matplotlib. Functions that need them call `require`."""
 import importlib
 from types import ModuleType
 
@@ -10,7 +10,7 @@ _DEBIAN = {"numpy": "python3-numpy", "pandas": "python3-pandas", "matplotlib": "
 
 
 def require(name: str, purpose: str) -> ModuleType:
-    """The module `name`; MissingPackage, which names the package to install, where it is not there."""
+    """Returns the module `name`. Raises MissingPackage, which names the package to install, when it is not installed."""
     try:
         return importlib.import_module(name)
     except ImportError as error:

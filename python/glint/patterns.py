@@ -1,12 +1,12 @@
-# Patterns of dotted paths, with the meaning they have in docs/metrics.md.
+# Implements patterns of dotted paths, with the meaning they have in docs/metrics.md.
 # SPDX-License-Identifier: Apache-2.0
-"""`*` stands for any characters but '.'; brackets are themselves: `gpu.core[*].l1.*` is what it looks like."""
+"""In a pattern, `*` stands for any characters except '.', and brackets stand for themselves, as in `gpu.core[*].l1.*`."""
 import difflib
 import functools
 import re
 from typing import Iterable
 
-# Beginnings of paths that stand for those of all instances (as in formulas of docs/metrics.md).
+# Each beginning of a path stands for the paths of all instances, as in the formulas of docs/metrics.md.
 UNITS = {
     "core.": "gpu.core[*].",
     "rt.": "gpu.rt_unit[*].rt.",
@@ -17,7 +17,7 @@ UNITS = {
 
 
 def whole(pattern: str) -> str:
-    """The pattern with `core.`, `rt.`, `l1.`, `l2.` or `dram.` at its beginning written out."""
+    """Returns the pattern with `core.`, `rt.`, `l1.`, `l2.` or `dram.` at its beginning replaced by the full path."""
     for unit, prefix in UNITS.items():
         if pattern.startswith(unit):
             return prefix + pattern[len(unit):]
@@ -26,12 +26,12 @@ def whole(pattern: str) -> str:
 
 @functools.lru_cache(maxsize=4096)
 def compiled(pattern: str) -> re.Pattern[str]:
-    """The regular expression that matches whole paths of the pattern."""
+    """Returns the regular expression that matches whole paths of the pattern."""
     parts = re.escape(whole(pattern)).split(re.escape("*"))
     return re.compile(r"[^.]*".join(parts))
 
 
 def near(name: str, known: Iterable[str]) -> str:
-    """', did you mean ...?' with up to three names that are like `name`, or nothing."""
+    """Returns ', did you mean ...?' with up to three names that are similar to `name`, or an empty text."""
     found = difflib.get_close_matches(name, list(known), n=3, cutoff=0.6)
     return ", did you mean " + " or ".join(f"'{one}'" for one in found) + "?" if found else ""

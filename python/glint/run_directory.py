@@ -1,6 +1,6 @@
-# One finished run: what its directory holds, read when it is asked for.
+# Reads one finished run: each file of its directory is read when it is asked for.
 # SPDX-License-Identifier: Apache-2.0
-"""`Run(directory)`: statistics, metrics, configuration, picture, time series, profile and maps of a run."""
+"""`Run(directory)` has the statistics, metrics, configuration, picture, time series, profile and maps of a run."""
 from __future__ import annotations
 
 import functools
@@ -17,28 +17,28 @@ from .statistics import Stats
 from .table import Table
 
 SCHEMA = 1  # of run.json, as report/files/run_directory.cpp writes it
-SHADERS = ("pt", "sh", "ao")  # of scenes; pipelines and kernels list their own files
-_LAST_TABLE = "compiler"  # of config.toml: a file without it was cut short
+SHADERS = ("pt", "sh", "ao")  # shaders of scenes; pipelines and kernels list their own files
+_LAST_TABLE = "compiler"  # of config.toml; a file without it was cut short
 
 
 class Facts(dict[str, Any]):
-    """Values by dotted name ("scene.triangles"); a missing name is an UnknownName with near ones."""
+    """Holds values by dotted name ("scene.triangles"). A missing name raises UnknownName, which lists similar names."""
 
     def __missing__(self, name: str) -> Any:
         raise UnknownName(f"there is no '{name}'{near(name, self)}")
 
 
 class Run:
-    """A run directory of `glint run` or of one workload of `glint bench`.
+    """Holds a run directory of `glint run` or of one workload of `glint bench`.
 
     Args:
-        directory: the folder.
-        partial: take runs that ended with an error too; statistics are then there only if the run left them.
+        directory: The folder.
+        partial: Whether to accept runs that ended with an error. Such a run may have no statistics.
 
     Raises:
-        MissingFile: no run.json (no run directory, or a run that was killed) or no stats.json.
-        IncompleteRun: the run ended with an error, which the message repeats.
-        SchemaError: another schema, or a damaged file.
+        MissingFile: There is no run.json (this is no run directory, or the run was killed) or no stats.json.
+        IncompleteRun: The run ended with an error, which the message repeats.
+        SchemaError: A file has another schema or is damaged.
     """
 
     def __init__(self, directory: str | pathlib.Path, partial: bool = False):
@@ -47,28 +47,28 @@ class Run:
         if not self.directory.is_dir():
             raise MissingFile(f"{self.directory}: there is no such folder")
         if not record.is_file():
-            raise MissingFile(f"{self.directory}: no run.json: no run directory, or a run that was stopped before its end")
+            raise MissingFile(f"{self.directory}: there is no run.json: this is no run directory, or the run was stopped before its end")
         tree = read_json(record)
         if tree.get("schema") != SCHEMA:
-            raise SchemaError(f"{record}: schema {tree.get('schema')!r}, this package reads {SCHEMA}: use the package of that Glint")
+            raise SchemaError(f"{record}: the schema is {tree.get('schema')!r}, but this package reads {SCHEMA}: use the package of the Glint that wrote the run")
         self.info = Facts(flat(tree))
         if not partial and self.info.get("exit", 0) != 0:
             raise IncompleteRun(f"{self.directory}: the run ended with exit code {self.info['exit']}: {self.info.get('message', '')}")
         if not partial:
             if "mode" not in self.info:
-                raise SchemaError(f"{record}: no 'mode': the file is damaged")
+                raise SchemaError(f"{record}: there is no 'mode': the file is damaged")
             self.file("stats.json", "every run that ends well")
 
     def __repr__(self) -> str:
         return f"Run('{self.directory}': {self.workload}, {self.info['mode']} on {self.config_name})"
 
     def check(self) -> None:
-        """Reads statistics and configuration; MissingFile, SchemaError where one is gone or damaged."""
+        """Reads statistics and configuration. Raises MissingFile or SchemaError when one is missing or damaged."""
         self.stats, self.config  # noqa: B018 (kept once they are read)
 
     @property
     def workload(self) -> str:
-        """Scene and shader, e.g. "SHIP_SH"; of pipelines and kernels their file's name, of a pipeline.toml that of its first shader."""
+        """Scene and shader, e.g. "SHIP_SH". For pipelines and kernels it is the file's name, and for a pipeline.toml that of its first shader."""
         scene, shader = str(self.info.get("scene.name", "")), str(self.info.get("shader", ""))
         if shader in SHADERS:
             return f"{scene}_{shader.upper()}"
@@ -76,12 +76,12 @@ class Run:
 
     @property
     def config_name(self) -> str:
-        """Name of the preset or configuration file."""
+        """The name of the preset or configuration file."""
         return str(self.info.get("config.name", ""))
 
     @functools.cached_property
     def stats(self) -> Stats:
-        """All statistics, by dotted path."""
+        """All statistics by dotted path."""
         path = self.file("stats.json", "every run that ends well")
         try:
             return Stats.from_tree(read_json(path))
@@ -90,52 +90,52 @@ class Run:
 
     @functools.cached_property
     def metrics(self) -> Metrics:
-        """The metrics of docs/metrics.md, by name; None where the run has none."""
+        """The metrics of docs/metrics.md by name. A metric that the run does not have is None."""
         return Metrics(self)
 
     @functools.cached_property
     def config(self) -> Facts:
-        """Every configuration key as it was in the run, by dotted name."""
+        """Every configuration key by dotted name, with its value in the run."""
         path = self.file("config.toml", "every run")
         try:
             tree = tomllib.loads(read_text(path))
         except tomllib.TOMLDecodeError as error:
             raise SchemaError(f"{path}: {error}") from error
         if _LAST_TABLE not in tree:
-            raise SchemaError(f"{path}: no [{_LAST_TABLE}], the last table of a whole file: it was cut short")
+            raise SchemaError(f"{path}: there is no [{_LAST_TABLE}], the last table of a whole file: it was cut short")
         return Facts(flat(tree))
 
     @property
     def cycles(self) -> int:
-        """Time of the launch in core clocks; UnknownName for a functional run, which has none."""
+        """The time of the launch in core clocks. Raises UnknownName for a functional run, which has none."""
         if self.info["mode"] != "timing":
             raise UnknownName(f"{self.directory}: a functional run has no cycles: run it with --mode timing")
         return self.stats["gpu.cycles"]
 
     @property
     def seconds(self) -> float:
-        """Time of the launch on the simulated GPU."""
+        """The time of the launch on the simulated GPU, in seconds."""
         return self.cycles / (self.config["clock_mhz"] * 1e6)
 
     @property
     def ipc(self) -> float:
-        """Warp instructions a cycle of the whole GPU, as `glint run` prints it (the metric `ipc` counts lanes)."""
+        """Warp instructions per cycle of the whole GPU, as `glint run` prints it. (The metric `ipc` counts lanes.)"""
         return self.stats.sum("gpu.core[*].instructions") / self.cycles if self.cycles else 0.0
 
     @functools.cached_property
     def image(self) -> Any:
-        """The picture as the shader wrote it, a float32 array of shape (height, width, 3)."""
+        """The picture as the shader wrote it: a float32 array of the shape (height, width, 3)."""
         return read_image(self.file("image.pfm", "runs of scenes"))
 
     @functools.cached_property
     def series(self) -> Table:
-        """The run over time, a row an interval (docs/profiling.md)."""
+        """The run over time, with a row per interval (docs/profiling.md)."""
         path = self.file("series.csv", "`glint run --sample CYCLES`")
         table = Table.read(path, needs=("cycle", "ipc"), whole=True)
         ends, whole = table["cycle"][-1] if len(table) else 0, self.directory / "stats.json"
         last = max([self.cycles, *self.stats.values("gpu.attributed_cycles")]) if whole.is_file() else 0
         if not isinstance(ends, (int, float)) or ends < last:
-            raise SchemaError(f"{path}: ends at cycle {ends}, the run at {last}: the file is damaged or was cut short")
+            raise SchemaError(f"{path}: the series ends at cycle {ends} and the run at {last}: the file is damaged or was cut short")
         return table
 
     @functools.cached_property
@@ -145,26 +145,26 @@ class Run:
 
     @functools.cached_property
     def folded(self) -> dict[str, int]:
-        """Cycles by call stack, frames separated by ';', as flame graphs take them."""
+        """Cycles by call stack. Frames are separated by ';', which is the input format of flame graphs."""
         path, stacks = self.file("profile.folded", "`glint run --profile`"), {}
         for number, line in enumerate(read_text(path).splitlines(), 1):
             stack, _, cycles = line.rpartition(" ")
             if not stack or not cycles.isdecimal():
-                raise SchemaError(f"{path}:{number}: no stack with its cycles: the file is damaged or was cut short")
+                raise SchemaError(f"{path}:{number}: the line is not a stack with its cycles: the file is damaged or was cut short")
             stacks[stack] = int(cycles)
         return stacks
 
     @property
     def map_names(self) -> list[str]:
-        """Maps of cost by pixel that the run left in `heat/`; [] without."""
+        """The names of the maps of cost by pixel that the run left in `heat/`, or [] when it left none."""
         return sorted(path.stem for path in (self.directory / "heat").glob("*.npy"))
 
     def map_info(self, name: str) -> Facts:
-        """Unit, meaning, sum, smallest, mean, 99th percentile (p99) and largest of a map of cost, from `heat/maps.json`."""
+        """Returns unit, meaning, sum, smallest, mean, 99th percentile (p99) and largest value of a map of cost, from `heat/maps.json`."""
         path = self.file("heat/maps.json", "`glint run --heat`")
         maps = read_json(path).get("maps")
         if not isinstance(maps, list) or not all(isinstance(one, dict) for one in maps):
-            raise SchemaError(f"{path}: no list of maps: the file is damaged, or of another version of Glint")
+            raise SchemaError(f"{path}: there is no list of maps: the file is damaged, or of another version of Glint")
         for one in maps:
             if one.get("name") == name:
                 missing = [fact for fact in ("unit", "p99", "max") if fact not in one]
@@ -174,14 +174,14 @@ class Run:
         raise UnknownName(f"{self.directory}: heat/maps.json has no '{name}'{near(name, self.map_names)}")
 
     def map(self, name: str) -> Any:
-        """A map of cost by pixel, an array of shape (height, width)."""
+        """Returns a map of cost by pixel: an array of the shape (height, width)."""
         if name not in self.map_names:
-            raise MissingFile(f"{self.directory}: no map '{name}'; it has: {', '.join(self.map_names) or 'none, `glint run --heat` writes them'}")
+            raise MissingFile(f"{self.directory}: there is no map '{name}'; the run has: {', '.join(self.map_names) or 'none (`glint run --heat` writes them)'}")
         return read_map(self.directory / "heat" / f"{name}.npy")
 
     def file(self, name: str, written_by: str = "the run") -> pathlib.Path:
-        """The path of a file of the run; MissingFile, which says what writes it, where it is not there."""
+        """Returns the path of a file of the run. Raises MissingFile, which says what writes the file, when it is missing."""
         path = self.directory / name
         if not path.is_file():
-            raise MissingFile(f"{self.directory}: no {name}: written by {written_by}")
+            raise MissingFile(f"{self.directory}: there is no {name}, which is written by {written_by}")
         return path

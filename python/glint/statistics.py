@@ -1,6 +1,6 @@
-# The statistics of one run: a flat table by dotted path, with units, meanings, sums over instances.
+# Holds the statistics of one run: a flat table by dotted path, with units, meanings, and sums over instances.
 # SPDX-License-Identifier: Apache-2.0
-"""Statistics as `stats.json` of a run directory has them (docs/stats.md lists all)."""
+"""Reads the statistics in `stats.json` of a run directory (docs/stats.md lists all)."""
 from __future__ import annotations
 
 import dataclasses
@@ -16,14 +16,14 @@ Number = int | float
 
 @dataclasses.dataclass(frozen=True)
 class Stat:
-    """One statistic.
+    """Holds one statistic.
 
     Attributes:
-        path: dotted path, e.g. "gpu.core[3].instructions".
-        value: a number; {part: number} of a breakdown; a list of counts of a histogram.
-        unit: e.g. "cycle".
-        doc: what it counts, a sentence.
-        bins: of a histogram {"low", "high", "step"} in the statistic's unit, else None.
+        path: The dotted path, e.g. "gpu.core[3].instructions".
+        value: A number, {part: number} for a breakdown, or a list of counts for a histogram.
+        unit: The unit, e.g. "cycle".
+        doc: A sentence that says what it counts.
+        bins: For a histogram {"low", "high", "step"} in the statistic's unit, else None.
     """
     path: str
     value: Number | dict[str, Number] | list[Number]
@@ -34,25 +34,25 @@ class Stat:
 
 @dataclasses.dataclass(frozen=True)
 class Histogram:
-    """Counts over all instances: `counts[i]` values in [edges[i], edges[i + 1]), the last one open upwards."""
+    """Holds counts over all instances: `counts[i]` values lie in [edges[i], edges[i + 1]); the last bin is open upwards."""
     edges: list[Number]
     counts: list[Number]
     unit: str
 
 
 class Stats(Mapping[str, Any]):
-    """Statistics by path. `stats["gpu.cycles"]` and `stats["gpu.core[0].issue_slots::issued"]` are values;
-    `about`, `select`, `sum`, `parts` and `histogram` take patterns, in which `*` stands for anything but '.', and
-    `core.`, `rt.`, `l1.`, `l2.`, `dram.` at the beginning for those of all instances."""
+    """Holds statistics by path. `stats["gpu.cycles"]` and `stats["gpu.core[0].issue_slots::issued"]` are values.
+    `about`, `select`, `sum`, `parts` and `histogram` take patterns. In a pattern, `*` stands for any characters except '.',
+    and `core.`, `rt.`, `l1.`, `l2.` or `dram.` at the beginning stands for all instances."""
 
     def __init__(self, stats: dict[str, Stat]):
         self._stats = stats
-        self._paths: list[str] | None = None  # with parts, made when a pattern is first looked for
+        self._paths: list[str] | None = None  # with parts; made when a pattern is first looked for
         self._found: dict[str, list[tuple[str, Any]]] = {}
 
     @classmethod
     def from_tree(cls, tree: dict[str, Any]) -> Stats:
-        """From the tree in stats.json; SchemaError where it is none, or where a value is no number."""
+        """Makes statistics from the tree in stats.json. Raises SchemaError when it has none or when a value is not a number."""
         stats: dict[str, Stat] = {}
         _gather(tree, "", stats)
         if not stats:
@@ -69,7 +69,7 @@ class Stats(Mapping[str, Any]):
         if isinstance(value, dict):
             raise UnknownName(f"'{name}' has no part '{part}': it has {', '.join(value)}")
         hint = " ('*' is for select, sum, parts and histogram)" if "*" in path else ""
-        raise UnknownName(f"no statistic '{path}'{near(path, self._stats)}{hint}")
+        raise UnknownName(f"there is no statistic '{path}'{near(path, self._stats)}{hint}")
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._stats)
@@ -78,49 +78,49 @@ class Stats(Mapping[str, Any]):
         return len(self._stats)
 
     def about(self, path: str) -> Stat:
-        """The statistic with unit and meaning; of a pattern the first that matches. UnknownName without any."""
+        """Returns the statistic with unit and meaning; for a pattern, the first that matches. Raises UnknownName when none matches."""
         if path in self._stats:
             return self._stats[path]
         for stat in self.select(path).values():
             return stat
-        raise UnknownName(f"no statistic '{path}'{near(path, self._stats)}")
+        raise UnknownName(f"there is no statistic '{path}'{near(path, self._stats)}")
 
     def select(self, pattern: str) -> dict[str, Stat]:
-        """All statistics whose whole path matches, in the order of the file; {} without any."""
+        """Returns all statistics whose whole path matches, in the order of the file, or {} when none matches."""
         match = compiled(pattern.partition("::")[0]).fullmatch
         return {path: stat for path, stat in self._stats.items() if match(path)}
 
     def values(self, pattern: str | None = None) -> Any:
-        """Without a pattern: all values, as of any mapping. With one: the numbers that match, parts (`::`) included."""
+        """Without a pattern, returns all values, as any mapping does. With a pattern, returns the numbers that match, with parts (`::`)."""
         return super().values() if pattern is None else [value for _, value in self._numbers(pattern)]
 
     def has(self, pattern: str) -> bool:
-        """Whether a number matches."""
+        """Returns whether a number matches."""
         return bool(self._numbers(pattern))
 
     def sum(self, pattern: str) -> Number:
-        """The sum of all numbers that match: over instances and, with `::*`, over parts. UnknownName without any."""
+        """Returns the sum of all numbers that match: over instances and, with `::*`, over parts. Raises UnknownName when none matches."""
         found = self._numbers(pattern)
         if not found:
-            raise UnknownName(f"no statistic '{pattern}'{near(pattern, self._stats)}")
+            raise UnknownName(f"there is no statistic '{pattern}'{near(pattern, self._stats)}")
         return sum(value for _, value in found)
 
     def parts(self, pattern: str) -> dict[str, Number]:
-        """The parts of a breakdown, summed over the instances that match, in order; UnknownName without any."""
+        """Returns the parts of a breakdown in order, summed over the instances that match. Raises UnknownName when none matches."""
         total: dict[str, Number] = {}
         for stat in self.select(pattern).values():
             if isinstance(stat.value, dict):
                 for part, value in stat.value.items():
                     total[part] = total.get(part, 0) + value
         if not total and not any(isinstance(stat.value, dict) for stat in self.select(pattern).values()):
-            raise UnknownName(f"no breakdown '{pattern}'{near(pattern, self._stats)}")
+            raise UnknownName(f"there is no breakdown '{pattern}'{near(pattern, self._stats)}")
         return total
 
     def histogram(self, pattern: str) -> Histogram:
-        """A histogram, summed over the instances that match; UnknownName without any."""
+        """Returns a histogram, summed over the instances that match. Raises UnknownName when none matches."""
         found = [stat for stat in self.select(pattern).values() if isinstance(stat.value, list) and stat.bins]
         if not found:
-            raise UnknownName(f"no histogram '{pattern}'{near(pattern, self._stats)}")
+            raise UnknownName(f"there is no histogram '{pattern}'{near(pattern, self._stats)}")
         bins = found[0].bins or {}
         counts: list[Number] = [0] * max(len(stat.value) for stat in found)  # type: ignore[arg-type]
         for stat in found:
@@ -130,7 +130,7 @@ class Stats(Mapping[str, Any]):
         return Histogram(edges, counts, found[0].unit)
 
     def rows(self) -> Iterator[tuple[str, Number, str, str]]:
-        """(path, value, unit, meaning) of every number; parts as `path::part`, without histograms."""
+        """Yields (path, value, unit, meaning) of every number. Parts are written `path::part`; histograms are left out."""
         for stat in self._stats.values():
             if isinstance(stat.value, dict):
                 for part, value in stat.value.items():
@@ -152,13 +152,13 @@ def _gather(tree: dict[str, Any], prefix: str, out: dict[str, Stat]) -> None:
         path = f"{prefix}.{name}" if prefix else name
         if isinstance(node, dict) and "value" in node and "unit" in node:
             if not _is_value(node["value"]):
-                raise SchemaError(f"'{path}' is {node['value']!r:.40}, no number: the file is damaged")
+                raise SchemaError(f"'{path}' is {node['value']!r:.40}, which is not a number: the file is damaged")
             out[path] = Stat(path, node["value"], node["unit"], node.get("doc", ""), node.get("bins"))
         elif isinstance(node, dict):
             _gather(node, path, out)
 
 
 def _is_value(value: Any) -> bool:
-    """A number, or parts or bins of numbers; JSON's true, false, null and texts are none."""
+    """Returns whether this is a number, or parts or bins of numbers. JSON's true, false, null and texts are not numbers."""
     many = value.values() if isinstance(value, dict) else value if isinstance(value, list) else (value,)
     return all(type(one) in (int, float) and math.isfinite(one) for one in many)

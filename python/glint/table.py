@@ -1,4 +1,4 @@
-# A table read from a CSV file: columns of numbers and text, without pandas; with it, a DataFrame.
+# Reads a table from a CSV file: columns of numbers and text, and a DataFrame if pandas is there.
 # SPDX-License-Identifier: Apache-2.0
 """Series, profiles, metrics and the files of `glint characterize` are such tables."""
 from __future__ import annotations
@@ -14,16 +14,17 @@ from .errors import SchemaError, UnknownName
 from .optional import require
 from .patterns import near
 
-_NAMES = {"workload", "scene", "form", "shader", "config", "config_hash", "metric", "component", "by", "stage", "op", "file", "name", "run"}  # a workload may be called 001
+# These stay text: a workload may be called 001.
+_NAMES = {"workload", "scene", "form", "shader", "config", "config_hash", "metric", "component", "by", "stage", "op", "file", "name", "run"}
 _INTEGER = re.compile(r"[+-]?[0-9]+")
 _FLOAT = re.compile(r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|inf|nan|-nan)")
 
 
 class Table:
-    """Columns by name; a cell is an int, a float, a string, or None where it is empty. Columns of names hold strings.
+    """Holds columns by name. A cell is an int, a float, a string, or None when it is empty. Columns of names hold strings.
 
     Attributes:
-        columns: names, in order.
+        columns: The names, in order.
     """
 
     def __init__(self, columns: list[str], rows: list[list[Any]]):
@@ -32,26 +33,26 @@ class Table:
 
     @classmethod
     def read(cls, path: pathlib.Path, needs: tuple[str, ...] = (), whole: bool = False) -> Table:
-        """Reads a CSV file with a header line; SchemaError when a column of `needs` is missing or a row is cut short.
+        """Reads a CSV file with a header line. Raises SchemaError when a column of `needs` is missing or a row is cut short.
 
-        With `whole` the last line has to be ended too: numbers that were cut short are numbers.
+        With `whole` the last line needs a line end, too, because a number that was cut short is still a number.
         """
         text = read_text(path)
         try:
             lines = list(csv.reader(io.StringIO(text, newline="")))
         except csv.Error as error:
-            raise SchemaError(f"{path}: no table: {error}") from error
+            raise SchemaError(f"{path}: this is not a table: {error}") from error
         if not lines:
-            raise SchemaError(f"{path}: empty")
+            raise SchemaError(f"{path}: the file is empty")
         if whole and not text.endswith("\n"):
             raise SchemaError(f"{path}:{len(lines)}: the last line has no end: the file was cut short")
         header = lines[0]
         for number, line in enumerate(lines[1:], 2):
             if len(line) != len(header):
-                raise SchemaError(f"{path}:{number}: {len(line)} fields, {len(header)} expected: the file is damaged or was cut short")
+                raise SchemaError(f"{path}:{number}: {len(line)} fields, but the header has {len(header)}: the file is damaged or was cut short")
         missing = [name for name in needs if name not in header]
         if missing:
-            raise SchemaError(f"{path}: no column {', '.join(missing)}: written by another version of Glint")
+            raise SchemaError(f"{path}: there is no column {', '.join(missing)}: another version of Glint wrote the file")
         reads = [_text if name in _NAMES else _cell for name in header]
         return cls(header, [[read(cell) for read, cell in zip(reads, line)] for line in lines[1:]])
 
@@ -62,22 +63,22 @@ class Table:
         return (dict(zip(self.columns, row)) for row in self._rows)
 
     def __getitem__(self, column: str) -> list[Any]:
-        """A column as a list; UnknownName where there is none."""
+        """Returns a column as a list. Raises UnknownName when there is no such column."""
         at = self._index(column)
         return [row[at] for row in self._rows]
 
     def where(self, **equal: Any) -> Table:
-        """The rows in which each named column has the given value; UnknownName where there is no such column."""
+        """Returns the rows in which each named column has the given value. Raises UnknownName when there is no such column."""
         at = {self._index(name): value for name, value in equal.items()}
         return Table(self.columns, [row for row in self._rows if all(row[i] == value for i, value in at.items())])
 
     def _index(self, column: str) -> int:
         if column not in self.columns:
-            raise UnknownName(f"no column '{column}'{near(column, self.columns)} There are: {', '.join(self.columns)}")
+            raise UnknownName(f"there is no column '{column}'{near(column, self.columns)} The columns are: {', '.join(self.columns)}")
         return self.columns.index(column)
 
     def frame(self) -> Any:
-        """A pandas.DataFrame; MissingPackage without pandas."""
+        """Returns a pandas.DataFrame. Raises MissingPackage without pandas."""
         return require("pandas", "Table.frame()").DataFrame(self._rows, columns=self.columns)
 
 

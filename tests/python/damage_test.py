@@ -1,6 +1,6 @@
-# Damaged runs, pictures and folders: each is refused with a GlintError that names the file, and spoils no other run.
+# Tests damaged runs, pictures and folders: each is refused with a GlintError that names the file, and affects no other run.
 # SPDX-License-Identifier: Apache-2.0
-"""usage: damage_test.py GLINT SOURCE_DIR; what needs numpy and matplotlib is left out, loudly, where they are not."""
+"""usage: damage_test.py GLINT SOURCE_DIR. Without numpy and matplotlib, some tests are left out with a message."""
 import importlib.util
 import json
 import re
@@ -23,7 +23,7 @@ def with_cycles(word):
 
 
 def png(path, width, height, colour, rows):
-    """A PNG of 8 bits a channel: colour 0 is grey, 4 grey with transparency, 6 RGBA."""
+    """Returns a PNG with 8 bits per channel: colour 0 is grey, 4 is grey with transparency, 6 is RGBA."""
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
     data = b"".join(b"\0" + bytes(row) for row in rows)
@@ -34,7 +34,7 @@ def png(path, width, height, colour, rows):
 
 class Damaged(PythonTest):
     def refused(self, file, change, read, words=None):
-        """That reading a run whose file was changed gives a SchemaError with the file's name."""
+        """Checks that reading a run whose file was changed raises a SchemaError with the file's name."""
         there = self.folder / "damaged"
         shutil.rmtree(there, ignore_errors=True)
         shutil.copytree(self.ship.directory, there)
@@ -59,7 +59,8 @@ class Damaged(PythonTest):
     def test_stacks_and_series_that_were_cut_are_refused(self):
         self.refused("profile.folded", lambda data: data[:data.rindex(b" ")], lambda run: run.folded)
         self.refused("profile.folded", lambda data: data + b"garbage\n", lambda run: run.folded)
-        self.refused("series.csv", lambda data: data[:-2], lambda run: run.series, "series.csv.*cut short")  # its last number is one still
+        # The last number that is left is still a number.
+        self.refused("series.csv", lambda data: data[:-2], lambda run: run.series, "series.csv.*cut short")
         self.refused("series.csv", lambda data: data[:data.rindex(b"\n", 0, -1) + 1], lambda run: run.series, "ends at cycle .* cut short")
         self.refused("run.json", lambda data: b'{"schema": 1}', lambda run: run)
         self.refused("run.json", lambda data: b'{"schema": "1"}', lambda run: run, "schema '1'")

@@ -1,4 +1,4 @@
-# What `cmake --install` leaves of the Python package: a package that imports, with its table of metrics.
+# Tests that `cmake --install` leaves a Python package that imports, with its table of metrics.
 # SPDX-License-Identifier: Apache-2.0
 """usage: install_test.py CMAKE BUILD_DIR"""
 import pathlib

@@ -1,6 +1,6 @@
-# Figures can be read at the width of a column: no name is cut, none lies on another, and there is room for the bars.
+# Tests that figures can be read at the width of a column: no name is cut or lies on another, and bars have room.
 # SPDX-License-Identifier: Apache-2.0
-"""usage: layout_test.py GLINT SOURCE_DIR; needs matplotlib and numpy, and says so where they are not."""
+"""usage: layout_test.py GLINT SOURCE_DIR. The test needs matplotlib and numpy, and says so when they are missing."""
 import warnings
 
 import python_case
@@ -10,7 +10,7 @@ python_case.need("matplotlib", "numpy")
 
 
 def texts_of(figure):
-    """Every text that is drawn: labels, titles, legends, and the ticks that lie within the axes."""
+    """Returns every text that is drawn: labels, titles, legends, and the ticks within the axes."""
     found = [text for legend in figure.legends for text in legend.get_texts()] + list(figure.texts)
     for axes in figure.axes:
         found += [axes.title, axes.xaxis.label, axes.yaxis.label]
@@ -35,7 +35,7 @@ class Layout(PythonTest):
     def readable(self, figure):
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         with warnings.catch_warnings():
-            warnings.simplefilter("error")  # matplotlib's word for axes that have no room is a warning
+            warnings.simplefilter("error")  # matplotlib warns of axes that have no room
             FigureCanvasAgg(figure).draw()
         renderer, edge = figure.canvas.get_renderer(), figure.bbox
         for text in texts_of(figure):
@@ -55,7 +55,7 @@ class Layout(PythonTest):
                     self.assertLess(end, begin + 1.5, f"names of the {which} axis lie on each other")
 
     def test_every_figure_of_every_choice_of_runs_can_be_read(self):
-        kinds = ("geometry", "stages", "cpi_stack", "rt_use", "l1_reads", "ray_nodes", "ipc")  # of each kind of figure one
+        kinds = ("geometry", "stages", "cpi_stack", "rt_use", "l1_reads", "ray_nodes", "ipc")  # one figure of each kind
         for choice, some in (("sweep", self.glint.plot.FIGURES), ("mixed", kinds), ("sizes", kinds), ("suite", kinds), ("ship", kinds)):
             for name in some:
                 figure = self.glint.plot.FIGURES[name]
@@ -76,7 +76,7 @@ class Layout(PythonTest):
         for runs in (list(self.sweep.values()), self.sizes, self.mixed, [self.ship, self.ship]):
             bars = [bar.get_height() for bar in self.glint.plot.ipc(runs).axes[0].patches]
             self.assertEqual(sorted(bar for bar in bars if bar), sorted(run.ipc for run in runs))
-        figure = self.glint.plot.ipc([*self.sweep.values(), self.sizes[2]])  # nine configurations, and eight colours
+        figure = self.glint.plot.ipc([*self.sweep.values(), self.sizes[2]])  # nine configurations for eight colours
         self.assertEqual(len(figure.axes[0].get_yticklabels()), 9)
         self.assertEqual([bar.get_width() for bar in figure.axes[0].patches][8], self.sizes[2].ipc)
 
@@ -90,14 +90,15 @@ class Layout(PythonTest):
         self.assertAlmostEqual(bar.get_x() + bar.get_width(), quantile(histogram, 0.75))
         from glint.plot.kinds import spread
         open_ended = spread(["a", "b"], [self.glint.Histogram([0, 10, 20], counts, "cycle") for counts in ([9, 1], [99, 1])], "cycles")
-        self.assertEqual([list(line.get_ydata()) for line in open_ended.axes[0].lines if line.get_marker() == ">"], [[0]])  # 10 % lie beyond, 1 % does not
+        # 10 % lie beyond, 1 % does not.
+        self.assertEqual([list(line.get_ydata()) for line in open_ended.axes[0].lines if line.get_marker() == ">"], [[0]])
         self.readable(open_ended)
         even = self.glint.Histogram([0, 10, 20, 30], [2, 0, 2], "node")
         self.assertEqual([quantile(even, share) for share in (0.25, 0.5, 0.75)], [5, 10, 25])
 
     def test_what_has_a_colour_a_run_is_refused_for_more_runs_than_colours(self):
         for figure in (self.glint.plot.ops, self.glint.plot.series):
-            self.assertRaisesRegex(self.glint.GlintError, "colour a run.*choose", figure, [self.ship] * 9)
+            self.assertRaisesRegex(self.glint.GlintError, "colour for each run.*choose", figure, [self.ship] * 9)
 
     def test_a_series_begins_at_cycle_0(self):
         line = self.glint.plot.series(self.ship).axes[0].lines[0]

@@ -1,6 +1,6 @@
-# The notebook runs from its first cell to its last by the command that it tells, and is kept without outputs.
+# Tests that the notebook runs from its first cell to its last with the command that it names, and has no stored outputs.
 # SPDX-License-Identifier: Apache-2.0
-"""usage: notebook_test.py GLINT SOURCE_DIR; exit status 77, said loudly, where nbconvert and the packages of figures are not installed."""
+"""usage: notebook_test.py GLINT SOURCE_DIR. The exit status is 77, with a message, when nbconvert or the packages for figures are not installed."""
 import json
 import os
 import pathlib
@@ -18,7 +18,7 @@ NOTEBOOKS = sorted((ROOT / "examples/notebooks").glob("*.ipynb"))
 
 
 def project_with(notebook, folder):
-    """The root of a project of the package and the notebook, smaller in nothing but its pictures."""
+    """Makes the root of a project with the package and the notebook, in which only the pictures are smaller."""
     root = pathlib.Path(folder) / "project"
     there = root / notebook.relative_to(ROOT)
     there.parent.mkdir(parents=True)

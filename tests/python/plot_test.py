@@ -1,6 +1,6 @@
-# The figures of the Python package: every one is drawn, a column wide, and shows the numbers of the statistics.
+# Tests the figures of the Python package: every figure is drawn, a column wide, and shows the numbers of the statistics.
 # SPDX-License-Identifier: Apache-2.0
-"""usage: plot_test.py GLINT SOURCE_DIR; needs matplotlib, numpy and pandas, and says so where they are not."""
+"""usage: plot_test.py GLINT SOURCE_DIR. The test needs matplotlib, numpy and pandas, and says so when they are missing."""
 import python_case
 from python_case import PythonTest
 
@@ -9,7 +9,7 @@ python_case.need("matplotlib", "numpy", "pandas")
 
 class Figures(PythonTest):
     def widths(self, figure, panel=0):
-        """Lengths of all bars, row by row."""
+        """Returns the lengths of all bars, row by row."""
         rows = {}
         for bar in figure.axes[panel].patches:
             rows.setdefault(round(bar.get_y() + bar.get_height() / 2, 3), []).append(bar.get_width())
@@ -71,7 +71,7 @@ class Figures(PythonTest):
         self.assertEqual((self.wknd.map_names, self.wknd.map("nodes").sum()), (["nodes"], 255 * 128))
         figure = self.glint.plot.cost_map(self.wknd, "nodes")
         self.assertEqual((figure.axes[0].images[0].get_clim(), figure.axes[1].get_ylabel()), ((0, 252), "nodes (node)"))
-        self.assertRaisesRegex(self.glint.MissingFile, "no map 'rays'; it has: nodes", self.glint.plot.cost_map, self.wknd, "rays")
+        self.assertRaisesRegex(self.glint.MissingFile, "no map 'rays'; the run has: nodes", self.glint.plot.cost_map, self.wknd, "rays")
 
     def test_what_cannot_be_drawn_is_refused_with_a_reason(self):
         plot, Error = self.glint.plot, self.glint.GlintError
@@ -144,7 +144,7 @@ class Suites(PythonTest):
 
     def test_a_linkage_that_does_not_fit_is_refused(self):
         (self.there / "linkage.csv").write_text("first,second,distance,leaves\n0,1,1,2\n")
-        self.assertRaisesRegex(self.glint.SchemaError, "1 rows, 3 expected", self.glint.plot.dendrogram, self.folder)
+        self.assertRaisesRegex(self.glint.SchemaError, "1 rows, but 4 workloads need 3", self.glint.plot.dendrogram, self.folder)
         self.assertRaisesRegex(self.glint.MissingFile, "glint characterize", self.glint.Characterization, self.folder / "nowhere")
 
 

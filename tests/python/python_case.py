@@ -1,6 +1,6 @@
-# What tests of the Python package share: an interpreter that has what is needed, the package from the tree, a small run.
+# Provides what tests of the Python package share: an interpreter with the needed packages, the package from the tree, a small run.
 # SPDX-License-Identifier: Apache-2.0
-"""For scripts that are called with GLINT SOURCE_DIR [SUITE...]."""
+"""Scripts that use this module are called with GLINT SOURCE_DIR [SUITE...]."""
 import importlib.util
 import os
 import pathlib
@@ -19,7 +19,7 @@ sys.dont_write_bytecode = True
 
 
 def need(*modules):
-    """Goes on with the system's own Python where this one lacks a module, and says loudly when that lacks it too."""
+    """Continues with the system's own Python when this one lacks a module, and prints a message when that one lacks it, too."""
     missing = [name for name in modules if importlib.util.find_spec(name) is None]
     if not missing:
         return
@@ -33,7 +33,7 @@ def need(*modules):
 
 
 class PythonTest(unittest.TestCase):
-    """Tests on runs that are made once a class: `ship`, with profile and series, and `wknd`."""
+    """Holds tests on runs that are made once per class: `ship`, with profile and series, and `wknd`."""
 
     @classmethod
     def setUpClass(cls):
@@ -46,7 +46,7 @@ class PythonTest(unittest.TestCase):
         cls.wknd = glint.run("WKND_PT", out=cls.folder / "wknd", **SMALL)
 
     def command(self, *words):
-        """What glint writes on stdout."""
+        """Returns what glint writes to stdout."""
         return subprocess.run([GLINT, *map(str, words)], capture_output=True, text=True, check=True).stdout
 
 

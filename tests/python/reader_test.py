@@ -1,6 +1,6 @@
-# The Python reader against the command: the same numbers, and clear words about what is wrong with a run.
+# Compares the Python reader with the command: both give the same numbers, and errors say clearly what is wrong with a run.
 # SPDX-License-Identifier: Apache-2.0
-"""usage: reader_test.py GLINT SOURCE_DIR; needs nothing but the standard library."""
+"""usage: reader_test.py GLINT SOURCE_DIR. The test needs only the standard library."""
 import json
 import pathlib
 import shutil
@@ -85,7 +85,7 @@ class Wrong(PythonTest):
         there = self.copy("other")
         record = json.loads((there / "run.json").read_text())
         (there / "run.json").write_text(json.dumps({**record, "schema": 99}))
-        self.assertRaisesRegex(self.glint.SchemaError, "schema 99", self.glint.Run, there)
+        self.assertRaisesRegex(self.glint.SchemaError, "schema is 99", self.glint.Run, there)
         there = self.copy("cut")
         for name, read in (("stats.json", lambda run: run.stats), ("series.csv", lambda run: run.series), ("config.toml", lambda run: run.config)):
             text = (there / name).read_text()

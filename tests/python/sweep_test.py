@@ -1,6 +1,6 @@
-# Sweeps and names of runs: every point has a folder and a name of its own, and only the points that were asked for come back.
+# Tests sweeps and names of runs: every point has a folder and a name of its own, and only the requested points are returned.
 # SPDX-License-Identifier: Apache-2.0
-"""usage: sweep_test.py GLINT SOURCE_DIR; needs nothing but the standard library (with numpy, its arrays are axes too)."""
+"""usage: sweep_test.py GLINT SOURCE_DIR. The test needs only the standard library; with numpy it also tests its arrays as axes."""
 import dataclasses
 import importlib.util
 import json
@@ -17,7 +17,7 @@ TINY = {"size": (8, 8), "spp": 1, "glint": GLINT}
 
 
 class Number:
-    """What NumPy's numbers are to a sweep: `item()` gives Python's."""
+    """Stands for one of NumPy's numbers: `item()` returns Python's number."""
 
     def __init__(self, value):
         self.value = value
@@ -115,7 +115,7 @@ class Sweeps(PythonTest):
 
 
 class Fake:
-    """A run as names see it."""
+    """Stands for a run, with what names need of it."""
 
     def __init__(self, workload="SHIP_SH", config="mobile", directory="out/run", command=(), width=32, samples=1, shader="sh", scene="1", **keys):
         self.workload, self.config_name, self.directory = workload, config, pathlib.Path(directory)

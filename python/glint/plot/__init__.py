@@ -1,10 +1,10 @@
-# The figures of the report and of the LumiBench paper, for papers: a column wide, PDF, SVG or PNG.
+# Draws the figures of the report and of the LumiBench paper for papers: a column wide, as PDF, SVG or PNG.
 # SPDX-License-Identifier: Apache-2.0
-"""Figures of runs. Each function takes a `Run`, a list of runs, or a folder of runs (`Bench`, `Sweep`), and gives a
-matplotlib Figure, 3.3 inches wide; `save(figure, "fig.pdf")` writes it. `FIGURES` names those that any timing run of a scene has.
+"""Draws figures of runs. Each function takes a `Run`, a list of runs, or a folder of runs (`Bench`, `Sweep`), and returns a
+matplotlib Figure, 3.3 inches wide. `save(figure, "fig.pdf")` writes it. `FIGURES` has the figures that every timing run of a scene has.
 
-Its functions, not the import, raise MissingPackage without matplotlib, MissingFile where a run lacks what a figure needs (the message names the
-option that writes it), GlintError for runs that have nothing to draw.
+The import needs no matplotlib; the functions raise MissingPackage without it. They raise MissingFile when a run lacks a file that
+a figure needs (the message names the option that writes it), and GlintError when the runs have nothing to draw.
 """
 from .bounds import changes, limits
 from .instructions import cpi_stack, instruction_mix, op_counts, op_latency, ops, stage_cycles, stages

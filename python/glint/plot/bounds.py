@@ -1,6 +1,6 @@
-# Figures of what limits a run, and of what changed from one run to another.
+# Draws what limits a run, and what changed from one run to another.
 # SPDX-License-Identifier: Apache-2.0
-"""Each resource against the most that it could do, and metrics by their change."""
+"""Draws each resource against the most that it could do, and metrics by their change."""
 from __future__ import annotations
 
 import pathlib
@@ -34,7 +34,7 @@ def _requests(run: Run) -> float | None:
     return total(run, "rt.requests") / most if most else None
 
 
-# As in the report (web/src/sections/bounds.js).
+# The limits are those of the report (web/src/sections/bounds.js).
 _LIMITS: list[tuple[str, Callable[[Run], float | None]]] = [
     ("issue slots", lambda run: total(run, "core.instructions") / (total(run, "core.issue_slots::*") or 1)),
     ("RT unit: requests", _requests),
@@ -46,7 +46,7 @@ _LIMITS: list[tuple[str, Callable[[Run], float | None]]] = [
 
 
 def limits(runs: Chosen) -> Any:
-    """How near each resource came to the most that it could do, as in the report: issue slots, RT units, caches, DRAM."""
+    """Draws how close each resource came to the most that it could do, as in the report: issue slots, RT units, caches, DRAM."""
     found = chosen(runs)
     at_most_eight(found, "limits")
     rows = [(name, values) for name, values in ((name, [value(run) for run in found]) for name, value in _LIMITS) if any(values)]
@@ -55,7 +55,7 @@ def limits(runs: Chosen) -> Any:
 
 
 def changes(before: Run | str | pathlib.Path, after: Run | str | pathlib.Path, top: int = 16) -> Any:
-    """The metrics that changed most from one run to another, as ratios, the largest change first; those that were 0, or are, are left out."""
+    """Draws the metrics that changed most from one run to another, as ratios, the largest first. Metrics that are 0 in one run are left out."""
     found = [change for change in compare(before, after) if change.before > 0 and change.after > 0][:top]
     if not found:
         raise GlintError("no metric changed between these runs")

@@ -1,6 +1,6 @@
-# Which runs a figure is of: one, a list, or a folder of runs; and what they must have.
+# Selects the runs that a figure shows (one, a list, or a folder of runs) and checks what they must have.
 # SPDX-License-Identifier: Apache-2.0
-"""Helpers of all figures of runs."""
+"""These functions serve all figures of runs."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ Chosen = Run | Iterable[Run] | Mapping[str, Run]
 
 
 def chosen(runs: Chosen) -> list[Run]:
-    """A list of the runs; GlintError for none, and for functional ones, which have no cycles."""
+    """Returns a list of the runs. Raises GlintError when it is empty or has a functional run, which has no cycles."""
     found = [runs] if isinstance(runs, Run) else list(runs.values()) if isinstance(runs, Mapping) else list(runs)
     if not found:
         raise GlintError("a figure needs at least one run")
@@ -27,7 +27,7 @@ def chosen(runs: Chosen) -> list[Run]:
 
 
 def with_rays(runs: Chosen) -> list[Run]:
-    """The runs that traced rays in RT units; GlintError without any."""
+    """Returns the runs that traced rays in RT units. Raises GlintError when there is none."""
     found = [run for run in chosen(runs) if run.metrics["rt_occupancy"] is not None]
     if not found:
         raise GlintError("none of the runs has rays in RT units (kernels, compute shaders and rt.unit = \"software\" have none)")
@@ -35,37 +35,37 @@ def with_rays(runs: Chosen) -> list[Run]:
 
 
 def names(runs: Sequence[Run]) -> list[str]:
-    """A name for each run: of what differs, or the workload of a single one."""
+    """Returns a name for each run, made from what differs, or from the workload of a single run."""
     return labels(list(runs))
 
 
 def rows_of(runs: Sequence[Run], kinds: Sequence[str]) -> list[tuple[str, Run, str]]:
-    """(label, run, kind) of every pair, kind by kind."""
+    """Returns (label, run, kind) of every pair of a run and a kind, kind by kind."""
     several = len(runs) > 1
     return [(f"{name}, {kind}" if several else kind, run, kind) for kind in kinds for name, run in zip(names(runs), runs)]
 
 
 def at_most_eight(runs: Sequence[Run], figure: str) -> None:
-    """GlintError for more runs than there are colours."""
+    """Raises GlintError when there are more runs than colours."""
     if len(runs) > len(RUN_COLOURS):
-        raise GlintError(f"{figure} has a colour a run, and there are {len(RUN_COLOURS)}: choose as many of the {len(runs)} runs")
+        raise GlintError(f"{figure} has a colour for each run, and there are {len(RUN_COLOURS)} colours: choose as many of the {len(runs)} runs")
 
 
 def total(run: Run, pattern: str) -> Any:
-    """The sum of what matches, 0 of a breakdown without such a part; SchemaError where the run has no such statistic."""
+    """Returns the sum of the matching numbers, and 0 for a breakdown without such a part. Raises SchemaError when the run has no such statistic."""
     name = pattern.partition("::")[0]
     if not run.stats.select(name):
-        raise SchemaError(f"{run.directory}: no statistic '{name}': another version of Glint wrote the run, run it again")
+        raise SchemaError(f"{run.directory}: there is no statistic '{name}': another version of Glint wrote the run, so run it again")
     return sum(run.stats.values(pattern))
 
 
 def shares(runs: Sequence[Run], metrics: Sequence[tuple[str, str, str]]) -> Any:
-    """Bars of metrics that are fractions, a group a run; `metrics`: (name shown, colour, metric)."""
+    """Draws bars of metrics that are fractions, with a group for each run. `metrics` has (name shown, colour, metric)."""
     return grouped(names(runs), [Part(name, colour, [run.metrics[metric] for run in runs]) for name, colour, metric in metrics], "%", percent=True, top=100)
 
 
 def spreads(runs: Sequence[Run], histograms: Sequence[Any], x_label: str, y_label: str) -> Any:
-    """Histograms of the runs as lines; of more runs than there are colours their quantiles, a row a run."""
+    """Draws histograms of the runs as lines, or, for more runs than colours, their quantiles with a row for each run."""
     if len(runs) > len(RUN_COLOURS):
         return spread(names(runs), histograms, x_label)
     return histogram([(name, run_colour(i), one) for i, (name, one) in enumerate(zip(names(runs), histograms))], x_label, y_label)

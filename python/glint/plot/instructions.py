@@ -1,6 +1,6 @@
-# Figures of instructions and of schedulers' cycles: mix, stages, CPI stack, ops.
+# Draws instructions and the cycles of schedulers: mix, stages, CPI stack, ops.
 # SPDX-License-Identifier: Apache-2.0
-"""What was executed, and what the cycles of schedulers went into."""
+"""Draws what was executed, and how the schedulers spent their cycles."""
 from __future__ import annotations
 
 from typing import Any
@@ -14,7 +14,7 @@ _CLASSES = [("alu", "ALU", "blue"), ("sfu", "SFU", "sky"), ("mem", "memory", "or
             ("ctrl", "control", "grey"), ("rt", "ray tracing", "red")]
 _STAGES = {"raygen": "ray generation", "intersection": "intersection", "any_hit": "any hit", "closest_hit": "closest hit",
            "miss": "miss", "callable": "callable", "compute": "compute"}
-# Reasons of docs/profiling.md that belong together, as in the report's CPI stack.
+# Groups the reasons of docs/profiling.md, as the report's CPI stack does.
 REASONS: list[tuple[str, str, tuple[str, ...]]] = [
     ("issued", "green", ("issued",)),
     ("pipe busy", "blue", ("math_pipe_throttle", "register_banks", "lsu_throttle", "tex_throttle")),
@@ -29,7 +29,7 @@ REASONS: list[tuple[str, str, tuple[str, ...]]] = [
 
 
 def instruction_mix(runs: Chosen) -> Any:
-    """Warp instructions by class, by count and by latency from issue to completion (LumiBench, Figure 8)."""
+    """Draws warp instructions by class, by count and by latency from issue to completion (LumiBench, Figure 8)."""
     paths = {"by count": "core.instructions_by_class", "by latency": "core.latency_by_class"}
     rows = rows_of(chosen(runs), list(paths))
     parts = [Part(name, colour, [total(run, f"{paths[kind]}::{key}") for _, run, kind in rows]) for key, name, colour in _CLASSES]
@@ -37,7 +37,7 @@ def instruction_mix(runs: Chosen) -> Any:
 
 
 def stages(runs: Chosen) -> Any:
-    """Each shader stage's share of a run's warp instructions, and of their latency from issue to completion, by class."""
+    """Draws each shader stage's share of a run's warp instructions, and of their latency from issue to completion, by class."""
     found = chosen(runs)
     used = [key for key in _STAGES if any(total(run, f"core.{key}.instructions::*") for run in found)]
     rows = [row for row in rows_of(found, used) if total(row[1], f"core.{row[2]}.instructions::*")]
@@ -49,7 +49,7 @@ def stages(runs: Chosen) -> Any:
 
 
 def cpi_stack(runs: Chosen) -> Any:
-    """Scheduler cycles for each warp instruction, by what they went into."""
+    """Draws scheduler cycles per warp instruction, by reason."""
     found = chosen(runs)
     slots = [run.stats.parts("core.issue_slots") for run in found]
     parts = [Part(name, colour, [sum(slot.get(reason, 0) for reason in of) for slot in slots]) for name, colour, of in REASONS]
@@ -58,7 +58,7 @@ def cpi_stack(runs: Chosen) -> Any:
 
 
 def stage_cycles(runs: Chosen) -> Any:
-    """Scheduler cycles charged to each shader stage, by what they went into. Needs `--profile`."""
+    """Draws scheduler cycles charged to each shader stage, by reason. The run needs `--profile`."""
     rows, cycles = [], []
     for label, run in zip(names(chosen(runs)), chosen(runs)):
         by_stage = _by(run, "stage")
@@ -71,17 +71,17 @@ def stage_cycles(runs: Chosen) -> Any:
 
 
 def ops(runs: Chosen, top: int = 12) -> Any:
-    """The ops with most scheduler cycles, as shares. Needs `--profile`."""
+    """Draws the ops with the most scheduler cycles, as shares. The run needs `--profile`."""
     return _op_bars(runs, top, lambda row, whole: row["cycles"] / whole, "share of scheduler cycles (%)", percent=True)
 
 
 def op_counts(runs: Chosen, top: int = 12) -> Any:
-    """The ops that were issued most, as shares of warp instructions. Needs `--profile`."""
+    """Draws the ops that were issued most, as shares of warp instructions. The run needs `--profile`."""
     return _op_bars(runs, top, lambda row, whole: row["issues"] / whole, "share of warp instructions (%)", percent=True, weigh="issues")
 
 
 def op_latency(runs: Chosen, top: int = 12) -> Any:
-    """Mean cycles from issue to completion of accesses that went to the L1 and of traces. Needs `--profile`."""
+    """Draws the mean cycles from issue to completion of L1 accesses and of traces. The run needs `--profile`."""
     return _op_bars(runs, top, lambda row, whole: row["latency"] / row["ended"] if row["ended"] else None, "cycles", percent=False, weigh="latency")
 
 
@@ -98,7 +98,7 @@ def _op_bars(runs: Chosen, top: int, value: Any, label: str, percent: bool, weig
 
 
 def _by(run: Run, column: str) -> dict[str, dict[str, int]]:
-    """Rows of the profile's instructions, summed by a column."""
+    """Returns the rows of the profile's instructions, summed by a column."""
     sums: dict[str, dict[str, int]] = {}
     for row in run.profile.where(by="instruction"):
         into = sums.setdefault(row[column], {})

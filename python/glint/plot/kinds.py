@@ -1,6 +1,6 @@
-# The few kinds of charts that all figures are: stacked bars, grouped bars, lines in panels, histograms, spreads.
+# Draws the few kinds of charts of which all figures consist: stacked bars, grouped bars, lines in panels, histograms, spreads.
 # SPDX-License-Identifier: Apache-2.0
-"""Each function draws into axes that it is given; numbers come as they are, shares are computed here."""
+"""Each function takes plain numbers and computes shares itself. It makes a figure, or draws into given axes."""
 from __future__ import annotations
 
 import dataclasses
@@ -9,14 +9,14 @@ from typing import Any, Sequence
 from .style import COLOURS, COLUMN, legend, new_figure, run_colour, styled
 from .text import Fitted, below_groups, fitted, wrapped
 
-MOST_GROUPS = 24  # groups that a column's width has room for; a whole suite takes both columns
-MOST_ROWS = 48  # rows that a page's height has room for
-_PAGE = 8.5  # inches that rows may take on it
+MOST_GROUPS = 24  # groups that fit into the width of a column; a whole suite takes both columns
+MOST_ROWS = 48  # rows that fit into the height of a page
+_PAGE = 8.5  # inches that rows may take on a page
 
 
 @dataclasses.dataclass(frozen=True)
 class Part:
-    """A colour of stacked bars: its value in each row."""
+    """Holds a part of stacked bars: its name, its colour and its value in each row."""
     name: str
     colour: str
     values: Sequence[float]
@@ -24,9 +24,9 @@ class Part:
 
 def stacked(rows: Sequence[str], parts: Sequence[Part], x_label: str, share: bool = True, width: float = COLUMN,
             scale: Sequence[float] | None = None, key: bool = True) -> Any:
-    """Horizontal stacked bars, the first row at the top; with `share` each adds up to 100 %, `scale` gives other lengths; `key`: with a legend.
+    """Draws horizontal stacked bars, the first row at the top. With `share` each row adds up to 100 %, and `scale` gives other lengths.
 
-    More rows than a page has room for stand in two halves beside each other, over both columns of a page.
+    `key` adds a legend. If a page has no room for all rows, they are split into two halves side by side, over both columns.
     """
     used = [part for part in parts if any(part.values)]
     totals = [sum(part.values[i] for part in used) for i in range(len(rows))]
@@ -45,9 +45,9 @@ def stacked(rows: Sequence[str], parts: Sequence[Part], x_label: str, share: boo
 
 
 def panels(rows: Sequence[str], measures: Sequence[tuple[str, Sequence[Part], Sequence[float]]], x_label: str) -> Any:
-    """Horizontal stacked bars of several measures, (name, parts, wholes) each, in axes beside each other: as long as their share of the whole.
+    """Draws horizontal stacked bars of several measures, (name, parts, wholes) each, in axes side by side. A bar's length is its share of the whole.
 
-    The parts of all measures have the same names and colours. More rows than a page has room for stand in two halves, over both columns of a page.
+    The parts of all measures have the same names and colours. If a page has no room for all rows, they are split into two halves, over both columns.
     """
     shown = [i for i, part in enumerate(measures[0][1]) if any(any(parts[i].values) for _, parts, _ in measures)]
     longest = max((100 * sum(part.values[i] for part in parts) / wholes[i] for _, parts, wholes in measures for i in range(len(rows)) if wholes[i]), default=1)
@@ -67,12 +67,12 @@ def panels(rows: Sequence[str], measures: Sequence[tuple[str, Sequence[Part], Se
 
 
 class _Rows:
-    """Rows of horizontal bars: how their names are broken, how high they are, and into how many halves they go.
+    """Lays out rows of horizontal bars: how their names are broken, how high they are, and into how many halves they are split.
 
     Attributes:
-        halves: 2 over both columns of a page, else 1.
-        width: inches of the figure.
-        height: inches of the rows.
+        halves: 2 when the figure uses both columns of a page, else 1.
+        width: The width of the figure in inches.
+        height: The height of all rows in inches.
     """
 
     def __init__(self, rows: Sequence[str], width: float, beside: int = 1):
@@ -80,7 +80,7 @@ class _Rows:
         for self.halves in (1, 2):
             self.width = width if self.halves == 1 else 2.1 * COLUMN
             each = -(-len(rows) // self.halves)
-            self.many = each > MOST_GROUPS  # a whole suite: smaller rows and type
+            self.many = each > MOST_GROUPS  # a whole suite has smaller rows and type
             share = 0.42 if beside == 1 else 0.36
             self.names = fitted(rows, share * self.width / self.halves, 5 if self.many else 6.5)
             least, air = (0.1, 0.03) if self.many else (0.17, 0.07)
@@ -94,11 +94,11 @@ class _Rows:
         return range(index * self.each, min(self.count, (index + 1) * self.each))
 
     def draw(self, axes: Any, half: int, longest: float, x_label: str, named: bool = True) -> None:
-        """Names, scale and label of the axes of a half."""
+        """Sets names, scale and label of the axes of a half."""
         some = self.half(half)
         axes.set_yticks(range(len(some)), [self.names.texts[i] if named else "" for i in some])
         axes.tick_params(axis="y", length=0, labelsize=self.names.size)
-        axes.set_ylim(max(len(some), self.each if self.halves > 1 else 0) - 0.4, -0.6)  # rows of both halves are alike
+        axes.set_ylim(max(len(some), self.each if self.halves > 1 else 0) - 0.4, -0.6)  # rows of both halves have the same height
         axes.set_xlim(0, longest * 1.001)
         room = (self.width / self.halves - self.names.width - 0.2) / self.beside - 0.05
         axes.set_xlabel("\n".join(wrapped(x_label, room, 7)))
@@ -106,7 +106,7 @@ class _Rows:
 
 
 def _stack(axes: Any, rows: range, parts: Sequence[Part], factors: Sequence[float]) -> list[Any]:
-    """Draws the rows' bars, each value times the factor of its row; gives a handle a part."""
+    """Draws the rows' bars, each value times the factor of its row. Returns a handle for each part."""
     left, handles = [0.0] * len(rows), []
     for part in parts:
         values = [factors[i] * part.values[i] for i in rows]
@@ -116,7 +116,7 @@ def _stack(axes: Any, rows: range, parts: Sequence[Part], factors: Sequence[floa
 
 
 def grouped(groups: Sequence[str], series: Sequence[Part], y_label: str, axes: Any = None, percent: bool = False, top: float | None = None) -> Any:
-    """Vertical bars side by side, a group a label; None leaves a gap. Without `axes` a figure of its own, with a legend."""
+    """Draws vertical bars side by side, with a group for each label. None leaves a gap. Without `axes` it makes a figure with a legend."""
     with styled():
         names = group_names(groups)
         figure, own = (None, axes) if axes is not None else new_figure(1.4 + names.below, width=width_for(len(groups)))
@@ -127,7 +127,7 @@ def grouped(groups: Sequence[str], series: Sequence[Part], y_label: str, axes: A
             places = [place - 0.4 + wide * (index + 0.5) for place in range(len(groups))]
             values = [factor * value if value is not None else 0 for value in one.values]
             handles.append(own.bar(places, values, wide * 0.94, color=COLOURS.get(one.colour, one.colour), linewidth=0))
-        if len(groups) < 3:  # one run makes no wall of colour
+        if len(groups) < 3:  # the bars of a single run do not fill the figure
             own.set_xlim(-1.1, len(groups) + 0.1)
         else:
             own.set_xlim(-0.6, len(groups) - 0.4)
@@ -142,13 +142,13 @@ def grouped(groups: Sequence[str], series: Sequence[Part], y_label: str, axes: A
 
 
 def group_names(groups: Sequence[str]) -> Fitted:
-    """The names of groups of bars as `grouped` sets them: a figure needs `below` inches for them."""
+    """Returns the names of groups of bars as `grouped` sets them. A figure needs `below` inches for them."""
     each = (width_for(len(groups)) - 0.55) / (len(groups) if len(groups) > 2 else len(groups) + 1.2)
     return below_groups(groups, each, 5 if len(groups) > MOST_GROUPS else 6.5)
 
 
 def ranked(rows: Sequence[str], series: Sequence[Part], x_label: str, percent: bool = False) -> Any:
-    """Horizontal bars, a row a label and a bar a series in it, the first row at the top."""
+    """Draws horizontal bars: a row for each label, and in it a bar for each series. The first row is at the top."""
     with styled():
         thick = 0.8 / max(1, len(series))
         figure, axes = new_figure(0.36 + max(0.14, 0.08 * len(series)) * max(2, len(rows)))
@@ -168,12 +168,12 @@ def ranked(rows: Sequence[str], series: Sequence[Part], x_label: str, percent: b
 
 
 def width_for(groups: int) -> float:
-    """Inches: a column, or both for a whole suite."""
+    """Returns the width in inches: one column, or both for a whole suite."""
     return COLUMN if groups <= MOST_GROUPS else 2.1 * COLUMN
 
 
 def lines(panels: Sequence[tuple[str, Sequence[tuple[str, Sequence[float], Sequence[float]]]]], x_label: str) -> Any:
-    """Panels above each other, (label, [(name, x, y), ...]) each; a step holds until its x, from 0 on, as of intervals."""
+    """Draws panels above each other, (label, [(name, x, y), ...]) each. The lines are steps from 0 on; each value holds until its x."""
     with styled():
         figure, axes = new_figure(0.55 + 0.72 * len(panels), rows=len(panels), sharex=True, squeeze=False)
         handles = []
@@ -192,7 +192,7 @@ def lines(panels: Sequence[tuple[str, Sequence[tuple[str, Sequence[float], Seque
 
 
 def histogram(series: Sequence[tuple[str, str, Any]], x_label: str, y_label: str) -> Any:
-    """(name, colour, statistics.Histogram) each, as shares of its own sum; bins beyond 99.5 % of all are cut off."""
+    """Draws histograms, (name, colour, statistics.Histogram) each, as shares of their own sums. Bins beyond 99.5 % of all values are cut off."""
     with styled():
         figure, axes = new_figure(1.5)
         handles, right = [], 0.0
@@ -216,9 +216,9 @@ def histogram(series: Sequence[tuple[str, str, Any]], x_label: str, y_label: str
 
 
 def spread(rows: Sequence[str], histograms: Sequence[Any], x_label: str) -> Any:
-    """A row a histogram: a line from the 5th to the 95th percentile, a bar over the middle half, a mark at the median.
+    """Draws a row for each histogram: a line from the 5th to the 95th percentile, a bar over the middle half, a mark at the median.
 
-    A line that ends in the last bin, which is open, has an arrow at its end: the percentile is that or more.
+    A line that ends in the last bin, which is open, has an arrow at its end, because the percentile may be larger.
     """
     sheet = _Rows(rows, COLUMN)
     marks = [[quantile(one, share) for share in (0.05, 0.25, 0.5, 0.75, 0.95)] for one in histograms]
@@ -241,7 +241,7 @@ def spread(rows: Sequence[str], histograms: Sequence[Any], x_label: str) -> Any:
 
 
 def quantile(histogram: Any, share: float) -> float:
-    """The value below which `share` of a histogram lies, as if its bins were filled evenly; 0 of an empty one."""
+    """Returns the value below which `share` of a histogram lies, as if its bins were filled evenly, or 0 for an empty histogram."""
     wanted, seen = share * sum(histogram.counts), 0.0
     for low, high, count in zip(histogram.edges, histogram.edges[1:], histogram.counts):
         if count and seen + count >= wanted:

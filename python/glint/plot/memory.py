@@ -1,6 +1,6 @@
-# Figures of caches, misses and DRAM.
+# Draws caches, misses and DRAM.
 # SPDX-License-Identifier: Apache-2.0
-"""Where reads were answered, how long misses took and by which stage, how DRAM was used."""
+"""Draws where reads were answered, how long misses took in each stage, and how DRAM was used."""
 from __future__ import annotations
 
 from typing import Any, Callable
@@ -21,12 +21,12 @@ _CLOCKS = [("data", "data", "green"), ("column_wait", "waits for a column", "sky
 
 
 def l1_reads(runs: Chosen) -> Any:
-    """Reads of the L1s of RT units and of shaders: hits, misses, cold misses (LumiBench, Figure 11)."""
+    """Draws the reads of the L1s by RT units and by shaders: hits, misses, cold misses (LumiBench, Figure 11)."""
     return _reads(runs, "gpu.memory.core[*].l1")
 
 
 def l2_reads(runs: Chosen) -> Any:
-    """What the L1s asked of the L2, by who had asked them."""
+    """Draws the reads that the L1s sent to the L2, by RT units and shaders."""
     return _reads(runs, "gpu.memory.partition[*].l2*")
 
 
@@ -43,35 +43,35 @@ def _reads(runs: Chosen, cache: str) -> Any:
     rows = [(label, run, _answers(run, cache, who)) for label, run, who in rows_of(chosen(runs), list(_ASKED_BY))]
     rows = [row for row in rows if sum(row[2].values())]
     if not rows:
-        raise GlintError("no reads in these runs")
+        raise GlintError("these runs have no reads")
     parts = [Part(name, colour, [counts[key] for _, _, counts in rows]) for key, name, colour in _ANSWERS]
     scale = [100 * sum(counts.values()) / total(run, f"{cache}.reads::*") for _, run, counts in rows]
     return stacked([label for label, _, _ in rows], parts, "share of the run's reads (%)", scale=scale)
 
 
 def dram(runs: Chosen) -> Any:
-    """DRAM utilisation (clocks with data of all) and efficiency (of those with work), rows hit (LumiBench, Figure 12)."""
+    """Draws DRAM utilisation (share of all clocks with data), efficiency (share of the clocks with work) and row hits (LumiBench, Figure 12)."""
     metrics = [("utilisation", "blue", "dram_util"), ("efficiency", "orange", "dram_eff"), ("row locality", "green", "row_locality")]
     return shares(chosen(runs), metrics)
 
 
 def dram_clocks(runs: Chosen) -> Any:
-    """What the clocks of the DRAM channels went into."""
+    """Draws how the DRAM channels spent their clocks."""
     found = chosen(runs)
     return stacked(names(found), [Part(name, colour, [total(run, f"dram.use::{key}") for run in found]) for key, name, colour in _CLOCKS], "share of DRAM clocks (%)")
 
 
 def miss_stages(runs: Chosen) -> Any:
-    """Mean latency of a read that did not hit in its L1, by stage: stages add up to it."""
+    """Draws the mean latency of a read that missed its L1, as the sum of its stages."""
     found = [run for run in chosen(runs) if total(run, "l1.timed_misses")]
     if not found:
-        raise GlintError("no misses in these runs")
+        raise GlintError("these runs have no misses")
     parts = [Part(name, colour, [total(run, f"l1.miss_stages::{key}") for run in found]) for key, name, colour in _MISS_STAGES]
     return stacked(names(found), parts, "cycles of an L1 miss", scale=[total(run, "l1.miss_cycles") / total(run, "l1.timed_misses") for run in found])
 
 
 def miss_latency(runs: Chosen) -> Any:
-    """How the latencies of misses are spread: of one run by who answered, of several run by run, of more than eight as quantiles."""
+    """Draws the distribution of miss latencies: for one run by who answered, for several runs by run, and for more than eight as quantiles."""
     found = chosen(runs)
     if len(found) > 1:
         return spreads(found, [run.stats.histogram("l1.miss_latency") for run in found], "cycles of an L1 miss", "share of misses (%)")

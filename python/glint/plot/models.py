@@ -1,6 +1,6 @@
-# Figure of analytical models: predicted against simulated cycles, workload by workload (LumiBench, Figure 15).
+# Draws analytical models: predicted against simulated cycles, workload by workload (LumiBench, Figure 15).
 # SPDX-License-Identifier: Apache-2.0
-"""From `models.csv`, a table of workloads with simulated cycles and a column `model:NAME` a model, as `glint model` writes it."""
+"""The figures read `models.csv` as `glint model` writes it: workloads with simulated cycles and a column `model:NAME` for each model."""
 from __future__ import annotations
 
 import math
@@ -17,7 +17,7 @@ _MARKS = "osD^v"
 
 
 def correlation(predicted: list[float], simulated: list[float]) -> float:
-    """R squared of the linear regression of simulated on predicted cycles, as LumiBench gives it; 0 where one does not vary."""
+    """Returns R squared of the linear regression of simulated on predicted cycles, as LumiBench gives it, or 0 when one does not vary."""
     count = len(predicted)
     a, b = sum(predicted) / count, sum(simulated) / count
     both = sum((x - a) * (y - b) for x, y in zip(predicted, simulated))
@@ -26,7 +26,7 @@ def correlation(predicted: list[float], simulated: list[float]) -> float:
 
 
 def _read(table: Table | str | pathlib.Path) -> tuple[Table, list[str]]:
-    """The table and its columns of models; rows have positive cycles."""
+    """Returns the table and its columns of models. It checks that all rows have positive cycles."""
     if not isinstance(table, Table):
         path = pathlib.Path(table)
         path = path / "models.csv" if path.is_dir() else path
@@ -35,15 +35,15 @@ def _read(table: Table | str | pathlib.Path) -> tuple[Table, list[str]]:
         table = Table.read(path, needs=("workload", "cycles"))
     models = [column for column in table.columns if column.startswith(_PREFIX)]
     if not models or not len(table):
-        raise SchemaError(f"no column '{_PREFIX}NAME' or no row: no table of models")
+        raise SchemaError(f"there is no column '{_PREFIX}NAME' or no row, so this is not a table of models")
     for column in ("cycles", *models):
         if not all(isinstance(value, (int, float)) and math.isfinite(value) for value in table[column]) or (column == "cycles" and min(table[column]) <= 0):
-            raise SchemaError(f"a row has no number in '{column}', or cycles that are none: the table is damaged")
+            raise SchemaError(f"a row has no number in '{column}', or cycles that are not positive: the table is damaged")
     return table, models
 
 
 def model_fit(table: Table | str | pathlib.Path) -> Any:
-    """Predicted against simulated cycles with each model's R squared; on the line both are equal. Takes a table, `models.csv`, or its folder."""
+    """Draws predicted against simulated cycles with each model's R squared; on the line both are equal. It takes a table, `models.csv`, or its folder."""
     table, models = _read(table)
     cycles = table["cycles"]
     with styled():
@@ -64,10 +64,10 @@ def model_fit(table: Table | str | pathlib.Path) -> Any:
 
 
 def model_errors(table: Table | str | pathlib.Path) -> Any:
-    """How far each model's cycles are from the simulated ones, workload by workload. Takes what `model_fit` does."""
+    """Draws how far each model's cycles are from the simulated ones, workload by workload. It takes the same argument as `model_fit`."""
     table, models = _read(table)
     if len(models) > len(RUN_COLOURS):
-        raise SchemaError(f"{len(models)} models, and there are {len(RUN_COLOURS)} colours")
+        raise SchemaError(f"{len(models)} models are too many, because there are {len(RUN_COLOURS)} colours")
     parts = [Part(column.removeprefix(_PREFIX), run_colour(index), [predicted / cycles - 1 for predicted, cycles in zip(table[column], table["cycles"])])
              for index, column in enumerate(models)]
     return ranked(table["workload"], parts, "predicted - simulated (%)", percent=True)

@@ -1,6 +1,6 @@
-# Figures of rays, RT units and acceleration structures.
+# Draws rays, RT units and acceleration structures.
 # SPDX-License-Identifier: Apache-2.0
-"""How full RT units were, what rays visited and what was fetched for them."""
+"""Draws how full RT units were, what rays visited and what was fetched for them."""
 from __future__ import annotations
 
 from typing import Any
@@ -18,21 +18,21 @@ _CYCLES = [("node_request", "sends a request", "green"), ("test_busy", "waits fo
 
 
 def geometry(runs: Chosen) -> Any:
-    """Structures, depth, triangles and cycles of each scene (LumiBench, Figure 7)."""
+    """Draws structures, depth, triangles and cycles of each scene (LumiBench, Figure 7)."""
     found = chosen(runs)
     panels = [("bottom\nlevels", "blue", lambda run: run.info.get("structures.bottom_levels")),
               ("instances", "sky", lambda run: run.info.get("structures.instances")),
               ("depth", "green", lambda run: run.metrics["bvh_depth"]),
               ("triangles", "orange", lambda run: run.info.get("structures.triangles")),
               ("cycles", "red", lambda run: run.cycles)]
-    panels = [panel for panel in panels if any(panel[2](run) is not None for run in found)]  # runs of own pipelines do not record their structures
+    panels = [panel for panel in panels if any(panel[2](run) is not None for run in found)]  # runs of user pipelines do not record their structures
     with styled():
         figure, axes = new_figure(0.45 + 0.62 * len(panels) + group_names(names(found)).below, rows=len(panels), sharex=True, squeeze=False, width=width_for(len(found)))
         for panel, (label, colour, value) in zip(axes[:, 0], panels):
             values = [value(run) for run in found]
             grouped(names(found), [Part(label, colour, values)], label, axes=panel)
             some = [one for one in values if one]
-            if some and max(some) > 30 * min(some):  # what is 0 has no bar
+            if some and max(some) > 30 * min(some):  # a value of 0 has no bar
                 panel.set_yscale("log")
                 panel.set_ylim(min(some) / 3, max(some) * 2)
         figure.align_ylabels(axes[:, 0])
@@ -40,16 +40,16 @@ def geometry(runs: Chosen) -> Any:
 
 
 def rt_use(runs: Chosen) -> Any:
-    """RT-unit occupancy and efficiency, SIMT efficiency (LumiBench, Figure 9)."""
+    """Draws RT-unit occupancy and efficiency, and SIMT efficiency (LumiBench, Figure 9)."""
     metrics = [("RT-unit occupancy", "blue", "rt_occupancy"), ("RT-unit efficiency", "orange", "rt_efficiency"), ("SIMT efficiency", "green", "simt_efficiency")]
     return shares(with_rays(runs), metrics)
 
 
 def traversal(runs: Chosen) -> Any:
-    """Nodes that a ray visits for each level of the structure (LumiBench, Figure 10); the line is one straight way down."""
+    """Draws the nodes that a ray visits per level of the structure (LumiBench, Figure 10). The line marks one straight path from root to leaf."""
     found = [run for run in with_rays(runs) if run.metrics["traversal_ratio"] is not None]
     if not found:
-        raise GlintError("none of the runs has a traversal ratio: runs of own pipelines do not record the depth of their structures")
+        raise GlintError("none of the runs has a traversal ratio: runs of user pipelines do not record the depth of their structures")
     with styled():
         figure, axes = new_figure(1.4 + group_names(names(found)).below, width=width_for(len(found)))
         grouped(names(found), [Part("traversal ratio", "blue", [run.metrics["traversal_ratio"] for run in found])], "nodes / ray / depth", axes=axes)
@@ -58,24 +58,24 @@ def traversal(runs: Chosen) -> Any:
 
 
 def rt_cycles(runs: Chosen) -> Any:
-    """What the cycles of the RT units went into."""
+    """Draws how the RT units spent their cycles."""
     found = with_rays(runs)
     return stacked(names(found), [Part(name, colour, [total(run, f"rt.cycles::{key}") for run in found]) for key, name, colour in _CYCLES], "share of the RT units' cycles (%)")
 
 
 def fetch_mix(runs: Chosen) -> Any:
-    """What RT units read, by read requests that the L1 took (LumiBench, Figure 13)."""
+    """Draws what RT units read, by read requests that the L1 accepted (LumiBench, Figure 13)."""
     found = with_rays(runs)
     return stacked(names(found), [Part(name, colour, [total(run, f"l1.reads::{key}") for run in found]) for key, name, colour in _FETCHES], "share of the RT units' reads (%)")
 
 
 def ray_nodes(runs: Chosen) -> Any:
-    """Nodes visited by a ray: shares of rays by bins; of more than eight runs quantiles, a row a run."""
+    """Draws the nodes visited by a ray as shares of rays by bins, or, for more than eight runs, as quantiles with a row for each run."""
     return _ray_histogram(runs, "rt.ray_nodes", "nodes visited by a ray")
 
 
 def ray_latency(runs: Chosen) -> Any:
-    """Cycles from a ray's acceptance by the RT unit to its stop: shares of rays by bins; of more than eight runs quantiles, a row a run."""
+    """Draws cycles from a ray's acceptance by the RT unit to its end as shares of rays by bins, or, for more than eight runs, as quantiles with a row for each run."""
     return _ray_histogram(runs, "rt.ray_latency", "cycles of a ray in the RT unit")
 
 

@@ -1,4 +1,4 @@
-# Figures of a whole suite: components, clusters and Kiviat plots, from what `glint characterize` wrote.
+# Draws a whole suite: components, clusters and Kiviat plots, from what `glint characterize` wrote.
 # SPDX-License-Identifier: Apache-2.0
 """Each function takes a `Characterization` or its folder (docs/characterization.md)."""
 from __future__ import annotations
@@ -20,7 +20,7 @@ def _suite(suite: Suite) -> Characterization:
 
 
 def scree(suite: Suite) -> Any:
-    """Eigenvalues of the components, those that were kept in colour, and the variance that they have together."""
+    """Draws the eigenvalues of the components, with the kept ones in colour, and their cumulative variance."""
     table = _suite(suite).eigenvalues
     shown = min(len(table), max(10, 2 * sum(table["kept"])))
     with styled():
@@ -40,7 +40,7 @@ def scree(suite: Suite) -> Any:
 
 
 def components(suite: Suite, x: str = "PC1", y: str = "PC2") -> Any:
-    """The workloads in two components, a colour and a mark a cluster; those of the subset are named."""
+    """Draws the workloads in two components, with a colour and a mark for each cluster. The workloads of the subset are named."""
     found = _suite(suite)
     scores, clusters = found.scores, found.clusters
     places = {name: (a, b) for name, a, b in zip(scores["workload"], scores[x], scores[y])}
@@ -61,7 +61,7 @@ def components(suite: Suite, x: str = "PC1", y: str = "PC2") -> Any:
 
 
 def dendrogram(suite: Suite) -> Any:
-    """Who is alike (LumiBench, Figure 3): mergers at their distance, a colour a cluster; names of the subset are bold."""
+    """Draws which workloads are alike (LumiBench, Figure 3): mergers at their distance, with a colour for each cluster. Names of the subset are bold."""
     found = _suite(suite)
     leaves = list(found.clusters)
     row_of = {name: row for row, name in enumerate(found.scores["workload"])}
@@ -71,7 +71,7 @@ def dendrogram(suite: Suite) -> Any:
         figure, axes = new_figure(0.4 + 0.1 * max(8, len(leaves)))
         for index, (first, second, distance, _) in enumerate(found.linkage):
             (a, low_a, of_a), (b, low_b, of_b) = nodes[first], nodes[second]
-            cluster = of_a if of_a == of_b else None  # above the cut
+            cluster = of_a if of_a == of_b else None  # None: above the cut
             colour = COLOURS["grey"] if cluster is None else run_colour(numbers.index(cluster))
             axes.plot([low_a, distance, distance, low_b], [a, a, b, b], color=colour, linewidth=0.8, solid_joinstyle="miter")
             nodes[float(len(leaves) + index)] = ((a + b) / 2, distance, cluster)
@@ -86,7 +86,7 @@ def dendrogram(suite: Suite) -> Any:
 
 
 def kiviat(suite: Suite, workloads: list[str] | None = None) -> Any:
-    """A star a workload of the chosen metrics (LumiBench, Figure 4), by default of the subset; the first metric points up, others go clockwise."""
+    """Draws a star of the chosen metrics for each workload (LumiBench, Figure 4), by default of the subset. The first metric points up, and the others follow clockwise."""
     found = _suite(suite)
     table = found.kiviat
     metrics = table.columns[1:]
@@ -94,7 +94,7 @@ def kiviat(suite: Suite, workloads: list[str] | None = None) -> Any:
     names = found.subset if workloads is None else workloads
     for name in names:
         if name not in rows:
-            raise UnknownName(f"no workload '{name}'{near(name, rows)}")
+            raise UnknownName(f"there is no workload '{name}'{near(name, rows)}")
     if not names:
         raise GlintError("a Kiviat figure needs at least one workload")
     across = 4 if len(names) <= 12 else 8

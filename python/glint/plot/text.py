@@ -1,6 +1,6 @@
-# Text in figures: how wide it is, and where long names are broken so that they fit.
+# Measures text in figures, and breaks long names so that they fit.
 # SPDX-License-Identifier: Apache-2.0
-"""Widths are measured with the font, before anything is drawn: a figure grows by what its names need."""
+"""Widths are measured with the font before anything is drawn, and a figure grows by what its names need."""
 from __future__ import annotations
 
 import dataclasses
@@ -10,7 +10,7 @@ from typing import Sequence
 
 from ..optional import require
 
-LINE = 1.3  # a line's height over the size of its type, as matplotlib stacks them, and a little air
+LINE = 1.3  # height of a line over the size of its type, as matplotlib stacks lines, with a little space
 _SOFT = re.compile(r".+?(?: · |, |$)")  # between the words of a label
 _SPACE = re.compile(r".+?(?: |$)")
 _HARD = re.compile(r".+?(?:[ ._/=-]|$)")  # within a word that is too long for a line
@@ -18,7 +18,7 @@ _HARD = re.compile(r".+?(?:[ ._/=-]|$)")  # within a word that is too long for a
 
 @functools.lru_cache(maxsize=65536)
 def width_of(text: str, size: float) -> float:
-    """Inches that a line of text of `size` points takes."""
+    """Returns the width in inches of a line of text of `size` points."""
     if not text.strip():
         return 0.0
     paths, fonts = require("matplotlib.textpath", "glint.plot"), require("matplotlib.font_manager", "glint.plot")
@@ -27,7 +27,7 @@ def width_of(text: str, size: float) -> float:
 
 
 def wrapped(text: str, inches: float, size: float, breaks: Sequence[re.Pattern[str]] = (_SOFT, _SPACE, _HARD)) -> list[str]:
-    """The lines of a text, none wider than `inches` where its words allow: broken between words, within them only where one is too long."""
+    """Returns the lines of a text, none wider than `inches` if its words allow it. Lines break between words, and within a word only if it is too long."""
     lines = [""]
     for piece in _pieces(text, inches, size, breaks):
         if lines[-1] and width_of((lines[-1] + piece).rstrip(" ·"), size) > inches:
@@ -47,14 +47,14 @@ def _pieces(text: str, inches: float, size: float, breaks: Sequence[re.Pattern[s
 
 @dataclasses.dataclass(frozen=True)
 class Fitted:
-    """Names as they are drawn.
+    """Holds names as they are drawn.
 
     Attributes:
-        texts: with line breaks.
-        size: of the type, in points.
-        lines: of the longest.
-        width, height: inches that the largest takes, unturned.
-        upright: turned by 90 degrees.
+        texts: The names with line breaks.
+        size: The size of the type in points.
+        lines: The number of lines of the longest name.
+        width, height: The size in inches of the largest name before it is turned.
+        upright: Whether the names are turned by 90 degrees.
     """
     texts: list[str]
     size: float
@@ -65,12 +65,12 @@ class Fitted:
 
     @property
     def below(self) -> float:
-        """Inches that they take below an axis."""
+        """The height in inches that the names take below an axis."""
         return self.width if self.upright else self.height
 
 
 def fitted(names: Sequence[str], inches: float, size: float, upright: bool = False, breaks: Sequence[re.Pattern[str]] = (_SOFT, _SPACE, _HARD)) -> Fitted:
-    """The names in lines of at most `inches`, where their words allow."""
+    """Returns the names in lines of at most `inches`, if their words allow it."""
     split = [wrapped(name, inches, size, breaks) for name in names]
     lines = max((len(one) for one in split), default=1)
     width = max((width_of(line, size) for one in split for line in one), default=0.0)
@@ -78,7 +78,7 @@ def fitted(names: Sequence[str], inches: float, size: float, upright: bool = Fal
 
 
 def below_groups(names: Sequence[str], each: float, size: float) -> Fitted:
-    """Names below groups of bars `each` inches wide: beside each other where their words fit, else upright in as few inches as fit."""
+    """Returns names below groups of bars `each` inches wide: side by side if their words fit, otherwise upright in as few inches as possible."""
     flat = fitted(names, 0.94 * each, size, breaks=(_SOFT, _SPACE))
     if flat.width <= 0.97 * each and flat.lines <= 4:
         return flat
