@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # Says which statements of the LumiBench paper about the order of its workloads hold for a metrics.csv of `glint bench`.
 # SPDX-License-Identifier: Apache-2.0
-"""Evaluates the LumiBench paper's statements on our figures: holds, does not hold, cannot be judged.
+"""Evaluates the LumiBench paper's statements on Glint's figures: each holds, does not hold, or cannot be judged.
 
-Words of the paper stand for bounds that are written out with each statement; none was fitted to our figures."""
+Each statement gives the bounds that stand for the paper's words. No bound was fitted to Glint's figures."""
 import argparse
 import csv
 import math
@@ -13,11 +13,11 @@ SUBSET = ["SPNZA_AO", "BUNNY_AO", "WKND_PT", "SHIP_SH", "ROBOT_SH", "BATH_PT", "
 
 
 class Missing(Exception):
-    """A figure that a statement needs is not there."""
+    """A figure that a statement needs is missing."""
 
 
 class Table:
-    """A metrics.csv: figures by workload and metric."""
+    """Holds a metrics.csv: figures by workload and metric."""
 
     def __init__(self, rows):
         self.rows = {row["workload"]: row for row in rows}
@@ -50,7 +50,7 @@ class Table:
 
 
 def whole(table, count=46):
-    """Statements about all workloads need all of them."""
+    """Checks that the table has all workloads, which statements about all workloads need."""
     if len(table.rows) < count:
         raise Missing(f"{len(table.rows)} of {count} workloads")
 
@@ -65,7 +65,7 @@ def correlation(a, b):
 
 
 def ranks(values):
-    """From 0, ties share their mean rank."""
+    """Returns ranks from 0. Ties share their mean rank."""
     return [sum(v < x for v in values) + (sum(v == x for v in values) - 1) / 2 for x in values]
 
 
@@ -74,7 +74,7 @@ def percent(fraction):
 
 
 def rt_and_shader_misses(t, name):
-    """L1 read misses of RT unit and shaders: their rates and the RT unit's reads give both."""
+    """Returns the L1 read misses of the RT unit and of shaders, which follow from their rates and the RT unit's reads."""
     reads = sum(t.get(name, "acc_" + kind) for kind in ("internal", "instance_leaf", "quad_leaf", "proc_leaf"))
     rt = t.get(name, "rt_miss_rate") * reads
     all_rate, shader_rate = t.get(name, "l1d_miss_rate"), t.get(name, "l1d_shader_miss_rate")
@@ -83,7 +83,7 @@ def rt_and_shader_misses(t, name):
     return rt, shader_rate * (rt - all_rate * reads) / (all_rate - shader_rate)
 
 
-# Each: (item of the checklist, statement with its bound, function of tables to (holds, figures)).
+# Each entry has: (item of the checklist, statement with its bound, function of tables to (holds, figures)).
 STATEMENTS = []
 
 
@@ -104,7 +104,7 @@ def _(t, **_):
 
 
 def drift(rows, value, weight):
-    """How far the running mean is from its last value, as a fraction: the largest in the first quarter, and the largest in the second half."""
+    """Returns how far the running mean is from its last value, as a fraction: the largest in the first quarter and in the second half."""
     rows = [row for row in rows if row["instructions"] > 0]
     total = weights = 0.0
     means = []
@@ -348,7 +348,7 @@ def _(t, desktop=None, **_):
 
 
 def evaluate(table, **others):
-    """(item, statement, verdict, figures) of each."""
+    """Returns (item, statement, verdict, figures) of each statement."""
     out = []
     for item, text, function in STATEMENTS:
         try:
@@ -369,10 +369,10 @@ def read_series(path):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("metrics", help="metrics.csv of `glint bench` on mobile")
-    parser.add_argument("--desktop", help="the same on desktop")
-    parser.add_argument("--large", help="of SHIP_SH at 1920x1080")
-    parser.add_argument("--bandwidth", help="of PARTY_PT with twice the DRAM bandwidth")
+    parser.add_argument("metrics", help="the metrics.csv of `glint bench` on mobile")
+    parser.add_argument("--desktop", help="the metrics.csv of the same workloads on desktop")
+    parser.add_argument("--large", help="the metrics.csv of SHIP_SH at 1920x1080")
+    parser.add_argument("--bandwidth", help="the metrics.csv of PARTY_PT with twice the DRAM bandwidth")
     parser.add_argument("--series", nargs="+", default=[], metavar="RUN", help="run directories of PARK_PT, BUNNY_AO and SHIP_SH with --sample")
     parser.add_argument("--markdown", action="store_true", help="print a table for docs")
     arguments = parser.parse_args()

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""Runs the kernels of bench/held_out under the preset h200 and prints them beside what an H200 counted.
+"""Runs the kernels of bench/held_out under the preset h200 and prints the results next to an H200's counters.
 
 Usage: compare_h200.py GLINT [KERNEL ...] [--set KEY=VALUE ...] [--config NAME]
-Prints a table in Markdown; cycles of hardware are the middle one of three launches. Exits 2 when a kernel has no counters.
+The output is a table in Markdown. The hardware's cycles are the median of three launches. The exit status is 2 when a kernel has no
+counters.
 """
 # SPDX-License-Identifier: Apache-2.0
 import argparse
@@ -19,7 +20,7 @@ MI = 1 << 20
 
 
 def counting(kind, count):
-    """A buffer that holds 0, 1, 2 ..."""
+    """Returns a buffer that holds 0, 1, 2 ..."""
     return {"type": f'"{kind}"', "count": count, "init": '"iota"'}
 
 
@@ -27,7 +28,7 @@ def zeros(kind, count):
     return {"type": f'"{kind}"', "count": count}
 
 
-# Kernel: grid, block, arguments; as main() of kernels.cu launches them.
+# Each kernel has: grid, block, arguments, as main() of kernels.cu launches it.
 LAUNCHES = {
     "h_scan": ([1024], [256], [counting("f32", MI), zeros("f32", MI // 4), {"s32": MI // 4}]),
     "h_spmv": ([256], [256], [counting("f32", 16 * MI), counting("f32", MI), zeros("f32", 65536), {"s32": 65536}, {"s32": 0xFFFFF}]),
@@ -65,7 +66,7 @@ def read_counters():
 
 
 def run(glint, kernel, config, settings):
-    """What Glint counts: cycles, executed instructions, warps' loads from global memory."""
+    """Returns what Glint counts: cycles, executed instructions, warps' loads from global memory."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"{kernel}.toml"
         path.write_text(launch_file(kernel))
@@ -91,7 +92,7 @@ def main():
     counters = read_counters()
     unknown = [kernel for kernel in options.kernel if kernel not in LAUNCHES or kernel not in counters]
     if unknown:
-        print(f"compare_h200.py: no kernel {', '.join(unknown)}; there are {', '.join(LAUNCHES)}", file=sys.stderr)
+        print(f"compare_h200.py: there is no kernel {', '.join(unknown)}; the kernels are {', '.join(LAUNCHES)}", file=sys.stderr)
         return 2
     print("| kernel | cycles | hardware | error | instructions | hardware | error | global loads |\n|---|---|---|---|---|---|---|---|")
     errors = []

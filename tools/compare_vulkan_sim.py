@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Runs Glint under the preset vulkan-sim-desktop on the workloads of Vulkan-Sim's own logs and prints both side by side.
+"""Runs Glint under the preset vulkan-sim-desktop on the workloads of Vulkan-Sim's own logs, and prints both results side by side.
 
 Usage: compare_vulkan_sim.py GLINT LOGS ASSETS [--only NAME] [--set KEY=VALUE ...] [--config NAME]
-  LOGS    folder with logs of Vulkan-Sim named SCENE_SHADER_WxH_..., as .log or .log.xz
-  ASSETS  folder with the original scene data, as `glint run --assets` takes it
-Prints a table in Markdown. Rows beyond the bounds (rays 1 %, nodes a ray 5 %, RT memory accesses 10 %, cycles 20 %)
-are bold. Exits 2 when there is nothing to compare with.
+  LOGS    is a folder with logs of Vulkan-Sim named SCENE_SHADER_WxH_..., as .log or .log.xz
+  ASSETS  is a folder with the original scene data, as `glint run --assets` takes it
+The output is a table in Markdown. Rows beyond the bounds (rays 1 %, nodes per ray 5 %, RT memory accesses 10 %, cycles 20 %)
+are bold. The exit status is 2 when there is nothing to compare.
 """
 # SPDX-License-Identifier: Apache-2.0
 import argparse
@@ -45,7 +45,7 @@ def read_log(path):
 
 
 def total(stats, parent, path):
-    """Sum over all groups of `stats` whose name begins with `parent` of the statistic at `path`."""
+    """Returns the sum of the statistic at `path` over all groups of `stats` whose name begins with `parent`."""
     out = 0
     for name, group in stats.items():
         if not name.startswith(parent):

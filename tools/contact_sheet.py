@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-# One picture of all pictures of a `glint bench` directory: a row of PT, SH and AO for every scene, two scenes side by side.
+# Puts all pictures of a `glint bench` directory into one: a row of PT, SH and AO for every scene, two scenes side by side.
 # SPDX-License-Identifier: Apache-2.0
 """usage: contact_sheet.py BENCH_DIR OUT.jpg [SIDE]
 
-Each workload's image.png is scaled to SIDE (192) pixels and named. What was not run stays dark. Needs python3-pil.
+Each workload's image.png is scaled to SIDE (default 192) pixels and named. The place of a workload that was not run stays dark.
+The script needs python3-pil.
 """
 import pathlib
 import sys

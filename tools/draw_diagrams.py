@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-# Draws the diagrams of docs/concepts.md as SVG: legible on light and dark pages, text stays text.
+# Draws the diagrams of docs/concepts.md as SVG. They are legible on light and dark pages, and text stays text.
 # SPDX-License-Identifier: Apache-2.0
 """usage: tools/draw_diagrams.py [FOLDER], by default docs/images"""
 import html
 import pathlib
 import sys
 
-# Each picture has a ground of its own, so that ground and ink follow the system's scheme together, whatever the page's.
+# Each picture has its own background, so background and ink both follow the system's colour scheme, whatever the page's is.
 STYLE = """
 .ground{fill:#ffffff;stroke:#d3d7dc}.ink,text{fill:#1b2026}.muted{fill:#5c6672}.line{stroke:#5c6672;fill:none}
 .head{fill:#5c6672}.box{fill:#f4f6f8;stroke:#8a929c}.blue{fill:#cfe5f3;stroke:#0072b2}.green{fill:#cdebe1;stroke:#009e73}
@@ -21,7 +21,7 @@ text{font:13px system-ui,-apple-system,"Segoe UI",Roboto,Arial,sans-serif}.small
 
 
 class Drawing:
-    """Shapes of one picture; x to the right, y down, in pixels."""
+    """Collects the shapes of one picture. x goes to the right and y down, in pixels."""
 
     def __init__(self, width, height, title):
         self.size, self.title, self.parts = (width, height), title, []
@@ -30,7 +30,7 @@ class Drawing:
         self.parts.append(f'<text x="{x}" y="{y}" class="{kind}" text-anchor="{anchor}">{html.escape(words)}</text>')
 
     def box(self, x, y, w, h, words, kind="box", note=""):
-        """A box with a line of text, and a smaller one below it."""
+        """Draws a box with a line of text, and a smaller line below it."""
         self.parts.append(f'<rect x="{x}" y="{y}" width="{w}" height="{h}" rx="5" class="{kind}"/>')
         middle = y + h / 2 + 4.5
         self.text(x + w / 2, middle - (7 if note else 0), words)
@@ -38,12 +38,12 @@ class Drawing:
             self.text(x + w / 2, middle + 9, note, "small muted")
 
     def frame(self, x, y, w, h, words):
-        """An empty box with its name at the top left."""
+        """Draws an empty box with its name at the top left."""
         self.parts.append(f'<rect x="{x}" y="{y}" width="{w}" height="{h}" rx="7" class="line" stroke-dasharray="4 3"/>')
         self.text(x + 9, y + 17, words, "small muted", "start")
 
     def arrow(self, points, words="", at=None, kind="small muted", anchor="middle"):
-        """A line through the points with a head at its end; words stand at `at`."""
+        """Draws a line through the points with a head at its end, and words at `at`."""
         way = " ".join(f"{x},{y}" for x, y in points)
         self.parts.append(f'<polyline points="{way}" class="line" marker-end="url(#head)"/>')
         if words:
@@ -52,7 +52,7 @@ class Drawing:
             self.text(x, y, words, kind, anchor)
 
     def lanes(self, x, y, mask, size=15):
-        """A square a lane, filled where it is active."""
+        """Draws a square for each lane, filled where the lane is active."""
         for i, active in enumerate(mask):
             self.parts.append(f'<rect x="{x + i * (size + 3)}" y="{y}" width="{size}" height="{size}" rx="2" class="{"on" if active == "1" else "off"}"/>')
 
@@ -66,7 +66,7 @@ class Drawing:
 
 
 def simt():
-    """A branch that splits a warp: which lanes execute what, and what the stack holds."""
+    """Shows a branch that splits a warp: which lanes execute what, and what the stack holds."""
     d = Drawing(760, 292, "A warp of eight lanes at a branch, and its SIMT stack")
     for x, words in ((24, "instruction"), (228, "lanes (8 of 32 drawn)"), (420, "SIMT stack after it, top first")):
         d.text(x, 30, words, "small muted", "start")
@@ -87,7 +87,7 @@ def simt():
 
 
 def rt_unit():
-    """A ray's way through the RT unit."""
+    """Shows a ray's way through the RT unit."""
     d = Drawing(760, 350, "The RT unit: from rt.trace to the hit")
     d.box(20, 50, 118, 58, "core", "blue", "rt.trace of a warp")
     d.frame(178, 22, 562, 244, "RT unit (one a core)")
@@ -114,7 +114,7 @@ def rt_unit():
 
 
 def memory():
-    """From cores to DRAM."""
+    """Shows the way from cores to DRAM."""
     d = Drawing(760, 330, "The memory path: L1, network, L2 slices, DRAM channels")
     for i, name in enumerate(("core 0", "core 1", "core 7")):
         x = 40 + i * 180 + (60 if i == 2 else 0)
@@ -145,7 +145,7 @@ def node(d, x, y, words, kind):
 
 
 def bvh():
-    """Two levels of boxes: instances of structures, structures of triangles."""
+    """Shows two levels of boxes: instances of structures, structures of triangles."""
     d = Drawing(760, 356, "A two-level acceleration structure")
     d.frame(20, 16, 720, 140, "top level: boxes around instances; rays in world space")
     d.frame(20, 190, 440, 152, "")

@@ -19,14 +19,14 @@ from pathlib import Path
 
 import numpy as np
 
-BITS = 17  # of x; functions with fewer shift theirs up
+BITS = 17  # bits of x; functions with fewer bits shift them up
 ONE = 2.0**24  # all sums are in units of 2^-24
 DENSE = {"rcp": (0x3F800000, 128), "rsqrt": (0x3F800000, 256), "sqrt": (0x3F800000, 256), "ex2": (0x3F800000, 128),
          "lg2": (0x3F800000, 128), "sin": (0x3F000000, 512), "cos": (0x3F000000, 512), "tanh": (0x3F000000, 512)}
 
 
 def truncated_square():
-    """square(x) of all 17-bit x as multiples of 2^-15: a folded squarer without the columns below."""
+    """Returns square(x) of all 17-bit x as multiples of 2^-15, from a folded squarer without the columns below."""
     x = np.arange(2**BITS)
     out = np.zeros_like(x)
     for j in range(10, BITS):
@@ -54,14 +54,14 @@ class Recordings:
         return (first + np.arange(len(y), dtype=np.uint32) * np.uint32(step)).astype(np.uint32), y
 
     def full(self, index, first, function):
-        """All 2^23 mantissas: the correctly rounded result and the recorded difference in ulp."""
+        """Returns, for all 2^23 mantissas, the correctly rounded result and the recorded difference in ulp."""
         delta = np.frombuffer(lzma.open(self.mufu / f"mufu_delta_{index}.xz").read(), dtype=np.int8)
         x = (first + np.arange(2**23, dtype=np.uint32)).astype(np.uint32)
         y = function(x.view(np.float32).astype(np.float64)).astype(np.float32).view(np.int32) + delta
         return x, y.astype(np.uint32)
 
     def lanes(self, op):
-        """Inputs and outputs of a unary f32 op, signs dropped."""
+        """Returns inputs and outputs of a unary f32 op without their signs."""
         form = next(o for o in json.loads((self.golden / "manifest.json").read_text())["ops"] if o["op"] == op)
         read = lambda name, where: np.frombuffer(self.unpacked(self.golden / name), dtype=np.uint32, count=2048,
                                                  offset=where["offset"])
@@ -70,14 +70,14 @@ class Recordings:
 
 
 def bounds(y, scale=ONE, resolution=0.0):
-    """The sum s that gave output y: low <= s < high. An output keeps 24 bits, and none below the resolution."""
+    """Returns the bounds low <= s < high of the sum s that gave output y. An output keeps 24 bits, and none below the resolution."""
     value = y.view(np.float32).astype(np.float64) * scale
     ulp = 2.0 ** ((y >> 23).astype(int) - 150) * scale
     return value, value + np.maximum(ulp, resolution)
 
 
 def feasible(x, low, high, steps, reach=3):
-    """All (C1, C2) near the least-squares fit for which a C0 exists, with C0's bounds, widest first."""
+    """Returns all (C1, C2) near the least-squares fit for which a C0 exists, with C0's bounds, widest first."""
     step1, step2 = steps
     t, s, weight = x / 2.0**BITS, SQUARE[x], 1 / (high - low)
     columns = np.c_[np.ones(len(t)), t, s]
@@ -95,7 +95,7 @@ def feasible(x, low, high, steps, reach=3):
 
 
 def fit_table(name, segment, x, low, high, count, steps, grid, bias):
-    """Rows (C0, C1, C2) of a table; C0 = n * grid + bias, C0 of the result without the bias."""
+    """Returns the rows (C0, C1, C2) of a table. C0 = n * grid + bias, and the result has C0 without the bias."""
     rows = []
     for k in range(count):
         chosen = segment == k
@@ -141,14 +141,14 @@ def sine_table(recorded):
     return fit_table("sin", turns[keep] >> 17, turns[keep] & 0x1FFFF, low, high, 64, (16, 4), 0.5, 0)
 
 
-# tanh: exponent of the octave, log2 of its segments, steps of C1, C2 and C0.
+# Each octave of tanh has: its exponent, log2 of its segments, steps of C1, C2 and C0.
 TANH = [(-8, 0, 2, 1, 0.5), (-7, 0, 4, 2, 1), (-6, 0, 8, 4, 2), (-5, 1, 8, 4, 2), (-4, 1, 16, 8, 4), (-3, 2, 16, 4, 2),
         (-2, 2, 16, 8, 4), (-1, 2, 32, 16, 8), (0, 3, 16, 8, 4), (1, 4, 4, 2, 1), (2, 3, 16, 8, 4)]
-LOOSE = -5  # the octaves up to this one have less than four samples a segment
+LOOSE = -5  # the octaves up to this one have less than four samples per segment
 
 
 def nearest_to_tanh(x, low, high, first, width, steps):
-    """Of the triples that meet the (few) samples, the one whose worst distance from tanh is least."""
+    """Returns, of the triples that meet the few samples, the one whose worst distance from tanh is least."""
     step1, step2, grid = steps
     t = np.linspace(0, 1, 65)
     truth = np.tanh(first + t * width) * ONE
@@ -220,19 +220,19 @@ def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     tables, loose = fitted(Recordings(sys.argv[1]))
-    print("// Coefficients of the special-function unit, fitted to recorded outputs by tools/fit_approximate.py.")
+    print("// Holds the coefficients of the special-function unit, fitted to recorded outputs by tools/fit_approximate.py.")
     print("// SPDX-License-Identifier: Apache-2.0")
     print("//")
-    print("// Each row is the only one that gives all recorded bits of its segment, but for the first "
-          f"{loose} of tanh:\n// few samples lie there, and of the rows that give those they are the nearest to tanh.")
+    print("// Each row is the only one that gives all recorded bits of its segment, except the first "
+          f"{loose} rows of tanh.\n// There are few samples in their segments. Of all rows that give these samples, they are the nearest to tanh.")
     print("// clang-format off\n#pragma once\n#include <cstdint>\n\nnamespace glint::isa::GLINT_ISA_PATH {\n")
-    print("// One segment: C0 (without the function's bias) in quarters of the sum's unit, C1 and C2 in units.")
+    print("// Holds one segment: C0 (without the function's bias) in quarters of the sum's unit, C1 and C2 in units.")
     print("struct Segment {\n  int32_t c0, c1, c2;\n};\n")
     for name, rows in tables.items():
         units = (4, 1, 1)
         values = np.array(rows) * units
         assert (values == np.round(values)).all() and abs(values).max() < 2**31
-        print(f"// {ABOUT[name]}.")
+        print(f"// Segments of {ABOUT[name]}.")
         print(f"inline constexpr Segment k{name.capitalize()}Segments[{len(rows)}] = {{")
         cells = [f"{{{int(a)}, {int(b)}, {int(c)}}}" for a, b, c in values]
         for i in range(0, len(cells), 3):

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-# Cuts 32 lanes of every form out of a folder of GPU recordings, small enough to live in the repository.
+# Cuts 32 lanes of every form out of a folder of GPU recordings, which is small enough for the repository.
 # SPDX-License-Identifier: Apache-2.0
 """usage: make_golden_extract.py RECORDINGS OUT
 
-RECORDINGS holds manifest.json, inputs.bin.zst and outputs.bin.zst. OUT gets forms.txt (a line a form: name, input
-types, output types, PTX text; tab-separated) and lanes.bin.zst (for each form its inputs, then its outputs, 32 lanes each).
-Forms whose lanes read each other keep a whole warp; of the others 32 lanes are drawn, always the same.
+RECORDINGS holds manifest.json, inputs.bin.zst and outputs.bin.zst. OUT gets forms.txt and lanes.bin.zst. forms.txt has a
+line for each form: name, input types, output types, PTX text, separated by tabs. lanes.bin.zst has for each form its inputs,
+then its outputs, of 32 lanes each. A form whose lanes read each other keeps a whole warp. For other forms 32 lanes are drawn,
+which are the same each time.
 """
 import json
 import pathlib

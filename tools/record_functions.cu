@@ -1,5 +1,7 @@
-// Records a GPU's approximate functions over octaves of floats: prints the lines of kOctaves in
-// tests/isa/approximate_test.cpp, hashes as there.   nvcc -O2 -o record tools/record_functions.cu && ./record
+// Records a GPU's approximate functions over octaves of floats. It prints the lines of kOctaves in
+// tests/isa/approximate_test.cpp, with the same hashes.
+//
+// To run it: nvcc -O2 -o record tools/record_functions.cu && ./record
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdint>
 #include <cstdio>
@@ -32,7 +34,7 @@ void print_hash(const char* op, uint32_t first, uint32_t step = 1, uint32_t coun
   record<kFunction><<<(count + 255) / 256, 256>>>(first, step, count, device);
   const cudaError_t status = cudaMemcpy(words.data(), device, count * sizeof(uint32_t), cudaMemcpyDeviceToHost);
   cudaFree(device);
-  uint64_t hash = 0xcbf29ce484222325ull;  // FNV-1a, words for bytes
+  uint64_t hash = 0xcbf29ce484222325ull;  // FNV-1a, with words in place of bytes
   for (const uint32_t word : words) hash = (hash ^ word) * 0x100000001b3ull;
   if (status != cudaSuccess) std::printf("%s: %s\n", op, cudaGetErrorString(status));
   std::printf("{\"%s\", 0x%08x, %u, %u, 0x%016llx},\n", op, first, step, count, static_cast<unsigned long long>(hash));

@@ -3,10 +3,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs each form of a manifest on fresh inputs and writes manifest.json, inputs.bin and outputs.bin.
 
-Needs a CUDA GPU, numpy and cupy; nothing else of Glint needs them. A form is PTX text with the operands A, B, C, E
-(inputs), D0, D1 (outputs), TMP and SHM (8 bytes of global and shared memory a lane) and PP (a predicate). The inputs of
-a form are drawn from those of the given manifest, permuted, and from random bits; masks of lanes stay as they are.
-Compress the results with zstd and point GLINT_PTX_GOLDEN_DIR at the folder to compare Glint with them.
+The script needs a CUDA GPU, numpy and cupy, which nothing else in Glint needs. A form is PTX text with the operands A, B, C, E
+(inputs), D0, D1 (outputs), TMP and SHM (8 bytes of global and shared memory per lane) and PP (a predicate). The inputs of
+a form are drawn from the inputs of the given manifest, permuted, and from random bits; masks of lanes stay as they are.
+To compare Glint with the results, compress them with zstd and point GLINT_PTX_GOLDEN_DIR at the folder.
 
     python3 tools/record_vectors.py --golden FOLDER --out FOLDER [--forms extra.json] [--seed N] [--lanes N]
 """
@@ -23,7 +23,7 @@ REGISTER = {1: "pred", 2: "b16", 4: "b32", 8: "b64"}
 
 
 def entry_text(index, form):
-    """A kernel that loads the inputs of its lane, runs the form and stores the outputs."""
+    """Returns a kernel that loads the inputs of its lane, runs the form and stores the outputs."""
     operands = [("in", NAMES[i], o) for i, o in enumerate(form["inputs"])]
     operands += [("out", f"D{i}", o) for i, o in enumerate(form["outputs"])]
     text = [f".visible .entry form_{index}(.param .u64 p_tmp"]
@@ -51,7 +51,7 @@ def entry_text(index, form):
 
 
 def fresh(random, old, operand, lanes, keeps_warps):
-    """New inputs in the manner of `old`: its elements anew ordered, and, for plain data, random bits of three kinds."""
+    """Returns new inputs similar to `old`: its elements in a new order and, for plain data, random bits of three kinds."""
     dtype = old.dtype
     if keeps_warps:
         warps = old.reshape(-1, 32)
@@ -105,7 +105,7 @@ def main():
         header = ".version 8.3\n.target sm_90\n.address_size 64\n"
         try:
             kernel = load(cupy, header + entry_text(index, form)).get_function(f"form_{index}")
-        except Exception as error:  # a form that the assembler rejects
+        except Exception as error:  # the assembler rejects the form
             print(f"skipped {form['op']}: {str(error).splitlines()[0]}", file=sys.stderr)
             continue
         new = {"op": form["op"], "ptx": form["ptx"], "inputs": [], "outputs": []}

@@ -1,13 +1,13 @@
-# Steps that ./demo and ./check share: install what is missing, configure, build. Sourced by bash, not run.
+# Holds the steps that ./demo and ./check share: install missing packages, configure, build. bash sources this file and does not run it.
 # SPDX-License-Identifier: Apache-2.0
 
-# step "what happens": one line with the seconds since the script began.
+# step "what happens" prints one line with the seconds since the script began.
 step() { printf '[%4ds] %s\n' "$SECONDS" "$*"; }
 fail() { printf 'error: %s\n' "$*" >&2; exit 1; }
 
 installed() { dpkg-query -W -f='${Status}' "$1" 2>/dev/null | grep -q '^install ok installed'; }
 
-# Sets missing=() to the packages of apt.txt that are not installed; of "a|b" the first that apt knows.
+# Sets missing=() to the packages of apt.txt that are not installed. For "a|b" it takes the first name that apt knows.
 find_missing() {
   missing=()
   local line name names found
@@ -39,12 +39,12 @@ install_missing() {
   fi
   step "installing ${#missing[@]} packages: ${missing[*]}"
   "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get update -qq || step "apt-get update failed: trying with the lists at hand"
-  find_missing  # which of two names exists may be known only now
+  find_missing  # apt may only now know which of two names exists
   "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" </dev/null >/dev/null ||
     fail "apt-get could not install: ${missing[*]} (on Ubuntu, enable the component \"universe\")"
 }
 
-# configure FOLDER [cmake options]
+# configure FOLDER [cmake options] runs cmake.
 configure() {
   local folder=$1; shift
   local launcher=()
@@ -54,7 +54,7 @@ configure() {
     { cat "$folder.configure.log" >&2; fail "cmake failed"; }
 }
 
-# build FOLDER [targets]: quiet on success, the whole log on failure; on a terminal ninja shows its progress.
+# build FOLDER [targets] prints nothing on success and the end of the log on failure. On a terminal ninja shows its progress.
 build() {
   local folder=$1; shift
   step "building $folder on $(nproc) processors (the first time takes some minutes)"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-# Writes the generated docs from what the command says about itself, or checks that they are fresh.
+# Writes the generated docs from what the command says about itself, or checks that they are up to date.
 # SPDX-License-Identifier: Apache-2.0
 """usage: tools/update_golden.py [--check] GLINT, for example tools/update_golden.py build/release/apps/glint/glint"""
 import csv
@@ -11,32 +11,34 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
-# File: (title, introduction, arguments of glint).
+# Each generated file has: (title, introduction, arguments of glint).
 GENERATED = {
     "docs/config.md": (
         "Configuration keys",
-        "Every key of a configuration, with its value in the preset `mobile`. `glint describe KEY` prints the same.\n"
-        "Presets are in `configs/`; `--set KEY=VALUE` overrides one key. A policy's own keys stand in a table of its name.",
+        "This page lists every key of a configuration with its value in the preset `mobile`. `glint describe KEY` prints the same text.\n"
+        "The presets are in `configs/`, and `--set KEY=VALUE` overrides one key. A policy's own keys are in a table with the policy's name.",
         ["describe", "--markdown", "--config", "mobile"]),
-    "docs/isa.md": (None, None, ["isa", "--index"]),  # brings its own title
+    "docs/isa.md": (None, None, ["isa", "--index"]),  # the command writes the title
     "docs/metrics.md": (
         "Metrics",
-        "The 87 columns of `metrics.csv` that `glint bench` writes, after those that name the run; `glint stats RUN --format metrics` prints them.\n"
-        "The names are LumiBench's groups (35 of the GPU, 29 of the RT unit, 23 of scene and shaders) in words of Vulkan-Sim; the paper does not list its own.\n"
-        "A formula is what is computed: `sum(PATH)`, `max(PATH)` go over all statistics of docs/stats.md whose path matches; `core.`, `rt.`, `l1.`, `l2.` and\n"
-        "`dram.` stand for those of all instances; `run(NAME)` is a number of `run.json`, `config(KEY)` a key. A cell is empty where Glint has no such\n"
-        "number, where a run has nothing to divide by (no texture reads, no rays), and, in functional runs, where only the timing machine counts.",
+        "This page lists the 87 metrics. They are the columns of the `metrics.csv` that `glint bench` writes, after the columns that name the run.\n"
+        "`glint stats RUN --format metrics` prints them, too. The metrics follow LumiBench's groups (35 of the GPU, 29 of the RT unit, 23 of scene and\n"
+        "shaders) and Vulkan-Sim's names, because the paper does not list its own.\n\n"
+        "A formula says how a metric is computed. `sum(PATH)`, `max(PATH)` and `mean(PATH)` go over all statistics of [stats.md](stats.md) whose path\n"
+        "matches. `core.`, `rt.`, `l1.`, `l2.` and `dram.` at the beginning of a path stand for all instances. `run(NAME)` is a number of `run.json`, and\n"
+        "`config(KEY)` is a configuration key. A cell is empty where Glint has no such number, where the divisor is 0 (no texture reads, no rays), and in\n"
+        "functional runs where only the timing machine counts.",
         ["list", "metrics", "--markdown"]),
     "docs/stats.md": (
         "Statistics",
-        "Every statistic of the timing machine and, last, those of the functional machine, as `stats.txt`, `stats.csv` and `stats.json` of a run directory name it;\n"
-        "`[*]` is an instance's number. A breakdown has one value for each of its parts (`path::part`), a histogram one\n"
-        "for each bin.",
+        "This page lists every statistic of the timing machine and, at the end, those of the functional machine. The names are those of `stats.txt`,\n"
+        "`stats.csv` and `stats.json` in a run directory. `[*]` stands for the number of an instance. A breakdown has one value for each of its parts\n"
+        "(`path::part`), and a histogram has one value for each bin.",
         ["list", "stats", "--markdown"]),
 }
 
 
-FOLDERS = ["docs/isa", "docs/instructions"]  # hold generated files only
+FOLDERS = ["docs/isa", "docs/instructions"]  # these folders hold only generated files
 
 
 def run(glint, command):
@@ -44,7 +46,7 @@ def run(glint, command):
 
 
 def metrics_csv(glint):
-    """The table of metrics for python/glint, which computes them without the command."""
+    """Returns the table of metrics for python/glint, which computes metrics without the command."""
     out = io.StringIO()
     table = csv.writer(out, lineterminator="\n")
     table.writerow(["name", "unit", "meaning", "formula"])
@@ -57,7 +59,7 @@ def metrics_csv(glint):
 
 
 def generated(glint):
-    """Name and text of every generated file."""
+    """Yields name and text of every generated file."""
     files = dict(GENERATED)
     for family in run(glint, ["isa", "--pages"]).split():
         files[f"docs/isa/{family}.md"] = (None, None, ["isa", "--page", family])
