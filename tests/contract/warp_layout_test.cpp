@@ -11,8 +11,8 @@
 namespace glint::core {
 namespace {
 
-std::shared_ptr<const WarpLayout> make(const std::string& name) {
-  return Registry<WarpLayout>::instance().entry(name).make_default({});
+std::shared_ptr<const exec::WarpLayout> make(const std::string& name) {
+  return Registry<exec::WarpLayout>::instance().entry(name).make_default({});
 }
 
 // A launch of a program that does nothing.
@@ -34,10 +34,10 @@ struct Launch {
 }  // namespace
 
 TEST_CASE("a layout's tile has a place for each lane, and its order a turn for each place of a grid") {
-  for (const std::string& name : Registry<WarpLayout>::names()) {
+  for (const std::string& name : Registry<exec::WarpLayout>::names()) {
     CAPTURE(name);
     const auto layout = make(name);
-    const WarpLayout::Place tile = layout->tile();
+    const exec::WarpLayout::Place tile = layout->tile();
     if (tile.x) {
       CHECK(tile.x * tile.y == uint32_t(kLanes));
       std::set<std::pair<uint32_t, uint32_t>> places;
@@ -62,7 +62,7 @@ TEST_CASE("a layout's tile has a place for each lane, and its order a turn for e
 }
 
 TEST_CASE("every thread of a launch without blocks is one active lane of one warp, under every layout") {
-  for (const std::string& name : Registry<WarpLayout>::names())
+  for (const std::string& name : Registry<exec::WarpLayout>::names())
     for (const std::array<uint32_t, 3> size : {std::array{64u, 32u, 1u},
                                                {61u, 35u, 1u},
                                                {100u, 1u, 1u},
@@ -91,7 +91,7 @@ TEST_CASE("every thread of a launch without blocks is one active lane of one war
 }
 
 TEST_CASE("every block of a grid starts once, under every layout") {
-  for (const std::string& name : Registry<WarpLayout>::names()) {
+  for (const std::string& name : Registry<exec::WarpLayout>::names()) {
     CAPTURE(name);
     Launch launch(name, {1, 1, 1});
     set_blocks(launch.world, {6, 5, 2}, {8, 4, 2}, 0);

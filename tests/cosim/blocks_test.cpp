@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/timing_machine.h"
 #include "tests/support/catch.h"
-#include "tests/unit/core/text_launch.h"
+#include "tests/unit/exec/text_launch.h"
 
 using namespace glint;
 

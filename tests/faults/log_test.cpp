@@ -3,7 +3,7 @@
 #include "exec/fault.h"
 #include "tests/support/catch.h"
 
-namespace glint::core {
+namespace glint::exec {
 namespace {
 
 void note(FaultLog& log, uint32_t pc, FaultKind kind, uint32_t launch_index, const std::string& what) {
@@ -52,4 +52,4 @@ TEST_CASE("a fault that ends the run is told after those that were let pass") {
             last.to_string());
 }
 
-}  // namespace glint::core
+}  // namespace glint::exec

@@ -7,7 +7,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/small_jobs.h"
 #include "tests/support/stat_listing.h"
-#include "tests/unit/core/text_launch.h"
+#include "tests/unit/exec/text_launch.h"
 
 using namespace glint;
 using pipeline::HostOptions;

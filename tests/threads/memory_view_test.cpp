@@ -8,7 +8,7 @@
 #include "memsys/address_space.h"
 #include "tests/support/catch.h"
 
-namespace glint::core {
+namespace glint::exec {
 namespace {
 
 struct TwoCores {
@@ -162,4 +162,4 @@ TEST_CASE("a core keeps any number of lines apart, turn after turn") {
   CHECK(cores.in_memory(3999 * 16) == 33'999);
 }
 
-}  // namespace glint::core
+}  // namespace glint::exec

@@ -5,7 +5,7 @@
 #include "tests/support/small_jobs.h"
 #include "tests/timing/core_programs.h"
 #include "tests/unit/core/one_core.h"
-#include "tests/unit/core/text_launch.h"
+#include "tests/unit/exec/text_launch.h"
 
 namespace glint::core {
 namespace {
@@ -37,9 +37,9 @@ Cycle call_of_callables(const Params& params, uint32_t num_called, Cycle& waited
   callee.add("ret");
   callee.program().stage = isa::Stage::Callable;
   OneCore core(caller, params, {});
-  core.image = link({caller.program(), callee.program()});
+  core.image = exec::link({caller.program(), callee.program()});
   core.world.callable.assign(num_called, 1);
-  core.world.table.callable.base = core.memory.allocate("records", num_called * kHandleBytes);
+  core.world.table.callable.base = core.memory.allocate("records", num_called * exec::kHandleBytes);
   const Cycle end = core.run();
   CHECK(core.stats().binding_reads.value() == 1);
   waited = stall(core, Stall::Call);
@@ -48,7 +48,7 @@ Cycle call_of_callables(const Params& params, uint32_t num_called, Cycle& waited
 
 // Cycles of a launch of one block of one warp on a machine of `cores` cores.
 Cycle machine_cycles(const std::string& text, uint32_t cores) {
-  TextLaunch launch(text, {});
+  exec::TextLaunch launch(text, {});
   pipeline::GpuParams params = test::preset("mobile");
   params.cores = cores;
   params.core.launch_latency = 0;

@@ -39,11 +39,11 @@ Params all_on(Params params) {
 TEST_CASE("a picture is the same with every layout of threads, on both machines") {
   pipeline::RenderJob job = frame();
   const std::vector<float> picture = pipeline::render(job).rgba;
-  for (const std::string& name : Registry<WarpLayout>::names())
+  for (const std::string& name : Registry<exec::WarpLayout>::names())
     for (const bool timing : {false, true}) {
       CAPTURE(name, timing);
       job.timing = timing;
-      job.gpu.core.layout = PolicyChoice<WarpLayout>(name.c_str());
+      job.gpu.core.layout = PolicyChoice<exec::WarpLayout>(name.c_str());
       CHECK(pipeline::render(job).rgba == picture);
     }
 }

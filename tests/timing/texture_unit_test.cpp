@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/lsu.h"
 #include "tests/support/catch.h"
-#include "tests/unit/core/image_lab.h"
+#include "tests/unit/exec/image_lab.h"
 #include "tests/unit/core/lsu_rig.h"
 #include "tests/unit/core/one_core.h"
 
@@ -99,19 +99,19 @@ TEST_CASE("a fetch is a sample a lane, and one between two levels is two") {
     Code code;
     code.add("setp.lt.u32",
              {0, special(isa::Special::LaneId), code.constant(uint32_t(std::popcount(lanes)))});
-    const isa::Slot half = code.constant(bits(0.5f));
+    const isa::Slot half = code.constant(exec::bits(0.5f));
     code.add(op, {reg(1), reg(2), reg(3), reg(4), code.constant(0), half, half, half}, 0, 0);
     code.add("add.u32", {reg(7), reg(4), reg(4)});
     code.add("exit");
     Params params = quick_params();
     params.texture.samples_per_cycle = rate;
     OneCore core(code, params, {});
-    ImageView texture;
+    exec::ImageView texture;
     texture.shape = isa::ImageShape::D2;
-    texture.format = TexelFormat::R32Float;
+    texture.format = exec::TexelFormat::R32Float;
     texture.width = texture.height = 4;
     texture.levels = 3;
-    texture.sampler.min = texture.sampler.mag = texture.sampler.mip = Filter::Linear;
+    texture.sampler.min = texture.sampler.mag = texture.sampler.mip = exec::Filter::Linear;
     texture.base = core.memory.allocate("image", texture.bytes());
     core.world.images = {texture};
     const Cycle end = core.run();
@@ -130,22 +130,22 @@ TEST_CASE("a full queue of textures holds back textures only") {
   Code code;
   for (int i = 0; i < 6; ++i)
     code.add("tex.1d.v4.f32.f32", {reg(4 * i), reg(4 * i + 1), reg(4 * i + 2), reg(4 * i + 3),
-                                   code.constant(0), code.constant(bits(0.5f))});
+                                   code.constant(0), code.constant(exec::bits(0.5f))});
   code.add("add.u32", {reg(60), reg(61), reg(61)});
   code.add("exit");
   Params params = quick_params();
   params.texture.queue = 2;
   OneCore core(code, params, {});
-  ImageView texture;
+  exec::ImageView texture;
   texture.shape = isa::ImageShape::D1;
-  texture.format = TexelFormat::R32Float;
+  texture.format = exec::TexelFormat::R32Float;
   texture.width = 16;
   texture.base = core.memory.allocate("image", 64);
   core.world.images = {texture};
   core.run();
 
   REQUIRE_FALSE(core.cell->fault());
-  // Issued in 0, 1, 2 (one has been taken in 1), then as places come free in 5, 9 and 13.
+  // exec::Issued in 0, 1, 2 (one has been taken in 1), then as places come free in 5, 9 and 13.
   CHECK(core.stats().stalls.count(Stall::TexThrottle) == (5 - 3) + (9 - 6) + (13 - 10));
   CHECK(core.stats().stalls.count(Stall::LsuThrottle) == 0);
 }

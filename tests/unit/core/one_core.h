@@ -127,7 +127,7 @@ struct OneCore {
         rays(kRayLatency, options.rt_capacity) {
     std::vector<isa::Program> programs;
     programs.push_back(code.program());
-    image = link(programs);
+    image = exec::link(programs);
     world.image = &image;
     world.memory = &memory;
     world.raygen = 0;
@@ -135,7 +135,7 @@ struct OneCore {
     world.launch_size = {options.num_warps * uint32_t(kLanes), 1, 1};
     world.local_bytes = options.local_bytes;
     if (options.block_threads)
-      set_blocks(world, {options.num_warps * uint32_t(kLanes) / options.block_threads, 1, 1},
+      exec::set_blocks(world, {options.num_warps * uint32_t(kLanes) / options.block_threads, 1, 1},
                  {options.block_threads, 1, 1}, options.shared_bytes);
   }
   // Runs to the end; returns the cycle after the core's last activity.
@@ -146,7 +146,7 @@ struct OneCore {
     if (profile) cell->start_profile();
     EngineLoop engine({options_.window, options_.no_skip, 100'000});
     engine.add(*cell);
-    Dispatcher dispatcher(params_, Executor(world).num_blocks(), {cell.get()});
+    Dispatcher dispatcher(params_, exec::Executor(world).num_blocks(), {cell.get()});
     engine.run([&](Cycle now) {
       if (cell->fault()) return EngineLoop::Next::Stop;
       dispatcher.dispatch(now);
@@ -162,8 +162,8 @@ struct OneCore {
   Options options_;
   bool profile = false;
   mem::AddressSpace memory;
-  World world;
-  Image image;
+  exec::World world;
+  exec::Image image;
   mem::FixedLatencyMemory l1;
   FixedLatencyRays rays;
   stats::Group root{nullptr, "test"};

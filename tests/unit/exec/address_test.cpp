@@ -4,9 +4,9 @@
 
 #include "isa/generic_address.h"
 #include "tests/support/catch.h"
-#include "tests/unit/core/text_launch.h"
+#include "tests/unit/exec/text_launch.h"
 
-namespace glint::core {
+namespace glint::exec {
 namespace {
 
 // One thread stores and loads in all widths at the base that `place` writes down, and leaves ten words.
@@ -182,4 +182,4 @@ TEST_CASE("windows do not meet global memory") {
   CHECK(isa::space_of(~uint64_t{0}) == isa::Space::Global);
 }
 
-}  // namespace glint::core
+}  // namespace glint::exec

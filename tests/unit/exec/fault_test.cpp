@@ -1,9 +1,9 @@
 // Faults of programs written as text: what is let pass and what stops, space by space.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.h"
-#include "tests/unit/core/text_launch.h"
+#include "tests/unit/exec/text_launch.h"
 
-namespace glint::core {
+namespace glint::exec {
 namespace {
 
 using Catch::Matchers::Contains;
@@ -78,4 +78,4 @@ TEST_CASE("robust buffers give 0 and drop stores outside without noting it") {
   CHECK(launch.words(0, 2) == std::vector<uint32_t>{0, 0});
 }
 
-}  // namespace glint::core
+}  // namespace glint::exec

@@ -4,9 +4,9 @@
 #include <set>
 
 #include "tests/support/catch.h"
-#include "tests/unit/core/text_launch.h"
+#include "tests/unit/exec/text_launch.h"
 
-namespace glint::core {
+namespace glint::exec {
 namespace {
 
 // One thread runs `op` on word 0, which holds `old`; returns what it returned, and what it left.
@@ -178,4 +178,4 @@ TEST_CASE("an atomic on local memory, and a misaligned one, are faults") {
   CHECK(odd.fault().find("which is no multiple of 4") != std::string::npos);
 }
 
-}  // namespace glint::core
+}  // namespace glint::exec

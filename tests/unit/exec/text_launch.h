@@ -11,7 +11,7 @@
 #include "isa/verify.h"
 #include "pipeline/functional_machine.h"
 
-namespace glint::core {
+namespace glint::exec {
 
 // The program finds the buffer's address at parameter 0.
 struct TextLaunch {
@@ -74,4 +74,4 @@ inline const std::string kOwnWord =
     "    mov.b32 %r4, %tid.x;\n"
     "    mad.wide.u32 %rd2, %r4, 4, %rd2;\n";
 
-}  // namespace glint::core
+}  // namespace glint::exec

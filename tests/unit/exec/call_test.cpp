@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/executor.h"
 #include "tests/support/catch.h"
-#include "tests/unit/core/text_launch.h"
+#include "tests/unit/exec/text_launch.h"
 
-namespace glint::core {
+namespace glint::exec {
 
 TEST_CASE("a function returns to each of its callers") {
   TextLaunch launch(kOwnWord + R"(
@@ -168,4 +168,4 @@ TEST_CASE(
   CHECK(warp.simt.pc == 1);
 }
 
-}  // namespace glint::core
+}  // namespace glint::exec

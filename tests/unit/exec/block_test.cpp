@@ -1,9 +1,9 @@
 // Blocks: who a thread is, shared memory, barriers and what becomes of those that nobody completes.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.h"
-#include "tests/unit/core/text_launch.h"
+#include "tests/unit/exec/text_launch.h"
 
-namespace glint::core {
+namespace glint::exec {
 namespace {
 
 bool contains(const std::string& text, const std::string& part) {
@@ -264,4 +264,4 @@ TEST_CASE("shared memory ends where the block's ends") {
       "reads 4 bytes at shared address 0x40: 0 bytes past the end of the block's shared memory (64 bytes)"));
 }
 
-}  // namespace glint::core
+}  // namespace glint::exec

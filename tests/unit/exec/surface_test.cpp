@@ -3,10 +3,10 @@
 #include <cstring>
 
 #include "tests/support/catch.h"
-#include "tests/unit/core/image_lab.h"
+#include "tests/unit/exec/image_lab.h"
 #include "tests/unit/core/one_core.h"
 
-namespace glint::core {
+namespace glint::exec {
 namespace {
 
 using F = TexelFormat;
@@ -217,4 +217,4 @@ TEST_CASE("a core charges image ops for the lines they touch, and none when all 
   }
 }
 
-}  // namespace glint::core
+}  // namespace glint::exec

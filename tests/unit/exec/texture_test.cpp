@@ -5,9 +5,9 @@
 
 #include "exec/texture_address.h"
 #include "tests/support/catch.h"
-#include "tests/unit/core/image_lab.h"
+#include "tests/unit/exec/image_lab.h"
 
-namespace glint::core {
+namespace glint::exec {
 namespace {
 
 using F = TexelFormat;
@@ -460,4 +460,4 @@ TEST_CASE("what no sampler can do is a fault that names the image") {
   CHECK_THAT(fault_of("tex.2d.v4.u32.f32", {5, 0, 0}), Catch::Contains("uses image 5"));
 }
 
-}  // namespace glint::core
+}  // namespace glint::exec

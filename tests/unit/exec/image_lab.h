@@ -10,7 +10,7 @@
 
 #include "exec/executor.h"
 
-namespace glint::core {
+namespace glint::exec {
 
 inline uint32_t bits(float x) {
   return std::bit_cast<uint32_t>(x);
@@ -102,4 +102,4 @@ class ImageLab {
   TexelList texels;  // of the last run
 };
 
-}  // namespace glint::core
+}  // namespace glint::exec

@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "tests/support/catch.h"
-#include "tests/unit/core/image_lab.h"
+#include "tests/unit/exec/image_lab.h"
 
-namespace glint::core {
+namespace glint::exec {
 namespace {
 
 using F = TexelFormat;
@@ -153,4 +153,4 @@ TEST_CASE("every texel survives decoding and encoding, in every format") {
   }
 }
 
-}  // namespace glint::core
+}  // namespace glint::exec
