@@ -1,5 +1,6 @@
 // How long compiling all shaders of the LumiBench workloads takes: a fresh process, again, and from the
-// cache. SPDX-License-Identifier: Apache-2.0
+// cache.
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <chrono>
 #include <cstdio>

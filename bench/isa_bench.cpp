@@ -1,5 +1,6 @@
 // How long the handler of every value op takes for a warp, on every SIMD path of this machine, the slowest
-// first. SPDX-License-Identifier: Apache-2.0
+// first.
+// SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>

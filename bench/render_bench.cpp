@@ -1,5 +1,6 @@
 // How fast the machines run whole frames and arithmetic: warp instructions a second, node visits, simulated
-// cycles. SPDX-License-Identifier: Apache-2.0
+// cycles.
+// SPDX-License-Identifier: Apache-2.0
 #include <benchmark/benchmark.h>
 
 #include "pipeline/description/defaults.h"

@@ -4,9 +4,11 @@
 # headers are the files of its folder and of its FLOORS, so a file is found where it lies and stands in no list.
 # DEPENDS are folders of ours. LINKS are libraries from packages; the folder's users see them only if its headers
 # include them. POLICIES are folders in which each file registers one policy and nothing else refers to it.
-# EXCEPT are files that the caller adds under conditions of its own.
+# EXCEPT are files that the caller adds under conditions of its own. PRECOMPILE are headers of ours that most
+# files of the folder include: they are parsed once, with cmake/precompiled.h. PRECOMPILED_BY names another folder
+# whose precompiled headers serve here too.
 function(glint_library name)
-  cmake_parse_arguments(ARG "" "" "FLOORS;DEPENDS;LINKS;POLICIES;EXCEPT" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "FLOORS;DEPENDS;LINKS;POLICIES;EXCEPT;PRECOMPILE;PRECOMPILED_BY" ${ARGN})
   list(TRANSFORM ARG_DEPENDS PREPEND glint::)
   glint_glob(sources *.cpp . ${ARG_FLOORS})
   glint_glob(headers *.h . ${ARG_FLOORS} ${ARG_POLICIES})
@@ -17,10 +19,16 @@ function(glint_library name)
   target_sources(glint_${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${headers})
   set_target_properties(glint_${name} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON LINKER_LANGUAGE CXX)
   target_link_libraries(glint_${name} PUBLIC ${ARG_DEPENDS} ${ARG_LINKS} PRIVATE glint_warnings)
+  if(ARG_PRECOMPILED_BY)
+    target_precompile_headers(glint_${name} REUSE_FROM glint_${ARG_PRECOMPILED_BY})
+  else()
+    glint_precompile(glint_${name} ${ARG_PRECOMPILE})
+  endif()
   if(ARG_POLICIES)
     glint_glob(policies *.cpp ${ARG_POLICIES})
     add_library(glint_${name}_policies STATIC ${policies})
     target_include_directories(glint_${name}_policies PRIVATE ${PROJECT_SOURCE_DIR})
+    target_precompile_headers(glint_${name}_policies REUSE_FROM glint_${name})
     target_link_libraries(glint_${name}_policies PUBLIC ${ARG_DEPENDS} ${ARG_LINKS} PRIVATE glint_warnings)
     # Whole archive: a static library drops objects that nothing refers to, and with them the registrations.
     target_link_libraries(glint_${name} PUBLIC "$<LINK_LIBRARY:WHOLE_ARCHIVE,glint_${name}_policies>")
@@ -33,4 +41,12 @@ function(glint_glob variable pattern)
   list(TRANSFORM patterns APPEND /${pattern})
   file(GLOB found CONFIGURE_DEPENDS ${patterns})
   set(${variable} ${found} PARENT_SCOPE)
+endfunction()
+
+# glint_precompile(target header...): parses the headers of packages that nearly every file includes, and these of
+# ours, once for the target. A file still includes what it uses: the target all_verify_interface_header_sets compiles
+# each header alone.
+function(glint_precompile target)
+  list(TRANSFORM ARGN PREPEND ${PROJECT_SOURCE_DIR}/)
+  target_precompile_headers(${target} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/precompiled.h ${ARGN})
 endfunction()

@@ -1,5 +1,6 @@
 // The cache of a core behind its instruction and constant caches (level 1.5): misses go to the L2 through the
-// core's port. SPDX-License-Identifier: Apache-2.0
+// core's port.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <span>

@@ -1,5 +1,6 @@
 // Tunables of what feeds a core with instructions and constants: the schedulers' L0, their prefetch, the
-// cache behind. SPDX-License-Identifier: Apache-2.0
+// cache behind.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 

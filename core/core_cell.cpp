@@ -247,7 +247,8 @@ std::string CoreCell::describe_warp(uint32_t slot) const {
     out += fmt::format(", at barrier {} for warps {}", warp.barrier, fmt::join(missing, ", "));
   } else if (!warp.simt.finished() && warp.simt.active != 0) {
     const Address address = warp.regs.access.address[size_t(std::countr_zero(warp.simt.active))];
-    if (world_.memory->find(address, 1)) out += ", last access: " + exec::whereabouts(*world_.memory, address, 1);
+    if (world_.memory->find(address, 1))
+      out += ", last access: " + exec::whereabouts(*world_.memory, address, 1);
   }
   return out;
 }

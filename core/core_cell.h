@@ -202,7 +202,7 @@ class CoreCell final : public Cell {
   std::vector<Resident*> home_;  // a slot: the block of its warp
   std::vector<std::unique_ptr<Resident>> residents_;
   const uint32_t warps_per_block_;
-  exec::Seat seat_;                   // of the warp launched last
+  exec::Seat seat_;             // of the warp launched last
   uint32_t num_blocks_ = 0;     // resident
   std::vector<uint32_t> line_;  // a slot: line of instructions that the warp is in or waits for
   std::vector<uint8_t> waits_for_line_;

@@ -1,5 +1,6 @@
 // What each thread of a launch cost: time, instructions, idle slots, rays and misses, kept only when asked
-// for. SPDX-License-Identifier: Apache-2.0
+// for.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstdint>

@@ -1,5 +1,6 @@
 // The load-store unit of a core: takes warp accesses from the schedulers' queues, sends their lines to the
-// L1. SPDX-License-Identifier: Apache-2.0
+// L1.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <array>

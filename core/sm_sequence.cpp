@@ -1,5 +1,6 @@
 // Instructions that hardware makes of one of the ISA's, or puts before a kernel: each takes an issue slot of
-// its warp. SPDX-License-Identifier: Apache-2.0
+// its warp.
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
 #include "core/core_cell.h"

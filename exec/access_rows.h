@@ -1,5 +1,6 @@
 // The registers of a load, a store or an atomic: which rows it fills or reads, and what a lane's part of them
-// is. SPDX-License-Identifier: Apache-2.0
+// is.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstddef>

@@ -1,5 +1,6 @@
 // What happens when a program does something wrong: the run stops, or the mistake is noted and the lane goes
-// on. SPDX-License-Identifier: Apache-2.0
+// on.
+// SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <fmt/format.h>
 

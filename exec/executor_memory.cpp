@@ -1,5 +1,6 @@
 // Loads, stores and atomics: moving data between a warp's registers and simulated memory, with every access
-// checked. SPDX-License-Identifier: Apache-2.0
+// checked.
+// SPDX-License-Identifier: Apache-2.0
 #include <cstring>
 #include <fmt/format.h>
 

@@ -1,5 +1,6 @@
 // All shaders of a pipeline linked into one code image, and the world they run in: what a warp executes
-// against. SPDX-License-Identifier: Apache-2.0
+// against.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <array>

@@ -1,5 +1,6 @@
 // Global memory as one core sees it within a turn: its own stores at once, those of other cores from the next
-// turn on. SPDX-License-Identifier: Apache-2.0
+// turn on.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstddef>

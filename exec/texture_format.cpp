@@ -1,5 +1,6 @@
 // Conversions of texels, after the Vulkan specification's chapters "Fixed-Point Data Conversions" and
-// "Numbers". SPDX-License-Identifier: Apache-2.0
+// "Numbers".
+// SPDX-License-Identifier: Apache-2.0
 #include "exec/texture_format.h"
 
 #include <algorithm>

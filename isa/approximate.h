@@ -5,7 +5,8 @@
 // (ARITH 2005): the leading mantissa bits choose a segment, the result is C0 + C1 x + C2 square(x) of the
 // bits below, where the squarer drops the partial products that weigh little. Widths and coefficients:
 // tools/fit_approximate.py. The unit itself takes subnormals for 0 and gives 0 for them. Included only by
-// isa/ops/*.cpp (see op_makers.h). SPDX-License-Identifier: Apache-2.0
+// isa/ops/*.cpp (see op_makers.h).
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -2,7 +2,8 @@
 //
 // Branch-free, so that loops over lanes become vectors; all in +, -, comparisons and bits, so that every path
 // gives the same. The host must round to nearest, but where a function says otherwise. Included only by
-// isa/ops/*.cpp. SPDX-License-Identifier: Apache-2.0
+// isa/ops/*.cpp.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 

@@ -1,5 +1,6 @@
 // Generic addresses: one 64-bit space in which shared, local and constant memory have windows; the rest is
-// global. SPDX-License-Identifier: Apache-2.0
+// global.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 

@@ -3,7 +3,8 @@
 //
 // An intrinsic does in one step what isa/half.h does in ten that every compiler makes vectors of; the bits
 // are the same (test "every value op gives the same bits on every path"). Rows of floats and words are
-// 64-byte aligned. Included only by isa/ops/*.cpp (see op_makers.h). SPDX-License-Identifier: Apache-2.0
+// 64-byte aligned. Included only by isa/ops/*.cpp (see op_makers.h).
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "isa/conversions.h"
 #include "isa/half.h"

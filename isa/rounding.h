@@ -2,7 +2,8 @@
 //
 // AVX-512 rounds by a field of the instruction, and flushes by comparisons. Other paths set the host's MXCSR
 // meanwhile, which is right and not always fast: on some processors a pair of its loads takes 50 ns. Included
-// only by isa/ops/*.cpp. SPDX-License-Identifier: Apache-2.0
+// only by isa/ops/*.cpp.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <xmmintrin.h>

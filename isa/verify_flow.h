@@ -1,5 +1,6 @@
 // The paths of a program: what its lanes can reach, in which regions they are then, and what they have
-// written. SPDX-License-Identifier: Apache-2.0
+// written.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <functional>

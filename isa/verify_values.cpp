@@ -1,5 +1,6 @@
 // Data flow over the paths of a program: which registers and predicates are written, and where the stack
-// pointer is. SPDX-License-Identifier: Apache-2.0
+// pointer is.
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>

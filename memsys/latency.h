@@ -1,5 +1,6 @@
 // How long reads take under the load of a run: counts by traffic class and latency, and the percentiles that
-// follow. SPDX-License-Identifier: Apache-2.0
+// follow.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <bit>

@@ -1,5 +1,6 @@
 // Open-addressed map from a line address to a small number: tags, MSHRs and the set of lines ever seen use
-// it. SPDX-License-Identifier: Apache-2.0
+// it.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
 #include <cstddef>

@@ -1,5 +1,6 @@
 // What a memory configuration could do at best, to hold against a data sheet, and where its levels do not fit
-// each other. SPDX-License-Identifier: Apache-2.0
+// each other.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <string>

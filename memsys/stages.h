@@ -1,5 +1,6 @@
 // Where the time of a miss goes: the stages between an L1's miss and its fill, and the stamps that tell them
-// apart. SPDX-License-Identifier: Apache-2.0
+// apart.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <array>

@@ -1,5 +1,6 @@
 // The shader binding table as a Vulkan host fills it: records of a group's handle and data, in regions with
-// strides. SPDX-License-Identifier: Apache-2.0
+// strides.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -1,5 +1,6 @@
 // The functional machine: block after block, the warps of a block in turns, every effect at once. A picture
-// and counts, no cycles. SPDX-License-Identifier: Apache-2.0
+// and counts, no cycles.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstdint>

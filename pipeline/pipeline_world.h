@@ -1,5 +1,6 @@
 // A described pipeline in simulated memory: shaders linked, resources uploaded, records and constants in
-// place. SPDX-License-Identifier: Apache-2.0
+// place.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
 #include <map>

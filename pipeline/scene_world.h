@@ -1,5 +1,6 @@
 // A scene in simulated memory, as the shaders' descriptor set 0 wants it, with its pipeline and binding
-// table. SPDX-License-Identifier: Apache-2.0
+// table.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "pipeline/render.h"
 #include "pipeline/unbound.h"

@@ -1,5 +1,6 @@
 // Rays without an RT unit (rt.unit = "software"): the traversal program beside a launch's shaders, and its
-// records. SPDX-License-Identifier: Apache-2.0
+// records.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <vector>
 

@@ -1,5 +1,6 @@
 // The timing machine: cores with their L1 and RT unit, and the memory system, run cycle by cycle over one
-// launch. SPDX-License-Identifier: Apache-2.0
+// launch.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
 #include <memory>

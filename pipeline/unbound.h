@@ -1,5 +1,6 @@
 // What stands where a shader has a binding and nobody bound anything: descriptors whose use is a fault that
-// names them. SPDX-License-Identifier: Apache-2.0
+// names them.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <set>
 #include <utility>

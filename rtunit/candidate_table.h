@@ -1,5 +1,6 @@
 // The candidates that a ray has met and no shader has decided: its column of a warp's table in deferred
-// any-hit mode. SPDX-License-Identifier: Apache-2.0
+// any-hit mode.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
 #include <cstdint>

@@ -2,7 +2,8 @@
 //
 // A format is one file pair in rtunit/formats/: `<name>.cpp` encodes and is registered here; `<name>.h` holds
 // a struct with kWidth, kNodeBytes and the static test() that traversal is compiled for (traversal.cpp lists
-// it by FormatId). SPDX-License-Identifier: Apache-2.0
+// it by FormatId).
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <memory>

@@ -1,5 +1,6 @@
 // Boxes in 8 bits a plane: steps of a power of two from an origin, an axis at a time (Ylitie et al. 2017,
-// section 3.1). SPDX-License-Identifier: Apache-2.0
+// section 3.1).
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
 #include <cmath>

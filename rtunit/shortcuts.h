@@ -1,5 +1,6 @@
 // Shortcuts of a published simulator's RT unit, each a switch: for comparisons with its results, not for
-// hardware. SPDX-License-Identifier: Apache-2.0
+// hardware.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 

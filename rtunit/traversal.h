@@ -1,5 +1,6 @@
 // Ray traversal one node at a time, with Vulkan's rules: the same steps for the functional and the timing
-// machine. SPDX-License-Identifier: Apache-2.0
+// machine.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 

@@ -1,5 +1,6 @@
 // The ray-triangle test: watertight edges and vertices (Woop, Benthin, Wald 2013, JCGT 2-1), distance from
-// the plane. SPDX-License-Identifier: Apache-2.0
+// the plane.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,6 @@
 // What a frame's uniform block (binding 3) holds: camera matrices, light and counts, as the shaders read
-// them. SPDX-License-Identifier: Apache-2.0
+// them.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstddef>

@@ -1,16 +1,15 @@
 // The command `glint`: reads the command line, runs one subcommand, turns errors into exit codes.
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <new>
-#include <sstream>
 #include <string>
 #include <system_error>
 #include <unistd.h>
 
+#include "apps/glint/options/command_line.h"
 #include "apps/glint/options/suggest.h"
 #include "apps/glint/session.h"
 #include "base/diagnostics.h"
@@ -48,15 +47,9 @@ void keep_descriptors() {
       ::open("/dev/null", descriptor == STDERR_FILENO ? O_WRONLY : O_RDONLY);
 }
 
-int report_parse_error(const CLI::App& app, const CLI::ParseError& error, const Session& session) {
-  if (error.get_exit_code() == 0) {  // --help, --version
-    std::ostringstream out;
-    app.exit(error, out, out);
-    write_output("", out.str());
-    return int(Exit::Ok);
-  }
-  fmt::print(stderr, "error: {}\n", error.what());
-  const std::string hint = suggestion(app, session.arguments);
+int report_parse_error(const Command& command, const std::string& error, const Session& session) {
+  fmt::print(stderr, "error: {}\n", error);
+  const std::string hint = suggestion(command, session.arguments);
   fmt::print(stderr, "  note: {}\n",
              hint.empty() ? "'glint --help' and 'glint COMMAND --help' list what there is" : hint);
   return int(Exit::UserInput);
@@ -79,12 +72,11 @@ int main_of(int argc, char** argv) {
   Session session{
       .arguments = {argv, argv + argc}, .resources = Resources::find(), .terminal = {}, .action = {}};
   look_at_terminal(session);
-  CLI::App app(
+  CommandLine line(
       "Glint: a GPU you can read. Runs ray-tracing shaders on a simulated GPU and says what it did, cycle by "
       "cycle.",
-      "glint");
-  app.set_version_flag("--version", GLINT_VERSION);
-  app.require_subcommand(1);
+      "glint", GLINT_VERSION);
+  const Command app = line.command();
   add_run(app, session);
   add_bench(app, session);
   add_stats(app, session);
@@ -101,10 +93,11 @@ int main_of(int argc, char** argv) {
   add_list(app, session);
   add_microbench(app, session);
   add_describe(app, session);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return report_parse_error(app, error, session);
+  const ParseOutcome outcome = line.parse(argc, argv);
+  if (!outcome.error.empty()) return report_parse_error(app, outcome.error, session);
+  if (outcome.is_done) {
+    write_output("", outcome.text);
+    return int(Exit::Ok);
   }
   return run_action(session);
 }

@@ -5,13 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "apps/glint/options/command_line.h"
 #include "apps/glint/options/resources.h"
 #include "base/diagnostics.h"
 #include "report/terminal/table.h"
-
-namespace CLI {
-class App;
-}
 
 namespace glint::app {
 
@@ -26,21 +23,21 @@ struct Session {
 };
 
 // Each adds its subcommand; its callback sets Session::action.
-void add_run(CLI::App& app, Session& session);
-void add_bench(CLI::App& app, Session& session);
-void add_stats(CLI::App& app, Session& session);
-void add_report(CLI::App& app, Session& session);
-void add_characterize(CLI::App& app, Session& session);
-void add_compare(CLI::App& app, Session& session);
-void add_imgdiff(CLI::App& app, Session& session);
-void add_annotate(CLI::App& app, Session& session);
-void add_model(CLI::App& app, Session& session);
-void add_init(CLI::App& app, Session& session);
-void add_compile(CLI::App& app, Session& session);
-void add_asm(CLI::App& app, Session& session);
-void add_isa(CLI::App& app, Session& session);
-void add_list(CLI::App& app, Session& session);
-void add_microbench(CLI::App& app, Session& session);
-void add_describe(CLI::App& app, Session& session);
+void add_run(Command app, Session& session);
+void add_bench(Command app, Session& session);
+void add_stats(Command app, Session& session);
+void add_report(Command app, Session& session);
+void add_characterize(Command app, Session& session);
+void add_compare(Command app, Session& session);
+void add_imgdiff(Command app, Session& session);
+void add_annotate(Command app, Session& session);
+void add_model(Command app, Session& session);
+void add_init(Command app, Session& session);
+void add_compile(Command app, Session& session);
+void add_asm(Command app, Session& session);
+void add_isa(Command app, Session& session);
+void add_list(Command app, Session& session);
+void add_microbench(Command app, Session& session);
+void add_describe(Command app, Session& session);
 
 }  // namespace glint::app

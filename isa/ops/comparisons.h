@@ -2,7 +2,8 @@
 // lanes.
 //
 // Included only by isa/ops/*.cpp. Everything lies in an unnamed namespace: the handlers are those of one
-// file. SPDX-License-Identifier: Apache-2.0
+// file.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "isa/ops/row_tables.h"
 

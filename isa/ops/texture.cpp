@@ -1,5 +1,6 @@
 // Texture ops: filtered fetches, texel fetches, gathers and queries. Their handlers hand the handle to the
-// texture unit. SPDX-License-Identifier: Apache-2.0
+// texture unit.
+// SPDX-License-Identifier: Apache-2.0
 #include "isa/ops/families.h"
 #include "isa/ops/image_rows.h"
 

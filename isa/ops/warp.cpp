@@ -2,7 +2,8 @@
 //
 // Their last operand is the member mask. The lanes that take part with a lane are those of its mask that
 // execute the instruction with the same mask; Choice: a lane outside its own mask takes part with nobody and
-// still gets a result (PTX leaves it open). SPDX-License-Identifier: Apache-2.0
+// still gets a result (PTX leaves it open).
+// SPDX-License-Identifier: Apache-2.0
 #include "isa/op_makers.h"
 #include "isa/ops/families.h"
 

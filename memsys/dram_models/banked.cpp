@@ -1,5 +1,6 @@
 // Policy: banks with row buffers, every command at the first clock that its timing allows; what it forbids
-// afterwards. SPDX-License-Identifier: Apache-2.0
+// afterwards.
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <bit>
 

@@ -1,5 +1,6 @@
 // Policy: FR-FCFS that keeps writes back and drains many of them at once, so that the data bus turns less
-// often. SPDX-License-Identifier: Apache-2.0
+// often.
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <vector>
 

@@ -1,5 +1,6 @@
 // The obvious description of a set of shaders, from their own reflection: what `glint init` writes and what a
-// shader alone is run with. SPDX-License-Identifier: Apache-2.0
+// shader alone is run with.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 #include <vector>

@@ -1,5 +1,6 @@
 // A pipeline with everything a Vulkan host would set up for one launch, as a file describes it: nothing is
-// loaded yet. SPDX-License-Identifier: Apache-2.0
+// loaded yet.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <map>

@@ -1,5 +1,6 @@
 // An interval model of the GPU: one functional pass that adds up, warp by warp, the time between waits and
-// the time of the waits. SPDX-License-Identifier: Apache-2.0
+// the time of the waits.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstdint>

@@ -1,5 +1,6 @@
 // Latency of accesses without simulating queues: tags of all caches, open rows, and bandwidth of each
-// resource on the way. SPDX-License-Identifier: Apache-2.0
+// resource on the way.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstdint>

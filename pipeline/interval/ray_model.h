@@ -1,5 +1,6 @@
 // The RT unit of a core as the interval model sees it: warps that share a request port and test pipes, node
-// by node. SPDX-License-Identifier: Apache-2.0
+// by node.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstdint>

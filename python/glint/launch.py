@@ -19,7 +19,7 @@ from .fingerprint import Fingerprints
 from .run_directory import Run
 
 _LONGEST = 180  # characters of a point's folder; file systems take 255 bytes
-_IN_TREE = ("build/release/apps/glint/glint", "build/check/apps/glint/glint")
+_IN_TREE = "build/release/apps/glint/glint"
 
 
 def find_glint(glint: str | pathlib.Path | None = None) -> str:
@@ -35,7 +35,7 @@ def find_glint(glint: str | pathlib.Path | None = None) -> str:
                 raise CommandFailed(f"{named}: there is no such program")
             return str(pathlib.Path(found).resolve())
     found = shutil.which("glint")
-    for path in ([found] if found else []) + [str(root / name) for name in _IN_TREE]:
+    for path in ([found] if found else []) + [str(root / _IN_TREE)]:
         if os.access(path, os.X_OK):
             return path
     raise CommandFailed(f"the command `glint` is neither on PATH nor in {root}/build: build it with ./demo or name it in $GLINT")

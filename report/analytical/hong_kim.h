@@ -1,5 +1,6 @@
 // Hong and Kim's analytical model of a GPU (ISCA 2009) with LumiBench's adjustment for caches (its
-// section 5.5). SPDX-License-Identifier: Apache-2.0
+// section 5.5).
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
 #include <string>

@@ -1,5 +1,6 @@
 // The few metrics that tell workloads apart as all of them do, by a genetic algorithm as in MICA (Hoste and
-// Eeckhout 2006, 2007). SPDX-License-Identifier: Apache-2.0
+// Eeckhout 2006, 2007).
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>

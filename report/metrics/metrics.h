@@ -1,5 +1,6 @@
 // The metrics of a workload in the terms of the LumiBench paper: 35 of the GPU, 29 of the RT unit, 23 of
-// scene and shaders. SPDX-License-Identifier: Apache-2.0
+// scene and shaders.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
 #include <span>

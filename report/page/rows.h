@@ -1,5 +1,6 @@
 // Tables of a run's document - slices of its timeline, counts of its source view - as a page stores them: by
-// columns. SPDX-License-Identifier: Apache-2.0
+// columns.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 

@@ -1,5 +1,6 @@
 // What the report says of whole suites of workloads: characterisations and models that other commands have
-// computed. SPDX-License-Identifier: Apache-2.0
+// computed.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 #include <string>

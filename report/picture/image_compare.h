@@ -1,5 +1,6 @@
 // How far apart two pictures are: mean squared error, PSNR, structural similarity, and a picture of the
-// difference. SPDX-License-Identifier: Apache-2.0
+// difference.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <string>

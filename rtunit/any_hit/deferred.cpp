@@ -1,5 +1,6 @@
 // Mode `deferred`: traversal runs on and gathers candidates in a table; then shaders run over it, one shader
-// at a time. SPDX-License-Identifier: Apache-2.0
+// at a time.
+// SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <tuple>
 

@@ -1,5 +1,6 @@
 // Coalescing `within_warp`: lanes of a warp that want the same node share its fetch, as in the published
-// simulators. SPDX-License-Identifier: Apache-2.0
+// simulators.
+// SPDX-License-Identifier: Apache-2.0
 #include "base/registry.h"
 #include "rtunit/coalescer.h"
 

@@ -1,5 +1,6 @@
 // Node format `bvh4`: 128-byte nodes of four boxes in single precision, of the size of AMD's RDNA 2 box
-// nodes. SPDX-License-Identifier: Apache-2.0
+// nodes.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "rtunit/float_boxes.h"
 

@@ -1,5 +1,6 @@
 // Node format `bvh6`: 64-byte nodes of six boxes in 8 bits a plane, as Intel's hardware and the published
-// simulators have it. SPDX-License-Identifier: Apache-2.0
+// simulators have it.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "rtunit/quantised_boxes.h"
 

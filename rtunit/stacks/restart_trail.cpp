@@ -1,5 +1,6 @@
 // Stack model `restart_trail`: a short stack that forgets its oldest entries and finds them again from the
-// root. SPDX-License-Identifier: Apache-2.0
+// root.
+// SPDX-License-Identifier: Apache-2.0
 #include "base/registry.h"
 #include "rtunit/stack_model.h"
 

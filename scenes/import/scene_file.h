@@ -1,5 +1,6 @@
 // Scenes of files that LumiBench does not know: one OBJ model, or a glTF scene with its nodes, materials and
-// camera. SPDX-License-Identifier: Apache-2.0
+// camera.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 

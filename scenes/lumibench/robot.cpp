@@ -1,5 +1,6 @@
 // ROBOT: a machine of plates, pistons and bundles of cables close to the camera; the most triangles of all
-// scenes. SPDX-License-Identifier: Apache-2.0
+// scenes.
+// SPDX-License-Identifier: Apache-2.0
 #include "scenes/generate/generated.h"
 #include "scenes/generate/solids.h"
 #include "scenes/import/asset_folder.h"

@@ -1,5 +1,6 @@
 // In every registered node format a ray finds what testing every primitive finds, to the bit, under all of
-// Vulkan's flags. SPDX-License-Identifier: Apache-2.0
+// Vulkan's flags.
+// SPDX-License-Identifier: Apache-2.0
 #include "base/registry.h"
 #include "rtunit/validate.h"
 #include "tests/support/catch.h"

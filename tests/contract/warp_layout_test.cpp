@@ -1,5 +1,6 @@
 // The contract of warp layouts: every thread of a launch is in exactly one lane of one warp, every block
-// starts once. SPDX-License-Identifier: Apache-2.0
+// starts once.
+// SPDX-License-Identifier: Apache-2.0
 #include <set>
 #include <tuple>
 

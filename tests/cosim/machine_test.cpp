@@ -1,5 +1,6 @@
 // The whole timing machine: nothing is lost, every cycle has a reason, and skipping idle time changes
-// nothing. SPDX-License-Identifier: Apache-2.0
+// nothing.
+// SPDX-License-Identifier: Apache-2.0
 #include "pipeline/scene_world.h"
 #include "pipeline/timing_machine.h"
 #include "tests/support/catch.h"

@@ -1,5 +1,6 @@
 // Latency by shader stage: it adds up to latency by class, is the same however a run is made, and follows the
-// code. SPDX-License-Identifier: Apache-2.0
+// code.
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
 

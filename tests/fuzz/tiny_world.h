@@ -1,5 +1,6 @@
 // A world just large enough that every kind of shader has something to do: two shapes, a few buffers, one
-// warp. SPDX-License-Identifier: Apache-2.0
+// warp.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <string>

@@ -1,5 +1,6 @@
 // Pictures of scenes whose copies are shared, and of a scene with instances, masks and textures of every
-// kind. SPDX-License-Identifier: Apache-2.0
+// kind.
+// SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <cstdlib>
 

@@ -1,5 +1,6 @@
 // Four scenes' pictures and ray counts at 64x64 against the plain C++ reference renderer, which shares no
-// code with the machine. SPDX-License-Identifier: Apache-2.0
+// code with the machine.
+// SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
 #include "tests/picture/agreement.h"

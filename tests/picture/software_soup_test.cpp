@@ -1,5 +1,6 @@
 // Ray queries over random triangles, boxes and instances, walked in code: what the shared traversal finds,
-// bit for bit. SPDX-License-Identifier: Apache-2.0
+// bit for bit.
+// SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <cstring>
 #include <iterator>

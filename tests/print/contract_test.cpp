@@ -1,5 +1,6 @@
 // --contract: products and sums become one fma, bit for bit, unless the shader says `precise` or the switch
-// is off. SPDX-License-Identifier: Apache-2.0
+// is off.
+// SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <cmath>
 #include <random>

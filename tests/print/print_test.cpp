@@ -1,5 +1,6 @@
 // debugPrintfEXT of real shaders: what is printed, in which order, on both machines; and formats that are
-// wrong. SPDX-License-Identifier: Apache-2.0
+// wrong.
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include "base/diagnostics.h"

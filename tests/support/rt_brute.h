@@ -1,5 +1,6 @@
 // Scenes of everything that a structure can hold, and the hit of a ray found by testing all of it, without
-// boxes around it. SPDX-License-Identifier: Apache-2.0
+// boxes around it.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstring>
 #include <deque>

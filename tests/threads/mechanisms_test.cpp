@@ -1,5 +1,6 @@
 // Every preset, and every mechanism that keeps time of its own: stepping, skipping and threads give the same
-// machine. SPDX-License-Identifier: Apache-2.0
+// machine.
+// SPDX-License-Identifier: Apache-2.0
 #include <functional>
 
 #include "pipeline/scene_world.h"

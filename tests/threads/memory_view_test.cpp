@@ -1,5 +1,6 @@
 // What cores see of each other's stores and atomics within a turn, and in which order all of it reaches
-// memory. SPDX-License-Identifier: Apache-2.0
+// memory.
+// SPDX-License-Identifier: Apache-2.0
 #include "exec/memory_view.h"
 
 #include <cstring>

@@ -1,5 +1,6 @@
 // Limits of a core that show in one cycle only: room for blocks, exits at barriers, accesses of no lane,
-// records of calls, banks. SPDX-License-Identifier: Apache-2.0
+// records of calls, banks.
+// SPDX-License-Identifier: Apache-2.0
 #include "pipeline/timing_machine.h"
 #include "tests/support/catch.h"
 #include "tests/support/small_jobs.h"

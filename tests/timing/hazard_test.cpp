@@ -1,5 +1,6 @@
 // Hazards beside the reading of results: registers that memory instructions still read, the order of writes,
-// register banks. SPDX-License-Identifier: Apache-2.0
+// register banks.
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.h"
 #include "tests/unit/core/one_core.h"
 

@@ -1,5 +1,6 @@
 // Times of single ops, crossings between pipes, guards, and words that meet in a bank of the L1: to the
-// cycle. SPDX-License-Identifier: Apache-2.0
+// cycle.
+// SPDX-License-Identifier: Apache-2.0
 #include "core/op_times.h"
 
 #include <cmath>

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/lsu.h"
 #include "tests/support/catch.h"
-#include "tests/unit/exec/image_lab.h"
 #include "tests/unit/core/lsu_rig.h"
 #include "tests/unit/core/one_core.h"
+#include "tests/unit/exec/image_lab.h"
 
 namespace glint::core {
 namespace {

@@ -1,5 +1,6 @@
 // Random straight code over all ops whose results are exact: every value is stored, so that the first wrong
-// op is named. SPDX-License-Identifier: Apache-2.0
+// op is named.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <string>

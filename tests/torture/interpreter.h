@@ -1,5 +1,6 @@
 // A scalar interpreter of SPIR-V: one invocation at a time, on its own reading of the words; shares no code
-// with the frontend. SPDX-License-Identifier: Apache-2.0
+// with the frontend.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstdint>

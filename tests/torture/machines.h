@@ -1,5 +1,6 @@
 // Runs one module on the interpreter and on both machines, in all the ways a program may be compiled, and
-// compares. SPDX-License-Identifier: Apache-2.0
+// compares.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
 #include <string>

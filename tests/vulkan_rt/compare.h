@@ -1,5 +1,6 @@
 // Compares a record with the recorded one; what differs is explained by a rule that is checked, or is
-// different. SPDX-License-Identifier: Apache-2.0
+// different.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <map>
 #include <string>

@@ -1,5 +1,6 @@
 // What `glint bench` is to do: the workloads, the commands that run them, and which of them are complete
-// already. SPDX-License-Identifier: Apache-2.0
+// already.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <string>

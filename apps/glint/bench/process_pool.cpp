@@ -1,5 +1,6 @@
 // Forking, listening and reaping. Signals come through a descriptor, so that nothing runs inside of a
-// handler. SPDX-License-Identifier: Apache-2.0
+// handler.
+// SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/bench/process_pool.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // Runs commands as processes of their own, a few at a time within a limit of memory, and hears how far each
-// is. SPDX-License-Identifier: Apache-2.0
+// is.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <chrono>
 #include <cstdint>

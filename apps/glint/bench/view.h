@@ -1,5 +1,6 @@
 // What `glint bench` shows: a line for each workload that has ended, and on a terminal below them those that
-// run. SPDX-License-Identifier: Apache-2.0
+// run.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 #include <vector>

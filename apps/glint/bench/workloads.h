@@ -1,5 +1,6 @@
 // What there is to run by name: the shader sets, and the 46 workloads of LumiBench, each a scene with a
-// shader set. SPDX-License-Identifier: Apache-2.0
+// shader set.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <optional>

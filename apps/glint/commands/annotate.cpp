@@ -1,8 +1,8 @@
 // `glint annotate RUN [FILE]`: the programs of a profiled run, as GLSL, SPIR-V or ISA, with what each line
-// cost. SPDX-License-Identifier: Apache-2.0
+// cost.
+// SPDX-License-Identifier: Apache-2.0
 #include "report/files/annotate.h"
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
@@ -120,26 +120,26 @@ Exit annotate(const Session& session, const Options& options) {
 
 }  // namespace
 
-void add_annotate(CLI::App& app, Session& session) {
+void add_annotate(Command app, Session& session) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
+  Command command = app.add_subcommand(
       "annotate", "Print GLSL, SPIR-V or ISA of a run with --profile with what each line cost");
-  command->add_option("RUN", options->run, "Run directory, or its profile.csv")->required();
-  command->add_option("FILE", options->file,
-                      "Source file or shader, or the end of its path (default: all, the costliest first)");
+  command.add_option("RUN", options->run, "Run directory, or its profile.csv").required();
+  command.add_option("FILE", options->file,
+                     "Source file or shader, or the end of its path (default: all, the costliest first)");
   command
-      ->add_option("--view", options->view,
-                   "What to print: source lines; SPIR-V after optimisation; ISA; or all, each below what it "
-                   "comes from")
-      ->check(CLI::IsMember({"glsl", "spirv", "isa", "all"}))
-      ->capture_default_str();
+      .add_option("--view", options->view,
+                  "What to print: source lines; SPIR-V after optimisation; ISA; or all, each below what it "
+                  "comes from")
+      .one_of({"glsl", "spirv", "isa", "all"})
+      .capture_default_str();
   command
-      ->add_option("--measures", options->measures,
-                   "Columns, by commas: cycles, issues, lanes, accesses, requests, sectors, latency, waits, "
-                   "and the name of any reason of docs/profiling.md")
-      ->delimiter(',')
-      ->capture_default_str();
-  command->callback(
+      .add_option("--measures", options->measures,
+                  "Columns, by commas: cycles, issues, lanes, accesses, requests, sectors, latency, waits, "
+                  "and the name of any reason of docs/profiling.md")
+      .delimiter(',')
+      .capture_default_str();
+  command.callback(
       [&session, options] { session.action = [&session, options] { return annotate(session, *options); }; });
 }
 

@@ -1,9 +1,9 @@
 // `glint asm FILE`: reads the ISA's text, verifies it, prints it again.
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <memory>
 
+#include "apps/glint/options/command_line.h"
 #include "apps/glint/options/resources.h"
 #include "apps/glint/session.h"
 #include "isa/text.h"
@@ -23,15 +23,15 @@ Exit assemble(const std::string& file, const std::string& output) {
 
 }  // namespace
 
-void add_asm(CLI::App& app, Session& session) {
+void add_asm(Command app, Session& session) {
   struct Options {
     std::string file, output;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("asm", "Assemble and verify a program in the ISA's text");
-  command->add_option("FILE", options->file, "Text as 'glint compile' prints it")->required();
-  command->add_option("-o,--output", options->output, "File to write instead of stdout")->type_name("FILE");
-  command->callback([&session, options] {
+  Command command = app.add_subcommand("asm", "Assemble and verify a program in the ISA's text");
+  command.add_option("FILE", options->file, "Text as 'glint compile' prints it").required();
+  command.add_option("-o,--output", options->output, "File to write instead of stdout").type_name("FILE");
+  command.callback([&session, options] {
     session.action = [options] { return assemble(options->file, options->output); };
   });
 }

@@ -1,6 +1,6 @@
 // `glint bench [SUITE|NAMES...]`: runs workloads of LumiBench, each as a process of its own, and gathers
-// their metrics. SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
+// their metrics.
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <fmt/format.h>
 #include <fstream>
@@ -10,8 +10,8 @@
 #include "apps/glint/bench/estimate.h"
 #include "apps/glint/bench/plan.h"
 #include "apps/glint/bench/view.h"
+#include "apps/glint/options/command_line.h"
 #include "apps/glint/options/frame_options.h"
-#include "apps/glint/options/number_range.h"
 #include "report/files/run_directory.h"
 #include "report/metrics/metrics.h"
 
@@ -173,42 +173,40 @@ class Bench {
 
 }  // namespace
 
-void add_bench(CLI::App& app, Session& session) {
+void add_bench(Command app, Session& session) {
   auto options = std::make_shared<BenchOptions>();
-  CLI::App* command = app.add_subcommand("bench", "Run workloads of LumiBench and gather their metrics");
-  command->add_option("NAMES", options->names,
-                      "lumibench (all 46, the default), subset (8), a scene, pt, sh, ao, or workloads: "
-                      "'glint list workloads'");
-  command->add_option("-j,--jobs", options->processes, "Processes at a time; 0: one for each processor")
-      ->check(CLI::Range(0u, 1024u))
-      ->capture_default_str();
-  command->add_flag("--resume", options->resume,
-                    "Leave out what is complete: the same configuration, options, program and shaders");
+  Command command = app.add_subcommand("bench", "Run workloads of LumiBench and gather their metrics");
+  command.add_option("NAMES", options->names,
+                     "lumibench (all 46, the default), subset (8), a scene, pt, sh, ao, or workloads: "
+                     "'glint list workloads'");
+  command.add_option("-j,--jobs", options->processes, "Processes at a time; 0: one for each processor")
+      .in_range(0u, 1024u)
+      .capture_default_str();
+  command.add_flag("--resume", options->resume,
+                   "Leave out what is complete: the same configuration, options, program and shaders");
   command
-      ->add_option("--memory", options->memory, "GB that all may take together (default: what is available)")
-      ->check(number_range(0.001, 1e6));
-  command->add_option("--config", options->config, "Preset or TOML file")->capture_default_str();
-  command->add_option("--set", options->settings, "Override of a key, repeatable: core.warps=16")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
-  command->add_option("--mode", options->mode, "timing: cycle by cycle; functional: picture and counts only")
-      ->check(CLI::IsMember({"timing", "functional"}))
-      ->capture_default_str();
-  command->add_option("--assets", options->assets, "Folder of original scene data")
-      ->type_name("DIR")
-      ->envname("GLINT_ASSETS");
+      .add_option("--memory", options->memory, "GB that all may take together (default: what is available)")
+      .number_range(0.001, 1e6);
+  command.add_option("--config", options->config, "Preset or TOML file").capture_default_str();
+  command.add_option("--set", options->settings, "Override of a key, repeatable: core.warps=16")
+      .type_name("KEY=VALUE")
+      .allow_extra_args(false);
+  command.add_option("--mode", options->mode, "timing: cycle by cycle; functional: picture and counts only")
+      .one_of({"timing", "functional"})
+      .capture_default_str();
+  command.add_option("--assets", options->assets, "Folder of original scene data")
+      .type_name("DIR")
+      .envname("GLINT_ASSETS");
   command
-      ->add_option("--out", options->out,
-                   "Folder of the results, a folder a workload (default: out/bench-CONFIG)")
-      ->type_name("DIR");
-  command->add_option("--threads", options->threads, "Threads of each process")
-      ->check(CLI::Range(0u, 256u))
-      ->capture_default_str();
-  command->add_option("--size", options->size, "Image size in pixels")
-      ->type_name("WxH")
-      ->capture_default_str();
-  add_frame_options(*command, options->frame);
-  command->callback([&session, options] {
+      .add_option("--out", options->out,
+                  "Folder of the results, a folder a workload (default: out/bench-CONFIG)")
+      .type_name("DIR");
+  command.add_option("--threads", options->threads, "Threads of each process")
+      .in_range(0u, 256u)
+      .capture_default_str();
+  command.add_option("--size", options->size, "Image size in pixels").type_name("WxH").capture_default_str();
+  add_frame_options(command, options->frame);
+  command.callback([&session, options] {
     session.action = [&session, options] { return Bench(session, *options).run(); };
   });
 }

@@ -1,6 +1,6 @@
 // `glint characterize METRICS`: which workloads are alike, which of them stand for all, and which metrics
-// tell them apart. SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
+// tell them apart.
+// SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
@@ -8,6 +8,7 @@
 
 #include "apps/glint/bench/tables.h"
 #include "apps/glint/bench/workloads.h"
+#include "apps/glint/options/command_line.h"
 #include "apps/glint/session.h"
 #include "report/characterize/characterization.h"
 #include "report/characterize/characterization_files.h"
@@ -77,37 +78,36 @@ Exit characterize(const Options& options) {
 
 }  // namespace
 
-void add_characterize(CLI::App& app, Session& session) {
+void add_characterize(Command app, Session& session) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("characterize",
-                                         "Compare workloads: components, clusters, a subset that stands for "
-                                         "all, the metrics that tell them apart");
+  Command command = app.add_subcommand("characterize",
+                                       "Compare workloads: components, clusters, a subset that stands for "
+                                       "all, the metrics that tell them apart");
   command
-      ->add_option("METRICS", options->input,
-                   "metrics.csv of `glint bench`, the folder that has it, or a table whose first column "
-                   "names workloads")
-      ->required();
+      .add_option("METRICS", options->input,
+                  "metrics.csv of `glint bench`, the folder that has it, or a table whose first column "
+                  "names workloads")
+      .required();
   command
-      ->add_option(
-          "-o,--out", options->out,
-          "Folder of tables and characterization.json (default: characterization beside metrics.csv)")
-      ->type_name("DIR");
-  command->add_option("--linkage", options->linkage, "How far groups are apart")
-      ->check(CLI::IsMember({"single", "complete", "average", "ward"}))
-      ->capture_default_str();
-  command->add_option("--clusters", options->clusters, "Clusters, and so workloads of the subset")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command->add_option("--metrics", options->search.count, "Metrics to choose")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command->add_option("--seed", options->search.seed, "Of the search for metrics")->capture_default_str();
+      .add_option("-o,--out", options->out,
+                  "Folder of tables and characterization.json (default: characterization beside metrics.csv)")
+      .type_name("DIR");
+  command.add_option("--linkage", options->linkage, "How far groups are apart")
+      .one_of({"single", "complete", "average", "ward"})
+      .capture_default_str();
+  command.add_option("--clusters", options->clusters, "Clusters, and so workloads of the subset")
+      .in_range(1, 1000)
+      .capture_default_str();
+  command.add_option("--metrics", options->search.count, "Metrics to choose")
+      .in_range(1, 1000)
+      .capture_default_str();
+  command.add_option("--seed", options->search.seed, "Of the search for metrics").capture_default_str();
   command
-      ->add_option("--against", options->against,
-                   "metrics.csv or folder of the same workloads on another configuration: does the subset "
-                   "tell the speed-up? Repeatable")
-      ->allow_extra_args(false);
-  command->callback([&session, options] { session.action = [options] { return characterize(*options); }; });
+      .add_option("--against", options->against,
+                  "metrics.csv or folder of the same workloads on another configuration: does the subset "
+                  "tell the speed-up? Repeatable")
+      .allow_extra_args(false);
+  command.callback([&session, options] { session.action = [options] { return characterize(*options); }; });
 }
 
 }  // namespace glint::app

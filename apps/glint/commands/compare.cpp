@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/metrics/compare.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <memory>
 
@@ -29,23 +28,23 @@ Exit compare(const std::string& before, const std::string& after, const std::vec
 
 }  // namespace
 
-void add_compare(CLI::App& app, Session& session) {
+void add_compare(Command app, Session& session) {
   struct Options {
     std::string before, after;
     std::vector<std::string> fail_on;
     bool all = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("compare", "Print what changed from one finished run to another");
-  command->add_option("A", options->before, "Run directory: what was")->required();
-  command->add_option("B", options->after, "Run directory: what is")->required();
+  Command command = app.add_subcommand("compare", "Print what changed from one finished run to another");
+  command.add_option("A", options->before, "Run directory: what was").required();
+  command.add_option("B", options->after, "Run directory: what is").required();
   command
-      ->add_option(
+      .add_option(
           "--fail-on", options->fail_on,
           "Exit with 1 when a metric changed by less or more than this: 'ipc<-2%', 'cycles>1%'; repeatable")
-      ->allow_extra_args(false);
-  command->add_flag("--all", options->all, "Metrics that did not change as well");
-  command->callback([&session, options] {
+      .allow_extra_args(false);
+  command.add_flag("--all", options->all, "Metrics that did not change as well");
+  command.callback([&session, options] {
     session.action = [options] {
       return compare(options->before, options->after, options->fail_on, options->all);
     };

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/compile.h"
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fmt/format.h>
 #include <memory>
@@ -50,30 +49,30 @@ Exit compile(const Options& options) {
 
 }  // namespace
 
-void add_compile(CLI::App& app, Session& session) {
+void add_compile(Command app, Session& session) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("compile", "Compile shaders, GLSL or SPIR-V, and print the result");
+  Command command = app.add_subcommand("compile", "Compile shaders, GLSL or SPIR-V, and print the result");
   command
-      ->add_option("FILE", options->files,
-                   "Shaders; the stage is the file's ending: .rgen .rchit .rmiss .rahit .rint .rcall .comp; "
-                   "or .spv, .spvasm")
-      ->required();
+      .add_option("FILE", options->files,
+                  "Shaders; the stage is the file's ending: .rgen .rchit .rmiss .rahit .rint .rcall .comp; "
+                  "or .spv, .spvasm")
+      .required();
   command
-      ->add_option("--emit", options->emit,
-                   "What to print: the ISA's text; SPIR-V as text (spvasm; spirv is the same) or as words "
-                   "(spv); SPIR-V as it is lowered (simplified)")
-      ->check(CLI::IsMember({"isa", "spvasm", "spirv", "spv", "simplified"}))
-      ->capture_default_str();
-  command->add_option("--entry", options->entry_point, "Entry point, of a module with several")
-      ->type_name("NAME");
-  add_shader_options(*command, options->shaders);
-  command->add_option("-o,--output", options->output, "File to write instead of stdout")->type_name("FILE");
+      .add_option("--emit", options->emit,
+                  "What to print: the ISA's text; SPIR-V as text (spvasm; spirv is the same) or as words "
+                  "(spv); SPIR-V as it is lowered (simplified)")
+      .one_of({"isa", "spvasm", "spirv", "spv", "simplified"})
+      .capture_default_str();
+  command.add_option("--entry", options->entry_point, "Entry point, of a module with several")
+      .type_name("NAME");
+  add_shader_options(command, options->shaders);
+  command.add_option("-o,--output", options->output, "File to write instead of stdout").type_name("FILE");
   command
-      ->add_option("--registers", options->backend.max_registers,
-                   "32-bit registers a thread before values spill")
-      ->check(CLI::Range(16, 255))
-      ->capture_default_str();
-  command->callback([&session, options] {
+      .add_option("--registers", options->backend.max_registers,
+                  "32-bit registers a thread before values spill")
+      .in_range(16, 255)
+      .capture_default_str();
+  command.callback([&session, options] {
     options->backend.contract = options->shaders.contract;
     session.action = [options] { return compile(*options); };
   });

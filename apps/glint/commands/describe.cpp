@@ -1,9 +1,10 @@
 // `glint describe NAME`: what a configuration key means, its value in a preset, unit and range; or what a
-// statistic or a metric counts. SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
+// statistic or a metric counts.
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 #include <memory>
 
+#include "apps/glint/options/command_line.h"
 #include "apps/glint/options/config.h"
 #include "apps/glint/options/stat_list.h"
 #include "apps/glint/session.h"
@@ -104,17 +105,17 @@ Exit describe(const Session& session, const Options& options) {
 
 }  // namespace
 
-void add_describe(CLI::App& app, Session& session) {
+void add_describe(Command app, Session& session) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("describe", "Explain configuration keys, statistics and metrics");
-  command->add_option("NAME", options->key,
-                      "A key or the beginning of keys: core.warps, core, rt; or a statistic: "
-                      "gpu.core[0].ipc; or a metric: simt_efficiency (default: all keys)");
-  command->add_option("--config", options->config, "Preset or TOML file whose values are shown")
-      ->capture_default_str();
-  command->add_option("--set", options->settings, "Overrides, as for run")->type_name("KEY=VALUE");
-  command->add_flag("--markdown", options->markdown, "As the table of docs/config.md");
-  command->callback(
+  Command command = app.add_subcommand("describe", "Explain configuration keys, statistics and metrics");
+  command.add_option("NAME", options->key,
+                     "A key or the beginning of keys: core.warps, core, rt; or a statistic: "
+                     "gpu.core[0].ipc; or a metric: simt_efficiency (default: all keys)");
+  command.add_option("--config", options->config, "Preset or TOML file whose values are shown")
+      .capture_default_str();
+  command.add_option("--set", options->settings, "Overrides, as for run").type_name("KEY=VALUE");
+  command.add_flag("--markdown", options->markdown, "As the table of docs/config.md");
+  command.callback(
       [&session, options] { session.action = [&session, options] { return describe(session, *options); }; });
 }
 

@@ -1,13 +1,12 @@
 // `glint imgdiff A B`: how far apart two pictures are, with an exit code for scripts.
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 #include <limits>
 #include <memory>
 
-#include "apps/glint/options/number_range.h"
+#include "apps/glint/options/command_line.h"
 #include "apps/glint/session.h"
 #include "report/files/run_record.h"
 #include "report/picture/flip.h"
@@ -108,31 +107,31 @@ Exit imgdiff(const Options& options) {
 
 }  // namespace
 
-void add_imgdiff(CLI::App& app, Session& session) {
+void add_imgdiff(Command app, Session& session) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("imgdiff", "Measure how far apart two pictures are");
-  command->add_option("A", options->a, "PFM or PNG file, or a run directory (its image.pfm)")->required();
-  command->add_option("B", options->b, "The other one")->required();
-  command->add_option("-o,--out", options->out, "PNG of the difference: --metric says of which");
+  Command command = app.add_subcommand("imgdiff", "Measure how far apart two pictures are");
+  command.add_option("A", options->a, "PFM or PNG file, or a run directory (its image.pfm)").required();
+  command.add_option("B", options->b, "The other one").required();
+  command.add_option("-o,--out", options->out, "PNG of the difference: --metric says of which");
   command
-      ->add_option("--metric", options->metric,
-                   "What -o draws: the absolute difference, the largest as white; or the map of FLIP, 0 "
-                   "black and 1 white")
-      ->check(CLI::IsMember({"difference", "flip"}))
-      ->capture_default_str();
+      .add_option("--metric", options->metric,
+                  "What -o draws: the absolute difference, the largest as white; or the map of FLIP, 0 "
+                  "black and 1 white")
+      .one_of({"difference", "flip"})
+      .capture_default_str();
   command
-      ->add_option("--min-psnr", options->min_psnr,
-                   "[dB] Exit with 1 when PSNR is below this; inf: when anything differs")
-      ->check(number_range(-1000, std::numeric_limits<double>::infinity()));
-  command->add_option("--max-flip", options->max_flip, "Exit with 1 when the mean of FLIP is above this")
-      ->check(number_range(0, 1));
+      .add_option("--min-psnr", options->min_psnr,
+                  "[dB] Exit with 1 when PSNR is below this; inf: when anything differs")
+      .number_range(-1000, std::numeric_limits<double>::infinity());
+  command.add_option("--max-flip", options->max_flip, "Exit with 1 when the mean of FLIP is above this")
+      .number_range(0, 1);
   command
-      ->add_option(
+      .add_option(
           "--ppd", options->pixels_per_degree,
           "Pixels per degree of sight, for FLIP: 67 is a monitor of 0.7 m with 3840 pixels, 0.7 m away")
-      ->check(number_range(1, 1000))
-      ->capture_default_str();
-  command->callback([&session, options] { session.action = [options] { return imgdiff(*options); }; });
+      .number_range(1, 1000)
+      .capture_default_str();
+  command.callback([&session, options] { session.action = [options] { return imgdiff(*options); }; });
 }
 
 }  // namespace glint::app

@@ -1,10 +1,10 @@
 // `glint init FILE.toml SHADER...`: writes a description of a pipeline that runs as it is.
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
 
+#include "apps/glint/options/command_line.h"
 #include "apps/glint/options/resources.h"
 #include "apps/glint/options/shader_options.h"
 #include "apps/glint/session.h"
@@ -32,15 +32,15 @@ Exit init(const Options& options) {
 
 }  // namespace
 
-void add_init(CLI::App& app, Session& session) {
+void add_init(Command app, Session& session) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("init", "Write a pipeline file from what shaders declare");
-  command->add_option("FILE", options->file, "TOML file to write")->required();
-  command->add_option("SHADER", options->shaders, "One ray generation or compute shader, and those it calls")
-      ->required();
-  add_source_options(*command, options->compile);
-  command->add_flag("--force", options->force, "Write over a file that is there");
-  command->callback([&session, options] { session.action = [options] { return init(*options); }; });
+  Command command = app.add_subcommand("init", "Write a pipeline file from what shaders declare");
+  command.add_option("FILE", options->file, "TOML file to write").required();
+  command.add_option("SHADER", options->shaders, "One ray generation or compute shader, and those it calls")
+      .required();
+  add_source_options(command, options->compile);
+  command.add_flag("--force", options->force, "Write over a file that is there");
+  command.callback([&session, options] { session.action = [options] { return init(*options); }; });
 }
 
 }  // namespace glint::app

@@ -1,8 +1,8 @@
 // `glint isa [OP]`: the reference of the instruction set, from its table.
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <memory>
 
+#include "apps/glint/options/command_line.h"
 #include "apps/glint/options/config.h"
 #include "apps/glint/options/resources.h"
 #include "apps/glint/session.h"
@@ -57,23 +57,20 @@ std::string text_of(const Resources& resources, const Options& options) {
 
 }  // namespace
 
-void add_isa(CLI::App& app, Session& session) {
+void add_isa(Command app, Session& session) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("isa", "Explain the instruction set, or one op");
-  CLI::Option* op = command->add_option("OP", options->op,
-                                        "An op's full name, fma.rn.f32, or its beginning (default: all ops)");
-  CLI::Option* table = command->add_option("--table", options->table,
-                                           "Unit, latency and interval of every op of a preset, as CSV");
-  CLI::Option* page =
-      command->add_option("--page", options->page, "The page of a family, as docs/isa/FAMILY.md");
-  CLI::Option* index = command->add_flag("--index", options->index, "As docs/isa.md");
-  CLI::Option* pages = command->add_flag("--pages", options->pages, "The names of the families' pages");
-  table->type_name("PRESET");
-  page->type_name("FAMILY");
-  for (CLI::Option* option : {op, table, page, index, pages})
-    for (CLI::Option* other : {op, table, page, index, pages})
-      if (option != other) option->excludes(other);
-  command->callback([&session, options] {
+  Command command = app.add_subcommand("isa", "Explain the instruction set, or one op");
+  Option op = command.add_option("OP", options->op,
+                                 "An op's full name, fma.rn.f32, or its beginning (default: all ops)");
+  Option table = command.add_option("--table", options->table,
+                                    "Unit, latency and interval of every op of a preset, as CSV");
+  Option page = command.add_option("--page", options->page, "The page of a family, as docs/isa/FAMILY.md");
+  Option index = command.add_flag("--index", options->index, "As docs/isa.md");
+  Option pages = command.add_flag("--pages", options->pages, "The names of the families' pages");
+  table.type_name("PRESET");
+  page.type_name("FAMILY");
+  exclude_each_other({op, table, page, index, pages});
+  command.callback([&session, options] {
     session.action = [&session, options] {
       write_output("", text_of(session.resources, *options));
       return Exit::Ok;

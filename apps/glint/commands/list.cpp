@@ -1,10 +1,10 @@
 // `glint list WHAT`: scenes, shaders, workloads, configs, policies, ops, stats, metrics.
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <memory>
 
 #include "apps/glint/bench/workloads.h"
+#include "apps/glint/options/command_line.h"
 #include "apps/glint/options/policies.h"
 #include "apps/glint/options/stat_list.h"
 #include "apps/glint/session.h"
@@ -100,21 +100,20 @@ Exit list(const Session& session, const std::string& what, bool markdown) {
 
 }  // namespace
 
-void add_list(CLI::App& app, Session& session) {
+void add_list(Command app, Session& session) {
   struct Options {
     std::string what;
     bool markdown = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command =
+  Command command =
       app.add_subcommand("list", "List scenes, shaders, workloads, configs, policies, ops, stats or metrics");
-  command->add_option("WHAT", options->what, "What to list")
-      ->required()
-      ->check(CLI::IsMember(
-          {"scenes", "shaders", "workloads", "configs", "policies", "ops", "stats", "metrics"}));
-  command->add_flag("--markdown", options->markdown,
-                    "Of stats and metrics: as docs/stats.md and docs/metrics.md");
-  command->callback([&session, options] {
+  command.add_option("WHAT", options->what, "What to list")
+      .required()
+      .one_of({"scenes", "shaders", "workloads", "configs", "policies", "ops", "stats", "metrics"});
+  command.add_flag("--markdown", options->markdown,
+                   "Of stats and metrics: as docs/stats.md and docs/metrics.md");
+  command.callback([&session, options] {
     session.action = [&session, options] { return list(session, options->what, options->markdown); };
   });
 }

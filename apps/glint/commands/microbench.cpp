@@ -1,6 +1,6 @@
 // `glint microbench`: latencies, throughputs and bandwidths of a configuration, measured by running code on
-// it. SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
+// it.
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "apps/glint/microbench/kernel.h"
+#include "apps/glint/options/command_line.h"
 #include "apps/glint/options/config.h"
 #include "apps/glint/session.h"
 #include "report/terminal/table.h"
@@ -152,17 +153,17 @@ Exit microbench(const Session& session, const Options& options) {
 
 }  // namespace
 
-void add_microbench(CLI::App& app, Session& session) {
+void add_microbench(Command app, Session& session) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
+  Command command = app.add_subcommand(
       "microbench", "Measure a configuration's latencies and bandwidths by running code on it");
-  command->add_option("--config", options->config, "Preset or file")->capture_default_str();
-  command->add_option("--set", options->settings, "KEY=VALUE: override one key");
-  command->add_option("--compare", options->compare, "CSV file of a real part's values, to stand beside")
-      ->type_name("FILE");
-  command->add_option("--only", options->only, "Only benchmarks with this text in group, name or parameter")
-      ->type_name("TEXT");
-  command->callback([&session, options] {
+  command.add_option("--config", options->config, "Preset or file").capture_default_str();
+  command.add_option("--set", options->settings, "KEY=VALUE: override one key");
+  command.add_option("--compare", options->compare, "CSV file of a real part's values, to stand beside")
+      .type_name("FILE");
+  command.add_option("--only", options->only, "Only benchmarks with this text in group, name or parameter")
+      .type_name("TEXT");
+  command.callback([&session, options] {
     session.action = [&session, options] { return microbench(session, *options); };
   });
 }

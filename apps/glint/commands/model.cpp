@@ -1,6 +1,5 @@
 // `glint model RUN...`: cycles that analytical models predict, beside those that were simulated.
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
 #include <fmt/format.h>
@@ -8,6 +7,7 @@
 
 #include "apps/glint/bench/tables.h"
 #include "apps/glint/bench/workloads.h"
+#include "apps/glint/options/command_line.h"
 #include "apps/glint/options/config.h"
 #include "apps/glint/options/shader_options.h"
 #include "apps/glint/session.h"
@@ -159,24 +159,24 @@ Exit model(const Session& session, const Options& options) {
 
 }  // namespace
 
-void add_model(CLI::App& app, Session& session) {
+void add_model(Command app, Session& session) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
+  Command command =
       app.add_subcommand("model", "Predict cycles of finished runs by analytical models, and compare");
-  command->add_option("RUN", options->runs, "Directories of runs on the timing machine, or of `glint bench`")
-      ->required();
+  command.add_option("RUN", options->runs, "Directories of runs on the timing machine, or of `glint bench`")
+      .required();
   command
-      ->add_option("-o,--out", options->out,
-                   "Table with all inputs, or - (default: models.csv in the directory; with several, here)")
-      ->type_name("FILE");
-  command->add_flag("--inputs", options->inputs, "Print the inputs of each run as well");
-  command->add_flag("--statistics-only", options->statistics_only,
-                    "Hong and Kim's model alone: no pass over the scene");
-  command->add_option("--assets", options->assets, "Folder of original scene data, as the runs were given it")
-      ->type_name("DIR")
-      ->envname("GLINT_ASSETS");
-  add_shader_options(*command, options->shaders);
-  command->callback(
+      .add_option("-o,--out", options->out,
+                  "Table with all inputs, or - (default: models.csv in the directory; with several, here)")
+      .type_name("FILE");
+  command.add_flag("--inputs", options->inputs, "Print the inputs of each run as well");
+  command.add_flag("--statistics-only", options->statistics_only,
+                   "Hong and Kim's model alone: no pass over the scene");
+  command.add_option("--assets", options->assets, "Folder of original scene data, as the runs were given it")
+      .type_name("DIR")
+      .envname("GLINT_ASSETS");
+  add_shader_options(command, options->shaders);
+  command.callback(
       [&session, options] { session.action = [&session, options] { return model(session, *options); }; });
 }
 

@@ -1,6 +1,5 @@
 // `glint report RUN...`: one HTML page of finished runs and of what is known of suites.
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
@@ -8,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "apps/glint/options/command_line.h"
 #include "apps/glint/options/config.h"
 #include "apps/glint/options/observe_options.h"
 #include "apps/glint/options/report_inputs.h"
@@ -72,31 +72,31 @@ Exit write_report(const Session& session, const std::vector<std::string>& named,
 
 }  // namespace
 
-void add_report(CLI::App& app, Session& session) {
+void add_report(Command app, Session& session) {
   struct Options {
     std::vector<std::string> runs;
     std::string out;
     report::TimelineRequest timeline;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("report", "Write a page of figures about finished runs");
+  Command command = app.add_subcommand("report", "Write a page of figures about finished runs");
   command
-      ->add_option("RUN", options->runs,
-                   "Run directories, or folders of `glint bench`, with what `glint characterize` and `glint "
-                   "model` have left there; folders and tables of these two alone. "
-                   "With several runs, figures stand side by side and changes are against the first")
-      ->required();
-  command->add_option("-o,--out", options->out,
-                      "File, or - (default: report.html in the directory named; with several, here)");
-  add_cycle_window(*command, "--timeline",
+      .add_option("RUN", options->runs,
+                  "Run directories, or folders of `glint bench`, with what `glint characterize` and `glint "
+                  "model` have left there; folders and tables of these two alone. "
+                  "With several runs, figures stand side by side and changes are against the first")
+      .required();
+  command.add_option("-o,--out", options->out,
+                     "File, or - (default: report.html in the directory named; with several, here)");
+  add_cycle_window(command, "--timeline",
                    "Cycles of the warp timeline, of a run with --trace (default: as many around the middle "
                    "of the trace as stay readable)",
                    options->timeline.begin, options->timeline.end);
-  command->add_option("--timeline-sm", options->timeline.core, "SM of the warp timeline")
-      ->capture_default_str();
-  command->callback([&session, options, command] {
+  command.add_option("--timeline-sm", options->timeline.core, "SM of the warp timeline")
+      .capture_default_str();
+  command.callback([&session, options, command] {
     std::optional<report::TimelineRequest> timeline;
-    if (command->count("--timeline") + command->count("--timeline-sm") > 0) timeline = options->timeline;
+    if (command.count("--timeline") + command.count("--timeline-sm") > 0) timeline = options->timeline;
     session.action = [&session, options, timeline] {
       return write_report(session, options->runs, options->out, timeline);
     };

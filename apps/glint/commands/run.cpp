@@ -1,12 +1,12 @@
 // `glint run SCENE`: renders one frame on the simulated GPU, leaves a run directory, prints the summary.
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fmt/format.h>
 #include <memory>
 
 #include "apps/glint/bench/progress_pipe.h"
 #include "apps/glint/bench/workloads.h"
+#include "apps/glint/options/command_line.h"
 #include "apps/glint/options/config.h"
 #include "apps/glint/options/frame_options.h"
 #include "apps/glint/options/image_size.h"
@@ -174,78 +174,74 @@ Exit run(const Session& session, const Options& options) {
 
 }  // namespace
 
-void add_run(CLI::App& app, Session& session) {
+void add_run(Command app, Session& session) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
+  Command command =
       app.add_subcommand("run", "Render a scene, or launch a pipeline or a PTX kernel, on the simulated GPU");
   command
-      ->add_option("SCENE", options->scene,
-                   "Scene; 'glint list scenes' names them. Or a workload: SHIP_SH. Or a scene of your own: "
-                   "FILE.obj, FILE.gltf, FILE.glb. Or a pipeline: FILE.toml, or one shader file. Or a "
-                   "kernel: FILE.ptx, or its launch FILE.toml. Or an Amber script: FILE.amber")
-      ->required();
-  command->add_option("MORE", options->more, "More Amber scripts, after a first one: FILE.amber");
-  command->add_option("--launch", options->launch, "Launch file of a kernel: grid, block, arguments")
-      ->type_name("FILE");
-  command->add_option("--shader", options->shader, "pt, sh or ao; 'glint list shaders' explains")
-      ->capture_default_str();
+      .add_option("SCENE", options->scene,
+                  "Scene; 'glint list scenes' names them. Or a workload: SHIP_SH. Or a scene of your own: "
+                  "FILE.obj, FILE.gltf, FILE.glb. Or a pipeline: FILE.toml, or one shader file. Or a "
+                  "kernel: FILE.ptx, or its launch FILE.toml. Or an Amber script: FILE.amber")
+      .required();
+  command.add_option("MORE", options->more, "More Amber scripts, after a first one: FILE.amber");
+  command.add_option("--launch", options->launch, "Launch file of a kernel: grid, block, arguments")
+      .type_name("FILE");
+  command.add_option("--shader", options->shader, "pt, sh or ao; 'glint list shaders' explains")
+      .capture_default_str();
   command
-      ->add_option("--shader-dir", options->shader_dir,
-                   "Folder with the workload's shaders instead of the built-in ones")
-      ->type_name("DIR");
-  command->add_option("--config", options->config, "Preset or TOML file")->capture_default_str();
-  command->add_option("--set", options->settings, "Override of a key, repeatable: core.warps=16")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
-  command->add_option("--mode", options->mode, "timing: cycle by cycle; functional: picture and counts only")
-      ->check(CLI::IsMember({"timing", "functional"}))
-      ->capture_default_str();
-  command->add_option("--assets", options->assets, "Folder of original scene data")
-      ->type_name("DIR")
-      ->envname("GLINT_ASSETS");
-  command->add_flag("--instancing", options->instancing,
-                    "Models of a scene that are affine copies of another share its structure and vertices");
-  command->add_option("--out", options->out, "Run directory (default: out/SCENE_SHADER-MODE)")
-      ->type_name("DIR");
+      .add_option("--shader-dir", options->shader_dir,
+                  "Folder with the workload's shaders instead of the built-in ones")
+      .type_name("DIR");
+  command.add_option("--config", options->config, "Preset or TOML file").capture_default_str();
+  command.add_option("--set", options->settings, "Override of a key, repeatable: core.warps=16")
+      .type_name("KEY=VALUE")
+      .allow_extra_args(false);
+  command.add_option("--mode", options->mode, "timing: cycle by cycle; functional: picture and counts only")
+      .one_of({"timing", "functional"})
+      .capture_default_str();
+  command.add_option("--assets", options->assets, "Folder of original scene data")
+      .type_name("DIR")
+      .envname("GLINT_ASSETS");
+  command.add_flag("--instancing", options->instancing,
+                   "Models of a scene that are affine copies of another share its structure and vertices");
+  command.add_option("--out", options->out, "Run directory (default: out/SCENE_SHADER-MODE)")
+      .type_name("DIR");
   command
-      ->add_option("--max-instructions", options->max_instructions,
-                   "Instructions after which a warp is held to have no end")
-      ->check(CLI::PositiveNumber);
+      .add_option("--max-instructions", options->max_instructions,
+                  "Instructions after which a warp is held to have no end")
+      .positive();
   command
-      ->add_option("--on-fault", options->on_fault_name,
-                   "stop: the first fault ends the run; warn: wrong loads give 0, wrong stores do nothing, "
-                   "and each is listed (docs/errors.md)")
-      ->check(CLI::IsMember({"stop", "warn"}))
-      ->capture_default_str();
-  command->add_flag("--json", options->json, "Print the statistics as JSON instead of the summary");
-  command->add_flag("--no-skip", options->no_skip, "Step every cycle: slow, same result, for checking");
+      .add_option("--on-fault", options->on_fault_name,
+                  "stop: the first fault ends the run; warn: wrong loads give 0, wrong stores do nothing, "
+                  "and each is listed (docs/errors.md)")
+      .one_of({"stop", "warn"})
+      .capture_default_str();
+  command.add_flag("--json", options->json, "Print the statistics as JSON instead of the summary");
+  command.add_flag("--no-skip", options->no_skip, "Step every cycle: slow, same result, for checking");
   command
-      ->add_option("--threads", options->threads,
-                   "Threads of the timing machine, same result with any number; 0: all processors, while "
-                   "they are faster than one")
-      ->check(CLI::Range(0u, 256u))
-      ->capture_default_str();
+      .add_option("--threads", options->threads,
+                  "Threads of the timing machine, same result with any number; 0: all processors, while "
+                  "they are faster than one")
+      .in_range(0u, 256u)
+      .capture_default_str();
   command
-      ->add_option("--printf-limit", options->print_limit,
-                   "Messages of debugPrintfEXT to show, the first by launch id")
-      ->capture_default_str();
-  add_observe_options(*command, options->observe);
-  add_shader_options(*command, options->shaders);
-  command->add_option("--size", options->size, "Image size in pixels")
-      ->type_name("WxH")
-      ->capture_default_str();
-  add_frame_options(*command, options->frame);
-  command->add_option("--progress-fd", session.progress_descriptor, "Descriptor to write the progress to")
-      ->group("");  // for `bench`
-  for (CLI::Option* option :
-       command->get_options())  // a script's own options are overridden by those that it is given
-    if (!option->get_positional() && option->get_items_expected_max() == 1) option->take_last();
-  command->callback([&session, options, command] {
-    options->config_given = command->count("--config") > 0;
-    options->mode_given = command->count("--mode") > 0;
+      .add_option("--printf-limit", options->print_limit,
+                  "Messages of debugPrintfEXT to show, the first by launch id")
+      .capture_default_str();
+  add_observe_options(command, options->observe);
+  add_shader_options(command, options->shaders);
+  command.add_option("--size", options->size, "Image size in pixels").type_name("WxH").capture_default_str();
+  add_frame_options(command, options->frame);
+  command.add_option("--progress-fd", session.progress_descriptor, "Descriptor to write the progress to")
+      .group("");             // for `bench`
+  command.last_value_wins();  // so that a script's own options can be overridden by those it is given
+  command.callback([&session, options, command] {
+    options->config_given = command.count("--config") > 0;
+    options->mode_given = command.count("--mode") > 0;
     options->on_fault = options->on_fault_name == "warn" ? exec::OnFault::Warn : exec::OnFault::Stop;
     if (options->shaders.contract) options->settings.push_back("compiler.contract=true");
-    const bool shader_given = command->count("--shader") > 0;
+    const bool shader_given = command.count("--shader") > 0;
     session.action = [&session, options, shader_given] {
       take_workload_name(*options, shader_given);
       return run(session, *options);

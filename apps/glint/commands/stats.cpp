@@ -1,9 +1,10 @@
 // `glint stats RUN`: the statistics of a finished run again, in any format, as metrics, or by Vulkan-Sim's
-// names. SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
+// names.
+// SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
 #include <memory>
 
+#include "apps/glint/options/command_line.h"
 #include "apps/glint/session.h"
 #include "report/files/run_record.h"
 #include "report/metrics/metrics.h"
@@ -29,20 +30,20 @@ Exit stats(const std::string& run, const std::string& format) {
 
 }  // namespace
 
-void add_stats(CLI::App& app, Session& session) {
+void add_stats(Command app, Session& session) {
   struct Options {
     std::string run, format = "txt";
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("stats", "Print the statistics of a finished run");
-  command->add_option("RUN", options->run, "Run directory")->required();
+  Command command = app.add_subcommand("stats", "Print the statistics of a finished run");
+  command.add_option("RUN", options->run, "Run directory").required();
   command
-      ->add_option("--format", options->format,
-                   "txt, csv, json: as the run wrote them; metrics: those of docs/metrics.md; vulkan-sim: "
-                   "under the names of its logs")
-      ->check(CLI::IsMember({"txt", "csv", "json", "metrics", "vulkan-sim"}))
-      ->capture_default_str();
-  command->callback(
+      .add_option("--format", options->format,
+                  "txt, csv, json: as the run wrote them; metrics: those of docs/metrics.md; vulkan-sim: "
+                  "under the names of its logs")
+      .one_of({"txt", "csv", "json", "metrics", "vulkan-sim"})
+      .capture_default_str();
+  command.callback(
       [&session, options] { session.action = [options] { return stats(options->run, options->format); }; });
 }
 

@@ -1,5 +1,6 @@
 // Small kernels for measuring: PTX text run on the timing machine, and differences of cycles between two of
-// them. SPDX-License-Identifier: Apache-2.0
+// them.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <functional>

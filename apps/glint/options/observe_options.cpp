@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/options/observe_options.h"
 
-#include <CLI/CLI.hpp>
 #include <charconv>
 #include <cstdio>
 #include <fmt/format.h>
@@ -75,56 +74,54 @@ std::string write_trace(const TraceTable& trace, Cycle window_end, Cycle run_end
 
 }  // namespace
 
-CLI::Option* add_cycle_window(CLI::App& command, const std::string& name, const std::string& doc,
-                              Cycle& begin, Cycle& end) {
-  const auto read = [&begin, &end, name](const std::string& text) {
-    const auto refuse = [&](const char* what) {
-      return CLI::ValidationError(
-          name,
-          fmt::format("'{}' {}: expected FROM:TO in cycles, such as 10000:20000; FROM: goes up to the end",
-                      text, what));
+Option add_cycle_window(Command command, const std::string& name, const std::string& doc, Cycle& begin,
+                        Cycle& end) {
+  const auto read = [&begin, &end](const std::string& text) -> std::string {
+    const auto refusal = [&](const char* what) {
+      return fmt::format("'{}' {}: expected FROM:TO in cycles, such as 10000:20000; FROM: goes up to the end",
+                         text, what);
     };
-    const auto number = [&](const std::string& part, Cycle otherwise) {
+    const auto number = [](const std::string& part, Cycle otherwise) -> std::optional<Cycle> {
       Cycle value = otherwise;
       const auto [last, error] = std::from_chars(part.data(), part.data() + part.size(), value);
-      if (!part.empty() && (error != std::errc{} || last != part.data() + part.size()))
-        throw refuse("is no pair of numbers");
+      if (!part.empty() && (error != std::errc{} || last != part.data() + part.size())) return std::nullopt;
       return value;
     };
     const size_t colon = text.find(':');
-    if (colon == std::string::npos) throw refuse("has no ':'");
-    begin = number(text.substr(0, colon), 0);
-    end = number(text.substr(colon + 1), kNever);
-    if (begin >= end) throw refuse("ends before it begins");
+    if (colon == std::string::npos) return refusal("has no ':'");
+    const auto from = number(text.substr(0, colon), 0), to = number(text.substr(colon + 1), kNever);
+    if (!from || !to) return refusal("is no pair of numbers");
+    begin = *from, end = *to;
+    return begin >= end ? refusal("ends before it begins") : "";
   };
-  return command.add_option_function<std::string>(name, read, doc)->type_name("FROM:TO");
+  return command.add_parsed_option(name, read, doc).type_name("FROM:TO");
 }
 
-void add_observe_options(CLI::App& command, pipeline::Observation& observe) {
+void add_observe_options(Command command, pipeline::Observation& observe) {
   command.add_flag("--profile", observe.profile,
                    "Count by instruction and source line: profile.csv, profile.folded, source.json; 'glint "
                    "annotate' shows it");
   command
       .add_option("--sample", observe.sample,
                   "Write series.csv: IPC, RT warps, miss rates and DRAM use of every so many cycles")
-      ->type_name("CYCLES")
-      ->check(CLI::PositiveNumber);
+      .type_name("CYCLES")
+      .positive();
   command.add_flag("--heat", observe.heat,
                    "Write maps of what each pixel cost: heat/*.png and *.npy (cycles, rays, nodes, "
                    "divergence, misses ...); functional runs have those without cycles");
-  CLI::Option* trace = command.add_flag(
+  Option trace = command.add_flag(
       "--trace", observe.trace.wanted,
       "Write trace.json.gz for Perfetto: warps, shader stages, waits and RT units by cycle, with counters");
   add_cycle_window(command, "--trace-window", "Cycles that the trace shows", observe.trace.begin,
                    observe.trace.end)
-      ->needs(trace);
+      .needs(trace);
   command
       .add_option("--trace-limit", observe.trace.limit,
                   "Most events of a trace; it ends where there would be more, and says so")
-      ->type_name("EVENTS")
-      ->check(CLI::Range(uint64_t{1}, uint64_t{100'000'000}))
-      ->capture_default_str()
-      ->needs(trace);
+      .type_name("EVENTS")
+      .in_range(uint64_t{1}, uint64_t{100'000'000})
+      .capture_default_str()
+      .needs(trace);
 }
 
 bool observes(const pipeline::Observation& observe) {

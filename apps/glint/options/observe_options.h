@@ -4,18 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "apps/glint/options/command_line.h"
 #include "pipeline/render.h"
 #include "report/files/run_directory.h"
-
-namespace CLI {
-class App;
-class Option;
-}  // namespace CLI
 
 namespace glint::app {
 
 // --profile, --sample, --heat and --trace with its window and limit.
-void add_observe_options(CLI::App& command, pipeline::Observation& observe);
+void add_observe_options(Command command, pipeline::Observation& observe);
 
 // UserError when what needs cycles was given for the functional machine, which has none.
 void check_observation(const pipeline::Observation& observe, bool timing);
@@ -24,8 +20,8 @@ void check_observation(const pipeline::Observation& observe, bool timing);
 bool observes(const pipeline::Observation& observe);
 
 // An option that takes "100:200" as cycles 100 to 200; an end that is left out is the run's.
-CLI::Option* add_cycle_window(CLI::App& command, const std::string& name, const std::string& doc,
-                              Cycle& begin, Cycle& end);
+Option add_cycle_window(Command command, const std::string& name, const std::string& doc, Cycle& begin,
+                        Cycle& end);
 
 // Writes the files that were asked for, and removes those that an earlier run left and this one has not;
 // returns lines for the summary. What a limit has cut off is said on stderr too.

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/options/shader_options.h"
 
-#include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
@@ -38,16 +37,16 @@ std::string build_id() {
 
 }  // namespace
 
-void add_source_options(CLI::App& command, ShaderOptions& options) {
+void add_source_options(Command command, ShaderOptions& options) {
   command.add_option("-I,--include", options.include_dirs, "Folder to look for #include in")
-      ->type_name("DIR")
-      ->allow_extra_args(false);
+      .type_name("DIR")
+      .allow_extra_args(false);
   command.add_option("-D,--define", options.defines, "Macro")
-      ->type_name("NAME[=VALUE]")
-      ->allow_extra_args(false);
+      .type_name("NAME[=VALUE]")
+      .allow_extra_args(false);
 }
 
-void add_shader_options(CLI::App& command, ShaderOptions& options) {
+void add_shader_options(Command command, ShaderOptions& options) {
   add_source_options(command, options);
   command.add_flag("--contract", options.contract,
                    "Make a * b + c of GLSL one fma, as drivers do, but where it is `precise`");

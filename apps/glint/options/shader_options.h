@@ -5,13 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "apps/glint/options/command_line.h"
 #include "frontend/cache.h"
 #include "frontend/compile.h"
 #include "pipeline/structure_cache.h"
-
-namespace CLI {
-class App;
-}
 
 namespace glint::app {
 
@@ -21,8 +18,8 @@ struct ShaderOptions {
 };
 
 // -I and -D alone; all of them.
-void add_source_options(CLI::App& command, ShaderOptions& options);
-void add_shader_options(CLI::App& command, ShaderOptions& options);
+void add_source_options(Command command, ShaderOptions& options);
+void add_shader_options(Command command, ShaderOptions& options);
 
 // `cache` may be null.
 frontend::GlslOptions glsl_options(const ShaderOptions& options, frontend::ShaderCache* cache);

@@ -4,13 +4,11 @@
 #include <string>
 #include <vector>
 
-namespace CLI {
-class App;
-}
+#include "apps/glint/options/command_line.h"
 
 namespace glint::app {
 
 // A sentence to print after a parse error, or "" when nothing is near.
-std::string suggestion(const CLI::App& app, const std::vector<std::string>& arguments);
+std::string suggestion(const Command& app, const std::vector<std::string>& arguments);
 
 }  // namespace glint::app

@@ -1,5 +1,6 @@
 // Random traffic: counts against a trivially simple reference, and independence of windows, skipping and
-// repetition. SPDX-License-Identifier: Apache-2.0
+// repetition.
+// SPDX-License-Identifier: Apache-2.0
 #include <map>
 #include <random>
 #include <set>

@@ -1,5 +1,6 @@
 // Rays recorded through a real Vulkan driver find the same here: instance, primitive, kind, distance, any-hit
-// calls. SPDX-License-Identifier: Apache-2.0
+// calls.
+// SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 #include <filesystem>
 #include <fstream>

@@ -1,5 +1,6 @@
 // Refresh to the clock: when it begins, what it closes, how long its banks wait, and what the clocks are
-// counted as. SPDX-License-Identifier: Apache-2.0
+// counted as.
+// SPDX-License-Identifier: Apache-2.0
 #include <string_view>
 
 #include "tests/support/catch.h"

@@ -1,5 +1,6 @@
 // The published simulator's memory system under its presets: hits without time, stores that evict, one-flit
-// packets. SPDX-License-Identifier: Apache-2.0
+// packets.
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.h"
 #include "tests/support/memory_rig.h"
 #include "tests/support/preset.h"

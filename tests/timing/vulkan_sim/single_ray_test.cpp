@@ -1,5 +1,6 @@
 // The published simulator's RT unit, one ray at a time: cycles under its presets as its own arithmetic gives
-// them. SPDX-License-Identifier: Apache-2.0
+// them.
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.h"
 #include "tests/support/preset.h"
 #include "tests/support/rt_launch.h"

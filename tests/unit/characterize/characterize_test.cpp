@@ -1,5 +1,6 @@
 // The characterisation against values of numpy, SciPy and scikit-learn (reference.py), and what it does with
-// odd tables. SPDX-License-Identifier: Apache-2.0
+// odd tables.
+// SPDX-License-Identifier: Apache-2.0
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>

@@ -136,7 +136,7 @@ struct OneCore {
     world.local_bytes = options.local_bytes;
     if (options.block_threads)
       exec::set_blocks(world, {options.num_warps * uint32_t(kLanes) / options.block_threads, 1, 1},
-                 {options.block_threads, 1, 1}, options.shared_bytes);
+                       {options.block_threads, 1, 1}, options.shared_bytes);
   }
   // Runs to the end; returns the cycle after the core's last activity.
   Cycle run() {

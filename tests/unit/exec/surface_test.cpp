@@ -3,8 +3,8 @@
 #include <cstring>
 
 #include "tests/support/catch.h"
-#include "tests/unit/exec/image_lab.h"
 #include "tests/unit/core/one_core.h"
+#include "tests/unit/exec/image_lab.h"
 
 namespace glint::exec {
 namespace {

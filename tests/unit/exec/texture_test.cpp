@@ -1,5 +1,6 @@
 // Sampling: addressing, filtering, levels, cubes, gathers and queries, against hand-made values and plain
-// doubles. SPDX-License-Identifier: Apache-2.0
+// doubles.
+// SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <limits>
 

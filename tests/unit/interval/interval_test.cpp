@@ -1,5 +1,6 @@
 // The interval model: what it counts is what is executed, its parts take the times of the configuration, and
-// it predicts. SPDX-License-Identifier: Apache-2.0
+// it predicts.
+// SPDX-License-Identifier: Apache-2.0
 #include "pipeline/functional_machine.h"
 #include "pipeline/interval/interval_machine.h"
 #include "pipeline/scene_world.h"
