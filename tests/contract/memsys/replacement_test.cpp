@@ -190,7 +190,8 @@ TEST_CASE("plru follows its bits away from the lines used last, and past ways th
 TEST_CASE("srrip keeps a line that was used again while lines that were not used again make way") {
   // New lines are expected at 2; 0 and 1 are used again and expected at 0; the set ages until 2 reaches 3.
   CHECK(victims(chosen("srrip"), 4, {0, 1, 2, 3, 0, 1, 4, 5, 6, 7}) == Lines{2, 3, 4, 5});
-  // A line that was used once grows old: two fills bring 0 from 0 to 2, and of equals the lower slot makes way.
+  // A line that was used once grows old: two fills bring 0 from 0 to 2, and of equals the lower slot makes
+  // way.
   CHECK(victims(chosen("srrip"), 2, {0, 1, 0, 2, 3, 4}) == Lines{1, 2, 0});
   // With one bit it is "not recently used": a new line is expected at 0, as one that was used again.
   CHECK(victims(chosen("srrip", "bits = 1\n"), 2, {0, 1, 0, 2, 3, 4}) == Lines{0, 1, 2});
