@@ -1,12 +1,12 @@
-// The special-function unit: quadratic interpolation from tables, in fixed point, bit for bit as recorded on
-// a GPU.
+// Models the special-function unit: quadratic interpolation from tables, in fixed point, with the bits that a
+// GPU recorded.
+// SPDX-License-Identifier: Apache-2.0
 //
 // The scheme is that of S. Oberman and M. Siu, "A high-performance area-efficient multifunction interpolator"
-// (ARITH 2005): the leading mantissa bits choose a segment, the result is C0 + C1 x + C2 square(x) of the
-// bits below, where the squarer drops the partial products that weigh little. Widths and coefficients:
-// tools/fit_approximate.py. The unit itself takes subnormals for 0 and gives 0 for them. Included only by
-// isa/ops/*.cpp (see op_makers.h).
-// SPDX-License-Identifier: Apache-2.0
+// (ARITH 2005). The leading mantissa bits choose a segment. The result is C0 + C1 x + C2 square(x) of the
+// bits below, where the squarer drops the partial products of low weight. tools/fit_approximate.py explains
+// widths and coefficients. The unit takes subnormals for 0 and gives 0 for them. Only isa/ops/*.cpp include
+// this file (see op_makers.h).
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -22,8 +22,8 @@ inline constexpr uint32_t kSignMask = 0x8000'0000;
 inline constexpr uint32_t kInfinityBits = 0x7f80'0000;
 inline constexpr uint32_t kOneBits = 0x3f80'0000;
 
-// Conditions as masks of 32 bits: of a conditional expression the compiler would make a branch around the
-// table's read, and no vectors. below(a, b) is a < b of numbers up to 2^31.
+// Conditions are masks of 32 bits. For a conditional expression the compiler would branch around the read of
+// the table and not vectorise. below(a, b) is a < b for numbers up to 2^31.
 [[gnu::always_inline]] inline uint32_t below(uint32_t a, uint32_t b) {
   return uint32_t(int32_t(a - b) >> 31);
 }
@@ -37,17 +37,18 @@ inline constexpr uint32_t kOneBits = 0x3f80'0000;
   return b ^ ((a ^ b) & uint64_t(int64_t(int32_t(mask))));
 }
 
-// The square of x / 2^17 in multiples of 2^-15: the partial products x_i x_j of a folded squarer without the
-// columns that weigh less. Of the seven leading bits all stay; of the ten below, only products with those.
+// Returns the square of x / 2^17 in multiples of 2^-15: the partial products x_i x_j of a folded squarer
+// without the columns of lower weight. All products of the seven leading bits stay; of the ten bits below,
+// only their products with leading bits stay.
 [[gnu::always_inline]] inline uint32_t truncated_square(uint32_t x) {
   const uint32_t leading = x >> 10, low = x & 0x3ff;
   const auto row = [&](int j) { return (0u - (x >> j & 1u)) & (low >> (18 - j)); };
   return 2 * leading * leading + row(10) + row(11) + row(12) + row(13) + row(14) + row(15) + row(16);
 }
 
-// A table with one word a segment, so that a lane reads memory once: C0 above bit 36, |C1| in 20 bits above
-// bit 16, |C2|. All segments of a function have the same signs, and C1 and C2 are multiples of 2^kStep1 and
-// 2^kStep2.
+// A table with one word per segment, so that a lane reads memory once: C0 above bit 36, |C1| in 20 bits above
+// bit 16, and |C2|. All segments of a function have the same signs, and C1 and C2 are multiples of 2^kStep1
+// and 2^kStep2.
 template <size_t kSize, int kSign1, int kSign2, int kStep1, int kStep2, int kBiasValue>
 struct Table {
   static constexpr int64_t kBias = kBiasValue;
@@ -62,9 +63,11 @@ struct Table {
       word[i] = uint64_t(rows[i].c0) << 36 | uint64_t(c1 >> kStep1) << 16 | uint64_t(c2 >> kStep2);
     }
   }
-  // The sum of a segment, in 2^-17 of the table's unit; x are the 17 bits below those that chose the segment.
+  // Returns the sum of a segment in 2^-17 of the table's unit. x holds the 17 bits below those that chose the
+  // segment.
   [[gnu::always_inline]] int64_t sum(uint32_t segment, uint32_t x) const {
-    const uint64_t* const words = &word[0];  // a pointer: of arrays in objects the compiler makes no vectors
+    // Compilers do not vectorise arrays in objects, so a pointer is used.
+    const uint64_t* const words = &word[0];
     const uint64_t bits = words[segment];
     const uint64_t first = ((bits >> 16 & 0xf'ffff) * x) << kStep1;
     const uint64_t second = ((bits & 0xffff) * truncated_square(x)) << (kStep2 + 2);
@@ -74,8 +77,8 @@ struct Table {
   }
 };
 
-// The biases are added before sums are cut, and keep the mean error small: 2023, 6114 and 1674 / 2^15; just
-// below 0.
+// The biases are added before sums are cut, and keep the mean error small: 2023, 6114 and 1674 / 2^15, and a
+// value just below 0.
 inline constexpr Table<128, -1, 1, 1, 0, 8092> kRcp{kRcpSegments};
 inline constexpr Table<128, -1, 1, 1, 1, -2> kRsqrt{kRsqrtSegments};
 inline constexpr Table<128, 1, -1, 1, 0, -2> kSqrt{kSqrtSegments};
@@ -84,31 +87,32 @@ inline constexpr Table<64, 1, -1, 3, 1, 6696> kLg2{kLg2Segments};
 inline constexpr Table<64, 1, -1, 4, 2, 0> kSin{kSinSegments};
 inline constexpr Table<51, 1, -1, 1, 1, 0> kTanh{kTanhSegments};
 
-// Bits of an integer 0 <= v < 2^52 as a double.
+// Returns the bits of an integer 0 <= v < 2^52 as a double.
 [[gnu::always_inline]] inline uint64_t as_double_bits(int64_t v) {
   constexpr uint64_t kTwo52 = 0x4330'0000'0000'0000ull;
   return double_bits(double_of(uint64_t(v) | kTwo52) - double_of(kTwo52));
 }
 
-// v * 2^exponent cut to a float; 0 <= v < 2^52. The result must be normal or 0, or the caller drops it.
+// Returns v * 2^exponent cut to a float, for 0 <= v < 2^52. The result must be normal or 0, or the caller
+// drops it.
 [[gnu::always_inline]] inline uint32_t cut_to_float(int64_t v, int32_t exponent) {
   const uint32_t bits = uint32_t(as_double_bits(v) >> 29) + (uint32_t(exponent - 896) << 23);
   return bits & ~uint32_t((v - 1) >> 63);
 }
 
-// 1 / x.
+// Computes 1 / x.
 [[gnu::always_inline]] inline float unit_rcp(float x) {
   const uint32_t bits = float_bits(x), sign = bits & kSignMask, magnitude = bits & kMagnitudeMask;
   const uint32_t mantissa = bits & kMantissaMask;
   const int64_t sum = kRcp.sum(mantissa >> 16, (mantissa & 0xffff) << 1);
   uint32_t out = cut_to_float(sum, 127 - 41 - int32_t(magnitude >> 23));
-  out = pick(below(0x7e80'0000, magnitude), 0, out);  // past 2^126 the result is subnormal, or x is infinite
+  out = pick(below(0x7e80'0000, magnitude), 0, out);  // above 2^126 the result is subnormal, or x is infinite
   out = pick(below(magnitude, 0x0080'0000), kInfinityBits, out);  // 0 and subnormals
   out |= sign;
   return float_of(pick(below(kInfinityBits, magnitude), kCanonicalNan, out));
 }
 
-// What the two roots share: the exponent of x halved, and which of the two tables is read.
+// Holds what the two roots share: the exponent of x halved, and the choice between the two tables.
 struct RootArgument {
   uint32_t segment, x;
   int32_t half;       // x = m * 4^half, m in [1, 4)
@@ -121,19 +125,19 @@ struct RootArgument {
           below(mantissa | odd, 1)};
 }
 
-// 1 / sqrt(x).
+// Computes 1 / sqrt(x).
 [[gnu::always_inline]] inline float unit_rsqrt(float x) {
   const uint32_t bits = float_bits(x), magnitude = bits & kMagnitudeMask;
   const RootArgument a = root_argument(magnitude);
   const int64_t sum = kRsqrt.sum(a.segment, a.x);
   uint32_t out = cut_to_float(sum, -41 - a.half);
-  out -= a.is_power;  // the table misses 1 by an ulp
+  out -= a.is_power;  // the table misses 1 by one ulp
   out = pick(below(kInfinityBits - 1, magnitude), 0, out);
   out = pick(is_negative(bits) | below(kInfinityBits, magnitude), kCanonicalNan, out);
   return float_of(pick(below(magnitude, 0x0080'0000), kInfinityBits | (bits & kSignMask), out));
 }
 
-// sqrt(x).
+// Computes sqrt(x).
 [[gnu::always_inline]] inline float unit_sqrt(float x) {
   const uint32_t bits = float_bits(x), magnitude = bits & kMagnitudeMask;
   const RootArgument a = root_argument(magnitude);
@@ -143,13 +147,14 @@ struct RootArgument {
   return float_of(pick(below(magnitude, 0x0080'0000), bits & kSignMask, out));
 }
 
-// log2(x). The sum with the exponent is kept to 2^-36, and negative ones are complemented bit by bit.
+// Computes log2(x). The sum with the exponent is kept to 2^-36, and a negative sum is complemented bit by
+// bit.
 [[gnu::always_inline]] inline float unit_lg2(float x) {
   const uint32_t bits = float_bits(x), magnitude = bits & kMagnitudeMask, mantissa = bits & kMantissaMask;
   const int64_t sum = kLg2.sum(mantissa >> 17, mantissa & 0x1ffff);
-  const uint32_t is_one =
-      below(kOneBits - 1, magnitude) & below(magnitude, kOneBits + 1);  // and only it is exact
-  // In 2^-36, by 128 too large so that the shift is one of positive numbers.
+  // Only the logarithm of 1 is exact.
+  const uint32_t is_one = below(kOneBits - 1, magnitude) & below(magnitude, kOneBits + 1);
+  // The value is in units of 2^-36 and is 128 too large, so that the shift is one of positive numbers.
   const uint64_t shifted = uint64_t(sum + ((int64_t(magnitude >> 23) + 1) << 41)) >> 5;
   const int64_t total = int64_t(shifted) - (int64_t(128) << 36);
   const uint32_t positive = cut_to_float(total, -36);
@@ -160,8 +165,8 @@ struct RootArgument {
   return float_of(pick(below(magnitude, 0x0080'0000), kSignMask | kInfinityBits, out));
 }
 
-// 2^x. The argument is cut to 23 bits behind the point, and the fraction of negative ones complemented bit by
-// bit.
+// Computes 2^x. The argument is cut to 23 bits after the point, and the fraction of a negative argument is
+// complemented bit by bit.
 [[gnu::always_inline]] inline float unit_ex2(float x) {
   const uint32_t bits = float_bits(x), magnitude = bits & kMagnitudeMask;
   const int32_t exponent = int32_t(magnitude >> 23) - 127;
@@ -181,15 +186,15 @@ struct RootArgument {
   return float_of(pick(below(kInfinityBits, magnitude), kCanonicalNan, out));
 }
 
-// Sine (quarter = 0) or cosine (1) of radians. The product with 1 / (2 pi) is rounded toward zero to 24 bits,
-// then cut to 25 bits behind the point: that is all the range reduction there is.
+// Computes the sine (quarter = 0) or the cosine (1) of radians. The product with 1 / (2 pi) is rounded toward
+// zero to 24 bits, then cut to 25 bits after the point. There is no other range reduction.
 [[gnu::always_inline]] inline float unit_sine(float x, uint32_t quarter) {
   const uint32_t bits = float_bits(x), magnitude = bits & kMagnitudeMask;
   const uint32_t is_seen = below(0x007f'ffff, magnitude) & below(magnitude, kInfinityBits);
-  const double exact =
-      double(float_of(pick(is_seen, magnitude, 0))) * double(float_of(0x3e22'f983));  // 48 bits
+  // The product has 48 bits, which a double holds exactly.
+  const double exact = double(float_of(pick(is_seen, magnitude, 0))) * double(float_of(0x3e22'f983));
   const uint64_t product = double_bits(exact) & 0xffff'ffff'e000'0000ull;
-  // From 2^24 turns on nothing is left behind the point.
+  // From 2^24 turns on, nothing is left after the point.
   const uint32_t is_near = below(uint32_t(product >> 32), 0x4170'0000);
   const double units = double_of(pick64(is_near, product, 0)) * 33554432.0;
   constexpr double kTwo52 = 4503599627370496.0;
@@ -203,7 +208,8 @@ struct RootArgument {
   return float_of(pick(below(kInfinityBits - 1, magnitude), kCanonicalNan, cut_to_float(sum, -41) ^ sign));
 }
 
-// Hyperbolic tangent: x itself below 2^-8, 1 from 8 on; each octave between has a table of its own.
+// Computes the hyperbolic tangent: x itself below 2^-8, and 1 from 8 on. Each octave between has a table of
+// its own.
 [[gnu::always_inline]] inline float unit_tanh(float x) {
   const uint32_t bits = float_bits(x), sign = bits & kSignMask, magnitude = bits & kMagnitudeMask;
   struct Octave {
@@ -221,7 +227,7 @@ struct RootArgument {
   return float_of(pick(below(kInfinityBits, magnitude), kCanonicalNan, out | sign));
 }
 
-// v * 2^exponent as a double, cut to its high 32 bits: 20 bits of mantissa.
+// Returns v * 2^exponent as a double, cut to its high 32 bits, which hold 20 bits of mantissa.
 [[gnu::always_inline]] inline uint64_t cut_to_high_word(int64_t v, int32_t exponent) {
   return (as_double_bits(v) & 0xffff'ffff'0000'0000ull) + (uint64_t(uint32_t(exponent)) << 52);
 }
@@ -230,7 +236,8 @@ inline constexpr uint64_t kSignMask64 = 0x8000'0000'0000'0000ull;
 inline constexpr uint64_t kInfinityBits64 = 0x7ff0'0000'0000'0000ull;
 inline constexpr uint64_t kUnitNan64 = 0x7fff'ffff'0000'0000ull;
 
-// 1 / x of doubles: only the high words take part, so a NaN without bits there is an infinity.
+// Computes 1 / x of doubles. Only the high words take part, so a NaN without bits in its high word is an
+// infinity.
 [[gnu::always_inline]] inline double unit_rcp64(double x) {
   const uint32_t high = uint32_t(double_bits(x) >> 32), magnitude = high & kMagnitudeMask;
   const uint32_t mantissa = magnitude & 0xfffff;
@@ -242,7 +249,7 @@ inline constexpr uint64_t kUnitNan64 = 0x7fff'ffff'0000'0000ull;
   return double_of(pick64(below(0x7ff0'0000, magnitude), kUnitNan64, out));
 }
 
-// 1 / sqrt(x) of doubles, likewise.
+// Computes 1 / sqrt(x) of doubles from the high words.
 [[gnu::always_inline]] inline double unit_rsqrt64(double x) {
   const uint32_t high = uint32_t(double_bits(x) >> 32), magnitude = high & kMagnitudeMask;
   const uint32_t mantissa = magnitude & 0xfffff, exponent = magnitude >> 20;
@@ -250,14 +257,14 @@ inline constexpr uint64_t kUnitNan64 = 0x7fff'ffff'0000'0000ull;
   const int32_t half = (int32_t(exponent - odd) - 1023) >> 1;
   const int64_t sum = kRsqrt.sum((mantissa >> 14) + (odd << 6), (mantissa & 0x3fff) << 3);
   uint64_t out = cut_to_high_word(sum, -41 - half);
-  out += uint64_t(below(mantissa | odd, 1) & 1) << 32;  // as unit_rsqrt
+  out += uint64_t(below(mantissa | odd, 1) & 1) << 32;  // the correction of unit_rsqrt()
   out = pick64(below(0x7fef'ffff, magnitude), 0, out);
   out = pick64(is_negative(high) | below(0x7ff0'0000, magnitude), kUnitNan64, out);
   return double_of(
       pick64(below(magnitude, 0x0010'0000), kInfinityBits64 | uint64_t(high & kSignMask) << 32, out));
 }
 
-// Halves and bfloats go through the unit as floats; results are cut, not rounded.
+// Halves and bfloats go through the unit as floats. Results are cut, not rounded.
 [[gnu::always_inline]] inline uint32_t cut_to_half(float x) {
   const uint32_t bits = float_bits(x), magnitude = bits & kMagnitudeMask, exponent = magnitude >> 23;
   const uint32_t normal = (magnitude >> 13) - (112u << 10);

@@ -1,20 +1,21 @@
-// Coefficients of the special-function unit, fitted to recorded outputs by tools/fit_approximate.py.
+// Holds the coefficients of the special-function unit, fitted to recorded outputs by
+// tools/fit_approximate.py.
 // SPDX-License-Identifier: Apache-2.0
 //
-// Each row is the only one that gives all recorded bits of its segment, but for the first 5 of tanh:
-// few samples lie there, and of the rows that give those they are the nearest to tanh.
+// Each row is the only one that gives all recorded bits of its segment, except the first 5 rows of tanh.
+// There are few samples in their segments. Of all rows that give these samples, they are the nearest to tanh.
 // clang-format off
 #pragma once
 #include <cstdint>
 
 namespace glint::isa::GLINT_ISA_PATH {
 
-// One segment: C0 (without the function's bias) in quarters of the sum's unit, C1 and C2 in units.
+// Holds one segment: C0 (without the function's bias) in quarters of the sum's unit, C1 and C2 in units.
 struct Segment {
   int32_t c0, c1, c2;
 };
 
-// 1 / m, m in [1, 2): 7 bits choose the segment, sums in 2^-24.
+// Segments of 1 / m, m in [1, 2): 7 bits choose the segment, sums in 2^-24.
 inline constexpr Segment kRcpSegments[128] = {
     {67108864, -131068, 1013}, {66588642, -129044, 989}, {66076422, -127066, 966},
     {65572021, -125134, 945}, {65075262, -123244, 923}, {64585976, -121398, 902},
@@ -61,7 +62,7 @@ inline constexpr Segment kRcpSegments[128] = {
     {33818641, -33286, 131}, {33686019, -33026, 130},
 };
 
-// 1 / sqrt(m), m in [1, 2), then [2, 4).
+// Segments of 1 / sqrt(m), m in [1, 2), then [2, 4).
 inline constexpr Segment kRsqrtSegments[128] = {
     {67108863, -131062, 1508}, {66590639, -128048, 1450}, {66084241, -125150, 1396},
     {65589221, -122358, 1344}, {65105162, -119670, 1296}, {64631663, -117078, 1250},
@@ -108,7 +109,7 @@ inline constexpr Segment kRsqrtSegments[128] = {
     {33819689, -33550, 198}, {33686281, -33156, 194},
 };
 
-// sqrt(m), m in [1, 2), then [2, 4).
+// Segments of sqrt(m), m in [1, 2), then [2, 4).
 inline constexpr Segment kSqrtSegments[128] = {
     {67108866, 131070, -506}, {67631122, 130058, -494}, {68149376, 129068, -482},
     {68663718, 128102, -472}, {69174236, 127156, -461}, {69681014, 126232, -452},
@@ -155,7 +156,7 @@ inline constexpr Segment kSqrtSegments[128] = {
     {133165026, 132108, -261}, {133692414, 131588, -259},
 };
 
-// 2^m, m in [0, 1), sums in 2^-23.
+// Segments of 2^m, m in [0, 1), sums in 2^-23.
 inline constexpr Segment kEx2Segments[64] = {
     {33554435, 90852, 494}, {33919818, 91840, 501}, {34289182, 92840, 506},
     {34662565, 93852, 511}, {35040018, 94872, 518}, {35421577, 95908, 521},
@@ -181,7 +182,7 @@ inline constexpr Segment kEx2Segments[64] = {
     {66385972, 179744, 980},
 };
 
-// log2(m), m in [1, 2).
+// Segments of log2(m), m in [1, 2).
 inline constexpr Segment kLg2Segments[64] = {
     {7, 378176, -2908}, {1501082, 372360, -2820}, {2979248, 366720, -2740},
     {4435178, 361248, -2660}, {5869541, 355936, -2584}, {7282962, 350776, -2508},
@@ -207,7 +208,7 @@ inline constexpr Segment kLg2Segments[64] = {
     {66349508, 190584, -744},
 };
 
-// sin(m * pi / 2), m in [0, 1).
+// Segments of sin(m * pi / 2), m in [0, 1).
 inline constexpr Segment kSinSegments[64] = {
     {0, 411792, -56}, {1646926, 411680, -192}, {3292872, 411296, -304},
     {4936828, 410688, -440}, {6577812, 409808, -548}, {8214836, 408704, -684},
@@ -233,7 +234,7 @@ inline constexpr Segment kSinSegments[64] = {
     {67088652, 10112, -5060},
 };
 
-// tanh(m): octaves from 2^-8 to 8 of 1, 1, 1, 2, 2, 4, 4, 4, 8, 16 and 8 segments.
+// Segments of tanh(m): octaves from 2^-8 to 8 of 1, 1, 1, 2, 2, 4, 4, 4, 8, 16 and 8 segments.
 inline constexpr Segment kTanhSegments[51] = {
     {262144, 65536, -2}, {524280, 131064, -12}, {1048496, 262096, -104},
     {2096472, 261904, -164}, {3143432, 261576, -220}, {4188848, 522336, -1272},

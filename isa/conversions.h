@@ -1,9 +1,9 @@
-// Conversions between integers and floats, rounded once in any direction.
-//
-// Branch-free, so that loops over lanes become vectors; all in +, -, comparisons and bits, so that every path
-// gives the same. The host must round to nearest, but where a function says otherwise. Included only by
-// isa/ops/*.cpp.
+// Converts between integers and floats, rounded once in any direction.
 // SPDX-License-Identifier: Apache-2.0
+//
+// The functions are branch-free, so that loops over lanes become vectors. They use only +, -, comparisons and
+// bits, so that every path gives the same result. The host must round to nearest, except where a function
+// says otherwise. Only isa/ops/*.cpp include this file.
 #pragma once
 #include <cstdint>
 
@@ -15,7 +15,8 @@ namespace glint::isa::GLINT_ISA_PATH {
 
 inline constexpr uint64_t kSign64 = 1ull << 63;
 
-// The integer of a direction, from the nearest to x. A zero may lose its sign.
+// Returns the integer that a rounding direction selects, from the nearest integer to x. A zero may lose its
+// sign.
 template <Round kRound>
 [[gnu::always_inline]] inline double directed(double nearest, double x) {
   if constexpr (kRound == Round::Nearest) return nearest;
@@ -25,13 +26,13 @@ template <Round kRound>
   if constexpr (kRound == Round::Up) return above;
   return x < 0.0 ? above : below;
 }
-// x rounded to an integer, |x| < 2^51; NaN stays NaN.
+// Returns x rounded to an integer, for |x| < 2^51. NaN stays NaN.
 template <Round kRound>
 [[gnu::always_inline]] inline double to_integral(double x) {
   return directed<kRound>((x + kRoundMagic) - kRoundMagic, x);
 }
-// The same of any double: from 2^52 on they are integers. Keeps the sign of zero; a NaN keeps its payload,
-// quieted.
+// Rounds any double to an integer; from 2^52 on, doubles are integers. It keeps the sign of zero. A NaN keeps
+// its payload and becomes quiet.
 template <Round kRound>
 [[gnu::always_inline]] inline double to_any_integral(double x) {
   const double magnitude = double_of(double_bits(x) & ~kSign64);
@@ -44,21 +45,21 @@ template <Round kRound>
   return double_of(kept | quiet);
 }
 
-// What a NaN becomes, as recorded: 0 from 32 and 16 bits to at most 32 bits, else the sign bit of the result
-// alone.
+// Gives the result for a NaN, as recorded: 0 for sources of 32 and 16 bits and results of at most 32 bits;
+// otherwise only the sign bit of the result is set.
 template <class D, bool kFromDouble>
 inline constexpr D kFromNan = kFromDouble || sizeof(D) == 8 ? D(Unsigned<D>(1) << (kBits<D> - 1)) : D(0);
 
-// Rounded and clamped to D; up to 32 bits as the bits of a register, extended by the sign. The clamp comes
-// first: its bounds are integers, so rounding stays within.
+// Rounds and clamps to D. For up to 32 bits, it returns the bits of a register, extended by the sign. The
+// clamp comes first; its bounds are integers, so rounding stays within them.
 template <class D, Round kRound, bool kFromDouble>
 [[gnu::always_inline]] inline auto to_integer(double x) {
   constexpr D kLow = std::is_signed_v<D> ? D(Unsigned<D>(1) << (kBits<D> - 1)) : D(0), kHigh = D(~kLow);
   if constexpr (sizeof(D) < 8) {
     const double above = x < double(kLow) ? double(kLow) : x;
     const double inside = above > double(kHigh) ? double(kHigh) : above;
-    const uint64_t bits =
-        double_bits(to_integral<kRound>(inside) + kRoundMagic);  // two's complement at the low end
+    // The low end holds the integer in two's complement.
+    const uint64_t bits = double_bits(to_integral<kRound>(inside) + kRoundMagic);
     return uint32_t(x != x ? uint64_t(int64_t(kFromNan<D, kFromDouble>)) : bits);
   } else {
     constexpr double kLimit = std::is_signed_v<D> ? 0x1p63 : 0x1p64,
@@ -74,7 +75,7 @@ template <class D, Round kRound, bool kFromDouble>
 [[gnu::always_inline]] inline float flushed(float x) {
   return (float_bits(x) & 0x7f80'0000u) == 0 ? float_of(float_bits(x) & 0x8000'0000u) : x;
 }
-// Clamped to [0, 1]; NaN and -0 give +0.
+// Returns x clamped to [0, 1]. NaN and -0 give +0.
 [[gnu::always_inline]] inline float saturated(float x) {
   const float positive = x > 0.0f ? x : 0.0f;
   return positive < 1.0f ? positive : 1.0f;
@@ -84,7 +85,7 @@ template <class D, Round kRound, bool kFromDouble>
   return positive < 1.0 ? positive : 1.0;
 }
 
-// Sign and magnitude of an integer of up to 64 bits.
+// These return sign and magnitude of an integer of up to 64 bits.
 template <class S>
 [[gnu::always_inline]] inline uint64_t magnitude_of(S x) {
   const uint64_t wide = uint64_t(x);  // sign-extended
@@ -95,9 +96,9 @@ template <class S>
   return std::is_signed_v<S> && x < 0 ? kSign64 : 0;
 }
 
-// An integer with its low bits, if it is so large, gathered in one that says whether they were zero: exact as
-// a double, and rounding to less than 40 bits gives what the integer would give. `scale` makes up for the
-// bits gone.
+// Holds an integer as a double. If the integer is large, its low bits are gathered in one bit that says
+// whether they were zero. The double is then exact, and rounding it to less than 40 bits gives the same
+// result as rounding the integer. `scale` makes up for the removed bits.
 struct Reduced {
   double value;
   float scale;
@@ -107,11 +108,11 @@ template <class S>
   const uint64_t m = magnitude_of(x);
   const bool is_large = sizeof(S) == 8 && m >= (1ull << 52);
   const uint64_t kept = is_large ? (m >> 12) | uint64_t((m & 0xfff) != 0) : m;
-  // By bits: rounding down makes a -0 of 0, and the sign comes back here.
+  // The sign is set by bits, because rounding down makes a -0 of 0.
   const uint64_t bits = (double_bits(small_double(kept)) & ~kSign64) | sign_of(x);
   return {double_of(bits), is_large ? 4096.0f : 1.0f};
 }
-// In the host's rounding direction, whichever it is.
+// Rounds in the host's present rounding direction.
 template <class S>
 [[gnu::always_inline]] inline float rounded_float(S x) {
   if constexpr (sizeof(S) <= 2) return float(int32_t(x));
@@ -134,8 +135,8 @@ template <class S>
   }
 }
 
-// A double rounded to odd: towards zero, and the last bit set where that was not exact. Rounding it again, to
-// fewer bits, gives what rounding the double would (Boldo and Melquiond 2008).
+// Rounds a double to odd: towards zero, with the last bit set if the result was not exact. Rounding it again
+// to fewer bits gives the same result as rounding the double (Boldo and Melquiond 2008).
 [[gnu::always_inline]] inline float odd_float(double x) {
   const float nearest = float(x);
   const double back = double(nearest);
@@ -146,18 +147,20 @@ template <class S>
   return float_of(toward_zero | (is_off ? 1u : 0u));
 }
 
-// 1 where a directed rounding of an inexact number goes away from zero. `sign` and `is_inexact` are 0 or 1.
+// Returns 1 if a directed rounding of an inexact number goes away from zero. `sign` and `is_inexact` are 0 or
+// 1.
 template <Round kRound>
 [[gnu::always_inline]] inline uint32_t goes_away(uint32_t sign, uint32_t is_inexact) {
   if constexpr (kRound == Round::Zero) return 0;
   return (kRound == Round::Down ? sign : sign ^ 1) & is_inexact;
 }
-// Rounded once; beyond the range infinity or the largest number, as the direction says; NaN gives 0x7fff.
+// Rounds once. Beyond the range, the direction decides between infinity and the largest number. NaN gives
+// 0x7fff.
 template <Round kRound>
 [[gnu::always_inline]] inline Half rounded_half(float x) {
   if constexpr (kRound == Round::Nearest) return to_half(x);
   const uint32_t bits = float_bits(x), magnitude = bits & 0x7fff'ffffu, sign = bits >> 31;
-  // Units of 2^-24 for subnormal results; a float below 2^-14 shifted by 14 or more.
+  // A subnormal result has units of 2^-24: a float below 2^-14 is shifted by 14 or more.
   const uint32_t exponent = magnitude >> 23, gap = 126 - exponent > 31 ? 31 : 126 - exponent;
   const uint32_t mantissa = (magnitude & 0x007f'ffffu) | (exponent != 0 ? 0x0080'0000u : 0u);
   const bool is_small = magnitude < 0x3880'0000u;

@@ -1,4 +1,4 @@
-// Where the descriptor of a (set, binding) lies in the constant bank.
+// Computes where the descriptor of a (set, binding) lies in the constant bank.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace glint::isa {
 
-// The first kBindingsPerSet bindings of all sets come first, then push constants; the others follow in a part
-// of their own, so that worlds without them have a small bank.
+// The first kBindingsPerSet bindings of all sets come first, then push constants. The other bindings follow
+// in a part of their own, so that worlds without them have a small bank.
 inline constexpr uint32_t kMaxBindings = 1024;
 inline constexpr uint32_t kMoreBindingsOffset = 32 * 1024;
 inline constexpr uint32_t kLargestBankBytes =
@@ -22,8 +22,8 @@ constexpr uint32_t descriptor_offset(uint32_t set, uint32_t binding) {
          (set * (kMaxBindings - kBindingsPerSet) + binding - kBindingsPerSet) * kDescriptorBytes;
 }
 
-// The address that stands in a descriptor that nobody bound, as good as no program makes one up. Its (set,
-// binding) can be told as long as what is added to it stays within 32 GiB either way.
+// Gives the address in a descriptor that nobody bound. Programs practically never compute such an address.
+// Its (set, binding) can be recovered if at most 32 GiB are added or subtracted.
 inline constexpr uint64_t kUnboundBase = 0xfff8'0000'0000'0000;
 inline constexpr int kUnboundPlaceShift = 36;
 constexpr uint64_t unbound_address(uint32_t set, uint32_t binding) {

@@ -1,5 +1,5 @@
-// Generic addresses: one 64-bit space in which shared, local and constant memory have windows; the rest is
-// global.
+// Defines generic addresses: a 64-bit space in which shared, local and constant memory have windows. All
+// other addresses are global.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -9,16 +9,16 @@
 
 namespace glint::isa {
 
-// Windows of 4 GiB at the top of the positive addresses, far from every allocation of global memory.
-// Choice: PTX leaves the places open.
+// The windows have 4 GiB each and lie at the top of the positive addresses, far from every allocation of
+// global memory. Choice: PTX leaves their places open.
 inline constexpr uint64_t kWindowBytes = uint64_t{1} << 32;
 inline constexpr uint64_t kConstWindow = 0x7fff'fffd'0000'0000;
 inline constexpr uint64_t kSharedWindow = kConstWindow + kWindowBytes;
 inline constexpr uint64_t kLocalWindow = kSharedWindow + kWindowBytes;
-inline constexpr uint64_t kParamWindow =
-    kConstWindow + kPushConstantOffset;  // parameters lie in the constant bank
+// The parameters lie in the constant bank.
+inline constexpr uint64_t kParamWindow = kConstWindow + kPushConstantOffset;
 
-// What an address of the space has to have added to become generic.
+// Returns what is added to an address of the space to make it generic.
 constexpr uint64_t window_of(Space space) {
   return space == Space::Shared  ? kSharedWindow
          : space == Space::Local ? kLocalWindow
@@ -27,7 +27,8 @@ constexpr uint64_t window_of(Space space) {
                                  : 0;
 }
 
-// The space a generic address is in; its address there is the low 32 bits, all 64 in global memory.
+// Returns the space of a generic address. The address in that space is its low 32 bits, or all 64 bits for
+// global memory.
 constexpr Space space_of(uint64_t generic) {
   switch (generic / kWindowBytes) {
     case kConstWindow / kWindowBytes:

@@ -1,9 +1,8 @@
-// Floats of 16 bits to and from single precision: exact one way, rounded once to nearest even the other.
-//
-// Branch-free, so that loops over lanes become vectors; integer work and one addition, so that every path
-// gives the same bits. Included only by isa/ops/*.cpp (see op_makers.h).
-//
+// Converts floats of 16 bits to single precision exactly, and back with one rounding to nearest even.
 // SPDX-License-Identifier: Apache-2.0
+//
+// The functions are branch-free, so that loops over lanes become vectors. They use integer operations and one
+// addition, so that every path gives the same bits. Only isa/ops/*.cpp include this file (see op_makers.h).
 #pragma once
 #include <cstdint>
 
@@ -11,7 +10,7 @@
 
 namespace glint::isa::GLINT_ISA_PATH {
 
-inline constexpr uint32_t kCanonicalNan16 = 0x7fff;  // of f16 and bf16: PTX's NaN results
+inline constexpr uint32_t kCanonicalNan16 = 0x7fff;  // PTX's NaN result for f16 and bf16
 
 [[gnu::always_inline]] inline bool is_nan(Half x) {
   return (x.bits & 0x7fffu) > 0x7c00u;
@@ -20,10 +19,10 @@ inline constexpr uint32_t kCanonicalNan16 = 0x7fff;  // of f16 and bf16: PTX's N
   return (x.bits & 0x7fffu) > 0x7f80u;
 }
 
-// The f16 in the upper half of a word, exactly; a NaN stays one. No step meets a subnormal float, which hosts
-// are slow at. The exponent is raised so far that infinities and NaNs are a float's, and multiplied back.
-// Subnormals thereby get a leading 1 that they do not have, which is taken off again; with kFtz they become
-// zeros.
+// Converts the f16 in the upper half of a word exactly. A NaN stays a NaN. No step produces a subnormal
+// float, with which hosts are slow. The exponent is raised so far that infinities and NaNs become those of a
+// float, and is multiplied back. Subnormals thereby get a leading 1 that they do not have, which is
+// subtracted again; with kFtz they become zeros.
 template <bool kFtz = false>
 [[gnu::always_inline]] inline float float_of_upper_half(uint32_t word) {
   const float raised = float_of((word >> 3 & 0x0fff'e000u) | 0x7000'0000u);
@@ -36,22 +35,23 @@ template <bool kFtz = false>
 [[gnu::always_inline]] inline float to_float(Half x) {
   return float_of_upper_half(uint32_t(x.bits) << 16);
 }
-// Exact; the bits of a bf16 are the upper half of a float's.
+// The conversion is exact, because the bits of a bf16 are the upper half of a float's.
 [[gnu::always_inline]] inline float to_float(Bfloat x) {
   return float_of(uint32_t(x.bits) << 16);
 }
 
-// Rounds to nearest even, once, subnormal results too; from 65520 on infinity; NaN gives 0x7fff. The host
-// must round to nearest meanwhile. With kFtz results below 2^-14 - 2^-26 become zeros of their sign: those
-// that f16 with an unbounded exponent would round to less than 2^-14.
+// Rounds once to nearest even, also to subnormal results. From 65520 on the result is infinity, and NaN gives
+// 0x7fff. The host must round to nearest meanwhile. With kFtz, results below 2^-14 - 2^-26 become zeros of
+// their sign. These are the results that f16 with an unbounded exponent would round to less than 2^-14.
 //
-// Added to 2^13 times its own power of two (2^-14 at least, where f16 becomes subnormal), a float is rounded
+// When a float is added to 2^13 times its own power of two (2^-14 at least, where f16 becomes subnormal), it
+// is rounded to the steps of an f16, and the low bits of the sum count these steps.
 // to the steps of an f16: the low bits of the sum count them.
 template <bool kFtz = false>
 [[gnu::always_inline]] inline uint32_t half_bits(float x) {
   const uint32_t bits = float_bits(x) & 0x7fff'ffffu;
-  const uint32_t magnitude =
-      bits < 0x4780'0000u ? bits : 0x4780'0000u;  // 65536, whose exponent is infinity's
+  // Larger values become 65536, whose exponent is that of infinity.
+  const uint32_t magnitude = bits < 0x4780'0000u ? bits : 0x4780'0000u;
   const uint32_t own = magnitude & 0x7f80'0000u;
   const uint32_t power = own > 0x3880'0000u ? own : 0x3880'0000u;
   const uint32_t step = power + (13u << 23);
@@ -61,7 +61,7 @@ template <bool kFtz = false>
   const uint32_t number = kept | (float_bits(x) >> 16 & 0x8000u);
   return bits > 0x7f80'0000u ? kCanonicalNan16 : number;
 }
-// A bf16's exponents are a float's, so a carry makes infinity, and subnormals need no care.
+// The exponents of a bf16 are those of a float, so a carry makes infinity, and subnormals need no care.
 [[gnu::always_inline]] inline uint32_t bfloat_bits(float x) {
   const uint32_t bits = float_bits(x);
   const uint32_t rounded = (bits + 0x7fffu + ((bits >> 16) & 1u)) >> 16;

@@ -1,17 +1,17 @@
-// Rows of floats of 16 bits as rows of floats and back, and sums rounded to odd on the way: by the vector
-// instructions for it where the path has them.
-//
-// An intrinsic does in one step what isa/half.h does in ten that every compiler makes vectors of; the bits
-// are the same (test "every value op gives the same bits on every path"). Rows of floats and words are
-// 64-byte aligned. Included only by isa/ops/*.cpp (see op_makers.h).
+// Converts rows of 16-bit floats to rows of floats and back, and rounds sums to odd on the way, with vector
+// instructions where the path has them.
 // SPDX-License-Identifier: Apache-2.0
+//
+// One intrinsic replaces ten steps of isa/half.h, which every compiler vectorises. The bits are the same
+// (test "every value op gives the same bits on every path"). Rows of floats and words are 64-byte aligned.
+// Only isa/ops/*.cpp include this file (see op_makers.h).
 #pragma once
 #include "isa/conversions.h"
 #include "isa/half.h"
 
 namespace glint::isa::GLINT_ISA_PATH {
 
-// The lower (or upper) halves of a row of words as floats, exactly.
+// Converts the lower (or upper) halves of a row of words to floats, exactly.
 template <bool kUpper>
 [[gnu::always_inline]] inline void widen_halves(const uint32_t* words, float* out) {
 #if defined(__AVX512F__)
@@ -33,7 +33,8 @@ template <bool kUpper>
 #endif
 }
 
-// Floats rounded to halves, once, in the lower halves of words whose upper ones are 0; a NaN gives 0x7fff.
+// Rounds floats once to halves, which become the lower halves of words; the upper halves are 0. A NaN gives
+// 0x7fff.
 template <Round kRound>
 [[gnu::always_inline]] inline void narrow_to_halves(const float* x, uint32_t* out) {
 #if defined(__AVX512F__)
@@ -57,14 +58,15 @@ template <Round kRound>
 }
 
 #if defined(__AVX512F__)
-// Of a number rounded down and rounded up: the same if it is a float, else neighbours, one of them odd.
+// Takes a number rounded down and rounded up. If both are equal it returns them; otherwise it returns the odd
+// one of the two neighbours.
 [[gnu::always_inline]] inline __m512 odd_of(__m512 down, __m512 up) {
   return _mm512_mask_mov_ps(up, _mm512_test_epi32_mask(_mm512_castps_si512(down), _mm512_set1_epi32(1)),
                             down);
 }
 #endif
 
-// a * b + c rounded to odd (see odd_float); `fma_to_odd(a, b, c)` does it for a lane.
+// Computes a * b + c rounded to odd (see odd_float). `fma_to_odd(a, b, c)` does so for one lane.
 template <class FmaToOdd>
 [[gnu::always_inline]] inline void fma_rows_to_odd(const float* a, const float* b, const float* c, float* out,
                                                    [[maybe_unused]] FmaToOdd&& fma_to_odd) {
@@ -79,7 +81,7 @@ template <class FmaToOdd>
 #endif
 }
 
-// Doubles rounded to odd floats, two rows of words to one.
+// Rounds doubles to odd floats; two rows of words become one.
 [[gnu::always_inline]] inline void odd_floats(const Source<double>& x, float* out) {
 #if defined(__AVX512F__)
   const __m512i even = _mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);

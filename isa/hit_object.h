@@ -1,11 +1,11 @@
-// What the ops of hit objects do, and the numbers of the values that a shader reads of one.
+// Names what the ops of hit objects do, and numbers the values that a shader reads from one.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 
 namespace glint::isa {
 
-// OpRow::detail of a row of the family.
+// Names the op of a row of the family, in OpRow::detail.
 enum class HitObjectOp : uint16_t {
   Record,
   Empty,
@@ -19,7 +19,7 @@ enum class HitObjectOp : uint16_t {
   Corner
 };
 
-// SPV_NV_shader_invocation_reorder's getters: ho.value's last operand.
+// Numbers the getters of SPV_NV_shader_invocation_reorder. The number is the last operand of ho.value.
 enum class HitObjectValue : uint32_t {
   Type,  // 0 empty, 1 hit, 2 miss
   Kind,
@@ -27,21 +27,23 @@ enum class HitObjectValue : uint32_t {
   Geometry,
   Instance,
   CustomIndex,
+  // The hit's record in the binding table. The address has two words, low half first.
   RecordIndex,
-  RecordAddress,  // of its record in the binding table; the address: 2 of these, low half first
+  RecordAddress,
   Tmin = RecordAddress + 2,
-  Tmax,  // Tmax: the distance of a hit
+  Tmax,  // for a hit, its distance
+  // The origin and the direction have 3 components each, in world space and then in object space.
   Origin,
-  Direction = Origin + 3,  // world space, 3 of these each
+  Direction = Origin + 3,
   ObjectOrigin = Direction + 3,
   ObjectDirection = ObjectOrigin + 3,
-  ObjectToWorld = ObjectDirection + 3,  // row-major 3x4: 12 of these
+  ObjectToWorld = ObjectDirection + 3,  // row-major 3x4: 12 components
   WorldToObject = ObjectToWorld + 12,
   Time = WorldToObject + 12,
   Count
 };
 
-// OpRow::detail of a row with Effect::Trace.
+// Names the kind of a trace, in OpRow::detail of a row with Effect::Trace.
 enum class TraceKind : uint16_t { Ray, HitObject };
 
 }  // namespace glint::isa

@@ -1,4 +1,4 @@
-// The decoded instruction and its operand slots: what an op's handler reads at run time.
+// Defines the decoded instruction and its operand slots, which an op's handler reads at run time.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -6,7 +6,7 @@
 
 namespace glint::isa {
 
-// An operand slot names one row of 32 lanes by 32 bits, in one of three banks, or a predicate index.
+// An operand slot names one row of 32 lanes by 32 bits in one of three banks, or the index of a predicate.
 // All banks have the same layout, so a handler reads registers, constants and specials alike.
 using Slot = uint16_t;
 inline constexpr Slot kRegisterBank = 0x0000;  // + register number; a 64-bit value is an even/odd pair
@@ -22,9 +22,10 @@ inline constexpr int kMaxOperands = 18;    // slots of one instruction (rt.trace
 inline constexpr uint8_t kNoGuard = 0xff;
 inline constexpr uint8_t kGuardNegate = 0x80;  // guard = predicate index | kGuardNegate
 
-// Read-only per-lane values that the machine provides. Text: %launch.x. The hit and ray values refer to
-// the innermost trace of the warp: the candidate in any-hit and intersection shaders, the committed hit
-// in closest-hit shaders, the ray in miss shaders (SPV_KHR_ray_tracing, built-in table).
+// Names the read-only values of each lane that the machine provides; the text of LaunchX is %launch.x. The
+// hit and ray values refer to the innermost trace of the warp: the candidate in any-hit and intersection
+// shaders, the committed hit in closest-hit shaders, the ray in miss shaders (SPV_KHR_ray_tracing, built-in
+// table).
 enum class Special : uint8_t {
   LaneId,
   LaunchX,
@@ -33,7 +34,7 @@ enum class Special : uint8_t {
   LaunchSizeX,
   LaunchSizeY,
   LaunchSizeZ,
-  // Blocks (PTX's CTAs, Vulkan's workgroups) of a compute launch.
+  // These belong to blocks (PTX's CTAs, Vulkan's workgroups) of a compute launch.
   TidX,
   TidY,
   TidZ,
@@ -46,30 +47,34 @@ enum class Special : uint8_t {
   NctaidX,
   NctaidY,
   NctaidZ,
-  WarpId,
-  NwarpId,
-  SmId,
-  NsmId,
-  GridId,  // warp slot and slots of the core; core and cores; 0
+  WarpId,   // warp slot in the core
+  NwarpId,  // warp slots of the core
+  SmId,     // number of the core
+  NsmId,    // number of cores
+  GridId,   // always 0
   LanemaskEq,
   LanemaskLe,
   LanemaskLt,
   LanemaskGe,
   LanemaskGt,
+  // The sizes are bytes of shared memory of the block.
   TotalSmemSize,
-  DynamicSmemSize,  // bytes of shared memory of the block
+  DynamicSmemSize,
+  // The clock is the core cycle at issue, and the timer counts nanoseconds since launch. Both are 0 on the
+  // functional machine.
   Clock,
-  ClockHi,  // core cycle when issued; 0 on the functional machine
+  ClockHi,
   GlobalTimerLo,
-  GlobalTimerHi,  // nanoseconds since launch; 0 on the functional machine
-  Payload,        // local address of the incoming payload or callable data
-  Attribute,      // local address of the hit attributes
+  GlobalTimerHi,
+  Payload,    // local address of the incoming payload or callable data
+  Attribute,  // local address of the hit attributes
+  // The record is the address of the data in the shader's record of the binding table, in two halves.
   Record,
-  RecordHi,  // address of the data in the shader's record of the binding table, both halves
+  RecordHi,
   HitT,
-  HitKind,
-  HitU,
-  HitV,  // t; kind (0xfe front, 0xff back, user 0..127); barycentrics
+  HitKind,  // 0xfe front, 0xff back, user 0..127
+  HitU,     // barycentric
+  HitV,     // barycentric
   HitPrimitive,
   HitGeometry,
   HitInstance,
@@ -77,18 +82,20 @@ enum class Special : uint8_t {
   RayFlags,
   RayTmin,
   RayCullMask,
+  // The ray's origin and direction are in world space.
   RayOriginX,
   RayOriginY,
   RayOriginZ,
   RayDirectionX,
   RayDirectionY,
-  RayDirectionZ,  // world space
+  RayDirectionZ,
   ObjectOriginX,
   ObjectOriginY,
   ObjectOriginZ,
   ObjectDirectionX,
   ObjectDirectionY,
   ObjectDirectionZ,
+  // The matrices are row-major 3x4, and element N is 4 * row + column.
   ObjectToWorld0,
   ObjectToWorld1,
   ObjectToWorld2,
@@ -113,7 +120,6 @@ enum class Special : uint8_t {
   WorldToObject9,
   WorldToObject10,
   WorldToObject11,
-  // ObjectToWorldN: row-major 3x4, N = 4 * row + column
   Count
 };
 inline constexpr int kNumSpecials = int(Special::Count);

@@ -1,7 +1,8 @@
-// Integer building blocks of the ops: counts, fields, wide products, quotients without division instructions.
-//
-// Branch-free, so that loops over lanes become vectors. Included only by isa/ops/*.cpp (see op_makers.h).
+// Builds integer parts of the ops: counts, fields, wide products, quotients without division instructions.
 // SPDX-License-Identifier: Apache-2.0
+//
+// The functions are branch-free, so that loops over lanes become vectors. Only isa/ops/*.cpp include this
+// file (see op_makers.h).
 #pragma once
 #include <cstdint>
 #include <type_traits>
@@ -10,7 +11,7 @@
 
 namespace glint::isa::GLINT_ISA_PATH {
 
-// The type that arithmetic modulo 2^bits of T is done in: unsigned, and no narrower than int.
+// Names the type in which arithmetic modulo 2^bits of T is done: unsigned, and no narrower than int.
 template <class T>
 using Wrapping = std::conditional_t<sizeof(T) == 8, uint64_t, uint32_t>;
 template <class T>
@@ -18,8 +19,8 @@ using Unsigned = std::make_unsigned_t<T>;
 template <class T>
 inline constexpr int kBits = int(sizeof(T)) * 8;
 
-// Sums of neighbouring fields of 1, 2, 4 ... bits. Not the product that adds all bytes at once: compilers
-// take that for a population count, of which most machines have no vector form.
+// Adds neighbouring fields of 1, 2, 4 ... bits. It does not use the product that adds all bytes at once:
+// compilers recognise that as a population count, which has no vector form on most machines.
 template <class T>
 [[gnu::always_inline]] inline uint32_t count_ones(T x) {
   x -= (x >> 1) & T(0x5555'5555'5555'5555ull);
@@ -33,13 +34,13 @@ template <class T>
 
 inline constexpr double kTwo52 = 4503599627370496.0;
 inline constexpr uint64_t kTwo52Bits = 0x4330'0000'0000'0000;
-// Exact, below 2^52: the number is the mantissa of a double from 2^52 on. The host must round to nearest (or
-// up, or to zero: rounding down makes a -0 of 0).
+// Converts exactly below 2^52: the number is the mantissa of a double from 2^52 on. The host must round to
+// nearest, up or to zero; rounding down makes a -0 of 0.
 [[gnu::always_inline]] inline double small_double(uint64_t x) {
   return double_of(kTwo52Bits | x) - kTwo52;
 }
 
-// Position of the highest one, ~0 for 0: the exponent of the number as a double.
+// Returns the position of the highest one, which is the exponent of the number as a double, or ~0 for 0.
 [[gnu::always_inline]] inline uint32_t highest_one(uint32_t x) {
   const uint32_t at = uint32_t(double_bits(small_double(x)) >> 52) - 1023;
   return x == 0 ? ~0u : at;
@@ -62,7 +63,7 @@ inline constexpr uint64_t kTwo52Bits = 0x4330'0000'0000'0000;
   return uint64_t(reversed(uint32_t(x))) << 32 | reversed(uint32_t(x >> 32));
 }
 
-// Shifts by any count: from the width on, 0 (or copies of the sign).
+// These shift by any count. A count of the width or more gives 0, or copies of the sign.
 template <class T>
 [[gnu::always_inline]] inline T shifted_left(T x, Wrapping<T> n) {
   return n >= Wrapping<T>(kBits<T>) ? T(0) : T(Wrapping<T>(x) << (n & (kBits<T> - 1)));
@@ -75,22 +76,23 @@ template <class T>
     return n >= Wrapping<T>(kBits<T>) ? T(0) : T(x >> (n & (kBits<T> - 1)));
 }
 
-// n ones at the low end; n of the width or more: all.
+// Returns n ones at the low end, or all ones for an n of the width or more.
 template <class T>
 [[gnu::always_inline]] inline T low_ones(Wrapping<T> n) {
   return T(shifted_left<T>(1, n) - 1);
 }
 
-// Position or length of a field. PTX ISA, bfe and bfi: the low 8 bits. As recorded that holds for 32 bits,
-// while the 64-bit forms take the whole number; all from 64 on mean the same.
+// Returns the position or length of a field. The PTX ISA says that bfe and bfi use the low 8 bits. Recordings
+// show that this holds for 32 bits, while the 64-bit forms use the whole number. All values from 64 on mean
+// the same.
 template <class T>
 [[gnu::always_inline]] inline Wrapping<T> field_count(uint32_t n) {
   const Wrapping<T> count = n;
   if constexpr (sizeof(T) == 8) return count > 255 ? Wrapping<T>(255) : count;
   return count & 0xff;
 }
-// Shifts the field to the top and back, so that its sign or zeros fill the rest. A signed field that reaches
-// past the last bit has that bit as its sign.
+// Extracts a field by shifting it to the top and back, so that its sign or zeros fill the rest. A signed
+// field that reaches past the last bit has that bit as its sign.
 template <class T>
 [[gnu::always_inline]] inline T field(T a, uint32_t position, uint32_t length) {
   using W = Wrapping<T>;
@@ -102,9 +104,9 @@ template <class T>
   const bool is_empty = n == 0 || (std::is_unsigned_v<T> && p > kLast);
   return is_empty ? T(0) : bits;
 }
-// The field in place differs from the background by the field's bits of a ^ (b >> position). Their upper
-// neighbours leave by two shifts, not by a mask of ones: compilers make no vectors of a constant shifted by
-// 64-bit counts.
+// Inserts a field: it differs from the background by the field's bits of a ^ (b >> position). The neighbours
+// above the field are removed by two shifts and not by a mask of ones, because compilers do not vectorise a
+// constant shifted by 64-bit counts.
 template <class T>
 [[gnu::always_inline]] inline T inserted(T a, T b, uint32_t position, uint32_t length) {
   using W = Wrapping<T>;
@@ -115,7 +117,7 @@ template <class T>
   return n == 0 || p > kLast ? b : T(b ^ change);
 }
 
-// High 64 bits of a product, from products of halves.
+// Returns the high 64 bits of a product, computed from products of halves.
 [[gnu::always_inline]] inline uint64_t high_product(uint64_t a, uint64_t b) {
   const uint64_t al = uint32_t(a), ah = a >> 32, bl = uint32_t(b), bh = b >> 32;
   const uint64_t middle = ah * bl + (al * bl >> 32);  // below 2^64: (2^32 - 1)^2 + 2^32 - 1
@@ -127,7 +129,7 @@ template <class T>
   if constexpr (sizeof(T) == 8) {
     const uint64_t high = high_product(uint64_t(a), uint64_t(b));
     if constexpr (std::is_unsigned_v<T>) return high;
-    // A negative factor counts 2^64 too much, times the other one.
+    // A negative factor adds 2^64 times the other factor too much.
     const uint64_t of_a = a < 0 ? uint64_t(b) : 0, of_b = b < 0 ? uint64_t(a) : 0;
     return T(high - of_a - of_b);
   } else {
@@ -140,21 +142,22 @@ template <class T>
 struct Division {
   T quotient, remainder;
 };
-// Of b > 0. The rounded quotient of doubles never reaches the integer above the true one: that lies 1/b or
-// more away, the rounding error is below 2^-21 / b. The sum leaves the integer in the low mantissa bits.
+// Divides by b > 0. The rounded quotient of doubles never reaches the integer above the true quotient: that
+// integer is at least 1/b away, and the rounding error is below 2^-21 / b. The sum leaves the integer in the
+// low mantissa bits.
 [[gnu::always_inline]] inline Division<uint32_t> divided(uint32_t a, uint32_t b) {
   const double q = small_double(a) / small_double(b);
   const double n = q + kTwo52;
   const uint32_t quotient = uint32_t(double_bits(n)) - (n - kTwo52 > q ? 1u : 0u);
   return {quotient, a - quotient * b};
 }
-// 16 bits in single precision: the same argument with an error below 2^-8 / b.
+// Divides 16 bits in single precision. The same argument holds with an error below 2^-8 / b.
 [[gnu::always_inline]] inline Division<uint16_t> divided(uint16_t a, uint16_t b) {
   const uint32_t quotient = uint32_t(int32_t(float(int32_t(a)) / float(int32_t(b))));
   return {uint16_t(quotient), uint16_t(a - quotient * b)};
 }
-// Two steps with a reciprocal that is a little too small, so that no step goes too far: the first leaves a
-// quotient below 2^17, the second one of 0 or 1.
+// Divides in two steps with a reciprocal that is slightly too small, so that no step goes too far. The first
+// step leaves a quotient below 2^17, and the second leaves 0 or 1.
 [[gnu::always_inline]] inline Division<uint64_t> divided(uint64_t a, uint64_t b) {
   const double reciprocal = (1.0 - 0x1p-49) / double(b);
   const uint64_t first = uint64_t(double(a) * reciprocal);
@@ -164,8 +167,9 @@ struct Division {
   return {first + second + (last >= b ? 1u : 0u), last >= b ? last - b : last};
 }
 
-// As recorded on hardware, since PTX leaves it open: a division by 0 gives all ones, as quotient and as
-// remainder; of the lowest number by -1 the quotient is that number and the remainder 0.
+// PTX leaves these cases open; the results are recorded from hardware. A division by 0 gives all ones, as
+// quotient and as remainder. For the lowest number divided by -1, the quotient is that number and the
+// remainder is 0.
 template <class T>
 [[gnu::always_inline]] inline Division<T> division(T a, T b) {
   using U = Unsigned<T>;

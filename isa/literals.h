@@ -1,4 +1,4 @@
-// The numbers of program text: what a literal means in an operand slot; shared by printer and parser.
+// Defines what a literal in program text means in an operand slot. Printer and parser share it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
@@ -13,17 +13,18 @@
 
 namespace glint::isa {
 
-// Whether a literal in slot `slot` of `row` is a float: from the op's last type, and by hand where an op
-// mixes types. Bits printed as a float are the same bits; only a decimal fraction needs to know.
+// Returns whether a literal in slot `slot` of `row` is a float. The op's last type decides, except for ops
+// that mix types, which are listed here. Bits printed as a float are the same bits; only a decimal fraction
+// needs this knowledge.
 inline bool is_float(const OpRow& row, int slot) {
   if (row.effect == Effect::Trace) return slot >= 7 && slot <= 14;  // origin, tmin, direction, tmax
   if (row.effect == Effect::Report) return slot == 1;
-  if (row.effect == Effect::Texture && slot <= slots_of(row.operands.kind[0]))
-    return false;  // results, handle
+  // These slots are the results and the handle.
+  if (row.effect == Effect::Texture && slot <= slots_of(row.operands.kind[0])) return false;
   return row.name.ends_with(".f32") || row.name.ends_with(".f64");
 }
 
-// The digits of `text` in `base` as a number, if that is all of it and it fits 64 bits.
+// Returns the number that `text` writes in `base`, if the whole text is digits and the number fits 64 bits.
 inline std::optional<uint64_t> digits(std::string_view text, unsigned base) {
   if (text.empty()) return {};
   uint64_t value = 0;
@@ -38,7 +39,7 @@ inline std::optional<uint64_t> digits(std::string_view text, unsigned base) {
   return value;
 }
 
-// "17", "0x11", "0f3F800000" (8 digits) or "0d3FF0000000000000" (16 digits).
+// Reads "17", "0x11", "0f3F800000" (8 digits) or "0d3FF0000000000000" (16 digits).
 inline std::optional<uint64_t> number(std::string_view text) {
   const std::string_view head = text.substr(0, 2),
                          rest = text.size() > 2 ? text.substr(2) : std::string_view();
@@ -48,8 +49,8 @@ inline std::optional<uint64_t> number(std::string_view text) {
   return digits(text, 10);
 }
 
-// "1.5" or "2e-3": the bits of the nearest float of 32 or 64 bits; nothing for what has neither point nor
-// exponent.
+// Returns for "1.5" or "2e-3" the bits of the nearest float of 32 or 64 bits, and nothing for a text with
+// neither point nor exponent.
 inline std::optional<uint64_t> fraction(std::string_view text, bool is_wide) {
   if (text.empty() || text[0] < '0' || text[0] > '9') return {};
   if (text.find_first_of(".eE") == std::string_view::npos) return {};

@@ -10,7 +10,7 @@
 namespace glint::isa {
 namespace {
 
-// A decimal number at `at`, at most kMaxMessageWidth + 1.
+// Reads a decimal number at `at`, which is at most kMaxMessageWidth + 1.
 int number_at(std::string_view text, size_t& at) {
   int value = 0;
   for (; at < text.size() && std::isdigit(uint8_t(text[at])); ++at)
@@ -56,13 +56,13 @@ std::string format_float(const Conversion& c, uint64_t bits) {
   if (c.precision >= 0)
     format += fmt::format(".{}", c.precision);
   else if (c.letter != 'a' && c.letter != 'A')
-    format += ".6";  // what C takes without one
+    format += ".6";  // C's default precision
   const double magnitude = std::bit_cast<double>(std::bit_cast<uint64_t>(value) & ~(uint64_t{1} << 63));
   const std::string digits = fmt::format(fmt::runtime(format + c.letter + "}"), magnitude);
   if (!is_number || (c.letter != 'a' && c.letter != 'A'))
     return padded(c, sign_of(c, negative), digits, c.zeros && is_number);
-  return padded(c, sign_of(c, negative) + digits.substr(0, 2), digits.substr(2),
-                c.zeros);  // zeros go behind 0x
+  // The zeros come after 0x.
+  return padded(c, sign_of(c, negative) + digits.substr(0, 2), digits.substr(2), c.zeros);
 }
 
 }  // namespace
@@ -121,9 +121,9 @@ ParsedMessage parse_message(std::string_view text) {
     piece.conversion.letter = at < text.size() ? text[at] : '\0';
     if (std::string_view("diuxXofFeEgGaA").find(piece.conversion.letter) == std::string_view::npos ||
         piece.conversion.letter == '\0')
-      return wrong(fmt::format("'{}' is no conversion", text.substr(first, at + 1 - first)));
+      return wrong(fmt::format("'{}' is not a conversion", text.substr(first, at + 1 - first)));
     if (std::max(piece.conversion.width, piece.conversion.precision) > kMaxMessageWidth)
-      return wrong(fmt::format("a width of more than {}", kMaxMessageWidth));
+      return wrong(fmt::format("the width is more than {}", kMaxMessageWidth));
     piece.before = std::move(before);
     before.clear();
     out.words += piece.conversion.is_wide ? 2 : 1;
@@ -131,7 +131,7 @@ ParsedMessage parse_message(std::string_view text) {
   }
   out.after = std::move(before);
   if (out.words > kMessageWords)
-    return wrong(fmt::format("{} words, a print takes {}", out.words, kMessageWords));
+    return wrong(fmt::format("the message has {} words, but a print takes {}", out.words, kMessageWords));
   return out;
 }
 

@@ -1,8 +1,9 @@
-// Makers of op rows: they wrap the work of one lane into a handler for the whole warp.
-//
-// Included only by isa/ops/*.cpp, which are compiled once for each SIMD path. Everything here lies in a
-// namespace of its path, and rows pass lambdas of an unnamed namespace: no path can link another's code.
+// Makes op rows: wraps the work of one lane into a handler for the whole warp.
 // SPDX-License-Identifier: Apache-2.0
+//
+// Only isa/ops/*.cpp include this file. They are compiled once for each SIMD path. Everything here is in a
+// namespace of its path, and rows pass lambdas of an unnamed namespace, so no path can link another path's
+// code.
 #pragma once
 #include <tuple>
 #include <type_traits>
@@ -22,15 +23,15 @@ namespace glint::isa::GLINT_ISA_PATH {
 
 using enum OperandKind;
 
-// Bit i of entry i: the mask bit of each lane, as data, so that masks are tested a vector at a time.
+// Entry i has bit i set, which is the mask bit of lane i. As data, masks can be tested a vector at a time.
 inline constexpr LaneMask kLaneBit[kLanes] = {
     1u << 0,  1u << 1,  1u << 2,  1u << 3,  1u << 4,  1u << 5,  1u << 6,  1u << 7,
     1u << 8,  1u << 9,  1u << 10, 1u << 11, 1u << 12, 1u << 13, 1u << 14, 1u << 15,
     1u << 16, 1u << 17, 1u << 18, 1u << 19, 1u << 20, 1u << 21, 1u << 22, 1u << 23,
     1u << 24, 1u << 25, 1u << 26, 1u << 27, 1u << 28, 1u << 29, 1u << 30, 1u << 31};
 
-// Calls `lane(i)` for all lanes. Rows are equal or disjoint and a lane touches only its own column, so no
-// lane depends on another: the compiler is told, because it cannot know.
+// Calls `lane(i)` for all lanes. Rows are equal or disjoint, and a lane touches only its own column, so no
+// lane depends on another. The compiler cannot know this and is told so.
 template <class Lane>
 [[gnu::always_inline]] inline void all_lanes(Lane&& lane) {
 #if defined(__clang__)
@@ -41,7 +42,7 @@ template <class Lane>
   for (int i = 0; i < kLanes; ++i) lane(i);
 }
 
-// Floats of 16 bits, and pairs of them: bits only, the arithmetic is in isa/half.h.
+// Holds floats of 16 bits, and pairs of them, as bits only. Their arithmetic is in isa/half.h.
 struct Half {
   uint16_t bits;
 };
@@ -53,14 +54,14 @@ struct Pair {
   T low, high;
 };
 
-// Result of an op with two destinations, written `%r1|%p2`.
+// Holds the results of an op with two destinations, written `%r1|%p2`.
 template <class A, class B>
 struct Two {
   A first;
   B second;
 };
 
-// A name put together at compile time: joined<"add", ".rz", ".f32"> is the string_view "add.rz.f32".
+// Joins a name at compile time: joined<"add", ".rz", ".f32"> is the string_view "add.rz.f32".
 template <size_t kSize>
 struct Text {
   char at[kSize]{};
@@ -81,7 +82,7 @@ struct Joined {
     (append(kParts), ...);
     return out;
   }();
-  // The same as a template argument of further names.
+  // Holds the joined name as a template argument of further names.
   static constexpr Text<kLength + 1> kAsText = [] {
     char out[kLength + 1]{};
     for (size_t i = 0; i < kLength; ++i) out[i] = kText[i];
@@ -91,8 +92,8 @@ struct Joined {
 template <Text... kParts>
 inline constexpr std::string_view joined{Joined<kParts...>::kText.data(), Joined<kParts...>::kLength};
 
-// A source operand of type T: reads the bits of one lane. 64-bit operands are two rows, low half first;
-// 16-bit ones (integers, Half, Bfloat) are the low half of a row, whose upper half means nothing.
+// A source operand of type T, which reads the bits of one lane. A 64-bit operand is two rows, low half first.
+// A 16-bit operand (integer, Half, Bfloat) is the low half of a row, whose upper half means nothing.
 template <class T>
 struct Source {
   const uint32_t* low;
@@ -109,7 +110,7 @@ struct Source {
   }
 };
 
-// A predicate operand: reads the bit of one lane.
+// A predicate operand, which reads the bit of one lane.
 template <>
 struct Source<bool> {
   LaneMask mask;
@@ -117,7 +118,7 @@ struct Source<bool> {
   [[gnu::always_inline]] bool at(int i) const { return (mask & kLaneBit[i]) != 0; }
 };
 
-// The bits of a result, as they fill a register (pair): 16-bit results leave the upper half 0.
+// Returns the bits of a result as they fill a register or pair. A 16-bit result leaves the upper half 0.
 template <class T>
 [[gnu::always_inline]] inline auto bits_of(T x) {
   if constexpr (sizeof(T) == 8)
@@ -167,13 +168,13 @@ template <class R, class Value>
   out = (out & ~warp.exec) | (mask & warp.exec);
 }
 
-// The mask of the lanes where `test(i)` is true.
+// Returns the mask of the lanes where `test(i)` is true.
 template <class Test>
 [[gnu::always_inline]] inline LaneMask mask_of(Test&& test) {
 #if defined(__AVX512F__)
-  // The bits come into registers before the test, which compilers do not see: they would load them under its
-  // mask. Such a load without lanes, of a page that nobody has touched yet, faults in silence: 300 ns each
-  // time.
+  // The bits are loaded into registers before the test, hidden from the compiler, which would otherwise load
+  // them under the test's mask. Such a masked load without lanes, from a page that nobody has touched yet,
+  // faults silently and takes 300 ns each time.
   __m512i low = _mm512_loadu_si512(kLaneBit), high = _mm512_loadu_si512(kLaneBit + 16);
   asm("" : "+v"(low), "+v"(high));
   alignas(64) uint32_t words[kLanes];
@@ -188,8 +189,8 @@ template <class Test>
 #endif
 }
 
-// Writes value(i) of each lane of `exec`: a bool to a predicate, 8 bytes to a register pair, less to a
-// register.
+// Writes value(i) of each lane of `exec`: a bool to a predicate, 8 bytes to a register pair, and fewer bytes
+// to a register.
 template <class R, class Value>
 [[gnu::always_inline]] inline void write_result(Warp& warp, Slot slot, Value&& value) {
   if constexpr (std::is_same_v<R, bool>)

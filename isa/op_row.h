@@ -1,4 +1,4 @@
-// One row of the ISA table: everything the emulator, its docs and its tests know of one op.
+// Defines one row of the ISA table: everything that the emulator, its docs and its tests know of one op.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -13,15 +13,15 @@
 
 namespace glint::isa {
 
-// Instruction-mix class, as the LumiBench paper's Figure 8 splits instructions.
+// Names the instruction-mix classes by which the LumiBench paper's Figure 8 splits instructions.
 enum class Class : uint8_t { Alu, Sfu, Mem, Tex, Ctrl, Rt, Count };
 constexpr std::string_view name_of(Class c) {
   constexpr std::string_view kNames[] = {"alu", "sfu", "mem", "tex", "ctrl", "rt"};
   return kNames[size_t(c)];
 }
 
-// Execution unit: latency and initiation interval come from the configuration, `[core.units.<name>]`.
-// FpDiv and IntDiv are multi-pass sequences that the hardware runs on the named pipe.
+// Names the execution units. Latency and initiation interval come from the configuration,
+// `[core.units.<name>]`. FpDiv and IntDiv are multi-pass sequences that the hardware runs on the named pipe.
 enum class Unit : uint8_t {
   Int,
   IntDiv,
@@ -33,7 +33,7 @@ enum class Unit : uint8_t {
   Sfu,
   Move,
   Predicate,
-  Shuffle,  // lanes that read each other: shfl, vote, match, redux
+  Shuffle,  // ops whose lanes read each other: shfl, vote, match, redux
   Lsu,
   Const,
   Tex,
@@ -49,22 +49,26 @@ constexpr std::string_view name_of(Unit u) {
   return kNames[size_t(u)];
 }
 
-// Kinds of operand, in the order in which the text writes them. Each takes one slot unless noted.
+// Names the kinds of operands, in the order in which the text writes them. Each takes one slot unless noted.
 enum class OperandKind : uint8_t {
   None,
   Dst32,
   Dst64,
   DstPred,
+  // Src32 and Src64 are a register, a constant (written as a number) or a special.
   Src32,
   Src64,
-  SrcPred,  // Src32/Src64: register, constant (written as a number) or special
+  SrcPred,
+  // Vectors are written "{%r1, %r2}" and take 2 or 4 slots of any 32-bit registers.
   DstVec2,
   DstVec4,
   SrcVec2,
-  SrcVec4,    // "{%r1, %r2}": 2 or 4 slots of any 32-bit registers
+  SrcVec4,
   Address64,  // "[%rd4 + 16]": pair and byte displacement (Inst::imm)
-  Address32,  // "[%r4 + 16]": register or constant 0 ("[16]"), and displacement: local, shared, const
-  Label,      // Inst::imm = target instruction index; no slot
+  // Address32 is "[%r4 + 16]": a register or the constant 0 ("[16]"), and a displacement. It is used for
+  // local, shared and constant memory.
+  Address32,
+  Label,  // Inst::imm is the index of the target instruction; takes no slot
 };
 constexpr int slots_of(OperandKind k) {
   switch (k) {
@@ -104,58 +108,64 @@ struct Operands {
   constexpr std::span<const OperandKind> view() const { return {kind.data(), count}; }
 };
 
-// What the machine must do after the handler ran. None: the handler wrote its registers and that is all.
+// Names what the machine must do after the handler ran. None means that the handler did everything.
 enum class Effect : uint8_t {
   None,
+  // OpRow::memory describes Load, Store and Atomic. Their addresses are in Warp::access.
   Load,
   Store,
-  Atomic,   // OpRow::memory says how; addresses in Warp::access
-  Texture,  // OpRow::image says how; access.address = texture handle
+  Atomic,
+  // OpRow::image describes Texture, SurfaceLoad and SurfaceStore. access.address is the handle.
+  Texture,
   SurfaceLoad,
-  SurfaceStore,       // as Texture; access.address = image handle
+  SurfaceStore,
   SurfaceAtomic,      // read-modify-write of a texel by OpRow::atomic
-  ImageQuery,         // what the image is like: no memory access
-  Branch,             // to Inst::imm for the lanes of exec
-  BranchIndexed,      // brx.idx: to Inst::imm + operand 0, where a table of branches stands
+  ImageQuery,         // asks for properties of the image; accesses no memory
+  Branch,             // to Inst::imm, for the lanes of exec
+  BranchIndexed,      // brx.idx: to Inst::imm + operand 0, in a table of branches
   Call,               // to the function at Inst::imm; `ret` comes back
   PushReconvergence,  // ssy: lanes will meet at Inst::imm
-  Join,               // lanes wait here for the others of the innermost ssy that names this place
+  Join,               // lanes wait for the others of the innermost ssy that names this place
   Exit,               // lanes end
   Return,             // lanes return from a function or a shader call
-  Trap,               // a fault
+  Trap,               // raises a fault
+  // The ops call.sbt.* call shaders indirectly through the binding table.
   CallCandidate,
   CallAnyHit,
   CallHit,
-  CallCallable,  // call.sbt.*: indirect shader calls through the binding table
+  CallCallable,
+  // rt.trace and rt.resume give rays to the RT unit. The answer goes to the predicate of operand slot 0.
   Trace,
-  Resume,  // rt.trace, rt.resume: give rays to the RT unit; answer: predicate slot 0
-  Report,
-  Accepted,
-  Ignore,
-  Terminate,
-  EndTrace,  // rt.report, rt.accepted, rt.ignore, rt.terminate, rt.end
-  Query,
-  QueryProceed,  // rq.*: OpRow::detail says which; rq.proceed gives rays to the RT unit
+  Resume,
+  Report,        // rt.report
+  Accepted,      // rt.accepted
+  Ignore,        // rt.ignore
+  Terminate,     // rt.terminate
+  EndTrace,      // rt.end
+  Query,         // rq.*: OpRow::detail says which (isa/ray_query.h)
+  QueryProceed,  // rq.proceed: gives rays to the RT unit
   HitObject,     // ho.*: OpRow::detail says which (isa/hit_object.h)
   Barrier,       // bar.*: warps of a block wait for each other
+  // print and print.part print a message of Program::messages with its words.
   Print,
-  PrintPart,  // print, print.part: a message of Program::messages with the words of its conversions
-  Fence,      // membar, fence, bar.warp.sync: orders memory accesses of the warp
+  PrintPart,
+  Fence,  // membar, fence, bar.warp.sync: orders memory accesses of the warp
 };
 
-// Runs other shaders, which use all registers and predicates but %r0 (docs/abi.md).
+// Returns true for effects that run other shaders, which use all registers and predicates except %r0
+// (docs/abi.md).
 constexpr bool is_shader_call(Effect e) {
   return e == Effect::CallCandidate || e == Effect::CallAnyHit || e == Effect::CallHit ||
          e == Effect::CallCallable;
 }
 
-// Generic: a 64-bit address whose window says which of global, shared and local it is in
-// (isa/generic_address.h). Param: the parameters of a kernel; they lie in the constant bank at
+// Names the state spaces. Generic is a 64-bit address whose window says whether it is global, shared or local
+// (isa/generic_address.h). Param holds the parameters of a kernel, which lie in the constant bank at
 // kPushConstantOffset (isa/program.h).
 enum class Space : uint8_t { None, Global, Local, Shared, Const, Param, Generic };
 
-// Static shape of a load or store: `count` parts of `bytes` bytes, consecutive in memory; a part of 8
-// bytes fills a register pair, parts of 1 and 2 bytes are zero- or sign-extended to 32 bits.
+// Describes the static shape of a load or store: `count` parts of `bytes` bytes, consecutive in memory. A
+// part of 8 bytes fills a register pair. Parts of 1 and 2 bytes are zero- or sign-extended to 32 bits.
 struct Memory {
   Space space = Space::None;
   uint8_t bytes = 4;
@@ -163,16 +173,16 @@ struct Memory {
   bool sign_extend = false;
 };
 
-// Runs one instruction for the lanes of `warp.exec`; lanes outside keep their values.
+// Runs one instruction for the lanes of `warp.exec`. Other lanes keep their values.
 using Handler = void (*)(Warp& warp, const Inst& inst);
 
-// What an atomic op makes of the old bits in memory and its operands `b` and `c`. An op without a second
-// operand gets in `c` whether the place is in global memory, whose adders differ. Runs a lane at a time:
-// lanes that meet take turns.
+// Returns what an atomic op makes of the old bits in memory and its operands `b` and `c`. An op without a
+// second operand gets in `c` whether the place is in global memory, whose adders differ. It runs one lane at
+// a time, and lanes with the same address take turns.
 using AtomicFunction = uint64_t (*)(uint64_t old, uint64_t b, uint64_t c);
 
-// Inputs (raw bits, one entry a source operand, predicates 0 or 1) and the expected result bits; `second` is
-// that of the second destination, where there is one.
+// Holds inputs (raw bits, one entry per source operand, predicates as 0 or 1) and the expected result bits.
+// `second` is the result of the second destination, if there is one.
 struct Example {
   std::array<uint64_t, 5> in{};
   uint64_t out = 0;
@@ -189,7 +199,7 @@ struct Examples {
 };
 
 struct OpRow {
-  std::string_view name;  // PTX's spelling, type suffix included: "add.s32"; parser and printer use it
+  std::string_view name;  // PTX's spelling with the type suffix, "add.s32", for parser and printer
   Class klass = Class::Alu;
   Unit unit = Unit::Int;
   Operands operands;  // what verifier, parser, register allocator and scheduler need
@@ -197,20 +207,21 @@ struct OpRow {
   Memory memory;
   ImageAccess image;                // of texture and surface ops
   AtomicFunction atomic = nullptr;  // of Effect::Atomic and SurfaceAtomic
-  uint16_t detail = 0;              // which of its family, where one effect serves many rows: isa/ray_query.h
-  Handler run = nullptr;            // never null; ops that are all effect have an empty handler
-  std::string_view doc;             // one sentence: docs/isa.md and `glint isa add.s32`
-  Examples examples;                // documentation and test at once
+  // Says which op of its family a row is, where one effect serves many rows (isa/ray_query.h).
+  uint16_t detail = 0;
+  Handler run = nullptr;  // never null; an op that is only an effect has an empty handler
+  std::string_view doc;   // one sentence, for docs/isa.md and `glint isa add.s32`
+  Examples examples;      // examples are documentation and test at once
 };
 
-// The whole table, sorted by family then declaration; row index = Inst::op. The handlers are those of the
-// widest SIMD path this machine has; every path gives identical bits.
+// Returns the whole table, sorted by family and then by declaration. Inst::op is the index of the row. The
+// handlers are those of the widest SIMD path that this machine has; every path gives identical bits.
 std::span<const OpRow> op_table();
 
-// Index of the row of that name, or -1.
+// Returns the index of the row of that name, or -1.
 int find_op(std::string_view name);
 
-// As find_op, but an unknown name is our own bug: for code that names ops literally.
+// Does the same as find_op(), but an unknown name is a bug in Glint. It serves code that names ops literally.
 uint16_t op_index(std::string_view name);
 
 }  // namespace glint::isa

@@ -1,4 +1,4 @@
-// Joins the op families into one table a SIMD path, and finds the path of this machine.
+// Joins the op families into one table for each SIMD path, and finds the path of this machine.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <map>
@@ -11,7 +11,7 @@
 
 namespace glint::isa {
 
-// isa/ops/families.cpp, compiled once for each path.
+// These functions are in isa/ops/families.cpp, which is compiled once for each path.
 namespace baseline {
 std::span<const FamilyEntry> family_entries();
 }
@@ -55,8 +55,8 @@ Path widest_path() {
 }  // namespace
 
 bool is_supported(Path path) {
-  // Every processor with AVX2 and FMA converts f16 too (F16C came before both): compilers do not all know its
-  // name here.
+  // Every processor with AVX2 and FMA also converts f16, because F16C came before both. Some compilers do not
+  // know the name of F16C here.
   const bool has_avx2 =
       __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2");
   if (path == Path::Baseline) return true;
@@ -86,7 +86,7 @@ int find_op(std::string_view name) {
     std::map<std::string_view, int> out;
     for (const OpRow& row : op_table()) {
       const bool is_new = out.emplace(row.name, int(out.size())).second;
-      GLINT_CHECK(is_new, "op '{}' stands twice in the table", row.name);
+      GLINT_CHECK(is_new, "op '{}' is in the table twice", row.name);
     }
     return out;
   }();
@@ -96,7 +96,7 @@ int find_op(std::string_view name) {
 
 uint16_t op_index(std::string_view name) {
   const int index = find_op(name);
-  GLINT_CHECK(index >= 0, "no op is named '{}'", name);
+  GLINT_CHECK(index >= 0, "there is no op '{}'", name);
   return uint16_t(index);
 }
 

@@ -1,4 +1,4 @@
-// Parses the text of a program (isa/text.h). Newlines end directives, semicolons instructions.
+// Parses the text of a program (isa/text.h). Newlines end directives, and semicolons end instructions.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 #include <limits>
@@ -14,7 +14,7 @@
 namespace glint::isa {
 namespace {
 
-// "%rd4" with prefix "%rd" -> 4.
+// Returns the number in a name: "%rd4" with the prefix "%rd" gives 4.
 std::optional<uint64_t> numbered(const std::string& text, std::string_view prefix) {
   if (!text.starts_with(prefix)) return {};
   return digits(std::string_view(text).substr(prefix.size()), 10);
@@ -41,11 +41,11 @@ class Parser {
     const Token word = tokens_.take();
     if (!tokens_.take_if(":")) return instruction_named(word, kNoGuard);
     const uint32_t here = uint32_t(program_.code.size());
-    if (!label_at_.emplace(word.text, here).second) tokens_.fail(word, "a label that does not stand twice");
+    if (!label_at_.emplace(word.text, here).second) tokens_.fail(word, "a label that is not defined twice");
     program_.labels.emplace_back(here, word.text);
   }
 
-  // directives
+  // --- Directives
 
   void directive() {
     const Token name = tokens_.take();
@@ -126,7 +126,7 @@ class Parser {
     line_.line = small("a line");
   }
 
-  // instructions
+  // --- Instructions
 
   void instruction() {
     tokens_.take();
@@ -211,7 +211,7 @@ class Parser {
     }
     tokens_.expect("}", fmt::format("after {} registers", count));
   }
-  // Notes for operands that are nearly right.
+  // Returns notes for operands that are nearly right.
   static std::string near_operand(const std::string& word) {
     if (const auto index = numbered(word, "%r"); index && *index < uint64_t(kNumPredicates))
       return fmt::format("did you mean '%p{}'?", *index);
@@ -296,7 +296,7 @@ class Parser {
     tokens_.take();
     return negate ? (0 - *value) & max : *value;
   }
-  // "[base]", "[base + n]", "[base - n]", or "[n]", whose base is the constant 0.
+  // Reads "[base]", "[base + n]", "[base - n]", or "[n]", whose base is the constant 0.
   void address(Inst& inst, int slot, bool is_wide) {
     tokens_.expect("[", "and an address");
     const Token first = tokens_.peek();
@@ -337,7 +337,7 @@ class Parser {
   Tokens tokens_;
   Program program_;
   Line line_;
-  bool as_float_ = false;  // the present operand: a fraction may stand there
+  bool as_float_ = false;  // the present operand may be a fraction
   std::map<std::string, uint32_t> label_at_;
   std::vector<std::pair<uint32_t, Token>> targets_;
 };

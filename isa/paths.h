@@ -1,4 +1,4 @@
-// The op table as compiled for each SIMD path, and its families: for tests and the reference.
+// Gives tests and the reference the op table as compiled for each SIMD path, and its families.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <span>
@@ -14,10 +14,10 @@ constexpr std::string_view name_of(Path p) {
   return kNames[size_t(p)];
 }
 
-// Whether this machine can run the handlers of `path`.
+// Returns whether this machine can run the handlers of `path`.
 bool is_supported(Path path);
 
-// The table with the handlers of one path; rows and indices are the same on all.
+// Returns the table with the handlers of one path. Rows and indices are the same on all paths.
 std::span<const OpRow> op_table(Path path);
 
 // A chapter of the table: rows [first, first + count).

@@ -1,4 +1,4 @@
-// Equality of programs, and the names of their stages and specials.
+// Compares programs, and names their stages and specials.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/program.h"
 

@@ -45,7 +45,7 @@ std::string_view text_of(OperandKind kind) {
   return "";
 }
 
-// The bits of one value: small ones as numbers, others in hexadecimal.
+// Returns the bits of one value: small values as numbers, others in hexadecimal.
 std::string bits(uint64_t value) {
   return value < 100 ? fmt::format("{}", value) : fmt::format("0x{:x}", value);
 }
@@ -68,8 +68,8 @@ std::string examples_text(const OpRow& row, std::string_view separator, size_t m
   return out;
 }
 
-// Ops that PTX lacks or writes in another form, by the beginning of the name; a name that ends in a space is
-// whole.
+// Lists ops that PTX lacks or writes in another form, by the beginning of the name. A name that ends in a
+// space must match as a whole.
 struct Other {
   std::string_view begin, ptx;
 };
@@ -89,7 +89,7 @@ constexpr Other kOthers[] = {
     {"tld4.compare", "`tld4` with a depth operand"},
     {"pack.b64 ", "`mov.b64 d, {a, b}`"},
     {"unpack.b64 ", "`mov.b64 {d, e}, a`"},
-    {"call ", "`call`, without parameter lists"},
+    {"call ", "`call` without parameter lists"},
     {"add.cc", "the carry in CC"},
     {"addc", "the carry in CC"},
     {"sub.cc", "the carry in CC"},
@@ -109,7 +109,7 @@ std::string time_text(const UnitTime& time) {
   return fmt::format("{}/{}", time.latency, time.interval);
 }
 
-constexpr size_t kPageExamples = 2;  // an op has up to 8: `glint isa OP` shows all
+constexpr size_t kPageExamples = 2;  // an op has up to 8 examples, and `glint isa OP` shows all of them
 
 std::string page_row(const OpRow& row, std::span<const PresetTimes> presets) {
   const std::string operands = operand_text(row), ptx = ptx_name(row);
@@ -134,7 +134,7 @@ std::vector<std::string> all_names() {
 [[noreturn]] void unknown(std::string_view what, std::string_view name,
                           const std::vector<std::string>& known) {
   const std::string near = nearest(std::string(name), known);
-  throw UserError({}, fmt::format("no {} is named '{}'", what, name),
+  throw UserError({}, fmt::format("there is no {} '{}'", what, name),
                   near.empty() ? "" : "did you mean '" + near + "'?");
 }
 
@@ -142,7 +142,9 @@ std::string one_op(const OpRow& row, std::span<const PresetTimes> presets) {
   const std::string ptx = ptx_name(row);
   std::string out = fmt::format("{} {}\n  {}\n  class {}, unit {}\n", row.name, operand_text(row), row.doc,
                                 name_of(row.klass), name_of(row.unit));
-  out += fmt::format("  PTX: {}\n", ptx == row.name ? "the same name" : ptx.empty() ? "no such op" : ptx);
+  out += fmt::format("  PTX: {}\n", ptx == row.name ? "the same name"
+                                    : ptx.empty()   ? "there is no such op"
+                                                    : ptx);
   for (const PresetTimes& times : presets) {
     const UnitTime& t = times.unit[size_t(row.unit)];
     out += fmt::format("  {}: latency {}, interval {} cycles\n", times.preset, t.latency, t.interval);
@@ -183,20 +185,22 @@ std::string page_name(std::string_view family) {
 std::string reference_index(std::span<const PresetTimes> presets) {
   std::string out =
       "# Instruction set\n\n"
-      "Written from the op table (`isa/ops/`) by `tools/update_golden.py`: do not edit. `glint isa OP` "
+      "`tools/update_golden.py` writes this page from the op table (`isa/ops/`): do not edit it. `glint isa "
+      "OP` "
       "prints one op, and\n"
-      "`glint isa BEGINNING` all whose names begin so. A source `a` (32 bits) or `ad` (64 bits) is a "
-      "register, a number or,\n"
-      "if it has 32 bits, a special such as `%launch.x`; `%rd` is a pair of registers; `%r|%p` are two "
-      "destinations. Any\n"
-      "instruction may have a guard, `@%p1` or `@!%p1`. Examples give bits: (sources) = result, "
-      "result|second result.\n"
-      "The column PTX says `same` where PTX's op of that name has this meaning, and what PTX has otherwise. "
-      "The columns of\n"
-      "the presets give latency and interval of the op's unit in cycles, `[core.units.<unit>]` of the "
-      "configuration: to a\n"
-      "dependent instruction, and to the next one on the pipe. All ops of a preset: "
-      "`docs/instructions/<preset>.csv`.\n"
+      "`glint isa BEGINNING` prints all ops whose names begin with the text.\n\n"
+      "- A source `a` (32 bits) or `ad` (64 bits) is a register or a number. A source of 32 bits may also be "
+      "a "
+      "special such as\n"
+      "  `%launch.x`. `%rd` is a pair of registers, and `%r|%p` are two destinations.\n"
+      "- Any instruction may have a guard, `@%p1` or `@!%p1`.\n"
+      "- An example gives bits: (sources) = result, or (sources) = result|second result.\n"
+      "- The column PTX says `same` where PTX's op of that name has this meaning. Otherwise it says what PTX "
+      "has.\n"
+      "- The columns of the presets give latency/interval of the op's unit in cycles: the cycles to a "
+      "dependent instruction, and\n"
+      "  the cycles to the next instruction on the pipe (`[core.units.<unit>]` of the configuration).\n"
+      "- `docs/instructions/<preset>.csv` lists all ops of a preset.\n"
       "\n| family | ops | |\n|---|---|---|\n";
   for (const Family& family : families())
     out += fmt::format("| [{}](isa/{}.md) | {} | {} |\n", family.name, page_name(family.name), family.count,
@@ -218,7 +222,7 @@ std::string reference_page(std::string_view name, std::span<const PresetTimes> p
     names.push_back(page_name(family.name));
     if (names.back() != name) continue;
     std::string out = fmt::format(
-        "# {}\n\n{} How to read this page: [isa.md](../isa.md).\n\n| op | operands | class | unit |",
+        "# {}\n\n{} [isa.md](../isa.md) explains how to read this page.\n\n| op | operands | class | unit |",
         title_of(family), family.doc);
     for (const PresetTimes& times : presets) out += fmt::format(" {} |", times.preset);
     out += " PTX | meaning | examples |\n|---|---|---|---|";

@@ -1,4 +1,4 @@
-// The reference of the instruction set, written from the op table.
+// Writes the reference of the instruction set from the op table.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -10,36 +10,37 @@
 
 namespace glint::isa {
 
-// What one preset says of the units' time, for the reference to show beside each op.
+// Holds one preset's times of the units, which the reference shows next to each op.
 struct UnitTime {
-  uint32_t latency = 0, interval = 0;  // cycles: to a dependent instruction, to the next one on the pipe
+  uint32_t latency = 0, interval = 0;  // cycles to a dependent instruction, and to the next one on the pipe
 };
 struct PresetTimes {
   std::string preset;
   std::array<UnitTime, size_t(Unit::Count)> unit;  // in the order of Unit
 };
 
-// docs/isa.md: how to read the pages of the families, the units' times, the families.
+// Returns docs/isa.md: how to read the pages of the families, the units' times, the families.
 std::string reference_index(std::span<const PresetTimes> presets);
 
-// docs/isa/<family>.md: every op of the family, one a line. UserError with the nearest name when there is
-// none.
+// Returns docs/isa/<family>.md: every op of the family, one per line. Throws UserError with the nearest name
+// when there is no such family.
 std::string reference_page(std::string_view family, std::span<const PresetTimes> presets);
-std::string page_name(std::string_view family);  // "ray tracing" -> "ray_tracing"
+std::string page_name(std::string_view family);  // "ray tracing" becomes "ray_tracing"
 
-// Every op with its operands and sentence, for a terminal.
+// Returns every op with its operands, for a terminal.
 std::string list_ops();
 
-// One op for a terminal, or all whose names begin so; UserError with the nearest name when there is none.
+// Returns one op, or all ops whose names begin with `name`, for a terminal. Throws UserError with the nearest
+// name when there is none.
 std::string describe_op(std::string_view name, std::span<const PresetTimes> presets);
 
-// "op,unit,class,latency,interval", one op a line, as comma-separated values.
+// Returns "op,unit,class,latency,interval" of each op on a line, as comma-separated values.
 std::string instruction_table(const PresetTimes& times);
 
-// "%r, a, ad": the operands of an op as the text writes them.
+// Returns the operands of an op as the text writes them, such as "%r, a, ad".
 std::string operand_text(const OpRow& row);
 
-// What PTX calls the op: its own name, other text where the forms differ, "" where PTX has none.
+// Returns PTX's form of the op: its own name, another text where the forms differ, or "" where PTX has none.
 std::string ptx_name(const OpRow& row);
 
 }  // namespace glint::isa

@@ -1,16 +1,16 @@
-// The arithmetic that rows round in a direction: of a lane in the host's words, and of vectors that say how
-// to round.
-//
-// `of` rounds as MXCSR says, `rounded` as its argument does, `rounded_times_2_to_32` gives 2^32 times the
-// result of sources that are zero or normal. Included only by isa/ops/*.cpp (see rounding.h).
+// Defines the arithmetic that rows round in a direction: of a lane in the host's words, and of vectors that
+// say how to round.
 // SPDX-License-Identifier: Apache-2.0
+//
+// `of` rounds as MXCSR says, and `rounded` as its argument says. `rounded_times_2_to_32` gives 2^32 times the
+// result of sources that are zero or normal. Only isa/ops/*.cpp include this file (see rounding.h).
 #pragma once
 #include "isa/rounding.h"
 
 namespace glint::isa::GLINT_ISA_PATH {
 
 struct Sum {
-  static constexpr bool kIsExactWhenSmall = true;  // a multiple of the least subnormal
+  static constexpr bool kIsExactWhenSmall = true;  // the result is a multiple of the least subnormal
   template <class T>
   [[gnu::always_inline]] static T of(T a, T b) {
     return a + b;
@@ -67,7 +67,7 @@ struct Product {
 #endif
 };
 
-// a * b + c, rounded once.
+// Computes a * b + c, rounded once.
 struct ProductSum {
   static constexpr bool kIsExactWhenSmall = false;
   [[gnu::always_inline]] static float of(float a, float b, float c) { return __builtin_fmaf(a, b, c); }
@@ -110,7 +110,7 @@ struct Quotient {
 #endif
 };
 
-// 1 / a
+// Computes 1 / a.
 struct Inverse {
   static constexpr bool kIsExactWhenSmall = false;
   template <class T>
@@ -134,7 +134,7 @@ struct Inverse {
 };
 
 struct Root {
-  static constexpr bool kIsExactWhenSmall = true;  // never subnormal
+  static constexpr bool kIsExactWhenSmall = true;  // the result is never subnormal
   [[gnu::always_inline]] static float of(float a) { return __builtin_sqrtf(a); }
   [[gnu::always_inline]] static double of(double a) { return __builtin_sqrt(a); }
 #if defined(__AVX512F__)

@@ -1,9 +1,9 @@
-// Arithmetic rounded in any direction, with subnormals flushed where a row says so, a warp's worth at a time.
-//
-// AVX-512 rounds by a field of the instruction, and flushes by comparisons. Other paths set the host's MXCSR
-// meanwhile, which is right and not always fast: on some processors a pair of its loads takes 50 ns. Included
-// only by isa/ops/*.cpp.
+// Rounds arithmetic in any direction, and flushes subnormals where a row says so, a warp at a time.
 // SPDX-License-Identifier: Apache-2.0
+//
+// AVX-512 rounds by a field of the instruction and flushes by comparisons. Other paths set the host's MXCSR
+// meanwhile. This is correct but not always fast: on some processors a pair of its loads takes 50 ns. Only
+// isa/ops/*.cpp include this file.
 #pragma once
 #include <cstdint>
 #include <xmmintrin.h>
@@ -13,16 +13,16 @@
 
 namespace glint::isa::GLINT_ISA_PATH {
 
-// PTX's .rn .rz .rm .rp; the values are those of MXCSR's RC field (Intel SDM volume 1, 10.2.3.1).
+// Names PTX's .rn .rz .rm .rp. The values are those of MXCSR's RC field (Intel SDM volume 1, 10.2.3.1).
 enum class Round : uint8_t { Nearest = 0, Down = 1, Up = 2, Zero = 3 };
 
-// The direction as vector instructions take it, without a look at MXCSR.
+// Gives the direction in the form of vector instructions, which then ignore MXCSR.
 template <Round kRound>
 inline constexpr int kStaticRound = int(kRound) | 8;  // _MM_FROUND_NO_EXC
 
 #if defined(__AVX512F__)
 
-// Subnormals become zeros of their sign.
+// Returns the vector with subnormals replaced by zeros of their sign.
 [[gnu::always_inline]] inline __m512 without_subnormals(__m512 x) {
   const __m512i bits = _mm512_castps_si512(x);
   const __mmask16 is_small = _mm512_testn_epi32_mask(bits, _mm512_set1_epi32(0x7f80'0000));
@@ -33,11 +33,11 @@ inline constexpr int kStaticRound = int(kRound) | 8;  // _MM_FROUND_NO_EXC
   return _mm512_mul_ps(x, _mm512_set1_ps(0x1p32f));
 }
 
-// The arithmetic of Work with .ftz. A result counts as subnormal by its size once rounded with an unbounded
-// exponent (as MXCSR's FTZ and PTX have it): less than 2^-126 may still round to 2^-126 where subnormals have
-// fewer bits. Such a result comes again from sources times 2^32, with all bits. Where those overflow, the
-// true result is either exact or not small: it is small and inexact only if a product's or quotient's sources
-// are below 2^24.
+// Performs the arithmetic of Work with .ftz. As in MXCSR's FTZ and in PTX, a result counts as subnormal by
+// its size after rounding with an unbounded exponent: a result below 2^-126 may still round up to 2^-126
+// where subnormals have fewer bits. Such a result is computed again, with all bits, from sources times 2^32.
+// Where these sources overflow, the true result is either exact or not small, because it can be small and
+// inexact only if the sources of a product or quotient are below 2^24.
 template <class Work, Round kRound, class... Vector>
 [[gnu::always_inline]] inline __m512 flushed_part(Vector... x) {
   const __m512 result = without_subnormals(Work::template rounded<kRound>(without_subnormals(x)...));
@@ -73,12 +73,12 @@ template <Round kRound, bool kFtz, class Work, class F, class... A>
 
 #else
 
-// Rounds that way while it lives, and with kFtz takes subnormal single and double sources and results as
-// zeros of their sign (MXCSR's DAZ and FTZ; a result counts as subnormal by its size once rounded with an
-// unbounded exponent, as PTX's .ftz has it). The host's arithmetic does it in hardware, all lanes at once;
-// the fences keep the compiler, which knows nothing of it, from moving loads and stores (and so what lies
-// between) across. Every thread that runs Glint has MXCSR's state of process start, so it is set, not saved:
-// reading it takes longer than the arithmetic.
+// Sets the rounding direction while it lives. With kFtz, single and double subnormals of sources and results
+// become zeros of their sign (MXCSR's DAZ and FTZ; a result counts as subnormal by its size after rounding
+// with an unbounded exponent, as with PTX's .ftz). The hardware does so for all lanes at once. The compiler
+// does not know of the mode, so fences keep it from moving loads and stores, and the code between them,
+// across. Every thread that runs Glint has MXCSR's state of process start. Therefore the state is set and not
+// saved, because reading it takes longer than the arithmetic.
 template <Round kRound, bool kFtz>
 class RoundingScope {
  public:
@@ -94,8 +94,8 @@ class RoundingScope {
   RoundingScope& operator=(const RoundingScope&) = delete;
 
  private:
-  static constexpr uint32_t kProcessStart =
-      0x1f80;  // nearest, nothing flushed, no traps (System V ABI, 3.4.1)
+  // Rounds to nearest, flushes nothing and traps nothing (System V ABI, 3.4.1).
+  static constexpr uint32_t kProcessStart = 0x1f80;
 };
 
 template <class Work, class F>
@@ -113,8 +113,8 @@ template <Round kRound, bool kFtz, class Work, class F, class... A>
 
 #endif
 
-// A row whose result is `finish(x, a...)` of x = Work::of(a...), the arithmetic of a lane
-// (isa/rounded_arithmetic.h), rounded in a direction and flushed. `finish` itself must not depend on either.
+// Makes a row whose result is `finish(x, a...)` of x = Work::of(a...), the arithmetic of a lane
+// (isa/rounded_arithmetic.h), rounded in a direction and flushed. `finish` itself must depend on neither.
 template <Round kRound, bool kFtz, class Work, class... A, class F>
 constexpr OpRow flushed_op(std::string_view name, Unit unit, std::string_view doc, F, Examples examples) {
   OpRow row = value_op<A...>(
@@ -122,7 +122,7 @@ constexpr OpRow flushed_op(std::string_view name, Unit unit, std::string_view do
   if constexpr (kRound != Round::Nearest || kFtz) row.run = &run_rounded<kRound, kFtz, Work, F, A...>;
   return row;
 }
-// The same, subnormals kept.
+// Makes a row like flushed_op(), but keeps subnormals.
 template <Round kRound, class Work, class... A, class F>
 constexpr OpRow rounded_op(std::string_view name, Unit unit, std::string_view doc, F finish,
                            Examples examples) {

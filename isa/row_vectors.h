@@ -1,8 +1,9 @@
-// Parts of rows as 512-bit vectors: 16 words, or 8 of the doubles and long integers that lie in two rows.
-//
-// Where no compiler finds the instruction: rounding in a direction of its own, conversions. Included only by
-// isa/ops/*.cpp (see op_makers.h); empty on paths without AVX-512.
+// Handles parts of rows as 512-bit vectors: 16 words, or 8 of the doubles and long integers that lie in two
+// rows.
 // SPDX-License-Identifier: Apache-2.0
+//
+// It is used where no compiler finds the instruction: conversions, and rounding with a direction in the
+// instruction. Only isa/ops/*.cpp include this file (see op_makers.h). It is empty on paths without AVX-512.
 #pragma once
 #include <type_traits>
 
@@ -12,7 +13,7 @@ namespace glint::isa::GLINT_ISA_PATH {
 
 #if defined(__AVX512F__)
 
-// The lanes from `i` on, a multiple of their number.
+// Loads the lanes from `i` on; `i` is a multiple of their number.
 template <class T>
 [[gnu::always_inline]] inline auto load_part(const Source<T>& source, int i) {
   static_assert(sizeof(T) >= 4);

@@ -21,7 +21,8 @@ std::string literal(uint64_t value, bool is_wide, bool as_float) {
   return value <= kMaxDecimal ? fmt::format("{}", value) : fmt::format("0x{:x}", value);
 }
 
-// Prints operands. A constant is its literal if parse() would find the same row again, else its row, "%c7".
+// Prints operands. A constant is printed as a literal if parse() would find the same row again, and otherwise
+// as its row, "%c7".
 class OperandPrinter {
  public:
   OperandPrinter(const Program& program, bool rows_are_listed)
@@ -44,7 +45,7 @@ class OperandPrinter {
     return fmt::format("%c{}", index);
   }
 
-  // "[%rd4 + 16]", "[16]" for constant 0 as base.
+  // Returns "[%rd4 + 16]", or "[16]" for the constant 0 as base.
   std::string address(Slot slot, int32_t displacement, bool is_wide) {
     const std::string base = source(slot, is_wide, false);
     if ((slot & kConstantBank) && base == "0") return fmt::format("[{}]", displacement);
@@ -52,7 +53,7 @@ class OperandPrinter {
     return fmt::format("[{} {} {}]", base, displacement < 0 ? '-' : '+', std::abs(int64_t(displacement)));
   }
 
-  // After printing all code: whether literals alone rebuild the table.
+  // Returns, after all code was printed, whether literals alone rebuild the table.
   bool rebuilds() const { return all_found_ && rows_ == program_.constants; }
 
  private:
@@ -61,7 +62,7 @@ class OperandPrinter {
   bool all_found_ = true;
 };
 
-// Names of the targets: the program's labels, made unique, and "L<index>" where it has none.
+// Gives names to branch targets: the program's labels, made unique, and "L<index>" where it has none.
 class LabelNames {
  public:
   explicit LabelNames(const Program& program) {
@@ -145,7 +146,7 @@ std::string inst_text(OperandPrinter& print, const Inst& inst, const LabelNames*
   return out + ";";
 }
 
-// Backslash and quote are escaped, and line ends, which would end the directive.
+// Returns the text in quotes. Backslashes, quotes and line ends, which would end the directive, are escaped.
 std::string quoted(const std::string& s) {
   std::string out = "\"";
   for (const char c : s) {
@@ -196,7 +197,7 @@ std::string to_text(const Program& program) {
   OperandPrinter literals(program, false);
   std::string code = code_text(program, literals);
   if (literals.rebuilds()) return header_text(program) + "\n" + code;
-  // The table has rows that no literal makes, or in another order: it is listed.
+  // The table has rows that no literal makes, or has them in another order, so it is listed.
   std::string constants;
   for (const uint32_t row : program.constants) constants += fmt::format(".const 0x{:x}\n", row);
   OperandPrinter listed(program, true);

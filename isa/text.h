@@ -1,4 +1,4 @@
-// The text of a program: PTX-like assembly that prints and parses to the identical Program.
+// Defines the text of a program: PTX-like assembly that prints and parses to the identical Program.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bitset>
@@ -10,33 +10,34 @@
 
 namespace glint::isa {
 
-// The whole program: directives, labels, instructions, ".loc" lines. parse() of it gives an equal Program.
+// Returns the whole program: directives, labels, instructions, ".loc" lines. Parsing it gives an equal
+// Program.
 std::string to_text(const Program& program);
 
-// One instruction, without a line end; a label is written as "@index". For traces and messages.
+// Returns one instruction without a line end, for traces and messages. A label is written as "@index".
 std::string to_text(const Program& program, const Inst& inst);
 
-// Reads what to_text writes. A whole number is bits, "0f3F800000" and "0d3FF0000000000000" are bits of
-// floats; where an op takes a float, "1.5" and "2e-3" are the nearest one. UserError "file:line:column: what
-// was found, what was expected" at the first mistake. The result is well formed, but only verify() says
-// whether a machine may run it.
+// Reads what to_text() writes. A whole number is bits, and "0f3F800000" and "0d3FF0000000000000" are bits of
+// floats. Where an op takes a float, "1.5" and "2e-3" are the nearest float. Throws UserError
+// "file:line:column: what was found, what was expected" at the first mistake. The result is well formed, but
+// only verify() says whether a machine may run it.
 Program parse(const std::string& text, const std::string& file_name);
 
-// "%launch.x", and back; of a name that is no special: Special::Count.
+// Convert between a special and its name, such as "%launch.x". An unknown name gives Special::Count.
 std::string_view name_of(Special special);
 Special find_special(std::string_view name);
 
-// "ray_generation", and back; false if there is no such stage.
+// Convert between a stage and its name, such as "ray_generation". An unknown name gives false.
 std::string_view name_of(Stage stage);
 bool find_stage(std::string_view name, Stage& out);
 
 using SpecialSet = std::bitset<size_t(kNumSpecials)>;
 
-// Bit i is set where `code` reads Special(i).
+// Returns a set in which bit i says whether `code` reads Special(i).
 SpecialSet specials_read_by(std::span<const Inst> code);
 
-// The row that holds a literal: the first with this value (64 bits: the first two neighbours), or appended.
-// Text and compiler use the same rule, so that text needs no constant table.
+// Returns the row that holds a literal: the first row with this value (for 64 bits, the first two
+// neighbours), or a new row. Text and compiler use the same rule, so text needs no constant table.
 uint32_t intern_constant(std::vector<uint32_t>& rows, uint64_t value, bool is_wide);
 
 }  // namespace glint::isa

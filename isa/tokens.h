@@ -1,4 +1,4 @@
-// The tokens of program text, with the place of each; used by the parser alone.
+// Splits program text into tokens, each with its place. Only the parser uses it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cctype>
@@ -53,7 +53,7 @@ class Tokens {
     return std::isalnum(uint8_t(c)) || c == '_' || c == '.' || c == '%' || c == '$';
   }
 
-  // The '-' of "2e-3": after an 'e' of a word that is a decimal number so far.
+  // Returns whether this is the '-' of "2e-3": it follows the 'e' of a word that is a decimal number so far.
   bool is_exponent_sign() const {
     const std::string& word = token_.text;
     return (next() == '-' || next() == '+') && word.size() >= 2 &&

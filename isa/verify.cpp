@@ -25,8 +25,8 @@ class Verifier {
   void run() {
     header();
     for (at_ = 0; at_ < program_.code.size(); ++at_) instruction(program_.code[at_]);
-    if (program_.code.empty()) whole("no instructions");
-    if (!is_sound_) return;  // paths make sense only where every target and operand does
+    if (program_.code.empty()) whole("the program has no instructions");
+    if (!is_sound_) return;  // paths make sense only if every target and operand does
     const Complaint complain = [this](size_t at, const std::string& what) {
       at_ = at;
       row_ = &op_table()[program_.code[at].op];
@@ -81,18 +81,19 @@ class Verifier {
     }
     operand_ = 0;
     for (; slot < kMaxOperands; ++slot)
-      if (inst.operand[slot]) error(fmt::format("operand slot {} is set, and the op does not have it", slot));
-    if (!has_imm && inst.imm) error("an immediate, and the op has neither address nor label");
+      if (inst.operand[slot]) error(fmt::format("operand slot {} is set, but the op does not have it", slot));
+    if (!has_imm && inst.imm) error("there is an immediate, but the op has neither address nor label");
     stage_of_op();
     message(inst);
     constant_address(inst);
     destinations_differ(inst);
     const Effect e = row_->effect;
     const bool moves_all = e == Effect::PushReconvergence || e == Effect::Join || e == Effect::EndTrace;
-    if (moves_all && inst.guard != kNoGuard) error("a guard, and the op moves all lanes of the warp");
+    if (moves_all && inst.guard != kNoGuard)
+      error("there is a guard, but the op moves all lanes of the warp");
   }
 
-  // Which stages an op means something in (docs/abi.md; Vulkan's execution models).
+  // Checks that the op means something in the program's stage (docs/abi.md; Vulkan's execution models).
   void stage_of_op() {
     switch (row_->effect) {
       case Effect::Trace:
@@ -127,10 +128,10 @@ class Verifier {
     if (std::find(stages.begin(), stages.end(), program_.stage) != stages.end()) return;
     std::string names;
     for (const Stage s : stages) names += fmt::format("{}{}", names.empty() ? "" : ", ", name_of(s));
-    error(fmt::format("stands in a shader of stage {}, and belongs in {}", name_of(program_.stage), names));
+    error(fmt::format("stands in a shader of stage {}, but belongs in {}", name_of(program_.stage), names));
   }
 
-  // A constant address is known now: it must lie in what the program says it has.
+  // Checks a constant address, which must lie in the memory that the program declares.
   void constant_address(const Inst& inst) {
     int slot = 0;
     for (const OperandKind kind : row_->operands.view()) {
@@ -152,21 +153,21 @@ class Verifier {
                          : space == Space::Param ? int64_t(kConstantBankBytes - kPushConstantOffset)
                                                  : INT64_MAX;
     if (first < 0 || end > size)
-      error(fmt::format("touches bytes {} to {}, and there are {}", first, end - 1, size));
+      error(fmt::format("touches bytes {} to {}, but there are {}", first, end - 1, size));
   }
 
-  // The message that a print names must be known now.
+  // Checks that the message named by a print exists. Its number must be a constant.
   void message(const Inst& inst) {
     if (row_->effect != Effect::Print && row_->effect != Effect::PrintPart) return;
     const size_t row = inst.operand[0] & kSlotIndexMask;
     if (inst.operand[0] >> kBankShift != kConstantBank >> kBankShift || row >= program_.constants.size())
-      return error("the number of the message is no constant");
+      return error("the number of the message is not a constant");
     if (program_.constants[row] >= program_.messages.size())
-      error(fmt::format("message {}, and the program has {}", program_.constants[row],
+      error(fmt::format("there is no message {}: the program has {}", program_.constants[row],
                         program_.messages.size()));
   }
 
-  // No register or predicate is written twice.
+  // Checks that no register or predicate is written twice.
   void destinations_differ(const Inst& inst) {
     uint32_t predicates = 0;
     std::bitset<size_t(kSlotIndexMask) + 2> registers;
@@ -210,13 +211,15 @@ class Verifier {
     switch (slot & ~kSlotIndexMask) {
       case kRegisterBank:
         if (end > program_.num_registers)
-          error(fmt::format("register %r{}, and the program has {}", end - 1, program_.num_registers));
+          error(
+              fmt::format("there is no register %r{}: the program has {}", end - 1, program_.num_registers));
         if (is_wide && index % 2) error(fmt::format("pair %rd{} starts at an odd register", index));
         return;
       case kConstantBank:
-        if (is_destination(kind)) error("a constant as destination");
+        if (is_destination(kind)) error("a constant cannot be a destination");
         if (end > program_.constants.size())
-          error(fmt::format("constant row {}, and the program has {}", end - 1, program_.constants.size()));
+          error(fmt::format("there is no constant row {}: the program has {}", end - 1,
+                            program_.constants.size()));
         return;
       case kSpecialBank:
         return special(kind, index, is_wide);
@@ -226,14 +229,15 @@ class Verifier {
   }
 
   void special(OperandKind kind, unsigned index, bool is_wide) {
-    if (is_destination(kind)) error("a special as destination");
-    if (is_wide) error("a special as 64-bit operand");
+    if (is_destination(kind)) error("a special cannot be a destination");
+    if (is_wide) error("a special cannot be a 64-bit operand");
     if (index >= unsigned(kNumSpecials))
-      return error(fmt::format("special {}, and there are {}", index, kNumSpecials));
+      return error(fmt::format("there is no special {}: there are {}", index, kNumSpecials));
     stage_of_special(Special(index));
   }
 
-  // SPV_KHR_ray_tracing's table of built-ins, and blocks, which only compute launches have.
+  // Checks the stage of a special: SPV_KHR_ray_tracing's table of built-ins, and blocks, which only compute
+  // launches have.
   void stage_of_special(Special s) {
     using enum Stage;
     if (s >= Special::TidX && s <= Special::NctaidZ) return only({Compute});

@@ -19,11 +19,11 @@ bool ends_lanes(Effect e) {
          e == Effect::Trap;
 }
 
-// Stacks of open things as a tree: a stack is its top, equal stacks are equal numbers.
+// Holds stacks of open things as a tree. A stack is named by its top, and equal stacks have equal numbers.
 class Stacks {
  public:
   static constexpr int32_t kNone = -1;                               // not reached
-  static constexpr int32_t kTrace = -1, kMain = -2, kFunction = -3;  // marks; from 0: the join of a region
+  static constexpr int32_t kTrace = -1, kMain = -2, kFunction = -3;  // marks; from 0 on: the join of a region
   static constexpr uint32_t kInMain = 0, kInFunction = 1;            // the two empty stacks
 
   Stacks() : nodes_{{0, kMain}, {1, kFunction}} {}
@@ -37,14 +37,14 @@ class Stacks {
   int32_t top(uint32_t stack) const { return nodes_[stack].what; }
   uint32_t below(uint32_t stack) const { return nodes_[stack].below; }
 
-  // The part of the stack up to the innermost region of `join`, or kNone. Regions are not left across a
-  // trace.
+  // Returns the part of the stack up to the innermost region of `join`, or kNone. A region cannot be left
+  // across a trace.
   int32_t up_to(uint32_t stack, int32_t join) const {
     for (; top(stack) >= 0; stack = below(stack))
       if (top(stack) == join) return int32_t(stack);
     return kNone;
   }
-  // Inside a trace, whatever regions are open in it.
+  // Returns whether the stack is inside a trace, whatever regions are open in the trace.
   bool in_trace(uint32_t stack) const {
     while (top(stack) >= 0) stack = below(stack);
     return top(stack) == kTrace;
@@ -96,7 +96,7 @@ class RegionWalk {
     complain_(at, what);
   }
 
-  // A lane comes from `from` to `to` with `stack` open.
+  // Notes that a lane comes from `from` to `to` with `stack` open.
   void enter(uint32_t from, size_t to, uint32_t stack) {
     if (to >= program_.code.size()) return error(from, "the code can run off its end here");
     if (effect(uint32_t(to)) == Effect::Join) {
@@ -110,7 +110,7 @@ class RegionWalk {
       stack_at_[to] = int32_t(stack);
       pending_.push_back(uint32_t(to));
     } else if (stack_at_[to] != int32_t(stack)) {
-      error(from, fmt::format("comes to instruction {} with {}, and another path with {}", to,
+      error(from, fmt::format("comes to instruction {} with {}, but another path comes with {}", to,
                               stacks_.text(stack), stacks_.text(uint32_t(stack_at_[to]))));
     }
   }
@@ -132,8 +132,9 @@ class RegionWalk {
       return error(at, "no rt.trace is open on a path to here");
     const bool parts = e == Effect::BranchIndexed || (e == Effect::Branch && inst(at).guard != kNoGuard);
     if (parts && stacks_.top(before) == Stacks::kTrace)
-      error(at,
-            "lanes may part inside a trace, and no region is open in which they would meet before its end");
+      error(
+          at,
+          "lanes may diverge inside a trace, but no region is open in which they would meet before its end");
     if (e == Effect::Return) returns(at, before);
     const bool is_call = e == Effect::Call;
     const std::vector<uint32_t> next = successors(program_, at);
@@ -141,11 +142,11 @@ class RegionWalk {
       enter(at, next[i], is_call && i == 0 ? Stacks::kInFunction : after);
   }
 
-  // Ray generation and compute shaders are called by nobody.
+  // Checks a return. Nothing calls ray generation and compute shaders.
   void returns(uint32_t at, uint32_t stack) {
     const bool is_entry = program_.stage == Stage::RayGeneration || program_.stage == Stage::Compute;
     if (is_entry && !stacks_.in_function(stack))
-      error(at, "a return outside a function: ray generation and compute shaders end with exit");
+      error(at, "this is a return outside a function: ray generation and compute shaders end with exit");
   }
 
   void report_unreached() {
@@ -167,7 +168,7 @@ class RegionWalk {
   const Program& program_;
   const Complaint& complain_;
   Stacks stacks_;
-  std::vector<int32_t> stack_at_;  // one an instruction: what is open when a lane comes there
+  std::vector<int32_t> stack_at_;  // for each instruction: what is open when a lane comes there
   std::vector<uint32_t> pending_;
   bool is_sound_ = true;
 };
@@ -180,7 +181,7 @@ std::vector<uint32_t> successors(const Program& program, size_t at) {
   const bool is_guarded = inst.guard != kNoGuard;
   std::vector<uint32_t> out;
   if (e == Effect::Branch || e == Effect::Call) out.push_back(uint32_t(inst.imm));
-  if (e == Effect::BranchIndexed)  // into a table of unguarded branches
+  if (e == Effect::BranchIndexed)  // goes into a table of unguarded branches
     for (size_t i = size_t(inst.imm); i < program.code.size(); ++i) {
       const Inst& entry = program.code[i];
       if (row_of(entry).effect != Effect::Branch || entry.guard != kNoGuard) break;

@@ -1,4 +1,4 @@
-// Data flow over the paths of a program: which registers and predicates are written, and where the stack
+// Follows data over the paths of a program: which registers and predicates are written, and where the stack
 // pointer is.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
@@ -15,8 +15,8 @@ namespace {
 
 constexpr size_t kNumValues = size_t(kMaxRegisters) + kNumPredicates;  // registers, then predicates
 
-// What is known of a value on all paths to a place. Meeting two facts gives Written, unless one is Unwritten.
-// Under + guard: written only in lanes where that guard holds.
+// Says what is known of a value on all paths to a place. Two different facts that meet give Written, unless
+// one is Unwritten. Under + guard means: written only in lanes where that guard holds.
 enum Fact : uint8_t { Unwritten, Written, Under };
 
 constexpr uint8_t under(uint8_t guard) {
@@ -39,7 +39,7 @@ struct State {
     s.is_reached = true;
     return s;
   }
-  // Keeps what holds here and there; whether that is less than before.
+  // Keeps what holds in both states. Returns whether that is less than before.
   bool meet(const State& other) {
     if (!is_reached) return *this = other, true;
     const State before = *this;
@@ -51,7 +51,7 @@ struct State {
   }
 };
 
-// Calls `visit(index, is_destination)` for each register and predicate of an instruction but its guard.
+// Calls `visit(index, is_destination)` for each register and predicate of an instruction except its guard.
 template <class Visit>
 void for_each_value(const OpRow& row, const Inst& inst, Visit&& visit) {
   int slot = 0;
@@ -118,8 +118,8 @@ class ValueFlow {
     is_pending_.resize(starts_.size());
   }
 
-  // Everything that code reached from a call writes: after a call it may have been written, and is not looked
-  // into.
+  // Finds everything that code reached from a call writes. After a call it may have been written and is not
+  // checked further.
   void find_written_by_functions() {
     std::vector<uint32_t> pending;
     std::vector<uint8_t> seen(size(), 0);
@@ -158,7 +158,7 @@ class ValueFlow {
     }
   }
 
-  // On a path where the guard holds, what was written under it is written.
+  // Notes that on a path where the guard holds, values written under the guard are written.
   static void assume(State& state, uint8_t guard) {
     for (uint8_t& fact : state.fact)
       if (fact == under(guard)) fact = Written;
@@ -170,8 +170,8 @@ class ValueFlow {
     if (reports_) check(state, i, row, at);
     if (is_shader_call(row.effect)) {
       const uint8_t pointer = state.fact[kStackPointer];
-      state.fact.fill(
-          Unwritten);  // the shaders that are called use all registers and predicates (docs/abi.md)
+      // The shaders that are called use all registers and predicates (docs/abi.md).
+      state.fact.fill(Unwritten);
       state.fact[kStackPointer] = pointer;
     }
     for_each_value(row, i, [&](size_t value, bool is_written) {
@@ -187,9 +187,9 @@ class ValueFlow {
     else if (fact == Unwritten)
       fact = under(guard);
     else if (fact != under(guard))
-      fact = Written;  // the other half of the lanes, or a guard that may hold where it is needed
+      fact = Written;  // the other lanes are written, or the guard may hold where it is needed
     if (value < size_t(kMaxRegisters)) return;
-    // The predicate has another value now: what was written under the old one is not followed further.
+    // The predicate gets a new value here, so values written under its old value are not followed further.
     const uint8_t held = under(uint8_t(value - kMaxRegisters));
     for (uint8_t& other : state.fact)
       if (other == held || other == opposite(held)) other = Written;
@@ -221,7 +221,7 @@ class ValueFlow {
     if (is_shader_call(e) && state.stack < int64_t(program_.local_bytes))
       complain_(at,
                 fmt::format(
-                    "%r0 is {} bytes above its value at entry, and the frame that a called shader must leave "
+                    "%r0 is {} bytes above its value at entry, but the frame that a called shader must leave "
                     "alone has {}",
                     state.stack, program_.local_bytes));
     if (row.memory.space == Space::Local) frame(state, i, row, at);
@@ -233,13 +233,13 @@ class ValueFlow {
     const bool is_predicate = value >= size_t(kMaxRegisters);
     const std::string name =
         fmt::format("%{}{}", is_predicate ? 'p' : 'r', is_predicate ? value - size_t(kMaxRegisters) : value);
-    complain_(at,
-              fact == Unwritten
-                  ? fmt::format("{} is read, and on a path to here nothing has written it", name)
-                  : fmt::format("{} is read by all lanes, and only those of a guard have written it", name));
+    complain_(
+        at, fact == Unwritten
+                ? fmt::format("{} is read, but nothing has written it on a path to here", name)
+                : fmt::format("{} is read by all lanes, but only lanes under a guard have written it", name));
   }
 
-  // Displacements from the stack pointer lie in the frame.
+  // Checks that displacements from the stack pointer are within the frame.
   void frame(const State& state, const Inst& i, const OpRow& row, uint32_t at) {
     int slot = 0;
     for (const OperandKind kind : row.operands.view()) {

@@ -1,4 +1,4 @@
-// The register state of one warp, as op handlers see it: rows of 32 lanes, structure of arrays.
+// Holds the register state of one warp as op handlers see it: rows of 32 lanes, as a structure of arrays.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -11,11 +11,11 @@ namespace glint::isa {
 
 using Row = uint32_t[kLanes];  // one 32-bit register of all lanes, 64-byte aligned
 
-// What a memory, texture or surface op asks of the world; filled by its handler for the lanes of `exec`.
+// Holds the addresses of a memory, texture or surface op, which its handler fills for the lanes of `exec`.
 // Data moves between memory and the op's operand slots when the machine applies the access.
 struct Access {
-  alignas(64) std::array<Address, kLanes> address;  // bytes; local space: offset in the lane's own stack;
-                                                    // image ops: the handle
+  // Bytes; for local space the offset in the lane's own stack, and for image ops the handle.
+  alignas(64) std::array<Address, kLanes> address;
 };
 
 struct Warp {

@@ -57,11 +57,12 @@ class Print {
     const std::string spelled = format_.substr(first, at + 1 - first);
     c.letter = at < format_.size() ? format_[at] : '\0';
     if (c.letter == '\0' || std::string_view("diuxXofFeEgGaA").find(c.letter) == std::string_view::npos)
-      fail(fmt::format(
-          "'{}' is no conversion; known are %d %i %u %x %X %o %f %F %e %E %g %G %a %A, with vectors as %v3f",
-          spelled));
+      fail(
+          fmt::format("'{}' is not a conversion; the conversions are %d %i %u %x %X %o %f %F %e %E %g %G %a "
+                      "%A, with vectors as %v3f",
+                      spelled));
     if (std::max(c.width, c.precision) > isa::kMaxMessageWidth)
-      fail(fmt::format("'{}': more than {} characters", spelled, isa::kMaxMessageWidth));
+      fail(fmt::format("'{}' has more than {} characters", spelled, isa::kMaxMessageWidth));
     if (next_ == arguments_.size())
       fail(fmt::format("'{}' has no argument: the call gives {}", spelled, arguments_.size()));
     const Part part = argument(c);

@@ -127,7 +127,7 @@ EXPECT words IDX 0 EQ 2 2
     def test_a_wrong_format_is_an_error_with_its_line(self):
         self.write("bad.comp", COMPUTE.replace('"line %u"', '"line %q"'))
         done = self.glint("run", "bad.comp", "-Iinclude", "-DSCALE=1", "-DLINES=0", code=2)
-        self.assertIn("bad.comp:10: error: debugPrintfEXT(\"line %q\"): '%q' is no conversion", done.stderr.decode())
+        self.assertIn("bad.comp:10: error: debugPrintfEXT(\"line %q\"): '%q' is not a conversion", done.stderr.decode())
 
 
 class Cache(ShaderTest):

@@ -319,7 +319,7 @@ TEST_CASE("the parser names the place of a mistake and what it expected") {
   CHECK(starts(error_of("L: exit;\nbra M;"),
                "bad.isa:2:5: error: found 'M', expected a label of this program"));
   CHECK(starts(error_of("L: exit;\nL: exit;"),
-               "bad.isa:2:1: error: found 'L', expected a label that does not stand twice"));
+               "bad.isa:2:1: error: found 'L', expected a label that is not defined twice"));
   CHECK(starts(error_of(".stage compte"), "bad.isa:1:8: error: found 'compte', expected a stage"));
   CHECK(starts(error_of(".file 1 \"x\""), "bad.isa:1:7: error: found '1', expected file 0"));
   CHECK(starts(error_of(".registers 300"),

@@ -83,7 +83,7 @@ TEST_CASE("a message takes several values, and percent signs stand for themselve
   CHECK(isa::format_message(message, words) == "100% a=7 b=0.50 c=200000001%\n");
 }
 
-TEST_CASE("what is no conversion, is too wide or takes too many words is an error") {
+TEST_CASE("text that is not a conversion, is too wide or takes too many words is an error") {
   for (const char* bad : {"%", "abc %", "%s", "%5", "%.", "%-", "%l", "%ld%ld%d", "%1000d", "%.1000f",
                           "%99999999999d", "%d%d%d%d%d", "%y"}) {
     INFO(bad);

@@ -162,9 +162,9 @@ TEST_CASE("formats that do not fit are errors with file and line") {
   const auto error = [](const std::string& statement) { return error_of(main_with(statement)); };
   CHECK_THAT(error("debugPrintfEXT(\"%d\");"), Contains("text.comp:6") && Contains("'%d' has no argument"));
   CHECK_THAT(error("debugPrintfEXT(\"%d\", w[0], w[1]);"), Contains("takes 1 arguments, the call gives 2"));
-  CHECK_THAT(error("debugPrintfEXT(\"%q\", w[0]);"), Contains("'%q' is no conversion"));
-  CHECK_THAT(error("debugPrintfEXT(\"%s\", w[0]);"), Contains("'%s' is no conversion"));
-  CHECK_THAT(error("debugPrintfEXT(\"50%\");"), Contains("is no conversion"));
+  CHECK_THAT(error("debugPrintfEXT(\"%q\", w[0]);"), Contains("'%q' is not a conversion"));
+  CHECK_THAT(error("debugPrintfEXT(\"%s\", w[0]);"), Contains("'%s' is not a conversion"));
+  CHECK_THAT(error("debugPrintfEXT(\"50%\");"), Contains("is not a conversion"));
   CHECK_THAT(error("debugPrintfEXT(\"%v5f\", vec2(w[0]));"), Contains("2 to 4 components"));
   CHECK_THAT(error("debugPrintfEXT(\"%5000d\", w[0]);"), Contains("more than 999 characters"));
 }

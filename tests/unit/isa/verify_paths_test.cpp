@@ -47,7 +47,7 @@ TEST_CASE("lanes meet only inside a region that is open, and regions nest on eve
              Contains("comes to the join at 3 outside its region"));
   CHECK_THAT(verdict("ssy A; exit; A: join; exit;"), Contains("no path leads to the join at 2"));
   CHECK_THAT(verdict("setp.eq.u32 %p0, %laneid, 1; @%p0 ssy A; A: join; exit;"),
-             Contains("a guard, and the op moves all lanes of the warp"));
+             Contains("there is a guard, but the op moves all lanes of the warp"));
 }
 
 TEST_CASE("code that no lane reaches and code that runs off its end are refused") {
@@ -62,12 +62,12 @@ TEST_CASE("code that no lane reaches and code that runs off its end are refused"
 
 TEST_CASE("a register or predicate that nothing has written on a path is not read") {
   CHECK_THAT(verdict("add.u32 %r1, %r2, 1; exit;"),
-             Contains("instruction 0 (add.u32): %r2 is read, and on a path to here nothing has written it"));
+             Contains("instruction 0 (add.u32): %r2 is read, but nothing has written it on a path to here"));
   CHECK(verdict("add.u32 %r1, %r0, 1; exit;") == "");  // the stack pointer
   CHECK_THAT(verdict("@%p3 exit; exit;"), Contains("%p3 is read"));
   CHECK_THAT(verdict("mov.b32 %r2, 1; add.u64 %rd4, %rd2, 1; exit;"), Contains("%r3 is read"));
   CHECK_THAT(verdict("setp.eq.u32 %p0, %laneid, 1; @%p0 bra N; mov.b32 %r1, 1; N: mov.b32 %r2, %r1; exit;"),
-             Contains("instruction 3 (mov.b32): %r1 is read, and on a path"));
+             Contains("instruction 3 (mov.b32): %r1 is read, but nothing has written it on a path"));
   // In a loop, a register that is written later counts as not written before.
   CHECK_THAT(verdict("L: add.u32 %r1, %r2, 1; mov.b32 %r2, 1; setp.eq.u32 %p0, %r1, 9; @%p0 bra L; exit;"),
              Contains("instruction 0 (add.u32): %r2 is read"));
@@ -83,7 +83,7 @@ TEST_CASE("a guarded write serves the lanes of its guard") {
   CHECK_THAT(
       verdict(p + "@%p0 mov.b32 %r1, 1; @%p0 bra N; mov.b32 %r2, %r1; N: exit;"),
       Contains(
-          "instruction 4 (mov.b32): %r1 is read by all lanes, and only those of a guard have written it"));
+          "instruction 4 (mov.b32): %r1 is read by all lanes, but only lanes under a guard have written it"));
 }
 
 TEST_CASE("shaders that are called use every register and predicate but the stack pointer") {
@@ -116,7 +116,8 @@ TEST_CASE("ops of a trace stand inside it") {
 
 TEST_CASE("lanes that part inside a trace meet before its end") {
   const std::string part = "@%p0 bra A; rt.end; exit; A: rt.end; exit;";
-  CHECK_THAT(verdict(kTrace + part, kRaygen), Contains("instruction 1 (bra): lanes may part inside a trace"));
+  CHECK_THAT(verdict(kTrace + part, kRaygen),
+             Contains("instruction 1 (bra): lanes may diverge inside a trace"));
   CHECK(verdict(std::string(kTrace) + "ssy A; @%p0 bra A; mov.b32 %r1, 1; A: join; rt.end; exit;", kRaygen) ==
         "");
 }

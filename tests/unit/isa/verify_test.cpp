@@ -52,21 +52,21 @@ TEST_CASE("operands out of range or of the wrong bank are named with their instr
   using Catch::Contains;
   CHECK_THAT(complaint([](Program& p) { p.code[4].operand[0] = 8; }),
              Contains("a.comp:3") &&
-                 Contains("instruction 4 (add.u32), operand 1: register %r8, and the program has 8"));
+                 Contains("instruction 4 (add.u32), operand 1: there is no register %r8: the program has 8"));
   CHECK_THAT(complaint([](Program& p) { p.code[5].operand[1] = 3; }),
              Contains("pair %rd3 starts at an odd register"));
   CHECK_THAT(complaint([](Program& p) { p.code[4].operand[0] = kConstantBank; }),
-             Contains("a constant as destination"));
+             Contains("a constant cannot be a destination"));
   CHECK_THAT(complaint([](Program& p) { p.code[4].operand[0] = kSpecialBank; }),
-             Contains("a special as destination"));
+             Contains("a special cannot be a destination"));
   CHECK_THAT(complaint([](Program& p) { p.code[5].operand[1] = kSpecialBank; }),
-             Contains("a special as 64-bit operand"));
+             Contains("a special cannot be a 64-bit operand"));
   CHECK_THAT(complaint([](Program& p) { p.code[4].operand[2] = kConstantBank + 6; }),
-             Contains("constant row 6, and the program has 6"));
+             Contains("there is no constant row 6: the program has 6"));
   CHECK_THAT(complaint([](Program& p) { p.code[5].operand[2] = kConstantBank + 5; }),
-             Contains("constant row 6, and the program has 6"));
+             Contains("there is no constant row 6: the program has 6"));
   CHECK_THAT(complaint([](Program& p) { p.code[4].operand[1] = Slot(kSpecialBank + kNumSpecials); }),
-             Contains(fmt::format("special {0}, and there are {0}", kNumSpecials)));
+             Contains(fmt::format("there is no special {0}: there are {0}", kNumSpecials)));
   CHECK_THAT(complaint([](Program& p) { p.code[4].operand[1] = 0xc000; }), Contains("names no bank"));
   CHECK_THAT(complaint([](Program& p) { p.code[4].operand[5] = 1; }), Contains("operand slot 5 is set"));
   CHECK_THAT(complaint([](Program& p) { p.code[4].imm = 1; }), Contains("neither address nor label"));
