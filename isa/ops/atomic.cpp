@@ -1,4 +1,5 @@
-// Read-modify-write of memory: what each op makes of the old bits; the machine does the rest, lane by lane.
+// Defines read-modify-write of memory: what each op makes of the old bits. The machine does the rest, lane by
+// lane.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/half.h"
 #include "isa/op_makers.h"
@@ -9,8 +10,8 @@
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
-// Recorded: global memory's adder takes subnormals for zeros, and gives zeros for them; shared memory's keeps
-// them.
+// Recordings show that global memory's adder takes subnormals for zeros and returns zeros for them, and that
+// shared memory's adder keeps them.
 float flushed(float x) {
   return (float_bits(x) & 0x7f80'0000u) == 0 ? float_of(float_bits(x) & 0x8000'0000u) : x;
 }
@@ -24,8 +25,8 @@ bool is_nan64(uint64_t x) {
 }
 constexpr uint64_t kQuiet = 0x0008'0000'0000'0000;
 
-// Recorded: NaNs keep their payload. Shared memory's make the result quiet, the old value's first; global
-// memory's adder passes them on as they are, the operand's first.
+// Recordings show that NaNs keep their payload. Shared memory makes the result quiet and prefers the old
+// value's NaN. Global memory's adder passes NaNs on unchanged and prefers the operand's.
 uint64_t add_f64(uint64_t old, uint64_t b, uint64_t is_global) {
   if (is_global && is_nan64(b)) return b;
   if (is_nan64(old)) return is_global ? old : old | kQuiet;
@@ -34,8 +35,8 @@ uint64_t add_f64(uint64_t old, uint64_t b, uint64_t is_global) {
   return is_nan64(sum) ? 0xfff8'0000'0000'0000 : sum;
 }
 
-// f16 and bf16 add in single precision, which has more than twice their digits: rounding twice is rounding
-// once.
+// f16 and bf16 are added in single precision. It has more than twice their digits, so rounding twice gives
+// the same result as rounding once.
 uint32_t add_half(uint32_t a, uint32_t b) {
   return to_half(to_float(Half{uint16_t(a)}) + to_float(Half{uint16_t(b)})).bits;
 }
@@ -60,8 +61,8 @@ uint64_t maximum(uint64_t old, uint64_t b, uint64_t) {
   return uint64_t(T(old) > T(b) ? T(old) : T(b));
 }
 
-// Smaller or larger of two floats, given as bits in Int: the other one of a NaN, and -0 below +0 (IEEE
-// 754-2019, minimumNumber). Choice: two NaNs give a quiet one; Vulkan leaves it open.
+// Returns the smaller or larger of two floats, given as bits in Int. A number wins against a NaN, and -0 is
+// below +0 (IEEE 754-2019, minimumNumber). Choice: two NaNs give a quiet NaN, which Vulkan leaves open.
 template <class Int, Int kInfinity, bool kLargest>
 uint64_t extreme(uint64_t old, uint64_t other, uint64_t) {
   constexpr Int kMagnitude = Int(Int(~Int{0}) >> 1), kSign = Int(~kMagnitude), kQuietNan = Int(kMagnitude);
@@ -69,7 +70,7 @@ uint64_t extreme(uint64_t old, uint64_t other, uint64_t) {
   const bool a_nan = (a & kMagnitude) > kInfinity, b_nan = (b & kMagnitude) > kInfinity;
   if (a_nan) return b_nan ? kQuietNan : b;
   if (b_nan) return a;
-  // As sortable numbers: negative ones reversed below the positive ones.
+  // The keys are sortable numbers: negative floats are reversed and come below the positive ones.
   const Int key_a = a & kSign ? Int(~a) : Int(a | kSign), key_b = b & kSign ? Int(~b) : Int(b | kSign);
   return (key_a < key_b) == !kLargest ? a : b;
 }
@@ -116,9 +117,9 @@ constexpr Op kOps[] = {
     {"add.f32", "Adds single precision", 4, &add_f32},
     {"add.f64", "Adds double precision", 8, &add_f64},
     {"add.noftz.f16", "Adds f16", 2, &add_16<&add_half>},
-    {"add.noftz.f16x2", "Adds each f16 of a pair", 4, &add_pair<&add_half>},
+    {"add.noftz.f16x2", "Adds both f16 of a pair", 4, &add_pair<&add_half>},
     {"add.noftz.bf16", "Adds bf16", 2, &add_16<&add_bfloat>},
-    {"add.noftz.bf16x2", "Adds each bf16 of a pair", 4, &add_pair<&add_bfloat>},
+    {"add.noftz.bf16x2", "Adds both bf16 of a pair", 4, &add_pair<&add_bfloat>},
     {"min.u32", "Takes the minimum", 4, &minimum<uint32_t>},
     {"min.s32", "Takes the signed minimum", 4, &minimum<int32_t>},
     {"min.u64", "Takes the minimum", 8, &minimum<uint64_t>},
@@ -131,19 +132,19 @@ constexpr Op kOps[] = {
     {"max.s64", "Takes the signed maximum", 8, &maximum<int64_t>},
     {"max.f32", "Takes the single-precision maximum", 4, &extreme<uint32_t, kInfinity32, true>},
     {"max.f64", "Takes the double-precision maximum", 8, &extreme<uint64_t, kInfinity64, true>},
-    {"and.b32", "Ands bits", 4, &bits_and},
-    {"and.b64", "Ands bits", 8, &bits_and},
-    {"or.b32", "Ors bits", 4, &bits_or},
-    {"or.b64", "Ors bits", 8, &bits_or},
-    {"xor.b32", "Exclusive-ors bits", 4, &bits_xor},
-    {"xor.b64", "Exclusive-ors bits", 8, &bits_xor},
-    {"inc.u32", "Counts up, from the operand on to 0,", 4, &increment},
-    {"dec.u32", "Counts down, from 0 or above the operand to the operand,", 4, &decrement},
-    {"exch.b32", "Puts the operand in place of 4 bytes", 4, &exchange, false, false},
-    {"exch.b64", "Puts the operand in place of 8 bytes", 8, &exchange, false, false},
-    {"cas.b16", "Puts the second operand where the first stands", 2, &compare_and_swap, true, false},
-    {"cas.b32", "Puts the second operand where the first stands", 4, &compare_and_swap, true, false},
-    {"cas.b64", "Puts the second operand where the first stands", 8, &compare_and_swap, true, false},
+    {"and.b32", "Computes the bitwise and", 4, &bits_and},
+    {"and.b64", "Computes the bitwise and", 8, &bits_and},
+    {"or.b32", "Computes the bitwise or", 4, &bits_or},
+    {"or.b64", "Computes the bitwise or", 8, &bits_or},
+    {"xor.b32", "Computes the bitwise exclusive or", 4, &bits_xor},
+    {"xor.b64", "Computes the bitwise exclusive or", 8, &bits_xor},
+    {"inc.u32", "Counts up, or sets 0 from the operand on,", 4, &increment},
+    {"dec.u32", "Counts down, or sets the operand for 0 and above the operand,", 4, &decrement},
+    {"exch.b32", "Replaces 4 bytes by the operand", 4, &exchange, false, false},
+    {"exch.b64", "Replaces 8 bytes by the operand", 8, &exchange, false, false},
+    {"cas.b16", "Stores the second operand, if the first is there,", 2, &compare_and_swap, true, false},
+    {"cas.b32", "Stores the second operand, if the first is there,", 4, &compare_and_swap, true, false},
+    {"cas.b64", "Stores the second operand, if the first is there,", 8, &compare_and_swap, true, false},
 };
 
 struct Place {
@@ -182,7 +183,7 @@ constexpr auto kSentences = [] {
   std::array<Word, kNumRows> out{};
   size_t n = 0;
   each_row([&](const Place& place, const Op& op, bool returns) {
-    out[n++] = Word{op.what, " ", place.what, returns ? " and returns what was there." : "."};
+    out[n++] = Word{op.what, " ", place.what, returns ? " and returns the old value." : "."};
   });
   return out;
 }();

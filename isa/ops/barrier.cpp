@@ -1,4 +1,5 @@
-// Waiting for the other warps of the block, and ordering memory accesses: the machine does it all.
+// Defines waiting for the other warps of the block, and ordering of memory accesses. The machine does all the
+// work.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/barrier.h"
 
@@ -19,19 +20,19 @@ constexpr OpRow fence(std::string_view name, FenceScope scope, Operands operands
   return row;
 }
 
-// Operands: the barrier (0 to 15), and how many threads it waits for: a multiple of 32, or 0 for all of the
-// block that have not ended. A warp counts as 32 threads.
+// The operands are the barrier (0 to 15) and how many threads it waits for: a multiple of 32, or 0 for all
+// threads of the block that have not ended. A warp counts as 32 threads.
 constexpr OpRow kRows[] = {
     barrier("bar.sync", BarrierKind::Sync, {Src32, Src32},
-            "Waits at a barrier until that many threads have arrived (0: all that have not ended)."),
+            "Waits at a barrier until that many threads have arrived (0: all threads that have not ended)."),
     barrier("bar.arrive", BarrierKind::Arrive, {Src32, Src32},
-            "Arrives at a barrier for that many threads, and goes on."),
+            "Arrives at a barrier for that many threads, and continues."),
     barrier("bar.red.popc.u32", BarrierKind::Count, {Dst32, Src32, Src32, SrcPred},
-            "Waits as bar.sync; counts the threads whose predicate is true."),
+            "Waits as bar.sync does, and counts the threads whose predicate is true."),
     barrier("bar.red.and.pred", BarrierKind::And, {DstPred, Src32, Src32, SrcPred},
-            "Waits as bar.sync; tells whether the predicates of all threads are true."),
+            "Waits as bar.sync does, and tells whether the predicates of all threads are true."),
     barrier("bar.red.or.pred", BarrierKind::Or, {DstPred, Src32, Src32, SrcPred},
-            "Waits as bar.sync; tells whether the predicate of any thread is true."),
+            "Waits as bar.sync does, and tells whether the predicate of any thread is true."),
     fence("bar.warp.sync", FenceScope::Warp, {Src32},
           "Orders the memory accesses of the lanes of a mask, which have met already where their paths "
           "joined."),

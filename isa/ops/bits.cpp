@@ -1,4 +1,4 @@
-// Bit fields, counts, permutations and three-input logic.
+// Defines bit fields, counts, permutations and three-input logic.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/integer_kernels.h"
 #include "isa/ops/families.h"
@@ -12,9 +12,9 @@ constexpr auto count_rows() {
   using T = typename N::Type;
   constexpr uint64_t kOnes = word(T(-1)), kWidth = kBits<T>, kHigh = word(T(T(1) << (kWidth - 1)));
   return joined_rows(
-      unary<T>(joined<"popc", N::kName>, Unit::Sfu, "Number of ones.", [](T a) { return count_ones(a); },
+      unary<T>(joined<"popc", N::kName>, Unit::Sfu, "Counts the ones.", [](T a) { return count_ones(a); },
                {{{0}, 0}, {{kOnes}, kWidth}, {{kHigh | 1}, 2}}),
-      unary<T>(joined<"clz", N::kName>, Unit::Sfu, "Number of leading zeros, the width for 0.",
+      unary<T>(joined<"clz", N::kName>, Unit::Sfu, "Counts the leading zeros. For 0 the result is the width.",
                [](T a) { return uint32_t(kBits<T> - 1) - highest_one(a); },
                {{{0}, kWidth}, {{1}, kWidth - 1}, {{kHigh}, 0}}),
       unary<T>(joined<"brev", N::kName>, Unit::Sfu, "Reverses the order of the bits.",
@@ -22,7 +22,7 @@ constexpr auto count_rows() {
                {{{1}, kHigh}, {{kOnes}, kOnes}, {{0xf1}, 0x8full << (kWidth - 8)}}));
 }
 
-// Bits that differ from the sign; for unsigned types all ones.
+// Returns the bits that differ from the sign. For unsigned types all bits stay.
 template <class T>
 inline Unsigned<T> significant(T a) {
   if constexpr (std::is_signed_v<T>)
@@ -37,12 +37,14 @@ constexpr auto find_rows() {
   constexpr bool kSigned = std::is_signed_v<T>;
   return joined_rows(
       unary<T>(joined<"bfind", N::kName>, Unit::Sfu,
-               kSigned ? "Position of the highest bit that differs from the sign, all ones if none does."
-                       : "Position of the highest one, all ones for 0.",
+               kSigned ? "Returns the position of the highest bit that differs from the sign, or all ones if "
+                         "none does."
+                       : "Returns the position of the highest one, or all ones for 0.",
                [](T a) { return highest_one(significant(a)); },
                {{{0}, kNone}, {{1}, 0}, {{kOnes}, kSigned ? kNone : kTop}, {{0x40}, 6}}),
       unary<T>(joined<"bfind.shiftamt", N::kName>, Unit::Sfu,
-               "Shift left that brings the bit which bfind finds to the top; all ones if there is none.",
+               "Returns the shift left that brings the bit found by bfind to the top, or all ones if there "
+               "is none.",
                [](T a) {
                  const uint32_t at = highest_one(significant(a));
                  return at > 63 ? at : uint32_t(kBits<T> - 1) - at;
@@ -57,27 +59,29 @@ constexpr auto field_rows() {
   if constexpr (std::is_signed_v<T>)
     return value_op<T, uint32_t, uint32_t>(
         joined<"bfe", N::kName>, Unit::Int,
-        "Extracts a field (value, position, length) and extends its sign; past the top that is the top bit.",
+        "Extracts a field (value, position, length) and extends its sign, which past the top is the top bit.",
         [](T a, uint32_t p, uint32_t n) { return field(a, p, n); },
         {{{0x1234'8678, 8, 8}, word(T(-122))},
          {{kOnes >> 1, kWidth - 4, 8}, 7},
          {{kOnes ^ (kOnes >> 1), kWidth + 8, 4}, kOnes},
          {{kOnes, 0, 0}, 0}});
   else
-    return value_op<T, uint32_t, uint32_t>(joined<"bfe", N::kName>, Unit::Int,
-                                           "Extracts a field: value, position, length; zeros beyond.",
-                                           [](T a, uint32_t p, uint32_t n) { return field(a, p, n); },
-                                           {{{0x1234'5678, 8, 12}, 0x456},
-                                            {{kOnes, kWidth - 4, 8}, 0xf},
-                                            {{kOnes, 0, 0}, 0},
-                                            {{kOnes, kWidth + 8, 4}, 0}});
+    return value_op<T, uint32_t, uint32_t>(
+        joined<"bfe", N::kName>, Unit::Int,
+        "Extracts a field (value, position, length). Bits beyond the top are zeros.",
+        [](T a, uint32_t p, uint32_t n) { return field(a, p, n); },
+        {{{0x1234'5678, 8, 12}, 0x456},
+         {{kOnes, kWidth - 4, 8}, 0xf},
+         {{kOnes, 0, 0}, 0},
+         {{kOnes, kWidth + 8, 4}, 0}});
 }
 template <class N>
 constexpr auto insert_rows() {
   using T = typename N::Type;
   constexpr uint64_t kWidth = kBits<T>;
   return value_op<T, T, uint32_t, uint32_t>(
-      joined<"bfi", N::kName>, Unit::Int, "Inserts a field: field, background, position, length.",
+      joined<"bfi", N::kName>, Unit::Int,
+      "Inserts a field. The sources are field, background, position, length.",
       [](T a, T b, uint32_t p, uint32_t n) { return inserted(a, b, p, n); },
       {{{0xab, 0x1111'1111, 8, 8}, 0x1111'ab11},
        {{0xff, 0, kWidth - 4, 8}, word(T(T(0xf) << (kWidth - 4)))},
@@ -85,7 +89,8 @@ constexpr auto insert_rows() {
        {{0xff, 5, kWidth, 4}, 5}});
 }
 
-// The funnel: b:a, b the high half. Counts of .wrap are modulo 32, those of .clamp at most 32.
+// Shifts the pair b:a, where b is the high half. Counts of .wrap are modulo 32, and counts of .clamp are at
+// most 32.
 template <bool kClamp>
 inline uint32_t funnel_left(uint32_t a, uint32_t b, uint32_t n) {
   const uint32_t shifted = (b << (n & 31)) | ((a >> 1) >> (31 - (n & 31)));
@@ -97,7 +102,8 @@ inline uint32_t funnel_right(uint32_t a, uint32_t b, uint32_t n) {
   return kClamp && n > 31 ? b : shifted;
 }
 
-// Truth table of three inputs: bit 4a + 2b + c of it is the result. Chosen by c, then b, then a.
+// Looks up the truth table of three inputs, whose bit 4a + 2b + c is the result. It chooses by c, then b,
+// then a.
 inline uint32_t looked_up(uint32_t a, uint32_t b, uint32_t c, uint32_t table) {
   const auto entry = [&](int i) { return 0u - ((table >> i) & 1); };
   const auto choice = [](uint32_t by, uint32_t zero, uint32_t one) { return zero ^ (by & (zero ^ one)); };
@@ -106,7 +112,7 @@ inline uint32_t looked_up(uint32_t a, uint32_t b, uint32_t c, uint32_t table) {
   return choice(a, low, high);
 }
 
-// Position of one number n (from 0) of x, counted from the low end; n below count_ones(x).
+// Returns the position of one number n (from 0) of x, counted from the low end, for n below count_ones(x).
 inline uint32_t position_of_one(uint32_t x, uint32_t n) {
   uint32_t at = 0;
   const auto halve = [&](uint32_t width) {
@@ -122,13 +128,13 @@ inline uint32_t position_of_one(uint32_t x, uint32_t n) {
   halve(1);
   return at;
 }
-// PTX ISA, fns: the one number |offset| from bit `base` on, that bit included, up or (offset < 0) down.
-// A base above 31 finds nothing. As recorded: an offset of -2^31 gives 0.
+// Finds the one number |offset| from bit `base` on, including that bit, upwards or (offset < 0) downwards
+// (PTX ISA, fns). A base above 31 finds nothing. Recordings show that an offset of -2^31 gives 0.
 inline uint32_t found_one(uint32_t mask, uint32_t base, int32_t offset) {
   const bool is_up = offset >= 0;
   const uint32_t from = is_up ? base : 31 - base;  // downwards is upwards in the reversed word
   const uint32_t bit = 1u << (from & 31);
-  const uint32_t wanted = offset == 0 ? bit : 0u - bit;  // that bit, or all from it on
+  const uint32_t wanted = offset == 0 ? bit : 0u - bit;  // that bit, or all bits from it on
   const uint32_t rest = (is_up ? mask : reversed(mask)) & wanted & (from > 31 ? 0u : ~0u);
   const uint32_t distance = is_up ? uint32_t(offset) : 0u - uint32_t(offset);
   const uint32_t number = distance - (distance == 0 ? 0u : 1u);
@@ -143,7 +149,7 @@ inline uint32_t made_mask(uint32_t position, uint32_t length) {
   if constexpr (!kClamp) return low_ones<uint32_t>(length & 31) << (position & 31);
   return shifted_left(low_ones<uint32_t>(length), position);
 }
-// Extends the lowest n bits; .wrap takes n modulo 32, .clamp at most 32.
+// Extends the lowest n bits. .wrap takes n modulo 32, and .clamp takes at most 32.
 template <bool kClamp, class T>
 inline T extended(T a, uint32_t n) {
   const uint32_t length = kClamp ? n : n & 31;
@@ -155,34 +161,35 @@ constexpr auto mode_rows() {
   return joined_rows(
       value_op<uint32_t, uint32_t, uint32_t>(
           joined<"shf.l", kMode, ".b32">, Unit::Int,
-          kClamp ? "High word of a pair (low, high) shifted left, by at most 32."
-                 : "High word of a pair (low, high) shifted left, by a count modulo 32.",
+          kClamp ? "Shifts a pair (low, high) left by at most 32, and returns the high word."
+                 : "Shifts a pair (low, high) left by a count modulo 32, and returns the high word.",
           [](uint32_t a, uint32_t b, uint32_t n) { return funnel_left<kClamp>(a, b, n); },
           {{{0x8000'0000, 1, 1}, 3}, {{5, 7, 0}, 7}, {{5, 7, 32}, kClamp ? 5 : 7}}),
       value_op<uint32_t, uint32_t, uint32_t>(
           joined<"shf.r", kMode, ".b32">, Unit::Int,
-          kClamp ? "Low word of a pair (low, high) shifted right, by at most 32."
-                 : "Low word of a pair (low, high) shifted right, by a count modulo 32.",
+          kClamp ? "Shifts a pair (low, high) right by at most 32, and returns the low word."
+                 : "Shifts a pair (low, high) right by a count modulo 32, and returns the low word.",
           [](uint32_t a, uint32_t b, uint32_t n) { return funnel_right<kClamp>(a, b, n); },
           {{{6, 1, 1}, 0x8000'0003}, {{5, 7, 0}, 5}, {{5, 7, 32}, kClamp ? 7 : 5}}),
-      binary<uint32_t>(joined<"bmsk", kMode, ".b32">, Unit::Int,
-                       kClamp ? "Ones from a position on, so many; what lies beyond the word is lost."
-                              : "Ones from a position on, so many; position and length are taken modulo 32.",
-                       [](uint32_t a, uint32_t b) { return made_mask<kClamp>(a, b); },
-                       {{{4, 8}, 0xff0}, {{28, 8}, 0xf000'0000}, {{0, 32}, kClamp ? 0xffff'ffff : 0}}),
+      binary<uint32_t>(
+          joined<"bmsk", kMode, ".b32">, Unit::Int,
+          kClamp ? "Makes a mask from a position and a number of ones. Ones beyond the word are lost."
+                 : "Makes a mask from a position and a number of ones, both taken modulo 32.",
+          [](uint32_t a, uint32_t b) { return made_mask<kClamp>(a, b); },
+          {{{4, 8}, 0xff0}, {{28, 8}, 0xf000'0000}, {{0, 32}, kClamp ? 0xffff'ffff : 0}}),
       value_op<int32_t, uint32_t>(
           joined<"szext", kMode, ".s32">, Unit::Int,
-          "Extends the sign of the lowest bits, as many as the second source says.",
+          "Extends the sign of the lowest bits. The second source gives their number.",
           [](int32_t a, uint32_t n) { return extended<kClamp>(a, n); },
           {{{0x1f8, 8}, 0xffff'fff8}, {{5, 0}, 0}, {{0x8000'0000, 32}, kClamp ? 0x8000'0000 : 0}}),
       value_op<uint32_t, uint32_t>(
           joined<"szext", kMode, ".u32">, Unit::Int,
-          "Keeps the lowest bits, as many as the second source says.",
+          "Keeps the lowest bits. The second source gives their number.",
           [](uint32_t a, uint32_t n) { return extended<kClamp>(a, n); },
           {{{0x1f8, 8}, 0xf8}, {{5, 0}, 0}, {{0x8000'0000, 32}, kClamp ? 0x8000'0000 : 0}}));
 }
 
-// Byte number `at` (0 to 7) of a and b, b above.
+// Returns byte number `at` (0 to 7) of a and b, with b above.
 inline uint32_t byte_of(uint32_t a, uint32_t b, uint32_t at) {
   return (((at & 4) != 0 ? b : a) >> ((at & 3) * 8)) & 0xff;
 }
@@ -196,7 +203,7 @@ inline uint32_t permuted(uint32_t a, uint32_t b, uint32_t selector) {
   }
   return out;
 }
-// The other modes take one number n and make four picks of it: PTX ISA, prmt.
+// The other modes take one number n and make four selections of it (PTX ISA, prmt).
 template <Text kMode, class Pick>
 constexpr OpRow permute_row(std::string_view doc, Pick, Examples examples) {
   return ternary<uint32_t>(
@@ -213,27 +220,29 @@ constexpr auto permute_rows() {
   using U = uint32_t;
   return joined_rows(
       ternary<U>("prmt.b32", Unit::Int,
-                 "Four bytes of eight: a nibble of the third source picks each; its bit 3 asks for copies of "
+                 "Picks four bytes of eight, each by a nibble of the third source. Bit 3 of a nibble asks "
+                 "for copies of "
                  "the sign.",
                  [](U a, U b, U selector) { return permuted(a, b, selector); },
                  {{{kLow, kHigh, 0x3210}, kLow},
                   {{kLow, kHigh, 0x7654}, kHigh},
                   {{kLow, 0x80, 0xc400}, 0xff80'0000}}),
-      permute_row<".f4e">("Four bytes of eight, upwards from byte n of 0 to 3.",
+      permute_row<".f4e">("Picks four bytes of eight, upwards from byte n of 0 to 3.",
                           [](U n, U i) { return n + i; },
                           {{{kLow, kHigh, 0}, kLow}, {{kLow, kHigh, 3}, 0x6655'4433}}),
-      permute_row<".b4e">("Four bytes of eight, downwards from byte n of 0 to 3, byte 7 below byte 0.",
-                          [](U n, U i) { return (n - i) & 7; },
-                          {{{kLow, kHigh, 3}, 0x0011'2233}, {{kLow, kHigh, 0}, 0x5566'7700}}),
-      permute_row<".rc8">("Byte n of the first source, four times.", [](U n, U) { return n; },
+      permute_row<".b4e">(
+          "Picks four bytes of eight, downwards from byte n of 0 to 3. Byte 7 comes below byte 0.",
+          [](U n, U i) { return (n - i) & 7; },
+          {{{kLow, kHigh, 3}, 0x0011'2233}, {{kLow, kHigh, 0}, 0x5566'7700}}),
+      permute_row<".rc8">("Repeats byte n of the first source four times.", [](U n, U) { return n; },
                           {{{kLow, kHigh, 0}, 0}, {{kLow, kHigh, 2}, 0x2222'2222}}),
-      permute_row<".ecl">("Bytes of the first source, none below byte n: edge clamp left.",
+      permute_row<".ecl">("Replaces the bytes of the first source below byte n by byte n (edge clamp left).",
                           [](U n, U i) { return i > n ? i : n; },
                           {{{kLow, kHigh, 0}, kLow}, {{kLow, kHigh, 2}, 0x3322'2222}}),
-      permute_row<".ecr">("Bytes of the first source, none above byte n: edge clamp right.",
+      permute_row<".ecr">("Replaces the bytes of the first source above byte n by byte n (edge clamp right).",
                           [](U n, U i) { return i < n ? i : n; },
                           {{{kLow, kHigh, 0}, 0}, {{kLow, kHigh, 2}, 0x2222'1100}}),
-      permute_row<".rc16">("A half of the first source, twice: the upper one where n is odd.",
+      permute_row<".rc16">("Repeats a half of the first source, the upper half where n is odd.",
                            [](U n, U i) { return (n & 1) * 2 + (i & 1); },
                            {{{kLow, kHigh, 0}, 0x1100'1100}, {{kLow, kHigh, 1}, 0x3322'3322}}));
 }
@@ -246,15 +255,15 @@ constexpr auto kRows = joined_rows(
     mode_rows<".clamp", true>(),
     value_op<uint32_t, uint32_t, uint32_t, uint32_t>(
         "lop3.b32", Unit::Int,
-        "Any logic of three words: bit 4a + 2b + c of the fourth source is the result's bit.",
+        "Computes any logic of three words. Bit 4a + 2b + c of the fourth source is the result's bit.",
         [](uint32_t a, uint32_t b, uint32_t c, uint32_t table) { return looked_up(a, b, c, table); },
         {{{0xf0, 0xcc, 0xaa, 0x80}, 0x80},
          {{0xf0, 0xcc, 0xaa, 0x96}, 0x96},
          {{0xf0, 0xcc, 0xaa, 0x3c}, 0x3c}}),
     value_op<uint32_t, uint32_t, int32_t>(
         "fns.b32", Unit::Sfu,
-        "Position of the n-th one from a bit on, upwards or (n < 0) downwards; n = 0 tests the bit; all ones "
-        "if none is there.",
+        "Returns the position of the n-th one from a bit on, upwards or (n < 0) downwards, or all ones if "
+        "there is none. n = 0 tests the bit itself.",
         [](uint32_t mask, uint32_t base, int32_t offset) { return found_one(mask, base, offset); },
         {{{0xaaaa'aaaa, 3, 1}, 3},
          {{0xaaaa'aaaa, 3, 2}, 5},

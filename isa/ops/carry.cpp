@@ -1,6 +1,7 @@
-// Arithmetic that hands a carry on: add.cc, addc, sub.cc, subc, mad.cc, madc.
+// Defines arithmetic with a carry: add.cc, addc, sub.cc, subc, mad.cc, madc.
 //
-// PTX has one hidden carry; here it is a predicate operand, the borrow of subtractions too.
+// PTX has one hidden carry. In Glint the carry is a predicate operand, which is also the borrow of
+// subtractions.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/integer_kernels.h"
 #include "isa/ops/families.h"
@@ -9,8 +10,8 @@
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
-// a + b + carry and its carry out: both numbers count as unsigned. The carry out of the top bit is that of a
-// full adder, which compilers make better vectors of than of comparisons.
+// Returns a + b + carry and the carry out, with both numbers taken as unsigned. The carry out of the top bit
+// is that of a full adder, which compilers vectorise better than comparisons.
 template <class T>
 inline Two<T, bool> sum_with_carry(T a, T b, bool carry) {
   using U = Unsigned<T>;
@@ -31,23 +32,23 @@ constexpr auto sum_rows() {
   using T = typename N::Type;
   constexpr uint64_t kOnes = word(T(-1));
   return joined_rows(
-      binary<T>(joined<"add.cc", N::kName>, Unit::Int, "Adds; the predicate is the carry out.",
+      binary<T>(joined<"add.cc", N::kName>, Unit::Int, "Adds. The predicate is the carry out.",
                 [](T a, T b) { return sum_with_carry(a, b, false); }, {{{1, 2}, 3, 0}, {{kOnes, 1}, 0, 1}}),
       value_op<T, T, bool>(joined<"addc", N::kName>, Unit::Int, "Adds two numbers and a carry.",
                            [](T a, T b, bool c) { return sum_with_carry(a, b, c).first; },
                            {{{1, 2, 0}, 3}, {{1, 2, 1}, 4}}),
       value_op<T, T, bool>(joined<"addc.cc", N::kName>, Unit::Int,
-                           "Adds two numbers and a carry; the predicate is the carry out.",
+                           "Adds two numbers and a carry. The predicate is the carry out.",
                            [](T a, T b, bool c) { return sum_with_carry(a, b, c); },
                            {{{1, 2, 1}, 4, 0}, {{kOnes, kOnes, 1}, kOnes, 1}, {{kOnes, 0, 1}, 0, 1}}),
-      binary<T>(joined<"sub.cc", N::kName>, Unit::Int, "Subtracts; the predicate is the borrow.",
+      binary<T>(joined<"sub.cc", N::kName>, Unit::Int, "Subtracts. The predicate is the borrow.",
                 [](T a, T b) { return difference_with_borrow(a, b, false); },
                 {{{3, 2}, 1, 0}, {{0, 1}, kOnes, 1}}),
       value_op<T, T, bool>(joined<"subc", N::kName>, Unit::Int, "Subtracts a number and a borrow.",
                            [](T a, T b, bool c) { return difference_with_borrow(a, b, c).first; },
                            {{{3, 2, 0}, 1}, {{3, 2, 1}, 0}}),
       value_op<T, T, bool>(joined<"subc.cc", N::kName>, Unit::Int,
-                           "Subtracts a number and a borrow; the predicate is the borrow out.",
+                           "Subtracts a number and a borrow. The predicate is the borrow out.",
                            [](T a, T b, bool c) { return difference_with_borrow(a, b, c); },
                            {{{3, 2, 1}, 0, 0}, {{0, kOnes, 1}, 0, 1}, {{0, 0, 1}, kOnes, 1}}));
 }
@@ -56,7 +57,8 @@ template <bool kHigh, class T>
 inline T half_product(T a, T b) {
   return kHigh ? product_high(a, b) : T(Wrapping<T>(a) * Wrapping<T>(b));
 }
-// Handler of the product rows with a carry out: the product, which costs most, once for both results.
+// Handles the product rows with a carry out. It computes the product, which is the most expensive part, once
+// for both results.
 template <class T, bool kHigh, bool kCarryIn>
 [[gnu::flatten]] void run_product(Warp& warp, const Inst& inst) {
   const Slot* const slot = &inst.operand.front();
@@ -81,18 +83,18 @@ constexpr auto product_rows() {
   constexpr uint64_t kProduct = kHigh ? 0 : 15;  // of 3 and 5
   return joined_rows(
       with_handler(ternary<T>(joined<"mad", kHalf, ".cc", N::kName>, Unit::Int,
-                              "Half of a product, plus the third source; the predicate is the carry out.",
+                              "Adds half of a product and the third source. The predicate is the carry out.",
                               [](T, T, T) { return Two<T, bool>{}; },
                               {{{3, 5, 1}, kProduct + 1, 0}, {{3, 5, kOnes}, kHigh ? kOnes : 14, !kHigh}}),
                    &run_product<T, kHigh, false>),
       value_op<T, T, T, bool>(
-          joined<"madc", kHalf, N::kName>, Unit::Int, "Half of a product, plus the third source and a carry.",
+          joined<"madc", kHalf, N::kName>, Unit::Int, "Adds half of a product, the third source and a carry.",
           [](T a, T b, T c, bool carry) { return sum_with_carry(half_product<kHigh>(a, b), c, carry).first; },
           {{{3, 5, 1, 0}, kProduct + 1}, {{3, 5, 1, 1}, kProduct + 2}}),
       with_handler(
           value_op<T, T, T, bool>(
               joined<"madc", kHalf, ".cc", N::kName>, Unit::Int,
-              "Half of a product, plus the third source and a carry; the predicate is the carry out.",
+              "Adds half of a product, the third source and a carry. The predicate is the carry out.",
               [](T, T, T, bool) { return Two<T, bool>{}; },
               {{{3, 5, 1, 1}, kProduct + 2, 0}, {{3, 5, kOnes, 1}, kProduct, 1}}),
           &run_product<T, kHigh, true>));

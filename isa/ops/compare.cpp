@@ -1,4 +1,4 @@
-// Comparisons of integers.
+// Defines comparisons of integers.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/ops/comparisons.h"
 #include "isa/ops/families.h"
@@ -11,7 +11,7 @@ struct Integer : N {
   using Type = typename N::Type;
   static constexpr auto kFlush = Text("");
   static constexpr Unit kUnit = Unit::Int;
-  // For the examples: two that stand the other way round when the wrong signedness is taken.
+  // The examples use two numbers whose order changes when the wrong signedness is taken.
   static constexpr uint64_t kOne = std::is_signed_v<Type> ? word(Type(-1)) : 1;
   static constexpr uint64_t kTwo = std::is_signed_v<Type> ? 1 : word(Type(-1));
   [[gnu::always_inline]] static Type value(Type x) { return x; }
@@ -19,25 +19,27 @@ struct Integer : N {
 
 template <class N>
 constexpr auto equality_rows() {
-  return joined_rows(relation_rows<Relation<".eq", IsEqual, 0, 1, 0>, Integer<N>>("True where a == b."),
-                     relation_rows<Relation<".ne", IsNotEqual, 1, 0, 1>, Integer<N>>("True where a != b."));
+  return joined_rows(
+      relation_rows<Relation<".eq", IsEqual, 0, 1, 0>, Integer<N>>("Gives true where a == b."),
+      relation_rows<Relation<".ne", IsNotEqual, 1, 0, 1>, Integer<N>>("Gives true where a != b."));
 }
 template <class N>
 constexpr auto order_rows() {
   return joined_rows(
-      equality_rows<N>(), relation_rows<Relation<".lt", IsLess, 1, 0, 0>, Integer<N>>("True where a < b."),
-      relation_rows<Relation<".le", IsLessOrEqual, 1, 1, 0>, Integer<N>>("True where a <= b."),
-      relation_rows<Relation<".gt", IsGreater, 0, 0, 1>, Integer<N>>("True where a > b."),
-      relation_rows<Relation<".ge", IsGreaterOrEqual, 0, 1, 1>, Integer<N>>("True where a >= b."));
+      equality_rows<N>(),
+      relation_rows<Relation<".lt", IsLess, 1, 0, 0>, Integer<N>>("Gives true where a < b."),
+      relation_rows<Relation<".le", IsLessOrEqual, 1, 1, 0>, Integer<N>>("Gives true where a <= b."),
+      relation_rows<Relation<".gt", IsGreater, 0, 0, 1>, Integer<N>>("Gives true where a > b."),
+      relation_rows<Relation<".ge", IsGreaterOrEqual, 0, 1, 1>, Integer<N>>("Gives true where a >= b."));
 }
-// PTX's other names of the unsigned relations: lower, lower or same, higher, higher or same.
+// These are PTX's other names of the unsigned relations: lower, lower or same, higher, higher or same.
 template <class N>
 constexpr auto unsigned_rows() {
   return joined_rows(
-      order_rows<N>(), relation_rows<Relation<".lo", IsLess, 1, 0, 0>, Integer<N>>("True where a < b."),
-      relation_rows<Relation<".ls", IsLessOrEqual, 1, 1, 0>, Integer<N>>("True where a <= b."),
-      relation_rows<Relation<".hi", IsGreater, 0, 0, 1>, Integer<N>>("True where a > b."),
-      relation_rows<Relation<".hs", IsGreaterOrEqual, 0, 1, 1>, Integer<N>>("True where a >= b."));
+      order_rows<N>(), relation_rows<Relation<".lo", IsLess, 1, 0, 0>, Integer<N>>("Gives true where a < b."),
+      relation_rows<Relation<".ls", IsLessOrEqual, 1, 1, 0>, Integer<N>>("Gives true where a <= b."),
+      relation_rows<Relation<".hi", IsGreater, 0, 0, 1>, Integer<N>>("Gives true where a > b."),
+      relation_rows<Relation<".hs", IsGreaterOrEqual, 0, 1, 1>, Integer<N>>("Gives true where a >= b."));
 }
 
 constexpr auto kRows =

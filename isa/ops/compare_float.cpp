@@ -1,4 +1,4 @@
-// Comparisons of floats; a comparison with a NaN is false, but those that end in u are true.
+// Defines comparisons of floats. A comparison with a NaN is false, except for relations that end in u.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/half.h"
 #include "isa/ops/comparisons.h"
@@ -7,7 +7,7 @@
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
-// The opposites of ordered relations: true with a NaN.
+// Gives the opposites of ordered relations, which are true with a NaN.
 template <class Test>
 struct Not {
   bool operator()(auto a, auto b) const { return !Test{}(a, b); }
@@ -19,7 +19,7 @@ struct IsOrdered {
   bool operator()(auto a, auto b) const { return bool((a <= b) | (a > b)); }
 };
 
-// What a float operand is: its type, its flush modifier, and the number that is compared.
+// Describes a float operand: its type, its flush modifier, and the number that is compared.
 struct SinglePrecision : Named<float, ".f32"> {
   static constexpr auto kFlush = Text("");
   static constexpr Unit kUnit = Unit::Fp32;
@@ -43,7 +43,8 @@ struct HalfPrecision : Named<Half, ".f16"> {
   static constexpr auto kFlush = Text("");
   static constexpr Unit kUnit = Unit::Fp16;
   static constexpr uint64_t kOne = 0x3c00, kTwo = 0x4000, kNan = 0x7e00;
-  // A float that compares like the half whose bits are the upper ones of a word: that word, but for a NaN.
+  // Returns a float that compares like the half in the upper bits of a word. It is the word itself, except
+  // for a NaN.
   [[gnu::always_inline]] static float upper_value(uint32_t word) {
     return float_of((word & 0x7fff'0000u) > 0x7c00'0000u ? kCanonicalNan : word);
   }
@@ -51,8 +52,8 @@ struct HalfPrecision : Named<Half, ".f16"> {
 };
 struct FlushedHalf : HalfPrecision {
   static constexpr auto kFlush = Text(".ftz");
-  // In a float's place, the exponent raised so far that infinities and NaNs are a float's: the order stays,
-  // and only what becomes 0 needs a choice.
+  // Uses the bits as a float whose exponent is raised so far that infinities and NaNs become those of a
+  // float. The order stays, and only numbers that become 0 need a choice.
   [[gnu::always_inline]] static float upper_value(uint32_t word) {
     const uint32_t magnitude = word & 0x7fff'0000u;
     const uint32_t raised =
@@ -72,30 +73,34 @@ struct BrainFloat : Named<Bfloat, ".bf16"> {
 // Calls make.operator()<R>(doc) for the fourteen relations of floats.
 template <class Make>
 constexpr auto for_relations(Make make) {
-  return joined_rows(
-      make.template operator()<Relation<".eq", IsEqual, 0, 1, 0>>("True where a == b; false with a NaN."),
-      make.template operator()<Relation<".ne", IsLessOrGreater, 1, 0, 1>>(
-          "True where a != b; false with a NaN."),
-      make.template operator()<Relation<".lt", IsLess, 1, 0, 0>>("True where a < b; false with a NaN."),
-      make.template operator()<Relation<".le", IsLessOrEqual, 1, 1, 0>>(
-          "True where a <= b; false with a NaN."),
-      make.template operator()<Relation<".gt", IsGreater, 0, 0, 1>>("True where a > b; false with a NaN."),
-      make.template operator()<Relation<".ge", IsGreaterOrEqual, 0, 1, 1>>(
-          "True where a >= b; false with a NaN."),
-      make.template operator()<Relation<".equ", Not<IsLessOrGreater>, 0, 1, 0, 1>>(
-          "True where a == b or one is a NaN."),
-      make.template operator()<Relation<".neu", IsNotEqual, 1, 0, 1, 1>>(
-          "True where a != b or one is a NaN."),
-      make.template operator()<Relation<".ltu", Not<IsGreaterOrEqual>, 1, 0, 0, 1>>(
-          "True where a < b or one is a NaN."),
-      make.template operator()<Relation<".leu", Not<IsGreater>, 1, 1, 0, 1>>(
-          "True where a <= b or one is a NaN."),
-      make.template operator()<Relation<".gtu", Not<IsLessOrEqual>, 0, 0, 1, 1>>(
-          "True where a > b or one is a NaN."),
-      make.template operator()<Relation<".geu", Not<IsLess>, 0, 1, 1, 1>>(
-          "True where a >= b or one is a NaN."),
-      make.template operator()<Relation<".num", IsOrdered, 1, 1, 1, 0>>("True where neither is a NaN."),
-      make.template operator()<Relation<".nan", Not<IsOrdered>, 0, 0, 0, 1>>("True where one is a NaN."));
+  return joined_rows(make.template operator()<Relation<".eq", IsEqual, 0, 1, 0>>(
+                         "Gives true where a == b, and false with a NaN."),
+                     make.template operator()<Relation<".ne", IsLessOrGreater, 1, 0, 1>>(
+                         "Gives true where a != b, and false with a NaN."),
+                     make.template operator()<Relation<".lt", IsLess, 1, 0, 0>>(
+                         "Gives true where a < b, and false with a NaN."),
+                     make.template operator()<Relation<".le", IsLessOrEqual, 1, 1, 0>>(
+                         "Gives true where a <= b, and false with a NaN."),
+                     make.template operator()<Relation<".gt", IsGreater, 0, 0, 1>>(
+                         "Gives true where a > b, and false with a NaN."),
+                     make.template operator()<Relation<".ge", IsGreaterOrEqual, 0, 1, 1>>(
+                         "Gives true where a >= b, and false with a NaN."),
+                     make.template operator()<Relation<".equ", Not<IsLessOrGreater>, 0, 1, 0, 1>>(
+                         "Gives true where a == b or one source is a NaN."),
+                     make.template operator()<Relation<".neu", IsNotEqual, 1, 0, 1, 1>>(
+                         "Gives true where a != b or one source is a NaN."),
+                     make.template operator()<Relation<".ltu", Not<IsGreaterOrEqual>, 1, 0, 0, 1>>(
+                         "Gives true where a < b or one source is a NaN."),
+                     make.template operator()<Relation<".leu", Not<IsGreater>, 1, 1, 0, 1>>(
+                         "Gives true where a <= b or one source is a NaN."),
+                     make.template operator()<Relation<".gtu", Not<IsLessOrEqual>, 0, 0, 1, 1>>(
+                         "Gives true where a > b or one source is a NaN."),
+                     make.template operator()<Relation<".geu", Not<IsLess>, 0, 1, 1, 1>>(
+                         "Gives true where a >= b or one source is a NaN."),
+                     make.template operator()<Relation<".num", IsOrdered, 1, 1, 1, 0>>(
+                         "Gives true where neither source is a NaN."),
+                     make.template operator()<Relation<".nan", Not<IsOrdered>, 0, 0, 0, 1>>(
+                         "Gives true where one source is a NaN."));
 }
 
 constexpr OpRow with_example(OpRow row, Example example) {
@@ -109,7 +114,7 @@ constexpr auto float_relation_rows(std::string_view doc) {
   return rows;
 }
 
-// Half a pair of 16-bit floats, by the operand of one: for the two predicates of setp.lt.f16x2.
+// Selects half a pair of 16-bit floats like a single operand, for the two predicates of setp.lt.f16x2.
 template <class N, int kShift>
 struct HalfOfPair {
   using Type = uint32_t;
@@ -140,7 +145,7 @@ template <class R, class N, uint32_t kYes>
   });
 }
 
-// (1, 1) against (2, 1), low half first: less, then equal.
+// Compares (1, 1) with (2, 1), low half first: less, then equal.
 template <class N>
 inline constexpr uint64_t kOnes = N::kOne | N::kOne << 16;
 template <class N>
@@ -153,7 +158,7 @@ constexpr OpRow combined_pair_row() {
   };
   return comparison_row(joined<"setp", R::kName, Op::kName, N::kFlush, N::kName, "x2">, Unit::Fp16,
                         {DstPred, DstPred, Src32, Src32, SrcPred}, &run_pair_combined<R, N, Op>,
-                        "The comparisons of the low and of the high halves, each combined with a predicate.",
+                        "Compares the low and the high halves, and combines each result with a predicate.",
                         {example(false), example(true)});
 }
 template <class R, class N, uint32_t kYes>
@@ -163,17 +168,17 @@ constexpr auto pair_rows() {
   return joined_rows(
       comparison_row(joined<"setp", R::kName, N::kFlush, N::kName, "x2">, Unit::Fp16,
                      {DstPred, DstPred, Src32, Src32}, &run_pair<R, N>,
-                     "Two predicates: of the low and of the high halves.",
+                     "Compares the low and the high halves, and gives two predicates.",
                      {{{kOnes<N>, kTwoOne<N>}, kTruth.less, kTruth.equal},
                       {{kTwoOne<N>, kOnes<N>}, kTruth.greater, kTruth.equal}}),
       combined_pair_row<R, N, And>(), combined_pair_row<R, N, Or>(), combined_pair_row<R, N, Xor>(),
       comparison_row(
           joined<"set", R::kName, N::kFlush, N::kName, "x2", N::kName, "x2">, Unit::Fp16,
           {Dst32, Src32, Src32}, &run_pair_set<R, N, kYes>,
-          "Two floats, of the low and of the high halves: 1 for true, 0 for false.",
+          "Compares the low and the high halves, and gives two floats: 1 for true, 0 for false.",
           {{{kOnes<N>, kTwoOne<N>}, kSet}, {{kOnes<N>, kOnes<N>}, kTruth.equal ? kYes * 0x1'0001u : 0}}));
 }
-// A result of 16 bits: all ones, or 1 as a float of the source's type.
+// Gives a result of 16 bits: all ones, or 1 as a float of the source's type.
 template <class R, class N, uint32_t kYes>
 constexpr auto short_set_rows() {
   return joined_rows(set_row<R, N, ".u16", 0xffffu>(), set_row<R, N, ".s16", 0xffffu>(),

@@ -1,21 +1,22 @@
-// What comparison rows are made of: the relations, and handlers for setp and set that share one loop over the
+// Builds comparison rows: the relations, and the handlers of setp and set, which share one loop over the
 // lanes.
-//
-// Included only by isa/ops/*.cpp. Everything lies in an unnamed namespace: the handlers are those of one
-// file.
 // SPDX-License-Identifier: Apache-2.0
+//
+// Only isa/ops/*.cpp include this file. Everything is in an unnamed namespace, so each file has its own
+// handlers.
 #pragma once
 #include "isa/ops/row_tables.h"
 
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
-// Results for a < b, a == b, a > b, and a or b not a number: what the examples of a relation are made of.
+// Holds the results for a < b, a == b, a > b, and a or b not a number. The examples of a relation are made
+// from them.
 struct Truth {
   bool less, equal, greater, unordered;
 };
 
-// A relation under its PTX name; Test says how to find out.
+// Names a relation as PTX does. Test computes it.
 template <Text kText, class Test, bool kLess, bool kEqual, bool kGreater, bool kUnordered = false>
 struct Relation {
   static constexpr auto kName = kText;
@@ -47,8 +48,8 @@ struct IsGreaterOrEqual {
   bool operator()(auto a, auto b) const { return a >= b; }
 };
 
-// The mask of the lanes where the relation holds between two sources. N::Type is what a lane holds, N::value
-// what of it is compared.
+// Returns the mask of the lanes where the relation holds between two sources. N::Type is the type of a lane,
+// and N::value returns the part of it that is compared.
 template <class R, class N>
 [[gnu::flatten, gnu::noinline]] LaneMask compared(const Warp& warp, Slot a, Slot b) {
   const Source<typename N::Type> x(warp, a), y(warp, b);
@@ -61,7 +62,7 @@ void run_setp(Warp& warp, const Inst& inst) {
   write_predicate(warp, slot[0], compared<R, N>(warp, slot[1], slot[2]));
 }
 
-// The combining operators of setp: %p0 = r op c, %p1 = !r op c.
+// These are the combining operators of setp: %p0 = r op c, %p1 = !r op c.
 struct And {
   static constexpr auto kName = Text(".and");
   static constexpr bool apply(bool r, bool c) { return r && c; }
@@ -89,7 +90,7 @@ void run_setp_combined(Warp& warp, const Inst& inst) {
 [[gnu::flatten, gnu::noinline]] void write_choice(Warp& warp, Slot slot, LaneMask mask, uint32_t yes) {
   write_lanes<uint32_t>(warp, slot, [&](int i) { return (mask & kLaneBit[i]) != 0 ? yes : 0u; });
 }
-// `yes` where the relation holds, else 0.
+// Writes `yes` where the relation holds, and 0 elsewhere.
 template <class R, class N, uint32_t kYes>
 void run_set(Warp& warp, const Inst& inst) {
   const Slot* const slot = &inst.operand.front();
@@ -108,7 +109,7 @@ constexpr OpRow comparison_row(std::string_view name, Unit unit, Operands operan
   return row;
 }
 
-// N: kFlush (".ftz" or ""), kName (".f32"), kOne and kTwo as examples write them, kUnit.
+// N has kFlush (".ftz" or ""), kName (".f32"), kOne and kTwo as examples write them, and kUnit.
 template <class R, class N>
 constexpr OpRow setp_row(std::string_view doc) {
   constexpr OperandKind kKind = source_kind<typename N::Type>();
@@ -126,11 +127,12 @@ constexpr OpRow combined_row() {
   constexpr auto example = [](uint64_t b, bool r, bool c) {
     return Example{{N::kOne, b, c}, Op::apply(r, c), Op::apply(!r, c)};
   };
-  return comparison_row(joined<"setp", R::kName, Op::kName, N::kFlush, N::kName>, N::kUnit,
-                        {DstPred, DstPred, kKind, kKind, SrcPred}, &run_setp_combined<R, N, Op>,
-                        "The comparison combined with a predicate, and its opposite combined with the same.",
-                        {example(N::kTwo, kTruth.less, false), example(N::kTwo, kTruth.less, true),
-                         example(N::kOne, kTruth.equal, false), example(N::kOne, kTruth.equal, true)});
+  return comparison_row(
+      joined<"setp", R::kName, Op::kName, N::kFlush, N::kName>, N::kUnit,
+      {DstPred, DstPred, kKind, kKind, SrcPred}, &run_setp_combined<R, N, Op>,
+      "Combines the comparison with a predicate, and the opposite comparison with the same predicate.",
+      {example(N::kTwo, kTruth.less, false), example(N::kTwo, kTruth.less, true),
+       example(N::kOne, kTruth.equal, false), example(N::kOne, kTruth.equal, true)});
 }
 template <class R, class N, Text kType, uint32_t kYes>
 constexpr OpRow set_row() {
@@ -138,11 +140,12 @@ constexpr OpRow set_row() {
   constexpr Truth kTruth = R::kTruth;
   return comparison_row(
       joined<"set", R::kName, N::kFlush, kType, N::kName>, N::kUnit, {Dst32, kKind, kKind},
-      &run_set<R, N, kYes>, "As setp, but a value: 0 for false, and for true all ones or the float 1.",
+      &run_set<R, N, kYes>,
+      "Compares as setp does, but gives a value: 0 for false, and all ones or the float 1 for true.",
       {{{N::kOne, N::kOne}, kTruth.equal ? kYes : 0}, {{N::kOne, N::kTwo}, kTruth.less ? kYes : 0}});
 }
 
-// setp plain and combined, and set, of one relation and type.
+// Makes the rows of one relation and type: setp, combined setp, and set.
 template <class R, class N>
 constexpr auto relation_rows(std::string_view doc) {
   return joined_rows(setp_row<R, N>(doc), combined_row<R, N, And>(), combined_row<R, N, Or>(),

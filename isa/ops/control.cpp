@@ -1,4 +1,4 @@
-// Ops that steer a warp: branches, regions whose lanes meet again, and ends.
+// Defines ops that steer a warp: branches, regions whose lanes meet again, and ends.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/op_makers.h"
 #include "isa/ops/families.h"
@@ -11,17 +11,17 @@ constexpr OpRow control(std::string_view name, Effect effect, Operands operands,
 }
 
 constexpr OpRow kRows[] = {
-    control("bra", Effect::Branch, {Label}, "Continues at the label; a guard may split the warp."),
+    control("bra", Effect::Branch, {Label}, "Continues at the label. A guard may split the warp."),
     control("ssy", Effect::PushReconvergence, {Label},
             "Opens a region whose lanes meet at the join of the label."),
     control("join", Effect::Join, {}, "Waits until every lane of the region has arrived or left it."),
     control(
         "brx.idx", Effect::BranchIndexed, {Src32, Label},
-        "Continues at that branch, counted from 0, of the table of bra at the label; may split the warp."),
-    control("call", Effect::Call, {Label}, "Calls the function at the label; its ret comes back here."),
+        "Continues at that branch, counted from 0, in the table of bra at the label. It may split the warp."),
+    control("call", Effect::Call, {Label}, "Calls the function at the label, whose ret comes back here."),
     control("exit", Effect::Exit, {}, "Ends the lanes."),
     control("ret", Effect::Return, {},
-            "Returns from the function or shader; an any-hit shader accepts its candidate."),
+            "Returns from the function or shader. An any-hit shader accepts its candidate."),
     control("trap", Effect::Trap, {}, "Stops the run with a fault."),
 };
 

@@ -1,4 +1,4 @@
-// Types of conversion rows: bytes in registers of 32 bits, and floats under their PTX names.
+// Defines the types of conversion rows: bytes in registers of 32 bits, and floats under their PTX names.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "isa/conversions.h"
@@ -10,8 +10,8 @@ namespace glint::isa::GLINT_ISA_PATH {
 using TypeS8 = Named<int8_t, ".s8">;
 using TypeU8 = Named<uint8_t, ".u8">;
 
-// How T lies in a register: bytes fill one of 32 bits, extended by their sign or zeros; sources count by
-// their low byte.
+// Names the type of T in a register. A byte fills a register of 32 bits, extended by its sign or by zeros; of
+// a source, only the low byte counts.
 template <class T>
 using Register =
     std::conditional_t<sizeof(T) == 1, std::conditional_t<std::is_signed_v<T>, int32_t, uint32_t>, T>;
@@ -20,7 +20,7 @@ constexpr uint64_t register_word(T x) {
   return word(Register<T>(x));
 }
 
-// Directions of rounding to an integer.
+// Names the directions of rounding to an integer.
 template <Round kRound>
 inline constexpr auto integer_round_name = Text(".rni");
 template <>
@@ -30,14 +30,14 @@ inline constexpr auto integer_round_name<Round::Down> = Text(".rmi");
 template <>
 inline constexpr auto integer_round_name<Round::Up> = Text(".rpi");
 
-// Tables for the four directions: make.operator()<kRound>() of each.
+// Makes tables for the four directions, with make.operator()<kRound>() for each.
 template <class Make>
 constexpr auto rows_of_rounds(Make make) {
   return joined_rows(make.template operator()<Round::Nearest>(), make.template operator()<Round::Zero>(),
                      make.template operator()<Round::Down>(), make.template operator()<Round::Up>());
 }
 
-// A float type as conversions see it: its name, and its exact value as a float or double.
+// Describes a float type for conversions: its name, and its exact value as a float or double.
 struct TypeF32 : Named<float, ".f32"> {
   static constexpr uint64_t kOne = 0x3f80'0000, kMinusOne = 0xbf80'0000, kTwoAndHalf = 0x4020'0000,
                             kNan = 0x7fc0'0000, kInfinity = 0x7f80'0000;

@@ -1,4 +1,4 @@
-// Conversions between integers of 8 to 64 bits.
+// Defines conversions between integers of 8 to 64 bits.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/ops/conversion_types.h"
 #include "isa/ops/families.h"
@@ -11,7 +11,7 @@ inline constexpr bool kContains = std::is_signed_v<D> == std::is_signed_v<S> ? s
                                   : std::is_signed_v<D>                      ? sizeof(D) > sizeof(S)
                                                                              : false;
 
-// The nearest value of D. Bounds that S cannot reach are left out: they would not fit its type.
+// Returns the nearest value of D. Bounds that S cannot reach are left out, because they do not fit its type.
 template <class D, class S>
 [[gnu::always_inline]] inline D clamped(S x) {
   constexpr D kLow = std::is_signed_v<D> ? D(Unsigned<D>(1) << (kBits<D> - 1)) : D(0), kHigh = D(~kLow);

@@ -1,4 +1,4 @@
-// Conversions between floats of 16, 32 and 64 bits, and rounding to integers.
+// Defines conversions between floats of 16, 32 and 64 bits, and rounding to integers.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/half_rows.h"
 #include "isa/ops/conversion_types.h"
@@ -33,7 +33,7 @@ constexpr OpRow whole_single_row() {
   return unary<float>(
       joined<"cvt", integer_round_name<kRound>, when<kFtz, ".ftz">, when<kSat, ".sat">, ".f32.f32">,
       Unit::Sfu,
-      kSat ? "Rounds to an integer that stays a float; clamped to [0, 1], NaN becomes 0."
+      kSat ? "Rounds to an integer that stays a float, and clamps it to [0, 1]. NaN becomes 0."
            : "Rounds to an integer that stays a float.",
       [](float x) {
         const float whole = rounded_whole<kRound>(kFtz ? flushed(x) : x);
@@ -72,38 +72,38 @@ constexpr OpRow whole_half_row() {
                       {{TypeF16::kMinusOne}, kSat ? 0 : TypeF16::kMinusOne}});
 }
 
-// The same width without rounding: flushed, clamped.
+// These keep the width and do not round: they flush or clamp.
 constexpr auto same_rows() {
   return joined_rows(
-      unary<float>("cvt.sat.f32.f32", Unit::Int, "Clamps to [0, 1]; NaN becomes 0.",
+      unary<float>("cvt.sat.f32.f32", Unit::Int, "Clamps to [0, 1]. NaN becomes 0.",
                    [](float x) { return saturated(x); },
                    {{{0x4000'0000}, 0x3f80'0000}, {{1}, 1}, {{0x7fc0'0000}, 0}, {{0xbf80'0000}, 0}}),
       unary<float>(
-          "cvt.ftz.f32.f32", Unit::Int, "Makes subnormals zero.",
+          "cvt.ftz.f32.f32", Unit::Int, "Turns subnormals into zeros.",
           [](float x) { return canonical(flushed(x)); },
           {{{0x4000'0000}, 0x4000'0000}, {{0x8000'0001}, 0x8000'0000}, {{0x7f80'0001}, 0x7fff'ffff}}),
-      unary<float>("cvt.ftz.sat.f32.f32", Unit::Int, "Clamps to [0, 1]; subnormals and NaN become 0.",
+      unary<float>("cvt.ftz.sat.f32.f32", Unit::Int, "Clamps to [0, 1]. Subnormals and NaN become 0.",
                    [](float x) { return saturated(flushed(x)); }, {{{0x4000'0000}, 0x3f80'0000}, {{1}, 0}}),
-      unary<double>("cvt.sat.f64.f64", Unit::Sfu, "Clamps to [0, 1]; NaN becomes 0.",
+      unary<double>("cvt.sat.f64.f64", Unit::Sfu, "Clamps to [0, 1]. NaN becomes 0.",
                     [](double x) { return saturated(x); },
                     {{{TypeF64::kTwoAndHalf}, TypeF64::kOne}, {{TypeF64::kNan}, 0}}),
-      unary<Half>("cvt.sat.f16.f16", Unit::Int, "Clamps to [0, 1]; NaN becomes 0.",
+      unary<Half>("cvt.sat.f16.f16", Unit::Int, "Clamps to [0, 1]. NaN becomes 0.",
                   [](Half x) { return to_half(saturated(to_float(x))); },
                   {{{TypeF16::kTwoAndHalf}, TypeF16::kOne}, {{TypeF16::kNan}, 0}}));
 }
 
-// To a wider type: exact.
+// Converts to a wider type, which is exact.
 template <class D, class S, bool kFtz, bool kSat>
 constexpr OpRow wider_row() {
   using To = typename D::Type;
   return value_op<typename S::Type>(
       joined<"cvt", when<kFtz, ".ftz">, when<kSat, ".sat">, D::kName, S::kName>,
       sizeof(To) == 8 ? Unit::Sfu : Unit::Int,
-      kSat ? "Widens a float; clamped to [0, 1], NaN becomes 0." : "Widens a float, exactly.",
+      kSat ? "Widens a float and clamps it to [0, 1]. NaN becomes 0." : "Widens a float exactly.",
       [](typename S::Type x) {
         constexpr bool kFlush = kFtz && std::is_same_v<S, TypeF32>;  // a 16-bit subnormal is a normal f32
-        // As recorded: flushing makes the NaN of single precision, and so does f16 to f32; else the payload
-        // stays.
+        // Recordings show that flushing makes the NaN of single precision, and so does f16 to f32. Otherwise
+        // the payload stays.
         const float source = kFlush ? canonical(flushed(S::value(x))) : S::value(x);
         const To wide = To(std::is_same_v<S, TypeF16> && sizeof(To) == 4 ? canonical(source) : source);
         return kSat ? saturated(wide) : wide;
@@ -121,13 +121,14 @@ constexpr auto wider_flushing_rows() {
   return joined_rows(wider_rows<D, S>(), wider_row<D, S, true, false>(), wider_row<D, S, true, true>());
 }
 
-// To a narrower type. From double to single the host rounds, and a NaN keeps what fits of its payload.
+// Converts to a narrower type. From double to single the host rounds, and a NaN keeps the part of its payload
+// that fits.
 template <Round kRound, bool kFtz, bool kSat>
 constexpr OpRow single_row() {
   return rounded_op<kRound, Narrowing, double>(
       joined<"cvt", round_name<kRound>, when<kFtz, ".ftz">, when<kSat, ".sat">, ".f32.f64">, Unit::Sfu,
-      kSat ? "Narrows a float; clamped to [0, 1], NaN becomes 0."
-           : "Narrows a float; a NaN keeps what fits of its payload.",
+      kSat ? "Narrows a float and clamps it to [0, 1]. NaN becomes 0."
+           : "Narrows a float. A NaN keeps the part of its payload that fits.",
       [](float narrow, double) {
         const float kept = kFtz ? flushed(narrow) : narrow;
         return kSat ? saturated(kept) : kept;
@@ -139,7 +140,7 @@ constexpr OpRow single_row() {
        {{0x7ff4'dead'beef'1234}, kSat ? 0 : 0x7fe6'f56d}});
 }
 
-// What a NaN of a double becomes: as recorded it keeps its sign and payload, quieted.
+// Returns the narrowed NaN of a double. Recordings show that it keeps its sign and payload and becomes quiet.
 template <class D>
 inline uint32_t narrowed_nan(double nan) {
   constexpr int kPayload = std::is_same_v<D, TypeBf16> ? 7 : 10;  // bits
@@ -147,9 +148,9 @@ inline uint32_t narrowed_nan(double nan) {
   const uint64_t bits = double_bits(nan);
   return uint32_t(bits >> 48 & 0x8000) | kQuiet | (uint32_t(bits >> (52 - kPayload)) & kMask);
 }
-// Handler: clamps where the name says so and rounds to 16 bits, a row at a time. Doubles come as floats
-// rounded to odd, so that the second rounding is the only one. As recorded: .ftz changes nothing, a subnormal
-// still rounds up or down to the least f16.
+// Handles a row: clamps where the name says so and rounds to 16 bits, a row at a time. Doubles come as floats
+// rounded to odd, so that the second rounding is the only one that counts. Recordings show that .ftz changes
+// nothing: a subnormal still rounds up or down to the least f16.
 template <class D, class S, Round kRound, bool kSat, bool kRelu>
 [[gnu::flatten]] void run_narrow(Warp& warp, const Inst& inst) {
   constexpr bool kFromDouble = std::is_same_v<S, TypeF64>;
@@ -180,9 +181,9 @@ constexpr OpRow narrow_row() {
                     D::kName, S::kName>;
   row.operands = {Dst32, source_kind<typename S::Type>()};
   row.run = &run_narrow<D, S, kRound, kSat, kRelu>;
-  row.doc = kSat    ? "Narrows a float, rounded as the name says; clamped to [0, 1], NaN becomes 0."
-            : kRelu ? "Narrows a float, rounded as the name says; negative numbers become 0."
-                    : "Narrows a float, rounded as the name says.";
+  row.doc = kSat    ? "Narrows a float, rounds as the name says, and clamps to [0, 1]. NaN becomes 0."
+            : kRelu ? "Narrows a float and rounds as the name says. Negative numbers become 0."
+                    : "Narrows a float and rounds as the name says.";
   row.examples = {{{S::kOne}, D::kOne},
                   {{S::kTwoAndHalf}, kSat ? D::kOne : D::kTwoAndHalf},
                   {{S::kMinusOne}, kSat || kRelu ? 0 : D::kMinusOne}};

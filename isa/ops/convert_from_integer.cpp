@@ -1,4 +1,4 @@
-// Conversions of integers to floats, rounded in any direction.
+// Defines conversions of integers to floats, rounded in any direction.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/ops/conversion_types.h"
 #include "isa/ops/families.h"
@@ -7,7 +7,7 @@
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
-// To f32 and f64 of many bits: the host rounds, in a direction that the row sets.
+// Converts to f32 and f64. The host rounds, in a direction that the row sets.
 template <class To, class From>
 struct FromInteger {
   [[gnu::always_inline]] static To of(Register<From> x) {
@@ -31,7 +31,7 @@ struct FromInteger {
 #endif
 };
 
-// To 16 bits the work is done in integers. D is the float's type, as conversion rows know it.
+// Converts to 16 bits with integer operations. D is the float's type, as conversion rows know it.
 template <class D, class From, Round kRound, bool kSat>
 struct Convert {
   using To = typename D::Type;
@@ -39,7 +39,7 @@ struct Convert {
       std::conditional_t<sizeof(To) == 8, uint64_t, std::conditional_t<sizeof(To) == 4, uint32_t, uint16_t>>;
   To operator()(Register<From> source) const {
     const From x = From(source);
-    if constexpr (kSat)  // of the integers only 0 and 1 lie in [0, 1]
+    if constexpr (kSat)  // only the integers 0 and 1 are in [0, 1]
       return __builtin_bit_cast(To, Bits(x > 0 ? Bits(D::kOne) : Bits(0)));
     else if constexpr (std::is_same_v<To, float>)
       return rounded_float(x);
@@ -52,13 +52,14 @@ struct Convert {
     if constexpr (sizeof(From) <= 2) {
       return narrowed(float(int32_t(x)));
     } else if constexpr (std::is_same_v<To, Half>) {
-      // 2^17 is beyond the range of f16, and all larger numbers round as it does.
+      // 2^17 is beyond the range of f16, and all larger numbers round as 2^17 does.
       const Unsigned<From> m = Unsigned<From>(magnitude_of(x)),
                            limited = m > 0x2'0000 ? Unsigned<From>(0x2'0000) : m;
       const uint32_t exact = float_bits(float(int32_t(limited)));
       return narrowed(float_of(x < 0 ? exact | 0x8000'0000u : exact));
     } else {
-      // To odd by bits: an integer is no subnormal float, so the 29 bits that a float lacks may go into one.
+      // The number is rounded to odd by bits. An integer is no subnormal float, so the 29 bits that a float
+      // lacks may be gathered in one bit.
       const Reduced r = reduced(x);
       const uint64_t bits = double_bits(r.value), low = bits & 0x1fff'ffff;
       return narrowed(float(double_of((bits ^ low) | (low != 0 ? 0x2000'0000u : 0u))) * r.scale);
@@ -72,7 +73,7 @@ struct Convert {
   }
 };
 
-// Whether every value of the integer is one of the float: no direction matters.
+// Tells whether the float can hold every value of the integer, so that no direction matters.
 template <class To, class From>
 inline constexpr bool kIsExact = (std::is_same_v<To, double> && sizeof(From) < 8) ||
                                  (std::is_same_v<To, float> && sizeof(From) < 4) ||
@@ -91,8 +92,9 @@ constexpr OpRow row() {
                                 std::is_signed_v<From> ? (kSat ? 0 : D::kMinusOne) : D::kOne}};
   constexpr std::string_view kName =
       joined<"cvt", round_name<kRound>, when<kSat, ".sat">, D::kName, S::kName>;
-  constexpr std::string_view kDoc = kSat ? "Converts an integer, rounded as the name says; clamped to [0, 1]."
-                                         : "Converts an integer, rounded as the name says.";
+  constexpr std::string_view kDoc =
+      kSat ? "Converts an integer, rounds as the name says, and clamps to [0, 1]."
+           : "Converts an integer and rounds as the name says.";
   constexpr Unit kUnit = sizeof(To) == 8 || sizeof(From) == 8 ? Unit::Sfu : Unit::Int;
   if constexpr (kIsRounded && sizeof(To) > 2)
     return rounded_op<kRound, FromInteger<To, From>, Register<From>>(

@@ -1,4 +1,5 @@
-// Conversions that pack several results into a register, and the formats of tensor cores: pairs, tf32, bytes.
+// Defines conversions that pack several results into a register, and the formats of tensor cores: pairs,
+// tf32, bytes.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/half_rows.h"
 #include "isa/ops/conversion_types.h"
@@ -7,13 +8,13 @@
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
-// .relu: negative numbers and -0 become +0, a NaN stays.
+// Applies .relu: negative numbers and -0 become +0, and a NaN stays.
 template <bool kOn>
 inline float relu(float x) {
   return kOn && x <= 0.0f ? 0.0f : x;
 }
 
-// One half of a pair from a row of floats.
+// Makes one half of a pair from a row of floats.
 template <class N, Round kRound, bool kRelu>
 [[gnu::always_inline]] inline void narrow_row(const Source<float>& source, uint32_t* out) {
   alignas(64) float x[kLanes];
@@ -31,14 +32,14 @@ template <class N, Round kRound, bool kRelu>
   narrow_row<N, kRound, kRelu>(Source<float>(warp, slot[2]), low);
   write_lanes<uint32_t>(warp, slot[0], [&](int i) { return high[i] << 16 | low[i]; });
 }
-// Two floats to a pair; the first source becomes the upper half.
+// Converts two floats to a pair. The first source becomes the upper half.
 template <class N, Round kRound, bool kRelu>
 constexpr OpRow pair_row() {
   OpRow row;
   row.name = joined<"cvt", round_name<kRound>, when<kRelu, ".relu">, N::kName, "x2.f32">;
   row.operands = {Dst32, Src32, Src32};
   row.run = &run_pair<N, kRound, kRelu>;
-  row.doc = kRelu ? "Narrows two floats, the first to the upper half; negative numbers become 0."
+  row.doc = kRelu ? "Narrows two floats, the first to the upper half. Negative numbers become 0."
                   : "Narrows two floats, the first to the upper half.";
   row.examples = {{{TypeF32::kTwoAndHalf, TypeF32::kOne}, N::kTwoAndHalf << 16 | N::kOne},
                   {{TypeF32::kOne, TypeF32::kMinusOne}, N::kOne << 16 | (kRelu ? 0 : N::kMinusOne)}};
@@ -50,15 +51,15 @@ constexpr auto pair_rows() {
                      pair_row<N, Round::Zero, false>(), pair_row<N, Round::Zero, true>());
 }
 
-// tf32: a float whose mantissa has 10 bits. As recorded, a NaN loses the others too.
+// tf32 is a float whose mantissa has 10 bits. Recordings show that a NaN loses the other bits, too.
 constexpr uint32_t kTf32Mask = 0xffff'e000u;
 inline uint32_t tf32_away(float x) {
   const uint32_t bits = float_bits(x);
   return ((bits & 0x7f80'0000u) == 0x7f80'0000u ? bits : bits + 0x1000u) & kTf32Mask;
 }
 
-// Floats of a byte: sign, kExponentBits, the rest mantissa. kLargest is that of numbers, kNan what a NaN
-// becomes.
+// Describes floats of a byte: a sign, kExponentBits bits of exponent, and the rest mantissa. kLargest is the
+// largest number, and kNan is the result for a NaN.
 struct E4m3 {
   static constexpr auto kName = Text(".e4m3x2");
   static constexpr int kMantissaBits = 3, kBias = 7;
@@ -73,7 +74,7 @@ struct E5m2 {
   static constexpr float kLargestValue = 57344.0f;
   static constexpr uint64_t kOne = 0x3c, kMinusTwo = 0xc0;
 };
-// Nearest even; what is too large becomes the largest number.
+// Rounds to nearest even. A value that is too large becomes the largest number.
 template <class F>
 inline uint32_t byte_float(float x) {
   constexpr int kDrop = 23 - F::kMantissaBits;
@@ -82,7 +83,7 @@ inline uint32_t byte_float(float x) {
   const uint32_t l = float_bits(limited);
   const uint32_t normal =
       ((l + (1u << (kDrop - 1)) - 1 + ((l >> kDrop) & 1)) >> kDrop) - ((127u - F::kBias) << F::kMantissaBits);
-  // Floats from 2^e on are as far apart as subnormals of the format: the addition rounds.
+  // Floats from 2^e on have the spacing of the format's subnormals, so the addition rounds.
   constexpr uint32_t kShifter = uint32_t(127 + 1 - F::kBias - F::kMantissaBits + 23) << 23;
   const uint32_t subnormal = float_bits(limited + float_of(kShifter)) - kShifter;
   const uint32_t number = l < uint32_t(128 - F::kBias) << 23 ? subnormal : normal;
@@ -110,14 +111,14 @@ constexpr auto byte_rows() {
   return joined_rows(
       value_op<float, float>(
           joined<"cvt.rn.satfinite", when<kRelu, ".relu">, F::kName, ".f32">, Unit::Int,
-          "Narrows two floats to bytes, the first to the upper one; the largest number is the limit.",
+          "Narrows two floats to bytes, the first to the upper one. The largest number is the limit.",
           [](float a, float b) {
             return uint16_t(byte_float<F>(relu<kRelu>(a)) << 8 | byte_float<F>(relu<kRelu>(b)));
           },
           {{{0x3f80'0000, 0xc000'0000}, F::kOne << 8 | kLow},
            {{0x7fc0'0000, 0x7f80'0000}, F::kNan << 8 | F::kLargest}}),
       unary<uint32_t>(joined<"cvt.rn.satfinite", when<kRelu, ".relu">, F::kName, ".f16x2">, Unit::Int,
-                      "Narrows a pair to bytes; the largest number is the limit.",
+                      "Narrows a pair to bytes. The largest number is the limit.",
                       [](uint32_t x) {
                         const float high = relu<kRelu>(to_float(Half{uint16_t(x >> 16)})),
                                     low = relu<kRelu>(to_float(Half{uint16_t(x)}));
@@ -125,7 +126,7 @@ constexpr auto byte_rows() {
                       },
                       {{{0x3c00'c000}, F::kOne << 8 | kLow}, {{0x7e00'7c00}, F::kNan << 8 | F::kLargest}}),
       unary<uint16_t>(joined<"cvt.rn", when<kRelu, ".relu">, ".f16x2", F::kName>, Unit::Int,
-                      "Widens two bytes to a pair, exactly.",
+                      "Widens two bytes to a pair exactly.",
                       [](uint16_t x) {
                         return relu_half<kRelu>(half_of_byte<F>(x >> 8)) << 16 |
                                relu_half<kRelu>(half_of_byte<F>(x));
@@ -133,7 +134,7 @@ constexpr auto byte_rows() {
                       {{{F::kOne << 8 | F::kMinusTwo}, kRelu ? 0x3c00'0000 : 0x3c00'c000}, {{0}, 0}}));
 }
 
-// Integers clamped to kSize bits and put side by side, the first source above the second.
+// Clamps integers to kSize bits and puts them side by side, the first source above the second.
 template <int kSize, bool kSigned>
 inline uint32_t clamped_bits(int32_t x) {
   constexpr int32_t kLow = kSigned ? -(1 << (kSize - 1)) : 0,
@@ -146,7 +147,7 @@ constexpr OpRow pack_row() {
   constexpr uint64_t kMinus = kSigned ? (1ull << kSize) - 1 : 0;
   if constexpr (kSize == 16)
     return binary<int32_t>(joined<"cvt.pack.sat", kName, ".s32">, Unit::Int,
-                           "Clamps two integers to 16 bits; the first becomes the upper half.",
+                           "Clamps two integers to 16 bits. The first becomes the upper half.",
                            [](int32_t a, int32_t b) {
                              return clamped_bits<16, kSigned>(a) << 16 | clamped_bits<16, kSigned>(b);
                            },
@@ -154,8 +155,8 @@ constexpr OpRow pack_row() {
   else
     return value_op<int32_t, int32_t, uint32_t>(
         joined<"cvt.pack.sat", kName, ".s32.b32">, Unit::Int,
-        "Clamps two integers to a few bits and shifts them in at the low end of the third source, the second "
-        "lowest.",
+        "Clamps two integers to a few bits and shifts them into the third source at its low end. The second "
+        "is lowest.",
         [](int32_t a, int32_t b, uint32_t c) {
           return c << 2 * kSize | clamped_bits<kSize, kSigned>(a) << kSize | clamped_bits<kSize, kSigned>(b);
         },
@@ -164,7 +165,7 @@ constexpr OpRow pack_row() {
 
 constexpr auto kRows = joined_rows(
     pair_rows<TypeF16>(), pair_rows<TypeBf16>(),
-    unary<float>("cvt.rna.tf32.f32", Unit::Int, "Rounds the mantissa to 10 bits, ties away from zero.",
+    unary<float>("cvt.rna.tf32.f32", Unit::Int, "Rounds the mantissa to 10 bits, with ties away from zero.",
                  [](float x) { return tf32_away(x); },
                  {{{0x3f80'0001}, 0x3f80'0000}, {{0x3f80'1000}, 0x3f80'2000}, {{0x7f7f'ffff}, 0x7f80'0000}}),
     byte_rows<E4m3, false>(), byte_rows<E4m3, true>(), byte_rows<E5m2, false>(), byte_rows<E5m2, true>(),

@@ -1,4 +1,4 @@
-// Conversions of floats to integers: rounded, then clamped to the range.
+// Defines conversions of floats to integers, which are rounded and then clamped to the range.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/half_rows.h"
 #include "isa/ops/conversion_types.h"
@@ -7,7 +7,7 @@
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
-// The work of a row; the same with .sat and without: hardware clamps always.
+// Does the work of a row. It is the same with and without .sat, because hardware always clamps.
 template <class To, class S, Round kRound, bool kFtz>
 struct Convert {
   Register<To> operator()(typename S::Type x) const {
@@ -21,8 +21,8 @@ struct Convert {
 
 #if defined(__AVX512F__)
 
-// Eight doubles, rounded and clamped: 32-bit words for the narrower integers. The instructions give the
-// lowest number for all that a signed one cannot hold, and the highest for an unsigned one.
+// Rounds and clamps eight doubles; narrower integers are 32-bit words. The instructions return the lowest
+// number for everything that a signed type cannot hold, and the highest for an unsigned type.
 template <class To, Round kRound, bool kFromDouble>
 [[gnu::always_inline]] inline auto to_integer_part(__m512d x) {
   constexpr int kDirection = kStaticRound<kRound>;
@@ -44,7 +44,7 @@ template <class To, Round kRound, bool kFromDouble>
                                   int64_t(kNan));
   }
 }
-// A row of S as doubles, eight lanes at a time: `take(i, doubles)` of the lanes from i on.
+// Reads a row of S as doubles, eight lanes at a time, and calls `take(i, doubles)` for the lanes from i on.
 template <class S, bool kFtz, class Take>
 [[gnu::always_inline]] inline void each_doubles(const Source<typename S::Type>& source, Take&& take) {
   if constexpr (std::is_same_v<S, TypeF64>) {
@@ -58,7 +58,7 @@ template <class S, bool kFtz, class Take>
     for (int i = 0; i < kLanes; i += 8) take(i, _mm512_cvtps_pd(_mm256_load_ps(x + i)));
   }
 }
-// Handler, instead of the work of a lane: ten times as fast.
+// Handles a whole row in place of the work of a lane, which is ten times as fast.
 template <class To, class S, Round kRound, bool kFtz>
 [[gnu::flatten]] void run_convert(Warp& warp, const Inst& inst) {
   const Slot* const slot = &inst.operand.front();
@@ -77,7 +77,7 @@ template <class D, class S, Round kRound, bool kFtz, bool kSat>
 constexpr OpRow row() {
   using To = typename D::Type;
   constexpr bool kFromDouble = std::is_same_v<typename S::Type, double>;
-  // Subnormals matter to the directed roundings only: the others share a handler.
+  // Subnormals matter only to the directed roundings, so the other roundings share a handler.
   constexpr bool kFlush = kFtz && (kRound == Round::Down || kRound == Round::Up);
   constexpr To kHigh = To(std::is_signed_v<To> ? Unsigned<To>(-1) >> 1 : Unsigned<To>(-1));
   OpRow row = value_op<typename S::Type>(

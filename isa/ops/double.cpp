@@ -1,4 +1,4 @@
-// Double-precision arithmetic: IEEE 754 in all roundings; a NaN result is a source's, made quiet.
+// Defines double-precision arithmetic: IEEE 754 in all roundings. A NaN result is a source's NaN, made quiet.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/op_makers.h"
 #include "isa/ops/families.h"
@@ -20,8 +20,8 @@ inline bool is_nan(double x) {
 inline double quiet(double nan) {
   return double_of(double_bits(nan) | kQuiet);
 }
-// The result, or where it is a NaN, the NaN source that wins, with sign and payload; without one
-// 0xfff8000000000000. Hosts differ in which one they hand on, so it is chosen here.
+// Returns the result. If it is a NaN, returns the NaN source that wins, with sign and payload, or
+// 0xfff8000000000000 without a NaN source. Hosts differ in which NaN they return, so the choice is made here.
 inline double with_nan(double result, double only) {
   const double nan = is_nan(only) ? quiet(only) : double_of(kDefaultNan);
   return is_nan(result) ? nan : result;
@@ -77,7 +77,7 @@ struct Multiply : Product {
   }
 };
 struct MultiplyAdd : ProductSum {
-  static constexpr Text kDoc = "Multiplies and adds, rounding once";
+  static constexpr Text kDoc = "Multiplies and adds exactly";
   static constexpr Unit kUnit = Unit::Fp64;
   double operator()(double result, double a, double b, double c) const { return with_nan(result, b, c, a); }
   static constexpr Examples examples(Round round) {
@@ -92,7 +92,7 @@ struct MultiplyAdd : ProductSum {
 struct Fma : MultiplyAdd {
   static constexpr Text kName = "fma";
 };
-struct Mad : MultiplyAdd {  // PTX's other name of the same
+struct Mad : MultiplyAdd {  // PTX's other name of fma
   static constexpr Text kName = "mad";
 };
 struct Divide : Quotient {
@@ -109,7 +109,7 @@ struct Divide : Quotient {
 };
 struct Reciprocal : Inverse {
   static constexpr Text kName = "rcp";
-  static constexpr Text kDoc = "Reciprocal";
+  static constexpr Text kDoc = "Computes the reciprocal";
   static constexpr Unit kUnit = Unit::Fp64Div;
   double operator()(double result, double a) const { return with_nan(result, a); }
   static constexpr Examples examples(Round round) {
@@ -120,7 +120,7 @@ struct Reciprocal : Inverse {
 };
 struct SquareRoot : Root {
   static constexpr Text kName = "sqrt";
-  static constexpr Text kDoc = "Square root";
+  static constexpr Text kDoc = "Computes the square root";
   static constexpr Unit kUnit = Unit::Fp64Div;
   double operator()(double result, double a) const { return with_nan(result, a); }
   static constexpr Examples examples(Round round) {
@@ -132,7 +132,7 @@ struct SquareRoot : Root {
   }
 };
 
-// {.rn,.rz,.rm,.rp}
+// Makes the rows {.rn,.rz,.rm,.rp}.
 template <class Op, class... A>
 constexpr auto rounded = generated<4>([](auto i) {
   return rounded_op<kRounds[i], Op, A...>(joined<Op::kName, round_name<kRounds[i]>, ".f64">, Op::kUnit,
@@ -140,7 +140,7 @@ constexpr auto rounded = generated<4>([](auto i) {
                                           Op::examples(kRounds[i]));
 });
 
-// Signed integers in two's complement order like the doubles, -0 before +0.
+// Returns signed integers that have the order of the doubles, with -0 before +0.
 inline int64_t ordered(double x) {
   const int64_t bits = int64_t(double_bits(x));
   return bits ^ ((bits >> 63) & int64_t(~kSign));
@@ -156,7 +156,7 @@ inline double extreme(double a, double b) {
 
 constexpr std::array kPlainRows = {
     binary<double>("min.f64", Unit::Fp64,
-                   "The smaller; a NaN loses against a number, and -0 counts as less than +0.",
+                   "Returns the smaller source. A NaN loses against a number, and -0 counts as less than +0.",
                    [](double a, double b) { return extreme<false>(a, b); },
                    {{{kNan, kOne}, kOne},
                     {{kOne, kSignaling}, kOne},
@@ -165,7 +165,7 @@ constexpr std::array kPlainRows = {
                     {{kSign, 0}, kSign},
                     {{kOne, kTwo | kSign}, kTwo | kSign}}),
     binary<double>("max.f64", Unit::Fp64,
-                   "The larger; a NaN loses against a number, and +0 counts as more than -0.",
+                   "Returns the larger source. A NaN loses against a number, and +0 counts as more than -0.",
                    [](double a, double b) { return extreme<true>(a, b); },
                    {{{kNan, kOne}, kOne},
                     {{kOne, kSignaling}, kOne},
@@ -174,38 +174,38 @@ constexpr std::array kPlainRows = {
                     {{kSign, 0}, 0},
                     {{kOne, kTwo | kSign}, kOne}}),
     unary<uint64_t>(
-        "neg.f64", Unit::Fp64, "Negates; a NaN keeps its sign and becomes quiet.",
+        "neg.f64", Unit::Fp64, "Negates. A NaN keeps its sign and becomes quiet.",
         [](uint64_t a) { return (a & ~kSign) > kInfinity ? a | kQuiet : a ^ kSign; },
         {{{kOne}, kOne | kSign}, {{0}, kSign}, {{kSignaling}, kSignaling | kQuiet}, {{kNan}, kNan}}),
     unary<uint64_t>(
-        "abs.f64", Unit::Fp64, "Magnitude; a NaN keeps its sign and becomes quiet.",
+        "abs.f64", Unit::Fp64, "Returns the magnitude. A NaN keeps its sign and becomes quiet.",
         [](uint64_t a) { return (a & ~kSign) > kInfinity ? a | kQuiet : a & ~kSign; },
         {{{kOne | kSign}, kOne}, {{kSign}, 0}, {{kSignaling}, kSignaling | kQuiet}, {{kNan}, kNan}}),
     binary<uint64_t>("copysign.f64", Unit::Int,
-                     "The second source with the sign of the first (the order of PTX).",
+                     "Returns the second source with the sign of the first (the order of PTX).",
                      [](uint64_t a, uint64_t b) { return (a & kSign) | (b & ~kSign); },
                      {{{kOne, kSign}, 0}, {{kSign, kOne}, kOne | kSign}}),
-    unary<uint64_t>("testp.finite.f64", Unit::Fp64, "True for numbers that are not infinite.",
+    unary<uint64_t>("testp.finite.f64", Unit::Fp64, "Gives true for numbers that are not infinite.",
                     [](uint64_t a) { return (a & ~kSign) < kInfinity; },
                     {{{kInfinity - 1}, 1}, {{kInfinity}, 0}, {{kNan}, 0}, {{1}, 1}}),
-    unary<uint64_t>("testp.infinite.f64", Unit::Fp64, "True for the infinities.",
+    unary<uint64_t>("testp.infinite.f64", Unit::Fp64, "Gives true for the infinities.",
                     [](uint64_t a) { return (a & ~kSign) == kInfinity; },
                     {{{kInfinity - 1}, 0}, {{kInfinity | kSign}, 1}, {{kNan}, 0}}),
-    unary<uint64_t>("testp.number.f64", Unit::Fp64, "True for all but NaN.",
+    unary<uint64_t>("testp.number.f64", Unit::Fp64, "Gives true for everything except NaN.",
                     [](uint64_t a) { return (a & ~kSign) <= kInfinity; },
                     {{{kInfinity}, 1}, {{kSignaling}, 0}, {{kNan}, 0}, {{1}, 1}}),
-    unary<uint64_t>("testp.notanumber.f64", Unit::Fp64, "True for NaN.",
+    unary<uint64_t>("testp.notanumber.f64", Unit::Fp64, "Gives true for NaN.",
                     [](uint64_t a) { return (a & ~kSign) > kInfinity; },
                     {{{kInfinity}, 0}, {{kSignaling}, 1}, {{kNan}, 1}}),
     unary<uint64_t>("testp.normal.f64", Unit::Fp64,
-                    "True for finite numbers that are not subnormal; zero is among them.",
+                    "Gives true for finite numbers that are not subnormal, with zero.",
                     [](uint64_t a) {
                       const uint64_t exponent = a & kInfinity;
                       return exponent != kInfinity && (exponent != 0 || (a & ~kSign) == 0);
                     },
                     {{{0}, 1}, {{1}, 0}, {{kOne}, 1}, {{kInfinity}, 0}, {{kNan}, 0}}),
     unary<uint64_t>("testp.subnormal.f64", Unit::Fp64,
-                    "True for numbers nearer to zero than 2^-1022, but not zero.",
+                    "Gives true for numbers nearer to zero than 2^-1022, except zero.",
                     [](uint64_t a) { return (a & kInfinity) == 0 && (a & ~kSign) != 0; },
                     {{{0}, 0}, {{1}, 1}, {{kSign | 1}, 1}, {{0x0010'0000'0000'0000}, 0}}),
 };

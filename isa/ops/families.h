@@ -1,4 +1,4 @@
-// The row lists of the op families, as compiled for one SIMD path.
+// Declares the row lists of the op families, as compiled for one SIMD path.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "isa/ops/row_list.h"

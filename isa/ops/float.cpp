@@ -1,4 +1,5 @@
-// Single-precision arithmetic in all roundings, with flush to zero and saturation; min, max, signs, classes.
+// Defines single-precision arithmetic in all roundings, with flush to zero and saturation; min, max, signs,
+// classes.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/op_makers.h"
 #include "isa/ops/families.h"
@@ -11,19 +12,19 @@ namespace {
 constexpr uint32_t kSign = 0x8000'0000, kInfinity = 0x7f80'0000, kOne = 0x3f80'0000, kTwo = 0x4000'0000,
                    kHalf = 0x3f00'0000, kNan = kCanonicalNan;
 
-// A subnormal becomes a zero of its sign where .ftz says so.
+// Returns the source; with .ftz a subnormal becomes a zero of its sign.
 template <bool kFtz>
 inline float taken(float x) {
   const bool is_flushed = kFtz && (float_bits(x) & kInfinity) == 0;
   return is_flushed ? float_of(float_bits(x) & kSign) : x;
 }
-// NaN and -0 become +0.
+// Clamps to [0, 1]. NaN and -0 become +0.
 inline float saturated(float x) {
   const float below = x < 1.0f ? x : 1.0f;
   return x > 0.0f ? below : 0.0f;
 }
 
-// Saturates the result, or makes its NaN the canonical one.
+// Saturates the result, or turns a NaN into the canonical one.
 template <bool kSat>
 struct Finish {
   template <class... A>
@@ -81,7 +82,7 @@ struct Multiply : Product {
   }
 };
 struct MultiplyAdd : ProductSum {
-  static constexpr Text kDoc = "Multiplies and adds, rounding once";
+  static constexpr Text kDoc = "Multiplies and adds exactly";
   static constexpr Unit kUnit = Unit::Fp32;
   static constexpr Examples examples(Mode m) {
     const bool is_down = m.round == Round::Down, is_toward_zero = is_down || m.round == Round::Zero;
@@ -97,7 +98,7 @@ struct MultiplyAdd : ProductSum {
 struct Fma : MultiplyAdd {
   static constexpr Text kName = "fma";
 };
-struct Mad : MultiplyAdd {  // PTX's other name of the same
+struct Mad : MultiplyAdd {  // PTX's other name of fma
   static constexpr Text kName = "mad";
 };
 struct Divide : Quotient {
@@ -114,7 +115,7 @@ struct Divide : Quotient {
 };
 struct Reciprocal : Inverse {
   static constexpr Text kName = "rcp";
-  static constexpr Text kDoc = "Reciprocal";
+  static constexpr Text kDoc = "Computes the reciprocal";
   static constexpr Unit kUnit = Unit::FpDiv;
   static constexpr Examples examples(Mode m) {
     const bool is_up = m.round == Round::Nearest || m.round == Round::Up;
@@ -126,7 +127,7 @@ struct Reciprocal : Inverse {
 };
 struct SquareRoot : Root {
   static constexpr Text kName = "sqrt";
-  static constexpr Text kDoc = "Square root";
+  static constexpr Text kDoc = "Computes the square root";
   static constexpr Unit kUnit = Unit::FpDiv;
   static constexpr Examples examples(Mode m) {
     return {{{0x4080'0000}, kTwo},
@@ -147,7 +148,7 @@ constexpr OpRow arithmetic_row() {
       joined<Op::kDoc, round_words<kRound>, when<kFtz, kFtzWords>, when<kSat, kSatWords>, ".">,
       Finish<kSat>{}, Op::examples({.round = kRound, .ftz = kFtz, .sat = kSat}));
 }
-// {.rn,.rz,.rm,.rp}{.ftz}, and {.sat} where PTX has it.
+// Makes the rows {.rn,.rz,.rm,.rp}{.ftz}, and {.sat} where PTX has it.
 template <class Op, class... A>
 constexpr auto saturable = generated<16>([](auto i) {
   return arithmetic_row<Op, kRounds[i / 4], i / 2 % 2, i % 2, A...>();
@@ -157,14 +158,14 @@ constexpr auto unsaturable = generated<8>([](auto i) {
   return arithmetic_row<Op, kRounds[i / 2], i % 2, false, A...>();
 });
 
-// Signed integers in two's complement order like the floats, -0 before +0.
+// Returns signed integers that have the order of the floats, with -0 before +0.
 inline int32_t ordered(float x) {
   const int32_t bits = int32_t(float_bits(x));
   return bits ^ ((bits >> 31) & 0x7fff'ffff);
 }
 
-// min and max. Without .NaN a number wins against a NaN. .xorsign.abs compares magnitudes, and the result's
-// sign is the product of the sources' signs, those of NaNs included.
+// Defines min and max. Without .NaN a number wins against a NaN. .xorsign.abs compares magnitudes, and the
+// result's sign is the product of the sources' signs, also of NaNs.
 template <bool kMax, bool kFtz, bool kNanWins, bool kXorsign>
 struct Extreme {
   float operator()(float x, float y) const {
@@ -188,8 +189,8 @@ constexpr OpRow extreme_row() {
       joined<when<kMax, "max">, when<!kMax, "min">, when<kFtz, ".ftz">, when<kNanWins, ".NaN">,
              when<kXorsign, ".xorsign.abs">, ".f32">,
       Unit::Fp32,
-      joined<when<kMax, "The larger">, when<!kMax, "The smaller">,
-             when<kXorsign, " magnitude, with the product of the signs">, "; -0 counts as less than +0, ",
+      joined<when<kMax, "Returns the larger source">, when<!kMax, "Returns the smaller source">,
+             when<kXorsign, " magnitude, with the product of the signs">, ". -0 counts as less than +0, ",
              when<kNanWins, "and a NaN wins">, when<!kNanWins, "and a NaN loses against a number">,
              when<kFtz, kFtzWords>, ".">,
       Extreme<kMax, kFtz, kNanWins, kXorsign>{},
@@ -211,36 +212,36 @@ constexpr std::array<OpRow, 2> sign_rows = {
         [](float a) { return canonical(-taken<kFtz>(a)); },
         {{{kOne}, kOne | kSign}, {{0}, kSign}, {{0xffc0'0000}, kNan}, {{1}, kSign | (kFtz ? 0 : 1)}}),
     unary<float>(joined<"abs", when<kFtz, ".ftz">, ".f32">, Unit::Fp32,
-                 joined<"Magnitude", when<kFtz, kFtzWords>, ".">,
+                 joined<"Returns the magnitude", when<kFtz, kFtzWords>, ".">,
                  [](float a) { return canonical(float_of(float_bits(taken<kFtz>(a)) & ~kSign)); },
                  {{{kOne | kSign}, kOne}, {{kSign}, 0}, {{0xffc0'0000}, kNan}, {{kSign | 1}, kFtz ? 0 : 1}})};
 
 constexpr std::array kClassRows = {
     binary<uint32_t>("copysign.f32", Unit::Int,
-                     "The second source with the sign of the first (the order of PTX).",
+                     "Returns the second source with the sign of the first (the order of PTX).",
                      [](uint32_t a, uint32_t b) { return (a & kSign) | (b & ~kSign); },
                      {{{kOne, kSign}, 0}, {{kSign, kOne}, kOne | kSign}}),
-    unary<uint32_t>("testp.finite.f32", Unit::Fp32, "True for numbers that are not infinite.",
+    unary<uint32_t>("testp.finite.f32", Unit::Fp32, "Gives true for numbers that are not infinite.",
                     [](uint32_t a) { return (a & ~kSign) < kInfinity; },
                     {{{0x7f7f'ffff}, 1}, {{kInfinity}, 0}, {{0x7fc0'0000}, 0}, {{1}, 1}}),
-    unary<uint32_t>("testp.infinite.f32", Unit::Fp32, "True for the infinities.",
+    unary<uint32_t>("testp.infinite.f32", Unit::Fp32, "Gives true for the infinities.",
                     [](uint32_t a) { return (a & ~kSign) == kInfinity; },
                     {{{0x7f7f'ffff}, 0}, {{kInfinity | kSign}, 1}, {{0x7fc0'0000}, 0}}),
-    unary<uint32_t>("testp.number.f32", Unit::Fp32, "True for all but NaN.",
+    unary<uint32_t>("testp.number.f32", Unit::Fp32, "Gives true for everything except NaN.",
                     [](uint32_t a) { return (a & ~kSign) <= kInfinity; },
                     {{{kInfinity}, 1}, {{0x7f80'0001}, 0}, {{0xffc0'0000}, 0}, {{1}, 1}}),
-    unary<uint32_t>("testp.notanumber.f32", Unit::Fp32, "True for NaN.",
+    unary<uint32_t>("testp.notanumber.f32", Unit::Fp32, "Gives true for NaN.",
                     [](uint32_t a) { return (a & ~kSign) > kInfinity; },
                     {{{kInfinity}, 0}, {{0x7f80'0001}, 1}, {{0xffc0'0000}, 1}}),
     unary<uint32_t>("testp.normal.f32", Unit::Fp32,
-                    "True for finite numbers that are not subnormal; zero is among them.",
+                    "Gives true for finite numbers that are not subnormal, with zero.",
                     [](uint32_t a) {
                       const uint32_t exponent = a & kInfinity;
                       return exponent != kInfinity && (exponent != 0 || (a & ~kSign) == 0);
                     },
                     {{{0}, 1}, {{1}, 0}, {{kOne}, 1}, {{kInfinity}, 0}, {{0x7fc0'0000}, 0}}),
     unary<uint32_t>("testp.subnormal.f32", Unit::Fp32,
-                    "True for numbers nearer to zero than 2^-126, but not zero.",
+                    "Gives true for numbers nearer to zero than 2^-126, except zero.",
                     [](uint32_t a) { return (a & kInfinity) == 0 && (a & ~kSign) != 0; },
                     {{{0}, 0}, {{1}, 1}, {{kSign | 0x007f'ffff}, 1}, {{0x0080'0000}, 0}}),
 };

@@ -1,4 +1,4 @@
-// Floats of 16 bits, alone and in pairs: f16 and bf16 arithmetic, rounded once; min, max, signs.
+// Defines floats of 16 bits, alone and in pairs: f16 and bf16 arithmetic, rounded once; min, max, signs.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/half_rows.h"
 #include "isa/ops/families.h"
@@ -13,12 +13,12 @@ inline uint32_t all_ones_if_negative(uint32_t x) {
   return uint32_t(int32_t(x) >> 31);
 }
 
-// One float of each lane.
+// Holds one float of each lane.
 struct alignas(64) Floats {
   float at[kLanes];
 };
 
-// What the rows below need to know of a format.
+// Describes a format for the rows below.
 struct F16 {
   static constexpr Text kName = ".f16";
   static constexpr bool kHasFtz = true;
@@ -34,8 +34,8 @@ struct F16 {
     narrow_to_halves<Round::Nearest>(x, out);
   }
 
-  // fma to odd: as if rounded toward zero, with the last bit set where that was not exact; so that rounding
-  // again, to fewer bits, rounds right (Boldo and Melquiond 2008, "Emulation of FMA and correctly rounded
+  // Computes fma to odd: as if rounded toward zero, with the last bit set if that was not exact. Rounding it
+  // again to fewer bits is then correct (Boldo and Melquiond 2008, "Emulation of FMA and correctly rounded
   // sums"). The product is exact in single precision, and Knuth's two-sum gives the error of the sum.
   [[gnu::always_inline]] static float fma_to_odd(float a, float b, float c) {
     const float product = a * b;
@@ -45,11 +45,13 @@ struct F16 {
     return to_odd(sum, error);
   }
 
-  // One step toward zero where the error has the other sign, then the last bit: an odd sum stays as it is.
+  // Steps once toward zero if the error has the other sign, then sets the last bit. An odd sum stays as it
+  // is.
   [[gnu::always_inline]] static float to_odd(float sum, float error) {
     const uint32_t bits = float_bits(sum);
     const uint32_t odd = (bits + all_ones_if_negative(float_bits(error) ^ bits)) | 1;
-    const bool is_off = __builtin_fabsf(error) > 0;  // a NaN error: the sum is not finite
+    // False for a NaN error, because the sum is then not finite.
+    const bool is_off = __builtin_fabsf(error) > 0;
     return float_of(is_off ? odd : bits);
   }
 };
@@ -68,8 +70,9 @@ struct Bf16 {
     all_lanes([&](int i) { out[i] = bfloat_bits(x[i]); });
   }
 
-  // As above, but the product may leave the range of single precision. So the larger of product and addend is
-  // taken from the sum first (Dekker's fast two-sum), the product within an fma, where it has any range.
+  // Does the same as F16::fma_to_odd(), but the product may leave the range of single precision. So the
+  // larger of product and addend is subtracted from the sum first (Dekker's fast two-sum), and the product
+  // within an fma, where it has any range.
   [[gnu::always_inline]] static float fma_to_odd(float a, float b, float c) {
     const float sum = __builtin_fmaf(a, b, c);
     const float rest = __builtin_fmaf(a, b, -sum) + c;
@@ -79,8 +82,8 @@ struct Bf16 {
   }
 };
 
-// Sums, differences and products: single precision has so many bits that rounding twice is rounding once
-// (Figueroa 1995, "When is double rounding innocuous?").
+// For sums, differences and products, single precision has so many bits that rounding twice gives the same
+// result as rounding once (Figueroa 1995, "When is double rounding innocuous?").
 struct Add {
   static constexpr Text kName = "add";
   static constexpr Text kDoc = "Adds";
@@ -134,7 +137,7 @@ struct Multiply {
 };
 struct Fma {
   static constexpr Text kName = "fma";
-  static constexpr Text kDoc = "Multiplies and adds, once";
+  static constexpr Text kDoc = "Multiplies and adds exactly";
   static constexpr size_t kSources = 3;
   template <class Format>
   [[gnu::always_inline]] static void run(const Floats* in, float* out) {
@@ -154,15 +157,15 @@ struct Fma {
   }
 };
 
-// A zero of its sign for a number below the one with the bits kLeast.
+// Replaces a number below the one with the bits kLeast by a zero of its sign.
 template <uint32_t kLeast>
 [[gnu::always_inline]] inline float zero_below(float x) {
   const uint32_t bits = float_bits(x);
   return float_of((bits & 0x7fff'ffffu) < kLeast ? bits & 0x8000'0000u : bits);
 }
 
-// Handler of a row: halves to floats, the arithmetic in single precision, and back. A pair's halves one after
-// the other.
+// Handles a row: converts halves to floats, computes in single precision, and converts back. The halves of a
+// pair are handled one after the other.
 template <class Format, bool kPair, class Op, bool kFtz, bool kSat, bool kRelu>
 struct Arithmetic {
   [[gnu::flatten]] static void run(Warp& warp, const Inst& inst) {
@@ -174,9 +177,9 @@ struct Arithmetic {
   }
   template <bool kUpper>
   [[gnu::always_inline]] static void half(const Warp& warp, const Inst& inst, uint32_t* out) {
-    constexpr uint32_t kLeastNormal = 0x3880'0000;  // 2^-14: the only format with .ftz is f16
-    constexpr uint32_t kLeastKept =
-        0x387f'f000;  // with an unbounded exponent f16 would round less to less than 2^-14
+    constexpr uint32_t kLeastNormal = 0x3880'0000;  // 2^-14, because f16 is the only format with .ftz
+    // With an unbounded exponent, f16 would round smaller numbers to less than 2^-14.
+    constexpr uint32_t kLeastKept = 0x387f'f000;
     Floats in[Op::kSources], result;
     for (size_t n = 0; n < Op::kSources; ++n) {
       const Source<uint32_t> source(warp, *(&inst.operand.front() + 1 + n));
@@ -192,7 +195,7 @@ struct Arithmetic {
   }
 };
 
-// A subnormal becomes a zero of its sign where .ftz says so. Upper half to upper half.
+// Takes and returns upper halves. With .ftz a subnormal becomes a zero of its sign.
 template <class Format, bool kFtz>
 inline uint32_t taken(uint32_t upper) {
   const uint32_t exponent = upper & Format::kInfinity << 16;
@@ -203,14 +206,14 @@ template <class Format>
 inline bool is_nan_upper(uint32_t upper) {
   return (upper & 0x7fff'0000u) > Format::kInfinity << 16;
 }
-// Signed integers in two's complement order like the floats, -0 before +0.
+// Returns signed integers that have the order of the floats, with -0 before +0.
 inline int32_t ordered(uint32_t upper) {
   const int32_t bits = int32_t(upper);
   return bits ^ ((bits >> 31) & 0x7fff'ffff);
 }
 
-// min and max. Without .NaN a number wins against a NaN. .xorsign.abs compares magnitudes, and the result's
-// sign is the product of the sources' signs, those of NaNs included.
+// Defines min and max. Without .NaN a number wins against a NaN. .xorsign.abs compares magnitudes, and the
+// result's sign is the product of the sources' signs, also of NaNs.
 template <class Format, bool kMax, bool kFtz, bool kNanWins, bool kXorsign>
 struct Extreme {
   [[gnu::always_inline]] uint32_t operator()(uint32_t x, uint32_t y) const {
@@ -235,7 +238,7 @@ struct Sign {
   }
 };
 
-// A source is the lower half of a register, or both are, and so is the result.
+// Sources and results are the lower halves of registers.
 template <class F>
 struct Lower {
   template <class... A>
@@ -260,7 +263,7 @@ constexpr Examples paired(const Examples& of_one) {
   return out;
 }
 
-// A row of `kSources` sources of the format, or of pairs of it.
+// Makes a row of `kSources` sources of the format, or of pairs of it.
 template <bool kPair, size_t kSources, class F>
 constexpr OpRow row(std::string_view name, std::string_view doc, F, const Examples& examples) {
   using Lane = std::conditional_t<kPair, Both<F>, Lower<F>>;
@@ -273,7 +276,7 @@ constexpr OpRow row(std::string_view name, std::string_view doc, F, const Exampl
 template <class Format, bool kPair>
 constexpr auto suffix = Joined<Format::kName, when<kPair, "x2">>::kAsText;
 template <bool kPair>
-constexpr auto pair_words = when<kPair, ", in each half of a register">;
+constexpr auto pair_words = when<kPair, " in each half of a register">;
 
 template <class Format, bool kPair, class Op, bool kFtz, bool kSat, bool kRelu>
 constexpr OpRow arithmetic_row() {
@@ -308,9 +311,9 @@ constexpr OpRow extreme_row() {
   return row<kPair, 2>(
       joined<when<kMax, "max">, when<!kMax, "min">, when<kFtz, ".ftz">, when<kNanWins, ".NaN">,
              when<kXorsign, ".xorsign.abs">, suffix<Format, kPair>>,
-      joined<when<kMax, "The larger">, when<!kMax, "The smaller">,
+      joined<when<kMax, "Returns the larger source">, when<!kMax, "Returns the smaller source">,
              when<kXorsign, " magnitude, with the product of the signs">, pair_words<kPair>,
-             "; -0 counts as less than +0, ", when<kNanWins, "and a NaN wins">,
+             ". -0 counts as less than +0, ", when<kNanWins, "and a NaN wins">,
              when<!kNanWins, "and a NaN loses against a number">, when<kFtz, kFtzWords>, ".">,
       Extreme<Format, kMax, kFtz, kNanWins, kXorsign>{},
       {{{Format::kInfinity + 1, kOne}, kOther},
@@ -331,7 +334,8 @@ constexpr auto sign_rows = generated<Format::kHasFtz ? 2 : 1>([](auto i) {
   constexpr uint32_t kOne = Format::kOne, kSmall = kFtz ? 0 : 1, kFlip = kAbs ? 0 : kSign;
   return row<kPair, 1>(
       joined<when<kAbs, "abs">, when<!kAbs, "neg">, when<kFtz, ".ftz">, suffix<Format, kPair>>,
-      joined<when<kAbs, "Magnitude">, when<!kAbs, "Negates">, pair_words<kPair>, when<kFtz, kFtzWords>, ".">,
+      joined<when<kAbs, "Returns the magnitude">, when<!kAbs, "Negates">, pair_words<kPair>,
+             when<kFtz, kFtzWords>, ".">,
       Sign<Format, kAbs, kFtz>{},
       {{{kOne}, kOne | kFlip}, {{kSign | kOne}, kOne}, {{1}, kSmall | kFlip}, {{kNan | kSign}, kNan}});
 });

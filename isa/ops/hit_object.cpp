@@ -1,4 +1,4 @@
-// Hit objects: what a ray found, kept by the shader until it has the hit's shader executed.
+// Defines hit objects: a shader keeps what a ray found until it has the hit's shader executed.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/hit_object.h"
 
@@ -17,8 +17,8 @@ constexpr OpRow object(std::string_view name, HitObjectOp detail, Operands opera
 constexpr OpRow execute() {
   OpRow row = effect_op(
       "ho.execute", Class::Rt, Unit::RtUnit, Effect::Trace, {Src32, Src32, Src32},
-      "Opens a trace that has found what an object holds: object, payload, attributes; call.sbt.hit and "
-      "rt.end follow.");
+      "Opens a trace that has found what an object holds (object, payload, attributes). call.sbt.hit and "
+      "rt.end must follow.");
   row.detail = uint16_t(TraceKind::HitObject);
   return row;
 }
@@ -29,28 +29,28 @@ constexpr OpRow kRows[] = {
     object("ho.empty", HitObjectOp::Empty, {Src32}, "Makes an object empty."),
     object("ho.miss", HitObjectOp::Miss,
            {Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32},
-           "Makes an object a miss: object, miss index, origin, tmin, direction, tmax."),
+           "Makes an object a miss (object, miss index, origin, tmin, direction, tmax)."),
     object("ho.hit", HitObjectOp::Hit,
            {Src32, Src64, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32,
             Src32, Src32, Src32},
-           "Makes an object a hit: object, structure, instance, primitive, geometry, kind, SBT offset, SBT "
-           "stride, origin, "
-           "tmin, direction, tmax, local address of the attributes."),
+           "Makes an object a hit (object, structure, instance, primitive, geometry, kind, SBT offset, SBT "
+           "stride, origin, tmin, direction, tmax, local address of the attributes)."),
     object("ho.hit.record", HitObjectOp::HitAtRecord,
            {Src32, Src64, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32,
             Src32, Src32},
-           "As ho.hit, with the index of the hit record instead of SBT offset and stride."),
+           "Does what ho.hit does, with the index of the hit record in place of SBT offset and stride."),
     execute(),
     object("ho.value", HitObjectOp::Value, {Dst32, Src32, Src32},
-           "A value of an object: object, number of the value (isa/hit_object.h)."),
+           "Returns a value of an object (object, number of the value in isa/hit_object.h)."),
     object("ho.attributes", HitObjectOp::Attributes, {Src32, Src32},
-           "Stores the 64 bytes of an object's attributes: object, local address."),
+           "Stores the 64 bytes of an object's attributes (object, local address)."),
     object("rt.time.set", HitObjectOp::SetTime, {Src32},
-           "Gives the next ray or made-up hit its time, which is 0 otherwise."),
-    object("rt.time.get", HitObjectOp::GetTime, {Dst32}, "The time of the innermost trace's ray."),
-    object("rt.corner", HitObjectOp::Corner, {Dst32, Src32},
-           "Coordinate of a corner of the triangle whose hit shader runs, in object space: 0 to 2 x, y, z of "
-           "the first, then of the others."),
+           "Sets the time of the next ray or made hit, which is 0 otherwise."),
+    object("rt.time.get", HitObjectOp::GetTime, {Dst32}, "Returns the time of the innermost trace's ray."),
+    object(
+        "rt.corner", HitObjectOp::Corner, {Dst32, Src32},
+        "Returns a coordinate of a corner of the triangle whose hit shader runs, in object space: 0 to 2 are "
+        "x, y, z of the first corner, and the others follow."),
 };
 
 }  // namespace

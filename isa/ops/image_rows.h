@@ -1,4 +1,4 @@
-// Parts of the rows of texture and surface ops: names of geometries, operands, the handler.
+// Defines parts of the rows of texture and surface ops: names of geometries, operands, the handler.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "isa/ops/row_tables.h"
@@ -19,20 +19,20 @@ constexpr auto shape_text() {
   if constexpr (kShape == Acube) return Text(".acube");
 }
 
-// Operands of an image op, one after the other.
+// Lists the operands of an image op, one after the other.
 struct OperandList {
   Operands list;
   constexpr OperandList& add(OperandKind kind, int times = 1) {
     for (int i = 0; i < times; ++i) list.kind[list.count++] = kind;
     return *this;
   }
-  // Handle, layer, coordinates.
+  // Adds handle, layer and coordinates.
   constexpr OperandList& add_place(ImageShape shape) {
     return add(Src32, 1 + int(has_layers(shape)) + num_coordinates(shape));
   }
 };
 
-// Operand kSlot is the handle. It is handed over for all lanes; the machine reads the other operands itself.
+// Passes on operand kSlot, the handle, for all lanes. The machine reads the other operands itself.
 template <int kSlot>
 [[gnu::flatten]] void form_image_access(Warp& warp, const Inst& inst) {
   const Source<uint32_t> handle(warp, inst.operand[kSlot]);

@@ -1,4 +1,5 @@
-// Loads and stores: their handlers form addresses, the machine moves the data. Generic addresses.
+// Defines loads and stores, whose handlers form addresses while the machine moves the data, and generic
+// addresses.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/generic_address.h"
 #include "isa/op_makers.h"
@@ -9,13 +10,14 @@
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
-// A shape of data: PTX's type and vector suffix, and the operand that holds it.
+// Describes a shape of data: PTX's type and vector suffix, and the operand that holds it.
 struct Shape {
   std::string_view suffix, what;
   uint8_t bytes, count;
   bool sign_extend;
   OperandKind load;
-  OperandKind store;  // None: the type has loads only, its stores are those of the untyped bits
+  // The operand of a store. None means that the type has only loads, because stores use the untyped bits.
+  OperandKind store;
 };
 constexpr Shape kShapes[] = {
     {"b8", "a byte, zero-extended,", 1, 1, false, Dst32, Src32},
@@ -54,7 +56,7 @@ constexpr Place kPlaces[] = {
     {Space::Local, ".local", "the lane's stack", true},
     {Space::Const, ".const", "the constant bank", false},
     {Space::Param, ".param", "the kernel's parameters", false},
-    {Space::Generic, "", "the space that a generic address is in", true},
+    {Space::Generic, "", "the space of a generic address", true},
 };
 
 constexpr Handler handler_of(bool is_wide, int slot) {
@@ -81,7 +83,7 @@ constexpr size_t kNumStorePlaces = [] {
 }();
 constexpr size_t kNumAccesses = std::size(kPlaces) * std::size(kShapes) + kNumStorePlaces * kNumStores;
 
-// Calls `visit(place, shape, store)` for every access there is, in the order of the table.
+// Calls `visit(place, shape, store)` for every access that exists, in the order of the table.
 template <class Visit>
 constexpr void each_access(Visit&& visit) {
   for (const Place& place : kPlaces) {
@@ -100,7 +102,7 @@ constexpr auto kNames = [] {
   });
   return out;
 }();
-// A store has no use for how a load would extend its parts.
+// A store ignores how a load would extend its parts.
 constexpr std::string_view bytes_of(const Shape& shape, bool store) {
   return store ? shape.what.substr(0, shape.what.find(',')) : shape.what;
 }
@@ -108,8 +110,8 @@ constexpr auto kSentences = [] {
   std::array<Word, kNumAccesses> out{};
   size_t n = 0;
   each_access([&](const Place& place, const Shape& shape, bool store) {
-    out[n++] =
-        Word{store ? "Stores " : "Loads ", bytes_of(shape, store), store ? " to " : " of ", place.what, "."};
+    out[n++] = Word{store ? "Stores " : "Loads ", bytes_of(shape, store), store ? " to " : " from ",
+                    place.what, "."};
   });
   return out;
 }();
@@ -127,7 +129,7 @@ constexpr OpRow access_row(size_t n, const Place& place, const Shape& shape, boo
   return row;
 }
 
-// Generic addresses from and to those of a space. Bits outside the window's 32 are not looked at.
+// Converts generic addresses to and from those of a space. Bits outside the window's 32 are ignored.
 template <Space kSpace>
 constexpr OpRow to_generic(std::string_view name, std::string_view doc) {
   constexpr uint64_t kWindow = window_of(kSpace);
@@ -140,7 +142,7 @@ constexpr OpRow from_generic(std::string_view name, std::string_view doc) {
   return unary<uint64_t>(name, Unit::Int, doc, [](uint64_t a) { return a - kWindow; },
                          {{{kWindow}, 0}, {{kWindow + 0x1234}, 0x1234}});
 }
-// The question is branch-free: space_of() as a comparison of the upper halves.
+// Tests without a branch: it is space_of() as a comparison of the upper halves.
 template <Space kSpace>
 constexpr OpRow is_space(std::string_view name, std::string_view doc) {
   constexpr uint64_t kWindow = window_of(kSpace);
@@ -161,25 +163,28 @@ constexpr OpRow is_space(std::string_view name, std::string_view doc) {
 }
 
 constexpr OpRow kAddressRows[] = {
-    to_generic<Space::Global>("cvta.global.u64", "Generic address of a global one."),
-    to_generic<Space::Shared>("cvta.shared.u64", "Generic address of a shared one."),
-    to_generic<Space::Local>("cvta.local.u64", "Generic address of a local one."),
-    to_generic<Space::Const>("cvta.const.u64", "Generic address of a place in the constant bank."),
-    to_generic<Space::Param>("cvta.param.u64", "Generic address of a kernel's parameter."),
+    to_generic<Space::Global>("cvta.global.u64", "Converts a global address to a generic one."),
+    to_generic<Space::Shared>("cvta.shared.u64", "Converts a shared address to a generic one."),
+    to_generic<Space::Local>("cvta.local.u64", "Converts a local address to a generic one."),
+    to_generic<Space::Const>("cvta.const.u64", "Converts an address in the constant bank to a generic one."),
+    to_generic<Space::Param>("cvta.param.u64",
+                             "Converts the address of a kernel's parameter to a generic one."),
     from_generic<Space::Global>("cvta.to.global.u64",
-                                "Global address of a generic one that is in global memory."),
+                                "Converts a generic address in global memory to a global one."),
     from_generic<Space::Shared>("cvta.to.shared.u64",
-                                "Shared address of a generic one that is in shared memory."),
+                                "Converts a generic address in shared memory to a shared one."),
     from_generic<Space::Local>("cvta.to.local.u64",
-                               "Local address of a generic one that is in local memory."),
-    from_generic<Space::Const>("cvta.to.const.u64", "Constant-bank address of a generic one that is there."),
+                               "Converts a generic address in local memory to a local one."),
+    from_generic<Space::Const>("cvta.to.const.u64",
+                               "Converts a generic address in the constant bank to an address of the bank."),
     from_generic<Space::Param>("cvta.to.param.u64",
-                               "Parameter address of a generic one that is a parameter's."),
-    is_space<Space::Global>("isspacep.global", "Whether a generic address is in global memory."),
-    is_space<Space::Shared>("isspacep.shared", "Whether a generic address is in shared memory."),
-    is_space<Space::Local>("isspacep.local", "Whether a generic address is in local memory."),
-    is_space<Space::Const>("isspacep.const", "Whether a generic address is in the constant bank."),
-    is_space<Space::Param>("isspacep.param", "Whether a generic address is that of a kernel's parameter."),
+                               "Converts a generic address of a parameter to the parameter's address."),
+    is_space<Space::Global>("isspacep.global", "Tells whether a generic address is in global memory."),
+    is_space<Space::Shared>("isspacep.shared", "Tells whether a generic address is in shared memory."),
+    is_space<Space::Local>("isspacep.local", "Tells whether a generic address is in local memory."),
+    is_space<Space::Const>("isspacep.const", "Tells whether a generic address is in the constant bank."),
+    is_space<Space::Param>("isspacep.param",
+                           "Tells whether a generic address is that of a kernel's parameter."),
 };
 
 constexpr auto kRows = [] {

@@ -1,7 +1,8 @@
-// Modifiers of floating-point ops: their spelling and their words, and the rows of all their combinations.
-//
-// Included only by isa/ops/*.cpp (see op_makers.h).
+// Defines modifiers of floating-point ops: their spelling and their words, and the rows of all their
+// combinations.
 // SPDX-License-Identifier: Apache-2.0
+//
+// Only isa/ops/*.cpp include this file (see op_makers.h).
 #pragma once
 #include <array>
 #include <utility>
@@ -11,7 +12,7 @@
 
 namespace glint::isa::GLINT_ISA_PATH {
 
-// How one member of a family of ops rounds and what else it does; examples depend on it.
+// Says how one member of a family of ops rounds and what else it does. Examples depend on it.
 struct Mode {
   Round round = Round::Nearest;
   bool ftz = false;
@@ -19,7 +20,7 @@ struct Mode {
   bool relu = false;
 };
 
-// The text where the modifier is on, and nothing where it is off.
+// Gives the text where the modifier is on, and nothing where it is off.
 template <bool kOn, Text kText>
 inline constexpr auto when = kText;
 template <Text kText>
@@ -35,22 +36,22 @@ template <>
 inline constexpr auto round_name<Round::Up> = Text(".rp");
 
 template <Round kRound>
-inline constexpr auto round_words = Text(", rounded to nearest even");
+inline constexpr auto round_words = Text(", and rounds the result to nearest even");
 template <>
-inline constexpr auto round_words<Round::Zero> = Text(", rounded toward zero");
+inline constexpr auto round_words<Round::Zero> = Text(", and rounds the result toward zero");
 template <>
-inline constexpr auto round_words<Round::Down> = Text(", rounded down");
+inline constexpr auto round_words<Round::Down> = Text(", and rounds the result down");
 template <>
-inline constexpr auto round_words<Round::Up> = Text(", rounded up");
+inline constexpr auto round_words<Round::Up> = Text(", and rounds the result up");
 
-inline constexpr Text kFtzWords = "; subnormal sources and results become zero";
-inline constexpr Text kSatWords = "; clamped to [0, 1], NaN becomes 0";
-inline constexpr Text kReluWords = "; negative results become 0";
+inline constexpr Text kFtzWords = ". Subnormal sources and results become zero";
+inline constexpr Text kSatWords = ". The result is clamped to [0, 1], and NaN becomes 0";
+inline constexpr Text kReluWords = ". Negative results become 0";
 
-// The order in which PTX lists the directions.
+// Lists the directions in PTX's order.
 inline constexpr Round kRounds[] = {Round::Nearest, Round::Zero, Round::Down, Round::Up};
 
-// `kCount` rows: `row(i)` of each i, where i is a compile-time constant.
+// Makes `kCount` rows with `row(i)`, where each i is a compile-time constant.
 template <size_t kCount, class Row>
 constexpr auto generated(Row row) {
   return [&]<size_t... I>(std::index_sequence<I...>) {

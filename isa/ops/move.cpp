@@ -1,4 +1,4 @@
-// Ops that copy: moves, selections, and the packing of registers.
+// Defines ops that copy: moves, selections, and the packing of registers.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/integer_kernels.h"
 #include "isa/ops/families.h"
@@ -14,30 +14,32 @@ constexpr auto copy_rows() {
       unary<T>(joined<"mov", N::kName>, Unit::Move, "Copies the bits.", [](T a) { return a; },
                {{{7}, 7}, {{word(T(-2))}, word(T(-2))}}),
       value_op<T, T, bool>(joined<"selp", N::kName>, Unit::Int,
-                           "The first source where the predicate is true, else the second.",
+                           "Returns the first source where the predicate is true, else the second.",
                            [](T a, T b, bool p) { return p ? a : b; }, {{{3, 4, 1}, 3}, {{3, 4, 0}, 4}}));
 }
 
-// slct: the sign of the third source chooses. Bits are copied, whatever their type.
+// In slct the sign of the third source chooses. Bits are copied, whatever their type.
 template <class N>
 constexpr auto select_rows() {
   using T = typename N::Type;
   return joined_rows(
       value_op<T, T, int32_t>(joined<"slct", N::kName, ".s32">, Unit::Int,
-                              "The first source where the third is 0 or more, else the second.",
+                              "Returns the first source where the third is 0 or more, else the second.",
                               [](T a, T b, int32_t c) { return c >= 0 ? a : b; },
                               {{{3, 4, 0}, 3}, {{3, 4, 0xffff'ffff}, 4}}),
       value_op<T, T, float>(joined<"slct", N::kName, ".f32">, Unit::Fp32,
-                            "The first source where the third is 0 or more; -0 is, NaN is not.",
+                            "Returns the first source where the third is 0 or more, also for -0, else (also "
+                            "for NaN) the second.",
                             [](T a, T b, float c) { return c >= 0.0f ? a : b; },
                             {{{3, 4, 0x8000'0000}, 3}, {{3, 4, 0x8000'0001}, 4}, {{3, 4, 0x7fc0'0000}, 4}}),
-      value_op<T, T, float>(joined<"slct.ftz", N::kName, ".f32">, Unit::Fp32,
-                            "The first source where the third is 0 or more; subnormals are, NaN is not.",
-                            [](T a, T b, float c) { return c > -0x1p-126f ? a : b; },
-                            {{{3, 4, 0x8000'0001}, 3}, {{3, 4, 0x8080'0000}, 4}, {{3, 4, 0x7fc0'0000}, 4}}));
+      value_op<T, T, float>(
+          joined<"slct.ftz", N::kName, ".f32">, Unit::Fp32,
+          "Returns the first source where the third is 0, subnormal or more, else (also for NaN) the second.",
+          [](T a, T b, float c) { return c > -0x1p-126f ? a : b; },
+          {{{3, 4, 0x8000'0001}, 3}, {{3, 4, 0x8080'0000}, 4}, {{3, 4, 0x7fc0'0000}, 4}}));
 }
 
-// The parts of a register (pair), low first: `kParts` registers, each with a part at its low end.
+// Splits a register (pair) into parts, low first, which go to the low ends of `kParts` registers.
 template <class T, int kParts>
 [[gnu::flatten]] void run_unpack(Warp& warp, const Inst& inst) {
   constexpr int kPartBits = kBits<T> / kParts;
@@ -49,7 +51,7 @@ template <class T, int kParts>
   all_lanes([&](int i) {
     const T x = source.at(i);
     const bool write = (exec & kLaneBit[i]) != 0;
-    uint32_t out[kParts];  // all parts are read before one is written: the source may be among them
+    uint32_t out[kParts];  // all parts are read first, because a destination may be the source
     for (int p = 0; p < kParts; ++p) {
       const uint32_t bits = uint32_t(x >> (p * kPartBits)) & uint32_t((1ull << kPartBits) - 1);
       out[p] = write ? bits : part[p][i];
@@ -95,24 +97,24 @@ constexpr auto kPackRows =
                     },
                     {{{1, 2, 3, 4}, 0x4'0003'0002'0001}, {{0xffff, 0, 0, 0xffff}, 0xffff'0000'0000'ffff}}));
 
-// The examples of two parts write the result as (high, low); those of four show the lowest part alone.
+// The examples of two parts give the result as (high, low). Those of four parts show only the lowest part.
 constexpr auto kUnpackRows = joined_rows(
     unpack_row<uint64_t, 2>("unpack.b64",
-                            "Splits a pair into its low and high half; the example's result is (high, low).",
+                            "Splits a pair into its low and high half. The example's result is (high, low).",
                             {{{0x1122'3344'5566'7788}, 0x1122'3344'5566'7788}, {{~0ull}, ~0ull}}),
     unpack_row<uint32_t, 2>(
-        "unpack.b32", "Splits a register into its low and high 16 bits; the example's result is (high, low).",
+        "unpack.b32", "Splits a register into its low and high 16 bits. The example's result is (high, low).",
         {{{0x1122'3344}, 0x1122'0000'3344}, {{0xffff'ffff}, 0xffff'0000'ffff}}),
     unpack_row<uint16_t, 2>("unpack.b16.b8",
-                            "Splits 16 bits into bytes; the example's result is (high, low).",
+                            "Splits 16 bits into bytes. The example's result is (high, low).",
                             {{{0x1122}, 0x11'0000'0022}, {{0xffff}, 0xff'0000'00ff}}),
     unpack_row<uint32_t, 4>(
         "unpack.b32.b8",
-        "Splits a register into four bytes, lowest first; the example's result is the first.",
+        "Splits a register into four bytes, lowest first. The example's result is the first.",
         {{{0x1122'3344}, 0x44}, {{0xff}, 0xff}}),
     unpack_row<uint64_t, 4>(
         "unpack.b64.b16",
-        "Splits a pair into four 16-bit values, lowest first; the example's result is the first.",
+        "Splits a pair into four 16-bit values, lowest first. The example's result is the first.",
         {{{0x1122'3344'5566'7788}, 0x7788}, {{0xffff}, 0xffff}}));
 
 constexpr auto kRows =

@@ -1,4 +1,4 @@
-// Bytes and half words of a register at once: dot products, pairs of 16-bit integers, video ops.
+// Defines ops on all bytes or half words of a register: dot products, pairs of 16-bit integers, video ops.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/integer_kernels.h"
 #include "isa/ops/families.h"
@@ -8,14 +8,14 @@
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
-// Part i of a word, as a number of 32 bits.
+// Returns part i of a word as a number of 32 bits.
 template <int kPartBits, bool kSigned>
 [[gnu::always_inline]] inline int32_t part_of(uint32_t x, int i) {
   const uint32_t top = x << (32 - kPartBits * (i + 1));
   return kSigned ? int32_t(top) >> (32 - kPartBits) : int32_t(top >> (32 - kPartBits));
 }
 
-// Sums of products, modulo 2^32.
+// Adds sums of products modulo 2^32.
 template <bool kSignedA, bool kSignedB>
 inline uint32_t dot4(uint32_t a, uint32_t b, uint32_t c) {
   for (int i = 0; i < 4; ++i) c += uint32_t(part_of<8, kSignedA>(a, i) * part_of<8, kSignedB>(b, i));
@@ -32,17 +32,19 @@ constexpr auto dot_rows() {
   constexpr uint64_t kA = kSignedA ? 0xffff'ffff : 255, kB = kSignedB ? 0xffff'ffff : 255;  // a byte of ones
   return joined_rows(
       ternary<uint32_t>(joined<"dp4a", kTypes>, Unit::Int,
-                        "Products of the four bytes, summed, plus the third source.",
+                        "Adds the products of the four bytes and the third source.",
                         [](uint32_t a, uint32_t b, uint32_t c) { return dot4<kSignedA, kSignedB>(a, b, c); },
                         {{{0x0403'0201, 0x0101'0101, 5}, 15}, {{0xff, 1, 0}, kA}, {{1, 0xff, 0}, kB}}),
       ternary<uint32_t>(
           joined<"dp2a.lo", kTypes>, Unit::Int,
-          "Products of two 16-bit numbers and the low two bytes of the second, summed, plus the third.",
+          "Adds the products of two 16-bit numbers with the low two bytes of the second, and the third "
+          "source.",
           [](uint32_t a, uint32_t b, uint32_t c) { return dot2<kSignedA, kSignedB, false>(a, b, c); },
           {{{0x0002'0001, 0x0707'0403, 5}, 16}, {{1, 0xff, 0}, kB}}),
       ternary<uint32_t>(
           joined<"dp2a.hi", kTypes>, Unit::Int,
-          "Products of two 16-bit numbers and the high two bytes of the second, summed, plus the third.",
+          "Adds the products of two 16-bit numbers with the high two bytes of the second, and the third "
+          "source.",
           [](uint32_t a, uint32_t b, uint32_t c) { return dot2<kSignedA, kSignedB, true>(a, b, c); },
           {{{0x0002'0001, 0x0403'0707, 5}, 16}, {{1, 0xff'0000, 0}, kB}}));
 }
@@ -78,21 +80,23 @@ constexpr auto kHalvesRows = joined_rows(
     halves_row<"add", ".u16x2", false, Sum>("Adds both halves, each modulo 2^16.",
                                             {{{0x1'0002, 0x3'0004}, 0x4'0006}, {{0xffff, 1}, 0}}),
     halves_row<"min", ".s16x2", true, Smaller>(
-        "The smaller of both halves.", {{{0x1'0002, 0x3'0001}, 0x1'0001}, {{0xffff'0001, 1}, 0xffff'0001}}),
-    halves_row<"min", ".u16x2", false, Smaller>("The smaller of both halves.",
+        "Returns the smaller number in both halves.",
+        {{{0x1'0002, 0x3'0001}, 0x1'0001}, {{0xffff'0001, 1}, 0xffff'0001}}),
+    halves_row<"min", ".u16x2", false, Smaller>("Returns the smaller number in both halves.",
                                                 {{{0x1'0002, 0x3'0001}, 0x1'0001}, {{0xffff'0001, 1}, 1}}),
-    halves_row<"max", ".s16x2", true, Larger>("The larger of both halves.",
+    halves_row<"max", ".s16x2", true, Larger>("Returns the larger number in both halves.",
                                               {{{0x1'0002, 0x3'0001}, 0x3'0002}, {{0xffff'0001, 1}, 1}}),
     halves_row<"max", ".u16x2", false, Larger>(
-        "The larger of both halves.", {{{0x1'0002, 0x3'0001}, 0x3'0002}, {{0xffff'0001, 1}, 0xffff'0001}}),
+        "Returns the larger number in both halves.",
+        {{{0x1'0002, 0x3'0001}, 0x3'0002}, {{0xffff'0001, 1}, 0xffff'0001}}),
     halves_row<"min.relu", ".s16x2", true, AtLeastZero<Smaller>>(
-        "The smaller of both halves, but at least 0.",
+        "Returns the smaller number in both halves, but at least 0.",
         {{{0x1'0002, 0x3'0001}, 0x1'0001}, {{0xffff'0001, 1}, 1}}),
     halves_row<"max.relu", ".s16x2", true, AtLeastZero<Larger>>(
-        "The larger of both halves, but at least 0.",
+        "Returns the larger number in both halves, but at least 0.",
         {{{0x1'0002, 0x3'0001}, 0x3'0002}, {{0xffff'fffe, 0xffff'ffff}, 0}}));
 
-// The video ops. They compute without limit and then keep the low bits, or (.sat) clamp to the result's type.
+// The video ops compute without limit. Then they keep the low bits, or (.sat) clamp to the result's type.
 struct VideoAdd {
   static constexpr auto kName = Text("vadd");
   static constexpr uint64_t kOfFiveThree = 8;
@@ -133,7 +137,7 @@ struct VideoMax {
     return a > b ? a : b;
   }
 };
-// Rounded half up: PTX says (a + b + 1) >> 1.
+// Rounds half up, because PTX says (a + b + 1) >> 1.
 struct VideoAverage {
   static constexpr auto kName = Text("vavrg");
   static constexpr uint64_t kOfFiveThree = 4;
@@ -151,10 +155,10 @@ template <bool kSigned, class W>
   return above > high ? high : above;
 }
 constexpr std::string_view kVideoDoc =
-    "As the name says, on numbers of the sources' types; .sat clamps to the type of the result, else the low "
-    "bits stay.";
+    "Computes what the name says on numbers of the sources' types. .sat clamps to the type of the result; "
+    "without it the low bits stay.";
 
-// The work of a row, apart from its name: without .sat the type of the result makes no difference.
+// Does the work of a row, which is named elsewhere. Without .sat the type of the result makes no difference.
 template <class Op, class A, class B, bool kSat, bool kSignedResult>
 struct ScalarWork {
   uint32_t operator()(A a, B b) const {
@@ -162,7 +166,7 @@ struct ScalarWork {
     return uint32_t(kSat ? clamped_to<kSignedResult>(exact, 32) : exact);
   }
 };
-// Whole registers: D.A.B name the types of the result and of the sources.
+// These work on whole registers. D.A.B name the types of the result and of the sources.
 template <class Op, class D, class A, class B, bool kSat>
 constexpr OpRow scalar_row() {
   using From = typename A::Type;
@@ -183,8 +187,8 @@ constexpr auto scalar_rows() {
   });
 }
 
-// Two half words or four bytes; the third source gives the parts that a mask leaves out (here none), or with
-// .add what the sum of all results is added to.
+// These work on two half words or four bytes. The third source gives the parts that a mask leaves out (here
+// none) or, with .add, a number to which all results are added.
 enum class Video { Plain, Saturating, Accumulating };
 template <class Op, int kPartBits, bool kSigned, Video kKind, bool kSignedResult>
 struct PartsWork {
@@ -214,7 +218,7 @@ constexpr OpRow parts_row() {
       joined<Op::kName, kParts, D::kName, A::kName, A::kName, when<kKind == Video::Saturating, ".sat">,
              when<kAdds, ".add">>,
       Unit::Int,
-      kAdds ? "Sums what the op gives for each part of the sources, plus the third source." : kVideoDoc,
+      kAdds ? "Adds the op's results for all parts of the sources, and the third source." : kVideoDoc,
       PartsWork < Op, kPartBits, kSigned, kKind,
       kKind == Video::Saturating && std::is_signed_v < typename D::Type >> {},
       {{{5 * kScale, 3 * kScale, 7}, kAdds ? 32 / kPartBits * kEach + 7 : kWord}, {{0, 0, 0}, 0}});

@@ -1,4 +1,4 @@
-// Ops on predicates.
+// Defines ops on predicates.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/op_makers.h"
 #include "isa/ops/families.h"
@@ -6,7 +6,7 @@
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
-// A predicate is a mask already: whole masks are worked on, not lanes.
+// A predicate is already a mask, so the handler works on whole masks and not on lanes.
 template <class F, size_t... N>
 void run_masks(Warp& warp, const Inst& inst, std::index_sequence<N...>) {
   const LaneMask* const predicate = &warp.predicate.front();
@@ -35,13 +35,13 @@ constexpr OpRow mask_op(std::string_view name, std::string_view doc, F, Examples
 constexpr OpRow kRows[] = {
     mask_op<1>("mov.pred", "Copies a predicate.", [](LaneMask a) { return a; }, {{{0}, 0}, {{1}, 1}}),
     mask_op<1>("not.pred", "Inverts a predicate.", [](LaneMask a) { return ~a; }, {{{0}, 1}, {{1}, 0}}),
-    mask_op<2>("and.pred", "True where both are.", [](LaneMask a, LaneMask b) { return a & b; },
+    mask_op<2>("and.pred", "Gives true where both are true.", [](LaneMask a, LaneMask b) { return a & b; },
                {{{0, 1}, 0}, {{1, 0}, 0}, {{1, 1}, 1}}),
-    mask_op<2>("or.pred", "True where one or both are.", [](LaneMask a, LaneMask b) { return a | b; },
-               {{{0, 0}, 0}, {{1, 0}, 1}, {{1, 1}, 1}}),
-    mask_op<2>("xor.pred", "True where exactly one is.", [](LaneMask a, LaneMask b) { return a ^ b; },
-               {{{0, 1}, 1}, {{1, 0}, 1}, {{1, 1}, 0}}),
-    mask_op<3>("selp.pred", "The first source where the third is true, else the second.",
+    mask_op<2>("or.pred", "Gives true where one or both are true.",
+               [](LaneMask a, LaneMask b) { return a | b; }, {{{0, 0}, 0}, {{1, 0}, 1}, {{1, 1}, 1}}),
+    mask_op<2>("xor.pred", "Gives true where exactly one is true.",
+               [](LaneMask a, LaneMask b) { return a ^ b; }, {{{0, 1}, 1}, {{1, 0}, 1}, {{1, 1}, 0}}),
+    mask_op<3>("selp.pred", "Returns the first source where the third is true, else the second.",
                [](LaneMask a, LaneMask b, LaneMask p) { return (a & p) | (b & ~p); },
                {{{1, 0, 1}, 1}, {{1, 0, 0}, 0}, {{0, 1, 0}, 1}}),
 };

@@ -1,4 +1,5 @@
-// Ops that give rays to the RT unit and run the shaders that it asks for (docs/abi.md, "Calls and rays").
+// Defines ops that give rays to the RT unit and run the shaders that it asks for (docs/abi.md, "Calls and
+// rays").
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/op_makers.h"
 #include "isa/ops/families.h"
@@ -9,7 +10,7 @@ namespace {
 constexpr OpRow ray(std::string_view name, Effect effect, Operands operands, std::string_view doc) {
   return effect_op(name, Class::Rt, Unit::RtUnit, effect, operands, doc);
 }
-// Indirect calls are the branch unit's work.
+// The branch unit executes indirect calls.
 constexpr OpRow call(std::string_view name, Effect effect, std::string_view doc, Operands operands = {}) {
   return effect_op(name, Class::Ctrl, Unit::Branch, effect, operands, doc);
 }
@@ -18,13 +19,13 @@ constexpr OpRow kRows[] = {
     ray("rt.trace", Effect::Trace,
         {DstPred, Src64, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32, Src32,
          Src32, Src32, Src32},
-        "Traces a ray: waiting lanes, structure, flags, mask, SBT offset, SBT stride, miss index, origin, "
-        "tmin, "
-        "direction, tmax, payload, attributes."),
+        "Traces a ray (waiting lanes, structure, flags, mask, SBT offset, SBT stride, miss index, origin, "
+        "tmin, direction, tmax, payload, attributes)."),
     ray("rt.resume", Effect::Resume, {DstPred},
-        "Hands decided candidates back to the RT unit; tells who waits again."),
+        "Hands decided candidates back to the RT unit, and tells which lanes wait again."),
     ray("rt.report", Effect::Report, {DstPred, Src32, Src32},
-        "Reports a hit (t, kind) of an intersection shader; tells which lanes need their any-hit shader."),
+        "Reports a hit (t, kind) of an intersection shader, and tells which lanes need their any-hit "
+        "shader."),
     ray("rt.accepted", Effect::Accepted, {DstPred}, "Tells which lanes' last reported hit was accepted."),
     ray("rt.ignore", Effect::Ignore, {}, "Rejects the candidate and ends the any-hit shader."),
     ray("rt.terminate", Effect::Terminate, {},
@@ -36,10 +37,10 @@ constexpr OpRow kRows[] = {
          "Calls the any-hit shader of each lane's reported hit, split by shader."),
     call("call.sbt.hit", Effect::CallHit,
          "Calls the closest-hit or miss shader of each lane's ray, split by shader."),
-    call(
-        "call.sbt.callable", Effect::CallCallable,
-        "Calls each lane's callable shader, split by shader: index of its record, local address of its data.",
-        {Src32, Src32}),
+    call("call.sbt.callable", Effect::CallCallable,
+         "Calls each lane's callable shader, split by shader (index of its record, local address of its "
+         "data).",
+         {Src32, Src32}),
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The rows of one op family, as its file hands them over.
+// Holds the rows of one op family, as its file hands them over.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -12,7 +12,7 @@ struct RowList {
   size_t count = 0;
 };
 
-// A chapter of the table: a title, a sentence, and the function that gives its rows.
+// Holds a chapter of the table: a title, a sentence, and the function that gives its rows.
 struct FamilyEntry {
   std::string_view name;
   std::string_view doc;

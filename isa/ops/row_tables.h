@@ -1,4 +1,4 @@
-// Tables of op rows made from lists: of types, of modifiers, of other tables.
+// Makes tables of op rows from lists: of types, of modifiers, of other tables.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -7,7 +7,7 @@
 
 namespace glint::isa::GLINT_ISA_PATH {
 
-// An operand type under its PTX name: b32 and u32 are both uint32_t.
+// Names an operand type as PTX does: b32 and u32 are both uint32_t.
 template <class T, Text kText>
 struct Named {
   using Type = T;
@@ -23,7 +23,7 @@ using TypeS64 = Named<int64_t, ".s64">;
 using TypeU64 = Named<uint64_t, ".u64">;
 using TypeB64 = Named<uint64_t, ".b64">;
 
-// A value as an example writes it: its bits, zeros above.
+// Returns a value as an example writes it: its bits, with zeros above.
 template <class T>
 constexpr uint64_t word(T x) {
   if constexpr (sizeof(T) == 8)
@@ -42,7 +42,7 @@ constexpr size_t rows_in(const OpRow*) {
   return 1;
 }
 
-// One table of rows and tables, in their order.
+// Joins rows and tables to one table, in their order.
 template <class... Part>
 constexpr auto joined_rows(const Part&... parts) {
   std::array<OpRow, (rows_in(static_cast<const Part*>(nullptr)) + ... + 0)> out{};
@@ -57,13 +57,13 @@ constexpr auto joined_rows(const Part&... parts) {
   return out;
 }
 
-// The rows (or tables) that `make.operator()<N>()` gives for each N of a list of types.
+// Joins the rows (or tables) that `make.operator()<N>()` gives for each N of a list of types.
 template <class... N, class Make>
 constexpr auto rows_of_types(Make make) {
   return joined_rows(make.template operator()<N>()...);
 }
 
-// The same for a list of names: modifiers, comparisons.
+// Does the same as rows_of_types() for a list of names: modifiers, comparisons.
 template <Text... kNames, class Make>
 constexpr auto rows_of_names(Make make) {
   return joined_rows(make.template operator()<kNames>()...);

@@ -1,4 +1,4 @@
-// Surface ops: loads, stores and atomics of single texels of storage images.
+// Defines surface ops: loads, stores and atomics of single texels of storage images.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/ops/families.h"
 #include "isa/ops/image_rows.h"
@@ -14,10 +14,11 @@ constexpr auto outside_text() {
 }
 template <ImageOutside kOutside>
 constexpr auto outside_doc() {
-  if constexpr (kOutside == ImageOutside::Trap) return Text(" Outside of the image: a fault.");
-  if constexpr (kOutside == ImageOutside::Clamp) return Text(" Outside of the image: the nearest texel.");
+  if constexpr (kOutside == ImageOutside::Trap) return Text(" An access outside of the image is a fault.");
+  if constexpr (kOutside == ImageOutside::Clamp)
+    return Text(" An access outside of the image goes to the nearest texel.");
   if constexpr (kOutside == ImageOutside::Zero)
-    return Text(" Outside of the image: loads give 0, stores are dropped.");
+    return Text(" Outside of the image, loads give 0 and stores are dropped.");
 }
 template <ImageOutside kOutside>
 constexpr ImageAccess access_of(ImageRequest request, ImageShape shape) {
@@ -26,7 +27,7 @@ constexpr ImageAccess access_of(ImageRequest request, ImageShape shape) {
   return image;
 }
 
-// suld.p and sust.p: four words, converted from and to the format of the image.
+// Makes suld.p and sust.p: four words, converted from and to the format of the image.
 template <ImageOutside kOutside, ImageShape kShape>
 constexpr std::array<OpRow, 2> texel_rows() {
   OperandList load, store;
@@ -35,10 +36,10 @@ constexpr std::array<OpRow, 2> texel_rows() {
   const ImageAccess image = access_of<kOutside>(ImageRequest::Texel, kShape);
   return {image_op(joined<"suld.p", shape_text<kShape>(), ".v4.b32", outside_text<kOutside>()>,
                    Effect::SurfaceLoad, image, load.list,
-                   joined<"Loads a texel, converted from the image's format.", outside_doc<kOutside>()>),
+                   joined<"Loads a texel and converts it from the image's format.", outside_doc<kOutside>()>),
           image_op(joined<"sust.p", shape_text<kShape>(), ".v4.b32", outside_text<kOutside>()>,
                    Effect::SurfaceStore, image, store.list,
-                   joined<"Stores a texel, converted to the image's format.", outside_doc<kOutside>()>)};
+                   joined<"Converts a texel to the image's format and stores it.", outside_doc<kOutside>()>)};
 }
 
 enum class Width { B8, B16, B32, V2, V4 };
@@ -51,7 +52,7 @@ constexpr auto width_text() {
   if constexpr (kWidth == Width::V4) return Text(".v4.b32");
 }
 
-// suld.b and sust.b: bytes as they are.
+// Makes suld.b and sust.b, which do not convert bytes.
 template <ImageOutside kOutside, ImageShape kShape, Width kWidth>
 constexpr std::array<OpRow, 2> byte_rows() {
   OperandList load, store;
@@ -59,12 +60,14 @@ constexpr std::array<OpRow, 2> byte_rows() {
   store.add_place(kShape).add(kWidth == Width::V4 ? SrcVec4 : kWidth == Width::V2 ? SrcVec2 : Src32);
   const ImageAccess image = access_of<kOutside>(ImageRequest::Bytes, kShape);
   std::array<OpRow, 2> rows = {
-      image_op(joined<"suld.b", shape_text<kShape>(), width_text<kWidth>(), outside_text<kOutside>()>,
-               Effect::SurfaceLoad, image, load.list,
-               joined<"Loads bytes of an image as they are; x counts bytes.", outside_doc<kOutside>()>),
-      image_op(joined<"sust.b", shape_text<kShape>(), width_text<kWidth>(), outside_text<kOutside>()>,
-               Effect::SurfaceStore, image, store.list,
-               joined<"Stores bytes to an image as they are; x counts bytes.", outside_doc<kOutside>()>)};
+      image_op(
+          joined<"suld.b", shape_text<kShape>(), width_text<kWidth>(), outside_text<kOutside>()>,
+          Effect::SurfaceLoad, image, load.list,
+          joined<"Loads bytes of an image without conversion. x counts bytes.", outside_doc<kOutside>()>),
+      image_op(
+          joined<"sust.b", shape_text<kShape>(), width_text<kWidth>(), outside_text<kOutside>()>,
+          Effect::SurfaceStore, image, store.list,
+          joined<"Stores bytes to an image without conversion. x counts bytes.", outside_doc<kOutside>()>)};
   for (OpRow& row : rows)
     row.memory = {Space::Global,
                   uint8_t(kWidth == Width::B8    ? 1
@@ -105,7 +108,7 @@ constexpr auto rmw_type() {
   if constexpr (kRmw >= Rmw::And) return Text(".b32");
 }
 
-// What stays in memory. Model: the sum of floats is rounded to nearest even and keeps subnormals.
+// Returns the new value in memory. Model: the sum of floats is rounded to nearest even and keeps subnormals.
 template <Rmw kRmw>
 constexpr uint64_t apply(uint64_t old, uint64_t operand, uint64_t swap) {
   const auto a = uint32_t(old), b = uint32_t(operand);
@@ -141,12 +144,12 @@ constexpr uint64_t apply(uint64_t old, uint64_t operand, uint64_t swap) {
 template <Rmw kRmw>
 constexpr auto where_doc() {
   if constexpr (kRmw == Rmw::Cas)
-    return Text(" to the last operand where it equals the one before");
+    return Text(" to the last operand if it equals the one before");
   else
     return Text("");
 }
 
-// suatom: Glint's own, for Vulkan's image atomics: PTX has none that return the old value.
+// Makes suatom, which is Glint's own op for Vulkan's image atomics: PTX has none that return the old value.
 template <ImageShape kShape, Rmw kRmw>
 constexpr OpRow atomic_row() {
   OperandList operands;
@@ -155,7 +158,7 @@ constexpr OpRow atomic_row() {
                        Effect::SurfaceAtomic, access_of<ImageOutside::Trap>(ImageRequest::Texel, kShape),
                        operands.list,
                        joined<"Changes a texel of 32 bits", where_doc<kRmw>(),
-                              " and gives its old value; lanes take turns, the lowest first.">);
+                              " and returns its old value. Lanes take turns, the lowest first.">);
   row.memory = {Space::Global, 4, 1, false};
   row.atomic = &apply<kRmw>;
   return row;
@@ -175,15 +178,15 @@ constexpr uint64_t swap_if_equal(uint64_t old, uint64_t expected, uint64_t swap)
   return old == expected ? swap : old;
 }
 
-// Texels of 64 bits: others than this one are loops of it.
+// Makes the atomic for texels of 64 bits. All other atomics on such texels are loops of it.
 template <ImageShape kShape>
 constexpr OpRow wide_atomic_row() {
   OperandList operands;
   operands.add(Dst64).add_place(kShape).add(Src64, 2);
   OpRow row = image_op(joined<"suatom.p.cas", shape_text<kShape>(), ".b64.trap">, Effect::SurfaceAtomic,
                        access_of<ImageOutside::Trap>(ImageRequest::Texel, kShape), operands.list,
-                       "Changes a texel of 64 bits to the last operand where it equals the one before and "
-                       "gives its old value.");
+                       "Changes a texel of 64 bits to the last operand if it equals the one before, and "
+                       "returns its old value.");
   row.memory = {Space::Global, 8, 1, false};
   row.atomic = &swap_if_equal;
   return row;
@@ -193,7 +196,7 @@ constexpr std::array<OpRow, sizeof...(kShapes)> wide_atomics() {
   return {wide_atomic_row<kShapes>()...};
 }
 
-// sured.b: as suatom, with x in bytes and without a result.
+// Makes sured.b, which is like suatom, but has x in bytes and no result.
 template <ImageOutside kOutside, ImageShape kShape, Rmw kRmw>
 constexpr OpRow reduction_row() {
   OperandList operands;
@@ -201,7 +204,7 @@ constexpr OpRow reduction_row() {
   OpRow row = image_op(
       joined<"sured.b", rmw_name<kRmw>(), shape_text<kShape>(), rmw_type<kRmw>(), outside_text<kOutside>()>,
       Effect::SurfaceAtomic, access_of<kOutside>(ImageRequest::Bytes, kShape), operands.list,
-      joined<"Changes 32 bits of an image; x counts bytes.", outside_doc<kOutside>()>);
+      joined<"Changes 32 bits of an image. x counts bytes.", outside_doc<kOutside>()>);
   row.memory = {Space::Global, 4, 1, false};
   row.atomic = &apply<kRmw>;
   return row;
@@ -222,16 +225,17 @@ constexpr OpRow query(std::string_view name, ImageQuery what, std::string_view d
   return image_op(name, Effect::ImageQuery, image, {Dst32, Src32}, doc);
 }
 constexpr std::array kQueries = {
-    query("suq.width.b32", ImageQuery::Width, "Width of a storage image, in texels."),
+    query("suq.width.b32", ImageQuery::Width, "Returns the width of a storage image in texels."),
     query("suq.height.b32", ImageQuery::Height,
-          "Height of a storage image, in texels; 1 when it has one dimension."),
+          "Returns the height of a storage image in texels, or 1 when it has one dimension."),
     query("suq.depth.b32", ImageQuery::Depth,
-          "Depth of a storage image, in texels; 1 unless it has three dimensions."),
+          "Returns the depth of a storage image in texels, or 1 unless it has three dimensions."),
     query("suq.array_size.b32", ImageQuery::ArraySize,
-          "Layers of a storage image; of cubes, how many cubes."),
+          "Returns the number of layers of a storage image, which for cubes is the number of cubes."),
     query("suq.channel_data_type.b32", ImageQuery::ChannelDataType,
-          "OpenCL's number of the channels' type, 0 if it has none."),
-    query("suq.channel_order.b32", ImageQuery::ChannelOrder, "OpenCL's number of the channels' order."),
+          "Returns OpenCL's number of the channels' type, or 0 if it has none."),
+    query("suq.channel_order.b32", ImageQuery::ChannelOrder,
+          "Returns OpenCL's number of the channels' order."),
 };
 
 constexpr auto kRows = joined_rows(

@@ -1,5 +1,5 @@
-// Texture ops: filtered fetches, texel fetches, gathers and queries. Their handlers hand the handle to the
-// texture unit.
+// Defines texture ops: filtered fetches, texel fetches, gathers and queries. Their handlers pass the handle
+// to the texture unit.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/ops/families.h"
 #include "isa/ops/image_rows.h"
@@ -25,7 +25,7 @@ template <ImageLod kLod>
 constexpr auto lod_doc() {
   if constexpr (kLod == ImageLod::Zero) return Text("");
   if constexpr (kLod == ImageLod::Level) return Text(", level of detail");
-  if constexpr (kLod == ImageLod::Gradients) return Text(", gradients of the coordinates in x, in y");
+  if constexpr (kLod == ImageLod::Gradients) return Text(", gradients of the coordinates in x, then in y");
 }
 template <bool kIs, Text kYes>
 constexpr auto text_if() {
@@ -42,7 +42,7 @@ constexpr auto place_doc() {
     return Text("handle, coordinates");
 }
 
-// What follows the place in a name and in a sentence.
+// Gives the part after the geometry in a name, and after the place in a sentence.
 template <bool kCompare, bool kOffset>
 constexpr auto forms_text() {
   return Joined<text_if<kCompare, ".compare">(), text_if<kOffset, ".offset">()>::kAsText;
@@ -61,12 +61,13 @@ constexpr OpRow sample_row() {
   if (kLod == ImageLod::Gradients) operands.add(Src32, 2 * num_coordinates(kShape));
   operands.add(Src32, int(kOffset) + int(kCompare));
   ImageAccess image{ImageRequest::Sample, kShape, kLod, kData == Data::F32, kOffset, kCompare};
-  return image_op(joined<"tex", lod_text<kLod>(), forms_text<kCompare, kOffset>(), shape_text<kShape>(),
-                         text_if<!kCompare, ".v4">(), data_text<kData>(), ".f32">,
-                  Effect::Texture, image, operands.list,
-                  joined<text_if<kCompare, "Filters comparisons of texels with a reference: ">(),
-                         text_if<!kCompare, "Filters texels: ">(), place_doc<kShape>(), lod_doc<kLod>(),
-                         forms_doc<kCompare, kOffset>(), ".">);
+  return image_op(
+      joined<"tex", lod_text<kLod>(), forms_text<kCompare, kOffset>(), shape_text<kShape>(),
+             text_if<!kCompare, ".v4">(), data_text<kData>(), ".f32">,
+      Effect::Texture, image, operands.list,
+      joined<text_if<kCompare, "Filters comparisons of texels with a reference. The operands are ">(),
+             text_if<!kCompare, "Filters texels. The operands are ">(), place_doc<kShape>(), lod_doc<kLod>(),
+             forms_doc<kCompare, kOffset>(), ".">);
 }
 
 template <ImageLod kLod, Data kData, ImageShape kShape>
@@ -76,8 +77,8 @@ constexpr OpRow fetch_row() {
   ImageAccess image{ImageRequest::Fetch, kShape, kLod, kData == Data::F32};
   return image_op(joined<"tex", lod_text<kLod>(), shape_text<kShape>(), ".v4", data_text<kData>(), ".s32">,
                   Effect::Texture, image, operands.list,
-                  joined<"Reads one texel, unfiltered: ", place_doc<kShape>(), " counted in texels",
-                         text_if<kLod == ImageLod::Level, ", level">(), ".">);
+                  joined<"Reads one texel without filtering. The operands are ", place_doc<kShape>(),
+                         " counted in texels", text_if<kLod == ImageLod::Level, ", level">(), ".">);
 }
 
 template <uint8_t kComponent, bool kCompare, bool kOffset, Data kData, ImageShape kShape>
@@ -94,9 +95,11 @@ constexpr OpRow gather_row() {
       joined<"tld4", forms_text<kCompare, kOffset>(), kName, shape_text<kShape>(), ".v4", data_text<kData>(),
              ".f32">,
       Effect::Texture, image, operands.list,
-      joined<text_if<kCompare, "Compares the four texels that a linear filter reads: ">(),
-             text_if<!kCompare, "Gathers one component of the four texels that a linear filter reads: ">(),
-             place_doc<kShape>(), forms_doc<kCompare, kOffset>(), ".">);
+      joined<
+          text_if<kCompare, "Compares the four texels that a linear filter reads. The operands are ">(),
+          text_if<!kCompare,
+                  "Gathers one component of the four texels that a linear filter reads. The operands are ">(),
+          place_doc<kShape>(), forms_doc<kCompare, kOffset>(), ".">);
 }
 
 template <ImageLod kLod, bool kOffset, Data kData, ImageShape... kShapes>
@@ -150,22 +153,28 @@ constexpr OpRow query(std::string_view name, ImageQuery what, std::string_view d
 }
 
 constexpr std::array kQueries = {
-    query("txq.width.b32", ImageQuery::Width, "Width of a texture, in texels."),
+    query("txq.width.b32", ImageQuery::Width, "Returns the width of a texture in texels."),
     query("txq.height.b32", ImageQuery::Height,
-          "Height of a texture, in texels; 1 when it has one dimension."),
+          "Returns the height of a texture in texels, or 1 when it has one dimension."),
     query("txq.depth.b32", ImageQuery::Depth,
-          "Depth of a texture, in texels; 1 unless it has three dimensions."),
-    query("txq.level.width.b32", ImageQuery::Width, "Width of a level: handle, level.", ImageLod::Level),
-    query("txq.level.height.b32", ImageQuery::Height, "Height of a level: handle, level.", ImageLod::Level),
-    query("txq.level.depth.b32", ImageQuery::Depth, "Depth of a level: handle, level.", ImageLod::Level),
-    query("txq.array_size.b32", ImageQuery::ArraySize, "Layers of a texture; of cubes, how many cubes."),
-    query("txq.num_mipmap_levels.b32", ImageQuery::NumMipmapLevels, "Levels of a texture."),
-    query("txq.num_samples.b32", ImageQuery::NumSamples, "Samples of a texel."),
+          "Returns the depth of a texture in texels, or 1 unless it has three dimensions."),
+    query("txq.level.width.b32", ImageQuery::Width, "Returns the width of a level (handle, level).",
+          ImageLod::Level),
+    query("txq.level.height.b32", ImageQuery::Height, "Returns the height of a level (handle, level).",
+          ImageLod::Level),
+    query("txq.level.depth.b32", ImageQuery::Depth, "Returns the depth of a level (handle, level).",
+          ImageLod::Level),
+    query("txq.array_size.b32", ImageQuery::ArraySize,
+          "Returns the number of layers of a texture, which for cubes is the number of cubes."),
+    query("txq.num_mipmap_levels.b32", ImageQuery::NumMipmapLevels,
+          "Returns the number of levels of a texture."),
+    query("txq.num_samples.b32", ImageQuery::NumSamples, "Returns the number of samples of a texel."),
     query("txq.normalized_coords.b32", ImageQuery::NormalizedCoords,
-          "1 when coordinates run from 0 to 1, 0 when they count texels."),
+          "Returns 1 when coordinates go from 0 to 1, and 0 when they count texels."),
     query("txq.channel_data_type.b32", ImageQuery::ChannelDataType,
-          "OpenCL's number of the channels' type, 0 if it has none."),
-    query("txq.channel_order.b32", ImageQuery::ChannelOrder, "OpenCL's number of the channels' order."),
+          "Returns OpenCL's number of the channels' type, or 0 if it has none."),
+    query("txq.channel_order.b32", ImageQuery::ChannelOrder,
+          "Returns OpenCL's number of the channels' order."),
 };
 
 constexpr auto kRows = joined_rows(

@@ -1,16 +1,17 @@
-// Lanes that read each other: shuffles, votes, matches and reductions.
-//
-// Their last operand is the member mask. The lanes that take part with a lane are those of its mask that
-// execute the instruction with the same mask; Choice: a lane outside its own mask takes part with nobody and
-// still gets a result (PTX leaves it open).
+// Defines ops in which lanes read each other: shuffles, votes, matches and reductions.
 // SPDX-License-Identifier: Apache-2.0
+//
+// Their last operand is the member mask. The lanes that take part with a lane are the lanes of its mask that
+// execute the instruction with the same mask. Choice: a lane outside its own mask takes part with no lane and
+// still gets a result, which PTX leaves open.
 #include "isa/op_makers.h"
 #include "isa/ops/families.h"
 
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
-// The lanes of a row that hold a value. By intrinsics: compilers sum the bits up instead of moving the mask.
+// Returns the lanes of a row that hold a value. It uses intrinsics, because compilers add up the bits and do
+// not move the mask.
 [[gnu::always_inline]] inline LaneMask lanes_equal(const uint32_t* row, uint32_t value) {
 #if defined(__AVX512F__)
   const __m512i wanted = _mm512_set1_epi32(int(value));
@@ -31,7 +32,7 @@ namespace {
 #endif
 }
 
-// For each lane the word of the lane `from` (below 32) says.
+// Writes for each lane the word of the lane that `from` (below 32) names.
 [[gnu::always_inline]] inline void read_lanes(const uint32_t* row, const uint32_t* from, uint32_t* out) {
 #if defined(__AVX512F__)
   const __m512i low = _mm512_loadu_si512(row), high = _mm512_loadu_si512(row + 16);
@@ -43,14 +44,15 @@ namespace {
 }
 
 // Calls `visit(group, members)` for each different mask in row `masks`: the executing lanes that gave it, and
-// those of them that it names. Mostly once.
+// those of them that it names. There is mostly one mask.
 template <class Visit>
 [[gnu::always_inline]] inline void each_group(const Warp& warp, const Source<uint32_t>& masks,
                                               Visit&& visit) {
   for (LaneMask rest = warp.exec; rest;) {
     const uint32_t mask = masks.at(__builtin_ctz(rest));
     const LaneMask group = lanes_equal(masks.low, mask) & rest;
-    // Mostly all give one mask: then what follows need not wait until it is known, it is foreseen.
+    // Mostly all lanes give one mask. A prediction then lets the code after it start before the mask is
+    // known.
     if (group == rest) [[likely]] {
       LaneMask all = rest;
       asm("" : "+r"(all));
@@ -62,7 +64,7 @@ template <class Visit>
   }
 }
 
-// Writes one value to register or predicate for the lanes of `group`.
+// Writes one value to a register or predicate for the lanes of `group`.
 [[gnu::always_inline]] inline void broadcast(Warp& warp, Slot slot, LaneMask group, uint32_t value) {
   uint32_t* const row = warp.bank[0] + slot * kLanes;
   all_lanes([&](int i) { row[i] = (group & kLaneBit[i]) != 0 ? value : row[i]; });
@@ -75,14 +77,14 @@ template <class Visit>
   return *(&inst.operand.front() + n);
 }
 
-// PTX's pseudocode: the lane to read, or, outside the segment, one's own.
-// Choice: a lane that does not execute is read as its register stands; PTX leaves it open.
+// Follows PTX's pseudocode: reads a lane or, outside the segment, the lane itself. Choice: of a lane that
+// does not execute, the register is read as it is, which PTX leaves open.
 enum class Shuffle { Up, Down, Butterfly, Index };
 template <Shuffle kMode>
 [[gnu::flatten]] void shuffle(Warp& warp, const Inst& inst) {
   const Source<uint32_t> a(warp, slot_at(inst, 2)), b(warp, slot_at(inst, 3)), c(warp, slot_at(inst, 4));
   struct Source32 {
-    uint32_t lane, inside;  // 1 when the lane read is in the segment
+    uint32_t lane, inside;  // inside: 1 when the lane is in the segment
   };
   const auto source = [&](int i) -> Source32 {
     const int distance = int(b.at(i) & 31), clamp = int(c.at(i) & 31), segment = int(c.at(i) >> 8 & 31);
@@ -92,8 +94,8 @@ template <Shuffle kMode>
                   : kMode == Shuffle::Butterfly ? i ^ distance
                                                 : first | (distance & ~segment);
     const bool inside = kMode == Shuffle::Up ? j >= last : j <= last;
-    return {uint32_t(inside ? j : i) & 31,
-            inside};  // a clamp below the lane's segment may point past the warp: wraps
+    // A clamp below the lane's segment may name a lane past the warp, which wraps.
+    return {uint32_t(inside ? j : i) & 31, inside};
   };
   alignas(64) uint32_t from[kLanes], value[kLanes];
   all_lanes([&](int i) { from[i] = source(i).lane; });
@@ -119,7 +121,7 @@ template <Vote kVote>
 }
 [[gnu::flatten]] void ballot(Warp& warp, const Inst& inst) {
   const Source<bool> a(warp, slot_at(inst, 1));
-  uint32_t result[kLanes]{};  // the destination may be the masks
+  uint32_t result[kLanes]{};  // separate, because the destination may be the masks
   const Source<uint32_t> masks(warp, slot_at(inst, 2));
   each_group(warp, masks, [&](LaneMask group, LaneMask members) {
     all_lanes([&](int i) { result[i] = (group & kLaneBit[i]) != 0 ? a.mask & members : result[i]; });
@@ -127,13 +129,13 @@ template <Vote kVote>
   write_lanes<uint32_t>(warp, slot_at(inst, 0), [&](int i) { return result[i]; });
 }
 
-// For each lane those with its value, whoever executes.
+// Returns for each lane the lanes with its value, whether they execute or not.
 template <class T>
 [[gnu::always_inline]] inline void lanes_of_values(const Source<T>& a, LaneMask* out) {
 #if defined(__AVX512F__)
-  // Words that differ leave bits. Packed to 16 bits, where what was not 0 stays so, one test of 32 lanes
-  // makes a mask: such instructions, one or two a cycle, are what this waits for. Packing takes four lanes in
-  // turn from either source.
+  // Words that differ leave bits after the exclusive or. They are packed to 16 bits, where non-zero values
+  // stay non-zero, so that one test of 32 lanes makes a mask. The time is that of these instructions, of
+  // which one or two execute per cycle. Packing takes four lanes in turn from either source.
   const __m512i fours = _mm512_setr_epi64(0, 1, 4, 5, 8, 9, 12, 13),
                 others = _mm512_setr_epi64(2, 3, 6, 7, 10, 11, 14, 15);
   const auto dealt = [](const uint32_t* row, __m512i which) {
@@ -160,7 +162,7 @@ template <class T>
   }
 #endif
 }
-// For each lane the members with its value.
+// Returns for each lane the members with its value.
 template <class T>
 [[gnu::flatten]] void match_any(Warp& warp, const Inst& inst) {
   const Source<T> a(warp, slot_at(inst, 1));
@@ -172,7 +174,7 @@ template <class T>
   });
   write_lanes<uint32_t>(warp, slot_at(inst, 0), [&](int i) { return result[i] & members_of[i]; });
 }
-// The members if all have one value, and whether they do; otherwise no lanes.
+// Returns the members and true if all have one value, and otherwise no lanes and false.
 template <class T>
 [[gnu::flatten]] void match_all(Warp& warp, const Inst& inst) {
   const Source<T> a(warp, slot_at(inst, 2));
@@ -191,13 +193,14 @@ template <class T>
   write_predicate(warp, slot_at(inst, 1), matched);
 }
 
-// Combines neighbours that lie kHalf apart until one value is left: vectors of half the length each time.
+// Combines neighbours that lie kHalf apart until one value is left. Vectors halve in length each time.
 template <int kHalf, class F, class T>
 [[gnu::always_inline]] inline T folded(T* value) {
 #if defined(__AVX512F__)
   static_assert(kHalf == 16);
   typedef T Row __attribute__((vector_size(64)));
-  constexpr __mmask8 kAll64 = 0xff;  // masked, since g++ 12 warns of its own unmasked forms (GCC bug 105593)
+  constexpr __mmask8 kAll64 =
+      0xff;  // masked, because g++ 12 warns of its own unmasked forms (GCC bug 105593)
   constexpr __mmask16 kAll32 = 0xffff;
   const auto row = [](__m512i x) { return __builtin_bit_cast(Row, x); };
   const auto words = [](Row x) { return __builtin_bit_cast(__m512i, x); };
@@ -213,7 +216,7 @@ template <int kHalf, class F, class T>
   return value[0];
 #endif
 }
-// Combines the members' values; the neutral value stands for the others.
+// Combines the members' values. The neutral value stands for the other lanes.
 template <class T, T kNeutral, class F>
 [[gnu::flatten]] void reduce(Warp& warp, const Inst& inst) {
   const Source<T> a(warp, slot_at(inst, 1));
@@ -231,7 +234,7 @@ template <class T, T kNeutral, class F>
 void active_mask(Warp& warp, const Inst& inst) {
   broadcast(warp, slot_at(inst, 0), warp.exec, warp.exec);
 }
-// The lowest member, and whether it is oneself.
+// Returns the lowest member, and whether it is the lane itself.
 [[gnu::flatten]] void elect(Warp& warp, const Inst& inst) {
   const Source<uint32_t> masks(warp, slot_at(inst, 2));
   uint32_t result[kLanes]{};
@@ -253,7 +256,7 @@ constexpr OpRow row(std::string_view name, Operands operands, Handler run, std::
   return out;
 }
 constexpr OpRow shuffle_row(std::string_view name, Handler run, std::string_view doc) {
-  // All lanes hold one value: whoever is read, it comes.
+  // In these examples all lanes hold one value, so any source lane gives the same result.
   return row(name, {Dst32, DstPred, Src32, Src32, Src32, Src32}, run, doc,
              {{{7, 0, 31, ~0u}, 7, 1}, {{0x8000'0000, 0, 31, ~0u}, 0x8000'0000, 1}});
 }
@@ -265,61 +268,62 @@ constexpr Operands kVote{DstPred, SrcPred, Src32};
 
 constexpr OpRow kRows[] = {
     row("shfl.sync.up.b32", {Dst32, DstPred, Src32, Src32, Src32, Src32}, &shuffle<Shuffle::Up>,
-        "Value of the lane b below, and whether it is in the segment that c describes.",
+        "Reads the lane b below, and tells whether it is in the segment that c describes.",
         {{{7, 0, 0, ~0u}, 7, 1}, {{0x8000'0000, 0, 0, ~0u}, 0x8000'0000, 1}}),
     shuffle_row("shfl.sync.down.b32", &shuffle<Shuffle::Down>,
-                "Value of the lane b above, and whether it is in the segment that c describes."),
+                "Reads the lane b above, and tells whether it is in the segment that c describes."),
     shuffle_row("shfl.sync.bfly.b32", &shuffle<Shuffle::Butterfly>,
-                "Value of the lane whose number differs in the bits b, and whether it is in the segment."),
+                "Reads the lane whose number differs in the bits b, and tells whether it is in the segment."),
     shuffle_row("shfl.sync.idx.b32", &shuffle<Shuffle::Index>,
-                "Value of lane b of the segment that c describes, and whether there is one."),
+                "Reads lane b of the segment that c describes, and tells whether there is one."),
     row("vote.sync.all.pred", kVote, &vote<Vote::All>,
-        "Whether the predicate is true for all lanes of the mask.", {{{1, ~0u}, 1}, {{0, ~0u}, 0}}),
+        "Tells whether the predicate is true for all lanes of the mask.", {{{1, ~0u}, 1}, {{0, ~0u}, 0}}),
     row("vote.sync.any.pred", kVote, &vote<Vote::Any>,
-        "Whether the predicate is true for any lane of the mask.", {{{1, ~0u}, 1}, {{0, ~0u}, 0}}),
+        "Tells whether the predicate is true for any lane of the mask.", {{{1, ~0u}, 1}, {{0, ~0u}, 0}}),
     row("vote.sync.uni.pred", kVote, &vote<Vote::Uniform>,
-        "Whether the predicate is the same for all lanes of the mask.", {{{1, ~0u}, 1}, {{0, ~0u}, 1}}),
+        "Tells whether the predicate is the same for all lanes of the mask.", {{{1, ~0u}, 1}, {{0, ~0u}, 1}}),
     row("vote.sync.ballot.b32", {Dst32, SrcPred, Src32}, &ballot,
-        "The lanes of the mask whose predicate is true.", {{{1, 5}, 5}, {{0, 5}, 0}}),
+        "Returns the lanes of the mask whose predicate is true.", {{{1, 5}, 5}, {{0, 5}, 0}}),
     row("match.any.sync.b32", {Dst32, Src32, Src32}, &match_any<uint32_t>,
-        "The lanes of the mask with the same value.", {{{9, 7}, 7}, {{0, 2}, 2}}),
+        "Returns the lanes of the mask with the same value.", {{{9, 7}, 7}, {{0, 2}, 2}}),
     row("match.any.sync.b64", {Dst32, Src64, Src32}, &match_any<uint64_t>,
-        "The lanes of the mask with the same value.", {{{9, 7}, 7}, {{0x1'0000'0000, 2}, 2}}),
+        "Returns the lanes of the mask with the same value.", {{{9, 7}, 7}, {{0x1'0000'0000, 2}, 2}}),
     row("match.all.sync.b32", {Dst32, DstPred, Src32, Src32}, &match_all<uint32_t>,
-        "The lanes of the mask and true if all have the same value; otherwise 0 and false.",
+        "Returns the lanes of the mask and true if all have the same value, otherwise 0 and false.",
         {{{9, 7}, 7, 1}, {{0, 2}, 2, 1}}),
     row("match.all.sync.b64", {Dst32, DstPred, Src64, Src32}, &match_all<uint64_t>,
-        "The lanes of the mask and true if all have the same value; otherwise 0 and false.",
+        "Returns the lanes of the mask and true if all have the same value, otherwise 0 and false.",
         {{{9, 7}, 7, 1}, {{0x1'0000'0000, 2}, 2, 1}}),
-    reduction<uint32_t, 0>("redux.sync.add.u32", "Sum over the lanes of the mask.",
+    reduction<uint32_t, 0>("redux.sync.add.u32", "Returns the sum over the lanes of the mask.",
                            [](auto a, auto b) { return a + b; },
                            {{{5, 3}, 10}, {{0x8000'0001, 7}, 0x8000'0003}}),
-    reduction<uint32_t, 0>("redux.sync.add.s32", "Sum over the lanes of the mask.",
+    reduction<uint32_t, 0>("redux.sync.add.s32", "Returns the sum over the lanes of the mask.",
                            [](auto a, auto b) { return a + b; },
                            {{{5, 3}, 10}, {{0xffff'ffff, 7}, 0xffff'fffd}}),
-    reduction<uint32_t, ~0u>("redux.sync.min.u32", "Minimum over the lanes of the mask.",
+    reduction<uint32_t, ~0u>("redux.sync.min.u32", "Returns the minimum over the lanes of the mask.",
                              [](auto a, auto b) { return a < b ? a : b; },
                              {{{5, 3}, 5}, {{0xffff'ffff, 7}, 0xffff'ffff}}),
-    reduction<int32_t, 0x7fff'ffff>("redux.sync.min.s32", "Signed minimum over the lanes of the mask.",
-                                    [](auto a, auto b) { return a < b ? a : b; },
-                                    {{{5, 3}, 5}, {{0xffff'ffff, 7}, 0xffff'ffff}}),
-    reduction<uint32_t, 0>("redux.sync.max.u32", "Maximum over the lanes of the mask.",
+    reduction<int32_t, 0x7fff'ffff>(
+        "redux.sync.min.s32", "Returns the signed minimum over the lanes of the mask.",
+        [](auto a, auto b) { return a < b ? a : b; }, {{{5, 3}, 5}, {{0xffff'ffff, 7}, 0xffff'ffff}}),
+    reduction<uint32_t, 0>("redux.sync.max.u32", "Returns the maximum over the lanes of the mask.",
                            [](auto a, auto b) { return a > b ? a : b; },
                            {{{5, 3}, 5}, {{0xffff'ffff, 7}, 0xffff'ffff}}),
-    reduction<int32_t, -0x7fff'ffff - 1>("redux.sync.max.s32", "Signed maximum over the lanes of the mask.",
-                                         [](auto a, auto b) { return a > b ? a : b; },
-                                         {{{5, 3}, 5}, {{0xffff'ffff, 7}, 0xffff'ffff}}),
-    reduction<uint32_t, ~0u>("redux.sync.and.b32", "Bitwise and over the lanes of the mask.",
+    reduction<int32_t, -0x7fff'ffff - 1>(
+        "redux.sync.max.s32", "Returns the signed maximum over the lanes of the mask.",
+        [](auto a, auto b) { return a > b ? a : b; }, {{{5, 3}, 5}, {{0xffff'ffff, 7}, 0xffff'ffff}}),
+    reduction<uint32_t, ~0u>("redux.sync.and.b32", "Returns the bitwise and over the lanes of the mask.",
                              [](auto a, auto b) { return a & b; }, {{{5, 3}, 5}, {{0, 7}, 0}}),
-    reduction<uint32_t, 0>("redux.sync.or.b32", "Bitwise or over the lanes of the mask.",
+    reduction<uint32_t, 0>("redux.sync.or.b32", "Returns the bitwise or over the lanes of the mask.",
                            [](auto a, auto b) { return a | b; }, {{{5, 3}, 5}, {{0, 7}, 0}}),
-    reduction<uint32_t, 0>("redux.sync.xor.b32", "Bitwise exclusive or over the lanes of the mask.",
+    reduction<uint32_t, 0>("redux.sync.xor.b32",
+                           "Returns the bitwise exclusive or over the lanes of the mask.",
                            [](auto a, auto b) { return a ^ b; }, {{{5, 3}, 0}, {{5, 7}, 5}}),
-    // Who runs is not among its operands: no example holds for every warp.
-    row("activemask.b32", {Dst32}, &active_mask, "The lanes that execute this instruction.", {}),
-    // The second result differs from lane to lane: true in the lane of the first.
+    // No example holds for every warp, because the executing lanes are not among the operands.
+    row("activemask.b32", {Dst32}, &active_mask, "Returns the lanes that execute this instruction.", {}),
+    // The second result differs from lane to lane: it is true in the lane that the first result names.
     row("elect.sync", {Dst32, DstPred, Src32}, &elect,
-        "The lowest lane of the mask, and whether it is this one.", {{{7}, 0}, {{6}, 1}}),
+        "Returns the lowest lane of the mask, and tells whether it is this lane.", {{{7}, 0}, {{6}, 1}}),
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Names and sentences of generated rows, put together while compiling.
+// Joins names and sentences of generated rows at compile time.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace glint::isa::GLINT_ISA_PATH {
 
-// Text with storage of its own: a row's string_view may point to a Word that is a constant.
+// Holds text in its own storage. A row's string_view may point to a Word that is a constant.
 struct Word {
   std::array<char, 112> at{};
   size_t length = 0;
