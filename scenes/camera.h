@@ -7,21 +7,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "scenes/render_params.h"
 #include "scenes/scene.h"
 
 namespace glint::scenes {
 
 enum class Workload { PathTracing, Shadow, AmbientOcclusion };
-
-// One frame. The counts are LumiBench's benchmark values.
-struct RenderParams {
-  uint32_t width = 128, height = 128;  // pixels
-  uint32_t samples = 2;                // a pixel
-  uint32_t bounces = 16;               // rays a path at most
-  uint32_t shadow_rays = 2;            // a hit, Workload::Shadow
-  uint32_t ao_rays = 4;                // a hit, Workload::AmbientOcclusion
-  uint32_t seed = 1;                   // of the pixel jitter
-};
 
 // Column-major: column c, row r at [4 * c + r], as std140 lays out a mat4.
 using Mat4 = std::array<float, 16>;

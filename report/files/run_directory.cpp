@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/run_directory.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
@@ -17,6 +18,12 @@ namespace glint::report {
 namespace fs = std::filesystem;
 
 namespace {
+
+// "rays.bounces" is the entry "bounces" of the table "rays".
+nlohmann::ordered_json::json_pointer pointer_of(std::string key) {
+  std::replace(key.begin(), key.end(), '.', '/');
+  return nlohmann::ordered_json::json_pointer("/" + key);
+}
 
 constexpr const char* kResults[] = {"image.png",      "image.pfm",   "printf.txt", "profile.csv",
                                     "profile.folded", "source.json", "series.csv", "trace.json.gz"};
@@ -129,12 +136,7 @@ void RunDirectory::write_run(const RunInfo& info) const {
   json["config"] = {{"name", info.config}, {"hash", fmt::format("{:016x}", info.config_hash)}};
   for (const auto& [name, value] : info.memory_peaks) json["memory_peaks"][name] = value;
   json["mode"] = info.mode;
-  json["width"] = info.width;
-  json["height"] = info.height;
-  json["samples"] = info.samples;
-  json["seed"] = info.seed;
-  if (info.bounces > 0)
-    json["rays"] = {{"bounces", info.bounces}, {"shadow_rays", info.shadow_rays}, {"ao_rays", info.ao_rays}};
+  for (const auto& [key, value] : info.frame) json[pointer_of(key)] = value;
   if (const auto& s = info.structures)
     json["structures"] = {{"bytes", s->bytes},
                           {"triangles", s->triangles},

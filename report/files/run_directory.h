@@ -40,10 +40,12 @@ struct RunInfo {
   std::vector<std::string> command;  // argv
   std::string version, git, compiler;
   std::string scene, scene_form, scene_note, shader, config, mode;
-  uint64_t scene_hash = 0, scene_triangles = 0, config_hash = 0, seed = 0;
+  uint64_t scene_hash = 0, scene_triangles = 0, config_hash = 0;
   double scene_fraction = 1;  // of the original's triangles
-  uint32_t width = 0, height = 0, samples = 0;
-  uint32_t bounces = 0, shadow_rays = 0, ao_rays = 0;        // of a scene's frame; 0 = it is none
+  // The parameters of the frame, in the order of the file; a dot in a key leads into a table. A launch
+  // without a frame has only these.
+  std::vector<std::pair<std::string, uint64_t>> frame = {
+      {"width", 0}, {"height", 0}, {"samples", 0}, {"seed", 0}};
   std::optional<StructureInfo> structures;                   // once they are built
   std::optional<ResidencyInfo> residency;                    // of a timing run
   std::vector<std::pair<std::string, double>> memory_peaks;  // what the memory system could do at best

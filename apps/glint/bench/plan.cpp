@@ -37,15 +37,21 @@ uint64_t hash_of_shaders(const Resources& resources) {
   return report::fnv1a(all);
 }
 
+// The frame as options of `glint run`.
+std::vector<std::string> frame_options(const scenes::RenderParams& frame) {
+  std::vector<std::string> out;
+  for (const scenes::RenderParam& p : scenes::RenderParams::params())
+    if (!p.option.empty()) out.push_back(fmt::format("{}={}", p.option, frame.*p.field));
+  return out;
+}
+
 // Everything that a result depends on. Two runs of the same key give the same statistics.
 std::string key_of(const Session& session, const BenchOptions& options) {
   const pipeline::GpuParams gpu = read_config(session.resources, options.config, options.settings);
-  const scenes::RenderParams& frame = options.frame;
   const std::string text = fmt::format(
-      "config {:016x} mode {} size {} spp {} bounces {} shadow {} ao {} seed {} assets '{}' version {} {} "
-      "program {:016x} shaders {:016x}",
+      "config {:016x} mode {} size {} frame {} assets '{}' version {} {} program {:016x} shaders {:016x}",
       report::fnv1a(report::config_key_values(describe_params(gpu))), options.mode, options.size,
-      frame.samples, frame.bounces, frame.shadow_rays, frame.ao_rays, frame.seed,
+      fmt::join(frame_options(options.frame), " "),
       options.assets.empty() ? "" : fs::weakly_canonical(options.assets).string(), GLINT_VERSION, GLINT_GIT,
       report::fnv1a(bytes_of("/proc/self/exe")), hash_of_shaders(session.resources));
   return fmt::format("{:016x}", report::fnv1a(text));
@@ -63,19 +69,14 @@ bool is_complete(const BenchTask& task, const std::string& key) {
 }
 
 std::vector<std::string> command_of(const BenchOptions& options, const BenchTask& task) {
-  const scenes::RenderParams& frame = options.frame;
   std::vector<std::string> out = {"run",
                                   task.workload.name(),
                                   "--config=" + options.config,
                                   "--size=" + options.size,
                                   "--mode=" + options.mode,
-                                  fmt::format("--spp={}", frame.samples),
-                                  fmt::format("--bounces={}", frame.bounces),
-                                  fmt::format("--shadow-rays={}", frame.shadow_rays),
-                                  fmt::format("--ao-rays={}", frame.ao_rays),
-                                  fmt::format("--seed={}", frame.seed),
                                   fmt::format("--threads={}", options.threads),
                                   "--out=" + task.directory};
+  for (const std::string& option : frame_options(options.frame)) out.push_back(option);
   for (const std::string& setting : options.settings) out.push_back("--set=" + setting);
   if (!options.assets.empty()) out.push_back("--assets=" + options.assets);
   return out;

@@ -44,14 +44,8 @@ pipeline::RenderJob job_of(const Session& session, const Options& options, const
   pipeline::RenderJob job;
   job.gpu = read_config(session.resources, directory + "/config.toml", {});
   job.workload = workload.workload;
-  const auto number = [&](const char* name) { return fact(run, directory, name); };
-  job.frame.width = uint32_t(number("width"));
-  job.frame.height = uint32_t(number("height"));
-  job.frame.samples = uint32_t(number("samples"));
-  job.frame.seed = uint32_t(number("seed"));
-  job.frame.bounces = uint32_t(number("rays.bounces"));
-  job.frame.shadow_rays = uint32_t(number("rays.shadow_rays"));
-  job.frame.ao_rays = uint32_t(number("rays.ao_rays"));
+  for (const scenes::RenderParam& p : scenes::RenderParams::params())
+    job.frame.*p.field = uint32_t(fact(run, directory, std::string(p.key)));
   job.shader_dir = session.resources.shader_dir(std::string(workload.folder));
   job.scene = scenes::load_scene(run.text("scene.name"), {options.assets, false, {}});
   if (fmt::format("{:016x}", job.scene.hash()) != run.text("scene.hash"))

@@ -8,7 +8,7 @@
 
 namespace glint::app {
 namespace {
-constexpr uint32_t kMaxSide = 16384;  // pixels; beyond it images exceed what a PNG encoder here takes
+using scenes::kMaxSide;
 
 uint32_t number(const std::string& digits) {
   if (digits.empty() || digits.size() > 5 || digits.find_first_not_of("0123456789") != std::string::npos)

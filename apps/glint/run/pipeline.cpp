@@ -41,11 +41,10 @@ pipeline::PipelineDescription with_options(pipeline::PipelineDescription descrip
   return description;
 }
 
-pipeline::PipelineDescription read_description(const PipelineOptions& options,
-                                               const frontend::GlslOptions& glsl) {
-  if (!is_shader(options.what)) return with_options(pipeline::read_pipeline(options.what), glsl);
-  const std::vector<std::string> shaders = pipeline::with_companions(options.what);
-  const std::filesystem::path path(options.what);
+pipeline::PipelineDescription read_description(const std::string& what, const frontend::GlslOptions& glsl) {
+  if (!is_shader(what)) return with_options(pipeline::read_pipeline(what), glsl);
+  const std::vector<std::string> shaders = pipeline::with_companions(what);
+  const std::filesystem::path path(what);
   const std::string name = (path.parent_path() / ("defaults of " + path.filename().string())).string();
   pipeline::PipelineDescription out = pipeline::parse_pipeline(
       pipeline::default_description(shaders, path.parent_path().string(), glsl), name);
@@ -106,8 +105,8 @@ report::RunInfo describe_run(const Session& session, const pipeline::PipelineWor
     for (const pipeline::Save& save : image.saves) info.saved.push_back(save.file);
   for (const auto& buffer : world.description().buffers)
     for (const pipeline::Save& save : buffer.saves) info.saved.push_back(save.file);
-  info.width = world.world.launch_size[0];
-  info.height = world.world.launch_size[1];
+  info.frame[0].second = world.world.launch_size[0];
+  info.frame[1].second = world.world.launch_size[1];
   return info;
 }
 
@@ -119,17 +118,17 @@ bool names_pipeline(const std::string& what) {
   return pipeline::read_toml(what).find("kernel") == nullptr;  // a kernel's launch file names it
 }
 
-Exit run_pipeline(const Session& session, const PipelineOptions& options) {
+Exit run_pipeline(const Session& session, const std::string& what, const LaunchOptions& options) {
   const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(options.shaders);
   const pipeline::PipelineDescription description =
-      read_description(options, glsl_options(options.shaders, cache.get()));
+      read_description(what, glsl_options(options.shaders, cache.get()));
   check_saves(description);
   const pipeline::MachineDescription& machine = description.machine;
   const auto first = [](const std::string& a, const std::string& b, const char* c) {
     return !a.empty() ? a : !b.empty() ? b : std::string(c);
   };
-  const std::string mode = first(options.mode, machine.mode, "timing"),
-                    config = first(options.config, machine.config, "mobile");
+  const std::string mode = first(options.mode_given ? options.mode : "", machine.mode, "timing"),
+                    config = first(options.config_given ? options.config : "", machine.config, "mobile");
   std::vector<std::string> settings = machine.settings;
   settings.insert(settings.end(), options.settings.begin(), options.settings.end());
 

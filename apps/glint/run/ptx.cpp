@@ -81,7 +81,7 @@ std::vector<std::string> keep_buffers(Launched& launched, const LaunchFile& laun
   return lines;
 }
 
-report::RunInfo describe_run(const Session& session, const KernelOptions& options,
+report::RunInfo describe_run(const Session& session, const LaunchOptions& options,
                              const pipeline::GpuParams& gpu, const std::string& kernel,
                              const std::string& text) {
   report::RunInfo info = new_run_info(session, gpu, options.config, options.mode);
@@ -98,19 +98,19 @@ bool names_kernel(const std::string& what) {
   return what.ends_with(".ptx") || what.ends_with(".toml");
 }
 
-Exit run_ptx(const Session& session, const KernelOptions& options) {
+Exit run_ptx(const Session& session, const std::string& what, const std::string& launch_file,
+             const LaunchOptions& options) {
   check_observation(options.observe, options.mode == "timing");
-  const bool is_ptx = options.what.ends_with(".ptx");
-  if (is_ptx && options.launch.empty())
+  const bool is_ptx = what.ends_with(".ptx");
+  if (is_ptx && launch_file.empty())
     throw UserError(
-        {}, fmt::format("'{}' needs a launch file: --launch FILE.toml gives grid, block and arguments",
-                        options.what));
-  const std::string launch_path = is_ptx ? options.launch : options.what;
+        {},
+        fmt::format("'{}' needs a launch file: --launch FILE.toml gives grid, block and arguments", what));
+  const std::string launch_path = is_ptx ? launch_file : what;
   LaunchFile launch = read_launch(launch_path);
-  if (is_ptx) launch.kernel = options.what;
+  if (is_ptx) launch.kernel = what;
   pipeline::RenderJob job;
-  job.gpu = read_config(session.resources, options.config, options.settings);
-  if (options.max_instructions > 0) job.gpu.core.instruction_budget = options.max_instructions;
+  job.gpu = gpu_of(session.resources, options);
 
   const std::string text = read_text(launch.kernel);
   const frontend::PtxOptions compiler{{job.gpu.compiler.max_registers, job.gpu.compiler.schedule, false,

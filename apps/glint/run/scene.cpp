@@ -1,0 +1,125 @@
+// Renders one frame, leaves a run directory and prints the summary.
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/glint/run/scene.h"
+
+#include <cstdio>
+#include <fmt/format.h>
+#include <memory>
+
+#include "apps/glint/bench/progress_pipe.h"
+#include "apps/glint/bench/workloads.h"
+#include "apps/glint/options/image_size.h"
+#include "apps/glint/options/observe_options.h"
+#include "apps/glint/run/recorded_run.h"
+#include "pipeline/render.h"
+#include "pipeline/structure_cache.h"
+#include "report/files/run_directory.h"
+#include "report/terminal/progress.h"
+
+namespace glint::app {
+namespace {
+
+// SHIP_SH is SHIP with --shader sh.
+void take_workload_name(SceneOptions& options) {
+  const std::optional<SceneAndShader> named = split_workload(options.scene);
+  if (!named) return;
+  if (options.shader_given && options.shader != named->shader)
+    throw UserError({}, fmt::format("'{}' is {} with --shader {}, and --shader is {}", options.scene,
+                                    named->scene, named->shader, options.shader));
+  options.scene = named->scene;
+  options.shader = named->shader;
+}
+
+pipeline::RenderJob make_job(const Session& session, const SceneOptions& options,
+                             const LaunchOptions& launch) {
+  const WorkloadInfo& workload = find_workload(options.shader);
+  pipeline::RenderJob job;
+  job.gpu = gpu_of(session.resources, launch);
+  job.workload = workload.workload;
+  job.frame = options.frame;
+  parse_size(options.size, job.frame);
+  job.timing = launch.mode == "timing";
+  job.no_skip = launch.no_skip;
+  job.threads = launch.threads;
+  job.on_fault = launch.on_fault;
+  job.observe = launch.observe;
+  check_observation(job.observe, job.timing);
+  job.shader_dir = options.shader_dir.empty() ? session.resources.shader_dir(std::string(workload.folder))
+                                              : options.shader_dir;
+  report::Progress progress(session.on_terminal ? stdout : nullptr, "loading", session.terminal);
+  ProgressPipe pipe(session.progress_descriptor, "loading");
+  job.scene = scenes::load_scene(options.scene, {options.assets, options.instancing, [&](double part) {
+                                                   progress.update(uint64_t(100 * part), 100);
+                                                   pipe.update(uint64_t(1000 * part), 1000);
+                                                 }});
+  return job;
+}
+
+std::string title_of(const pipeline::RenderJob& job, const SceneOptions& options,
+                     const LaunchOptions& launch) {
+  return fmt::format("{} {}  {}x{}, {} spp, {} on {}", job.scene.name, options.shader, job.frame.width,
+                     job.frame.height, job.frame.samples, launch.mode, launch.config);
+}
+
+report::RunInfo describe_run(const Session& session, const SceneOptions& options, const LaunchOptions& launch,
+                             const pipeline::RenderJob& job) {
+  report::RunInfo info = new_run_info(session, job.gpu, launch.config, launch.mode);
+  info.scene = job.scene.name;
+  info.scene_form = job.scene.form;
+  info.scene_note = job.scene.note;
+  info.scene_hash = job.scene.hash();
+  info.scene_triangles = job.scene.triangles();
+  info.scene_fraction = job.scene.fraction();
+  info.shader = options.shader;
+  info.frame = scenes::values_of(job.frame);
+  info.on_fault = exec::name_of(launch.on_fault);
+  return info;
+}
+
+// Renders the job and leaves its files in the directory.
+pipeline::RenderResult render_into(const Session& session, const report::RunDirectory& directory,
+                                   report::RunInfo& info, pipeline::RenderJob& job,
+                                   std::vector<std::string>& files) {
+  const auto render = [&](const ShowProgress& progress) {
+    job.progress = progress;
+    pipeline::RenderResult rendered = pipeline::render(job);
+    const pipeline::StructureCounts& made = rendered.structures;
+    info.structures = {made.bytes,     made.triangles, made.procedurals, made.bottom_levels,
+                       made.instances, made.top_depth, made.bottom_depth};
+    return rendered;
+  };
+  const auto keep = [&](const pipeline::RenderResult& rendered) {
+    directory.write_image({rendered.width, rendered.height, rendered.rgba});
+    directory.write_stats(rendered.statistics());
+    for (std::string& line : write_observation(job.observe, rendered, directory))
+      files.push_back(std::move(line));
+  };
+  return run_recorded(session, "rendering", directory, info, render, keep, job.prints);
+}
+
+}  // namespace
+
+Exit run_scene(const Session& session, SceneOptions options, const LaunchOptions& launch) {
+  take_workload_name(options);
+  const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(launch.shaders);
+  const std::unique_ptr<pipeline::StructureCache> structures = open_structure_cache(launch.shaders);
+  exec::PrintLog prints(launch.print_limit);
+  pipeline::RenderJob job = make_job(session, options, launch);
+  job.glsl = glsl_options(launch.shaders, cache.get());
+  job.structure_cache = structures.get();
+  job.prints = &prints;
+  const report::RunDirectory directory(
+      launch.out.empty() ? fmt::format("out/{}_{}-{}", job.scene.name, options.shader, launch.mode)
+                         : launch.out);
+  report::RunInfo info = describe_run(session, options, launch, job);
+  const std::string title = title_of(job, options, launch);
+  begin_directory(directory, info, job.gpu, title);
+  std::vector<std::string> files = {"picture    " + directory.path_of("image.png"),
+                                    "statistics " + directory.path_of("stats.txt")};
+  const pipeline::RenderResult result = render_into(session, directory, info, job, files);
+  for (const std::string& warning : result.warnings) fmt::print(stderr, "{}\n", warning);
+  print_result(session, launch.json, job, result, title, std::move(files));
+  return Exit::Ok;
+}
+
+}  // namespace glint::app

@@ -1,0 +1,13 @@
+// Lists the values of a frame's parameters.
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/render_params.h"
+
+namespace glint::scenes {
+
+std::vector<std::pair<std::string, uint64_t>> values_of(const RenderParams& params) {
+  std::vector<std::pair<std::string, uint64_t>> out;
+  for (const RenderParam& p : RenderParams::params()) out.emplace_back(p.key, params.*p.field);
+  return out;
+}
+
+}  // namespace glint::scenes
