@@ -20,8 +20,8 @@ struct FetchParams {
   bool perfect = false;
   uint32_t size = 16384;  // of each scheduler: 4 sets of 32 lines
   uint32_t ways = 32;
-  PolicyChoice<mem::Replacement> replacement{"lru"};  // Choice: unpublished
   uint32_t prefetch = 8;                              // stream buffer (Jouppi, ISCA 1990)
+  PolicyChoice<mem::Replacement> replacement{"lru"};  // Choice: unpublished
   static constexpr auto params() {
     return std::tuple{
         flag(&FetchParams::perfect, "perfect", "Every instruction is there when its warp comes to it."),
@@ -39,9 +39,9 @@ struct ConstantParams {
   bool perfect = false;
   uint32_t size = 2048;
   uint32_t ways = 4;
-  PolicyChoice<mem::Replacement> replacement{"lru"};  // Choice: unpublished
   uint32_t line = 64;
   bool serial = true;  // CUDA programming guide: different addresses in a warp are served one after another
+  PolicyChoice<mem::Replacement> replacement{"lru"};  // Choice: unpublished
   static constexpr auto params() {
     return std::tuple{
         flag(&ConstantParams::perfect, "perfect", "Constant loads always hit."),
@@ -58,9 +58,9 @@ struct ConstantParams {
 // Behind both. Defaults: as FetchParams; 39 cycles there and 39 back, and 79 for a constant that misses.
 struct CodeCacheParams {
   uint32_t size = 131072;
-  uint32_t ways = 16;                                 // Choice: unpublished
-  PolicyChoice<mem::Replacement> replacement{"lru"};  // Choice: unpublished
+  uint32_t ways = 16;  // Choice: unpublished
   uint32_t latency = 78;
+  PolicyChoice<mem::Replacement> replacement{"lru"};  // Choice: unpublished
   static constexpr auto params() {
     return std::tuple{
         param(&CodeCacheParams::size, "size", "byte",

@@ -12,6 +12,9 @@
 namespace glint::core {
 namespace {
 
+using exec::Block, exec::Executor, exec::Image, exec::launch_id, exec::link, exec::set_blocks,
+    exec::WarpContext, exec::World;
+
 std::shared_ptr<const exec::WarpLayout> make(const std::string& name) {
   return Registry<exec::WarpLayout>::instance().entry(name).make_default({});
 }

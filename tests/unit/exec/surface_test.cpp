@@ -9,6 +9,8 @@
 namespace glint::exec {
 namespace {
 
+using core::Code, core::OneCore, core::quick_params, core::reg;
+
 using F = TexelFormat;
 using isa::ImageShape;
 
