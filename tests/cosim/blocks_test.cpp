@@ -15,7 +15,7 @@ pipeline::GpuParams small_gpu() {
   return params;
 }
 
-Cycle run_timing(core::TextLaunch& launch, bool no_skip = false,
+Cycle run_timing(exec::TextLaunch& launch, bool no_skip = false,
                  const pipeline::GpuParams& params = small_gpu()) {
   pipeline::TimingMachine machine(params, launch.world, no_skip);
   const Cycle cycles = machine.run({});
@@ -83,7 +83,7 @@ const std::string kHistogram = R"(
 struct Kernel {
   const char* name;
   std::string text;
-  core::TextLaunch::Options options;
+  exec::TextLaunch::Options options;
 };
 std::vector<Kernel> kernels() {
   return {{"reduce", kReduce, {.grid = {20, 1, 1}, .block = {256, 1, 1}, .shared_bytes = 1024}},
@@ -95,7 +95,7 @@ std::vector<Kernel> kernels() {
 TEST_CASE("race-free blocks leave the same memory on both machines") {
   for (const Kernel& kernel : kernels()) {
     CAPTURE(kernel.name);
-    core::TextLaunch functional(kernel.text, kernel.options), timing(kernel.text, kernel.options);
+    exec::TextLaunch functional(kernel.text, kernel.options), timing(kernel.text, kernel.options);
     functional.run();
     run_timing(timing);
 
@@ -107,7 +107,7 @@ TEST_CASE("race-free blocks leave the same memory on both machines") {
 TEST_CASE("blocks take the same cycles whether idle time is skipped or not") {
   for (const Kernel& kernel : kernels()) {
     CAPTURE(kernel.name);
-    core::TextLaunch skipping(kernel.text, kernel.options), stepping(kernel.text, kernel.options);
+    exec::TextLaunch skipping(kernel.text, kernel.options), stepping(kernel.text, kernel.options);
 
     CHECK(run_timing(skipping, false) == run_timing(stepping, true));
   }
@@ -117,7 +117,7 @@ TEST_CASE("an atomic costs a trip to the L2, and a red does not") {
   const auto cycles = [](const std::string& op) {
     std::string text = "    ld.param.b64 %rd2, [0];\n    mov.b32 %r4, 1;\n";
     for (int i = 0; i < 8; ++i) text += "    " + op + "\n";
-    core::TextLaunch launch(text + "    exit;\n", {});
+    exec::TextLaunch launch(text + "    exit;\n", {});
     return run_timing(launch);
   };
   // A chain: each atomic adds what the one before returned.
@@ -129,7 +129,7 @@ TEST_CASE("an atomic costs a trip to the L2, and a red does not") {
 }
 
 TEST_CASE("the L2 counts atomics, and they leave the line dirty") {
-  core::TextLaunch launch("    ld.param.b64 %rd2, [0];\n    atom.global.add.u32 %r4, [%rd2], 1;\n    exit;\n",
+  exec::TextLaunch launch("    ld.param.b64 %rd2, [0];\n    atom.global.add.u32 %r4, [%rd2], 1;\n    exit;\n",
                           {});
   pipeline::TimingMachine machine(small_gpu(), launch.world, false);
   machine.run({});
@@ -142,7 +142,7 @@ TEST_CASE("the L2 counts atomics, and they leave the line dirty") {
 }
 
 TEST_CASE("programs read the clock and their place on the timing machine") {
-  core::TextLaunch launch(R"(
+  exec::TextLaunch launch(R"(
     mov.b32 %r4, %clock;
     mov.b32 %r5, %globaltimer_lo;
     mov.b32 %r6, %smid;
@@ -171,7 +171,7 @@ TEST_CASE("programs read the clock and their place on the timing machine") {
 TEST_CASE("a barrier that nobody can complete ends the timing machine with the same fault") {
   const std::string text =
       "    setp.ge.u32 %p1, %tid.x, 96;\n    @%p1 exit;\n    bar.sync 2, 256;\n    exit;\n";
-  core::TextLaunch launch(text, {.block = {256, 1, 1}}), functional(text, {.block = {256, 1, 1}});
+  exec::TextLaunch launch(text, {.block = {256, 1, 1}}), functional(text, {.block = {256, 1, 1}});
   std::string message;
   try {
     run_timing(launch);

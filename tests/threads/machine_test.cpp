@@ -45,9 +45,9 @@ struct Outcome {
   std::vector<uint32_t> memory;  // or a picture's bits
 };
 
-Outcome run_kernel(const std::string& text, const core::TextLaunch::Options& options, const HostOptions& host,
+Outcome run_kernel(const std::string& text, const exec::TextLaunch::Options& options, const HostOptions& host,
                    const pipeline::GpuParams& params = eight_cores(), bool no_skip = false) {
-  core::TextLaunch launch(text, options);
+  exec::TextLaunch launch(text, options);
   pipeline::TimingMachine machine(params, launch.world, no_skip, host);
   Outcome outcome;
   outcome.cycles = machine.run({});
@@ -106,7 +106,7 @@ LOOP:
     st.global.b32 [%rd8 + 2048], %r6;
     exit;
 )";
-const core::TextLaunch::Options kRacesGrid{
+const exec::TextLaunch::Options kRacesGrid{
     .grid = {24, 1, 1}, .block = {64, 1, 1}, .buffer_words = 512 + 24 * 64};
 
 // A ticket lock: the first thread of each block adds 1 to word 2 and to word 40, which only the lock
@@ -186,7 +186,7 @@ TEST_CASE("races come out the same whether idle time is skipped or not") {
 }
 
 TEST_CASE("a lock between cores keeps them apart, and what it protects is seen by the next") {
-  const core::TextLaunch::Options grid{.grid = {40, 1, 1}, .block = {32, 1, 1}};
+  const exec::TextLaunch::Options grid{.grid = {40, 1, 1}, .block = {32, 1, 1}};
   const Outcome expected = run_kernel(kLock, grid, {});
   CHECK(expected.memory[2] == 40);
   CHECK(expected.memory[40] == 40);
