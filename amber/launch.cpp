@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fmt/format.h>
 
+#include "amber/declared_binding.h"
 #include "exec/block.h"
 #include "isa/descriptors.h"
 #include "pipeline/binding_table.h"
@@ -84,8 +85,6 @@ class Launch {
   void set_push_constants(const Binding& binding);
   void write_descriptor(const Binding& binding, uint64_t first, uint64_t second);
   void write_descriptors(const Binding& binding, std::vector<std::array<uint64_t, 2>> all);
-  void check_kind(const Binding& binding) const;
-  const frontend::Binding* reflected(const Binding& binding) const;
   exec::ImageView view_of(const Binding& binding, const Buffer& buffer, size_t element);
   void plan_parts();
   Address upload(const Buffer& buffer, uint64_t offset);
@@ -176,7 +175,7 @@ void Launch::set_ray_tracing() {
 }
 
 void Launch::bind(const Binding& binding) {
-  check_kind(binding);
+  check_kind(binding, shaders_);
   switch (binding.kind) {
     case BindKind::Uniform:
     case BindKind::Storage:
@@ -192,15 +191,6 @@ void Launch::bind(const Binding& binding) {
   }
 }
 
-const frontend::Binding* Launch::reflected(const Binding& binding) const {
-  const frontend::Binding* out = nullptr;
-  for (const CompiledShader& shader : shaders_)
-    for (const frontend::Binding& each : shader.reflection.bindings)
-      if (each.set == binding.set && each.binding == binding.binding && (!out || each.count > out->count))
-        out = &each;
-  return out;
-}
-
 void Launch::write_descriptor(const Binding& binding, uint64_t first, uint64_t second) {
   bound_.insert({binding.set, binding.binding});
   pipeline::write_descriptor(world_, {binding.set, binding.binding}, first, second);
@@ -208,7 +198,7 @@ void Launch::write_descriptor(const Binding& binding, uint64_t first, uint64_t s
 
 // Writes the descriptors of an array of buffers or structures to a table in global memory (docs/abi.md).
 void Launch::write_descriptors(const Binding& binding, std::vector<std::array<uint64_t, 2>> all) {
-  const frontend::Binding* use = reflected(binding);
+  const frontend::Binding* use = reflected(binding, shaders_);
   if (!use || use->count == 1) return write_descriptor(binding, all[0][0], all[0][1]);
   if (all.size() < use->count)
     all.resize(use->count, {isa::unbound_address(binding.set, binding.binding), 0});
@@ -217,39 +207,6 @@ void Launch::write_descriptors(const Binding& binding, std::vector<std::array<ui
                        all.size() * isa::kDescriptorBytes);
   memory_.write(table, all.data(), all.size() * isa::kDescriptorBytes);
   write_descriptor(binding, table, all.size());
-}
-
-// Throws UserError when the kind of a binding is not what the shader declares. Aliases of different kinds at
-// one place are allowed; one of them has to match.
-void Launch::check_kind(const Binding& binding) const {
-  using frontend::BindingKind;
-  const auto takes = [&](BindingKind kind) {
-    switch (binding.kind) {
-      case BindKind::Uniform:
-      case BindKind::Storage:
-        return kind == BindingKind::UniformBuffer || kind == BindingKind::StorageBuffer;
-      case BindKind::Sampler:
-        return kind == BindingKind::Sampler;
-      case BindKind::Structure:
-        return kind == BindingKind::AccelerationStructure;
-      case BindKind::PushConstants:
-        return true;
-      default:
-        return kind == BindingKind::SampledImage || kind == BindingKind::StorageImage;
-    }
-  };
-  const frontend::Binding* other = nullptr;
-  for (const CompiledShader& shader : shaders_)
-    for (const frontend::Binding& each : shader.reflection.bindings) {
-      if (each.set != binding.set || each.binding != binding.binding) continue;
-      if (takes(each.kind)) return;
-      other = &each;
-    }
-  if (other && !binding.names.empty())
-    throw UserError(
-        binding.where,
-        fmt::format("set {} binding {}: the shader declares the {} '{}', but '{}' is not one", binding.set,
-                    binding.binding, pipeline::name_of(other->kind), other->name, binding.names[0]));
 }
 
 // Uploads a buffer in the parts that descriptors name, so that an access past the range of a descriptor is a
@@ -326,7 +283,7 @@ exec::ImageView Launch::view_of(const Binding& binding, const Buffer& buffer, si
   view.levels = is_texels ? 1 : buffer.levels;
   view.samples = view.layers = buffer.samples;
   const uint32_t dimensions = buffer.dimensions ? buffer.dimensions : 2;
-  const frontend::Binding* use = reflected(binding);
+  const frontend::Binding* use = reflected(binding, shaders_);
   view.shape = use               ? use->shape
                : is_texels       ? isa::ImageShape::Buffer
                : dimensions == 1 ? isa::ImageShape::D1
@@ -349,13 +306,13 @@ void Launch::bind_images(const Binding& binding) {
   write_descriptor(binding, world_.images.size(), binding.names.size());
   for (size_t i = 0; i < binding.names.size(); ++i)
     world_.images.push_back(view_of(binding, script_.buffers.at(binding.names[i]), i));
-  pipeline::mark_rest_unbound(world_, reflected(binding), binding.names.size());
+  pipeline::mark_rest_unbound(world_, reflected(binding, shaders_), binding.names.size());
 }
 
 void Launch::bind_samplers(const Binding& binding) {
   write_descriptor(binding, world_.samplers.size(), binding.names.size());
   for (const std::string& name : binding.names) world_.samplers.push_back(script_.samplers.at(name));
-  pipeline::mark_rest_unbound(world_, reflected(binding), binding.names.size());
+  pipeline::mark_rest_unbound(world_, reflected(binding, shaders_), binding.names.size());
 }
 
 rt::StructureInfo Launch::build_bottom(const std::string& name) {

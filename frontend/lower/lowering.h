@@ -166,6 +166,7 @@ class ModuleLowering {
   Operands constant_parts(Id id);
   Operands specialised_parts(const Instruction& constant);
   Pointer variable_pointer(const Variable& variable);
+  Pointer interface_pointer(const Variable& variable, Pointer p);
   Pointer buffer_pointer(const Variable& variable, Pointer pointer);
   Pointer pointer_from_value(Id id);
   uint32_t shared_offset(Id variable);

@@ -38,6 +38,28 @@ bool is_numbered(const Module& module, Id type) {
 
 }  // namespace
 
+// Returns the pointer of a variable that connects a shader with the one that called it or with its record.
+Pointer ModuleLowering::interface_pointer(const Variable& variable, Pointer p) {
+  using Storage = spv::StorageClass;
+  if (variable.storage == Storage::ShaderRecordBufferKHR) {
+    p.place = Place::Global;
+    p.base =
+        emitter_.value("pack.b64", {Operand::of(isa::Special::Record), Operand::of(isa::Special::RecordHi)});
+    p.is_constant = true;  // in Vulkan, shaders only read the shader record
+    return p;
+  }
+  if (variable.storage == Storage::HitAttributeKHR) {
+    const bool is_pair = layout_.parts(p.type) == std::vector<Part>{Part::Float32, Part::Float32};
+    p.place = is_pair && stage() != isa::Stage::Intersection ? Place::AttributePair : Place::Local;
+    p.base = attributes_in_frame_ ? Operand::stack_pointer() : Operand::of(isa::Special::Attribute);
+    if (attributes_in_frame_) p.displacement = local_offset(variable.id);
+    return p;
+  }
+  p.place = Place::Local;
+  p.base = Operand::of(isa::Special::Payload);
+  return p;
+}
+
 Pointer ModuleLowering::variable_pointer(const Variable& variable) {
   using Storage = spv::StorageClass;
   Pointer p;
@@ -65,22 +87,9 @@ Pointer ModuleLowering::variable_pointer(const Variable& variable) {
       return p;
     case Storage::IncomingRayPayloadKHR:
     case Storage::IncomingCallableDataKHR:
-      p.place = Place::Local;
-      p.base = Operand::of(isa::Special::Payload);
-      return p;
     case Storage::ShaderRecordBufferKHR:
-      p.place = Place::Global;
-      p.base = emitter_.value("pack.b64",
-                              {Operand::of(isa::Special::Record), Operand::of(isa::Special::RecordHi)});
-      p.is_constant = true;  // in Vulkan, shaders only read the shader record
-      return p;
-    case Storage::HitAttributeKHR: {
-      const bool is_pair = layout_.parts(p.type) == std::vector<Part>{Part::Float32, Part::Float32};
-      p.place = is_pair && stage() != isa::Stage::Intersection ? Place::AttributePair : Place::Local;
-      p.base = attributes_in_frame_ ? Operand::stack_pointer() : Operand::of(isa::Special::Attribute);
-      if (attributes_in_frame_) p.displacement = local_offset(variable.id);
-      return p;
-    }
+    case Storage::HitAttributeKHR:
+      return interface_pointer(variable, p);
     case Storage::StorageBuffer:
     case Storage::Uniform:
       return buffer_pointer(variable, p);

@@ -70,6 +70,7 @@ class Parser {
   void enter(const std::vector<uint32_t>& args);
   void declare(const Instruction& inst);
   bool declare_type(const Instruction& inst);
+  bool declare_composite(const Instruction& inst, Type& type);
   void in_function(Instruction inst);
   void check_labels() const;
 
@@ -267,6 +268,42 @@ void Parser::declare(const Instruction& inst) {
   if (inst.result != 0 && inst.type != 0) module_.constants[inst.result] = inst;
 }
 
+// Fills in a type that is made of other types. Returns false when the instruction declares no such type.
+bool Parser::declare_composite(const Instruction& inst, Type& type) {
+  using Kind = Type::Kind;
+  const auto& args = inst.operands;
+  switch (inst.op) {
+    case spv::Op::OpTypeVector:
+      type.kind = Kind::Vector, type.element = args[0], type.count = args[1];
+      return true;
+    case spv::Op::OpTypeMatrix:
+      type.kind = Kind::Matrix, type.element = args[0], type.count = args[1];
+      return true;
+    case spv::Op::OpTypeArray:
+      type.kind = Kind::Array, type.element = args[0], type.count = module_.constant_u32(args[1]).value_or(0);
+      return true;
+    case spv::Op::OpTypeRuntimeArray:
+      type.kind = Kind::RuntimeArray, type.element = args[0];
+      return true;
+    case spv::Op::OpTypeStruct:
+      type.kind = Kind::Struct;
+      type.members.resize(args.size());
+      for (size_t i = 0; i < args.size(); ++i) type.members[i].type = args[i];
+      return true;
+    case spv::Op::OpTypePointer:
+      type.kind = Kind::Pointer, type.storage = spv::StorageClass(args[0]), type.element = args[1];
+      return true;
+    case spv::Op::OpTypeImage:
+      type.kind = Kind::Image, type.element = args[0], type.dim = spv::Dim(args[1]),
+      type.is_storage_image = args[5] == 2;
+      type.is_arrayed = args[3] != 0, type.is_multisampled = args[4] != 0,
+      type.format = spv::ImageFormat(args[6]);
+      return true;
+    default:
+      return false;
+  }
+}
+
 bool Parser::declare_type(const Instruction& inst) {
   using Kind = Type::Kind;
   const auto& args = inst.operands;
@@ -287,32 +324,6 @@ bool Parser::declare_type(const Instruction& inst) {
     case spv::Op::OpTypeFloat:
       type.kind = Kind::Float, type.width = args[0];
       break;
-    case spv::Op::OpTypeVector:
-      type.kind = Kind::Vector, type.element = args[0], type.count = args[1];
-      break;
-    case spv::Op::OpTypeMatrix:
-      type.kind = Kind::Matrix, type.element = args[0], type.count = args[1];
-      break;
-    case spv::Op::OpTypeArray:
-      type.kind = Kind::Array, type.element = args[0], type.count = module_.constant_u32(args[1]).value_or(0);
-      break;
-    case spv::Op::OpTypeRuntimeArray:
-      type.kind = Kind::RuntimeArray, type.element = args[0];
-      break;
-    case spv::Op::OpTypeStruct:
-      type.kind = Kind::Struct;
-      type.members.resize(args.size());
-      for (size_t i = 0; i < args.size(); ++i) type.members[i].type = args[i];
-      break;
-    case spv::Op::OpTypePointer:
-      type.kind = Kind::Pointer, type.storage = spv::StorageClass(args[0]), type.element = args[1];
-      break;
-    case spv::Op::OpTypeImage:
-      type.kind = Kind::Image, type.element = args[0], type.dim = spv::Dim(args[1]),
-      type.is_storage_image = args[5] == 2;
-      type.is_arrayed = args[3] != 0, type.is_multisampled = args[4] != 0,
-      type.format = spv::ImageFormat(args[6]);
-      break;
     case spv::Op::OpTypeSampler:
       type.kind = Kind::Sampler;
       break;
@@ -329,7 +340,7 @@ bool Parser::declare_type(const Instruction& inst) {
       type.kind = Kind::Function;
       break;
     default:
-      type.kind = Kind::Other;
+      if (!declare_composite(inst, type)) type.kind = Kind::Other;
       break;
   }
   return true;

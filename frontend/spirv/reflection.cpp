@@ -48,95 +48,61 @@ isa::ImageShape shape_of(const Type& image) {
   }
 }
 
+struct FormatName {
+  spv::ImageFormat format;
+  std::string_view name;
+};
+using enum spv::ImageFormat;
+constexpr FormatName kFormatNames[] = {
+    {Rgba32f, "rgba32f"},
+    {Rgba16f, "rgba16f"},
+    {R32f, "r32f"},
+    {Rgba8, "rgba8"},
+    {Rgba8Snorm, "rgba8_snorm"},
+    {Rg32f, "rg32f"},
+    {Rg16f, "rg16f"},
+    {R11fG11fB10f, "r11f_g11f_b10f"},
+    {R16f, "r16f"},
+    {Rgba16, "rgba16"},
+    {Rgb10A2, "rgb10_a2"},
+    {Rg16, "rg16"},
+    {Rg8, "rg8"},
+    {R16, "r16"},
+    {R8, "r8"},
+    {Rgba16Snorm, "rgba16_snorm"},
+    {Rg16Snorm, "rg16_snorm"},
+    {Rg8Snorm, "rg8_snorm"},
+    {R16Snorm, "r16_snorm"},
+    {R8Snorm, "r8_snorm"},
+    {Rgba32i, "rgba32i"},
+    {Rgba16i, "rgba16i"},
+    {Rgba8i, "rgba8i"},
+    {R32i, "r32i"},
+    {Rg32i, "rg32i"},
+    {Rg16i, "rg16i"},
+    {Rg8i, "rg8i"},
+    {R16i, "r16i"},
+    {R8i, "r8i"},
+    {Rgba32ui, "rgba32ui"},
+    {Rgba16ui, "rgba16ui"},
+    {Rgba8ui, "rgba8ui"},
+    {R32ui, "r32ui"},
+    {Rgb10a2ui, "rgb10_a2ui"},
+    {Rg32ui, "rg32ui"},
+    {Rg16ui, "rg16ui"},
+    {Rg8ui, "rg8ui"},
+    {R16ui, "r16ui"},
+    {R8ui, "r8ui"},
+    {R64ui, "rg32ui"},  // a 64-bit texel is stored as two halves
+    {R64i, "rg32ui"},
+};
+
 // Returns GLSL's name for the format of a storage image, or an empty text when the image has no format or
 // SPIR-V has gained a new one.
 std::string_view format_name(spv::ImageFormat format) {
-  using enum spv::ImageFormat;
-  switch (format) {
-    case Rgba32f:
-      return "rgba32f";
-    case Rgba16f:
-      return "rgba16f";
-    case R32f:
-      return "r32f";
-    case Rgba8:
-      return "rgba8";
-    case Rgba8Snorm:
-      return "rgba8_snorm";
-    case Rg32f:
-      return "rg32f";
-    case Rg16f:
-      return "rg16f";
-    case R11fG11fB10f:
-      return "r11f_g11f_b10f";
-    case R16f:
-      return "r16f";
-    case Rgba16:
-      return "rgba16";
-    case Rgb10A2:
-      return "rgb10_a2";
-    case Rg16:
-      return "rg16";
-    case Rg8:
-      return "rg8";
-    case R16:
-      return "r16";
-    case R8:
-      return "r8";
-    case Rgba16Snorm:
-      return "rgba16_snorm";
-    case Rg16Snorm:
-      return "rg16_snorm";
-    case Rg8Snorm:
-      return "rg8_snorm";
-    case R16Snorm:
-      return "r16_snorm";
-    case R8Snorm:
-      return "r8_snorm";
-    case Rgba32i:
-      return "rgba32i";
-    case Rgba16i:
-      return "rgba16i";
-    case Rgba8i:
-      return "rgba8i";
-    case R32i:
-      return "r32i";
-    case Rg32i:
-      return "rg32i";
-    case Rg16i:
-      return "rg16i";
-    case Rg8i:
-      return "rg8i";
-    case R16i:
-      return "r16i";
-    case R8i:
-      return "r8i";
-    case Rgba32ui:
-      return "rgba32ui";
-    case Rgba16ui:
-      return "rgba16ui";
-    case Rgba8ui:
-      return "rgba8ui";
-    case R32ui:
-      return "r32ui";
-    case R64ui:
-    case R64i:
-      return "rg32ui";  // a 64-bit texel is stored as two halves
-    case Rgb10a2ui:
-      return "rgb10_a2ui";
-    case Rg32ui:
-      return "rg32ui";
-    case Rg16ui:
-      return "rg16ui";
-    case Rg8ui:
-      return "rg8ui";
-    case R16ui:
-      return "r16ui";
-    case R8ui:
-      return "r8ui";
-    default:
-      return {};
-  }
+  for (const FormatName& row : kFormatNames)
+    if (row.format == format) return row.name;
+  return {};
 }
 
 void reflect_image(const Module& module, Id type, Binding& binding) {

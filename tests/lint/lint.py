@@ -6,6 +6,8 @@ import re
 import subprocess
 import sys
 
+import includes as standard_includes
+
 SOURCE_FOLDERS = ["base", "engine", "isa", "frontend", "memsys", "rtunit", "exec", "core", "scenes", "pipeline", "amber", "report", "apps", "bench"]
 LIBRARIES = [folder for folder in SOURCE_FOLDERS if folder not in ("apps", "bench")]
 MAX_FILE_LINES, MAX_FUNCTION_LINES = 400, 60
@@ -108,6 +110,11 @@ def layout(root):
     out = subprocess.run([command, "--dry-run", "--ferror-limit=1", *paths], capture_output=True, text=True, cwd=root).stderr
     found = sorted({line.split(": ")[0] for line in out.splitlines() if "-Wclang-format-violations" in line})
     return [f"{pathlib.Path(place.split(':')[0]).relative_to(root)}:{place.split(':')[1]}: clang-format -i would change it" for place in found]
+
+
+def includes(root):
+    """Each file includes the standard headers that it uses."""
+    return standard_includes.problems(root, files(root, SOURCE_FOLDERS + ["tests"]))
 
 
 def headers(root):

@@ -40,6 +40,22 @@ class LintNotices(unittest.TestCase):
         self.write("isa/b.cpp", HEAD + '#include "a.h"\n')
         self.assertEqual(len(lint.layers(self.root)), 1)
 
+    def test_a_standard_header_that_only_another_compiler_brings(self):
+        self.write("isa/a.h", HEAD + "#pragma once\n#include <vector>\nstd::vector<uint32_t> f();  // std::map\n")
+        self.assertEqual(lint.includes(self.root), ["isa/a.h: uses <cstdint> and does not include it"])
+
+    def test_no_finding_for_a_standard_header_that_the_own_header_includes(self):
+        self.write("isa/a.h", HEAD + "#pragma once\n#include <vector>\nstd::vector<int> f();\n")
+        self.write("isa/a.cpp", HEAD + '#include "isa/a.h"\nstd::vector<int> f() {\n  return {};\n}\n')
+        self.assertEqual(lint.includes(self.root), [])
+
+    def test_a_layout_that_is_not_the_formatters(self):
+        if lint.clang_format() is None:
+            self.skipTest("clang-format of the tree's version is not installed")
+        self.write(".clang-format", (pathlib.Path(__file__).parents[2] / ".clang-format").read_text())
+        self.write("isa/a.cpp", HEAD + "int  f() { return 1; }\n")
+        self.assertEqual(lint.layout(self.root), ["isa/a.cpp:3: clang-format -i would change it"])
+
     def test_a_long_file(self):
         self.write("isa/a.cpp", HEAD + "\n" * lint.MAX_FILE_LINES)
         self.assertEqual(len(lint.sizes(self.root)), 1)

@@ -1,4 +1,4 @@
-// Estimates from the scenes' triangles and textures, and from measured times.
+// Estimates memory and time of a run from its scene's triangles and textures, and from measured times.
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/bench/estimate.h"
 
@@ -43,9 +43,12 @@ constexpr double kPerTriangle =
 constexpr double kFromFiles = 2;  // guess: text, and vertices before they are merged
 constexpr double kPerPixel = 64;  // bytes: pictures and their copies
 
+// A scene that is not in the table is taken to need as much as the largest one: too much rather than too
+// little.
 const SceneNeeds& needs_of(std::string_view scene) {
-  return *std::find_if(std::begin(kNeeds), std::end(kNeeds),
-                       [&](const SceneNeeds& needs) { return needs.scene == scene; });
+  const auto found = std::find_if(std::begin(kNeeds), std::end(kNeeds),
+                                  [&](const SceneNeeds& needs) { return needs.scene == scene; });
+  return found != std::end(kNeeds) ? *found : std::end(kNeeds)[-1];
 }
 
 // A number of a file that holds "NAME: NUMBER kB" lines (name not empty) or one number; 0 when there is none.
