@@ -1,8 +1,8 @@
-# Every command, program and policy that the documentation shows, run as a reader would.
+# Runs every command, program and policy that the documentation shows, as a reader would.
 # SPDX-License-Identifier: Apache-2.0
 """usage: docs_test.py GLINT SOURCE_DIR [Commands|Programs|Inline|Policy|Files|Harness]
 
-Commands of a page run in order in a copy of the tree; what is reduced or not run is said in workplace.py and printed."""
+The commands of a page run in order in a copy of the tree. workplace.py says what is reduced or not run, and the test prints it."""
 import os
 import pathlib
 import re
@@ -23,7 +23,7 @@ import workplace  # noqa: E402
 
 PAGES = pages.pages(ROOT)
 
-# Options of Vulkan-Sim 2.0.0, MOBILE/gpgpusim.config and SM75_RTX2060/gpgpusim.config, and what stands at its default beside them.
+# Lists the options of Vulkan-Sim 2.0.0, MOBILE/gpgpusim.config and SM75_RTX2060/gpgpusim.config, and the options that keep their default beside them.
 SHIPPED = """
     dram_bnk_indexing_policy dram_bnkgrp_indexing_policy dram_data_command_freq_ratio dram_latency dram_seperate_write_queue_enable dram_write_queue_size
     enable_ptx_file_line_stats gpgpu_TB_launch_latency gpgpu_adaptive_cache_config gpgpu_cache:dl1 gpgpu_cache:dl2 gpgpu_cache:dl2_texture_only gpgpu_cache:il1
@@ -78,7 +78,7 @@ class Commands(DocsTest):
                 self.fixture(where, page)
                 for block in blocks:
                     if page == "docs/howto/policy.md":
-                        continue  # needs the command with the policy in it: Policy
+                        continue  # test Policy runs these commands, because they need a `glint` that contains the policy
                     self.shell(where, block.text, block.place)
                     ran += 1
                 log = where / ".commands/log"
@@ -100,7 +100,7 @@ class Programs(DocsTest):
             with self.subTest(page=blocks[0].page):
                 where = self.place(blocks[0].page)
                 self.fixture(where, blocks[0].page)
-                for block in blocks:  # commands first made what the programs read
+                for block in blocks:  # the commands make what the programs read
                     if block.kind == "shell":
                         self.shell(where, block.text, block.place)
                         continue
@@ -132,12 +132,13 @@ class Inline(DocsTest):
             return []  # `glint COMMAND --help`
         if words[1] not in helps:
             done = subprocess.run([GLINT, words[1], "--help"], capture_output=True, text=True, check=False)
-            helps[words[1]] = done.stdout if f"Usage: glint {words[1]} " in done.stdout else None  # of unknown commands it is the general help
+            # For an unknown command, `glint` prints the general help.
+            helps[words[1]] = done.stdout if f"Usage: glint {words[1]} " in done.stdout else None
         known = helps[words[1]]
         if known is None:
-            return [f"no command {words[1]}"]
+            return [f"there is no command {words[1]}"]
         options = [word.split("=")[0] for word in words[2:] if re.match(r"--[a-z]", word)]
-        return [f"no option {option}" for option in options if not re.search(rf"(?<![\w-]){re.escape(option)}(?![\w-])", known)]
+        return [f"there is no option {option}" for option in options if not re.search(rf"(?<![\w-]){re.escape(option)}(?![\w-])", known)]
 
     def test_the_migration_page_has_every_option_of_the_shipped_configurations(self):
         text = (ROOT / "docs/vulkan_sim.md").read_text()
@@ -182,7 +183,7 @@ class Policy(DocsTest):
 
 
 class Harness(DocsTest):
-    """What these tests rest on would notice."""
+    """Checks that the helpers of these tests notice mistakes."""
 
     def test_a_command_that_fails_is_noticed_wherever_it_stands_in_its_block(self):
         where = self.place()

@@ -1,6 +1,6 @@
-# Commands of the documentation that would build or install: checked for what they name, and not run.
+# Checks commands of the documentation that would build or install, without running them.
 # SPDX-License-Identifier: Apache-2.0
-"""usage: not_run.py NAME ROOT GLINT ARGUMENT...; exit status 1 when the command could not work."""
+"""usage: not_run.py NAME ROOT GLINT ARGUMENT...; the exit status is 1 when the command could not work."""
 import json
 import os
 import pathlib
@@ -9,35 +9,35 @@ import sys
 
 
 def check(name, root, glint, words):
-    """What is wrong with the command, or None."""
+    """Returns what is wrong with the command, or None."""
     if name in ("demo", "check"):
         done = subprocess.run([root / name, "--help"], capture_output=True, text=True, check=False)
         return None if done.returncode == 0 and "usage" in done.stdout else f"./{name} --help fails"
     if name in ("sudo", "apt-get"):
-        return None if "install" in words or "update" in words else "neither installs nor updates"
+        return None if "install" in words or "update" in words else "the command neither installs nor updates"
     presets = json.loads((root / "CMakePresets.json").read_text())
     if "--preset" in words:
         wanted = words[words.index("--preset") + 1]
         kind = "buildPresets" if "--build" in words else "testPresets" if name == "ctest" else "workflowPresets" if "--workflow" in words else "configurePresets"
         known = [preset["name"] for preset in presets[kind]]
         if wanted not in known:
-            return f"no preset {wanted} among {known}"
+            return f"there is no preset {wanted} among {known}"
     defined = [word[2:].split("=")[0] for word in words if word.startswith("-D") and "GLINT_" in word]
     unknown = [option for option in defined if f"option({option} " not in (root / "CMakeLists.txt").read_text()]
     if unknown:
-        return f"no option {unknown} in CMakeLists.txt"
+        return f"CMakeLists.txt has no option {unknown}"
     return targets(glint, words) if name == "ninja" or "--target" in words else None
 
 
 def targets(glint, words):
-    """Targets that the build does not have, where the command lies in a build."""
+    """Returns a message about targets that the build does not have, or None. It checks nothing when `glint` is not in a build folder."""
     build = glint.parents[2]
     if not (build / "build.ninja").exists():
         return None
     named = words[words.index("--target") + 1:] if "--target" in words else words[words.index("-C") + 2:] if "-C" in words else words
     known = subprocess.run(["/usr/bin/ninja", "-C", build, "-t", "targets", "all"], capture_output=True, text=True, check=False).stdout
     missing = [word for word in named if not word.startswith("-") and f"\n{word}: " not in known]
-    return f"no target {missing}" if missing and known else None
+    return f"the build has no target {missing}" if missing and known else None
 
 
 def main():

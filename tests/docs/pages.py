@@ -1,6 +1,6 @@
-# The commands, programs and inline commands that the documentation shows, page by page.
+# Finds the commands, programs and inline commands that the documentation shows, page by page.
 # SPDX-License-Identifier: Apache-2.0
-"""Reads Markdown. A block is of commands when it is marked console, sh or bash, or when its first line begins with a command's name."""
+"""Reads Markdown. A block holds commands when it is marked console, sh or bash, or when its first line begins with a command's name."""
 import dataclasses
 import pathlib
 import re
@@ -22,7 +22,7 @@ class Block:
 
 
 def pages(root: pathlib.Path) -> list[pathlib.Path]:
-    """The README, and all of docs/ but what is generated from the command."""
+    """Returns the README and all pages of docs/ except those that `glint` generates."""
     generated = {"config.md", "stats.md", "metrics.md", "isa.md"}
     docs = [path for path in sorted((root / "docs").rglob("*.md")) if path.parent.name != "isa" and path.name not in generated]
     return [root / "README.md", root / "CONTRIBUTING.md", root / "python/README.md", *docs]
@@ -46,7 +46,7 @@ def _kind(language, body):
 
 
 def _shell(body):
-    """Of a block with prompts the lines behind them, with what continues them; else all of it."""
+    """Returns the lines after prompts, with their continuation lines, or the whole block if it has no prompts."""
     lines = body.splitlines()
     if not any(line.startswith("$ ") for line in lines):
         return body
@@ -59,7 +59,7 @@ def _shell(body):
 
 
 def inline(root: pathlib.Path, path: pathlib.Path) -> list[tuple[str, str]]:
-    """(place, words) of every `glint ...` in running text."""
+    """Returns (place, words) of every `glint ...` in running text."""
     text = re.sub(r"^```.*?^```", lambda match: re.sub(r"[^\n]", " ", match[0]), path.read_text(encoding="utf-8"), flags=re.M | re.S)
     found = []
     for match in re.finditer(r"`(glint\s[^`]+)`", text):

@@ -1,6 +1,6 @@
-# `glint` as the documentation's commands find it: the real one, on smaller frames by the rule in workplace.py.
+# Stands in for `glint` when the documentation's commands run: it runs the real `glint`, on smaller frames by the rule in workplace.py.
 # SPDX-License-Identifier: Apache-2.0
-"""usage: reduced.py GLINT ARGUMENT...; writes what was changed into $GLINT_DOCS_LOG."""
+"""usage: reduced.py GLINT ARGUMENT...; it writes what it changed to $GLINT_DOCS_LOG."""
 import os
 import sys
 
@@ -8,7 +8,7 @@ import workplace
 
 
 def without(words, option):
-    """The words without an option and its value."""
+    """Returns the words without an option and its value."""
     out, skip = [], False
     for word in words:
         if skip:
@@ -21,12 +21,12 @@ def without(words, option):
 
 
 def is_scene(words):
-    """Whether `glint run` names a scene or workload: no file, or a model."""
+    """Returns whether `glint run` names a scene or workload: something that is not a file, or a model."""
     return bool(words) and ("." not in words[0] or words[0].endswith((".obj", ".gltf", ".glb")))
 
 
 def reduced(words):
-    """The arguments that are run instead."""
+    """Returns the arguments that are run instead."""
     command, rest = (words[0], words[1:]) if words else ("", [])
     if "--help" in rest:
         return words

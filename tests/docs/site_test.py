@@ -1,6 +1,6 @@
-# The documentation site is built offline, without a warning or a broken link, and opens in a browser from disk.
+# Checks that the documentation site is built offline, without a warning or a broken link, and opens in a browser from disk.
 # SPDX-License-Identifier: Apache-2.0
-"""usage: site_test.py GLINT SOURCE_DIR; exit status 77, said loudly, where Sphinx, MyST and furo are not installed."""
+"""usage: site_test.py GLINT SOURCE_DIR; the exit status is 77, with a message, where Sphinx, MyST and furo are not installed."""
 import html
 import os
 import pathlib
@@ -48,7 +48,7 @@ class Site(unittest.TestCase):
         shown = set(re.findall(r'id="(glint\.[\w.]+)"', (self.html / "reference/python.html").read_text(encoding="utf-8")))
         public = {f"glint.{name}" for name in glint.__all__ if name != "plot"} | {f"glint.plot.{name}" for name in glint.plot.__all__ if not name.isupper()}
         self.assertEqual(public - shown, set())
-        self.assertEqual({name for name in shown - public if name.rpartition(".")[0] not in public}, set())  # what is left are members
+        self.assertEqual({name for name in shown - public if name.rpartition(".")[0] not in public}, set())  # only members of public names are left
 
     def glint(self, *words):
         return subprocess.run([GLINT, *words], capture_output=True, text=True, check=True).stdout
@@ -67,10 +67,10 @@ class Site(unittest.TestCase):
             self.assertEqual([link for link in loaded if not link.startswith("https://schema")], [], path.name)
 
     def opened(self, address, *options):
-        """The page's document after its scripts; the console must have said nothing of errors. Skips where there is no Chromium."""
+        """Returns the page's document after its scripts have run. The console must not show an error. The test is skipped where Chromium is not installed."""
         chromium = shutil.which("chromium")
         if not chromium:
-            self.skipTest("no chromium: pages were not opened")
+            self.skipTest("chromium is not installed, so no page was opened")
         with tempfile.TemporaryDirectory() as profile:
             done = subprocess.run([chromium, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={profile}", "--enable-logging=stderr", *options, "--dump-dom", address],
                                   capture_output=True, text=True, timeout=120, check=False)
@@ -78,7 +78,7 @@ class Site(unittest.TestCase):
         return done.stdout
 
     def probe(self, page, script):
-        """The address of a copy of the page, beside it, with a script at its end."""
+        """Writes a copy of the page with a script at its end, and returns the copy's address."""
         path = self.html / page
         copy = path.with_name(f"probe_{path.name}")
         copy.write_text(path.read_text(encoding="utf-8").replace("</body>", f"<script>{script}</script></body>"), encoding="utf-8")
@@ -87,7 +87,7 @@ class Site(unittest.TestCase):
     def test_a_browser_opens_pages_from_disk_without_an_error_light_and_dark(self):
         backgrounds = set()
         probe = self.probe("concepts.html", "addEventListener('load',()=>{document.body.dataset.ground=getComputedStyle(document.body).backgroundColor;document.querySelector('.theme-toggle').click();document.body.dataset.toggled=document.body.dataset.theme})")
-        for scheme in ("0", "1"):  # Blink's numbers of dark and light
+        for scheme in ("0", "1"):  # Blink's numbers for dark and light
             text = self.opened(probe, f"--blink-settings=preferredColorScheme={scheme}")
             backgrounds.add(re.search(r'data-ground="([^"]+)"', text)[1])
             self.assertRegex(text, r'data-toggled="(light|dark)"')

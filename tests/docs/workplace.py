@@ -1,33 +1,33 @@
-# Where the documentation's commands run: a copy of the tree in a temporary folder, with `glint` on the path.
+# Makes the folder in which the documentation's commands run: a copy of the tree in a temporary folder, with `glint` on the path.
 # SPDX-License-Identifier: Apache-2.0
-"""Fixtures are named here: what a page takes for granted, by page. What is run smaller than written is said by rule, and what is not run by name."""
+"""This file lists the fixtures, which are what each page takes for granted. It gives the rule by which commands run smaller than written, and the names of commands that do not run."""
 import os
 import pathlib
 import shutil
 import stat
 import subprocess
 
-# THE RULE OF REDUCTION, for `glint run` of scenes and `glint bench`; everything else runs as it is written.
+# THE RULE OF REDUCTION holds for `glint run` of scenes and for `glint bench`. Everything else runs as it is written.
 SIZE, SAMPLES = "16x16", "1"
-BENCH = ["WKND_PT", "SHIP_SH"]  # instead of more than two workloads
+BENCH = ["WKND_PT", "SHIP_SH"]  # run instead of a suite or of several workloads
 QUICK_SUITE = [f"{scene}_{shader}" for scene in ("WKND", "SHIP", "REF") for shader in ("PT", "SH", "AO")]
-BENCH_OF = {f"docs/{name}.md": QUICK_SUITE for name in ("characterization", "modelling", "report")}  # pages whose commands need a suite to look at
-SLOW_SCENES = {"PARK_PT": "PARTY_PT", "ROBOT_SH": "SHIP_SH"}  # scenes of millions of triangles, by one that stands in
-KERNEL_ONLY = ["--only", "L1"]  # `glint microbench` without --only
+BENCH_OF = {f"docs/{name}.md": QUICK_SUITE for name in ("characterization", "modelling", "report")}  # these pages show results of a suite
+SLOW_SCENES = {"PARK_PT": "PARTY_PT", "ROBOT_SH": "SHIP_SH"}  # scenes of millions of triangles, with the scene that is run instead
+KERNEL_ONLY = ["--only", "L1"]  # added to `glint microbench` without --only
 
-# What is not run: it builds all of Glint, or is run by a test of its own. Its arguments are checked instead.
+# These commands are not run: they build all of Glint, or have a test of their own. Their arguments are checked instead.
 NOT_RUN = ("cmake", "ninja", "ctest", "sudo", "apt-get")
 
 OBJ = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n"
 GLTF = """{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"scene":0,"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
 "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
 "bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}]}"""
-# Commands before a page's own, in a shell of their own; files that all pages may name are made in `make`.
+# Commands that run before a page's own, in a shell of their own. make() writes the files that all pages may name.
 FIXTURES = {
     "docs/report.md": "glint run SHIP --shader sh --set rt.warps=8 --out out/ship8 && glint bench SHIP --out out/bench-mobile",
     "docs/python.md": "true",
     "docs/howto/cite.md": "glint run SHIP --shader sh --out out/ship",
-    "docs/howto/policy.md": "true",  # the page's C++ block is compiled into a command of its own: docs_test.py
+    "docs/howto/policy.md": "true",  # docs_test.py compiles the page's C++ block into a command of its own
     "docs/characterization.md": "glint bench --config desktop --out out/bench-desktop",
     "docs/modelling.md": "glint run SHIP --shader sh --out out/ship",
     "docs/profiling.md": "glint run WKND --shader pt --profile --sample 1000 --out out",
@@ -41,11 +41,11 @@ exec "{python}" -B "{here}/not_run.py" {name} "{root}" "{glint}" "$@"
 
 
 def make(root: pathlib.Path, glint: pathlib.Path, folder: pathlib.Path, python: str, page: str = "") -> dict[str, str]:
-    """Fills `folder` as the project's root would look after ./demo; gives the environment of its commands."""
+    """Fills `folder` with what the project's root holds after ./demo, and returns the environment of the commands."""
     for path in root.iterdir():
         if path.name not in ("build", "out", ".git", "configs", "shaders", "demo", "check"):
             (folder / path.name).symlink_to(path)
-    for name in ("configs", "shaders"):  # pages may write beside these
+    for name in ("configs", "shaders"):  # pages may write into these folders
         shutil.copytree(root / name, folder / name, symlinks=True)
     tools = folder / ".commands"
     tools.mkdir()
@@ -58,7 +58,7 @@ def make(root: pathlib.Path, glint: pathlib.Path, folder: pathlib.Path, python: 
     built.mkdir(parents=True)
     (built / "glint").symlink_to(tools / "glint")
     (folder / "out").mkdir()
-    rows = [[f"W{i}", *((i * 37 + j * 101 + i * i * j) % 97 for j in range(10))] for i in range(12)]  # any table will do
+    rows = [[f"W{i}", *((i * 37 + j * 101 + i * i * j) % 97 for j in range(10))] for i in range(12)]  # the values do not matter
     (folder / "mine.csv").write_text("\n".join(",".join(map(str, row)) for row in [["workload", *(f"m{j}" for j in range(10))], *rows]) + "\n")
     for path in (root / "examples/hello_triangle").glob("hello.r*"):
         shutil.copy(path, folder / "shaders")  # docs/pipelines.md: "shaders/*.r*"
@@ -69,7 +69,7 @@ def make(root: pathlib.Path, glint: pathlib.Path, folder: pathlib.Path, python: 
             "PYTHONDONTWRITEBYTECODE": "1", "GLINT_DOCS_LOG": str(tools / "log"), "GLINT_DOCS_BENCH": " ".join(BENCH_OF.get(page, BENCH))}
 
 
-# A binary glTF file from a text one.
+# This program makes a binary glTF file from a text one.
 GLB = """
 import struct, sys
 text = open(sys.argv[1], 'rb').read(); text += b' ' * (-len(text) % 4)

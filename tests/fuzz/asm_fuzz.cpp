@@ -1,4 +1,4 @@
-// libFuzzer's door to the text of programs.
+// Gives libFuzzer's inputs to the parser, as text of programs.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/fuzz/entry.h"
 

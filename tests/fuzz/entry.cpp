@@ -1,4 +1,4 @@
-// The properties that every input must have.
+// Checks the properties that every input must have.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/fuzz/entry.h"
 
@@ -11,8 +11,8 @@
 namespace glint::fuzz {
 namespace {
 
-constexpr uint64_t kInstructions =
-    2000;  // a warp runs: enough for every op of a short program and some rounds of a loop
+// A warp may run this many instructions: enough for every op of a short program and some rounds of a loop.
+constexpr uint64_t kInstructions = 2000;
 
 bool is_sound(const isa::Program& program) {
   Diagnostics diagnostics;

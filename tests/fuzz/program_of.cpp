@@ -1,4 +1,4 @@
-// A program from bytes: any byte string is one, and many are nearly sound.
+// Makes a program from bytes. Any byte string gives a program, and many of these programs are nearly sound.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <string_view>
@@ -32,7 +32,7 @@ class Bytes {
   size_t at_ = 0;
 };
 
-// Ops that make paths, regions and calls stand for an eighth of all op numbers.
+// An eighth of all op numbers select one of these ops, which make paths, regions and calls.
 constexpr std::string_view kSteering[] = {"bra",           "ssy",           "join",
                                           "exit",          "ret",           "rt.trace",
                                           "rt.end",        "rt.resume",     "call.sbt.candidate",
@@ -85,7 +85,7 @@ void add(Program& p, std::string_view op, std::array<Slot, 3> operands) {
   p.code.push_back(inst);
 }
 
-// Registers and predicates differ from lane to lane.
+// Writes all registers and predicates, with values that differ from lane to lane.
 void write_everything(Program& p) {
   for (Slot r = 1; r < p.num_registers; ++r) add(p, "mov.b32", {r, Slot(kSpecialBank + r % 7u)});
   for (Slot q = 0; q < kNumPredicates; ++q) add(p, "setp.lt.u32", {q, kSpecialBank, Slot(kConstantBank + q)});

@@ -1,4 +1,4 @@
-// Every input that the fuzzers keep goes through their entry points again, without a fuzzer.
+// Gives every input that the fuzzers keep to their entry points again, without a fuzzer.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <filesystem>
@@ -48,7 +48,7 @@ TEST_CASE("programs spelt by bytes do no harm, and many of the corpus run") {
         fuzz::program({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()}) == fuzz::Reached::Ran;
     ++all;
   }
-  // The numbers of ops move when the table grows, and with them what a byte string spells.
+  // Op numbers change when the table grows, and then the same bytes spell another program.
   CHECK(ran * 20 >= all);
   CHECK(all >= 10);
 }

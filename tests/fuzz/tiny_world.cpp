@@ -1,4 +1,4 @@
-// The tiny world's memory, structures and driver shader.
+// Defines the tiny world's memory, structures and driver shader.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/fuzz/tiny_world.h"
 
@@ -14,12 +14,12 @@
 namespace glint::fuzz {
 namespace {
 
-constexpr uint32_t kLaunchWidth = 40;  // a full warp and a part of one
+constexpr uint32_t kLaunchWidth = 40;  // a full warp and a partial warp
 constexpr uint32_t kBufferBytes = 1024;
 constexpr uint32_t kDriverBytes = 192;  // payload, then two attribute buffers
 constexpr uint32_t kMaxTraceDepth = 2;
 
-// Each lane's ray passes the triangle, the box, both or neither.
+// The ray of each lane passes through the triangle, the box, both or neither.
 constexpr const char* kDriver = R"(.program "driver"
 .stage ray_generation
 .registers 12
@@ -49,7 +49,7 @@ struct Scene {
   mem::AddressSpace memory;
   rt::StructureInfo top;
   Address buffer = 0, binding_table = 0;
-  std::vector<std::vector<std::byte>> pristine;  // of each allocation
+  std::vector<std::vector<std::byte>> pristine;  // contents of each allocation before a run
 
   Scene() {
     const float corners[] = {0, 0, 0, 2, 0, 0, 0, 2, 0};

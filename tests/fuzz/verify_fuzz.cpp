@@ -1,4 +1,4 @@
-// libFuzzer's door to programs that need no text.
+// Gives libFuzzer's inputs to the verifier, as programs spelt by bytes.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/fuzz/entry.h"
 

@@ -1,4 +1,5 @@
-// The cache gives back what was stored, and only that: other sources, options, builds and damaged files miss.
+// Checks that the shader cache returns what was stored and nothing else: other sources, options and builds
+// miss, and so do damaged files.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/cache.h"
 
@@ -61,7 +62,7 @@ TEST_CASE("values come back from memory and from the folder, for their key and b
   CHECK(later.counts().missing == 1);
 }
 
-TEST_CASE("a file with any byte changed, cut off or longer is not there, and is written again") {
+TEST_CASE("a file that was changed in any byte, cut off or made longer is a miss, and is written again") {
   const Folder folder;
   const std::string key = "the key", value = "the value of some length";
   folder.cache().store(key, value);
@@ -81,7 +82,7 @@ TEST_CASE("a file with any byte changed, cut off or longer is not there, and is 
   CHECK(folder.cache().find(key) == value);
 }
 
-TEST_CASE("the folder does not outgrow its limit by more than an eighth, and what was read last stays") {
+TEST_CASE("the folder does not outgrow its limit by more than an eighth, and the entry read last stays") {
   const Folder folder;
   ShaderCache cache = folder.cache(100'000);
   cache.store("kept", std::string(1000, 'k'));
@@ -117,7 +118,7 @@ TEST_CASE("threads and caches of one folder read whole values while they are wri
   CHECK(wrong == 0);
 }
 
-TEST_CASE("a folder that cannot be written is no error") {
+TEST_CASE("a folder that cannot be written is not an error") {
   ShaderCache cache({"/proc/no/such/folder", "build", 1 << 20});
   cache.store("key", "value");
   CHECK(cache.find("key") == "value");  // from memory
@@ -129,8 +130,7 @@ constexpr const char* kShader =
     "void main() { w[gl_LocalInvocationID.x] = VALUE + part(); }\n";
 
 TEST_CASE(
-    "a compiled program comes back the same with lines and header, and changes when anything it is made of "
-    "does") {
+    "a compiled program comes back the same with lines and header, and changes when its sources change") {
   const Folder folder;
   const std::string shader = folder.write("a.comp", kShader),
                     part = folder.write("part.glsl", "uint part() { return 1; }\n");
@@ -148,7 +148,7 @@ TEST_CASE(
   };
   uint64_t missing = 0;
   const isa::Program cold = compile("3", false, &missing);
-  CHECK(missing == 2);  // GLSL to SPIR-V, SPIR-V to program
+  CHECK(missing == 2);  // the misses are GLSL to SPIR-V and SPIR-V to program
   const isa::Program warm = compile("3", false, &missing);
   CHECK(missing == 0);
   CHECK(warm == cold);
@@ -165,10 +165,10 @@ TEST_CASE(
   CHECK(compile("3", false, &missing) == cold);
   folder.write("a.comp", std::string(kShader) + "// changed\n");
   compile("3", false, &missing);
-  CHECK(missing == 2);  // its SPIR-V holds the source
+  CHECK(missing == 2);  // the SPIR-V contains the source text
 }
 
-TEST_CASE("an include that appears where it was looked for in vain is seen") {
+TEST_CASE("an include file that appears in a folder that is searched earlier is seen") {
   const Folder folder;
   fs::create_directories(folder.path / "later");
   const std::string shader = folder.write("a.comp", kShader);

@@ -1,5 +1,5 @@
-// --contract: products and sums become one fma, bit for bit, unless the shader says `precise` or the switch
-// is off.
+// Checks --contract: a product and a sum become one fma, bit for bit, unless the shader says `precise` or the
+// option is off.
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <cmath>
@@ -51,10 +51,10 @@ void check(const std::string& expression, float (*fused)(float, float, float, fl
       CHECK(runs[k].words[4] == bits(expected[k]));
     }
   }
-  CHECK(different > 5);  // or else this shows nothing
+  CHECK(different > 5);  // otherwise the loop has shown nothing
 }
 
-// volatile: this compiler must not fuse either.
+// `volatile` keeps the host's compiler from fusing these.
 float mul(float a, float b) {
   volatile float r = a * b;
   return r;
@@ -64,7 +64,7 @@ float add(float a, float b) {
   return r;
 }
 
-TEST_CASE("sums and differences of products are fused with the switch and rounded twice without") {
+TEST_CASE("sums and differences of products are fused with --contract and rounded twice without it") {
   check(
       "a * b + c", [](float a, float b, float c, float) { return std::fma(a, b, c); },
       [](float a, float b, float c, float) { return add(mul(a, b), c); });
@@ -86,13 +86,13 @@ TEST_CASE("sums and differences of products are fused with the switch and rounde
       [](float a, float b, float c, float d) { return add(mul(a, c), mul(b, d)); });
 }
 
-TEST_CASE("what is precise is rounded twice with the switch too") {
+TEST_CASE("a precise expression is rounded twice with --contract too") {
   check(
       "a * b + c", [](float a, float b, float c, float) { return std::fma(a, b, c); },
       [](float a, float b, float c, float) { return add(mul(a, b), c); }, true);
 }
 
-TEST_CASE("a product that something else reads stays, and nothing is fused without the switch") {
+TEST_CASE("a product that something else reads stays, and nothing is fused without --contract") {
   ShaderRun on, off;
   on.backend.contract = true;
   const std::string twice =

@@ -1,4 +1,4 @@
-// Formats of messages against those of C's library, and what is no format.
+// Compares formatted messages with those of C's library, and checks which texts are not formats.
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/message.h"
 
@@ -57,7 +57,8 @@ TEST_CASE("floats and doubles print as C prints them, with every flag") {
   for (int i = 0; i < 20'000; ++i) {
     const char letter = "fFeEgGaA"[random() % 8];
     const std::string start = random_flags(random, "-+ 0");
-    // Moderate exponents and, every eighth time, any bits; a NaN has no sign here.
+    // The exponents are moderate, except that every eighth time all bits are random. NaNs are left out,
+    // because their sign may differ.
     uint64_t bits = (uint64_t{random()} << 32 | random()) & 0x800f'ffff'ffff'ffff;
     bits |= uint64_t{1023 - 40 + random() % 80} << 52;
     if (random() % 8 == 0) bits = uint64_t{random()} << 32 | random();

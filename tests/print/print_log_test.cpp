@@ -1,4 +1,4 @@
-// The log of prints keeps the same lines in whatever order they come.
+// Checks that the log of prints keeps the same lines in whatever order they come.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/print_log.h"
 
@@ -12,7 +12,7 @@
 namespace glint::test {
 namespace {
 
-// What `limit` lines of `threads` threads, each printing thread % 4 of them, must be.
+// Returns the log that is expected when thread t of `threads` prints t % 4 lines and the limit is `limit`.
 std::string expected(uint64_t threads, uint64_t limit) {
   std::string out;
   uint64_t count = 0;
@@ -24,7 +24,7 @@ std::string expected(uint64_t threads, uint64_t limit) {
   return out;
 }
 
-// Adds every line, in two parts each, threads taking turns at random.
+// Adds every line in two parts. Threads take turns at random.
 void add_all(exec::PrintLog& log, uint64_t first, uint64_t threads, uint64_t stride, uint32_t seed) {
   std::vector<uint64_t> turns;
   for (uint64_t t = first; t < threads; t += stride) turns.insert(turns.end(), 2 * (t % 4), t);
@@ -40,7 +40,7 @@ void add_all(exec::PrintLog& log, uint64_t first, uint64_t threads, uint64_t str
   }
 }
 
-TEST_CASE("the first lines by thread are kept, whatever order they come in, and the others counted") {
+TEST_CASE("the first lines by thread are kept in whatever order they come, and the others are counted") {
   for (uint32_t seed = 0; seed < 40; ++seed)
     for (const uint64_t limit : {0, 1, 7, 59, 60, 61, 1000}) {
       INFO("seed " << seed << " limit " << limit);
@@ -51,7 +51,7 @@ TEST_CASE("the first lines by thread are kept, whatever order they come in, and 
     }
 }
 
-TEST_CASE("threads of the host that add at once leave the same log") {
+TEST_CASE("host threads that add lines at the same time leave the same log") {
   for (uint32_t round = 0; round < 10; ++round) {
     exec::PrintLog log(100);
     std::vector<std::thread> hosts;
@@ -61,7 +61,7 @@ TEST_CASE("threads of the host that add at once leave the same log") {
   }
 }
 
-TEST_CASE("a line that has not ended is shown, as a fault may have stopped its thread") {
+TEST_CASE("a line that has not ended is shown, because a fault may have stopped its thread") {
   exec::PrintLog log(2);
   log.add(5, "half a line", false);
   CHECK(log.take() == "half a line\n");

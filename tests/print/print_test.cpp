@@ -1,5 +1,5 @@
-// debugPrintfEXT of real shaders: what is printed, in which order, on both machines; and formats that are
-// wrong.
+// Tests debugPrintfEXT in real shaders: what is printed and in which order on both machines, and wrong
+// formats.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-// The smallest world that a shader runs in.
+// Builds the smallest world that a shader runs in, and runs the shader.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/print/shader_run.h"
 
