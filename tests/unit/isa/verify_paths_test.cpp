@@ -124,7 +124,7 @@ TEST_CASE("lanes that part inside a trace meet before its end") {
 
 TEST_CASE("ops and specials stand in shaders of their stages") {
   CHECK_THAT(verdict("rt.ignore;", ".stage closest_hit"),
-             Contains("stage closest_hit, and belongs in any_hit"));
+             Contains("stage closest_hit, but belongs in any_hit"));
   CHECK_THAT(verdict("rt.report %p0, 0f3F800000, 1; exit;", kRaygen), Contains("belongs in intersection"));
   CHECK_THAT(verdict(kTrace + std::string("rt.end; exit;")),
              Contains("belongs in ray_generation, closest_hit, miss"));
@@ -149,8 +149,8 @@ TEST_CASE("frames, shared memory and the constant bank are not left by a known d
              Contains("%r0 is 16 bytes from its value at entry"));
   CHECK(verdict(fmt::format("ld.const.b32 %r1, [{}]; exit;", kLargestBankBytes - 4)) == "");
   CHECK_THAT(verdict(fmt::format("ld.const.b32 %r1, [{}]; exit;", kLargestBankBytes)),
-             Contains(fmt::format("and there are {}", kLargestBankBytes)));
-  CHECK_THAT(verdict("ld.local.b32 %r1, [0]; exit;"), Contains("touches bytes 0 to 3, and there are 0"));
+             Contains(fmt::format("but there are {}", kLargestBankBytes)));
+  CHECK_THAT(verdict("ld.local.b32 %r1, [0]; exit;"), Contains("touches bytes 0 to 3, but there are 0"));
   if (find_op("ld.shared.b32") < 0) return;
   CHECK(verdict("ld.shared.b32 %r1, [60]; exit;", ".shared_bytes 64") == "");
   CHECK_THAT(verdict("ld.shared.b32 %r1, [64]; exit;", ".shared_bytes 64"),
