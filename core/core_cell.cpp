@@ -1,14 +1,13 @@
-// A core from outside: construction, launching warps, going through time and accounting for it.
+// A core from outside: construction, launching blocks, going through time and accounting for it.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/core_cell.h"
 
 #include <algorithm>
-#include <bit>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "base/check.h"
 #include "base/num_lanes.h"
+#include "core/stall_report.h"
 
 namespace glint::core {
 
@@ -18,52 +17,24 @@ CoreCell::CoreCell(const Params& params, const Context& context)
       l1_(context.l1),
       rt_(context.rt),
       no_skip_(context.no_skip),
-      num_slots_(occupancy(params, context.world.image->num_registers)),
-      local_{context.local_physical, context.world.local_bytes / 4},
-      tables_(table_layout(context.world, context.tables)),
       table_(*context.world.image, params),
       executor_(context.world, context.clock_mhz),
-      turn_(context.turn),
-      holds_operands_(params.lsu.war_latency + params.lsu.shared_war_latency > 0),
-      times_constants_(params.constant.serial || !params.constant.perfect),
       view_(context.turn ? std::make_unique<exec::MemoryView>() : nullptr),
+      counts_(context.parent, context.name),
+      code_(CodeSupply::make(params_, context.world, context.places, context.l1, &counts_.stats)),
+      warps_(occupancy(params, context.world.image->num_registers), params_, context.world, table_,
+             code_ ? code_->fetch() : nullptr, observers_),
       lsu_(params, context.l1),
-      schedulers_(params.schedulers),
-      warps_(num_slots_),
-      scoreboards_(num_slots_),
-      front_(num_slots_),
-      outstanding_(num_slots_),
-      stored_(num_slots_),
-      fence_(num_slots_),
-      home_(num_slots_),
-      warps_per_block_(executor_.warps_per_block()),
-      seat_{0, num_slots_, context.index, context.cores},
-      line_(num_slots_),
-      waits_for_line_(num_slots_),
-      constant_(num_slots_),
-      sequence_(num_slots_),
-      rays_issued_(num_slots_),
-      rays_pc_(num_slots_),
-      rays_lanes_(num_slots_),
-      stats_(context.parent, context.name),
-      op_counts_(isa::op_table().size()),
-      op_lanes_(isa::op_table().size()) {
-  GLINT_CHECK(num_slots_ > 0, "no warp fits: check() reports this");
+      memory_(parts(), {lsu_,
+                        {context.local_physical, context.world.local_bytes / 4},
+                        table_layout(context.world, context.tables),
+                        context.turn}),
+      constants_(parts(), code_ ? code_->constants() : nullptr),
+      rays_(parts(), context.rt),
+      barriers_(parts()),
+      issue_(parts(), {memory_, constants_, rays_, barriers_}, {lsu_, context.rt}),
+      seat_{0, warps_.size(), context.index, context.cores} {
   executor_.use(view_.get());
-  if (!params.fetch.perfect || !params.constant.perfect) {
-    code_stats_ = std::make_unique<CodeStats>(&stats_);
-    code_ = std::make_unique<Code>(params_, context, *code_stats_);
-  }
-  const bool counts_blocks = world_.block_size[0] != 0;
-  const uint32_t places = counts_blocks ? std::min(params.blocks, num_slots_ / warps_per_block_) : num_slots_;
-  GLINT_CHECK(places > 0, "no block fits: check_block() reports this");
-  for (uint32_t i = 0; i < places; ++i) residents_.push_back(std::make_unique<Resident>());
-  const uint32_t warps_each = (num_slots_ + params.schedulers - 1) / params.schedulers;
-  for (uint32_t s = 0; s < params.schedulers; ++s) {
-    schedulers_[s].index = s;
-    schedulers_[s].policy = params.issue.make({warps_each});
-    schedulers_[s].has_latches = params.dispatch_latch;
-  }
 }
 
 CoreCell::~CoreCell() = default;
@@ -81,100 +52,87 @@ uint64_t CoreCell::table_bytes(const Params& params, const exec::World& world) {
   return table_layout(world, 0).bytes_per_warp() * occupancy(params, world.image->num_registers);
 }
 
+uint64_t CoreCell::code_bytes(const Params& params, const exec::World& world) {
+  return params.fetch.perfect ? 0 : uint64_t{world.image->code.size()} * kInstructionBytes;
+}
+
+uint64_t CoreCell::constant_bytes(const Params& params, const exec::World& world) {
+  return params.constant.perfect ? 0 : world.constant_bank.size();
+}
+
 LaunchNeeds CoreCell::needs_of(const exec::World& world) {
   return {world.image->num_registers, exec::warps_per_block(world), world.shared_bytes,
           world.block_size[0] != 0};
 }
 
 bool CoreCell::has_room() const {
-  return num_resident_ + warps_per_block_ <= num_slots_ && num_blocks_ < residents_.size() &&
-         uint64_t{num_blocks_ + 1} * world_.shared_bytes <= params_.shared_bytes;
+  const uint32_t blocks = warps_.blocks().num_taken();
+  return warps_.num_resident() + executor_.warps_per_block() <= warps_.size() &&
+         blocks < warps_.blocks().size() &&
+         uint64_t{blocks + 1} * world_.shared_bytes <= params_.shared_bytes;
 }
 
 void CoreCell::launch(Cycle now, uint32_t block_index, Cycle ready) {
   GLINT_CHECK(has_room(), "no room for a block");
-  if (num_resident_ == 0)
-    for (SchedulerState& scheduler : schedulers_) scheduler.reason = Stall::NoWarp;
+  become_empty();
   account_until(now);
-  now_ = now;
-  if (stats_.blocks.value() > 0) ready = std::max(ready, block_start_ + params_.block_interval);
+  if (counts_.stats.blocks.value() > 0) ready = std::max(ready, block_start_ + params_.block_interval);
   block_start_ = ready;
-  Resident& home =
-      **std::find_if(residents_.begin(), residents_.end(), [](const auto& r) { return r->warps == 0; });
+  const uint32_t num_warps = executor_.warps_per_block();
+  BlockPlace& home = warps_.blocks().take(num_warps);
   executor_.start(home.block, block_index);
-  home.warps = warps_per_block_;
-  ++num_blocks_;
-  ++stats_.blocks;
-  for (uint32_t w = 0; w < warps_per_block_; ++w) launch_warp(home, w, ready);
+  ++counts_.stats.blocks;
+  for (uint32_t w = 0; w < num_warps; ++w) launch_warp(home, w, ready, now);
 }
 
-void CoreCell::launch_warp(Resident& home, uint32_t warp_in_block, Cycle ready) {
-  uint32_t slot = 0;
-  while (scheduler_of(slot).resident >> (slot / params_.schedulers) & 1) ++slot;
-  SchedulerState& scheduler = scheduler_of(slot);
-  const uint32_t local = slot / params_.schedulers;
-  seat_.slot = slot;
-  executor_.start(warps_[slot], home.block, warp_in_block, seat_);
-  home_[slot] = &home;
-  fence_[slot] = 0;
-  stored_[slot] = false;
-  scoreboards_[slot].reset();
-  line_[slot] = InstructionFetch::kNone;
-  waits_for_line_[slot] = false;
-  front_[slot] = {ready, Stall::Dispatch};
-  sequence_[slot] = {params_.prologue.instructions +
-                     (world_.shared_bytes > 0 ? params_.prologue.shared_instructions : 0)};
-  scheduler.resident |= uint64_t{1} << local;
-  scheduler.age[local] = num_launched_++;
-  ++num_resident_;
-  ++stats_.warps;
-  stats_.stage[size_t(world_.image->shaders[world_.raygen].stage)]->invocations +=
-      num_lanes(warps_[slot].simt.active);
-  ++progress_;
-  refresh(slot);
-  for (CoreObserver* observer : observers_) observer->start_warp(now_, slot, warps_[slot]);
+void CoreCell::launch_warp(BlockPlace& home, uint32_t warp_in_block, Cycle ready, Cycle now) {
+  const uint32_t slot = seat_.slot = warps_.first_free();
+  exec::WarpContext& warp = warps_[slot].warp;
+  executor_.start(warp, home.block, warp_in_block, seat_);
+  memory_.start_warp(slot);
+  warps_.start(slot, home, ready, now);
+  ++counts_.stats.warps;
+  counts_.stats.stage[size_t(world_.image->shaders[world_.raygen].stage)]->invocations +=
+      num_lanes(warp.simt.active);
+  ++counts_.progress;
+  observers_.tell([&](CoreObserver& observer) { observer.start_warp(now, slot, warp); });
 }
 
 void CoreCell::advance(Cycle from, Cycle until) {
   Cycle now = no_skip_ ? from : next_event(from);
-  while (now < until && !fault_) {
+  while (now < until && !fault()) {
     step(now);
     now = no_skip_ ? now + 1 : next_event(now + 1);
   }
 }
 
 Cycle CoreCell::next_event(Cycle from) const {
-  if (fault_) return kNever;
+  if (fault()) return kNever;
   Cycle next = kNever;
-  for (const SchedulerState& scheduler : schedulers_) next = std::min(next, scheduler.sleep_until);
+  for (const Scheduler& scheduler : warps_.schedulers()) next = std::min(next, scheduler.sleep_until());
   if (next <= from) return from;
   if (from == 0) return finished() ? next : from;
-  if (code_) next = std::min(next, code_->cache.next_event(from - 1));
+  if (code_) next = std::min(next, code_->next_event(from - 1));
   next = std::min({next, lsu_.next_event(from - 1), l1_.next_event(from - 1), rt_.next_event(from - 1)});
   return std::max(next, from);
 }
 
 void CoreCell::step(Cycle now) {
   sampler_.reach(now);
-  now_ = now;
-  const bool had_warps = num_resident_ > 0;
+  const bool had_warps = warps_.num_resident() > 0;
   if (had_warps) account_until(now);
   l1_.tick(now);
   // Choice: who comes to the L1 first alternates, so that neither starves the other.
   if (now & 1) rt_.tick(now);
   lsu_.tick(now);
   if (!(now & 1)) rt_.tick(now);
-  if (code_) take_code(now);
-  if (holds_operands_)
-    for (uint32_t id : lsu_.accepted()) read_operands(id, now);
-  for (uint32_t id : lsu_.completed()) complete(id, now);
-  while (const auto slot = rt_.pop_completion(now)) complete_rays(*slot, now);
-  for (SchedulerState& scheduler : schedulers_) {
-    const bool door =
-        scheduler.watches_rt || (scheduler.watches_lsu && scheduler.lsu_vacated != lsu_.num_vacated());
-    if (now < scheduler.sleep_until && !door && !no_skip_) continue;
-    run_scheduler(scheduler, now);
-    if (fault_) break;
+  if (code_) code_->tick(now, warps_, constants_);
+  memory_.take_answers(now);
+  rays_.take_answers(now);
+  for (Scheduler& scheduler : warps_.schedulers()) {
+    if (!scheduler.is_awake(now, lsu_) && !no_skip_) continue;
+    issue_.run(scheduler, now);
+    if (fault()) break;
   }
   // An empty core's time is accounted for when a warp comes or the run ends.
   if (had_warps) account_until(now + 1);
@@ -184,73 +142,59 @@ void CoreCell::step(Cycle now) {
 void CoreCell::account_until(Cycle now) {
   if (now <= accounted_) return;
   const uint64_t cycles = now - accounted_;
-  for (SchedulerState& scheduler : schedulers_) stats_.stalls.add(scheduler.reason, cycles);
-  if (profile_)
-    for (SchedulerState& scheduler : schedulers_) profile_->spend(scheduler.index, scheduler.reason, cycles);
-  stats_.cycles += cycles;
-  stats_.resident_cycles += cycles * num_resident_;
-  stats_.slot_cycles += cycles * params_.warps;
+  CoreStats& stats = counts_.stats;
+  for (const Scheduler& scheduler : warps_.schedulers()) stats.stalls.add(scheduler.reason(), cycles);
+  if (counts_.profile)
+    for (const Scheduler& scheduler : warps_.schedulers())
+      counts_.profile->spend(scheduler.index(), scheduler.reason(), cycles);
+  stats.cycles += cycles;
+  stats.resident_cycles += cycles * warps_.num_resident();
+  stats.slot_cycles += cycles * params_.warps;
   accounted_ = now;
+}
+
+// Cycles without any warp have that as their reason, whatever a scheduler waited for last.
+void CoreCell::become_empty() {
+  if (warps_.num_resident() > 0) return;
+  for (Scheduler& scheduler : warps_.schedulers()) scheduler.become_empty();
 }
 
 void CoreCell::finish(Cycle end) {
   GLINT_CHECK_LE(accounted_, end);
-  if (num_resident_ == 0)
-    for (SchedulerState& scheduler : schedulers_) scheduler.reason = Stall::NoWarp;
+  become_empty();
   account_until(end);
   sampler_.finish(end);
-  const exec::CandidateCounts& counts = executor_.candidates();
+  CoreStats& stats = counts_.stats;
+  const exec::CandidateCounts& candidates = executor_.candidates();
   for (int stage = 0; stage < kNumStages; ++stage)
-    stats_.stage[size_t(stage)]->invocations += executor_.called_lanes(isa::Stage(stage));
-  stats_.candidate_calls += counts.calls;
-  stats_.candidate_lanes += counts.lanes;
-  stats_.candidates_gathered += counts.gathered;
-  stats_.candidates_dropped += counts.dropped;
-  stats_.table_overflows += counts.overflows;
+    stats.stage[size_t(stage)]->invocations += executor_.called_lanes(isa::Stage(stage));
+  stats.candidate_calls += candidates.calls;
+  stats.candidate_lanes += candidates.lanes;
+  stats.candidates_gathered += candidates.gathered;
+  stats.candidates_dropped += candidates.dropped;
+  stats.table_overflows += candidates.overflows;
+}
+
+uint64_t CoreCell::changes() const {
+  const uint64_t launched = warps_.num_launched(), ended = launched - warps_.num_resident();
+  return launched + ended + counts_.stats.rt_warps.value() + executor_.changes();
+}
+
+void CoreCell::start_profile() {
+  counts_.profile = std::make_unique<Profile>(world_.image->code.size(), params_.schedulers);
+}
+
+void CoreCell::observe(CoreObserver& observer) {
+  observers_.add(observer);
+  executor_.called.listen([&observer](const exec::Called& called) {
+    observer.call(called.warp.slot, called.stage, called.lanes);
+  });
 }
 
 std::string CoreCell::describe_stall() const {
-  std::string out = fmt::format("{}: {} of {} warp slots in use\n", stats_.name(), num_resident_, num_slots_);
-  std::vector<std::pair<std::string, std::vector<uint64_t>>> groups;  // what is said of warps, and of which
-  for (uint32_t slot = 0; slot < num_slots_; ++slot) {
-    if (!(schedulers_[slot % params_.schedulers].resident >> slot / params_.schedulers & 1)) continue;
-    std::string text = describe_warp(slot);
-    const auto same =
-        std::find_if(groups.begin(), groups.end(), [&](const auto& group) { return group.first == text; });
-    if (same == groups.end())
-      groups.push_back({std::move(text), {warps_[slot].warp_index}});
-    else
-      same->second.push_back(warps_[slot].warp_index);
-  }
-  for (const auto& [text, warps] : groups)
-    out += fmt::format("  warp{} {}: {}\n", warps.size() > 1 ? "s" : "", fmt::join(warps, ", "), text);
-  return out + l1_.describe() + rt_.describe();
-}
-
-// Where the warp is, what it waits for, and whom: the warps of its block, or whoever writes what it read
-// last.
-std::string CoreCell::describe_warp(uint32_t slot) const {
-  const SchedulerState& scheduler = schedulers_[slot % params_.schedulers];
-  const uint32_t local = slot / params_.schedulers;
-  const exec::WarpContext& warp = warps_[slot];
-  const Cycle ready = scheduler.ready_at[local];
-  std::string out = fmt::format(
-      "at {}, waits for {} {}, {} accesses in flight",
-      warp.simt.finished() ? "its end" : world_.image->place_of(warp.simt.pc), name_of(scheduler.wait[local]),
-      ready == kNever ? std::string("without a known end") : fmt::format("until cycle {}", ready),
-      outstanding_[slot]);
-  if (warp.waiting_at_barrier) {
-    std::vector<uint64_t> missing;
-    const exec::Block& block = home_[slot]->block;
-    for (uint32_t w = 0; w < block.num_warps(); ++w)
-      if ((block.live() & ~block.waiting()) >> w & 1) missing.push_back(block.warps[w]->warp_index);
-    out += fmt::format(", at barrier {} for warps {}", warp.barrier, fmt::join(missing, ", "));
-  } else if (!warp.simt.finished() && warp.simt.active != 0) {
-    const Address address = warp.regs.access.address[size_t(std::countr_zero(warp.simt.active))];
-    if (world_.memory->find(address, 1))
-      out += ", last access: " + exec::whereabouts(*world_.memory, address, 1);
-  }
-  return out;
+  return fmt::format("{}: {} of {} warp slots in use\n", counts_.stats.name(), warps_.num_resident(),
+                     warps_.size()) +
+         describe_warps(warps_, memory_, world_) + l1_.describe() + rt_.describe();
 }
 
 }  // namespace glint::core

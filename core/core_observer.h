@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <vector>
 
 #include "base/types.h"
 #include "core/stall.h"
@@ -34,6 +35,20 @@ class CoreObserver {
   virtual void end_rays(uint32_t /*slot*/, LaneMask, const rt::RayState*) {}
   // The warp has given its slot free: cycle `now` is no longer its own.
   virtual void end_warp(Cycle /*now*/, uint32_t /*slot*/) {}
+};
+
+// All observers of a core.
+class CoreObservers {
+ public:
+  void add(CoreObserver& observer) { list_.push_back(&observer); }
+  bool empty() const { return list_.empty(); }
+  template <class Event>
+  void tell(Event&& event) const {
+    for (CoreObserver* observer : list_) event(*observer);
+  }
+
+ private:
+  std::vector<CoreObserver*> list_;
 };
 
 }  // namespace glint::core

@@ -91,6 +91,7 @@ struct LsuParams {
   uint32_t war_latency = 11, shared_war_latency = 9;
   uint32_t atomic_latency = 0;  // an H200: 204; 0: what other parts take is unpublished
   bool atomic_turns = false;    // an H200: true; as unpublished of others
+  bool holds_operands() const { return war_latency + shared_war_latency > 0; }
   static constexpr auto params() {
     return std::tuple{
         param(&LsuParams::queue, "queue", "instruction",

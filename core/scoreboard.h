@@ -6,8 +6,8 @@
 #include <span>
 
 #include "base/types.h"
+#include "core/issue_table.h"
 #include "core/stall.h"
-#include "core/units.h"
 
 namespace glint::core {
 

@@ -143,6 +143,7 @@ void Executor::start(WarpContext& warp, Block& block, uint32_t warp_in_block, co
   warp.warp_index = block.index() * warps_per_block() + warp_in_block;
   warp.block = &block;
   warp.warp_in_block = warp_in_block;
+  warp.slot = seat.slot;
   block.warps[warp_in_block] = &warp;
   warp.depth = warp.callables = 0;
   warp.next_time.fill(0);

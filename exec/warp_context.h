@@ -54,8 +54,9 @@ struct WarpContext {
   uint32_t warp_index = 0;  // of the launch, in the order of World::layout
   Block* block = nullptr;   // that it belongs to
   uint32_t warp_in_block = 0;
-  uint32_t depth = 0;                                           // open rt.trace levels
-  uint32_t callables = 0;                                       // open call.sbt.callable levels
+  uint32_t slot = 0;       // Seat::slot: where the machine has put the warp.
+  uint32_t depth = 0;      // open rt.trace levels
+  uint32_t callables = 0;  // open call.sbt.callable levels
   std::vector<std::unique_ptr<CallableFrame>> callable_frames;  // as `frames`
   Numbered<HitObject> hit_objects;
   std::array<uint32_t, kLanes> next_time{};  // of the next ray. Model: nothing moves; shaders read it back
@@ -79,6 +80,7 @@ struct WarpContext {
   Rows own_registers, own_specials;
 
   TraceFrame& frame() { return *frames[depth - 1]; }
+  const TraceFrame& frame() const { return *frames[depth - 1]; }
 };
 
 }  // namespace glint::exec

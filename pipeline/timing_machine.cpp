@@ -56,10 +56,20 @@ TimingMachine::TimingMachine(const GpuParams& params, const exec::World& world, 
       rt.stacks = world.memory->reserve(bytes * params_.core.warps);
     rt_units_.push_back(std::make_unique<rt::RtUnit>(params_.rt, rt));
     const Address local = world.memory->reserve(core::CoreCell::local_bytes(params_.core, world));
-    cores_.push_back(std::make_unique<core::CoreCell>(
-        params_.core,
-        core::CoreCell::Context{world, memory_.l1(i), *rt_units_.back(), local, &root_, name, no_skip, i,
-                                params_.cores, params_.clock_mhz, rt.tables.base, code, constants, turn}));
+    const core::CoreCell::Context context{.world = world,
+                                          .l1 = memory_.l1(i),
+                                          .rt = *rt_units_.back(),
+                                          .local_physical = local,
+                                          .parent = &root_,
+                                          .name = name,
+                                          .no_skip = no_skip,
+                                          .index = i,
+                                          .cores = params_.cores,
+                                          .clock_mhz = params_.clock_mhz,
+                                          .tables = rt.tables.base,
+                                          .places = {code, constants},
+                                          .turn = turn};
+    cores_.push_back(std::make_unique<core::CoreCell>(params_.core, context));
     access_latency_.add(cores_.back()->latencies());
     engine_.add(*cores_.back());
     if (exec::MemoryView* view = cores_.back()->view()) views_.push_back(view);

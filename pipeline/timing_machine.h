@@ -8,7 +8,7 @@
 
 #include "base/stats.h"
 #include "core/core_cell.h"
-#include "core/sm_dispatcher.h"
+#include "core/dispatcher.h"
 #include "engine/engine_loop.h"
 #include "memsys/memory_system.h"
 #include "pipeline/livelock_watch.h"

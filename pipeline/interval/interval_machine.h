@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/units.h"
+#include "core/issue_table.h"
 #include "exec/executor.h"
 #include "pipeline/interval/memory_model.h"
 #include "pipeline/interval/ray_model.h"

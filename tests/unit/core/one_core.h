@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/core_cell.h"
-#include "core/sm_dispatcher.h"
+#include "core/dispatcher.h"
 #include "engine/engine.h"
 #include "engine/engine_loop.h"
 #include "rtunit/structure.h"
@@ -140,9 +140,18 @@ struct OneCore {
   }
   // Runs to the end; returns the cycle after the core's last activity.
   Cycle run() {
-    cell = std::make_unique<CoreCell>(
-        params_, CoreCell::Context{world, l1, rays, kLocalBase, &root, "core", options_.no_skip, 0, 1, 0.0, 0,
-                                   options_.code, options_.constants});
+    cell = std::make_unique<CoreCell>(params_, CoreCell::Context{world,
+                                                                 l1,
+                                                                 rays,
+                                                                 kLocalBase,
+                                                                 &root,
+                                                                 "core",
+                                                                 options_.no_skip,
+                                                                 0,
+                                                                 1,
+                                                                 0.0,
+                                                                 0,
+                                                                 {options_.code, options_.constants}});
     if (profile) cell->start_profile();
     EngineLoop engine({options_.window, options_.no_skip, 100'000});
     engine.add(*cell);

@@ -1,6 +1,6 @@
 // Decodes instructions for the issue logic.
 // SPDX-License-Identifier: Apache-2.0
-#include "core/units.h"
+#include "core/issue_table.h"
 
 #include <algorithm>
 #include <string_view>

@@ -1,6 +1,6 @@
 // Hands the blocks of a launch to the cores.
 // SPDX-License-Identifier: Apache-2.0
-#include "core/sm_dispatcher.h"
+#include "core/dispatcher.h"
 
 #include <algorithm>
 

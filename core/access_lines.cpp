@@ -1,0 +1,83 @@
+// Which lines and banks the access of a warp instruction touches.
+// SPDX-License-Identifier: Apache-2.0
+#include "core/access_lines.h"
+
+#include <bit>
+
+namespace glint::core {
+
+using isa::Effect;
+using isa::Space;
+
+namespace {
+
+bool is_surface(Effect effect) {
+  return effect == Effect::SurfaceLoad || effect == Effect::SurfaceStore || effect == Effect::SurfaceAtomic;
+}
+
+}  // namespace
+
+void AccessLines::collect(MemoryAccess& access, const exec::WarpContext& warp,
+                          const exec::Issued& issued) const {
+  if (issued.row->effect == Effect::Texture) {
+    access.traffic = mem::Traffic::ShaderTexture;
+    collect_texels(access, issued.lanes);
+  } else if (is_surface(issued.row->effect)) {
+    access.traffic = mem::Traffic::ShaderSurface;
+    collect_texels(access, issued.lanes);
+  } else if (isa::is_shader_call(issued.row->effect)) {
+    access.traffic = mem::Traffic::ShaderBinding;
+    if (issued.row->effect == Effect::CallCandidate) collect_candidates(access, warp, issued.lanes);
+    coalesce_global(access.lines, *world_.memory, warp.regs.access, issued.lanes, mem::kSectorBytes);
+  } else {
+    collect_memory(access, warp, issued);
+  }
+}
+
+// The entries of the candidates whose shaders are called.
+// Model: the unit makes one read for all of a warp's lanes, together with their records of the binding table.
+// What the shaders then read of a candidate is in registers. Tables of nested traces share their place,
+// because an outer table is empty by then.
+void AccessLines::collect_candidates(MemoryAccess& access, const exec::WarpContext& warp,
+                                     LaneMask lanes) const {
+  if (tables_.rows == 0) return;
+  const exec::TraceFrame& frame = warp.frame();
+  for_each_lane(lanes, [&](int lane) {
+    access.lines.add(tables_.entry(access.slot, frame.ray[size_t(lane)].candidate_row, lane),
+                     rt::kTableEntryBytes, lane);
+  });
+  access.num_table_lines = uint32_t(access.lines.lines().size());
+}
+
+// Loads, stores and atomics. Model: lanes of a generic access that are in local memory travel as global
+// traffic, and lanes in the constant bank take no time of their own.
+void AccessLines::collect_memory(MemoryAccess& access, const exec::WarpContext& warp,
+                                 const exec::Issued& issued) const {
+  const isa::Access& addresses = warp.regs.access;
+  const auto bytes = uint32_t(issued.row->memory.bytes * issued.row->memory.count);
+  const bool is_atomic = issued.row->effect == Effect::Atomic;
+  access.traffic = is_atomic                                  ? mem::Traffic::ShaderAtomic
+                   : issued.row->memory.space == Space::Local ? mem::Traffic::ShaderLocal
+                                                              : mem::Traffic::ShaderGlobal;
+  access.atomic = is_atomic;
+  if (const LaneMask lanes = executor_.lanes_in(Space::Shared))
+    access.passes = shared_passes(addresses, lanes, bytes, is_atomic);
+  const LaneMask in_global = executor_.lanes_in(Space::Global);
+  if (params_.lsu.bank_conflicts && !is_atomic && in_global)
+    access.bank_turns = shared_passes(addresses, in_global, bytes, false);
+  coalesce_local(access.lines, local_, access.slot, addresses, executor_.lanes_in(Space::Local), bytes);
+  coalesce_global(access.lines, *world_.memory, addresses, in_global, bytes);
+  if (is_atomic && in_global)
+    count_turns(access.lines, *world_.memory, addresses, bytes, params_.lsu.atomic_turns, !access.write);
+}
+
+void AccessLines::collect_texels(MemoryAccess& access, LaneMask lanes) const {
+  access.samples = uint32_t(std::popcount(lanes)) * uint32_t((executor_.texels().rows().size() + 3) / 4);
+  for (const auto& row : executor_.texels().rows())
+    for_each_lane(lanes, [&](int lane) {
+      const Address texel = row[size_t(lane)];
+      if (texel != exec::TexelList::kNone) access.lines.add(world_.memory->physical(texel), 4, lane);
+    });
+}
+
+}  // namespace glint::core

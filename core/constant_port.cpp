@@ -1,0 +1,45 @@
+// The constant port of a core.
+// SPDX-License-Identifier: Apache-2.0
+#include "core/constant_port.h"
+
+namespace glint::core {
+
+ConstantPort::ConstantPort(const CoreParts& core, ConstantCache* cache)
+    : core_(core),
+      cache_(cache),
+      is_serial_(core.params.constant.serial),
+      is_timed_(is_serial_ || cache != nullptr),
+      loads_(core.warps.size()) {
+}
+
+// A load that misses waits in front of its warp, and has its result the latency of a hit after its last line.
+void ConstantPort::start(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now) {
+  WarpSlot& at = core_.warps[slot];
+  const isa::Access& access = at.warp.regs.access;
+  const Cycle turns = is_serial_ ? different_words(access, issued.lanes) : 1;
+  at.scheduler->take(row.pipe, now, turns * row.interval);
+  loads_[slot] = {issued.pc, now, row.latency + (turns - 1) * row.interval / OpTime::kParts};
+  const uint64_t offset = issued.row->memory.space == isa::Space::Param ? isa::kPushConstantOffset : 0;
+  if (cache_ && !cache_->look_up(slot, access, issued.lanes, offset, now))
+    at.front = {kNever, Stall::Const};
+  else
+    finish(slot, now);
+}
+
+void ConstantPort::take_line(Address line, Cycle now) {
+  cache_->arrive(line, [&](uint32_t slot) { finish(slot, now); });
+}
+
+void ConstantPort::finish(uint32_t slot, Cycle now) {
+  WarpSlot& at = core_.warps[slot];
+  const Load& load = loads_[slot];
+  const IssueRow& row = core_.table.row(load.pc);
+  at.scoreboard.set(core_.table.defs(row), {now + load.latency, row.wait}, row.pipe);
+  core_.counts.end(row, now + load.latency - load.issued);
+  if (now == load.issued) return;
+  at.front = {now, Stall::Const};
+  ++core_.counts.progress;
+  core_.warps.refresh(slot, now);
+}
+
+}  // namespace glint::core

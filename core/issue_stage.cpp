@@ -1,0 +1,173 @@
+// Issuing an instruction: choosing its warp, executing it, and handing it over to its unit.
+// SPDX-License-Identifier: Apache-2.0
+#include "core/issue_stage.h"
+
+#include <bit>
+
+#include "core/barrier_unit.h"
+#include "core/constant_port.h"
+#include "core/memory_accesses.h"
+#include "core/ray_door.h"
+
+namespace glint::core {
+
+uint64_t IssueStage::leave_out_bank_conflicts(Scheduler& scheduler, uint64_t ready, Cycle now) const {
+  for (uint64_t rest = ready; rest; rest &= rest - 1) {
+    const auto local = uint32_t(std::countr_zero(rest));
+    const uint32_t pc = core_.warps[slot_of(scheduler, local)].warp.simt.pc;
+    const Cycle at =
+        scheduler.banks.free_at(core_.table.bank_reads(pc), now, core_.params.register_file.window);
+    if (at == now) continue;
+    ready &= ~(uint64_t{1} << local);
+    scheduler.hold_for_banks(at);
+  }
+  return ready;
+}
+
+void IssueStage::start_sequence(WarpSlot& at, const IssueRow& row, uint32_t pc, Cycle now) {
+  const uint32_t issues = core_.table.issues(pc);
+  const Cycle step = std::max<Cycle>(row.latency / issues, 1);
+  at.sequence = {issues - 1, pc, step, row.latency - (issues - 1) * step};
+  at.front = {now + step, row.wait};
+}
+
+// Model: a machine instruction that had to wait for its issue slot does not hold up the next one beyond its
+// own step, because sequences have slack between their long operations.
+void IssueStage::issue_rest(uint32_t slot, Cycle now) {
+  WarpSlot& at = core_.warps[slot];
+  Sequence& rest = at.sequence;
+  ++core_.counts.progress;
+  ++core_.counts.stats.sequence_slots;
+  if (core_.counts.profile)
+    core_.counts.profile->point(at.scheduler->index(), rest.is_prologue() ? at.warp.simt.pc : rest.pc);
+  const Cycle due = at.front.at;
+  at.front = {due + rest.step, rest.is_prologue() ? Stall::Dispatch : core_.table.row(rest.pc).wait};
+  if (--rest.left == 0) {
+    at.front = {now + 1, Stall::RawFixed};
+    if (!rest.is_prologue()) {
+      const IssueRow& row = core_.table.row(rest.pc);
+      at.scoreboard.set(core_.table.defs(row), {std::max(now + 1, due + rest.last), row.wait},
+                        row.alternates ? Pipe::Count : row.pipe);
+    }
+  }
+  core_.warps.refresh(slot, now);
+}
+
+inline void IssueStage::finish_fixed(uint32_t slot, const IssueRow& row, const exec::Issued& issued,
+                                     Cycle late, Cycle now) {
+  if (row.pipe == Pipe::Const && units_.constants.is_timed() && issued.lanes)
+    return units_.constants.start(slot, row, issued, now);
+  WarpSlot& at = core_.warps[slot];
+  core_.counts.end(row, late + row.latency);
+  if (row.is_sequence)
+    start_sequence(at, row, issued.pc, now);
+  else
+    at.scoreboard.set(core_.table.defs(row), {now + late + row.latency, row.wait},
+                      row.alternates ? Pipe::Count : row.pipe);
+}
+
+// `late`: cycles that the instruction waits in front of its pipe.
+inline void IssueStage::hand_over(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle late,
+                                  Cycle now) {
+  WarpSlot& at = core_.warps[slot];
+  const Cycle done = now + late + row.latency;
+  at.front = {now + 1, Stall::RawFixed};
+  switch (row.finish) {
+    case Finish::Fixed:
+      finish_fixed(slot, row, issued, late, now);
+      break;
+    case Finish::Control:
+      at.front = {done, row.wait};
+      core_.counts.end(row, late + row.latency);
+      break;
+    case Finish::Memory:
+    case Finish::CallRecord:
+      if (!units_.memory.start(slot, row, issued, now)) {
+        at.front.at = row.finish == Finish::Memory ? now + 1 : done;
+        core_.counts.end(row, at.front.at - now);
+      }
+      break;
+    case Finish::Rays:
+      units_.rays.start(slot, row, issued, now);
+      break;
+    case Finish::Barrier:
+      units_.barriers.come(slot, now, row.latency);
+      core_.counts.end(row, row.latency);
+      break;
+    case Finish::Fence:
+      units_.memory.start_fence(slot, row, issued, now);
+      core_.counts.end(row, row.latency);
+      break;
+  }
+}
+
+inline void IssueStage::issue(uint32_t slot, Cycle now) {
+  if (!core_.observers.empty()) [[unlikely]]
+    tell_select(slot, now);
+  WarpSlot& at = core_.warps[slot];
+  if (at.sequence.is_under_way()) return issue_rest(slot, now);
+  Scheduler& scheduler = *at.scheduler;
+  const IssueRow& row = core_.table.row(at.warp.simt.pc);
+  const exec::Issued issued = core_.executor.execute(at.warp, now);
+  if (core_.executor.fault()) {
+    fault_ = core_.executor.fault();
+    return;
+  }
+  core_.observers.tell([&](CoreObserver& observer) { observer.issue(now, slot, issued); });
+  core_.counts.issue(scheduler.index(), row, issued);
+  const Cycle late = row.pipe != Pipe::Memory ? scheduler.occupy(row.pipe, now, row.interval) : 0;
+  if (core_.params.register_file.banks) scheduler.banks.read(core_.table.bank_reads(issued.pc), now);
+  hand_over(slot, row, issued, late, now);
+  if (issued.finished) units_.barriers.end_warp(*at.warp.block, now);
+  if (at.warp.instructions > core_.params.instruction_budget)
+    fault_ = no_end_in_sight(core_.world, at.warp, issued.pc, core_.params.instruction_budget);
+  else if (issued.finished)
+    retire(slot, now);
+  else
+    core_.warps.refresh(slot, now);
+}
+
+void IssueStage::run(Scheduler& scheduler, Cycle now) {
+  uint64_t ready = scheduler.find_ready(now, doors_);
+  if (core_.params.register_file.banks) ready = leave_out_bank_conflicts(scheduler, ready, now);
+  if (!ready) {
+    if (core_.counts.profile) core_.counts.profile->point(scheduler.index(), blamed_pc(scheduler, now));
+    return;
+  }
+  issue(slot_of(scheduler, scheduler.pick(ready, now)), now);
+}
+
+void IssueStage::retire(uint32_t slot, Cycle now) {
+  if (units_.memory.in_flight(slot) == 0)
+    core_.warps.free(slot, now);
+  else
+    core_.warps.drain(slot);
+}
+
+// Model: a warp that is ready to go through a door counts as waiting for it, even where only another warp was
+// picked before it.
+void IssueStage::tell_select(uint32_t slot, Cycle now) const {
+  const WarpSlot& at = core_.warps[slot];
+  const NextIssue next = at.scheduler->next_of(at.local);
+  const Stall door = next.door == Door::RtUnit    ? Stall::RtFull
+                     : next.door == Door::Texture ? Stall::TexThrottle
+                     : next.door == Door::Lsu     ? Stall::LsuThrottle
+                                                  : Stall::Issued;
+  core_.observers.tell([&](CoreObserver& observer) {
+    observer.select(now, slot, next.ready_at, next.wait, door, at.warp.simt.pc);
+  });
+}
+
+// The instruction that an idle cycle is charged to. As in hardware's sampling that is where the blamed warp
+// waits: the instruction that it would issue next. Waits for rays are charged to the instruction that traced
+// them.
+uint32_t IssueStage::blamed_pc(const Scheduler& scheduler, Cycle now) const {
+  const std::optional<uint32_t> local = scheduler.to_blame(now, doors_);
+  if (!local) return Profile::kNowhere;
+  const uint32_t slot = slot_of(scheduler, *local);
+  return scheduler.reason() == Stall::RtWait && scheduler.next_of(*local).ready_at == kNever
+             ? units_.rays.traced_at(slot)
+             : core_.warps[slot].warp.simt.pc;
+}
+
+}  // namespace glint::core

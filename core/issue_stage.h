@@ -1,0 +1,51 @@
+// The issue stage of a core: each scheduler chooses a warp, whose instruction is executed and goes to its
+// unit. SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+
+#include "core/core_parts.h"
+
+namespace glint::core {
+
+class BarrierUnit;
+class ConstantPort;
+class MemoryAccesses;
+class RayDoor;
+
+class IssueStage {
+ public:
+  struct Units {
+    MemoryAccesses& memory;
+    ConstantPort& constants;
+    RayDoor& rays;
+    BarrierUnit& barriers;
+  };
+  IssueStage(const CoreParts& core, const Units& units, const Doors& doors)
+      : core_(core), units_(units), doors_(doors) {}
+
+  // Gives this cycle of the scheduler to an instruction or to a reason.
+  void run(Scheduler& scheduler, Cycle now);
+  // The first fault of a warp. The core does nothing from then on.
+  const std::optional<exec::Fault>& fault() const { return fault_; }
+
+ private:
+  uint64_t leave_out_bank_conflicts(Scheduler& scheduler, uint64_t ready, Cycle now) const;
+  void issue(uint32_t slot, Cycle now);
+  void hand_over(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle late, Cycle now);
+  void finish_fixed(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle late, Cycle now);
+  void start_sequence(WarpSlot& at, const IssueRow& row, uint32_t pc, Cycle now);
+  void issue_rest(uint32_t slot, Cycle now);
+  void retire(uint32_t slot, Cycle now);
+  void tell_select(uint32_t slot, Cycle now) const;
+  uint32_t blamed_pc(const Scheduler& scheduler, Cycle now) const;
+  uint32_t slot_of(const Scheduler& scheduler, uint32_t local) const {
+    return local * core_.params.schedulers + scheduler.index();
+  }
+
+  const CoreParts core_;
+  const Units units_;
+  const Doors doors_;
+  std::optional<exec::Fault> fault_;
+};
+
+}  // namespace glint::core

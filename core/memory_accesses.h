@@ -1,0 +1,65 @@
+// The memory accesses of a core's warps, from issue to completion, and the fences that wait for them.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "core/access_lines.h"
+#include "core/core_parts.h"
+#include "core/lsu.h"
+
+namespace glint::core {
+
+// Holds the registers of an access until it has been read or answered, and gives the access to the load-store
+// unit.
+class MemoryAccesses {
+ public:
+  struct Context {
+    Lsu& lsu;
+    LocalLayout local;       // Of the core's lanes' stacks.
+    rt::TableLayout tables;  // Of the candidates of the core's rays.
+    Cycle turn = 0;  // Length of the turns after which other cores see what this one wrote; 0: no others.
+  };
+  MemoryAccesses(const CoreParts& core, const Context& context);
+
+  // A warp begins in the slot.
+  void start_warp(uint32_t slot) { pending_[slot] = {}; }
+  // Hands the access of an executed instruction to the load-store unit; false when no lane makes one.
+  bool start(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now);
+  // A fence lets the warp go on when the warp's earlier accesses are done, and then a latency later. A fence
+  // among cores lasts until the other cores see what came before it, however short its latency.
+  void start_fence(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now);
+  // After the load-store unit's tick: accesses that it has read or completed in this cycle.
+  void take_answers(Cycle now);
+
+  // Accesses of the slot's warp between issue and completion.
+  uint32_t in_flight(uint32_t slot) const { return pending_[slot].accesses; }
+  // The lanes of access `access`, the token of its requests, that touch a line. `slot`: the slot of their
+  // warp.
+  LaneMask readers_of(mem::Token access, Address line, uint32_t& slot) const;
+
+ private:
+  struct Pending {
+    uint32_t accesses = 0;
+    Cycle fence = 0;          // Latency of the fence that waits for the accesses. 0: none does.
+    bool has_stored = false;  // The warp has stored to global memory since its last fence among cores.
+  };
+  void count(const isa::OpRow& op);
+  void read_operands(uint32_t access_id, Cycle now);
+  void complete(uint32_t access_id, Cycle now);
+  void deliver(const MemoryAccess& access, const IssueRow& row, Cycle now);
+  uint32_t war_latency(const MemoryAccess& access) const {
+    const LsuParams& lsu = core_.params.lsu;
+    return access.lines.lines().empty() ? lsu.shared_war_latency : lsu.war_latency;
+  }
+  Cycle turn_end(Cycle now) const { return turn_ ? (now / turn_ + 1) * turn_ : 0; }
+
+  const CoreParts core_;
+  Lsu& lsu_;
+  const AccessLines lines_;
+  const Cycle turn_;
+  const bool holds_operands_;
+  std::vector<Pending> pending_;  // One a slot.
+};
+
+}  // namespace glint::core

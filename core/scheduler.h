@@ -1,0 +1,169 @@
+// One scheduler of a core: what the next instruction of each of its warps waits for, and which warps can
+// issue. SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "base/check.h"
+#include "base/types.h"
+#include "core/issue_scheduler.h"
+#include "core/issue_table.h"
+#include "core/lsu.h"
+#include "core/params.h"
+#include "core/stall.h"
+#include "rtunit/rt_port.h"
+
+namespace glint::core {
+
+// The queue in front of a shared unit that a warp's next instruction has to enter.
+enum class Door : uint8_t { None, Lsu, Texture, RtUnit };
+
+// What the next instruction of a warp waits for, and where it goes.
+struct NextIssue {
+  Cycle ready_at = 0;            // Cycle in which its operands are there. kNever: nobody knows it yet.
+  Stall wait = Stall::RawFixed;  // What the instruction waits for until then.
+  Pipe pipe = Pipe::Int;
+  Door door = Door::None;
+};
+
+// The units behind the doors, which say whether there is room.
+struct Doors {
+  const Lsu& lsu;
+  const rt::RtPort& rt;
+};
+
+// The registers of a scheduler lie in banks with one read port each. An instruction reads its registers in a
+// window of cycles that begins with its issue, one register a bank and cycle, after the instructions before
+// it.
+class RegisterBanks {
+ public:
+  using Reads = IssueTable::BankReads;
+  // The first cycle from `now` on in which an instruction that reads `reads` can issue.
+  Cycle free_at(const Reads& reads, Cycle now, Cycle window) const {
+    Cycle at = now;
+    for (size_t bank = 0; bank < reads.size(); ++bank)
+      if (reads[bank]) at = std::max(at, std::max<Cycle>(port_free_[bank] + reads[bank], window) - window);
+    return at;
+  }
+  void read(const Reads& reads, Cycle now) {
+    for (size_t bank = 0; bank < reads.size(); ++bank)
+      if (reads[bank]) port_free_[bank] = std::max(port_free_[bank], now) + reads[bank];
+  }
+
+ private:
+  std::array<Cycle, kMaxRegisterBanks> port_free_{};  // First cycle in which the bank's port is free.
+};
+
+// A scheduler numbers its warps locally: warp slot w is warp w / schedulers of scheduler w mod schedulers.
+// A scheduler sleeps while no warp can issue and its reason stays the same. Three things end the sleep: the
+// cycle that it waits for comes, somebody tells of a change to one of its warps, or a door that it watches
+// may have opened.
+class Scheduler {
+ public:
+  // `slots`: warp slots of the whole core.
+  Scheduler(uint32_t index, uint32_t slots, const Params& params);
+
+  // What happens to warps. Each of these calls wakes the scheduler, except drain().
+  void add(uint32_t warp, uint64_t age);
+  void remove(uint32_t warp);
+  void set_next(uint32_t warp, const NextIssue& next) {
+    ready_at_[warp] = next.ready_at;
+    wait_[warp] = next.wait;
+    pipe_[warp] = next.pipe;
+    const uint64_t others = ~(uint64_t{1} << warp);
+    needs_lsu_ = (needs_lsu_ & others) | uint64_t{next.door == Door::Lsu} << warp;
+    needs_tex_ = (needs_tex_ & others) | uint64_t{next.door == Door::Texture} << warp;
+    needs_rt_ = (needs_rt_ & others) | uint64_t{next.door == Door::RtUnit} << warp;
+    wake();
+  }
+  // The warp has ended and waits for its last accesses.
+  void drain(uint32_t warp) {
+    ready_at_[warp] = kNever;
+    wait_[warp] = Stall::Drain;
+  }
+  // The core has no warps: the reason of its cycles is that from now on.
+  void become_empty() { reason_ = Stall::NoWarp; }
+
+  // Whether find_ready() may say something else than the last time.
+  bool is_awake(Cycle now, const Lsu& lsu) const {
+    return now >= sleep_until_ || watches_rt_ || (watches_lsu_ && lsu_vacated_ != lsu.num_vacated());
+  }
+  // Bit i: warp i can issue now. When no bit is set, reason() says why and the scheduler sleeps.
+  uint64_t find_ready(Cycle now, const Doors& doors);
+  // Warps of `ready` whose register reads meet those of earlier instructions may not issue before `next`.
+  void hold_for_banks(Cycle next) {
+    reason_ = std::min(reason_, Stall::RegisterBanks);
+    sleep_until_ = std::min(sleep_until_, next);
+  }
+  // Chooses one warp of `ready`, which is not 0. The cycle is spent on issuing.
+  uint32_t pick(uint64_t ready, Cycle now) {
+    const uint32_t warp = policy_->pick({ready, {age_.data(), age_.size()}, now});
+    GLINT_DCHECK(ready >> warp & 1, "the issue policy chose warp {}, which is not ready", warp);
+    reason_ = Stall::Issued;
+    sleep_until_ = now + 1;
+    return warp;
+  }
+
+  // An instruction issues to a pipe. Returns by how many cycles it enters the pipe later. That is 0 without
+  // latches; with latches the instruction enters when the pipe has finished the one before, and the next
+  // instruction can issue as soon as this one has entered.
+  Cycle occupy(Pipe at, Cycle now, Cycle parts) {
+    constexpr Cycle kParts = OpTime::kParts;
+    if (!has_latches_) return take(at, now, parts), 0;
+    Cycle& busy = pipe_busy_[size_t(at)];
+    const Cycle start = std::max(busy, now * kParts);
+    busy = start + parts;
+    pipe_free_[size_t(at)] = start / kParts + 1;
+    return start / kParts - now;
+  }
+  // An instruction goes to a pipe that is free. Intervals that are no whole number of cycles are kept on
+  // average: an interval begins where the last one ended, within the cycle, if the pipe has not been idle
+  // since.
+  void take(Pipe at, Cycle now, Cycle parts) {
+    constexpr Cycle kParts = OpTime::kParts;
+    Cycle& busy = pipe_busy_[size_t(at)];
+    busy = (pipe_free_[size_t(at)] == now ? busy : now * kParts) + parts;
+    pipe_free_[size_t(at)] = (busy + kParts - 1) / kParts;
+  }
+
+  uint32_t index() const { return index_; }
+  Stall reason() const { return reason_; }            // What the scheduler's cycles are spent on.
+  Cycle sleep_until() const { return sleep_until_; }  // Nothing happens before, unless a door opens.
+  bool is_resident(uint32_t warp) const { return resident_ >> warp & 1; }
+  NextIssue next_of(uint32_t warp) const;
+  // The warp whose wait gave the scheduler its reason: the one that can go on first, the oldest of several.
+  // None when the scheduler has no warps.
+  std::optional<uint32_t> to_blame(Cycle now, const Doors& doors) const;
+
+  RegisterBanks banks;
+
+ private:
+  void wake() { sleep_until_ = 0; }
+  Stall reason_of(uint32_t warp, Cycle now, const Doors& doors) const;
+
+  // find_ready() scans these in almost every cycle of a core, so each field of all warps is an array of its
+  // own.
+  const uint32_t index_;
+  uint64_t resident_ = 0;  // Bit i: warp i holds its slot.
+  std::array<Cycle, kMaxWarpsPerScheduler> ready_at_{};
+  std::array<Stall, kMaxWarpsPerScheduler> wait_{};
+  std::array<Pipe, kMaxWarpsPerScheduler> pipe_{};
+  uint64_t needs_lsu_ = 0, needs_tex_ = 0,
+           needs_rt_ = 0;                     // Bit i: the next instruction of warp i enters that door.
+  std::array<Cycle, kNumPipes> pipe_free_{};  // First cycle in which another instruction can go to the pipe.
+  std::array<uint64_t, kMaxWarpsPerScheduler> age_{};  // Launch number of each warp.
+  std::array<Cycle, kNumPipes> pipe_busy_{};           // When the pipe has finished, in parts of a cycle.
+
+  Cycle sleep_until_ = 0;
+  bool watches_rt_ = false,
+       watches_lsu_ = false;  // Doors that were full; either queue of the load-store unit.
+  uint64_t lsu_vacated_ = 0;  // Lsu::num_vacated() when the doors were looked at.
+  Stall reason_ = Stall::NoWarp;
+  std::unique_ptr<IssueScheduler> policy_;
+  const bool has_latches_;  // Params::dispatch_latch.
+};
+
+}  // namespace glint::core

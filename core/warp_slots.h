@@ -1,0 +1,63 @@
+// The warp slots of a core and the schedulers that they belong to.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "core/core_observer.h"
+#include "core/warp_slot.h"
+
+namespace glint::core {
+
+// Units change what a warp waits for in its slot and then call refresh(), which tells the slot's scheduler.
+class WarpSlots {
+ public:
+  // `fetch` is null where every instruction is there when its warp comes to it.
+  WarpSlots(uint32_t size, const Params& params, const exec::World& world, const IssueTable& table,
+            InstructionFetch* fetch, const CoreObservers& observers);
+
+  uint32_t size() const { return uint32_t(slots_.size()); }
+  WarpSlot& operator[](uint32_t slot) { return slots_[slot]; }
+  const WarpSlot& operator[](uint32_t slot) const { return slots_[slot]; }
+  std::vector<Scheduler>& schedulers() { return schedulers_; }
+  const std::vector<Scheduler>& schedulers() const { return schedulers_; }
+  BlockPlaces& blocks() { return blocks_; }
+  const BlockPlaces& blocks() const { return blocks_; }
+
+  uint32_t num_resident() const { return num_resident_; }
+  uint64_t num_launched() const { return num_launched_; }
+  bool is_resident(uint32_t slot) const { return slots_[slot].scheduler->is_resident(slots_[slot].local); }
+  uint32_t first_free() const;
+
+  // The warp in the slot, which the executor has started, can issue its first instruction at `ready`.
+  void start(uint32_t slot, BlockPlace& home, Cycle ready, Cycle now);
+  // Looks up when the warp's next instruction is there and has its operands: to be called after each change
+  // to its front, its scoreboard, its sequence or its place in the program.
+  void refresh(uint32_t slot, Cycle now);
+  // The warp has ended, and its last accesses have not.
+  void drain(uint32_t slot) { slots_[slot].scheduler->drain(slots_[slot].local); }
+  // The warp has ended with all of its accesses: the slot can be taken by another warp.
+  void free(uint32_t slot, Cycle now);
+
+  // A line of instructions has come: warps of the scheduler that wait for it go on.
+  void take_line(uint32_t scheduler, uint32_t line, Cycle now);
+
+ private:
+  void come_to_line(WarpSlot& slot, Cycle now);
+  Scoreboard::Ready operands_ready(const WarpSlot& slot, const IssueRow& row) const;
+  Door door_of(const IssueRow& row) const;
+
+  const Params& params_;
+  const IssueTable& table_;
+  const CoreObservers& observers_;
+  InstructionFetch* const fetch_;
+  const bool holds_operands_;  // Memory instructions read their registers when they leave their queue.
+  const uint32_t prologue_;    // Machine instructions before a warp's first instruction.
+  std::vector<Scheduler> schedulers_;
+  std::vector<WarpSlot> slots_;
+  BlockPlaces blocks_;
+  uint32_t num_resident_ = 0;
+  uint64_t num_launched_ = 0;
+};
+
+}  // namespace glint::core
