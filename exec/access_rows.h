@@ -1,5 +1,4 @@
-// The registers of a load, a store or an atomic: which rows it fills or reads, and what a lane's part of them
-// is.
+// The registers of a load, a store or an atomic: which rows it fills or reads, and what a lane's part is.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -12,6 +11,9 @@
 #include "isa/op_row.h"
 
 namespace glint::exec {
+
+// Where the data of each lane lies.
+using LanePlaces = std::array<std::byte*, kLanes>;
 
 // Slot of the first value operand: loads write from slot 0, stores read after the address.
 inline constexpr size_t kLoadFirst = 0, kStoreFirst = 1;
@@ -46,6 +48,14 @@ void load_rows(WarpContext& warp, const isa::Inst& inst, const isa::Memory& shap
       for_each_lane(lanes, [&](int lane) { std::memcpy(to + lane, from[size_t(lane)] + row * 4, 4); });
     else
       for_each_lane(lanes, [&](int lane) { to[lane] = narrow(from[size_t(lane)] + row * bytes, shape); });
+  }
+}
+
+// The answer of a load or an atomic that went nowhere.
+inline void load_zeros(WarpContext& warp, const isa::Inst& inst, const isa::Memory& shape, LaneMask lanes) {
+  for (uint32_t row = 0; row < rows_of(shape); ++row) {
+    uint32_t* const to = warp.regs.write(slot_of(inst, shape, kLoadFirst, row));
+    for_each_lane(lanes, [&](int lane) { to[lane] = 0; });
   }
 }
 

@@ -3,10 +3,42 @@
 #include "exec/executor.h"
 
 #include <bit>
+#include <fmt/format.h>
+
+#include "base/check.h"
+#include "exec/prints.h"
+#include "isa/hit_object.h"
 
 namespace glint::exec {
 
 using isa::Effect;
+
+Executor::Executor(const World& world, double clock_mhz)
+    : world_(world),
+      reads_clock_(reads_clock(*world.image)),
+      clock_mhz_(clock_mhz),
+      faults_(world),
+      ray_faults_(world, faults_),
+      memory_(world, faults_, seen_),
+      images_(world, faults_, seen_),
+      candidates_(world, candidate_counts_),
+      calls_(world, faults_, ray_faults_, called, candidate_counts_),
+      rays_(world, faults_, ray_faults_, candidates_),
+      queries_(world, faults_, ray_faults_),
+      hit_objects_(world, faults_, ray_faults_, rays_),
+      traversal_(world, rays_, calls_),
+      control_(world, faults_, calls_, traversal_),
+      barriers_(world, faults_) {
+  GLINT_CHECK(warps_per_block() <= kMaxBlockWarps, "a block of {} warps: check() reports this",
+              warps_per_block());
+}
+
+void Executor::start(WarpContext& warp, uint32_t warp_index) const {
+  GLINT_CHECK(world_.block_size[0] == 0, "a warp of a block needs its block");
+  if (!warp.own_block) warp.own_block = std::make_unique<Block>();
+  start(*warp.own_block, warp_index);
+  start(warp, *warp.own_block, 0);
+}
 
 Issued Executor::execute(WarpContext& warp, Cycle now) {
   const uint32_t pc = warp.simt.pc;
@@ -18,29 +50,44 @@ Issued Executor::execute(WarpContext& warp, Cycle now) {
     const LaneMask guard = warp.regs.predicate[inst.guard & (isa::kNumPredicates - 1)];
     exec &= inst.guard & isa::kGuardNegate ? ~guard : guard;
   }
-  warp.regs.exec = issued.lanes = exec;
+  warp.regs.exec = exec;
   if (reads_clock_) [[unlikely]]
-    fill_clock(warp, now);
-  if (view_) view_->begin(now);
+    fill_clock(warp, now, clock_mhz_);
+  if (seen_.is_used()) seen_.view().begin(now);
 
   bool ok = true;
+  if (row.effect == Effect::None) {
+    row.run(warp.regs, inst);
+    ++warp.simt.pc;
+  } else {
+    ok = dispatch(warp, inst, row);
+  }
+  issued.lanes = warp.regs.exec;  // Ray effects leave out lanes that had nothing to do.
+  if (warp.waiting_for_rays && traversal_.is_used() && ok) traversal_.walk(warp, pc);
+  issued.finished = warp.simt.finished();
+  if (ok && issued.finished) [[unlikely]]
+    ok = barriers_.end_warp(warp);
+  if (ok) {
+    ++warp.instructions;
+    retired.fire([&] { return Retired{warp, issued}; });
+  }
+  return issued;
+}
+
+bool Executor::dispatch(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
   switch (row.effect) {
     case Effect::None:
-      row.run(warp.regs, inst);
-      ++warp.simt.pc;
       break;
     case Effect::Load:
     case Effect::Store:
     case Effect::Atomic:
-      ok = run_memory(warp, inst, row);
-      break;
+      return memory_.run(warp, inst, row);
     case Effect::Texture:
     case Effect::SurfaceLoad:
     case Effect::SurfaceStore:
     case Effect::SurfaceAtomic:
     case Effect::ImageQuery:
-      ok = run_image(warp, inst, row);
-      break;
+      return images_.run(warp, inst, row);
     case Effect::Branch:
     case Effect::PushReconvergence:
     case Effect::Join:
@@ -52,44 +99,39 @@ Issued Executor::execute(WarpContext& warp, Cycle now) {
     case Effect::Fence:
     case Effect::Ignore:
     case Effect::Terminate:
-      ok = run_control(warp, inst, row);
-      break;
+      return control_.run(warp, inst, row);
     case Effect::Print:
     case Effect::PrintPart:
-      ok = run_print(warp, inst, row);
-      break;
+      run_print(world_, warp, inst, row);
+      return true;
     case Effect::Barrier:
-      ok = run_barrier(warp, inst, row);
-      break;
+      return barriers_.run(warp, inst, row);
     case Effect::HitObject:
-      ok = run_hit_object(warp, inst, row);
-      break;
+      return hit_objects_.run(warp, inst, row);
     case Effect::Query:
     case Effect::QueryProceed:
-      ok = run_query(warp, inst, row);
-      break;
+      return queries_.run(warp, inst, row);
     case Effect::CallCandidate:
     case Effect::CallAnyHit:
     case Effect::CallHit:
+      return is_in_trace(warp, row) && calls_.call(warp, row.effect);
     case Effect::CallCallable:
+      return calls_.call_callable(warp, inst);
     case Effect::Trace:
+      return isa::TraceKind(row.detail) == isa::TraceKind::Ray ? rays_.run(warp, inst, row)
+                                                               : hit_objects_.begin_trace(warp, inst);
     case Effect::Resume:
     case Effect::Report:
     case Effect::Accepted:
     case Effect::EndTrace:
-      ok = run_rays(warp, inst, row);
-      issued.lanes = warp.regs.exec;
-      break;
+      return is_in_trace(warp, row) && rays_.run(warp, inst, row);
   }
-  if (warp.waiting_for_rays && world_.traversal.shader != kNoShader && ok) walk_in_code(warp, pc);
-  issued.finished = warp.simt.finished();
-  if (ok && issued.finished) [[unlikely]]
-    ok = end_warp(warp);
-  if (ok) {
-    ++warp.instructions;
-    retired.fire([&] { return Retired{warp, issued}; });
-  }
-  return issued;
+  GLINT_PANIC("effect {} of '{}'", int(row.effect), row.name);
+}
+
+bool Executor::is_in_trace(WarpContext& warp, const isa::OpRow& row) {
+  return warp.depth > 0 || faults_.fail(warp, std::countr_zero(warp.simt.active),
+                                        fmt::format("runs {} outside a trace", row.name));
 }
 
 }  // namespace glint::exec

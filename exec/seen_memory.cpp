@@ -1,12 +1,13 @@
-// Loads, stores and atomics of a machine with several cores, which see global memory through a view.
+// Loads, stores and atomics of global memory that is seen through a view.
 // SPDX-License-Identifier: Apache-2.0
-#include "exec/access_rows.h"
-#include "exec/executor.h"
+#include "exec/seen_memory.h"
+
+#include <cstring>
 
 namespace glint::exec {
 
-void Executor::load_seen(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes,
-                         const Places& at) {
+void SeenMemory::load(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes,
+                      const LanePlaces& at) {
   const isa::Memory& shape = row.memory;
   const uint32_t bytes = shape.bytes * shape.count, part = row_bytes(shape);
   for_each_lane(lanes, [&](int lane) { is_late_ |= view_->waits(at[size_t(lane)], bytes); });
@@ -27,8 +28,8 @@ void Executor::load_seen(WarpContext& warp, const isa::Inst& inst, const isa::Op
 }
 
 // Lanes in the same order as without a view.
-void Executor::store_seen(const WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row,
-                          LaneMask lanes, const Places& at) {
+void SeenMemory::store(const WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes,
+                       const LanePlaces& at) {
   const isa::Memory& shape = row.memory;
   const uint32_t part = row_bytes(shape);
   std::array<std::byte, MemoryView::kWidest> data;
@@ -39,8 +40,8 @@ void Executor::store_seen(const WarpContext& warp, const isa::Inst& inst, const 
   });
 }
 
-void Executor::modify_seen(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes,
-                           const Places& at) {
+void SeenMemory::modify(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes,
+                        const LanePlaces& at) {
   const uint32_t bytes = row.memory.bytes;
   is_late_ = isa::is_destination(row.operands.kind[0]);
   const size_t first = is_late_ ? 2 : 1;

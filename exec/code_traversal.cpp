@@ -1,10 +1,11 @@
-// Rays that code walks: the call of the traversal program, and what its record says before and after.
+// The call of the traversal program, and what its record says before and after.
 // SPDX-License-Identifier: Apache-2.0
+#include "exec/code_traversal.h"
+
 #include <bit>
 #include <cstring>
 
 #include "base/check.h"
-#include "exec/executor.h"
 #include "exec/ray_values.h"
 #include "rtunit/structure.h"
 #include "rtunit/traversal.h"
@@ -122,7 +123,7 @@ void take_ray(Record record, rt::RayState& state, const mem::AddressSpace& memor
 }  // namespace
 
 // Where the records of the rays lie that wait: of the innermost trace, or of a ray query.
-uint32_t Executor::record_of_rays(const WarpContext& warp) const {
+uint32_t CodeTraversal::record_of_rays(const WarpContext& warp) const {
   const TraversalCode& code = world_.traversal;
   uint32_t index = warp.depth - 1;
   if (warp.depth == 0 || warp.rays != warp.frames[warp.depth - 1]->ray.data()) {
@@ -137,7 +138,7 @@ uint32_t Executor::record_of_rays(const WarpContext& warp) const {
 // The rays of rt.trace, rt.resume or rq.proceed at `pc`: calls the traversal program for those that travel.
 // Without any, they wait on, and the machine finishes them. Model: the ray goes to its record, and the
 // verdict of an any-hit shader, without instructions of their own.
-void Executor::walk_in_code(WarpContext& warp, uint32_t pc) {
+void CodeTraversal::walk(WarpContext& warp, uint32_t pc) {
   LaneMask travelling = 0;
   for_each_lane(warp.ray_lanes, [&](int lane) {
     travelling |= LaneMask{warp.rays[lane].status == rt::RayStatus::Traversing} << lane;
@@ -153,7 +154,7 @@ void Executor::walk_in_code(WarpContext& warp, uint32_t pc) {
     put_hit(record, kHit, state.ray, state.committed, *world_.memory);
     warp.regs.bank[2][size_t(isa::Special::Payload) * kLanes + size_t(lane)] = at;
   });
-  called_lanes_[size_t(code.stage)] += uint64_t(std::popcount(travelling));
+  calls_.count_called(code.stage, uint64_t(std::popcount(travelling)));
   SimtStack& simt = warp.simt;
   simt.push_call(simt.pc, simt.active & ~travelling, warp.depth, world_.image->shader_of[pc], warp.callables);
   simt.mark_traversal();
@@ -163,11 +164,11 @@ void Executor::walk_in_code(WarpContext& warp, uint32_t pc) {
   warp.waiting_for_rays = false;
 }
 
-void Executor::take_walked_rays(WarpContext& warp) {
+void CodeTraversal::take_rays(WarpContext& warp) {
   const uint32_t at = record_of_rays(warp);
   for_each_lane(warp.walking,
                 [&](int lane) { take_ray(Record(warp, at, lane), warp.rays[lane], *world_.memory); });
-  finish_rays(warp);
+  rays_.finish(warp);
 }
 
 }  // namespace glint::exec

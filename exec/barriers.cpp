@@ -1,10 +1,13 @@
 // Barriers: warps of a block that wait for each other, and what becomes of those that wait in vain.
 // SPDX-License-Identifier: Apache-2.0
+#include "exec/barriers.h"
+
+#include <bit>
 #include <fmt/format.h>
 #include <map>
 
 #include "base/num_lanes.h"
-#include "exec/executor.h"
+#include "exec/launch.h"
 #include "isa/barrier.h"
 
 namespace glint::exec {
@@ -33,31 +36,32 @@ bool is_uniform(const uint32_t* row, LaneMask lanes) {
 
 // Model: only whole warps arrive. PTX leaves what a warp does that is divided at a bar.sync undefined
 // (hardware from Volta on counts its threads one by one); here it is a fault.
-bool Executor::run_barrier(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
+bool Barriers::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
   const LaneMask exec = warp.regs.exec, live = warp.simt.live();
   const auto kind = BarrierKind(row.detail);
   if (exec == 0) return ++warp.simt.pc, true;
   const int lane = std::countr_zero(exec);
   if (exec != live)
-    return fail(warp, lane,
-                fmt::format("{} of the {} lanes of the warp come to {}: all have to come together",
-                            num_lanes(exec), num_lanes(live), row.name));
+    return faults_.fail(warp, lane,
+                        fmt::format("{} of the {} lanes of the warp come to {}: all have to come together",
+                                    num_lanes(exec), num_lanes(live), row.name));
   const BarrierSlots slots = slots_of(kind);
   const uint32_t* const barriers = warp.regs.read(inst.operand[slots.barrier]);
   const uint32_t* const counts = warp.regs.read(inst.operand[slots.threads]);
   if (!is_uniform(barriers, exec) || !is_uniform(counts, exec))
-    return fail(warp, lane,
-                "the lanes of a warp come to different barriers, or expect different numbers of threads");
+    return faults_.fail(
+        warp, lane, "the lanes of a warp come to different barriers, or expect different numbers of threads");
   const uint32_t barrier = barriers[lane], threads = counts[lane];
-  if (!check_barrier(warp, barrier, threads)) return false;
+  if (!check(warp, barrier, threads)) return false;
   Block& block = *warp.block;
   const bool waits = kind != BarrierKind::Arrive;
   if (!waits && threads == 0)
-    return fail(warp, lane, "bar.arrive has to say how many threads the barrier expects");
+    return faults_.fail(warp, lane, "bar.arrive has to say how many threads the barrier expects");
   if (!block.arrive(barrier, warp.warp_in_block, threads / uint32_t(kLanes), waits))
-    return fail(warp, lane,
-                fmt::format("comes to barrier {} for {} threads: others wait there for another number",
-                            barrier, threads));
+    return faults_.fail(
+        warp, lane,
+        fmt::format("comes to barrier {} for {} threads: others wait there for another number", barrier,
+                    threads));
   if (kind != BarrierKind::Sync && waits)
     block.contribute(barrier, num_lanes(exec),
                      num_lanes(exec & warp.regs.predicate[inst.operand[slots.predicate]]));
@@ -68,23 +72,25 @@ bool Executor::run_barrier(WarpContext& warp, const isa::Inst& inst, const isa::
     warp.barrier_lanes = exec;
   }
   ++warp.simt.pc;
-  if (block.is_complete(barrier)) open_barrier(block, barrier);
+  if (block.is_complete(barrier)) open(block, barrier);
   return !block.is_stuck() || fail_stuck(block);
 }
 
-bool Executor::check_barrier(WarpContext& warp, uint32_t barrier, uint32_t threads) {
+bool Barriers::check(WarpContext& warp, uint32_t barrier, uint32_t threads) {
   const int lane = std::countr_zero(warp.regs.exec);
   if (barrier >= isa::kNumBarriers)
-    return fail(warp, lane, fmt::format("comes to barrier {}: a block has {}", barrier, isa::kNumBarriers));
+    return faults_.fail(warp, lane,
+                        fmt::format("comes to barrier {}: a block has {}", barrier, isa::kNumBarriers));
   const uint32_t most = warp.block->num_warps() * uint32_t(kLanes);
   if (threads % uint32_t(kLanes) != 0 || threads > most)
-    return fail(warp, lane,
-                fmt::format("a barrier for {} threads: expected a multiple of {} up to the block's {}",
-                            threads, kLanes, most));
+    return faults_.fail(
+        warp, lane,
+        fmt::format("a barrier for {} threads: expected a multiple of {} up to the block's {}", threads,
+                    kLanes, most));
   return true;
 }
 
-void Executor::open_barrier(Block& block, uint32_t barrier) {
+void Barriers::open(Block& block, uint32_t barrier) {
   const Barrier seen = block.release(barrier);
   for (WarpMask rest = seen.waiting; rest; rest &= rest - 1) {
     WarpContext& warp = *block.warps[size_t(std::countr_zero(rest))];
@@ -103,16 +109,16 @@ void Executor::open_barrier(Block& block, uint32_t barrier) {
 }
 
 // The warp has ended: barriers that wait for all may be complete without it.
-bool Executor::end_warp(WarpContext& warp) {
+bool Barriers::end_warp(WarpContext& warp) {
   Block& block = *warp.block;
   block.end(warp.warp_in_block);
   if (block.waiting() == 0) return true;
   for (uint32_t barrier = 0; barrier < isa::kNumBarriers; ++barrier)
-    if (block.is_complete(barrier)) open_barrier(block, barrier);
+    if (block.is_complete(barrier)) open(block, barrier);
   return !block.is_stuck() || fail_stuck(block);
 }
 
-bool Executor::fail_stuck(const Block& block) {
+bool Barriers::fail_stuck(const Block& block) {
   std::map<std::pair<uint32_t, uint32_t>, uint32_t> waiting;  // instruction and barrier; warps
   const WarpContext* first = nullptr;
   for (WarpMask rest = block.waiting(); rest; rest &= rest - 1) {
@@ -126,9 +132,8 @@ bool Executor::fail_stuck(const Block& block) {
                         world_.image->rows[at.first]->name, at.second, world_.image->place_of(at.first));
   const bool ended = uint32_t(std::popcount(block.live())) < block.num_warps();
   what += ended ? "the others have ended" : "no other is left";
-  fault_ = Fault{std::move(what), world_.image->place_of(first->barrier_pc),
-                 launch_id(world_, first->warp_index, 0), true};
-  return false;
+  return faults_.fail({std::move(what), world_.image->place_of(first->barrier_pc),
+                       launch_id(world_, first->warp_index, 0), true});
 }
 
 }  // namespace glint::exec

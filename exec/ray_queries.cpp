@@ -1,8 +1,10 @@
-// Ray queries: rq.*, whose rays a shader walks itself.
+// Ray queries: their values, and what a shader decides about candidates.
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include "exec/ray_queries.h"
 
-#include "exec/executor.h"
+#include <bit>
+
+#include "exec/numbered.h"
 #include "exec/ray_values.h"
 #include "isa/ray_query.h"
 #include "rtunit/structure.h"
@@ -99,42 +101,40 @@ void pass_over(RayState& state) {
 
 }  // namespace
 
-bool Executor::run_query(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
+bool RayQueries::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
   const LaneMask exec = warp.regs.exec;
   const bool reads =
       row.operands.kind[0] == isa::OperandKind::Dst32 || row.effect == isa::Effect::QueryProceed;
   if (exec) {
     RayState* const states =
-        find_numbered(warp, warp.queries, inst.operand[reads ? 1 : 0], warp.depth, "ray query");
+        find_numbered(faults_, warp, warp.queries, inst.operand[reads ? 1 : 0], warp.depth, "ray query");
     if (!states) return false;
     // After a ray has been walked, shaders ask for more or for what it found.
     const bool asks =
         row.effect == isa::Effect::QueryProceed || row.detail == isa::detail_of(Query::Type, true);
     for (LaneMask lanes = asks ? exec : 0; lanes; lanes &= lanes - 1)
       if (RayState& state = states[std::countr_zero(lanes)];
-          state.broken && !let_pass_broken(warp, std::countr_zero(lanes), state)) [[unlikely]]
+          state.broken && !ray_faults_.let_pass_broken(warp, std::countr_zero(lanes), state)) [[unlikely]]
         return false;
     if (row.effect == isa::Effect::QueryProceed) {
       for_each_lane(exec, [&](int lane) { pass_over(states[lane]); });
-      warp.waiting_for_rays = true;
-      warp.rays = states;
-      warp.ray_lanes = exec;
-      warp.ray_answer = inst.operand[0];
+      Rays::wait_for(warp, states, inst.operand[0]);
+      return true;
     } else if (reads) {
       uint32_t* const to = warp.regs.write(inst.operand[0]);
       for_each_lane(exec,
                     [&](int lane) { to[lane] = query_value(states[lane], row.detail, *world_.memory); });
     } else if (row.detail == isa::detail_of(Query::Initialize)) {
-      if (!begin_queries(warp, inst, states)) return false;
+      if (!begin(warp, inst, states)) return false;
     } else {
-      decide_queries(warp, inst, row, states);
+      decide(warp, inst, row, states);
     }
   }
   ++warp.simt.pc;
   return true;
 }
 
-bool Executor::begin_queries(WarpContext& warp, const isa::Inst& inst, RayState* states) {
+bool RayQueries::begin(WarpContext& warp, const isa::Inst& inst, RayState* states) {
   for (LaneMask lanes = warp.regs.exec; lanes; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
     RayState& state = states[lane];
@@ -146,14 +146,13 @@ bool Executor::begin_queries(WarpContext& warp, const isa::Inst& inst, RayState*
     read_ray(warp.regs, inst, kRay, lane, ray);
     state.rules.end_at_first_hit = !world_.nearest_first_hit;
     if (!rt::begin(state, *world_.memory) &&
-        !let_pass_structure(warp, lane, "starts a ray query in", ray.structure))
+        !ray_faults_.let_pass_structure(warp, lane, "starts a ray query in", ray.structure))
       return false;
   }
   return true;
 }
 
-void Executor::decide_queries(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row,
-                              RayState* states) {
+void RayQueries::decide(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, RayState* states) {
   for_each_lane(warp.regs.exec, [&](int lane) {
     RayState& state = states[lane];
     switch (Query(row.detail)) {

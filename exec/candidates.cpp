@@ -1,13 +1,14 @@
-// Rays that gather candidates before their shaders run (rtunit/any_hit_mode.h): tables, choices and counts.
+// Tables of candidates, and the choice of the next one.
 // SPDX-License-Identifier: Apache-2.0
-#include "exec/executor.h"
+#include "exec/candidates.h"
+
+#include "exec/hit_records.h"
 
 namespace glint::exec {
 
 static_assert(rt::AnyHitMode::kNoShader == kNoShader);
 
-// The lane's table in the innermost level; null when the mode has none.
-rt::CandidateTable* Executor::table_of(TraceFrame& frame, int lane) const {
+rt::CandidateTable* Candidates::table_of(TraceFrame& frame, int lane) const {
   if (table_rows_ == 0) return nullptr;
   if (frame.tables.empty()) {
     frame.tables.resize(kLanes);
@@ -16,23 +17,22 @@ rt::CandidateTable* Executor::table_of(TraceFrame& frame, int lane) const {
   return &frame.tables[size_t(lane)];
 }
 
-void Executor::present_candidates(WarpContext& warp, LaneMask gathered) const {
+void Candidates::present(WarpContext& warp, LaneMask gathered) const {
   world_.any_hit->present(warp.rays, gathered, [&](int lane, const rt::Candidate& candidate) {
     uint32_t record = 0;
-    const HitGroup* group = hit_group(warp.rays[lane].ray, candidate.hit, record);
-    if (!group) return kNoShader;  // call_targets() tells of it
+    const HitGroup* group = hit_group(world_, warp.rays[lane].ray, candidate.hit, record);
+    if (!group) return kNoShader;  // ShaderCalls tells of it.
     return candidate.is_procedural ? group->intersection : group->any_hit;
   });
 }
 
-// At the end of a trace.
-void Executor::count_candidates(WarpContext& warp) {
+void Candidates::count(const WarpContext& warp) {
   for_each_lane(warp.simt.active, [&](int lane) {
     const rt::CandidateTable* table = warp.frame().ray[size_t(lane)].table;
     if (!table) return;
-    candidates_.gathered += table->gathered;
-    candidates_.dropped += table->dropped;
-    candidates_.overflows += table->overflows;
+    counts_.gathered += table->gathered;
+    counts_.dropped += table->dropped;
+    counts_.overflows += table->overflows;
   });
 }
 

@@ -1,15 +1,18 @@
-// Control flow: branches, calls and returns, regions whose lanes meet again, and ends.
+// Control flow on the SIMT stack.
 // SPDX-License-Identifier: Apache-2.0
+#include "exec/control.h"
+
+#include <bit>
 #include <fmt/format.h>
 
 #include "base/check.h"
-#include "exec/executor.h"
+#include "exec/ray_specials.h"
 
 namespace glint::exec {
 
 using isa::Effect;
 
-bool Executor::run_control(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
+bool Control::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
   SimtStack& simt = warp.simt;
   const LaneMask exec = warp.regs.exec;
   const uint32_t target = uint32_t(inst.imm);
@@ -26,7 +29,7 @@ bool Executor::run_control(WarpContext& warp, const isa::Inst& inst, const isa::
       return true;
     case Effect::Join:
       if (!simt.arrive(simt.pc, simt.active))
-        return fail(warp, std::countr_zero(simt.active), "reaches a join without its ssy");
+        return faults_.fail(warp, std::countr_zero(simt.active), "reaches a join without its ssy");
       simt.active = 0;
       resume_if_empty(warp);
       return true;
@@ -34,7 +37,7 @@ bool Executor::run_control(WarpContext& warp, const isa::Inst& inst, const isa::
       leave(warp, exec);
       return true;
     case Effect::Trap:
-      if (exec) return fail(warp, std::countr_zero(exec), "the program stops itself with a trap");
+      if (exec) return faults_.fail(warp, std::countr_zero(exec), "the program stops itself with a trap");
       ++simt.pc;
       return true;
     case Effect::Return:
@@ -50,7 +53,7 @@ bool Executor::run_control(WarpContext& warp, const isa::Inst& inst, const isa::
   }
 }
 
-bool Executor::branch(WarpContext& warp, uint32_t target) {
+bool Control::branch(WarpContext& warp, uint32_t target) {
   SimtStack& simt = warp.simt;
   const LaneMask exec = warp.regs.exec, stay = simt.active & ~exec;
   if (stay == 0) {
@@ -60,12 +63,12 @@ bool Executor::branch(WarpContext& warp, uint32_t target) {
   } else if (world_.image->target_is_join[simt.pc]) {
     // Lanes that go to a join wait there at once: a loop's exits never grow the stack.
     if (!simt.arrive(target, exec))
-      return fail(warp, std::countr_zero(exec), "branches to a join without its ssy");
+      return faults_.fail(warp, std::countr_zero(exec), "branches to a join without its ssy");
     simt.active = stay;
     ++simt.pc;
   } else if (world_.image->rows[simt.pc + 1]->effect == Effect::Join) {
     if (!simt.arrive(simt.pc + 1, stay))
-      return fail(warp, std::countr_zero(stay), "falls into a join without its ssy");
+      return faults_.fail(warp, std::countr_zero(stay), "falls into a join without its ssy");
     simt.active = exec;
     simt.pc = target;
   } else {
@@ -78,7 +81,7 @@ bool Executor::branch(WarpContext& warp, uint32_t target) {
 
 // Lanes with one index go together, those of the lowest lane first; lanes that the guard leaves out go before
 // all.
-bool Executor::branch_indexed(WarpContext& warp, const isa::Inst& inst) {
+bool Control::branch_indexed(WarpContext& warp, const isa::Inst& inst) {
   SimtStack& simt = warp.simt;
   const uint32_t* const index = warp.regs.read(inst.operand[0]);
   const Shader& shader = world_.image->shaders[world_.image->shader_of[simt.pc]];
@@ -90,7 +93,8 @@ bool Executor::branch_indexed(WarpContext& warp, const isa::Inst& inst) {
     const int lane = std::countr_zero(rest);
     const uint32_t chosen = index[lane];
     if (chosen >= shader.end - table || world_.image->rows[table + chosen]->effect != Effect::Branch)
-      return fail(warp, lane, fmt::format("branches to entry {} of a table that has no such entry", chosen));
+      return faults_.fail(warp, lane,
+                          fmt::format("branches to entry {} of a table that has no such entry", chosen));
     LaneMask same = 0;
     for_each_lane(rest, [&](int other) { same |= LaneMask{index[other] == chosen} << other; });
     group[num_groups++] = {table + chosen, same};
@@ -103,14 +107,15 @@ bool Executor::branch_indexed(WarpContext& warp, const isa::Inst& inst) {
   return true;
 }
 
-bool Executor::call_function(WarpContext& warp, uint32_t target) {
+bool Control::call_function(WarpContext& warp, uint32_t target) {
   // Choice: PTX programs with a stack of their own end long before; this catches recursion without end.
   constexpr size_t kMaxNesting = 1 << 16;
   SimtStack& simt = warp.simt;
   const LaneMask exec = warp.regs.exec;
   const uint32_t back = simt.pc + 1;
   if (exec == 0) return simt.pc = back, true;
-  if (simt.depth() >= kMaxNesting) return fail(warp, std::countr_zero(exec), "calls are nested without end");
+  if (simt.depth() >= kMaxNesting)
+    return faults_.fail(warp, std::countr_zero(exec), "calls are nested without end");
   simt.push_call(back, simt.active & ~exec, warp.depth, world_.image->shader_of[simt.pc], warp.callables,
                  true);
   simt.active = exec;
@@ -120,32 +125,32 @@ bool Executor::call_function(WarpContext& warp, uint32_t target) {
 
 // ret goes back to the innermost call; out of a shader, it decides what the stage has to decide. rt.ignore
 // and rt.terminate leave the shader, out of all functions.
-bool Executor::return_from(WarpContext& warp, Effect effect) {
+bool Control::return_from(WarpContext& warp, Effect effect) {
   SimtStack& simt = warp.simt;
   const LaneMask exec = warp.regs.exec;
   const bool leaves_shader = effect != Effect::Return;
   const SimtStack::Entry* const call = simt.innermost_call(leaves_shader);
-  if (!call) return fail(warp, exec ? std::countr_zero(exec) : 0, "returns, and nobody has called");
-  if (exec && !call->is_function) finish_shader(warp, effect);
+  if (!call) return faults_.fail(warp, exec ? std::countr_zero(exec) : 0, "returns, and nobody has called");
+  if (exec && !call->is_function) calls_.finish_shader(warp, effect);
   simt.arrive_return(exec, leaves_shader);
   leave(warp, exec);
   return true;
 }
 
-void Executor::leave(WarpContext& warp, LaneMask lanes) {
+void Control::leave(WarpContext& warp, LaneMask lanes) {
   warp.simt.active &= ~lanes;
   ++warp.simt.pc;
   resume_if_empty(warp);
 }
 
-void Executor::resume_if_empty(WarpContext& warp) {
+void Control::resume_if_empty(WarpContext& warp) {
   SimtStack::Entry call{};
   if (warp.simt.active != 0 || !warp.simt.resume_next(&call)) return;
   warp.depth = call.depth;
   warp.callables = call.callables;
   if (warp.simt.active == 0) return;
-  if (call.is_traversal) take_walked_rays(warp);
-  fill_specials(warp, warp.simt.active, world_.image->shaders[call.shader]);
+  if (call.is_traversal) traversal_.take_rays(warp);
+  fill_specials(world_, warp, warp.simt.active, world_.image->shaders[call.shader]);
 }
 
 }  // namespace glint::exec

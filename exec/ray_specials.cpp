@@ -1,8 +1,10 @@
 // What a shader reads of its ray, its hit, its payload and its record of the binding table.
 // SPDX-License-Identifier: Apache-2.0
-#include <cstring>
+#include "exec/ray_specials.h"
 
-#include "exec/executor.h"
+#include <bit>
+
+#include "exec/hit_records.h"
 #include "exec/ray_values.h"
 #include "rtunit/structure.h"
 
@@ -68,25 +70,7 @@ void set_matrices(WarpContext& warp, size_t lane, const rt::InstanceLeaf& leaf, 
   }
 }
 
-}  // namespace
-
-void Executor::fill_specials(WarpContext& warp, LaneMask lanes, const Shader& shader) const {
-  if (!shader.uses_ray) return;
-  if (shader.stage == Stage::Callable) {
-    if (warp.callables == 0) return;
-    const CallableFrame& frame = *warp.callable_frames[warp.callables - 1];
-    for_each_lane(lanes, [&](int lane) {
-      set(warp, size_t(lane), Special::Payload, frame.data[size_t(lane)]);
-      set_record(warp, size_t(lane), frame.record[size_t(lane)]);
-    });
-  } else if (warp.depth == 0) {
-    for_each_lane(lanes, [&](int lane) { set_record(warp, size_t(lane), world_.table.raygen); });
-  } else {
-    for_each_lane(lanes, [&](int lane) { fill_ray_specials(warp, lane, shader); });
-  }
-}
-
-void Executor::fill_ray_specials(WarpContext& warp, int lane, const Shader& shader) const {
+void fill_ray_specials(const World& world, WarpContext& warp, int lane, const Shader& shader) {
   const size_t i = size_t(lane);
   const TraceFrame& frame = warp.frame();
   const rt::RayState& state = frame.ray[i];
@@ -96,8 +80,8 @@ void Executor::fill_ray_specials(WarpContext& warp, int lane, const Shader& shad
       frame.attributes[i] + (seen.candidate_attributes != state.attribute_slot ? kAttributeBytes : 0);
   set(warp, i, Special::Attribute, attributes);
   set_record(warp, i,
-             shader.stage == Stage::Miss ? world_.table.miss.address(state.ray.miss_index)
-                                         : world_.table.hit.address(hit_record(state.ray, seen.hit)));
+             shader.stage == Stage::Miss ? world.table.miss.address(state.ray.miss_index)
+                                         : world.table.hit.address(hit_record(world, state.ray, seen.hit)));
   set_float(warp, i, Special::HitT, seen.t);
   set(warp, i, Special::HitKind, seen.hit.kind);
   set_float(warp, i, Special::HitU, seen.hit.u);
@@ -118,7 +102,25 @@ void Executor::fill_ray_specials(WarpContext& warp, int lane, const Shader& shad
   set_floats(warp, i, Special::RayOriginX, state.ray.origin.data(), 3);
   set_floats(warp, i, Special::RayDirectionX, state.ray.direction.data(), 3);
   if (shader.uses_matrices && seen.hit.valid())
-    set_matrices(warp, i, world_.memory->view<rt::InstanceLeaf>(seen.hit.instance_leaf, 1)[0], state.ray);
+    set_matrices(warp, i, world.memory->view<rt::InstanceLeaf>(seen.hit.instance_leaf, 1)[0], state.ray);
+}
+
+}  // namespace
+
+void fill_specials(const World& world, WarpContext& warp, LaneMask lanes, const Shader& shader) {
+  if (!shader.uses_ray) return;
+  if (shader.stage == Stage::Callable) {
+    if (warp.callables == 0) return;
+    const CallableFrame& frame = *warp.callable_frames[warp.callables - 1];
+    for_each_lane(lanes, [&](int lane) {
+      set(warp, size_t(lane), Special::Payload, frame.data[size_t(lane)]);
+      set_record(warp, size_t(lane), frame.record[size_t(lane)]);
+    });
+  } else if (warp.depth == 0) {
+    for_each_lane(lanes, [&](int lane) { set_record(warp, size_t(lane), world.table.raygen); });
+  } else {
+    for_each_lane(lanes, [&](int lane) { fill_ray_specials(world, warp, lane, shader); });
+  }
 }
 
 }  // namespace glint::exec

@@ -1,10 +1,14 @@
-// Hit objects: ho.*, what a ray found or a shader made up, kept until its shader is executed.
+// Hit objects: making them, reading them, and tracing with what they hold.
 // SPDX-License-Identifier: Apache-2.0
+#include "exec/hit_objects.h"
+
+#include <bit>
 #include <cstring>
 #include <fmt/format.h>
 #include <utility>
 
-#include "exec/executor.h"
+#include "exec/hit_records.h"
+#include "exec/numbered.h"
 #include "exec/ray_values.h"
 #include "isa/hit_object.h"
 #include "rtunit/node_format.h"
@@ -76,54 +80,26 @@ Address find_instance(const mem::AddressSpace& memory, Address structure, uint32
 
 }  // namespace
 
-std::optional<uint32_t> Executor::shared_number(WarpContext& warp, isa::Slot operand, std::string_view what) {
-  const uint32_t* number = warp.regs.read(operand);
-  const int first = std::countr_zero(warp.regs.exec);
-  bool same = true;
-  for_each_lane(warp.regs.exec, [&](int lane) { same &= number[lane] == number[first]; });
-  if (same && number[first] < kMaxNumbered) return number[first];
-  fail(warp, first,
-       same ? fmt::format("uses {} {}: a shader has at most {}", what, number[first], kMaxNumbered)
-            : fmt::format("the lanes of a warp use more than one {} at once", what));
-  return std::nullopt;
-}
-
-bool Executor::run_hit_object(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
+bool HitObjects::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
   const auto op = HitObjectOp(row.detail);
   LaneMask lanes = warp.regs.exec;
   if (op == HitObjectOp::SetTime || op == HitObjectOp::GetTime)
     return run_time(warp, inst, op == HitObjectOp::SetTime);
   if (op == HitObjectOp::Corner) return run_corner(warp, inst);
   if (lanes && op == HitObjectOp::Record && warp.depth == 0)
-    return fail(warp, std::countr_zero(lanes), "keeps the hit of a trace, and none is open");
+    return faults_.fail(warp, std::countr_zero(lanes), "keeps the hit of a trace, and none is open");
   const uint32_t level = warp.depth - (op == HitObjectOp::Record ? 1 : 0);
   const isa::Slot number = inst.operand[op == HitObjectOp::Value ? 1 : 0];
   HitObject* const objects =
-      lanes ? find_numbered(warp, warp.hit_objects, number, level, "hit object") : nullptr;
+      lanes ? find_numbered(faults_, warp, warp.hit_objects, number, level, "hit object") : nullptr;
   if (lanes && !objects) return false;
   for (; lanes; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
     HitObject& object = objects[lane];
     switch (op) {
-      case HitObjectOp::Record: {
-        rt::RayState& state = warp.frame().ray[size_t(lane)];
-        if (state.broken && !let_pass_broken(warp, lane, state)) [[unlikely]]
-          return false;
-        const bool hit = state.committed.valid();
-        object = {hit ? HitObject::Type::Hit : HitObject::Type::Miss,
-                  state.ray,
-                  state.committed,
-                  hit ? hit_record(state.ray, state.committed) : state.ray.miss_index,
-                  {},
-                  warp.frame().time[size_t(lane)]};
-        if (state.committed.kind >= rt::kHitKindFront)
-          object.attributes = {as_bits(state.committed.u), as_bits(state.committed.v)};
-        else
-          load_attributes(
-              warp, warp.frame().attributes[size_t(lane)] + (state.attribute_slot ? kAttributeBytes : 0),
-              lane, object);
+      case HitObjectOp::Record:
+        if (!record(warp, lane, object)) return false;
         break;
-      }
       case HitObjectOp::Empty:
         object = {};
         break;
@@ -140,8 +116,7 @@ bool Executor::run_hit_object(WarpContext& warp, const isa::Inst& inst, const is
         if (!make_hit(warp, inst, op == HitObjectOp::Hit, lane, object)) return false;
         break;
       case HitObjectOp::Value:
-        warp.regs.write(inst.operand[0])[lane] =
-            hit_object_value(object, read_word(warp.regs, inst, 2, lane));
+        warp.regs.write(inst.operand[0])[lane] = value_of(object, read_word(warp.regs, inst, 2, lane));
         break;
       case HitObjectOp::SetTime:
       case HitObjectOp::GetTime:
@@ -156,8 +131,29 @@ bool Executor::run_hit_object(WarpContext& warp, const isa::Inst& inst, const is
   return true;
 }
 
+// Keeps what the lane's ray of the innermost trace has found.
+bool HitObjects::record(WarpContext& warp, int lane, HitObject& object) {
+  const TraceFrame& frame = warp.frame();
+  rt::RayState& state = warp.frame().ray[size_t(lane)];
+  if (state.broken && !ray_faults_.let_pass_broken(warp, lane, state)) [[unlikely]]
+    return false;
+  const bool hit = state.committed.valid();
+  object = {hit ? HitObject::Type::Hit : HitObject::Type::Miss,
+            state.ray,
+            state.committed,
+            hit ? hit_record(world_, state.ray, state.committed) : state.ray.miss_index,
+            {},
+            frame.time[size_t(lane)]};
+  if (state.committed.kind >= rt::kHitKindFront)
+    object.attributes = {as_bits(state.committed.u), as_bits(state.committed.v)};
+  else
+    load_attributes(warp, frame.attributes[size_t(lane)] + (state.attribute_slot ? kAttributeBytes : 0), lane,
+                    object);
+  return true;
+}
+
 // Outside of any trace the time is 0: only a program that lies about its stage reads it there.
-bool Executor::run_time(WarpContext& warp, const isa::Inst& inst, bool set) {
+bool HitObjects::run_time(WarpContext& warp, const isa::Inst& inst, bool set) {
   if (set) {
     const uint32_t* const from = warp.regs.read(inst.operand[0]);
     for_each_lane(warp.regs.exec, [&](int lane) { warp.next_time[size_t(lane)] = from[lane]; });
@@ -171,7 +167,7 @@ bool Executor::run_time(WarpContext& warp, const isa::Inst& inst, bool set) {
 }
 
 // Model: read from the leaf that the RT unit tested, at no cost; hardware fetches it again.
-bool Executor::run_corner(WarpContext& warp, const isa::Inst& inst) {
+bool HitObjects::run_corner(WarpContext& warp, const isa::Inst& inst) {
   const isa::Stage stage = world_.image->shaders[world_.image->shader_of[warp.simt.pc]].stage;
   const uint32_t* const number = warp.regs.read(inst.operand[1]);
   std::array<uint32_t, kLanes> values{};
@@ -186,14 +182,14 @@ bool Executor::run_corner(WarpContext& warp, const isa::Inst& inst) {
   return true;
 }
 
-bool Executor::make_hit(WarpContext& warp, const isa::Inst& inst, bool has_stride, int lane,
-                        HitObject& object) {
+bool HitObjects::make_hit(WarpContext& warp, const isa::Inst& inst, bool has_stride, int lane,
+                          HitObject& object) {
   const auto value = [&](size_t operand) { return read_word(warp.regs, inst, operand, lane); };
   const Address structure = read_address(warp.regs, inst, kStructure, lane);
   const Address at = find_instance(*world_.memory, structure, value(kInstance));
   if (at == 0) {
     object = {};
-    return let_pass(warp, lane, FaultKind::Structure, [&] {
+    return faults_.let_pass(warp, lane, FaultKind::Structure, [&] {
       return fmt::format("makes a hit object of instance {}, which {:#x} does not hold: {}", value(kInstance),
                          structure, whereabouts(*world_.memory, structure, 1));
     });
@@ -221,12 +217,12 @@ bool Executor::make_hit(WarpContext& warp, const isa::Inst& inst, bool has_strid
   hit.instance_leaf = at;
   object.ray.sbt_offset = value(kOffset) & 15;
   object.ray.sbt_stride = has_stride ? value(kStride) & 15 : 0;
-  object.record = has_stride ? hit_record(object.ray, hit) : world_.table.hit.number(value(kOffset));
+  object.record = has_stride ? hit_record(world_, object.ray, hit) : world_.table.hit.number(value(kOffset));
   return true;
 }
 
 // Choice: values that a miss or an empty object does not have are 0.
-uint32_t Executor::hit_object_value(const HitObject& object, uint32_t value) const {
+uint32_t HitObjects::value_of(const HitObject& object, uint32_t value) const {
   using V = HitObjectValue;
   const bool hit = object.type == HitObject::Type::Hit, empty = object.type == HitObject::Type::Empty;
   const rt::Ray& ray = object.ray;
@@ -268,12 +264,13 @@ uint32_t Executor::hit_object_value(const HitObject& object, uint32_t value) con
 }
 
 // Opens a trace whose rays have already found what the objects hold.
-bool Executor::begin_hit_object(WarpContext& warp, const isa::Inst& inst) {
+bool HitObjects::begin_trace(WarpContext& warp, const isa::Inst& inst) {
   LaneMask lanes = warp.regs.exec;
   HitObject* const objects =
-      lanes ? find_numbered(warp, warp.hit_objects, inst.operand[0], warp.depth, "hit object") : nullptr;
+      lanes ? find_numbered(faults_, warp, warp.hit_objects, inst.operand[0], warp.depth, "hit object")
+            : nullptr;
   if (lanes && !objects) return false;
-  if (!open_trace(warp, inst, 1)) return false;
+  if (!rays_.open_trace(warp, inst, 1)) return false;
   for (; lanes; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
     const HitObject& object = objects[lane];

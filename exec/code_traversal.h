@@ -1,0 +1,29 @@
+// Rays that code walks, where a machine has no RT unit: calls the launch's traversal program
+// (exec/traversal_record.h). SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "exec/rays.h"
+#include "exec/shader_calls.h"
+
+namespace glint::exec {
+
+class CodeTraversal {
+ public:
+  CodeTraversal(const World& world, Rays& rays, ShaderCalls& calls)
+      : world_(world), rays_(rays), calls_(calls) {}
+
+  bool is_used() const { return world_.traversal.shader != kNoShader; }
+  // The rays of rt.trace, rt.resume or rq.proceed at `pc`: calls the traversal program for those that travel.
+  // Without any, the rays wait on, and the machine finishes them.
+  void walk(WarpContext& warp, uint32_t pc);
+  // The traversal program has returned.
+  void take_rays(WarpContext& warp);
+
+ private:
+  uint32_t record_of_rays(const WarpContext& warp) const;
+
+  const World& world_;
+  Rays& rays_;
+  ShaderCalls& calls_;
+};
+
+}  // namespace glint::exec

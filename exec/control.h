@@ -1,0 +1,30 @@
+// Control flow: branches, calls and returns, regions whose lanes meet again, and ends.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "exec/code_traversal.h"
+
+namespace glint::exec {
+
+class Control {
+ public:
+  Control(const World& world, FaultGate& faults, ShaderCalls& calls, CodeTraversal& traversal)
+      : world_(world), faults_(faults), calls_(calls), traversal_(traversal) {}
+
+  // False after a fault.
+  bool run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
+
+ private:
+  bool branch(WarpContext& warp, uint32_t target);
+  bool branch_indexed(WarpContext& warp, const isa::Inst& inst);
+  bool call_function(WarpContext& warp, uint32_t target);
+  bool return_from(WarpContext& warp, isa::Effect effect);
+  void leave(WarpContext& warp, LaneMask lanes);
+  void resume_if_empty(WarpContext& warp);
+
+  const World& world_;
+  FaultGate& faults_;
+  ShaderCalls& calls_;
+  CodeTraversal& traversal_;
+};
+
+}  // namespace glint::exec

@@ -1,0 +1,38 @@
+// Blocks and warps of a launch: how many there are, which threads they hold, and how they start.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "exec/warp_context.h"
+
+namespace glint::exec {
+
+// Where a machine has put a warp, as the warp's program may ask: %warpid, %nwarpid, %smid, %nsmid.
+struct Seat {
+  uint32_t slot = 0, slots = 1;  // The warp slot of the core, and how many the core has.
+  uint32_t core = 0, cores = 1;
+};
+
+uint32_t num_blocks(const World& world);
+uint32_t warps_per_block(const World& world);  // 1 in a launch without blocks.
+
+// Launch coordinates of a lane of a warp, as World::layout has them. In a launch with blocks x runs fastest
+// within the block. A lane without a thread is outside of the launch.
+std::array<uint32_t, 3> launch_id(const World& world, uint32_t warp_index, int lane);
+
+// Empties `block` for block `index` of the launch: zeroed shared memory, no warp has arrived anywhere. Blocks
+// are numbered x fastest, if the layout does not say otherwise.
+void start_block(const World& world, Block& block, uint32_t index);
+// Puts a warp of the block into `warp`, at the entry of the ray generation or compute shader. Neither may
+// move until the warp has ended.
+void start_warp(const World& world, WarpContext& warp, Block& block, uint32_t warp_in_block,
+                const Seat& seat);
+
+// Whether any shader of the image reads the clock or the time.
+bool reads_clock(const Image& image);
+// Writes clock and time for the warp's next instruction. `clock_mhz` turns cycles into time; 0: the time is
+// 0.
+void fill_clock(WarpContext& warp, Cycle now, double clock_mhz);
+
+}  // namespace glint::exec

@@ -1,0 +1,195 @@
+// Loads, stores and atomics: moving data between a warp's registers and simulated memory, with every access
+// checked. SPDX-License-Identifier: Apache-2.0
+#include "exec/memory_ops.h"
+
+#include <bit>
+#include <cstring>
+#include <fmt/format.h>
+
+#include "base/check.h"
+#include "exec/access_words.h"
+#include "isa/descriptors.h"
+#include "isa/generic_address.h"
+
+namespace glint::exec {
+
+using isa::Effect;
+using isa::Space;
+
+namespace {
+
+// Lane by lane: where two lanes write one place, the higher lane's value stays. Choice: PTX leaves it open.
+void store_rows(const WarpContext& warp, const isa::Inst& inst, const isa::Memory& shape, LaneMask lanes,
+                const LanePlaces& to) {
+  const uint32_t bytes = row_bytes(shape);
+  for_each_lane(lanes, [&](int lane) {
+    for (uint32_t row = 0; row < rows_of(shape); ++row)
+      std::memcpy(to[size_t(lane)] + row * bytes,
+                  warp.regs.read(slot_of(inst, shape, kStoreFirst, row)) + lane, bytes);
+  });
+}
+
+// "32 bytes past the end of the block's shared memory (64 bytes)"
+std::string outside_of(std::string_view object, Address address, uint64_t bytes, uint64_t size) {
+  if (address >= size)
+    return fmt::format("{} bytes past the end of {} ({} bytes)", address - size, object, size);
+  return fmt::format("{} bytes across the end of {} ({} bytes), {} of them past it", bytes, object, size,
+                     address + bytes - size);
+}
+
+}  // namespace
+
+bool MemoryOps::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
+  row.run(warp.regs, inst);
+  lanes_in_.fill(0);
+  seen_.begin_access();
+  const LaneMask exec = warp.regs.exec;
+  bool ok = true;
+  if (row.memory.space != Space::Generic) {
+    lanes_in_[size_t(row.memory.space)] = exec;
+    ok = access(warp, inst, row, row.memory.space, exec);
+  } else {
+    auto& address = warp.regs.access.address;
+    for_each_lane(exec, [&](int lane) {
+      const Space space = isa::space_of(address[size_t(lane)]);
+      lanes_in_[size_t(space)] |= LaneMask{1} << lane;
+      address[size_t(lane)] -= isa::window_of(space);
+    });
+    for (const Space space : {Space::Global, Space::Shared, Space::Local, Space::Const})
+      ok = ok && access(warp, inst, row, space, lanes_in(space));
+  }
+  if (ok) ++warp.simt.pc;
+  return ok;
+}
+
+bool MemoryOps::access(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, Space space,
+                       LaneMask lanes) {
+  if (lanes == 0) return true;
+  switch (space) {
+    case Space::Global:
+    case Space::Shared:
+      return row.effect == Effect::Atomic ? modify(warp, inst, row, space, lanes)
+                                          : move_data(warp, inst, row, space, lanes);
+    case Space::Local:
+      if (row.effect != Effect::Atomic)
+        return local_.access(warp, inst, row, lanes_in_[size_t(Space::Local)]);
+      return refuse(warp, inst, row, space, lanes,
+                    "an atomic on local memory, which no other thread can reach");
+    case Space::Const:
+    case Space::Param:
+      if (row.effect == Effect::Load) return constants_.load(warp, inst, row, space, lanes);
+      return refuse(warp, inst, row, space, lanes,
+                    fmt::format("{} the constant bank, which can only be read", verb_of(row.effect)));
+    case Space::Generic:
+    case Space::None:
+      break;
+  }
+  GLINT_PANIC("{}: no such space", row.name);
+}
+
+// An access that its space does not have: let pass, it does nothing and answers 0.
+bool MemoryOps::refuse(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, Space space,
+                       LaneMask lanes, const std::string& why) {
+  for (LaneMask rest = lanes; rest; rest &= rest - 1)
+    if (!faults_.let_pass(warp, std::countr_zero(rest), FaultKind::OutOfBounds, [&] { return why; }))
+      return false;
+  if (isa::is_destination(row.operands.kind[0])) load_zeros(warp, inst, row.memory, lanes);
+  lanes_in_[size_t(space)] = 0;
+  return true;
+}
+
+// Where the lanes' data lies. Accesses are aligned to their size, as PTX asks. A lane whose access is let
+// pass leaves `lanes` when it is outside. Choice: a misaligned one that is let pass goes to the multiple of
+// its size below.
+bool MemoryOps::locate(WarpContext& warp, const isa::OpRow& row, Space space, LaneMask& lanes,
+                       LanePlaces& at) {
+  const uint32_t bytes = row.memory.bytes * row.memory.count;
+  std::vector<std::byte>& shared = warp.block->shared;
+  for (LaneMask rest = lanes; rest; rest &= rest - 1) {
+    const int lane = std::countr_zero(rest);
+    Address& address = warp.regs.access.address[size_t(lane)];
+    std::byte* place = space == Space::Global             ? world_.memory->find(address, bytes)
+                       : address + bytes <= shared.size() ? shared.data() + address
+                                                          : nullptr;
+    if (!place) [[unlikely]] {
+      const bool is_global = space == Space::Global;
+      const bool is_robust = is_global && world_.robust_buffers && !isa::unbound_place(address);
+      if (!is_robust && !faults_.let_pass(warp, lane, FaultKind::OutOfBounds, [&] {
+            return fmt::format("{} {} bytes at {}{:#x}: {}", verb_of(row.effect), bytes,
+                               is_global ? "" : "shared address ", address,
+                               is_global
+                                   ? whereabouts(*world_.memory, address, bytes)
+                                   : outside_of("the block's shared memory", address, bytes, shared.size()));
+          }))
+        return false;
+      lanes &= ~(LaneMask{1} << lane);
+      continue;
+    }
+    if (const auto beyond = uint32_t(address & (bytes - 1)); beyond) [[unlikely]] {
+      if (!faults_.let_pass(warp, lane, FaultKind::Misaligned, [&] {
+            return fmt::format(
+                "{} {} bytes at {} address {:#x}, which is no multiple of {}{}", verb_of(row.effect), bytes,
+                name_of(space), address, bytes,
+                space == Space::Global ? ": " + whereabouts(*world_.memory, address, bytes) : "");
+          }))
+        return false;
+      address -= beyond;
+      place -= beyond;
+    }
+    at[size_t(lane)] = place;
+  }
+  lanes_in_[size_t(space)] = lanes;
+  return true;
+}
+
+bool MemoryOps::move_data(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, Space space,
+                          LaneMask lanes) {
+  LanePlaces at;
+  LaneMask inside = lanes;
+  if (!locate(warp, row, space, inside, at)) return false;
+  const bool seen = seen_.is_used() && space == Space::Global;
+  if (row.effect == Effect::Store) {
+    changes_ += !seen;
+    seen ? seen_.store(warp, inst, row, inside, at) : store_rows(warp, inst, row.memory, inside, at);
+    return true;
+  }
+  if (seen && seen_.view().touched())
+    seen_.load(warp, inst, row, inside, at);
+  else
+    load_rows(warp, inst, row.memory, inside, at);
+  if (inside != lanes) [[unlikely]]
+    load_zeros(warp, inst, row.memory, lanes & ~inside);
+  return true;
+}
+
+// Lanes take turns, the lowest first. Choice: PTX leaves their order open.
+bool MemoryOps::modify(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, Space space,
+                       LaneMask lanes) {
+  LanePlaces at;
+  LaneMask inside = lanes;
+  if (!locate(warp, row, space, inside, at)) return false;
+  const uint32_t bytes = row.memory.bytes;
+  const bool returns = isa::is_destination(row.operands.kind[0]);
+  const size_t first = returns ? 2 : 1;
+  const bool has_second = row.operands.count > first + 1;
+  if (returns && inside != lanes) [[unlikely]]
+    load_zeros(warp, inst, row.memory, lanes & ~inside);
+  if (seen_.is_used() && space == Space::Global) return seen_.modify(warp, inst, row, inside, at), true;
+  for_each_lane(inside, [&](int lane) {
+    uint64_t old = 0;
+    std::memcpy(&old, at[size_t(lane)], bytes);
+    const uint64_t b = read_operand(warp.regs, inst.operand[first], lane, bytes);
+    const uint64_t c =
+        has_second ? read_operand(warp.regs, inst.operand[first + 1], lane, bytes) : space == Space::Global;
+    const uint64_t value = row.atomic(old, b, c);
+    std::memcpy(at[size_t(lane)], &value, bytes);
+    changes_ += value != old;
+    if (!returns) return;
+    uint32_t* const to = warp.regs.write(inst.operand[0]);
+    to[lane] = uint32_t(old);
+    if (bytes == 8) to[kLanes + lane] = uint32_t(old >> 32);
+  });
+  return true;
+}
+
+}  // namespace glint::exec

@@ -1,0 +1,50 @@
+// Wording of the mistakes of programs that trace rays.
+// SPDX-License-Identifier: Apache-2.0
+#include "exec/ray_faults.h"
+
+#include <fmt/format.h>
+
+#include "exec/hit_records.h"
+#include "rtunit/structure.h"
+
+namespace glint::exec {
+
+bool RayFaults::let_pass_record(const WarpContext& warp, int lane, std::string_view region, uint32_t record,
+                                size_t records, const std::string& how) {
+  return gate_.let_pass(warp, lane, FaultKind::Record, [&] {
+    return fmt::format("needs {} record {}{}: the binding table has {}", region, record, how, records);
+  });
+}
+
+bool RayFaults::let_pass_hit_record(const WarpContext& warp, int lane, const rt::Ray& ray,
+                                    const rt::Hit& hit) {
+  return let_pass_record(
+      warp, lane, "hit", hit_record(world_, ray, hit), world_.hit.size(),
+      fmt::format(" (instance {}'s {} + geometry {} x stride {} + offset {})", hit.instance, hit.sbt_record,
+                  hit.geometry, ray.sbt_stride, ray.sbt_offset));
+}
+
+bool RayFaults::let_pass_structure(const WarpContext& warp, int lane, std::string_view verb,
+                                   Address structure) {
+  return gate_.let_pass(warp, lane, FaultKind::Structure, [&] {
+    return fmt::format("{} {:#x}, which is not a top-level acceleration structure: {}", verb, structure,
+                       whereabouts(*world_.memory, structure, sizeof(rt::StructureHeader)));
+  });
+}
+
+bool RayFaults::let_pass_broken(const WarpContext& warp, int lane, rt::RayState& state) {
+  if (!gate_.let_pass(warp, lane, FaultKind::Structure, [&] {
+        return fmt::format(
+            "traced a ray through {:#x}, an acceleration structure whose bytes lead outside memory: they "
+            "were overwritten: {}",
+            state.ray.structure,
+            whereabouts(*world_.memory, state.ray.structure, sizeof(rt::StructureHeader)));
+      }))
+    return false;
+  state.broken = false;
+  state.committed = {};
+  state.committed.t = state.ray.t_max;
+  return true;
+}
+
+}  // namespace glint::exec

@@ -1,0 +1,35 @@
+// Global memory as the executor of one of several cores reaches it: through the core's view.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "exec/access_rows.h"
+#include "exec/memory_view.h"
+
+namespace glint::exec {
+
+// Without a view effects on global memory happen at once, and only is_used() and is_late() may be called.
+class SeenMemory {
+ public:
+  void use(MemoryView* view) { view_ = view; }
+  bool is_used() const { return view_ != nullptr; }
+  MemoryView& view() { return *view_; }
+
+  // Another access begins.
+  void begin_access() { is_late_ = false; }
+  // Whether the last load or atomic writes its registers only when the view is committed.
+  bool is_late() const { return is_late_; }
+  void be_late(bool is_late) { is_late_ = is_late; }
+
+  // `at`: where the data of each of the lanes lies.
+  void load(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes,
+            const LanePlaces& at);
+  void store(const WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes,
+             const LanePlaces& at);
+  void modify(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes,
+              const LanePlaces& at);
+
+ private:
+  MemoryView* view_ = nullptr;
+  bool is_late_ = false;
+};
+
+}  // namespace glint::exec

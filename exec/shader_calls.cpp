@@ -1,0 +1,167 @@
+// Calls of other shaders: who is called by each lane, one path a distinct shader, and what the end of a
+// shader decides. SPDX-License-Identifier: Apache-2.0
+#include "exec/shader_calls.h"
+
+#include <bit>
+#include <fmt/format.h>
+
+#include "base/num_lanes.h"
+#include "exec/hit_records.h"
+#include "exec/ray_specials.h"
+#include "rtunit/traversal.h"
+
+namespace glint::exec {
+
+using isa::Effect;
+using rt::RayStatus;
+
+bool ShaderCalls::call(WarpContext& warp, Effect effect) {
+  std::array<uint32_t, kLanes> target;
+  if (!call_targets(warp, effect, target)) return false;
+  LaneMask callers = 0;
+  for_each_lane(warp.regs.exec,
+                [&](int lane) { callers |= LaneMask{target[size_t(lane)] != kNoShader} << lane; });
+  const uint32_t calls = call_by_shader(warp, target, callers, false);
+  if (effect != Effect::CallHit) {
+    counts_.calls += calls;
+    counts_.lanes += num_lanes(callers);
+  }
+  return true;
+}
+
+bool ShaderCalls::call_callable(WarpContext& warp, const isa::Inst& inst) {
+  if (warp.callables == world_.max_callable_depth)
+    return faults_.fail(warp, std::countr_zero(warp.regs.exec),
+                        fmt::format("calls a callable shader at depth {}: the pipeline allows {}",
+                                    warp.callables + 1, world_.max_callable_depth));
+  if (warp.callable_frames.size() == warp.callables)
+    warp.callable_frames.push_back(std::make_unique<CallableFrame>());
+  CallableFrame& frame = *warp.callable_frames[warp.callables];
+  std::array<uint32_t, kLanes> target;
+  LaneMask callers = 0;
+  for (LaneMask lanes = warp.regs.exec; lanes; lanes &= lanes - 1) {
+    const int lane = std::countr_zero(lanes);
+    const size_t i = size_t(lane);
+    const uint32_t record = world_.table.callable.number(warp.regs.read(inst.operand[0])[lane]);
+    const bool is_inside = record < world_.callable.size();
+    if (!is_inside && !ray_faults_.let_pass_record(warp, lane, "callable", record, world_.callable.size()))
+        [[unlikely]]
+      return false;
+    target[i] = is_inside ? world_.callable[record] : kNoShader;
+    frame.data[i] = warp.regs.read(inst.operand[1])[lane];
+    frame.record[i] = warp.regs.access.address[i] = world_.table.callable.address(is_inside ? record : 0);
+    callers |= LaneMask{target[i] != kNoShader} << lane;
+  }
+  call_by_shader(warp, target, callers, true);
+  return true;
+}
+
+// As a null group: a candidate of triangles is taken, one of boxes reports nothing. Choice: a record outside
+// of the table, which somebody has let pass, costs what the region's first one costs.
+void ShaderCalls::call_nothing(WarpContext& warp, int lane, rt::RayState& state, Effect effect) {
+  const bool hit = effect != Effect::CallHit || state.committed.valid();
+  warp.regs.access.address[size_t(lane)] = (hit ? world_.table.hit : world_.table.miss).address(0);
+  if (effect == Effect::CallHit) return;
+  if (effect == Effect::CallAnyHit || state.status == RayStatus::NeedsAnyHit)
+    rt::accept_candidate(state);
+  else
+    rt::finish_intersection(state);
+}
+
+// Fills `target` with the shader of each calling lane, or kNoShader: a null shader, decided here at once.
+bool ShaderCalls::call_targets(WarpContext& warp, Effect effect, std::array<uint32_t, kLanes>& target) {
+  for (LaneMask lanes = warp.regs.exec; lanes; lanes &= lanes - 1) {
+    const int lane = std::countr_zero(lanes);
+    const size_t i = size_t(lane);
+    rt::RayState& state = warp.frame().ray[i];
+    if (state.broken && !ray_faults_.let_pass_broken(warp, lane, state)) [[unlikely]]
+      return false;
+    if (state.status == RayStatus::Idle) {  // an empty hit object
+      target[i] = kNoShader;
+      continue;
+    }
+    if (state.status == RayStatus::Gathered &&
+        effect != Effect::CallHit) {  // runs nothing this time, reads no record
+      target[i] = kNoShader;
+      warp.regs.exec &= ~(LaneMask{1} << lane);
+      continue;
+    }
+    const bool hit = effect != Effect::CallHit || state.committed.valid();
+    uint32_t record = world_.table.miss.number(state.ray.miss_index);
+    const HitGroup* group = nullptr;
+    if (hit)
+      group =
+          hit_group(world_, state.ray, effect == Effect::CallHit ? state.committed : state.candidate, record);
+    if (hit ? !group : record >= world_.miss.size()) [[unlikely]] {
+      const bool passes =
+          hit ? ray_faults_.let_pass_hit_record(warp, lane, state.ray,
+                                                effect == Effect::CallHit ? state.committed : state.candidate)
+              : ray_faults_.let_pass_record(warp, lane, "miss", record, world_.miss.size());
+      if (!passes) return false;
+      call_nothing(warp, lane, state, effect);
+      target[i] = kNoShader;
+      continue;
+    }
+    warp.regs.access.address[i] = (hit ? world_.table.hit : world_.table.miss).address(record);
+    if (!hit) {
+      target[i] = world_.miss[record];
+    } else if (effect == Effect::CallHit) {
+      target[i] = state.ray.flags & rt::ray_flag::kSkipClosestHit ? kNoShader : group->closest_hit;
+    } else if (effect == Effect::CallAnyHit || state.status == RayStatus::NeedsAnyHit) {
+      target[i] = group->any_hit;
+      if (target[i] == kNoShader) rt::accept_candidate(state);
+    } else {
+      target[i] = group->intersection;
+      if (target[i] == kNoShader) rt::finish_intersection(state);
+    }
+  }
+  return true;
+}
+
+// Runs the shader of each calling lane, one path a distinct shader, in the order of the lowest lane that
+// calls it.
+uint32_t ShaderCalls::call_by_shader(WarpContext& warp, const std::array<uint32_t, kLanes>& target,
+                                     LaneMask callers, bool is_callable) {
+  SimtStack& simt = warp.simt;
+  const uint32_t caller = world_.image->shader_of[simt.pc];
+  ++simt.pc;
+  if (!callers) return 0;
+  simt.push_call(simt.pc, simt.active & ~callers, warp.depth, caller, warp.callables);
+  if (is_callable) ++warp.callables;
+  uint32_t calls = 0;
+  while (callers) {
+    const uint32_t shader = target[size_t(std::countr_zero(callers))];
+    LaneMask same = 0;
+    for_each_lane(callers, [&](int lane) { same |= LaneMask{target[size_t(lane)] == shader} << lane; });
+    callers &= ~same;
+    const Shader& callee = world_.image->shaders[shader];
+    called_lanes_[size_t(callee.stage)] += num_lanes(same);
+    called_.fire([&] { return Called{warp, callee.stage, same}; });
+    fill_specials(world_, warp, same, callee);
+    if (calls++ == 0) {
+      simt.pc = callee.entry;
+      simt.active = same;
+    } else {
+      simt.push_path(callee.entry, same);
+    }
+  }
+  return calls;
+}
+
+void ShaderCalls::finish_shader(WarpContext& warp, Effect effect) {
+  const isa::Stage stage = world_.image->shaders[world_.image->shader_of[warp.simt.pc]].stage;
+  for_each_lane(warp.regs.exec, [&](int lane) {
+    if (warp.depth == 0) return;
+    rt::RayState& state = warp.frame().ray[size_t(lane)];
+    if (effect == Effect::Ignore)
+      rt::ignore_candidate(state);
+    else if (effect == Effect::Terminate)
+      rt::terminate_candidate(state);
+    else if (stage == isa::Stage::AnyHit)
+      rt::accept_candidate(state);
+    else if (stage == isa::Stage::Intersection)
+      rt::finish_intersection(state);
+  });
+}
+
+}  // namespace glint::exec

@@ -1,0 +1,30 @@
+// Surface ops: loads, stores and atomics of single texels, or of bytes of a row, of the lanes of a warp.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "exec/bound_images.h"
+#include "exec/seen_memory.h"
+#include "exec/texel_list.h"
+
+namespace glint::exec {
+
+class SurfaceOps {
+ public:
+  // `texels`: the list that receives what an op touches.
+  SurfaceOps(const World& world, FaultGate& faults, SeenMemory& seen, BoundImages& images, TexelList& texels)
+      : world_(world), faults_(faults), seen_(seen), images_(images), texels_(texels) {}
+
+  // False after a fault.
+  bool run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
+
+ private:
+  std::byte* find_texel(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, int lane);
+  void run_seen(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, const LanePlaces& place);
+
+  const World& world_;
+  FaultGate& faults_;
+  SeenMemory& seen_;
+  BoundImages& images_;
+  TexelList& texels_;
+};
+
+}  // namespace glint::exec

@@ -1,0 +1,26 @@
+// Texture ops: samples, gathers and fetches of the lanes of a warp, and questions about images.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "exec/bound_images.h"
+#include "exec/texel_list.h"
+
+namespace glint::exec {
+
+// Each function answers false after a fault.
+class TextureOps {
+ public:
+  // `texels`: the list that receives what an op touches.
+  TextureOps(const World& world, FaultGate& faults, BoundImages& images, TexelList& texels)
+      : world_(world), faults_(faults), images_(images), texels_(texels) {}
+
+  bool read(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
+  bool query(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
+
+ private:
+  const World& world_;
+  FaultGate& faults_;
+  BoundImages& images_;
+  TexelList& texels_;
+};
+
+}  // namespace glint::exec
