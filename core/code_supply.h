@@ -1,5 +1,5 @@
-// What feeds a core with instructions and constants where they are not always there: the caches, and their
-// port. SPDX-License-Identifier: Apache-2.0
+// What feeds a core with instructions and constants where they are not always there: its code caches.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
 

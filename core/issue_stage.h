@@ -1,5 +1,5 @@
-// The issue stage of a core: each scheduler chooses a warp, whose instruction is executed and goes to its
-// unit. SPDX-License-Identifier: Apache-2.0
+// The issue stage of a core: schedulers choose warps, whose instructions are executed and go to units.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
 

@@ -1,5 +1,5 @@
-// One scheduler of a core: what the next instruction of each of its warps waits for, and which warps can
-// issue. SPDX-License-Identifier: Apache-2.0
+// One scheduler of a core: what each of its warps waits for, and which warps can issue.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <array>

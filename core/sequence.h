@@ -1,5 +1,5 @@
-// The rest of a sequence: machine instructions that stand for one instruction of the ISA, or precede a
-// kernel. SPDX-License-Identifier: Apache-2.0
+// The rest of a sequence: machine instructions that one ISA instruction stands for, or a kernel's prologue.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 

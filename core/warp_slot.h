@@ -1,5 +1,5 @@
-// One warp slot of a core: the warp that holds it, and what has to happen before its next instruction can
-// issue. SPDX-License-Identifier: Apache-2.0
+// One warp slot of a core: its warp, and what has to happen before the next instruction can issue.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 

@@ -1,5 +1,5 @@
-// Rays that code walks, where a machine has no RT unit: calls the launch's traversal program
-// (exec/traversal_record.h). SPDX-License-Identifier: Apache-2.0
+// Rays that code walks where a machine has no RT unit (exec/traversal_record.h).
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "exec/rays.h"
 #include "exec/shader_calls.h"

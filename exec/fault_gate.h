@@ -1,5 +1,5 @@
-// What happens when a program does something wrong: the run stops, or the mistake is noted and the lane goes
-// on. SPDX-License-Identifier: Apache-2.0
+// What happens when a program does something wrong: the run stops, or the lane goes on.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
 #include <optional>

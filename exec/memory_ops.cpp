@@ -1,5 +1,5 @@
-// Loads, stores and atomics: moving data between a warp's registers and simulated memory, with every access
-// checked. SPDX-License-Identifier: Apache-2.0
+// Loads, stores and atomics: moving data between registers and simulated memory, checking each access.
+// SPDX-License-Identifier: Apache-2.0
 #include "exec/memory_ops.h"
 
 #include <bit>

@@ -1,5 +1,5 @@
-// Ray queries and hit objects are named by number: finding the objects, one a lane, that an instruction
-// names. SPDX-License-Identifier: Apache-2.0
+// Ray queries and hit objects are named by number: finding those that an instruction names.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstdint>

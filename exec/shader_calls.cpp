@@ -1,5 +1,5 @@
-// Calls of other shaders: who is called by each lane, one path a distinct shader, and what the end of a
-// shader decides. SPDX-License-Identifier: Apache-2.0
+// Calls of other shaders: one path for each distinct shader that the lanes call.
+// SPDX-License-Identifier: Apache-2.0
 #include "exec/shader_calls.h"
 
 #include <bit>

@@ -1,5 +1,5 @@
-// Calls of other shaders through the binding table: call.sbt.*, and what a called shader decides when it
-// ends. SPDX-License-Identifier: Apache-2.0
+// Calls of other shaders through the binding table, and what a called shader decides at its end.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 
