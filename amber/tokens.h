@@ -1,6 +1,7 @@
 // Holds the words of an Amber script, line by line.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <string>
 
 #include "base/diagnostics.h"

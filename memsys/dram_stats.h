@@ -29,7 +29,12 @@ struct DramStats {
   DramStats(stats::Group* parent, double bytes_per_clock)
       : group(parent, "dram"),
         activates_per_kb(
-            &group, "activates_per_kb", "command/KB", [=, this] { return per_kb(bytes_per_clock); },
+            &group, "activates_per_kb", "command/KB",
+            [this, bytes_per_clock] {
+              return busy_clocks.value()
+                         ? double(activates.value()) * 1000 / (double(busy_clocks.value()) * bytes_per_clock)
+                         : 0.0;
+            },
             "Rows opened for each 1000 bytes of data.") {}
   stats::Group group;
   stats::Counter reads{&group, "reads", "request", "Read requests whose column command was issued."};
@@ -77,10 +82,6 @@ struct DramStats {
   stats::Value activates_per_kb;
 
  private:
-  double per_kb(double bytes_per_clock) const {
-    const double bytes = double(busy_clocks.value()) * bytes_per_clock;
-    return bytes > 0 ? double(activates.value()) * 1000 / bytes : 0.0;
-  }
   double p99() const {
     uint64_t total = 0, sum = 0;
     for (const uint64_t n : queue_latency.counts()) total += n;
