@@ -1,6 +1,9 @@
 // Compiles a script's shader to a program.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "amber/script.h"

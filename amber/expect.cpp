@@ -3,10 +3,14 @@
 #include "amber/expect.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <fmt/format.h>
+#include <utility>
 
 namespace glint::amber {
 namespace {

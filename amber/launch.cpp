@@ -3,8 +3,10 @@
 #include "amber/launch.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <fmt/format.h>
+#include <span>
 
 #include "amber/declared_binding.h"
 #include "exec/block.h"

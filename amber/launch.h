@@ -2,6 +2,9 @@
 // resources back.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+#include <vector>
+
 #include "amber/compile.h"
 #include "exec/fault.h"
 #include "exec/print_log.h"

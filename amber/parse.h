@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <fmt/format.h>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "amber/script.h"
 #include "amber/tokens.h"

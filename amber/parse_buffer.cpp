@@ -1,7 +1,10 @@
 // Reads BUFFER, IMAGE, STRUCT and SAMPLER: types, sizes and first contents.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
+#include <memory>
+#include <optional>
 
 #include "amber/parse.h"
 #include "pipeline/description/pictures.h"

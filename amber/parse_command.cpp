@@ -1,5 +1,8 @@
 // Reads RUN, EXPECT, COPY and REPEAT.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+#include <optional>
+
 #include "amber/parse.h"
 
 namespace glint::amber {

@@ -1,6 +1,7 @@
 // Reads PIPELINE and DERIVE_PIPELINE: shaders, groups, tables and bindings.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 
 #include "amber/parse.h"

@@ -1,5 +1,7 @@
 // Reads ACCELERATION_STRUCTURE: geometries of bottom levels and instances of top levels.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+
 #include "amber/parse.h"
 
 namespace glint::amber {

@@ -3,7 +3,10 @@
 #include "amber/run.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <fmt/format.h>
+#include <map>
 
 #include "amber/expect.h"
 #include "pipeline/software_traversal.h"

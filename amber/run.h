@@ -1,6 +1,7 @@
 // Runs a script and says whether it passed.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 

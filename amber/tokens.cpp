@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "amber/tokens.h"
 
+#include <algorithm>
 #include <cstring>
 #include <fmt/format.h>
 

@@ -3,6 +3,8 @@
 #include "base/config.h"
 
 #include <fmt/format.h>
+#include <optional>
+#include <utility>
 
 #define TOML_EXCEPTIONS 1
 #include <set>

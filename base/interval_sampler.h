@@ -2,6 +2,7 @@
 // cycles.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <utility>
 #include <vector>

@@ -1,6 +1,8 @@
 // Counts the lanes of a mask without needing an instruction that not every machine has.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+
 #include "base/types.h"
 
 namespace glint {

@@ -1,6 +1,7 @@
 // How fast the memory system simulates: accesses a second of host time, by where they are served.
 // SPDX-License-Identifier: Apache-2.0
 #include <benchmark/benchmark.h>
+#include <cstdint>
 #include <random>
 #include <vector>
 

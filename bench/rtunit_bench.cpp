@@ -1,6 +1,9 @@
 // Node visits a second of the functional traversal and of the timed RT unit.
 // SPDX-License-Identifier: Apache-2.0
 #include <benchmark/benchmark.h>
+#include <cstdint>
+#include <string>
+#include <vector>
 
 #include "tests/support/rt_launch.h"
 

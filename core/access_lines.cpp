@@ -3,6 +3,7 @@
 #include "core/access_lines.h"
 
 #include <bit>
+#include <cstdint>
 
 namespace glint::core {
 

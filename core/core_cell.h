@@ -1,6 +1,7 @@
 // One core: warp slots, schedulers and units, wired together and taken through time.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>

@@ -1,8 +1,10 @@
 // Everything that a core counts: statistics, instructions by op, latencies and, when asked for, a profile.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/core_stats.h"

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "base/stats.h"
 #include "core/stall.h"

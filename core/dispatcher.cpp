@@ -3,6 +3,7 @@
 #include "core/dispatcher.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace glint::core {
 

@@ -3,6 +3,7 @@
 #include "core/instruction_fetch.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/params.h"
 

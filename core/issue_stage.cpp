@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/issue_stage.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "core/barrier_unit.h"

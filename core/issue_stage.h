@@ -1,6 +1,7 @@
 // The issue stage of a core: schedulers choose warps, whose instructions are executed and go to units.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <optional>
 
 #include "core/core_parts.h"

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <tuple>
 
 #include "base/diagnostics.h"
 #include "base/params.h"

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/warp_slots.h"
 
+#include <algorithm>
+
 #include "base/check.h"
 
 namespace glint::core {

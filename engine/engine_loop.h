@@ -1,9 +1,11 @@
 // Takes cells and channels through simulated time, window by window, on one thread or several.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/types.h"

@@ -5,6 +5,8 @@
 #include <bit>
 #include <fmt/format.h>
 #include <map>
+#include <string>
+#include <utility>
 
 #include "base/num_lanes.h"
 #include "exec/launch.h"

@@ -1,6 +1,8 @@
 // Barriers: warps of a block that wait for each other, and what becomes of warps that wait in vain.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+
 #include "exec/fault_gate.h"
 #include "isa/op_row.h"
 

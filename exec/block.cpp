@@ -3,6 +3,7 @@
 #include "exec/block.h"
 
 #include <bit>
+#include <cstddef>
 
 #include "base/check.h"
 

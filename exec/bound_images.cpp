@@ -3,6 +3,8 @@
 #include "exec/bound_images.h"
 
 #include <fmt/format.h>
+#include <string>
+#include <string_view>
 
 #include "isa/image_access.h"
 

@@ -1,6 +1,8 @@
 // Rays that code walks where a machine has no RT unit (exec/traversal_record.h).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+
 #include "exec/rays.h"
 #include "exec/shader_calls.h"
 

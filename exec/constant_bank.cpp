@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstring>
 #include <fmt/format.h>
+#include <string>
 
 #include "exec/access_rows.h"
 #include "exec/access_words.h"

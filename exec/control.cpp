@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/control.h"
 
+#include <array>
 #include <bit>
+#include <cstdint>
 #include <fmt/format.h>
+#include <utility>
 
 #include "base/check.h"
 #include "exec/ray_specials.h"

@@ -1,6 +1,8 @@
 // Control flow: branches, calls and returns, regions whose lanes meet again, and ends.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+
 #include "exec/code_traversal.h"
 
 namespace glint::exec {

@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <fmt/format.h>
+#include <memory>
 
 #include "base/check.h"
 #include "exec/prints.h"

@@ -1,6 +1,7 @@
 // Executes instructions of a warp: the one place where an effect meets memory, control flow and rays.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <optional>
 
 #include "base/probe.h"

@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <fmt/format.h>
+#include <utility>
 
 #include "exec/launch.h"
 

@@ -1,6 +1,7 @@
 // What happens when a program does something wrong: the run stops, or the lane goes on.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>

@@ -1,6 +1,8 @@
 // Hit objects: ho.*, what a ray has found or a shader has made up, kept until its shader is executed.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+
 #include "exec/rays.h"
 
 namespace glint::exec {

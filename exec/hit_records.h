@@ -1,6 +1,8 @@
 // Which record of the shader binding table belongs to a hit (Vulkan, "Hit Shader Binding Table Indexing").
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+
 #include "exec/image.h"
 #include "rtunit/ray.h"
 

@@ -3,6 +3,7 @@
 #include "exec/launch.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "exec/ray_specials.h"
 

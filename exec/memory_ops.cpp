@@ -3,8 +3,10 @@
 #include "exec/memory_ops.h"
 
 #include <bit>
+#include <cstddef>
 #include <cstring>
 #include <fmt/format.h>
+#include <vector>
 
 #include "base/check.h"
 #include "exec/access_words.h"

@@ -1,6 +1,7 @@
 // Mistakes of programs that trace rays: records outside of the binding table, and structures that are none.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <string>
 #include <string_view>
 

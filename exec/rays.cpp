@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <fmt/format.h>
+#include <memory>
 #include <utility>
 
 #include "base/check.h"

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/seen_memory.h"
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 
 namespace glint::exec {

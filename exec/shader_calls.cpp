@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <fmt/format.h>
+#include <memory>
 
 #include "base/num_lanes.h"
 #include "exec/hit_records.h"

@@ -1,6 +1,8 @@
 // Surface ops: loads, stores and atomics of single texels, or of bytes of a row, of the lanes of a warp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
+
 #include "exec/bound_images.h"
 #include "exec/seen_memory.h"
 #include "exec/texel_list.h"

@@ -1,6 +1,7 @@
 // Declares the frontend's public interface: GLSL or SPIR-V in, isa::Program out.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>

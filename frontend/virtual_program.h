@@ -1,6 +1,7 @@
 // Holds the code between lowering and register allocation: ISA ops over unlimited virtual registers.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>

@@ -6,6 +6,7 @@
 // says otherwise. Only isa/ops/*.cpp include this file.
 #pragma once
 #include <cstdint>
+#include <type_traits>
 
 #include "isa/half.h"
 #include "isa/integer_kernels.h"

@@ -6,6 +6,8 @@
 // (test "every value op gives the same bits on every path"). Rows of floats and words are 64-byte aligned.
 // Only isa/ops/*.cpp include this file (see op_makers.h).
 #pragma once
+#include <cstdint>
+
 #include "isa/conversions.h"
 #include "isa/half.h"
 

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cctype>
 #include <fmt/format.h>
+#include <utility>
 
 namespace glint::isa {
 namespace {

@@ -5,6 +5,9 @@
 // namespace of its path, and rows pass lambdas of an unnamed namespace, so no path can link another path's
 // code.
 #pragma once
+#include <array>
+#include <cstdint>
+#include <string_view>
 #include <tuple>
 #include <type_traits>
 #include <utility>

@@ -1,6 +1,7 @@
 // Gives tests and the reference the op table as compiled for each SIMD path, and its families.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <span>
 #include <string_view>
 

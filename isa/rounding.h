@@ -6,6 +6,8 @@
 // isa/ops/*.cpp include this file.
 #pragma once
 #include <cstdint>
+#include <string_view>
+#include <tuple>
 #include <xmmintrin.h>
 
 #include "isa/op_makers.h"

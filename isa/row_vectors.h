@@ -5,6 +5,7 @@
 // It is used where no compiler finds the instruction: conversions, and rounding with a direction in the
 // instruction. Only isa/ops/*.cpp include this file (see op_makers.h). It is empty on paths without AVX-512.
 #pragma once
+#include <cstdint>
 #include <type_traits>
 
 #include "isa/op_makers.h"

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/text.h"
 
+#include <cmath>
 #include <fmt/format.h>
 #include <map>
 #include <set>
+#include <vector>
 
 #include "isa/literals.h"
 #include "isa/op_row.h"

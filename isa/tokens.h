@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cctype>
+#include <cstdint>
 #include <fmt/format.h>
 #include <string>
 #include <string_view>

@@ -1,7 +1,10 @@
 // What a cache counts, by traffic class: the same words for L1 and L2.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <bit>
+#include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "base/stats.h"
 #include "memsys/line_table.h"

@@ -3,7 +3,10 @@
 #include "memsys/l1_cache.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <fmt/format.h>
+#include <optional>
+#include <string>
 #include <utility>
 
 namespace glint::mem {

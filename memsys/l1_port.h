@@ -1,6 +1,7 @@
 // The door between a core's units and its L1 data cache.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <string>
 

@@ -3,6 +3,7 @@
 #include "memsys/l2_slice.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <fmt/format.h>
 #include <utility>
 

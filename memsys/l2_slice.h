@@ -1,7 +1,9 @@
 // A slice of the L2: a cache with ports into the network, in front of its partition's DRAM channel.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/stats.h"

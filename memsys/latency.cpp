@@ -3,6 +3,7 @@
 #include "memsys/latency.h"
 
 #include <fmt/format.h>
+#include <string_view>
 
 namespace glint::mem {
 namespace {

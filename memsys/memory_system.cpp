@@ -3,6 +3,7 @@
 #include "memsys/memory_system.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <fmt/format.h>
 #include <utility>
 

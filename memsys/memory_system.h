@@ -1,6 +1,7 @@
 // The whole memory system of a machine: every core's L1, the network, every partition.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <vector>
 

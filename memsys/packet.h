@@ -3,6 +3,7 @@
 #pragma once
 #include <algorithm>
 #include <bit>
+#include <cstdint>
 
 #include "base/types.h"
 #include "memsys/l1_port.h"

@@ -1,6 +1,7 @@
 // A memory partition: a DRAM channel with the L2 slices in front of it, a cell of its own.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>

@@ -3,6 +3,7 @@
 #include "pipeline/binding_table.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <fmt/format.h>
 

@@ -3,6 +3,8 @@
 #include "pipeline/conservation.h"
 
 #include <fmt/format.h>
+#include <string_view>
+#include <utility>
 
 #include "pipeline/timing_machine.h"
 

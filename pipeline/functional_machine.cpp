@@ -3,6 +3,7 @@
 #include "pipeline/functional_machine.h"
 
 #include <memory>
+#include <vector>
 
 #include "base/num_lanes.h"
 #include "rtunit/traversal.h"

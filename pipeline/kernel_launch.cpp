@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <map>
+#include <utility>
 
 #include "base/diagnostics.h"
 #include "exec/block.h"

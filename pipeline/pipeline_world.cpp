@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cstring>
 #include <fmt/format.h>
+#include <span>
+#include <tuple>
+#include <utility>
 
 #include "exec/block.h"
 #include "isa/descriptors.h"

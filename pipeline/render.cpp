@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/render.h"
 
+#include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "pipeline/functional_machine.h"
 #include "pipeline/run_costs.h"

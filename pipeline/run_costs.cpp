@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/run_costs.h"
 
+#include <utility>
+
 #include "base/num_lanes.h"
 #include "pipeline/timing_machine.h"
 

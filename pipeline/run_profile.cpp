@@ -3,6 +3,7 @@
 #include "pipeline/run_profile.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "isa/text.h"
 #include "pipeline/timing_machine.h"

@@ -1,6 +1,7 @@
 // Watching a timing run: what each instruction cost, and how the machine was used as time went by.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <vector>
 
 #include "base/profile_table.h"

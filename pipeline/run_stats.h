@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
+#include <utility>
 
 #include "base/stats.h"
 #include "pipeline/functional_machine.h"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <tuple>
 
 #include "base/diagnostics.h"
 #include "pipeline/run_profile.h"

@@ -3,9 +3,12 @@
 #include "pipeline/scene_world.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <filesystem>
 #include <fmt/format.h>
+#include <span>
+#include <utility>
 
 #include "base/check.h"
 #include "pipeline/binding_table.h"

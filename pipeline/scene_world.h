@@ -2,6 +2,11 @@
 // table.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+#include <set>
+#include <string>
+#include <vector>
+
 #include "pipeline/render.h"
 #include "pipeline/unbound.h"
 #include "rtunit/build.h"

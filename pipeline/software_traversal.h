@@ -2,6 +2,7 @@
 // records.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <vector>
 
 #include "exec/image.h"

@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/structure_cache.h"
 
+#include <cstdint>
 #include <cstring>
 #include <fmt/format.h>
+#include <optional>
+#include <span>
+#include <string_view>
 #include <type_traits>
 
 namespace glint::pipeline {

@@ -1,6 +1,7 @@
 // Bottom-level structures built before, found again by the geometry they were built of.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <string>
 
 #include "base/file_store.h"

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/timing_machine.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 #include "pipeline/check_params.h"

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstring>
 #include <fmt/format.h>
+#include <string>
+#include <vector>
 
 #include "isa/descriptors.h"
 

@@ -2,8 +2,10 @@
 // names them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "exec/image.h"
 #include "frontend/spirv/reflection.h"

@@ -3,7 +3,9 @@
 #include "rtunit/build_tree.h"
 
 #if __has_include(<embree4/rtcore.h>)  // Ubuntu 24.04; building is the same in both
+#include <cstdint>
 #include <embree4/rtcore.h>
+#include <vector>
 #else
 #include <embree3/rtcore.h>
 #endif

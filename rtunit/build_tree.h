@@ -1,6 +1,7 @@
 // The shape of a tree over boxes, by Embree's surface-area-heuristic builder.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <span>
 
 #include "rtunit/node_format.h"

@@ -3,7 +3,10 @@
 #pragma once
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
+#include <span>
+#include <vector>
 
 #include "rtunit/box_test.h"
 #include "rtunit/layout.h"

@@ -2,6 +2,7 @@
 // section 3.1).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>

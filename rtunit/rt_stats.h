@@ -1,7 +1,9 @@
 // What an RT unit counts.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <iterator>
+#include <string_view>
 
 #include "base/stats.h"
 

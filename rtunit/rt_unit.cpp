@@ -3,6 +3,8 @@
 #include "rtunit/rt_unit.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstring>
 
 #include "base/check.h"
 #include "base/num_lanes.h"

@@ -1,6 +1,7 @@
 // What an RT unit sends to its L1: nodes, results, entries of candidate tables.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <bit>
 
 #include "base/check.h"
 #include "base/num_lanes.h"

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/traversal.h"
 
+#include <bit>
 #include <cmath>
+#include <cstring>
 #include <tuple>
 
 #include "base/check.h"

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include "rtunit/build_tree.h"
 #include "rtunit/node_format.h"

@@ -3,10 +3,13 @@
 #include "scenes/instancing.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <fmt/format.h>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "scenes/mesh.h"
 

@@ -1,5 +1,7 @@
 // Times of ops `by_unit`: every op has the latency and the interval of its unit.
 // SPDX-License-Identifier: Apache-2.0
+#include <tuple>
+
 #include "core/op_times.h"
 
 namespace glint::core {

@@ -1,5 +1,7 @@
 // Times of ops `hopper`: where an op of an H200 differs from its unit, as microbenchmarks measured it.
 // SPDX-License-Identifier: Apache-2.0
+#include <tuple>
+
 #include "core/op_times.h"
 
 namespace glint::core {

@@ -1,5 +1,7 @@
 // Times of ops `vulkan_sim`: that simulator's table of PTX opcodes, and the pipeline around it.
 // SPDX-License-Identifier: Apache-2.0
+#include <tuple>
+
 #include "core/op_times.h"
 
 namespace glint::core {

@@ -1,5 +1,9 @@
 // Issue policy `cggty`: stay with the warp issued last while it is ready, else take the youngest ready warp.
 // SPDX-License-Identifier: Apache-2.0
+#include <bit>
+#include <string_view>
+#include <tuple>
+
 #include "core/issue_scheduler.h"
 
 namespace glint::core {

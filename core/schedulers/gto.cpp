@@ -1,5 +1,9 @@
 // Issue policy `gto`: stay with the warp issued last while it is ready, else take the oldest ready warp.
 // SPDX-License-Identifier: Apache-2.0
+#include <bit>
+#include <string_view>
+#include <tuple>
+
 #include "core/issue_scheduler.h"
 
 namespace glint::core {

@@ -1,5 +1,9 @@
 // Issue policy `lrr`: loose round robin, the next ready warp after the one issued last.
 // SPDX-License-Identifier: Apache-2.0
+#include <bit>
+#include <string_view>
+#include <tuple>
+
 #include "core/issue_scheduler.h"
 
 namespace glint::core {

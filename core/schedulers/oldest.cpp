@@ -1,5 +1,9 @@
 // Issue policy `oldest`: always the ready warp that was launched first.
 // SPDX-License-Identifier: Apache-2.0
+#include <bit>
+#include <string_view>
+#include <tuple>
+
 #include "core/issue_scheduler.h"
 
 namespace glint::core {

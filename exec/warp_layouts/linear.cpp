@@ -1,5 +1,8 @@
 // Warp layout `linear`: 32 consecutive launch indices, warp after warp.
 // SPDX-License-Identifier: Apache-2.0
+#include <string_view>
+#include <tuple>
+
 #include "exec/warp_layout.h"
 
 namespace glint::exec {

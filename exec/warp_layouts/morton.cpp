@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <bit>
+#include <string_view>
+#include <tuple>
 
 #include "exec/warp_layout.h"
 

@@ -1,5 +1,8 @@
 // Warp layout `tile_8x4`: warps are tiles of 8 by 4 threads, row after row of tiles.
 // SPDX-License-Identifier: Apache-2.0
+#include <string_view>
+#include <tuple>
+
 #include "exec/warp_layout.h"
 
 namespace glint::exec {

@@ -5,6 +5,7 @@
 #include "frontend/backend/allocate.h"
 
 #include <algorithm>
+#include <array>
 #include <bitset>
 #include <limits>
 

@@ -1,6 +1,7 @@
 // Allocates registers by graph colouring with coalescing. Values that do not fit are spilled to the frame.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <vector>
 
 #include "frontend/backend/slots.h"

@@ -3,6 +3,9 @@
 #include "frontend/backend/branches.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
 
 namespace glint::frontend {
 namespace {

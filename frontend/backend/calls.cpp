@@ -3,8 +3,10 @@
 #include "frontend/backend/calls.h"
 
 #include <algorithm>
+#include <array>
 #include <bitset>
 #include <map>
+#include <utility>
 
 #include "base/check.h"
 #include "frontend/backend/liveness.h"

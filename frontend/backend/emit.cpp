@@ -3,6 +3,7 @@
 #include "frontend/backend/emit.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <set>
 
 #include "base/check.h"

@@ -2,7 +2,10 @@
 // labels.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <map>
+#include <utility>
+#include <vector>
 
 #include "frontend/backend/allocate.h"
 

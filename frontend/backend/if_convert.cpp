@@ -3,6 +3,10 @@
 #include "frontend/backend/if_convert.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
 
 namespace glint::frontend {
 namespace {

@@ -4,6 +4,7 @@
 #include "frontend/backend/liveness.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/check.h"
 #include "frontend/backend/slots.h"

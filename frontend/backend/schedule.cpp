@@ -3,6 +3,7 @@
 #include "frontend/backend/schedule.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "frontend/backend/liveness.h"
 

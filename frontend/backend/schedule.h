@@ -2,6 +2,8 @@
 // registers.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+
 #include "frontend/backend/slots.h"
 
 namespace glint::frontend {

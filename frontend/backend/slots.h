@@ -3,6 +3,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
 
 #include "frontend/virtual_program.h"
 

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/backend/spill.h"
 
+#include <cstdint>
 #include <utility>
 
 namespace glint::frontend {

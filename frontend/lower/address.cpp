@@ -1,5 +1,7 @@
 // Lowers comparisons and differences of pointers as addresses, and hints to optimisers that compute nothing.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+
 #include "frontend/lower/lowering.h"
 
 namespace glint::frontend {

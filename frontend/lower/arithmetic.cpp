@@ -1,6 +1,8 @@
 // Lowers arithmetic and bit operations part by part, and dot and matrix products as multiplies and adds in
 // order.
 // SPDX-License-Identifier: Apache-2.0
+#include <utility>
+
 #include "frontend/lower/lowering.h"
 #include "frontend/lower/typed.h"
 

@@ -1,6 +1,8 @@
 // Lowers atomic reads, writes and changes of memory and of texels, and barriers.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
 #include <fmt/format.h>
+#include <utility>
 
 #include "frontend/lower/lowering.h"
 #include "frontend/lower/typed.h"

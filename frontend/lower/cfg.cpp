@@ -4,6 +4,7 @@
 #include "frontend/lower/cfg.h"
 
 #include <algorithm>
+#include <cstdint>
 
 #include "base/check.h"
 

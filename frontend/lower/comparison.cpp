@@ -1,5 +1,7 @@
 // Lowers comparisons and logic, whose results are predicates.
 // SPDX-License-Identifier: Apache-2.0
+#include <utility>
+
 #include "frontend/lower/lowering.h"
 #include "frontend/lower/typed.h"
 

@@ -1,6 +1,9 @@
 // Lowers ops that pick and join parts of vectors, structs, arrays and matrices. They emit no code, except for
 // dynamic component indices.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+#include <utility>
+
 #include "frontend/lower/lowering.h"
 
 namespace glint::frontend {

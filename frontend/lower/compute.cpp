@@ -1,6 +1,10 @@
 // Lowers built-ins of compute shaders and subgroups: the position of the invocation in its warp, block and
 // grid.
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cstdint>
+#include <optional>
+
 #include "frontend/lower/lowering.h"
 
 namespace glint::frontend {

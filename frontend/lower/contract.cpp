@@ -1,7 +1,10 @@
 // Fuses products and sums into one op where the shader's author lets the compiler choose.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "frontend/lower/lowering.h"
 

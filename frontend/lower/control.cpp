@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <fmt/format.h>
+#include <string_view>
 
 #include "base/check.h"
 #include "frontend/lower/cfg.h"

@@ -1,6 +1,8 @@
 // Lowers conversions between types of numbers, and of bits between shapes.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
 #include <fmt/format.h>
+#include <utility>
 
 #include "frontend/lower/lowering.h"
 #include "frontend/lower/typed.h"

@@ -1,6 +1,8 @@
 // Removes instructions whose results are never needed. It marks backwards from effects over all definitions.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cstdint>
+#include <string_view>
 
 #include "frontend/lower/lowering.h"
 

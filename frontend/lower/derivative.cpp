@@ -4,6 +4,9 @@
 #include "frontend/lower/derivative.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <span>
+#include <utility>
 
 #include "frontend/lower/scan.h"
 #include "frontend/lower/typed.h"

@@ -1,5 +1,7 @@
 // Lowers dot products of integers: products at full width are summed in 64 bits, then cut or saturated.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+
 #include "frontend/lower/lowering.h"
 #include "frontend/lower/typed.h"
 

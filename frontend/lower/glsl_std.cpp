@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <spirv/unified1/GLSL.std.450.h>
+#include <string_view>
+#include <utility>
 
 #include "frontend/lower/lowering.h"
 #include "frontend/lower/math.h"

@@ -3,6 +3,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/hit_object.h"
 
+#include <utility>
+
 #include "frontend/lower/lowering.h"
 
 namespace glint::frontend {

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower/image.h"
 
+#include <cstdint>
 #include <fmt/format.h>
+#include <span>
+#include <utility>
 
 namespace glint::frontend {
 

@@ -2,9 +2,11 @@
 // it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "frontend/lower/lowering.h"
 

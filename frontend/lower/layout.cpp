@@ -3,6 +3,8 @@
 #include "frontend/lower/layout.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <utility>
 
 namespace glint::frontend {
 

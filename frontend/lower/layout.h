@@ -1,6 +1,7 @@
 // Describes how SPIR-V types become scalar parts, and where each part lies in memory.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <map>
 #include <set>
 #include <vector>

@@ -6,11 +6,14 @@
 // value 0, so that one run finds all unsupported ops; lower_to_virtual() then throws.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <vector>
 

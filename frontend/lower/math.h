@@ -1,6 +1,8 @@
 // Builds elementary functions as sequences of ISA ops, and states their errors.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <vector>
+
 #include "frontend/lower/typed.h"
 
 namespace glint::frontend::math {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <fmt/format.h>
+#include <utility>
 
 #include "frontend/lower/lowering.h"
 #include "isa/descriptors.h"

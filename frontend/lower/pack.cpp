@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower/pack.h"
 
+#include <cstdint>
+
 namespace glint::frontend::pack {
 namespace {
 

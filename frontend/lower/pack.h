@@ -1,6 +1,8 @@
 // Packs floats into words: normalised 8- and 16-bit integers, and half floats.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <vector>
+
 #include "frontend/lower/emitter.h"
 
 namespace glint::frontend::pack {

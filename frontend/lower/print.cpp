@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <fmt/format.h>
+#include <utility>
 
 #include "base/diagnostics.h"
 #include "frontend/lower/lowering.h"

@@ -3,6 +3,7 @@
 #include "frontend/lower/query_calls.h"
 
 #include <utility>
+#include <vector>
 
 #include "isa/op_row.h"
 

@@ -1,6 +1,8 @@
 // Lowers ray queries (SPV_KHR_ray_query): each instruction becomes one ISA op, or one op for each scalar of
 // its result.
 // SPDX-License-Identifier: Apache-2.0
+#include <utility>
+
 #include "frontend/lower/lowering.h"
 #include "frontend/spirv/known_positions.h"
 #include "frontend/spirv/spirv.h"

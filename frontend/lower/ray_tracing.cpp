@@ -1,6 +1,7 @@
 // Lowers ray tracing: traces, reports and built-ins, as the shader ABI defines them.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <utility>
 
 #include "frontend/lower/lowering.h"
 #include "frontend/spirv/known_positions.h"

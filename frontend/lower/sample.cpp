@@ -1,6 +1,7 @@
 // Lowers filtered reads of images: samples with levels, gradients, offsets and references, and gathers.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <span>
 
 #include "frontend/lower/derivative.h"
 #include "frontend/lower/image.h"

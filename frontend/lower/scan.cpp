@@ -4,6 +4,7 @@
 #include "frontend/lower/scan.h"
 
 #include <bit>
+#include <cstdint>
 #include <limits>
 
 #include "frontend/lower/typed.h"

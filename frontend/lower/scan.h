@@ -1,7 +1,9 @@
 // Combines values over lanes: all lanes of a warp, of a cluster or of a partition, or those up to each lane.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <optional>
+#include <string_view>
 
 #include "frontend/lower/lowering.h"
 

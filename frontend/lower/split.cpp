@@ -1,5 +1,7 @@
 // Takes floats apart and puts them together: ldexp, frexp, modf.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+
 #include "frontend/lower/math.h"
 
 namespace glint::frontend::math {

@@ -3,6 +3,8 @@
 //
 // No result is reused or folded, because other lanes may execute at another place in the code.
 // SPDX-License-Identifier: Apache-2.0
+#include <utility>
+
 #include "frontend/lower/lowering.h"
 #include "frontend/lower/scan.h"
 #include "frontend/lower/typed.h"

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower/typed.h"
 
+#include <cstdint>
+
 namespace glint::frontend {
 namespace {
 

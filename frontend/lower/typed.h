@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "frontend/lower/emitter.h"
 #include "frontend/lower/layout.h"

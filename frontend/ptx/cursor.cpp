@@ -1,7 +1,9 @@
 // Reads constant expressions and operands.
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
+#include <cstdint>
 #include <fmt/format.h>
+#include <string_view>
 #include <utility>
 
 #include "frontend/ptx/parser.h"

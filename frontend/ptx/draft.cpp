@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/ptx/draft.h"
 
+#include <utility>
+
 namespace glint::frontend::ptx {
 namespace {
 

@@ -1,6 +1,7 @@
 // Holds a kernel as a graph of blocks with explicit ends, before diverging lanes are told where to meet.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 

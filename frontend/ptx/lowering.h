@@ -1,9 +1,12 @@
 // Lowers one kernel from its text to a graph of blocks, with the functions that it calls inlined.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/diagnostics.h"

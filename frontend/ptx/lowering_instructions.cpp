@@ -1,6 +1,7 @@
 // Lowers instructions. Most of them are one row of the table; some need several rows or other operands.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cstddef>
 #include <fmt/format.h>
 
 #include "frontend/ptx/lowering.h"

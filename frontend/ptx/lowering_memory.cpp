@@ -1,5 +1,6 @@
 // Lowers loads, stores and atomics, and parameters of functions, which are registers.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstddef>
 #include <fmt/format.h>
 
 #include "frontend/ptx/lowering.h"

@@ -3,8 +3,10 @@
 #include "frontend/ptx/machine.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "frontend/backend/def_use.h"
 

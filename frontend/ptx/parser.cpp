@@ -2,9 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/ptx/parser.h"
 
+#include <array>
 #include <bit>
+#include <cstdint>
 #include <fmt/format.h>
 #include <map>
+#include <optional>
+#include <string_view>
+#include <utility>
 
 namespace glint::frontend::ptx {
 

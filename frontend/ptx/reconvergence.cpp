@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "frontend/ptx/draft.h"
 #include "frontend/ptx/flow_graph.h"

@@ -1,8 +1,10 @@
 // Finds the row of the ISA table that means the same as the words of a PTX opcode.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "frontend/ptx/syntax.h"

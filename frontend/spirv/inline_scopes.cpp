@@ -3,6 +3,7 @@
 #include "frontend/spirv/inline_scopes.h"
 
 #include <algorithm>
+#include <initializer_list>
 #include <map>
 #include <set>
 #include <span>

@@ -2,12 +2,14 @@
 // lines.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
 #include <spirv/unified1/spirv.hpp11>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "isa/program.h"

@@ -3,6 +3,7 @@
 #include "frontend/spirv/reflection.h"
 
 #include <algorithm>
+#include <string_view>
 
 #include "base/diagnostics.h"
 #include "frontend/compile.h"

@@ -10,6 +10,7 @@
 #include <map>
 #include <spirv-tools/libspirv.hpp>
 #include <spirv/unified1/spirv.hpp11>
+#include <string_view>
 
 #include "frontend/compile.h"
 #include "frontend/spirv/known_positions.h"

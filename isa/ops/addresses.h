@@ -1,6 +1,8 @@
 // Holds the handlers of loads, stores and atomics, which form addresses.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+
 #include "isa/op_makers.h"
 
 namespace glint::isa::GLINT_ISA_PATH {

@@ -1,5 +1,7 @@
 // Defines bit fields, counts, permutations and three-input logic.
 // SPDX-License-Identifier: Apache-2.0
+#include <string_view>
+
 #include "isa/integer_kernels.h"
 #include "isa/ops/families.h"
 #include "isa/ops/row_tables.h"

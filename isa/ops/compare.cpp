@@ -1,5 +1,7 @@
 // Defines comparisons of integers.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+
 #include "isa/ops/comparisons.h"
 #include "isa/ops/families.h"
 

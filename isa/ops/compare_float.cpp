@@ -1,5 +1,7 @@
 // Defines comparisons of floats. A comparison with a NaN is false, except for relations that end in u.
 // SPDX-License-Identifier: Apache-2.0
+#include <string_view>
+
 #include "isa/half.h"
 #include "isa/ops/comparisons.h"
 #include "isa/ops/families.h"

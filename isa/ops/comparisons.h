@@ -5,6 +5,9 @@
 // Only isa/ops/*.cpp include this file. Everything is in an unnamed namespace, so each file has its own
 // handlers.
 #pragma once
+#include <cstdint>
+#include <string_view>
+
 #include "isa/ops/row_tables.h"
 
 namespace glint::isa::GLINT_ISA_PATH {

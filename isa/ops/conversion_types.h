@@ -1,6 +1,9 @@
 // Defines the types of conversion rows: bytes in registers of 32 bits, and floats under their PTX names.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+#include <type_traits>
+
 #include "isa/conversions.h"
 #include "isa/ops/modifiers.h"
 #include "isa/ops/row_tables.h"

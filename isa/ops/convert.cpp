@@ -1,5 +1,7 @@
 // Defines conversions between integers of 8 to 64 bits.
 // SPDX-License-Identifier: Apache-2.0
+#include <string_view>
+
 #include "isa/ops/conversion_types.h"
 #include "isa/ops/families.h"
 

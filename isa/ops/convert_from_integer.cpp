@@ -1,5 +1,7 @@
 // Defines conversions of integers to floats, rounded in any direction.
 // SPDX-License-Identifier: Apache-2.0
+#include <string_view>
+
 #include "isa/ops/conversion_types.h"
 #include "isa/ops/families.h"
 #include "isa/rounding.h"

@@ -1,5 +1,8 @@
 // Defines floats of 16 bits, alone and in pairs: f16 and bf16 arithmetic, rounded once; min, max, signs.
 // SPDX-License-Identifier: Apache-2.0
+#include <string_view>
+#include <type_traits>
+
 #include "isa/half_rows.h"
 #include "isa/ops/families.h"
 #include "isa/ops/modifiers.h"

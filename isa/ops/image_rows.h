@@ -1,6 +1,9 @@
 // Defines parts of the rows of texture and surface ops: names of geometries, operands, the handler.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+#include <string_view>
+
 #include "isa/ops/row_tables.h"
 
 namespace glint::isa::GLINT_ISA_PATH {

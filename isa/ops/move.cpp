@@ -1,5 +1,7 @@
 // Defines ops that copy: moves, selections, and the packing of registers.
 // SPDX-License-Identifier: Apache-2.0
+#include <string_view>
+
 #include "isa/integer_kernels.h"
 #include "isa/ops/families.h"
 #include "isa/ops/row_tables.h"

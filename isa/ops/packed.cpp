@@ -1,5 +1,7 @@
 // Defines ops on all bytes or half words of a register: dot products, pairs of 16-bit integers, video ops.
 // SPDX-License-Identifier: Apache-2.0
+#include <string_view>
+
 #include "isa/integer_kernels.h"
 #include "isa/ops/families.h"
 #include "isa/ops/modifiers.h"

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/ray_query.h"
 
+#include <string_view>
+
 #include "isa/ops/families.h"
 #include "isa/ops/row_tables.h"
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <cstdint>
+#include <type_traits>
 
 #include "isa/op_makers.h"
 

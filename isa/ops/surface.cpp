@@ -1,5 +1,7 @@
 // Defines surface ops: loads, stores and atomics of single texels of storage images.
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+
 #include "isa/ops/families.h"
 #include "isa/ops/image_rows.h"
 

@@ -1,6 +1,8 @@
 // Defines texture ops: filtered fetches, texel fetches, gathers and queries. Their handlers pass the handle
 // to the texture unit.
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+
 #include "isa/ops/families.h"
 #include "isa/ops/image_rows.h"
 

@@ -1,5 +1,6 @@
 // Policy: strictly in order of arrival over all banks (FCFS): the baseline that FR-FCFS is measured against.
 // SPDX-License-Identifier: Apache-2.0
+#include <tuple>
 #include <vector>
 
 #include "base/registry.h"

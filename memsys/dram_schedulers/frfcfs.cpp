@@ -1,5 +1,6 @@
 // Policy: row hits first, then the oldest (FR-FCFS; Rixner et al., ISCA 2000).
 // SPDX-License-Identifier: Apache-2.0
+#include <tuple>
 #include <vector>
 
 #include "base/registry.h"

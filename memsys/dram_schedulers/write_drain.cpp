@@ -2,6 +2,7 @@
 // often.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <tuple>
 #include <vector>
 
 #include "base/registry.h"

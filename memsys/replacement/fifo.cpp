@@ -1,5 +1,9 @@
 // Replacement `fifo`: the line that came first makes way, however often it is used.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+#include <span>
+#include <tuple>
+
 #include "base/registry.h"
 #include "memsys/replacement/slot_order.h"
 

@@ -1,5 +1,9 @@
 // Replacement `lru`: the line that has gone unused for longest makes way.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+#include <span>
+#include <tuple>
+
 #include "base/registry.h"
 #include "memsys/replacement/slot_order.h"
 

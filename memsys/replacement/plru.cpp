@@ -1,6 +1,7 @@
 // Replacement `plru`: a binary tree of bits over the ways points at a line that was not used lately.
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
+#include <tuple>
 #include <vector>
 
 #include "base/registry.h"

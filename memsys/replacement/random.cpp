@@ -1,5 +1,6 @@
 // Replacement `random`: any line of the set makes way, drawn from a seeded sequence.
 // SPDX-License-Identifier: Apache-2.0
+#include <tuple>
 #include <vector>
 
 #include "base/registry.h"

@@ -1,6 +1,8 @@
 // The slots of each set in an order from newest to oldest: what `lru` and `fifo` keep.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "memsys/replacement.h"

@@ -1,6 +1,7 @@
 // Replacement `srrip`: lines are used again soon or late, and a line that is expected latest makes way.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <tuple>
 #include <vector>
 
 #include "base/registry.h"

@@ -1,6 +1,10 @@
 // What the shaders ask for against what the description gives: every difference names both places.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include "pipeline/description/modules.h"
 
 namespace glint::pipeline {

@@ -3,6 +3,7 @@
 #include "pipeline/description/data.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <fmt/format.h>
 #include <fstream>

@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/description/defaults.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
+#include <cstdint>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <utility>
 
 #include "pipeline/description/modules.h"
 

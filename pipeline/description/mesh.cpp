@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/description/mesh.h"
 
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fmt/format.h>

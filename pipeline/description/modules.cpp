@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iterator>
 #include <regex>
+#include <utility>
 
 #include "exec/image.h"
 #include "frontend/spirv/spirv.h"

@@ -1,9 +1,11 @@
 // The shaders of a description, compiled: programs, what each asks for, and where in its text.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "frontend/spirv/reflection.h"

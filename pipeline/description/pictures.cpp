@@ -3,9 +3,11 @@
 #include "pipeline/description/pictures.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <fmt/format.h>
+#include <optional>
 
 #include "pipeline/description/data.h"
 #include "scenes/import/picture_decoder.h"

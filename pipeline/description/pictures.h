@@ -1,7 +1,10 @@
 // Texels of a described image: from files, or made up; converted to its format, with its smaller levels.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <string>
 #include <vector>
 
 #include "exec/image_view.h"

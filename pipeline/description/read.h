@@ -1,6 +1,8 @@
 // The steps of reading a description, one a family of tables.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <string>
+
 #include "pipeline/description/description.h"
 
 namespace glint::pipeline {

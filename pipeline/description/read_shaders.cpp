@@ -1,7 +1,11 @@
 // Reading of shaders, groups, records, constants, launch and machine.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <fmt/format.h>
+#include <utility>
+#include <vector>
 
 #include "pipeline/description/read.h"
 

@@ -1,9 +1,13 @@
 // Reading of acceleration structures: bottom levels, top levels and their instances.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <fmt/format.h>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "pipeline/description/read.h"
 

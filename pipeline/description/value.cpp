@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <utility>
 
 #define TOML_EXCEPTIONS 1
 #include <algorithm>

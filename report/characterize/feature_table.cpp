@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "base/diagnostics.h"
 #include "report/files/csv_field.h"

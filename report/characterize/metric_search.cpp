@@ -3,7 +3,10 @@
 #include "report/characterize/metric_search.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <iterator>
 #include <random>
+#include <utility>
 
 namespace glint::report {
 namespace {

@@ -3,9 +3,11 @@
 #include "report/files/annotate.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <fmt/format.h>
 #include <map>
+#include <utility>
 
 #include "report/files/profile_files.h"
 

@@ -1,6 +1,7 @@
 // A run's programs as GLSL, SPIR-V and ISA, with what each line cost beside it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/config_rows.h"
 
+#include <algorithm>
 #include <map>
 #include <sstream>
 #include <string_view>
+#include <utility>
 
 namespace glint::report {
 namespace {

@@ -3,6 +3,7 @@
 #include "report/files/csv_table.h"
 
 #include <fmt/format.h>
+#include <utility>
 
 #include "base/diagnostics.h"
 

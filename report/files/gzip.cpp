@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/gzip.h"
 
+#include <utility>
 #include <zlib.h>
 
 #include "base/check.h"

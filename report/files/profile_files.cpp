@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdint>
 #include <fmt/format.h>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "base/diagnostics.h"
 #include "report/files/csv_field.h"

@@ -1,6 +1,7 @@
 // The files of a profile and of a time series: tables for spreadsheets, stacks for flame graphs.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 

@@ -3,9 +3,11 @@
 #include "report/files/source_files.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <fmt/format.h>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "base/diagnostics.h"
 

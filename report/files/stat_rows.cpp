@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/stat_rows.h"
 
+#include <cstdint>
 #include <fmt/format.h>
 #include <set>
 #include <string_view>
+#include <utility>
 
 namespace glint::report {
 namespace {

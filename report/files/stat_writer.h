@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
+#include <tuple>
 
 #include "base/registry.h"
 #include "base/stats.h"

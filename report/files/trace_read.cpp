@@ -1,8 +1,11 @@
 // Reading a window of a trace back for the timeline of the report.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cstddef>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <tuple>
+#include <utility>
 
 #include "base/diagnostics.h"
 #include "report/files/gzip.h"

@@ -1,6 +1,7 @@
 // Statistics as a JSON tree: groups are objects, a statistic is {"value", "unit", "doc"}.
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
 
 #include "base/check.h"

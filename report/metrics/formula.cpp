@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <numeric>
 #include <string_view>
+#include <utility>
 
 #include "base/diagnostics.h"
 

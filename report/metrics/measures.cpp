@@ -3,9 +3,11 @@
 #include "report/metrics/measures.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <map>
+#include <utility>
 
 #include "base/diagnostics.h"
 

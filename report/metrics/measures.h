@@ -1,6 +1,7 @@
 // The columns of annotated source: what can be shown of a line's cost.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 

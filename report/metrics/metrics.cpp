@@ -3,6 +3,7 @@
 #include "report/metrics/metrics.h"
 
 #include <fmt/format.h>
+#include <utility>
 
 #include "report/files/csv_field.h"
 #include "report/metrics/formula.h"

@@ -3,6 +3,7 @@
 #include "report/page/rows.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <tuple>

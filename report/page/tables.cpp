@@ -3,6 +3,7 @@
 #include "report/page/tables.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <string_view>

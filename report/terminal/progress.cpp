@@ -3,6 +3,7 @@
 #include "report/terminal/progress.h"
 
 #include <fmt/format.h>
+#include <utility>
 
 namespace glint::report {
 namespace {

@@ -2,6 +2,7 @@
 // at a time.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
+#include <bit>
 #include <tuple>
 
 #include "base/num_lanes.h"

@@ -1,6 +1,8 @@
 // Mode `immediate`: a ray stops at each candidate, its shader runs, and the ray goes on, shorter by what was
 // accepted.
 // SPDX-License-Identifier: Apache-2.0
+#include <tuple>
+
 #include "base/check.h"
 #include "base/registry.h"
 #include "rtunit/any_hit_mode.h"

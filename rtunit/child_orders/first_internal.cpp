@@ -1,6 +1,8 @@
 // Child order `first_internal`: down the first internal child, the others from the last to the first, as
 // Vulkan-Sim 2.0 walks.
 // SPDX-License-Identifier: Apache-2.0
+#include <tuple>
+
 #include "base/registry.h"
 #include "rtunit/child_order.h"
 

@@ -1,5 +1,7 @@
 // Child order `index_order`: as the children lie in the node, for a unit that cannot sort.
 // SPDX-License-Identifier: Apache-2.0
+#include <tuple>
+
 #include "base/registry.h"
 #include "rtunit/child_order.h"
 

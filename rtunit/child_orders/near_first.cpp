@@ -1,5 +1,7 @@
 // Child order `near_first`: by distance, as hardware that sorts its hits does.
 // SPDX-License-Identifier: Apache-2.0
+#include <tuple>
+
 #include "base/registry.h"
 #include "rtunit/child_order.h"
 

@@ -1,5 +1,7 @@
 // Coalescing `across_warps`: all lanes in the unit that wait to ask for the same node share its fetch.
 // SPDX-License-Identifier: Apache-2.0
+#include <tuple>
+
 #include "base/registry.h"
 #include "rtunit/coalescer.h"
 

@@ -1,5 +1,7 @@
 // Coalescing `each_lane`: every lane fetches for itself.
 // SPDX-License-Identifier: Apache-2.0
+#include <tuple>
+
 #include "base/registry.h"
 #include "rtunit/coalescer.h"
 

@@ -1,6 +1,8 @@
 // Coalescing `within_warp`: lanes of a warp that want the same node share its fetch, as in the published
 // simulators.
 // SPDX-License-Identifier: Apache-2.0
+#include <tuple>
+
 #include "base/registry.h"
 #include "rtunit/coalescer.h"
 

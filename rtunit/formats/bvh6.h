@@ -2,6 +2,9 @@
 // simulators have it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
+#include <cstdint>
+
 #include "rtunit/quantised_boxes.h"
 
 namespace glint::rt {

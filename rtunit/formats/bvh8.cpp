@@ -2,6 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/formats/bvh8.h"
 
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <tuple>
+
 #include "base/registry.h"
 
 namespace glint::rt {

@@ -1,6 +1,9 @@
 // Node format `bvh8`: 80-byte nodes of eight boxes in 8 bits a plane (Ylitie, Karras, Laine 2017).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
+#include <cstdint>
+
 #include "rtunit/quantised_boxes.h"
 
 namespace glint::rt {

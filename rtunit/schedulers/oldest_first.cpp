@@ -1,5 +1,7 @@
 // Policy `oldest_first`: the warp that entered the RT unit first sends first, as the published simulators do.
 // SPDX-License-Identifier: Apache-2.0
+#include <tuple>
+
 #include "base/registry.h"
 #include "rtunit/ray_scheduler.h"
 

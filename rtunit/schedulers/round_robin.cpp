@@ -1,5 +1,7 @@
 // Policy `round_robin`: resident warps take turns at the request port.
 // SPDX-License-Identifier: Apache-2.0
+#include <tuple>
+
 #include "base/registry.h"
 #include "rtunit/ray_scheduler.h"
 

@@ -1,5 +1,7 @@
 // Stack model `full`: every entry of a ray is on chip.
 // SPDX-License-Identifier: Apache-2.0
+#include <tuple>
+
 #include "base/registry.h"
 #include "rtunit/stack_model.h"
 

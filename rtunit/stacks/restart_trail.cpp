@@ -1,6 +1,8 @@
 // Stack model `restart_trail`: a short stack that forgets its oldest entries and finds them again from the
 // root.
 // SPDX-License-Identifier: Apache-2.0
+#include <tuple>
+
 #include "base/registry.h"
 #include "rtunit/stack_model.h"
 

@@ -1,6 +1,8 @@
 // Stack model `short_stack`: the top of the stack is on chip, the rest in local memory, moved a sector at a
 // time.
 // SPDX-License-Identifier: Apache-2.0
+#include <tuple>
+
 #include "base/registry.h"
 #include "rtunit/stack_model.h"
 

@@ -3,7 +3,11 @@
 #include "scenes/generate/distance_field.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
 
 namespace glint::scenes {
 namespace {

@@ -1,6 +1,7 @@
 // Solids as signed distances (negative inside), and their surfaces as triangles: the clay of the stand-ins.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <functional>
 
 #include "scenes/mesh.h"

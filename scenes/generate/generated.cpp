@@ -4,6 +4,7 @@
 #include "scenes/generate/generated.h"
 
 #include <algorithm>
+#include <cstdint>
 
 namespace glint::scenes {
 

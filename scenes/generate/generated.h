@@ -2,6 +2,7 @@
 // of triangles.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <string>
 #include <utility>
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <vector>
 
 #include "scenes/generate/distance_field.h"
 #include "scenes/generate/solids.h"

@@ -1,6 +1,8 @@
 // Textures that are generated: stone, bricks, planks, panels, cloth, bark and leaves.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+
 #include "scenes/scene.h"
 
 namespace glint::scenes {

@@ -1,6 +1,7 @@
 // Trees, bushes, grass, flowers and hair with a budget of triangles, for scenes that are generated.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <functional>
 
 #include "scenes/generate/solids.h"

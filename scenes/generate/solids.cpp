@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "scenes/generate/distance_field.h"
 #include "scenes/generate/tubes.h"

@@ -1,6 +1,7 @@
 // Solids with a budget of triangles, for scenes that are generated: what they look like at any density.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <random>
 #include <span>

@@ -3,6 +3,7 @@
 #include "scenes/generate/tubes.h"
 
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 namespace glint::scenes {

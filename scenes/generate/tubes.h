@@ -1,6 +1,7 @@
 // Simple solids for built-in scenes: boxes, turned bodies, ropes and cloth, with normals.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <span>
 

@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "base/diagnostics.h"
 #include "scenes/import/obj_loader.h"

@@ -1,6 +1,7 @@
 // A scene made of all the OBJ files of a folder, one model a file, with its rules of colours by file name.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/import/gltf_materials.h"
 
+#include <cstdint>
 #include <map>
 #include <tiny_gltf.h>
 #include <tuple>
+#include <utility>
 
 #include "scenes/lumibench/builders.h"
 

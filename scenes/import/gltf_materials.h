@@ -1,6 +1,7 @@
 // Materials and textures of a glTF file as LumiBench's few models know them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 

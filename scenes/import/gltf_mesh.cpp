@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/import/gltf_mesh.h"
 
+#include <array>
 #include <cstring>
 #include <fmt/format.h>
 #include <tiny_gltf.h>
+#include <utility>
 
 #include "base/diagnostics.h"
 #include "scenes/mesh.h"

@@ -1,7 +1,9 @@
 // Triangles of a glTF mesh: accessors of any stride and type as vertices and indices.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "scenes/scene.h"
 

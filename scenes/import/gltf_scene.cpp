@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 #include <map>
 #include <stdexcept>
+#include <string_view>
 #include <tiny_gltf.h>
+#include <utility>
 
 #include "base/diagnostics.h"
 #include "scenes/import/gltf_materials.h"

@@ -3,13 +3,16 @@
 #include "scenes/import/obj_loader.h"
 
 #include <algorithm>
+#include <bit>
 #include <cctype>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <tiny_obj_loader.h>
 #include <unordered_map>
+#include <utility>
 
 #include "base/diagnostics.h"
 #include "scenes/import/texture_loader.h"

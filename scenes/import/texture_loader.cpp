@@ -3,6 +3,7 @@
 #include "scenes/import/texture_loader.h"
 
 #include <filesystem>
+#include <utility>
 
 #include "base/diagnostics.h"
 #include "scenes/import/picture_decoder.h"

@@ -1,6 +1,9 @@
 // The scenes' own constructors, one a file; load_scene (scenes/scene.h) is the door for everybody else.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+#include <vector>
+
 #include "scenes/scene.h"
 
 namespace glint::scenes {

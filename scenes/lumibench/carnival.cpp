@@ -1,5 +1,7 @@
 // CRNVL: a fairground with a big wheel, a carousel, tents and strings of lamps, one structure.
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+
 #include "scenes/generate/generated.h"
 #include "scenes/generate/solids.h"
 #include "scenes/import/asset_folder.h"

@@ -1,5 +1,7 @@
 // The Cornell box of LumiBench's indoor scenes, and CORNELL: the box alone, Glint's own small test scene.
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+
 #include "scenes/lumibench/builders.h"
 #include "scenes/mesh.h"
 

@@ -1,5 +1,7 @@
 // FOX: a fox's head in thick fur among flowers, against the sky.
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+
 #include "scenes/generate/generated.h"
 #include "scenes/generate/plants.h"
 #include "scenes/import/asset_folder.h"

@@ -1,5 +1,7 @@
 // BUNNY and REF: the Cornell box with a large mesh in it, plain or with mirror walls and a glass sphere.
 // SPDX-License-Identifier: Apache-2.0
+#include <utility>
+
 #include "scenes/import/obj_loader.h"
 #include "scenes/lumibench/builders.h"
 #include "scenes/mesh.h"

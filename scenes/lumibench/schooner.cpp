@@ -1,8 +1,10 @@
 // SHIP's built-in form: a two-masted schooner of long thin triangles, with the original's bounds and budget.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "scenes/generate/tubes.h"
 #include "scenes/lumibench/builders.h"

@@ -1,5 +1,7 @@
 // SHIP: a schooner against the sky, from the original file or built in.
 // SPDX-License-Identifier: Apache-2.0
+#include <utility>
+
 #include "scenes/import/obj_loader.h"
 #include "scenes/lumibench/builders.h"
 #include "scenes/mesh.h"

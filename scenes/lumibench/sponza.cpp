@@ -1,6 +1,7 @@
 // SPNZA: a colonnaded hall with two floors of arches, curtains and textured walls, one structure.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 #include <random>
+#include <utility>
 
 #include "scenes/generate/uniform_float.h"
 #include "scenes/lumibench/builders.h"

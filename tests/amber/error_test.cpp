@@ -1,5 +1,8 @@
 // Tests scripts that are wrong, and scripts that ask for what Glint lacks. Each error names its line.
 // SPDX-License-Identifier: Apache-2.0
+#include <utility>
+#include <vector>
+
 #include "tests/amber/support.h"
 #include "tests/support/catch.h"
 

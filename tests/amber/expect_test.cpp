@@ -1,5 +1,7 @@
 // Tests expectations that do not hold: what the message says and which line it names.
 // SPDX-License-Identifier: Apache-2.0
+#include <utility>
+
 #include "tests/amber/support.h"
 #include "tests/support/catch.h"
 

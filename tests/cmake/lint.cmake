@@ -1,7 +1,7 @@
 # Rules about the sources; each rule is a test, so that a failure says which.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 set(lint ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/lint/lint.py)
-foreach(rule layers layout sizes headers readmes doc_paths wording semantics)
+foreach(rule layers layout includes sizes headers readmes doc_paths wording semantics)
   add_test(NAME lint_${rule} COMMAND ${lint} ${rule} ${PROJECT_SOURCE_DIR})
 endforeach()
 add_test(NAME lint_notices_violations

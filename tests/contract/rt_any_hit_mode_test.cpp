@@ -1,5 +1,8 @@
 // Every registered any-hit mode keeps the promises of rtunit/any_hit_mode.h.
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <bit>
+
 #include "base/registry.h"
 #include "rtunit/any_hit_mode.h"
 #include "rtunit/traversal.h"

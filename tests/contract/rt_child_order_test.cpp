@@ -1,5 +1,8 @@
 // Every registered child order keeps the promises of rtunit/child_order.h.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <initializer_list>
+
 #include "base/registry.h"
 #include "rtunit/child_order.h"
 #include "tests/support/catch.h"

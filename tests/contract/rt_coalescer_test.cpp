@@ -1,5 +1,7 @@
 // Every registered coalescing policy keeps the promises of rtunit/coalescer.h.
 // SPDX-License-Identifier: Apache-2.0
+#include <bit>
+
 #include "base/registry.h"
 #include "rtunit/coalescer.h"
 #include "tests/support/catch.h"

@@ -1,6 +1,11 @@
 // In every registered node format a ray finds what testing every primitive finds, to the bit, under all of
 // Vulkan's flags.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
 #include "base/registry.h"
 #include "rtunit/validate.h"
 #include "tests/support/catch.h"

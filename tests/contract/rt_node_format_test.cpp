@@ -1,5 +1,7 @@
 // Every registered node format keeps the promises of rtunit/node_format.h.
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cstring>
 #include <map>
 
 #include "base/diagnostics.h"

@@ -1,5 +1,8 @@
 // Whatever the RT unit's policies and limits are, its rays find what the functional traversal finds.
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cstdint>
+
 #include "base/registry.h"
 #include "tests/support/catch.h"
 #include "tests/support/rt_brute.h"

@@ -1,5 +1,6 @@
 // The RT unit keeps the promises of rtunit/rt_port.h, under every scheduler.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
 #include <map>
 
 #include "base/registry.h"

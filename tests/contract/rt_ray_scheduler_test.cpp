@@ -1,5 +1,7 @@
 // Every registered ray scheduler keeps the promises of rtunit/ray_scheduler.h.
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+
 #include "base/registry.h"
 #include "rtunit/ray_scheduler.h"
 #include "tests/support/catch.h"

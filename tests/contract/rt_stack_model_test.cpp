@@ -1,5 +1,6 @@
 // Every registered stack model keeps the promises of rtunit/stack_model.h.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <set>
 
 #include "base/registry.h"

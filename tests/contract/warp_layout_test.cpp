@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include "core/params.h"
 #include "exec/executor.h"

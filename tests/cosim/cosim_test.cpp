@@ -1,5 +1,6 @@
 // Both machines in step: every warp retires the same instructions with the same results.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstring>
 #include <fmt/format.h>
 #include <vector>

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/faults/faults.h"
 
+#include <cstdint>
 #include <fmt/format.h>
 
 #include "base/diagnostics.h"

@@ -1,6 +1,8 @@
 // What a mistake should do: stop the run with a message, or be noted and give zeros, alike on both machines.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>

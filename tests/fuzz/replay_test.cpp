@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <vector>
 
 #include "tests/fuzz/entry.h"
 #include "tests/support/catch.h"

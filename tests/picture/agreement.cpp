@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <iostream>
+#include <memory>
 #include <unistd.h>
 
 #include "pipeline/structure_cache.h"

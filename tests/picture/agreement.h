@@ -1,6 +1,7 @@
 // How well Glint's picture of a scene agrees with the reference renderer's.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 

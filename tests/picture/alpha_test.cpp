@@ -1,5 +1,7 @@
 // Textures and any-hit shaders, end to end: rays pass where the texture's alpha is exactly zero.
 // SPDX-License-Identifier: Apache-2.0
+#include <utility>
+
 #include "pipeline/render.h"
 #include "tests/support/catch.h"
 #include "tests/support/small_jobs.h"

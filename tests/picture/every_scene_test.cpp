@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 #include "tests/picture/agreement.h"
 #include "tests/support/catch.h"

@@ -1,6 +1,8 @@
 // Pictures of scenes whose copies are shared, and of a scene with instances, masks and textures of every
 // kind.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 

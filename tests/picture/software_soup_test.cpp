@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstring>
 #include <iterator>
+#include <string_view>
 
 #include "pipeline/binding_table.h"
 #include "pipeline/functional_machine.h"

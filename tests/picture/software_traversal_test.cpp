@@ -1,5 +1,8 @@
 // Rays walked in code: the pictures of the RT unit, bit for bit, and what cannot be asked for.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+#include <string_view>
+
 #include "base/diagnostics.h"
 #include "tests/support/catch.h"
 #include "tests/support/small_jobs.h"

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/cache.h"
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <filesystem>

@@ -1,6 +1,7 @@
 // Provides the recorded inputs and outputs of the calibration kernels, which lie next to the repository.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>

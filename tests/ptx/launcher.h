@@ -1,6 +1,7 @@
 // Runs kernels from PTX text on either machine, with buffers on the host's side, for tests.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <string>
 #include <vector>
 

@@ -1,5 +1,6 @@
 // Tests where lanes meet again in loops whose turns have several ways through and several ways out.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
 #include <fmt/format.h>
 
 #include "tests/ptx/launcher.h"

@@ -4,8 +4,11 @@
 // Geometry i of the tree is model i. Spheres are user geometry whose candidates tests/reference/shapes.cpp
 // decides; the exact intersector treats triangles in the same way.
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
+#include <memory>
 
 #include "base/check.h"
 #include "tests/reference/surface.h"

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/reference/reference.h"
 
+#include <cmath>
+
 #include "base/check.h"
 #include "tests/reference/surface.h"
 

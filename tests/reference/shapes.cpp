@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cfloat>
+#include <cmath>
+#include <utility>
 
 #include "tests/reference/intersector.h"
 

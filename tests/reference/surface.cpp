@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/reference/surface.h"
 
+#include <array>
+#include <cmath>
+
 #include "tests/reference/texture.h"
 
 namespace glint::reference {

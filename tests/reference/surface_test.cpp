@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/reference/surface.h"
 
+#include <cstdint>
+
 #include "tests/reference/texture.h"
 #include "tests/support/catch.h"
 

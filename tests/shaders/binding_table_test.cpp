@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/binding_table.h"
 
+#include <algorithm>
+
 #include "base/diagnostics.h"
 #include "tests/shaders/ray_lab.h"
 #include "tests/support/catch.h"

@@ -3,7 +3,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/shaders/builtin_reference.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 namespace glint::test {

@@ -2,6 +2,7 @@
 // allows.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <string_view>
 
 #include "tests/shaders/bounded.h"

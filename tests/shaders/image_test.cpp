@@ -1,5 +1,6 @@
 // Tests what each kind of image access gives, with textures whose texels tell where they lie.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <bit>
 
 #include "tests/shaders/compute_lab.h"

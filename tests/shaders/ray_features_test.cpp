@@ -1,6 +1,8 @@
 // Tests callables, data of records, nested any-hit decisions, ends of rays, the vendor's forms, and hit
 // objects.
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+
 #include "tests/shaders/lane_checks.h"
 #include "tests/support/catch.h"
 

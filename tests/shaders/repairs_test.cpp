@@ -1,6 +1,7 @@
 // Tests how the optimiser is helped: lengths of arrays that are 0 by default, any-hit shaders that end in
 // continue constructs, and queries of levels.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <bit>
 #include <cmath>
 

@@ -1,6 +1,7 @@
 // Tests shaders of every stage with rays: payloads, built-ins, recursion, reports, any-hit decisions, the
 // binding table.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <functional>
 
 #include "tests/shaders/lane_checks.h"

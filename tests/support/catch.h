@@ -3,6 +3,7 @@
 #pragma once
 #if __has_include(<catch2/catch_all.hpp>)
 #include <catch2/catch_all.hpp>
+#include <string>
 namespace Catch {  // the names of 2.13
 using Matchers::Equals, Matchers::StartsWith;
 inline auto Contains(const std::string& text) {

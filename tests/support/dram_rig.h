@@ -1,6 +1,7 @@
 // Drives one DRAM channel by bank and row, for tests of its timing.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <map>
 #include <utility>
 

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <cstdint>
 #include <deque>
 #include <fmt/format.h>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "memsys/l1_port.h"

@@ -2,9 +2,17 @@
 // boxes around it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <deque>
+#include <string>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include "rtunit/box_test.h"
 #include "rtunit/node_format.h"

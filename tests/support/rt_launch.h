@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
 #include <deque>
+#include <vector>
 
 #include "rtunit/rt_unit.h"
 #include "tests/support/fixed_latency_memory.h"

@@ -1,8 +1,10 @@
 // Random scenes for the RT unit's tests: a deterministic generator, soups of triangles, transforms.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "memsys/address_space.h"

@@ -1,6 +1,7 @@
 // Frames small enough to run in a test.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <string>
 
 #include "pipeline/render.h"

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/cell_pool.h"
 
+#include <algorithm>
+#include <chrono>
 #include <stdexcept>
 
 #include "engine/engine_loop.h"

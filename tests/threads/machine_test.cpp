@@ -1,6 +1,7 @@
 // The whole timing machine on several threads: the same bytes and numbers, whoever runs which cell for how
 // long at a time.
 // SPDX-License-Identifier: Apache-2.0
+#include <bit>
 #include <cstring>
 
 #include "pipeline/scene_world.h"

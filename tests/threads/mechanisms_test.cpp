@@ -1,6 +1,7 @@
 // Every preset, and every mechanism that keeps time of its own: stepping, skipping and threads give the same
 // machine.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <functional>
 
 #include "pipeline/scene_world.h"

@@ -1,5 +1,7 @@
 // When blocks, barriers, shared memory, atomics and fences let a warp go on: to the cycle.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+
 #include "tests/support/catch.h"
 #include "tests/unit/core/one_core.h"
 

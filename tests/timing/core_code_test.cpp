@@ -1,5 +1,7 @@
 // A core whose instructions and constants have to come first, to the cycle.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+
 #include "tests/support/catch.h"
 #include "tests/unit/core/one_core.h"
 

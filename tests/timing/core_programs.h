@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
+#include <cstdint>
 
 #include "tests/unit/core/one_core.h"
 

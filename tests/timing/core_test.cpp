@@ -1,5 +1,8 @@
 // When a core issues: latencies, intervals, hazards and stalls, to the cycle.
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <vector>
+
 #include "tests/support/catch.h"
 #include "tests/timing/core_programs.h"
 

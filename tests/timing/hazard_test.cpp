@@ -1,6 +1,8 @@
 // Hazards beside the reading of results: registers that memory instructions still read, the order of writes,
 // register banks.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+
 #include "tests/support/catch.h"
 #include "tests/unit/core/one_core.h"
 

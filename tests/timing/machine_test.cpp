@@ -1,6 +1,8 @@
 // Both machines over a whole frame: no mechanism of a core and no layout of threads changes a picture, nor do
 // skipping and threads cycles.
 // SPDX-License-Identifier: Apache-2.0
+#include <vector>
+
 #include "exec/warp_layout.h"
 #include "tests/support/catch.h"
 #include "tests/support/small_jobs.h"

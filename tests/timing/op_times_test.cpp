@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <functional>
+#include <utility>
 
 #include "isa/op_row.h"
 #include "tests/support/catch.h"

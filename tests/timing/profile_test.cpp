@@ -1,5 +1,8 @@
 // Whom a core's cycles are charged to, and what a core says that waits forever.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+#include <utility>
+
 #include "base/diagnostics.h"
 #include "tests/support/catch.h"
 #include "tests/unit/core/one_core.h"

@@ -1,5 +1,9 @@
 // A mixture of everything on a core: stepping and skipping are equal, every cycle has a reason.
 // SPDX-License-Identifier: Apache-2.0
+#include <string_view>
+#include <utility>
+#include <vector>
+
 #include "tests/support/catch.h"
 #include "tests/timing/core_programs.h"
 

@@ -1,5 +1,7 @@
 // Random structured programs, lane by lane against the interpreter.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <exception>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>

@@ -1,5 +1,6 @@
 // Random expressions over all exact ops, bit by bit against the interpreter.
 // SPDX-License-Identifier: Apache-2.0
+#include <exception>
 #include <fmt/format.h>
 
 #include "tests/support/catch.h"

@@ -5,6 +5,8 @@
 #include <bit>
 #include <fmt/format.h>
 #include <spirv/unified1/GLSL.std.450.h>
+#include <string_view>
+#include <utility>
 
 #include "frontend/spirv/spirv.h"
 #include "tests/torture/spirv_writer.h"

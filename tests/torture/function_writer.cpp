@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/torture/function_writer.h"
 
+#include <cstdint>
+#include <vector>
+
 namespace glint::test::torture {
 
 using enum spv::Op;

@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
+#include <cstdint>
 #include <deque>
+#include <map>
+#include <utility>
+#include <vector>
 
 #include "tests/torture/spirv_writer.h"
 #include "tests/torture/tree.h"

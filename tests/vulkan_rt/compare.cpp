@@ -3,8 +3,10 @@
 #include "tests/vulkan_rt/compare.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstdint>
 #include <fmt/format.h>
 
 namespace glint::vulkan_rt {

@@ -1,5 +1,6 @@
 // The recorded conformance set, its shaders unchanged: every ray of every mode, and the picture.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fmt/format.h>

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/bench/view.h"
 
+#include <cstdint>
 #include <cstdio>
 #include <fmt/format.h>
 

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/annotate.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>

@@ -1,6 +1,8 @@
 // Latencies and bandwidths of memory: pointer chases by footprint, conflicts, coalescing, streams, atomics.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <fmt/format.h>
+#include <utility>
 
 #include "apps/glint/microbench/kernel.h"
 

@@ -3,8 +3,10 @@
 #include "apps/glint/options/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <fmt/format.h>
 #include <sstream>
+#include <utility>
 
 namespace glint::app {
 

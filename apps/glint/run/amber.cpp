@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <fmt/format.h>
+#include <memory>
 
 #include "amber/run.h"
 

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/run/launch_file.h"
 
+#include <algorithm>
+#include <array>
 #include <fmt/format.h>
+#include <string_view>
 
 #define TOML_EXCEPTIONS 1
 #include <cstring>

@@ -1,6 +1,7 @@
 // What a run keeps of buffers and images: pictures, arrays, tables, raw bytes.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
+#include <memory>
 
 #include "apps/glint/options/config.h"
 #include "apps/glint/options/observe_options.h"

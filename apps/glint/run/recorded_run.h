@@ -1,6 +1,7 @@
 // What every kind of run leaves behind and prints: run.json, also of a run that failed, and the summary.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>

@@ -1,5 +1,6 @@
 // The contract of DramModel, for every registered model, and the arithmetic of the simple one.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <map>
 #include <random>
 #include <vector>

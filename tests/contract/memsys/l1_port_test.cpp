@@ -1,7 +1,9 @@
 // The contract of L1Port, for the L1 cache and for the fixed-latency memory of the tests.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
 #include <map>
 #include <random>
+#include <utility>
 
 #include "tests/support/catch.h"
 #include "tests/support/fixed_latency_memory.h"

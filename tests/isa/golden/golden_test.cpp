@@ -4,6 +4,8 @@
 //
 // GLINT_PTX_GOLDEN_DIR names the folder of the recordings. GLINT_GOLDEN_FORMS selects forms by a part of
 // their names; each selected form then prints a line.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>

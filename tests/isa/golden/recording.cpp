@@ -8,6 +8,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <utility>
 #include <zstd.h>
 
 #include "frontend/ptx/ptx.h"

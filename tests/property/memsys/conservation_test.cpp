@@ -1,9 +1,11 @@
 // Random traffic: counts against a trivially simple reference, and independence of windows, skipping and
 // repetition.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
 #include <map>
 #include <random>
 #include <set>
+#include <utility>
 
 #include "tests/support/catch.h"
 #include "tests/support/memory_rig.h"

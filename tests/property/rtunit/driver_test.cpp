@@ -1,10 +1,14 @@
 // Rays recorded through a real Vulkan driver find the same here: instance, primitive, kind, distance, any-hit
 // calls.
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <span>
+#include <string>
 
 #include "tests/support/catch.h"
 #include "tests/support/rt_scenes.h"

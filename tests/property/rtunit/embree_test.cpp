@@ -1,7 +1,9 @@
 // Closest hits of random scenes agree with Embree's own intersector.
 // SPDX-License-Identifier: Apache-2.0
-
 #include "tests/support/embree.h"
+
+#include <array>
+#include <cstring>
 
 #include "rtunit/validate.h"
 #include "tests/support/catch.h"

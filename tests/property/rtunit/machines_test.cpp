@@ -1,5 +1,12 @@
 // One traversal, three ways to drive it: run(), step by step, and the timed unit give the same bits.
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <tuple>
+#include <vector>
+
 #include "tests/support/catch.h"
 #include "tests/support/rt_launch.h"
 

@@ -1,5 +1,7 @@
 // Closed meshes never leak: a ray from inside always hits, through edges and vertices too.
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+
 #include "tests/support/catch.h"
 #include "tests/support/rt_scenes.h"
 

@@ -1,6 +1,7 @@
 // L2 slices to the cycle: several of a partition, near and far ones, credits, writes in part, fills.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "tests/support/catch.h"

@@ -1,5 +1,7 @@
 // Cycles of the RT unit, exactly: fetch, test and hand-over latencies, port and pipeline limits, merging.
 // SPDX-License-Identifier: Apache-2.0
+#include <optional>
+
 #include "tests/support/catch.h"
 #include "tests/support/rt_launch.h"
 

@@ -1,6 +1,8 @@
 // Cycles of the RT unit's policies, exactly: entries for reads, stacks that leave the chip, restarts, sharing
 // across warps.
 // SPDX-License-Identifier: Apache-2.0
+#include <optional>
+
 #include "memsys/memory_system.h"
 #include "tests/support/catch.h"
 #include "tests/support/rt_launch.h"

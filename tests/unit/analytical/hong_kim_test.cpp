@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/analytical/hong_kim.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "base/diagnostics.h"

@@ -1,7 +1,9 @@
 // Helps tests to write small virtual programs by hand.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "frontend/compile.h"

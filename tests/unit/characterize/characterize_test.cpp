@@ -1,6 +1,9 @@
 // The characterisation against values of numpy, SciPy and scikit-learn (reference.py), and what it does with
 // odd tables.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>

@@ -1,6 +1,7 @@
 // Runs a load and store unit until it is idle.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <vector>
 
 #include "core/lsu.h"

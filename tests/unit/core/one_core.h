@@ -1,9 +1,11 @@
 // A core between mocks, and programs written in place: for tests of when things happen.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <deque>
 #include <initializer_list>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/params.h"
 
+#include <vector>
+
 #include "tests/support/catch.h"
 
 namespace glint::core {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/engine_loop.h"
 
+#include <algorithm>
+
 #include "base/diagnostics.h"
 #include "tests/support/catch.h"
 

@@ -1,6 +1,8 @@
 // Loads and stores of every width in every space, and generic addresses of each window.
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
 #include <fmt/format.h>
+#include <utility>
 
 #include "isa/generic_address.h"
 #include "tests/support/catch.h"

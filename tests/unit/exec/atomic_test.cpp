@@ -1,6 +1,7 @@
 // Atomics: what they leave, what they return, and that no lane's turn is lost.
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
+#include <cstdint>
 #include <set>
 
 #include "tests/support/catch.h"

@@ -1,5 +1,7 @@
 // Blocks: who a thread is, shared memory, barriers and what becomes of those that nobody completes.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+
 #include "tests/support/catch.h"
 #include "tests/unit/exec/text_launch.h"
 

@@ -1,5 +1,7 @@
 // Calls, recursion and indexed branches, with lanes that go different ways.
 // SPDX-License-Identifier: Apache-2.0
+#include <memory>
+
 #include "exec/executor.h"
 #include "tests/support/catch.h"
 #include "tests/unit/exec/text_launch.h"

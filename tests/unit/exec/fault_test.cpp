@@ -1,5 +1,7 @@
 // Faults of programs written as text: what is let pass and what stops, space by space.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+
 #include "tests/support/catch.h"
 #include "tests/unit/exec/text_launch.h"
 

@@ -1,6 +1,8 @@
 // A grid of blocks that runs a program written as text, and a buffer of words that it fills.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
+#include <cstdint>
 #include <cstring>
 #include <string>
 #include <vector>

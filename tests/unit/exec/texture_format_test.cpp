@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <cstring>
+#include <initializer_list>
 #include <limits>
 
 #include "tests/support/catch.h"

@@ -1,6 +1,7 @@
 // Runs compute shaders from GLSL to results: integer and float ops, functions with their errors, memory
 // layouts.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <functional>

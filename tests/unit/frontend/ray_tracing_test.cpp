@@ -1,5 +1,6 @@
 // Tests ray tracing shaders against the shader ABI, and the list of what is not supported.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <filesystem>
 
 #include "base/diagnostics.h"

@@ -1,6 +1,9 @@
 // The interval model: what it counts is what is executed, its parts take the times of the configuration, and
 // it predicts.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
 #include "pipeline/functional_machine.h"
 #include "pipeline/interval/interval_machine.h"
 #include "pipeline/scene_world.h"

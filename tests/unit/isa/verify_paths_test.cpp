@@ -1,6 +1,7 @@
 // Tests the verifier's walk over paths: regions, traces, registers written on each path, frames, stages, and
 // programs that it must accept.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
 

@@ -1,6 +1,8 @@
 // Impossible configurations are reported with what was expected; peaks match data sheets.
 // SPDX-License-Identifier: Apache-2.0
 #include <functional>
+#include <utility>
+#include <vector>
 
 #include "memsys/peak.h"
 #include "tests/support/catch.h"

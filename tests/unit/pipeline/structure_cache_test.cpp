@@ -5,7 +5,10 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <span>
 #include <unistd.h>
+#include <utility>
+#include <vector>
 
 #include "tests/support/catch.h"
 

@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/picture/flip.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 #include "base/diagnostics.h"
 #include "tests/support/catch.h"

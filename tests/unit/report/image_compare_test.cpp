@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/picture/image_compare.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <random>
+#include <utility>
 
 #include "base/diagnostics.h"
 #include "report/picture/image_files.h"

@@ -1,6 +1,7 @@
 // The report's document turned into columns.
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "report/page/columns.h"
 #include "tests/support/catch.h"

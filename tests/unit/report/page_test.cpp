@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/page/page.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "base/diagnostics.h"

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/profile_files.h"
 
+#include <utility>
+
 #include "base/diagnostics.h"
 #include "report/files/annotate.h"
 #include "tests/support/catch.h"

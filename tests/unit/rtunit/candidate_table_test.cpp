@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/candidate_table.h"
 
+#include <algorithm>
+
 #include "tests/support/catch.h"
 #include "tests/support/rt_scenes.h"
 

@@ -1,5 +1,9 @@
 // Vulkan's traversal rules, one by one: flags, masks, intervals, opacity, facing, shaders' answers.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstddef>
+#include <cstring>
+#include <utility>
+
 #include "tests/support/catch.h"
 #include "tests/support/rt_scenes.h"
 

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/instancing.h"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <utility>
 
 #include "scenes/import/asset_folder.h"
 #include "scenes/mesh.h"

@@ -1,5 +1,6 @@
 // The sixteen scenes of LumiBench: counts, forms, what the camera sees, and the originals' own rules.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>

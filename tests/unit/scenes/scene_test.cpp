@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <set>
+#include <utility>
 
 #include "base/diagnostics.h"
 #include "scenes/generate/distance_field.h"
