@@ -1,5 +1,4 @@
-// What a frame's uniform block (binding 3) holds: camera matrices, light and counts, as the shaders read
-// them.
+// Fills a frame's uniform block (binding 3): camera matrices, light and counts, as the shaders read them.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/camera.h"
 
@@ -12,9 +11,9 @@
 namespace glint::scenes {
 namespace {
 
-constexpr double kNear = 0.1, kFar = 10000;     // LumiBench's application
-constexpr float kHeatmapScale = 1.5f;           // its default; no shader of the workloads reads it
-constexpr uint32_t kDefaultSecondaryRays = 16;  // its default number of shadow rays
+constexpr double kNear = 0.1, kFar = 10000;  // the planes of LumiBench's application
+constexpr float kHeatmapScale = 1.5f;        // the application's default; no shader of the workloads reads it
+constexpr uint32_t kDefaultSecondaryRays = 16;  // the application's default number of shadow rays
 
 void set_column(Mat4& matrix, size_t column, const Vec3& v, float w) {
   for (size_t row = 0; row < 3; ++row) matrix[4 * column + row] = v[row];
@@ -25,7 +24,7 @@ void set_column(Mat4& matrix, size_t column, const Vec3& v, float w) {
 
 CameraMatrices camera_matrices(const Camera& camera, float aspect) {
   CameraMatrices m{};
-  // the camera's axes in the world: right, up, and backwards, because it looks along -z
+  // These are the camera's axes in the world: right, up, and backwards, because it looks along -z.
   const Vec3 forward = normalized(camera.target - camera.eye);
   const Vec3 right = normalized(cross(forward, camera.up));
   const Vec3 up = cross(right, forward);
@@ -38,7 +37,8 @@ CameraMatrices camera_matrices(const Camera& camera, float aspect) {
   set_column(m.model_view, 3, {-dot(right, camera.eye), -dot(up, camera.eye), -dot(back, camera.eye)}, 1);
   set_column(m.model_view_inverse, 3, camera.eye, 1);
 
-  // Inverses are written down, not computed: the view is rigid and the projection has five entries.
+  // The inverses are written down, not computed, because the view is rigid and the projection has five
+  // entries.
   const double tangent = std::tan(double(camera.field_of_view) * std::numbers::pi / 360);
   const double depth = kFar / (kNear - kFar), shift = kNear * kFar / (kNear - kFar);
   m.projection[0] = float(1 / (double(aspect) * tangent));
@@ -63,7 +63,7 @@ FrameUniforms frame_uniforms(const Scene& scene, Workload workload, const Render
   u.aperture = camera.aperture;
   u.focus_distance = camera.focus_distance;
   u.heatmap_scale = kHeatmapScale;
-  u.total_samples = u.samples = params.samples;  // the first frame: no earlier sum is read
+  u.total_samples = u.samples = params.samples;  // in the first frame no earlier sum is read
   u.bounces = params.bounces;
   switch (workload) {
     case Workload::PathTracing:

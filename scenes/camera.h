@@ -1,5 +1,4 @@
-// What a frame's uniform block (binding 3) holds: camera matrices, light and counts, as the shaders read
-// them.
+// Declares a frame's uniform block (binding 3): camera matrices, light and counts, as the shaders read them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -14,18 +13,18 @@ namespace glint::scenes {
 
 enum class Workload { PathTracing, Shadow, AmbientOcclusion };
 
-// Column-major: column c, row r at [4 * c + r], as std140 lays out a mat4.
+// Holds a matrix in column-major order: column c, row r is at [4 * c + r], as std140 lays out a mat4.
 using Mat4 = std::array<float, 16>;
 
 struct CameraMatrices {
   Mat4 model_view, projection, model_view_inverse, projection_inverse;
 };
 
-// Right-handed look-at view, perspective with depth 0..1, near 0.1, far 10000, and y pointing down as Vulkan
-// has it. `aspect` is width over height.
+// Returns a right-handed look-at view and a perspective with depth 0 to 1, near plane 0.1 and far plane
+// 10000, in which y points down as in Vulkan. `aspect` is width over height.
 CameraMatrices camera_matrices(const Camera& camera, float aspect);
 
-// Binding 3, std140.
+// Has the layout of binding 3 in std140.
 struct FrameUniforms {
   CameraMatrices matrices;
   Vec3 light_position;
@@ -37,11 +36,11 @@ static_assert(sizeof(FrameUniforms) == 320);
 static_assert(offsetof(FrameUniforms, light_position) == 256 &&
               offsetof(FrameUniforms, total_samples) == 284 && offsetof(FrameUniforms, width) == 304);
 
-// `secondary_rays` is the workload's own count; path tracing, which casts none, has the application's
-// default, 16.
+// Returns the uniforms of one frame. `secondary_rays` is the workload's own count. Path tracing casts none
+// and gets the application's default, 16.
 FrameUniforms frame_uniforms(const Scene& scene, Workload workload, const RenderParams& params);
 
-// The same as 320 bytes.
+// Returns the same uniforms as 320 bytes.
 std::vector<std::byte> uniform_block(const Scene& scene, Workload workload, const RenderParams& params);
 
 }  // namespace glint::scenes

@@ -1,4 +1,4 @@
-// Affine copies: candidates by a hash of what must be equal, then the matrix by least squares.
+// Finds affine copies: candidates by a hash of what must be equal, then the matrix by least squares.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/instancing.h"
 
@@ -19,10 +19,11 @@ namespace {
 using Row = std::array<double, 3>;
 using Matrix = std::array<Row, 3>;
 
-constexpr double kTolerance = 1e-5;      // of the copy's largest extent: files have five to seven digits
-constexpr double kFloatSteps = 8;        // of the largest coordinate, for copies far from the origin
+constexpr double kTolerance = 1e-5;  // of the copy's largest extent, because files have five to seven digits
+constexpr double kFloatSteps = 8;    // of the largest coordinate, for copies far from the origin
 constexpr double kNormalCosine = 0.995;  // files round normals to three or four digits
-constexpr double kFlat = 1e-9;  // a determinant below this, of a matrix of trace 1, is of a flat body
+// A body is flat when the determinant of its matrix, scaled to trace 1, is below this value.
+constexpr double kFlat = 1e-9;
 
 Row centre_of(const Model& model) {
   Row sum{};
@@ -73,7 +74,8 @@ Matrix product(const Matrix& a, const Matrix& b) {
   return out;
 }
 
-// Unit normal of a triangle, on the side of its first vertex's normal: a mirrored copy winds the other way.
+// Returns the unit normal of a triangle, on the side of its first vertex's normal, because a mirrored copy
+// winds the other way.
 Row plane_normal(const Model& model, size_t triangle) {
   const auto vertex = [&](size_t i) { return model.vertices[model.indices[3 * triangle + i]]; };
   const Row a = offset(vertex(0), Row{}), b = offset(vertex(1), Row{}), c = offset(vertex(2), Row{});
@@ -95,8 +97,8 @@ size_t largest_triangle(const Model& model) {
   return best;
 }
 
-// The linear part that fits best: D * C^-1 with C = sum p p^T and D = sum q p^T about the centres. A flat
-// body leaves one direction open: its normal goes to the copy's.
+// Returns the linear part that fits best: D * C^-1 with C = sum p p^T and D = sum q p^T about the centres. A
+// flat body leaves one direction open, so its normal is mapped to the copy's normal.
 std::optional<Matrix> linear_part(const Model& from, const Model& to, const Row& from_centre,
                                   const Row& to_centre) {
   Matrix c{}, d{};
@@ -147,7 +149,8 @@ bool normals_follow(const Model& from, const Model& to, const Matrix& m) {
   return true;
 }
 
-// The first texture with each one's texels: files name the same picture more than once.
+// Returns for each texture the index of the first one with the same texels. Files name the same picture more
+// than once.
 std::vector<int32_t> first_alike(const std::vector<Texture>& textures) {
   const auto alike = [&](const Texture& a, const Texture& b) {
     return a.width == b.width && a.height == b.height && a.srgb == b.srgb && a.repeat == b.repeat &&
@@ -161,7 +164,7 @@ std::vector<int32_t> first_alike(const std::vector<Texture>& textures) {
   return first;
 }
 
-// The number of each material's first equal.
+// Returns for each material the index of the first one that is equal to it.
 std::vector<size_t> first_equal(const Scene& scene) {
   const std::vector<int32_t> textures = first_alike(scene.textures);
   const auto texture_of = [&](const Material& m) {
@@ -181,7 +184,7 @@ std::vector<size_t> first_equal(const Scene& scene) {
   return first;
 }
 
-// What a copy shares with its original bit for bit, but for positions and normals.
+// Compares two models that may be copies: all but positions and normals must be equal bit for bit.
 bool same_but_moved(const std::vector<size_t>& materials, const Model& a, const Model& b) {
   return a.vertices.size() == b.vertices.size() && a.indices == b.indices &&
          std::equal(a.vertices.begin(), a.vertices.end(), b.vertices.begin(),

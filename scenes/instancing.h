@@ -7,14 +7,14 @@
 
 namespace glint::scenes {
 
-// The 3x4 matrix that moves every vertex of `from` onto the one of `to` with the same index, to a
-// hundred-thousandth of the copy's size and what floats resolve there; nothing when there is none. Normals
-// must follow it too.
+// Returns the 3x4 matrix that moves every vertex of `from` onto the vertex of `to` with the same index, or
+// nothing when there is no such matrix. The match holds to a hundred-thousandth of the copy's size plus what
+// floats resolve there. Normals must follow the matrix, too.
 std::optional<Affine> affine_between(const Model& from, const Model& to);
 
 // Removes each model that has the triangles, coordinates and materials (by value) of an earlier one and is an
-// affine copy of it, and lists every remaining and removed one in Scene::instances, in the order of the
-// models. Nothing changes when there are no copies. Scenes that already have instances are left alone.
+// affine copy of it. Lists every remaining and removed model in Scene::instances, in the order of the models.
+// Nothing changes when there are no copies, or when the scene already has instances.
 void share_copies(Scene& scene);
 
 }  // namespace glint::scenes

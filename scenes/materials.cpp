@@ -1,4 +1,4 @@
-// The material models as plain records: what each leaves out is zero.
+// Makes materials of each model as plain records. What a model does not use is zero.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/lumibench/builders.h"
 

@@ -1,4 +1,4 @@
-// Triangle meshes under construction: transforms, smooth normals, and pieces appended into one model.
+// Builds triangle meshes: transforms, smooth normals, and pieces that are appended into one model.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/mesh.h"
 
@@ -12,7 +12,7 @@
 namespace glint::scenes {
 namespace {
 
-constexpr uint32_t kSphereSlices = 32;  // LumiBench's application, sphere tessellation
+constexpr uint32_t kSphereSlices = 32;  // slices of a sphere in LumiBench's application
 constexpr uint32_t kSphereStacks = 16;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Triangle meshes under construction: transforms, smooth normals, and pieces appended into one model.
+// Builds triangle meshes: transforms, smooth normals, and pieces that are appended into one model.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace glint::scenes {
 
-// Vector arithmetic in float, components in order.
+// These operators compute in float, component by component in order.
 inline Vec3 operator+(const Vec3& a, const Vec3& b) {
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
 }
@@ -23,28 +23,29 @@ inline float dot(const Vec3& a, const Vec3& b) {
 }
 Vec3 cross(const Vec3& a, const Vec3& b);
 float length(const Vec3& v);
-Vec3 normalized(const Vec3& v);  // (0,0,0) stays (0,0,0)
+Vec3 normalized(const Vec3& v);  // returns (0,0,0) for (0,0,0)
 
-// Sine and cosine of an angle in radians, rounded from double: the same floats with every libm.
+// Return the sine and the cosine of an angle in radians, rounded from double. They are the same floats with
+// every libm.
 float sine(double radians);
 float cosine(double radians);
 
-// Translation * uniform scale * rotation about +y (right-handed): how the application places a model.
+// Says how the application places a model: translation * uniform scale * rotation about +y (right-handed).
 struct Placement {
   Vec3 translation{};    // world units
   float scale = 1;       // factor
   float rotation_y = 0;  // degrees
 };
 
-// Moves every vertex; normals turn and shrink by the inverse transpose and are not renormalised, as in the
-// application (its shader normalises them).
+// Moves every vertex. Normals turn and shrink by the inverse transpose and are not renormalised, as in the
+// application, whose shader normalises them.
 void place(Model& model, const Placement& placement);
 
-// Unit face normals summed in every corner they share, then normalised: what the loader does for OBJ files
-// without normals.
+// Sets each normal to the normalised sum of the unit normals of the faces around it. The OBJ loader does this
+// for files without normals.
 void compute_smooth_normals(Model& model);
 
-// Corner positions over every vertex. An empty model gives lower > upper.
+// Holds the smallest and the largest coordinates of the vertices. An empty model has lower > upper.
 struct Bounds {
   Vec3 lower{}, upper{};
 };
@@ -55,9 +56,9 @@ uint32_t add_vertex(Model& model, const Vec3& position, const Vec3& normal, int3
                     const Vec2& texture_coordinate = {0, 0});
 void add_triangle(Model& model, uint32_t a, uint32_t b, uint32_t c);
 
-// A procedural sphere as the application keeps it: centre and radius for the intersection shader, and a
-// tessellation of 32 slices and 16 stacks (561 vertices, 3,072 indices) that lies in the vertex and index
-// buffers, is in no acceleration structure, and gives the hit shader its material index.
+// Returns a procedural sphere as the application keeps it. Centre and radius are for the intersection shader.
+// A tessellation of 32 slices and 16 stacks (561 vertices, 3,072 indices) lies in the vertex and index
+// buffers. It is in no acceleration structure, and it gives the hit shader the sphere's material index.
 Model make_sphere(std::string name, const Vec3& center, float radius, int32_t material);
 
 }  // namespace glint::scenes

@@ -1,4 +1,4 @@
-// Scenes by name, and what can be counted in one.
+// Finds scenes by name, and counts what is in one.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/scene.h"
 
@@ -17,35 +17,35 @@ namespace {
 struct Entry {
   const char* name;
   const char* doc;
-  uint64_t triangles;  // of the original, as the paper counts them
+  uint64_t triangles;  // triangles of the original, as the paper counts them
   Scene (*build)(const LoadOptions&);
 };
 
-// In the paper's order: by triangles.
+// Lists the scenes in the paper's order, by triangles.
 constexpr Entry kScenes[] = {
-    {"WKND", "487 procedural spheres under a sky, complete.", 0, build_weekend},
-    {"SHIP", "A schooner with thin masts and rigging, one structure.", 6'255, build_ship},
+    {"WKND", "487 procedural spheres under a sky; the scene is complete.", 0, build_weekend},
+    {"SHIP", "A schooner with thin masts and rigging, in one structure.", 6'255, build_ship},
     {"BUNNY", "A bunny in a Cornell box.", 144'058, build_bunny},
-    {"SPNZA", "A colonnaded hall, indoor, with 24 large textures; one structure.", 262'267, build_sponza},
-    {"CHSNT", "A chestnut tree whose leaves are cut out by their texture's alpha: any-hit shaders.", 313'000,
-     build_chestnut},
-    {"BATH", "A bathroom with mirror and lamps, indoor.", 423'821, build_bathroom},
+    {"SPNZA", "A colonnaded hall with 24 large textures, in one structure.", 262'267, build_sponza},
+    {"CHSNT", "A chestnut tree whose leaves are cut out by their texture's alpha in any-hit shaders.",
+     313'000, build_chestnut},
+    {"BATH", "A bathroom with a mirror and lamps.", 423'821, build_bathroom},
     {"REF", "A statue and a glass sphere in a box with mirror walls.", 448'912, build_mirror_box},
-    {"CRNVL", "A fairground, one structure.", 449'600, build_carnival},
-    {"FOX", "A fox in thick fur among flowers: long thin triangles.", 1'600'000, build_fox},
+    {"CRNVL", "A fairground, in one structure.", 449'600, build_carnival},
+    {"FOX", "A fox in thick fur of long thin triangles, among flowers.", 1'600'000, build_fox},
     {"PARTY", "A harbour town of 320 structures.", 1'700'000, build_party},
-    {"SPRNG", "A figure close to the camera, grass, a mountain that fills the view.", 1'900'000,
+    {"SPRNG", "A figure close to the camera, with grass and a mountain that fills the view.", 1'900'000,
      build_spring},
     {"LANDS", "Cliffs and boats on reflecting water.", 3'300'000, build_lands},
     {"FRST", "An autumn forest of 283 structures.", 4'200'000, build_forest},
     {"PARK", "Long thin grass, trees and mountains on a procedural ground.", 6'000'000, build_park},
     {"CAR", "A racing car of 302 structures with 244 textures.", 12'700'000, build_car},
-    {"ROBOT", "A machine of 248 structures, the most triangles.", 20'600'000, build_robot},
+    {"ROBOT", "A machine of 248 structures, with the most triangles of all scenes.", 20'600'000, build_robot},
     {"CORNELL", "The Cornell box alone, for tests; not a LumiBench scene.", 0, build_cornell},
 };
 
-// FNV-1a widened to 64-bit words and finished as in MurmurHash3, fed with values, never with struct bytes:
-// neither padding nor byte order reaches it.
+// Hashes contents with FNV-1a, widened to 64-bit words and finished as in MurmurHash3. It takes values, never
+// the bytes of structs, so neither padding nor byte order changes the hash.
 class ContentHash {
  public:
   void add(uint64_t word) { state_ = (state_ ^ word) * 0x100000001b3 ^ state_ >> 29; }
@@ -109,7 +109,7 @@ Scene build_scene(const std::string& name, const LoadOptions& options) {
     Scene scene = entry.build(options);
     scene.original_triangles = entry.triangles;
     if (entry.triangles > 0)
-      scene.note += fmt::format(" {:.1f} % of the original's triangles.", 100 * scene.fraction());
+      scene.note += fmt::format(" It has {:.1f} % of the original's triangles.", 100 * scene.fraction());
     return scene;
   }
   const std::string near = nearest(wanted, names);

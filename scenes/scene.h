@@ -1,4 +1,4 @@
-// A scene as the renderer's buffers will hold it: models, instances, materials, textures, camera, light.
+// Declares a scene as the renderer's buffers hold it: models, instances, materials, textures, camera, light.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -21,17 +21,17 @@ enum class MaterialModel : uint32_t {
   DiffuseLight = 4
 };
 
-// std430 layout of binding 6: 32 bytes.
+// Has the std430 layout of an element of binding 6, of 32 bytes.
 struct Material {
   Vec4 diffuse{};
-  int32_t texture = -1;  // index into Scene::textures, -1 = none
+  int32_t texture = -1;  // index into Scene::textures; -1: the material has none
   float fuzziness = 0;
   float refraction_index = 0;
   MaterialModel model = MaterialModel::Lambertian;
 };
 static_assert(sizeof(Material) == 32);
 
-// std430 layout of binding 4: 36 bytes.
+// Has the std430 layout of an element of binding 4, of 36 bytes.
 struct Vertex {
   Vec3 position{}, normal{};
   Vec2 texture_coordinate{};
@@ -39,73 +39,76 @@ struct Vertex {
 };
 static_assert(sizeof(Vertex) == 36);
 
-// A model is one bottom-level structure and, unless the scene lists instances, one instance with the identity
-// transform, as in the original application. Triangles, or (radius > 0) a procedural sphere whose vertices
-// carry only the material.
+// Holds one bottom-level structure. Unless the scene lists instances, a model is also one instance with the
+// identity transform, as in the original application. A model holds triangles or, when radius > 0, a
+// procedural sphere whose vertices carry only the material.
 struct Model {
   std::string name;
   std::vector<Vertex> vertices;
-  std::vector<uint32_t> indices;  // three a triangle, relative to `vertices`
+  std::vector<uint32_t> indices;  // three per triangle, relative to `vertices`
   Vec3 center{};
-  float radius = 0;  // world units; 0 = triangles
+  float radius = 0;  // world units; 0 for triangles
   bool is_procedural() const { return radius > 0; }
 };
 
 struct Texture {
   std::string name;
   uint32_t width = 1, height = 1;
-  std::vector<uint8_t> rgba;  // 4 bytes a texel, row 0 first; no mip maps, bilinear
-  // LumiBench's application reads all of its textures as they are and clamped; glTF says otherwise.
+  std::vector<uint8_t> rgba;  // 4 bytes per texel, row 0 first; no mip maps; filtered bilinearly
+  // LumiBench's application reads all of its textures without conversion and clamps them. glTF files may say
+  // otherwise.
   bool srgb = false;    // colours become linear when read
-  bool repeat = false;  // outside of 0 to 1, instead of clamping to the edge
+  bool repeat = false;  // coordinates outside of 0 to 1 repeat the picture instead of clamping to its edge
 };
 
-// Row-major 3x4: what moves a point of a model into the world.
+// Holds a row-major 3x4 matrix that moves a point of a model into the world.
 using Affine = std::array<float, 12>;
 inline constexpr Affine kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
-// A model where it stands in the world.
+// Places a model in the world.
 struct Instance {
   uint32_t model = 0;  // index into Scene::models
   Affine to_world = kIdentity;
 };
 
-// Look-at camera; angles in degrees, lengths in world units.
+// Describes a look-at camera. Angles are in degrees and lengths in world units.
 struct Camera {
   Vec3 eye{}, target{}, up{0, 1, 0};
   float field_of_view = 40;  // vertical
   float aperture = 0, focus_distance = 10;
   bool has_sky = true;
-  Vec3 light_position{};  // used only without sky
+  Vec3 light_position{};  // used only without a sky
   float light_radius = 0;
 };
 
 struct Scene {
   std::string name;
-  std::string form;  // what the geometry really is: "original", "partial" (files of the original are absent),
-                     // "stand-in" (files of another mesh) or "built-in" (generated)
-  std::string note;  // one sentence for results: what differs from the original
+  // What the geometry really is: "original", "partial" (files of the original are absent), "stand-in" (files
+  // of another mesh) or "built-in" (generated).
+  std::string form;
+  std::string note;  // sentences for results: what differs from the original
   std::vector<Model> models;
-  std::vector<Instance> instances;  // empty: every model once, in world coordinates
+  std::vector<Instance> instances;  // empty: every model stands once, in world coordinates
   std::vector<Material> materials;
   std::vector<Texture> textures;
   Camera camera;
   bool alpha_test = false;            // triangle hit groups have the any-hit alpha shader
-  uint64_t original_triangles = 0;    // of the application's complete scene; 0 = it has none
-  uint64_t triangles() const;         // in the world, each instance's counted
-  uint64_t stored_triangles() const;  // of the models
-  double fraction() const;            // of the original's triangles; 1 where it has none
+  uint64_t original_triangles = 0;    // of the application's complete scene; 0: it has no such scene
+  uint64_t triangles() const;         // in the world, with those of each instance
+  uint64_t stored_triangles() const;  // of the models, each counted once
+  double fraction() const;            // of the original's triangles; 1 when there is no original
   uint64_t procedurals() const;
   uint64_t hash() const;  // of everything that reaches a shader, stable across runs and machines
 };
 
-// Scene::instances, or each model once where it has none.
+// Returns Scene::instances, or each model once when the scene lists no instances.
 std::vector<Instance> instances_of(const Scene& scene);
 
 struct LoadOptions {
-  std::string assets;       // folder of original data, "" = none
+  std::string assets;       // folder of original data; empty: there is none
   bool instancing = false;  // models that are affine copies of an earlier one become instances of it
-  std::function<void(double fraction)> progress = {};  // of loading or generating; may be empty
+  std::function<void(double fraction)> progress =
+      {};  // called while a scene is loaded or generated; may be empty
 };
 
 struct SceneInfo {
@@ -113,8 +116,8 @@ struct SceneInfo {
 };
 std::vector<SceneInfo> scene_list();
 
-// Builds a scene by name (case-insensitive), or of a file: .obj, .gltf, .glb. UserError with the nearest name
-// when there is none, and when the file is not good.
+// Builds a scene by name (case-insensitive), or loads one from a file: .obj, .gltf, .glb. Throws UserError
+// with the nearest name when no scene has this name, and when the file cannot be read.
 Scene load_scene(const std::string& name, const LoadOptions& options);
 
 }  // namespace glint::scenes

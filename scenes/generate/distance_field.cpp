@@ -1,4 +1,4 @@
-// Solids as signed distances (negative inside), and their surfaces as triangles: the clay of the stand-ins.
+// Computes the distances of solids (negative inside), and turns their surfaces into triangles.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/generate/distance_field.h"
 
@@ -13,8 +13,8 @@ namespace glint::scenes {
 namespace {
 
 constexpr int kBlock = 4;       // lattice points along a block that is skipped or sampled as a whole
-constexpr int kCoarse = 16;     // the same, tried first
-constexpr float kSlope = 1.5f;  // the field's steepest change, see the header
+constexpr int kCoarse = 16;     // lattice points along a larger block, which is tried first
+constexpr float kSlope = 1.5f;  // the steepest change that a field may have (see surface_of)
 constexpr uint32_t kNone = ~0u;
 
 float lattice_value(int x, int y, int z) {
@@ -61,7 +61,8 @@ class SurfaceNets {
   }
 
   void sample_block(int x0, int y0, int z0, int size) {
-    // + 1: the cells between this block's last points and the next block's first count as this block's too
+    // The 1 is added so that the cells between this block's last points and the next block's first count for
+    // both.
     const float reach = 0.8660254f * float(size + 1);  // half the block's diagonal, in cells
     const float half = 0.5f * float(size - 1);
     const float middle = field_(point(float(x0) + half, float(y0) + half, float(z0) + half));
@@ -78,7 +79,8 @@ class SurfaceNets {
         }
   }
 
-  // The mean of the crossings of the cell's twelve edges, or kNone.
+  // Returns the vertex of a cell, which is the mean of the crossings of its twelve edges. Returns kNone when
+  // the surface does not cross the cell.
   uint32_t cell_vertex(int x, int y, int z) {
     float v[8];
     int inside = 0;
@@ -103,7 +105,7 @@ class SurfaceNets {
                       material_);
   }
 
-  // Faces of the lattice edges in plane z (along x and y) and of those that leave it (along z).
+  // Adds the faces of the lattice edges in plane z (along x and y) and of the edges that leave it (along z).
   void add_faces(const std::vector<uint32_t>& below, const std::vector<uint32_t>& above, int z) {
     for (int y = 1; y + 1 < points_[1]; ++y)
       for (int x = 1; x + 1 < points_[0]; ++x) {
@@ -118,7 +120,8 @@ class SurfaceNets {
       }
   }
 
-  // Corners in turn; cut along the shorter diagonal, which follows the surface better.
+  // Adds the quad of four corners in turn. It is cut along the shorter diagonal, which follows the surface
+  // better.
   void add_quad(uint32_t a, uint32_t b, uint32_t c, uint32_t d, bool flip) {
     if (flip) std::swap(b, d);
     const auto span = [this](uint32_t i, uint32_t j) {
@@ -148,7 +151,7 @@ float ellipsoid_distance(const Vec3& p, const Vec3& center, const Vec3& radii) {
   const Vec3 q = p - center;
   const Vec3 unit{q[0] / radii[0], q[1] / radii[1], q[2] / radii[2]};
   const float scaled = length(unit);
-  // scaled distance over the length of its gradient
+  // The distance is the scaled distance over the length of its gradient.
   const float slope = length({unit[0] / radii[0], unit[1] / radii[1], unit[2] / radii[2]});
   if (slope == 0) return -std::min({radii[0], radii[1], radii[2]});
   return scaled * (scaled - 1) / slope;

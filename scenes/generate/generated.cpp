@@ -1,5 +1,5 @@
-// What generated scenes share: models and materials added one after the other, with progress, and the budget
-// of triangles.
+// Adds models and materials to generated scenes one after the other, with progress and the budget of
+// triangles.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/generate/generated.h"
 

@@ -1,4 +1,4 @@
-// What generated scenes share: models and materials added one after the other, with progress, and the budget
+// Builds generated scenes: models and materials are added one after the other, with progress and the budget
 // of triangles.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -12,7 +12,7 @@ namespace glint::scenes {
 
 class Generator {
  public:
-  // `triangles` is the whole scene's.
+  // `triangles` is the number of triangles of the whole scene.
   Generator(Scene& scene, const LoadOptions& options, uint64_t triangles)
       : scene_(scene), options_(options), triangles_(triangles) {
     scene.form = "built-in";
@@ -23,7 +23,7 @@ class Generator {
     return int32_t(scene_.materials.size() - 1);
   }
   int32_t color(float r, float g, float b) { return material(lambertian(r, g, b)); }
-  // A white material that shows `texture`.
+  // Adds a white material that shows `texture`, and returns its index.
   int32_t textured(Texture texture);
 
   // Calls make(model) and takes the model into the scene.
@@ -35,7 +35,7 @@ class Generator {
     take(std::move(model));
   }
 
-  // Triangles that are still to be made.
+  // Returns the number of triangles that are still to be made.
   uint64_t rest() const { return made_ < triangles_ ? triangles_ - made_ : 0; }
 
  private:

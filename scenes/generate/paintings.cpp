@@ -1,4 +1,4 @@
-// Textures that are generated: stone, bricks, planks, panels, cloth, bark and leaves.
+// Paints textures: stone, bricks, planks, panels, cloth, bark and leaves.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/generate/paintings.h"
 
@@ -13,7 +13,7 @@
 namespace glint::scenes {
 namespace {
 
-constexpr uint32_t kTile = 4;  // texels of a side that share a value of smooth noise
+constexpr uint32_t kTile = 4;  // texels along a side that share a value of smooth noise
 
 uint8_t unorm(float value) {
   return uint8_t(std::clamp(value, 0.0f, 1.0f) * 255 + 0.5f);
@@ -25,7 +25,8 @@ float grain(uint32_t x, uint32_t y, uint32_t seed) {
   return float((h ^ h >> 13) & 255) / 255;
 }
 
-// Rows of `rows` bricks with mortar, every other row moved by half a brick: 0 in the joint.
+// Returns the brightness of a wall of `rows` rows of bricks, in which every other row is moved by half a
+// brick. The mortar in the joints is darker.
 float brick(float u, float v, float rows, float joint) {
   const float row = std::floor(v * rows);
   const float x = u * rows * 0.5f + (int(row) % 2 ? 0.5f : 0.0f), y = v * rows - row;
@@ -51,7 +52,8 @@ float shade(Pattern pattern, float u, float v) {
   return 1;
 }
 
-// Distance into the nearest leaflet, 0 and less outside; u, v in [0, 1], stem at the bottom.
+// Returns the depth of a point in the nearest leaflet; it is 0 or less outside of all leaflets. `u` and `v`
+// are in [0, 1], and the stem is at the bottom.
 float leaf_depth(float u, float v) {
   constexpr Vec2 kAxes[5] = {{0, 1}, {0.6f, 0.8f}, {-0.6f, 0.8f}, {0.96f, 0.28f}, {-0.96f, 0.28f}};
   const float x = u - 0.5f, y = 0.75f - v;

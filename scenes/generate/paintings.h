@@ -1,4 +1,4 @@
-// Textures that are generated: stone, bricks, planks, panels, cloth, bark and leaves.
+// Paints textures for generated scenes: stone, bricks, planks, panels, cloth, bark and leaves.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -9,9 +9,9 @@ namespace glint::scenes {
 
 enum class Pattern { Stone, Bricks, Planks, Panels, Stripes, Bark };
 
-// `color` is 0 to 1; sides are texels. Opaque.
+// Returns an opaque texture. `color` is 0 to 1, and `width` and `height` are in texels.
 Texture paint_texture(Pattern pattern, const Vec3& color, uint32_t width, uint32_t height, uint32_t seed);
-// A hand of five leaflets; alpha is exactly 0 outside of them.
+// Returns a picture of a hand of five leaflets. Alpha is exactly 0 outside of them.
 Texture paint_leaf(const Vec3& color, uint32_t side, uint32_t seed);
 
 }  // namespace glint::scenes

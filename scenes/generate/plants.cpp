@@ -1,4 +1,4 @@
-// Trees, bushes, grass, flowers and hair with a budget of triangles, for scenes that are generated.
+// Grows trees, bushes, grass, flowers and hair with a budget of triangles.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/generate/plants.h"
 
@@ -20,7 +20,7 @@ constexpr uint32_t kSegments = 4;  // of a branch
 constexpr uint32_t kSides = 6;
 constexpr uint64_t kBranchTriangles = 2 * kSegments * kSides;
 
-// Grows branch after branch, thickest first, until the wood is used up; `tips` are places for leaves.
+// Grows branch after branch, the thickest first, until the wood is used up. `tips` are places for leaves.
 void grow(Model& model, const TreeShape& shape, uint64_t triangles, Random& random, std::vector<Vec3>& tips) {
   std::vector<Branch> branches{{shape.foot, shape.up, shape.height * 0.45f, shape.height * 0.035f}};
   const uint64_t count = std::max<uint64_t>(triangles / kBranchTriangles, 12);
@@ -74,7 +74,7 @@ void add_tree(Model& wood_model, Model& leaf_model, const TreeShape& shape, uint
   grow(wood_model, shape, wood, random, tips);
   const float leaf = shape.leaf * shape.height;
   for (uint64_t k = 0; k < (triangles - wood) / 2; ++k) {
-    // the last tips are the thinnest twigs
+    // The last tips are the thinnest twigs, so they get more of the leaves.
     const float late = random.next();
     const Vec3& tip = tips[size_t((1 - late * late) * float(tips.size() - 1))];
     const Vec3 away = random.direction();
@@ -153,7 +153,7 @@ void add_ground(Model& model, const Vec2& lower, const Vec2& upper, const Height
                 int32_t material) {
   const float wide = upper[0] - lower[0], deep = upper[1] - lower[1];
   add_patch(model, triangles, wide / deep, material, [&](float u, float v) -> Vec3 {
-    const float x = lower[0] + wide * u, z = upper[1] - deep * v;  // so that normals point up
+    const float x = lower[0] + wide * u, z = upper[1] - deep * v;  // z falls with v, so that normals point up
     return {x, height(x, z), z};
   });
 }

@@ -1,4 +1,4 @@
-// Solids with a budget of triangles, for scenes that are generated: what they look like at any density.
+// Builds solids with a budget of triangles, for generated scenes.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/generate/solids.h"
 
@@ -20,7 +20,7 @@ uint32_t at_least(uint32_t least, double value) {
   return std::max(least, uint32_t(std::lround(value)));
 }
 
-// A point of the box's surface pulled onto its rounded edges.
+// Returns a point of a box's surface, pulled onto the box's rounded edges.
 Vec3 rounded(const Vec3& p, float roundness) {
   Vec3 core{};
   for (size_t k = 0; k < 3; ++k) core[k] = std::clamp(p[k], roundness - 1, 1 - roundness);
@@ -28,7 +28,7 @@ Vec3 rounded(const Vec3& p, float roundness) {
   return length(out) > 0 ? core + normalized(out) * roundness : p;
 }
 
-// One part of a machine, in a frame of its own.
+// Adds one part of a machine, in a frame of its own.
 void add_part(Model& model, const Frame& frame, uint64_t triangles, int32_t material, uint32_t kind) {
   static constexpr Vec2 kPiston[] = {{-1, 0},      {-1, 0.9f},    {-0.3f, 0.9f}, {-0.25f, 0.5f},
                                      {0.5f, 0.5f}, {0.55f, 0.8f}, {1, 0.8f},     {1, 0}};
@@ -121,7 +121,8 @@ void add_ring(Model& model, const Frame& frame, uint64_t triangles, int32_t mate
 void add_lathe(Model& model, const Frame& frame, std::span<const Vec2> profile, uint64_t triangles,
                int32_t material) {
   const auto pieces = uint64_t(profile.size() - 1);
-  for (size_t k = 0; k < pieces; ++k)  // each piece has its own vertices: edges between pieces are sharp
+  // Each piece has its own vertices, so the edges between pieces are sharp.
+  for (size_t k = 0; k < pieces; ++k)
     add_patch(model, triangles / pieces, 4, material, [&](float u, float v) {
       const double around = -kTurn * double(u);
       const float height = profile[k][0] + (profile[k + 1][0] - profile[k][0]) * v;
@@ -136,7 +137,7 @@ void add_tube(Model& model, std::span<const Vec3> path, float start, float end, 
   Vec3 right{};
   for (size_t k = 0; k < path.size(); ++k) {
     const Vec3 along = normalized(path[std::min(k + 1, path.size() - 1)] - path[k == 0 ? 0 : k - 1]);
-    // carried along the path, so that the tube does not twist
+    // The axis is carried along the path, so that the tube does not twist.
     const Vec3 helper = k > 0 ? right : std::abs(along[1]) < 0.9f ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
     right = normalized(helper - along * dot(helper, along));
     const Vec3 up = cross(along, right);

@@ -1,4 +1,4 @@
-// Simple solids for built-in scenes: boxes, turned bodies, ropes and cloth, with normals.
+// Builds simple solids for built-in scenes: boxes, turned bodies, ropes and cloth, with normals.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/generate/tubes.h"
 

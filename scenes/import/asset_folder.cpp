@@ -1,4 +1,4 @@
-// A scene made of all the OBJ files of a folder, one model a file, with its rules of colours by file name.
+// Makes a scene of all the OBJ files of a folder: one model per file, with colours by file name.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/import/asset_folder.h"
 
@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A file of the folder, or a copy of one.
+// Describes a model of the folder: a file, or a copy of one.
 struct Source {
   std::string file = {};  // an OBJ file that is there
   bool is_copy = false;
@@ -48,7 +48,7 @@ void read_copies(const fs::path& folder, std::map<std::string, Source>& sources)
   }
 }
 
-// By name, in order.
+// Returns the models of the folder, ordered by name.
 std::map<std::string, Source> list_sources(const fs::path& folder) {
   std::map<std::string, Source> sources;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
@@ -78,7 +78,7 @@ class FolderLoader {
     return models;
   }
 
-  // Material libraries without an OBJ file.
+  // Returns the number of material libraries without an OBJ file.
   uint64_t absent() const {
     uint64_t count = 0;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_))
@@ -111,7 +111,7 @@ class FolderLoader {
     return model;
   }
 
-  // Copies need their base with material indices that count from 0.
+  // Keeps a model as the base of copies. The material indices of a base count from 0.
   void keep(const std::string& file, const Model& model, int32_t first) {
     Model& base = bases_[file] = model;
     for (Vertex& vertex : base.vertices) vertex.material -= first;
@@ -162,7 +162,7 @@ void append_copy(Model& model, const Model& part, const Affine& matrix, int32_t 
     return {matrix[4 * i], matrix[4 * i + 1], matrix[4 * i + 2]};
   };
   const Vec3 rows[3] = {row(0), row(1), row(2)}, move{matrix[3], matrix[7], matrix[11]};
-  // the cofactors are the inverse transpose times the determinant, whose sign turns mirrored normals round
+  // The cofactors are the inverse transpose times the determinant, whose sign turns mirrored normals round.
   const Vec3 cofactors[3] = {cross(rows[1], rows[2]), cross(rows[2], rows[0]), cross(rows[0], rows[1])};
   const float sign = dot(rows[0], cofactors[0]) < 0 ? -1.0f : 1.0f;
   const auto first = uint32_t(model.vertices.size());
@@ -198,8 +198,9 @@ void load_folder(Scene& scene, const LoadOptions& options, const FolderRules& ru
   FolderLoader loader(scene, rules, folder);
   const uint64_t models = loader.run(options), absent = loader.absent();
   scene.form = absent == 0 ? "original" : "partial";
-  scene.note = absent == 0 ? fmt::format("Complete: the original's {} models.", models)
-                           : fmt::format("{} models; {} files of the original are absent.", models, absent);
+  scene.note = absent == 0 ? fmt::format("The scene is complete: it has the original's {} models.", models)
+                           : fmt::format("The scene has {} models; {} files of the original are absent.",
+                                         models, absent);
 }
 
 }  // namespace glint::scenes

@@ -1,4 +1,4 @@
-// A scene made of all the OBJ files of a folder, one model a file, with its rules of colours by file name.
+// Makes a scene of all the OBJ files of a folder: one model per file, with colours by file name.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace glint::scenes {
 
-// All materials of a file whose name (without .obj) contains one of `parts` become `material`.
+// Says that all materials of a file whose name (without .obj) contains one of `parts` become `material`.
 struct NameRule {
   std::vector<std::string> parts;
   Material material;
@@ -21,27 +21,29 @@ struct FolderRules {
   std::vector<std::string>
       folders;  // candidates below the assets folder; its own name is one, for the folder itself
   bool textures = false;
-  float scale = 1;                    // about the origin
-  std::string skip = {};              // files whose name contains this are left out; "" = none
-  std::vector<NameRule> colors = {};  // the first that matches
-  // What no name rule can say: gets the file's name and its materials, after `colors`.
+  float scale = 1;                    // scales every position about the origin
+  std::string skip = {};              // files whose name contains this are left out; empty: no file is
+  std::vector<NameRule> colors = {};  // the first rule that matches applies
+  // Does what no name rule can say. It is called after `colors` with the file's name and its materials.
   std::function<void(const std::string& name, std::span<Material> materials)> recolor = {};
 };
 
 // Appends the files in the order of their names. Files without triangles give no model. A table
-// `instances.tsv` in the folder lists further files as affine copies: name, file, 3x4 matrix in rows. Sets
-// form and note: the original has a material library beside every OBJ file, so a library alone says that its
-// OBJ file is absent and the scene "partial". UserError when no folder holds an OBJ file.
+// `instances.tsv` in the folder lists further models as affine copies of files: name, file, 3x4 matrix in
+// rows.
+// Sets form and note. The original has a material library beside every OBJ file, so a library alone says that
+// its OBJ file is absent and the scene is "partial". Throws UserError when no folder holds an OBJ file.
 void load_folder(Scene& scene, const LoadOptions& options, const FolderRules& rules);
 
-// The first of `folders` below `assets` that holds OBJ files, or "".
+// Returns the first of `folders` below `assets` that holds OBJ files, or "".
 std::string find_folder(const std::string& assets, const std::vector<std::string>& folders);
 
-// A colour of 0 to 255, over 256 as the application has it.
+// Returns a material of a colour given as 0 to 255. The components are divided by 256, as the application
+// does it.
 Material paint(int r, int g, int b);
 
-// Appends a copy of `part`, moved: normals by the inverse transpose, normalised; every material `material`,
-// or the part's own when that is negative.
+// Appends a copy of `part`, moved by `matrix`. Normals are moved by the inverse transpose and normalised.
+// Every vertex gets `material`, or keeps its own material when `material` is negative.
 void append_copy(Model& model, const Model& part, const Affine& matrix, int32_t material);
 
 }  // namespace glint::scenes

@@ -1,4 +1,4 @@
-// Materials and textures of a glTF file.
+// Reads materials and textures of a glTF file.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/import/gltf_materials.h"
 
@@ -15,7 +15,7 @@ namespace {
 
 using Pixels = std::vector<unsigned char>;
 
-// A number of an extension's object, or `otherwise`.
+// Returns a number of an extension's object, or `otherwise` when the file does not give it.
 double number_of(const tinygltf::Material& m, const char* extension, const char* name, double otherwise) {
   const auto found = m.extensions.find(extension);
   if (found == m.extensions.end() || !found->second.IsObject() || !found->second.Has(name)) return otherwise;
@@ -39,7 +39,8 @@ class MaterialReader {
       return dielectric(
           float(number_of(m, "KHR_materials_ior", "ior", 1.5)));  // 1.5: the extension's default
     const auto [metal, roughness] = metal_and_roughness(pbr);
-    // Model: a surface is all metal or none, and a metal's lobe is a ball of the radius of its roughness.
+    // Model: a surface is all metal or not metal at all, and a metal's lobe is a ball whose radius is its
+    // roughness.
     Material out = metal > 0.5 ? metallic(color[0], color[1], color[2], float(roughness))
                                : lambertian(color[0], color[1], color[2]);
     if (pbr.baseColorTexture.index >= 0) out.texture = texture(pbr.baseColorTexture.index, m);
@@ -47,7 +48,7 @@ class MaterialReader {
   }
 
  private:
-  // Model: a map of metal and roughness counts with its mean.
+  // Model: a map of metal and roughness is replaced by its mean.
   std::pair<double, double> metal_and_roughness(const tinygltf::PbrMetallicRoughness& pbr) const {
     double metal = pbr.metallicFactor, roughness = pbr.roughnessFactor;
     if (pbr.metallicRoughnessTexture.index < 0) return {metal, roughness};
@@ -62,7 +63,7 @@ class MaterialReader {
     return file_.images.at(size_t(texture.source));
   }
 
-  // Choice: blending is a mask of one half: the shaders know only hits and misses.
+  // Choice: blending becomes a mask of one half, because the shaders know only hits and misses.
   int32_t texture(int index, const tinygltf::Material& m) {
     const double cutoff = m.alphaMode == "MASK" ? m.alphaCutoff : m.alphaMode == "BLEND" ? 0.5 : -1;
     const auto& c = m.pbrMetallicRoughness.baseColorFactor;
@@ -76,7 +77,7 @@ class MaterialReader {
                 .height = uint32_t(image.height),
                 .rgba = image.image};
     out.srgb = true;  // glTF 2.0, 3.9.2: base colours are sRGB
-    // Model: mirrored repetition repeats.
+    // Model: mirrored repetition becomes plain repetition.
     out.repeat = source.sampler < 0 ||
                  file_.samplers.at(size_t(source.sampler)).wrapS != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
     for (size_t i = 3; i < out.rgba.size(); i += 4) {
@@ -104,7 +105,8 @@ std::vector<int32_t> add_gltf_materials(Scene& scene, const tinygltf::Model& fil
     scene.materials.push_back(material);
   };
   for (const tinygltf::Material& m : file.materials) add(reader.read(m));
-  add(lambertian(0.7f, 0.7f, 0.7f));  // Choice: as OBJ files without a library, not glTF's white
+  add(lambertian(0.7f, 0.7f,
+                 0.7f));  // Choice: grey, as for OBJ files without a library; glTF's default is white
   return indices;
 }
 

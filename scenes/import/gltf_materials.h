@@ -1,4 +1,4 @@
-// Materials and textures of a glTF file as LumiBench's few models know them.
+// Reads materials and textures of a glTF file as LumiBench's few models know them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -13,9 +13,10 @@ class Model;
 
 namespace glint::scenes {
 
-// Appends the file's materials to the scene, and one grey 0.7 for primitives without any; returns their
-// indices there. Sets Scene::alpha_test where one is masked. Base-colour textures keep their sRGB and
-// wrapping; what a mask hides has alpha 0, all else 255. std::out_of_range: an index names nothing.
+// Appends the file's materials to the scene, and one of grey 0.7 for primitives without a material. Returns
+// their indices in the scene. Sets Scene::alpha_test when a material is masked. Base-colour textures keep
+// their sRGB flag and wrapping; texels that a mask hides have alpha 0, and all others have 255. Throws
+// std::out_of_range when an index names nothing.
 std::vector<int32_t> add_gltf_materials(Scene& scene, const tinygltf::Model& file);
 
 }  // namespace glint::scenes

@@ -1,4 +1,4 @@
-// Triangles of a glTF mesh.
+// Reads the triangles of a glTF mesh.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/import/gltf_mesh.h"
 
@@ -90,7 +90,8 @@ class MeshReader {
     return out;
   }
 
-  // Flat: every triangle gets corners of its own, so that smoothing them smooths nothing.
+  // Appends triangles. With `flat`, every triangle gets corners of its own, so that smoothing changes
+  // nothing.
   void append(const std::vector<Vertex>& vertices, const std::vector<uint32_t>& indices, bool flat) {
     const auto first = uint32_t(model.vertices.size());
     if (!flat) {

@@ -1,4 +1,4 @@
-// Triangles of a glTF mesh: accessors of any stride and type as vertices and indices.
+// Reads the triangles of a glTF mesh: accessors of any stride and type become vertices and indices.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -14,10 +14,11 @@ struct Mesh;
 
 namespace glint::scenes {
 
-// All primitives of a mesh as one model, in the mesh's own space. `materials` are the scene's indices of the
-// file's materials, one more at the end for primitives that name none. Normals are flat where the file has
-// none (glTF 2.0, 3.7.2.1). UserError at `path`: primitives other than triangles, attributes that are not of
-// floats, accessors that leave their buffers; std::out_of_range: an index names nothing.
+// Returns all primitives of a mesh as one model, in the mesh's own space. `materials` holds the scene's
+// indices of the file's materials, and one more at the end for primitives that name none. Normals are flat
+// where the file has none (glTF 2.0, 3.7.2.1).
+// Throws UserError at `path` for primitives other than triangles, attributes that are not floats, and
+// accessors that leave their buffers. Throws std::out_of_range when an index names nothing.
 Model read_mesh(const tinygltf::Model& file, const tinygltf::Mesh& mesh,
                 const std::vector<int32_t>& materials, const std::string& path);
 

@@ -1,4 +1,4 @@
-// A glTF file's nodes as instances, with its camera and lamp.
+// Reads a glTF file's nodes as instances, with its camera and lamp.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
@@ -21,11 +21,12 @@
 namespace glint::scenes {
 namespace {
 
-using Matrix = std::array<double, 16>;  // columns one after the other, as glTF has them
+using Matrix = std::array<double, 16>;  // columns one after the other, as in glTF
 constexpr Matrix kUnit{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-constexpr int kDeepest = 256;  // nodes above each other; more are a loop
+constexpr int kDeepest = 256;  // levels of nodes; more than this are a loop
 
-// What the picture may be without: extensions that change more are refused.
+// Lists extensions without which the picture is still usable. Files that require another extension are
+// refused.
 constexpr std::array<std::string_view, 7> kKnownExtensions{
     "KHR_lights_punctual", "KHR_materials_transmission",
     "KHR_materials_ior",   "KHR_materials_emissive_strength",
@@ -40,7 +41,8 @@ Matrix product(const Matrix& a, const Matrix& b) {
   return out;
 }
 
-// glTF 2.0, 3.5.3: a matrix, or translation * rotation (a quaternion x y z w) * scale.
+// Returns a node's matrix (glTF 2.0, 3.5.3): its matrix, or translation * rotation (a quaternion x y z w) *
+// scale.
 Matrix local_matrix(const tinygltf::Node& node) {
   Matrix out = kUnit;
   if (node.matrix.size() == 16) {
@@ -103,7 +105,7 @@ class Nodes {
     for (const int child : node.children) add(child, matrix, depth + 1);
   }
 
-  // Where nothing of a kind was there; and instances without triangles go, for nothing could name them.
+  // Removes instances without triangles, which nothing could name, and adds the lamp and the sky.
   void finish() {
     std::erase_if(scene_.instances,
                   [&](const Instance& i) { return scene_.models[i.model].indices.empty(); });
@@ -144,8 +146,8 @@ class Nodes {
     out.field_of_view = float(source.perspective.yfov * 180 / M_PI);
   }
 
-  // Model: a point or spot light is a glowing ball, the same in all directions; a directional one is the
-  // sky's.
+  // Model: a point or spot light becomes a glowing ball that is the same in all directions. A directional
+  // light is left to the sky.
   void lamp(const tinygltf::Light& light, const Matrix& m) {
     if (has_lamp_ || light.type == "directional") return;
     has_lamp_ = true;
@@ -181,11 +183,11 @@ bool decode(tinygltf::Image* image, int, std::string* error, std::string*, int, 
 }
 
 std::string note_of(const tinygltf::Model& file) {
-  std::string note = "From a glTF file.";
+  std::string note = "The scene is from a glTF file.";
   if (!file.skins.empty() || !file.animations.empty()) note += " Skins and animations are not read.";
   const auto blends = [](const tinygltf::Material& m) { return m.alphaMode == "BLEND"; };
   if (std::any_of(file.materials.begin(), file.materials.end(), blends))
-    note += " Blending is a mask of one half.";
+    note += " Blending is replaced by a mask of one half.";
   return note;
 }
 
@@ -197,8 +199,8 @@ tinygltf::Model read_file(const std::string& path) {
   const bool good = path.ends_with(".glb") ? loader.LoadBinaryFromFile(&file, &error, &warning, path)
                                            : loader.LoadASCIIFromFile(&file, &error, &warning, path);
   if (!good)
-    throw UserError({path},
-                    fmt::format("this file cannot be read: {}", error.empty() ? "it is no glTF 2.0" : error));
+    throw UserError(
+        {path}, fmt::format("this file cannot be read: {}", error.empty() ? "it is not glTF 2.0" : error));
   for (const std::string& name : file.extensionsRequired)
     if (std::find(kKnownExtensions.begin(), kKnownExtensions.end(), name) == kKnownExtensions.end())
       throw UserError({path}, fmt::format("it requires the extension {}, which is not read", name),

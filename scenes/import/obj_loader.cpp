@@ -1,4 +1,4 @@
-// Wavefront OBJ files as models, by the rules of LumiBench's application.
+// Reads Wavefront OBJ files as models, by the rules of LumiBench's application.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/import/obj_loader.h"
 
@@ -22,12 +22,12 @@
 namespace glint::scenes {
 namespace {
 
-// What makes two corners the same vertex: the values, not the file's indices.
+// Hashes what makes two corners the same vertex: the values, not the file's indices.
 struct VertexHash {
   size_t operator()(const Vertex& v) const {
     uint64_t state = uint64_t(uint32_t(v.material)) + 0x9e3779b97f4a7c15;
     const auto mix = [&state](float value) {
-      // + 0.0f: the two zeros are equal and must hash alike
+      // The sum turns -0 into +0, because the two zeros are equal and must hash alike.
       state = (state ^ std::bit_cast<uint32_t>(value + 0.0f)) * 0xff51afd7ed558ccd;
       state ^= state >> 32;
     };
@@ -81,7 +81,7 @@ tinyobj::ObjReader read(const std::string& path) {
   if (!parse(reader, path))
     throw UserError({path}, "this OBJ file cannot be read: " + reader.Error(),
                     "expected a Wavefront OBJ file");
-  // A named material library that is absent would silently turn every colour grey.
+  // Without this error, a named material library that is absent would silently turn every colour grey.
   if (reader.Warning().find("not found") != std::string::npos && reader.GetMaterials().empty())
     throw UserError({path}, "its material library cannot be read: " + reader.Warning(),
                     "put the .mtl file beside the .obj file");
@@ -92,7 +92,8 @@ Material material_of(const tinyobj::material_t& m) {
   return lambertian(float(m.diffuse[0]), float(m.diffuse[1]), float(m.diffuse[2]));
 }
 
-// `folder` is the library's: texture names are relative to it.
+// Gives a material the texture `name`. `folder` is the folder of the library, to which texture names are
+// relative.
 void add_texture(Material& material, std::string name, const std::filesystem::path& folder,
                  std::vector<Texture>& textures) {
   if (name.empty()) return;

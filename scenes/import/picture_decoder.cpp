@@ -1,4 +1,4 @@
-// Calls stb_image. Its functions stay in this file: other libraries bring their own copies of it.
+// Calls stb_image. Its functions stay in this file, because other libraries bring their own copies of it.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/import/picture_decoder.h"
 
@@ -24,7 +24,8 @@ namespace {
 
 constexpr int kChannels = 4;
 
-// `decode(&width, &height, &channels)` gives pixels of type T or none.
+// Returns the picture that `decode(&width, &height, &channels)` gives as pixels of type T, or why it gives
+// none.
 template <class T, class Decode>
 DecodedPicture decoded(std::vector<T> DecodedPicture::*pixels, Decode&& decode) {
   int width = 0, height = 0, channels = 0;

@@ -1,4 +1,4 @@
-// Pixels of PNG, JPEG, HDR and other picture files: the only place that knows the library which reads them.
+// Decodes PNG, JPEG, HDR and other picture files. Only this place knows the library that reads them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -8,7 +8,8 @@
 
 namespace glint::scenes {
 
-// Rows from the top, four channels a pixel, in `bytes` or, of HDR files that were read as such, in `floats`.
+// Holds a picture: rows from the top, with four channels per pixel. The pixels are in `floats` for HDR files
+// that were read as such, and in `bytes` otherwise.
 struct DecodedPicture {
   uint32_t width = 0, height = 0;
   std::vector<uint8_t> bytes;
@@ -17,9 +18,9 @@ struct DecodedPicture {
 };
 
 bool is_hdr_picture(const std::string& path);
-// An HDR file gives floats; all others give bytes.
+// Decodes a file. An HDR file gives floats; all others give bytes.
 DecodedPicture decode_picture_file(const std::string& path);
-// Bytes, whatever the file.
+// Decodes a file of any kind to bytes.
 DecodedPicture decode_picture_bytes_of_file(const std::string& path);
 DecodedPicture decode_picture(std::span<const uint8_t> file);
 

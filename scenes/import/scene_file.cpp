@@ -1,4 +1,4 @@
-// Choice of loader, and the camera of files that have none.
+// Chooses the loader of a file, and the camera of files that have none.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/import/scene_file.h"
 
@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float kFieldOfView = 40;           // degrees, of a camera that a file does not have
-constexpr Vec3 kFromThere{0.55f, 0.35f, 1};  // it looks from the right, a little above
+constexpr float kFieldOfView = 40;           // degrees, for files without a camera
+constexpr Vec3 kFromThere{0.55f, 0.35f, 1};  // the camera looks from the right and a little above
 
 std::string ending_of(const std::string& name) {
   std::string ending = fs::path(name).extension().string();
@@ -28,7 +28,7 @@ std::string ending_of(const std::string& name) {
   return ending;
 }
 
-// Sees the whole box, wherever it lies.
+// Returns a camera that sees the whole box, wherever it lies.
 Camera camera_around(const Bounds& box) {
   const Vec3 centre = (box.lower + box.upper) * 0.5f;
   const float radius = std::max(length(box.upper - box.lower) * 0.5f, 1e-6f);
@@ -92,7 +92,7 @@ Scene load_scene_file(const std::string& path, const LoadOptions& options) {
     const float radius = scene.camera.light_radius;
     scene.camera = camera_around(world_bounds(scene));
     scene.camera.has_sky = has_sky, scene.camera.light_position = light, scene.camera.light_radius = radius;
-    scene.note += " The file has no camera: this one sees all of it.";
+    scene.note += " The file has no camera, so the camera was placed where it sees the whole scene.";
   }
   return scene;
 }

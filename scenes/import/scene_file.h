@@ -1,5 +1,5 @@
-// Scenes of files that LumiBench does not know: one OBJ model, or a glTF scene with its nodes, materials and
-// camera.
+// Loads scenes of files that LumiBench does not know: one OBJ model, or a glTF scene with its nodes,
+// materials and camera.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
@@ -9,25 +9,27 @@
 
 namespace glint::scenes {
 
-// Whether a scene's name is a file's: it ends in .obj, .gltf or .glb.
+// Returns whether a scene's name is that of a file: it ends in .obj, .gltf or .glb.
 bool names_scene_file(const std::string& name);
 
-// Form "file". A file without a camera gets one that sees all of it; one without lamps, a sky. UserError as
-// the loaders'.
+// Loads a scene of the form "file". A file without a camera gets one that sees all of it, and a file without
+// lamps gets a sky. Throws UserError as the loaders do.
 Scene load_scene_file(const std::string& path, const LoadOptions& options);
 
-// A glTF 2.0 file's default scene, in the file's units. A mesh is a model, a node with a mesh an instance.
-// Materials: base colour (factor and texture), metals with their roughness as fuzziness, emission as a light,
-// KHR_materials_transmission as a dielectric, alpha masks. The first camera and the first point or spot light
-// are used. Not read, and said in the scene's note: skins, morph targets, blending, vertex colours, other
-// maps. UserError: not readable, a required extension unknown, primitives other than triangles, accessors out
-// of range.
+// Loads a glTF 2.0 file's default scene, in the file's units. Each mesh becomes a model, and each node with a
+// mesh becomes an instance. These parts of materials are read: base colour (factor and texture), metals with
+// their roughness as fuzziness, emission as a light, KHR_materials_transmission as a dielectric, and alpha
+// masks. The first camera and the first point or spot light are used. Skins, animations, morph targets,
+// vertex colours and other maps are not read, and blending becomes a mask; the scene's note says so for
+// skins, animations and blending.
+// Throws UserError when the file is not readable, requires an unknown extension, or has primitives other than
+// triangles or accessors out of range.
 Scene load_gltf(const std::string& path, const LoadOptions& options);
 
-// All instances of triangles as one model in world coordinates.
+// Returns all instances of triangles as one model in world coordinates.
 Model flattened(const Scene& scene);
 
-// Of every instance, procedural ones included.
+// Returns the bounds of every instance, procedural ones included.
 Bounds world_bounds(const Scene& scene);
 
 }  // namespace glint::scenes

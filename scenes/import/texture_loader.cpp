@@ -1,4 +1,4 @@
-// Picture files as textures of a scene.
+// Reads picture files as textures of a scene.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/import/texture_loader.h"
 

@@ -1,4 +1,4 @@
-// Picture files as textures of a scene.
+// Reads picture files as textures of a scene.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -9,10 +9,12 @@
 
 namespace glint::scenes {
 
-// Reads a PNG or JPEG file as RGBA8, alpha 255 where the file has none. UserError when it cannot be read.
+// Reads a PNG or JPEG file as RGBA8; alpha is 255 where the file has none. Throws UserError when the file
+// cannot be read.
 Texture load_texture(const std::string& path);
 
-// The same of a file's bytes; `name` is the texture's, and the place that errors name.
+// Does the same with the bytes of a file. `name` becomes the texture's name, and errors name it as their
+// place.
 Texture decode_texture(const std::string& name, std::span<const uint8_t> bytes);
 
 }  // namespace glint::scenes

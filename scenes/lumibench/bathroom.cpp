@@ -1,4 +1,4 @@
-// BATH: a bathroom with a mirror, a tub and lamps; indoor, open behind the camera only.
+// Builds BATH, a bathroom with a mirror, a tub and lamps, which is open only behind the camera.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/generate/generated.h"
 #include "scenes/generate/plants.h"
@@ -13,7 +13,7 @@ bool contains(const std::string& name, const char* part) {
   return name.find(part) != std::string::npos;
 }
 
-// What the application overrides material by material.
+// Sets what the application overrides material by material.
 void recolor(const std::string& name, std::span<Material> materials) {
   const auto set = [&](size_t index, const Material& material) {
     if (index < materials.size()) materials[index] = material;
@@ -47,7 +47,8 @@ FolderRules rules() {
           .recolor = recolor};
 }
 
-// The original's room: x -17 to 17, y 0 to 33.6, z -23 to 22.5, without a wall towards the camera.
+// These are the bounds of the original's room: x -17 to 17, y 0 to 33.6, z -23 to 22.5, without a wall
+// towards the camera.
 constexpr float kX = 17, kY = 33.6f, kBack = -23, kFront = 22.5f;
 
 void room(Model& model, int32_t wood, int32_t light, int32_t mirror, int32_t wall) {
@@ -175,8 +176,8 @@ void generate(Scene& scene, const LoadOptions& options) {
     add_grass(m, {-2, -6}, {9, 5}, flat, 0.5f, generator.rest(), generator.color(0.7f, 0.65f, 0.5f), 5);
   });
   scene.note =
-      "A procedural bathroom in the original's room, of its triangle count (423,821) and number of models "
-      "(47).";
+      "The scene is a procedural bathroom in the original's room, with its triangle count (423,821) and "
+      "number of models (47).";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The scenes' own constructors, one a file; load_scene (scenes/scene.h) is the door for everybody else.
+// Declares the scenes' own constructors, one per file. Everybody else calls load_scene (scenes/scene.h).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -26,15 +26,16 @@ Scene build_park(const LoadOptions& options);
 Scene build_car(const LoadOptions& options);
 Scene build_robot(const LoadOptions& options);
 
-// The Cornell box of edge 555 with its four materials: 24 vertices, 12 triangles, open towards +z.
+// Returns the Cornell box of edge 555 with its four materials: 24 vertices and 12 triangles, open towards +z.
 Model make_cornell_box();
-// Its materials: 0 red (right), 1 green (left), 2 white, 3 light.
+// Returns the box's materials: 0 red (right), 1 green (left), 2 white, 3 light.
 std::vector<Material> cornell_materials();
 
-// Stand-ins for meshes that cannot be redistributed, in the coordinates of the originals before placement.
+// Return stand-ins for meshes that cannot be redistributed, in the coordinates of the originals before
+// placement.
 Model make_bunny_stand_in(int32_t material);   // about 144,000 triangles; feet at y = 0
 Model make_statue_stand_in(int32_t material);  // about 449,000 triangles; height about 600
-// A two-masted schooner of about 6,255 triangles; appends its 11 materials to `materials`.
+// Returns a two-masted schooner of about 6,255 triangles, and appends its 11 materials to `materials`.
 Model make_schooner(std::vector<Material>& materials);
 
 Material lambertian(float r, float g, float b);

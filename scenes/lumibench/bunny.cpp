@@ -1,4 +1,4 @@
-// The bunny stand-in: a sitting rabbit sculpted from ellipsoids, of the original mesh's size and density.
+// Sculpts the bunny stand-in, a sitting rabbit of ellipsoids of the original mesh's size and density.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
@@ -11,14 +11,14 @@ namespace {
 
 constexpr float kCell = 0.01018f;  // chosen for about 144,046 triangles
 
-// `mirrored` has z = |z|: the rabbit is symmetric and looks along -x.
+// Returns the distance to an ear. `mirrored` has z = |z|, because the rabbit is symmetric; it looks along -x.
 float ear_distance(const Vec3& mirrored) {
   constexpr Vec3 kRoot{-0.50f, 1.12f, 0.08f}, kTip{-0.16f, 1.47f, 0.17f};
   const Vec3 axis = kTip - kRoot;
   const float t = std::clamp(dot(mirrored - kRoot, axis) / dot(axis, axis), 0.0f, 1.0f);
   const float width = 0.035f + 0.34f * t * (1 - t);  // slim at both ends
   const Vec3 q = mirrored - (kRoot + axis * t);
-  // flatter than wide: the thin direction is across the axis in the rabbit's plane of symmetry
+  // The ear is flatter than wide: its thin direction is across its axis, in the rabbit's plane of symmetry.
   const Vec3 thin = normalized({-axis[1], axis[0], 0.02f});
   const float across = dot(q, thin), rest = std::max(dot(q, q) - across * across, 0.0f);
   const float outer = std::sqrt(across * across * 3.2f + rest) - width;
@@ -33,7 +33,7 @@ float head_distance(const Vec3& m) {
   d = blended_union(d, ellipsoid_distance(m, {-0.70f, 0.88f, 0.10f}, {0.12f, 0.10f, 0.09f}), 0.08f);
   d = blended_union(d, ellipsoid_distance(m, {-0.905f, 0.955f, 0}, {0.03f, 0.025f, 0.035f}), 0.02f);
   d = blended_union(d, ear_distance(m), 0.06f);
-  // the eye lies in a shallow socket
+  // The eye lies in a shallow socket.
   d = std::max(d, -ellipsoid_distance(m, {-0.71f, 1.05f, 0.20f}, {0.06f, 0.055f, 0.05f}));
   return std::min(d, ellipsoid_distance(m, {-0.70f, 1.05f, 0.165f}, {0.042f, 0.042f, 0.035f}));
 }
@@ -49,9 +49,9 @@ float rabbit_distance(const Vec3& p) {
   d = blended_union(d, ellipsoid_distance(m, {-0.60f, 0.06f, 0.15f}, {0.14f, 0.07f, 0.08f}), 0.05f);
   d = blended_union(d, ellipsoid_distance(m, {0.60f, 0.27f, 0}, {0.14f, 0.15f, 0.14f}), 0.05f);
   d = blended_union(d, head_distance(m), 0.10f);
-  // fur, as on the clay original: low bumps that only light shows
+  // The fur, as on the clay original, is low bumps that only light shows.
   d += 0.006f * noise(p * 9) + 0.003f * noise(p * 24);
-  return std::max(d, -p[1]);  // stands on the floor
+  return std::max(d, -p[1]);  // the rabbit stands on the floor
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// CAR: a racing car with hundreds of parts, most with a texture of their own.
+// Builds CAR, a racing car with hundreds of parts, most with a texture of their own.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/generate/generated.h"
 #include "scenes/generate/paintings.h"
@@ -20,7 +20,8 @@ class Workshop {
  public:
   Workshop(Generator& generator) : generator_(generator), random_(277) {}
 
-  // Every new part gets the next texture, as long as there are any, then plain colours.
+  // Returns the material of a new part. It has the next texture as long as there are any, then a plain
+  // colour.
   int32_t paint() {
     static constexpr Pattern kPatterns[] = {Pattern::Panels, Pattern::Stone, Pattern::Stripes,
                                             Pattern::Planks};
@@ -39,7 +40,7 @@ class Workshop {
   uint32_t made_ = 0;
 };
 
-// Wheels, 4 x (tyre, rim, 12 bolts, brake) = 60 models.
+// Adds the wheels: 4 x (tyre, rim, 12 bolts, brake) = 60 models.
 void wheels(Generator& generator, Workshop& shop, const Frame& car) {
   static constexpr Vec2 kBolt[] = {{-1, 0}, {-1, 1}, {0.4f, 1}, {0.5f, 0.6f}, {1, 0.6f}, {1, 0}};
   for (int k = 0; k < 4; ++k) {
@@ -98,7 +99,7 @@ void body(Generator& generator, Workshop& shop, const Frame& car) {
   });
 }
 
-// Towers of the town around, and the slope below.
+// Adds the towers of the town around, and the slope below.
 void surroundings(Generator& generator, Workshop& shop, const Frame& view) {
   Random& random = shop.random();
   for (uint32_t k = 0; k < 48; ++k)
@@ -128,8 +129,8 @@ void generate(Scene& scene, const LoadOptions& options) {
   wheels(generator, shop, car);
   surroundings(generator, shop, view);
   scene.note =
-      "A procedural racing car; about the original's triangle count (12.7M), its number of models (302) and "
-      "textures (244, 504 MB).";
+      "The scene is a procedural racing car with about the original's triangle count (12.7M), and with its "
+      "number of models (302) and textures (244, 504 MB).";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// CRNVL: a fairground with a big wheel, a carousel, tents and strings of lamps, one structure.
+// Builds CRNVL, a fairground with a big wheel, a carousel, tents and strings of lamps, as one structure.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 
@@ -13,7 +13,7 @@ namespace {
 constexpr uint64_t kTriangles = 449'600;
 constexpr double kPi = 3.14159265358979;
 
-// In world units: the ground is y = 20, the camera looks along -z from (275, 60, -700).
+// Builds the fair in world units: the ground is y = 20, and the camera looks along -z from (275, 60, -700).
 struct Fair {
   Model model{};
   std::vector<int32_t> colors{};
@@ -112,7 +112,7 @@ void build_fair(Fair& fair) {
   }
 }
 
-// A coaster behind the fair: two rails, ties and posts.
+// Adds a coaster behind the fair: two rails, ties and posts.
 void build_coaster(Fair& fair) {
   std::array<std::vector<Vec3>, 2> rails;
   for (int k = 0; k <= 600; ++k) {
@@ -148,7 +148,8 @@ void generate(Scene& scene, const LoadOptions& options) {
     model.name = "carnival";
   });
   scene.note =
-      "A procedural fairground of the original's triangle count (449.6K) and number of materials (35).";
+      "The scene is a procedural fairground with the original's triangle count (449.6K) and number of "
+      "materials (35).";
 }
 
 }  // namespace
@@ -167,7 +168,7 @@ Scene build_carnival(const LoadOptions& options) {
   scene.models.push_back(load_obj(path, scene.materials));
   place(scene.models.back(), {.translation = {400, 20, 150}, .scale = 0.2f});
   scene.form = "original";
-  scene.note = "Mesh from the assets folder.";
+  scene.note = "The mesh is from the assets folder.";
   return scene;
 }
 

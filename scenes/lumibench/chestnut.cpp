@@ -1,4 +1,4 @@
-// CHSNT: a chestnut tree seen from below, whose leaves are squares with transparent texels.
+// Builds CHSNT, a chestnut tree seen from below, whose leaves are squares with transparent texels.
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
 
@@ -25,8 +25,8 @@ void tilt(Model& model) {
   }
 }
 
-// Eight of the young tree, about as many triangles as the old one, turned by an eighth each about its axis
-// (z).
+// Returns eight copies of the young tree, which have about as many triangles as the old one. Each is turned
+// by a further eighth about the tree's axis (z).
 Model grow_up(const Model& young) {
   Model model;
   for (int k = 0; k < 8; ++k) {
@@ -44,18 +44,17 @@ void load(Scene& scene, const LoadOptions& options) {
                                        "CHSNT/chestnut.obj", "chestnut.obj", kYoungTree, "AL05y.obj"});
   Model tree = load_obj(path, scene.materials, &scene.textures);
   scene.form = "original";
-  scene.note = "Mesh from the assets folder.";
+  scene.note = "The mesh is from the assets folder.";
   if (std::filesystem::path(path).filename() == "AL05y.obj") {
     tree = grow_up(tree);
     scene.form = "stand-in";
-    scene.note =
-        "Eight copies of the young tree (38,253 triangles) instead of the original's old one (313K).";
+    scene.note = "Eight copies of the young tree (38,253 triangles) replace the original's old one (313K).";
   }
   tilt(tree);
   scene.models.push_back(std::move(tree));
 }
 
-// In the original's axes before the tilt z is up; here the tree grows along the tilted one.
+// Builds the tree along the tilted axis. In the original's axes, z is up before the tilt.
 void generate(Scene& scene, const LoadOptions& options) {
   constexpr uint64_t kTriangles = 313'000;
   constexpr uint64_t kGround = 2'000;
@@ -83,8 +82,8 @@ void generate(Scene& scene, const LoadOptions& options) {
         kGround, ground);
   });
   scene.note =
-      "A procedural tree of about the original's triangle count (313K), with leaves cut out by their "
-      "texture's alpha.";
+      "The scene is a procedural tree of about the original's triangle count (313K), with leaves cut out by "
+      "their texture's alpha.";
 }
 
 }  // namespace

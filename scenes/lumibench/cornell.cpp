@@ -1,4 +1,4 @@
-// The Cornell box of LumiBench's indoor scenes, and CORNELL: the box alone, Glint's own small test scene.
+// Builds the Cornell box of LumiBench's indoor scenes, and CORNELL: the box alone, Glint's own test scene.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 
@@ -12,8 +12,8 @@ constexpr float kEdge = 555;                    // world units, as in "Ray Traci
 constexpr float kLightHeight = 0.998f * kEdge;  // 553.89: just under the ceiling
 constexpr int32_t kRed = 0, kGreen = 1, kWhite = 2, kLight = 3;
 
-// Two triangles over four corners, clockwise as seen from inside; the normal points into the box, and so do
-// the triangles, counter-clockwise.
+// Adds two triangles over four corners, which go clockwise as seen from inside. The normal points into the
+// box, and the triangles are counter-clockwise.
 void add_wall(Model& box, const std::array<Vec3, 4>& corners, const Vec3& normal, int32_t material) {
   constexpr Vec2 kCoordinates[4] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   const uint32_t first = uint32_t(box.vertices.size());
@@ -46,7 +46,7 @@ Scene build_cornell(const LoadOptions&) {
   Scene scene;
   scene.name = "CORNELL";
   scene.form = "built-in";
-  scene.note = "The Cornell box alone, Glint's own small scene; LumiBench has no such scene.";
+  scene.note = "The scene is the Cornell box alone, Glint's own small scene; LumiBench has no such scene.";
   scene.models.push_back(make_cornell_box());
   scene.materials = cornell_materials();
   scene.camera = {.eye = {278, 278, 800},

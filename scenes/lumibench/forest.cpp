@@ -1,4 +1,4 @@
-// FRST: an autumn forest, hundreds of trees, bushes and flowers, each a structure of its own.
+// Builds FRST, an autumn forest of hundreds of trees, bushes and flowers, each a structure of its own.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/generate/generated.h"
 #include "scenes/generate/plants.h"
@@ -9,7 +9,7 @@ namespace {
 
 constexpr uint64_t kTriangles = 4'200'000;
 
-// Colours of bushes, in shares of 30, 30 and 40 %.
+// Returns the colour of a bush: one of three, in shares of 30, 30 and 40 %.
 Material bush_color(float draw) {
   return draw < 0.3f ? paint(175, 195, 62) : draw < 0.6f ? paint(224, 70, 45) : paint(236, 186, 85);
 }
@@ -127,8 +127,8 @@ void generate(Scene& scene, const LoadOptions& options) {
     add_ground(m, {-70, 10}, {20, 66}, ground, generator.rest(), near);
   });
   scene.note =
-      "A procedural autumn forest; about the original's triangle count (4.2M) and its number of models "
-      "(283).";
+      "The scene is a procedural autumn forest with about the original's triangle count (4.2M) and with its "
+      "number of models (283).";
 }
 
 }  // namespace
@@ -140,7 +140,7 @@ Scene build_forest(const LoadOptions& options) {
                   .target = {-25.8289890f, 2.5999173f, 60.7666997f},
                   .field_of_view = 30,
                   .focus_distance = 7};
-  Random draws(42);  // the application's generator, one draw a bush
+  Random draws(42);  // the application's generator, with one draw per bush
   options.assets.empty() ? generate(scene, options) : load_folder(scene, options, rules(draws));
   return scene;
 }

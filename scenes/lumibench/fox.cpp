@@ -1,4 +1,4 @@
-// FOX: a fox's head in thick fur among flowers, against the sky.
+// Builds FOX, a fox's head in thick fur among flowers, against the sky.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 
@@ -79,8 +79,8 @@ void generate(Scene& scene, const LoadOptions& options) {
                stem, 0.05f, k);
     });
   scene.note =
-      "A procedural fox with fur of thin tubes; about the original's triangle count (1.6M) and number of "
-      "models (37).";
+      "The scene is a procedural fox with fur of thin tubes. It has about the original's triangle count "
+      "(1.6M) and number of models (37).";
 }
 
 }  // namespace

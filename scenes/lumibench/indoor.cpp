@@ -1,4 +1,5 @@
-// BUNNY and REF: the Cornell box with a large mesh in it, plain or with mirror walls and a glass sphere.
+// Builds BUNNY and REF, the Cornell box with a large mesh in it: plain, or with mirror walls and a glass
+// sphere.
 // SPDX-License-Identifier: Apache-2.0
 #include <utility>
 
@@ -10,7 +11,7 @@ namespace glint::scenes {
 namespace {
 
 constexpr const char* kStanfordBunny = "BUNNY/stanford-bunny.obj";  // a stand-in of another scale and size
-constexpr const char* kSmallLucy = "REF/lucy.obj";                  // a decimated statue, another scale
+constexpr const char* kSmallLucy = "REF/lucy.obj";                  // a decimated statue of another scale
 
 Camera indoor_camera(float eye_z, float field_of_view, float light_z) {
   return {.eye = {278, 278, eye_z},
@@ -25,7 +26,7 @@ bool ends_with(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-// Scales about the origin, then moves.
+// Scales a model about the origin, then moves it.
 void adjust(Model& model, float scale, const Vec3& move) {
   for (Vertex& vertex : model.vertices) vertex.position = vertex.position * scale + move;
 }
@@ -35,7 +36,9 @@ Model load_bunny(Scene& scene, const LoadOptions& options) {
   if (options.assets.empty()) {
     scene.form = "built-in";
     scene.materials.push_back(lambertian(0.7f, 0.7f, 0.7f));
-    scene.note = "A procedural bunny of the original's size, place and about its triangle count (144,046).";
+    scene.note =
+        "The mesh is a procedural bunny with the original's size and place and about its triangle count "
+        "(144,046).";
     return make_bunny_stand_in(int32_t(scene.materials.size() - 1));
   }
   const std::string path =
@@ -44,7 +47,7 @@ Model load_bunny(Scene& scene, const LoadOptions& options) {
   Model model = load_obj(path, scene.materials);
   if (ends_with(path, kStanfordBunny)) {
     adjust(model, 10, {0, -0.33f, 0});  // to the original's units, with its feet on the floor
-    scene.note = "The Stanford bunny (69,451 triangles) instead of the original's 144,046-triangle mesh.";
+    scene.note = "The Stanford bunny (69,451 triangles) replaces the original's 144,046-triangle mesh.";
   } else {
     scene.form = "original";
     scene.note = "Mesh from the assets folder.";
@@ -58,7 +61,8 @@ Model load_statue(Scene& scene, const LoadOptions& options) {
     scene.form = "built-in";
     scene.materials.push_back(lambertian(0.7f, 0.7f, 0.7f));
     scene.note =
-        "A procedural winged statue of the original's size, place and about its triangle count (448.9K).";
+        "The mesh is a procedural winged statue with the original's size and place and about its triangle "
+        "count (448.9K).";
     return make_statue_stand_in(int32_t(scene.materials.size() - 1));
   }
   const std::string path =
@@ -70,7 +74,7 @@ Model load_statue(Scene& scene, const LoadOptions& options) {
     adjust(model, kScale,
            {-kScale * 0.5f * (box.lower[0] + box.upper[0]), 15 - kScale * box.lower[1],
             -kScale * 0.5f * (box.lower[2] + box.upper[2])});
-    scene.note = "A decimated statue (99,970 triangles) instead of the original's 448.9K-triangle mesh.";
+    scene.note = "A decimated statue (99,970 triangles) replaces the original's 448.9K-triangle mesh.";
   } else {
     scene.form = "original";
     scene.note = "Mesh from the assets folder.";

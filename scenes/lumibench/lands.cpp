@@ -1,4 +1,4 @@
-// LANDS: white cliffs and sailing boats on reflecting water, seen from above; the water fills the view.
+// Builds LANDS, white cliffs and sailing boats on reflecting water that fills the view, seen from above.
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
@@ -19,7 +19,7 @@ FolderRules rules() {
                      {{"Landscape"}, paint(250, 250, 245)}}};
 }
 
-// A hull of planks with ribs, decks and rails.
+// Adds a hull of planks with ribs, decks and rails.
 void boat(Model& model, const Frame& f, int32_t wood) {
   constexpr int kPlanks = 24;
   const auto hull = [&](float u, float down) {
@@ -83,7 +83,7 @@ float waves(float x, float z) {
   return kWater + 0.03f * fractal({x * 1.3f, 2, z * 1.3f}, 3);
 }
 
-// Terraces of chalk.
+// Returns the height of terraces of chalk.
 float cliffs(float x, float z, float shift) {
   const float h = fractal({x * 0.16f + shift, 0, z * 0.16f}, 5) * 5 + 0.2f;
   const float step = std::floor(h * 1.5f) / 1.5f;
@@ -120,8 +120,8 @@ void generate(Scene& scene, const LoadOptions& options) {
     });
   }
   scene.note =
-      "Procedural cliffs, water and boats; about the original's triangle count (3.3M) and number of models "
-      "(26).";
+      "The scene is procedural cliffs, water and boats with about the original's triangle count (3.3M) and "
+      "number of models (26).";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// PARK: long thin grass close to the camera, trees, a car and mountains on a procedural ground sphere.
+// Builds PARK: long thin grass close to the camera, trees, a car and mountains on a procedural ground sphere.
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
 #include <fstream>
@@ -14,7 +14,7 @@
 namespace glint::scenes {
 namespace {
 
-constexpr float kScale = 0.1f;  // the application's, for every file
+constexpr float kScale = 0.1f;  // the application's scale of every file
 
 const Material kLeaf = paint(124, 252, 0), kRock = paint(136, 140, 141), kSoil = paint(155, 118, 83),
                kWood = paint(114, 92, 66), kSkin = paint(197, 140, 133),
@@ -31,7 +31,7 @@ FolderRules rules() {
                      {{"Benz"}, kCar}}};
 }
 
-// Mountains of a stand-in table: nx * nz vertices over a rectangle.
+// Adds the mountains of a stand-in table: nx * nz vertices over a rectangle.
 void add_heights(Model& model, std::istream& fields, int32_t material) {
   uint32_t nx = 0, nz = 0;
   float x0 = 0, z0 = 0, x1 = 0, z1 = 0, base = 0, height = 0, seed = 0;
@@ -44,8 +44,8 @@ void add_heights(Model& model, std::istream& fields, int32_t material) {
             });
 }
 
-// Objects that a table `standin.tsv` puts together from other scenes' files: name, file or HF, matrix or
-// heights.
+// Reads objects that a table `standin.tsv` puts together from other scenes' files. A line has a name, a file
+// or HF, and a matrix or heights.
 class StandIns {
  public:
   StandIns(Scene& scene, std::filesystem::path folder) : scene_(scene), folder_(std::move(folder)) {}
@@ -98,7 +98,7 @@ class StandIns {
           }
           return materials_[name];
         }
-    throw UserError({(folder_ / "standin.tsv").string()}, "no colour for the object " + name,
+    throw UserError({(folder_ / "standin.tsv").string()}, "this table has no colour for the object " + name,
                     "expected one of the scene's own names");
   }
 
@@ -114,8 +114,8 @@ void load(Scene& scene, const LoadOptions& options) {
   if (scene.form == "original" || !StandIns(scene, folder).run()) return;
   scene.form = "stand-in";
   scene.note =
-      "Humans and ground of the original; grass, trees and car put together from other scenes' files, "
-      "mountains generated.";
+      "The humans and the ground are the original's, grass, trees and car are put together from other "
+      "scenes' files, and the mountains are generated.";
 }
 
 float lawn(float x, float z) {
@@ -209,7 +209,8 @@ void generate(Scene& scene, const LoadOptions& options) {
     });
   }
   scene.note =
-      "A procedural park; about the original's triangle count (6.0M), its 36 models and the ground sphere.";
+      "The scene is a procedural park with about the original's triangle count (6.0M), its 36 models and the "
+      "ground sphere.";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// PARTY: a harbour town with boats, boxes, meters and cables: few triangles for its hundreds of structures.
+// Builds PARTY, a harbour town with boats, boxes, meters and cables: hundreds of structures of few triangles.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/generate/generated.h"
 #include "scenes/generate/solids.h"
@@ -18,7 +18,8 @@ struct Palette {
   int32_t operator[](uint32_t k) const { return colors[k % colors.size()]; }
 };
 
-// A house front with windows, sills and pipes; `f` is its block, y from -1 at the foot to 1.
+// Adds a house front with windows, sills and pipes. `f` is its block, in which y goes from -1 at the foot to
+// 1.
 void add_house(Model& model, const Frame& f, const Palette& palette, uint32_t seed) {
   Random random(seed);
   add_rounded_box(model, f, 1'200, palette[seed], 0.02f);
@@ -48,7 +49,8 @@ void add_boat(Model& model, const Frame& f, const Palette& palette, uint32_t see
   add_cable(model, f.at(0.2f, 0, 0), f.at(0.2f, 3.2f, 0), 0, 0.05f, 300, palette[seed + 1]);
 }
 
-// `town` has x to the right, y up and z towards the camera; its origin is on the ground below the camera.
+// Adds houses and boats. `town` has x to the right, y up and z towards the camera; its origin is on the
+// ground below the camera.
 void houses_and_boats(Generator& generator, const Frame& town, const Palette& palette, Random& random) {
   for (uint32_t k = 0; k < 40; ++k)
     generator.model("House", [&](Model& m) {
@@ -132,7 +134,8 @@ void generate(Scene& scene, const LoadOptions& options) {
     add_ball(m, town.inner({12, 16, -110}, {10, 9, 8}), generator.rest(), steam, 0.5f, 2.5f);
   });
   scene.note =
-      "A procedural harbour; about the original's triangle count (1.7M) and its number of models (320).";
+      "The scene is a procedural harbour with about the original's triangle count (1.7M) and with its number "
+      "of models (320).";
 }
 
 }  // namespace

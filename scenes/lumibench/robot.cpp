@@ -1,5 +1,4 @@
-// ROBOT: a machine of plates, pistons and bundles of cables close to the camera; the most triangles of all
-// scenes.
+// Builds ROBOT, a machine of plates, pistons and cables close to the camera, with the most triangles of all.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/generate/generated.h"
 #include "scenes/generate/solids.h"
@@ -95,7 +94,8 @@ void generate(Scene& scene, const LoadOptions& options) {
   });
   generator.model("Floor", [&](Model& m) { add_quad(m, {-4, -1.26f, 4}, {8, 0, 0}, {0, 0, -8}, paint[0]); });
   scene.note =
-      "A procedural machine; about the original's triangle count (20.6M) and its number of models (248).";
+      "The scene is a procedural machine with about the original's triangle count (20.6M) and with its "
+      "number of models (248).";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// SHIP's built-in form: a two-masted schooner of long thin triangles, with the original's bounds and budget.
+// Builds SHIP's generated form, a two-masted schooner of long thin triangles with the original's bounds.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 namespace glint::scenes {
 namespace {
 
-// In metres, y up, the bow towards +z, the water line near y = 0.
+// Coordinates are in metres, y is up, the bow points towards +z, and the water line is near y = 0.
 constexpr float kStern = -9.6f, kBow = 8.36f, kKeel = -1.36f;
 
 struct Shipyard {
@@ -43,7 +43,8 @@ struct Shipyard {
   void line(const Vec3& a, const Vec3& b) { add_rope(ship, a, b, 0.022f, rope); }
 };
 
-// Height of the rail, half width at the rail, and depth of the hull, along the ship (t = 0 stern, 1 bow).
+// Return the height of the rail, the half width at the rail, and the depth of the hull along the ship, from t
+// = 0 (stern) to t = 1 (bow).
 float rail_height(float t) {
   return 1.62f + 1.6f * (t - 0.45f) * (t - 0.45f) + (t < 0.2f ? 0.3f * (0.2f - t) : 0);
 }
@@ -62,7 +63,7 @@ float station(float z) {
   return (z - kStern) / (kBow - kStern);
 }
 
-// A point of the planking: v = 0 at the keel, 1 at the rail; the bow rakes forward.
+// Returns a point of the planking, from v = 0 at the keel to v = 1 at the rail. The bow rakes forward.
 Vec3 hull_point(float t, float v, float side) {
   const float low = keel_height(t), high = rail_height(t);
   const float bulge = std::sqrt(std::max(v * (2 - v), 0.0f)) * (1 - 0.06f * v * v);
@@ -81,7 +82,7 @@ void build_hull(Shipyard& yard) {
       return p;
     };
     add_sheet(yard.ship, 24, 1, yard.dark_planks, inside);
-    // the rail's cap and two rubbing strakes
+    // These are the rail's cap and two rubbing strakes.
     for (const float height : {1.0f, 0.83f, 0.62f}) {
       const float thickness = height == 1.0f ? 0.07f : 0.045f;
       const auto strake = [=](float u, float v) {
@@ -130,7 +131,7 @@ void build_spars(Shipyard& yard) {
   yard.spar_between({-2.7f, 12.9f, 3.0f}, {2.7f, 12.9f, 3.0f}, 0.06f, 0.06f, 8);  // topsail yard
 }
 
-// Four corners in turn (u = 0: the edge at the mast), filled out to the side by `belly`.
+// Adds a sail over four corners in turn (u = 0 is the edge at the mast), filled out to the side by `belly`.
 void add_sail(Shipyard& yard, const std::array<Vec3, 4>& c, const Vec3& belly, uint32_t columns,
               uint32_t rows) {
   add_sheet(yard.ship, columns, rows, yard.sail, [=](float u, float v) {
@@ -169,7 +170,7 @@ void build_shrouds(Shipyard& yard) {
         const float t = float(i) / (kRatlines + 2.5f);
         yard.line(foot(0) + (head - foot(0)) * t, foot(kShrouds - 1) + (head - foot(kShrouds - 1)) * t);
       }
-      // topmast: from the crosstree to its head
+      // This line goes from the crosstree to the head of the topmast.
       yard.line({side * 0.3f, 9.8f, mast.z - 0.2f}, {0, mast.top - 0.5f, mast.z - 0.7f});
       yard.line({side * 0.3f, 9.8f, mast.z - 0.7f}, {0, mast.top - 0.5f, mast.z - 0.7f});
       yard.line(foot(7.5f), {0, mast.top - 0.6f, mast.z - 0.7f});

@@ -1,4 +1,4 @@
-// SHIP: a schooner against the sky, from the original file or built in.
+// Builds SHIP, a schooner against the sky, from the original file or generated.
 // SPDX-License-Identifier: Apache-2.0
 #include <utility>
 
@@ -17,15 +17,15 @@ Scene build_ship(const LoadOptions& options) {
     ship = make_schooner(scene.materials);
     scene.form = "built-in";
     scene.note =
-        "A procedural schooner with the original's bounds, number of materials and about its triangle count "
-        "(6,255).";
+        "The scene is a procedural schooner with the original's bounds and number of materials, and about "
+        "its triangle count (6,255).";
   } else {
     const std::string path = find_asset(options.assets, scene.name,
                                         {"assets/models/karimSchooner.obj", "models/karimSchooner.obj",
                                          "SHIP/karimSchooner.obj", "karimSchooner.obj"});
     ship = load_obj(path, scene.materials);
     scene.form = "original";
-    scene.note = "Complete: the original mesh from the assets folder.";
+    scene.note = "The scene is complete: the original mesh is from the assets folder.";
   }
   place(ship, {.translation = {173, -9, -377}, .scale = 100, .rotation_y = 75});
   scene.models.push_back(std::move(ship));

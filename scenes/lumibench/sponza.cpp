@@ -1,4 +1,4 @@
-// SPNZA: a colonnaded hall with two floors of arches, curtains and textured walls, one structure.
+// Builds SPNZA, a colonnaded hall with two floors of arches, curtains and textured walls, as one structure.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
@@ -15,14 +15,14 @@
 namespace glint::scenes {
 namespace {
 
-constexpr float kStandInScale = 107;  // metres of the stand-in to units of the original
+constexpr float kStandInScale = 107;  // units of the original per metre of the stand-in
 
 struct StandInTexture {
-  std::vector<std::string> parts;  // of the file's name; the first that matches
+  std::vector<std::string> parts;  // parts of a file's name; the first entry with one of them applies
   const char* texture;
 };
 
-// Which of the original's textures the stand-in's parts carry: surfaces of the same kind.
+// Returns which of the original's textures the stand-in's parts carry. They show surfaces of the same kind.
 const std::vector<StandInTexture>& stand_in_textures() {
   static const std::vector<StandInTexture> table = {
       {{"arcs_", "holes", "parapet", "object19", "object27", "object4"}, "sponza_arch_diff"},
@@ -55,7 +55,7 @@ int32_t stand_in_material(Scene& scene, const std::string& name, const std::file
   return int32_t(scene.materials.size() - 1);
 }
 
-// Every triangle becomes four, cut at the middles of its edges.
+// Returns a model in which every triangle is cut into four at the middles of its edges.
 Model subdivided(const Model& model) {
   Model fine;
   const auto middle = [](const Vertex& a, const Vertex& b) {
@@ -94,8 +94,8 @@ void load_stand_in(Scene& scene, const std::filesystem::path& folder) {
   scene.models.back().name = "sponza_stand_in";
   scene.form = "stand-in";
   scene.note =
-      "An earlier model of the same building, every triangle cut in four (271,708), with the original's "
-      "textures.";
+      "The mesh is an earlier model of the same building with every triangle cut in four (271,708), and with "
+      "the original's textures.";
 }
 
 void load(Scene& scene, const LoadOptions& options) {
@@ -107,17 +107,17 @@ void load(Scene& scene, const LoadOptions& options) {
   if (path.filename() == "sponza.obj") {
     scene.models.push_back(load_obj(path.string(), scene.materials, &scene.textures));
     scene.form = "original";
-    scene.note = "Mesh and textures from the assets folder.";
+    scene.note = "The mesh and the textures are from the assets folder.";
   } else {
     load_stand_in(scene, path.parent_path());
   }
   place(scene.models.back(), {.rotation_y = 270});
 }
 
-// The generated hall: its long axis is z, the floor is y = 0, the court lies between the columns at |x| =
-// kColumns.
+// These are the sizes of the generated hall. Its long axis is z, the floor is y = 0, and the court lies
+// between the columns at |x| = kColumns.
 constexpr float kHalfWidth = 560, kColumns = 260, kHalfLength = 1860, kFloor = 420, kHeight = 1500;
-constexpr uint32_t kBays = 12;  // columns of a side
+constexpr uint32_t kBays = 12;  // columns on a side
 
 struct Hall {
   Generator& generator;
@@ -138,7 +138,7 @@ struct Hall {
     add_rounded_box(model, upright({side * kColumns, low + 10, z}, {42, 12, 42}), 150, paint[6]);
     add_rounded_box(model, upright({side * kColumns, low + 270, z}, {46, 12, 46}), 150, paint[6]);
   }
-  // From one column to the next: the inside of a half ring and the wall above it.
+  // Adds what lies between two columns: the inside of a half ring, and the wall above it.
   void arch(float side, float z0, float z1, float floor) {
     const float low = floor * kFloor + 282, middle = 0.5f * (z0 + z1), radius = 0.5f * (z1 - z0) - 34,
                 top = (floor + 1) * kFloor;
@@ -225,8 +225,8 @@ void generate(Scene& scene, const LoadOptions& options) {
     model.name = "hall";
   });
   scene.note =
-      "A procedural hall of the original's size, triangle count (262,267) and number of textures (24 of 4 "
-      "MiB).";
+      "The scene is a procedural hall with the original's size, triangle count (262,267) and number of "
+      "textures (24 of 4 MiB).";
 }
 
 }  // namespace

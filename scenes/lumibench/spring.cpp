@@ -1,4 +1,4 @@
-// SPRNG: a girl in knitted clothes close to the camera, grass around her, a mountain that fills the view.
+// Builds SPRNG: a girl in knitted clothes close to the camera, grass around her, and a mountain behind her.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/generate/generated.h"
 #include "scenes/generate/plants.h"
@@ -22,7 +22,7 @@ FolderRules rules() {
                      {{"spring_scarf", "spring_pullover"}, paint(114, 76, 64)}}};
 }
 
-// Seams of a garment: rings of small tubes on a ball.
+// Adds the seams of a garment, which are rings of small tubes on a ball.
 void stitches(Model& model, const Frame& frame, uint64_t triangles, int32_t material, uint32_t seed) {
   Random random(seed);
   const uint64_t count = triangles / 96;
@@ -76,7 +76,7 @@ void girl(Generator& generator, const Frame& view) {
   });
 }
 
-// Hills close by, then a mountain that rises over the whole picture.
+// Returns the height of the ground: hills close by, then a mountain that rises over the whole picture.
 float slope(float x, float z) {
   const float away = 4 - z, far = away < 12 ? 0.0f : away - 12;
   return -1.1f + 0.3f * fractal({x * 0.3f, 0, z * 0.3f}, 3) + 0.3f * away + 0.75f * far +
@@ -102,8 +102,8 @@ void generate(Scene& scene, const LoadOptions& options) {
     add_ground(m, {-30, -30}, {25, 4}, slope, generator.rest() - 150'000, grass);
   });
   scene.note =
-      "A procedural figure, grass and mountain; about the original's triangle count (1.9M) and its number of "
-      "models (51).";
+      "The scene is a procedural figure, grass and mountain with about the original's triangle count (1.9M) "
+      "and with its number of models (51).";
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// The statue stand-in of REF: a winged, robed figure with a torch, of the original mesh's size and density.
+// Sculpts the statue stand-in of REF, a winged, robed figure with a torch, of the original's size and
+// density.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
@@ -10,9 +11,9 @@ namespace glint::scenes {
 namespace {
 
 constexpr float kCell = 1.602f;  // chosen for about 448.9K triangles
-constexpr int kFeathers = 9;     // a wing
+constexpr int kFeathers = 9;     // of a wing
 
-// The figure looks along +z with its right hand at +x; `m` has x = |x|.
+// Returns the distance to a wing. The figure looks along +z with its right hand at +x; `m` has x = |x|.
 float wing_distance(const Vec3& m) {
   constexpr Vec3 kRoot{16, 405, -34}, kWrist{105, 500, -66};
   float d = limb_distance(m, kRoot, 15, kWrist, 11);
@@ -21,7 +22,7 @@ float wing_distance(const Vec3& m) {
     const Vec3 base = kRoot + (kWrist - kRoot) * t;
     const Vec3 direction = normalized({0.10f + 0.62f * t, -1 + 0.25f * t, -0.10f});
     const float reach = 110 + 150 * t - 40 * t * t;
-    // a feather is a flat limb: squeezed along z, and stepped so that each lies over the next
+    // A feather is a flat limb, squeezed along z and stepped so that each feather lies over the next.
     const Vec3 q = m - base;
     const Vec3 flat{q[0], q[1], (q[2] - direction[2] * dot(q, direction) + (i % 2 ? 3.0f : -3.0f)) * 2.6f};
     const Vec3 tip{direction[0] * reach, direction[1] * reach, 0};
@@ -31,7 +32,8 @@ float wing_distance(const Vec3& m) {
 }
 
 float robe_distance(const Vec3& p) {
-  // around the axis: a diamond angle in 0..4 instead of an arc tangent, the same on every machine
+  // The angle around the axis is a diamond angle in 0 to 4 instead of an arc tangent, because it is the same
+  // on every machine.
   const float ax = std::abs(p[0]) + std::abs(p[2]) + 1e-6f;
   const float quarter = p[2] / ax;
   const float angle = p[0] >= 0 ? 1 + quarter : 3 - quarter;
@@ -51,7 +53,7 @@ float body_distance(const Vec3& p) {
   float d = robe_distance(p);
   d = blended_union(d, limb_distance(p, {-42, 430, 0}, 20, {42, 430, 0}, 20), 16);
   d = blended_union(d, limb_distance(p, {0, 440, 0}, 15, {0, 482, 3}, 13), 10);
-  // the right arm lifts a torch, the left one rests on the belt
+  // The right arm lifts a torch, and the left one rests on the belt.
   d = blended_union(d, limb_distance(p, {48, 432, 0}, 18, {92, 458, 12}, 13), 8);
   d = blended_union(d, limb_distance(p, {92, 458, 12}, 13, {99, 532, 30}, 9), 6);
   d = blended_union(d, limb_distance(p, {-48, 432, 0}, 18, {-76, 362, 22}, 13), 8);
@@ -83,11 +85,13 @@ float pedestal_distance(const Vec3& p) {
   return std::min(d, std::max(disc(28, 54, 93), (radius - 90 + flutes * 0.6f) * 0.7f));
 }
 
-// The placed figure looks towards the camera when the mesh looks along -x.
+// Returns the distance to the whole statue. The placed figure looks towards the camera when the mesh looks
+// along -x.
 float statue_distance(const Vec3& p) {
   const Vec3 q{p[2], p[1], -p[0]};
   float d = blended_union(body_distance(q), head_distance(q), 5);
-  // nine feathers are dear: left out where a ball around the wing is farther than they could matter
+  // Nine feathers take long to compute, so they are left out where a ball around the wing is too far away to
+  // matter.
   const Vec3 m{std::abs(q[0]), q[1], q[2]};
   if (length(m - Vec3{105, 380, -60}) - 190 < d + 6) d = blended_union(d, wing_distance(m), 6);
   return std::min(d, pedestal_distance(q));

@@ -1,4 +1,4 @@
-// WKND: the 487 spheres of "Ray Tracing in One Weekend", drawn in the application's order.
+// Builds WKND, the 487 spheres of "Ray Tracing in One Weekend", drawn in the application's order.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 #include <random>
@@ -11,7 +11,7 @@
 namespace glint::scenes {
 namespace {
 
-constexpr uint32_t kSeed = 42;  // of the application's std::mt19937
+constexpr uint32_t kSeed = 42;  // seed of the application's std::mt19937
 
 struct Spheres {
   Scene scene;
@@ -25,8 +25,8 @@ struct Spheres {
   }
 };
 
-// The material of a small sphere. Colours are drawn blue first: the order in which the application's compiler
-// evaluated the constructor's arguments.
+// Draws the material of a small sphere. Colours are drawn blue first, which is the order in which the
+// application's compiler evaluated the constructor's arguments.
 Material draw_material(Spheres& spheres, float choice) {
   if (choice < 0.8f) {
     float color[3];
@@ -65,7 +65,7 @@ Scene build_weekend(const LoadOptions&) {
   Scene& scene = spheres.scene;
   scene.name = "WKND";
   scene.form = "original";
-  scene.note = "Complete: all 487 spheres are generated as in the original application.";
+  scene.note = "The scene is complete: all 487 spheres are generated as in the original application.";
   scene.camera = {
       .eye = {13, 2, 3}, .target = {0, 0, 0}, .field_of_view = 20, .aperture = 0.1f, .focus_distance = 10};
   return std::move(scene);
