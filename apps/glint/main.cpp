@@ -1,4 +1,4 @@
-// The command `glint`: reads the command line, runs one subcommand, turns errors into exit codes.
+// Runs the command `glint`: reads the command line, runs one subcommand, and turns errors into exit codes.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 #include <cstdlib>
@@ -22,7 +22,8 @@ bool is_utf8(const char* locale) {
   return name.find("UTF-8") != std::string::npos || name.find("utf8") != std::string::npos;
 }
 
-// POSIX: LC_ALL wins over LC_CTYPE wins over LANG; an empty one counts as unset.
+// Returns whether the locale is UTF-8. By POSIX, LC_ALL wins over LC_CTYPE, which wins over LANG; an empty
+// variable counts as unset.
 bool locale_is_utf8() {
   for (const char* variable : {"LC_ALL", "LC_CTYPE", "LANG"})
     if (const char* value = std::getenv(variable); value && *value) return is_utf8(value);
@@ -30,7 +31,7 @@ bool locale_is_utf8() {
 }
 
 void look_at_terminal(Session& session) {
-  const char* no_colour = std::getenv("NO_COLOR");  // no-color.org: any non-empty value
+  const char* no_colour = std::getenv("NO_COLOR");  // by no-color.org, any non-empty value counts
   const char* kind = std::getenv("TERM");
   session.on_terminal = ::isatty(STDOUT_FILENO) != 0;
   session.terminal.utf8 = session.on_terminal && locale_is_utf8();
@@ -39,8 +40,9 @@ void look_at_terminal(Session& session) {
       session.on_terminal && !(no_colour && *no_colour) && kind && std::string(kind) != "dumb";
 }
 
-// A descriptor that is closed would be given to the next file that is opened, and what is printed would go
-// there: writes to stdout fail instead, and those to stderr go nowhere.
+// Replaces closed descriptors. A closed one would be given to the next file that is opened, and what is
+// printed would go into that file. Afterwards writes to a closed stdout fail, and writes to a closed stderr
+// have no effect.
 void keep_descriptors() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(descriptor, F_GETFD) == -1)
@@ -51,7 +53,7 @@ int report_parse_error(const Command& command, const std::string& error, const S
   fmt::print(stderr, "error: {}\n", error);
   const std::string hint = suggestion(command, session.arguments);
   fmt::print(stderr, "  note: {}\n",
-             hint.empty() ? "'glint --help' and 'glint COMMAND --help' list what there is" : hint);
+             hint.empty() ? "'glint --help' and 'glint COMMAND --help' list all commands and options" : hint);
   return int(Exit::UserInput);
 }
 
@@ -63,7 +65,8 @@ int run_action(const Session& session) {
                std::string(error.what()).find("error: ") == std::string::npos ? "error: " : "", error.what());
     return int(error.exit());
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "error: out of memory\n  note: a smaller --size, or a smaller scene\n");
+    fmt::print(stderr,
+               "error: out of memory\n  note: a smaller --size or a smaller scene needs less memory\n");
     return int(Exit::Failure);
   }
 }
@@ -73,8 +76,8 @@ int main_of(int argc, char** argv) {
       .arguments = {argv, argv + argc}, .resources = Resources::find(), .terminal = {}, .action = {}};
   look_at_terminal(session);
   CommandLine line(
-      "Glint: a GPU you can read. Runs ray-tracing shaders on a simulated GPU and says what it did, cycle by "
-      "cycle.",
+      "Glint is a GPU you can read. It runs ray-tracing shaders on a simulated GPU and says what the GPU "
+      "did, cycle by cycle.",
       "glint", GLINT_VERSION);
   const Command app = line.command();
   add_run(app, session);
@@ -102,8 +105,8 @@ int main_of(int argc, char** argv) {
   return run_action(session);
 }
 
-// What the machine refuses anywhere: stderr that takes no more, a thread that cannot be started, a folder
-// that cannot be read.
+// Catches what the machine may refuse anywhere: a stderr that takes no more, a thread that cannot be started,
+// a folder that cannot be read.
 int guarded_main(int argc, char** argv) {
   try {
     keep_descriptors();

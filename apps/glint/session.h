@@ -1,4 +1,5 @@
-// What every subcommand needs: the command line, where resources lie, what the terminal can, what to run.
+// Holds what every subcommand needs: command line, resources, abilities of the terminal, and the action to
+// run.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
@@ -15,14 +16,14 @@ namespace glint::app {
 struct Session {
   std::vector<std::string> arguments;  // argv
   Resources resources;
-  report::Terminal terminal;     // of stdout
-  bool on_terminal = false;      // stdout is one: progress may be drawn
-  bool can_move_cursor = false;  // and it knows escape sequences
-  int progress_descriptor = -1;  // where a process that started this one listens; -1 = nowhere
+  report::Terminal terminal;     // abilities of stdout
+  bool on_terminal = false;      // stdout is a terminal, so progress may be drawn
+  bool can_move_cursor = false;  // the terminal knows escape sequences
+  int progress_descriptor = -1;  // where a process that started this one listens; -1: nowhere
   std::function<Exit()> action;  // set by the subcommand that was chosen
 };
 
-// Each adds its subcommand; its callback sets Session::action.
+// Each function adds its subcommand, whose callback sets Session::action.
 void add_run(Command app, Session& session);
 void add_bench(Command app, Session& session);
 void add_stats(Command app, Session& session);

@@ -49,7 +49,7 @@ class Amber(GlintTest):
     def test_other_files_beside_scripts_are_refused(self):
         done = self.run_scripts(GOOD, arguments=["WKND"])
         self.assertEqual(done.returncode, 2)
-        self.assertIn("'WKND' is no Amber script", done.stderr)
+        self.assertIn("'WKND' is not an Amber script", done.stderr)
 
 
 if __name__ == "__main__":

@@ -26,7 +26,7 @@ class Kernels(GlintTest):
 
     def test_mistakes_of_a_launch_file_are_told_with_their_lines_all_at_once(self):
         self.write("bad.toml", 'kernel = "k.ptx"\ngird = 4\n[[argument]]\nu33 = 1\n[[argument]]\nbuffer = "b"\ninit = "iota"\n')
-        self.expect(2, ["bad.toml:2:1: error: 'gird' is no key", "did you mean 'grid'?", "bad.toml:4:1: error: 'u33'",
+        self.expect(2, ["bad.toml:2:1: error: 'gird' is not a key", "did you mean 'grid'?", "bad.toml:4:1: error: 'u33'",
                         "needs 'count'"], "run", "bad.toml")
 
     def test_a_grid_that_is_too_large_is_refused_with_the_limit(self):
@@ -50,7 +50,7 @@ class Kernels(GlintTest):
         self.write("saxpy.ptx", (KERNELS / "saxpy.ptx").read_text())
         self.write("saxpy.toml", text)
         line = text[: text.index("[[argument]]\nu64")].count("\n") + 1
-        self.expect(2, [f"saxpy.toml:{line}:", "parameter 'n' has 4 bytes, this argument 8"], "run", "saxpy.toml")
+        self.expect(2, [f"saxpy.toml:{line}:", "parameter 'n' has 4 bytes, and this argument has 8"], "run", "saxpy.toml")
 
     def test_an_access_out_of_bounds_ends_with_4_and_names_file_and_line_in_both_modes(self):
         self.write("saxpy.ptx", (KERNELS / "saxpy.ptx").read_text())

@@ -53,7 +53,7 @@ class Model(GlintTest):
     def test_a_run_of_a_kernel_is_refused_as_no_run_of_a_scene(self):
         done = self.glint("run", ROOT / "shaders/kernels/saxpy.toml", "--out", "saxpy")
         self.assertEqual(done.returncode, 0, done.stderr)
-        done = self.expect(2, ["the kernel 'saxpy': models take runs of scenes", "--statistics-only"], "model", "saxpy")
+        done = self.expect(2, ["the kernel 'saxpy', and models take runs of scenes", "--statistics-only"], "model", "saxpy")
         self.assertNotIn("needs a finished run of the timing machine", done.stderr)
         self.assertEqual(self.glint("model", "saxpy", "--statistics-only").returncode, 0)
         self.write("idle.ptx", ".version 7.0\n.target sm_70\n.address_size 64\n.visible .entry idle()\n{\n  ret;\n}\n")

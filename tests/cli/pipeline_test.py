@@ -219,7 +219,7 @@ void main() { words[0] = kScale; }
 
     def test_init_does_not_write_over_a_file(self):
         self.write("there.toml", "x")
-        self.expect(2, ["there already", "--force"], "init", "there.toml", ROOT / "examples/reduction/reduction.comp")
+        self.expect(2, ["exists already", "--force"], "init", "there.toml", ROOT / "examples/reduction/reduction.comp")
 
     def test_init_wants_one_shader_to_start_with(self):
         self.expect(2, ["0 ray generation or compute shaders"], "init", "x.toml", ROOT / "examples/hello_triangle/hello.rmiss")

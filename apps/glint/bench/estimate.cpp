@@ -10,9 +10,9 @@
 namespace glint::app {
 namespace {
 
-// Triangles and texture bytes as the paper's scenes have them (original data has no more); seconds of a
-// generated scene at 128x128, 2 spp on `mobile`, for pt, sh and ao, measured once on a busy machine and
-// divided by its load: only their ratio counts.
+// Says what a scene needs. Triangles and texture bytes are those of the paper's scenes (original data has no
+// more). The seconds are of a generated scene at 128x128, 2 spp on `mobile`, for pt, sh and ao. They were
+// measured once on a busy machine and divided by its load, so only their ratios count.
 struct SceneNeeds {
   std::string_view scene;
   double triangles, texture_bytes;
@@ -37,22 +37,23 @@ constexpr SceneNeeds kNeeds[] = {
     {"ROBOT", 20.6e6, 0, 21.8, 16.0, 21.6},
 };
 
-// Measured peaks of the generated scenes are 44 to 93 % of these.
+// The measured peaks of the generated scenes are 44 to 93 % of what these constants give.
 constexpr double kProgram = 150e6;  // bytes without a scene
 constexpr double kPerTriangle =
     200;                          // bytes: geometry, its copies while it is built and uploaded, structures
-constexpr double kFromFiles = 2;  // guess: text, and vertices before they are merged
+constexpr double kFromFiles = 2;  // guess: the text, and the vertices before they are merged
 constexpr double kPerPixel = 64;  // bytes: pictures and their copies
 
-// A scene that is not in the table is taken to need as much as the largest one: too much rather than too
-// little.
+// Returns the needs of a scene. A scene that is not in the table is taken to need as much as the largest one,
+// because too much is safer than too little.
 const SceneNeeds& needs_of(std::string_view scene) {
   const auto found = std::find_if(std::begin(kNeeds), std::end(kNeeds),
                                   [&](const SceneNeeds& needs) { return needs.scene == scene; });
   return found != std::end(kNeeds) ? *found : std::end(kNeeds)[-1];
 }
 
-// A number of a file that holds "NAME: NUMBER kB" lines (name not empty) or one number; 0 when there is none.
+// Returns a number of a file, which holds "NAME: NUMBER kB" lines or, when `name` is empty, one number.
+// Returns 0 when there is none.
 uint64_t number_in(const std::string& path, const std::string& name = {}) {
   std::ifstream in(path);
   for (std::string word; in >> word;) {

@@ -1,4 +1,4 @@
-// What a workload will need, before it runs: memory to plan by, and relative time to order by.
+// Estimates what a workload will need before it runs: memory to plan by, and relative time to order by.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -7,15 +7,16 @@
 
 namespace glint::app {
 
-// Peak resident memory of a run in bytes, rather too much than too little. `from_files`: of original data,
-// not generated.
+// Returns the estimated peak resident memory of a run in bytes, rather too much than too little. `from_files`
+// says that the scene is original data and not generated.
 uint64_t memory_estimate(const NamedWorkload& workload, uint64_t pixels, bool from_files);
 
-// Relative time of a run, in any unit: for the order of starts and the time left only.
+// Returns the relative time of a run, in no particular unit. It serves only the order of starts and the time
+// left.
 double time_weight(const NamedWorkload& workload, bool timing, uint64_t pixels, uint64_t samples);
 
-// Memory that this process and its children may still take, bytes: what the system calls available, or what
-// the control group has left when that is less. 0 = not known.
+// Returns the bytes that this process and its children may still take: what the system calls available, or
+// what the control group has left when that is less. Returns 0 when neither is known.
 uint64_t available_memory();
 
 }  // namespace glint::app

@@ -1,4 +1,4 @@
-// Planning of a suite.
+// Plans a suite.
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/bench/plan.h"
 
@@ -26,7 +26,7 @@ std::string bytes_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// Names and contents of the shaders: who edits one gets new results.
+// Hashes the names and contents of the shaders, so that edited shaders give new results.
 uint64_t hash_of_shaders(const Resources& resources) {
   std::vector<std::string> files;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(resources.shader_dir("")))
@@ -37,7 +37,7 @@ uint64_t hash_of_shaders(const Resources& resources) {
   return report::fnv1a(all);
 }
 
-// The frame as options of `glint run`.
+// Returns the frame as options of `glint run`.
 std::vector<std::string> frame_options(const scenes::RenderParams& frame) {
   std::vector<std::string> out;
   for (const scenes::RenderParam& p : scenes::RenderParams::params())
@@ -45,7 +45,7 @@ std::vector<std::string> frame_options(const scenes::RenderParams& frame) {
   return out;
 }
 
-// Everything that a result depends on. Two runs of the same key give the same statistics.
+// Returns everything that a result depends on. Two runs of the same key give the same statistics.
 std::string key_of(const Session& session, const BenchOptions& options) {
   const pipeline::GpuParams gpu = read_config(session.resources, options.config, options.settings);
   const std::string text = fmt::format(
@@ -116,7 +116,7 @@ void mark_complete(const BenchTask& task, const std::string& key, const Process&
 }
 
 void unmark(const BenchTask& task) {
-  std::error_code ignored;  // there may be none
+  std::error_code ignored;  // the file may not exist
   fs::remove(task.directory + "/" + kMark, ignored);
 }
 

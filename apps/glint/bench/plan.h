@@ -1,5 +1,4 @@
-// What `glint bench` is to do: the workloads, the commands that run them, and which of them are complete
-// already.
+// Plans `glint bench`: the workloads, the commands that run them, and which of them are already complete.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -14,12 +13,12 @@
 namespace glint::app {
 
 struct BenchOptions {
-  std::vector<std::string> names;  // of select_workloads(); none: lumibench
+  std::vector<std::string> names;  // names for select_workloads(); none: lumibench
   std::string config = "mobile", size = "128x128", mode = "timing", assets, out;
   std::vector<std::string> settings;
   scenes::RenderParams frame;
-  uint32_t processes = 0, threads = 1;  // 0 processes: one for each of the host's processors
-  double memory = 0;                    // GB of all together; 0: what is available
+  uint32_t processes = 0, threads = 1;  // processes 0: one for each of the host's processors
+  double memory = 0;                    // GB that all processes may take together; 0: what is available
   bool resume = false;
 };
 
@@ -27,7 +26,7 @@ struct BenchTask {
   NamedWorkload workload;
   std::string directory;
   Process process;
-  bool is_complete = false;  // from an earlier bench, with the same key
+  bool is_complete = false;  // an earlier bench with the same key has run it
 };
 
 struct BenchPlan {
@@ -35,15 +34,15 @@ struct BenchPlan {
   std::vector<BenchTask> tasks;
 };
 
-// UserError for options that cannot be. Makes no file.
+// Plans a suite without making any file. Throws UserError for options that are impossible.
 BenchPlan plan_bench(const Session& session, const BenchOptions& options);
 
-// Notes beside a workload's run that it is complete: `workload.json`, the last file that is written.
+// Marks a workload's run as complete with the file `workload.json`, which is written last.
 void mark_complete(const BenchTask& task, const std::string& key, const Process& process);
 // Removes the mark before the workload runs again.
 void unmark(const BenchTask& task);
 
-// Of a complete workload: seconds and peak memory that mark_complete() noted.
+// Reads from a complete workload the seconds and the peak memory that mark_complete() noted.
 void read_mark(const BenchTask& task, Process& process);
 
 }  // namespace glint::app

@@ -1,5 +1,4 @@
-// Forking, listening and reaping. Signals come through a descriptor, so that nothing runs inside of a
-// handler.
+// Forks, listens and reaps. Signals come through a descriptor, so that nothing runs inside of a handler.
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/bench/process_pool.h"
 
@@ -32,12 +31,12 @@ sigset_t watched_signals() {
   return set;
 }
 
-// In the child, between fork and exec: system calls only.
+// Runs in the child between fork and exec, where only system calls are allowed.
 [[noreturn]] void become(char* const* arguments, const char* log, int pipe) {
   const sigset_t set = watched_signals();
   ::sigprocmask(SIG_UNBLOCK, &set, nullptr);
-  ::setpgid(0, 0);                     // Ctrl-C is for the parent, who decides
-  ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // nobody is left behind
+  ::setpgid(0, 0);                     // Ctrl-C goes only to the parent, who decides
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // the child ends when the parent dies
   const int out = ::open(log, O_WRONLY | O_CREAT | O_TRUNC, 0666), in = ::open("/dev/null", O_RDONLY);
   if (out >= 0 && in >= 0) {
     ::dup2(in, STDIN_FILENO);
@@ -98,7 +97,7 @@ bool ProcessPool::run() {
   return !interrupted_;
 }
 
-// The heaviest that waits and fits beside those that run.
+// Starts the heaviest waiting processes that fit beside the running ones.
 void ProcessPool::start_what_fits() {
   while (children_.size() < limits_.processes) {
     uint64_t used = 0;
@@ -131,10 +130,10 @@ bool ProcessPool::start(size_t index) {
   if (pid < 0) {
     ::close(ends[0]);
     if (children_.empty()) throw Error(Exit::Failure, "cannot start a process");
-    limits_.processes = uint32_t(children_.size());  // as many as the system allows
+    limits_.processes = uint32_t(children_.size());  // the system allows no more than these
     return false;
   }
-  ::setpgid(pid, pid);  // here too: whoever comes first
+  ::setpgid(pid, pid);  // parent and child both set the group, because either may come first
   ::fcntl(ends[0], F_SETFL, O_NONBLOCK);
   children_.push_back({index, pid, ends[0], Clock::now(), {}});
   process.state = Process::State::Running;
@@ -153,7 +152,7 @@ void ProcessPool::listen(int signals) {
     if (watched[i + 1].revents & POLLIN) hear(children_[i]);
     is_hung_up |= (watched[i + 1].revents & POLLHUP) != 0;
   }
-  if (is_hung_up) ::usleep(10000);  // it is about to end: no busy waiting for that
+  if (is_hung_up) ::usleep(10000);  // the child is about to end, so this avoids busy waiting
 }
 
 void ProcessPool::hear(Child& child) {
@@ -180,7 +179,7 @@ void ProcessPool::reap() {
     int status = 0;
     rusage usage{};
     if (::wait4(children_[i].pid, &status, WNOHANG, &usage) != children_[i].pid) continue;
-    end(i, status, uint64_t(usage.ru_maxrss) * 1024);  // ru_maxrss: KiB (getrusage(2))
+    end(i, status, uint64_t(usage.ru_maxrss) * 1024);  // ru_maxrss is in KiB (getrusage(2))
   }
 }
 

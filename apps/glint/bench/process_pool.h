@@ -1,5 +1,4 @@
-// Runs commands as processes of their own, a few at a time within a limit of memory, and hears how far each
-// is.
+// Runs commands as processes, a few at a time within a limit of memory, and hears how far each is.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <chrono>
@@ -12,22 +11,24 @@
 namespace glint::app {
 
 struct Process {
-  std::vector<std::string> arguments;  // of this program, without its name; --progress-fd is added
+  std::vector<std::string> arguments;  // arguments for this program, without its name; --progress-fd is added
   std::string log;                     // file for its stdout and stderr
-  uint64_t memory = 0;                 // bytes it will need, about
-  double weight = 1;                   // of its time: heavy ones start first
+  uint64_t memory = 0;                 // bytes that it will need, estimated
+  double weight = 1;                   // relative time that it will take; heavy processes start first
 
   enum class State { Waiting, Running, Done, Failed, Stopped } state = State::Waiting;
-  std::string phase = "starting";  // last that it told
-  double progress = 0;             // of the phase, 0..1
-  double seconds = 0;              // since its start, or that it took
-  uint64_t peak_bytes = 0;         // resident, once it has ended
-  std::string end;                 // how it ended, if not well: "exit 4", "signal 9"
+  std::string phase = "starting";  // the last phase that the process told
+  double progress = 0;             // progress of the phase, 0 to 1
+  double seconds = 0;              // seconds since its start, or those that it took
+  uint64_t peak_bytes = 0;         // resident memory, known once it has ended
+  std::string end;                 // how it ended when it did not end well: "exit 4", "signal 9"
 };
 
 struct PoolLimits {
   uint32_t processes = 1;
-  uint64_t memory = 0;  // bytes of all together; 0 = no limit. One that needs more than the limit runs alone.
+  // Bytes that all processes may take together; 0 sets no limit. A process that needs more than the limit
+  // runs alone.
+  uint64_t memory = 0;
 };
 
 class ProcessPool {
@@ -35,17 +36,19 @@ class ProcessPool {
   ProcessPool(std::vector<Process> processes, const PoolLimits& limits)
       : processes_(std::move(processes)), limits_(limits) {}
 
-  // Called when a process has ended, and now and then between; by index.
+  // Is called with a process's index when the process has ended, and from time to time in between.
   std::function<void(size_t index)> on_end;
-  std::function<void()> on_time;  // ten times a second at most
+  std::function<void()> on_time;  // is called at most ten times a second
 
-  // Until all have ended; false when SIGINT, SIGTERM or SIGHUP came: what was running then is Stopped.
+  // Runs until all processes have ended. Returns false when SIGINT, SIGTERM or SIGHUP came; processes that
+  // were running then are Stopped.
   bool run();
 
   const std::vector<Process>& processes() const { return processes_; }
   std::vector<size_t> running() const;
   double elapsed() const { return seconds_since(start_); }
-  // Seconds that are left, by weights; below 0: not known yet.
+  // Returns the estimated seconds that are left, by weights. A value below 0 says that they are not known
+  // yet.
   double time_left() const;
 
  private:

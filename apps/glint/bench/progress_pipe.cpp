@@ -1,4 +1,4 @@
-// Writing of progress lines.
+// Writes progress lines.
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/bench/progress_pipe.h"
 
@@ -13,8 +13,8 @@ void ProgressPipe::update(uint64_t done, uint64_t total) {
   if (thousandths == told_) return;
   told_ = thousandths;
   const std::string line = fmt::format("{} {}\n", phase_, thousandths);
-  // A line is shorter than PIPE_BUF, so it goes whole or not at all; whether anybody reads it is not this
-  // run's concern.
+  // A line is shorter than PIPE_BUF, so it is written whole or not at all. This run does not care whether
+  // anybody reads it.
   if (::write(descriptor_, line.data(), line.size()) < 0) descriptor_ = -1;
 }
 

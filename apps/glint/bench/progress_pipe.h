@@ -1,4 +1,5 @@
-// Tells another process how far a run is: lines "loading 437" in thousandths, through a file descriptor.
+// Tells another process how far a run is, in lines such as "loading 437" (thousandths) through a file
+// descriptor.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -9,9 +10,9 @@ namespace glint::app {
 
 class ProgressPipe {
  public:
-  // `descriptor` below 0: tells nobody. `phase` is one word.
+  // A `descriptor` below 0 tells nobody. `phase` is one word.
   ProgressPipe(int descriptor, std::string phase) : descriptor_(descriptor), phase_(std::move(phase)) {}
-  // Writes when a thousandth is full: at most a thousand short lines a phase.
+  // Writes a line when a thousandth is complete, so a phase has at most a thousand short lines.
   void update(uint64_t done, uint64_t total);
 
  private:

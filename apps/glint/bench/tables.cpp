@@ -1,4 +1,4 @@
-// Tables and runs of a folder of `glint bench`.
+// Finds tables and runs in a folder of `glint bench`.
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/bench/tables.h"
 
@@ -50,7 +50,9 @@ std::vector<std::string> bench_runs(const std::string& folder) {
   std::ranges::sort(out);
   std::ranges::sort(others);
   if (!others.empty())
-    fmt::print(stderr, "warning: {}: left out, not in its metrics.csv (failed, or of an earlier bench): {}\n",
+    fmt::print(stderr,
+               "warning: {}: these runs are left out, because its metrics.csv does not have them (they "
+               "failed, or an earlier bench made them): {}\n",
                folder, fmt::join(others, " "));
   return out;
 }
@@ -63,7 +65,7 @@ std::vector<std::pair<std::string, std::string>> finished_runs(const std::string
     return (path.has_filename() ? path : path.parent_path()).filename().string();
   };
   if (!fs::is_directory(folder))
-    throw UserError({}, fmt::format("'{}' is no folder", folder),
+    throw UserError({}, fmt::format("'{}' is not a folder", folder),
                     "`glint run --out DIR` and `glint bench --out DIR` make some");
   if (fs::exists(fs::path(folder) / "run.json")) return {{name_of(fs::absolute(folder)), folder}};
   std::vector<std::pair<std::string, std::string>> out;

@@ -1,4 +1,4 @@
-// Finding what `glint bench` has left in a folder.
+// Finds what `glint bench` has left in a folder.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
@@ -7,16 +7,17 @@
 
 namespace glint::app {
 
-// metrics.csv of a folder; a file's name as it is. UserError where the folder has none.
+// Returns the path of a folder's metrics.csv; the name of a file is returned unchanged. Throws UserError when
+// the folder has no metrics.csv.
 std::string metrics_file(const std::string& file_or_folder);
 
-// Directories of the runs of a folder of `glint bench`, by name: those of its metrics.csv, so of the last
-// bench and complete. Others that are there (of an earlier bench, or failed) are named on stderr. Without
-// rows in metrics.csv, or without the file: all.
+// Returns the directories of the runs in a folder of `glint bench`, ordered by name. These are the runs of
+// its metrics.csv, which the last bench completed. Other runs in the folder (failed ones, or those of an
+// earlier bench) are named on stderr. When metrics.csv has no rows or does not exist, all runs are returned.
 std::vector<std::string> bench_runs(const std::string& folder);
 
-// Workload and directory of every finished run below a folder, as bench_runs(); the folder itself where it is
-// a run. UserError where there is none.
+// Returns workload and directory of every finished run below a folder, as bench_runs() finds them, or the
+// folder itself when it is a run. Throws UserError when there is none.
 std::vector<std::pair<std::string, std::string>> finished_runs(const std::string& folder);
 
 }  // namespace glint::app

@@ -1,4 +1,4 @@
-// Drawing of a suite in progress and of its summary.
+// Draws a suite in progress and its summary.
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/bench/view.h"
 
@@ -16,7 +16,7 @@ namespace {
 constexpr int kNameWidth = 9;  // "SPRNG_PT"
 constexpr int kBarWidth = 24;
 
-// One metric of docs/metrics.md as text; "" when the run has none.
+// Returns one metric of docs/metrics.md as text, or "" when the run does not have it.
 std::string shown(const std::vector<report::MetricValue>& metrics, std::string_view name, int digits,
                   double scale = 1) {
   for (const report::MetricValue& metric : metrics)
@@ -81,7 +81,7 @@ void BenchView::draw(const ProcessPool& pool, const std::vector<std::string>& na
   ++drawn_;
 }
 
-// Up by the lines drawn, then erase to the end of the screen (ECMA-48: CUU, ED).
+// Moves the cursor up by the lines drawn and erases to the end of the screen (ECMA-48: CUU, ED).
 void BenchView::clear() {
   if (drawn_ == 0) return;
   print_output("\x1b[{}A\x1b[J", drawn_);

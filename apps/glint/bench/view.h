@@ -1,5 +1,4 @@
-// What `glint bench` shows: a line for each workload that has ended, and on a terminal below them those that
-// run.
+// Shows `glint bench`: a line for each workload that has ended and, on a terminal, those that run below.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -14,29 +13,32 @@ namespace glint::app {
 
 class BenchView {
  public:
-  // `is_live`: stdout is a terminal whose cursor can be moved; else only finished lines are printed.
+  // `is_live` says that stdout is a terminal whose cursor can be moved; otherwise only finished lines are
+  // printed.
   BenchView(const report::Terminal& terminal, bool is_live, size_t total)
       : terminal_(terminal), is_live_(is_live), total_(total) {}
   ~BenchView() { clear(); }
   BenchView(const BenchView&) = delete;
   BenchView& operator=(const BenchView&) = delete;
 
-  // `figures`: of a workload that has ended well; else how it ended.
+  // Shows a workload that has ended. `figures` are its figures when it ended well, and say how it ended
+  // otherwise.
   void ended(const BenchTask& task, const Process& process, const std::string& figures);
   void draw(const ProcessPool& pool, const std::vector<std::string>& names);
-  void clear();  // what is live
+  void clear();  // removes the lines of the running workloads
 
  private:
   report::Terminal terminal_;
   bool is_live_;
   size_t total_, ended_ = 0, failed_ = 0;
-  int drawn_ = 0;  // lines
+  int drawn_ = 0;  // lines drawn below the finished ones
 };
 
-// "376 565 cycles  IPC 132.9  43.3 nodes/ray" of a finished run; in functional mode what there is.
+// Returns the figures of a finished run, such as "376 565 cycles  IPC 132.9  43.3 nodes/ray". A functional
+// run has fewer.
 std::string figures_of(const report::RunRecord& run);
 
-// The table at the end, a row a workload that has results.
+// Is a row of the table at the end, which has one for each workload with results.
 struct BenchRow {
   const BenchTask* task;
   const Process* process;

@@ -1,4 +1,4 @@
-// Look-up of shader sets and workloads by name.
+// Looks up shader sets and workloads by name.
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/bench/workloads.h"
 
@@ -11,13 +11,13 @@
 namespace glint::app {
 namespace {
 
-// LumiBench, Figure 7: by triangles, from few to many.
+// The order is that of LumiBench, Figure 7: by triangles, from few to many.
 constexpr std::string_view kScenes[] = {"WKND", "SHIP",  "BUNNY", "SPNZA", "CHSNT", "BATH", "REF", "CRNVL",
                                         "FOX",  "PARTY", "SPRNG", "LANDS", "FRST",  "PARK", "CAR", "ROBOT"};
-// LumiBench, Table 2: one of each cluster.
+// These are the workloads of LumiBench, Table 2, one of each cluster.
 constexpr std::string_view kSubset[] = {"SPNZA_AO", "BUNNY_AO", "WKND_PT", "SHIP_SH",
                                         "ROBOT_SH", "BATH_PT",  "PARK_PT", "CHSNT_PT"};
-// Its leaves are cut out by an any-hit shader; the paper runs it with path tracing only.
+// The leaves of this scene are cut out by an any-hit shader, and the paper runs it only with path tracing.
 constexpr std::string_view kPathTracingOnly = "CHSNT";
 
 std::string upper(std::string_view text) {
@@ -40,7 +40,7 @@ const WorkloadInfo& find_workload(const std::string& name) {
     names.emplace_back(info.name);
   }
   const std::string guess = nearest(name, names);
-  throw UserError({}, "no shader set '" + name + "', expected pt, sh or ao",
+  throw UserError({}, "there is no shader set '" + name + "', expected pt, sh or ao",
                   guess.empty() ? "" : "did you mean '" + guess + "'?");
 }
 
@@ -72,7 +72,7 @@ std::vector<NamedWorkload> select_workloads(const std::vector<std::string>& name
     for (const std::string_view scene : kScenes) known.emplace_back(scene);
     for (const NamedWorkload& workload : all) known.push_back(workload.name());
     const std::string guess = nearest(upper(name), known);
-    throw UserError({}, "no workload or suite '" + name + "'",
+    throw UserError({}, "there is no workload or suite '" + name + "'",
                     guess.empty() ? "'glint list workloads' names them; suites are lumibench and subset"
                                   : "did you mean '" + guess + "'?");
   }

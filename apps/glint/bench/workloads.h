@@ -1,5 +1,5 @@
-// What there is to run by name: the shader sets, and the 46 workloads of LumiBench, each a scene with a
-// shader set.
+// Lists what can be run by name: the shader sets, and LumiBench's 46 workloads, each a scene with a shader
+// set.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -13,38 +13,39 @@
 namespace glint::app {
 
 struct WorkloadInfo {
-  std::string_view name, folder, doc;  // folder in shaders/
+  std::string_view name, folder, doc;  // `folder` is the one in shaders/
   scenes::Workload workload;
 };
 inline constexpr std::array<WorkloadInfo, 3> kWorkloads{{
-    {"pt", "path_tracing", "Path tracing: one path a sample, up to --bounces rays long.",
+    {"pt", "path_tracing", "Path tracing with one path per sample, up to --bounces rays long.",
      scenes::Workload::PathTracing},
-    {"sh", "shadow", "Hard and soft shadows: --shadow-rays to the light from each hit.",
+    {"sh", "shadow", "Hard and soft shadows, with --shadow-rays rays from each hit to the light.",
      scenes::Workload::Shadow},
-    {"ao", "ambient_occlusion", "Ambient occlusion: --ao-rays into the hemisphere of each hit.",
+    {"ao", "ambient_occlusion", "Ambient occlusion, with --ao-rays rays into the hemisphere of each hit.",
      scenes::Workload::AmbientOcclusion},
 }};
 
-// UserError with the nearest name when there is none.
+// Returns the shader set of that name. Throws UserError with the nearest name when there is none.
 const WorkloadInfo& find_workload(const std::string& name);
 
-// A workload as the paper names it: SHIP_SH.
+// Names a workload as the paper does: SHIP_SH.
 struct NamedWorkload {
   std::string_view scene;   // "SHIP"
   std::string_view shader;  // "sh"
-  bool in_subset = false;   // of the paper's Table 2
+  bool in_subset = false;   // it is in the paper's Table 2
   std::string name() const;
 };
 
-// All 46: scenes by the triangles that the paper gives, pt, sh and ao of each; CHSNT has pt alone.
+// Returns all 46 workloads: pt, sh and ao of each scene, by the scenes' triangles in the paper. CHSNT has
+// only pt.
 std::vector<NamedWorkload> lumibench();
 
-// Names of suites (`lumibench`, `subset`), scenes, shader sets and workloads, in any case, to workloads: each
-// once, in the order of lumibench(). UserError with the nearest name for one that is none.
+// Returns the workloads that names of suites (`lumibench`, `subset`), scenes, shader sets and workloads stand
+// for, in any case. Each appears once, in the order of lumibench(). Throws UserError with the nearest name
+// for an unknown name.
 std::vector<NamedWorkload> select_workloads(const std::vector<std::string>& names);
 
-// Scene and shader set of a name like SHIP_SH, of every scene with every set; nothing when it is not of that
-// form.
+// Holds scene and shader set of a name like SHIP_SH. Every scene may stand with every set.
 struct SceneAndShader {
   std::string scene, shader;
 };

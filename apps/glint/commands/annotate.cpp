@@ -1,5 +1,4 @@
-// `glint annotate RUN [FILE]`: the programs of a profiled run, as GLSL, SPIR-V or ISA, with what each line
-// cost.
+// Declares `glint annotate RUN [FILE]`, which prints programs of a profiled run with what each line cost.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/annotate.h"
 
@@ -37,12 +36,13 @@ ProfileTable read_profile(const std::string& path) {
   return report::parse_profile(*text, path);
 }
 
-// source.json beside the profile; without it the files as they are now, which is enough for GLSL.
+// Returns source.json beside the profile. Without that file it reads the files as they are now, which is
+// enough for GLSL.
 report::SourceMap read_source(const std::string& path, const ProfileTable& profile, const std::string& view) {
   if (const std::optional<std::string> text = text_of(path)) return report::parse_source(*text, path);
   if (view != "glsl")
     throw UserError({}, fmt::format("cannot read '{}'", path),
-                    "SPIR-V and ISA stand there: give the run directory, not the profile alone");
+                    "SPIR-V and ISA are in that file: name the run directory, not the profile alone");
   ProgramListing files;
   for (const report::FileShare& file : report::files_of(profile)) files.files.push_back(file.file);
   report::SourceMap out = report::source_map({files}, text_of);
@@ -50,12 +50,12 @@ report::SourceMap read_source(const std::string& path, const ProfileTable& profi
   return out;
 }
 
-// Whether the user means `file`: its path, or the end of it.
+// Returns whether the user means `file`: its path, or the end of it.
 bool means(const std::string& wanted, const std::string& file) {
   return wanted.empty() || file == wanted || file.ends_with("/" + wanted);
 }
 
-// Views of files, the costliest first.
+// Returns the views of files, the costliest first.
 std::string files_text(const Options& options, const ProfileTable& profile, const report::SourceMap& map,
                        const report::Annotator& annotator) {
   std::string out, names;
@@ -66,7 +66,7 @@ std::string files_text(const Options& options, const ProfileTable& profile, cons
       const report::SourceFile& file = map.files[i];
       if (file.path != share.file) continue;
       if (!file.is_known)
-        fmt::print(stderr, "warning: the text of '{}' is not known: its lines are shown without it\n",
+        fmt::print(stderr, "warning: the text of '{}' is not known, so its lines are shown without it\n",
                    file.path);
       out += options.view == "all" ? annotator.all(i) : annotator.file(file);
     }
@@ -77,7 +77,7 @@ std::string files_text(const Options& options, const ProfileTable& profile, cons
   return out;
 }
 
-// Whether a program is the shader FILE or has code of it.
+// Returns whether a program is the shader FILE or has code of it.
 bool has_code_of(const report::SourceMap& map, uint32_t number, const std::string& wanted) {
   const ProgramListing& program = map.programs[number];
   if (means(wanted, program.shader)) return true;
@@ -91,7 +91,7 @@ std::string programs_text(const Options& options, const ProfileTable& profile, c
   std::string out, names;
   for (const uint32_t number : report::programs_of(profile)) {
     if (number >= map.programs.size())
-      throw UserError({}, "profile.csv and source.json are of two runs", "run it again with --profile");
+      throw UserError({}, "profile.csv and source.json are of different runs", "run it again with --profile");
     names += (names.empty() ? "" : ", ") + map.programs[number].shader;
     if (has_code_of(map, number, options.file))
       out += options.view == "isa" ? annotator.isa(number) : annotator.spirv(number);
@@ -124,20 +124,21 @@ Exit annotate(const Session& session, const Options& options) {
 void add_annotate(Command app, Session& session) {
   auto options = std::make_shared<Options>();
   Command command = app.add_subcommand(
-      "annotate", "Print GLSL, SPIR-V or ISA of a run with --profile with what each line cost");
+      "annotate", "Print the GLSL, SPIR-V or ISA of a profiled run with what each line cost");
   command.add_option("RUN", options->run, "Run directory, or its profile.csv").required();
-  command.add_option("FILE", options->file,
-                     "Source file or shader, or the end of its path (default: all, the costliest first)");
+  command.add_option(
+      "FILE", options->file,
+      "Source file or shader to print, or the end of its path (default: all, the costliest first)");
   command
       .add_option("--view", options->view,
-                  "What to print: source lines; SPIR-V after optimisation; ISA; or all, each below what it "
-                  "comes from")
+                  "Selects what is printed: source lines (glsl), SPIR-V after optimisation (spirv), ISA "
+                  "(isa), or each below what it comes from (all)")
       .one_of({"glsl", "spirv", "isa", "all"})
       .capture_default_str();
   command
       .add_option("--measures", options->measures,
-                  "Columns, by commas: cycles, issues, lanes, accesses, requests, sectors, latency, waits, "
-                  "and the name of any reason of docs/profiling.md")
+                  "Columns to print, separated by commas: cycles, issues, lanes, accesses, requests, "
+                  "sectors, latency, waits, and the name of any reason of docs/profiling.md")
       .delimiter(',')
       .capture_default_str();
   command.callback(

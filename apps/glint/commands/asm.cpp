@@ -1,4 +1,4 @@
-// `glint asm FILE`: reads the ISA's text, verifies it, prints it again.
+// Declares `glint asm FILE`, which reads the ISA's text, verifies it and prints it again.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 #include <memory>
@@ -29,8 +29,9 @@ void add_asm(Command app, Session& session) {
   };
   auto options = std::make_shared<Options>();
   Command command = app.add_subcommand("asm", "Assemble and verify a program in the ISA's text");
-  command.add_option("FILE", options->file, "Text as 'glint compile' prints it").required();
-  command.add_option("-o,--output", options->output, "File to write instead of stdout").type_name("FILE");
+  command.add_option("FILE", options->file, "File to read, with text as 'glint compile' prints it")
+      .required();
+  command.add_option("-o,--output", options->output, "File to write to instead of stdout").type_name("FILE");
   command.callback([&session, options] {
     session.action = [options] { return assemble(options->file, options->output); };
   });

@@ -1,5 +1,4 @@
-// `glint bench [SUITE|NAMES...]`: runs workloads of LumiBench, each as a process of its own, and gathers
-// their metrics.
+// Declares `glint bench [NAMES...]`, which runs workloads as processes and gathers their metrics.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <fmt/format.h>
@@ -18,7 +17,7 @@
 namespace glint::app {
 namespace {
 
-// The last line of a log that says something: what a failed workload ended with.
+// Returns the last line of a log that is not empty, which tells what a failed workload ended with.
 std::string last_words(const std::string& log) {
   std::ifstream in(log);
   std::string line, error;
@@ -42,7 +41,7 @@ class Bench {
     limits();
     announce();
     const bool whole = run_chosen(directory);
-    write_metrics(directory);  // also when nothing was left to run
+    write_metrics(directory);  // the metrics are written even when nothing was left to run
     return conclude(directory, whole);
   }
 
@@ -88,7 +87,7 @@ class Bench {
     if (limits_.memory && largest > limits_.memory)
       fmt::print(stderr, "warning: {} may not fit into {}; it runs alone\n", name, gigabytes(limits_.memory));
     else if (limits_.memory && together > limits_.memory)
-      print_output("fewer run together when they would not fit\n");
+      print_output("fewer workloads run together when they would not fit\n");
   }
 
   bool run_chosen(const report::RunDirectory& directory) {
@@ -110,7 +109,7 @@ class Bench {
     return whole;
   }
 
-  // A process has ended: its figures, its mark, and the metrics up to now.
+  // Handles a process that has ended: prints its figures, marks it, and writes the metrics up to now.
   void take(size_t index, const Process& process, BenchView& view, const report::RunDirectory& directory) {
     BenchTask& task = plan_.tasks[index];
     task.process = process;
@@ -158,15 +157,17 @@ class Bench {
       fmt::print(stderr, "error: {} failed:{}\n  note: log.txt in the directory of each says why\n", failed,
                  names);
     if (!whole)
-      fmt::print(stderr, "error: interrupted\n  note: the same command with --resume goes on from here\n");
+      fmt::print(
+          stderr,
+          "error: the bench was interrupted\n  note: the same command with --resume goes on from here\n");
     return failed || !whole ? Exit::Failure : Exit::Ok;
   }
 
   const BenchOptions& options_;
   BenchPlan plan_;
   PoolLimits limits_;
-  std::vector<size_t> chosen_;    // to run; the others are complete
-  std::vector<std::string> csv_;  // the row of each that is complete, by task
+  std::vector<size_t> chosen_;    // tasks to run; the others are complete
+  std::vector<std::string> csv_;  // the row of each complete task
   bool is_live_;
   report::Terminal terminal_;
 };
@@ -177,29 +178,37 @@ void add_bench(Command app, Session& session) {
   auto options = std::make_shared<BenchOptions>();
   Command command = app.add_subcommand("bench", "Run workloads of LumiBench and gather their metrics");
   command.add_option("NAMES", options->names,
-                     "lumibench (all 46, the default), subset (8), a scene, pt, sh, ao, or workloads: "
-                     "'glint list workloads'");
-  command.add_option("-j,--jobs", options->processes, "Processes at a time; 0: one for each processor")
+                     "What to run: lumibench (all 46, the default), subset (8), a scene, pt, sh, ao, or "
+                     "workloads; 'glint list workloads' names them");
+  command
+      .add_option("-j,--jobs", options->processes,
+                  "Number of processes that run at a time; 0: one for each processor")
       .in_range(0u, 1024u)
       .capture_default_str();
-  command.add_flag("--resume", options->resume,
-                   "Leave out what is complete: the same configuration, options, program and shaders");
+  command.add_flag(
+      "--resume", options->resume,
+      "Leave out workloads that were completed with the same configuration, options, program and shaders");
   command
-      .add_option("--memory", options->memory, "GB that all may take together (default: what is available)")
+      .add_option("--memory", options->memory,
+                  "GB of memory that all processes may take together (default: what is available)")
       .number_range(0.001, 1e6);
-  command.add_option("--config", options->config, "Preset or TOML file").capture_default_str();
-  command.add_option("--set", options->settings, "Override of a key, repeatable: core.warps=16")
+  command.add_option("--config", options->config, "Preset or TOML file to read").capture_default_str();
+  command.add_option("--set", options->settings, "Override one key, such as core.warps=16; repeatable")
       .type_name("KEY=VALUE")
       .allow_extra_args(false);
-  command.add_option("--mode", options->mode, "timing: cycle by cycle; functional: picture and counts only")
+  command
+      .add_option(
+          "--mode", options->mode,
+          "Selects the machine: timing runs cycle by cycle, functional gives only the picture and counts")
       .one_of({"timing", "functional"})
       .capture_default_str();
-  command.add_option("--assets", options->assets, "Folder of original scene data")
+  command.add_option("--assets", options->assets, "Folder that has the original scene data")
       .type_name("DIR")
       .envname("GLINT_ASSETS");
   command
-      .add_option("--out", options->out,
-                  "Folder of the results, a folder a workload (default: out/bench-CONFIG)")
+      .add_option(
+          "--out", options->out,
+          "Folder to write the results to, with a folder for each workload (default: out/bench-CONFIG)")
       .type_name("DIR");
   command.add_option("--threads", options->threads, "Threads of each process")
       .in_range(0u, 256u)

@@ -1,5 +1,5 @@
-// `glint characterize METRICS`: which workloads are alike, which of them stand for all, and which metrics
-// tell them apart.
+// Declares `glint characterize METRICS`, which says which workloads are alike, which of them stand for all,
+// and which metrics tell them apart.
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
 #include <fmt/format.h>
@@ -30,7 +30,7 @@ std::string range_text(const report::SpeedUps::Range& range) {
                      range.most, range.fastest);
 }
 
-// How well a subset tells the speed-up of all workloads on another configuration.
+// Prints how well a subset tells the speed-up of all workloads on another configuration.
 void print_speed_ups(const std::string& csv, const std::string& metrics, const std::string& other,
                      const report::Characterization& result) {
   const std::string path = metrics_file(other), after = read_file(path);
@@ -81,31 +81,34 @@ Exit characterize(const Options& options) {
 void add_characterize(Command app, Session& session) {
   auto options = std::make_shared<Options>();
   Command command = app.add_subcommand("characterize",
-                                       "Compare workloads: components, clusters, a subset that stands for "
-                                       "all, the metrics that tell them apart");
+                                       "Compare workloads: find components, clusters, a subset that stands "
+                                       "for all, and the metrics that tell them apart");
   command
       .add_option("METRICS", options->input,
-                  "metrics.csv of `glint bench`, the folder that has it, or a table whose first column "
-                  "names workloads")
+                  "Table to read: metrics.csv of `glint bench`, the folder that has it, or a table whose "
+                  "first column names workloads")
       .required();
   command
       .add_option("-o,--out", options->out,
-                  "Folder of tables and characterization.json (default: characterization beside metrics.csv)")
+                  "Folder to write tables and characterization.json to (default: characterization beside "
+                  "metrics.csv)")
       .type_name("DIR");
-  command.add_option("--linkage", options->linkage, "How far groups are apart")
+  command.add_option("--linkage", options->linkage, "Selects how the distance between groups is measured")
       .one_of({"single", "complete", "average", "ward"})
       .capture_default_str();
-  command.add_option("--clusters", options->clusters, "Clusters, and so workloads of the subset")
+  command
+      .add_option("--clusters", options->clusters,
+                  "Number of clusters, which is also the number of workloads of the subset")
       .in_range(1, 1000)
       .capture_default_str();
-  command.add_option("--metrics", options->search.count, "Metrics to choose")
+  command.add_option("--metrics", options->search.count, "Number of metrics to choose")
       .in_range(1, 1000)
       .capture_default_str();
-  command.add_option("--seed", options->search.seed, "Of the search for metrics").capture_default_str();
+  command.add_option("--seed", options->search.seed, "Seed of the search for metrics").capture_default_str();
   command
       .add_option("--against", options->against,
-                  "metrics.csv or folder of the same workloads on another configuration: does the subset "
-                  "tell the speed-up? Repeatable")
+                  "metrics.csv or folder of the same workloads on another configuration, to check that the "
+                  "subset tells the speed-up; repeatable")
       .allow_extra_args(false);
   command.callback([&session, options] { session.action = [options] { return characterize(*options); }; });
 }

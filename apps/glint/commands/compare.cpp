@@ -1,4 +1,5 @@
-// `glint compare A B`: what changed from one run to another, with an exit code for scripts.
+// Declares `glint compare A B`, which prints what changed from one run to another, with an exit code for
+// scripts.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/metrics/compare.h"
 
@@ -36,14 +37,14 @@ void add_compare(Command app, Session& session) {
   };
   auto options = std::make_shared<Options>();
   Command command = app.add_subcommand("compare", "Print what changed from one finished run to another");
-  command.add_option("A", options->before, "Run directory: what was").required();
-  command.add_option("B", options->after, "Run directory: what is").required();
+  command.add_option("A", options->before, "Directory of the run before the change").required();
+  command.add_option("B", options->after, "Directory of the run after the change").required();
   command
-      .add_option(
-          "--fail-on", options->fail_on,
-          "Exit with 1 when a metric changed by less or more than this: 'ipc<-2%', 'cycles>1%'; repeatable")
+      .add_option("--fail-on", options->fail_on,
+                  "Exit with 1 when a metric changed by less or more than this, such as 'ipc<-2%' or "
+                  "'cycles>1%'; repeatable")
       .allow_extra_args(false);
-  command.add_flag("--all", options->all, "Metrics that did not change as well");
+  command.add_flag("--all", options->all, "Print metrics that did not change, too");
   command.callback([&session, options] {
     session.action = [options] {
       return compare(options->before, options->after, options->fail_on, options->all);

@@ -1,4 +1,5 @@
-// `glint compile FILE...`: GLSL or SPIR-V to SPIR-V, as words or text, or to the ISA's text.
+// Declares `glint compile FILE...`, which compiles GLSL or SPIR-V to SPIR-V words, SPIR-V text or the ISA's
+// text.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/compile.h"
 
@@ -51,25 +52,25 @@ Exit compile(const Options& options) {
 
 void add_compile(Command app, Session& session) {
   auto options = std::make_shared<Options>();
-  Command command = app.add_subcommand("compile", "Compile shaders, GLSL or SPIR-V, and print the result");
+  Command command = app.add_subcommand("compile", "Compile shaders from GLSL or SPIR-V and print the result");
   command
       .add_option("FILE", options->files,
-                  "Shaders; the stage is the file's ending: .rgen .rchit .rmiss .rahit .rint .rcall .comp; "
-                  "or .spv, .spvasm")
+                  "Shaders to compile; the file's ending gives the stage: .rgen .rchit .rmiss .rahit .rint "
+                  ".rcall .comp; .spv and .spvasm are SPIR-V")
       .required();
   command
       .add_option("--emit", options->emit,
-                  "What to print: the ISA's text; SPIR-V as text (spvasm; spirv is the same) or as words "
-                  "(spv); SPIR-V as it is lowered (simplified)")
+                  "Selects what is printed: the ISA's text (isa), SPIR-V as text (spvasm; spirv is the "
+                  "same), SPIR-V as words (spv), or SPIR-V as it is lowered (simplified)")
       .one_of({"isa", "spvasm", "spirv", "spv", "simplified"})
       .capture_default_str();
-  command.add_option("--entry", options->entry_point, "Entry point, of a module with several")
+  command.add_option("--entry", options->entry_point, "Entry point to use in a module with several")
       .type_name("NAME");
   add_shader_options(command, options->shaders);
-  command.add_option("-o,--output", options->output, "File to write instead of stdout").type_name("FILE");
+  command.add_option("-o,--output", options->output, "File to write to instead of stdout").type_name("FILE");
   command
       .add_option("--registers", options->backend.max_registers,
-                  "32-bit registers a thread before values spill")
+                  "Number of 32-bit registers per thread; values beyond them spill to local memory")
       .in_range(16, 255)
       .capture_default_str();
   command.callback([&session, options] {

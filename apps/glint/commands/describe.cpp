@@ -1,5 +1,4 @@
-// `glint describe NAME`: what a configuration key means, its value in a preset, unit and range; or what a
-// statistic or a metric counts.
+// Declares `glint describe NAME`, which explains a configuration key, a statistic or a metric.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 #include <memory>
@@ -36,17 +35,17 @@ void print_markdown(const std::vector<ParamInfo>& infos) {
                  info.needs.empty() ? "" : fmt::format(" Needs `{}`.", info.needs));
 }
 
-// "gpu.core[3].issue_slots::raw_fixed" -> "gpu.core[*].issue_slots"
+// Returns a path as lists have it: "gpu.core[3].issue_slots::raw_fixed" -> "gpu.core[*].issue_slots".
 std::string as_listed(const std::string& path) {
   std::string out;
   for (const char c : path.substr(0, path.find("::"))) {
-    if (!out.empty() && out.back() == '*' && c != ']') continue;  // a number's further digits
+    if (!out.empty() && out.back() == '*' && c != ']') continue;  // skips the further digits of a number
     out += !out.empty() && out.back() == '[' ? '*' : c;
   }
   return out;
 }
 
-// Statistics of that path, or below it; false when there are none. `names` gets all paths.
+// Prints the statistics of that path or below it. Returns false when there are none. `names` gets all paths.
 bool print_stats(const std::string& wanted, std::vector<std::string>& names) {
   const std::string path = as_listed(wanted);
   bool any = false;
@@ -59,7 +58,7 @@ bool print_stats(const std::string& wanted, std::vector<std::string>& names) {
   return any;
 }
 
-// A metric of metrics.csv of that name; false when there is none. `names` gets all names.
+// Prints the metric of metrics.csv with that name. Returns false when there is none. `names` gets all names.
 bool print_metric(const std::string& wanted, std::vector<std::string>& names) {
   for (const report::MetricGroup& group : report::metric_groups())
     for (const report::Metric& metric : group.metrics) {
@@ -69,7 +68,7 @@ bool print_metric(const std::string& wanted, std::vector<std::string>& names) {
           "{} (a metric: `glint stats RUN --format metrics`, metrics.csv)\n  {}\n  unit     {}\n  formula  "
           "{}\n",
           metric.name, metric.doc, metric.unit,
-          metric.formula.empty() ? "none: Glint cannot give it" : metric.formula);
+          metric.formula.empty() ? "none, because Glint cannot give this metric" : metric.formula);
       if (!metric.paper.empty()) print_output("  paper    {}\n", metric.paper);
       return true;
     }
@@ -88,9 +87,9 @@ Exit describe(const Session& session, const Options& options) {
   if (found.empty()) {
     if (print_stats(options.key, names) || print_metric(options.key, names)) return Exit::Ok;
     const std::string guess = nearest(options.key, names);
-    throw UserError({}, fmt::format("no configuration key, statistic or metric '{}'", options.key),
-                    guess.empty() ? "'glint describe' lists all keys, 'glint list stats' all statistics, "
-                                    "'glint list metrics' all metrics"
+    throw UserError({}, fmt::format("there is no configuration key, statistic or metric '{}'", options.key),
+                    guess.empty() ? "'glint describe' lists all keys, 'glint list stats' lists all "
+                                    "statistics, and 'glint list metrics' lists all metrics"
                                   : fmt::format("did you mean '{}'?", guess));
   }
   if (options.markdown)
@@ -109,12 +108,13 @@ void add_describe(Command app, Session& session) {
   auto options = std::make_shared<Options>();
   Command command = app.add_subcommand("describe", "Explain configuration keys, statistics and metrics");
   command.add_option("NAME", options->key,
-                     "A key or the beginning of keys: core.warps, core, rt; or a statistic: "
-                     "gpu.core[0].ipc; or a metric: simt_efficiency (default: all keys)");
+                     "What to explain: a key (core.warps), the beginning of keys (core, rt), a statistic "
+                     "(gpu.core[0].ipc) or a metric (simt_efficiency); default: all keys");
   command.add_option("--config", options->config, "Preset or TOML file whose values are shown")
       .capture_default_str();
-  command.add_option("--set", options->settings, "Overrides, as for run").type_name("KEY=VALUE");
-  command.add_flag("--markdown", options->markdown, "As the table of docs/config.md");
+  command.add_option("--set", options->settings, "Override one key, such as core.warps=16; repeatable")
+      .type_name("KEY=VALUE");
+  command.add_flag("--markdown", options->markdown, "Print the table of docs/config.md");
   command.callback(
       [&session, options] { session.action = [&session, options] { return describe(session, *options); }; });
 }

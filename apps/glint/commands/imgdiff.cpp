@@ -1,4 +1,4 @@
-// `glint imgdiff A B`: how far apart two pictures are, with an exit code for scripts.
+// Declares `glint imgdiff A B`, which measures how far apart two pictures are, with an exit code for scripts.
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <filesystem>
@@ -21,7 +21,7 @@ struct Options {
   double min_psnr = 0, max_flip = 1, pixels_per_degree = report::kPixelsPerDegree;
 };
 
-// A run directory stands for its picture with all digits.
+// Returns the path of a picture. A run directory stands for its picture with all digits.
 std::string picture_of(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_directory(path, error)) return path;
@@ -61,7 +61,7 @@ std::string measures(const report::Picture& a, const report::ImageDifference& d,
   return report::table(rows, "<><");
 }
 
-// What is not finite, and where: no measure tells it.
+// Tells where pixels are not finite, because no measure tells it.
 void tell_not_finite(const Options& options, const report::Picture& a, const report::Picture& b,
                      const report::ImageDifference& d) {
   if (d.pixels_not_finite > 0)
@@ -110,25 +110,28 @@ Exit imgdiff(const Options& options) {
 void add_imgdiff(Command app, Session& session) {
   auto options = std::make_shared<Options>();
   Command command = app.add_subcommand("imgdiff", "Measure how far apart two pictures are");
-  command.add_option("A", options->a, "PFM or PNG file, or a run directory (its image.pfm)").required();
-  command.add_option("B", options->b, "The other one").required();
-  command.add_option("-o,--out", options->out, "PNG of the difference: --metric says of which");
+  command
+      .add_option("A", options->a,
+                  "First picture: a PFM or PNG file, or a run directory, which stands for its image.pfm")
+      .required();
+  command.add_option("B", options->b, "Second picture").required();
+  command.add_option("-o,--out", options->out, "PNG file to write the difference to; --metric selects which");
   command
       .add_option("--metric", options->metric,
-                  "What -o draws: the absolute difference, the largest as white; or the map of FLIP, 0 "
-                  "black and 1 white")
+                  "Selects what -o draws: the absolute difference with the largest as white, or the map of "
+                  "FLIP with 0 as black and 1 as white")
       .one_of({"difference", "flip"})
       .capture_default_str();
   command
       .add_option("--min-psnr", options->min_psnr,
-                  "[dB] Exit with 1 when PSNR is below this; inf: when anything differs")
+                  "[dB] Exit with 1 when PSNR is below this value; inf: exit with 1 when anything differs")
       .number_range(-1000, std::numeric_limits<double>::infinity());
-  command.add_option("--max-flip", options->max_flip, "Exit with 1 when the mean of FLIP is above this")
+  command.add_option("--max-flip", options->max_flip, "Exit with 1 when the mean of FLIP is above this value")
       .number_range(0, 1);
   command
-      .add_option(
-          "--ppd", options->pixels_per_degree,
-          "Pixels per degree of sight, for FLIP: 67 is a monitor of 0.7 m with 3840 pixels, 0.7 m away")
+      .add_option("--ppd", options->pixels_per_degree,
+                  "Pixels per degree of sight that FLIP assumes; 67 is a monitor of 0.7 m with 3840 pixels "
+                  "that is 0.7 m away")
       .number_range(1, 1000)
       .capture_default_str();
   command.callback([&session, options] { session.action = [options] { return imgdiff(*options); }; });

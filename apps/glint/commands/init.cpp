@@ -1,4 +1,4 @@
-// `glint init FILE.toml SHADER...`: writes a description of a pipeline that runs as it is.
+// Declares `glint init FILE.toml SHADER...`, which writes a description of a pipeline that runs as it is.
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
 #include <fmt/format.h>
@@ -23,7 +23,7 @@ struct Options {
 Exit init(const Options& options) {
   std::error_code failed;
   if (!options.force && std::filesystem::exists(options.file, failed))
-    throw UserError({options.file, 0, 0}, "the file is there already", "--force writes over it");
+    throw UserError({options.file, 0, 0}, "the file exists already", "--force overwrites it");
   const std::string folder = std::filesystem::path(options.file).parent_path().string();
   write_output(options.file, pipeline::default_description(options.shaders, folder,
                                                            glsl_options(options.compile, nullptr)));
@@ -36,10 +36,12 @@ void add_init(Command app, Session& session) {
   auto options = std::make_shared<Options>();
   Command command = app.add_subcommand("init", "Write a pipeline file from what shaders declare");
   command.add_option("FILE", options->file, "TOML file to write").required();
-  command.add_option("SHADER", options->shaders, "One ray generation or compute shader, and those it calls")
+  command
+      .add_option("SHADER", options->shaders,
+                  "One ray generation or compute shader, and the shaders that it calls")
       .required();
   add_source_options(command, options->compile);
-  command.add_flag("--force", options->force, "Write over a file that is there");
+  command.add_flag("--force", options->force, "Overwrite a file that exists");
   command.callback([&session, options] { session.action = [options] { return init(*options); }; });
 }
 

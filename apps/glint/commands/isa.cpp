@@ -1,4 +1,4 @@
-// `glint isa [OP]`: the reference of the instruction set, from its table.
+// Declares `glint isa [OP]`, which prints the reference of the instruction set from its table.
 // SPDX-License-Identifier: Apache-2.0
 #include <memory>
 
@@ -31,7 +31,7 @@ std::vector<isa::PresetTimes> all_presets(const Resources& resources) {
   return out;
 }
 
-// Of presets that load; why another does not is told on stderr.
+// Returns the times of the presets that load. Why a preset does not load is told on stderr.
 std::vector<isa::PresetTimes> sound_presets(const Resources& resources) {
   std::vector<isa::PresetTimes> out;
   for (const std::string& name : resources.config_names()) {
@@ -59,14 +59,15 @@ std::string text_of(const Resources& resources, const Options& options) {
 
 void add_isa(Command app, Session& session) {
   auto options = std::make_shared<Options>();
-  Command command = app.add_subcommand("isa", "Explain the instruction set, or one op");
-  Option op = command.add_option("OP", options->op,
-                                 "An op's full name, fma.rn.f32, or its beginning (default: all ops)");
+  Command command = app.add_subcommand("isa", "Explain the instruction set or one op");
+  Option op = command.add_option(
+      "OP", options->op, "An op's full name, such as fma.rn.f32, or the beginning of one (default: all ops)");
   Option table = command.add_option("--table", options->table,
-                                    "Unit, latency and interval of every op of a preset, as CSV");
-  Option page = command.add_option("--page", options->page, "The page of a family, as docs/isa/FAMILY.md");
-  Option index = command.add_flag("--index", options->index, "As docs/isa.md");
-  Option pages = command.add_flag("--pages", options->pages, "The names of the families' pages");
+                                    "Print unit, latency and interval of every op in a preset, as CSV");
+  Option page =
+      command.add_option("--page", options->page, "Print the page of a family, as in docs/isa/FAMILY.md");
+  Option index = command.add_flag("--index", options->index, "Print the index, as in docs/isa.md");
+  Option pages = command.add_flag("--pages", options->pages, "Print the names of the families' pages");
   table.type_name("PRESET");
   page.type_name("FAMILY");
   exclude_each_other({op, table, page, index, pages});

@@ -1,4 +1,4 @@
-// `glint list WHAT`: scenes, shaders, workloads, configs, policies, ops, stats, metrics.
+// Declares `glint list WHAT`: scenes, shaders, workloads, configs, policies, ops, stats, metrics.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 #include <memory>
@@ -53,7 +53,7 @@ Rows metric_rows() {
   return rows;
 }
 
-// The first comment line of a preset says what it is.
+// Returns the presets. The first comment line of a preset says what it is.
 Rows config_rows(const Resources& resources) {
   Rows rows;
   for (const std::string& name : resources.config_names()) {
@@ -112,7 +112,7 @@ void add_list(Command app, Session& session) {
       .required()
       .one_of({"scenes", "shaders", "workloads", "configs", "policies", "ops", "stats", "metrics"});
   command.add_flag("--markdown", options->markdown,
-                   "Of stats and metrics: as docs/stats.md and docs/metrics.md");
+                   "Print stats or metrics as docs/stats.md and docs/metrics.md have them");
   command.callback([&session, options] {
     session.action = [&session, options] { return list(session, options->what, options->markdown); };
   });

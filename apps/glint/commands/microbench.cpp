@@ -1,5 +1,4 @@
-// `glint microbench`: latencies, throughputs and bandwidths of a configuration, measured by running code on
-// it.
+// Declares `glint microbench`, which measures a configuration's latencies, throughputs and bandwidths.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
@@ -24,7 +23,7 @@ struct Options {
   std::vector<std::string> settings, compare, only;
 };
 
-// What hardware was measured to do: "group|name|param" -> value.
+// Holds what was measured on hardware: "group|name|param" -> value.
 using Reference = std::map<std::string, double>;
 
 std::vector<std::string> split(const std::string& line) {
@@ -47,8 +46,8 @@ void set_number(Reference& out, const std::string& key, const std::string& text)
   if (end != text.c_str() && *end == 0) out[key] = value;
 }
 
-// Two forms, known by their first column: ops ("op(step)": latency and throughput of steps), and
-// "group,name,param,value".
+// Reads a file of reference values. It knows two forms by their first column: ops ("op(step)", with latency
+// and throughput of steps), and "group,name,param,value".
 void read_reference(Reference& out, const std::string& path) {
   std::ifstream in(path);
   if (!in) throw UserError({}, fmt::format("cannot read '{}'", path));
@@ -64,7 +63,7 @@ void read_reference(Reference& out, const std::string& path) {
       set_number(out, "latency|" + cell[0] + "|", cell[2]);
       set_number(out, "throughput|" + cell[0] + "|", cell[5]);
     } else if (groups && cell.size() >= 4) {
-      // Names may have commas of their own: the value is the last but one.
+      // Names may have commas of their own, so the value is the last but one.
       std::string name = cell[1];
       for (size_t i = 2; i + 3 < cell.size(); ++i) name += "," + cell[i];
       set_number(out, cell[0] + "|" + name + "|" + cell[cell.size() - 3], cell[cell.size() - 2]);
@@ -86,7 +85,7 @@ struct Sums {
 
 using Skipped = std::map<std::string, std::vector<std::string>>;  // reason -> benchmarks
 
-// Measures; a benchmark that the configuration has no room for is put down in `skipped`.
+// Measures one benchmark. A benchmark for which the configuration has no room is noted in `skipped`.
 std::optional<double> measure(const MicroBench& bench, const pipeline::GpuParams& gpu, Skipped& skipped) {
   try {
     return bench.measure(gpu);
@@ -140,7 +139,7 @@ Exit microbench(const Session& session, const Options& options) {
                            : std::vector<std::string>{bench.group, bench.name, bench.param, "-", bench.unit});
     }
   if (session.on_terminal) fmt::print(stderr, "\r\033[K");
-  if (rows.size() == 1) throw UserError({}, "no benchmark has that in its group, name or parameter");
+  if (rows.size() == 1) throw UserError({}, "no benchmark has this text in its group, name or parameter");
   print_output("{}", report::table(rows, "<<<><>>"));
   print_sums(sums);
   for (const auto& [reason, names] : skipped)
@@ -157,11 +156,14 @@ void add_microbench(Command app, Session& session) {
   auto options = std::make_shared<Options>();
   Command command = app.add_subcommand(
       "microbench", "Measure a configuration's latencies and bandwidths by running code on it");
-  command.add_option("--config", options->config, "Preset or file").capture_default_str();
-  command.add_option("--set", options->settings, "KEY=VALUE: override one key");
-  command.add_option("--compare", options->compare, "CSV file of a real part's values, to stand beside")
+  command.add_option("--config", options->config, "Preset or TOML file to read").capture_default_str();
+  command.add_option("--set", options->settings, "Override one key, such as core.warps=16");
+  command
+      .add_option("--compare", options->compare,
+                  "CSV file with a real part's values, which are shown beside the measured ones")
       .type_name("FILE");
-  command.add_option("--only", options->only, "Only benchmarks with this text in group, name or parameter")
+  command
+      .add_option("--only", options->only, "Run only benchmarks with this text in group, name or parameter")
       .type_name("TEXT");
   command.callback([&session, options] {
     session.action = [&session, options] { return microbench(session, *options); };

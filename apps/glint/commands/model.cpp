@@ -1,4 +1,4 @@
-// `glint model RUN...`: cycles that analytical models predict, beside those that were simulated.
+// Declares `glint model RUN...`, which compares cycles that analytical models predict with simulated ones.
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
 #include <cmath>
@@ -37,7 +37,7 @@ double fact(const report::RunRecord& run, const std::string& directory, const st
                   "the interval model takes runs of scenes; --statistics-only leaves it out");
 }
 
-// The launch that a run has made, again.
+// Returns the job of the launch that a run made.
 pipeline::RenderJob job_of(const Session& session, const Options& options, const report::RunRecord& run,
                            const std::string& directory) {
   const WorkloadInfo& workload = find_workload(run.text("shader"));
@@ -93,9 +93,9 @@ double run_interval(const Session& session, const Options& options, const report
   if (double(estimate.instructions) != simulated)
     throw UserError(
         {directory},
-        fmt::format("the run executed {:.0f} warp instructions, the same launch here {}", simulated,
-                    estimate.instructions),
-        "another version of Glint made the run, or options that run.json does not have: run it again");
+        fmt::format("the run executed {:.0f} warp instructions, and the same launch executed {} here",
+                    simulated, estimate.instructions),
+        "another version of Glint made the run, or it had options that run.json does not have: run it again");
   return double(estimate.cycles);
 }
 
@@ -105,10 +105,10 @@ report::ModelRow row_of(const Session& session, const Options& options, const st
   if (!options.statistics_only && !run.fact("rays.bounces"))
     throw UserError(
         {directory},
-        fmt::format("this is a run of {} '{}': models take runs of scenes",
+        fmt::format("this is a run of {} '{}', and models take runs of scenes",
                     run.text("scene.form") == "pipeline" ? "the pipeline" : "the kernel",
                     run.text("scene.name")),
-        "--statistics-only gives Hong and Kim's model alone, of any timing run that reads memory");
+        "--statistics-only gives Hong and Kim's model alone, which takes any timing run that reads memory");
   report::ModelRow row{.workload = workload, .cycles = 0, .predicted = {}, .inputs = {}};
   const report::HongKimResult model = report::hong_kim(report::hong_kim_inputs(run, directory));
   for (const double cycles : run.values("gpu.cycles")) row.cycles += cycles;
@@ -155,18 +155,24 @@ Exit model(const Session& session, const Options& options) {
 
 void add_model(Command app, Session& session) {
   auto options = std::make_shared<Options>();
-  Command command =
-      app.add_subcommand("model", "Predict cycles of finished runs by analytical models, and compare");
-  command.add_option("RUN", options->runs, "Directories of runs on the timing machine, or of `glint bench`")
+  Command command = app.add_subcommand(
+      "model",
+      "Predict cycles of finished runs by analytical models and compare them with the simulated cycles");
+  command
+      .add_option("RUN", options->runs,
+                  "Directories of runs on the timing machine, or folders of `glint bench`")
       .required();
   command
       .add_option("-o,--out", options->out,
-                  "Table with all inputs, or - (default: models.csv in the directory; with several, here)")
+                  "File to write the table with all inputs to, or - for stdout (default: models.csv in the "
+                  "directory, or here with several)")
       .type_name("FILE");
-  command.add_flag("--inputs", options->inputs, "Print the inputs of each run as well");
+  command.add_flag("--inputs", options->inputs, "Print the inputs of each run, too");
   command.add_flag("--statistics-only", options->statistics_only,
-                   "Hong and Kim's model alone: no pass over the scene");
-  command.add_option("--assets", options->assets, "Folder of original scene data, as the runs were given it")
+                   "Compute Hong and Kim's model alone, without a pass over the scene");
+  command
+      .add_option("--assets", options->assets,
+                  "Folder that has the original scene data, as the runs were given it")
       .type_name("DIR")
       .envname("GLINT_ASSETS");
   add_shader_options(command, options->shaders);

@@ -1,4 +1,4 @@
-// `glint report RUN...`: one HTML page of finished runs and of what is known of suites.
+// Declares `glint report RUN...`, which writes one HTML page of finished runs and of what is known of suites.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <filesystem>
@@ -20,10 +20,10 @@
 namespace glint::app {
 namespace {
 
-constexpr const char* kDefaultPreset = "mobile";  // of --config
+constexpr const char* kDefaultPreset = "mobile";  // the default of --config
 
-// Glint's own preset to compare a run's configuration with: the one it names, else one that is the same, else
-// the default. A file of the user's is never read again: it may have changed since the run.
+// Returns the preset of Glint to compare a run's configuration with: the one that it names, else one that is
+// the same, else the default. A user's file is never read again, because it may have changed since the run.
 std::string preset_of(const Resources& resources, const report::RunRecord& facts) {
   const std::vector<std::string> presets = resources.config_names();
   if (const std::string name = facts.text("config.name");
@@ -82,17 +82,18 @@ void add_report(Command app, Session& session) {
   Command command = app.add_subcommand("report", "Write a page of figures about finished runs");
   command
       .add_option("RUN", options->runs,
-                  "Run directories, or folders of `glint bench`, with what `glint characterize` and `glint "
-                  "model` have left there; folders and tables of these two alone. "
-                  "With several runs, figures stand side by side and changes are against the first")
+                  "What to report: run directories, folders of `glint bench` with what `glint characterize` "
+                  "and `glint model` have left there, or folders and tables of these two alone. With several "
+                  "runs, figures stand side by side and changes are against the first")
       .required();
-  command.add_option("-o,--out", options->out,
-                     "File, or - (default: report.html in the directory named; with several, here)");
+  command.add_option(
+      "-o,--out", options->out,
+      "File to write, or - for stdout (default: report.html in the named directory, or here with several)");
   add_cycle_window(command, "--timeline",
-                   "Cycles of the warp timeline, of a run with --trace (default: as many around the middle "
-                   "of the trace as stay readable)",
+                   "Cycles that the warp timeline of a run with --trace shows (default: as many around the "
+                   "middle of the trace as stay readable)",
                    options->timeline.begin, options->timeline.end);
-  command.add_option("--timeline-sm", options->timeline.core, "SM of the warp timeline")
+  command.add_option("--timeline-sm", options->timeline.core, "SM that the warp timeline shows")
       .capture_default_str();
   command.callback([&session, options, command] {
     std::optional<report::TimelineRequest> timeline;

@@ -1,4 +1,5 @@
-// `glint run`: finds out what is to be launched (a scene, a pipeline, a kernel, scripts) and launches it.
+// Declares `glint run`, which finds out what to launch (a scene, a pipeline, a kernel, scripts) and launches
+// it.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 #include <memory>
@@ -26,15 +27,15 @@ Exit run(const Session& session, const Options& options) {
   const std::string& what = options.scene.scene;
   if (names_script(what)) {
     if (observes(options.launch.observe))
-      throw UserError({}, "--profile, --sample, --heat and --trace do not go with Amber scripts",
+      throw UserError({}, "--profile, --sample, --heat and --trace cannot be used with Amber scripts",
                       "a script has no run directory");
     std::vector<std::string> scripts = {what};
     scripts.insert(scripts.end(), options.more.begin(), options.more.end());
     return run_amber(session, scripts, options.launch);
   }
   if (!options.more.empty())
-    throw UserError({}, fmt::format("'{}' is one too many", options.more[0]),
-                    "only Amber scripts run several at a time");
+    throw UserError({}, fmt::format("'{}' is one argument too many", options.more[0]),
+                    "only Amber scripts can be run several at a time");
   if (names_pipeline(what)) return run_pipeline(session, what, options.launch);
   if (names_kernel(what)) return run_ptx(session, what, options.kernel_launch, options.launch);
   return run_scene(session, options.scene, options.launch);
@@ -43,28 +44,32 @@ Exit run(const Session& session, const Options& options) {
 void add_scene_options(Command command, Options& options) {
   command
       .add_option("SCENE", options.scene.scene,
-                  "Scene; 'glint list scenes' names them. Or a workload: SHIP_SH. Or a scene of your own: "
-                  "FILE.obj, FILE.gltf, FILE.glb. Or a pipeline: FILE.toml, or one shader file. Or a "
-                  "kernel: FILE.ptx, or its launch FILE.toml. Or an Amber script: FILE.amber")
+                  "What to run: a scene ('glint list scenes' names them), a workload (SHIP_SH), a scene of "
+                  "your own (FILE.obj, FILE.gltf, FILE.glb), a pipeline (FILE.toml, or one shader file), a "
+                  "kernel (FILE.ptx, or its launch FILE.toml) or an Amber script (FILE.amber)")
       .required();
-  command.add_option("MORE", options.more, "More Amber scripts, after a first one: FILE.amber");
-  command.add_option("--launch", options.kernel_launch, "Launch file of a kernel: grid, block, arguments")
+  command.add_option("MORE", options.more, "More Amber scripts to run after the first one");
+  command
+      .add_option("--launch", options.kernel_launch,
+                  "Launch file of a kernel, which gives grid, block and arguments")
       .type_name("FILE");
-  command.add_option("--shader", options.scene.shader, "pt, sh or ao; 'glint list shaders' explains")
+  command
+      .add_option("--shader", options.scene.shader,
+                  "Shader set to use: pt, sh or ao; 'glint list shaders' explains them")
       .capture_default_str();
   command
       .add_option("--shader-dir", options.scene.shader_dir,
-                  "Folder with the workload's shaders instead of the built-in ones")
+                  "Folder whose shaders are used instead of the workload's built-in ones")
       .type_name("DIR");
   command.add_option("--size", options.scene.size, "Image size in pixels")
       .type_name("WxH")
       .capture_default_str();
   add_frame_options(command, options.scene.frame);
-  command.add_option("--assets", options.scene.assets, "Folder of original scene data")
+  command.add_option("--assets", options.scene.assets, "Folder that has the original scene data")
       .type_name("DIR")
       .envname("GLINT_ASSETS");
   command.add_flag("--instancing", options.scene.instancing,
-                   "Models of a scene that are affine copies of another share its structure and vertices");
+                   "Let models that are affine copies of another one share its structure and vertices");
 }
 
 }  // namespace
@@ -76,8 +81,8 @@ void add_run(Command app, Session& session) {
   add_scene_options(command, *options);
   add_launch_options(command, options->launch);
   command.add_option("--progress-fd", session.progress_descriptor, "Descriptor to write the progress to")
-      .group("");             // for `bench`
-  command.last_value_wins();  // so that a script's own options can be overridden by those it is given
+      .group("");             // only `bench` uses it
+  command.last_value_wins();  // so that a script's own options can be overridden on the command line
   command.callback([&session, options, command] {
     finish_launch_options(command, options->launch);
     options->scene.shader_given = command.count("--shader") > 0;

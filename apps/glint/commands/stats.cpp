@@ -1,5 +1,4 @@
-// `glint stats RUN`: the statistics of a finished run again, in any format, as metrics, or by Vulkan-Sim's
-// names.
+// Declares `glint stats RUN`, which prints the statistics of a finished run again, in any format.
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
 #include <memory>
@@ -36,11 +35,11 @@ void add_stats(Command app, Session& session) {
   };
   auto options = std::make_shared<Options>();
   Command command = app.add_subcommand("stats", "Print the statistics of a finished run");
-  command.add_option("RUN", options->run, "Run directory").required();
+  command.add_option("RUN", options->run, "Directory of the run").required();
   command
       .add_option("--format", options->format,
-                  "txt, csv, json: as the run wrote them; metrics: those of docs/metrics.md; vulkan-sim: "
-                  "under the names of its logs")
+                  "Selects the format: txt, csv and json print what the run wrote, metrics prints the "
+                  "metrics of docs/metrics.md, and vulkan-sim uses the names of Vulkan-Sim's logs")
       .one_of({"txt", "csv", "json", "metrics", "vulkan-sim"})
       .capture_default_str();
   command.callback(

@@ -1,4 +1,4 @@
-// Costs of control flow: loops, uniform and divergent branches, barriers, fences.
+// Measures the costs of control flow: loops, uniform and divergent branches, barriers, fences.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
@@ -20,8 +20,8 @@ double fence(const std::string& op, bool store, const pipeline::GpuParams& gpu) 
   return cycles_per_body(kernel, 4, 12, with_one_core(gpu));
 }
 
-// A loop of 64 multiply-adds: cycles a turn, less those that another 64 take. The counter is ready long
-// before.
+// Returns the cycles of a loop's back edge: the cycles of a turn with 64 multiply-adds, less those of another
+// 64 multiply-adds. The counter is ready long before.
 double back_edge(const pipeline::GpuParams& gpu) {
   MicroKernel kernel;
   for (const char* f : {"%f10", "%f11", "%f12", "%f13"}) {
@@ -35,7 +35,8 @@ double back_edge(const pipeline::GpuParams& gpu) {
   return 2 * turn_of(64) - turn_of(128);
 }
 
-// An if that all lanes take, with a comparison: cycles more than its multiply-add.
+// Returns the cycles of an if that all lanes take, with its comparison: the cycles beyond those of its
+// multiply-add.
 double uniform_if(const pipeline::GpuParams& gpu) {
   MicroKernel kernel;
   kernel.before = "ld.global.u32 %r1,[%rd0];\n";
@@ -53,7 +54,7 @@ std::string adds(uint32_t n) {
   return out;
 }
 
-// `paths` groups of lanes, each with 64 dependent multiply-adds of its own: cycles in all.
+// Returns all cycles of `paths` groups of lanes, each with 64 dependent multiply-adds of its own.
 double divergence(uint32_t paths, const pipeline::GpuParams& gpu) {
   MicroKernel kernel;
   kernel.is_loop = false;

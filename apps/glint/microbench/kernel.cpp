@@ -1,4 +1,4 @@
-// Launching the kernels of the microbenchmarks.
+// Launches the kernels of the microbenchmarks.
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/microbench/kernel.h"
 
@@ -34,7 +34,7 @@ uint64_t cycles_of(const MicroKernel& kernel, const pipeline::GpuParams& gpu) {
   pipeline::KernelWorld world(frontend::compile_ptx(text_of(kernel), "microbench", "bench", options));
   const uint64_t bytes = std::max<uint64_t>(kernel.bytes, kernel.data.size() * 8);
   const Address data = world.memory().allocate("data", bytes);
-  // Words of the buffer that begin with 1 are places in it, of pointer chases.
+  // Words of the buffer that begin with 1 are places in the buffer, for pointer chases.
   std::vector<uint64_t> words = kernel.data;
   for (uint64_t& word : words)
     if (word & 1) word = data + (word & ~uint64_t{1});

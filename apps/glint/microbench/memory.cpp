@@ -1,4 +1,4 @@
-// Latencies and bandwidths of memory: pointer chases by footprint, conflicts, coalescing, streams, atomics.
+// Measures latencies and bandwidths of memory: pointer chases, conflicts, coalescing, streams, atomics.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <fmt/format.h>
@@ -9,10 +9,10 @@
 namespace glint::app {
 namespace {
 
-constexpr uint64_t kPlace = 1;  // a word that is a place in the buffer
+constexpr uint64_t kPlace = 1;  // marks a word that is a place in the buffer
 
-// A ring of places `stride` bytes apart, in a fixed random order (a generator of full period over a power of
-// two).
+// Returns a ring of places that are `stride` bytes apart, in a fixed random order (by a generator of full
+// period over a power of two).
 std::vector<uint64_t> ring(uint64_t bytes, uint64_t stride) {
   const uint64_t n = bytes / stride;
   std::vector<uint64_t> words(bytes / 8);
@@ -20,7 +20,8 @@ std::vector<uint64_t> ring(uint64_t bytes, uint64_t stride) {
   return words;
 }
 
-// Loads of one lane, each of the place that the last one gave. `warm`: the ring is gone through once before.
+// Returns the cycles of a load of one lane, each from the place that the last one gave. With `warm`, the ring
+// was gone through once before.
 double chase(uint64_t bytes, uint64_t stride, bool warm, const pipeline::GpuParams& gpu) {
   MicroKernel kernel;
   kernel.data = ring(bytes, stride);
@@ -35,8 +36,8 @@ double chase(uint64_t bytes, uint64_t stride, bool warm, const pipeline::GpuPara
          kernel.unroll;
 }
 
-// The turn's own instructions are hidden behind the loads of the next turn, but for the last; the chain never
-// waits for them.
+// Returns the cycles of a body in a chain of dependent instructions. The turn's own instructions are hidden
+// behind the loads of the next turn, except for the last turn, and the chain never waits for them.
 double chain(const std::string& before, const std::string& body, const std::string& after,
              const pipeline::GpuParams& gpu, const std::string& variables = {}, uint32_t threads = 32) {
   MicroKernel kernel;
@@ -60,7 +61,7 @@ double shared_chase(uint32_t stride, const pipeline::GpuParams& gpu) {
                "ld.shared.u32 %r1,[%r1];\n", "st.global.u32 [%rd0],%r1;\n", gpu, kShared);
 }
 
-// 32 warps, loads that do not depend on each other: cycles a warp's load.
+// Returns the cycles per load of a warp, when 32 warps do loads that do not depend on each other.
 double shared_throughput(uint32_t stride, const std::string& width, const pipeline::GpuParams& gpu) {
   MicroKernel kernel;
   kernel.variables = kShared;
@@ -96,18 +97,19 @@ double l1_throughput(uint32_t stride, const std::string& width, uint32_t warps,
   return cycles_per_body(kernel, 8, 24, with_one_core(gpu)) / warps;
 }
 
-// All lanes load, each a place of its own that holds 0, and add what they got to the address.
+// Returns the latency of a load of all lanes. Each loads a place of its own that holds 0, and adds what it
+// got to the address.
 double l1_latency(uint32_t stride, const pipeline::GpuParams& gpu) {
   return chain(fmt::format("mad.wide.u32 %rd1,%r1,{},%rd0;\n", stride),
                "ld.global.u32 %r4,[%rd1];mad.wide.u32 %rd1,%r4,4,%rd1;\nadd.s64 %rd1,%rd1,0;\n",
                "st.global.u64 [%rd0],%rd1;\n", gpu);
 }
 
-// %r1: the thread's number in the grid.
+// Puts the thread's number in the grid into %r1.
 const std::string kThread =
     "mov.u32 %r1,%ctaid.x;mov.u32 %r2,%ntid.x;mov.u32 %r3,%tid.x;mad.lo.u32 %r1,%r1,%r2,%r3;\n";
 
-// GB/s of all cores over `bytes` (a power of two), each word once a pass.
+// Returns the GB/s of all cores over `bytes` (a power of two), with each word read once per pass.
 double stream(uint64_t bytes, bool warm, const pipeline::GpuParams& gpu) {
   MicroKernel kernel;
   kernel.bytes = bytes;
@@ -115,8 +117,8 @@ double stream(uint64_t bytes, bool warm, const pipeline::GpuParams& gpu) {
   kernel.blocks = gpu.cores * 2;
   const uint64_t threads = uint64_t{kernel.blocks} * kernel.threads;
   const uint32_t loads = 4, turns = uint32_t(std::max<uint64_t>(bytes / (threads * 16 * loads), 1));
-  // Turn t, load i of thread g: word g of the part (t * loads + i) of the buffer, each part as long as the
-  // grid.
+  // In turn t, load i of thread g reads word g of the part (t * loads + i) of the buffer. Each part is as
+  // long as the grid.
   kernel.before = kThread + fmt::format("mul.wide.u32 %rd2,%r1,16;mov.u64 %rd3,{};\n", bytes - 1);
   const std::string place =
       fmt::format("and.b64 %rd4,%rd2,%rd3;add.s64 %rd4,%rd4,%rd0;add.s64 %rd2,%rd2,{};\n", threads * 16);
@@ -131,9 +133,9 @@ double stream(uint64_t bytes, bool warm, const pipeline::GpuParams& gpu) {
   return double(threads * 16 * loads) / cycles * gpu.clock_mhz * 1e-3;
 }
 
-// GB/s of writes back to DRAM: what the L2 holds when the launch ends stays there, so both lengths are more
-// than it does. The launch ends when its writes are in the L2, whatever the configuration says: what waits in
-// the network is not written yet.
+// Returns the GB/s of writes back to DRAM. What the L2 holds when the launch ends stays there, so both
+// lengths are larger than the L2. The launch ends when its writes are in the L2, whatever the configuration
+// says, because writes that wait in the network are not done yet.
 double write_stream(pipeline::GpuParams gpu) {
   gpu.core.ends_when_written = true;
   constexpr uint32_t kFew = 96, kMany = 160;  // MB
@@ -152,8 +154,8 @@ double write_stream(pipeline::GpuParams gpu) {
          1e-3;
 }
 
-// G lane operations a second of red.global.add.u32, by all cores; `place`: from %r1, the thread's number, to
-// its word's offset.
+// Returns how many G lane operations of red.global.add.u32 all cores do per second. `place` computes from
+// %r1, the thread's number, the offset of its word.
 double red_throughput(const std::string& place, const pipeline::GpuParams& gpu) {
   MicroKernel kernel;
   kernel.threads = full_block(gpu);
@@ -174,7 +176,7 @@ double atomic(const std::string& op, uint32_t lanes, uint32_t stride, const pipe
   const char* operands = op.find("cas") != std::string::npos   ? "%r4,[%rd1],%r3,%r3;\n"
                          : op.find("f32") != std::string::npos ? "%f4,[%rd1],%f3;mov.b32 %r4,%f4;\n"
                                                                : "%r4,[%rd1],%r3;\n";
-  // What it gives is the next one's operand and in its address: 0.
+  // The result is 0. It is the next operation's operand and a part of its address.
   MicroKernel kernel;
   kernel.before = "mov.u32 %r1,%laneid;mov.f32 %f3,0f00000000;\n" + before;
   kernel.body = op + " " + operands + "mad.wide.u32 %rd1,%r4,4,%rd1;\n";

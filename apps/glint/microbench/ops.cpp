@@ -1,4 +1,4 @@
-// Latency and throughput of ops: a dependent chain of one warp, and chains of 32 warps.
+// Measures latency and throughput of ops: a dependent chain of one warp, and chains of 32 warps.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cctype>
@@ -9,13 +9,13 @@
 namespace glint::app {
 namespace {
 
-// A step of a chain through %f1, %d1, %r1, %rd1 or %h1, which one `kind` says (f, d, r, l, h). %f2, %f3, ...
-// do not change.
+// Describes a step of a chain through %f1, %d1, %r1, %rd1 or %h1; `kind` says which (f, d, r, l, h). The
+// registers %f2, %f3, ... do not change.
 struct Step {
   std::string_view name;
   char kind;
   std::string_view text;
-  uint32_t slow = 1;  // 8: a long sequence, of which fewer are enough
+  uint32_t slow = 1;  // 8 marks a long sequence, of which fewer are enough
 };
 
 constexpr Step kSteps[] = {
@@ -112,7 +112,7 @@ constexpr Step kSteps[] = {
      "setp.lt.s32 %p1,%r1,%r2;setp.ne.and.u32 %p2,%r1,%r3,%p1;selp.b32 %r1,%r2,%r3,%p2;"},
 };
 
-// Loads of what a chain begins with and steps read.
+// Returns loads of what a chain begins with and of what its steps read.
 std::string loads_of(const std::string& n, int place) {
   const std::string at = "[%rd0+" + std::to_string(place * 8) + "];";
   return "ld.global.f32 %f" + n + "," + at + "ld.global.f64 %d" + n + "," + at + "ld.global.b32 %r" + n +
@@ -144,8 +144,8 @@ double latency_of(const Step& step, const pipeline::GpuParams& gpu) {
   return cycles_per_body(kernel, 32 / step.slow, 96 / step.slow, with_one_core(gpu));
 }
 
-// The step in a chain of its own: what it changes, registers 1 and the second predicate, get the chain's
-// number behind theirs.
+// Returns the step for a chain of its own. The registers that it changes (registers 1 and the second
+// predicate) get the chain's number as a suffix.
 std::string step_of_chain(std::string_view text, int chain) {
   std::string out;
   for (size_t i = 0; i < text.size(); ++i) {
@@ -159,9 +159,9 @@ std::string step_of_chain(std::string_view text, int chain) {
   return out;
 }
 
-// As measured on hardware: 32 steps a turn of a loop that is in it, of eight chains a thread. With one a
-// thread the eight warps of a scheduler just hide 16 cycles, and a guarded add takes 18. Slow steps have one:
-// hardware calls a function for them.
+// Returns the throughput as it was measured on hardware: 32 steps per turn of a warm loop, in eight chains
+// per thread. With one chain per thread, the eight warps of a scheduler hide just 16 cycles, and a guarded
+// add takes 18. Slow steps have one chain, because hardware calls a function for them.
 double throughput_of(const Step& step, const pipeline::GpuParams& gpu) {
   constexpr int kChains = 8;
   const int steps = 32 / int(step.slow), chains = step.slow == 1 ? kChains : 1;
@@ -179,8 +179,8 @@ double throughput_of(const Step& step, const pipeline::GpuParams& gpu) {
   return double(steps) * kernel.threads / cycles_per_turn(kernel, 4, 12, with_one_core(gpu));
 }
 
-// Two kinds of instructions that do not depend on each other, four chains of each: which pipes they share. #
-// is the chain.
+// Describes two kinds of instructions that do not depend on each other, in four chains each, to show which
+// pipes they share. # stands for the chain.
 struct Mix {
   std::string_view name, text, results;
 };
@@ -210,7 +210,8 @@ double mix_of(const Mix& mix, const pipeline::GpuParams& gpu) {
                                             : "st.global.b32 [%rd0],%r2#;");
   kernel.threads = full_block(gpu);
   pipeline::GpuParams in_order = with_one_core(gpu);
-  in_order.compiler.schedule = false;  // that would put the chains of one kind before those of the other
+  in_order.compiler.schedule =
+      false;  // scheduling would put the chains of one kind before those of the other
   return 2.0 * kChains * 32 / cycles_per_body(kernel, 8, 16, in_order);
 }
 

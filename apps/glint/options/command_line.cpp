@@ -34,12 +34,12 @@ template Option Option::in_range(int, int);
 template Option Option::in_range(uint32_t, uint32_t);
 template Option Option::in_range(uint64_t, uint64_t);
 
-// CLI::Range would let "nan" pass, because no comparison with it holds.
+// Lets only numbers of the range pass. CLI::Range would accept "nan", because no comparison with it holds.
 Option Option::number_range(double least, double most) {
   const auto check = [=](const std::string& text) {
     double value = 0;
     const bool is_inside = CLI::detail::lexical_cast(text, value) && value >= least && value <= most;
-    return is_inside ? std::string{} : fmt::format("'{}' is no number from {} to {}", text, least, most);
+    return is_inside ? std::string{} : fmt::format("'{}' is not a number from {} to {}", text, least, most);
   };
   option_->check(CLI::Validator(check, fmt::format("FLOAT in [{} - {}]", least, most), "number_range"));
   return *this;

@@ -1,4 +1,4 @@
-// Reading of GPU configurations.
+// Reads GPU configurations.
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/options/config.h"
 
@@ -14,7 +14,8 @@
 namespace glint::app {
 namespace {
 
-// Where the user has set a key, or (`table_too`) its table; nowhere if it has its default.
+// Returns where the user has set a key, or with `table_too` where its table is. Returns an empty place for a
+// key with its default.
 SourceLocation place_of(const Config& config, std::string key, bool table_too) {
   Diagnostics ignored;
   ConfigTable table = config.root(ignored);
@@ -23,8 +24,8 @@ SourceLocation place_of(const Config& config, std::string key, bool table_too) {
   return table_too || table.has(key) ? table.where(key) : SourceLocation{};
 }
 
-// The place of the first key that the message quotes and the user has set, or of whose table something is
-// set.
+// Returns the place of the first quoted key in the message that the user has set. With `table_too`, a key
+// whose table has something set counts, too.
 SourceLocation place_of_quoted(const Config& config, const std::string& message, bool table_too) {
   for (size_t open = message.find('\''); open != std::string::npos;) {
     const size_t close = message.find('\'', open + 1);
@@ -36,7 +37,7 @@ SourceLocation place_of_quoted(const Config& config, const std::string& message,
   return {};
 }
 
-// What is impossible, each with the place of a key that makes it so.
+// Refuses what is impossible. Each message has the place of a key that causes it.
 void refuse_impossible(const Config& config, const pipeline::GpuParams& params) {
   Diagnostics diagnostics;
   pipeline::check(params, diagnostics);

@@ -1,4 +1,4 @@
-// From --config and --set to the parameters of a GPU.
+// Makes the parameters of a GPU from --config and --set.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -10,15 +10,15 @@
 
 namespace glint::app {
 
-// Preset or file first, then the settings in order. UserError lists everything that is wrong; what is odd
-// about the machine that comes of it is said on stderr.
+// Reads the preset or file first, then applies the settings in order. Throws UserError that lists everything
+// that is wrong. Oddities of the resulting machine are warned of on stderr.
 pipeline::GpuParams read_config(const Resources& resources, const std::string& name_or_path,
                                 const std::vector<std::string>& settings);
 
-// A preset as it stands, to be listed or compared with: nothing is said about it.
+// Reads a preset without any messages, to list it or to compare with it.
 pipeline::GpuParams read_preset(const Resources& resources, const std::string& name_or_path);
 
-// Of all keys and their values: names a configuration in run.json.
+// Returns a hash of all keys and their values, which names a configuration in run.json.
 uint64_t config_hash(const pipeline::GpuParams& params);
 
 }  // namespace glint::app

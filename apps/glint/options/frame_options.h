@@ -1,4 +1,4 @@
-// The options of a frame that `run` and `bench` share.
+// Adds the options of a frame, which `run` and `bench` share.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "apps/glint/options/command_line.h"

@@ -1,4 +1,4 @@
-// Reading of picture sizes.
+// Reads picture sizes.
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/options/image_size.h"
 

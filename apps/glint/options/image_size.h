@@ -1,4 +1,4 @@
-// The --size of a picture.
+// Reads the --size of a picture.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
@@ -7,7 +7,8 @@
 
 namespace glint::app {
 
-// "128x64" into width and height. UserError when it is no size, or too large.
+// Reads "128x64" into width and height. Throws UserError when the text is not a size, or the size is too
+// large.
 void parse_size(const std::string& text, scenes::RenderParams& frame);
 
 }  // namespace glint::app

@@ -1,4 +1,4 @@
-// Profile, time series, maps of cost and trace of a run.
+// Adds options for profile, time series, maps of cost and trace, and writes their files.
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/options/observe_options.h"
 
@@ -25,14 +25,15 @@ std::optional<std::string> text_of(const std::string& path) {
   return std::string{std::istreambuf_iterator<char>(in), {}};
 }
 
-// "1 234 567"
+// Returns a number with its digits in groups: "1 234 567".
 std::string grouped(uint64_t number) {
   std::string out = std::to_string(number);
   for (size_t at = out.size(); at > 3;) out.insert(at -= 3, " ");
   return out;
 }
 
-// The machine goes on after the run's last cycle until its writes are in memory; a trace may show that too.
+// Returns the cycles that a trace shows, as text. The machine goes on after the run's last cycle until its
+// writes are in memory, and a trace may show that, too.
 std::string shown_cycles(const TraceTable& trace, Cycle run_end) {
   if (trace.end <= run_end || trace.begin >= run_end)
     return fmt::format("of cycles {} to {}", trace.begin, trace.end);
@@ -45,8 +46,8 @@ void warn_of_cut(const TraceTable& trace, Cycle window_end, Cycle run_end) {
   const std::string rest =
       fmt::format("{}:{}", trace.end, window_end > trace.asked_end ? "" : std::to_string(window_end));
   fmt::print(stderr,
-             "warning: the trace ends at cycle {} instead of {}: more would be over the limit of {} "
-             "events\nnote: --trace-limit raises it, --trace-window {} goes on from there\n",
+             "warning: the trace ends at cycle {} instead of {}, because more would exceed the limit of {} "
+             "events\nnote: --trace-limit raises the limit, and --trace-window {} goes on from there\n",
              trace.end, wanted, grouped(trace.limit), rest);
 }
 
@@ -65,8 +66,9 @@ std::string write_trace(const TraceTable& trace, Cycle window_end, Cycle run_end
   if (trace.is_cut()) warn_of_cut(trace, window_end, run_end);
   if (trace.counters_left_out)
     fmt::print(stderr,
-               "warning: the trace is without {} counters of single units: they would take more than a "
-               "quarter of {} events\nnote: --trace-limit raises it, --sample makes their intervals longer\n",
+               "warning: the trace is without {} counters of single units, because they would take more than "
+               "a quarter of {} events\nnote: --trace-limit raises the limit, and --sample makes their "
+               "intervals longer\n",
                trace.counters_left_out, grouped(trace.limit));
   return fmt::format("trace      {} ({} events {}{}; open it at ui.perfetto.dev)",
                      directory.path_of("trace.json.gz"), events, shown_cycles(trace, run_end),
@@ -91,7 +93,7 @@ Option add_cycle_window(Command command, const std::string& name, const std::str
     const size_t colon = text.find(':');
     if (colon == std::string::npos) return refusal("has no ':'");
     const auto from = number(text.substr(0, colon), 0), to = number(text.substr(colon + 1), kNever);
-    if (!from || !to) return refusal("is no pair of numbers");
+    if (!from || !to) return refusal("is not a pair of numbers");
     begin = *from, end = *to;
     return begin >= end ? refusal("ends before it begins") : "";
   };
@@ -100,25 +102,26 @@ Option add_cycle_window(Command command, const std::string& name, const std::str
 
 void add_observe_options(Command command, pipeline::Observation& observe) {
   command.add_flag("--profile", observe.profile,
-                   "Count by instruction and source line: profile.csv, profile.folded, source.json; 'glint "
-                   "annotate' shows it");
+                   "Count by instruction and source line, and write profile.csv, profile.folded and "
+                   "source.json; 'glint annotate' shows them");
   command
-      .add_option("--sample", observe.sample,
-                  "Write series.csv: IPC, RT warps, miss rates and DRAM use of every so many cycles")
+      .add_option(
+          "--sample", observe.sample,
+          "Write series.csv with IPC, RT warps, miss rates and DRAM use of each interval of this many cycles")
       .type_name("CYCLES")
       .positive();
   command.add_flag("--heat", observe.heat,
-                   "Write maps of what each pixel cost: heat/*.png and *.npy (cycles, rays, nodes, "
-                   "divergence, misses ...); functional runs have those without cycles");
-  Option trace = command.add_flag(
-      "--trace", observe.trace.wanted,
-      "Write trace.json.gz for Perfetto: warps, shader stages, waits and RT units by cycle, with counters");
+                   "Write maps of what each pixel cost to heat/*.png and *.npy (cycles, rays, nodes, "
+                   "divergence, misses ...); functional runs have only the maps without cycles");
+  Option trace = command.add_flag("--trace", observe.trace.wanted,
+                                  "Write trace.json.gz for Perfetto with warps, shader stages, waits and RT "
+                                  "units by cycle, and with counters");
   add_cycle_window(command, "--trace-window", "Cycles that the trace shows", observe.trace.begin,
                    observe.trace.end)
       .needs(trace);
   command
       .add_option("--trace-limit", observe.trace.limit,
-                  "Most events of a trace; it ends where there would be more, and says so")
+                  "Largest number of events in a trace; a trace with more is cut off there, with a warning")
       .type_name("EVENTS")
       .in_range(uint64_t{1}, uint64_t{100'000'000})
       .capture_default_str()
@@ -132,7 +135,7 @@ bool observes(const pipeline::Observation& observe) {
 void check_observation(const pipeline::Observation& observe, bool timing) {
   if (timing || (!observe.profile && observe.sample == 0 && !observe.trace.wanted)) return;
   throw UserError({}, "--profile, --sample and --trace need cycles, and the functional machine has none",
-                  "leave --mode functional out");
+                  "leave out --mode functional");
 }
 
 std::vector<std::string> write_observation(const pipeline::Observation& observe,

@@ -1,4 +1,4 @@
-// The one place that names all interfaces with registered implementations.
+// Names all interfaces with registered implementations. This is the only place that does.
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/options/policies.h"
 

@@ -1,4 +1,4 @@
-// Finding runs, characterisations and models in folders.
+// Finds runs, characterisations and models in folders.
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/options/report_inputs.h"
 
@@ -18,8 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t kLeastRuns = 3;      // that a characterisation takes (report/characterize/feature_table.h)
-constexpr double kCyclesTold = 1e-9;  // of the cycles: tables have them to the last bit, or nearly
+constexpr size_t kLeastRuns =
+    3;  // the fewest runs of a characterisation (report/characterize/feature_table.h)
+constexpr double kCyclesTold =
+    1e-9;  // relative difference of cycles; tables have them to the last bit, or nearly
 
 void add_models(const std::string& path, const std::string& source, const std::string& folder,
                 ReportInputs& out) {
@@ -42,7 +44,7 @@ void add_bench(const std::string& name, ReportInputs& out) {
   const bool has_models = fs::exists(folder / "models.csv"),
              has_characterization = fs::exists(folder / "characterization/characterization.json");
   if (runs.empty() && !has_models && !has_characterization)
-    throw UserError({name, 0, 0}, "it has metrics.csv and no run directory", "'glint bench' leaves both");
+    throw UserError({name, 0, 0}, "it has metrics.csv and no run directory", "'glint bench' writes both");
   out.runs.insert(out.runs.end(), runs.begin(), runs.end());
   if (has_characterization)
     add_characterization(folder / "characterization/characterization.json", name, out);
@@ -71,7 +73,7 @@ std::string full_path(const fs::path& path) {
   return text.size() > 1 && text.ends_with('/') ? text.substr(0, text.size() - 1) : text;
 }
 
-// Runs of the page whose cycles are not those that a suite has for them.
+// Counts the runs of the page whose cycles differ from those that a suite has for them.
 int differing(const SuiteInput& suite, const nlohmann::ordered_json& runs) {
   const std::string folder = full_path(suite.folder);
   int out = 0;

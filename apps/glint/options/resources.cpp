@@ -1,4 +1,4 @@
-// Finding and reading of files.
+// Finds and reads files.
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/options/resources.h"
 
@@ -30,7 +30,7 @@ Resources Resources::find() {
   if (const fs::path installed = folder.parent_path() / "share/glint"; is_root(installed))
     return Resources(installed.string());
   for (fs::path path = folder; path.has_relative_path();
-       path = path.parent_path())  // from the build tree upwards
+       path = path.parent_path())  // goes from the build tree upwards
     if (is_root(path)) return Resources(path.string());
   return Resources(GLINT_SOURCE_DIR);
 }
@@ -52,8 +52,8 @@ std::string Resources::config_path(const std::string& name_or_path) const {
   if (fs::is_regular_file(name_or_path, error)) return name_or_path;
   const std::string guess = nearest(name_or_path, names);
   throw UserError({},
-                  fmt::format("no configuration '{}': neither a preset ({}) nor a file", name_or_path,
-                              fmt::join(names, ", ")),
+                  fmt::format("there is no configuration '{}': neither a preset ({}) nor a file",
+                              name_or_path, fmt::join(names, ", ")),
                   guess.empty() ? "" : fmt::format("did you mean '{}'?", guess));
 }
 

@@ -1,4 +1,5 @@
-// Include folders, macros, contraction, and where the caches of compiled shaders and built structures lie.
+// Adds the options for include folders, macros and contraction, and opens the caches of shaders and
+// structures.
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/options/shader_options.h"
 
@@ -19,14 +20,14 @@ std::string variable(const char* name) {
 
 std::string cache_folder(const std::string& kind) {
   if (const std::string folder = variable("GLINT_CACHE"); !folder.empty()) return folder + "/" + kind;
-  // XDG Base Directory Specification: relative paths there are invalid and left out.
+  // By the XDG Base Directory Specification, relative paths there are invalid and ignored.
   if (const std::string folder = variable("XDG_CACHE_HOME"); folder.starts_with('/'))
     return folder + "/glint/" + kind;
   if (const std::string home = variable("HOME"); !home.empty()) return home + "/.cache/glint/" + kind;
-  return {};  // only in memory
+  return {};  // the cache is only in memory
 }
 
-// Changes whenever the executable does, and with it perhaps what it compiles.
+// Returns an identifier that changes with the executable, because another one may compile differently.
 std::string build_id() {
   std::error_code failed;
   const fs::path self = fs::read_symlink("/proc/self/exe", failed);
@@ -39,10 +40,10 @@ std::string build_id() {
 }  // namespace
 
 void add_source_options(Command command, ShaderOptions& options) {
-  command.add_option("-I,--include", options.include_dirs, "Folder to look for #include in")
+  command.add_option("-I,--include", options.include_dirs, "Folder to search for #include files")
       .type_name("DIR")
       .allow_extra_args(false);
-  command.add_option("-D,--define", options.defines, "Macro")
+  command.add_option("-D,--define", options.defines, "Macro to define")
       .type_name("NAME[=VALUE]")
       .allow_extra_args(false);
 }
@@ -50,9 +51,9 @@ void add_source_options(Command command, ShaderOptions& options) {
 void add_shader_options(Command command, ShaderOptions& options) {
   add_source_options(command, options);
   command.add_flag("--contract", options.contract,
-                   "Make a * b + c of GLSL one fma, as drivers do, but where it is `precise`");
+                   "Compile a * b + c of GLSL to one fma, as drivers do, except where it is `precise`");
   command.add_flag("--no-cache", options.no_cache,
-                   "Compile shaders and build structures anew, and keep none");
+                   "Compile shaders and build structures again, and keep none of them in the caches");
 }
 
 frontend::GlslOptions glsl_options(const ShaderOptions& options, frontend::ShaderCache* cache) {
@@ -70,7 +71,7 @@ frontend::GlslOptions glsl_options(const ShaderOptions& options, frontend::Shade
 std::unique_ptr<frontend::ShaderCache> open_shader_cache(const ShaderOptions& options) {
   if (options.no_cache) return nullptr;
   const std::string build = build_id();
-  // Where the executable cannot be told from another one, what it compiled stays in memory.
+  // When the executable cannot be told from another one, what it compiled stays in memory.
   return std::make_unique<frontend::ShaderCache>(
       frontend::ShaderCache::Options{build.empty() ? "" : cache_folder("shaders"), build});
 }

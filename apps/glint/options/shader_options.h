@@ -1,4 +1,4 @@
-// What the command line says of compiling shaders, the same for every subcommand that does.
+// Holds the options for compiling shaders, which are the same for every subcommand that does so.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
@@ -17,17 +17,18 @@ struct ShaderOptions {
   bool contract = false, no_cache = false;
 };
 
-// -I and -D alone; all of them.
+// Add -I and -D alone, or all of the options.
 void add_source_options(Command command, ShaderOptions& options);
 void add_shader_options(Command command, ShaderOptions& options);
 
-// `cache` may be null.
+// Returns the options of the GLSL compiler. `cache` may be null.
 frontend::GlslOptions glsl_options(const ShaderOptions& options, frontend::ShaderCache* cache);
 
-// In $GLINT_CACHE/shaders, $XDG_CACHE_HOME/glint/shaders or ~/.cache/glint/shaders. Null with --no-cache.
+// Opens the cache in $GLINT_CACHE/shaders, $XDG_CACHE_HOME/glint/shaders or ~/.cache/glint/shaders. Returns
+// null with --no-cache.
 std::unique_ptr<frontend::ShaderCache> open_shader_cache(const ShaderOptions& options);
 
-// In the folder `structures` beside it. Null with --no-cache.
+// Opens the cache in the folder `structures` beside it. Returns null with --no-cache.
 std::unique_ptr<pipeline::StructureCache> open_structure_cache(const ShaderOptions& options);
 
 }  // namespace glint::app

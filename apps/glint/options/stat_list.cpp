@@ -1,4 +1,4 @@
-// Builds a machine with an empty program just to ask it for its statistics.
+// Builds a machine with an empty program to ask it for its statistics.
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/options/stat_list.h"
 
@@ -35,7 +35,7 @@ std::vector<report::StatRow> all_stats() {
   for (report::StatRow& row : report::stat_names(pipeline::RunStats(pipeline::FunctionalCounts{}).root())) {
     if (std::ranges::any_of(out, [&](const report::StatRow& have) { return have.path == row.path; }))
       continue;
-    row.doc += " The functional machine's.";
+    row.doc += " The functional machine counts it.";
     out.push_back(std::move(row));
   }
   return out;

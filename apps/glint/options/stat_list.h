@@ -1,4 +1,4 @@
-// The statistics of both machines without a run: what there is, in which unit, and what it means.
+// Lists the statistics of both machines without a run: name, unit and meaning.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace glint::app {
 
-std::vector<report::StatRow> all_stats();  // an instance's number reads [*]; no values
+std::vector<report::StatRow> all_stats();  // without values; [*] stands for an instance's number
 std::string stat_list();                   // aligned columns
 std::string stat_list_markdown();          // the table of docs/stats.md
 

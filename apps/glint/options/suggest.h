@@ -1,4 +1,4 @@
-// "Did you mean": the nearest subcommand or option to a word that the command line does not know.
+// Suggests the nearest subcommand or option for a word that the command line does not know.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace glint::app {
 
-// A sentence to print after a parse error, or "" when nothing is near.
+// Returns a sentence to print after a parse error, or "" when nothing is near.
 std::string suggestion(const Command& app, const std::vector<std::string>& arguments);
 
 }  // namespace glint::app

@@ -1,4 +1,4 @@
-// Running scripts one after the other and counting what comes out.
+// Runs scripts one after the other and counts their results.
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/run/amber.h"
 
@@ -18,8 +18,8 @@ Exit run_amber(const Session& session, const std::vector<std::string>& scripts,
                const LaunchOptions& options) {
   for (const std::string& path : scripts)
     if (!names_script(path))
-      throw UserError({}, fmt::format("'{}' is no Amber script", path),
-                      "several names on one command line are all FILE.amber");
+      throw UserError({}, fmt::format("'{}' is not an Amber script", path),
+                      "several names on one command line must all be FILE.amber");
   amber::LaunchOptions launch;
   launch.gpu = gpu_of(session.resources, options);
   launch.timing = options.mode_given && options.mode == "timing", launch.no_skip = options.no_skip,

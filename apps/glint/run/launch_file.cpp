@@ -1,4 +1,4 @@
-// Reading launch files.
+// Reads launch files.
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/run/launch_file.h"
 
@@ -29,7 +29,7 @@ size_t bytes_of(const std::string& type) {
   return std::stoul(type.substr(1)) / 8;
 }
 
-// Bytes of a number as that type; integers keep their low bits.
+// Returns the bytes of a number as that type. Integers keep their low bits.
 std::vector<std::byte> number_bytes(const std::string& type, double real, int64_t whole) {
   if (type == "f32") return pipeline::KernelWorld::argument(float(real));
   if (type == "f64") return pipeline::KernelWorld::argument(real);
@@ -38,7 +38,7 @@ std::vector<std::byte> number_bytes(const std::string& type, double real, int64_
   return out;
 }
 
-// xorshift64*: the same numbers on every machine.
+// Returns the next number of xorshift64*, which gives the same numbers on every machine.
 uint64_t next_random(uint64_t& state) {
   state ^= state >> 12;
   state ^= state << 25;
@@ -63,7 +63,8 @@ class Reader {
     LaunchFile out;
     out.kernel = beside(text(root, "kernel").value_or(""));
     if (out.kernel.empty())
-      errors_.error({path_, 0, 0}, "'kernel' is missing: the path of the PTX file, from this file's folder");
+      errors_.error({path_, 0, 0},
+                    "'kernel' is missing: it is the path of the PTX file, relative to this file's folder");
     out.entry = text(root, "entry").value_or("");
     out.contract = flag(root, "contract", true);
     size_of(root, "grid", out.grid.grid);
@@ -94,7 +95,7 @@ class Reader {
       if (std::find(known.begin(), known.end(), name) != known.end()) continue;
       const std::string near = nearest(name, known);
       errors_.error({path_, int(key.source().begin.line), int(key.source().begin.column)},
-                    fmt::format("'{}' is no key of {}", name, what),
+                    fmt::format("'{}' is not a key of {}", name, what),
                     near.empty() ? "" : fmt::format("did you mean '{}'?", near));
     }
   }
@@ -126,7 +127,7 @@ class Reader {
     return node->value<double>();
   }
 
-  // A number, or up to three.
+  // Reads one number, or up to three.
   void size_of(const toml::table& table, const char* key, std::array<uint32_t, 3>& out) {
     const toml::node* node = table.get(key);
     if (!node) return;
@@ -155,7 +156,7 @@ class Reader {
       buffer(table, out);
       return out;
     }
-    reject_others(table, kTypes, "a number: it is TYPE = VALUE");
+    reject_others(table, kTypes, "a number, which is written TYPE = VALUE");
     for (const std::string& type : kTypes) {
       const auto value = number(table, type.c_str());
       if (!value) continue;
@@ -179,7 +180,7 @@ class Reader {
     out.type = text(table, "type").value_or("u8");
     if (!is_type(out.type)) {
       errors_.error(out.where,
-                    fmt::format("'{}' is no type; there are {}", out.type, fmt::join(kTypes, " ")));
+                    fmt::format("'{}' is not a type; the types are {}", out.type, fmt::join(kTypes, " ")));
       out.type = "u8";
     }
     out.save = flag(table, "save", false);
@@ -223,7 +224,8 @@ class Reader {
     if (init != "iota" && init != "value" && init != "random")
       return errors_.error(
           out.where,
-          fmt::format("'{}' is no way to fill a buffer; there are zero, value, iota, random and file", init));
+          fmt::format("'{}' is not a way to fill a buffer; the ways are zero, value, iota, random and file",
+                      init));
     for (size_t i = 0; i < count; ++i) {
       const std::vector<std::byte> one = element_at(i);
       std::copy(one.begin(), one.end(), out.bytes.begin() + std::ptrdiff_t(i * element));
@@ -237,8 +239,8 @@ class Reader {
     const std::string data{std::istreambuf_iterator<char>(in), {}};
     out.bytes.resize(bytes ? size_t(*bytes) : data.size());
     if (data.size() > out.bytes.size() || out.bytes.empty())
-      return errors_.error(
-          out.where, fmt::format("'{}' has {} bytes, the buffer {}", file, data.size(), out.bytes.size()));
+      return errors_.error(out.where, fmt::format("'{}' has {} bytes, and the buffer has {}", file,
+                                                  data.size(), out.bytes.size()));
     std::memcpy(out.bytes.data(), data.data(), data.size());
   }
 

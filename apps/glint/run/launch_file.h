@@ -1,4 +1,4 @@
-// A launch of a PTX kernel as a TOML file describes it: grid, arguments, what to keep.
+// Reads a launch of a PTX kernel from a TOML file: grid, arguments, what to keep.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -12,26 +12,27 @@
 namespace glint::app {
 
 struct LaunchArgument {
-  std::vector<std::byte> bytes;  // of the number, or what the buffer holds at first
+  std::vector<std::byte> bytes;  // bytes of the number, or what the buffer holds at first
   bool is_buffer = false;
-  std::string name, type;  // of a buffer
-  bool save = false;       // to NAME.bin of the run directory
-  uint32_t show = 0;       // first values to print
+  std::string name, type;  // used for a buffer
+  bool save = false;       // writes the buffer to NAME.bin in the run directory
+  uint32_t show = 0;       // how many of the first values are printed
   SourceLocation where;
 };
 
 struct LaunchFile {
   std::string kernel;    // path of the PTX file
-  std::string entry;     // empty: the only one
+  std::string entry;     // empty: the only entry
   bool contract = true;  // frontend::PtxOptions::contract
   pipeline::KernelGrid grid;
   std::vector<LaunchArgument> arguments;
 };
 
-// Format: shaders/kernels/README.md. UserError lists every mistake with file, line and column.
+// Reads a launch file; shaders/kernels/README.md describes the format. Throws UserError that lists every
+// mistake with file, line and column.
 LaunchFile read_launch(const std::string& path);
 
-// "0.5 1 1.5 ...": the first values of an array of that type.
+// Returns the first values of an array of that type as text: "0.5 1 1.5 ...".
 std::string first_values(const std::string& type, const std::byte* data, size_t bytes, uint32_t count);
 
 }  // namespace glint::app

@@ -9,28 +9,32 @@ namespace glint::app {
 namespace {
 
 void add_machine_options(Command command, LaunchOptions& options) {
-  command.add_option("--config", options.config, "Preset or TOML file").capture_default_str();
-  command.add_option("--set", options.settings, "Override of a key, repeatable: core.warps=16")
+  command.add_option("--config", options.config, "Preset or TOML file to read").capture_default_str();
+  command.add_option("--set", options.settings, "Override one key, such as core.warps=16; repeatable")
       .type_name("KEY=VALUE")
       .allow_extra_args(false);
-  command.add_option("--mode", options.mode, "timing: cycle by cycle; functional: picture and counts only")
+  command
+      .add_option(
+          "--mode", options.mode,
+          "Selects the machine: timing runs cycle by cycle, functional gives only the picture and counts")
       .one_of({"timing", "functional"})
       .capture_default_str();
   command
       .add_option("--max-instructions", options.max_instructions,
-                  "Instructions after which a warp is taken to have no end")
+                  "Number of instructions after which a warp is taken to be endless")
       .positive();
   command
       .add_option("--on-fault", options.on_fault_name,
-                  "stop: the first fault ends the run; warn: wrong loads give 0, wrong stores do nothing, "
-                  "and each is listed (docs/errors.md)")
+                  "Selects what a fault does: stop ends the run at the first fault; with warn, wrong loads "
+                  "give 0, wrong stores do nothing, and each is listed (docs/errors.md)")
       .one_of({"stop", "warn"})
       .capture_default_str();
-  command.add_flag("--no-skip", options.no_skip, "Step every cycle: slow, same result, for checking");
+  command.add_flag("--no-skip", options.no_skip,
+                   "Step through every cycle, which is slow and gives the same result, to check skipping");
   command
       .add_option("--threads", options.threads,
-                  "Threads of the timing machine, same result with any number; 0: all processors, while "
-                  "they are faster than one")
+                  "Number of host threads of the timing machine, which does not change results; 0: all "
+                  "processors while they are faster than one")
       .in_range(0u, 256u)
       .capture_default_str();
 }
@@ -39,11 +43,12 @@ void add_machine_options(Command command, LaunchOptions& options) {
 
 void add_launch_options(Command command, LaunchOptions& options) {
   add_machine_options(command, options);
-  command.add_option("--out", options.out, "Run directory (default: out/SCENE_SHADER-MODE)").type_name("DIR");
+  command.add_option("--out", options.out, "Directory to write the run to (default: out/SCENE_SHADER-MODE)")
+      .type_name("DIR");
   command.add_flag("--json", options.json, "Print the statistics as JSON instead of the summary");
   command
       .add_option("--printf-limit", options.print_limit,
-                  "Messages of debugPrintfEXT to show, the first by launch id")
+                  "Number of debugPrintfEXT messages to show, the first by launch id")
       .capture_default_str();
   add_observe_options(command, options.observe);
   add_shader_options(command, options.shaders);

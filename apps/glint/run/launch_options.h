@@ -1,4 +1,4 @@
-// The options that every kind of launch takes: scenes, pipelines, kernels and scripts.
+// Holds the options that every kind of launch takes: scenes, pipelines, kernels and scripts.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -17,15 +17,15 @@ namespace glint::app {
 struct LaunchOptions {
   std::string config = "mobile";                  // preset or TOML file
   std::string mode = "timing";                    // "timing" or "functional"
-  bool config_given = false, mode_given = false;  // whether the command line named them
-  std::string out;                                // run directory; empty: the kind of launch names one
+  bool config_given = false, mode_given = false;  // set when the command line named them
+  std::string out;                                // run directory; empty: the kind of launch chooses one
   std::vector<std::string> settings;              // KEY=VALUE
-  uint64_t max_instructions = 0;                  // of a warp; 0: as the configuration says
+  uint64_t max_instructions = 0;                  // limit of a warp; 0: the limit of the configuration
   bool json = false;                              // print statistics as JSON instead of the summary
   bool no_skip = false;                           // step every cycle
-  uint32_t threads = 0;                           // of the host; 0: all processors
+  uint32_t threads = 0;                           // threads of the host; 0: all processors
   std::string on_fault_name = "stop";             // "stop" or "warn"
-  exec::OnFault on_fault = exec::OnFault::Stop;   // the same, after parsing
+  exec::OnFault on_fault = exec::OnFault::Stop;   // the value of on_fault_name
   uint64_t print_limit = 1000;                    // messages of debugPrintfEXT to show
   ShaderOptions shaders;
   pipeline::Observation observe;
@@ -36,7 +36,7 @@ struct LaunchOptions {
 void add_launch_options(Command command, LaunchOptions& options);
 void finish_launch_options(const Command& command, LaunchOptions& options);
 
-// The configuration with its overrides; max_instructions is one of them.
+// Returns the configuration with its overrides, of which max_instructions is one.
 pipeline::GpuParams gpu_of(const Resources& resources, const LaunchOptions& options);
 
 }  // namespace glint::app

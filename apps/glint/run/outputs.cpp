@@ -1,4 +1,4 @@
-// Encoding of what a run keeps.
+// Encodes what a run keeps.
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/run/outputs.h"
 
@@ -14,7 +14,7 @@
 namespace glint::app {
 namespace {
 
-// "f32" of "float" and so on.
+// Returns the short form of a type's name, such as "f32" for "float".
 std::string plain(const std::string& type) {
   if (type == "float") return "f32";
   if (type == "double") return "f64";
@@ -58,10 +58,11 @@ std::string ending_of(const std::string& file) {
 
 std::string wrong_with_output(const std::string& file, bool is_image) {
   const std::string ending = ending_of(file);
-  if (file.find('/') != std::string::npos) return "it goes to the run directory: give a name without folders";
+  if (file.find('/') != std::string::npos)
+    return "the file goes to the run directory: give a name without folders";
   if (ending == ".npy" || ending == ".csv" || ending == ".raw" || ending == ".bin") return "";
   if (ending == ".png" || ending == ".pfm")
-    return is_image ? "" : "a buffer is no picture: .npy, .csv or .raw";
+    return is_image ? "" : "a buffer is not a picture: expected .npy, .csv or .raw";
   return is_image ? "expected .png, .pfm, .npy, .csv or .raw" : "expected .npy, .csv or .raw";
 }
 

@@ -1,4 +1,4 @@
-// What a run keeps of buffers and images: pictures, arrays, tables, raw bytes.
+// Encodes what a run keeps of buffers and images: pictures, arrays, tables, raw bytes.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -10,19 +10,20 @@
 
 namespace glint::app {
 
-// Bytes of the file, by its ending: .npy (one dimension of `type`), .csv (a number a line), anything else as
-// they are.
+// Returns the bytes of a buffer's file. The ending selects the format: .npy has one dimension of `type`, .csv
+// has one number per line, and any other ending keeps the bytes unchanged.
 std::string buffer_file(const std::string& file, const std::string& type, std::span<const std::byte> bytes);
 
-// .png and .pfm (level 0, layers and slices one below the other), .npy (float: rows, columns, 4), .csv (a row
-// a texel), else raw.
+// Returns the bytes of an image's file: .png and .pfm hold level 0 with layers and slices one below the
+// other, .npy holds floats (rows, columns, 4), .csv has one row per texel, and any other ending keeps the raw
+// bytes.
 std::string image_file(const std::string& file, const exec::ImageView& view,
                        std::span<const std::byte> bytes);
 
-// "" or what is wrong with the file's name.
+// Returns what is wrong with the file's name, or "".
 std::string wrong_with_output(const std::string& file, bool is_image);
 
-// "0.5 1 1.5": the first numbers.
+// Returns the first numbers as text: "0.5 1 1.5".
 std::string first_numbers(const std::string& type, std::span<const std::byte> bytes, size_t count);
 
 }  // namespace glint::app

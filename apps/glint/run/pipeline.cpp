@@ -1,4 +1,4 @@
-// Running a described pipeline: shaders from anywhere, resources from the file, pictures and arrays kept.
+// Runs a described pipeline: takes shaders from anywhere and resources from the file, and keeps its outputs.
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/run/pipeline.h"
 
@@ -25,7 +25,7 @@ bool is_shader(const std::string& what) {
   return frontend::stage_of_file(what).has_value() || what.ends_with(".spv") || what.ends_with(".spvasm");
 }
 
-// What the command line says comes after what the file says.
+// Returns the description with the command line's options, which win over the file's.
 pipeline::PipelineDescription with_options(pipeline::PipelineDescription description,
                                            const frontend::GlslOptions& glsl) {
   for (pipeline::ShaderFile& shader : description.shaders) {
@@ -65,7 +65,7 @@ void check_saves(const pipeline::PipelineDescription& d) {
   errors.throw_if_errors();
 }
 
-// Writes what the file asks for; returns lines for the summary.
+// Writes what the file asks for. Returns lines for the summary.
 std::vector<std::string> keep(pipeline::PipelineWorld& world, const report::RunDirectory& directory) {
   std::vector<std::string> lines;
   const pipeline::PipelineDescription& d = world.description();
@@ -95,7 +95,7 @@ report::RunInfo describe_run(const Session& session, const pipeline::PipelineWor
   report::RunInfo info = new_run_info(session, gpu, config, mode);
   info.scene = world.description().name;
   info.scene_form = "pipeline";
-  std::string everything;  // what the launch begins with
+  std::string everything;  // everything that the launch begins with
   for (const auto& allocation : world.memory().allocations())
     if (allocation.data)
       everything.append(reinterpret_cast<const char*>(allocation.data), size_t(allocation.bytes));
@@ -116,7 +116,7 @@ report::RunInfo describe_run(const Session& session, const pipeline::PipelineWor
 bool names_pipeline(const std::string& what) {
   if (is_shader(what)) return true;
   if (!what.ends_with(".toml")) return false;
-  return pipeline::read_toml(what).find("kernel") == nullptr;  // a kernel's launch file names it
+  return pipeline::read_toml(what).find("kernel") == nullptr;  // a kernel's launch file has this key
 }
 
 Exit run_pipeline(const Session& session, const std::string& what, const LaunchOptions& options) {

@@ -1,4 +1,4 @@
-// `glint run FILE.toml` and `glint run SHADER`: a launch of a described pipeline on the simulated GPU.
+// Declares `glint run FILE.toml` and `glint run SHADER`, which launch a described pipeline.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace glint::app {
 
-// A shader file, or a TOML file that is no launch of a kernel.
+// Returns whether `what` is a shader file, or a TOML file that does not launch a kernel.
 bool names_pipeline(const std::string& what);
-// What the command line names wins over what the file says.
+// Runs the pipeline. The command line's options win over the file's.
 Exit run_pipeline(const Session& session, const std::string& what, const LaunchOptions& options);
 
 }  // namespace glint::app

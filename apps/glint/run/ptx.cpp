@@ -1,4 +1,4 @@
-// Launching a kernel and telling what its buffers hold afterwards.
+// Launches a kernel and tells what its buffers hold afterwards.
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/run/ptx.h"
 
@@ -24,7 +24,7 @@ std::string read_text(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// A kernel in memory with the addresses of its buffers, one an argument; 0 for numbers.
+// Holds a kernel in memory, with one buffer address per argument, which is 0 for numbers.
 struct Launched {
   explicit Launched(frontend::Kernel kernel) : world(std::move(kernel)) {}
   pipeline::KernelWorld world;
@@ -36,7 +36,7 @@ void set_arguments(Launched& launched, const LaunchFile& launch, const std::stri
   if (parameters.size() != launch.arguments.size())
     throw UserError(
         {launch_path, 0, 0},
-        fmt::format("kernel '{}' has {} parameters, the file gives {} arguments",
+        fmt::format("kernel '{}' has {} parameters, and the file gives {} arguments",
                     launched.world.kernel().program.name, parameters.size(), launch.arguments.size()));
   std::vector<std::vector<std::byte>> values;
   for (size_t i = 0; i < parameters.size(); ++i) {
@@ -52,13 +52,14 @@ void set_arguments(Launched& launched, const LaunchFile& launch, const std::stri
     }
     if (values.back().size() != parameters[i].bytes)
       throw UserError(argument.where,
-                      fmt::format("parameter '{}' has {} bytes, this argument {}", parameters[i].name,
+                      fmt::format("parameter '{}' has {} bytes, and this argument has {}", parameters[i].name,
                                   parameters[i].bytes, values.back().size()));
   }
   launched.world.set_arguments(values);
 }
 
-// Lines on the buffers that the launch file asks for; those to save go to the run directory.
+// Returns lines on the buffers that the launch file asks for, and writes those to save into the run
+// directory.
 std::vector<std::string> keep_buffers(Launched& launched, const LaunchFile& launch,
                                       const report::RunDirectory& directory) {
   std::vector<std::string> lines;

@@ -1,4 +1,4 @@
-// `glint run KERNEL`: launches a PTX kernel on the simulated GPU.
+// Declares `glint run KERNEL`, which launches a PTX kernel on the simulated GPU.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace glint::app {
 
-// Whether `glint run` means a kernel, not a scene: a path that ends in .ptx or .toml.
+// Returns whether `glint run` means a kernel and not a scene: a path that ends in .ptx or .toml.
 bool names_kernel(const std::string& what);
 
-// `what` is a PTX file, and `launch_file` its launch file, or `what` is the launch file that names the PTX
-// file.
+// Launches a kernel. `what` is a PTX file and `launch_file` is its launch file, or `what` is a launch file
+// that names the PTX file.
 Exit run_ptx(const Session& session, const std::string& what, const std::string& launch_file,
              const LaunchOptions& options);
 

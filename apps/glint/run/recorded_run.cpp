@@ -39,7 +39,7 @@ report::RunInfo new_run_info(const Session& session, const pipeline::GpuParams& 
 
 namespace {
 
-// What of the result stands in run.json.
+// Adds what run.json holds of the result.
 void add_result(const pipeline::RenderResult& result, report::RunInfo& info) {
   for (const exec::FaultLog::Entry& fault : result.faults.in_order())
     info.faults.push_back({std::string(exec::name_of(fault.kind)), fault.first.place, fault.first.what,
@@ -78,7 +78,8 @@ pipeline::RenderResult run_recorded(const Session& session, const std::string& w
     if (info.wall_seconds == 0) stop_watch();
     info.exit = int(exit);
     info.message = message;
-    try {  // of two errors the first is told; a full disk has room again once the results are gone
+    // When two errors occur, the first one is told. A full disk has room again once the results are gone.
+    try {
       directory.remove_results(info.saved);
       keep_prints(prints ? prints->take() : "", directory);
       directory.write_run(info);

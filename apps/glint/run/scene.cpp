@@ -19,12 +19,12 @@
 namespace glint::app {
 namespace {
 
-// SHIP_SH is SHIP with --shader sh.
+// Splits the name of a workload: SHIP_SH is SHIP with --shader sh.
 void take_workload_name(SceneOptions& options) {
   const std::optional<SceneAndShader> named = split_workload(options.scene);
   if (!named) return;
   if (options.shader_given && options.shader != named->shader)
-    throw UserError({}, fmt::format("'{}' is {} with --shader {}, and --shader is {}", options.scene,
+    throw UserError({}, fmt::format("'{}' is {} with --shader {}, but --shader is {}", options.scene,
                                     named->scene, named->shader, options.shader));
   options.scene = named->scene;
   options.shader = named->shader;

@@ -1,4 +1,4 @@
-// `glint run SCENE`: renders one frame of a scene on the simulated GPU.
+// Declares `glint run SCENE`, which renders one frame of a scene on the simulated GPU.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>

@@ -13,7 +13,7 @@ constexpr const char* kClassTitles[] = {"ALU", "SFU",  "Mem",
                                         "Tex", "Ctrl", "RT"};  // in the order of isa::Class
 static_assert(std::size(kClassTitles) == size_t(isa::Class::Count));
 
-// Sums of statistics over all instances.
+// Sums statistics over all instances.
 class Sums {
  public:
   explicit Sums(const stats::Group& root) : root_(root) {}

@@ -1,4 +1,4 @@
-// From what a render returns to what the summary on the terminal shows.
+// Makes the summary that the terminal shows from what a render returns.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "pipeline/render.h"
