@@ -1,4 +1,4 @@
-// Laying out records: handle, data, stride, and what each record calls.
+// Lays out records: handle, data, stride, and what each record calls.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/binding_table.h"
 
@@ -15,8 +15,8 @@ namespace {
 using exec::kHandleBytes;
 using isa::Stage;
 
-// shaderGroupHandleAlignment, shaderGroupBaseAlignment and maxShaderGroupStride of the driver that the
-// conformance set was recorded with.
+// These are shaderGroupHandleAlignment, shaderGroupBaseAlignment and maxShaderGroupStride of the driver that
+// the conformance set was recorded with.
 constexpr uint32_t kHandleAlignment = 32, kBaseAlignment = 64, kMaxStride = 4096;
 
 uint64_t round_up(uint64_t bytes, uint64_t to) {
@@ -53,20 +53,20 @@ class Table {
       largest = std::max<uint64_t>(largest, record.data.size());
     const uint64_t need = round_up(kHandleBytes + largest, kHandleAlignment);
     if (need > kMaxStride)
-      throw UserError(
-          fmt::format("a {} record of {} bytes: with its handle at most {} fit", name, largest, kMaxStride));
+      throw UserError(fmt::format("a {} record has {} bytes, and with its handle at most {} fit", name,
+                                  largest, kMaxStride));
     if (!region.stride) return uint32_t(need);
     if (*region.stride % kHandleAlignment || *region.stride > kMaxStride)
       throw UserError(
           fmt::format("the stride of the {} region is {}: it must be a multiple of {} and at most {}", name,
                       *region.stride, kHandleAlignment, kMaxStride));
     if (*region.stride != 0 && region.records.size() > 1 && *region.stride < need)
-      throw UserError(fmt::format("the stride of the {} region is {}: its largest record needs {}", name,
+      throw UserError(fmt::format("the stride of the {} region is {}, and its largest record needs {}", name,
                                   *region.stride, need));
     return *region.stride;
   }
 
-  // Appends the records; returns where they begin.
+  // Appends the records and returns where they begin.
   uint64_t place(const TableRegion& region, const char* name) {
     const uint64_t first = round_up(bytes_.size(), kBaseAlignment);
     const uint64_t step = stride(region, name);
@@ -86,7 +86,7 @@ class Table {
   const ShaderGroup& group(const TableRecord& record, const std::string& where) const {
     if (record.group >= input_.groups.size())
       throw UserError(
-          fmt::format("{} names group {}: there are {}", where, record.group, input_.groups.size()));
+          fmt::format("{} names group {}, and there are {}", where, record.group, input_.groups.size()));
     return input_.groups[record.group];
   }
 
@@ -94,10 +94,10 @@ class Table {
     if (shader == exec::kNoShader) return;
     if (shader >= world_.image->shaders.size())
       throw UserError(
-          fmt::format("{} names shader {}: there are {}", where, shader, world_.image->shaders.size()));
+          fmt::format("{} names shader {}, and there are {}", where, shader, world_.image->shaders.size()));
     const exec::Shader& found = world_.image->shaders[shader];
     if (found.stage != stage)
-      throw UserError(fmt::format("{} wants a shader of stage {}: '{}' is of stage {}", where,
+      throw UserError(fmt::format("{} wants a shader of stage {}, and '{}' is of stage {}", where,
                                   isa::name_of(stage), found.name, isa::name_of(found.stage)));
   }
 
@@ -121,7 +121,7 @@ class Table {
     if (record.group == kNoGroup) return {};
     const ShaderGroup& found = group(record, where);
     if (found.general != exec::kNoShader)
-      throw UserError(fmt::format("{} names group {}, which is no hit group", where, record.group));
+      throw UserError(fmt::format("{} names group {}, which is not a hit group", where, record.group));
     check(found.hit.closest_hit, Stage::ClosestHit, where);
     check(found.hit.any_hit, Stage::AnyHit, where);
     check(found.hit.intersection, Stage::Intersection, where);

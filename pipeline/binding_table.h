@@ -1,5 +1,4 @@
-// The shader binding table as a Vulkan host fills it: records of a group's handle and data, in regions with
-// strides.
+// Builds the shader binding table as a Vulkan host fills it: records of handle and data, in strided regions.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -13,8 +12,8 @@ namespace glint::pipeline {
 
 inline constexpr uint32_t kNoGroup = 0xffff'ffff;
 
-// VkRayTracingShaderGroupCreateInfoKHR: indices into Image::shaders, or exec::kNoShader. A general group has
-// a ray generation, miss or callable shader; a hit group has the others.
+// Corresponds to VkRayTracingShaderGroupCreateInfoKHR: it holds indices into Image::shaders, or
+// exec::kNoShader. A general group has a ray generation, miss or callable shader; a hit group has the others.
 struct ShaderGroup {
   uint32_t general = exec::kNoShader;
   exec::HitGroup hit;
@@ -39,12 +38,12 @@ struct TableInput {
 };
 
 // Writes the table into simulated memory and sets raygen, miss, hit, callable and table of the world, whose
-// image is linked. UserError: a group that there is not or that does not fit its region, a stride that Vulkan
-// forbids or that is too small for a record's data.
+// image is linked. Throws UserError for a group that does not exist or does not fit its region, and for a
+// stride that Vulkan forbids or that is too small for a record's data.
 void build_binding_table(exec::World& world, mem::AddressSpace& memory, const TableInput& input);
 
-// The stack of a lane: the deepest chain of frames (Vulkan 1.3, "Ray Tracing Pipeline Stack", with the depths
-// given).
+// Returns the stack of a lane: the deepest chain of frames (Vulkan 1.3, "Ray Tracing Pipeline Stack", with
+// the depths given).
 uint32_t stack_bytes(const exec::Image& image, uint32_t max_trace_depth, uint32_t max_callable_depth);
 
 }  // namespace glint::pipeline

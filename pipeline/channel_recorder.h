@@ -10,11 +10,11 @@
 
 namespace glint::pipeline {
 
-// As core::TraceRecorder: slices are cut at the window's ends, which comes earlier where the bound is
-// reached.
+// Works as core::TraceRecorder: slices are cut at the window's ends, and the window ends earlier when the
+// bound is reached.
 class ChannelRecorder {
  public:
-  // `room`: slices, at least one. Nothing is allocated later.
+  // `room` is the number of slices, at least one. Nothing is allocated later.
   ChannelRecorder(uint32_t channel, Cycle begin, Cycle end, uint64_t room)
       : channel_(channel), begin_(begin), end_(end) {
     slices_.reserve(room);
@@ -46,7 +46,7 @@ class ChannelRecorder {
   const Cycle begin_;
   Cycle end_;
   bool works_ = false;
-  Cycle since_ = 0;    // when it works
+  Cycle since_ = 0;    // the start of the present work, while the channel works
   uint64_t told_ = 0;  // requests in slices so far, or before the window
   std::vector<TraceSlice> slices_;
 };

@@ -1,4 +1,4 @@
-// Checks of keys against each other; each key's own range is checked when it is read (base/params.h).
+// Checks keys against each other. Each key's own range is checked when it is read (base/params.h).
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/check_params.h"
 
@@ -11,7 +11,7 @@
 namespace glint::pipeline {
 namespace {
 
-// A cache is whole sets, and one set at least.
+// Reports a cache that does not consist of whole sets, at least one.
 void check_cache(const char* key, uint32_t size, uint32_t ways, uint32_t line, Diagnostics& diagnostics) {
   const uint64_t set = uint64_t{std::max(ways, 1u)} * line;
   if (size >= set && size % set == 0) return;
@@ -21,7 +21,7 @@ void check_cache(const char* key, uint32_t size, uint32_t ways, uint32_t line, D
 
 void check_code(const core::Params& p, uint32_t line, Diagnostics& diagnostics) {
   if (!std::has_single_bit(line)) return;             // reported already
-  if (p.fetch.perfect && p.constant.perfect) return;  // nothing of it is built
+  if (p.fetch.perfect && p.constant.perfect) return;  // no part of it is built
   check_cache("core.code_cache.size", p.code_cache.size, p.code_cache.ways, line, diagnostics);
   if (!p.fetch.perfect) check_cache("core.fetch.size", p.fetch.size, p.fetch.ways, line, diagnostics);
   if (p.constant.perfect) return;

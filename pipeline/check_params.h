@@ -1,4 +1,4 @@
-// What makes a GPU impossible, whatever it runs.
+// Finds what makes a GPU impossible, whatever it runs.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "base/diagnostics.h"
@@ -6,7 +6,7 @@
 
 namespace glint::pipeline {
 
-// Reports every key that cannot be, alone or beside others; a message begins with the quoted key.
+// Reports every key that is impossible, alone or together with others. A message begins with the quoted key.
 void check(const GpuParams& params, Diagnostics& diagnostics);
 
 }  // namespace glint::pipeline

@@ -1,4 +1,4 @@
-// The balances of cores, RT units and partitions.
+// Computes the balances of cores, RT units and partitions.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/conservation.h"
 
@@ -43,7 +43,7 @@ std::vector<Balance> of_core(const core::CoreCell& core, uint64_t cycles, uint32
   return std::move(ledger.rows);
 }
 
-// Of the profile, if there is one: it adds up to what the core counts.
+// Returns the balances of the profile, if there is one: it adds up to what the core counts.
 std::vector<Balance> of_profile(const core::CoreCell& core) {
   const core::CoreStats& s = core.stats();
   Ledger ledger(s.name() + " profile");

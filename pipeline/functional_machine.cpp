@@ -1,4 +1,4 @@
-// Running a launch block by block, the warps of a block in turns.
+// Runs a launch block by block, the warps of a block in turns.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/functional_machine.h"
 
@@ -17,7 +17,7 @@ void answer_rays(Executor& executor, WarpContext& warp, RayCounts& counts) {
   for_each_lane(warp.ray_lanes, [&](int lane) {
     rt::RayState& state = warp.rays[lane];
     const auto nodes = state.nodes_visited, boxes = state.box_tests, triangles = state.triangle_tests;
-    if (nodes == 0) ++counts.rays;  // first hand-over: a ray, not a resumed one
+    if (nodes == 0) ++counts.rays;  // handed over for the first time, so this ray is not a resumed one
     if (state.status == rt::RayStatus::Traversing) rt::run(state, *executor.world().memory);
     counts.nodes += state.nodes_visited - nodes;
     counts.box_tests += state.box_tests - boxes;
@@ -28,8 +28,8 @@ void answer_rays(Executor& executor, WarpContext& warp, RayCounts& counts) {
 
 namespace {
 
-// Choice: instructions that a warp runs before the next of its block, so that warps that wait for each other
-// through memory get on. Where nobody waits like that, results do not depend on it.
+// Choice: a warp runs this many instructions before the next warp of its block does, so that warps that wait
+// for each other through memory make progress. Results depend on it only where a warp waits like that.
 constexpr uint64_t kQuantum = 10'000;
 
 class Runner {
@@ -50,7 +50,8 @@ class Runner {
       executor.start(warps_[w], block_, w);
       if (costs_) costs_->start_warp(0, w, warps_[w]);
     }
-    // Round robin. A warp at a barrier waits for one that runs: the executor sees to it that there is one.
+    // The warps take turns. A warp at a barrier waits for one that runs, and the executor ensures that there
+    // is one.
     while (block_.live() != 0)
       for (WarpContext& warp : warps_)
         if (block_.live() >> warp.warp_in_block & 1) run_warp(warp);
@@ -90,7 +91,7 @@ class Runner {
   const uint64_t budget_;
   exec::Block block_;
   std::vector<WarpContext> warps_;
-  std::unique_ptr<core::CostRecorder> costs_;  // null: not asked for
+  std::unique_ptr<core::CostRecorder> costs_;  // null: costs were not asked for
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Placing a kernel and its module's variables.
+// Places a kernel and its module's variables.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/kernel_launch.h"
 
@@ -23,7 +23,7 @@ KernelWorld::KernelWorld(frontend::Kernel kernel) : kernel_(std::move(kernel)) {
 }
 
 void KernelWorld::place_variables() {
-  std::map<std::string, uint64_t> address;  // generic: what pointers in memory hold
+  std::map<std::string, uint64_t> address;  // generic addresses, as pointers in memory hold them
   std::map<std::string, std::byte*> data;
   for (const frontend::ModuleVariable& v : kernel_.variables) {
     if (v.is_constant) {
@@ -42,7 +42,7 @@ void KernelWorld::place_variables() {
       const auto target = address.find(pointer.symbol);
       if (target == address.end())
         throw UnsupportedError(
-            fmt::format("variable '{}' holds the address of '{}', which is no variable of the module in "
+            fmt::format("variable '{}' holds the address of '{}', which is not a variable of the module in "
                         "global or constant memory",
                         v.name, pointer.symbol));
       const uint64_t value = target->second + pointer.addend;
@@ -62,8 +62,8 @@ void KernelWorld::set_grid(const KernelGrid& grid) {
                                         size(grid.grid), size(grid.block)));
   const uint64_t threads = uint64_t{grid.block[0]} * grid.block[1] * grid.block[2];
   if (threads > exec::kMaxBlockThreads)
-    throw UserError({}, fmt::format("kernel '{}': {} threads a block, at most {} can be", name, threads,
-                                    exec::kMaxBlockThreads));
+    throw UserError({}, fmt::format("kernel '{}' has {} threads per block, and at most {} are possible", name,
+                                    threads, exec::kMaxBlockThreads));
   if (kernel_.required_block && *kernel_.required_block != grid.block)
     throw UserError({}, fmt::format("kernel '{}' asks for blocks of {} threads (.reqntid), not {}", name,
                                     size(*kernel_.required_block), size(grid.block)));
@@ -79,13 +79,14 @@ void KernelWorld::set_grid(const KernelGrid& grid) {
 void KernelWorld::set_arguments(const std::vector<std::vector<std::byte>>& arguments) {
   const std::string& name = kernel_.program.name;
   if (arguments.size() != kernel_.parameters.size())
-    throw UserError({}, fmt::format("kernel '{}' has {} parameters, {} arguments are given", name,
+    throw UserError({}, fmt::format("kernel '{}' has {} parameters, but {} arguments are given", name,
                                     kernel_.parameters.size(), arguments.size()));
   for (size_t i = 0; i < arguments.size(); ++i) {
     const frontend::KernelParameter& p = kernel_.parameters[i];
     if (arguments[i].size() != p.bytes)
-      throw UserError({}, fmt::format("kernel '{}': parameter {} ('{}') has {} bytes, its argument {}", name,
-                                      i, p.name, p.bytes, arguments[i].size()));
+      throw UserError(
+          {}, fmt::format("kernel '{}': parameter {} ('{}') has {} bytes, and its argument has {}", name, i,
+                          p.name, p.bytes, arguments[i].size()));
     std::memcpy(world.constant_bank.data() + isa::kPushConstantOffset + p.offset, arguments[i].data(),
                 p.bytes);
   }

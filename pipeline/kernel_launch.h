@@ -1,4 +1,4 @@
-// A compiled kernel in simulated memory: its variables placed, its parameters set, its grid of blocks.
+// Puts a compiled kernel into simulated memory: places its variables and sets its parameters and its grid.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -19,7 +19,7 @@ struct KernelGrid {
   uint32_t dynamic_shared_bytes = 0;
 };
 
-// Memory and world of a kernel. Not movable: `world` points into it.
+// Holds memory and world of a kernel. It cannot be moved, because `world` points into it.
 class KernelWorld {
  public:
   // Links the kernel and puts its module's variables into memory.
@@ -32,11 +32,11 @@ class KernelWorld {
   mem::AddressSpace& memory() { return memory_; }
   const frontend::Kernel& kernel() const { return kernel_; }
 
-  // UserError when the kernel cannot run with blocks of that size.
+  // Sets the grid. Throws UserError when the kernel cannot run with blocks of that size.
   void set_grid(const KernelGrid& grid);
-  // The bytes of each parameter, in order; their sizes must be the parameters'.
+  // Sets the bytes of each parameter, in order. Their sizes must be those of the parameters.
   void set_arguments(const std::vector<std::vector<std::byte>>& arguments);
-  // Bytes of an argument: numbers and addresses.
+  // Returns the bytes of an argument: a number or an address.
   template <class T>
   static std::vector<std::byte> argument(T value) {
     std::vector<std::byte> out(sizeof value);

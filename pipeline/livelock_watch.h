@@ -1,4 +1,4 @@
-// Tells warps that spin for ever from a machine at work: for how long nothing has come of what they do.
+// Tells warps that spin for ever from a machine at work, by the time since anything came of their work.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -7,14 +7,14 @@
 
 namespace glint::pipeline {
 
-// Looks at the machine between turns. Model: what is looked at is not the warps' registers, so a launch that
-// only computes for longer than the budget is taken for one that spins; a budget of 0 never ends.
+// Looks at the machine between turns. A budget of 0 never ends. Model: registers of warps are not looked at,
+// so a launch that only computes for longer than the budget is taken for one that spins.
 class LivelockWatch {
  public:
   explicit LivelockWatch(uint64_t budget) : budget_(budget) {}
 
-  // `memory_changed`: since the last look. `count()` grows with everything else that counts as progress; it
-  // is asked only now and then.
+  // Looks for progress. `memory_changed` says whether memory has changed since the last look. `count()` grows
+  // with everything else that counts as progress, and is called only now and then.
   template <class Count>
   void look(Cycle now, bool memory_changed, Count&& count) {
     if (memory_changed) since_ = now;
@@ -22,12 +22,12 @@ class LivelockWatch {
     next_ = now + kPeriod;
     if (const uint64_t changes = count(); changes != last_) last_ = changes, since_ = now;
   }
-  // The last time at which anything was seen to happen.
+  // Returns the last time at which anything was seen to happen.
   Cycle since() const { return since_; }
   bool is_over(Cycle now) const { return budget_ != 0 && now - since_ > budget_; }
 
  private:
-  static constexpr Cycle kPeriod = 4096;  // Choice: seldom enough to cost nothing
+  static constexpr Cycle kPeriod = 4096;  // Choice: so rare that it costs nothing
   const uint64_t budget_;
   uint64_t last_ = 0;
   Cycle since_ = 0, next_ = 0;

@@ -1,4 +1,4 @@
-// The whole GPU's parameters: what a preset in configs/ sets.
+// Declares the parameters of the whole GPU, which a preset in configs/ sets.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -13,22 +13,23 @@
 
 namespace glint::pipeline {
 
-// What the compiler may use of the machine it compiles for.
+// Says what the compiler may use of the machine it compiles for.
 struct CompilerParams {
   uint32_t max_registers = 64;
   bool schedule = true;
   bool contract = false;
   uint32_t guard_latency = 0;
-  bool queries_call = false;  // no key: what GpuParams::rt.unit asks of code with ray queries
+  bool queries_call = false;  // has no key, because it follows from GpuParams::rt.unit
   static constexpr auto params() {
     return std::tuple{
         param(&CompilerParams::max_registers, "max_registers", "register",
-              "32-bit registers a thread; more spill to local memory.", 8, 255),
-        flag(&CompilerParams::schedule, "schedule", "Reorders instructions within a block to hide latency."),
+              "Number of 32-bit registers per thread. Values beyond them spill to local memory.", 8, 255),
+        flag(&CompilerParams::schedule, "schedule",
+             "True: the compiler reorders instructions within a block to hide latency."),
         flag(&CompilerParams::contract, "contract",
-             "GLSL's a * b + c becomes one fma, as drivers do, but where it is `precise`."),
+             "True: a * b + c of GLSL becomes one fma, as in drivers, except where it is `precise`."),
         param(&CompilerParams::guard_latency, "guard_latency", "cycle",
-              "Later that a predicate guards than it can be read, as the order of instructions expects.", 0,
+              "Extra cycles the compiler's scheduler assumes before a predicate can guard an instruction.", 0,
               100)};
   }
 };
@@ -44,13 +45,14 @@ struct GpuParams {
   static constexpr auto params() {
     return std::tuple{
         param(&GpuParams::cores, "cores", "core",
-              "Cores (streaming multiprocessors), each with its L1 and RT unit.", 1, 256),
-        param(&GpuParams::clock_mhz, "clock_mhz", "MHz", "Clock of cores, network and L2.", 1.0, 10000.0),
-        section(&GpuParams::core, "core", "Each core."),
-        section(&GpuParams::memory, "memory", "Caches, network and DRAM."),
-        section(&GpuParams::rt, "rt", "Each core's ray-tracing unit."),
-        section(&GpuParams::bvh, "bvh", "How acceleration structures are built."),
-        section(&GpuParams::compiler, "compiler", "Code generation.")};
+              "Number of cores (streaming multiprocessors). Each has an L1 and an RT unit.", 1, 256),
+        param(&GpuParams::clock_mhz, "clock_mhz", "MHz", "Clock frequency of cores, network and L2.", 1.0,
+              10000.0),
+        section(&GpuParams::core, "core", "Parameters of each core."),
+        section(&GpuParams::memory, "memory", "Parameters of caches, network and DRAM."),
+        section(&GpuParams::rt, "rt", "Parameters of each core's ray-tracing unit."),
+        section(&GpuParams::bvh, "bvh", "Parameters of the construction of acceleration structures."),
+        section(&GpuParams::compiler, "compiler", "Parameters of code generation.")};
   }
 };
 

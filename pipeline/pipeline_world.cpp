@@ -1,4 +1,4 @@
-// From a description to a world.
+// Builds a world from a description.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/pipeline_world.h"
 
@@ -19,7 +19,8 @@
 namespace glint::pipeline {
 namespace {
 
-// Choice: pipelines whose hit and miss shaders trace get room for eight nested rays unless they say how many.
+// Choice: pipelines whose hit and miss shaders trace get room for eight nested rays, unless they say how
+// many.
 constexpr uint32_t kDefaultDepth = 8;
 
 bool traces_from(const Modules& modules, isa::Stage stage) {
@@ -51,7 +52,7 @@ PipelineWorld::PipelineWorld(const PipelineDescription& description, const GpuPa
   add_samplers();
   build_structures(gpu);
   for (const auto& [place, use] :
-       modules_.bindings())  // those that no code uses; check_pipeline() refuses the others
+       modules_.bindings())  // bindings that no code uses; check_pipeline() refuses the others
     if (!bound_.count(place)) mark_unbound(world, use.binding);
   if (description_.raygen) fill_records();
   set_push_constants();
@@ -82,7 +83,7 @@ void PipelineWorld::set_launch() {
   const auto& size = program.local_size;
   if (uint64_t{size[0]} * size[1] * size[2] > exec::kMaxBlockThreads)
     throw UserError(description_.compute_where,
-                    fmt::format("'{}' has blocks of {} x {} x {} threads: at most {} can be",
+                    fmt::format("'{}' has blocks of {} x {} x {} threads, and at most {} are possible",
                                 description_.compute, size[0], size[1], size[2], exec::kMaxBlockThreads));
   exec::set_blocks(world, description_.launch, size, program.shared_bytes);
 }
@@ -99,8 +100,8 @@ void PipelineWorld::bind(const Slot& slot, uint64_t address_or_handle, uint64_t 
   write_descriptor(world, {slot.set.value_or(0), *slot.binding}, address_or_handle, bytes_or_count);
 }
 
-// docs/abi.md: arrays of buffers and of acceleration structures have their descriptors in a table in global
-// memory.
+// Binds one element. By docs/abi.md, arrays of buffers and of acceleration structures have their descriptors
+// in a table in global memory.
 void PipelineWorld::bind_table(const Slot& slot, uint32_t element, uint64_t address, uint64_t bytes) {
   const BindingUse* use = use_of(slot);
   if (!use || use->binding.count == 1) return bind(slot, address, bytes);
@@ -129,8 +130,8 @@ uint64_t PipelineWorld::address_of(const std::string& buffer) const {
   return 0;
 }
 
-// Addresses are given out before anything is filled, so that buffers can point to each other: sizes come
-// first, with any address that is not 0.
+// Gives out all addresses before it fills any buffer, so that buffers can point to each other. It first
+// computes sizes, with any address that is not 0.
 void PipelineWorld::upload_buffers() {
   const auto block_of = [&](const BufferDescription& b) {
     const BindingUse* use = use_of(b.slot);
@@ -156,7 +157,8 @@ void PipelineWorld::upload_buffers() {
   }
 }
 
-// By set, binding and element: images and samplers of an array have consecutive numbers.
+// Returns resources ordered by set, binding and element, because images and samplers of an array have
+// consecutive numbers.
 std::vector<size_t> PipelineWorld::in_order(const std::vector<const Slot*>& slots) const {
   std::vector<size_t> order(slots.size());
   for (size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -175,8 +177,8 @@ void PipelineWorld::upload_images() {
     const ImageDescription& d = description_.images[i];
     const BindingUse* use = use_of(d.slot);
     if (use && d.samples > 1 && !use->binding.multisampled)
-      throw UserError(
-          d.where, fmt::format("image '{}' has {} samples a texel; the shader's has one", d.name, d.samples));
+      throw UserError(d.where, fmt::format("image '{}' has {} samples per texel, and the shader's has one",
+                                           d.name, d.samples));
     Picture picture =
         make_picture(d, use ? use->binding.shape : isa::ImageShape::D2, use ? use->binding.texel : "",
                      world.launch_size, use ? use->binding.format : "");
@@ -277,7 +279,8 @@ TableRecord PipelineWorld::record(const RecordDescription& description, TableInp
   if (!block || out.data.size() >= block->bytes) return out;
   errors_.error(
       description.where,
-      fmt::format("the record's data have {} bytes, the shader's record {}", out.data.size(), block->bytes),
+      fmt::format("the record's data have {} bytes, and the shader's record has {}", out.data.size(),
+                  block->bytes),
       fmt::format("the shader declares it at {}", reader->where_declared("shaderRecord").to_string()));
   return out;
 }
@@ -314,12 +317,13 @@ void PipelineWorld::set_push_constants() {
       description_.push_constants, block, [&](const std::string& name) { return address_of(name); }, errors_);
   const uint64_t room = isa::kConstantBankBytes - isa::kPushConstantOffset;
   if (bytes.size() > room)
-    errors_.error(description_.push_constants.where,
-                  fmt::format("{} bytes of push constants: there is room for {}", bytes.size(), room));
+    errors_.error(
+        description_.push_constants.where,
+        fmt::format("{} bytes of push constants do not fit: there is room for {}", bytes.size(), room));
   else if (block && bytes.size() < block->bytes)
     errors_.error(
         description_.push_constants.where,
-        fmt::format("{} bytes of push constants, the shader's have {}", bytes.size(), block->bytes),
+        fmt::format("the push constants have {} bytes, and the shader's have {}", bytes.size(), block->bytes),
         fmt::format("the shader declares them at {}", reader->where_declared("push_constant").to_string()));
   else
     std::memcpy(world.constant_bank.data() + isa::kPushConstantOffset, bytes.data(), bytes.size());

@@ -1,5 +1,5 @@
-// A described pipeline in simulated memory: shaders linked, resources uploaded, records and constants in
-// place.
+// Puts a described pipeline into simulated memory: links shaders, uploads resources, places records and
+// constants.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -19,10 +19,11 @@
 
 namespace glint::pipeline {
 
-// Memory and world of one launch. Not movable: `world` points into it.
+// Holds memory and world of one launch. It cannot be moved, because `world` points into it.
 class PipelineWorld {
  public:
-  // UserError lists what is wrong with the description; UnsupportedError what a shader uses and Glint lacks.
+  // Throws UserError that lists what is wrong with the description, or UnsupportedError for what a shader
+  // uses and Glint lacks.
   PipelineWorld(const PipelineDescription& description, const GpuParams& gpu);
   PipelineWorld(const PipelineWorld&) = delete;
   PipelineWorld& operator=(const PipelineWorld&) = delete;
@@ -34,7 +35,7 @@ class PipelineWorld {
   const PipelineDescription& description() const { return description_; }
   const mem::AddressSpace& memory() const { return memory_; }
 
-  // What a buffer or an image holds; by its number in the description.
+  // Returns what a buffer or an image holds, by its number in the description.
   std::span<const std::byte> buffer(size_t index) const;
   const exec::ImageView& image(size_t index) const { return world.images[image_handle_[index]]; }
 
@@ -63,11 +64,11 @@ class PipelineWorld {
   std::vector<uint64_t> buffer_bytes_;
   std::vector<size_t> image_handle_;
   std::set<BindingPlace> bound_;
-  std::map<std::pair<uint32_t, uint32_t>, Address> tables_;  // of arrays of buffers and structures
+  std::map<std::pair<uint32_t, uint32_t>, Address> tables_;  // tables of arrays of buffers and structures
   Diagnostics errors_;
 };
 
-// Runs it: counts, statistics and time; no picture. Errors as render().
+// Runs the pipeline. The result has counts, statistics and time, but no picture. Throws as render() does.
 RenderResult run_pipeline(PipelineWorld& pipeline, const GpuParams& gpu, bool timing, bool no_skip,
                           uint32_t threads,
                           const std::function<void(uint64_t done, uint64_t total)>& progress,

@@ -1,4 +1,4 @@
-// A frame from job to picture.
+// Makes a picture from the job of a frame.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/render.h"
 

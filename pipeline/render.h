@@ -1,4 +1,4 @@
-// One frame of a scene with one of the built-in workloads: compile, upload, launch, run, read back.
+// Renders one frame of a scene with a built-in workload: compile, upload, launch, run, read back.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -30,24 +30,24 @@ struct RenderJob {
   scenes::RenderParams frame;
   GpuParams gpu;
   bool timing = true;
-  bool no_skip = false;                       // steps every cycle: slow, for checking
-  uint32_t threads = 1;                       // of the host, for the timing machine (HostOptions)
+  bool no_skip = false;                       // steps through every cycle, which is slow; for checking
+  uint32_t threads = 1;                       // threads of the host for the timing machine (HostOptions)
   StructureCache* structure_cache = nullptr;  // null: every structure is built
   std::string shader_dir;                     // folder with raygen.rgen, miss.rmiss, triangle.rchit and so on
   frontend::GlslOptions glsl;
   exec::PrintLog* prints = nullptr;  // what the shaders print
-  // Told now and then how many of the launch's warps have ended.
+  // Is called now and then with the number of the launch's warps that have ended.
   std::function<void(uint64_t done, uint64_t total)> progress;
   exec::OnFault on_fault = exec::OnFault::Stop;
-  Observation observe;  // of the timing machine, but for `heat`
+  Observation observe;  // of the timing machine, except for `heat`
 };
 
-// Counted by either machine.
+// Holds what either machine counts.
 struct RayCounts {
   uint64_t rays = 0, nodes = 0, box_tests = 0, triangle_tests = 0;
 };
 
-// What the acceleration structures came to.
+// Holds sizes of the acceleration structures.
 struct StructureCounts {
   uint64_t bytes = 0, triangles = 0, procedurals = 0, bottom_levels = 0, instances = 0;
   uint32_t top_depth = 0, bottom_depth = 0;
@@ -56,7 +56,7 @@ struct StructureCounts {
 struct ClassCounts {
   uint64_t instructions = 0;  // warp instructions
   uint64_t lanes = 0;         // lane instructions
-  uint64_t latency = 0;       // issue to completion, cycles, summed; 0 on the functional machine
+  uint64_t latency = 0;       // cycles from issue to completion, summed; 0 on the functional machine
 };
 
 class RunStats;  // owns the tree of statistics and the machine that counts them
@@ -69,33 +69,35 @@ struct RenderResult {
 
   uint32_t width = 0, height = 0;
   std::vector<float> rgba;          // what the shader stored to binding 2, row 0 first
-  std::vector<float> accumulation;  // binding 1: the sum over samples
-  uint64_t cycles = 0;              // timing machine
+  std::vector<float> accumulation;  // binding 1, the sum over samples
+  uint64_t cycles = 0;              // of the timing machine
   uint64_t warp_instructions = 0, lane_instructions = 0;
   ClassCounts by_class[size_t(isa::Class::Count)];
   RayCounts rays;
   StructureCounts structures;
   core::Residency residency;          // of each core, timing machine
-  exec::FaultLog faults;              // that World::on_fault let pass
+  exec::FaultLog faults;              // the faults that World::on_fault let pass
   std::vector<std::string> warnings;  // of compiling the shaders
-  ProfileTable profile;               // of the timing machine, if it was asked for
+  ProfileTable profile;               // of the timing machine, when it was asked for
   SeriesTable series;
-  std::vector<CostMap> costs;  // if they were asked for
+  std::vector<CostMap> costs;  // when they were asked for
   TraceTable trace;
   double wall_seconds = 0;  // of the run alone, without compiling and building
   std::unique_ptr<RunStats> stats;
   const stats::Group& statistics() const;  // root of the tree
 };
 
-// Runs the launch of a world on either machine; everything of the result but pictures, structures and
-// warnings. `no_skip` steps every cycle, `threads` of the host do it (HostOptions). `progress` hears how many
-// of the launch's warps have ended. Errors as render(). `observe`: what else to note of a timing run.
+// Runs the launch of a world on either machine. The result has everything except pictures, structures and
+// warnings. With `no_skip`, `threads` threads of the host step through every cycle (HostOptions). `progress`
+// hears how many of the launch's warps have ended, and `observe` says what else to note of a timing run.
+// Throws as render() does.
 RenderResult run_world(const exec::World& world, const GpuParams& gpu, bool timing, bool no_skip,
                        uint32_t threads, const std::function<void(uint64_t done, uint64_t total)>& progress,
                        const Observation& observe = {});
 
-// UserError, UnsupportedError: before anything runs. Error(Exit::Fault): the shaders did something wrong,
-// with place and launch id. Error(Exit::Stuck): the machine makes no progress.
+// Renders a frame. Throws UserError or UnsupportedError before anything runs, Error(Exit::Fault) with place
+// and launch id when the shaders do something wrong, and Error(Exit::Stuck) when the machine makes no
+// progress.
 RenderResult render(const RenderJob& job);
 
 }  // namespace glint::pipeline

@@ -1,4 +1,4 @@
-// From the costs of threads to maps, and whom a miss of the L1 is charged to.
+// Makes maps from the costs of threads, and charges misses of the L1.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/run_costs.h"
 
@@ -10,7 +10,7 @@
 namespace glint::pipeline {
 namespace {
 
-// A miss is shared equally by the lanes that the read is for, whichever warps they are of.
+// Charges a miss equally to the lanes that the read is for, whichever warps they belong to.
 void charge_miss(const mem::ReadMissed& missed, const core::CoreCell& core, const rt::RtUnit& rt,
                  core::CostRecorder& recorder) {
   if (missed.client == mem::Client::Lsu) {
@@ -32,31 +32,31 @@ struct MapKind {
 };
 constexpr MapKind kKinds[] = {
     {"cycles", "cycle",
-     "From the pixel's first instruction to its last: what a shader that reads its clock at both would "
-     "measure, waits for other lanes included.",
+     "Cycles from the pixel's first instruction to its last, as a shader that reads its clock at both would "
+     "measure them. Waits for other lanes are included.",
      true, true, [](const core::ThreadCost& c) { return double(c.cycles); }},
     {"active_cycles", "cycle",
-     "Of them, the cycles after an instruction that the pixel executed, up to the next one of its warp.",
-     true, true, [](const core::ThreadCost& c) { return double(c.active_cycles); }},
-    {"instructions", "instruction", "Instructions that the pixel executed.", false, true,
+     "Cycles from an instruction that the pixel executed to the next one of its warp.", true, true,
+     [](const core::ThreadCost& c) { return double(c.active_cycles); }},
+    {"instructions", "instruction", "Number of instructions that the pixel executed.", false, true,
      [](const core::ThreadCost& c) { return double(c.instructions); }},
     {"divergence", "fraction",
-     "Idle share of the lane slots that the pixel's instructions took, each shared by the lanes that execute "
-     "it.",
+     "Idle fraction of the lane slots that the pixel's instructions took. Each slot is shared by the lanes "
+     "that execute it.",
      false, false,
      [](const core::ThreadCost& c) { return c.slots > 0 ? 1.0 - double(c.instructions) / c.slots : 0.0; }},
-    {"rays", "ray", "Rays traced, ray queries among them.", false, true,
+    {"rays", "ray", "Number of rays traced, including ray queries.", false, true,
      [](const core::ThreadCost& c) { return double(c.rays); }},
-    {"nodes", "node", "Nodes and leaves that the pixel's rays visited.", false, true,
+    {"nodes", "node", "Number of nodes and leaves that the pixel's rays visited.", false, true,
      [](const core::ThreadCost& c) { return double(c.nodes); }},
-    {"triangle_tests", "test", "Ray-triangle tests.", false, true,
+    {"triangle_tests", "test", "Number of ray-triangle tests.", false, true,
      [](const core::ThreadCost& c) { return double(c.triangle_tests); }},
-    {"any_hit_calls", "call", "Any-hit shaders begun.", false, true,
+    {"any_hit_calls", "call", "Number of any-hit shaders begun.", false, true,
      [](const core::ThreadCost& c) { return double(c.any_hit_calls); }},
-    {"intersection_calls", "call", "Intersection shaders begun.", false, true,
+    {"intersection_calls", "call", "Number of intersection shaders begun.", false, true,
      [](const core::ThreadCost& c) { return double(c.intersection_calls); }},
-    {"l1_misses", "request", "Reads of the L1 that missed, each shared by the lanes that it is for.", true,
-     false, [](const core::ThreadCost& c) { return c.l1_misses; }},
+    {"l1_misses", "request", "Number of L1 reads that missed. Each is shared by the lanes that it is for.",
+     true, false, [](const core::ThreadCost& c) { return c.l1_misses; }},
 };
 
 void add(core::ThreadCost& sum, const core::ThreadCost& more) {

@@ -1,4 +1,4 @@
-// Maps of what each pixel of a launch cost, on either machine.
+// Makes maps of what each pixel of a launch cost, on either machine.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
@@ -11,13 +11,13 @@ namespace glint::pipeline {
 
 class TimingMachine;
 
-// Before a timing run: watches its cores, their L1s and RT units. Whoever calls keeps the recorders, and
-// `costs`, until the run is over.
+// Watches the machine's cores, their L1s and RT units; it is called before a timing run. The caller keeps the
+// recorders and `costs` until the run is over.
 std::vector<std::unique_ptr<core::CostRecorder>> record_costs(TimingMachine& machine,
                                                               core::LaunchCosts& costs);
 
-// After the run. A pixel is a launch index (x, y); what several z have in common is added up. Those that
-// count cycles or misses only with `timing`.
+// Returns the maps after the run. A pixel is a launch index (x, y), and the costs of several z are added up.
+// Maps of cycles or misses exist only with `timing`.
 std::vector<CostMap> cost_maps(const core::LaunchCosts& costs, bool timing);
 
 }  // namespace glint::pipeline

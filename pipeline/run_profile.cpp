@@ -1,4 +1,4 @@
-// From the counters of cores and partitions to the tables of a profile and of a time series.
+// Makes the tables of a profile and of a time series from the counters of cores and partitions.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/run_profile.h"
 

@@ -1,4 +1,4 @@
-// Watching a timing run: what each instruction cost, and how the machine was used as time went by.
+// Watches a timing run: what each instruction cost, and how the machine was used as time went by.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -19,26 +19,28 @@ struct Observation {
   bool heat = false;     // maps of cost by pixel
   TraceRequest trace{};
 
-  // Of counters, for the time series or the trace; 0: none.
+  // Returns the interval of counters for the time series or the trace, or 0 without either.
   Cycle interval() const { return sample || !trace.wanted ? sample : kTraceInterval; }
   static constexpr Cycle kTraceInterval = 1000;
 };
 
-// What is sampled of a core, with its L1 and RT unit, and of a partition.
+// Names what is sampled of a core, with its L1 and RT unit, and of a partition.
 enum OfCore : size_t { kInstructions, kRtWarps, kL1Reads, kL1Hits };
 enum OfPartition : size_t { kL2Reads, kL2Hits, kDramBusy, kDramClocks };
 using UnitSamples = std::vector<std::vector<uint64_t>>;
-// What `column` of all units has grown by between two samples; the one before the first is all zeros.
+// Returns by how much `column` of all units has grown between two samples. The sample before the first is all
+// zeros.
 double growth(const std::vector<const UnitSamples*>& units, size_t sample, size_t column);
 
-// Before the machine runs.
+// Prepares the machine before it runs.
 void observe(TimingMachine& machine, const Observation& what);
 
-// After the run, of all cores together. One row an instruction that cost anything, in program order, and a
-// last one for the cycles that had no warp. Without a profile: no rows.
+// Returns the profile of all cores together after the run. It has one row for each instruction that cost
+// anything, in program order, and a last one for the cycles that had no warp. Without a profile it has no
+// rows.
 ProfileTable profile_of(const TimingMachine& machine, const exec::Image& image);
 
-// After the run. One row an interval; the last one may be shorter.
+// Returns the time series after the run, with one row per interval. The last interval may be shorter.
 SeriesTable series_of(TimingMachine& machine, Cycle interval);
 
 }  // namespace glint::pipeline

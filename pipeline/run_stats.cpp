@@ -1,4 +1,4 @@
-// Filling the functional machine's statistics.
+// Fills the functional machine's statistics.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/run_stats.h"
 

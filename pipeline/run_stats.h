@@ -1,4 +1,4 @@
-// The statistics of a finished run: the functional machine's few, or the whole tree of the timing machine.
+// Holds the statistics of a finished run: those of the functional machine, or the tree of the timing machine.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
@@ -10,21 +10,21 @@
 
 namespace glint::pipeline {
 
-// What the functional machine counts, as a tree of statistics.
+// Holds what the functional machine counts, as a tree of statistics.
 class FunctionalStats : public stats::Group {
  public:
   explicit FunctionalStats(const FunctionalCounts& counts);
 
  private:
   stats::Breakdown<isa::Class> instructions_{this, "instructions", "instruction",
-                                             "Warp instructions executed, by class."};
-  stats::Breakdown<isa::Class> lanes_{this, "lanes", "instruction", "Lane instructions, by class."};
-  stats::Counter rays_{this, "rays", "ray", "Rays traced."};
-  stats::Counter nodes_{this, "nodes", "node", "Nodes and leaves visited."};
+                                             "Number of warp instructions executed, by class."};
+  stats::Breakdown<isa::Class> lanes_{this, "lanes", "instruction", "Number of lane instructions, by class."};
+  stats::Counter rays_{this, "rays", "ray", "Number of rays traced."};
+  stats::Counter nodes_{this, "nodes", "node", "Number of nodes and leaves visited."};
   stats::Ratio nodes_per_ray_{this,   "nodes_per_ray", "node/ray",
-                              nodes_, rays_,           "Mean nodes visited by a ray."};
-  stats::Counter box_tests_{this, "box_tests", "test", "Ray-box tests."};
-  stats::Counter triangle_tests_{this, "triangle_tests", "test", "Ray-triangle tests."};
+                              nodes_, rays_,           "Mean number of nodes that a ray visits."};
+  stats::Counter box_tests_{this, "box_tests", "test", "Number of ray-box tests."};
+  stats::Counter triangle_tests_{this, "triangle_tests", "test", "Number of ray-triangle tests."};
   stats::Breakdown<exec::FaultKind> faults_{this, "faults", "fault", exec::kFaultsDoc};
 };
 
@@ -34,7 +34,7 @@ class RunStats {
       : functional_(std::make_unique<FunctionalStats>(counts)) {}
   explicit RunStats(std::unique_ptr<TimingMachine> machine) : timing_(std::move(machine)) {}
   const stats::Group& root() const { return timing_ ? timing_->root() : *functional_; }
-  // The machine that ran, or null after a functional run.
+  // Returns the machine that ran, or null after a functional run.
   const TimingMachine* timing() const { return timing_.get(); }
 
  private:

@@ -1,4 +1,4 @@
-// Wiring recorders to the units of a machine, and putting together what they noted.
+// Connects recorders to the units of a machine, and puts together what they noted.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/run_trace.h"
 
@@ -13,8 +13,8 @@
 namespace glint::pipeline {
 namespace {
 
-// Choice: counters may take a quarter of the limit, slices of memory channels an eighth, those of cores the
-// rest.
+// Choice: counters may take a quarter of the limit and slices of memory channels an eighth; those of cores
+// get the rest.
 uint64_t counter_room(const TraceRequest& request) {
   return request.limit / 4;
 }
@@ -22,7 +22,8 @@ uint64_t channel_room(const TraceRequest& request) {
   return request.limit / 8;
 }
 
-// The slices of a core up to the end of the trace, each track from the outside in and from left to right.
+// Returns the slices of a core up to the end of the trace. Each track is ordered from the outside in and from
+// left to right.
 std::vector<TraceSlice> sorted(const std::vector<TraceSlice>& slices, Cycle end) {
   std::vector<TraceSlice> out;
   for (TraceSlice slice : slices) {
@@ -41,8 +42,7 @@ double ratio(double a, double b) {
   return b > 0 ? a / b : 0.0;
 }
 
-// A counter over the intervals of the window. `of`: its value in the interval of sample s, which has so many
-// cycles.
+// Returns a counter over the intervals of the window. `of` gives its value in the interval of sample s.
 template <class Of>
 TraceCounter counter(TraceCounter::Of whose, uint32_t index, const char* name, const char* unit,
                      const TraceTable& table, size_t samples, Cycle interval, Of&& of) {
@@ -55,7 +55,7 @@ TraceCounter counter(TraceCounter::Of whose, uint32_t index, const char* name, c
   return out;
 }
 
-// Of all cores and channels together, then of each.
+// Returns the counters of all cores and channels together, then those of each.
 std::vector<TraceCounter> counters_of(TimingMachine& machine, const TraceTable& table, Cycle interval) {
   using Of = TraceCounter::Of;
   std::vector<const UnitSamples*> cores, channels;
@@ -91,7 +91,7 @@ std::vector<TraceCounter> counters_of(TimingMachine& machine, const TraceTable& 
   return out;
 }
 
-// Leaves out what has no room, from the end.
+// Leaves out counters that have no room, from the end.
 void keep_within(TraceTable& table, uint64_t room) {
   uint64_t events = 0;
   size_t kept = 0;

@@ -1,4 +1,4 @@
-// Upload of a scene: buffers in the original application's layout, one bottom level and instance a model.
+// Uploads a scene: buffers in the original application's layout, one bottom level and instance per model.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/scene_world.h"
 
@@ -20,7 +20,7 @@ namespace {
 
 using scenes::Model;
 
-// Bindings of set 0 (shaders/README.md).
+// Names the bindings of set 0 (shaders/README.md).
 enum Binding : uint32_t {
   kTopLevel,
   kAccumulationImage,
@@ -34,7 +34,7 @@ enum Binding : uint32_t {
   kSpheres
 };
 
-constexpr uint32_t kSphereRecord = 1;  // hit record of procedural models; triangles have 0
+constexpr uint32_t kSphereRecord = 1;  // hit record of procedural models; triangles have record 0
 
 rt::Bounds sphere_bounds(const Model& model) {
   rt::Bounds box;
@@ -82,7 +82,7 @@ SceneWorld::SceneWorld(const RenderJob& job) {
   const std::vector<std::byte> frame = scenes::uniform_block(job.scene, job.workload, job.frame);
   bind(kFrame, upload("binding 3 (frame)", frame.data(), frame.size()), frame.size());
   build_structures(job);
-  mark_all_unbound(world, bound_);  // shaders of a folder of one's own may ask for more
+  mark_all_unbound(world, bound_);  // shaders of a user's folder may ask for more
 }
 
 void SceneWorld::link_shaders(const RenderJob& job) {
@@ -112,7 +112,7 @@ void SceneWorld::bind(uint32_t binding, uint64_t address_or_handle, uint64_t byt
 void SceneWorld::upload_geometry(const scenes::Scene& scene) {
   std::vector<scenes::Vertex> vertices;
   std::vector<uint32_t> indices;
-  std::vector<std::array<uint32_t, 2>> offsets;  // first index, first vertex
+  std::vector<std::array<uint32_t, 2>> offsets;  // first index and first vertex of each model
   std::vector<scenes::Vec4> spheres;
   for (const Model& model : scene.models) {
     offsets.push_back({uint32_t(indices.size()), uint32_t(vertices.size())});

@@ -1,5 +1,4 @@
-// A scene in simulated memory, as the shaders' descriptor set 0 wants it, with its pipeline and binding
-// table.
+// Puts a scene into simulated memory as the shaders' descriptor set 0, with its pipeline and binding table.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -13,7 +12,7 @@
 
 namespace glint::pipeline {
 
-// The built-in workloads' shaders, compiled: the files of job.shader_dir by their fixed names.
+// Holds the compiled shaders of a built-in workload: the files of job.shader_dir with their fixed names.
 struct WorkloadShaders {
   std::vector<isa::Program> programs;
   uint32_t raygen = 0, miss = 0;
@@ -22,7 +21,7 @@ struct WorkloadShaders {
 };
 WorkloadShaders compile_workload(const RenderJob& job);
 
-// Memory, images and records of one launch. Not movable: `world` points into it.
+// Holds memory, images and records of one launch. It cannot be moved, because `world` points into it.
 class SceneWorld {
  public:
   explicit SceneWorld(const RenderJob& job);
@@ -30,10 +29,10 @@ class SceneWorld {
   SceneWorld& operator=(const SceneWorld&) = delete;
 
   exec::World world;
-  std::vector<std::string> warnings;  // of compiling
+  std::vector<std::string> warnings;  // warnings of the compiler
   StructureCounts structures;
   mem::AddressSpace& memory() { return memory_; }
-  std::vector<float> read_image(uint32_t handle) const;       // 4 floats a texel
+  std::vector<float> read_image(uint32_t handle) const;       // returns 4 floats per texel
   static constexpr uint32_t kAccumulation = 0, kPicture = 1;  // image handles
 
  private:
@@ -45,7 +44,7 @@ class SceneWorld {
   Address upload(const std::string& name, const void* data, uint64_t bytes);
 
   mem::AddressSpace memory_;
-  std::set<uint32_t> bound_;  // of set 0
+  std::set<uint32_t> bound_;  // bindings of set 0
   exec::Image image_;
 };
 

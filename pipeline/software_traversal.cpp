@@ -1,4 +1,4 @@
-// The traversal program: compiled from the text that the build has put into `traversal_source`.
+// Compiles the traversal program from the text that the build has put into `traversal_source`.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/software_traversal.h"
 
@@ -29,16 +29,16 @@ void check(const GpuParams& gpu) {
   Diagnostics diagnostics;
   if (gpu.bvh.format.name != "bvh6")
     diagnostics.error({}, fmt::format("'rt.unit' is \"software\", whose program reads nodes of the format "
-                                      "\"bvh6\"; 'bvh.format' is \"{}\"",
+                                      "\"bvh6\", and 'bvh.format' is \"{}\"",
                                       gpu.bvh.format.name));
   if (gpu.rt.any_hit.name != "immediate")
-    diagnostics.error({}, fmt::format("'rt.unit' is \"software\", whose program has no tables of candidates: "
-                                      "'rt.any_hit' is \"{}\", not \"immediate\"",
+    diagnostics.error({}, fmt::format("'rt.unit' is \"software\", whose program has no tables of candidates, "
+                                      "and 'rt.any_hit' is \"{}\", not \"immediate\"",
                                       gpu.rt.any_hit.name));
   diagnostics.throw_if_errors();
 }
 
-// Ray queries that the image's shaders number at most.
+// Returns the largest number of ray queries that the image's shaders number.
 uint32_t num_queries(const exec::Image& image) {
   uint32_t count = 0;
   for (size_t pc = 0; pc < image.code.size(); ++pc) {
@@ -69,7 +69,7 @@ void add_traversal(std::vector<isa::Program>& programs, const GpuParams& gpu, fr
   const std::string name(kName);
   const std::vector<uint32_t> spirv =
       frontend::glsl_text_to_spirv(traversal_source(), name, isa::Stage::Callable, {});
-  // Never contracted: every hit has the bits that the RT unit gives it.
+  // The program is never contracted, so that every hit has the bits that the RT unit gives it.
   const frontend::BackendOptions backend{gpu.compiler.max_registers, gpu.compiler.schedule, false, false,
                                          gpu.compiler.guard_latency};
   programs.push_back(frontend::compile_module(spirv, name, {}, backend, warnings, cache).program);

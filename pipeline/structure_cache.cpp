@@ -1,4 +1,4 @@
-// Keys of geometry, and structures as values.
+// Makes keys of geometry, and stores structures as values.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/structure_cache.h"
 
@@ -26,7 +26,7 @@ uint64_t primitives_of(const rt::BottomLevel& input) {
   return count;
 }
 
-// Sizes and flags in words, contents in two hashes of 64 bits that start apart.
+// Returns a key: sizes and flags in words, and contents in two hashes of 64 bits with different starts.
 std::string key_of(const rt::BottomLevel& input, const rt::BuildOptions& options) {
   std::string key = fmt::format("{} {}", options.format.name, options.pair_triangles);
   for (const ParamInfo& p : options.format.params) key += fmt::format(" {}={}", p.key, p.value);

@@ -1,4 +1,4 @@
-// Bottom-level structures built before, found again by the geometry they were built of.
+// Finds bottom-level structures that were built before, by the geometry they were built of.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -9,15 +9,17 @@
 
 namespace glint::pipeline {
 
-// One file a structure, in a folder that any number of processes may share (base/file_store.h). Small
-// structures are built each time: that is no slower than reading them. Not for several threads at a time.
+// Keeps one file per structure, in a folder that any number of processes may share (base/file_store.h). Small
+// structures are built each time, because reading them takes as long. Only one thread at a time may use the
+// cache.
 class StructureCache {
  public:
   struct Options {
-    std::string folder;                      // empty: nothing is kept
-    std::string build;                       // of the builder: structures of another one are not found
-    uint64_t max_bytes = uint64_t{6} << 30;  // of the folder: all of LumiBench is 5 GB
-    uint64_t least_primitives = 16384;       // built in about 10 ms
+    std::string folder;  // empty: nothing is kept
+    std::string build;   // identifies the builder; structures of another one are not found
+    uint64_t max_bytes = uint64_t{6} << 30;  // limit of the folder's size; all of LumiBench takes 5 GB
+    uint64_t least_primitives =
+        16384;  // smaller structures are not kept; this many take about 10 ms to build
   };
   struct Counts {
     uint64_t found = 0, built = 0;
@@ -26,7 +28,7 @@ class StructureCache {
       : least_primitives_(options.least_primitives),
         files_({options.folder, ".bvh", options.build, options.max_bytes}) {}
 
-  // As rt::encode_bottom, to the byte.
+  // Returns the same bytes as rt::encode_bottom.
   rt::EncodedBottom encode(const std::string& name, const rt::BottomLevel& input,
                            const rt::BuildOptions& options);
   const Counts& counts() const { return counts_; }

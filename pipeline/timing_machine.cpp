@@ -1,4 +1,4 @@
-// Building the GPU and running a launch on it.
+// Builds the GPU and runs a launch on it.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/timing_machine.h"
 
@@ -12,7 +12,7 @@
 namespace glint::pipeline {
 namespace {
 
-// Checked before anything is built from them.
+// Checks the parameters before anything is built from them.
 const GpuParams& checked(const GpuParams& params, const exec::World& world) {
   Diagnostics diagnostics;
   check(params, diagnostics);
@@ -26,10 +26,11 @@ const GpuParams& checked(const GpuParams& params, const exec::World& world) {
 
 }  // namespace
 
-// A turn is as long as no message can be on its way: the cells of one are independent of each other.
-// Choice: stores are seen by other cores, and atomics done, at the end of the turn they were issued in, in
-// order of cycle and core (exec/memory_view.h); PTX leaves the order of racing accesses open, and bounds it
-// by fences only. A machine of one core has nobody to wait for: its effects happen at issue.
+// A turn is as long as the shortest time that a message can be on its way, so the cells of a turn are
+// independent of each other. Choice: other cores see stores, and atomics are done, at the end of the turn in
+// which they were issued, in order of cycle and core (exec/memory_view.h). PTX leaves the order of racing
+// accesses open and bounds it only by fences. A machine of one core has nobody to wait for, so its effects
+// happen at issue.
 TimingMachine::TimingMachine(const GpuParams& params, const exec::World& world, bool no_skip,
                              const HostOptions& host)
     : params_(checked(params, world)),
@@ -122,7 +123,8 @@ Cycle TimingMachine::run(const std::function<void(uint64_t, uint64_t)>& progress
   return end;
 }
 
-// Warps that go on for ever and nothing comes of it: spin locks, mostly, whose holder waits in vain.
+// Reports warps that go on for ever without any effect. Mostly these are spin locks whose holder waits in
+// vain.
 void TimingMachine::throw_livelock(Cycle now) const {
   std::string message = fmt::format(
       "the machine is stuck at cycle {}: warps run, but since cycle {} none has ended, no ray has and "
@@ -130,7 +132,8 @@ void TimingMachine::throw_livelock(Cycle now) const {
       now, watch_.since());
   for (const auto& core : cores_)
     if (!core->finished()) message += core->describe_stall();
-  throw Error(Exit::Stuck, message + "note: core.livelock_budget says how long that may last; 0: for ever");
+  throw Error(Exit::Stuck,
+              message + "note: core.livelock_budget says how long that may last; 0 means for ever");
 }
 
 exec::FaultLog TimingMachine::passed() const {

@@ -1,5 +1,5 @@
-// The timing machine: cores with their L1 and RT unit, and the memory system, run cycle by cycle over one
-// launch.
+// Runs the timing machine cycle by cycle over one launch: cores with their L1 and RT unit, and the memory
+// system.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -18,10 +18,10 @@
 
 namespace glint::pipeline {
 
-// How the host runs the machine: no result depends on it (engine_loop.h).
+// Says how the host runs the machine. No result depends on it (engine_loop.h).
 struct HostOptions {
   uint32_t threads = 1;  // 0: as many as the host has processors, while they are faster than one
-  Cycle window = 0;      // 0: the longest
+  Cycle window = 0;      // 0: the longest possible window
   std::vector<uint32_t>
       homes{};  // of the cells, cores first, then partitions: the thread of each, if not in turn
 };
@@ -29,17 +29,17 @@ struct HostOptions {
 // Builds the whole GPU for one launch. `world` outlives it.
 class TimingMachine {
  public:
-  // UserError lists every parameter that cannot be.
+  // Throws UserError that lists every impossible parameter.
   TimingMachine(const GpuParams& params, const exec::World& world, bool no_skip,
                 const HostOptions& host = {});
 
-  // Runs the launch to its end; returns its cycles. Errors as render().
+  // Runs the launch to its end and returns its cycles. Throws as render() does.
   Cycle run(const std::function<void(uint64_t done, uint64_t total)>& progress);
 
-  // What the cycles of every unit add up to after run().
+  // Returns what the cycles of every unit add up to after run().
   Cycle attributed_cycles() const { return root_.attributed.value(); }
 
-  // Of all cores: what went wrong and was let pass.
+  // Returns the faults of all cores that were let pass.
   exec::FaultLog passed() const;
 
   // Sums over the cores for the caller's result.
@@ -60,11 +60,12 @@ class TimingMachine {
 
   struct Root : stats::Group {
     Root() : Group(nullptr, "gpu") {}
-    stats::Counter cycles{this, "cycles", "cycle",
-                          "From the launch until the last core was done: the launch's time."};
+    stats::Counter cycles{
+        this, "cycles", "cycle",
+        "Cycles from the launch to the end of the last core, which is the time of the launch."};
     stats::Counter attributed{this, "attributed_cycles", "cycle",
-                              "Until the last write was in memory as well, in whole windows: what the cycles "
-                              "of every unit add up to."};
+                              "Cycles from the launch to the last write in memory, in whole windows. The "
+                              "cycles of every unit add up to this number."};
     stats::Breakdown<exec::FaultKind> faults{this, "faults", "fault", exec::kFaultsDoc};
   };
 
@@ -72,13 +73,13 @@ class TimingMachine {
   const exec::World& world_;
   Root root_;
   mem::LatencyStats access_latency_{&root_, "access_latency",
-                                    "Warp instructions that read memory through the L1, from their issue to "
-                                    "their last sector, by traffic class."};
+                                    "Number of warp instructions that read memory through the L1, by traffic "
+                                    "class. Their latency lasts from the issue to the last sector."};
   mem::MemorySystem memory_;
   std::vector<std::unique_ptr<stats::Group>> rt_groups_;
   std::vector<std::unique_ptr<rt::RtUnit>> rt_units_;
   std::vector<std::unique_ptr<core::CoreCell>> cores_;
-  std::vector<exec::MemoryView*> views_;  // of all cores; none when there is one core
+  std::vector<exec::MemoryView*> views_;  // those of all cores; empty when there is one core
   LivelockWatch watch_;
   EngineLoop engine_;
 };

@@ -1,4 +1,4 @@
-// What a trace is asked to show, and how large it may be.
+// Says what a trace is asked to show, and how large it may be.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace glint::pipeline {
 struct TraceRequest {
   bool wanted = false;
   Cycle begin = 0, end = kNever;  // cycles
-  uint64_t limit = 1'000'000;     // of events
+  uint64_t limit = 1'000'000;     // number of events
 };
 
 }  // namespace glint::pipeline

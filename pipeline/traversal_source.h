@@ -1,4 +1,4 @@
-// The text of shaders/traversal/traversal.rcall, which the build puts into the library.
+// Holds the text of shaders/traversal/traversal.rcall, which the build puts into the library.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>

@@ -1,4 +1,4 @@
-// Filling the descriptors that nobody bound.
+// Fills the descriptors that nobody bound.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/unbound.h"
 
@@ -15,7 +15,8 @@ namespace {
 
 using frontend::BindingKind;
 
-// Elements of an array that get a place of their own, so that no index into them means somebody else's image.
+// Number of elements of an array that get a place of their own, so that no index into them means another
+// image.
 constexpr uint32_t kMostPlaceholders = 1024;
 
 std::string title(const frontend::Binding& binding) {

@@ -1,4 +1,4 @@
-// Checks of a description against reflection.
+// Checks a description against the shaders' reflection.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/description/check.h"
 
@@ -14,7 +14,7 @@ namespace {
 using frontend::BindingKind;
 
 struct Given {
-  const char* kind;  // table's name in the file
+  const char* kind;  // the table's name in the file
   const Slot* slot;
   std::string name;
   SourceLocation where;
@@ -60,7 +60,7 @@ class Check {
     for (const auto& [place, use] : modules_.bindings()) check_binding(place.first, place.second, use);
     for (const Given& g : given_)
       if (g.slot->is_bound() && !modules_.bindings().count({g.slot->set.value_or(0), *g.slot->binding}))
-        warnings_.push_back(fmt::format("{}: note: no shader has set {} binding {}: '{}' is bound for nobody",
+        warnings_.push_back(fmt::format("{}: note: no shader has set {} binding {}, so nobody uses '{}'",
                                         g.where.to_string(), g.slot->set.value_or(0), *g.slot->binding,
                                         g.name));
     check_stage(d_.compute, isa::Stage::Compute, d_.compute_where, "[compute]");
@@ -77,7 +77,7 @@ class Check {
   }
 
  private:
-  // Files of the run directory that something else writes.
+  // These files of the run directory are written by something else.
   void check_saves(const std::vector<Save>& saves) {
     static const std::vector<std::string> kOwn{"config.toml", "run.json",       "stats.txt",
                                                "stats.json",  "stats.csv",      "printf.txt",
@@ -98,7 +98,7 @@ class Check {
         here.push_back(&g);
     const std::string table = table_for(use.binding.kind);
     if (here.empty()) {
-      if (!use.is_used) return;  // declared and never read
+      if (!use.is_used) return;  // the shader declares it and never reads it
       errors_.error(
           {d_.path, 0, 0}, fmt::format("nothing is bound to set {} binding {}", set, binding),
           fmt::format("{}: add [[{}]] with set = {}, binding = {}", declared(use), table, set, binding));
@@ -108,14 +108,14 @@ class Check {
     for (const Given* g : here) {
       if (g->kind != table)
         errors_.error(g->where,
-                      fmt::format("set {} binding {}: '{}' is a [[{}]], the shader wants a [[{}]]", set,
+                      fmt::format("set {} binding {}: '{}' is a [[{}]], and the shader wants a [[{}]]", set,
                                   binding, g->name, g->kind, table),
                       declared(use));
       if (!elements.insert(g->slot->element).second)
         errors_.error(
             g->where,
             fmt::format("set {} binding {} element {} is bound twice", set, binding, g->slot->element),
-            use.binding.count == 1 ? "" : "elements of an array of descriptors: element = 0, 1, ...");
+            use.binding.count == 1 ? "" : "elements of an array of descriptors are element = 0, 1, ...");
       if (use.binding.count && g->slot->element >= use.binding.count)
         errors_.error(g->where,
                       fmt::format("element {} of set {} binding {}: the shader's array has {}",
@@ -127,7 +127,7 @@ class Check {
       uint32_t first = 0;
       while (elements.count(first)) ++first;
       errors_.error(here[0]->where,
-                    fmt::format("set {} binding {} has {} elements, element {} is missing", set, binding,
+                    fmt::format("set {} binding {} has {} elements, and element {} is missing", set, binding,
                                 wanted, first),
                     declared(use));
     }
@@ -138,9 +138,9 @@ class Check {
     if (name.empty()) return;
     const ShaderModule& module = modules_.find(name);
     if (module.reflection.stage != stage)
-      errors_.error(
-          where, fmt::format("{} wants a shader of stage {}: '{}' is of stage {}", what, isa::name_of(stage),
-                             module.path, isa::name_of(module.reflection.stage)));
+      errors_.error(where,
+                    fmt::format("{} wants a shader of stage {}, and '{}' is of stage {}", what,
+                                isa::name_of(stage), module.path, isa::name_of(module.reflection.stage)));
   }
 
   const GroupDescription* group_of(const RecordDescription& record) {
@@ -175,7 +175,8 @@ class Check {
     check_stage(group.intersection, isa::Stage::Intersection, group.where, "'intersection'");
   }
 
-  // Which payload a trace hands over is known only when it runs, so only what no trace can hand over is told.
+  // Notes payloads that are too large. Which payload a trace hands over is known only at run time, so only
+  // what no trace can hand over is reported.
   void note_large_payloads() {
     uint32_t largest = 0;
     for (const ShaderModule& module : modules_.all())
@@ -183,17 +184,17 @@ class Check {
     for (const ShaderModule& module : modules_.all())
       if (module.reflection.incoming_payload_bytes > largest)
         warnings_.push_back(
-            fmt::format("{}: note: the shader reads a payload of {} bytes; the largest that any shader here "
-                        "hands to a trace has {}",
+            fmt::format("{}: note: the shader reads a payload of {} bytes, and the largest that any shader "
+                        "here hands to a trace has {}",
                         module.path, module.reflection.incoming_payload_bytes, largest));
       else
         note_other_payload(module);
   }
 
-  // Where no trace of these shaders can hand over what a shader reads, scalar for scalar.
+  // Notes a shader that reads what no trace of these shaders can hand over, scalar for scalar.
   void note_other_payload(const ShaderModule& module) {
     const std::string& read = module.reflection.incoming_payload;
-    size_t agree = 0;  // letters of the payload that comes nearest
+    size_t agree = 0;  // letters in common with the nearest payload
     std::string nearest;
     bool fits = read.empty();
     for (const ShaderModule& caller : modules_.all())
@@ -207,8 +208,8 @@ class Check {
     if (fits || nearest.empty()) return;
     const size_t scalar = agree / 2;
     warnings_.push_back(
-        fmt::format("{}: note: scalar {} of the payload that the shader reads is {}; the most alike that a "
-                    "shader here hands to a trace has {} there",
+        fmt::format("{}: note: scalar {} of the payload that the shader reads is {}, and the most similar "
+                    "payload that a shader here hands to a trace has {} there",
                     module.path, scalar + 1, name_of_scalar(read.substr(2 * scalar, 2)),
                     name_of_scalar(nearest.substr(2 * scalar, 2))));
   }
@@ -237,7 +238,7 @@ void check_bytes(const BindingUse& use, uint64_t bytes, const std::string& name,
                  Diagnostics& errors) {
   if (bytes < use.binding.block.bytes)
     errors.error(where,
-                 fmt::format("buffer '{}' has {} bytes, the shader's block needs {}", name, bytes,
+                 fmt::format("buffer '{}' has {} bytes, and the shader's block needs {}", name, bytes,
                              use.binding.block.bytes),
                  declared(use));
 }

@@ -1,4 +1,4 @@
-// What the shaders ask for against what the description gives: every difference names both places.
+// Compares what the shaders ask for with what the description gives. Every difference names both places.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -9,11 +9,12 @@
 
 namespace glint::pipeline {
 
-// Kinds, counts, shapes, stages of records. UserError with everything; `warnings` hears of what nobody uses.
+// Checks kinds, counts, shapes and stages of records. Throws UserError with all mistakes. `warnings` gets
+// what nobody uses.
 void check_pipeline(const PipelineDescription& description, const Modules& modules,
                     std::vector<std::string>& warnings);
 
-// A buffer that is smaller than the block's static layout. Nothing when it is large enough.
+// Reports a buffer that is smaller than the block's static layout.
 void check_bytes(const BindingUse& use, uint64_t bytes, const std::string& name, const SourceLocation& where,
                  Diagnostics& errors);
 

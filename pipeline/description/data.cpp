@@ -1,4 +1,4 @@
-// Writing numbers where a layout wants them, and filling buffers.
+// Writes numbers to the places that a layout gives, and fills buffers.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/description/data.h"
 
@@ -37,7 +37,7 @@ void store(T value, std::byte* at) {
   std::memcpy(at, &value, sizeof value);
 }
 
-// Members by name, along the layout.
+// Writes members by name, along the layout.
 class Members {
  public:
   Members(const AddressOf& address, Diagnostics& errors) : address_(address), errors_(errors) {}
@@ -79,18 +79,18 @@ class Members {
 
   void write_array(const Value& value, const BlockType& type, uint64_t at, const std::string& name) {
     if (value.kind != Value::Kind::List)
-      return errors_.error(value.where, fmt::format("'{}' must be a list: it is an array", name));
+      return errors_.error(value.where, fmt::format("'{}' must be a list, because it is an array", name));
     const BlockType& element = type.element[0];
     const bool flat = element.kind == BlockType::Kind::Numbers && !value.list.empty() &&
                       value.list[0].kind != Value::Kind::List;
     const size_t each = flat ? element.offsets.size() : 1;
     const size_t count = value.list.size() / std::max<size_t>(1, each);
     if (flat && value.list.size() % each)
-      return errors_.error(
-          value.where, fmt::format("'{}' has {} numbers: they come in {}s", name, value.list.size(), each));
+      return errors_.error(value.where, fmt::format("'{}' has {} numbers, expected a multiple of {}", name,
+                                                    value.list.size(), each));
     if (type.count && count > type.count)
-      return errors_.error(
-          value.where, fmt::format("'{}' has {} elements, the shader's array {}", name, count, type.count));
+      return errors_.error(value.where, fmt::format("'{}' has {} elements, and the shader's array has {}",
+                                                    name, count, type.count));
     std::vector<const Value*> numbers;
     if (flat) flatten(value, numbers);
     for (size_t i = 0; i < count; ++i)
@@ -129,7 +129,7 @@ void append_typed(const Value& list, const std::string& type, const AddressOf& a
   for (const Value* number : numbers) {
     out.resize(out.size() + each);
     if (!put_number(type, *number, address, out.data() + out.size() - each))
-      return errors.error(number->where, fmt::format("this is no {}", type));
+      return errors.error(number->where, fmt::format("this is not a {}", type));
   }
 }
 
@@ -151,7 +151,7 @@ std::vector<std::byte> inline_bytes(const DataSource& source, const BlockType* b
     chunk(data);
   } else if (data.kind == Value::Kind::Table) {
     if (!block || block->members.empty()) {
-      errors.error(data.where, "no shader declares a block here: members cannot be named",
+      errors.error(data.where, "no shader declares a block here, so members cannot be named",
                    "give typed numbers: data = { f32 = [1, 2] }");
       return out;
     }
@@ -227,7 +227,7 @@ bool put_number(const std::string& name, const Value& value, const AddressOf& ad
   if (type == "f16") return store(exec::to_half(float(real)), at), true;
   if (value.kind == Value::Kind::Real) return false;
   const int64_t whole = value.kind == Value::Kind::Bool ? int64_t(value.flag) : value.whole;
-  std::memcpy(at, &whole, bytes_of_number(type));  // little endian: the low bits
+  std::memcpy(at, &whole, bytes_of_number(type));  // little endian: takes the low bits
   return true;
 }
 
@@ -242,7 +242,7 @@ std::vector<std::byte> bytes_of(const DataSource& source, const BlockType* block
     out = mesh_attribute(source, errors);
   if (source.bytes && out.size() > *source.bytes)
     errors.error(source.where,
-                 fmt::format("the data have {} bytes, the buffer {}", out.size(), *source.bytes));
+                 fmt::format("the data have {} bytes, and the buffer has {}", out.size(), *source.bytes));
   if (source.bytes) out.resize(size_t(*source.bytes));
   if (!source.data && (source.init == "iota" || source.init == "value" || source.init == "random"))
     fill(source, out);

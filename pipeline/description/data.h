@@ -1,4 +1,4 @@
-// Bytes from a description: typed numbers, members by the shader's layout, generators and files.
+// Makes bytes from a description: typed numbers, members by the shader's layout, generators and files.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -12,27 +12,27 @@
 
 namespace glint::pipeline {
 
-// "u8" ... "f64"; also GLSL's "float", "int", "uint", "double".
+// Returns the types "u8" to "f64", and GLSL's "float", "int", "uint", "double".
 const std::vector<std::string>& number_types();
 uint32_t bytes_of_number(const std::string& type);
 
-// Addresses of buffers by name, for pointers in data: 64-bit numbers that are written as a buffer's name. 0:
-// unknown.
+// Returns the address of a buffer by name, or 0 when it is unknown. Data use it for pointers: 64-bit numbers
+// that are written as a buffer's name.
 using AddressOf = std::function<uint64_t(const std::string& buffer)>;
 
-// Puts a number at `at`; false when the value is none of that type.
+// Puts a number at `at`. Returns false when the value is not of that type.
 bool put_number(const std::string& type, const Value& value, const AddressOf& address, std::byte* at);
 
-// The bytes of a source. `block` is the layout by which members are named; null: there is none.
-// Mistakes go to `errors`.
+// Returns the bytes of a source. `block` is the layout by which members are named, or null when there is
+// none. Mistakes go to `errors`.
 std::vector<std::byte> bytes_of(const DataSource& source, const frontend::BlockType* block,
                                 const AddressOf& address, Diagnostics& errors);
 
-// xorshift64*: the same numbers on every machine.
+// Draws numbers by xorshift64*, which gives the same numbers on every machine.
 class RandomNumbers {
  public:
   explicit RandomNumbers(uint64_t seed) : state_(seed * 0x9e37'79b9'7f4a'7c15ull + 1) {}
-  uint64_t next_bits();  // 53 of them
+  uint64_t next_bits();  // returns 53 bits
   double next_unit() { return double(next_bits()) * 0x1p-53; }
 
  private:

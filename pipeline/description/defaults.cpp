@@ -1,4 +1,4 @@
-// Writing the obvious description: resources by what the shaders declare, records in the order of the files.
+// Writes the obvious description: resources that the shaders declare, records in the order of the files.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/description/defaults.h"
 
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 using frontend::BindingKind;
 using frontend::BlockType;
 
-// Choices of the defaults: the picture's size, and how many elements run-time arrays have.
+// Choice: these defaults are the side of a picture and the number of elements of run-time arrays.
 constexpr uint32_t kSide = 256, kElements = 65536;
 
 std::string quoted(const std::string& text) {
@@ -46,7 +46,7 @@ std::string zeros(const BlockType& type) {
   return type.offsets.size() == 1 ? zero : list(type.offsets.size(), zero);
 }
 
-// The number that all of a block is made of, or u32.
+// Returns the number type that all of a block is made of, or u32.
 std::string number_of(const BlockType& type) {
   if (type.kind == BlockType::Kind::Numbers) return type.number;
   if (type.kind == BlockType::Kind::Array) return number_of(type.element[0]);

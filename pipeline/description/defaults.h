@@ -1,5 +1,4 @@
-// The obvious description of a set of shaders, from their own reflection: what `glint init` writes and what a
-// shader alone is run with.
+// Makes the obvious description of shaders from their reflection, for `glint init` and for a shader alone.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
@@ -9,12 +8,12 @@
 
 namespace glint::pipeline {
 
-// A commented TOML text that runs as it is; paths in it start at `folder`. UserError when the shaders make no
-// pipeline: no ray generation or compute shader, or several.
+// Returns a commented TOML text that runs as it is; paths in it start at `folder`. Throws UserError when the
+// shaders make no pipeline, because they have no ray generation or compute shader, or several.
 std::string default_description(const std::vector<std::string>& shaders, const std::string& folder,
                                 const frontend::GlslOptions& glsl = {});
 
-// A ray generation shader with the shaders beside it that have its name and another stage's ending.
+// Returns a ray generation shader with the shaders beside it that have its name and another stage's ending.
 std::vector<std::string> with_companions(const std::string& shader);
 
 }  // namespace glint::pipeline

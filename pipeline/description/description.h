@@ -1,5 +1,4 @@
-// A pipeline with everything a Vulkan host would set up for one launch, as a file describes it: nothing is
-// loaded yet.
+// Holds a pipeline as a file describes it, with everything that a Vulkan host sets up. Nothing is loaded yet.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -17,29 +16,30 @@
 namespace glint::pipeline {
 
 struct ShaderFile {
-  std::string name;  // what records call it: its file as written, unless named
+  std::string name;  // the name for records: the file as written, unless it is named
   std::string path;
-  std::string entry;  // entry point of a SPIR-V module; empty: the only one
+  std::string entry;  // entry point of a SPIR-V module; empty: its only one
   frontend::GlslOptions glsl;
   SourceLocation where;
 };
 
-// Bytes of a buffer, of a record or of push constants.
+// Describes the bytes of a buffer, of a record or of push constants.
 struct DataSource {
   SourceLocation where;
   Value data;  // numbers of `type`, {TYPE = numbers} or a list of such, or members by name; none: `init`
+               // applies
   std::string type = "u32";
   std::string init = "zero";  // zero, value, iota, random, file, mesh
   double value = 0, low = 0, high = 1;
   uint64_t seed = 1;
   std::string file, attribute;    // attribute of a mesh: positions, normals, coordinates, indices
-  std::optional<uint64_t> bytes;  // without: what the data have
+  std::optional<uint64_t> bytes;  // empty: as many as the data have
 };
 
-// Where a resource is bound; not at all if it is only reached by address or name.
+// Says where a resource is bound. A resource that is reached only by address or name is not bound.
 struct Slot {
   std::optional<uint32_t> set, binding;
-  uint32_t element = 0;  // of an array of descriptors
+  uint32_t element = 0;  // index into an array of descriptors
   bool is_bound() const { return binding.has_value(); }
 };
 
@@ -53,7 +53,7 @@ struct BufferDescription {
   Slot slot;
   DataSource data;
   std::vector<Save> saves;
-  uint32_t show = 0;  // first values for the summary
+  uint32_t show = 0;  // how many of the first values the summary shows
   SourceLocation where;
 };
 
@@ -67,9 +67,9 @@ struct SamplerDescription {
 struct ImageDescription {
   std::string name;
   Slot slot;
-  std::vector<std::string> files;  // one a layer
+  std::vector<std::string> files;  // one per layer
   std::optional<exec::TexelFormat> format;
-  std::array<uint32_t, 3> size{0, 0, 0};  // zeros: the file's, or the launch's
+  std::array<uint32_t, 3> size{0, 0, 0};  // zeros: the size of the file, or of the launch
   uint32_t layers = 1, samples = 1;
   bool mipmaps = false;
   std::string init = "zero";  // zero, value, checker, random, data
@@ -82,7 +82,7 @@ struct ImageDescription {
 };
 
 struct GeometryDescription {
-  std::string mesh;  // OBJ or glTF
+  std::string mesh;  // an OBJ or glTF file
   std::vector<float> vertices;
   std::vector<uint32_t> indices;
   std::vector<rt::Bounds> aabbs;
@@ -110,14 +110,15 @@ struct TopLevelDescription {
   SourceLocation where;
 };
 
-// A record of the binding table: shaders by name, or a named group; nothing at all calls nothing.
+// Describes a record of the binding table by the names of shaders, or by a named group. Without any, the
+// record calls nothing.
 struct GroupDescription {
   std::string name;
   std::string general, closest_hit, any_hit, intersection;
   SourceLocation where;
 };
 struct RecordDescription {
-  std::string group;         // of [[group]]
+  std::string group;         // name of a [[group]]
   GroupDescription inlined;  // used without `group`
   DataSource data;
   SourceLocation where;
@@ -128,18 +129,18 @@ struct RegionDescription {
 };
 
 struct MachineDescription {
-  std::string mode, config;  // empty: not said
+  std::string mode, config;  // empty: not given
   std::vector<std::string> settings;
   uint64_t max_instructions = 0;
 };
 
 struct PipelineDescription {
-  std::string path;  // of the file
-  std::string name;  // for the run directory and messages
+  std::string path;  // path of the file
+  std::string name;  // name for the run directory and messages
   std::vector<ShaderFile> shaders;
   std::vector<GroupDescription> groups;
   std::optional<RecordDescription> raygen;
-  std::string compute;  // shader; a pipeline has this or raygen
+  std::string compute;  // a shader; a pipeline has either this or raygen
   SourceLocation compute_where;
   RegionDescription miss, hit, callable;
   std::vector<BufferDescription> buffers;
@@ -149,17 +150,18 @@ struct PipelineDescription {
   std::vector<TopLevelDescription> top_levels;
   DataSource push_constants;
   Value specialization;                     // a table of constants by name or number
-  std::array<uint32_t, 3> launch{0, 0, 0};  // rays, or blocks of a compute shader; zeros: not said
+  std::array<uint32_t, 3> launch{0, 0, 0};  // rays, or blocks of a compute shader; zeros: not given
   std::optional<uint32_t> max_trace_depth, max_callable_depth;
   MachineDescription machine;
 };
 
-// Format: docs/pipelines.md. UserError lists every mistake with file, line and column.
+// Reads a pipeline file; docs/pipelines.md describes the format. Throws UserError that lists every mistake
+// with file, line and column.
 PipelineDescription read_pipeline(const std::string& path);
-// The same of a text whose relative paths start at `path`'s folder.
+// Does the same for a text whose relative paths start at the folder of `path`.
 PipelineDescription parse_pipeline(const std::string& text, const std::string& path);
 
-// "rgba8_unorm", or GLSL's "rgba8", "rgba32f", "r32ui".
+// Returns the format "rgba8_unorm", or one by GLSL's name: "rgba8", "rgba32f", "r32ui".
 std::optional<exec::TexelFormat> format_named(const std::string& name);
 std::vector<std::string> format_names();
 

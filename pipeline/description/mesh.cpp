@@ -1,4 +1,4 @@
-// Loading of meshes.
+// Loads meshes.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/description/mesh.h"
 
@@ -17,7 +17,8 @@ scenes::Model load_mesh(const std::string& path, const SourceLocation& where) {
   if (!std::filesystem::is_regular_file(path, failed))
     throw UserError(where, fmt::format("cannot read '{}'", path));
   if (!scenes::names_scene_file(path))
-    throw UserError(where, fmt::format("'{}' is no mesh that is read here", path), "OBJ and glTF are");
+    throw UserError(where, fmt::format("'{}' is not a mesh that is read here", path),
+                    "OBJ and glTF files are read");
   if (!path.ends_with(".obj")) return scenes::flattened(scenes::load_gltf(path, {}));
   std::vector<scenes::Material> materials;
   return scenes::load_obj(path, materials);

@@ -1,4 +1,4 @@
-// Triangle meshes from files, for geometries and for the buffers that shaders read beside them.
+// Loads triangle meshes from files, for geometries and for the buffers that shaders read beside them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -10,10 +10,12 @@
 
 namespace glint::pipeline {
 
-// OBJ or glTF (.gltf, .glb; all of its scene in world coordinates). UserError when it cannot be read.
+// Loads OBJ or glTF (.gltf, .glb; all of its scene in world coordinates). Throws UserError when the file
+// cannot be read.
 scenes::Model load_mesh(const std::string& path, const SourceLocation& where);
 
-// positions: 3 floats a vertex; normals: 3; coordinates: 2; indices: u32, three a triangle.
+// Returns the bytes of an attribute. Positions and normals are 3 floats per vertex, coordinates are 2, and
+// indices are three u32 per triangle.
 std::vector<std::byte> mesh_attribute(const DataSource& source, Diagnostics& errors);
 
 }  // namespace glint::pipeline

@@ -1,4 +1,4 @@
-// Compiling the shaders of a description.
+// Compiles the shaders of a description.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/description/modules.h"
 
@@ -34,7 +34,7 @@ int line_of(const std::string& text, size_t at) {
   return 1 + int(std::count(text.begin(), text.begin() + long(at), '\n'));
 }
 
-// The bits of a specialisation constant.
+// Returns the bits of a specialisation constant.
 uint64_t bits_of(const Value& value, const frontend::SpecConstant& constant, Diagnostics& errors) {
   std::byte bytes[8]{};
   const std::string type = constant.number == "bool" ? "u8" : constant.number;
@@ -67,16 +67,17 @@ std::vector<uint32_t> read_module(const std::string& path, const frontend::GlslO
   const std::string bytes = read_file(path, {});
   if (path.ends_with(".spvasm")) return frontend::assemble_spirv(bytes, path);
   if (bytes.size() % 4 != 0 || bytes.size() < 20)
-    throw UserError({path, 0, 0}, "this is no SPIR-V module: its size is no multiple of 4");
+    throw UserError({path, 0, 0}, "this is not a SPIR-V module: its size is not a multiple of 4");
   std::vector<uint32_t> words(bytes.size() / 4);
   std::memcpy(words.data(), bytes.data(), bytes.size());
-  if (words[0] == 0x0302'2307)  // SPIR-V specification 2.3: the magic number tells the byte order
+  if (words[0] == 0x0302'2307)  // the magic number tells the byte order (SPIR-V specification 2.3)
     for (uint32_t& word : words) word = __builtin_bswap32(word);
   return words;
 }
 
 SourceLocation ShaderModule::where_declared(const frontend::Binding& binding) const {
-  // layout(... binding = N ...) up to the declaration's end; the set may be left out when it is 0.
+  // This matches layout(... binding = N ...) up to the declaration's end; the set may be left out when it is
+  // 0.
   const std::regex layout(R"(layout\s*\(([^)]*)\)[^;{]*)");
   for (std::sregex_iterator it(text.begin(), text.end(), layout), end; it != end; ++it) {
     const std::string inside = (*it)[1].str();

@@ -1,4 +1,4 @@
-// The shaders of a description, compiled: programs, what each asks for, and where in its text.
+// Compiles the shaders of a description: programs, what each asks for, and where in its text.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -22,23 +22,23 @@ struct ShaderModule {
   std::vector<frontend::SpecConstant> constants;
   isa::Program program;
 
-  // "shader.comp:12" of the declaration of a binding, or of the push constants; only the file when it is not
-  // found.
+  // Returns the place of the declaration of a binding or of the push constants, such as "shader.comp:12", or
+  // only the file when the declaration is not found.
   SourceLocation where_declared(const frontend::Binding& binding) const;
   SourceLocation where_declared(const std::string& word) const;
 };
 
-// What all shaders together bind at one place.
+// Says what all shaders together bind at one place.
 struct BindingUse {
-  const ShaderModule* module = nullptr;  // of the first that has it
+  const ShaderModule* module = nullptr;  // the first module that has the binding
   frontend::Binding binding;
-  bool is_used = false;  // by the code of any
+  bool is_used = false;  // the code of a shader uses it
 };
 
 class Modules {
  public:
-  // Compiles every shader file of the description. UserError lists what is wrong with the shaders' names and
-  // constants.
+  // Compiles every shader file of the description. Throws UserError that lists what is wrong with the
+  // shaders' names and constants.
   Modules(const PipelineDescription& description, const CompilerParams& compiler, bool only_reflect = false);
 
   const std::vector<ShaderModule>& all() const { return modules_; }
@@ -58,9 +58,9 @@ class Modules {
   std::set<std::string> constants_met_;
 };
 
-const char* name_of(frontend::BindingKind kind);  // "storage buffer"
+const char* name_of(frontend::BindingKind kind);  // such as "storage buffer"
 
-// GLSL by its ending, .spv, or .spvasm.
+// Reads a module: GLSL by its ending, .spv, or .spvasm.
 std::vector<uint32_t> read_module(const std::string& path, const frontend::GlslOptions& glsl);
 
 }  // namespace glint::pipeline

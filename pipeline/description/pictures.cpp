@@ -1,4 +1,4 @@
-// Reading PNG and HDR files and encoding texels.
+// Reads PNG and HDR files and encodes texels.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/description/pictures.h"
 
@@ -17,7 +17,7 @@ namespace {
 
 using exec::TexelFormat;
 using isa::ImageShape;
-using Texel = std::array<double, 4>;  // floats, or integers where the format has them
+using Texel = std::array<double, 4>;  // floats, or integers when the format has them
 
 struct Layer {
   uint32_t width = 0, height = 0;
@@ -25,7 +25,7 @@ struct Layer {
   std::vector<Texel> texels;
 };
 
-// 8-bit files as values of 0..1, unless the format keeps integers.
+// Loads a file. 8-bit files give values of 0 to 1, unless the format keeps integers.
 Layer load(const std::string& path, bool as_integers, const SourceLocation& where) {
   const scenes::DecodedPicture picture = scenes::decode_picture_file(path);
   if (!picture.error.empty())
@@ -45,7 +45,7 @@ Layer load(const std::string& path, bool as_integers, const SourceLocation& wher
   return out;
 }
 
-// sRGB files hold encoded values; the format's encode() takes linear ones (IEC 61966-2-1).
+// Converts encoded values of sRGB files to the linear ones that the format's encode() takes (IEC 61966-2-1).
 double to_linear(double v) {
   return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
 }
@@ -60,7 +60,7 @@ Texel made_up(const ImageDescription& image, uint32_t x, uint32_t y, uint32_t z,
   return {0, 0, 0, 0};
 }
 
-// The texel whose number among those of its image is `index`; channels that the format lacks are 0, alpha 1.
+// Returns the texel with number `index` in its image. Channels that the format lacks are 0, and alpha is 1.
 Texel given(const ImageDescription& image, size_t index, size_t channels) {
   Texel out{0, 0, 0, 1};
   std::copy_n(image.data.begin() + std::ptrdiff_t(index * channels), channels, out.begin());
@@ -72,9 +72,10 @@ void check_data(const ImageDescription& image, const exec::ImageView& view, size
   if (image.data.size() != wanted)
     throw UserError(
         image.where,
-        fmt::format("image '{}' has {} numbers: {} x {} x {} texels with {} layers and {} channels want {}",
-                    image.name, image.data.size(), view.width, view.height, view.depth, view.layers, channels,
-                    wanted));
+        fmt::format(
+            "image '{}' has {} numbers, but {} x {} x {} texels with {} layers and {} channels want {}",
+            image.name, image.data.size(), view.width, view.height, view.depth, view.layers, channels,
+            wanted));
 }
 
 exec::Words words_of(const Texel& texel, const exec::FormatInfo& info) {
@@ -84,7 +85,7 @@ exec::Words words_of(const Texel& texel, const exec::FormatInfo& info) {
   return out;
 }
 
-// The mean of the texels above, two in each direction that halves.
+// Returns the means of the texels above, two in each direction that halves.
 std::vector<Texel> halved(const std::vector<Texel>& above, const exec::ImageView& view, uint32_t level) {
   const uint32_t w = view.extent(0, level), h = view.extent(1, level), d = view.extent(2, level);
   const uint32_t aw = view.extent(0, level - 1), ah = view.extent(1, level - 1),
@@ -113,7 +114,7 @@ void check_format(const ImageDescription& image, const exec::FormatInfo& info, c
                                                                   : "f32";
   if (!texel.empty() && found != texel)
     throw UserError(image.where,
-                    fmt::format("image '{}' has the format {}, whose texels are {}; the shader's are {}",
+                    fmt::format("image '{}' has the format {}, whose texels are {}, and the shader's are {}",
                                 image.name, info.name, found, texel));
 }
 
@@ -121,18 +122,18 @@ void check_shape(const ImageDescription& image, const exec::ImageView& view) {
   const bool is_flat = view.depth == 1, is_line = view.height == 1 && is_flat;
   const char* wrong = nullptr;
   if (view.samples > 1 && (isa::num_coordinates(view.shape) != 2 || image.mipmaps))
-    wrong = "has several samples: it is 2D and has no mipmaps";
-  if (view.shape != ImageShape::D3 && !is_flat) wrong = "is not 3D: its depth must be 1";
+    wrong = "has several samples, so it must be 2D and without mipmaps";
+  if (view.shape != ImageShape::D3 && !is_flat) wrong = "is not 3D, so its depth must be 1";
   if ((view.shape == ImageShape::D1 || view.shape == ImageShape::A1d || view.shape == ImageShape::Buffer) &&
       !is_line)
-    wrong = "is 1D: its height must be 1";
+    wrong = "is 1D, so its height must be 1";
   if (isa::is_cube(view.shape) && (view.width != view.height || view.layers % 6))
-    wrong = "is a cube: as wide as high, and six layers";
+    wrong = "is a cube, so it must be as wide as high and have six layers";
   if (!isa::has_layers(view.shape) && !isa::is_cube(view.shape) && view.layers != view.samples)
-    wrong = "is no array: it has one layer";
+    wrong = "is not an array, so it must have one layer";
   if (wrong)
     throw UserError(image.where,
-                    fmt::format("image '{}' is {} x {} x {} with {} layers; the shader's {}", image.name,
+                    fmt::format("image '{}' is {} x {} x {} with {} layers, and the shader's {}", image.name,
                                 view.width, view.height, view.depth, view.layers, wrong));
 }
 
@@ -159,7 +160,7 @@ Picture make_picture(const ImageDescription& image, ImageShape shape, const std:
   for (const std::string& file : image.files) {
     Layer layer = load(file, exec::is_integer(info), image.where);
     if (!level.empty() && (layer.width != view.width || layer.height != view.height))
-      throw UserError(image.where, fmt::format("'{}' is {} x {}, the files before it {} x {}", file,
+      throw UserError(image.where, fmt::format("'{}' is {} x {}, and the files before it are {} x {}", file,
                                                layer.width, layer.height, view.width, view.height));
     view.width = layer.width, view.height = layer.height;
     if (info.numeric == exec::Numeric::Srgb && !layer.is_float)
@@ -183,7 +184,7 @@ Picture make_picture(const ImageDescription& image, ImageShape shape, const std:
                                      : made_up(image, x, y, z, random));
   } else if (image.size[0] && (image.size[0] != view.width || image.size[1] != view.height)) {
     throw UserError(image.where,
-                    fmt::format("image '{}': its file is {} x {}, 'size' says {} x {}", image.name,
+                    fmt::format("the file of image '{}' is {} x {}, and 'size' says {} x {}", image.name,
                                 view.width, view.height, image.size[0], image.size[1]));
   }
   check_shape(image, view);

@@ -1,4 +1,4 @@
-// Texels of a described image: from files, or made up; converted to its format, with its smaller levels.
+// Makes the texels of a described image, from files or by rules, in its format and with its smaller levels.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -13,18 +13,18 @@
 namespace glint::pipeline {
 
 struct Picture {
-  exec::ImageView view;  // without address
+  exec::ImageView view;  // the address is not set
   std::vector<std::byte> texels;
 };
 
-// `shape` and `texel` ("f32", "u32", "s32") are what the shader asks for; `fallback` is the size of an image
-// without one. `declared` is the format that the shader declares, as GLSL names it: what an image without a
-// format and without files has. UserError at the image's place: unreadable files, sizes that differ, a format
-// of another kind of number.
+// Makes the texels of an image. `shape` and `texel` ("f32", "u32", "s32") are what the shader asks for.
+// `fallback` is the size of an image without one. `declared` is the format that the shader declares, by its
+// GLSL name; an image without a format and without files gets it. Throws UserError at the image's place for
+// unreadable files, sizes that differ, and a format of another kind of number.
 Picture make_picture(const ImageDescription& image, isa::ImageShape shape, const std::string& texel,
                      std::array<uint32_t, 3> fallback, const std::string& declared = {});
 
-// A level-0 image as floats, four a texel, layer after layer: what is saved as a picture.
+// Returns a level-0 image as it is saved to pictures: four floats per texel, layer after layer.
 std::vector<float> texels_as_floats(const exec::ImageView& view, const std::byte* data);
 
 }  // namespace glint::pipeline

@@ -1,4 +1,4 @@
-// The steps of reading a description, one a family of tables.
+// Declares the steps of reading a description, one for each family of tables.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>

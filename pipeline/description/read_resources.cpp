@@ -1,4 +1,4 @@
-// Reading of buffers, images and samplers.
+// Reads buffers, images and samplers.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <bit>
@@ -11,7 +11,7 @@
 namespace glint::pipeline {
 namespace {
 
-constexpr int64_t kMostBytes = int64_t{1} << 32;  // of a buffer: what the emulator is meant for
+constexpr int64_t kMostBytes = int64_t{1} << 32;  // the largest buffer that the emulator is meant for
 
 std::vector<Save> read_saves(TableReader& t) {
   std::vector<Save> out;
@@ -20,7 +20,7 @@ std::vector<Save> read_saves(TableReader& t) {
   return out;
 }
 
-// Of a resource that its file does not name: after its slot, where it has one.
+// Returns the name of a resource that its file does not name. It follows from the slot, if there is one.
 std::string name_of_slot(const char* kind, const Slot& slot) {
   return slot.is_bound() ? fmt::format("{}_{}_{}", kind, slot.set.value_or(0), *slot.binding) : kind;
 }
@@ -81,7 +81,7 @@ ImageDescription read_image(Reading& r, const Value& value) {
     const std::string near = out.format ? "" : nearest(t.text("format"), format_names());
     if (!out.format)
       r.errors.error(
-          t.take("format")->where, fmt::format("'{}' is no format of texels", t.text("format")),
+          t.take("format")->where, fmt::format("'{}' is not a format of texels", t.text("format")),
           near.empty() ? "for example rgba8_unorm, rgba32_float" : fmt::format("did you mean '{}'?", near));
   }
   const std::vector<uint32_t> size = t.sizes("size", 3);

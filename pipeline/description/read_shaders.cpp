@@ -1,4 +1,4 @@
-// Reading of shaders, groups, records, constants, launch and machine.
+// Reads shaders, groups, records, constants, launch and machine.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstdint>
@@ -44,7 +44,7 @@ frontend::GlslOptions read_glsl(Reading& r, TableReader& t, frontend::GlslOption
   return glsl;
 }
 
-// A record may name a file that no [[shader]] does.
+// Adds a shader file that only a record names, without any [[shader]].
 void add_file(Reading& r, const std::string& name, const SourceLocation& where,
               const frontend::GlslOptions& glsl) {
   if (name.empty()) return;
@@ -171,8 +171,8 @@ void read_launch(Reading& r, TableReader& root) {
   }
   if (r.out.launch[0] == 0)
     r.errors.error(launch ? launch->where : SourceLocation{r.out.path, 0, 0},
-                   r.out.compute.empty() ? "[launch] needs 'size': rays in x, y and z"
-                                         : "[launch] needs 'groups': blocks in x, y and z");
+                   r.out.compute.empty() ? "[launch] needs 'size', the numbers of rays in x, y and z"
+                                         : "[launch] needs 'groups', the numbers of blocks in x, y and z");
   for (const Value* each : root.tables("machine")) {
     TableReader t(*each, "[machine]", r.errors);
     if (t.take("mode")) r.out.machine.mode = t.name("mode", "timing", {"timing", "functional"});

@@ -1,4 +1,4 @@
-// Reading of acceleration structures: bottom levels, top levels and their instances.
+// Reads acceleration structures: bottom levels, top levels and their instances.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
@@ -16,8 +16,8 @@ namespace {
 
 using Matrix = std::array<float, 12>;
 
-// `transform` (12 numbers, row after row), or scale, then rotation in degrees about x, y and z in turn, then
-// translation.
+// Reads `transform` (12 numbers, row after row). Without it, applies scale, then rotation in degrees about x,
+// y and z in turn, then translation.
 Matrix read_transform(Reading& r, TableReader& t) {
   Matrix out = rt::kIdentity;
   const std::vector<double> rows = t.numbers("transform"), moved = t.numbers("translate"),
@@ -36,7 +36,7 @@ Matrix read_transform(Reading& r, TableReader& t) {
   if (!rows.empty()) {
     if (!moved.empty() || !turned.empty() || !scaled.empty())
       r.errors.error(t.take("transform")->where,
-                     "'transform' stands alone: without translate, rotate, scale");
+                     "'transform' stands alone, without translate, rotate and scale");
     std::transform(rows.begin(), rows.end(), out.begin(), [](double v) { return float(v); });
     return out;
   }
@@ -71,7 +71,7 @@ GeometryDescription read_geometry(Reading& r, const Value& value) {
   if (boxes.size() % 6)
     r.errors.error(
         t.take("aabbs")->where,
-        fmt::format("'aabbs' has {} numbers, expected six a box: low corner, high corner", boxes.size()));
+        fmt::format("'aabbs' has {} numbers, expected six per box: low corner, high corner", boxes.size()));
   for (size_t i = 0; i + 6 <= boxes.size(); i += 6)
     out.aabbs.push_back({{float(boxes[i]), float(boxes[i + 1]), float(boxes[i + 2])},
                          {float(boxes[i + 3]), float(boxes[i + 4]), float(boxes[i + 5])}});
@@ -86,14 +86,14 @@ GeometryDescription read_geometry(Reading& r, const Value& value) {
         "a geometry has one of 'file' (.obj, .gltf, .glb), 'vertices' (and 'indices') and 'aabbs'");
   if (out.vertices.size() % 3)
     r.errors.error(value.where,
-                   fmt::format("'vertices' has {} numbers, expected three a vertex", out.vertices.size()));
+                   fmt::format("'vertices' has {} numbers, expected three per vertex", out.vertices.size()));
   const size_t corners = out.indices.empty() ? out.vertices.size() / 3 : out.indices.size();
   if (corners % 3)
-    r.errors.error(value.where, fmt::format("{} corners make no whole number of triangles", corners));
+    r.errors.error(value.where, fmt::format("{} corners do not make a whole number of triangles", corners));
   for (uint32_t index : out.indices)
     if (index >= out.vertices.size() / 3) {
-      r.errors.error(t.take("indices")->where,
-                     fmt::format("index {}: there are {} vertices", index, out.vertices.size() / 3));
+      r.errors.error(t.take("indices")->where, fmt::format("index {} is too large: there are {} vertices",
+                                                           index, out.vertices.size() / 3));
       break;
     }
   return out;
@@ -112,8 +112,8 @@ uint32_t read_flags(Reading& r, TableReader& t) {
     if (found != kFlags.end())
       out |= found->second;
     else
-      r.errors.error(t.take("flags")->where, fmt::format("'{}' is no flag of an instance", name),
-                     "there are facing_cull_disable, flip_facing, force_opaque, force_no_opaque");
+      r.errors.error(t.take("flags")->where, fmt::format("'{}' is not a flag of an instance", name),
+                     "the flags are facing_cull_disable, flip_facing, force_opaque and force_no_opaque");
   }
   return out;
 }

@@ -1,4 +1,4 @@
-// From toml++ to values, and reading of typed keys.
+// Makes values from toml++'s tables, and reads typed keys.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/description/value.h"
 
@@ -214,8 +214,8 @@ void TableReader::finish() {
   for (const auto& [key, value] : table_.table) {
     if (known_.count(key)) continue;
     const std::string near = nearest(key, known);
-    errors_.error(value.where, fmt::format("'{}' is no key of {}", key, what_),
-                  near.empty() ? fmt::format("there are {}", fmt::join(known, ", "))
+    errors_.error(value.where, fmt::format("'{}' is not a key of {}", key, what_),
+                  near.empty() ? fmt::format("the keys are {}", fmt::join(known, ", "))
                                : fmt::format("did you mean '{}'?", near));
   }
 }

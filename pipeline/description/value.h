@@ -1,4 +1,4 @@
-// A TOML file as a tree of values that know where they stand, and typed reading of its tables.
+// Holds a TOML file as a tree of values that know their places, and reads its tables by type.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -17,33 +17,34 @@ struct Value {
   enum class Kind : uint8_t { None, Bool, Integer, Real, Text, List, Table } kind = Kind::None;
   bool flag = false;
   int64_t whole = 0;
-  double real = 0;  // of integers too
+  double real = 0;  // set for integers, too
   std::string text;
   std::vector<Value> list;
-  std::vector<Entry> table;  // by line
-  SourceLocation where;      // of the key, or of the value in a list
+  std::vector<Entry> table;  // ordered by line
+  SourceLocation where;      // place of the key, or of a value in a list
 
   explicit operator bool() const { return kind != Kind::None; }
   bool is_number() const { return kind == Kind::Integer || kind == Kind::Real; }
   const Value* find(const std::string& key) const;  // null when absent
 };
 
-inline constexpr int64_t kMostOfAxis = 0x7fff'ffff;  // of a launch or a picture: CUDA's limit of a grid's x
+// The most along an axis of a launch or a picture, which is CUDA's limit of a grid's x.
+inline constexpr int64_t kMostOfAxis = 0x7fff'ffff;
 
 struct Entry {
   std::string key;
   Value value;
 };
 
-// UserError with line and column when it cannot be read or is no TOML.
+// Reads a TOML file or text. Throws UserError with line and column when it cannot be read or is not TOML.
 Value read_toml(const std::string& path);
 Value parse_toml(const std::string& text, const std::string& name);
 
-// One table being read. Each call marks its key as known; finish() reports the others with the nearest known
-// one. Wrong types are reported at once, and the fallback stands in.
+// Reads one table. Each call marks its key as known, and finish() reports the others with the nearest known
+// key. Wrong types are reported at once, and the fallback stands in.
 class TableReader {
  public:
-  // `what` names the table in messages: "a buffer".
+  // `what` names the table in messages, such as "a buffer".
   TableReader(const Value& table, std::string what, Diagnostics& errors);
 
   const Value* take(const std::string& key);  // null when absent
@@ -55,8 +56,8 @@ class TableReader {
   std::optional<int64_t> optional_integer(const std::string& key, int64_t least, int64_t most);
   double number(const std::string& key, double fallback);
   bool flag(const std::string& key, bool fallback);
-  std::vector<std::string> texts(const std::string& key);  // a string or a list of them
-  std::vector<double> numbers(const std::string& key);     // a number or a list, lists in lists flattened
+  std::vector<std::string> texts(const std::string& key);  // a string or a list of strings
+  std::vector<double> numbers(const std::string& key);     // a number or a list; lists in lists are flattened
   std::vector<uint32_t> sizes(const std::string& key,
                               size_t most);  // one number, or up to `most`, each from 1 to kMostOfAxis
   std::vector<const Value*> tables(const std::string& key);  // [[key]] or [key]

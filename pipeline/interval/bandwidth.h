@@ -1,4 +1,4 @@
-// A resource that serves so much a cycle, for requests that come out of order of time.
+// Models a resource that serves so much per cycle, for requests that come out of the order of time.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
@@ -9,14 +9,14 @@
 
 namespace glint::pipeline {
 
-// Time is cut into short spans; each has room for as many cycles of work as it is long. A request takes room
-// from the first span with any, at or after its time: a reply that comes late does not hold up those that
+// Cuts time into short spans, each with room for as many cycles of work as it is long. A request takes room
+// from the first span with any, at or after its time. So a reply that comes late does not hold up those that
 // come before it. Model: work that lies farther apart than kSpans spans does not meet.
 class Bandwidth {
  public:
   Bandwidth() : rooms_(kSpans) {}
 
-  // When work that is asked for at `at` begins.
+  // Returns when work that is asked for at `at` begins.
   Cycle begin(Cycle at) const {
     for (uint64_t span = at / kSpan;; ++span) {
       const Room& room = rooms_[span % kSpans];
@@ -26,7 +26,7 @@ class Bandwidth {
     }
   }
 
-  // Takes `amount` cycles of work; when it begins.
+  // Takes `amount` cycles of work and returns when it begins.
   Cycle take(Cycle at, double amount) {
     total_ += amount;
     const Cycle first = begin(at);

@@ -1,4 +1,4 @@
-// The pass: warps of all cores in order of time, an interval at once.
+// Makes the functional pass: takes the warps of all cores in order of time, one interval at once.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/interval/interval_machine.h"
 
@@ -17,24 +17,25 @@ using isa::Space;
 
 namespace {
 
-// Cores take turns of so many cycles: short beside a miss, long beside an event.
+// Cores take turns of this many cycles, which is short beside a miss and long beside an event.
 constexpr Cycle kTurn = 48;
 
-// Refuses what the model would pass over in silence, all of it at once.
+// Refuses everything that the model would silently pass over, all at once.
 const exec::World& checked(const GpuParams& params, const exec::World& world) {
   const rt::Params& rt = params.rt;
   const std::pair<bool, std::string_view> unknown[] = {
       {world.block_size[0] != 0, "launches with blocks of threads"},
-      {rt.unit != rt::kHardware, "rays that code walks: rt.unit = \"software\""},
-      {rt.any_hit.name != "immediate", "any-hit shaders that run later: rt.any_hit other than \"immediate\""},
+      {rt.unit != rt::kHardware, "rays that code walks (rt.unit = \"software\")"},
+      {rt.any_hit.name != "immediate",
+       "any-hit shaders that run later (rt.any_hit other than \"immediate\")"},
       {rt.scheduler.name != "oldest_first", "rt.scheduler other than \"oldest_first\""},
       {rt.coalescing.name != "within_warp", "rt.coalescing other than \"within_warp\""},
-      {rt.stack.name != "full", "stacks that leave the RT unit: rt.stack other than \"full\""},
+      {rt.stack.name != "full", "stacks that leave the RT unit (rt.stack other than \"full\")"},
       {rt.result_store || rt.shortcuts.fetch_headers || rt.shortcuts.fetch_descriptors ||
            rt.shortcuts.store_each_hit,
        "rt.result_store and the accesses of rt.shortcuts"},
       {!params.core.fetch.perfect || !params.core.constant.perfect,
-       "caches of instructions and constants: core.fetch.perfect and core.constant.perfect = false"}};
+       "caches of instructions and constants (core.fetch.perfect = false or core.constant.perfect = false)"}};
   std::string message;
   for (const auto& [is_there, what] : unknown)
     if (is_there) message += fmt::format("the interval model does not know {}\n", what);
@@ -58,13 +59,13 @@ struct IntervalMachine::Core {
 
   uint32_t index;
   RayModel rays;
-  std::vector<exec::WarpContext> warps;  // by slot
-  std::vector<Cycle> issue;              // of each scheduler: when all that it was given is issued
+  std::vector<exec::WarpContext> warps;  // indexed by slot
+  std::vector<Cycle> issue;              // when each scheduler has issued all that it was given
   double issue_work = 0;
   core::LineList lines;
   core::LocalLayout local;
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events;
-  std::array<Cycle, core::kScoreboardEntries> ready{};  // of the warp that runs: its registers
+  std::array<Cycle, core::kScoreboardEntries> ready{};  // when the registers of the running warp are ready
 };
 
 IntervalMachine::IntervalMachine(const GpuParams& params, const exec::World& world)
@@ -80,7 +81,7 @@ IntervalMachine::IntervalMachine(const GpuParams& params, const exec::World& wor
 
 IntervalMachine::~IntervalMachine() = default;
 
-// The next warp of the launch, if there is one left.
+// Launches the next warp, if there is one left.
 bool IntervalMachine::launch(Core& core, uint32_t slot, Cycle at) {
   if (next_warp_ == executor_.num_warps()) return false;
   executor_.start(core.warps[slot], next_warp_++);
@@ -122,8 +123,8 @@ void IntervalMachine::run_interval(Core& core, uint32_t slot, Cycle at) {
                        row.finish == Finish::Fence || row.finish == Finish::Barrier;
     now = holds ? done : now + table_.issues(pc);
   }
-  // What the scheduler has to do for its other warps first: it issues one a cycle, and a pipe has its
-  // interval.
+  // The scheduler has to issue the work of its other warps first. It issues one instruction per cycle, and
+  // each pipe has its interval.
   Cycle& issue = core.issue[slot % core.issue.size()];
   const double busy = std::max(slots, *std::ranges::max_element(work));
   issue = std::max(issue, at) + Cycle(busy);
@@ -131,7 +132,7 @@ void IntervalMachine::run_interval(Core& core, uint32_t slot, Cycle at) {
   core.events.push({std::max(now, issue), slot, finished});
 }
 
-// When what an instruction loads is there; what it stores costs the warp nothing more.
+// Returns when the data that an instruction loads are there. What it stores costs the warp nothing more.
 Cycle IntervalMachine::access(Core& core, uint32_t slot, const exec::Issued& issued,
                               const core::IssueRow& row, Cycle at) {
   core.lines.clear();
@@ -169,7 +170,7 @@ Cycle IntervalMachine::next(const Core& core) const {
   return std::min(core.events.empty() ? kNever : core.events.top().at, core.rays.next());
 }
 
-// What is due first on a core.
+// Handles the first event that is due on a core.
 void IntervalMachine::advance(Core& core) {
   if (core.events.empty() || core.rays.next() < core.events.top().at) {
     core.rays.advance();
@@ -192,7 +193,7 @@ void IntervalMachine::advance(Core& core) {
 
 IntervalEstimate IntervalMachine::run(const std::function<void(uint64_t, uint64_t)>& progress) {
   const uint32_t slots = uint32_t(cores_[0]->warps.size());
-  for (uint32_t slot = 0; slot < slots; ++slot)  // one a core in turn, as the dispatcher does
+  for (uint32_t slot = 0; slot < slots; ++slot)  // one warp per core in turn, as the dispatcher does
     for (const auto& core : cores_) launch(*core, slot, params_.core.launch_latency);
   for (Cycle now = 0; now != kNever;) {
     now = kNever;

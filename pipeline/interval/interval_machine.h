@@ -1,5 +1,5 @@
-// An interval model of the GPU: one functional pass that adds up, warp by warp, the time between waits and
-// the time of the waits.
+// Predicts the cycles of a launch in one functional pass, by the time between waits and the time of the
+// waits.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -19,35 +19,35 @@
 
 namespace glint::pipeline {
 
-// What the model says of a launch, and what of it comes from where.
+// Holds what the model says of a launch, and where it comes from.
 struct IntervalEstimate {
   Cycle cycles = 0;                      // predicted
   uint64_t instructions = 0, lanes = 0;  // warp and lane instructions
-  RayModelCounts rays;                   // of all cores
+  RayModelCounts rays;                   // summed over all cores
   std::array<CacheCounts, 2> l1;         // by Asker
   CacheCounts l2;
   uint64_t dram_sectors = 0;
-  // Work of the busiest resource of each kind, cycles: whatever overlaps, no run is shorter. The largest is
-  // the bound of throughput; what the prediction is longer is latency that nothing hides.
+  // Cycles of work of the busiest resource of each kind. Whatever overlaps, no run is shorter than these. The
+  // largest is the bound of throughput; what the prediction exceeds it by is latency that nothing hides.
   double issue = 0, rt_port = 0, rt_tests = 0, rt_slots = 0, l1_ports = 0, l2_slices = 0, dram_buses = 0;
-  // Name and cycles of each of these, in this order.
+  // Returns the name and the cycles of each of these, in this order.
   std::array<std::pair<std::string_view, double>, 7> bounds() const;
 };
 
-// Interval analysis (Karkhanis and Smith 2004; Genbrugge, Eyerman, Eeckhout 2010) for warps: from one trace
-// of rays to the next a warp runs alone, in order, against the latencies of its units and of a memory model
-// with tags and bandwidths; its scheduler's issue slots bound what the warps of a scheduler do together.
+// Applies interval analysis (Karkhanis and Smith 2004; Genbrugge, Eyerman, Eeckhout 2010) to warps. From one
+// trace of rays to the next, a warp runs alone and in order, against the latencies of its units and of a
+// memory model with tags and bandwidths. The issue slots of a scheduler bound what its warps do together.
 // Traces go through a model of the RT unit. Nothing is fitted: every number comes from the configuration.
-// Model: no memory queues, no pipes shared by the warps of a scheduler but for their work, no turns between
-// blocks' launches.
+// Model: there are no memory queues and no turns between blocks' launches, and the warps of a scheduler share
+// only the work of pipes.
 class IntervalMachine {
  public:
-  // UnsupportedError, with all reasons, for launches with blocks of threads and configurations whose
-  // mechanisms the model lacks.
+  // Throws UnsupportedError, with all reasons, for launches with blocks of threads and for configurations
+  // whose mechanisms the model lacks.
   IntervalMachine(const GpuParams& params, const exec::World& world);
   ~IntervalMachine();
 
-  // Effects on memory are those of the functional machine. Error(Exit::Fault) as there.
+  // Runs the launch. Effects on memory are those of the functional machine, and so is Error(Exit::Fault).
   IntervalEstimate run(const std::function<void(uint64_t done, uint64_t total)>& progress);
 
  private:

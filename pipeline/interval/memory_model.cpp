@@ -1,4 +1,4 @@
-// Accesses through tags, bandwidths and banks.
+// Passes accesses through tags, bandwidths and banks.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/interval/memory_model.h"
 
@@ -50,7 +50,7 @@ MemoryModel::MemoryModel(const mem::Params& params, uint32_t num_cores, double c
     channels_.push_back({std::vector<Bank>(params.dram.banks), {}});
 }
 
-// The line, made where it is absent; what it displaces goes down when it is newer.
+// Returns the line, and makes it when it is absent. What it displaces goes down when that is newer.
 mem::TagArray::Line& MemoryModel::line_of(Core& core, Address line, Cycle at) {
   mem::TagArray& tags = core.l1.tags;
   if (const uint32_t slot = tags.find(line); slot != mem::TagArray::kNone) {
@@ -167,7 +167,7 @@ Cycle MemoryModel::from_dram(uint32_t slice, Address line, uint32_t num_sectors,
   bank.row = where.row;
   const double columns = double(timing_.ccd_l) * num_sectors,
                data = core_per_dram_ * double(timing_.data) * num_sectors;
-  // A bank opens no second row within tRC.
+  // A bank does not open a second row within tRC.
   const double busy = opens ? std::max(row + columns, double(timing_.rc)) : columns;
   const Cycle begin = bank.busy.take(at + params_.dram.latency, core_per_dram_ * busy);
   return channel.bus.take(begin + Cycle(core_per_dram_ * (row + double(timing_.cl))), data) + Cycle(data) + 1;

@@ -1,5 +1,4 @@
-// Latency of accesses without simulating queues: tags of all caches, open rows, and bandwidth of each
-// resource on the way.
+// Models the latency of accesses without queues: tags of caches, open rows, and bandwidths of resources.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -14,39 +13,40 @@
 
 namespace glint::pipeline {
 
-// Who asks: counted apart.
+// Names who asks. The askers are counted apart.
 enum class Asker : uint8_t { Shader, RtUnit };
 
 struct CacheCounts {
   uint64_t reads = 0, misses = 0;
 };
 
-// Model: no MSHRs, miss queues, credits or refresh, no order among requests of a bank but that of arrival; a
-// line takes its place when it is asked for, and what is read of it before it has come waits for it.
+// Model: there are no MSHRs, miss queues, credits or refresh, and the requests of a bank are served in order
+// of arrival. A line takes its place when it is asked for, and reads of it wait until it has come.
 class MemoryModel {
  public:
   MemoryModel(const mem::Params& params, uint32_t num_cores, double core_mhz);
 
-  // Sectors of a line (physical address, line-aligned), at `at`: the cycle when all are there.
+  // Reads sectors of a line (a physical, line-aligned address) at `at`. Returns the cycle when all are there.
   Cycle read(uint32_t core, Address line, uint8_t sectors, Cycle at, Asker asker);
-  // The same of bytes anywhere: every line that they touch.
+  // Does the same for bytes anywhere: reads every line that they touch.
   Cycle read_bytes(uint32_t core, Address at, uint32_t bytes, Cycle when, Asker asker);
-  // When the L1 could take an access.
+  // Returns when the L1 can take an access.
   Cycle port_free(uint32_t core, Cycle at) const { return cores_[core].port.begin(at); }
-  // Nobody waits for a write.
+  // Writes sectors of a line. Nobody waits for a write.
   void write(uint32_t core, Address line, uint8_t sectors, Cycle at, bool is_local);
 
   const std::array<CacheCounts, 2>& l1() const { return l1_counts_; }  // by Asker
   const CacheCounts& l2() const { return l2_counts_; }
   uint64_t dram_sectors() const { return dram_sectors_; }
-  // Work of the busiest of each kind, core cycles: no run is shorter.
+  // Return core cycles of work of the busiest resource of each kind. No run is shorter than these.
   double l1_work() const;
   double l2_work() const;
   double dram_work() const;
 
  private:
-  // Warps run ahead of each other within an interval: a line may have been asked for at a later time than it
-  // is wanted. Then it is this wish that fetches it, and what it costs is what the later one has paid.
+  // Holds when a line was last fetched. Warps run ahead of each other within an interval, so a line may have
+  // been asked for at a later time than the time at which it is wanted. Then this wish fetches it, at the
+  // cost that the later one has paid.
   struct Fill {
     Cycle asked = 0, ready = 0;
     Cycle ready_for(Cycle at) {
@@ -57,7 +57,7 @@ class MemoryModel {
   struct Cache {
     Cache(const mem::CacheShape& shape, const PolicyChoice<mem::Replacement>& replacement);
     mem::TagArray tags;
-    std::vector<Fill> fills;  // by line of the tag array: what was fetched last
+    std::vector<Fill> fills;  // by line of the tag array: the last fetch
   };
   struct Core {
     Cache l1;
@@ -76,7 +76,7 @@ class MemoryModel {
     Bandwidth bus;
   };
 
-  // From a miss's departure to the data in the L1; a write of the L2; both of a slice's sectors.
+  // Returns when the data of a miss reach the L1.
   Cycle fetch(Core& core, Address line, uint8_t sectors, Cycle at);
   void write_below(Core& core, Address line, uint8_t sectors, Cycle at);
   Cycle from_dram(uint32_t slice, Address line, uint32_t num_sectors, Cycle at);
@@ -85,7 +85,7 @@ class MemoryModel {
 
   const mem::Params params_;
   const mem::DramTiming timing_;
-  const double core_per_dram_;  // core cycles of a DRAM clock
+  const double core_per_dram_;  // core cycles per DRAM clock
   mem::PartitionMap partitions_;
   mem::DramMap dram_map_;
   std::vector<Core> cores_;

@@ -1,4 +1,4 @@
-// Rays of the interval model: fetches, tests, and the end of a warp's trace.
+// Handles the rays of the interval model: fetches, tests, and the end of a warp's trace.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/interval/ray_model.h"
 
@@ -10,8 +10,9 @@
 
 namespace glint::pipeline {
 
-// Cycles from a lane's wish to its request and from a test's end to the next wish, which the unit's registers
-// take. Source: the timing machine's RT unit (rtunit/rt_unit.cpp), which does each in a cycle of its own.
+// Cycles from a lane's wish to its request, and from a test's end to the next wish, which the unit's
+// registers take. Source: the timing machine's RT unit (rtunit/rt_unit.cpp), which does each in a cycle of
+// its own.
 constexpr Cycle kStep = 1;
 
 RayModel::RayModel(const rt::Params& params, const mem::AddressSpace& memory, MemoryModel& caches,
@@ -47,7 +48,7 @@ void RayModel::begin(Cycle at, uint32_t slot, exec::WarpContext& warp) {
   go_on(uint32_t(free - traces_.begin()), travelling, at);
 }
 
-// Lanes that have a test behind them, or none yet: those that travel on want their next node.
+// Continues lanes that have a test behind them, or none yet. Those that travel on want their next node.
 void RayModel::go_on(uint32_t index, LaneMask lanes, Cycle now) {
   Trace& trace = traces_[index];
   const bool wanted = trace.wanting != 0;
@@ -89,8 +90,8 @@ void RayModel::advance() {
   if (num_wanting_ && port_free_ <= double(now)) send(now);
 }
 
-// One node of the oldest warp that wants any, for all its lanes that want it. While the L1 takes shaders'
-// accesses more lanes come to want it.
+// Sends one node of the oldest warp that wants any, for all its lanes that want it. While the L1 takes
+// shaders' accesses, more lanes come to want the node.
 void RayModel::send(Cycle now) {
   if (const Cycle free = caches_.port_free(core_, now); free > now) {
     port_free_ = double(free);
@@ -109,7 +110,7 @@ void RayModel::send(Cycle now) {
   trace.wanting &= ~same;
   num_wanting_ -= trace.wanting == 0;
   const rt::Fetch fetch = rt::next_fetch(trace.warp->rays[first]);
-  if (!memory_.find(fetch.address, fetch.bytes)) {  // bytes that are no structure led here
+  if (!memory_.find(fetch.address, fetch.bytes)) {  // a wrong address led to bytes outside of any structure
     for_each_lane(same, [&](int lane) { rt::break_off(trace.warp->rays[lane]); });
     return push(now, index, same, false);
   }
@@ -130,7 +131,7 @@ RayModel::Pipe& RayModel::pipe_of(rt::NodeKind kind) {
   return kind == rt::NodeKind::Triangle || kind == rt::NodeKind::TriangleSecond ? triangle_ : box_;
 }
 
-// The step's effect is done here, its end told after the pipe's latency.
+// Applies the effect of the test here, and tells its end after the pipe's latency.
 void RayModel::test(const Event& event) {
   Trace& trace = traces_[event.trace];
   for_each_lane(event.lanes, [&](int lane) {

@@ -1,5 +1,4 @@
-// The RT unit of a core as the interval model sees it: warps that share a request port and test pipes, node
-// by node.
+// Models the RT unit of a core in the interval model: warps that share a request port and test pipes.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
@@ -20,26 +19,27 @@ namespace glint::pipeline {
 
 struct RayModelCounts {
   uint64_t rays = 0, nodes = 0, requests = 0, traces = 0;
-  uint64_t trace_cycles = 0;  // from a warp's place in the unit to its last ray's end, summed
+  uint64_t trace_cycles = 0;  // cycles from a warp's place in the unit to its last ray's end, summed
 };
 
-// Rays of a warp that want the same node at the same time share its fetch; the oldest warp goes first.
-// Model: stacks are whole, any number of answers comes in a cycle.
+// Advances rays node by node. Rays of a warp that want the same node at the same time share its fetch, and
+// the oldest warp goes first. Model: stacks are whole, and any number of answers comes in a cycle.
 class RayModel {
  public:
   RayModel(const rt::Params& params, const mem::AddressSpace& memory, MemoryModel& caches, uint32_t core);
 
-  // A warp's rays; `warp` stays where it is until it is done.
+  // Takes the rays of a warp. `warp` stays where it is until it is done.
   void submit(Cycle at, uint32_t slot, exec::WarpContext& warp);
-  // When advance() has something to do; kNever without rays.
+  // Returns when advance() has something to do, or kNever without rays.
   Cycle next() const;
   // Does what is due at next().
   void advance();
-  // Warps whose rays have all stopped since the last call: slot and cycle. The rays are still to be answered.
+  // Returns slot and cycle of the warps whose rays have all stopped since the last call. The rays are still
+  // to be answered.
   std::vector<std::pair<uint32_t, Cycle>> take_done() { return std::exchange(done_, {}); }
 
   const RayModelCounts& counts() const { return counts_; }
-  // Work of the port and of the busiest test pipe, cycles: no run is shorter.
+  // Return cycles of work of the port and of the busiest test pipe. No run is shorter than these.
   double port_work() const { return port_work_; }
   double test_work() const { return std::max({box_.work, triangle_.work, transform_.work}); }
 
@@ -62,7 +62,7 @@ class RayModel {
     uint64_t order = 0;
     uint32_t trace = 0;
     LaneMask lanes = 0;
-    bool arrived = false;  // the node is there; otherwise: the test is done
+    bool arrived = false;  // true: the node is there; false: the test is done
     bool operator>(const Event& other) const { return at != other.at ? at > other.at : order > other.order; }
   };
 
@@ -86,7 +86,7 @@ class RayModel {
   Pipe box_, triangle_, transform_;
   Cycle now_ = 0;
   double port_free_ = 0, port_work_ = 0;
-  uint32_t num_wanting_ = 0;  // traces with a lane that wants a node
+  uint32_t num_wanting_ = 0;  // number of traces with a lane that wants a node
   uint64_t order_ = 0, age_ = 0;
   RayModelCounts counts_;
 };

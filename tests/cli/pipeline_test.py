@@ -237,11 +237,11 @@ class Mistakes(PipelineTest):
         self.refuse(["nothing is bound to set 0 binding 1", "'picture' at hello.rgen:6"], ("binding = 1\n", "binding = 5\n"))
 
     def test_a_binding_of_the_wrong_kind_names_both_places(self):
-        self.refuse(["edited.toml:25", "'picture' is a [[buffer]], the shader wants a [[image]]", "hello.rgen:6"],
+        self.refuse(["edited.toml:25", "'picture' is a [[buffer]], and the shader wants a [[image]]", "hello.rgen:6"],
                     ("[[image]]", "[[buffer]]"), ('save = "picture.png"', "count = 4"))
 
     def test_an_unknown_key_is_refused_at_its_line_with_the_nearest(self):
-        self.refuse(["edited.toml:29:1: error: 'sav' is no key of an image", "did you mean 'save'?"], ("save =", "sav ="))
+        self.refuse(["edited.toml:29:1: error: 'sav' is not a key of an image", "did you mean 'save'?"], ("save =", "sav ="))
 
     def test_an_unknown_bottom_level_is_refused_with_the_nearest(self):
         self.refuse(["there is no bottom level 'triangel'", "did you mean 'triangle'?"], ('bottom_level = "triangle"', 'bottom_level = "triangel"'))
@@ -253,7 +253,7 @@ class Mistakes(PipelineTest):
         self.refuse(["edited.toml:", "cannot read the shader 'nowhere.rchit'"], ("hello.rchit", "nowhere.rchit"))
 
     def test_an_index_without_a_vertex_is_refused(self):
-        self.refuse(["index 3: there are 3 vertices"], ("[0.0, 0.8, 0.0]]", "[0.0, 0.8, 0.0]]\nindices = [0, 1, 3]"))
+        self.refuse(["index 3 is too large: there are 3 vertices"], ("[0.0, 0.8, 0.0]]", "[0.0, 0.8, 0.0]]\nindices = [0, 1, 3]"))
 
     def test_an_unknown_kind_of_output_is_refused(self):
         self.refuse(["cannot save to 'picture.gif'"], ("picture.png", "picture.gif"))
@@ -264,7 +264,7 @@ class Mistakes(PipelineTest):
     def test_a_buffer_below_the_static_layout_names_both_places(self):
         self.write("add.comp", ADD)
         text = ADD_FILE.replace("SHADER", "add.comp").replace("data = { a = [10, 0, 0, 0], b = [1, 2, 3] }", "data = [1, 2]")
-        self.expect(2, ["p.toml:5", "has 8 bytes, the shader's block needs 64", "add.comp:4"], "run", self.write("p.toml", text))
+        self.expect(2, ["p.toml:5", "has 8 bytes, and the shader's block needs 64", "add.comp:4"], "run", self.write("p.toml", text))
 
     def test_an_unknown_member_is_refused_with_the_nearest(self):
         self.write("add.comp", ADD.replace("vec4 a;", "vec4 amount;").replace("settings.a", "settings.amount"))
@@ -281,10 +281,10 @@ class Mistakes(PipelineTest):
 
     def test_a_record_without_its_data_is_refused(self):
         self.copy("materials")
-        self.refuse(["the record's data have 0 bytes, the shader's record 16", "materials.rchit:5"], ("data = { tint = [1.0, 0.4, 0.3], painter = 0 }\n", ""))
+        self.refuse(["the record's data have 0 bytes, and the shader's record has 16", "materials.rchit:5"], ("data = { tint = [1.0, 0.4, 0.3], painter = 0 }\n", ""))
 
     def test_integers_in_a_float_image_are_refused(self):
-        self.refuse(["format r32_uint, whose texels are u32; the shader's are f32"], ('save =', 'format = "r32ui"\nsave ='))
+        self.refuse(["format r32_uint, whose texels are u32, and the shader's are f32"], ('save =', 'format = "r32ui"\nsave ='))
 
 
 if __name__ == "__main__":

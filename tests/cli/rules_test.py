@@ -144,9 +144,9 @@ class Rays(RulesTest):
 
     def test_a_payload_that_no_trace_hands_over_is_told(self):
         self.shoot(hits='[[hit]]\nclosest_hit = "probe.rchit"\ndata = { tag = 7 }\n[[hit]]\nclosest_hit = "large.rchit"\n')
-        self.assertIn("large.rchit: note: the shader reads a payload of 32 bytes; the largest that any shader here hands to a trace has 16", self.log.stderr)
+        self.assertIn("large.rchit: note: the shader reads a payload of 32 bytes, and the largest that any shader here hands to a trace has 16", self.log.stderr)
         self.shoot(hits='[[hit]]\nclosest_hit = "probe.rchit"\ndata = { tag = 7 }\n[[hit]]\nclosest_hit = "numbers.rchit"\n')
-        self.assertIn("numbers.rchit: note: scalar 3 of the payload that the shader reads is an integer of 32 bits; the most alike that a shader here "
+        self.assertIn("numbers.rchit: note: scalar 3 of the payload that the shader reads is an integer of 32 bits, and the most similar payload that a shader here "
                       "hands to a trace has a float of 32 bits there", self.log.stderr)
         self.shoot()
         self.assertNotIn("payload", self.log.stderr)
@@ -247,8 +247,8 @@ class Files(RulesTest):
                "[push_constants]\ndata = [0, 0, 0, 0, 0]\n" + LEVEL.format(name="mesh", geometry=TRIANGLE) + \
                f"[[top_level]]\nbinding = 2\n{instance()}[[buffer]]\nbinding = 0\ncount = 4\n[[image]]\nbinding = 1\n"
         done = self.glint(self.write("p.toml", text), code=2)
-        for part in ("is a [[buffer]], the shader wants a [[top_level]]", "is a [[top_level]], the shader wants a [[buffer]]",
-                     "is a [[image]], the shader wants a [[buffer]]", "probe.rgen:3", "probe.rgen:4", "probe.rgen:5", "p.toml:"):
+        for part in ("is a [[buffer]], and the shader wants a [[top_level]]", "is a [[top_level]], and the shader wants a [[buffer]]",
+                     "is a [[image]], and the shader wants a [[buffer]]", "probe.rgen:3", "probe.rgen:4", "probe.rgen:5", "p.toml:"):
             self.assertIn(part, done.stderr)
 
 

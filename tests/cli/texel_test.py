@@ -126,7 +126,7 @@ class Texels(GlintTest):
         self.write("samples.comp", SAMPLES)
         self.run_text(0, [], SAMPLES_FILE)
         self.assertEqual([float(v) for v in (self.folder / "out/out.csv").read_text().split()[1:]], [205, 206, 207, 208])
-        self.refused("size = [1, 1]\nlayers = 6", "size = [1, 1]\nlayers = 6\nsamples = 2", "image 'image_3_201'", "samples a texel; the shader's has one")
+        self.refused("size = [1, 1]\nlayers = 6", "size = [1, 1]\nlayers = 6\nsamples = 2", "image 'image_3_201'", "samples per texel, and the shader's has one")
 
     def test_files_that_the_run_writes_itself_or_that_are_saved_twice_are_refused(self):
         self.refused('"out.csv"', '"stats.csv"', "p.toml:", "the run itself writes 'stats.csv'")

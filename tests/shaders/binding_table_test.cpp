@@ -88,15 +88,15 @@ TEST_CASE("a table that no host may ask for is refused with the record's name") 
   }
   SECTION("a stride below the largest record") {
     b.input.hit.stride = 64;
-    CHECK_THAT(b.error(), Contains("the stride of the hit region is 64: its largest record needs 96"));
+    CHECK_THAT(b.error(), Contains("the stride of the hit region is 64, and its largest record needs 96"));
   }
   SECTION("a record beyond the largest stride") {
     b.input.callable.records[0].data = Bench::data(4096);
-    CHECK_THAT(b.error(), Contains("a callable record of 4096 bytes"));
+    CHECK_THAT(b.error(), Contains("a callable record has 4096 bytes"));
   }
   SECTION("a group that there is not") {
     b.input.hit.records[1].group = 5;
-    CHECK_THAT(b.error(), Contains("hit record 1 names group 5: there are 5"));
+    CHECK_THAT(b.error(), Contains("hit record 1 names group 5, and there are 5"));
   }
   SECTION("a hit group as a miss record") {
     b.input.miss.records[1].group = 2;
@@ -104,7 +104,7 @@ TEST_CASE("a table that no host may ask for is refused with the record's name") 
   }
   SECTION("a general group as a hit record") {
     b.input.hit.records[0].group = 1;
-    CHECK_THAT(b.error(), Contains("hit record 0 names group 1, which is no hit group"));
+    CHECK_THAT(b.error(), Contains("hit record 0 names group 1, which is not a hit group"));
   }
   SECTION("a shader of another stage") {
     b.input.callable.records[0].group = 1;
