@@ -1,4 +1,4 @@
-// The equations, and where their inputs come from.
+// Computes the equations, and finds their inputs in a run.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/analytical/hong_kim.h"
 
@@ -11,7 +11,7 @@
 namespace glint::report {
 namespace {
 
-constexpr double kSectorBytes = 32;  // of a request to DRAM
+constexpr double kSectorBytes = 32;  // bytes of a request to DRAM
 
 constexpr const char* kDramLatency = "sum(l1.miss_cycles) / sum(l1.timed_misses)";
 
@@ -19,7 +19,7 @@ double value_of(const std::string& formula, const RunRecord& run, const std::str
   if (const std::optional<double> value = evaluate(formula, run)) return *value;
   if (formula == kDramLatency && run.text("mode") == "timing")
     throw UserError(
-        {name}, "none of this run's reads missed in the L1: there is no latency of memory to model",
+        {name}, "none of this run's reads missed in the L1, so there is no latency of memory to model",
         "Hong and Kim's model takes timing runs that read memory; all models take runs of scenes");
   throw UserError({name}, fmt::format("this run has no '{}'", formula),
                   "the model needs a finished run of the timing machine: glint run --mode timing");
@@ -52,18 +52,19 @@ HongKimResult hong_kim(const HongKimInputs& in) {
   HongKimResult out;
   out.inputs = in;
   const double latency =
-      in.memory_latency() + (in.accesses - 1) * in.departure_delay;  // of a memory instruction: Mem_L_Uncoal
-  const double delay = in.accesses * in.departure_delay;             // until the next one may go
+      in.memory_latency() +
+      (in.accesses - 1) * in.departure_delay;             // latency of a memory instruction (Mem_L_Uncoal)
+  const double delay = in.accesses * in.departure_delay;  // time until the next memory instruction may go
   out.memory_cycles = latency * in.memory_instructions;
   out.computation_cycles = in.issue_cycles * in.instructions;
   out.mwp_without_bandwidth = std::max(1.0, latency / delay);
-  // BW_per_warp = bytes / latency; all cores share the bandwidth.
+  // BW_per_warp is bytes / latency, and all cores share the bandwidth.
   out.mwp_peak_bandwidth =
       in.bytes > 0 ? std::max(1.0, in.bandwidth / (in.bytes / latency * in.cores)) : in.warps;
   out.mwp = std::min({out.mwp_without_bandwidth, out.mwp_peak_bandwidth, in.warps});
   out.cwp = std::min((out.memory_cycles + out.computation_cycles) / out.computation_cycles, in.warps);
   const double between =
-      out.computation_cycles / in.memory_instructions;  // computation from one memory instruction to the next
+      out.computation_cycles / in.memory_instructions;  // computation between two memory instructions
   if (out.mwp == in.warps && out.cwp == in.warps) {
     out.equation = 22;
     out.cycles = out.memory_cycles + out.computation_cycles + between * (out.mwp - 1);

@@ -1,5 +1,5 @@
-// Hong and Kim's analytical model of a GPU (ISCA 2009) with LumiBench's adjustment for caches (its
-// section 5.5).
+// Computes Hong and Kim's model of a GPU (ISCA 2009) with LumiBench's adjustment for caches (its section
+// 5.5).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
@@ -11,22 +11,24 @@
 
 namespace glint::report {
 
-// What the model is given, all from statistics and configuration of a finished run of the timing machine.
+// Holds what the model is given, all from statistics and configuration of a finished run of the timing
+// machine.
 struct HongKimInputs {
-  double cores = 0, warps = 0;  // warps: resident on a core at a time (the paper's N)
-  double repetitions = 0;       // times that a core is filled with them
-  double instructions = 0;      // of a warp
+  double cores = 0, warps = 0;  // warps: number that is resident on a core at a time (the paper's N)
+  double repetitions = 0;       // times that a core is filled with these warps
+  double instructions = 0;      // instructions of a warp
   double memory_instructions =
       0;  // of them: memory, texture, and traces. Choice: a trace is a memory instruction of many accesses
-  double accesses = 0;  // L1 accesses of a memory instruction: the model's uncoalesced transactions
-  double dram_latency = 0, miss_rate = 0;  // cycles from an L1 miss to its data; L1 reads that miss
-  double departure_delay = 0;              // cycles between two accesses of a core
-  double issue_cycles = 0;                 // of a core for a warp instruction
+  double accesses = 0;  // L1 accesses of a memory instruction, which are the model's uncoalesced transactions
+  double dram_latency = 0,
+         miss_rate = 0;        // cycles from an L1 miss to its data; fraction of L1 reads that miss
+  double departure_delay = 0;  // cycles between two accesses of a core
+  double issue_cycles = 0;     // cycles of a core for a warp instruction
   double bytes =
       0;  // of DRAM, for a memory instruction. Choice: what misses; the paper adjusts the latency alone
-  double bandwidth = 0;  // DRAM bytes a cycle
+  double bandwidth = 0;  // DRAM bytes per cycle
 
-  // LumiBench's adjustment.
+  // Returns the latency with LumiBench's adjustment.
   double memory_latency() const { return dram_latency * miss_rate; }
 };
 
@@ -35,17 +37,17 @@ struct HongKimResult {
   double memory_cycles = 0, computation_cycles = 0;                   // of a warp
   double mwp_without_bandwidth = 0, mwp_peak_bandwidth = 0, mwp = 0;  // memory warp parallelism
   double cwp = 0;                                                     // computation warp parallelism
-  int equation = 0;   // of the paper, that applies: 22, 23 or 24
+  int equation = 0;   // the paper's equation that applies: 22, 23 or 24
   double cycles = 0;  // predicted
 };
 
 HongKimResult hong_kim(const HongKimInputs& inputs);
 
-// UserError, naming what is missing, where the run has no such statistics: it was not of the timing machine,
-// or did not finish.
+// Returns the inputs of a run. Throws UserError that names what is missing when the run has no such
+// statistics, because it was not of the timing machine or did not finish.
 HongKimInputs hong_kim_inputs(const RunRecord& run, const std::string& name);
 
-// Names and values of inputs and results, in order, for tables.
+// Returns names and values of inputs and results, in order, for tables.
 std::vector<std::pair<std::string, double>> hong_kim_columns(const HongKimResult& result);
 
 }  // namespace glint::report

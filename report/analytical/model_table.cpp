@@ -1,4 +1,4 @@
-// Scores of models, and their table as text, CSV and JSON.
+// Scores models, and writes their table as text, CSV and JSON.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/analytical/model_table.h"
 
@@ -15,13 +15,13 @@
 namespace glint::report {
 namespace {
 
-constexpr std::string_view kModelPrefix = "model:";  // of a model's column in the CSV
+constexpr std::string_view kModelPrefix = "model:";  // prefix of a model's column in the CSV
 
 double number(const std::string& text, const std::string& name, int row) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size())
-    throw UserError({name, row}, fmt::format("'{}' is no number", text),
+    throw UserError({name, row}, fmt::format("'{}' is not a number", text),
                     "`glint model -o` writes such a table");
   return value;
 }
@@ -29,7 +29,8 @@ double number(const std::string& text, const std::string& name, int row) {
 double cycles(const std::string& text, const std::string& name, int row) {
   const double value = number(text, name, row);
   if (!std::isfinite(value) || value <= 0)
-    throw UserError({name, row}, fmt::format("'{}' are no cycles: they are finite and more than 0", text),
+    throw UserError({name, row},
+                    fmt::format("'{}' is not a number of cycles: cycles are finite and more than 0", text),
                     "the table is damaged: run `glint model` again");
   return value;
 }
@@ -104,16 +105,16 @@ std::string model_csv(const ModelTable& models) {
 ModelTable parse_models(const std::string& csv, const std::string& name) {
   const CsvTable read = read_csv(csv, name);
   if (read.columns.size() < 3 || read.columns[0] != "workload" || read.columns[1] != "cycles")
-    throw UserError({name, 1}, "this is no table of models",
+    throw UserError({name, 1}, "this is not a table of models",
                     "expected the columns workload, cycles and models: `glint model -o` writes it");
   ModelTable out;
   for (const std::string& column : read.columns)
     if (column.starts_with(kModelPrefix)) out.models.push_back(column.substr(kModelPrefix.size()));
   if (out.models.empty())
-    throw UserError({name, 1}, fmt::format("no column '{}NAME'", kModelPrefix),
-                    "this is no table of models, or its first line is cut: `glint model -o` writes it");
+    throw UserError({name, 1}, fmt::format("there is no column '{}NAME'", kModelPrefix),
+                    "this is not a table of models, or its first line is cut: `glint model -o` writes it");
   if (read.rows.empty())
-    throw UserError({name, 1}, "no workload below the names of the columns",
+    throw UserError({name, 1}, "there is no workload below the names of the columns",
                     "the table is cut: run `glint model` again");
   for (size_t i = 0; i < read.rows.size(); ++i) {
     const auto& cells = read.rows[i];

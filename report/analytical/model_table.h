@@ -1,4 +1,4 @@
-// Predicted beside simulated cycles of several workloads, and how good each model is.
+// Tabulates predicted beside simulated cycles of several workloads, with scores of each model.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <nlohmann/json_fwd.hpp>
@@ -10,31 +10,34 @@ namespace glint::report {
 
 struct ModelRow {
   std::string workload;
-  double cycles = 0;                                   // simulated
-  std::vector<double> predicted;                       // by model
-  std::vector<std::pair<std::string, double>> inputs;  // and intermediate values, the same names in every row
+  double cycles = 0;              // simulated
+  std::vector<double> predicted;  // by model
+  std::vector<std::pair<std::string, double>>
+      inputs;  // and intermediate values; every row has the same names
 };
 
 struct ModelScore {
-  double r2 = 0;  // of the linear regression of simulated on predicted cycles, as LumiBench gives it: blind
-                  // to a constant factor
+  // R2 of the linear regression of simulated on predicted cycles, as LumiBench gives it. It is blind to a
+  // constant factor.
+  double r2 = 0;
   double mean_error = 0;  // mean of |predicted / simulated - 1|
   double worst_error = 0;
   std::string worst;  // workload
-  double ratio = 0;   // geometric mean of predicted / simulated: the bias
+  double ratio = 0;   // geometric mean of predicted / simulated, which is the bias
 };
 
 struct ModelTable {
   std::vector<std::string> models;  // names
   std::vector<ModelRow> rows;
 
-  // R2 of a single workload is 0.
+  // Returns the scores of a model. R2 of a single workload is 0.
   ModelScore score(size_t model) const;
 };
 
-std::string model_text(const ModelTable& table);  // for a terminal
-std::string model_csv(const ModelTable& table);   // workload, cycles, a column a model and input
-// Reads model_csv() back. UserError where the text is none.
+std::string model_text(const ModelTable& table);  // text for a terminal
+std::string model_csv(
+    const ModelTable& table);  // columns: workload, cycles, then one for each model and input
+// Reads model_csv() back. Throws UserError when the text is not such a table.
 ModelTable parse_models(const std::string& csv, const std::string& name);
 nlohmann::ordered_json models_json(
     const ModelTable& table);  // {"models": [{name, r2, mape, ratio, worst, worst_error}], "workloads":

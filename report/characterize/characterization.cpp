@@ -1,4 +1,4 @@
-// The steps of the analysis, and their summary for a terminal.
+// Runs the steps of the analysis, and writes their summary for a terminal.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/characterize/characterization.h"
 
@@ -23,7 +23,7 @@ Subset judged(const Characterization& result, std::vector<int> rows) {
   return out;
 }
 
-// Rows of the named workloads that the table has, in the order of the names.
+// Returns the rows of the named workloads that the table has, in the order of the names.
 std::vector<int> rows_of(const FeatureTable& table, const std::vector<std::string>& names) {
   std::vector<int> out;
   for (const std::string& name : names)

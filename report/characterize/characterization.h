@@ -1,4 +1,4 @@
-// The diversity analysis of LumiBench (its section 3.4) over a table of metrics: all steps in order.
+// Does the diversity analysis of LumiBench (its section 3.4) over a table of metrics: all steps in order.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
@@ -15,18 +15,18 @@ namespace glint::report {
 
 struct CharacterizationOptions {
   Linkage linkage = Linkage::Average;
-  int clusters = 8;       // = workloads of the subset; cut to the number of workloads
-  SearchSettings search;  // for the representative metrics
+  int clusters = 8;       // also the number of workloads of the subset; at most the number of workloads
+  SearchSettings search;  // settings of the search for representative metrics
   std::vector<std::string>
       reference;  // names of a published subset to compare with; those that the table lacks are left out
-  std::string reference_name;  // whose it is
+  std::string reference_name;  // whose subset the reference is
 };
 
-// A set of workloads that stands for all.
+// Holds a set of workloads that stands for all.
 struct Subset {
   std::vector<int> rows;
-  double coverage_error = 0;  // coverage_error()
-  int clusters_met = 0;       // clusters that one of the rows is in
+  double coverage_error = 0;  // what coverage_error() returned
+  int clusters_met = 0;       // number of clusters with one of the rows
 };
 
 struct Characterization {
@@ -35,21 +35,22 @@ struct Characterization {
   PrincipalComponents components;
   std::vector<Join> joins;
   std::vector<int> leaves;      // rows, from left to right of the dendrogram
-  std::vector<int> cluster_of;  // of each row
+  std::vector<int> cluster_of;  // cluster of each row
   double cut_low = 0,
          cut_high = 0;  // a line between these two distances crosses as many branches as there are clusters
   double cophenetic = 0;
-  std::vector<Representative> chosen;  // by cluster
+  std::vector<Representative> chosen;  // ordered by cluster
   Subset subset, reference;            // `reference` is empty without options.reference
   ChosenMetrics metrics;
-  Eigen::MatrixXd kiviat;  // workloads x chosen metrics, 0 = the least of all workloads, 1 = the most
+  Eigen::MatrixXd kiviat;  // workloads x chosen metrics; 0 is the least of all workloads, and 1 is the most
 };
 
-// Errors as feature_table(). The same table and options give the same result on every machine, up to
-// rounding.
+// Does the analysis. Throws as feature_table() does. The same table and options give the same result on every
+// machine, up to rounding.
 Characterization characterize(FeatureTable table, const CharacterizationOptions& options);
 
-// What a terminal shows: what was dropped, components, clusters with their representatives, metrics.
+// Returns the text for a terminal: what was dropped, components, clusters with their representatives,
+// metrics.
 std::string characterization_text(const Characterization& result);
 
 }  // namespace glint::report

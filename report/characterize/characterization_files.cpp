@@ -1,4 +1,4 @@
-// Writing matrices and lists of a characterisation.
+// Writes matrices and lists of a characterisation.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/characterize/characterization_files.h"
 
@@ -9,7 +9,7 @@
 namespace glint::report {
 namespace {
 
-// A row a name, a column a heading.
+// Returns a table with one row per name and one column per heading.
 std::string matrix(const std::string& corner, const std::vector<std::string>& names,
                    const std::vector<std::string>& columns, const Eigen::MatrixXd& values) {
   std::string out = corner;

@@ -1,4 +1,4 @@
-// Writing a characterisation as one document.
+// Writes a characterisation as one document.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/characterize/characterization_json.h"
 
@@ -20,7 +20,7 @@ std::vector<double> row_of(const Eigen::MatrixXd& values, size_t row) {
   return out;
 }
 
-// Unit and meaning of a metric that Glint knows; of a stranger's nothing.
+// Returns the metric, with unit and meaning, when Glint knows it.
 const Metric* known_metric(const std::string& name) {
   for (const MetricGroup& group : metric_groups())
     for (const Metric& metric : group.metrics)

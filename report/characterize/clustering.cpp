@@ -1,4 +1,4 @@
-// Agglomerative clustering by the Lance-Williams recurrence.
+// Clusters agglomeratively by the Lance-Williams recurrence.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/characterize/clustering.h"
 
@@ -23,8 +23,8 @@ struct Group {
   int number = 0, size = 1;
 };
 
-// Distance of group k to the union of i and j (Lance and Williams 1967), from the distances before. Ward: of
-// distances, not squares.
+// Returns the distance of group k to the union of i and j (Lance and Williams 1967), from the distances
+// before. Ward's linkage takes distances, not their squares.
 double distance_to_union(Linkage linkage, double ik, double jk, double ij, double i, double j, double k) {
   switch (linkage) {
     case Linkage::Single:
@@ -56,7 +56,7 @@ void drop_row(Eigen::MatrixXd& distance, Eigen::Index row) {
   distance.conservativeResize(distance.rows() - 1, distance.cols() - 1);
 }
 
-// The leaves below a node, left to right.
+// Collects the leaves below a node, from left to right.
 void collect(const std::vector<Join>& joins, int node, std::vector<int>& leaves) {
   const int n = int(joins.size()) + 1;
   if (node < n) {
@@ -72,7 +72,8 @@ void collect(const std::vector<Join>& joins, int node, std::vector<int>& leaves)
 Linkage linkage_of(const std::string& name) {
   for (const auto& [text, linkage] : kNames)
     if (name == text) return linkage;
-  throw UserError({}, "there is no linkage '" + name + "'", "single, complete, average or ward");
+  throw UserError({}, "there is no linkage '" + name + "'",
+                  "the linkages are single, complete, average and ward");
 }
 
 std::string_view name_of(Linkage linkage) {
@@ -118,7 +119,7 @@ std::vector<int> leaf_order(const std::vector<Join>& joins) {
 }
 
 std::vector<int> clusters(const std::vector<Join>& joins, int count) {
-  const int n = int(joins.size()) + 1, kept = n - count;  // joins that stay
+  const int n = int(joins.size()) + 1, kept = n - count;  // `kept` joins stay
   std::vector<int> parent(size_t(2 * n - 1), -1);
   for (int i = 0; i < kept; ++i)
     parent[size_t(joins[size_t(i)].first)] = parent[size_t(joins[size_t(i)].second)] = n + i;
@@ -127,7 +128,7 @@ std::vector<int> clusters(const std::vector<Join>& joins, int count) {
     int root = leaf;
     while (parent[size_t(root)] >= 0) root = parent[size_t(root)];
     if (roots.empty() || roots.back() != root)
-      roots.push_back(root);  // leaves of a group are neighbours in this order
+      roots.push_back(root);  // the leaves of a group are neighbours in this order
     out[size_t(leaf)] = int(roots.size()) - 1;
   }
   return out;

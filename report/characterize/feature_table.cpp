@@ -1,4 +1,4 @@
-// Reading a table of metrics and deciding which columns take part.
+// Reads a table of metrics and decides which columns take part.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/characterize/feature_table.h"
 
@@ -18,14 +18,14 @@ namespace glint::report {
 namespace {
 
 constexpr Eigen::Index kFewestWorkloads = 3, kFewestMetrics = 2;
-// Which run it was (metrics_header()), not how it behaved.
+// These columns say which run it was (metrics_header()), not how it behaved.
 constexpr std::string_view kIdentity[] = {"scene",    "form",  "shader", "config", "config_hash",
                                           "fraction", "width", "height", "samples"};
 constexpr std::string_view kHostSpeed = "sim_rate";
 
 struct Column {
   std::vector<double> values;
-  std::string why;  // it is dropped; "" = it takes part
+  std::string why;  // the reason why the column is dropped; "": it takes part
 };
 
 Column read_column(const CsvTable& table, size_t index) {
@@ -36,7 +36,7 @@ Column read_column(const CsvTable& table, size_t index) {
     const std::optional<double> value = finite_number(cell);
     num_empty += cell.empty();
     if (!value && !cell.empty()) {
-      out.why = fmt::format("'{}' is no number", cell);
+      out.why = fmt::format("'{}' is not a number", cell);
       return out;
     }
     out.values.push_back(value.value_or(0));
@@ -50,7 +50,7 @@ Column read_column(const CsvTable& table, size_t index) {
   return out;
 }
 
-// The texts of a column, or `absent(workload)` where the table lacks it.
+// Returns the texts of a column, or `absent(workload)` when the table lacks the column.
 template <typename Absent>
 std::vector<std::string> texts(const CsvTable& table, std::string_view column,
                                const std::vector<std::string>& workloads, Absent absent) {
@@ -66,7 +66,7 @@ void name_workloads(const CsvTable& table, const std::string& name, FeatureTable
   std::set<std::string> seen;
   for (const std::vector<std::string>& row : table.rows) {
     if (!seen.insert(row[0]).second)
-      throw UserError({name}, fmt::format("workload '{}' stands there twice", row[0]),
+      throw UserError({name}, fmt::format("workload '{}' is in the table twice", row[0]),
                       "every row needs a name of its own in the first column");
     out.workloads.push_back(row[0]);
   }
@@ -84,9 +84,10 @@ FeatureTable feature_table(const std::string& csv, const std::string& name) {
   FeatureTable out;
   name_workloads(table, name, out);
   if (Eigen::Index(table.rows.size()) < kFewestWorkloads)
-    throw UserError({name},
-                    fmt::format("{} workloads, expected at least {}", table.rows.size(), kFewestWorkloads),
-                    "`glint bench` runs several and writes their metrics.csv");
+    throw UserError(
+        {name},
+        fmt::format("the table has {} workloads, expected at least {}", table.rows.size(), kFewestWorkloads),
+        "`glint bench` runs several and writes their metrics.csv");
   std::vector<std::vector<double>> kept;
   for (size_t i = 1; i < table.columns.size(); ++i) {
     const std::string& column = table.columns[i];
@@ -103,8 +104,8 @@ FeatureTable feature_table(const std::string& csv, const std::string& name) {
     kept.push_back(std::move(read.values));
   }
   if (Eigen::Index(kept.size()) < kFewestMetrics)
-    throw UserError({name}, fmt::format("{} columns of numbers that vary, expected at least {}", kept.size(),
-                                        kFewestMetrics));
+    throw UserError({name}, fmt::format("the table has {} columns of numbers that vary, expected at least {}",
+                                        kept.size(), kFewestMetrics));
   out.values.resize(Eigen::Index(table.rows.size()), Eigen::Index(kept.size()));
   for (size_t j = 0; j < kept.size(); ++j)
     out.values.col(Eigen::Index(j)) =
@@ -114,8 +115,8 @@ FeatureTable feature_table(const std::string& csv, const std::string& name) {
 }
 
 Eigen::MatrixXd standardised(const Eigen::MatrixXd& values) {
-  // By powers of two, which round nothing: squares of the largest and the smallest doubles neither overflow
-  // nor vanish.
+  // The columns are scaled by powers of two, which round nothing, so that squares of the largest and the
+  // smallest doubles neither overflow nor vanish.
   Eigen::MatrixXd scaled = values;
   for (auto column : scaled.colwise())
     column = column

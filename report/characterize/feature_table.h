@@ -1,4 +1,4 @@
-// The numbers that workloads are compared by: a row a workload, a column a metric that tells them apart.
+// Holds the numbers by which workloads are compared: a row per workload, and a column per metric.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
@@ -15,7 +15,7 @@ struct FeatureTable {
   std::vector<std::string> scenes,
       shaders;  // of each workload; from its name (SCENE_SHADER) where the table has no such columns
   std::vector<std::string> metrics;
-  Eigen::MatrixXd values;        // workloads x metrics, as they stand in the file
+  Eigen::MatrixXd values;        // workloads x metrics, as they are in the file
   Eigen::MatrixXd standardised;  // each column with mean 0 and variance 1 (over n, not n - 1)
   std::vector<Dropped> dropped;  // columns that were left out
 
@@ -23,16 +23,18 @@ struct FeatureTable {
   Eigen::Index columns() const { return values.cols(); }
 };
 
-// From metrics.csv of `glint bench`, or any table whose first column names the workloads. Columns that say
-// which run it was and the host's speed are no metrics; dropped with a reason are: columns of text, with an
-// empty cell, constant, or equal to an earlier one. UserError where there are fewer than three workloads,
-// fewer than two metrics remain, or a workload stands there twice.
+// Makes the table from metrics.csv of `glint bench`, or from any table whose first column names the
+// workloads. Columns that identify the run, and the host's speed, are not metrics. Columns are dropped with a
+// reason when they are text, have an empty cell, are constant, or are equal to an earlier one. Throws
+// UserError when there are fewer than three workloads, when fewer than two metrics remain, or when a workload
+// is in the table twice.
 FeatureTable feature_table(const std::string& csv, const std::string& name);
 
-// z-scores of each column. Every column has to vary.
+// Returns the z-scores of each column. Every column has to vary.
 Eigen::MatrixXd standardised(const Eigen::MatrixXd& values);
 
-// Euclidean distances between rows, pair (i, j) with i < j at the place where SciPy's pdist has it.
+// Returns the Euclidean distances between rows. Pair (i, j) with i < j is at the place where SciPy's pdist
+// has it.
 Eigen::VectorXd pairwise_distances(const Eigen::MatrixXd& rows);
 
 }  // namespace glint::report

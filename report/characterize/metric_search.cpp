@@ -1,4 +1,4 @@
-// The genetic algorithm: sets of metrics that breed, change by one metric, and move between islands.
+// Runs the genetic algorithm: sets of metrics breed, change by one metric, and move between islands.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/characterize/metric_search.h"
 
@@ -20,7 +20,8 @@ bool is_better(const Individual& a, const Individual& b) {
   return a.fitness != b.fitness ? a.fitness > b.fitness : a.columns < b.columns;
 }
 
-// The numbers of std::mt19937_64 are the same everywhere, those of the standard's distributions are not.
+// Draws random numbers. Those of std::mt19937_64 are the same everywhere; those of the standard's
+// distributions are not.
 class Dice {
  public:
   explicit Dice(uint64_t seed) : engine_(seed) {}
@@ -64,7 +65,7 @@ class Search {
     return {std::move(columns), fitness};
   }
 
-  // `columns` filled up with random others until there are enough.
+  // Returns `columns`, filled up with random others until there are enough.
   std::vector<int> filled(std::vector<int> columns) {
     while (int(columns.size()) < count_)
       if (const int column = dice_.below(size_t(total_)); std::ranges::find(columns, column) == columns.end())
@@ -79,12 +80,12 @@ class Search {
     return out;
   }
 
-  // The better of two by chance. An island is sorted, best first.
+  // Returns the better of two random members. An island is sorted with the best first.
   const Individual& parent(const std::vector<Individual>& island) {
     return island[size_t(std::min(dice_.below(island.size()), dice_.below(island.size())))];
   }
 
-  // What both parents have, and a random part of what one has.
+  // Returns what both parents have, and a random part of what one has.
   Individual child(const Individual& a, const Individual& b) {
     std::vector<int> columns, one;
     std::ranges::set_intersection(a.columns, b.columns, std::back_inserter(columns));
@@ -94,7 +95,8 @@ class Search {
       columns.push_back(*pick);
       one.erase(pick);
     }
-    while (dice_.below(2) == 0) {  // every other child has one metric exchanged, every fourth two, and so on
+    while (dice_.below(2) ==
+           0) {  // half of the children have one metric exchanged, a quarter have two, and so on
       columns.erase(columns.begin() + dice_.below(columns.size()));
       columns = filled(std::move(columns));
     }
@@ -107,7 +109,7 @@ class Search {
         island.begin() + std::min<std::ptrdiff_t>(2, std::ssize(island)));  // the two best stay
     while (out.size() < island.size()) out.push_back(child(parent(island), parent(island)));
     std::ranges::sort(out, is_better);
-    // Twins are replaced by newcomers: otherwise an island soon holds one set many times.
+    // Twins are replaced by newcomers, because otherwise an island soon holds one set many times.
     const auto twins = std::unique(out.begin(), out.end(), [](const Individual& a, const Individual& b) {
       return a.columns == b.columns;
     });
@@ -132,7 +134,7 @@ class Search {
     return best;
   }
 
-  // Takes the best exchange of one metric of best_ for another; false where none is better.
+  // Makes the best exchange of one metric of best_ for another. Returns false when no exchange is better.
   bool exchange_one() {
     Individual better = best_;
     for (size_t at = 0; at < best_.columns.size(); ++at) {

@@ -1,4 +1,4 @@
-// Choosing representatives and judging them.
+// Chooses representatives and judges them.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/characterize/subset.h"
 
@@ -20,7 +20,7 @@ struct Member {
   double distance = 0;
 };
 
-// The rows of each cluster, nearest to its centre first.
+// Returns the rows of each cluster, nearest to its centre first.
 std::vector<std::vector<Member>> members_of(const Eigen::MatrixXd& scores, const std::vector<int>& clusters) {
   std::vector<std::vector<Member>> out(size_t(std::ranges::max(clusters)) + 1);
   for (size_t row = 0; row < clusters.size(); ++row) out[size_t(clusters[row])].push_back({int(row), 0});
@@ -101,7 +101,7 @@ SpeedUps speed_ups(const std::string& before, const std::string& before_name, co
     const auto found = all.find(name);
     if (found == all.end())
       throw UserError({is.contains(name) ? before_name : after_name},
-                      fmt::format("has no cycles of {}", name),
+                      fmt::format("this table has no cycles of {}", name),
                       "both tables need the workloads of the subset");
     chosen[name] = found->second;
   }

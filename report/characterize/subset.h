@@ -1,4 +1,4 @@
-// A representative subset: one workload of each cluster, and how well it stands for all.
+// Chooses a representative subset, one workload per cluster, and judges how well it stands for all.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
@@ -15,18 +15,18 @@ struct Representative {
   double distance = 0;  // to the centre of its cluster
 };
 
-// One of each cluster, by cluster: the nearest to the centre (the mean of the cluster's scores) whose scene
-// no other cluster has given yet; where all scenes are taken, the nearest. Small clusters choose first, for
-// they have the least choice.
+// Returns one workload of each cluster, ordered by cluster. It is the one nearest to the centre (the mean of
+// the cluster's scores) whose scene no other cluster has given yet, or the nearest when all scenes are taken.
+// Small clusters choose first, because they have the least choice.
 std::vector<Representative> representatives(const FeatureTable& table, const Eigen::MatrixXd& scores,
                                             const std::vector<int>& clusters);
 
-// Mean distance of all workloads to the nearest of `rows`, as a share of the mean distance between two
-// workloads: 0 = each is there itself. Below 1; smaller is better.
+// Returns the mean distance of all workloads to the nearest of `rows`, as a fraction of the mean distance
+// between two workloads. 0 says that `rows` has every workload. The value is below 1, and smaller is better.
 double coverage_error(const Eigen::MatrixXd& scores, const std::vector<int>& rows);
 
-// Speed-ups from one configuration to another, of some workloads against all of them (the paper's check of
-// its subset).
+// Holds the speed-ups of some workloads from one configuration to another, and those of all workloads, as in
+// the paper's check of its subset.
 struct SpeedUps {
   struct Range {
     double mean = 0, least = 0, most = 0;  // geometric mean
@@ -36,8 +36,8 @@ struct SpeedUps {
   double error() const { return subset.mean / all.mean - 1; }
 };
 
-// `before` and `after`: tables of metrics with a column `cycles`. UserError where one lacks it or a workload
-// of `names`. Workloads that only one of the two tables has are left out.
+// Compares two tables of metrics with a column `cycles`. Throws UserError when one lacks the column or a
+// workload of `names`. Workloads that only one of the two tables has are left out.
 SpeedUps speed_ups(const std::string& before, const std::string& before_name, const std::string& after,
                    const std::string& after_name, const std::vector<std::string>& names);
 

@@ -1,4 +1,4 @@
-// Layout of annotated source.
+// Lays out annotated source.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/annotate.h"
 
@@ -26,7 +26,7 @@ Row joined(Row figures, const Row& more) {
   return figures;
 }
 
-// The rows of a program added up by what `key` says.
+// Adds up the rows of a program by what `key` returns.
 template <class Key>
 std::map<uint32_t, ProfileRow> summed(const ProfileTable& profile, uint32_t program, const Key& key) {
   std::map<uint32_t, ProfileRow> out;
@@ -79,7 +79,7 @@ std::string Annotator::sheet(const std::string& heading, Row columns, const Rows
          table(all, measures_.alignment() + alignment) + "\n";
 }
 
-// "shade.glsl:12"
+// Returns a place such as "shade.glsl:12".
 std::string Annotator::place(const ListedLine& line) const {
   if (line.line == 0 || line.file >= map_.files.size()) return "";
   return fmt::format("{}:{}", std::filesystem::path(map_.files[line.file].path).filename().string(),
@@ -118,7 +118,7 @@ std::string Annotator::spirv(uint32_t number) const {
       summed(profile_, number, [](const ProfileRow& row) { return row.spirv; });
   if (program.spirv.empty()) return heading_of(number, "not compiled from SPIR-V") + "\n\n";
   Rows rows;
-  bool in_function = false;  // what stands before is declared, not run
+  bool in_function = false;  // what comes before a function is declared, not run
   for (uint32_t n = 1; n <= program.spirv.size(); ++n) {
     const ListedLine& line = program.spirv[n - 1];
     in_function |= line.text.find("= OpFunction ") != std::string::npos;
@@ -144,7 +144,7 @@ std::string Annotator::isa(uint32_t number) const {
   return sheet(heading_of(number, "ISA"), {"index", "ISA", "SPIR-V", "source"}, rows, "><><");
 }
 
-// The SPIR-V of `instructions`, in order, and below each what it became.
+// Adds the SPIR-V of `instructions`, in order, and below each instruction what it became.
 void Annotator::add_below(Rows& rows, uint32_t program, const std::vector<uint32_t>& instructions) const {
   const ProgramListing& listing = map_.programs[program];
   const std::map<uint32_t, ProfileRow> by_spirv =
@@ -167,7 +167,8 @@ void Annotator::add_below(Rows& rows, uint32_t program, const std::vector<uint32
 
 std::string Annotator::all(size_t number) const {
   const SourceFile& file = map_.files.at(number);
-  std::map<uint32_t, std::map<uint32_t, std::vector<uint32_t>>> lines;  // to programs to instructions
+  std::map<uint32_t, std::map<uint32_t, std::vector<uint32_t>>>
+      lines;  // maps lines to programs to instructions
   for (uint32_t p = 0; p < map_.programs.size(); ++p)
     for (uint32_t i = 0; i < map_.programs[p].isa.size(); ++i)
       if (const ListedLine& line = map_.programs[p].isa[i]; line.line && line.file == number)

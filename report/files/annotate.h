@@ -1,4 +1,4 @@
-// A run's programs as GLSL, SPIR-V and ISA, with what each line cost beside it.
+// Prints a run's programs as GLSL, SPIR-V and ISA, with what each line cost beside it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -11,33 +11,33 @@
 
 namespace glint::report {
 
-// The files of a profile with a share of its cycles, the costliest first.
+// Names a file of a profile with its share of the cycles. Lists of these have the costliest file first.
 struct FileShare {
   std::string file;
-  double share = 0;  // of the cycles of all instructions
+  double share = 0;  // fraction of the cycles of all instructions
 };
 std::vector<FileShare> files_of(const ProfileTable& profile);
 
-// The programs of a profile by number, the costliest first.
+// Returns the programs of a profile by number, the costliest first.
 std::vector<uint32_t> programs_of(const ProfileTable& profile);
 
-// Text for a terminal: a heading, then each line with its figures. The figures of all files (of all programs:
-// of their SPIR-V, of their ISA) add up to the profile's instructions: what has no line stands in a row of
-// its own.
+// Makes text for a terminal: a heading, then each line with its figures. The figures of all files, of the
+// SPIR-V of all programs, and of their ISA each add up to the profile's instructions, because what has no
+// line has a row of its own.
 class Annotator {
  public:
-  // Both have to outlive it. `map` may have no programs; then there is source only.
+  // Both arguments have to outlive it. `map` may have no programs; then only source can be printed.
   Annotator(const ProfileTable& profile, const SourceMap& map, const std::vector<std::string>& measures,
             const Terminal& terminal);
 
-  // Each line of a file; when its text is not known only the lines that have figures.
+  // Returns each line of a file or, when its text is not known, the lines that have figures.
   std::string file(const SourceFile& file) const;
-  // Each SPIR-V instruction of program `number`'s functions, after optimisation.
+  // Returns each SPIR-V instruction of program `number`'s functions, after optimisation.
   std::string spirv(uint32_t number) const;
-  // Each instruction of program `number`.
+  // Returns each instruction of program `number`.
   std::string isa(uint32_t number) const;
-  // Each line of file `number` that some instruction belongs to, below it the SPIR-V and below that the ISA,
-  // of all programs.
+  // Returns each line of file `number` that has instructions; below it the SPIR-V and the ISA, of all
+  // programs.
   std::string all(size_t number) const;
 
  private:
@@ -54,7 +54,7 @@ class Annotator {
   Measures measures_;
 };
 
-// Where the cycles of all schedulers went, by reason, the largest first: it adds up to 100 %.
+// Returns where the cycles of all schedulers went, by reason, the largest first. The rows add up to 100 %.
 std::string reason_table(const ProfileTable& profile, const Terminal& terminal);
 
 }  // namespace glint::report

@@ -1,4 +1,4 @@
-// Bytes as text for data URIs: RFC 4648, section 4.
+// Encodes bytes as text for data URIs (RFC 4648, section 4).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>

@@ -1,4 +1,4 @@
-// Finding functions and calls in the text of a shader.
+// Finds functions and calls in the text of a shader.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/call_tree.h"
 
@@ -9,13 +9,13 @@
 namespace glint::report {
 namespace {
 
-// The words and signs of a text with their lines; comments and lines of the preprocessor are left out.
+// Splits a text into words and signs with their lines. Comments and lines of the preprocessor are left out.
 class Tokens {
  public:
   explicit Tokens(const std::string& text) : text_(text) {}
   uint32_t line() const { return line_; }
 
-  // The next word or sign; "" at the end.
+  // Returns the next word or sign, or "" at the end.
   std::string next() {
     skip();
     if (at_ == text_.size()) return "";
@@ -48,7 +48,7 @@ class Tokens {
       } else if (std::isspace(static_cast<unsigned char>(text_[at_]))) {
         step();
       } else {
-        fresh_ = false;  // something stands on this line
+        fresh_ = false;  // this line has content
         return;
       }
     }
@@ -67,11 +67,11 @@ CallTree::CallTree(const std::vector<std::string>& files, const TextOf& text_of)
     if (const std::optional<std::string> text = text_of(file)) scan(file, *text);
 }
 
-// A word before parentheses is a function's head when a brace follows them outside of all braces, and may be
-// a call inside.
+// Scans a file. A word before parentheses is a function's head when a brace follows them outside of all
+// braces, and it may be a call inside of braces.
 void CallTree::scan(const std::string& file, const std::string& text) {
   Tokens tokens(text);
-  std::string before, head;  // the word before; that before the last parentheses outside of braces
+  std::string before, head;  // the word before, and the word before the last parentheses outside of braces
   int braces = 0, parens = 0;
   bool in_function = false;
   for (std::string token = tokens.next(); !token.empty(); before = token, token = tokens.next()) {

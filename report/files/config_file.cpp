@@ -1,4 +1,4 @@
-// Grouping of dotted keys into TOML tables.
+// Groups dotted keys into TOML tables.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/config_file.h"
 
@@ -60,8 +60,8 @@ std::string config_key_values(const std::vector<ParamInfo>& params) {
 }
 
 uint64_t fnv1a(const std::string& bytes) {
-  uint64_t hash = 0xcbf29ce484222325;                                     // offset basis
-  for (const char c : bytes) hash = (hash ^ uint8_t(c)) * 0x100000001b3;  // prime
+  uint64_t hash = 0xcbf29ce484222325;                                     // FNV's offset basis
+  for (const char c : bytes) hash = (hash ^ uint8_t(c)) * 0x100000001b3;  // FNV's prime
   return hash;
 }
 

@@ -1,4 +1,4 @@
-// Reading configuration files back as text.
+// Reads configuration files back as text.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/config_rows.h"
 
@@ -16,8 +16,8 @@ std::string trimmed(std::string_view text) {
   return first == std::string_view::npos ? "" : std::string(text.substr(first, last - first + 1));
 }
 
-// The value at the beginning of `text`, and where it ends: a string up to its quote, anything else up to a
-// comment.
+// Returns the value at the beginning of `text`, and sets where it ends. A string ends at its quote, and
+// anything else ends at a comment.
 std::string value_of(const std::string& text, size_t& end) {
   if (text.empty() || text.front() != '"') {
     end = std::min(text.find('#'), text.size());
@@ -31,7 +31,7 @@ std::string value_of(const std::string& text, size_t& end) {
   return out;
 }
 
-// "# [unit] doc. (range)"
+// Reads a comment of the form "# [unit] doc. (range)".
 void read_comment(const std::string& comment, ConfigRow& row) {
   row.doc = trimmed(std::string_view(comment).substr(1));
   if (row.doc.empty() || row.doc.front() != '[') return;

@@ -1,4 +1,5 @@
-// The keys of a resolved configuration as rows of text, for tables and for telling two configurations apart.
+// Reads the keys of a resolved configuration as rows of text, for tables and for telling configurations
+// apart.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
@@ -7,16 +8,16 @@
 namespace glint::report {
 
 struct ConfigRow {
-  std::string key, value;  // "rt.warps", "4": as the file spells it, strings without their quotes
-  std::string unit, doc;   // of the comment behind; "" without one
+  std::string key, value;  // "rt.warps", "4", as the file spells them; strings are without quotes
+  std::string unit, doc;   // from the comment behind; "" without one
 };
 
-// Reads what config_file() writes: tables of dotted names, one key a line, its comment behind. Keeps the
-// order.
+// Reads what config_file() writes: tables of dotted names, one key per line with its comment behind. The
+// order is kept.
 std::vector<ConfigRow> config_rows(const std::string& toml);
 
-// Keys of `run` whose value is another in `preset`, or that it does not have; each with the preset's value
-// ("" = none).
+// Holds a key of `run` whose value differs in `preset` or that `preset` does not have, with the preset's
+// value ("" when there is none).
 struct ConfigChange {
   ConfigRow row;
   std::string preset;

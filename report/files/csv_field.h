@@ -1,4 +1,4 @@
-// A field of comma-separated values: written, and read as a number.
+// Writes a field of comma-separated values, and reads one as a number.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <charconv>
@@ -9,7 +9,8 @@
 
 namespace glint::report {
 
-// RFC 4180: a field with a comma, quote or newline is quoted, its quotes doubled.
+// Returns a field as RFC 4180 writes it: a field with a comma, quote or newline is quoted, and its quotes are
+// doubled.
 inline std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string out = "\"";
@@ -17,7 +18,7 @@ inline std::string csv_field(const std::string& text) {
   return out + "\"";
 }
 
-// The whole text as a number; nullopt when it is none, or none that is finite.
+// Returns the whole text as a number, or nullopt when it is not a finite number.
 inline std::optional<double> finite_number(std::string_view text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

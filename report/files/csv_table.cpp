@@ -1,4 +1,4 @@
-// Splitting comma-separated values.
+// Splits comma-separated values.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/csv_table.h"
 
@@ -10,7 +10,7 @@
 namespace glint::report {
 namespace {
 
-// Reads one record, which may span lines within quotes; advances `at` and `line` behind it.
+// Reads one record, which may span lines within quotes, and advances `at` and `line` behind it.
 std::vector<std::string> record(const std::string& text, size_t& at, int& line, const std::string& name) {
   std::vector<std::string> cells(1);
   bool in_quotes = false;
@@ -55,7 +55,7 @@ CsvTable read_csv(const std::string& text, const std::string& name) {
     if (cells.size() == 1 && cells[0].empty()) continue;  // an empty line
     if (cells.size() != table.columns.size())
       throw UserError({name, first},
-                      fmt::format("{} cells, expected {}", cells.size(), table.columns.size()));
+                      fmt::format("this row has {} cells, expected {}", cells.size(), table.columns.size()));
     table.rows.push_back(std::move(cells));
   }
   return table;

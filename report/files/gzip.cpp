@@ -1,4 +1,4 @@
-// zlib's streams.
+// Uses zlib's streams.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/gzip.h"
 
@@ -12,7 +12,7 @@ namespace glint::report {
 namespace {
 
 constexpr size_t kChunk = size_t{1} << 16;
-constexpr int kGzip = 16 + MAX_WBITS;  // zlib: a header of gzip, with no time in it
+constexpr int kGzip = 16 + MAX_WBITS;  // zlib writes a gzip header, without the time
 
 }  // namespace
 
@@ -58,7 +58,7 @@ void GzipWriter::deflate_all(bool ends) {
 std::string zlib_bytes(std::string_view text) {
   std::string best;
   for (const int strategy :
-       {Z_DEFAULT_STRATEGY, Z_FILTERED}) {  // the second suits numbers: it takes no short repetitions
+       {Z_DEFAULT_STRATEGY, Z_FILTERED}) {  // Z_FILTERED suits numbers, because it takes no short repetitions
     z_stream z{};
     const int status = deflateInit2(&z, Z_BEST_COMPRESSION, Z_DEFLATED, MAX_WBITS, MAX_MEM_LEVEL, strategy);
     GLINT_CHECK(status == Z_OK, "zlib cannot start: {}", status);

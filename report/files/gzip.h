@@ -1,4 +1,4 @@
-// Files in gzip's format (RFC 1952), written piece by piece and read line by line, and packed text.
+// Writes files in gzip's format (RFC 1952) piece by piece, reads them line by line, and packs text.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
@@ -8,13 +8,13 @@
 
 namespace glint::report {
 
-// The bytes depend on what was added only: no name and no time are kept.
+// Packs bytes. The result depends only on what was added, because no name and no time are kept.
 class GzipWriter {
  public:
   GzipWriter();
   ~GzipWriter();
   void add(std::string_view text);
-  std::string finish();  // once: all of the file
+  std::string finish();  // returns the whole file; called once
 
  private:
   struct Stream;
@@ -23,11 +23,11 @@ class GzipWriter {
   std::string waiting_, out_;
 };
 
-// Calls `each` for every line of the file, without its end, until it answers false. UserError where the file
-// cannot be read or is damaged.
+// Calls `each` for every line of the file, without its end, until it answers false. Throws UserError when the
+// file cannot be read or is damaged.
 void read_gzip_lines(const std::string& path, const std::function<bool(std::string_view line)>& each);
 
-// `text` as a zlib stream (RFC 1950), as small as zlib makes it.
+// Returns `text` as a zlib stream (RFC 1950), as small as zlib makes it.
 std::string zlib_bytes(std::string_view text);
 
 }  // namespace glint::report

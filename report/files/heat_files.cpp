@@ -1,4 +1,4 @@
-// Summaries, lists and reading of maps of cost.
+// Summarises, lists and reads maps of cost.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/heat_files.h"
 
@@ -16,7 +16,7 @@
 namespace glint::report {
 namespace {
 
-constexpr int kSchema = 1;  // of maps.json
+constexpr int kSchema = 1;  // schema of maps.json
 
 std::string read_whole(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -78,7 +78,7 @@ std::vector<CostMap> read_heat(const std::string& directory) {
   if (!std::filesystem::exists(path)) return maps;
   const auto index = nlohmann::json::parse(read_whole(path), nullptr, false);
   if (!index.is_object() || index.value("schema", 0) != kSchema || !index.contains("maps"))
-    throw UserError({path}, "this is no list of maps that this version knows", "run it again");
+    throw UserError({path}, "this is not a list of maps that this version knows", "run it again");
   for (const auto& entry : index["maps"]) {
     CostMap map{entry.value("name", ""), entry.value("unit", ""), entry.value("doc", ""), true, 0, 0, {}};
     const std::string file = directory + "/heat/" + entry.value("file", "");

@@ -1,4 +1,4 @@
-// Maps of cost as files: pictures with a legend, arrays, a list of what they are.
+// Writes maps of cost as files: pictures with a legend, arrays, and a list of what they are.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
@@ -9,29 +9,30 @@
 
 namespace glint::report {
 
-// Over the pixels of a map.
+// Summarises the pixels of a map.
 struct HeatSummary {
   double sum = 0, min = 0, mean = 0, max = 0;
-  double p99 = 0;  // 99 of 100 pixels have no more
-  double top = 0;  // of the colour scale: p99, or the largest where that is 0
+  double p99 = 0;  // 99 of 100 pixels have no more than this
+  double top = 0;  // end of the colour scale: p99, or the largest value when p99 is 0
 };
 HeatSummary summary_of(const CostMap& map);
 
-// The map alone, a pixel a pixel (fewer where a side has more than 2048): PNG. Colours go from 0 to
-// HeatSummary::top.
+// Returns the map alone as PNG, one pixel for each (or fewer when a side has more than 2048). Colours go from
+// 0 to HeatSummary::top.
 std::string heat_picture(const CostMap& map);
 
-// The map, enlarged when small, with its name, the scale and its unit beside it: PNG.
+// Returns the map as PNG, enlarged when it is small, with its name, the scale and its unit beside it.
 std::string heat_png(const CostMap& map);
 
-// maps.json: {"schema", "maps": [{name, unit, doc, file, picture, width, height, sum, min, mean, p99, max}]}.
+// Returns maps.json: {"schema", "maps": [{name, unit, doc, file, picture, width, height, sum, min, mean, p99,
+// max}]}.
 std::string heat_index(const std::vector<CostMap>& maps);
 
-// Name and bytes of every file of a run's maps, below "heat/".
+// Returns name and bytes of every file of a run's maps, below "heat/".
 std::vector<std::pair<std::string, std::string>> heat_files(const std::vector<CostMap>& maps);
 
-// What heat_files() wrote into a run directory; none where there are no maps. UserError where a file is
-// damaged.
+// Reads what heat_files() wrote into a run directory. Returns none when there are no maps. Throws UserError
+// when a file is damaged.
 std::vector<CostMap> read_heat(const std::string& directory);
 
 }  // namespace glint::report

@@ -1,4 +1,4 @@
-// Writing and reading the files of a profile.
+// Writes and reads the files of a profile.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/profile_files.h"
 
@@ -19,7 +19,7 @@ namespace {
 constexpr const char* kInstruction = "instruction";
 constexpr const char* kLine = "line";
 constexpr const char* kNone = "no_warp";
-// Before the reasons.
+// These columns come before the reasons.
 const std::vector<std::string> kColumns = {"by",       "stage",   "shader", "program", "file",  "line",
                                            "spirv",    "index",   "op",     "issues",  "lanes", "accesses",
                                            "requests", "sectors", "ended",  "latency", "cycles"};
@@ -47,7 +47,8 @@ std::string row_text(const char* by, const ProfileRow& row) {
   return csv_line(cells);
 }
 
-// Cells of the line of a table that begins at `at`, which moves behind it. Quoted cells may hold line ends.
+// Returns the cells of the line of a table that begins at `at`, and moves `at` behind it. Quoted cells may
+// hold line ends.
 std::vector<std::string> read_line(const std::string& text, size_t& at) {
   std::vector<std::string> cells(1);
   bool inside = false;
@@ -69,7 +70,7 @@ std::vector<std::string> read_line(const std::string& text, size_t& at) {
   return cells;
 }
 
-// Numbers of a row from column `first` on.
+// Reads the numbers of a row from column `first` on.
 class Numbers {
  public:
   Numbers(const std::vector<std::string>& cells, const std::string& name, int line)
@@ -134,13 +135,13 @@ std::string profile_csv(const ProfileTable& profile) {
 }
 
 std::string profile_folded(const ProfileTable& profile, const CallTree::TextOf& text_of) {
-  std::map<std::pair<std::string, std::string>, std::set<std::string>> files;  // of each shader
+  std::map<std::pair<std::string, std::string>, std::set<std::string>> files;  // files of each shader
   for (const ProfileRow& row : profile.rows)
     if (row.line) files[{row.stage, row.shader}].insert(row.file);
   std::map<std::pair<std::string, std::string>, CallTree> trees;
   for (const auto& [shader, names] : files)
     trees.emplace(shader, CallTree({names.begin(), names.end()}, text_of));
-  std::map<std::string, uint64_t> stacks;  // sorted: the same text for the same profile
+  std::map<std::string, uint64_t> stacks;  // sorted, so that the same profile gives the same text
   for (const ProfileRow& row : profile.rows) {
     std::vector<std::string> calls{row.shader};
     if (row.line)
@@ -169,7 +170,7 @@ ProfileTable parse_profile(const std::string& text, const std::string& name) {
   size_t at = 0;
   const std::vector<std::string> header = read_line(text, at);
   if (header.size() <= kColumns.size() || !std::equal(kColumns.begin(), kColumns.end(), header.begin()))
-    throw UserError({name, 1, 0}, "this is no profile of this version",
+    throw UserError({name, 1, 0}, "this is not a profile of this version",
                     "`glint run ... --profile` writes one");
   out.reasons.assign(header.begin() + ptrdiff_t(kColumns.size()), header.end());
   for (int line = 2; at < text.size(); ++line) {

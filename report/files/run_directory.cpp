@@ -1,4 +1,4 @@
-// Writing of run directories.
+// Writes run directories.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/run_directory.h"
 
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// "rays.bounces" is the entry "bounces" of the table "rays".
+// Returns the pointer of a key: "rays.bounces" is the entry "bounces" of the table "rays".
 nlohmann::ordered_json::json_pointer pointer_of(std::string key) {
   std::replace(key.begin(), key.end(), '.', '/');
   return nlohmann::ordered_json::json_pointer("/" + key);
@@ -27,7 +27,7 @@ nlohmann::ordered_json::json_pointer pointer_of(std::string key) {
 
 constexpr const char* kResults[] = {"image.png",      "image.pfm",   "printf.txt", "profile.csv",
                                     "profile.folded", "source.json", "series.csv", "trace.json.gz"};
-constexpr const char* kFolder = "heat";  // the one folder of a run
+constexpr const char* kFolder = "heat";  // the only folder of a run
 
 bool put(const std::string& path, const std::string& bytes) {
   std::ofstream out(path, std::ios::binary | std::ios::trunc);
@@ -36,7 +36,7 @@ bool put(const std::string& path, const std::string& bytes) {
   return bool(out);
 }
 
-// What the run of that run.json has saved: names in its folder, whatever the file says.
+// Returns what the run of that run.json has saved: names in its folder, whatever the file says.
 std::vector<std::string> saved_before(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   const nlohmann::json json = nlohmann::json::parse(in, nullptr, false);
@@ -59,7 +59,7 @@ void write_file(const std::string& path, const std::string& bytes) {
     return;
   }
   const std::string target = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error).string() : path;
-  // The process id keeps two processes from writing the same temporary file.
+  // The process id in the name keeps two processes from writing the same temporary file.
   const std::string temporary = fmt::format("{}.{}.tmp", target, ::getpid());
   const bool is_whole = put(temporary, bytes);
   if (is_whole) fs::rename(temporary, target, error);
@@ -73,14 +73,14 @@ RunDirectory::RunDirectory(std::string path) : path_(std::move(path)) {
   std::error_code error;
   fs::create_directories(path_, error);
   if (error || !fs::is_directory(path_, error))
-    throw UserError({path_}, "cannot create the output folder", "give another one with --out");
+    throw UserError({path_}, "cannot create the output folder", "name another folder with --out");
 }
 
 void RunDirectory::remove(const std::string& name) const {
   std::error_code error;
   if (name != kFolder && fs::is_directory(fs::symlink_status(path_of(name), error)))
     throw UserError({path_of(name)}, "a folder stands where a run has a file",
-                    "move it away, or give another folder with --out");
+                    "move it away, or name another folder with --out");
   fs::remove_all(path_of(name), error);
   if (error) throw UserError({path_of(name)}, "cannot remove what an earlier run left: " + error.message());
 }
@@ -161,7 +161,7 @@ void RunDirectory::write_run(const RunInfo& info) const {
   json["exit"] = info.exit;
   if (!info.message.empty()) json["message"] = info.message;
   using ErrorHandler = nlohmann::ordered_json::error_handler_t;
-  write("run.json", json.dump(2, ' ', false, ErrorHandler::replace) + "\n");  // argv need not be UTF-8
+  write("run.json", json.dump(2, ' ', false, ErrorHandler::replace) + "\n");  // argv may be other than UTF-8
 }
 
 }  // namespace glint::report

@@ -1,4 +1,4 @@
-// The folder that a run leaves behind: complete, self-describing, each file written whole or not at all.
+// Writes the folder that a run leaves behind: complete and self-describing, each file whole or not at all.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -14,67 +14,68 @@
 
 namespace glint::report {
 
-// A mistake of the shaders that `--on-fault warn` let pass.
+// Describes a mistake of the shaders that `--on-fault warn` let pass.
 struct FaultInfo {
   std::string kind, place, what;
-  std::array<uint32_t, 3> launch_id{};  // of the first
+  std::array<uint32_t, 3> launch_id{};  // launch id of the first fault
   uint64_t count = 0;
 };
 
-// What the acceleration structures of a scene came to.
+// Holds sizes of the acceleration structures of a scene.
 struct StructureInfo {
   uint64_t bytes = 0, triangles = 0, procedurals = 0, bottom_levels = 0, instances = 0;
   uint32_t top_depth = 0, bottom_depth = 0;
 };
 
-// What of a launch fits a core at a time, and what is used up first.
+// Says how much of a launch fits a core at a time, and what is used up first.
 struct ResidencyInfo {
   uint32_t warps = 0, blocks = 0;
   std::string limit;
 };
 
-inline constexpr int kRunSchema = 1;  // of run.json
+inline constexpr int kRunSchema = 1;  // schema of run.json
 
-// What run.json says besides schema and paths. The only file of a run that holds wall-clock times.
+// Holds what run.json says besides schema and paths. Only this file of a run holds wall-clock times.
 struct RunInfo {
   std::vector<std::string> command;  // argv
   std::string version, git, compiler;
   std::string scene, scene_form, scene_note, shader, config, mode;
   uint64_t scene_hash = 0, scene_triangles = 0, config_hash = 0;
-  double scene_fraction = 1;  // of the original's triangles
-  // The parameters of the frame, in the order of the file; a dot in a key leads into a table. A launch
-  // without a frame has only these.
+  double scene_fraction = 1;  // fraction of the original's triangles
+  // The parameters of the frame, in the order of the file. A dot in a key leads into a table. A launch
+  // without a frame has only these four.
   std::vector<std::pair<std::string, uint64_t>> frame = {
       {"width", 0}, {"height", 0}, {"samples", 0}, {"seed", 0}};
-  std::optional<StructureInfo> structures;                   // once they are built
-  std::optional<ResidencyInfo> residency;                    // of a timing run
-  std::vector<std::pair<std::string, double>> memory_peaks;  // what the memory system could do at best
+  std::optional<StructureInfo> structures;                   // set once they are built
+  std::optional<ResidencyInfo> residency;                    // set for a timing run
+  std::vector<std::pair<std::string, double>> memory_peaks;  // the best that the memory system could do
   std::string started;                                       // ISO 8601, UTC
   double wall_seconds = 0;
   std::string on_fault = "stop";
   std::vector<FaultInfo> faults;
   std::vector<std::string> saved;  // files that a pipeline or a kernel was asked to keep
   int exit = 0;
-  std::string message;  // of the error, when exit is not 0
+  std::string message;  // message of the error when exit is not 0
 };
 
-// Writes a file under another name and renames it: a reader never sees half a file, and nothing stays behind
-// when it cannot be written, which is a UserError. What is no regular file (a pipe, a device) is written to
-// as it is.
+// Writes a file under another name and renames it, so that a reader never sees half a file. When the file
+// cannot be written, nothing stays behind, and UserError is thrown. Anything but a regular file (a pipe, a
+// device) is written to directly.
 void write_file(const std::string& path, const std::string& bytes);
 
-// Files go through write_file(); run.json is written last: a directory with one is complete, or says what
-// went wrong. UserError when the folder or a file cannot be written.
+// Writes the files of a run through write_file(). run.json is written last, so a directory with one is
+// complete, or says what went wrong. Throws UserError when the folder or a file cannot be written.
 class RunDirectory {
  public:
-  explicit RunDirectory(std::string path);  // made with its parents
+  explicit RunDirectory(std::string path);  // the folder is made with its parents
   const std::string& path() const { return path_; }
   std::string path_of(const std::string& name) const { return path_ + "/" + name; }
 
   void write(const std::string& name,
-             const std::string& bytes) const;  // "heat/rays.png": in a folder below it
-  void remove(const std::string& name) const;  // a file or folder that an earlier run left, if it is there
-  // All that an earlier run left but config.toml, run.json first; and `saved`. Files of other commands stay.
+             const std::string& bytes) const;  // "heat/rays.png" is in a folder below it
+  void remove(const std::string& name) const;  // removes a file or folder of an earlier run, if it exists
+  // Removes all that an earlier run left except config.toml, run.json first, and also `saved`. Files of other
+  // commands stay.
   void remove_results(const std::vector<std::string>& saved) const;
   void write_image(const ImageView& image) const;    // image.png, image.pfm
   void write_stats(const stats::Group& root) const;  // stats.<format> of every registered format

@@ -1,4 +1,4 @@
-// Reading back what a run has written.
+// Reads back what a run has written.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/run_record.h"
 
@@ -48,11 +48,11 @@ void RunRecord::add_finished(const std::string& directory) {
   const std::string file = directory + "/run.json";
   add_facts(whole_file(file), file);
   if (const double schema = fact("schema").value_or(0); schema != kRunSchema)
-    throw UserError({file}, fmt::format("schema {}, expected {}", schema, kRunSchema),
+    throw UserError({file}, fmt::format("it has schema {}, expected {}", schema, kRunSchema),
                     "another version of Glint wrote it: run it again with this one");
   if (const double exit = fact("exit").value_or(0); exit != 0)
     throw UserError({file}, fmt::format("the run failed with exit code {}: {}", exit, text("message")),
-                    "it left no results: run it again");
+                    "the run left no results: run it again");
 }
 
 void check_finished(const std::string& directory) {
@@ -67,12 +67,13 @@ RunRecord RunRecord::read(const std::string& directory) {
   return record;
 }
 
-// Paths and values of stats.csv are never quoted: neither holds a comma.
+// Paths and values of stats.csv are never quoted, because neither holds a comma.
 void RunRecord::add_stats(const std::string& csv, const std::string& name) {
   std::istringstream in(csv);
   std::string line;
   if (!std::getline(in, line) || line.rfind("path,value,", 0) != 0)
-    throw UserError({name, 1}, "this is no table of statistics", "expected the header path,value,unit,doc");
+    throw UserError({name, 1}, "this is not a table of statistics",
+                    "expected the header path,value,unit,doc");
   for (int row = 2; std::getline(in, line); ++row) {
     const size_t first = line.find(','), second = line.find(',', first + 1);
     const std::optional<double> value =
@@ -80,19 +81,19 @@ void RunRecord::add_stats(const std::string& csv, const std::string& name) {
             ? std::nullopt
             : finite_number(std::string_view(line).substr(first + 1, second - first - 1));
     if (!value)
-      throw UserError({name, row}, "this row has no value, or none that is finite",
-                      "the file is damaged; run it again");
+      throw UserError({name, row}, "this row has no finite value", "the file is damaged; run it again");
     stats_.emplace_back(line.substr(0, first), *value);
   }
 }
 
 void RunRecord::add_facts(const std::string& json, const std::string& name) {
   const nlohmann::json parsed = nlohmann::json::parse(json, nullptr, false);
-  if (!parsed.is_object()) throw UserError({name}, "this is no JSON object");
+  if (!parsed.is_object()) throw UserError({name}, "this is not a JSON object");
   flatten(parsed, "", facts_, texts_);
 }
 
-// Reads what config_file() writes: tables of dotted names, one key a line, comments behind; numbers only.
+// Reads what config_file() writes: tables of dotted names, one key per line, comments behind. Only numbers
+// are kept.
 void RunRecord::add_config(const std::string& toml) {
   std::istringstream in(toml);
   std::string line, table;

@@ -1,4 +1,4 @@
-// A finished run as its directory tells it: statistics, facts of run.json and configuration keys, by name.
+// Reads a finished run from its directory: statistics, facts of run.json and configuration keys, by name.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <map>
@@ -9,27 +9,27 @@
 
 namespace glint::report {
 
-// UserError when run.json of a directory is absent, of another schema, or of a run that failed: with that
-// run's message.
+// Throws UserError when run.json of a directory is absent, of another schema, or of a run that failed. In the
+// last case the error has that run's message.
 void check_finished(const std::string& directory);
 
 class RunRecord {
  public:
-  // UserError when a file is absent or is not what a run writes.
+  // Reads a run. Throws UserError when a file is absent or is not what a run writes.
   static RunRecord read(const std::string& directory);
 
-  // From texts, for read() and tests: stats.csv, run.json, config.toml. Names stand in messages.
+  // These read texts, for read() and tests: stats.csv, run.json, config.toml. Names are used in messages.
   void add_stats(const std::string& csv, const std::string& name);
   void add_facts(const std::string& json, const std::string& name);
   void add_config(const std::string& toml);
-  void add_finished(const std::string& directory);  // run.json of a directory; UserError as check_finished()
+  void add_finished(const std::string& directory);  // run.json of a directory; throws as check_finished()
 
-  // Values of all statistics whose path matches (path_matches()); empty when none does.
+  // Returns the values of all statistics whose path matches (path_matches()), or none when none does.
   std::vector<double> values(const std::string& pattern) const;
-  // A number of run.json by its dotted path ("scene.triangles"), or of the configuration ("rt.warps").
+  // Return a number of run.json by its dotted path ("scene.triangles"), or of the configuration ("rt.warps").
   std::optional<double> fact(const std::string& name) const { return find(facts_, name); }
   std::optional<double> config(const std::string& key) const { return find(config_, key); }
-  // A string of run.json; "" when it has none.
+  // Returns a string of run.json, or "" when it has none.
   std::string text(const std::string& name) const;
 
  private:

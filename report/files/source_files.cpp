@@ -1,4 +1,4 @@
-// Writing and reading source.json.
+// Writes and reads source.json.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/source_files.h"
 
@@ -20,7 +20,7 @@ constexpr int kSchema = 1;
 constexpr const char* kAdvice =
     "another version of Glint wrote it, or it is damaged: run it again with --profile";
 
-// Columns, so that the document is short and packs well.
+// Returns lines as columns, so that the document is short and packs well.
 Json columns_of(const std::vector<ListedLine>& lines, bool is_isa) {
   Json text = Json::array(), file = Json::array(), line = Json::array(), spirv = Json::array(),
        scope = Json::array();
@@ -62,7 +62,7 @@ ProgramListing program_of(const Json& from) {
   return out;
 }
 
-// Whether all numbers name something.
+// Returns whether all numbers name something.
 bool is_whole(const SourceMap& map) {
   const auto fits = [&](const ListedLine& line, const ProgramListing& program) {
     return (line.line == 0 || line.file < map.files.size()) && line.spirv <= program.spirv.size() &&
@@ -147,7 +147,7 @@ SourceMap parse_source(const std::string& text, const std::string& name) {
   const Json document = Json::parse(text, nullptr, false);
   const bool is_known = document.is_object() && document.contains("schema") && document["schema"] == kSchema;
   if (!is_known)
-    throw UserError({name}, fmt::format("this is no source document of schema {}", kSchema), kAdvice);
+    throw UserError({name}, fmt::format("this is not a source document of schema {}", kSchema), kAdvice);
   SourceMap out;
   try {
     for (const Json& file : document.at("files")) {

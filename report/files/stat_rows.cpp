@@ -1,4 +1,4 @@
-// Flattening of a statistics tree.
+// Flattens a tree of statistics.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/stat_rows.h"
 
@@ -11,7 +11,7 @@
 namespace glint::report {
 namespace {
 
-// Keeps the dotted path of the group being visited.
+// Keeps the dotted path of the group that is being visited.
 class PathVisitor : public stats::Visitor {
  public:
   void enter(const stats::Group& group) override {
@@ -41,7 +41,7 @@ class RowVisitor final : public PathVisitor {
   void visit(const stats::Histogram& stat) override {
     const stats::Bins& bins = stat.bins();
     for (size_t i = 0; i < stat.counts().size(); ++i) {
-      if (stat.counts()[i] == 0) continue;  // an empty bin says nothing, and there can be hundreds
+      if (stat.counts()[i] == 0) continue;  // empty bins are left out, because there can be hundreds
       const uint64_t low = bins.low + i * bins.step;
       const bool last = i + 1 == stat.counts().size();
       const std::string name = last             ? fmt::format("::{}+", low)
@@ -62,7 +62,7 @@ class RowVisitor final : public PathVisitor {
   }
 };
 
-// "core[3].l1" -> "core[*].l1"
+// Returns a path without numbers: "core[3].l1" becomes "core[*].l1".
 std::string without_numbers(const std::string& path) {
   std::string out;
   for (size_t i = 0; i < path.size(); ++i) {

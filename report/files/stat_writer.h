@@ -1,4 +1,4 @@
-// A format that statistics can be written in: one file in report/formats each, registered by name.
+// Declares a format of statistics. Each is one file in report/formats, registered by name.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace glint::report {
 
-// Turns a tree of statistics into bytes. The same tree gives the same bytes, on every machine.
+// Turns a tree of statistics into bytes. The same tree gives the same bytes on every machine.
 class StatWriter {
  public:
   struct Context {};

@@ -1,4 +1,4 @@
-// Writing of traces.
+// Writes traces.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/trace_files.h"
 
@@ -67,7 +67,7 @@ class Writer {
   void write_core(uint32_t core) {
     const uint32_t process = kFirstCore + core;
     name_process(process, fmt::format("SM {}", core));
-    uint32_t named = 0;  // thread that had its name written last: slices come track by track
+    uint32_t named = 0;  // thread whose name was written last; slices come track by track
     for (const TraceSlice& slice : trace_.cores[core]) {
       const bool in_rt = slice.kind == TraceKind::Rays;
       const uint32_t thread = slice.place + (in_rt ? kFirstPlace : kFirstWarpSlot);

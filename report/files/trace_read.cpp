@@ -1,4 +1,4 @@
-// Reading a window of a trace back for the timeline of the report.
+// Reads a window of a trace back for the timeline of the report.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstddef>
@@ -19,10 +19,10 @@ using Json = nlohmann::json;
 constexpr uint32_t kFirstCore = 2;  // process of core 0
 
 UserError damaged(const std::string& path) {
-  return UserError({path}, "this is no trace of a run", "`glint run ... --trace` writes one");
+  return UserError({path}, "this is not a trace of a run", "`glint run ... --trace` writes one");
 }
 
-// The line's object without what joins it to the next.
+// Returns the line's object, without what joins it to the next one.
 Json parsed(std::string_view line) {
   while (!line.empty() && (line.back() == ',' || line.back() == '\r')) line.remove_suffix(1);
   return Json::parse(line, nullptr, false);
@@ -46,7 +46,7 @@ Timeline::Slice slice_of(const Json& event) {
   return slice;
 }
 
-// The cycles around `middle` that no more than `most` slices overlap.
+// Returns the cycles around `middle` that no more than `most` slices overlap.
 std::pair<Cycle, Cycle> fitting(const std::vector<Timeline::Slice>& slices, Cycle first, Cycle last,
                                 size_t most) {
   const Cycle middle = first + (last - first) / 2;
@@ -55,13 +55,13 @@ std::pair<Cycle, Cycle> fitting(const std::vector<Timeline::Slice>& slices, Cycl
     return size_t(std::count_if(slices.begin(), slices.end(),
                                 [&](const auto& s) { return s.begin < end && s.begin + s.length > begin; }));
   };
-  Cycle low = 1, high = std::max<Cycle>(last - middle, 1);  // within(low) is taken to fit
+  Cycle low = 1, high = std::max<Cycle>(last - middle, 1);  // within(low) is assumed to fit
   if (within(high) <= most) return {first, last};
   while (low + 1 < high) (within((low + high) / 2) <= most ? low : high) = (low + high) / 2;
   return {middle - std::min(low, middle - first), std::min(middle + low, last)};
 }
 
-// Cut at the window's ends.
+// Cuts slices at the window's ends.
 void clip(Timeline& timeline) {
   std::vector<Timeline::Slice> kept;
   for (Timeline::Slice& slice : timeline.slices) {
@@ -75,7 +75,7 @@ void clip(Timeline& timeline) {
   timeline.slices = std::move(kept);
 }
 
-// Ends the window where it holds no more than so many slices.
+// Ends the window where it holds no more than `most` slices.
 void bound(Timeline& timeline, size_t most) {
   if (timeline.slices.size() <= most) return;
   timeline.is_cut = true;
@@ -103,11 +103,12 @@ Timeline read_timeline(const std::string& path, const TimelineRequest& request) 
   });
   if (!has_head) throw damaged(path);
   if (request.core >= timeline.cores)
-    throw UserError({path}, fmt::format("has no SM {}", request.core),
+    throw UserError({path}, fmt::format("this trace has no SM {}", request.core),
                     fmt::format("its SMs are 0 to {}", timeline.cores - 1));
   const Cycle first = timeline.trace_begin, last = timeline.trace_end;
   if (request.end && (request.begin >= last || request.end <= first))
-    throw UserError({path}, fmt::format("has nothing of cycles {} to {}", request.begin, request.end),
+    throw UserError({path},
+                    fmt::format("this trace has nothing of cycles {} to {}", request.begin, request.end),
                     fmt::format("it shows cycles {} to {}", first, last));
   if (request.end)
     std::tie(timeline.begin, timeline.end) =

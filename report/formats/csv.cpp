@@ -1,4 +1,4 @@
-// Statistics as comma-separated values for spreadsheets: header `path,value,unit,doc`.
+// Writes statistics as comma-separated values for spreadsheets: header `path,value,unit,doc`.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/csv_field.h"
 #include "report/files/stat_rows.h"
@@ -10,7 +10,7 @@ namespace {
 class CsvWriter final : public StatWriter {
  public:
   static constexpr const char* kName = "csv";
-  static constexpr const char* kDoc = "One row a statistic with a header line, RFC 4180.";
+  static constexpr const char* kDoc = "Writes a header line and one row per statistic, as RFC 4180 has it.";
   using Params = NoParams;
   CsvWriter(Params, Context) {}
 

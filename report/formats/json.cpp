@@ -1,4 +1,4 @@
-// Statistics as a JSON tree: groups are objects, a statistic is {"value", "unit", "doc"}.
+// Writes statistics as a JSON tree: groups are objects, and a statistic is {"value", "unit", "doc"}.
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -43,15 +43,15 @@ class JsonVisitor final : public stats::Visitor {
         {{"value", std::move(value)}, {"unit", std::string(stat.unit())}, {"doc", std::string(stat.doc())}});
   }
 
-  // Pointers stay valid: ordered_json may move an object's members when it grows, but only the innermost
-  // open object grows, and nobody holds a pointer into that one.
+  // Pointers stay valid: ordered_json may move an object's members when it grows, but only the innermost open
+  // object grows, and nobody holds a pointer into that one.
   std::vector<Json*> open_;
 };
 
 class JsonWriter final : public StatWriter {
  public:
   static constexpr const char* kName = "json";
-  static constexpr const char* kDoc = "A tree with value, unit and description of every statistic.";
+  static constexpr const char* kDoc = "Writes a tree with value, unit and description of every statistic.";
   using Params = NoParams;
   JsonWriter(Params, Context) {}
 

@@ -1,4 +1,4 @@
-// Statistics as aligned text for reading and grep: `path   value  unit  # doc`.
+// Writes statistics as aligned text for reading and grep: `path   value  unit  # doc`.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <fmt/format.h>
@@ -12,7 +12,8 @@ namespace {
 class TextWriter final : public StatWriter {
  public:
   static constexpr const char* kName = "txt";
-  static constexpr const char* kDoc = "One aligned line a statistic: path, value, unit, description.";
+  static constexpr const char* kDoc =
+      "Writes one aligned line per statistic: path, value, unit, description.";
   using Params = NoParams;
   TextWriter(Params, Context) {}
 

@@ -1,4 +1,4 @@
-// Comparing two runs by their metrics.
+// Compares two runs by their metrics.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/metrics/compare.h"
 
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view kOfTheHost = "sim_rate";
 
-// By which changes are sorted; a value that came from 0 is furthest.
+// Returns the distance by which changes are sorted. A value that came from 0 is the furthest.
 double distance(const Change& c) {
   return c.relative ? std::abs(*c.relative) : std::numeric_limits<double>::infinity();
 }
@@ -62,7 +62,7 @@ std::string uncompared_text(const RunRecord& before, const RunRecord& after) {
       if (!one[i].value || other[i].value || one[i].metric->name == kOfTheHost) continue;
       names += fmt::format("{}{}", count++ ? ", " : "", one[i].metric->name);
     }
-    return count ? fmt::format("{} metrics only {} has: {}\n", count, run, names) : "";
+    return count ? fmt::format("{} metrics are only in {}: {}\n", count, run, names) : "";
   };
   return line(was, is, "A") + line(is, was, "B");
 }
@@ -71,19 +71,19 @@ Condition parse_condition(const std::string& text) {
   const size_t sign = text.find_first_of("<>");
   const std::string note = "expected METRIC<-2% or METRIC>5%: a change in percent";
   if (sign == std::string::npos || sign == 0 || text.back() != '%')
-    throw UserError({}, fmt::format("'{}' is no condition", text), note);
+    throw UserError({}, fmt::format("'{}' is not a condition", text), note);
   Condition out{.text = text, .metric = text.substr(0, sign), .below = text[sign] == '<', .percent = 0};
   const char* first = text.data() + sign + 1;
   const char* last = text.data() + text.size() - 1;
   if (first < last && *first == '+') ++first;
   const auto [end, error] = std::from_chars(first, last, out.percent);
   if (error != std::errc{} || end != last || !std::isfinite(out.percent))
-    throw UserError({}, fmt::format("'{}' is no condition", text), note);
+    throw UserError({}, fmt::format("'{}' is not a condition", text), note);
   const std::vector<std::string> names = metric_names();
   if (std::find(names.begin(), names.end(), out.metric) == names.end()) {
     const std::string guess = nearest(out.metric, names);
     throw UserError(
-        {}, fmt::format("no metric '{}'", out.metric),
+        {}, fmt::format("there is no metric '{}'", out.metric),
         guess.empty() ? "`glint list metrics` names them" : fmt::format("did you mean '{}'?", guess));
   }
   return out;
@@ -93,7 +93,8 @@ bool holds(const Condition& condition, const std::vector<Change>& changes) {
   const auto found = std::find_if(changes.begin(), changes.end(),
                                   [&](const Change& c) { return c.metric->name == condition.metric; });
   if (found == changes.end())
-    throw UserError({}, fmt::format("'{}': one of the runs has no {}", condition.text, condition.metric));
+    throw UserError({}, fmt::format("'{}' cannot be checked: one of the runs has no {}", condition.text,
+                                    condition.metric));
   const double percent = found->relative
                              ? 100 * *found->relative
                              : std::copysign(std::numeric_limits<double>::infinity(), found->after);

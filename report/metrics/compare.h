@@ -1,4 +1,4 @@
-// Two runs against each other: what changed, and conditions on changes that scripts stop at.
+// Compares two runs: what changed, and conditions on changes that scripts stop at.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
@@ -14,29 +14,29 @@ namespace glint::report {
 struct Change {
   const Metric* metric = nullptr;
   double before = 0, after = 0;
-  std::optional<double> relative;  // (after - before) / before; absent where `before` is 0 and `after` is not
+  std::optional<double> relative;  // (after - before) / before; absent when `before` is 0 and `after` is not
 };
 
-// Metrics that both runs have, the largest change first; what was 0 and is not any more comes before all. The
-// speed of the host (sim_rate) is left out.
+// Returns the metrics that both runs have, the largest change first. Metrics that were 0 and no longer are
+// come before all others. The speed of the host (sim_rate) is left out.
 std::vector<Change> changes(const RunRecord& before, const RunRecord& after);
 
-// Names the metrics that only one of the runs has, A or B; "" when both have the same.
+// Names the metrics that only one of the runs has, A or B. Returns "" when both have the same.
 std::string uncompared_text(const RunRecord& before, const RunRecord& after);
 
-// "METRIC<-2%" or "METRIC>5%": holds when the metric changed by less or more than so many percent of what it
-// was.
+// Is "METRIC<-2%" or "METRIC>5%". It holds when the metric changed by less or more than this percentage of
+// its value before.
 struct Condition {
   std::string text, metric;
   bool below = false;
   double percent = 0;
 };
-// UserError when the text is no condition or names no metric.
+// Reads a condition. Throws UserError when the text is not a condition or names no metric.
 Condition parse_condition(const std::string& text);
-// UserError when one of the runs has no such number.
+// Returns whether a condition holds. Throws UserError when one of the runs has no such number.
 bool holds(const Condition& condition, const std::vector<Change>& changes);
 
-// A line a change; without `all` only metrics that changed.
+// Returns a line for each change; without `all`, only for metrics that changed.
 std::string changes_text(const std::vector<Change>& changes, bool all);
 
 }  // namespace glint::report

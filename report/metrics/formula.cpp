@@ -1,4 +1,4 @@
-// A recursive-descent reader that computes while it reads.
+// Evaluates formulas in a recursive-descent reader that computes while it reads.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/metrics/formula.h"
 
@@ -22,7 +22,7 @@ Maybe both(Maybe a, Maybe b, Function function) {
   return a && b ? Maybe(function(*a, *b)) : std::nullopt;
 }
 
-// Beginnings of paths that stand for those of all instances.
+// These beginnings of paths stand for the paths of all instances.
 constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
     {"core.", "gpu.core[*]."},
     {"rt.", "gpu.rt_unit[*].rt."},
@@ -30,8 +30,8 @@ constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
     {"l2.", "gpu.memory.partition[*].l2*."},
     {"dram.", "gpu.memory.partition[*].dram."}};
 
-// Choice: a metric means the same whichever machine counted it, so what a path is called in the functional
-// machine's statistics is looked up where the timing machine's are not there. A beginning that ends in "::"
+// Maps paths of the timing machine to those of the functional machine, which are looked up when the former do
+// not exist. Choice: a metric means the same whichever machine counted it. A beginning that ends in "::"
 // keeps the part.
 constexpr std::pair<std::string_view, std::string_view> kFunctional[] = {
     {"gpu.core[*].lane_instructions", "gpu.lanes::*"},
@@ -57,7 +57,8 @@ std::string whole_path(const std::string& path) {
   return path;
 }
 
-// sum := product { (+|-) product };  product := atom { (*|/) atom };  atom := number | NAME(text) | (sum)
+// The grammar is: sum := product { (+|-) product };  product := atom { (*|/) atom };  atom := number |
+// NAME(text) | (sum)
 class Reader {
  public:
   Reader(std::string_view text, const RunRecord* run) : text_(text), run_(run) {}
@@ -67,7 +68,7 @@ class Reader {
     if (!rest().empty()) fail("an operator or the end");
     return value;
   }
-  std::vector<std::string> paths;  // named so far
+  std::vector<std::string> paths;  // the paths that were named so far
 
  private:
   std::string_view rest() {
@@ -81,7 +82,7 @@ class Reader {
   }
   [[noreturn]] void fail(const std::string& expected) const {
     throw UserError(
-        {}, fmt::format("'{}' is no formula: expected {} at '{}'", text_, expected, text_.substr(at_)));
+        {}, fmt::format("'{}' is not a formula: expected {} at '{}'", text_, expected, text_.substr(at_)));
   }
 
   Maybe read_sum() {
@@ -135,8 +136,8 @@ class Reader {
     const bool is_fact = function == "run" || function == "config";
     const std::string name = is_fact ? written : whole_path(written);
     if (!is_fact && function != "sum" && function != "max" && function != "mean")
-      throw UserError({}, fmt::format("'{}' is no function of a formula", function),
-                      "sum, max, mean, run and config are");
+      throw UserError({}, fmt::format("'{}' is not a function of a formula", function),
+                      "the functions are sum, max, mean, run and config");
     if (!is_fact) paths.push_back(name);
     if (!run_) return std::nullopt;
     if (is_fact) return function == "run" ? run_->fact(name) : run_->config(name);
@@ -149,7 +150,7 @@ class Reader {
   }
 
   std::string_view text_;
-  const RunRecord* run_;  // null: only reads
+  const RunRecord* run_;  // null: the reader only reads and computes nothing
   size_t at_ = 0;
 };
 
@@ -160,8 +161,9 @@ std::optional<double> evaluate(const std::string& formula, const RunRecord& run)
 }
 
 std::string why_absent(const RunRecord& run) {
-  return run.text("mode") == "functional" ? "counted by the timing machine only, or nothing to divide by"
-                                          : "nothing to divide by, or not counted in this run";
+  return run.text("mode") == "functional"
+             ? "only the timing machine counts it, or there is nothing to divide by"
+             : "there is nothing to divide by, or this run did not count it";
 }
 
 std::vector<std::string> paths_in(const std::string& formula) {

@@ -1,4 +1,4 @@
-// Figures of rows of a profile as cells.
+// Writes figures of a profile's rows as cells.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/metrics/measures.h"
 
@@ -14,7 +14,7 @@
 namespace glint::report {
 namespace {
 
-constexpr double kWarm = 0.01, kHot = 0.1;  // shares of all cycles
+constexpr double kWarm = 0.01, kHot = 0.1;  // fractions of all cycles
 
 double part(uint64_t of, uint64_t whole) {
   return whole ? double(of) / double(whole) : 0.0;
@@ -24,7 +24,7 @@ std::string count(uint64_t value) {
   return value ? with_thousands(value) : "";
 }
 
-// "long_scoreboard 62.0 %": what most of the row's cycles that issued nothing were spent on.
+// Returns what the row's cycles without an issue were mostly spent on, such as "long_scoreboard 62.0 %".
 std::string main_reason(const ProfileTable& profile, const ProfileRow& row) {
   if (row.slots.size() < 2) return "";
   const auto most = std::max_element(row.slots.begin() + 1, row.slots.end());
@@ -48,7 +48,7 @@ Measures::Measures(const ProfileTable& profile, std::vector<std::string> names, 
   for (const std::string& name : names_)
     if (std::find(known.begin(), known.end(), name) == known.end())
       throw UserError({}, fmt::format("unknown measure '{}'", name),
-                      fmt::format("there are: {}", fmt::join(known, ", ")));
+                      fmt::format("the measures are {}", fmt::join(known, ", ")));
   for (const ProfileRow& row : profile.rows)
     if (!row.shader.empty()) whole_ += row.total();
 }

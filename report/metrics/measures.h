@@ -1,4 +1,4 @@
-// The columns of annotated source: what can be shown of a line's cost.
+// Declares the columns of annotated source, which show a line's cost.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -10,26 +10,27 @@
 
 namespace glint::report {
 
-// Names of measures: "cycles" (share of those of all instructions), "issues", "lanes" (active, mean of an
-// issue), "accesses", "requests", "sectors", "latency" (mean cycles of an access or trace), "waits" (what
-// most cycles that issued nothing waited for), and the name of any reason (its cycles).
+// Returns the names of measures: "cycles" (fraction of the cycles of all instructions), "issues", "lanes"
+// (mean of active lanes per issue), "accesses", "requests", "sectors", "latency" (mean cycles of an access or
+// trace), "waits" (what most cycles that issued nothing waited for), and the name of any reason (its cycles).
 std::vector<std::string> measure_names(const ProfileTable& profile);
 inline const std::vector<std::string> kUsualMeasures = {"cycles", "issues", "lanes", "sectors", "waits"};
 
-// Some measures of rows of one profile, as cells of a table. The profile has to outlive it.
+// Shows some measures of rows of one profile as cells of a table. The profile has to outlive it.
 class Measures {
  public:
-  // UserError with the names there are when one is unknown.
+  // Throws UserError with all names when one is unknown.
   Measures(const ProfileTable& profile, std::vector<std::string> names, const Terminal& terminal);
 
   std::vector<std::string> headings() const;
-  // Coloured, where the terminal can, from 1 % and from 10 % of all cycles on. Empty cells for null.
+  // Returns the cells of a row, which are empty for null. Where the terminal can show colours, cells are
+  // coloured from 1 % and from 10 % of all cycles on.
   std::vector<std::string> cells(const ProfileRow* row) const;
-  std::string alignment() const;  // for table()
+  std::string alignment() const;  // alignment for table()
 
-  // Cycles of all instructions, known lines or not.
+  // Returns the cycles of all instructions, whether their lines are known or not.
   uint64_t whole() const { return whole_; }
-  // "12.3 %" of them.
+  // Returns a percentage of whole(), such as "12.3 %".
   std::string share(uint64_t cycles) const;
 
  private:

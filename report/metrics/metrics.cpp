@@ -1,4 +1,4 @@
-// Metrics as a table's row, as lines and as a page.
+// Writes metrics as a table's row, as lines and as a page.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/metrics/metrics.h"
 
@@ -12,7 +12,7 @@
 namespace glint::report {
 namespace {
 
-// What tells runs apart: column and name in run.json.
+// These tell runs apart. Each has a column and its name in run.json.
 constexpr std::pair<std::string_view, std::string_view> kIdentity[] = {{"scene", "scene.name"},
                                                                        {"form", "scene.form"},
                                                                        {"shader", "shader"},

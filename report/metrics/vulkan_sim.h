@@ -1,4 +1,4 @@
-// A run's statistics under the names that Vulkan-Sim prints, for tools that read its logs.
+// Prints a run's statistics under Vulkan-Sim's names, for tools that read its logs.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <span>
@@ -9,14 +9,14 @@
 
 namespace glint::report {
 
-// A line `name = value` of a log. `formula` "" = Glint has no such number, `note` says why; else what
-// differs, if anything.
+// Is a line `name = value` of a log. When `formula` is "", Glint has no such number and `note` says why;
+// otherwise `note` says what differs, if anything.
 struct PeerStat {
   std::string_view name, formula, note;
 };
 std::span<const PeerStat> vulkan_sim_stats();
 
-// Lines as in a log; those without a value stand at the end as comments with the reason.
+// Returns the lines of a log. Those without a value are at the end, as comments with the reason.
 std::string vulkan_sim_text(const RunRecord& run);
 
 std::string vulkan_sim_markdown();  // rows of docs/metrics.md

@@ -1,4 +1,4 @@
-// Turning the runs of a document into columns, and finding the columns that others give.
+// Turns the runs of a document into columns, and finds the columns that others give.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/page/columns.h"
 
@@ -22,9 +22,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr size_t kMaxNumbers =
     200'000;  // of statistics, at 2 to 3 bytes each: with more, a page would not stay below 1 MB
-constexpr double kMaxWhole = 9007199254740992.0;  // 2^53: from there on a double is no exact count
+constexpr double kMaxWhole = 9007199254740992.0;  // 2^53; from there on a double is not an exact count
 
-// 5.0 as 5, at any depth.
+// Writes 5.0 as 5, at any depth.
 Json whole(const Json& value) {
   if (value.is_array()) {
     Json out = Json::array();
@@ -47,7 +47,8 @@ bool is_fraction(const Json& value) {
          (value.is_array() && std::any_of(value.begin(), value.end(), is_fraction));
 }
 
-// Counts over all instances, of a histogram bin by bin: [1, 2] as [3], [[1, 2], [1]] as [[2, 2]].
+// Adds up counts over all instances, and those of a histogram bin by bin: [1, 2] becomes [3], and [[1, 2],
+// [1]] becomes [[2, 2]].
 Json added_up(const Json& instances) {
   if (!instances.is_array() || instances.size() < 2) return instances;
   const bool is_histogram =
@@ -65,7 +66,7 @@ class Columns {
  public:
   explicit Columns(size_t num_runs) : num_runs_(num_runs) {}
 
-  // What the first runs lack comes behind what it follows in its run.
+  // Adds the values of a run. Names that the first runs lack come behind those that they follow in their run.
   void add(size_t run, const Json& values) {
     auto next = names_.begin();
     for (const auto& [name, value] : values.items()) {
@@ -83,7 +84,8 @@ class Columns {
     return out;
   }
 
-  // Leaves of each count its sum over the instances. Shares and means of an instance have none, and go.
+  // Replaces each count by its sum over the instances. Fractions and means of an instance have no sum and are
+  // removed.
   void add_up() {
     for (auto name = names_.begin(); name != names_.end();) {
       std::vector<Json>& values = columns_.at(*name).values;
@@ -102,7 +104,7 @@ class Columns {
   const std::list<std::string>& names() const { return names_; }
   const std::vector<Json>& values(const std::string& name) const { return columns_.at(name).values; }
 
-  // {name: column} of all but those in `left_out`.
+  // Returns {name: column} of all columns except those in `left_out`.
   Json json(const Json& left_out = Json::object()) const {
     Json out = Json::object();
     for (const std::string& name : names_) {
@@ -125,7 +127,8 @@ class Columns {
   std::unordered_map<std::string, Column> columns_;
 };
 
-// The instances of a run; none where it lacks the statistic; {0} where all are 0, as page_stats() has it.
+// Holds the instances of a run: none when it lacks the statistic, and {0} when all are 0, as page_stats() has
+// it.
 using Instances = std::vector<double>;
 struct Numbers {
   std::string name;
@@ -140,7 +143,7 @@ std::optional<Numbers> numbers_of(const std::string& name, const std::vector<Jso
     if (value.is_null()) continue;
     const Json list = value.is_array() ? value : Json::array({value});
     for (const Json& one : list) {
-      if (!one.is_number()) return std::nullopt;  // a histogram
+      if (!one.is_number()) return std::nullopt;  // histograms have lists
       instances.push_back(one.get<double>());
       out.is_whole &= !one.is_number_float();
     }
@@ -152,7 +155,7 @@ double at(const Instances& instances, size_t index) {
   return instances[instances.size() == 1 ? 0 : index];
 }
 
-// As web/src/document.js computes it: of two numbers that 0 divides, 0.
+// Computes quotients as web/src/document.js does, where a division by 0 gives 0.
 bool is_quotient(const Instances& wanted, const Instances& over, const Instances& under) {
   if (over.empty() || under.empty()) return wanted.empty();
   const size_t size = std::max(over.size(), under.size());
@@ -169,8 +172,8 @@ bool is_quotient(const Numbers& wanted, const Numbers& over, const Numbers& unde
   return true;
 }
 
-// The first two columns of whole numbers whose quotient `wanted` is, by one of its values first, as there are
-// many pairs.
+// Returns the first two columns of whole numbers whose quotient is `wanted`. It compares one of the values
+// first, because there are many pairs.
 std::optional<std::pair<std::string, std::string>> parts_of(const Numbers& wanted,
                                                             const std::vector<Numbers>& counts) {
   const auto is_some = [](double value) { return value != 0; };
@@ -202,7 +205,8 @@ Json quotients_of(const Columns& stats) {
   return out;
 }
 
-// What a source view shows, but for the counts, is the same for runs of the same programs.
+// Moves out what a source view shows except for the counts, because it is the same for runs of the same
+// programs.
 void share_listing(Json& source, Json& listings) {
   Json listing = {{"files", std::move(source["files"])}, {"programs", std::move(source["programs"])}};
   source.erase("files");

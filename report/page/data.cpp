@@ -1,4 +1,4 @@
-// Gathering run directories into the report's document.
+// Gathers run directories into the report's document.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/page/data.h"
 
@@ -40,14 +40,14 @@ Json json_of(const std::string& path) {
   if (!text) throw UserError({path}, "cannot read the file", "the run has not finished; run it again");
   Json parsed = Json::parse(*text, nullptr, false);
   if (!parsed.is_object())
-    throw UserError({path}, "this is no JSON object", "the file is damaged; run it again");
+    throw UserError({path}, "this is not a JSON object", "the file is damaged; run it again");
   return parsed;
 }
 
-// run.json of a run whose statistics can be shown.
+// Returns run.json of a run whose statistics can be shown.
 Json facts_of(const std::string& directory) {
   if (!std::filesystem::is_directory(directory))
-    throw UserError({}, fmt::format("'{}' is no run directory", directory),
+    throw UserError({}, fmt::format("'{}' is not a run directory", directory),
                     "`glint run SCENE --out DIRECTORY` makes one");
   const std::string path = directory + "/run.json";
   if (!std::filesystem::exists(path))
@@ -55,13 +55,13 @@ Json facts_of(const std::string& directory) {
                     "the directory is not of a run, or the run was ended before it finished");
   Json facts = json_of(path);
   if (const int schema = facts.value("schema", 0); schema != kRunSchema)
-    throw UserError({path}, fmt::format("schema {}, expected {}", schema, kRunSchema),
+    throw UserError({path}, fmt::format("it has schema {}, expected {}", schema, kRunSchema),
                     "another version of Glint wrote it: run it again with this one");
   if (facts.value("exit", 0) != 0)
     throw UserError({path}, fmt::format("the run failed: {}", facts.value("message", "no message")),
                     "a report needs a run that finished");
   if (const std::string mode = facts.value("mode", ""); mode != "timing")
-    throw UserError({path}, fmt::format("mode '{}' has no cycles", mode),
+    throw UserError({path}, fmt::format("a run of mode '{}' has no cycles", mode),
                     "a report shows runs of the timing machine: --mode timing");
   return facts;
 }
@@ -73,7 +73,7 @@ Json number_or_text(const std::string& text) {
   return text;
 }
 
-// A CSV of numbers by column.
+// Reads a CSV of numbers by column.
 Json columns_of(const std::string& csv, const std::string& name) {
   std::istringstream in(csv);
   std::string line;
@@ -90,13 +90,13 @@ Json columns_of(const std::string& csv, const std::string& name) {
       }
       const Json value = number_or_text(cell);
       if (i >= names.size() || !value.is_number())
-        throw UserError({name, row}, fmt::format("'{}' is no number of a time series", cell));
+        throw UserError({name, row}, fmt::format("'{}' is not a number of a time series", cell));
       columns[i].push_back(value.get<double>());
     }
     if (row == 1)
       columns.resize(names.size());
     else if (i != names.size())
-      throw UserError({name, row}, fmt::format("{} cells, expected {}", i, names.size()));
+      throw UserError({name, row}, fmt::format("this row has {} cells, expected {}", i, names.size()));
   }
   Json out = Json::object();
   for (size_t i = 0; i < names.size(); ++i) out[names[i]] = columns[i];
@@ -135,10 +135,11 @@ Json run_json(const PageRun& run, Json& stat_docs, Json& key_docs) {
   Json out = {{"directory", directory}, {"run", facts_of(directory)}};
   out["stats"] = page_stats(json_of(directory + "/stats.json"), stat_docs);
   if (!out["stats"].contains("gpu.cycles"))
-    throw UserError({directory + "/stats.json"}, "has no gpu.cycles",
+    throw UserError({directory + "/stats.json"}, "the statistics have no gpu.cycles",
                     "another version of Glint wrote it: run it again with this one");
   out["metrics"] = metrics_json(RunRecord::read(directory));
-  add_config(run, *bytes_of(directory + "/config.toml"), out, key_docs);  // RunRecord has read it
+  add_config(run, *bytes_of(directory + "/config.toml"), out,
+             key_docs);  // RunRecord has already read this file
   if (const auto csv = bytes_of(directory + "/series.csv"))
     out["series"] = columns_of(*csv, directory + "/series.csv");
   if (const auto csv = bytes_of(directory + "/profile.csv")) {

@@ -1,4 +1,4 @@
-// Maps of cost as the report's document has them.
+// Writes maps of cost as the report's document has them.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/page/heat.h"
 

@@ -1,4 +1,4 @@
-// Maps of cost for the report: a small picture of each, and its numbers.
+// Writes maps of cost for the report: a small picture of each, and its numbers.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <nlohmann/json_fwd.hpp>
@@ -8,11 +8,11 @@
 
 namespace glint::report {
 
-// [{name, unit, doc, width, height, sum, min, mean, p99, max, top, picture}]: `top` ends the colour scale,
-// `picture` is a data URI of the map alone.
+// Returns [{name, unit, doc, width, height, sum, min, mean, p99, max, top, picture}]. `top` ends the colour
+// scale, and `picture` is a data URI of the map alone.
 nlohmann::ordered_json page_heat(const std::vector<CostMap>& maps);
 
-// The colour scale from 0 to `top`: "#rrggbb" in even steps.
+// Returns the colour scale from 0 to `top`: "#rrggbb" in even steps.
 nlohmann::ordered_json page_heat_scale();
 
 }  // namespace glint::report

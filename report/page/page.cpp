@@ -1,4 +1,4 @@
-// Writing the HTML report.
+// Writes the HTML report.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/page/page.h"
 
@@ -33,7 +33,7 @@ std::string title_of(const Json& run) {
   return shader.empty() || shader == scene ? scene : scene + " " + shader;
 }
 
-// "ship8" of "out/ship8/"
+// Returns the folder of a run: "ship8" of "out/ship8/".
 std::string folder_of(const Json& run) {
   const std::filesystem::path path = run["directory"].get<std::string>();
   return (path.has_filename() ? path : path.parent_path()).filename().string();
@@ -49,7 +49,7 @@ std::string header_row(const Json& runs, std::string_view first) {
   return out;
 }
 
-// A table of all metrics, a column a run.
+// Returns a table of all metrics with a column for each run.
 std::string all_metrics(const Json& data) {
   const Json& runs = data["runs"];
   std::string out =
@@ -70,8 +70,8 @@ std::string all_metrics(const Json& data) {
   return out + "</table></div>";
 }
 
-// A table of the key figures, a row a run: with all metrics of many runs it would be an eighth of the page,
-// and wider than any screen.
+// Returns a table of the key figures with a row for each run. With all metrics of many runs it would be an
+// eighth of the page, and wider than any screen.
 std::string key_metrics(const Json& data) {
   std::string head = "<th scope=\"col\">Run</th><th scope=\"col\">Folder</th>", rows;
   std::vector<std::string> names;
@@ -90,7 +90,7 @@ std::string key_metrics(const Json& data) {
     rows += "</tr>\n";
   }
   return fmt::format(
-      "<p class=\"note\">Without script this page has the key figures of its {} runs only, as "
+      "<p class=\"note\">Without script this page has only the key figures of its {} runs, as "
       "docs/metrics.md has them. <code>glint stats RUN --format metrics</code> prints all {} metrics of "
       "one.</p>\n"
       "<div class=\"scroll\"><table "
@@ -98,13 +98,13 @@ std::string key_metrics(const Json& data) {
       data["runs"].size(), data["metric_docs"].size(), head, rows);
 }
 
-// For readers without script, which draws the table of all metrics itself.
+// Returns the table for readers without script. The script draws the table of all metrics itself.
 std::string metrics_table(const Json& data) {
   return "<div id=\"all-metrics\"></div>\n<noscript>" +
          (data["runs"].size() <= kMaxRunsInTables ? all_metrics(data) : key_metrics(data)) + "</noscript>\n";
 }
 
-// "mobile, desktop": the presets that the runs' configurations are compared with.
+// Returns the presets that the runs' configurations are compared with, such as "mobile, desktop".
 std::string presets_of(const Json& runs) {
   std::vector<std::string> names;
   for (const Json& run : runs)
@@ -115,24 +115,25 @@ std::string presets_of(const Json& runs) {
 }
 
 std::string config_lead(const Json& runs) {
-  return fmt::format("Keys whose value is not that of {}{}.", runs.size() > 1 ? "the run’s preset: " : "",
-                     presets_of(runs));
+  return fmt::format("This table lists the keys whose value is not that of {}{}.",
+                     runs.size() > 1 ? "the run’s preset: " : "", presets_of(runs));
 }
 
-// Of configurations that are no preset: which one they are compared with.
+// Says for configurations that are not presets which preset they are compared with.
 std::string own_files(const Json& runs) {
   std::string out;
   for (const Json& run : runs) {
     const std::string name = run["run"]["config"].value("name", ""), preset = run["preset"]["name"];
     const std::string line = fmt::format(
-        "<p class=\"note\"><code>{}</code> is no preset: the run’s own copy of it is compared with {}.</p>\n",
+        "<p class=\"note\"><code>{}</code> is not a preset: the run’s own copy of it is compared with "
+        "{}.</p>\n",
         escaped(name), escaped(preset));
     if (name != preset && out.find(line) == std::string::npos) out += line;
   }
   return out;
 }
 
-// Every key that differs from a run's preset, with the value of each run.
+// Returns a table of every key that differs from a run's preset, with the value of each run.
 std::string config_table(const Json& data) {
   const Json& runs = data["runs"];
   std::string rows;
@@ -169,7 +170,7 @@ std::string section(const char* id, const char* title, const char* lead, const s
                      lead, content);
 }
 
-// What reads without script. The script adds its figures.
+// Returns the sections that can be read without script. The script adds its figures.
 std::string static_sections(const Json& data) {
   std::string out = suite_sections(data);
   if (data["runs"].empty()) return out;
@@ -177,12 +178,13 @@ std::string static_sections(const Json& data) {
          section("configuration", "Configuration", config_lead(data["runs"]).c_str(),
                  config_table(data) + "<div id=\"all-keys\"></div>\n") +
          section("metrics", "All metrics",
-                 "The numbers that characterise a workload; a dash is a number that this run does not have.",
+                 "These numbers characterise a workload. A dash is a number that this run does not have.",
                  metrics_table(data)) +
          "<noscript>\n" +
          section("numbers", "Numbers of the figures",
-                 "What the figures show where scripts run, summed over all instances of a unit. Figures of "
-                 "shares and rates are among the metrics above; series over time are in series.csv.",
+                 "These are the numbers that the figures show where scripts run, summed over all instances "
+                 "of a unit. Figures of shares and rates are among the metrics above, and series over time "
+                 "are in series.csv.",
                  figure_tables(data, header_row(data["runs"], "Statistic") + kLastColumns)) +
          "</noscript>\n";
 }
@@ -208,7 +210,7 @@ std::string picture(size_t run, const std::string& map, const Json& source, cons
       run, escaped(map), source.get<std::string>(), escaped(caption));
 }
 
-// Each once: the script takes them from here (web/src/document.js).
+// Returns each picture once. The script takes them from here (web/src/document.js).
 std::string pictures(const Json& data) {
   std::string out;
   const Json& runs = data["runs"];
@@ -222,7 +224,7 @@ std::string pictures(const Json& data) {
   return out;
 }
 
-// The script packed, under its notices, which stay readable, and what unpacks it.
+// Returns the packed script under its notices, which stay readable, and the script that unpacks it.
 std::string script_of(const PageParts& parts) {
   const size_t end = parts.script.starts_with("/*!") ? parts.script.find("*/") + 2 : 0;
   return fmt::format("<script>\n{}\n</script>\n{}\n<script>\n{}</script>", parts.script.substr(0, end),
@@ -234,7 +236,7 @@ std::string script_of(const PageParts& parts) {
 std::string page(const nlohmann::ordered_json& data, const PageParts& parts) {
   const std::string title = page_title(data);
   std::string out = parts.frame;
-  // The script goes in last: no mark is searched in it.
+  // The script goes in last, so that no mark is searched in it.
   place(out, "<!--title-->", escaped(title) + " – Glint report");
   place(out, "<!--style-->", "<style>\n" + parts.style + "</style>");
   place(out, "<!--noscript-->",

@@ -1,4 +1,4 @@
-// The HTML report: one page that holds its data, its script and tables that read without it.
+// Writes the HTML report: one page that holds its data, its script, and tables that read without it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <nlohmann/json_fwd.hpp>
@@ -6,16 +6,17 @@
 
 namespace glint::report {
 
-// The page's parts that do not depend on the runs: web/ in the source tree.
+// Holds the page's parts that do not depend on the runs. They are in web/ of the source tree.
 struct PageParts {
-  std::string frame;  // HTML with the places <!--style-->, <!--title-->, <!--noscript-->, <!--sections-->,
-                      // <!--data--> and <!--script-->
+  // HTML with the places <!--style-->, <!--title-->, <!--noscript-->, <!--sections-->, <!--data--> and
+  // <!--script-->.
+  std::string frame;
   std::string style, script;
-  std::string unpack;  // a script that unpacks the other and runs it
+  std::string unpack;  // a script that unpacks the other one and runs it
 };
 
-// `data` is page_data(), which may have "characterizations" and "models" (page_suite.h) added; the page holds
-// it as page_columns() has it. UserError when the frame lacks a place.
+// Returns the page. `data` is page_data(), to which "characterizations" and "models" (suite.h) may be added;
+// the page holds it as page_columns() returns it. Throws UserError when the frame lacks a place.
 std::string page(const nlohmann::ordered_json& data, const PageParts& parts);
 
 }  // namespace glint::report

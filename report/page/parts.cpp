@@ -1,4 +1,4 @@
-// Escaping for HTML, packing, and filling in a page's frame.
+// Escapes for HTML, packs, and fills in a page's frame.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/page/parts.h"
 

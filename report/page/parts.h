@@ -1,4 +1,4 @@
-// What every page that Glint writes is put together with: escaping, packed parts, places in a frame.
+// Puts together what every page needs: escaping, packed parts, places in a frame.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <nlohmann/json_fwd.hpp>
@@ -7,21 +7,21 @@
 
 namespace glint::report {
 
-// Text as HTML shows it, also between quotes.
+// Returns a text as HTML shows it, also between quotes.
 std::string escaped(std::string_view text);
 
-// Text of a description, in which words between backquotes are code.
+// Returns the text of a description, in which words between backquotes become code.
 std::string prose(std::string_view text);
 
-// A number, text or truth value for a table: thin spaces between thousands, whole from 1000 on, four digits
-// below; a dash for null.
+// Returns a number, text or truth value for a table. Numbers have thin spaces between thousands, no fraction
+// from 1000 on, and four digits below; null is a dash.
 std::string shown(const nlohmann::ordered_json& value);
 
-// A <script> of that id that no browser runs: `text` as base64 of a zlib stream. The page's own script
-// unpacks it (web/src/packed.js).
+// Returns a <script> of that id that no browser runs: `text` as base64 of a zlib stream. The page's own
+// script unpacks it (web/src/packed.js).
 std::string packed_element(std::string_view id, std::string_view text);
 
-// Puts `text` where the frame says `mark`, the first time. UserError when it does not.
+// Puts `text` at the first `mark` of the frame. Throws UserError when the frame has none.
 void place(std::string& page, std::string_view mark, const std::string& text);
 
 }  // namespace glint::report

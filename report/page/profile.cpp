@@ -1,4 +1,4 @@
-// Adding up a profile for the report.
+// Adds up a profile for the report.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/page/profile.h"
 
@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr size_t kMaxLines = 16;  // that the report shows: the rest is in its source view
+constexpr size_t kMaxLines = 16;  // lines that the report shows; its source view shows the rest
 
 Json counts_of(const ProfileRow& row) {
   return {{"issues", row.issues},   {"lanes", row.lanes}, {"accesses", row.accesses},
@@ -23,7 +23,7 @@ Json counts_of(const ProfileRow& row) {
           {"cycles", row.total()},  {"slots", row.slots}};
 }
 
-// Sums of the rows that share a name, the costliest first.
+// Returns the sums of the rows that share a name, the costliest first.
 Json summed(const ProfileTable& profile, const std::string ProfileRow::*name) {
   std::map<std::string, ProfileRow> sums;
   for (const ProfileRow& row : profile.rows)
@@ -40,7 +40,7 @@ Json summed(const ProfileTable& profile, const std::string ProfileRow::*name) {
   return out;
 }
 
-// The lines of a file, read once; none when it cannot be read.
+// Returns the lines of a file, which is read once, or none when it cannot be read.
 const std::vector<std::string>& lines_of(const std::string& path,
                                          std::map<std::string, std::vector<std::string>>& read) {
   const auto [found, is_new] = read.try_emplace(path);

@@ -1,4 +1,4 @@
-// A profile for the report: its instructions added up by op, by stage and by source line.
+// Adds up the instructions of a profile for the report: by op, by stage and by source line.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <nlohmann/json_fwd.hpp>
@@ -7,8 +7,8 @@
 
 namespace glint::report {
 
-// {"reasons", "ops", "stages", "lines"}. The lines are the 40 that took most cycles, with their text where
-// the file can still be read.
+// Returns {"reasons", "ops", "stages", "lines"}. The lines are those that took most cycles, with their text
+// where the file can still be read.
 nlohmann::ordered_json page_profile(const ProfileTable& profile);
 
 }  // namespace glint::report

@@ -1,4 +1,4 @@
-// Turning rows into columns.
+// Turns rows into columns.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/page/rows.h"
 
@@ -15,8 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-enum Slice : size_t { kThread, kKind, kBegin, kLength };  // places in a row (page_timeline.cpp)
-constexpr size_t kCounts = 8;                             // numbers before the pairs (page_source.cpp)
+enum Slice : size_t { kThread, kKind, kBegin, kLength };  // places in a row (timeline.cpp)
+constexpr size_t kCounts = 8;                             // numbers before the pairs (source.cpp)
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// Listings and counts for the report.
+// Writes listings and counts for the report.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/page/source.h"
 
@@ -30,7 +30,7 @@ Json columns_of(const std::vector<ListedLine>& lines, size_t first, bool is_isa)
   return out;
 }
 
-// What stands before is declared, and costs nothing.
+// Returns where the first function begins. What comes before it is declared and costs nothing.
 size_t first_function(const ProgramListing& program) {
   for (size_t i = 0; i < program.spirv.size(); ++i)
     if (program.spirv[i].text.find("= OpFunction ") != std::string::npos) return i;

@@ -1,4 +1,4 @@
-// Turning the tree of statistics by ninety degrees.
+// Turns the tree of statistics by ninety degrees.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/page/stats.h"
 
@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A group of one instance reads "core[3]": its name as a pattern, and its number.
+// Holds the name of a group as a pattern, and its number. A group of one instance reads "core[3]".
 struct Instance {
   std::string pattern;
   size_t index = 0;
@@ -68,7 +68,7 @@ class Turner {
         value.is_number() || (value.is_array() && std::all_of(value.begin(), value.end(),
                                                               [](const Json& v) { return v.is_number(); }));
     if (!is_known)
-      throw UserError({}, fmt::format("statistic '{}' has no number", path),
+      throw UserError({}, fmt::format("the statistic '{}' has no number", path),
                       "stats.json is damaged; run it again");
     Json& list = out_[path];
     if (list.is_null()) list = Json::array();

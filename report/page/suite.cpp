@@ -1,4 +1,4 @@
-// Reading characterisations, and writing the report's sections about suites.
+// Reads characterisations, and writes the report's sections about suites.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/page/suite.h"
 
@@ -15,10 +15,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr size_t kLeastForR2 = 3;  // a line through two points always fits
+constexpr size_t kLeastForR2 = 3;  // because a line through two points always fits
 constexpr int kEigenvalues =
     20;  // shown, as in the figure (web/src/characterization/scree.js); all are in the CSV
-constexpr double kStrongLoading = 0.7;  // a correlation that explains half of the variance
+constexpr double kStrongLoading = 0.7;  // a correlation of this size explains half of the variance
 
 std::string text_of(const Json& one, const char* key) {
   return escaped(one.at(key).get<std::string>());
@@ -69,9 +69,9 @@ std::string subset_table(const Json& one) {
   const Json& reference = one.at("reference");
   if (!reference.at("known").get<bool>()) return out;
   return out + fmt::format(
-                   "<p class=\"note\">Compared with {}, which has workloads of {} of the {} clusters: mean "
-                   "distance to the nearest of the subset, of the mean distance between two workloads, is {} "
-                   "with it, {} with the subset above.</p>\n",
+                   "<p class=\"note\">For comparison, {} has workloads of {} of the {} clusters. The mean "
+                   "distance to the nearest workload of the subset, relative to the mean distance between "
+                   "two workloads, is {} with it and {} with the subset above.</p>\n",
                    text_of(reference, "name"), reference.at("clusters_met").get<int>(),
                    one.at("clusters").get<int>(), share(reference.at("coverage_error")),
                    share(one.at("coverage_error")));
@@ -113,8 +113,8 @@ std::string loadings_table(const Json& one) {
   }
   return table_html("loadings", "Loadings", th("Metric") + component_heads(one), rows) +
          fmt::format(
-             "<p class=\"note\">Correlation of each metric with each component; those from {} on are "
-             "marked.</p>\n",
+             "<p class=\"note\">The numbers are the correlation of each metric with each component. Those "
+             "from {} on are marked.</p>\n",
              kStrongLoading);
 }
 
@@ -128,7 +128,7 @@ std::string dropped_table(const Json& one) {
                                table_html("dropped", "Columns left out", th("Column") + th("Why"), rows));
 }
 
-// The numbers of the figures, for readers without script: with it they stand below each figure.
+// Returns the numbers of the figures for readers without script. With script, they are below each figure.
 std::string figure_tables(const Json& one) {
   std::string eigenvalues, scores, joins, kiviat, axes;
   double sum = 0, total = 0;
@@ -233,15 +233,15 @@ std::string section(const Kind& kind, const Json& one, size_t number, bool is_on
                   number ? fmt::format("-{}", number + 1) : "", kind.title, is_only ? "" : ": " + source);
   if (one.contains("missing"))
     return out + fmt::format(
-                     "<p class=\"note\">{}: not computed. <code>{}</code> does it from these runs, without "
-                     "simulating them again; then make this report again.</p>\n</section>\n",
+                     "<p class=\"note\">{}: this was not computed. <code>{}</code> computes it from these "
+                     "runs without simulating them again; then make this report again.</p>\n</section>\n",
                      kind.lead, text_of(one, "missing"));
   out += fmt::format("<p class=\"lead\">{}: {} workloads of <code>{}</code>.</p>\n", kind.lead,
                      one.at("workloads").size(), source);
   if (const int differing = one.value("differing", 0); differing > 0)
     out += fmt::format(
-        "<p class=\"note stale\">{} of the runs in this report {} other cycles than these numbers were made "
-        "from: <code>{}</code> makes them anew.</p>\n",
+        "<p class=\"note stale\">{} of the runs in this report {} other cycles than those from which these "
+        "numbers were made: <code>{}</code> makes them again.</p>\n",
         differing, differing == 1 ? "has" : "have", kind.command);
   return out + "<div class=\"drawn\"></div>\n" + kind.body(one) + "</section>\n";
 }
@@ -251,13 +251,13 @@ std::string section(const Kind& kind, const Json& one, size_t number, bool is_on
 Json read_characterization(const std::string& text, const std::string& name) {
   Json out = Json::parse(text, nullptr, false);
   if (!out.is_object() || out.value("kind", Json()) != kCharacterizationKind)
-    throw UserError({name}, "this is no characterisation",
+    throw UserError({name}, "this is not a characterisation",
                     "`glint characterize` writes characterization.json");
   if (out.value("schema", Json()) != kCharacterizationSchema)
-    throw UserError(
-        {name},
-        fmt::format("schema {}, expected {}", out.value("schema", Json()).dump(), kCharacterizationSchema),
-        "another version of Glint wrote it: `glint characterize` again with this one");
+    throw UserError({name},
+                    fmt::format("it has schema {}, expected {}", out.value("schema", Json()).dump(),
+                                kCharacterizationSchema),
+                    "another version of Glint wrote it: run `glint characterize` again with this one");
   return out;
 }
 
@@ -270,7 +270,7 @@ std::string suite_sections(const Json& data) {
       } catch (const Json::exception& error) {
         throw UserError({list[i].value("source", "")},
                         fmt::format("its {} cannot be shown: {}", kind.id, error.what()),
-                        fmt::format("the file is damaged: `{}` again", kind.command));
+                        fmt::format("the file is damaged: run `{}` again", kind.command));
       }
   }
   return out;

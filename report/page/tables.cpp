@@ -1,4 +1,4 @@
-// Which statistics the figures draw, and laying them out row by row.
+// Lists which statistics the figures draw, and lays them out row by row.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/page/tables.h"
 
@@ -52,14 +52,14 @@ constexpr std::string_view kHistograms[] = {
 
 struct Row {
   std::string name;
-  std::vector<uint64_t> values;  // one a run
+  std::vector<uint64_t> values;  // one for each run
 };
 
 uint64_t largest(const Row& row) {
   return *std::max_element(row.values.begin(), row.values.end());
 }
 
-// Of all instances; where all are 0 there is one 0 (page_stats).
+// Returns the sum of all instances. When all are 0, there is one 0 (page_stats).
 uint64_t sum_of(const Json& run, const std::string& path) {
   const auto found = run["stats"].find(path);
   if (found == run["stats"].end()) return 0;
@@ -82,7 +82,8 @@ std::vector<Row> parts_of(const Json& runs, const std::string& path) {
   return rows;
 }
 
-// "500 to 999 cycle": the bins' unit is in their names, for the values are counts.
+// Returns the bins of a histogram, such as "500 to 999 cycle". The bins' unit is in their names, because the
+// values are counts.
 std::vector<Row> bins_of(const Json& runs, const std::string& path, const Json& docs) {
   const Json& bins = docs.at("bins");
   const std::string unit = docs.at("unit");
@@ -104,7 +105,7 @@ std::vector<Row> bins_of(const Json& runs, const std::string& path, const Json& 
   return rows;
 }
 
-// The ops with the largest values first.
+// Returns the ops with the largest values first.
 std::vector<Row> ops_of(const Json& runs, const char* field) {
   std::vector<Row> rows;
   for (size_t i = 0; i < runs.size(); ++i)
@@ -120,7 +121,7 @@ std::vector<Row> ops_of(const Json& runs, const char* field) {
   return rows;
 }
 
-// One group of rows under its name; "" where all are 0.
+// Returns one group of rows under its name, or "" when all are 0.
 std::string group(const std::string& name, const std::string& unit, const std::string& doc,
                   const std::vector<Row>& rows, size_t num_runs) {
   std::string lines;
@@ -143,7 +144,7 @@ std::string figure_tables(const nlohmann::ordered_json& data, const std::string&
   const Json& runs = data["runs"];
   if (runs.size() > kMaxRunsInTables)
     return fmt::format(
-        "<p class=\"note\">Without script the numbers of figures are shown for {} runs at most; stats.csv of "
+        "<p class=\"note\">Without script the numbers of figures are shown for at most {} runs; stats.csv of "
         "a run has all of them.</p>\n",
         kMaxRunsInTables);
   std::string groups;
@@ -154,13 +155,14 @@ std::string figure_tables(const nlohmann::ordered_json& data, const std::string&
   for (const std::string_view one : kHistograms)
     if (const std::string path(one); docs.contains(path))
       groups += group(path, "count", docs[path]["doc"], bins_of(runs, path, docs[path]), runs.size());
-  groups += group("profile: ops by count", "instruction", "Warp instructions issued, of the ops with most.",
-                  ops_of(runs, "issues"), runs.size());
+  groups += group("profile: ops by count", "instruction",
+                  "Number of warp instructions issued, for the ops with most.", ops_of(runs, "issues"),
+                  runs.size());
   groups += group("profile: ops by scheduler cycles", "cycle",
-                  "Of schedulers that issued the op, or whose warp nearest to issue waited at it.",
+                  "Cycles of schedulers that issued the op, or whose warp nearest to issue waited at it.",
                   ops_of(runs, "cycles"), runs.size());
   groups += group("profile: ops by latency", "cycle",
-                  "Issue to completion of accesses that went to the L1 and of traces, summed.",
+                  "Cycles from issue to completion of accesses that went to the L1 and of traces, summed.",
                   ops_of(runs, "latency"), runs.size());
   return "<div class=\"scroll\"><table class=\"metrics\">" + head + groups + "</table></div>\n";
 }

@@ -1,4 +1,4 @@
-// A timeline as the report's document has it: names as numbers, so that it stays small.
+// Writes a timeline as the report's document has it, with numbers for names, so that it stays small.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/page/timeline.h"
 
@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Numbers texts in the order of their coming.
+// Gives texts numbers in the order in which they first appear.
 class Names {
  public:
   size_t of(const std::string& name) {

@@ -1,4 +1,4 @@
-// The colour map's path and its colours.
+// Computes the colour map's path and its colours.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/picture/colour_map.h"
 
@@ -14,8 +14,8 @@ struct Lab {
   double lightness, a, b;
 };
 
-// Choice: lightness from 0.20 to 0.93, hue from 285 to 100 degrees, chroma along a parabola: greens as strong
-// as sRGB has them.
+// Returns a colour of the path. Choice: lightness goes from 0.20 to 0.93, hue from 285 to 100 degrees, and
+// chroma along a parabola, so that greens are as strong as sRGB allows.
 Lab on_path(double t) {
   constexpr double kBegin = 0.10, kMiddle = 0.06, kEnd = 0.15;
   const double chroma = kBegin * (1 - t) * (1 - t) + 2 * kMiddle * t * (1 - t) + kEnd * t * t;
@@ -27,13 +27,13 @@ double distance(const Lab& x, const Lab& y) {
   return std::hypot(x.lightness - y.lightness, x.a - y.a, x.b - y.b);
 }
 
-// sRGB's transfer function (IEC 61966-2-1).
+// Applies sRGB's transfer function (IEC 61966-2-1).
 uint8_t encoded(double linear) {
   const double c = std::clamp(linear, 0.0, 1.0);
   return uint8_t(std::lround(255 * (c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055)));
 }
 
-// Ottosson's matrices.
+// Converts with Ottosson's matrices.
 ColourMap::Rgb srgb_of(const Lab& c) {
   const double l = std::pow(c.lightness + 0.3963377774 * c.a + 0.2158037573 * c.b, 3);
   const double m = std::pow(c.lightness - 0.1055613458 * c.a - 0.0638541728 * c.b, 3);

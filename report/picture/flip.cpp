@@ -1,4 +1,4 @@
-// The colour and the feature pipeline of LDR-FLIP. Section numbers are of Andersson et al. 2020.
+// Computes the colour and the feature pipeline of LDR-FLIP. Section numbers are of Andersson et al. 2020.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/picture/flip.h"
 
@@ -22,8 +22,8 @@ struct Size {
   ptrdiff_t width = 0, height = 0;
 };
 
-// Linear sRGB to XYZ, and back: primaries and white point D65 of IEC 61966-2-1, scaled so that white has Y
-// = 1.
+// Converts linear sRGB to XYZ and back. Primaries and white point D65 are those of IEC 61966-2-1, scaled so
+// that white has Y = 1.
 class Xyz {
  public:
   Xyz() {
@@ -41,7 +41,7 @@ class Xyz {
       for (size_t i = 0; i < 3; ++i) row[i] *= share[i];
     from_ = inverse(to_);
   }
-  // Relative to white.
+  // Returns XYZ relative to white.
   Color of(const Color& rgb) const {
     Color xyz = times(to_, rgb);
     for (size_t i = 0; i < 3; ++i) xyz[i] /= white_[i];
@@ -58,7 +58,7 @@ class Xyz {
     for (size_t i = 0; i < 3; ++i) out[i] = m[i][0] * v[0] + m[i][1] * v[1] + m[i][2] * v[2];
     return out;
   }
-  // By cofactors.
+  // Returns the inverse by cofactors.
   static Matrix inverse(const Matrix& m) {
     Matrix out{};
     double determinant = 0;
@@ -81,7 +81,7 @@ double linear(float value) {
   return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);  // IEC 61966-2-1
 }
 
-// YyCxCz, linear in XYZ (sec. 4.1.1).
+// Converts to YyCxCz, which is linear in XYZ (sec. 4.1.1).
 Color opponent(const Color& xyz) {
   return {116 * xyz[1] - 16, 500 * (xyz[0] - xyz[1]), 200 * (xyz[1] - xyz[2])};
 }
@@ -90,7 +90,7 @@ Color xyz_of_opponent(const Color& c) {
   return {y + c[1] / 500, y, y - c[2] / 200};
 }
 
-// CIE 15, 8.2.1, with a and b fading as colours get darker: Hunt's effect (sec. 4.1.2).
+// Converts by CIE 15, 8.2.1, with a and b fading as colours get darker (Hunt's effect, sec. 4.1.2).
 Color hunt_lab(const Color& xyz) {
   constexpr double kDelta = 6.0 / 29;
   const auto f = [](double t) {
@@ -101,12 +101,12 @@ Color hunt_lab(const Color& xyz) {
           0.01 * lightness * 200 * (f(xyz[1]) - f(xyz[2]))};
 }
 
-// Abasi et al. 2020: city block in lightness, Euclidean in colour.
+// Returns the distance of Abasi et al. 2020: city block in lightness, Euclidean in colour.
 double hyab(const Color& a, const Color& b) {
   return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]);
 }
 
-// Weights of one direction, around the middle.
+// Returns the weights of one direction, around the middle.
 Plane weights(ptrdiff_t radius, const auto& weight) {
   Plane out;
   for (ptrdiff_t i = -radius; i <= radius; ++i) out.push_back(weight(double(i)));
@@ -118,7 +118,7 @@ double sum(const Plane& values) {
   return out;
 }
 
-// Rows with `across`, then columns with `down`; edges repeat.
+// Filters rows with `across`, then columns with `down`. Edges repeat.
 Plane filtered(const Plane& in, Size size, const Plane& across, const Plane& down) {
   Plane rows(in.size()), out(in.size());
   const ptrdiff_t ra = ptrdiff_t(across.size() / 2), rd = ptrdiff_t(down.size() / 2);
@@ -137,8 +137,8 @@ Plane filtered(const Plane& in, Size size, const Plane& across, const Plane& dow
   return out;
 }
 
-// Contrast sensitivity of a channel as a sum of Gaussians (sec. 4.1.1, Table 1): a of each and b in square
-// degrees.
+// Holds the contrast sensitivity of a channel as a sum of Gaussians (sec. 4.1.1, Table 1): a of each, and b
+// in square degrees.
 struct Sensitivity {
   double a[2], b[2];
 };
@@ -164,7 +164,7 @@ Plane as_seen(const Plane& plane, Size size, const Sensitivity& s, double ppd) {
   return out;
 }
 
-// A picture as both pipelines want it.
+// Holds a picture as both pipelines want it.
 struct Seen {
   std::vector<Color> lab;  // filtered, with Hunt's effect
   Plane grey;              // luminance, 0..1, not filtered
@@ -191,14 +191,15 @@ Seen see(const Picture& picture, Size size, const Xyz& xyz, double ppd) {
 
 constexpr double kColorExponent = 0.7, kKnee = 0.4, kKneeValue = 0.95;  // q_c, p_c, p_t (sec. 4.1.3)
 
-// The distance as 0..1: small ones nearly linear, large ones squeezed above the knee.
+// Returns the distance as 0 to 1. Small distances stay nearly linear, and large ones are squeezed above the
+// knee.
 double color_error(const Color& a, const Color& b, double largest) {
   const double distance = std::pow(hyab(a, b), kColorExponent), knee = kKnee * largest;
   return distance < knee ? kKneeValue * distance / knee
                          : kKneeValue + (1 - kKneeValue) * (distance - knee) / (largest - knee);
 }
 
-// Positive weights add up to 1, negative ones to -1.
+// Scales values so that the positive weights add up to 1 and the negative ones to -1.
 Plane balanced(Plane values) {
   double above = 0, below = 0;
   for (const double v : values) (v > 0 ? above : below) += std::abs(v);
@@ -206,8 +207,8 @@ Plane balanced(Plane values) {
   return values;
 }
 
-// Strength of edges and of points: first and second derivatives of a Gaussian as wide as a pixel's detail
-// (sec. 4.2).
+// Holds the strength of edges and of points: first and second derivatives of a Gaussian that is as wide as a
+// pixel's detail (sec. 4.2).
 struct Features {
   Plane edges, points;
 };
@@ -236,7 +237,7 @@ void check(const Picture& a, const Picture& b, double ppd) {
     throw UserError({}, fmt::format("pictures of {}x{} and {}x{} pixels cannot be compared", a.width,
                                     a.height, b.width, b.height));
   if (!(ppd >= 1 && ppd <= 1000))
-    throw UserError({}, fmt::format("{} pixels per degree: expected 1 to 1000", ppd),
+    throw UserError({}, fmt::format("{} pixels per degree are out of range: expected 1 to 1000", ppd),
                     fmt::format("{} is usual", kPixelsPerDegree));
 }
 
@@ -248,7 +249,7 @@ Flip flip(const Picture& a, const Picture& b, double ppd) {
   const Size size{ptrdiff_t(a.width), ptrdiff_t(a.height)};
   const Seen x = see(a, size, xyz, ppd), y = see(b, size, xyz, ppd);
   const Features fx = features(x.grey, size, ppd), fy = features(y.grey, size, ppd);
-  // The two colours that are furthest apart: green and blue.
+  // These are the two colours that are furthest apart: green and blue.
   const double largest =
       std::pow(hyab(hunt_lab(xyz.of({0, 1, 0})), hunt_lab(xyz.of({0, 0, 1}))), kColorExponent);
   Flip out;
@@ -271,7 +272,8 @@ Flip flip(const Picture& a, const Picture& b, double ppd) {
 }
 
 Picture flip_picture(const Picture& a, const Flip& flip) {
-  // Evenly lighter, as the colour map "magma" of van der Walt and Smith 2015, of which these are six points.
+  // The ramp grows evenly lighter. Its six points are of the colour map "magma" of van der Walt and Smith
+  // 2015.
   constexpr float kRamp[6][3] = {{0.00f, 0.00f, 0.02f}, {0.23f, 0.06f, 0.44f}, {0.55f, 0.16f, 0.51f},
                                  {0.87f, 0.29f, 0.41f}, {1.00f, 0.62f, 0.43f}, {0.99f, 0.99f, 0.75f}};
   Picture out{a.width, a.height, std::vector<float>(flip.map.size() * 3)};

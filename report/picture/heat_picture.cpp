@@ -1,4 +1,4 @@
-// Drawing a map of cost: colours alone, and with name, scale and unit.
+// Draws a map of cost: colours alone, and with name, scale and unit.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
@@ -26,8 +26,8 @@ namespace glint::report {
 namespace {
 
 using Rgb = ColourMap::Rgb;
-constexpr uint32_t kMostPixels = 2048;   // of a picture's side
-constexpr uint32_t kWantedPixels = 512;  // that small maps are enlarged to
+constexpr uint32_t kMostPixels = 2048;   // on a side of a picture
+constexpr uint32_t kWantedPixels = 512;  // to which small maps are enlarged
 constexpr int kFontScale = 2, kLine = 12 * kFontScale, kMargin = 16, kBar = 22, kTick = 6;
 
 class Canvas {
@@ -40,7 +40,7 @@ class Canvas {
       for (int column = std::max(x, 0); column < std::min(x + width, width_); ++column)
         pixels_[size_t(row) * size_t(width_) + size_t(column)] = colour;
   }
-  // ASCII, its upper left corner there.
+  // Writes ASCII text with its upper left corner at (x, y).
   void write(int x, int y, std::string text, Rgb ink) {
     struct Vertex {
       float x, y, z;
@@ -72,7 +72,7 @@ class Canvas {
   std::vector<Rgb> pixels_;
 };
 
-// A map of no more than kMostPixels a side: means of the pixels that share one.
+// Returns a map with at most kMostPixels on a side. Pixels that share one are averaged.
 CostMap reduced(const CostMap& map) {
   const uint32_t step_x = (map.width + kMostPixels - 1) / kMostPixels,
                  step_y = (map.height + kMostPixels - 1) / kMostPixels;
@@ -101,7 +101,7 @@ void draw_map(Canvas& canvas, const CostMap& map, double top, int x, int y, int 
     }
 }
 
-// Four digits at most, with k, M or G.
+// Writes a number with four digits at most, and with k, M or G.
 std::string short_number(double value) {
   constexpr const char* kUnits[] = {"", "k", "M", "G"};
   size_t unit = 0;

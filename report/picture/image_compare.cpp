@@ -1,4 +1,4 @@
-// Measures of difference between pictures.
+// Measures differences between pictures.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/picture/image_compare.h"
 
@@ -13,7 +13,7 @@
 namespace glint::report {
 namespace {
 
-constexpr size_t kWindow = 11;  // pixels (Wang et al. 2004, sec. III-B, as are the numbers below)
+constexpr size_t kWindow = 11;  // pixels (Wang et al. 2004, sec. III-B, like the numbers below)
 constexpr double kSigma = 1.5;  // pixels
 constexpr double kC1 = 0.01 * 0.01, kC2 = 0.03 * 0.03;  // (K1 L)^2 and (K2 L)^2 with L = 1
 
@@ -21,7 +21,7 @@ double known(float value) {
   return std::isfinite(value) ? double(value) : 0.0;
 }
 
-// How the three channels from `first` differ.
+// Says how the three channels from `first` on differ.
 struct PixelPair {
   bool is_same = true, is_beyond_measure = false, is_finite = true;
   double squares = 0, largest = 0;  // of differences between finite values
@@ -50,7 +50,7 @@ void check_sizes(const Picture& a, const Picture& b) {
                                   b.width, b.height));
 }
 
-// ITU-R BT.709 weights.
+// Returns the luminance with the weights of ITU-R BT.709.
 std::vector<double> luminance(const Picture& picture) {
   std::vector<double> out(size_t(picture.width) * picture.height);
   const auto channel = [&](size_t i) { return std::clamp(known(picture.rgb[i]), 0.0, 1.0); };
@@ -70,7 +70,7 @@ std::array<double, kWindow> gaussian() {
   return out;
 }
 
-// Weighted means of every window that lies in the plane: along rows, then along columns.
+// Returns the weighted means of every window that lies in the plane: along rows, then along columns.
 std::vector<double> blurred(const std::vector<double>& plane, size_t width, size_t height) {
   static const std::array<double, kWindow> kWeights = gaussian();
   const size_t w = width - kWindow + 1, h = height - kWindow + 1;

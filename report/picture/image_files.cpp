@@ -1,4 +1,4 @@
-// Encoding of images.
+// Encodes images.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/picture/image_files.h"
 
@@ -24,7 +24,7 @@ namespace glint::report {
 namespace {
 
 uint8_t to_byte(float value) {
-  if (!(value > 0.0f)) return 0;  // also not-a-number
+  if (!(value > 0.0f)) return 0;  // also catches not-a-number
   return value >= 1.0f ? uint8_t{255} : uint8_t(value * 255.0f + 0.5f);
 }
 
@@ -52,7 +52,8 @@ std::string png_bytes(const ImageView& image) {
 
 std::string pfm_bytes(const ImageView& image) {
   check_size(image);
-  std::string out = fmt::format("PF\n{} {}\n-1.0\n", image.width, image.height);  // negative: little endian
+  std::string out =
+      fmt::format("PF\n{} {}\n-1.0\n", image.width, image.height);  // a negative scale says little endian
   for (uint32_t row = image.height; row-- > 0;)
     for (uint32_t x = 0; x < image.width; ++x)
       for (size_t c = 0; c < 3; ++c) {

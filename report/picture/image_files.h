@@ -1,4 +1,4 @@
-// A rendered image as the bytes of a PNG (8 bits, for eyes) and of a PFM (floats, for comparing).
+// Encodes a rendered image as PNG (8 bits, for eyes) and as PFM (floats, for comparing).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -8,16 +8,16 @@
 
 namespace glint::report {
 
-// Display-referred values, row 0 on top, four floats a pixel; alpha is not written.
+// Holds display-referred values, with row 0 on top and four floats per pixel. Alpha is not written.
 struct ImageView {
   uint32_t width = 0, height = 0;  // pixels
   std::span<const float> rgba;     // width * height * 4
 };
 
-// Three channels of 8 bits: round(255 * clamp(value, 0, 1)); not-a-number becomes 0.
+// Returns three channels of 8 bits: round(255 * clamp(value, 0, 1)). Not-a-number becomes 0.
 std::string png_bytes(const ImageView& image);
 
-// "PF", three little-endian floats a pixel, bottom row first: values as they are, nothing clamped.
+// Returns "PF" and three little-endian floats per pixel, with the bottom row first. Values are not clamped.
 std::string pfm_bytes(const ImageView& image);
 
 }  // namespace glint::report

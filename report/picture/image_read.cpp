@@ -1,4 +1,4 @@
-// Reading the pictures that runs leave.
+// Reads the pictures that runs leave.
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <cstring>
@@ -10,7 +10,7 @@
 #include "base/diagnostics.h"
 #include "report/picture/image_compare.h"
 
-// stb's functions stay in this file: other libraries bring their own copies of it.
+// stb's functions stay in this file, because other libraries bring their own copies of it.
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -27,9 +27,12 @@
 namespace glint::report {
 namespace {
 
-constexpr uint32_t kMaxSide = 1u << 16;  // pixels: more is a damaged file
+constexpr uint32_t kMaxSide = 1u << 16;  // pixels; a file with more is damaged
 
-// "PF\nWIDTH HEIGHT\nSCALE\n", then floats, the bottom row first; little-endian where SCALE is negative.
+// Reads "PF
+// WIDTH HEIGHT
+// SCALE
+// " and then floats, with the bottom row first. A negative SCALE says little-endian.
 Picture read_pfm(const std::string& bytes, const std::string& path) {
   std::istringstream in(bytes);
   std::string magic;
@@ -37,10 +40,10 @@ Picture read_pfm(const std::string& bytes, const std::string& path) {
   double scale = 0;
   if (!(in >> magic >> width >> height >> scale) || width < 1 || height < 1 || width > kMaxSide ||
       height > kMaxSide || scale == 0)
-    throw UserError({path}, "the header is not of a PFM");
+    throw UserError({path}, "the header is not that of a PFM");
   const size_t begin = size_t(in.tellg()) + 1, row = size_t(width) * 3;
   if (bytes.size() != begin + row * size_t(height) * sizeof(float))
-    throw UserError({path}, fmt::format("has {} bytes, expected {}", bytes.size(),
+    throw UserError({path}, fmt::format("the file has {} bytes, expected {}", bytes.size(),
                                         begin + row * size_t(height) * sizeof(float)));
   Picture out{uint32_t(width), uint32_t(height), std::vector<float>(row * size_t(height))};
   for (size_t y = 0; y < size_t(height); ++y)

@@ -1,4 +1,4 @@
-// Writing and reading of NumPy's files.
+// Writes and reads NumPy's files.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/picture/npy.h"
 
@@ -40,7 +40,7 @@ void read_numbers(std::string_view data, std::vector<double>& out) {
 
 }  // namespace
 
-// The header ends at a multiple of 64 bytes.
+// Writes an array. The header ends at a multiple of 64 bytes.
 std::string npy_bytes(const std::string& dtype, const std::string& shape, std::string_view data) {
   std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': {}, }}", dtype, shape);
   header.append((64 - (kMagic.size() + 2 + header.size() + 1) % 64) % 64, ' ');
@@ -59,7 +59,7 @@ std::string npy_of_map(const CostMap& map) {
 
 void read_npy(const std::string& bytes, const std::string& name, CostMap& map) {
   const auto refuse = [&]() {
-    return UserError({name}, "this is no map of cost", "the file is damaged; run it again");
+    return UserError({name}, "this is not a map of cost", "the file is damaged; run it again");
   };
   if (bytes.size() < 10 || std::string_view(bytes).substr(0, 8) != kMagic) throw refuse();
   const size_t header = uint8_t(bytes[8]) + 256u * uint8_t(bytes[9]);

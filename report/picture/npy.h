@@ -1,4 +1,4 @@
-// Arrays as NumPy's files, format 1.0: numpy.lib.format in NumPy's documentation.
+// Writes arrays as NumPy's files, format 1.0 (numpy.lib.format in NumPy's documentation).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
@@ -8,14 +8,15 @@
 
 namespace glint::report {
 
-// `dtype` as NumPy writes it ("<f4"), `shape` as Python writes a tuple, `data` little endian and row by row.
+// Returns a file. `dtype` is as NumPy writes it ("<f4"), `shape` is as Python writes a tuple, and `data` is
+// little endian and row by row.
 std::string npy_bytes(const std::string& dtype, const std::string& shape, std::string_view data);
 
-// Height x width numbers: <u4 of counts, each at most 2^32 - 1, else <f4.
+// Returns height x width numbers: <u4 for counts that are at most 2^32 - 1, and <f4 otherwise.
 std::string npy_of_map(const CostMap& map);
 
-// Width, height and values of `map` from what npy_of_map() wrote. `name` stands in the message; UserError
-// when it is something else.
+// Reads width, height and values of `map` from what npy_of_map() wrote. `name` is used in the message. Throws
+// UserError when the bytes are something else.
 void read_npy(const std::string& bytes, const std::string& name, CostMap& map);
 
 }  // namespace glint::report

@@ -1,4 +1,4 @@
-// Drawing of the progress line.
+// Draws the progress line.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/terminal/progress.h"
 
@@ -7,7 +7,7 @@
 
 namespace glint::report {
 namespace {
-constexpr int kBarWidth = 24;  // columns: label, bar and times stay within 80
+constexpr int kBarWidth = 24;  // columns, so that label, bar and times stay within 80
 constexpr std::chrono::milliseconds kRedraw{100};
 }  // namespace
 

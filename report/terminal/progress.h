@@ -1,4 +1,4 @@
-// A progress line with an estimate of the time left, redrawn in place; silent when stdout is no terminal.
+// Draws a progress line with an estimate of the time left, in place; silent when stdout is not a terminal.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <chrono>
@@ -10,21 +10,21 @@
 
 namespace glint::report {
 
-// The line for `done` of `total` after `elapsed` seconds, without control characters.
+// Returns the line for `done` of `total` after `elapsed` seconds, without control characters.
 std::string progress_line(const std::string& label, uint64_t done, uint64_t total, double elapsed,
                           const Terminal& terminal);
 
-// Redraws at most ten times a second: an update costs a clock read.
+// Redraws at most ten times a second, so an update usually costs only a clock read.
 class Progress {
  public:
-  // `stream` null: says nothing.
+  // A null `stream` shows nothing.
   Progress(std::FILE* stream, std::string label, Terminal terminal);
   ~Progress() { clear(); }
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
   void update(uint64_t done, uint64_t total);
-  void clear();  // wipes the line, so that what is printed next starts clean
+  void clear();  // wipes the line, so that the next text starts on a clean one
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -32,7 +32,7 @@ class Progress {
   std::string label_;
   Terminal terminal_;
   Clock::time_point start_, last_;
-  size_t drawn_ = 0;  // columns on screen
+  size_t drawn_ = 0;  // columns on the screen
 };
 
 }  // namespace glint::report

@@ -1,4 +1,4 @@
-// Layout of the run summary.
+// Lays out the run summary.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/terminal/summary.h"
 
@@ -49,9 +49,9 @@ std::string execution(const Summary& s) {
                                                   double(t.cycles) / (t.clock_mhz * 1000), t.clock_mhz)
                                     : ""});
     rows.push_back({"IPC", fmt::format("{:.3f}", part(s.warp_instructions, t.cycles)),
-                    "warp instructions a cycle, all cores"});
+                    "warp instructions per cycle of all cores"});
     if (t.warp_slots > 0)
-      rows.push_back({"warps a core", fmt::format("{} of {}", t.resident_warps, t.warp_slots),
+      rows.push_back({"warps per core", fmt::format("{} of {}", t.resident_warps, t.warp_slots),
                       fmt::format("at most, limited by {}", t.residency_limit)});
   }
   rows.push_back({"warp instructions", with_thousands(s.warp_instructions), ""});
@@ -96,10 +96,10 @@ std::string machine(const TimingSummary& t, const Terminal& terminal) {
 std::string rays(const Summary& s) {
   Rows rows{{"rays", with_thousands(s.rays), ""}};
   if (s.rays > 0) {
-    rows.push_back({"nodes a ray", fmt::format("{:.1f}", s.nodes_per_ray), ""});
+    rows.push_back({"nodes per ray", fmt::format("{:.1f}", s.nodes_per_ray), ""});
     if (s.bvh_depth > 0)
       rows.push_back({"traversal ratio", fmt::format("{:.2f}", s.nodes_per_ray / s.bvh_depth),
-                      fmt::format("nodes a ray / BVH depth {}", s.bvh_depth)});
+                      fmt::format("nodes per ray / BVH depth {}", s.bvh_depth)});
   }
   return table(rows, "<><", " ");
 }

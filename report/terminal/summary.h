@@ -1,4 +1,5 @@
-// What a person wants to know of a run, on one screen: time, instruction mix, caches, DRAM, RT unit, rays.
+// Formats what a person wants to know of a run on one screen: time, instructions, caches, DRAM, RT unit,
+// rays.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -10,25 +11,26 @@
 
 namespace glint::report {
 
-// One class of the instruction mix.
+// Holds one class of the instruction mix.
 struct MixRow {
   std::string name;
-  uint64_t count = 0;    // warp instructions executed
-  uint64_t latency = 0;  // core cycles from issue to completion, summed over them; 0 in functional runs
+  uint64_t count = 0;  // warp instructions executed
+  uint64_t latency =
+      0;  // core cycles from issue to completion, summed over the instructions; 0 in functional runs
 };
 
 struct HitRate {
   uint64_t hits = 0, accesses = 0;
 };
 
-// Numbers of a timing run. Fractions are 0..1; what the machine cannot tell is absent, never zero.
+// Holds numbers of a timing run. Fractions are 0 to 1. What the machine cannot tell is absent, never zero.
 struct TimingSummary {
-  uint64_t cycles = 0;  // core clock
+  uint64_t cycles = 0;  // core cycles
   double clock_mhz = 0;
   uint32_t resident_warps = 0,
            warp_slots = 0;      // of a core: those that fit of the launch, those that there are
-  std::string residency_limit;  // what is used up first: "registers"
-  std::string memory_peaks;     // what the memory system could do at best, in one line
+  std::string residency_limit;  // what is used up first, such as "registers"
+  std::string memory_peaks;     // the best that the memory system could do, in one line
   HitRate l1_rt, l1_shader, l2;
   std::optional<double> dram_utilisation;  // data-bus cycles / DRAM cycles
   std::optional<double> dram_efficiency;   // data-bus cycles / DRAM cycles with a request pending
@@ -37,17 +39,17 @@ struct TimingSummary {
 };
 
 struct Summary {
-  std::string title;               // "WKND pt 128x128 2 spp on mobile"
-  std::string note;                // what differs from the original scene; "" = nothing
-  std::vector<std::string> files;  // paths written, picture first
+  std::string title;               // such as "WKND pt 128x128 2 spp on mobile"
+  std::string note;                // what differs from the original scene; "" when nothing does
+  std::vector<std::string> files;  // paths of written files, picture first
   uint64_t warp_instructions = 0;
   double simt_efficiency = 0;  // active lanes / 32, averaged over instructions
   std::vector<MixRow> mix;
   uint64_t rays = 0;
-  double nodes_per_ray = 0;  // BVH nodes visited, average
+  double nodes_per_ray = 0;  // mean number of BVH nodes visited
   uint32_t bvh_depth = 0;    // levels of the deepest path, top and bottom structure together
   double wall_seconds = 0;
-  std::optional<TimingSummary> timing;  // absent: a functional run
+  std::optional<TimingSummary> timing;  // absent for a functional run
 };
 
 std::string format_summary(const Summary& summary, const Terminal& terminal);

@@ -1,4 +1,4 @@
-// Layout of text for terminals.
+// Lays out text for terminals.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/terminal/table.h"
 
@@ -11,7 +11,7 @@ namespace glint::report {
 size_t display_width(const std::string& text) {
   size_t width = 0;
   for (size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '\x1b') {  // "ESC [ ... m"
+    if (text[i] == '\x1b') {  // the sequence is "ESC [ ... m"
       while (i < text.size() && text[i] != 'm') ++i;
       continue;
     }

@@ -191,11 +191,11 @@ class Page(Report):
         self.make_suite()
         path = self.folder / "suite/characterization/characterization.json"
         whole = json.loads(path.read_text())
-        for broken, parts in ((path.read_text()[:500], ["no characterisation"]), (json.dumps({**whole, "schema": 0}), ["schema 0, expected 1", "again with this one"]),
+        for broken, parts in ((path.read_text()[:500], ["not a characterisation"]), (json.dumps({**whole, "schema": 0}), ["schema 0, expected 1", "again with this one"]),
                               (json.dumps({name: value for name, value in whole.items() if name != "joins"}), ["joins", "damaged"]), (json.dumps({**whole, "leaves": [99]}), ["99", "damaged"])):
             path.write_text(broken)
             self.expect(2, [*parts, "glint characterize"], "report", "suite")
-        self.expect(2, ["no table of models", "glint model"], "report", self.write("other.csv", "a,b\n1,2\n"))
+        self.expect(2, ["not a table of models", "glint model"], "report", self.write("other.csv", "a,b\n1,2\n"))
 
 
 class Browser(Report):

@@ -312,7 +312,7 @@ class Report(WatchedRun):
         self.expect(2, ["heat/rays.npy", "run it again"], "report", "out")
         shutil.rmtree(self.folder / "out/heat")
         (self.folder / "out/trace.json.gz").write_bytes(b"nothing\n")
-        self.expect(2, ["trace.json.gz", "no trace"], "report", "out")
+        self.expect(2, ["trace.json.gz", "not a trace"], "report", "out")
         (self.folder / "out/trace.json.gz").unlink()
         self.assertEqual(self.glint("report", "out").returncode, 0)
         self.expect(2, ["no trace", "--trace"], "report", "out", "--timeline", "1:2")

@@ -115,11 +115,11 @@ class Page(ReportTest):
             (self.folder / name).unlink()
         self.assertEqual(changes("mine.toml"), expected)
         static = lambda *names: (page := self.report(*names))[: page.index('id="data"')]
-        self.assertRegex(static("mine.toml"), "<code>mine.toml</code> is no preset: .* compared with mobile")
+        self.assertRegex(static("mine.toml"), "<code>mine.toml</code> is not a preset: .* compared with mobile")
         self.assertIn("3<small>mobile 8</small>", static("mine.toml"))
         self.assertNotIn("Every key has", static("mine.toml"))
         self.assertIn("Every key has the value of desktop.", static("same.toml"))
-        self.assertEqual(static("mine.toml", "mine.toml").count("is no preset"), 1)
+        self.assertEqual(static("mine.toml", "mine.toml").count("is not a preset"), 1)
         self.assertIn("Every key has the value of its run’s preset: mobile, desktop.", static("wknd", "same.toml"))
 
     def test_the_built_page_is_that_of_the_sources(self):
@@ -156,12 +156,12 @@ class Page(ReportTest):
         page = self.document((self.folder / "suite/report.html").read_text())
         self.assertEqual([run["metrics"]["cycles"] for run in page["runs"]], [self.total(name, "gpu.cycles") for name in sorted(self.runs)])
         self.write("none/metrics.csv", "workload\n")
-        self.expect(2, ["none", "no run directory", "glint bench"], "report", "none")
+        self.expect(2, ["none", "not a run directory", "glint bench"], "report", "none")
 
     def test_bad_input_is_refused_with_a_reason(self):
         copy = self.folder / "copy"
         shutil.copytree(self.runs["wknd"], copy)
-        self.expect(2, ["no run directory", "nowhere"], "report", "nowhere")
+        self.expect(2, ["not a run directory", "nowhere"], "report", "nowhere")
         (self.folder / "empty").mkdir()
         self.expect(2, ["run.json", "no such file"], "report", "empty")
         run_json = (copy / "run.json").read_text()

@@ -101,7 +101,7 @@ TEST_CASE("A table of models reads back as it was", "[analytical]") {
   CHECK(model_csv(read) == model_csv(table));
   CHECK(models_json(read) == models_json(table));
   CHECK_THROWS_WITH(parse_models("workload,ipc\nA,1\n", "x.csv"),
-                    Catch::Contains("x.csv:1") && Catch::Contains("no table of models"));
+                    Catch::Contains("x.csv:1") && Catch::Contains("not a table of models"));
 }
 
 TEST_CASE("A table of models that lost its rows, or has a run without cycles, is refused with the line",
@@ -112,10 +112,10 @@ TEST_CASE("A table of models that lost its rows, or has a run without cycles, is
   };
   refused("", "x.csv:1", "no workload");
   for (const char* cycles : {"nan", "inf", "-5", "0"}) {
-    refused(std::string("A,100,90,0\nB,") + cycles + ",90,0\n", "x.csv:3", "are no cycles");
-    refused(std::string("A,100,") + cycles + ",0\n", "x.csv:2", "are no cycles");
+    refused(std::string("A,100,90,0\nB,") + cycles + ",90,0\n", "x.csv:3", "is not a number of cycles");
+    refused(std::string("A,100,") + cycles + ",0\n", "x.csv:2", "is not a number of cycles");
   }
-  refused("A,12x,90,0\n", "x.csv:2", "is no number");
+  refused("A,12x,90,0\n", "x.csv:2", "is not a number");
   CHECK_THROWS_WITH(parse_models("workload,cycles,mod\n", "x.csv"),
                     Catch::Contains("x.csv:1") && Catch::Contains("model:"));
   CHECK(parse_models("workload,cycles,model:a,in\nA,100,90,0\n", "x.csv").rows.size() == 1);

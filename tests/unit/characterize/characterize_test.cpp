@@ -219,7 +219,7 @@ TEST_CASE("Tables that cannot be compared are refused with the reason", "[charac
   CHECK(message_of("").find("no header") != std::string::npos);
   CHECK(message_of("workload,a,b\nX,1,2\nY,2,1\n").find("2 workloads, expected at least 3") !=
         std::string::npos);
-  CHECK(message_of("workload,a,b\nX,1,2\nY,2,1\nX,3,1\n").find("'X' stands there twice") !=
+  CHECK(message_of("workload,a,b\nX,1,2\nY,2,1\nX,3,1\n").find("'X' is in the table twice") !=
         std::string::npos);
   CHECK(message_of("workload,a,b\nX,1,2\nY,2\nZ,3,1\n").find("table.csv:3") != std::string::npos);
   CHECK(message_of("workload,a,b\nX,1,7\nY,2,7\nZ,3,7\n").find("1 columns of numbers that vary") !=

@@ -90,10 +90,10 @@ TEST_CASE("metrics that only one run has are named") {
   cut.add_stats("path,value,unit,doc\ngpu.cycles,900,cycle,\n", "stats.csv");
   const std::string text = report::uncompared_text(run("1000", "3000"), cut);
 
-  CHECK(text.find("metrics only A has: insn, ipc") != std::string::npos);
+  CHECK(text.find("metrics are only in A: insn, ipc") != std::string::npos);
   CHECK(text.find("only B") == std::string::npos);
   CHECK(text.find("cycles") == std::string::npos);
-  CHECK(report::uncompared_text(cut, run("1000", "3000")).find("metrics only B has: insn, ipc") !=
+  CHECK(report::uncompared_text(cut, run("1000", "3000")).find("metrics are only in B: insn, ipc") !=
         std::string::npos);
   CHECK(report::uncompared_text(cut, cut) == "");
 }

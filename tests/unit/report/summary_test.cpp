@@ -42,7 +42,7 @@ TEST_CASE("the summary derives IPC, shares, hit rates and the traversal ratio fr
   CHECK(has(text, "alu             750  75.0 %  ###############.....   25.0 %  #####..............."));
   CHECK(has(text, "L1D hits, RT unit   75.0 %"));
   CHECK(has(text, "75 of 100 accesses"));
-  CHECK(has(text, "1.50  nodes a ray / BVH depth 8"));
+  CHECK(has(text, "1.50  nodes per ray / BVH depth 8"));
   CHECK(has(text, "24 of 32"));
   CHECK(has(text, "at most, limited by registers"));
   CHECK(has(text, " at best: DRAM 42.0 GB/s"));
