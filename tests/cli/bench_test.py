@@ -91,7 +91,7 @@ class Bench(BenchTest):
         self.assertEqual({line[0] for line in lines if line[1] == "-"}, {"rt_store_q_max", "rt_store_cycles"})
         peer = self.glint(0, "stats", "out", "--format", "vulkan-sim").stdout
         self.assertRegex(peer, r"(?m)^rt_avg_nodes_per_ray = \d")
-        missing = re.findall(r"(?m)^# (\S+): nothing to divide", peer)
+        missing = re.findall(r"(?m)^# (\S+): there is nothing to divide", peer)
         self.assertEqual(missing, ["rt_overall_miss_rate"] if "rt_overall_miss_rate" in missing else [])
         self.assertEqual(self.glint(0, "stats", "out").stdout, (self.folder / "out/stats.txt").read_text())
         self.glint(2, "stats", "nowhere", "--format", "metrics")

@@ -1,4 +1,4 @@
-// Hong and Kim's equations on the paper's example and on others done by hand; the table of models.
+// Tests Hong and Kim's equations on the paper's example and on others done by hand, and the table of models.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/analytical/hong_kim.h"
 

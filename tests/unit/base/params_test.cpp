@@ -44,7 +44,7 @@ class Snail final : public Animal {
   Snail(Params, Context) {}
   int speed() const override { return 1; }
 };
-// Registered before the dog, so that the test of the sorted listing can fail.
+// The snail is registered before the dog, so that the test of the sorted listing can fail.
 const Register<Animal, Snail> snail;
 const Register<Animal, Dog> dog;
 

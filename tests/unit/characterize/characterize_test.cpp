@@ -1,5 +1,5 @@
-// The characterisation against values of numpy, SciPy and scikit-learn (reference.py), and what it does with
-// odd tables.
+// Tests the characterisation against values of numpy, SciPy and scikit-learn (reference.py), and on odd
+// tables.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
@@ -35,7 +35,7 @@ const nlohmann::json& expected() {
   return json;
 }
 
-// The largest difference of two matrices, the second as rows of rows.
+// Returns the largest difference of two matrices, of which the second is given as rows of rows.
 double difference(const Eigen::MatrixXd& values, const nlohmann::json& rows) {
   REQUIRE(size_t(values.rows()) == rows.size());
   REQUIRE(size_t(values.cols()) == rows[0].size());
@@ -46,7 +46,7 @@ double difference(const Eigen::MatrixXd& values, const nlohmann::json& rows) {
   return most;
 }
 
-// Same groups, whatever their numbers are.
+// Returns whether the groups are the same, whatever their numbers are.
 bool same_groups(const std::vector<int>& a, const std::vector<int>& b) {
   for (size_t i = 0; i < a.size(); ++i)
     for (size_t j = 0; j < i; ++j)
@@ -207,7 +207,7 @@ TEST_CASE("Speed-ups of a subset are those of its own workloads", "[characterize
   const std::string before = "workload,cycles\nA,100\nB,200\nC,400\nD,5\n",
                     after = "workload,cycles\nA,50\nB,200\nC,100\n";
   const SpeedUps found = speed_ups(before, "before", after, "after", {"A", "B"});
-  CHECK(std::abs(found.all.mean - 2) < 1e-12);  // of 2, 1 and 4
+  CHECK(std::abs(found.all.mean - 2) < 1e-12);  // the mean of 2, 1 and 4
   CHECK(found.all.fastest == "C");
   CHECK(std::abs(found.subset.mean - std::sqrt(2.0)) < 1e-12);
   CHECK(found.subset.slowest == "B");

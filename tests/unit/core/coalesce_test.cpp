@@ -1,4 +1,4 @@
-// Merging of lane addresses into sectors of lines.
+// Tests how lane addresses are merged into sectors of lines.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/coalesce.h"
 
@@ -64,13 +64,13 @@ TEST_CASE_METHOD(Fixture,
     count_turns(list, memory, access, bytes, true, returns);
     return list.lines()[0].atomic;
   };
-  CHECK(int(turns([](size_t i) { return i; }).turns) == 4);      // a sector each eight lanes
+  CHECK(int(turns([](size_t i) { return i; }).turns) == 4);      // eight lanes share a sector
   CHECK(int(turns([](size_t i) { return i * 8; }).turns) == 4);  // a line has four sectors of one lane
   CHECK(int(turns([](size_t i) { return i * 8; }).lanes) == 4);
   CHECK(int(turns([](size_t) { return 3; }).turns) == 32);
   CHECK(int(turns([](size_t i) { return i % 2; }).turns) == 16);
   CHECK(int(turns([](size_t i) { return i / 4; }).turns) ==
-        25);  // 0, 0, 0, 0+1, 1, 1, 1+2, ...: but for the first of each
+        25);  // 0, 0, 0, 0+1, 1, 1, 1+2, ...: without the first of each
   CHECK(int(turns([](size_t i) { return i % 8; }).turns) == 4);
   CHECK(int(turns([](size_t i) { return i % 8 * 2; }, 0xff, 8).turns) == 2);  // two sectors of four
   CHECK(int(turns([](size_t) { return 3; }, 0x101).turns) == 2);

@@ -9,7 +9,7 @@
 
 namespace glint::core {
 
-// Cycles in which accesses complete, until the unit is idle.
+// Returns the cycles in which accesses complete, until the unit is idle.
 inline std::vector<Cycle> completions(Lsu& lsu, Cycle from) {
   std::vector<Cycle> out;
   for (Cycle now = from; !lsu.idle(); ++now) {

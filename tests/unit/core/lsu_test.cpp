@@ -1,4 +1,4 @@
-// The load-store unit: queues, rates and latency, between schedulers and a memory of fixed latency.
+// Tests the load-store unit: queues, rates and latency, between schedulers and a memory of fixed latency.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/lsu.h"
 
@@ -29,7 +29,7 @@ class HalfTimeMemory final : public mem::L1Port {
   mem::FixedLatencyMemory memory_{kMemoryLatency};
 };
 
-// An access of `lines` whole lines.
+// Gives the unit an access of `lines` whole lines.
 void take(Lsu& lsu, uint32_t scheduler, Cycle now, uint32_t lines, bool write = false, bool texture = false,
           uint32_t bytes = 128) {
   REQUIRE(lsu.can_take(scheduler, texture));
@@ -94,9 +94,9 @@ TEST_CASE("lines leave at the sector rate") {
   Lsu whole(params, memory), single(params, memory);
 
   take(whole, 0, 0, 8);
-  CHECK(completions(whole, 1) == std::vector<Cycle>{32 + 7 * 2});  // 4 sectors each: two cycles
+  CHECK(completions(whole, 1) == std::vector<Cycle>{32 + 7 * 2});  // 4 sectors each take two cycles
   take(single, 0, 100, 8, false, false, 4);
-  CHECK(completions(single, 101) == std::vector<Cycle>{132 + 7});  // one sector each: a line a cycle
+  CHECK(completions(single, 101) == std::vector<Cycle>{132 + 7});  // one sector each: a line per cycle
 }
 
 TEST_CASE("a write ends when its last line has been taken, and is not answered") {
@@ -132,7 +132,7 @@ TEST_CASE("a queue holds its capacity and no more") {
   for (int i = 0; i < 5; ++i) take(lsu, 1, 0, 1);
   CHECK_FALSE(lsu.can_take(1));
   CHECK(lsu.can_take(0));
-  lsu.tick(1);  // one is accepted
+  lsu.tick(1);  // the unit accepts one
   CHECK(lsu.can_take(1));
 }
 
@@ -170,7 +170,7 @@ TEST_CASE("stepping from event to event completes accesses in the same cycles as
       HalfTimeMemory memory;
       Lsu lsu(Params{}, memory);
       std::mt19937 random(seed);
-      std::vector<std::pair<Cycle, uint32_t>> todo;  // when, what
+      std::vector<std::pair<Cycle, uint32_t>> todo;  // cycle and access
       for (Cycle at = 0; todo.size() < 40; at += random() % 60) todo.push_back({at, random()});
       std::vector<Cycle> done;
       size_t next = 0;
@@ -180,7 +180,8 @@ TEST_CASE("stepping from event to event completes accesses in the same cycles as
         for (; next < todo.size() && todo[next].first == now && lsu.can_take(todo[next].second % 4); ++next)
           take(lsu, todo[next].second % 4, now, 1 + todo[next].second % 7, todo[next].second & 8,
                todo[next].second & 16);
-        if (next < todo.size() && todo[next].first == now) ++todo[next].first;  // no room: a cycle later
+        if (next < todo.size() && todo[next].first == now)
+          ++todo[next].first;  // there is no room, so it tries again a cycle later
         const Cycle event = std::min(lsu.next_event(now), std::max(now + 1, memory.next_event(now)));
         now = skip ? std::min(event, next < todo.size() ? todo[next].first : kNever) : now + 1;
       }

@@ -1,4 +1,4 @@
-// A core between mocks, and programs written in place: for tests of when things happen.
+// Puts a core between mocks and writes programs in place, for tests of when things happen.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -38,7 +38,7 @@ class FixedLatencyRays final : public rt::RtPort {
   Cycle next_event(Cycle now) const override {
     return inside_.empty() ? kNever : inside_.front().at < now + 1 ? now + 1 : inside_.front().at;
   }
-  const std::vector<LaneMask>& lanes() const { return lanes_; }  // of each submit
+  const std::vector<LaneMask>& lanes() const { return lanes_; }  // lanes of each submit
 
  private:
   struct Inside {
@@ -58,7 +58,7 @@ inline isa::Slot special(isa::Special s) {
   return isa::Slot(isa::kSpecialBank + int(s));
 }
 
-// A compute shader, instruction by instruction.
+// Writes a compute shader, instruction by instruction.
 class Code {
  public:
   Code() { program_.name = "test"; }
@@ -71,7 +71,7 @@ class Code {
     constant(uint32_t(value >> 32));
     return low;
   }
-  // Returns the instruction's index.
+  // Adds an instruction and returns its index.
   int add(std::string_view op, std::initializer_list<isa::Slot> operands = {}, int imm = 0,
           uint8_t guard = isa::kNoGuard) {
     isa::Inst inst;
@@ -94,7 +94,8 @@ class Code {
   isa::Program program_;
 };
 
-// No launch latency, and nothing that costs cycles beside what a test adds up: tests of the rest turn it on.
+// Returns parameters without launch latency and without anything that costs cycles beside what a test adds
+// up. Tests of other costs turn them on.
 inline Params quick_params() {
   Params params;
   params.launch_latency = 0;
@@ -107,7 +108,8 @@ inline Params quick_params() {
   return params;
 }
 
-// One core with `num_warps` warps of one program. Memory answers after 20 cycles, the RT unit after 100.
+// Holds one core with `num_warps` warps of one program. Memory answers after 20 cycles, and the RT unit after
+// 100.
 struct OneCore {
   static constexpr Cycle kMemoryLatency = 20, kRayLatency = 100;
   struct Options {
@@ -140,7 +142,7 @@ struct OneCore {
       exec::set_blocks(world, {options.num_warps * uint32_t(kLanes) / options.block_threads, 1, 1},
                        {options.block_threads, 1, 1}, options.shared_bytes);
   }
-  // Runs to the end; returns the cycle after the core's last activity.
+  // Runs to the end and returns the cycle after the core's last activity.
   Cycle run() {
     cell = std::make_unique<CoreCell>(params_, CoreCell::Context{world,
                                                                  l1,

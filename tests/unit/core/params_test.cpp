@@ -1,4 +1,4 @@
-// Occupancy: how many warps and blocks a core holds.
+// Tests occupancy: how many warps and blocks a core holds.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/params.h"
 
@@ -14,8 +14,8 @@ TEST_CASE("registers limit the resident warps, rounded up to eights") {
   params.registers = 32768;
 
   CHECK(occupancy(params, 1) == 32);
-  CHECK(occupancy(params, 32) == 32);  // 32 * 32 * 32 is just the file
-  CHECK(occupancy(params, 33) == 25);  // 40 a lane: 25.6
+  CHECK(occupancy(params, 32) == 32);  // 32 * 32 * 32 fills the file exactly
+  CHECK(occupancy(params, 33) == 25);  // 40 per lane would give 25.6
   CHECK(occupancy(params, 64) == 16);
   CHECK(occupancy(params, 255) == 4);
   params.warps = 3;
@@ -50,7 +50,8 @@ TEST_CASE("what is used up first limits the blocks of a core") {
   CHECK(of({32, 1, 0, false}) == std::tuple{Limit::Warps, 32u, 32u});
   CHECK(of({33, 1, 0, false}) == std::tuple{Limit::Registers, 25u, 25u});
   CHECK(of({32, 1, 0, true}) == std::tuple{Limit::Blocks, 16u, 16u});
-  CHECK(of({32, 2, 4096, true}) == std::tuple{Limit::Warps, 16u, 32u});  // all at once: the first is named
+  CHECK(of({32, 2, 4096, true}) ==
+        std::tuple{Limit::Warps, 16u, 32u});  // all limits are met at once, and the first is named
   CHECK(of({32, 2, 4097, true}) == std::tuple{Limit::SharedMemory, 15u, 30u});
   CHECK(of({64, 5, 0, true}) == std::tuple{Limit::Registers, 3u, 15u});
   CHECK(of({16, 5, 0, true}) == std::tuple{Limit::Warps, 6u, 30u});

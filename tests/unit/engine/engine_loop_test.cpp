@@ -1,4 +1,4 @@
-// Windows: who acts when, what is skipped, and when a machine counts as stuck.
+// Tests windows: who acts when, what is skipped, and when a machine counts as stuck.
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/engine_loop.h"
 
@@ -10,7 +10,7 @@
 namespace glint {
 namespace {
 
-// Works in the cycles it is given and in those in which a message arrives; passes each message on.
+// Works in the cycles that it is given and in those in which a message arrives. It passes each message on.
 class RelayCell final : public Cell {
  public:
   RelayCell(std::vector<Cycle> work, Channel<int>* in, Channel<int>* out, Cycle latency = 32)

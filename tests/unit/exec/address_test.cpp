@@ -1,4 +1,4 @@
-// Loads and stores of every width in every space, and generic addresses of each window.
+// Tests loads and stores of every width in every space, and generic addresses of each window.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <fmt/format.h>
@@ -11,7 +11,8 @@
 namespace glint::exec {
 namespace {
 
-// One thread stores and loads in all widths at the base that `place` writes down, and leaves ten words.
+// Returns a program in which one thread stores and loads in all widths at the base that `place` writes down,
+// and leaves ten words.
 std::string all_widths(const std::string& space, const std::string& base, int offset) {
   const auto at = [&](int n) {
     return base.empty() ? fmt::format("[{}]", n) : fmt::format("[{} + {}]", base, offset + n);

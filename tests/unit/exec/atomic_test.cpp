@@ -1,4 +1,4 @@
-// Atomics: what they leave, what they return, and that no lane's turn is lost.
+// Tests atomics: what they leave, what they return, and that no lane's turn is lost.
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <cstdint>
@@ -10,7 +10,8 @@
 namespace glint::exec {
 namespace {
 
-// One thread runs `op` on word 0, which holds `old`; returns what it returned, and what it left.
+// Holds the outcome of `op` on word 0, which held `old`, by one thread: what the op returned, and what it
+// left.
 struct Outcome {
   uint64_t returned, left;
   bool operator==(const Outcome&) const = default;

@@ -1,4 +1,4 @@
-// Blocks: who a thread is, shared memory, barriers and what becomes of those that nobody completes.
+// Tests blocks: the number of a thread, shared memory, barriers, and barriers that nobody completes.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdint>
 
@@ -12,7 +12,7 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-// Sums the thread numbers of a block of any size into word %ctaid.x: a tree over shared memory.
+// Sums the thread numbers of a block of any size into word %ctaid.x, by a tree over shared memory.
 const std::string kReduce = R"(
     mov.b32 %r4, %tid.x;
     shl.b32 %r5, %r4, 2;
@@ -61,7 +61,7 @@ TEST_CASE("warps of a block reduce over shared memory between barriers") {
 }
 
 TEST_CASE("threads are numbered x fastest, and blocks too") {
-  // Word of a thread, by its linear number in the launch: tid and ctaid packed into bytes.
+  // Each thread writes one word, at its linear number in the launch: tid and ctaid packed into bytes.
   TextLaunch launch(R"(
     mad.lo.u32 %r4, %tid.z, %ntid.y, %tid.y;
     mad.lo.u32 %r4, %r4, %ntid.x, %tid.x;

@@ -1,4 +1,4 @@
-// Calls, recursion and indexed branches, with lanes that go different ways.
+// Tests calls, recursion and indexed branches, with lanes that go different ways.
 // SPDX-License-Identifier: Apache-2.0
 #include <memory>
 
@@ -51,7 +51,7 @@ F:
 }
 
 TEST_CASE("recursion of a different depth in each lane works through the stack pointer") {
-  // f(n) = n == 0 ? 0 : n + f(n - 1); the frame is one word.
+  // The program computes f(n) = n == 0 ? 0 : n + f(n - 1), with a frame of one word.
   TextLaunch launch(kOwnWord + R"(
     mov.b32 %r6, %r4;
     call SUM;
@@ -154,8 +154,8 @@ TEST_CASE(
   rt::RayState& state = warp.frame().ray[0];
   state.status = rt::RayStatus::NeedsAnyHit;
   state.candidate.t = 1.0f;
-  // As call.sbt.candidate leaves it: the caller waits at its second instruction, lane 0 runs the any-hit
-  // shader.
+  // This is the state that call.sbt.candidate leaves: the caller waits at its second instruction, and lane 0
+  // runs the any-hit shader.
   warp.simt.push_call(1, kAllLanes & ~1u, 1, 0);
   warp.simt.active = 1;
   warp.simt.pc = image.shaders[1].entry;

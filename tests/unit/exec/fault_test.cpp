@@ -1,4 +1,4 @@
-// Faults of programs written as text: what is let pass and what stops, space by space.
+// Tests faults of programs written as text: what is let pass and what stops, space by space.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdint>
 
@@ -12,7 +12,7 @@ using Catch::Matchers::Contains;
 
 const std::string kStore = "    st.global.v2.b32 [%rd2], {%r10, %r11};\n    exit;\n";
 
-// Runs one thread that goes on after faults; returns the log.
+// Runs one thread that goes on after faults, and returns the log.
 FaultLog passed(TextLaunch& launch) {
   launch.world.on_fault = OnFault::Warn;
   return pipeline::run_functional(launch.world, 1'000'000, {}).faults;

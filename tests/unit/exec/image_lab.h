@@ -1,4 +1,4 @@
-// One image instruction, run on a warp: for tests of textures and storage images.
+// Runs one image instruction on a warp, for tests of textures and storage images.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
@@ -35,7 +35,7 @@ class ImageLab {
 
   ImageLab() { world.memory = &memory; }
 
-  // Adds an image with texels of zero bits; the handle.
+  // Adds an image with texels of zero bits and returns its handle.
   uint32_t add(ImageView view) {
     view.base = memory.allocate("image", view.bytes());
     view.name = "image " + std::to_string(world.images.size());
@@ -57,8 +57,8 @@ class ImageLab {
   }
   static Column all(float x) { return all(bits(x)); }
 
-  // Runs `op` on the sources, in the order of its operands; the columns of its results. A fault stays in
-  // `fault`.
+  // Runs `op` on the sources, in the order of its operands, and returns the columns of its results. A fault
+  // is kept in `fault`.
   std::vector<Column> run(std::string_view op, const std::vector<Column>& sources,
                           LaneMask exec = kAllLanes) {
     isa::Program program;
@@ -93,7 +93,7 @@ class ImageLab {
     world.image = nullptr;
     return out;
   }
-  // The same with equal operands in all lanes: the results of lane 0.
+  // Does the same with equal operands in all lanes, and returns the results of lane 0.
   std::vector<uint32_t> run_one(std::string_view op, const std::vector<uint32_t>& sources) {
     std::vector<Column> columns;
     for (uint32_t x : sources) columns.push_back(all(x));
@@ -105,7 +105,7 @@ class ImageLab {
   mem::AddressSpace memory;
   World world;
   std::optional<Fault> fault;
-  TexelList texels;  // of the last run
+  TexelList texels;  // texels of the last run
 };
 
 }  // namespace glint::exec

@@ -1,4 +1,4 @@
-// Storage images: where texels lie, what lies outside, bytes as they are, atomics, and their time on a core.
+// Tests storage images: where texels lie, what lies outside, raw bytes, atomics, and their time on a core.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstring>
 
@@ -49,7 +49,7 @@ TEST_CASE("an image is as large as its levels and layers, one after the other") 
 TEST_CASE("stored texels lie where the geometry says, and loads give them back") {
   const struct {
     ImageShape image, op;
-    std::vector<uint32_t> place;  // layer, coordinates
+    std::vector<uint32_t> place;  // layer and coordinates
     uint64_t texel;
   } cases[] = {{ImageShape::Buffer, ImageShape::Buffer, {7}, 7},
                {ImageShape::D1, ImageShape::D1, {7}, 7},
@@ -127,9 +127,9 @@ TEST_CASE("suld.b and sust.b move bytes as they are and count x in bytes") {
   CHECK(lab.run_one("suld.b.2d.v4.b32.trap", {handle, 0, 1}) ==
         std::vector<uint32_t>{0, 0, 0x0403'0201, 0x0807'0605});
   lab.run_one("suld.b.2d.b32.trap", {handle, 13, 1});
-  CHECK(lab.fault);  // not aligned
+  CHECK(lab.fault);  // the address is not aligned
   lab.run_one("suld.b.2d.b32.trap", {handle, 16, 1});
-  CHECK(lab.fault);  // past the row
+  CHECK(lab.fault);  // the address is past the row
   CHECK(lab.run_one("suld.b.2d.v2.b32.clamp", {handle, 104, 1}) ==
         std::vector<uint32_t>{0x0403'0201, 0x0807'0605});
   lab.run_one("sust.b.2d.b8.trap", {handle, 0, 0, 0x1ff});
@@ -150,7 +150,7 @@ TEST_CASE("32 lanes that change one texel take turns, the lowest first") {
     REQUIRE(!lab.fault);
     return std::array<uint32_t, 4>{old[0][0], old[0][1], old[0][31], word_at(lab, handle, 14 * 4)};
   };
-  using Result = std::array<uint32_t, 4>;  // old value of lanes 0, 1, 31; what stays
+  using Result = std::array<uint32_t, 4>;  // old values of lanes 0, 1 and 31, and what stays
   CHECK(run("suatom.p.add.2d.u32.trap", 5, lab.all(1u)) == Result{5, 6, 36, 37});
   CHECK(run("suatom.p.add.2d.s32.trap", 5, lanes) == Result{5, 5, 470, 501});
   CHECK(run("suatom.p.min.2d.u32.trap", ~0u, lanes) == Result{~0u, 0, 0, 0});

@@ -1,4 +1,4 @@
-// A grid of blocks that runs a program written as text, and a buffer of words that it fills.
+// Runs a program written as text on a grid of blocks, and holds a buffer of words that it fills.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace glint::exec {
 
-// The program finds the buffer's address at parameter 0.
+// Launches a program, which finds the buffer's address at parameter 0.
 struct TextLaunch {
   struct Options {
     std::array<uint32_t, 3> grid{1, 1, 1}, block{32, 1, 1};
@@ -48,7 +48,7 @@ struct TextLaunch {
     pipeline::run_functional(world, 1'000'000, {});
     return *this;
   }
-  // What run() says of a fault; "" when it ends well.
+  // Returns what run() says of a fault, or "" when it ends well.
   std::string fault() {
     try {
       run();
@@ -70,7 +70,7 @@ struct TextLaunch {
   uint32_t num_words = 0;
 };
 
-// %rd2 = address of word %tid.x of the buffer; %r4 = %tid.x.
+// Sets %rd2 to the address of word %tid.x of the buffer, and %r4 to %tid.x.
 inline const std::string kOwnWord =
     "    ld.param.b64 %rd2, [0];\n"
     "    mov.b32 %r4, %tid.x;\n"

@@ -1,4 +1,4 @@
-// Formats of texels: values worked out by hand from the Vulkan specification, and round trips.
+// Tests formats of texels against values worked out by hand from the Vulkan specification, and round trips.
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <cstring>
@@ -138,7 +138,7 @@ TEST_CASE("every texel survives decoding and encoding, in every format") {
         texel[i] = std::byte(state >> 24);
       }
       const Words words = decode(format, texel.data());
-      bool skip = false;  // texels that are not the only ones of their value
+      bool skip = false;  // skips texels that are not the only ones of their value
       for (uint32_t word : words) skip |= !is_integer(info) && info.bits != 32 && std::isnan(number(word));
       if (info.numeric == Numeric::Snorm)
         for (uint32_t word : words) skip |= number(word) == -1.0f;

@@ -1,4 +1,4 @@
-// Sampling: addressing, filtering, levels, cubes, gathers and queries, against hand-made values and plain
+// Tests sampling (addressing, filtering, levels, cubes, gathers, queries) against values by hand and in
 // doubles.
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
@@ -26,7 +26,7 @@ ImageView view(ImageShape shape, uint32_t width, uint32_t height = 1, uint32_t d
   return out;
 }
 
-// Four texels 0, 1, 2, 3 in a row; border 9.
+// Adds four texels 0, 1, 2, 3 in a row, with border 9.
 uint32_t add_ramp(ImageLab& lab, Wrap mode, Filter filter) {
   ImageView image = view(ImageShape::D1, 4);
   image.sampler.wrap.fill(mode);
@@ -37,7 +37,7 @@ uint32_t add_ramp(ImageLab& lab, Wrap mode, Filter filter) {
   return handle;
 }
 
-// A number that differs from texel to texel.
+// Returns a number that differs from texel to texel.
 float pattern(const TexelIndex& at) {
   return float((at.x * 37 + at.y * 101 + at.z * 53 + at.layer * 211 + at.level * 17) % 97) / 16.0f;
 }
@@ -52,7 +52,7 @@ uint32_t add_pattern(ImageLab& lab, const ImageView& image) {
   return handle;
 }
 
-// The textbook's linear filter of repeated patterns, in doubles.
+// Computes the textbook's linear filter of repeated patterns in doubles.
 double linear(const ImageView& image, uint32_t level, const double* at, int axes) {
   double sum = 0;
   for (int corner = 0; corner < 1 << axes; ++corner) {
@@ -73,7 +73,7 @@ double linear(const ImageView& image, uint32_t level, const double* at, int axes
 
 TEST_CASE("each wrap mode finds its texel on both sides of the edges") {
   const std::pair<Wrap, std::vector<float>> expected[] = {
-      // of texels -5 to 8
+      // Each list holds texels -5 to 8.
       {Wrap::Repeat, {3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0}},
       {Wrap::MirroredRepeat, {3, 3, 2, 1, 0, 0, 1, 2, 3, 3, 2, 1, 0, 0}},
       {Wrap::ClampToEdge, {0, 0, 0, 0, 0, 0, 1, 2, 3, 3, 3, 3, 3, 3}},
@@ -86,7 +86,7 @@ TEST_CASE("each wrap mode finds its texel on both sides of the edges") {
       const auto texel = lab.run_one("tex.1d.v4.f32.f32", {handle, bits((float(i) + 0.5f) / 4)});
       INFO("mode " << int(mode) << " texel " << i);
       CHECK(number(texel[0]) == values[size_t(i + 5)]);
-      CHECK(number(texel[1]) == 0.0f);  // the format has one channel, the border too
+      CHECK(number(texel[1]) == 0.0f);  // the format has one channel, and so has the border
       CHECK(number(texel[3]) == 1.0f);
     }
 }
@@ -170,7 +170,7 @@ TEST_CASE("the level of detail comes from the level, its bias and its limits, or
   };
   Sampler& sampler = lab.image(handle).sampler;
   CHECK(level(-1) == 0);
-  CHECK(level(0.5f) == 0);  // the finer one
+  CHECK(level(0.5f) == 0);  // the finer level
   CHECK(level(0.6f) == 1);
   CHECK(level(10) == 3);
   CHECK(level(std::numeric_limits<float>::quiet_NaN()) == 0);
@@ -203,7 +203,8 @@ TEST_CASE("unnormalised coordinates count texels, and offsets move by texels") {
   ImageLab lab;
   const uint32_t handle = add_ramp(lab, Wrap::Repeat, Filter::Nearest);
   CHECK(number(lab.run_one("tex.offset.1d.v4.f32.f32", {handle, bits(0.125f), 2})[0]) == 2.0f);
-  CHECK(number(lab.run_one("tex.offset.1d.v4.f32.f32", {handle, bits(0.125f), 0xff})[0]) == 3.0f);  // -1
+  CHECK(number(lab.run_one("tex.offset.1d.v4.f32.f32", {handle, bits(0.125f), 0xff})[0]) ==
+        3.0f);  // the offset is -1
   lab.image(handle).sampler.unnormalized = true;
   CHECK(number(lab.run_one("tex.1d.v4.f32.f32", {handle, bits(2.5f)})[0]) == 2.0f);
   CHECK(lab.run_one("txq.normalized_coords.b32", {handle})[0] == 0);
@@ -256,7 +257,7 @@ TEST_CASE("a linear filter crosses the edges of a cube, and a corner is the aver
 
 TEST_CASE("the texel across an edge of a cube is the nearest one of the other faces") {
   constexpr int64_t kSize = 5;
-  // The direction to the middle of a texel, face by face, as OpenGL's manuals write it down.
+  // Returns the direction to the middle of a texel, face by face, as OpenGL's manuals define it.
   const auto direction = [&](uint32_t face, int64_t x, int64_t y) {
     const double s = double(2 * x + 1) / kSize - 1, t = double(2 * y + 1) / kSize - 1;
     switch (face) {
@@ -322,7 +323,7 @@ TEST_CASE("gradients of cubes choose the level of the face") {
       for (at.y = 0; at.y < image.extent(1, at.level); ++at.y)
         for (at.x = 0; at.x < image.extent(0, at.level); ++at.x)
           lab.put(handle, at, floats(float(at.level), 0, 0, 0));
-  // s = 0.5 x / z + 0.5: a step of 1 in x is half of the face, 4 texels, at z = 1; 2 texels at z = 2.
+  // By s = 0.5 x / z + 0.5, a step of 1 in x is half of the face: 4 texels at z = 1, and 2 texels at z = 2.
   const auto level = [&](float z) {
     return number(lab.run_one("tex.grad.cube.v4.f32.f32",
                               {handle, bits(0.1f), bits(0.2f), bits(z), bits(1.0f), 0, 0, 0, 0, 0})[0]);
@@ -351,7 +352,7 @@ TEST_CASE("a gather gives one component of four texels, counter-clockwise from t
 
 TEST_CASE("comparisons happen before the filter") {
   const std::pair<Comparison, std::array<float, 3>> expected[] = {
-      // reference below, at, above the texel
+      // The references lie below, at and above the texel.
       {Comparison::Never, {0, 0, 0}},          {Comparison::Less, {1, 0, 0}},
       {Comparison::Equal, {0, 1, 0}},          {Comparison::LessOrEqual, {1, 1, 0}},
       {Comparison::Greater, {0, 0, 1}},        {Comparison::NotEqual, {1, 0, 1}},

@@ -13,7 +13,7 @@
 
 namespace glint::frontend::lab {
 
-// A folder that is removed with the object.
+// Holds a folder that is removed with the object.
 class Folder {
  public:
   Folder();

@@ -1,5 +1,4 @@
-// The interval model: what it counts is what is executed, its parts take the times of the configuration, and
-// it predicts.
+// Tests that the interval model counts what is executed, takes the configuration's times, and predicts well.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
@@ -16,7 +15,7 @@ using namespace glint::pipeline;
 
 namespace {
 
-// On two cores of the preset `mobile`.
+// Returns a job on two cores of the preset `mobile`.
 RenderJob mobile_job(const std::string& scene, Workload workload, uint32_t size) {
   RenderJob job = test::small_job(scene, workload, size, 1);
   job.gpu = test::preset("mobile");
@@ -50,7 +49,7 @@ TEST_CASE("An access takes the latencies of the levels that it comes to", "[inte
   CHECK(memory.read(0, 0, 1, 5000, Asker::Shader) - 5000 == m.l1.hit_latency);
   const Cycle l2_hit = memory.read(1, 0, 1, 9000, Asker::RtUnit) - 9000;
   CHECK(l2_hit >= below);
-  CHECK(l2_hit <= below + 6);  // packets on two ports
+  CHECK(l2_hit <= below + 6);  // packets pass two ports
   CHECK(memory.l1()[0].reads == 2);
   CHECK(memory.l1()[0].misses == 1);
   CHECK(memory.l1()[1].misses == 1);
@@ -74,7 +73,8 @@ TEST_CASE("Local memory that a core writes and reads again stays in its L1 until
   const uint32_t lines = uint32_t(gpu.memory.l1.size / gpu.memory.line);
   for (uint32_t i = 1; i <= lines; ++i) memory.read(0, i * gpu.memory.line, 1, 3000 + i, Asker::Shader);
   CHECK(memory.read(0, 0, 15, 900000, Asker::Shader) - 900000 > gpu.memory.l1.hit_latency);
-  CHECK(memory.l2().misses == lines);  // the line that came back was there: written when it was displaced
+  CHECK(memory.l2().misses ==
+        lines);  // the line that came back was there, because it was written when it was displaced
 }
 
 TEST_CASE("The pass executes what the functional machine does and leaves its picture", "[interval]") {

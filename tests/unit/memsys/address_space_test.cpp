@@ -1,4 +1,4 @@
-// The address space: what is inside, what is outside, and what a fault message says.
+// Tests the address space: what is inside, what is outside, and what a fault message says.
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/address_space.h"
 

@@ -1,4 +1,4 @@
-// Impossible configurations are reported with what was expected; peaks match data sheets.
+// Tests that impossible configurations are reported with what was expected, and that peaks match data sheets.
 // SPDX-License-Identifier: Apache-2.0
 #include <functional>
 #include <utility>
@@ -108,7 +108,7 @@ TEST_CASE("a level that delivers more than the next carries is warned of, with b
     return diagnostics.messages();
   };
   CHECK(warnings([](Params&) {}).empty());
-  // A port of 10 bytes a cycle moves a line and its header in 14 cycles.
+  // A port of 10 bytes per cycle moves a line and its header in 14 cycles.
   const auto narrow = warnings([](Params& p) { p.noc.partition_reply_bytes = 10; });
   REQUIRE(narrow.size() == 1);
   CHECK_THAT(narrow[0], Catch::Contains("DRAM could deliver 56.0 GB/s and the slices' reply ports carry 49.9 "

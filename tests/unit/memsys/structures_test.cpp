@@ -1,4 +1,4 @@
-// The small structures of the caches: line table, tags, MSHRs, fan-in, address maps.
+// Tests the small structures of the caches: line table, tags, MSHRs, fan-in, address maps.
 // SPDX-License-Identifier: Apache-2.0
 #include <map>
 #include <random>
@@ -136,7 +136,7 @@ TEST_CASE("any number of partitions and slices is filled equally and addresses s
   for (const int chunks : of_slice) CHECK(chunks == 100);
   for (const std::set<Address>& one : local) {
     CHECK(one.size() == 100 * slices);
-    CHECK(*one.rbegin() == (100 * slices - 1) * 256);  // dense
+    CHECK(*one.rbegin() == (100 * slices - 1) * 256);  // the addresses are dense
   }
 }
 
@@ -152,7 +152,7 @@ TEST_CASE("a line that is held is no victim, and a set of such lines has none") 
   tags.insert(0).held = true;
   tags.insert(128).valid = 1;
   tags.touch(tags.find(128));
-  CHECK(tags.victim(256).address == 128);  // 0 is older, and held
+  CHECK(tags.victim(256).address == 128);  // 0 is older, but it is held
   tags.insert(256).held = true;
   CHECK_FALSE(tags.has_victim(384));
   CHECK(tags.find(0) != TagArray::kNone);
@@ -191,6 +191,6 @@ TEST_CASE("times in nanoseconds round up to whole clocks") {
   const DramTiming t(p);
   CHECK(t.rcd == 15);
   CHECK(t.rp == 16);
-  CHECK(t.data == 4);   // 16 transfers at 4 a clock
+  CHECK(t.data == 4);   // 16 transfers at 4 per clock
   CHECK(t.ccd_s == 4);  // never shorter than the data
 }

@@ -1,4 +1,4 @@
-// When warps that run count as stuck: to the cycle.
+// Tests to the cycle when warps that run count as stuck.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/livelock_watch.h"
 

@@ -1,4 +1,4 @@
-// Structures come back from the cache as they were built, for their geometry, options and builder alone.
+// Tests that structures come back from the cache as they were built, by geometry, options and builder.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/structure_cache.h"
 
@@ -26,7 +26,7 @@ struct Folder {
   }
 };
 
-// A strip of triangles over uneven ground.
+// Makes a strip of triangles over uneven ground.
 struct Strip {
   std::vector<float> positions;
   std::vector<uint32_t> indices;

@@ -1,4 +1,4 @@
-// Annotated source: every view shows the same cycles, and source.json what was written into it.
+// Tests that every view of annotated source shows the same cycles, and that source.json reads back.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/annotate.h"
 
@@ -14,8 +14,8 @@
 namespace glint::report {
 namespace {
 
-// Lines 1 and 2 of a.rgen; two SPIR-V instructions, of which the second became two; the last instruction
-// comes from nowhere.
+// Returns a listing of lines 1 and 2 of a.rgen. It has two SPIR-V instructions, of which the second became
+// two; the last instruction comes from nowhere.
 ProgramListing program() {
   ProgramListing out{"a.rgen", "ray_generation", {"a.rgen"}, {}, {}, {{"main", 0, 0, 0}}};
   out.spirv = {{"%main = OpFunction %void None %3", 0, 0, 0, 0},
@@ -53,7 +53,7 @@ SourceMap map() {
   return source_map({program()}, text_of);
 }
 
-// The shares at the beginning of lines that have them, without the heading's.
+// Adds up the shares at the beginning of lines that have them, without the heading's.
 double shares(const std::string& text) {
   double sum = 0;
   const std::regex share("\\n *([0-9.]+) %");
@@ -87,7 +87,7 @@ TEST_CASE("the view of everything has the SPIR-V below its line and the ISA belo
   CHECK(line < spirv);
   CHECK(spirv < isa);
   CHECK(isa != std::string::npos);
-  CHECK(text.find("exit;") == std::string::npos);  // of no line
+  CHECK(text.find("exit;") == std::string::npos);  // this instruction has no line
 }
 
 TEST_CASE(
@@ -107,7 +107,8 @@ TEST_CASE("a file whose text is not known shows the lines with figures, and no o
   const ProfileTable profiled = profile();
   const SourceMap source = source_map({program()}, [](const std::string&) { return std::nullopt; });
   const std::string text = Annotator(profiled, source, kUsualMeasures, {}).file(source.files[0]);
-  CHECK(std::count(text.begin(), text.end(), '\n') == 5);  // heading, columns, two lines, an empty one
+  CHECK(std::count(text.begin(), text.end(), '\n') ==
+        5);  // the lines are the heading, the columns, two lines and an empty one
 }
 
 TEST_CASE(

@@ -1,4 +1,4 @@
-// Stacks of calls from the text of a shader.
+// Tests stacks of calls from the text of a shader.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/call_tree.h"
 

@@ -1,4 +1,4 @@
-// The colours of maps of cost: even, growing lighter, and apart without red or green.
+// Tests that the colours of maps of cost are even, grow lighter, and stay distinct without red or green.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/picture/colour_map.h"
 
@@ -16,7 +16,7 @@ double linear(uint8_t part) {
   return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
 }
 
-// Oklab (Ottosson 2020), the way back.
+// Converts back to Oklab (Ottosson 2020).
 std::array<double, 3> oklab(const ColourMap::Rgb& rgb) {
   const double r = linear(rgb[0]), g = linear(rgb[1]), b = linear(rgb[2]);
   const double l = std::cbrt(0.4122214708 * r + 0.5363325363 * g + 0.0514459929 * b);
@@ -37,7 +37,7 @@ double apart(const ColourMap& map, int from, int to) {
 TEST_CASE("equal differences of a value are equal differences of its colour") {
   const ColourMap map;
   double least = 10, most = 0;
-  for (int i = 0; i < 15; ++i) {  // 17 of the 255 steps each
+  for (int i = 0; i < 15; ++i) {  // each covers 17 of the 255 steps
     least = std::min(least, apart(map, i, i + 1));
     most = std::max(most, apart(map, i, i + 1));
   }

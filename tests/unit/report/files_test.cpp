@@ -1,4 +1,4 @@
-// Images, resolved configurations and run directories as files.
+// Tests images, resolved configurations and run directories as files.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ namespace glint::report {
 namespace {
 namespace fs = std::filesystem;
 
-// A folder that goes when the test ends.
+// Holds a folder that is removed when the test ends.
 struct TemporaryFolder {
   fs::path path = fs::temp_directory_path() / ("glint-test-" + std::to_string(::getpid()));
   ~TemporaryFolder() { fs::remove_all(path); }
@@ -92,7 +92,7 @@ TEST_CASE("a resolved configuration says unit, meaning and range beside each key
 
 TEST_CASE("a configuration's hash is FNV-1a of its keys and values and ignores the docs") {
   CHECK(fnv1a("") == 0xcbf29ce484222325);
-  CHECK(fnv1a("a") == 0xaf63dc4c8601ec8c);  // published test vector
+  CHECK(fnv1a("a") == 0xaf63dc4c8601ec8c);  // a published test vector
   auto other = kParams;
   other[0].doc = "other";
   CHECK(config_key_values(other) == config_key_values(kParams));

@@ -1,4 +1,4 @@
-// FLIP against values that flip_values.py works out from the paper's formulas, and its properties.
+// Tests FLIP against values that flip_values.py computes from the paper's formulas, and tests its properties.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/picture/flip.h"
 
@@ -40,7 +40,7 @@ Picture plain(float value) {
   return make([&](uint32_t, uint32_t, uint32_t) { return value; });
 }
 
-// As pair() of flip_values.py.
+// Makes the same pictures as pair() of flip_values.py.
 std::pair<Picture, Picture> pair(const std::string& name) {
   if (name == "noise") return {noise(1), noise(2)};
   if (name == "edge") return {edge(9), edge(11)};

@@ -1,4 +1,4 @@
-// Differences of pictures against values worked out by hand and against the definition written out.
+// Tests differences of pictures against values worked out by hand and against the definition written out.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/picture/image_compare.h"
 
@@ -35,7 +35,7 @@ double grey(const Picture& p, size_t x, size_t y) {
   return 0.2126 * double(c[0]) + 0.7152 * double(c[1]) + 0.0722 * double(c[2]);
 }
 
-// Wang et al. 2004, eq. 13 to 17, window by window with the two-dimensional weights.
+// Computes Wang et al. 2004, eq. 13 to 17, window by window with the two-dimensional weights.
 double ssim_as_defined(const Picture& a, const Picture& b) {
   double all = 0, weight_sum = 0;
   const auto weight = [](int x, int y) { return std::exp(-(x * x + y * y) / 4.5); };

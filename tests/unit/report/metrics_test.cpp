@@ -1,4 +1,4 @@
-// Formulas over a run, and the tables of metrics and of Vulkan-Sim's names that are made of them.
+// Tests formulas over a run, and the tables of metrics and of Vulkan-Sim's names that are made of them.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/metrics/metrics.h"
 
@@ -60,7 +60,7 @@ TEST_CASE("a formula has no value where a statistic, a fact or a divisor is miss
   const RunRecord run = small_run();
   CHECK_FALSE(evaluate("sum(gpu.absent) + 1", run));
   CHECK_FALSE(evaluate("run(absent)", run));
-  CHECK_FALSE(evaluate("config(name)", run));  // no number
+  CHECK_FALSE(evaluate("config(name)", run));  // the key is not a number
   CHECK_FALSE(evaluate("1 / (sum(gpu.cycles) - 200)", run));
 }
 
@@ -72,7 +72,8 @@ TEST_CASE("text that is no formula is refused") {
   }
 }
 
-// A meaning is read without the row before it: in tooltips, in tables of chosen metrics, in Python.
+// Returns whether a meaning can be read without the row before it, as in tooltips, in tables of chosen
+// metrics and in Python.
 bool stands_alone(std::string_view text) {
   for (const char* reference : {"The same:", "The same of", "The same,", "As above", "Of them"})
     if (text.find(reference) != std::string_view::npos) return false;

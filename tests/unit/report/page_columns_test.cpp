@@ -1,4 +1,4 @@
-// The report's document turned into columns.
+// Tests how the report's document is turned into columns.
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 #include <vector>

@@ -1,4 +1,4 @@
-// The report's document and the comparison of runs, from texts.
+// Tests the report's document and the comparison of runs, from texts.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/page/page.h"
 

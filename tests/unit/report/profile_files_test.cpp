@@ -1,4 +1,4 @@
-// The files of a profile: what is written is read again, and nothing is lost on the way.
+// Tests that the files of a profile read back what was written, and that nothing is lost.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/profile_files.h"
 
@@ -19,7 +19,8 @@ ProfileRow row(const std::string& file, uint32_t line, uint32_t index, std::vect
   return out;
 }
 
-// Two instructions of one line, one of another file, one of no line, and cycles without a warp.
+// Returns a profile with two instructions of one line, one of another file, one of no line, and cycles
+// without a warp.
 ProfileTable sample() {
   ProfileTable out;
   out.reasons = {"issued", "long_scoreboard", "no_warp"};
@@ -46,7 +47,7 @@ TEST_CASE("the rows of a line are its instructions added up") {
 TEST_CASE("a profile that is written and read again has the same instructions, commas and quotes included") {
   const ProfileTable again = parse_profile(profile_csv(sample()), "profile.csv");
   CHECK(again.reasons == sample().reasons);
-  REQUIRE(again.rows.size() == 5);  // not the lines
+  REQUIRE(again.rows.size() == 5);  // the rows of source lines are not read
   CHECK(again.rows[0].file == "x, \"y\".glsl");
   CHECK(again.rows[4].slots == std::vector<uint64_t>{0, 0, 99});
   CHECK(profile_csv(again) == profile_csv(sample()));

@@ -1,4 +1,4 @@
-// The summary, bars, columns and the progress line as a terminal shows them.
+// Tests the summary, bars, columns and the progress line as a terminal shows them.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/terminal/summary.h"
 

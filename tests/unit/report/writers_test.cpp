@@ -1,4 +1,4 @@
-// The three formats of statistics, from one small tree.
+// Tests the three formats of statistics on one small tree.
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,4 @@
-// Structures in memory: contents, sizes, determinism, and a validator that sees damage.
+// Tests structures in memory: contents, sizes, determinism, and a validator that sees damage.
 // SPDX-License-Identifier: Apache-2.0
 #include "base/diagnostics.h"
 #include "rtunit/node_format.h"
@@ -57,7 +57,7 @@ TEST_CASE("the two triangles of a quad share a leaf") {
     run(state, memory);
     CHECK(state.committed.primitive == i);
     CHECK(state.committed.u ==
-          (second ? 0.25f : 0.5f));  // weights in the order of the triangle's own corners
+          (second ? 0.25f : 0.5f));  // the weights are in the order of the triangle's own corners
     CHECK(state.committed.v == (second ? 0.5f : 0.25f));
   }
 }
@@ -138,7 +138,7 @@ TEST_CASE("input that cannot be built is refused with its index") {
                     Catch::Contains("instance 1 names bottom level 1 of 1"));
 }
 
-// Must fail: each kind of damage turns the validator red.
+// The validator must refuse each kind of damage.
 TEST_CASE("the validator finds damage") {
   Random random{3};
   const Positions positions = soup(random, 100, 10, 1);
@@ -156,8 +156,8 @@ TEST_CASE("the validator finds damage") {
   CHECK(damaged(0, std::byte{1}));          // the magic number
   CHECK(damaged(32, std::byte{99}));        // number of primitives
   CHECK(damaged(64 + 12, std::byte{200}));  // the first child's block
-  CHECK(damaged(64 + 16, std::byte{1}));    // an exponent: the boxes shrink
-  CHECK(damaged(64 + 19, std::byte{1}));    // five children lost
+  CHECK(damaged(64 + 16, std::byte{1}));    // an exponent, so that the boxes shrink
+  CHECK(damaged(64 + 19, std::byte{1}));    // five children are lost
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Rays that gather candidates: full tables, candidates that the ray no longer reaches, ties, ends.
+// Tests rays that gather candidates: full tables, candidates that the ray no longer reaches, ties, ends.
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/candidate_table.h"
 
@@ -10,7 +10,7 @@
 namespace glint::rt::test {
 namespace {
 
-// Primitives one behind the other along -z, seen from (0, 0, 10): t = 1, 2, ...
+// Holds primitives one behind the other along -z, seen from (0, 0, 10): t = 1, 2, ...
 struct Layers {
   mem::AddressSpace memory;
   StructureInfo top;
@@ -125,7 +125,7 @@ TEST_CASE("a box whose entry lies beyond the new end of the ray does not run its
   CHECK(state.status == RayStatus::Gathered);
   CHECK(world.table.dropped == 3);
   present(state, world.row_at(1));
-  finish_intersection(state);  // reports nothing
+  finish_intersection(state);  // the shader reports nothing
   CHECK(state.status == RayStatus::Done);
   CHECK(state.committed.kind == 7);
 }

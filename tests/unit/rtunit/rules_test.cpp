@@ -1,4 +1,4 @@
-// Vulkan's traversal rules, one by one: flags, masks, intervals, opacity, facing, shaders' answers.
+// Tests Vulkan's traversal rules, one by one: flags, masks, intervals, opacity, facing, shaders' answers.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstddef>
 #include <cstring>
@@ -10,7 +10,8 @@
 namespace glint::rt::test {
 namespace {
 
-// Counterclockwise seen from +z: a ray along -z sees its front (normal towards the origin of the ray).
+// Returns a triangle that is counterclockwise seen from +z. A ray along -z sees its front (normal towards the
+// origin of the ray).
 Positions triangle_at(float z) {
   return {{-1, -1, z}, {3, -1, z}, {-1, 3, z}};
 }
@@ -22,7 +23,7 @@ struct World {
     const StructureInfo built = build_bottom(memory, "bottom", bottom);
     top = build_top(memory, "top", std::vector{instance}, std::vector{built});
   }
-  // From (0, 0, 10) towards -z: z = 10 - t.
+  // Shoots a ray from (0, 0, 10) towards -z, so that z = 10 - t.
   RayState shoot(uint32_t flags = 0, float t_min = 0, float t_max = 100, uint32_t mask = 0xff) const {
     RayState state = ray_of(top.address, {0, 0, 10}, {0, 0, -1}, t_min, t_max, flags);
     state.ray.cull_mask = mask;
@@ -96,7 +97,7 @@ TEST_CASE("a triangle at the ray's end stays out when a box's hit lies there") {
   RayState state = ray_of(top.address, {0, 0, 10}, {0, 0, -1}, 0, 10, 0);
   REQUIRE(begin(state, memory));
   run(state, memory);
-  REQUIRE(state.status == RayStatus::NeedsIntersection);  // the box, nearer, comes first
+  REQUIRE(state.status == RayStatus::NeedsIntersection);  // the box is nearer and comes first
   report(state, 10, 5);
   if (state.status == RayStatus::NeedsAnyHit) accept_candidate(state);
   finish_intersection(state);
@@ -164,7 +165,7 @@ TEST_CASE("skip flags pass over triangles and boxes") {
 }
 
 TEST_CASE("an AABB's interval is closed, and a ray inside it or of no length enters it") {
-  const World world = one_box(true);  // entered at t = 9, left at 11
+  const World world = one_box(true);  // the ray enters at t = 9 and leaves at 11
   CHECK(world.shoot(0, 0, 9).status == RayStatus::NeedsIntersection);
   CHECK(world.shoot(0, 11, 20).status == RayStatus::NeedsIntersection);
   CHECK(world.shoot(0, 10, 10).status == RayStatus::NeedsIntersection);
@@ -181,10 +182,10 @@ TEST_CASE("reports outside the interval are rejected and shorten nothing") {
   CHECK(report(state, NAN, 1) == Report::Rejected);
   CHECK_FALSE(state.report_accepted);
   CHECK(state.committed.t == 50);
-  CHECK(report(state, 50, 5) == Report::Accepted);  // closed at the ray's end
+  CHECK(report(state, 50, 5) == Report::Accepted);  // the interval is closed at the ray's end
   CHECK(state.report_accepted);
   CHECK(state.attribute_slot);
-  CHECK(report(state, 50, 6) == Report::Rejected);  // the first of equals stays
+  CHECK(report(state, 50, 6) == Report::Rejected);  // the first of equal hits stays
   CHECK(state.attribute_slot);
   CHECK(report(state, 20, 7) == Report::Accepted);
   CHECK_FALSE(state.attribute_slot);
@@ -245,7 +246,7 @@ TEST_CASE("ignored candidates let the ray go on to the next, terminate ends it")
     ignore_candidate(state);
     run(state, layers.world.memory);
   }
-  CHECK(seen == 0xfffff);  // each of the twenty exactly once, none committed
+  CHECK(seen == 0xfffff);  // each of the twenty was seen exactly once, and none was committed
   CHECK(state.status == RayStatus::Done);
   CHECK_FALSE(state.committed.valid());
 
@@ -266,7 +267,7 @@ TEST_CASE("accepted candidates shorten the ray to the nearest") {
   }
   CHECK(state.committed.primitive == 0);
   CHECK(state.committed.t == 10);
-  CHECK(asked == 1);  // near children first: nothing behind the first hit is asked
+  CHECK(asked == 1);  // near children come first, so nothing behind the first hit is asked
 }
 
 TEST_CASE("terminate-on-first-hit ends with the first confirmed hit and no earlier") {

@@ -1,4 +1,4 @@
-// The uniform block: where every field lies and what the matrices do.
+// Tests the uniform block: where every field lies and what the matrices do.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/camera.h"
 
@@ -17,7 +17,7 @@ T at(const std::vector<std::byte>& block, size_t offset) {
   return value;
 }
 
-// Row `row` of a * b, both column-major.
+// Returns element (row, column) of a * b; both are column-major.
 float product(const Mat4& a, const Mat4& b, size_t row, size_t column) {
   float sum = 0;
   for (size_t k = 0; k < 4; ++k) sum += a[4 * k + row] * b[4 * column + k];

@@ -1,4 +1,4 @@
-// Affine copies are found where they are, and nowhere else.
+// Tests that affine copies are found where they are, and nowhere else.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/instancing.h"
 
@@ -14,7 +14,7 @@ namespace {
 
 using namespace glint::scenes;
 
-// A lopsided pyramid: no symmetry, so that one matrix only moves it onto a copy.
+// Returns a lopsided pyramid, which has no symmetry, so that only one matrix moves it onto a copy.
 Model pyramid() {
   Model model;
   add_vertex(model, {0, 0, 0}, {}, 0, {0, 0});
@@ -27,7 +27,7 @@ Model pyramid() {
   return model;
 }
 
-// Sheared, scaled unevenly, mirrored and moved.
+// Shears, scales unevenly, mirrors and moves.
 constexpr Affine kMatrix{0, 2, 0.5f, 10, 3, 0, 0, -20, 0.25f, 0, 1, 30};
 
 Model moved(const Model& model, const Affine& matrix) {
@@ -39,7 +39,7 @@ Model moved(const Model& model, const Affine& matrix) {
 Scene scene_of(std::vector<Model> models) {
   Scene scene;
   scene.materials.resize(3);
-  scene.materials[2].diffuse = {1, 0, 0, 1};  // 0 and 1 are equal
+  scene.materials[2].diffuse = {1, 0, 0, 1};  // materials 0 and 1 are equal
   scene.models = std::move(models);
   return scene;
 }
@@ -69,7 +69,7 @@ TEST_CASE("a flat body is moved with its normal, a line is not moved at all") {
 }
 
 TEST_CASE("a copy with a corner off by a thousandth, or with its own normals, is no copy") {
-  Model more = pyramid();  // a fifth vertex: four can always be moved onto four others
+  Model more = pyramid();  // has a fifth vertex, because four can always be moved onto four others
   add_vertex(more, {1, 1, 1}, {0, 0, 1}, 0);
   Model bent = moved(more, kMatrix);
   REQUIRE(affine_between(more, bent));
@@ -88,7 +88,7 @@ TEST_CASE("copies become instances, in the order of the models, and count as tri
                           make_sphere("ball", {0, 0, 0}, 1, 0)});
   const uint64_t triangles = scene.triangles();
   share_copies(scene);
-  REQUIRE(scene.models.size() == 4);  // spheres stay: their place is no matrix
+  REQUIRE(scene.models.size() == 4);  // spheres stay, because their place is not given by a matrix
   REQUIRE(scene.instances.size() == 5);
   const uint32_t wanted[] = {0, 1, 2, 0, 3};
   for (size_t i = 0; i < 5; ++i) CHECK(scene.instances[i].model == wanted[i]);

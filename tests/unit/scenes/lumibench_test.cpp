@@ -1,4 +1,4 @@
-// The sixteen scenes of LumiBench: counts, forms, what the camera sees, and the originals' own rules.
+// Tests LumiBench's sixteen scenes: counts, forms, what the camera sees, and the originals' own rules.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ namespace {
 struct Expected {
   const char* name;
   size_t models, textures;
-  double triangles;            // of the paper
+  double triangles;            // as the paper counts them
   double low_hits, high_hits;  // of primary rays through pixel centres, %
   uint64_t hash;
 };
@@ -97,7 +97,7 @@ struct Original {
   const char* form;
   size_t models;
   uint64_t triangles;
-  double hits;  // %, as a throw-away caster saw them; negative = not known
+  double hits;  // %, as a caster outside of Glint saw them; negative: not known
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The other scenes: counts, bounds, normals, hashes and errors.
+// Tests the other scenes: counts, bounds, normals, hashes and errors.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/scene.h"
 
@@ -39,7 +39,8 @@ std::string message_of(const std::string& name, const LoadOptions& options) {
   return "no error";
 }
 
-// Half edges without a partner of the opposite direction: 0 for a closed surface of one orientation.
+// Counts half edges without a partner of the opposite direction. There are none on a closed surface of one
+// orientation.
 size_t open_edges(const Model& model) {
   std::vector<std::pair<uint32_t, uint32_t>> forward, backward;
   for (size_t i = 0; i < model.indices.size(); i += 3)
@@ -142,7 +143,8 @@ TEST_CASE("REF has mirror walls, a glass sphere of radius 80, and no sky") {
 }
 
 TEST_CASE("a scene's hash is the same on every machine and changes with every field") {
-  // recorded once; a change of these numbers is a change of what every result was measured on
+  // These hashes were recorded once. When they change, the scenes that every result was measured on have
+  // changed.
   CHECK(load_scene("WKND", {}).hash() == 0x5cdf423e49e4dfe1);
   CHECK(load_scene("CORNELL", {}).hash() == 0xee2947d9ffe2242a);
   Scene scene = load_scene("CORNELL", {});
@@ -182,12 +184,12 @@ TEST_CASE("an OBJ file's polygons become fans of vertices shared by value in the
   const Model model = load_obj((folder.path / "SHIP/karimSchooner.obj").string(), materials);
   REQUIRE(materials.size() == 4);
   CHECK(materials[2].diffuse == Vec4{0.1f, 0.2f, 0.3f, 1});
-  CHECK(materials[3].diffuse == Vec4{0, 0, 0, 1});  // Kd missing
+  CHECK(materials[3].diffuse == Vec4{0, 0, 0, 1});  // Kd is missing
   CHECK(model.indices == std::vector<uint32_t>{0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 5, 6});
   CHECK(model.vertices[0].material == 3);
   CHECK(model.vertices[4].material == 2);
   CHECK(model.vertices[0].texture_coordinate == Vec2{0.25f, 0.25f});  // v is turned over
-  CHECK(model.vertices[0].normal == Vec3{0, 0, 1});                   // none in the file: smooth ones
+  CHECK(model.vertices[0].normal == Vec3{0, 0, 1});                   // the file has none, so they are smooth
 }
 
 TEST_CASE("an OBJ file without a material library gets one grey") {
@@ -203,7 +205,8 @@ TEST_CASE("the original ship loads with 6,255 triangles and 11 materials from th
   const glint::test::SceneData data("SHIP");
   if (data.path.empty()) return;
   const Scene scene = load_scene("SHIP", {data.path});
-  CHECK(load_scene("SHIP", {data.path + "/SHIP"}).hash() == scene.hash());  // the folder itself will do
+  CHECK(load_scene("SHIP", {data.path + "/SHIP"}).hash() ==
+        scene.hash());  // the folder itself is accepted, too
   CHECK(scene.form == "original");
   CHECK(scene.triangles() == 6255);
   CHECK(scene.materials.size() == 11);

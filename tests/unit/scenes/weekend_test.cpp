@@ -1,4 +1,4 @@
-// WKND: counts, single draws, and every sphere of the published list.
+// Tests WKND: counts, single draws, and every sphere of the published list.
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <fstream>
@@ -25,7 +25,7 @@ size_t count(MaterialModel model) {
   return n;
 }
 
-// The published list's lines, or none when the data is not there.
+// Returns the published list's lines, or none when the data does not exist.
 std::vector<std::string> published_spheres() {
   const glint::test::SceneData data("WKND");
   std::vector<std::string> lines;
