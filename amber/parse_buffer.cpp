@@ -12,8 +12,6 @@
 namespace glint::amber {
 namespace {
 
-constexpr uint64_t kMostBytes = uint64_t{1} << 31;  // limit for a buffer; a larger size is a mistake
-
 Type find_type(Parsing& p, const std::string& name) {
   if (const auto found = p.script.structs.find(name); found != p.script.structs.end()) return found->second;
   if (std::optional<Type> type = type_named(name)) return *type;

@@ -12,7 +12,6 @@ namespace glint::amber {
 namespace {
 
 constexpr const char* kPushConstants = "push constants";
-constexpr uint64_t kMostBytes = uint64_t{1} << 31;  // limit for a buffer; a larger size is a mistake
 
 struct Section {
   std::string title, text;  // begins with empty lines, so that its line numbers are the script's

@@ -20,6 +20,9 @@
 
 namespace glint::amber {
 
+// Limit for a buffer in bytes; a larger size is a mistake.
+inline constexpr uint64_t kMostBytes = uint64_t{1} << 31;
+
 enum class Language : uint8_t { Glsl, SpirvText, SpirvHex, SpirvBinary };
 
 struct Shader {

@@ -12,10 +12,6 @@
 namespace glint::exec {
 namespace {
 
-float float_of(uint32_t bits) {
-  return std::bit_cast<float>(bits);
-}
-
 Words mixed(const Words& a, const Words& b, float weight) {
   if (weight == 0.0f) return a;
   Words out;

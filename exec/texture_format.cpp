@@ -71,10 +71,6 @@ static_assert(std::size(kFormats) == size_t(F::Count));
 uint32_t bits_of(float x) {
   return std::bit_cast<uint32_t>(x);
 }
-float float_of(uint32_t bits) {
-  return std::bit_cast<float>(bits);
-}
-
 // Floats of 5 exponent bits, bias 15, without sign: halves, and the channels of 11 and 10 bits.
 constexpr int kBias = 15;
 float from_small(uint32_t bits, int mantissa_bits) {

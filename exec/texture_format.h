@@ -2,11 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
 
 namespace glint::exec {
+
+inline float float_of(uint32_t bits) {
+  return std::bit_cast<float>(bits);
+}
 
 // Named by Vulkan's channels and bits. In the order of the table in texture_format.cpp.
 enum class TexelFormat : uint8_t {

@@ -26,7 +26,7 @@ std::string key_of(const std::vector<uint32_t>& spirv, const std::string& name,
   return key.take();
 }
 
-std::optional<CompiledModule> find(ShaderCache& cache, const std::string& key) {
+std::optional<CompiledModule> find_program(ShaderCache& cache, const std::string& key) {
   const std::optional<std::string> bytes = cache.find(key);
   if (!bytes) return std::nullopt;
   ByteReader in(*bytes);
@@ -55,7 +55,7 @@ CompiledModule compile_module(const std::vector<uint32_t>& spirv, const std::str
                               Diagnostics& warnings, ShaderCache* cache) {
   const std::string key = cache ? key_of(spirv, name, entry_point, options) : std::string();
   if (cache)
-    if (std::optional<CompiledModule> found = find(*cache, key)) return std::move(*found);
+    if (std::optional<CompiledModule> found = find_program(*cache, key)) return std::move(*found);
   CompiledModule out;
   const size_t warnings_before = warnings.messages().size();
   out.simplified = simplify(spirv, name, warnings);

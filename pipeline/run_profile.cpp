@@ -48,10 +48,6 @@ ProgramListing listing_of(const isa::Program& program) {
   return out;
 }
 
-double ratio(double a, double b) {
-  return b > 0 ? a / b : 0.0;
-}
-
 }  // namespace
 
 double growth(const std::vector<const UnitSamples*>& units, size_t sample, size_t column) {

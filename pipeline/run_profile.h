@@ -11,6 +11,11 @@
 
 namespace glint::pipeline {
 
+// Returns a / b, or 0 where b is 0.
+inline double ratio(double a, double b) {
+  return b > 0 ? a / b : 0.0;
+}
+
 class TimingMachine;
 
 struct Observation {

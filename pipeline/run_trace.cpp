@@ -38,10 +38,6 @@ std::vector<TraceSlice> sorted(const std::vector<TraceSlice>& slices, Cycle end)
   return out;
 }
 
-double ratio(double a, double b) {
-  return b > 0 ? a / b : 0.0;
-}
-
 // Returns a counter over the intervals of the window. `of` gives its value in the interval of sample s.
 template <class Of>
 TraceCounter counter(TraceCounter::Of whose, uint32_t index, const char* name, const char* unit,

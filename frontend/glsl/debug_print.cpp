@@ -7,10 +7,11 @@
 #include <spirv/unified1/spirv.hpp11>
 #include <string>
 
+#include "frontend/spirv/words.h"
+
 namespace glint::frontend {
 namespace {
 
-constexpr size_t kHeaderWords = 5;  // SPIR-V specification, 2.3 Physical Layout
 constexpr std::string_view kKnownSet = "OpenCL.std";
 constexpr uint32_t kDebugPrint = 1;    // NonSemantic.DebugPrintf specification
 constexpr uint32_t kKnownPrint = 184;  // OpenCL extended instruction set: printf

@@ -115,7 +115,7 @@ std::string key_of(const std::string& source, const std::string& path, isa::Stag
 
 // Returns the module that was stored for this source. It returns nothing when a file that the source
 // included, or looked for without success, has changed since.
-std::optional<std::vector<uint32_t>> find(ShaderCache& cache, const std::string& key) {
+std::optional<std::vector<uint32_t>> find_words(ShaderCache& cache, const std::string& key) {
   const std::optional<std::string> bytes = cache.find(key);
   if (!bytes) return std::nullopt;
   ByteReader in(*bytes);
@@ -251,7 +251,8 @@ std::vector<uint32_t> glsl_text_to_spirv(const std::string& source, const std::s
                                          const GlslOptions& options) {
   const std::string key = options.cache ? key_of(source, path, stage, options) : std::string();
   if (options.cache)
-    if (std::optional<std::vector<uint32_t>> found = find(*options.cache, key)) return std::move(*found);
+    if (std::optional<std::vector<uint32_t>> found = find_words(*options.cache, key))
+      return std::move(*found);
   static const Process process;  // thread-safe since C++11
   const EShLanguage language = language_of(stage);
   glslang::TShader shader(language);

@@ -7,7 +7,7 @@
 namespace glint::frontend {
 namespace {
 
-void compare(ModuleLowering& l, const Instruction& inst, const LoweringRow& row) {
+void compare_pointers(ModuleLowering& l, const Instruction& inst, const LoweringRow& row) {
   const Operand a = l.scalar(inst.operands[0]), b = l.scalar(inst.operands[1]);
   const bool is_64 = l.part_of(l.type_of(inst.operands[0])) == Part::Uint64;
   l.set(inst.result, {l.emit().value(is_64 ? row.name64 : row.name32, {a, b})});
@@ -36,9 +36,9 @@ void nothing(ModuleLowering&, const Instruction&, const LoweringRow&) {
 }
 
 using enum spv::Op;
-constexpr LoweringRow kRows[] = {
-    {OpPtrEqual, compare, "setp.eq.u32", "setp.eq.u64"},
-    {OpPtrNotEqual, compare, "setp.ne.u32", "setp.ne.u64"},
+constexpr LoweringRow kAddressRows[] = {
+    {OpPtrEqual, compare_pointers, "setp.eq.u32", "setp.eq.u64"},
+    {OpPtrNotEqual, compare_pointers, "setp.ne.u32", "setp.ne.u64"},
     {OpPtrDiff, difference, ""},
     {OpExpectKHR, expect, ""},
     {OpAssumeTrueKHR, nothing, ""},
@@ -47,7 +47,7 @@ constexpr LoweringRow kRows[] = {
 }  // namespace
 
 std::span<const LoweringRow> address_rows() {
-  return kRows;
+  return kAddressRows;
 }
 
 }  // namespace glint::frontend

@@ -209,7 +209,7 @@ void extended(ModuleLowering& l, const Instruction& inst, const LoweringRow& row
 }
 
 using enum spv::Op;
-constexpr LoweringRow kRows[] = {
+constexpr LoweringRow kArithmeticRows[] = {
     {OpIAdd, binary, "add.u32"},
     {OpISub, binary, "sub.u32"},
     {OpIMul, binary, "mul.lo.u32"},
@@ -255,7 +255,7 @@ constexpr LoweringRow kRows[] = {
 }  // namespace
 
 std::span<const LoweringRow> arithmetic_rows() {
-  return kRows;
+  return kArithmeticRows;
 }
 
 }  // namespace glint::frontend

@@ -192,7 +192,7 @@ void control_barrier(ModuleLowering& l, const Instruction& inst, const LoweringR
 }
 
 using enum spv::Op;
-constexpr LoweringRow kRows[] = {
+constexpr LoweringRow kAtomicRows[] = {
     {OpAtomicLoad, atomic_load, ""},
     {OpAtomicStore, atomic_store, ""},
     {OpAtomicExchange, read_modify_write, "exch.b32"},
@@ -218,7 +218,7 @@ constexpr LoweringRow kRows[] = {
 }  // namespace
 
 std::span<const LoweringRow> atomic_rows() {
-  return kRows;
+  return kAtomicRows;
 }
 
 }  // namespace glint::frontend

@@ -68,7 +68,7 @@ void select(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
 }
 
 using enum spv::Op;
-constexpr LoweringRow kRows[] = {
+constexpr LoweringRow kComparisonRows[] = {
     {OpIEqual, compare, "setp.eq.u32"},
     {OpINotEqual, compare, "setp.ne.u32"},
     {OpULessThan, compare, "setp.lt.u32"},
@@ -106,7 +106,7 @@ constexpr LoweringRow kRows[] = {
 }  // namespace
 
 std::span<const LoweringRow> comparison_rows() {
-  return kRows;
+  return kComparisonRows;
 }
 
 }  // namespace glint::frontend

@@ -43,7 +43,7 @@ void insert(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   l.set(inst.result, std::move(whole));
 }
 
-void shuffle(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
+void shuffle_vectors(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   Operands both = l.value(inst.operands[0]);
   const Operands second = l.value(inst.operands[1]);
   both.insert(both.end(), second.begin(), second.end());
@@ -91,11 +91,11 @@ void insert_dynamic(ModuleLowering& l, const Instruction& inst, const LoweringRo
 }
 
 using enum spv::Op;
-constexpr LoweringRow kRows[] = {
+constexpr LoweringRow kCompositeRows[] = {
     {OpCompositeConstruct, construct, ""},
     {OpCompositeExtract, extract, ""},
     {OpCompositeInsert, insert, ""},
-    {OpVectorShuffle, shuffle, ""},
+    {OpVectorShuffle, shuffle_vectors, ""},
     {OpVectorExtractDynamic, extract_dynamic, ""},
     {OpVectorInsertDynamic, insert_dynamic, ""},
     {OpCopyObject, copy, ""},
@@ -106,7 +106,7 @@ constexpr LoweringRow kRows[] = {
 }  // namespace
 
 std::span<const LoweringRow> composite_rows() {
-  return kRows;
+  return kCompositeRows;
 }
 
 }  // namespace glint::frontend

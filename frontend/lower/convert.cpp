@@ -119,7 +119,7 @@ void bitcast(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
 }
 
 using enum spv::Op;
-constexpr LoweringRow kRows[] = {
+constexpr LoweringRow kConvertRows[] = {
     {OpConvertFToS, float_to_integer, ""},
     {OpConvertFToU, float_to_integer, ""},
     {OpConvertSToF, integer_to_float, ""},
@@ -136,7 +136,7 @@ constexpr LoweringRow kRows[] = {
 }  // namespace
 
 std::span<const LoweringRow> conversion_rows() {
-  return kRows;
+  return kConvertRows;
 }
 
 }  // namespace glint::frontend

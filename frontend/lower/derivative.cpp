@@ -80,7 +80,7 @@ void derivative(ModuleLowering& l, const Instruction& inst, const LoweringRow&) 
   l.set(inst.result, std::move(result));
 }
 
-constexpr LoweringRow kRows[] = {
+constexpr LoweringRow kDerivativeRows[] = {
     {OpDPdx, derivative, ""},       {OpDPdy, derivative, ""},       {OpFwidth, derivative, ""},
     {OpDPdxFine, derivative, ""},   {OpDPdyFine, derivative, ""},   {OpFwidthFine, derivative, ""},
     {OpDPdxCoarse, derivative, ""}, {OpDPdyCoarse, derivative, ""}, {OpFwidthCoarse, derivative, ""},
@@ -104,7 +104,7 @@ Operands gradients(ModuleLowering& l, const Operands& coordinates, const Operand
 }
 
 std::span<const LoweringRow> derivative_rows() {
-  return kRows;
+  return kDerivativeRows;
 }
 
 }  // namespace glint::frontend

@@ -73,7 +73,7 @@ void dot(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   l.set(inst.result, {bytes_of(part) == 8 ? sum : narrowed(e, part, e.value("cvt.u32.u64", {sum}))});
 }
 
-constexpr LoweringRow kRows[] = {
+constexpr LoweringRow kDotRows[] = {
     {OpSDotKHR, dot, ""},       {OpUDotKHR, dot, ""},       {OpSUDotKHR, dot, ""},
     {OpSDotAccSatKHR, dot, ""}, {OpUDotAccSatKHR, dot, ""}, {OpSUDotAccSatKHR, dot, ""},
 };
@@ -81,7 +81,7 @@ constexpr LoweringRow kRows[] = {
 }  // namespace
 
 std::span<const LoweringRow> dot_rows() {
-  return kRows;
+  return kDotRows;
 }
 
 }  // namespace glint::frontend

@@ -19,6 +19,9 @@ namespace glint::frontend {
 using Operand = VirtualOperand;
 using Operands = std::vector<Operand>;
 
+inline Operand word(uint32_t bits) {
+  return Operand::value(bits);
+}
 inline Operand constant_f32(float value) {
   return Operand::value(std::bit_cast<uint32_t>(value));
 }

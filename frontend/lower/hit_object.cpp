@@ -32,7 +32,7 @@ void set_time(ModuleLowering& l, const Instruction& inst, size_t operand) {
 }
 
 // The operands are: object, the ten arguments of a trace, time (in the form with motion), payload.
-void trace(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
+void trace_kept(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   const Operand which = object(l, inst.operands[0]);
   if (inst.op == spv::Op::OpHitObjectTraceRayMotionNV) set_time(l, inst, 11);
   lower_trace(l, std::span(inst.operands).subspan(1, 10), l.pointer(inst.operands.back()),
@@ -111,9 +111,9 @@ void reorder(ModuleLowering&, const Instruction&, const LoweringRow&) {
 }
 
 using enum spv::Op;
-constexpr LoweringRow kRows[] = {
-    {OpHitObjectTraceRayNV, trace, ""},
-    {OpHitObjectTraceRayMotionNV, trace, ""},
+constexpr LoweringRow kHitObjectRows[] = {
+    {OpHitObjectTraceRayNV, trace_kept, ""},
+    {OpHitObjectTraceRayMotionNV, trace_kept, ""},
     {OpHitObjectRecordHitNV, record_hit, "ho.hit"},
     {OpHitObjectRecordHitMotionNV, record_hit, "ho.hit"},
     {OpHitObjectRecordHitWithIndexNV, record_hit, "ho.hit.record"},
@@ -149,7 +149,7 @@ constexpr LoweringRow kRows[] = {
 }  // namespace
 
 std::span<const LoweringRow> hit_object_rows() {
-  return kRows;
+  return kHitObjectRows;
 }
 
 }  // namespace glint::frontend

@@ -8,9 +8,6 @@
 namespace glint::frontend::math {
 namespace {
 
-constexpr float kLog2E = 1.44269504088896f;
-constexpr float kLn2 = 0.693147180559945f;
-
 // The polynomials approximate f(x) = x + x z P(z) with z = x^2. Their relative errors are 5.3e-9 for |x| <=
 // 1, 2.6e-9 for |x| <= 0.6 and 1.1e-9 for |x| <= 0.5.
 constexpr float kSinh[] = {0.1666666716337204f, 0.008333349600434303f, 0.0001983615948120132f,
@@ -22,20 +19,11 @@ constexpr float kAsinh[] = {-0.1666666567325592f, 0.0749988928437233f,   -0.0446
 constexpr float kTanhReach = 0.6f, kAsinhReach = 0.5f;
 
 Operand odd(Emitter& e, Operand x, std::span<const float> coefficients) {
-  const Operand z = e.mul(x, x);
-  Operand p = constant_f32(coefficients.back());
-  for (size_t i = coefficients.size() - 1; i-- > 0;) p = e.fma(p, z, constant_f32(coefficients[i]));
-  return e.fma(e.mul(x, z), p, x);
+  return math::odd(e, x, e.mul(x, x), coefficients);
 }
 
 Operand less(Emitter& e, Operand a, float b) {
   return e.value("setp.lt.f32", {a, constant_f32(b)});
-}
-Operand abs(Emitter& e, Operand x) {
-  return e.value("abs.f32", {x});
-}
-Operand with_sign(Emitter& e, Operand magnitude, Operand sign) {
-  return e.value("copysign.f32", {sign, magnitude});
 }
 
 // Returns e^x / 2, which overflows where sinh and cosh do, and not before.

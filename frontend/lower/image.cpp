@@ -231,7 +231,7 @@ void texel_pointer(ModuleLowering& l, const Instruction& inst, const LoweringRow
 }
 
 using enum spv::Op;
-constexpr LoweringRow kRows[] = {
+constexpr LoweringRow kImageRows[] = {
     {OpImageRead, read, ""},
     {OpImageWrite, write, ""},
     {OpImageFetch, fetch, ""},
@@ -247,7 +247,7 @@ constexpr LoweringRow kRows[] = {
 }  // namespace
 
 std::span<const LoweringRow> image_rows() {
-  return kRows;
+  return kImageRows;
 }
 
 }  // namespace glint::frontend

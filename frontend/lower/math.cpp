@@ -12,8 +12,6 @@ constexpr float kPi = 3.14159265358979f;
 constexpr float kPiRest = -8.74227800037e-8f;  // pi - kPi
 constexpr float kHalfPi = 1.57079632679490f;
 constexpr float kHalfPiRest = -4.37113900019e-8f;
-constexpr float kLog2E = 1.44269504088896f;
-constexpr float kLn2 = 0.693147180559945f;
 
 // Coefficients of asin(x) = x + x z P(z) with z = x^2 <= 1/4; the relative error is below 5.1e-9.
 constexpr float kAsin[] = {0.16666750609874725f, 0.07495343685150146f, 0.04546626657247543f,
@@ -23,21 +21,8 @@ constexpr float kAtan[] = {-0.33333301544189453f, 0.19998574256896973f,  -0.1426
                            0.10953346639871597f,  -0.08406593650579453f, 0.05800812318921089f,
                            -0.03122559003531933f, 0.01093909703195095f,  -0.0017988847102969885f};
 
-// Returns x + x * z * P(z), where z = x^2.
-Operand odd(Emitter& e, Operand x, Operand z, std::span<const float> coefficients) {
-  Operand p = constant_f32(coefficients.back());
-  for (size_t i = coefficients.size() - 1; i-- > 0;) p = e.fma(p, z, constant_f32(coefficients[i]));
-  return e.fma(e.mul(x, z), p, x);
-}
-
 Operand greater(Emitter& e, Operand a, Operand b) {
   return e.value("setp.gt.f32", {a, b});
-}
-Operand abs(Emitter& e, Operand x) {
-  return e.value("abs.f32", {x});
-}
-Operand with_sign(Emitter& e, Operand magnitude, Operand sign) {
-  return e.value("copysign.f32", {sign, magnitude});
 }
 
 // For |x| > 1/2, asin(x) = pi/2 - 2 asin(sqrt((1 - |x|) / 2)). `value` is the asin of |x| or of this root.
@@ -58,6 +43,12 @@ Operand atan_of_unit(Emitter& e, Operand x) {
 }
 
 }  // namespace
+
+Operand odd(Emitter& e, Operand x, Operand z, std::span<const float> coefficients) {
+  Operand p = constant_f32(coefficients.back());
+  for (size_t i = coefficients.size() - 1; i-- > 0;) p = e.fma(p, z, constant_f32(coefficients[i]));
+  return e.fma(e.mul(x, z), p, x);
+}
 
 Operand dot(Arithmetic& a, const Operands& x, const Operands& y) {
   Operand sum = a.mul(x[0], y[0]);

@@ -1,11 +1,24 @@
 // Builds elementary functions as sequences of ISA ops, and states their errors.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <span>
 #include <vector>
 
 #include "frontend/lower/typed.h"
 
 namespace glint::frontend::math {
+
+inline constexpr float kLog2E = 1.44269504088896f;
+inline constexpr float kLn2 = 0.693147180559945f;
+
+inline Operand abs(Emitter& e, Operand x) {
+  return e.value("abs.f32", {x});
+}
+inline Operand with_sign(Emitter& e, Operand magnitude, Operand sign) {
+  return e.value("copysign.f32", {sign, magnitude});
+}
+// Returns x + x * z * P(z), where z = x^2.
+Operand odd(Emitter& e, Operand x, Operand z, std::span<const float> coefficients);
 
 // Adds the products left to right and rounds each of them.
 Operand dot(Arithmetic& a, const Operands& x, const Operands& y);

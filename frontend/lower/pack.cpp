@@ -7,10 +7,6 @@
 namespace glint::frontend::pack {
 namespace {
 
-Operand word(uint32_t bits) {
-  return Operand::value(bits);
-}
-
 // Joins fields of `width` bits, the first in the lowest bits. The bits above a field must be 0.
 Operands join(Emitter& e, const Operands& fields, uint32_t width) {
   Operand all = fields[0];

@@ -339,7 +339,7 @@ void array_length(ModuleLowering& l, const Instruction& inst, const LoweringRow&
 }
 
 using enum spv::Op;
-constexpr LoweringRow kRows[] = {
+constexpr LoweringRow kPointerRows[] = {
     {OpAccessChain, access_chain, ""},
     {OpInBoundsAccessChain, access_chain, ""},
     {OpPtrAccessChain, pointer_access_chain, ""},
@@ -353,7 +353,7 @@ constexpr LoweringRow kRows[] = {
 }  // namespace
 
 std::span<const LoweringRow> memory_rows() {
-  return kRows;
+  return kPointerRows;
 }
 
 }  // namespace glint::frontend

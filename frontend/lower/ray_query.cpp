@@ -101,7 +101,7 @@ void matrix_of_hit(ModuleLowering& l, const Instruction& inst, const LoweringRow
 }
 
 using enum spv::Op;
-constexpr LoweringRow kRows[] = {
+constexpr LoweringRow kRayQueryRows[] = {
     {OpRayQueryInitializeKHR, initialize, ""},
     {OpRayQueryProceedKHR, proceed, ""},
     {OpRayQueryConfirmIntersectionKHR, decide, "rq.confirm"},
@@ -140,7 +140,7 @@ uint32_t ModuleLowering::ray_query(Id variable) {
 }
 
 std::span<const LoweringRow> ray_query_rows() {
-  return kRows;
+  return kRayQueryRows;
 }
 
 }  // namespace glint::frontend

@@ -94,7 +94,7 @@ Operands matrix(Special first) {
 }
 
 using enum spv::Op;
-constexpr LoweringRow kRows[] = {
+constexpr LoweringRow kRayTracingRows[] = {
     {OpTraceRayKHR, trace, ""},
     {OpTraceRayMotionNV, trace_motion, ""},
     {OpExecuteCallableKHR, execute_callable, ""},
@@ -216,7 +216,7 @@ Operands ModuleLowering::load_builtin(spv::BuiltIn builtin, Id type) {
 }
 
 std::span<const LoweringRow> ray_tracing_rows() {
-  return kRows;
+  return kRayTracingRows;
 }
 
 }  // namespace glint::frontend

@@ -176,7 +176,7 @@ void gather(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   l.set(inst.result, std::move(result));
 }
 
-constexpr LoweringRow kRows[] = {
+constexpr LoweringRow kSampleRows[] = {
     {OpImageSampleExplicitLod, sample, ""},
     {OpImageSampleImplicitLod, sample, ""},
     {OpImageSampleDrefExplicitLod, sample, ""},
@@ -193,7 +193,7 @@ constexpr LoweringRow kRows[] = {
 }  // namespace
 
 std::span<const LoweringRow> sample_rows() {
-  return kRows;
+  return kSampleRows;
 }
 
 }  // namespace glint::frontend

@@ -15,9 +15,6 @@ namespace {
 using isa::Special;
 using enum spv::Op;
 
-Operand word(uint32_t bits) {
-  return Operand::value(bits);
-}
 constexpr uint32_t kNobody = 0xffff'ffff;  // what bfind returns when no bit is set
 
 Operand shuffle_word(ModuleLowering& l, std::string_view op, const Operand& x, const Operand& lane,

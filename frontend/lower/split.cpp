@@ -7,10 +7,6 @@
 namespace glint::frontend::math {
 namespace {
 
-Operand word(int64_t value) {
-  return Operand::value(uint32_t(value));
-}
-
 // Holds what ldexp and frexp must know of a format.
 struct Format {
   int fraction_bits;
@@ -62,8 +58,8 @@ Split frexp(Arithmetic& a, Operand x) {
   const Operand biased = e.value("bfe.u32", {high, word(high_bits), word(a.is_double() ? 11 : 8)});
   const Operand bias = e.select(is_subnormal, word(format.bias - 1 + up), word(format.bias - 1));
   // The exponent field is replaced by that of 1/2.
-  const Operand kept = e.value("and.b32", {high, word((1ll << high_bits) - 1 + 0x8000'0000ll)});
-  const Operand half = e.value("or.b32", {kept, word(int64_t(format.bias - 1) << high_bits)});
+  const Operand kept = e.value("and.b32", {high, word(uint32_t((1ll << high_bits) - 1 + 0x8000'0000ll))});
+  const Operand half = e.value("or.b32", {kept, word(uint32_t(int64_t(format.bias - 1) << high_bits))});
   const Operand fraction =
       a.is_double() ? e.value("pack.b64", {e.value("cvt.u32.u64", {normal}), half}) : half;
   const Operand is_zero = a.op("setp.eq.f32", {x, a.constant(0)});

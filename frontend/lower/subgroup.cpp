@@ -15,9 +15,6 @@ namespace {
 using isa::Special;
 using enum spv::Op;
 
-Operand word(uint32_t bits) {
-  return Operand::value(bits);
-}
 // Returns the mask of all lanes. Lanes that do not execute never take part.
 Operand all_lanes() {
   return word(0xffff'ffff);
@@ -227,7 +224,7 @@ void older(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   row.lower(l, same, row);
 }
 
-constexpr LoweringRow kRows[] = {
+constexpr LoweringRow kSubgroupRows[] = {
     {OpGroupNonUniformElect, elect, ""},
     {OpGroupNonUniformAll, vote, "vote.sync.all.pred"},
     {OpGroupNonUniformAny, vote, "vote.sync.any.pred"},
@@ -291,7 +288,7 @@ constexpr LoweringRow kRows[] = {
 }  // namespace
 
 std::span<const LoweringRow> subgroup_rows() {
-  return kRows;
+  return kSubgroupRows;
 }
 
 }  // namespace glint::frontend

@@ -7,10 +7,6 @@
 namespace glint::frontend {
 namespace {
 
-Operand word(uint32_t bits) {
-  return Operand::value(bits);
-}
-
 bool gives_predicate(std::string_view name) {
   return name.starts_with("setp.") || name.starts_with("testp.");
 }

@@ -13,16 +13,13 @@
 namespace glint::frontend {
 namespace {
 
-Operand word(uint32_t bits) {
-  return Operand::value(bits);
-}
 Operand self() {
   return Operand::of(isa::Special::LaneId);
 }
 
 // Calls f(part, the arguments' scalars) for each part of the result. A scalar argument repeats.
 template <class F>
-void each_part(ModuleLowering& l, const Instruction& inst, size_t num_arguments, F&& f) {
+void each_result_part(ModuleLowering& l, const Instruction& inst, size_t num_arguments, F&& f) {
   std::vector<Operands> arguments;
   for (size_t i = 0; i < num_arguments; ++i) arguments.push_back(l.value(inst.operands.at(2 + i)));
   const Part part = l.part_of(inst.type);
@@ -43,7 +40,7 @@ bool trinary(ModuleLowering& l, const Instruction& inst) {
   constexpr std::string_view kTypes[] = {"f32", "u32", "s32"};
   const std::string_view type = kTypes[(function - 1) % 3];
   const std::string least = fmt::format("min.{}", type), most = fmt::format("max.{}", type);
-  each_part(l, inst, 3, [&](Part part, const Operands& x) {
+  each_result_part(l, inst, 3, [&](Part part, const Operands& x) {
     const auto op = [&](const std::string& name, const Operand& a, const Operand& b) {
       return typed(l.emit(), name, part, {a, b});
     };
@@ -60,7 +57,7 @@ void from_lane(ModuleLowering& l, const Instruction& inst, const Operand& lane) 
   const Operand bit =
       e.value("and.b32", {e.value("shr.u32", {e.fresh("activemask.b32", {}), lane}), word(1)});
   const Operand executes = e.value("setp.ne.u32", {bit, word(0)});
-  each_part(l, inst, 1, [&](Part part, const Operands& x) {
+  each_result_part(l, inst, 1, [&](Part part, const Operands& x) {
     return e.select(executes, scan::from_lane(l, part, x[0], lane), word(0));
   });
 }
@@ -92,7 +89,7 @@ bool ballot(ModuleLowering& l, const Instruction& inst) {
       return true;
     case AMD_shader_ballotWriteInvocationAMD: {
       const Operand chosen = e.value("setp.eq.u32", {self(), l.word(inst.operands.at(4))});
-      each_part(l, inst, 2, [&](Part, const Operands& x) { return e.select(chosen, x[1], x[0]); });
+      each_result_part(l, inst, 2, [&](Part, const Operands& x) { return e.select(chosen, x[1], x[0]); });
       return true;
     }
     case AMD_shader_ballotMbcntAMD: {  // counts bits of the lanes below, among 32

@@ -13,8 +13,6 @@
 namespace glint::frontend::ptx {
 namespace {
 
-using Operand = VirtualOperand;
-
 uint64_t lowest_bit(uint64_t value) {
   return value & (~value + 1);
 }
@@ -38,15 +36,15 @@ class Shaping {
   }
   void spread_products() {
     for (VirtualRegister r = 0; r < registers_.last.size(); ++r)
-      if (VirtualInst* const product = registers_.definition(Operand::of(r))) spread(*product, r);
+      if (VirtualInst* const product = registers_.definition(VirtualOperand::of(r))) spread(*product, r);
   }
 
  private:
   // Returns the one definition of an operand. It comes before every use, and its operands hold the same
   // values there.
-  VirtualInst* definition(const Operand& o) const { return registers_.definition(o); }
-  bool is_stable(const Operand& o) const { return is_constant(o) || definition(o); }
-  bool is_unchanged(const VirtualBlock& block, const Operand& o, const VirtualInst& from,
+  VirtualInst* definition(const VirtualOperand& o) const { return registers_.definition(o); }
+  bool is_stable(const VirtualOperand& o) const { return is_constant(o) || definition(o); }
+  bool is_unchanged(const VirtualBlock& block, const VirtualOperand& o, const VirtualInst& from,
                     const VirtualInst& to) const {
     if (is_stable(o)) return true;
     const VirtualInst *first = block.code.data(), *last = first + block.code.size();
@@ -69,7 +67,7 @@ class Shaping {
     const char* const combined = combination(inst.op);
     if (!combined) return;
     for (size_t k : {size_t{2}, size_t{1}}) {
-      const Operand test = inst.operands[k], other = inst.operands[3 - k];
+      const VirtualOperand test = inst.operands[k], other = inst.operands[3 - k];
       const VirtualInst* setp = definition(test);
       if (!setp || registers_.uses[test.reg] != 1 || setp->operands.size() != 3 || !is_register(other))
         continue;
@@ -81,8 +79,8 @@ class Shaping {
           !is_unchanged(block, setp->operands[2], *setp, inst))
         continue;
       inst.op = uint16_t(row);
-      inst.operands = {inst.operands[0], Operand::of(new_predicate()), setp->operands[1], setp->operands[2],
-                       other};
+      inst.operands = {inst.operands[0], VirtualOperand::of(new_predicate()), setp->operands[1],
+                       setp->operands[2], other};
       return;
     }
   }
@@ -100,15 +98,16 @@ class Shaping {
   void spread(const VirtualInst& product, VirtualRegister r) {
     const uint16_t mad = fused(product);
     if (mad == 0 || registers_.uses[r] < 2) return;
-    const Operand a = product.operands[1];
-    const Operand b = product.op == ops_.shl_b32 ? Operand::value(uint64_t{1} << product.operands[2].constant)
-                                                 : product.operands[2];
+    const VirtualOperand a = product.operands[1];
+    const VirtualOperand b = product.op == ops_.shl_b32
+                                 ? VirtualOperand::value(uint64_t{1} << product.operands[2].constant)
+                                 : product.operands[2];
     if (!is_stable(a) || !is_stable(b)) return;
     const bool wide = program_.registers[r] == RegisterClass::B64;
     for (const VirtualInst* user : users_[r])
       if (!is_sum(*user, r, wide)) return;
     for (VirtualInst* user : users_[r]) {
-      const Operand addend =
+      const VirtualOperand addend =
           user->operands[is_register(user->operands[1]) && user->operands[1].reg == r ? 2 : 1];
       user->op = mad;
       user->operands = {user->operands[0], a, b, addend};
@@ -130,13 +129,13 @@ class Shaping {
     int times = 0;
     for (size_t k : {size_t{1}, size_t{2}}) {
       times += is_register(inst.operands[k]) && inst.operands[k].reg == r;
-      if (inst.operands[k].kind == Operand::Kind::StackPointer) return false;
+      if (inst.operands[k].kind == VirtualOperand::Kind::StackPointer) return false;
     }
     return times == 1;
   }
 
   // Returns a power of two that divides the value.
-  uint64_t alignment(const Operand& o, int depth = 0) const {
+  uint64_t alignment(const VirtualOperand& o, int depth = 0) const {
     constexpr uint64_t kMost = 4096;
     constexpr int kDeepest = 8;
     if (is_constant(o)) return o.constant ? std::min(lowest_bit(o.constant), kMost) : kMost;
@@ -188,7 +187,7 @@ class Shaping {
       if (at == group.end()) return false;
       parts.push_back(*at);
     }
-    std::vector<Operand> operands;
+    std::vector<VirtualOperand> operands;
     for (const VirtualInst* part : parts) operands.push_back(part->operands[0]);
     operands.push_back(first.operands[1]);
     for (VirtualInst* part : parts)
@@ -255,7 +254,7 @@ void negate_factors(VirtualProgram& program) {
       });
       for_each_use(inst, [&](VirtualRegister r) { ++homes[r].uses; });
     }
-  const auto is_stable = [&](const Operand& o) {
+  const auto is_stable = [&](const VirtualOperand& o) {
     return is_constant(o) || (is_register(o) && homes[o.reg].definitions == 1);
   };
   std::map<VirtualRegister, VirtualRegister> negated;
@@ -266,14 +265,15 @@ void negate_factors(VirtualProgram& program) {
         continue;
       const Home& product = homes[inst.operands[1].reg];
       if (product.uses != 1 || !is_real(*product.inst) || product.inst->op != mul) continue;
-      const std::vector<Operand> factors(product.inst->operands.begin() + 1, product.inst->operands.end());
+      const std::vector<VirtualOperand> factors(product.inst->operands.begin() + 1,
+                                                product.inst->operands.end());
       if (!is_stable(factors[0]) || !is_stable(factors[1])) continue;
       for (size_t k : {size_t{0}, size_t{1}}) {
         if (!is_register(factors[k]) || !is_out_of_loop(program, homes[factors[k].reg].block, b)) continue;
         const auto [found, is_new] = negated.try_emplace(factors[k].reg, kNoRegister);
         if (is_new) found->second = program.new_register(RegisterClass::B32);
         inst.op = mul;
-        inst.operands = {inst.operands[0], Operand::of(found->second), factors[1 - k]};
+        inst.operands = {inst.operands[0], VirtualOperand::of(found->second), factors[1 - k]};
         break;
       }
     }
@@ -282,7 +282,8 @@ void negate_factors(VirtualProgram& program) {
       std::vector<VirtualInst> behind;
       for_each_def(block.code[i], [&](VirtualRegister r) {
         if (const auto found = negated.find(r); found != negated.end())
-          behind.push_back(make_inst(neg, {Operand::of(found->second), Operand::of(r)}, block.code[i].line));
+          behind.push_back(
+              make_inst(neg, {VirtualOperand::of(found->second), VirtualOperand::of(r)}, block.code[i].line));
       });
       block.code.insert(block.code.begin() + std::ptrdiff_t(i) + 1, behind.begin(), behind.end());
       i += behind.size();

@@ -15,8 +15,6 @@
 namespace glint::frontend::ptx {
 namespace {
 
-using Operand = VirtualOperand;
-
 constexpr int64_t kTurns = 4;  // turns unrolled at a time; of the rest, two
 // Limits the instructions of a body. Choice: with 64, the counts of the calibration kernels, in which all
 // lanes count alike, match an H200. In kernels whose lanes may count differently, the H200's compiler has
@@ -84,7 +82,7 @@ class CountedLoop {
     const bool narrow = inst.op == ops_.add_s32 || inst.op == ops_.add_u32,
                wide = inst.op == ops_.add_s64 || inst.op == ops_.add_u64;
     if (!narrow && !wide) return std::nullopt;
-    const Operand &to = inst.operands[0], &from = inst.operands[1], &by = inst.operands[2];
+    const VirtualOperand &to = inst.operands[0], &from = inst.operands[1], &by = inst.operands[2];
     if (!is_register(from) || from.reg != to.reg || !is_constant(by) || definitions_.at(to.reg) != 1)
       return std::nullopt;
     const int64_t step = narrow ? int64_t{int32_t(uint32_t(by.constant))} : int64_t(by.constant);
@@ -100,7 +98,7 @@ class CountedLoop {
     if ((test.op != setp_ne_s32_ && test.op != setp_lt_s32_) || test.operands[0].reg != block.condition ||
         definitions_[block.condition] != 1)
       return false;
-    const Operand &value = test.operands[1], &end = test.operands[2];
+    const VirtualOperand &value = test.operands[1], &end = test.operands[2];
     if (!is_register(value) || !steps_.contains(value.reg) ||
         program_.registers[value.reg] != RegisterClass::B32)
       return false;
@@ -115,14 +113,14 @@ class CountedLoop {
 
   // Returns true when all lanes in the loop are in the same turn and leave the loop together.
   bool lanes_count_together() const {
-    return is_uniform(Operand::of(counter_), true) && is_uniform(end_, false);
+    return is_uniform(VirtualOperand::of(counter_), true) && is_uniform(end_, false);
   }
   // Returns true when the operand has one value for all lanes: it is a constant, is computed once from such
   // operands, or is the counter and starts with such a value.
-  bool is_uniform(const Operand& o, bool is_counter, int depth = 0) const {
+  bool is_uniform(const VirtualOperand& o, bool is_counter, int depth = 0) const {
     constexpr int kDeepest = 8;
     if (is_constant(o)) return true;
-    if (o.kind == Operand::Kind::Special)
+    if (o.kind == VirtualOperand::Kind::Special)
       return o.special >= isa::Special::NtidX && o.special <= isa::Special::NctaidZ;
     if (!is_register(o) || depth == kDeepest) return false;
     const VirtualInst* source = nullptr;
@@ -148,14 +146,14 @@ class CountedLoop {
     return uniform;
   }
 
-  static Operand constant_of(int64_t value, bool wide) {
-    return Operand::value(wide ? uint64_t(value) : uint64_t(uint32_t(value)));
+  static VirtualOperand constant_of(int64_t value, bool wide) {
+    return VirtualOperand::value(wide ? uint64_t(value) : uint64_t(uint32_t(value)));
   }
   bool is_wide(VirtualRegister r) const { return program_.registers[r] == RegisterClass::B64; }
-  Operand now(const Operand& o) const {
+  VirtualOperand now(const VirtualOperand& o) const {
     if (!is_register(o)) return o;
     const auto found = names_.find(o.reg);
-    return found == names_.end() ? o : Operand::of(found->second);
+    return found == names_.end() ? o : VirtualOperand::of(found->second);
   }
 
   void copy_body(int64_t turn, bool last, std::vector<VirtualInst>& out) {
@@ -173,7 +171,7 @@ class CountedLoop {
       }
       std::vector<VirtualRegister> to;
       for_each_slot(row_of(inst), [&](size_t slot, isa::OperandKind kind) {
-        Operand& o = inst.operands[slot];
+        VirtualOperand& o = inst.operands[slot];
         if (!isa::is_destination(kind) || !is_register(o)) return;
         if (last && kept_.contains(o.reg)) {
           names_.erase(o.reg);
@@ -181,7 +179,7 @@ class CountedLoop {
         }
         const VirtualRegister fresh = program_.new_register(program_.registers[o.reg]);
         names_[o.reg] = fresh;
-        o = Operand::of(fresh);
+        o = VirtualOperand::of(fresh);
       });
       if (turn == 0 && !inst.operands.empty()) first_[i] = inst.operands[0];
       out.push_back(std::move(inst));
@@ -196,7 +194,7 @@ class CountedLoop {
         kept_.contains(inst.operands[0].reg))
       return false;
     for (size_t k : {size_t{1}, size_t{2}}) {
-      const Operand &moving = inst.operands[k], &other = inst.operands[3 - k];
+      const VirtualOperand &moving = inst.operands[k], &other = inst.operands[3 - k];
       if (!is_register(moving) || !steps_.contains(moving.reg) || !is_register(other) ||
           definitions_.contains(other.reg))
         continue;
@@ -232,14 +230,14 @@ class CountedLoop {
     block.end = DraftBlock::End::Branch;
     block.condition = program_.new_register(RegisterClass::Predicate);
     const uint16_t op = counts_up_ ? setp_lt_s32_ : turns > 1 ? setp_gt_s32_ : setp_ne_s32_;
-    block.code.push_back(
-        make_inst(op, {Operand::of(block.condition), Operand::of(counter_), limit(turns)}, block.line));
+    block.code.push_back(make_inst(
+        op, {VirtualOperand::of(block.condition), VirtualOperand::of(counter_), limit(turns)}, block.line));
     block.negate = negate;
     block.taken = taken;
   }
   // Returns the bound that the counter must not have reached if it is to last for `turns` turns. The
   // subtraction saturates, so that no counter can be below the lowest bound.
-  Operand limit(int64_t turns) {
+  VirtualOperand limit(int64_t turns) {
     const int64_t way = steps_[counter_] * (turns - 1);
     if (!counts_up_) return constant_of(-way, false);
     if (turns == 1) return end_;
@@ -251,10 +249,10 @@ class CountedLoop {
       found->second = program_.new_register(RegisterClass::B32);
       std::vector<VirtualInst>& code = draft_.blocks[first_block_].code;
       code.insert(code.begin(),
-                  make_inst(sub_sat_s32_, {Operand::of(found->second), end_, constant_of(way, false)},
+                  make_inst(sub_sat_s32_, {VirtualOperand::of(found->second), end_, constant_of(way, false)},
                             draft_.blocks[at_].line));
     }
-    return Operand::of(found->second);
+    return VirtualOperand::of(found->second);
   }
 
   // Appends copies of the body. Model: each copy is a block of its own, so that loads stay in their turn. An
@@ -301,7 +299,7 @@ class CountedLoop {
   const uint16_t setp_ne_s32_ = isa::op_index("setp.ne.s32"), setp_gt_s32_ = isa::op_index("setp.gt.s32");
   const uint16_t setp_lt_s32_ = isa::op_index("setp.lt.s32"), sub_sat_s32_ = isa::op_index("sub.sat.s32");
   VirtualRegister counter_ = kNoRegister;
-  Operand end_;  // bound of the counter
+  VirtualOperand end_;  // bound of the counter
   bool counts_up_ = false;
   std::map<int64_t, VirtualRegister> limits_;   // by number of turns, if the bound is in a register
   std::map<VirtualRegister, int> definitions_;  // number of definitions in the loop, by register
@@ -310,7 +308,7 @@ class CountedLoop {
   std::map<VirtualRegister, int64_t> steps_;          // constant that a turn adds
   std::map<VirtualRegister, int64_t> stepped_;        // turns that the copies so far have done
   std::map<VirtualRegister, VirtualRegister> names_;  // present name in the copies
-  std::map<size_t, Operand> first_;                   // result of each instruction in the first turn
+  std::map<size_t, VirtualOperand> first_;            // result of each instruction in the first turn
   BlockId first_block_ = kNoBlock;                    // first of the new blocks
   std::vector<BlockId> layout_;                       // the new blocks, in order
 };

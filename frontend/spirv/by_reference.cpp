@@ -8,10 +8,10 @@
 #include <span>
 #include <spirv/unified1/spirv.hpp11>
 
+#include "frontend/spirv/words.h"
+
 namespace glint::frontend {
 namespace {
-
-constexpr size_t kHeaderWords = 5;  // SPIR-V specification, 2.3 Physical Layout
 
 struct Code {
   spv::Op op;

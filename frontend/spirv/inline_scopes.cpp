@@ -13,43 +13,15 @@
 #include <string_view>
 
 #include "frontend/spirv/source_lines.h"
+#include "frontend/spirv/words.h"
 
 namespace glint::frontend {
 namespace {
 
-constexpr size_t kHeaderWords = 5;  // SPIR-V specification, 2.3 Physical Layout
-constexpr size_t kVersionWord = 1, kBoundWord = 3;
 constexpr uint32_t kNonSemanticVersion = 0x10600;  // the first version in which such sets need no extension
 constexpr uint32_t kDwarfVersion = 5, kLanguageUnknown = 0;
 
-using Words = std::vector<uint32_t>;
-
-spv::Op op_of(uint32_t word) {
-  return spv::Op(word & 0xffff);
-}
-
-std::string text_at(std::span<const uint32_t> words) {
-  std::string text;
-  for (size_t i = 0; i < 4 * words.size(); ++i) {
-    const char c = char(words[i / 4] >> 8 * (i % 4));
-    if (c == 0) break;
-    text += c;
-  }
-  return text;
-}
-
 // Returns the words of a text. They end in a zero byte, as texts in a module do.
-Words words_of(std::string_view text) {
-  Words out(text.size() / 4 + 1);
-  for (size_t i = 0; i < text.size(); ++i) out[i / 4] |= uint32_t(uint8_t(text[i])) << 8 * (i % 4);
-  return out;
-}
-
-void append(Words& out, spv::Op op, std::initializer_list<uint32_t> operands, const Words& more = {}) {
-  out.push_back(uint32_t(1 + operands.size() + more.size()) << 16 | uint32_t(op));
-  for (const uint32_t word : operands) out.push_back(word);
-  for (const uint32_t word : more) out.push_back(word);
-}
 
 // Holds what marking needs to know of a module.
 struct Survey {

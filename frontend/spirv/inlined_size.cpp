@@ -9,13 +9,14 @@
 #include <spirv/unified1/spirv.hpp11>
 
 #include "base/diagnostics.h"
+#include "frontend/spirv/words.h"
 
 namespace glint::frontend {
 namespace {
 
 constexpr uint64_t kMany = uint64_t{1} << 40;  // all counts saturate at this value
 
-struct Function {
+struct FunctionSize {
   uint64_t instructions = 0;
   std::vector<uint32_t> callees;  // one for each call
   uint64_t copies = 0;
@@ -23,15 +24,14 @@ struct Function {
 };
 
 struct CallGraph {
-  std::map<uint32_t, Function> functions;
+  std::map<uint32_t, FunctionSize> functions;
   std::map<uint32_t, std::string> names;
   std::vector<uint32_t> entries;
 };
 
 CallGraph read(const std::vector<uint32_t>& spirv) {
-  constexpr size_t kHeaderWords = 5;  // SPIR-V specification, 2.3 Physical Layout
   CallGraph out;
-  Function* current = nullptr;
+  FunctionSize* current = nullptr;
   for (size_t at = kHeaderWords; at < spirv.size(); at += spirv[at] >> 16) {
     const uint32_t* const words = &spirv[at];
     switch (spv::Op(words[0] & 0xffff)) {
@@ -70,10 +70,10 @@ void count_copies(CallGraph& graph) {
     if (function.calls_left == 0) ready.push_back(id);
   for (const uint32_t entry : graph.entries) graph.functions.at(entry).copies = 1;
   while (!ready.empty()) {
-    const Function& caller = graph.functions.at(ready.back());
+    const FunctionSize& caller = graph.functions.at(ready.back());
     ready.pop_back();
     for (const uint32_t id : caller.callees) {
-      Function& callee = graph.functions.at(id);
+      FunctionSize& callee = graph.functions.at(id);
       callee.copies = std::min(kMany, callee.copies + caller.copies);
       if (--callee.calls_left == 0) ready.push_back(id);
     }

@@ -10,11 +10,12 @@
 #include <string_view>
 #include <utility>
 
+#include "frontend/spirv/words.h"
+
 namespace glint::frontend {
 namespace {
 
 using enum spv::Op;
-constexpr size_t kHeaderWords = 5, kBoundWord = 3;  // SPIR-V specification, 2.3 Physical Layout
 
 class Rewrite {
  public:

@@ -10,11 +10,10 @@
 #include "base/diagnostics.h"
 #include "frontend/spirv/known_positions.h"
 #include "frontend/spirv/source_lines.h"
+#include "frontend/spirv/words.h"
 
 namespace glint::frontend {
 namespace {
-
-constexpr size_t kHeaderWords = 5;
 
 std::string string_at(std::span<const uint32_t> words, size_t* used = nullptr) {
   std::string text;

@@ -10,27 +10,17 @@
 #include <spirv/unified1/spirv.hpp11>
 #include <string_view>
 
+#include "frontend/spirv/words.h"
+
 namespace glint::frontend {
 namespace {
 
 using enum spv::Op;
-constexpr size_t kHeaderWords = 5, kBoundWord = 3;  // SPIR-V specification, 2.3 Physical Layout
 
 template <class Visit>
 void for_each(const std::vector<uint32_t>& words, const Visit& visit) {
   for (size_t at = kHeaderWords; at < words.size() && words[at] >> 16 != 0; at += words[at] >> 16)
     visit(spv::Op(words[at] & 0xffff), std::span(words).subspan(at, words[at] >> 16));
-}
-
-void append(std::vector<uint32_t>& out, spv::Op op, std::initializer_list<uint32_t> operands) {
-  out.push_back(uint32_t(operands.size() + 1) << 16 | uint32_t(op));
-  out.insert(out.end(), operands);
-}
-
-std::vector<uint32_t> words_of(std::string_view text) {
-  std::vector<uint32_t> out(text.size() / 4 + 1);
-  for (size_t i = 0; i < text.size(); ++i) out[i / 4] |= uint32_t(uint8_t(text[i])) << 8 * (i % 4);
-  return out;
 }
 
 }  // namespace

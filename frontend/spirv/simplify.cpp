@@ -16,6 +16,7 @@
 #include "frontend/spirv/module_repairs.h"
 #include "frontend/spirv/spirv.h"
 #include "frontend/spirv/vendor_ray_tracing.h"
+#include "frontend/spirv/words.h"
 
 namespace glint::frontend {
 namespace {
@@ -66,8 +67,6 @@ const std::vector<std::string>& inlining_only() {
                                                    "--eliminate-dead-functions"};
   return kPasses;
 }
-
-constexpr size_t kHeaderWords = 5;  // SPIR-V specification, 2.3 Physical Layout
 
 // Removes declarations of extensions, because many passes silently skip a module that declares an extension
 // they do not list. The capability that the extension allows stays, so the declaration is needed again only

@@ -8,27 +8,13 @@
 #include <spirv/unified1/spirv.hpp11>
 #include <sstream>
 
+#include "frontend/spirv/words.h"
+
 namespace glint::frontend {
 namespace {
 
-constexpr size_t kHeaderWords = 5;  // SPIR-V specification, 2.3 Physical Layout
 // The depth limit of scopes. A module beyond it has scopes that contain themselves.
 constexpr int kMaxDepth = 1000;
-
-std::string text_at(std::span<const uint32_t> words) {
-  std::string text;
-  for (const uint32_t word : words)
-    for (int byte = 0; byte < 4; ++byte) {
-      const char c = char(word >> 8 * byte & 0xff);
-      if (c == 0) return text;
-      text += c;
-    }
-  return text;
-}
-
-spv::Op op_of(uint32_t word) {
-  return spv::Op(word & 0xffff);
-}
 
 // Returns true for names, lines and sources, which do not take part in the computation.
 bool is_about_source(spv::Op op) {

@@ -8,11 +8,10 @@
 #include <spirv/unified1/spirv.hpp11>
 
 #include "base/diagnostics.h"
+#include "frontend/spirv/words.h"
 
 namespace glint::frontend {
 namespace {
-
-constexpr size_t kHeaderWords = 5;  // SPIR-V specification, 2.3 Physical Layout
 
 // Calls visit(op, words of the instruction) for each instruction. Returns false when a length is wrong.
 template <class Words, class Visit>
@@ -26,17 +25,6 @@ bool for_each_instruction(Words& words, const Visit& visit) {
   return true;
 }
 
-std::string text_of(std::span<const uint32_t> words) {
-  std::string out;
-  for (uint32_t word : words)
-    for (int shift = 0; shift < 32; shift += 8) {
-      const char c = char(word >> shift & 0xff);
-      if (c == 0) return out;
-      out += c;
-    }
-  return out;
-}
-
 struct Found {
   std::map<uint32_t, uint32_t> spec_id;  // by result id
   std::map<uint32_t, std::string> name, number;
@@ -45,7 +33,7 @@ struct Found {
 
 void visit_declaration(Found& found, spv::Op op, std::span<const uint32_t> w) {
   using enum spv::Op;
-  if (op == OpName && w.size() > 2) found.name[w[1]] = text_of(w.subspan(2));
+  if (op == OpName && w.size() > 2) found.name[w[1]] = text_at(w.subspan(2));
   if (op == OpDecorate && w.size() > 3 && spv::Decoration(w[2]) == spv::Decoration::SpecId)
     found.spec_id[w[1]] = w[3];
   if (op == OpTypeBool && w.size() > 1) found.number[w[1]] = "bool";

@@ -14,6 +14,7 @@
 
 #include "frontend/compile.h"
 #include "frontend/spirv/known_positions.h"
+#include "frontend/spirv/words.h"
 
 namespace glint::frontend {
 
@@ -40,7 +41,6 @@ bool is_false_alarm(std::string_view message) {
 // Reports constants made from a component that a vector lacks. The validator accepts them, and the optimiser
 // crashes on them.
 std::string missing_components(const std::vector<uint32_t>& words) {
-  constexpr size_t kHeaderWords = 5;
   std::map<uint32_t, uint32_t> components, type_of;  // of vector types; of constants
   for (size_t i = kHeaderWords; i < words.size(); i += words[i] >> 16) {
     const auto op = spv::Op(words[i] & 0xffff);
@@ -83,7 +83,6 @@ std::string validate_spirv(const std::vector<uint32_t>& words) {
 }
 
 void refuse_unknown_capabilities(const std::vector<uint32_t>& words, const std::string& name) {
-  constexpr size_t kHeaderWords = 5;  // SPIR-V specification, 2.3 Physical Layout
   std::string unknown, extensions;
   for (size_t at = kHeaderWords; at < words.size() && words[at] >> 16 != 0; at += words[at] >> 16) {
     const auto op = spv::Op(words[at] & 0xffff);

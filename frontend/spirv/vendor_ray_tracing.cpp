@@ -9,11 +9,12 @@
 #include <string_view>
 #include <utility>
 
+#include "frontend/spirv/words.h"
+
 namespace glint::frontend {
 namespace {
 
 using Storage = spv::StorageClass;
-constexpr size_t kHeaderWords = 5, kBoundWord = 3;  // SPIR-V specification, 2.3 Physical Layout
 
 class Rewriter {
  public:

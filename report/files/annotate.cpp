@@ -17,10 +17,6 @@ namespace {
 using Row = std::vector<std::string>;
 using Rows = std::vector<Row>;
 
-double part(uint64_t of, uint64_t whole) {
-  return whole ? double(of) / double(whole) : 0.0;
-}
-
 Row joined(Row figures, const Row& more) {
   figures.insert(figures.end(), more.begin(), more.end());
   return figures;

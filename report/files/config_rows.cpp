@@ -11,7 +11,7 @@
 namespace glint::report {
 namespace {
 
-std::string trimmed(std::string_view text) {
+std::string trimmed_text(std::string_view text) {
   const size_t first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
   return first == std::string_view::npos ? "" : std::string(text.substr(first, last - first + 1));
 }
@@ -21,7 +21,7 @@ std::string trimmed(std::string_view text) {
 std::string value_of(const std::string& text, size_t& end) {
   if (text.empty() || text.front() != '"') {
     end = std::min(text.find('#'), text.size());
-    return trimmed(std::string_view(text).substr(0, end));
+    return trimmed_text(std::string_view(text).substr(0, end));
   }
   std::string out;
   for (end = 1; end < text.size() && text[end] != '"'; ++end) {
@@ -33,12 +33,12 @@ std::string value_of(const std::string& text, size_t& end) {
 
 // Reads a comment of the form "# [unit] doc. (range)".
 void read_comment(const std::string& comment, ConfigRow& row) {
-  row.doc = trimmed(std::string_view(comment).substr(1));
+  row.doc = trimmed_text(std::string_view(comment).substr(1));
   if (row.doc.empty() || row.doc.front() != '[') return;
   const size_t close = row.doc.find(']');
   if (close == std::string::npos) return;
   row.unit = row.doc.substr(1, close - 1);
-  row.doc = trimmed(std::string_view(row.doc).substr(close + 1));
+  row.doc = trimmed_text(std::string_view(row.doc).substr(close + 1));
 }
 
 }  // namespace
@@ -48,7 +48,7 @@ std::vector<ConfigRow> config_rows(const std::string& toml) {
   std::istringstream in(toml);
   std::string line, table;
   while (std::getline(in, line)) {
-    const std::string text = trimmed(line);
+    const std::string text = trimmed_text(line);
     if (text.empty() || text.front() == '#') continue;
     if (text.front() == '[') {
       table = text.substr(1, text.find(']') - 1) + ".";
@@ -56,9 +56,11 @@ std::vector<ConfigRow> config_rows(const std::string& toml) {
     }
     const size_t equals = text.find('=');
     if (equals == std::string::npos) continue;
-    const std::string rest = trimmed(std::string_view(text).substr(equals + 1));
-    ConfigRow row{
-        .key = table + trimmed(std::string_view(text).substr(0, equals)), .value = {}, .unit = {}, .doc = {}};
+    const std::string rest = trimmed_text(std::string_view(text).substr(equals + 1));
+    ConfigRow row{.key = table + trimmed_text(std::string_view(text).substr(0, equals)),
+                  .value = {},
+                  .unit = {},
+                  .doc = {}};
     size_t end = 0;
     row.value = value_of(rest, end);
     if (const size_t hash = rest.find('#', end); hash != std::string::npos)

@@ -16,7 +16,7 @@
 namespace glint::report {
 namespace {
 
-constexpr int kSchema = 1;  // schema of maps.json
+constexpr int kMapsSchema = 1;  // schema of maps.json
 
 std::string read_whole(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -59,7 +59,7 @@ std::string heat_index(const std::vector<CostMap>& maps) {
                     {"p99", s.p99},
                     {"max", s.max}});
   }
-  return nlohmann::ordered_json{{"schema", kSchema}, {"maps", list}}.dump(1) + "\n";
+  return nlohmann::ordered_json{{"schema", kMapsSchema}, {"maps", list}}.dump(1) + "\n";
 }
 
 std::vector<std::pair<std::string, std::string>> heat_files(const std::vector<CostMap>& maps) {
@@ -77,7 +77,7 @@ std::vector<CostMap> read_heat(const std::string& directory) {
   std::vector<CostMap> maps;
   if (!std::filesystem::exists(path)) return maps;
   const auto index = nlohmann::json::parse(read_whole(path), nullptr, false);
-  if (!index.is_object() || index.value("schema", 0) != kSchema || !index.contains("maps"))
+  if (!index.is_object() || index.value("schema", 0) != kMapsSchema || !index.contains("maps"))
     throw UserError({path}, "this is not a list of maps that this version knows", "run it again");
   for (const auto& entry : index["maps"]) {
     CostMap map{entry.value("name", ""), entry.value("unit", ""), entry.value("doc", ""), true, 0, 0, {}};

@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kSchema = 1;
+constexpr int kSourceSchema = 1;
 constexpr const char* kAdvice =
     "another version of Glint wrote it, or it is damaged: run it again with --profile";
 
@@ -139,15 +139,17 @@ std::string source_json(const SourceMap& map) {
                         {"spirv", columns_of(program.spirv, false)},
                         {"scopes", scopes}});
   }
-  const Json out = {{"schema", kSchema}, {"files", files}, {"programs", programs}};
+  const Json out = {{"schema", kSourceSchema}, {"files", files}, {"programs", programs}};
   return out.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 SourceMap parse_source(const std::string& text, const std::string& name) {
   const Json document = Json::parse(text, nullptr, false);
-  const bool is_known = document.is_object() && document.contains("schema") && document["schema"] == kSchema;
+  const bool is_known =
+      document.is_object() && document.contains("schema") && document["schema"] == kSourceSchema;
   if (!is_known)
-    throw UserError({name}, fmt::format("this is not a source document of schema {}", kSchema), kAdvice);
+    throw UserError({name}, fmt::format("this is not a source document of schema {}", kSourceSchema),
+                    kAdvice);
   SourceMap out;
   try {
     for (const Json& file : document.at("files")) {

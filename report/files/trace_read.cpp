@@ -14,7 +14,7 @@
 namespace glint::report {
 namespace {
 
-using Json = nlohmann::json;
+using TraceJson = nlohmann::json;
 
 constexpr uint32_t kFirstCore = 2;  // process of core 0
 
@@ -23,22 +23,22 @@ UserError damaged(const std::string& path) {
 }
 
 // Returns the line's object, without what joins it to the next one.
-Json parsed(std::string_view line) {
+TraceJson parsed(std::string_view line) {
   while (!line.empty() && (line.back() == ',' || line.back() == '\r')) line.remove_suffix(1);
-  return Json::parse(line, nullptr, false);
+  return TraceJson::parse(line, nullptr, false);
 }
 
 void read_head(std::string_view line, const std::string& path, Timeline& timeline) {
-  const Json head = parsed(std::string(line.substr(0, line.rfind(','))) + "}");
+  const TraceJson head = parsed(std::string(line.substr(0, line.rfind(','))) + "}");
   if (!head.is_object() || !head.contains("otherData") || !head["otherData"].contains("begin"))
     throw damaged(path);
-  const Json& about = head["otherData"];
+  const TraceJson& about = head["otherData"];
   timeline.trace_begin = about["begin"];
   timeline.trace_end = about["end"];
   timeline.cores = about["cores"];
 }
 
-Timeline::Slice slice_of(const Json& event) {
+Timeline::Slice slice_of(const TraceJson& event) {
   Timeline::Slice slice{event["tid"], event["cat"], event["name"], event["ts"], event["dur"], {}};
   if (event.contains("args"))
     for (const auto& [name, value] : event["args"].items())
@@ -96,7 +96,7 @@ Timeline read_timeline(const std::string& path, const TimelineRequest& request) 
   read_gzip_lines(path, [&](std::string_view line) {
     if (!has_head) read_head(line, path, timeline), has_head = true;
     if (line.substr(0, wanted.size()) != wanted) return true;
-    const Json event = parsed(line);
+    const TraceJson event = parsed(line);
     if (!event.is_object()) throw damaged(path);
     timeline.slices.push_back(slice_of(event));
     return true;

@@ -16,10 +16,6 @@ namespace {
 
 constexpr double kWarm = 0.01, kHot = 0.1;  // fractions of all cycles
 
-double part(uint64_t of, uint64_t whole) {
-  return whole ? double(of) / double(whole) : 0.0;
-}
-
 std::string count(uint64_t value) {
   return value ? with_thousands(value) : "";
 }

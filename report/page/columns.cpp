@@ -130,14 +130,14 @@ class Columns {
 // Holds the instances of a run: none when it lacks the statistic, and {0} when all are 0, as page_stats() has
 // it.
 using Instances = std::vector<double>;
-struct Numbers {
+struct WantedNumbers {
   std::string name;
   std::vector<Instances> runs;
   bool is_whole = true;
 };
 
-std::optional<Numbers> numbers_of(const std::string& name, const std::vector<Json>& values) {
-  Numbers out{name, {}, true};
+std::optional<WantedNumbers> numbers_of(const std::string& name, const std::vector<Json>& values) {
+  WantedNumbers out{name, {}, true};
   for (const Json& value : values) {
     Instances& instances = out.runs.emplace_back();
     if (value.is_null()) continue;
@@ -166,7 +166,7 @@ bool is_quotient(const Instances& wanted, const Instances& over, const Instances
   return true;
 }
 
-bool is_quotient(const Numbers& wanted, const Numbers& over, const Numbers& under) {
+bool is_quotient(const WantedNumbers& wanted, const WantedNumbers& over, const WantedNumbers& under) {
   for (size_t run = 0; run < wanted.runs.size(); ++run)
     if (!is_quotient(wanted.runs[run], over.runs[run], under.runs[run])) return false;
   return true;
@@ -174,16 +174,16 @@ bool is_quotient(const Numbers& wanted, const Numbers& over, const Numbers& unde
 
 // Returns the first two columns of whole numbers whose quotient is `wanted`. It compares one of the values
 // first, because there are many pairs.
-std::optional<std::pair<std::string, std::string>> parts_of(const Numbers& wanted,
-                                                            const std::vector<Numbers>& counts) {
+std::optional<std::pair<std::string, std::string>> parts_of(const WantedNumbers& wanted,
+                                                            const std::vector<WantedNumbers>& counts) {
   const auto is_some = [](double value) { return value != 0; };
   const auto run = std::find_if(wanted.runs.begin(), wanted.runs.end(), [&](const Instances& one) {
     return std::any_of(one.begin(), one.end(), is_some);
   });
   const auto sample = size_t(std::find_if(run->begin(), run->end(), is_some) - run->begin());
   const double value = (*run)[sample];
-  std::vector<std::pair<const Numbers*, double>> known;
-  for (const Numbers& one : counts) {
+  std::vector<std::pair<const WantedNumbers*, double>> known;
+  for (const WantedNumbers& one : counts) {
     const Instances& instances = one.runs[size_t(run - wanted.runs.begin())];
     if ((instances.size() == run->size() || instances.size() == 1) && at(instances, sample) != 0)
       known.emplace_back(&one, at(instances, sample));
@@ -195,12 +195,12 @@ std::optional<std::pair<std::string, std::string>> parts_of(const Numbers& wante
 }
 
 Json quotients_of(const Columns& stats) {
-  std::vector<Numbers> counts, others;
+  std::vector<WantedNumbers> counts, others;
   for (const std::string& name : stats.names())
-    if (std::optional<Numbers> numbers = numbers_of(name, stats.values(name)))
+    if (std::optional<WantedNumbers> numbers = numbers_of(name, stats.values(name)))
       (numbers->is_whole ? counts : others).push_back(std::move(*numbers));
   Json out = Json::object();
-  for (const Numbers& one : others)
+  for (const WantedNumbers& one : others)
     if (const auto parts = parts_of(one, counts)) out[one.name] = {parts->first, parts->second};
   return out;
 }

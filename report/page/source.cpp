@@ -48,7 +48,7 @@ Json program_of(const ProgramListing& program) {
           {"spirv", columns_of(program.spirv, first_function(program), false)}};
 }
 
-Json counts_of(const ProfileRow& row) {
+Json packed_counts(const ProfileRow& row) {
   Json out = {row.program, row.index,    row.issues, row.lanes,
               row.sectors, row.accesses, row.ended,  row.latency};
   for (size_t i = 0; i < row.slots.size(); ++i)
@@ -72,7 +72,7 @@ Json page_source(const ProfileTable& profile, const SourceMap& map) {
     if (row.program >= map.programs.size() || row.index >= map.programs[row.program].isa.size())
       throw UserError({}, "profile.csv and source.json of the run do not belong together",
                       "run it again with --profile");
-    counts.push_back(counts_of(row));
+    counts.push_back(packed_counts(row));
   }
   return {{"reasons", profile.reasons},
           {"files", files},

@@ -50,12 +50,12 @@ constexpr std::string_view kHistograms[] = {
     "gpu.rt_unit[*].rt.ray_nodes", "gpu.rt_unit[*].rt.ray_latency", "gpu.memory.core[*].l1.miss_latency",
     "gpu.memory.core[*].l1.l2_latency", "gpu.memory.core[*].l1.dram_latency"};
 
-struct Row {
+struct PartRow {
   std::string name;
   std::vector<uint64_t> values;  // one for each run
 };
 
-uint64_t largest(const Row& row) {
+uint64_t largest(const PartRow& row) {
   return *std::max_element(row.values.begin(), row.values.end());
 }
 
@@ -69,14 +69,15 @@ uint64_t sum_of(const Json& run, const std::string& path) {
   return sum;
 }
 
-std::vector<Row> parts_of(const Json& runs, const std::string& path) {
-  std::vector<Row> rows;
+std::vector<PartRow> parts_of(const Json& runs, const std::string& path) {
+  std::vector<PartRow> rows;
   for (const Json& run : runs)
     for (const auto& [key, value] : run["stats"].items()) {
       if (!key.starts_with(path + "::")) continue;
       const std::string part = key.substr(path.size() + 2);
-      if (std::any_of(rows.begin(), rows.end(), [&](const Row& row) { return row.name == part; })) continue;
-      Row& row = rows.emplace_back(Row{part, {}});
+      if (std::any_of(rows.begin(), rows.end(), [&](const PartRow& row) { return row.name == part; }))
+        continue;
+      PartRow& row = rows.emplace_back(PartRow{part, {}});
       for (const Json& one : runs) row.values.push_back(sum_of(one, key));
     }
   return rows;
@@ -84,11 +85,11 @@ std::vector<Row> parts_of(const Json& runs, const std::string& path) {
 
 // Returns the bins of a histogram, such as "500 to 999 cycle". The bins' unit is in their names, because the
 // values are counts.
-std::vector<Row> bins_of(const Json& runs, const std::string& path, const Json& docs) {
+std::vector<PartRow> bins_of(const Json& runs, const std::string& path, const Json& docs) {
   const Json& bins = docs.at("bins");
   const std::string unit = docs.at("unit");
   const uint64_t low = bins["low"], high = bins["high"], step = bins["step"];
-  std::vector<Row> rows;
+  std::vector<PartRow> rows;
   for (uint64_t from = low; from < high; from += step) {
     const bool is_last = from + step >= high;
     rows.push_back({is_last ? fmt::format("{} {} and more", from, unit)
@@ -106,26 +107,26 @@ std::vector<Row> bins_of(const Json& runs, const std::string& path, const Json& 
 }
 
 // Returns the ops with the largest values first.
-std::vector<Row> ops_of(const Json& runs, const char* field) {
-  std::vector<Row> rows;
+std::vector<PartRow> ops_of(const Json& runs, const char* field) {
+  std::vector<PartRow> rows;
   for (size_t i = 0; i < runs.size(); ++i)
     for (const Json& op : runs[i].contains("profile") ? runs[i]["profile"]["ops"] : Json::array()) {
       const std::string name = op["name"];
-      auto row = std::find_if(rows.begin(), rows.end(), [&](const Row& one) { return one.name == name; });
+      auto row = std::find_if(rows.begin(), rows.end(), [&](const PartRow& one) { return one.name == name; });
       if (row == rows.end()) row = rows.insert(row, {name, std::vector<uint64_t>(runs.size())});
       row->values[i] = op[field];
     }
   std::stable_sort(rows.begin(), rows.end(),
-                   [](const Row& a, const Row& b) { return largest(a) > largest(b); });
+                   [](const PartRow& a, const PartRow& b) { return largest(a) > largest(b); });
   if (rows.size() > kOpsInTables) rows.resize(kOpsInTables);
   return rows;
 }
 
 // Returns one group of rows under its name, or "" when all are 0.
 std::string group(const std::string& name, const std::string& unit, const std::string& doc,
-                  const std::vector<Row>& rows, size_t num_runs) {
+                  const std::vector<PartRow>& rows, size_t num_runs) {
   std::string lines;
-  for (const Row& row : rows) {
+  for (const PartRow& row : rows) {
     if (largest(row) == 0) continue;
     lines += fmt::format("<tr><th scope=\"row\">{}</th>", escaped(row.name));
     for (const uint64_t value : row.values) lines += fmt::format("<td class=\"n\">{}</td>", shown(value));

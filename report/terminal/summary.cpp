@@ -10,11 +10,7 @@ namespace glint::report {
 namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
-constexpr int kBarWidth = 20;  // columns
-
-double part(uint64_t of, uint64_t whole) {
-  return whole ? double(of) / double(whole) : 0.0;
-}
+constexpr int kShareBarWidth = 20;  // columns
 
 std::string paint(const std::string& text, const char* code, const Terminal& terminal) {
   return terminal.colour ? fmt::format("\x1b[{}m{}\x1b[0m", code, text) : text;
@@ -23,7 +19,7 @@ std::string heading(const std::string& text, const Terminal& terminal) {
   return paint(text, "1", terminal);
 }
 std::string shaded_bar(double fraction, const Terminal& terminal) {
-  return paint(bar(fraction, kBarWidth, terminal), "36", terminal);
+  return paint(bar(fraction, kShareBarWidth, terminal), "36", terminal);
 }
 
 void add_fraction(Rows& rows, const std::string& name, std::optional<double> fraction,

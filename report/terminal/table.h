@@ -28,7 +28,11 @@ std::string bar(double fraction, int width, const Terminal& terminal);
 
 std::string with_thousands(uint64_t value);  // such as "1 234 567"
 std::string percent(double fraction);        // such as "41.3 %"
-std::string seconds(double value);           // such as "12 ms", "3.4 s", "2 min 05 s", "1 h 02 min"
-std::string rate(double per_second);         // such as "3.42 M", "512 k", "87"
+// Returns of / whole, or 0 where the whole is 0.
+inline double part(uint64_t of, uint64_t whole) {
+  return whole ? double(of) / double(whole) : 0.0;
+}
+std::string seconds(double value);    // such as "12 ms", "3.4 s", "2 min 05 s", "1 h 02 min"
+std::string rate(double per_second);  // such as "3.42 M", "512 k", "87"
 
 }  // namespace glint::report
