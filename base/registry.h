@@ -1,9 +1,11 @@
 // Maps names to factories of policies. Static objects in the implementation files fill the map.
 //
 // An implementation file registers itself with `const Register<RayScheduler, OldestFirst> registered;` at its
-// end. The class has kName, kDoc, Params (base/params.h) and a constructor (Params, Interface::Context).
+// end. The class has kName, kDoc, Params (base/params.h) and a constructor (Params, Interface::Context). The
+// interface has a type Context, which its constructor's caller fills, and a PolicyKind kKind.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <fmt/format.h>
 #include <functional>
 #include <map>
 #include <memory>
@@ -14,6 +16,7 @@
 
 #include "base/check.h"
 #include "base/params.h"
+#include "base/policy_kinds.h"
 
 namespace glint {
 
@@ -47,8 +50,11 @@ class Registry {
     static Registry registry;
     return registry;
   }
+  // A name that is taken keeps its first policy, and the second goes to registered_twice(): a static object
+  // has nobody to throw to.
   void add(std::string_view name, Entry entry) {
-    GLINT_CHECK(entries_.emplace(name, entry).second, "policy '{}' is registered twice", name);
+    if (!entries_.emplace(name, entry).second)
+      registered_twice().push_back(fmt::format("{}: {}", Interface::kKind.folder, name));
   }
   const std::map<std::string_view, Entry>& entries() const { return entries_; }  // sorted by name
   const Entry& entry(std::string_view name) const {
@@ -63,6 +69,14 @@ class Registry {
   }
 
  private:
+  Registry() {
+    policy_lists().push_back([] {
+      std::vector<PolicyInfo> out;
+      for (const auto& [name, entry] : instance().entries_)
+        out.push_back({Interface::kKind, std::string(name), std::string(entry.doc)});
+      return out;
+    });
+  }
   std::map<std::string_view, Entry> entries_;
 };
 

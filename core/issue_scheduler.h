@@ -28,6 +28,7 @@ struct IssueView {
 //  - pick() is called only in cycles with a ready warp, so a policy must not count calls as cycles.
 class IssueScheduler {
  public:
+  static constexpr PolicyKind kKind{"core.issue", "core/schedulers"};
   struct Context {
     uint32_t num_warps = 1;  // local warps: 1 to kMaxWarpsPerScheduler
   };

@@ -29,6 +29,7 @@ struct OpTime {
 // op issues longer than its latency.
 class OpTimes {
  public:
+  static constexpr PolicyKind kKind{"core.op_times", "core/op_times"};
   struct Context {};
   virtual ~OpTimes() = default;
   virtual std::span<const OpTime> entries() const = 0;  // the first that fits an op is taken

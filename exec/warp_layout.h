@@ -23,6 +23,7 @@ namespace glint::exec {
 // warps are full.
 class WarpLayout {
  public:
+  static constexpr PolicyKind kKind{"core.warp_layout", "exec/warp_layouts"};
   struct Context {};
   struct Place {
     uint32_t x = 0, y = 0;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "base/policy_kinds.h"
 #include "base/stats.h"
 #include "base/types.h"
 #include "memsys/clock_domains.h"
@@ -33,6 +34,7 @@ struct DramReturn {
 //  - no heap traffic once warm.
 class DramModel {
  public:
+  static constexpr PolicyKind kKind{"memory.dram.model", "memsys/dram_models"};
   struct Context {
     const DramParams& params;
     uint32_t interleave = 256;

@@ -3,6 +3,8 @@
 #pragma once
 #include <cstdint>
 
+#include "base/policy_kinds.h"
+
 namespace glint::mem {
 
 struct DramRequest {
@@ -20,6 +22,7 @@ struct DramRequest {
 //  - the answer depends on the calls made and nothing else; no heap traffic after construction.
 class DramScheduler {
  public:
+  static constexpr PolicyKind kKind{"memory.dram.scheduler", "memsys/dram_schedulers"};
   struct Context {
     uint32_t banks = 0;
     uint32_t capacity = 0;  // slots are below this

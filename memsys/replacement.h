@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "base/policy_kinds.h"
 #include "base/types.h"
 
 namespace glint::mem {
@@ -28,6 +29,7 @@ struct CacheLine {
 //  - there is no heap traffic after construction.
 class Replacement {
  public:
+  static constexpr PolicyKind kKind{"*.replacement", "memsys/replacement"};
   struct Context {
     uint32_t sets = 1, ways = 1;
   };

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 
+#include "base/policy_kinds.h"
 #include "rtunit/candidate_table.h"
 #include "rtunit/ray_state.h"
 
@@ -16,6 +17,7 @@ namespace glint::rt {
 //  - the choice depends on the arguments alone: a mode has no state and serves all cores.
 class AnyHitMode {
  public:
+  static constexpr PolicyKind kKind{"rt.any_hit", "rtunit/any_hit"};
   struct Context {};
   static constexpr uint32_t kNoShader = ~0u;
   // The shader that a lane's candidate needs, or kNoShader: it is decided without one.

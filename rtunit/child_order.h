@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 
+#include "base/policy_kinds.h"
 #include "rtunit/structure.h"
 
 namespace glint::rt {
@@ -19,6 +20,7 @@ struct ChildHits {
 //  - the choice depends on the argument alone: an order has no state and serves all rays.
 class ChildOrder {
  public:
+  static constexpr PolicyKind kKind{"rt.child_order", "rtunit/child_orders"};
   struct Context {};
   virtual ~ChildOrder() = default;
   virtual void sort(const ChildHits& hits, uint8_t* order) const = 0;

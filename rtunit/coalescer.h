@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "base/policy_kinds.h"
 #include "rtunit/ray_scheduler.h"
 
 namespace glint::rt {
@@ -13,6 +14,7 @@ namespace glint::rt {
 //  - the choice depends on the arguments alone.
 class Coalescer {
  public:
+  static constexpr PolicyKind kKind{"rt.coalescing", "rtunit/coalescers"};
   struct Context {};
   virtual ~Coalescer() = default;
   // The warps, as a mask of their slots, whose lanes that want the same node share the fetch made for a lane

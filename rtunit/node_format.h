@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/policy_kinds.h"
 #include "rtunit/structure.h"
 
 namespace glint::rt {
@@ -43,6 +44,7 @@ struct DecodedChild {
 //  - the same tree gives the same bytes.
 class NodeFormat {
  public:
+  static constexpr PolicyKind kKind{"bvh.format", "rtunit/formats"};
   struct Context {};
   virtual ~NodeFormat() = default;
   virtual FormatId id() const = 0;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "base/policy_kinds.h"
 #include "base/stats.h"
 #include "base/types.h"
 
@@ -23,6 +24,7 @@ struct WarpView {
 //  - a ready warp is chosen at last when the others leave: no warp is skipped for ever while none is older.
 class RayScheduler {
  public:
+  static constexpr PolicyKind kKind{"rt.scheduler", "rtunit/schedulers"};
   static constexpr uint32_t kNone = ~0u;
   struct Context {
     stats::Group* stats = nullptr;  // parent for a policy's own statistics; may be null

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 
+#include "base/policy_kinds.h"
 #include "rtunit/ray_state.h"
 
 namespace glint::rt {
@@ -38,6 +39,7 @@ struct StackLayout {
 //  - a model has no state of its own and serves all rays.
 class StackModel {
  public:
+  static constexpr PolicyKind kKind{"rt.stack", "rtunit/stacks"};
   struct Context {};
   virtual ~StackModel() = default;
   virtual uint32_t rows() const { return 0; }        // of StackLayout

@@ -8,11 +8,15 @@
 #include <string>
 #include <system_error>
 #include <unistd.h>
+#include <vector>
 
 #include "apps/glint/options/command_line.h"
+#include "apps/glint/options/plugins.h"
 #include "apps/glint/options/suggest.h"
 #include "apps/glint/session.h"
+#include "base/check.h"
 #include "base/diagnostics.h"
+#include "base/policy_kinds.h"
 
 namespace glint::app {
 namespace {
@@ -57,8 +61,10 @@ int report_parse_error(const Command& command, const std::string& error, const S
   return int(Exit::UserInput);
 }
 
-int run_action(const Session& session) {
+int run_action(Session& session, const std::vector<std::string>& plugin_files) {
   try {
+    GLINT_CHECK(registered_twice().empty(), "two policies have one name: {}", registered_twice().front());
+    session.plugins = load_plugins(plugin_files);
     return int(session.action());
   } catch (const Error& error) {
     fmt::print(stderr, "{}{}\n",
@@ -72,14 +78,19 @@ int run_action(const Session& session) {
 }
 
 int main_of(int argc, char** argv) {
-  Session session{
-      .arguments = {argv, argv + argc}, .resources = Resources::find(), .terminal = {}, .action = {}};
+  Session session{.arguments = {argv, argv + argc},
+                  .resources = Resources::find(),
+                  .plugins = {},
+                  .terminal = {},
+                  .action = {}};
   look_at_terminal(session);
   CommandLine line(
       "Glint is a GPU you can read. It runs ray-tracing shaders on a simulated GPU and says what the GPU "
       "did, cycle by cycle.",
       "glint", GLINT_VERSION);
   const Command app = line.command();
+  std::vector<std::string> plugin_files;
+  add_plugin_option(app, plugin_files);
   add_run(app, session);
   add_bench(app, session);
   add_stats(app, session);
@@ -102,7 +113,7 @@ int main_of(int argc, char** argv) {
     write_output("", outcome.text);
     return int(Exit::Ok);
   }
-  return run_action(session);
+  return run_action(session, plugin_files);
 }
 
 // Catches what the machine may refuse anywhere: a stderr that takes no more, a thread that cannot be started,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/glint/options/command_line.h"
+#include "apps/glint/options/plugins.h"
 #include "apps/glint/options/resources.h"
 #include "base/diagnostics.h"
 #include "report/terminal/table.h"
@@ -16,6 +17,7 @@ namespace glint::app {
 struct Session {
   std::vector<std::string> arguments;  // argv
   Resources resources;
+  std::vector<Plugin> plugins;   // loaded, in order
   report::Terminal terminal;     // abilities of stdout
   bool on_terminal = false;      // stdout is a terminal, so progress may be drawn
   bool can_move_cursor = false;  // the terminal knows escape sequences

@@ -126,6 +126,7 @@ void RunDirectory::write_run(const RunInfo& info) const {
   json["version"] = info.version;
   json["git"] = info.git;
   json["compiler"] = info.compiler;
+  for (const auto& [file, hash] : info.plugins) json["plugins"][file] = hash;
   json["scene"] = {{"name", info.scene},
                    {"form", info.scene_form},
                    {"note", info.scene_note},

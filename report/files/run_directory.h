@@ -39,6 +39,7 @@ inline constexpr int kRunSchema = 1;  // schema of run.json
 struct RunInfo {
   std::vector<std::string> command;  // argv
   std::string version, git, compiler;
+  std::vector<std::pair<std::string, std::string>> plugins;  // their files and the hashes of their contents
   std::string scene, scene_form, scene_note, shader, config, mode;
   uint64_t scene_hash = 0, scene_triangles = 0, config_hash = 0;
   double scene_fraction = 1;  // fraction of the original's triangles

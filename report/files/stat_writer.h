@@ -12,6 +12,7 @@ namespace glint::report {
 // Turns a tree of statistics into bytes. The same tree gives the same bytes on every machine.
 class StatWriter {
  public:
+  static constexpr PolicyKind kKind{"(statistics file)", "report/formats"};
   struct Context {};
   // Formats take no parameters.
   struct NoParams {

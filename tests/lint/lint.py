@@ -215,7 +215,7 @@ def policies(root, glint):
         match = re.search(r"POLICIES ([\w ]+)", cmake.read_text())
         if match:
             globbed |= {f"{cmake.parent.name}/{sub}" for sub in match.group(1).split()}
-    problems = [f"{folder}: not known to `glint list policies` (apps/glint/options/policies.cpp)" for folder in sorted(globbed - set(registered))]
+    problems = [f"{folder}: not known to `glint list policies`: its interface has no PolicyKind, or no file registers" for folder in sorted(globbed - set(registered))]
     for folder, count in sorted(registered.items()):
         in_folder = len(list((root / folder).glob("*.cpp")))
         if in_folder != count:

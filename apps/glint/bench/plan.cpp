@@ -49,11 +49,12 @@ std::vector<std::string> frame_options(const scenes::RenderParams& frame) {
 std::string key_of(const Session& session, const BenchOptions& options) {
   const pipeline::GpuParams gpu = read_config(session.resources, options.config, options.settings);
   const std::string text = fmt::format(
-      "config {:016x} mode {} size {} frame {} assets '{}' version {} {} program {:016x} shaders {:016x}",
+      "config {:016x} mode {} size {} frame {} assets '{}' version {} {} program {:016x} shaders {:016x}{}",
       report::fnv1a(report::config_key_values(describe_params(gpu))), options.mode, options.size,
       fmt::join(frame_options(options.frame), " "),
       options.assets.empty() ? "" : fs::weakly_canonical(options.assets).string(), GLINT_VERSION, GLINT_GIT,
-      report::fnv1a(bytes_of("/proc/self/exe")), hash_of_shaders(session.resources));
+      report::fnv1a(bytes_of("/proc/self/exe")), hash_of_shaders(session.resources),
+      identity_of(session.plugins));
   return fmt::format("{:016x}", report::fnv1a(text));
 }
 
@@ -68,7 +69,8 @@ bool is_complete(const BenchTask& task, const std::string& key) {
          fs::exists(task.directory + "/config.toml");
 }
 
-std::vector<std::string> command_of(const BenchOptions& options, const BenchTask& task) {
+std::vector<std::string> command_of(const Session& session, const BenchOptions& options,
+                                    const BenchTask& task) {
   std::vector<std::string> out = {"run",
                                   task.workload.name(),
                                   "--config=" + options.config,
@@ -76,6 +78,7 @@ std::vector<std::string> command_of(const BenchOptions& options, const BenchTask
                                   "--mode=" + options.mode,
                                   fmt::format("--threads={}", options.threads),
                                   "--out=" + task.directory};
+  for (const Plugin& plugin : session.plugins) out.push_back("--plugin=" + plugin.path);
   for (const std::string& option : frame_options(options.frame)) out.push_back(option);
   for (const std::string& setting : options.settings) out.push_back("--set=" + setting);
   if (!options.assets.empty()) out.push_back("--assets=" + options.assets);
@@ -97,7 +100,7 @@ BenchPlan plan_bench(const Session& session, const BenchOptions& options) {
   const uint64_t pixels = uint64_t{frame.width} * frame.height;
   for (const NamedWorkload& workload : workloads) {
     BenchTask task{workload, plan.directory + "/" + workload.name(), {}};
-    task.process.arguments = command_of(options, task);
+    task.process.arguments = command_of(session, options, task);
     task.process.log = task.directory + "/log.txt";
     task.process.memory = memory_estimate(workload, pixels, !options.assets.empty());
     task.process.weight = time_weight(workload, options.mode == "timing", pixels, frame.samples);

@@ -17,19 +17,13 @@
 namespace glint::app {
 namespace {
 
-struct Options {
+struct AnnotateOptions {
   std::string run, file, view = "glsl";
   std::vector<std::string> measures = report::kUsualMeasures;
 };
 
-std::optional<std::string> text_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return std::nullopt;
-  return std::string{std::istreambuf_iterator<char>(in), {}};
-}
-
 ProfileTable read_profile(const std::string& path) {
-  const std::optional<std::string> text = text_of(path);
+  const std::optional<std::string> text = text_of_file(path);
   if (!text)
     throw UserError({}, fmt::format("cannot read '{}'", path),
                     "`glint run ... --profile` writes profile.csv into the run directory");
@@ -39,13 +33,13 @@ ProfileTable read_profile(const std::string& path) {
 // Returns source.json beside the profile. Without that file it reads the files as they are now, which is
 // enough for GLSL.
 report::SourceMap read_source(const std::string& path, const ProfileTable& profile, const std::string& view) {
-  if (const std::optional<std::string> text = text_of(path)) return report::parse_source(*text, path);
+  if (const std::optional<std::string> text = text_of_file(path)) return report::parse_source(*text, path);
   if (view != "glsl")
     throw UserError({}, fmt::format("cannot read '{}'", path),
                     "SPIR-V and ISA are in that file: name the run directory, not the profile alone");
   ProgramListing files;
   for (const report::FileShare& file : report::files_of(profile)) files.files.push_back(file.file);
-  report::SourceMap out = report::source_map({files}, text_of);
+  report::SourceMap out = report::source_map({files}, text_of_file);
   out.programs.clear();
   return out;
 }
@@ -56,8 +50,8 @@ bool means(const std::string& wanted, const std::string& file) {
 }
 
 // Returns the views of files, the costliest first.
-std::string files_text(const Options& options, const ProfileTable& profile, const report::SourceMap& map,
-                       const report::Annotator& annotator) {
+std::string files_text(const AnnotateOptions& options, const ProfileTable& profile,
+                       const report::SourceMap& map, const report::Annotator& annotator) {
   std::string out, names;
   for (const report::FileShare& share : report::files_of(profile)) {
     names += (names.empty() ? "" : ", ") + share.file;
@@ -86,8 +80,8 @@ bool has_code_of(const report::SourceMap& map, uint32_t number, const std::strin
   return false;
 }
 
-std::string programs_text(const Options& options, const ProfileTable& profile, const report::SourceMap& map,
-                          const report::Annotator& annotator) {
+std::string programs_text(const AnnotateOptions& options, const ProfileTable& profile,
+                          const report::SourceMap& map, const report::Annotator& annotator) {
   std::string out, names;
   for (const uint32_t number : report::programs_of(profile)) {
     if (number >= map.programs.size())
@@ -102,7 +96,7 @@ std::string programs_text(const Options& options, const ProfileTable& profile, c
   return out;
 }
 
-Exit annotate(const Session& session, const Options& options) {
+Exit annotate(const Session& session, const AnnotateOptions& options) {
   const bool is_directory = std::filesystem::is_directory(options.run);
   if (is_directory) report::check_finished(options.run);
   const ProfileTable profile = read_profile(is_directory ? options.run + "/profile.csv" : options.run);
@@ -122,7 +116,7 @@ Exit annotate(const Session& session, const Options& options) {
 }  // namespace
 
 void add_annotate(Command app, Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<AnnotateOptions>();
   Command command = app.add_subcommand(
       "annotate", "Print the GLSL, SPIR-V or ISA of a profiled run with what each line cost");
   command.add_option("RUN", options->run, "Run directory, or its profile.csv").required();

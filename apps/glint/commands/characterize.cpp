@@ -18,7 +18,7 @@
 namespace glint::app {
 namespace {
 
-struct Options {
+struct CharacterizeOptions {
   std::string input, out, linkage = "average";
   std::vector<std::string> against;
   int clusters = 8;
@@ -50,7 +50,7 @@ void print_speed_ups(const std::string& csv, const std::string& metrics, const s
                100 * theirs.error());
 }
 
-Exit characterize(const Options& options) {
+Exit characterize(const CharacterizeOptions& options) {
   const std::string metrics = metrics_file(options.input), csv = read_file(metrics);
   report::CharacterizationOptions how{.linkage = report::linkage_of(options.linkage),
                                       .clusters = options.clusters,
@@ -79,7 +79,7 @@ Exit characterize(const Options& options) {
 }  // namespace
 
 void add_characterize(Command app, Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CharacterizeOptions>();
   Command command = app.add_subcommand("characterize",
                                        "Compare workloads: find components, clusters, a subset that stands "
                                        "for all, and the metrics that tell them apart");

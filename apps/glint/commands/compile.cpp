@@ -16,14 +16,14 @@
 namespace glint::app {
 namespace {
 
-struct Options {
+struct CompileOptions {
   std::vector<std::string> files;
   std::string emit = "isa", output, entry_point;
   ShaderOptions shaders;
   frontend::BackendOptions backend;
 };
 
-std::string text_of(const Options& options, const std::string& file, const frontend::GlslOptions& glsl,
+std::string text_of(const CompileOptions& options, const std::string& file, const frontend::GlslOptions& glsl,
                     Diagnostics& warnings) {
   if (options.emit == "isa")
     return isa::to_text(frontend::compile_file(file, glsl, options.backend, warnings));
@@ -34,7 +34,7 @@ std::string text_of(const Options& options, const std::string& file, const front
   return frontend::disassemble_spirv(frontend::with_plain_lines(words));
 }
 
-Exit compile(const Options& options) {
+Exit compile(const CompileOptions& options) {
   if (options.emit == "spv" && options.files.size() > 1)
     throw UserError({}, "--emit spv writes one module, and there are several files");
   const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(options.shaders);
@@ -51,7 +51,7 @@ Exit compile(const Options& options) {
 }  // namespace
 
 void add_compile(Command app, Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompileOptions>();
   Command command = app.add_subcommand("compile", "Compile shaders from GLSL or SPIR-V and print the result");
   command
       .add_option("FILE", options->files,

@@ -14,7 +14,7 @@
 namespace glint::app {
 namespace {
 
-struct Options {
+struct DescribeOptions {
   std::string key, config = "mobile";
   std::vector<std::string> settings;
   bool markdown = false;
@@ -75,7 +75,7 @@ bool print_metric(const std::string& wanted, std::vector<std::string>& names) {
   return false;
 }
 
-Exit describe(const Session& session, const Options& options) {
+Exit describe(const Session& session, const DescribeOptions& options) {
   const pipeline::GpuParams params = read_config(session.resources, options.config, options.settings);
   std::vector<ParamInfo> found;
   std::vector<std::string> names;
@@ -105,7 +105,7 @@ Exit describe(const Session& session, const Options& options) {
 }  // namespace
 
 void add_describe(Command app, Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DescribeOptions>();
   Command command = app.add_subcommand("describe", "Explain configuration keys, statistics and metrics");
   command.add_option("NAME", options->key,
                      "What to explain: a key (core.warps), the beginning of keys (core, rt), a statistic "

@@ -16,7 +16,7 @@
 namespace glint::app {
 namespace {
 
-struct Options {
+struct ImgdiffOptions {
   std::string a, b, out, metric = "difference";
   double min_psnr = 0, max_flip = 1, pixels_per_degree = report::kPixelsPerDegree;
 };
@@ -62,7 +62,7 @@ std::string measures(const report::Picture& a, const report::ImageDifference& d,
 }
 
 // Tells where pixels are not finite, because no measure tells it.
-void tell_not_finite(const Options& options, const report::Picture& a, const report::Picture& b,
+void tell_not_finite(const ImgdiffOptions& options, const report::Picture& a, const report::Picture& b,
                      const report::ImageDifference& d) {
   if (d.pixels_not_finite > 0)
     fmt::print(stderr, "warning: not finite in both pictures, and the same: {} pixels; they count as equal\n",
@@ -81,7 +81,7 @@ void tell_not_finite(const Options& options, const report::Picture& a, const rep
              options.a, pixel(b), options.b);
 }
 
-report::Picture drawn(const Options& options, const report::Picture& a, const report::Picture& b,
+report::Picture drawn(const ImgdiffOptions& options, const report::Picture& a, const report::Picture& b,
                       double largest, const report::Flip& flip) {
   if (options.metric != "flip") return report::difference_picture(a, b, largest);
   report::Picture out = report::flip_picture(a, flip);
@@ -89,7 +89,7 @@ report::Picture drawn(const Options& options, const report::Picture& a, const re
   return out;
 }
 
-Exit imgdiff(const Options& options) {
+Exit imgdiff(const ImgdiffOptions& options) {
   const report::Picture a = report::read_picture(picture_of(options.a)),
                         b = report::read_picture(picture_of(options.b));
   const report::ImageDifference d = report::difference(a, b);
@@ -108,7 +108,7 @@ Exit imgdiff(const Options& options) {
 }  // namespace
 
 void add_imgdiff(Command app, Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ImgdiffOptions>();
   Command command = app.add_subcommand("imgdiff", "Measure how far apart two pictures are");
   command
       .add_option("A", options->a,

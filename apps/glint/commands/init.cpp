@@ -13,14 +13,14 @@
 namespace glint::app {
 namespace {
 
-struct Options {
+struct InitOptions {
   std::string file;
   std::vector<std::string> shaders;
   bool force = false;
   ShaderOptions compile;
 };
 
-Exit init(const Options& options) {
+Exit init(const InitOptions& options) {
   std::error_code failed;
   if (!options.force && std::filesystem::exists(options.file, failed))
     throw UserError({options.file, 0, 0}, "the file exists already", "--force overwrites it");
@@ -33,7 +33,7 @@ Exit init(const Options& options) {
 }  // namespace
 
 void add_init(Command app, Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<InitOptions>();
   Command command = app.add_subcommand("init", "Write a pipeline file from what shaders declare");
   command.add_option("FILE", options->file, "TOML file to write").required();
   command

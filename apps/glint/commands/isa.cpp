@@ -13,7 +13,7 @@
 namespace glint::app {
 namespace {
 
-struct Options {
+struct IsaOptions {
   std::string op, table, page;
   bool index = false, pages = false;
 };
@@ -44,7 +44,7 @@ std::vector<isa::PresetTimes> sound_presets(const Resources& resources) {
   return out;
 }
 
-std::string text_of(const Resources& resources, const Options& options) {
+std::string text_of(const Resources& resources, const IsaOptions& options) {
   if (!options.table.empty()) return isa::instruction_table(times_of(resources, options.table));
   if (!options.page.empty()) return isa::reference_page(options.page, all_presets(resources));
   if (options.index) return isa::reference_index(all_presets(resources));
@@ -58,7 +58,7 @@ std::string text_of(const Resources& resources, const Options& options) {
 }  // namespace
 
 void add_isa(Command app, Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<IsaOptions>();
   Command command = app.add_subcommand("isa", "Explain the instruction set or one op");
   Option op = command.add_option(
       "OP", options->op, "An op's full name, such as fma.rn.f32, or the beginning of one (default: all ops)");

@@ -5,9 +5,9 @@
 
 #include "apps/glint/bench/workloads.h"
 #include "apps/glint/options/command_line.h"
-#include "apps/glint/options/policies.h"
 #include "apps/glint/options/stat_list.h"
 #include "apps/glint/session.h"
+#include "base/policy_kinds.h"
 #include "isa/op_row.h"
 #include "report/metrics/metrics.h"
 #include "report/metrics/vulkan_sim.h"
@@ -66,7 +66,8 @@ Rows config_rows(const Resources& resources) {
 
 Rows policy_rows() {
   Rows rows;
-  for (const PolicyInfo& info : all_policies()) rows.push_back({info.folder, info.key, info.name, info.doc});
+  for (const PolicyInfo& info : all_policies())
+    rows.push_back({std::string(info.kind.folder), std::string(info.kind.key), info.name, info.doc});
   return rows;
 }
 

@@ -18,7 +18,7 @@
 namespace glint::app {
 namespace {
 
-struct Options {
+struct MicrobenchOptions {
   std::string config = "h200";
   std::vector<std::string> settings, compare, only;
 };
@@ -78,7 +78,7 @@ bool wanted(const MicroBench& bench, const std::vector<std::string>& only) {
   return false;
 }
 
-struct Sums {
+struct ErrorSums {
   uint32_t compared = 0, within5 = 0, within10 = 0;
   double error = 0;
 };
@@ -96,13 +96,13 @@ std::optional<double> measure(const MicroBench& bench, const pipeline::GpuParams
 }
 
 std::vector<std::string> row_of(const MicroBench& bench, double value, const Reference& reference,
-                                std::map<std::string, Sums>& sums) {
+                                std::map<std::string, ErrorSums>& sums) {
   std::vector<std::string> cells{bench.group, bench.name, bench.param, fmt::format("{:.2f}", value),
                                  bench.unit};
   const auto at = reference.find(bench.group + "|" + bench.name + "|" + bench.param);
   if (at == reference.end()) return cells;
   const double error = value / at->second - 1;
-  Sums& sum = sums[bench.group];
+  ErrorSums& sum = sums[bench.group];
   ++sum.compared;
   sum.within5 += std::abs(error) <= 0.05;
   sum.within10 += std::abs(error) <= 0.10;
@@ -112,7 +112,7 @@ std::vector<std::string> row_of(const MicroBench& bench, double value, const Ref
   return cells;
 }
 
-void print_sums(const std::map<std::string, Sums>& sums) {
+void print_sums(const std::map<std::string, ErrorSums>& sums) {
   std::vector<std::vector<std::string>> rows{
       {"group", "compared", "within 5 %", "within 10 %", "mean error"}};
   for (const auto& [group, sum] : sums)
@@ -122,13 +122,13 @@ void print_sums(const std::map<std::string, Sums>& sums) {
   print_output("\n{}", report::table(rows, "<>>>>"));
 }
 
-Exit microbench(const Session& session, const Options& options) {
+Exit microbench(const Session& session, const MicrobenchOptions& options) {
   const pipeline::GpuParams gpu = read_config(session.resources, options.config, options.settings);
   Reference reference;
   for (const std::string& path : options.compare) read_reference(reference, path);
   std::vector<std::vector<std::string>> rows{{"group", "name", "parameter", options.config, "unit"}};
   if (!options.compare.empty()) rows[0].insert(rows[0].end(), {"measured", "error"});
-  std::map<std::string, Sums> sums;
+  std::map<std::string, ErrorSums> sums;
   Skipped skipped;
   for (const auto& list : {op_benchmarks(), memory_benchmarks(), flow_benchmarks()})
     for (const MicroBench& bench : list) {
@@ -153,7 +153,7 @@ Exit microbench(const Session& session, const Options& options) {
 }  // namespace
 
 void add_microbench(Command app, Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MicrobenchOptions>();
   Command command = app.add_subcommand(
       "microbench", "Measure a configuration's latencies and bandwidths by running code on it");
   command.add_option("--config", options->config, "Preset or TOML file to read").capture_default_str();

@@ -22,7 +22,7 @@
 namespace glint::app {
 namespace {
 
-struct Options {
+struct ModelOptions {
   std::vector<std::string> runs;
   std::string out, assets;
   bool statistics_only = false, inputs = false;
@@ -38,7 +38,7 @@ double fact(const report::RunRecord& run, const std::string& directory, const st
 }
 
 // Returns the job of the launch that a run made.
-pipeline::RenderJob job_of(const Session& session, const Options& options, const report::RunRecord& run,
+pipeline::RenderJob job_of(const Session& session, const ModelOptions& options, const report::RunRecord& run,
                            const std::string& directory) {
   const WorkloadInfo& workload = find_workload(run.text("shader"));
   pipeline::RenderJob job;
@@ -74,10 +74,11 @@ Columns columns_of(const pipeline::IntervalEstimate& estimate, double seconds) {
   return out;
 }
 
-double run_interval(const Session& session, const Options& options, const report::RunRecord& run,
+double run_interval(const Session& session, const ModelOptions& options, const report::RunRecord& run,
                     const std::string& directory, Columns& columns) {
   const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(options.shaders);
-  const std::unique_ptr<pipeline::StructureCache> structures = open_structure_cache(options.shaders);
+  const std::unique_ptr<pipeline::StructureCache> structures =
+      open_structure_cache(options.shaders, session.plugins);
   pipeline::RenderJob job = job_of(session, options, run, directory);
   job.glsl = glsl_options(options.shaders, cache.get());
   job.structure_cache = structures.get();
@@ -99,7 +100,7 @@ double run_interval(const Session& session, const Options& options, const report
   return double(estimate.cycles);
 }
 
-report::ModelRow row_of(const Session& session, const Options& options, const std::string& workload,
+report::ModelRow row_of(const Session& session, const ModelOptions& options, const std::string& workload,
                         const std::string& directory) {
   const report::RunRecord run = report::RunRecord::read(directory);
   if (!options.statistics_only && !run.fact("rays.bounces"))
@@ -129,7 +130,7 @@ std::string inputs_text(const report::ModelTable& models) {
   return out;
 }
 
-Exit model(const Session& session, const Options& options) {
+Exit model(const Session& session, const ModelOptions& options) {
   std::vector<std::pair<std::string, std::string>> runs;
   for (const std::string& folder : options.runs)
     for (const auto& run : finished_runs(folder)) runs.push_back(run);
@@ -154,7 +155,7 @@ Exit model(const Session& session, const Options& options) {
 }  // namespace
 
 void add_model(Command app, Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ModelOptions>();
   Command command = app.add_subcommand(
       "model",
       "Predict cycles of finished runs by analytical models and compare them with the simulated cycles");

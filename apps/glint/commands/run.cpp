@@ -16,14 +16,14 @@
 namespace glint::app {
 namespace {
 
-struct Options {
+struct RunOptions {
   SceneOptions scene;
   LaunchOptions launch;
   std::string kernel_launch;      // launch file of a kernel
   std::vector<std::string> more;  // Amber scripts after the first
 };
 
-Exit run(const Session& session, const Options& options) {
+Exit run(const Session& session, const RunOptions& options) {
   const std::string& what = options.scene.scene;
   if (names_script(what)) {
     if (observes(options.launch.observe))
@@ -41,7 +41,7 @@ Exit run(const Session& session, const Options& options) {
   return run_scene(session, options.scene, options.launch);
 }
 
-void add_scene_options(Command command, Options& options) {
+void add_scene_options(Command command, RunOptions& options) {
   command
       .add_option("SCENE", options.scene.scene,
                   "What to run: a scene ('glint list scenes' names them), a workload (SHIP_SH), a scene of "
@@ -75,7 +75,7 @@ void add_scene_options(Command command, Options& options) {
 }  // namespace
 
 void add_run(Command app, Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RunOptions>();
   Command command =
       app.add_subcommand("run", "Render a scene, or launch a pipeline or a PTX kernel, on the simulated GPU");
   add_scene_options(command, *options);

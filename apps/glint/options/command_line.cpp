@@ -128,6 +128,10 @@ void Command::last_value_wins() {
     if (!option->get_positional() && option->get_items_expected_max() == 1) option->take_last();
 }
 
+void Command::options_reach_subcommands() {
+  app_->fallthrough();
+}
+
 std::vector<std::string> Command::option_names() const {
   std::vector<std::string> names;
   for (const CLI::Option* option : app_->get_options())

@@ -62,6 +62,8 @@ class Command {
   Command callback(std::function<void()> action);
   size_t count(const std::string& name) const;  // how often an option was given
   void last_value_wins();                       // applies to every option that takes one value
+  // Lets options of this command also stand after its subcommands' names. Call it before adding subcommands.
+  void options_reach_subcommands();
 
   std::vector<std::string> option_names() const;  // with their dashes, long names only
   std::vector<std::string> subcommand_names() const;

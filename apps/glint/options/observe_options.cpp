@@ -19,12 +19,6 @@
 namespace glint::app {
 namespace {
 
-std::optional<std::string> text_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return std::nullopt;
-  return std::string{std::istreambuf_iterator<char>(in), {}};
-}
-
 // Returns a number with its digits in groups: "1 234 567".
 std::string grouped(uint64_t number) {
   std::string out = std::to_string(number);
@@ -144,8 +138,9 @@ std::vector<std::string> write_observation(const pipeline::Observation& observe,
   std::vector<std::string> lines;
   if (observe.profile) {
     directory.write("profile.csv", report::profile_csv(result.profile));
-    directory.write("profile.folded", report::profile_folded(result.profile, text_of));
-    directory.write("source.json", report::source_json(report::source_map(result.profile.programs, text_of)));
+    directory.write("profile.folded", report::profile_folded(result.profile, text_of_file));
+    directory.write("source.json",
+                    report::source_json(report::source_map(result.profile.programs, text_of_file)));
     lines.push_back("profile    " + directory.path_of("profile.csv") + " (glint annotate " +
                     directory.path() + ")");
   }

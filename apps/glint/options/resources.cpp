@@ -64,6 +64,12 @@ std::string read_file(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+std::optional<std::string> text_of_file(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return std::nullopt;
+  return std::string{std::istreambuf_iterator<char>(in), {}};
+}
+
 void write_output(const std::string& path, const std::string& bytes) {
   if (!path.empty() && path != "-") return report::write_file(path, bytes);
   const bool is_written = std::fwrite(bytes.data(), 1, bytes.size(), stdout) == bytes.size();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <fmt/format.h>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,6 +33,9 @@ class Resources {
 
 // Returns the whole file as bytes. Throws UserError when it cannot be read.
 std::string read_file(const std::string& path);
+// Returns the same, but nothing where the file cannot be read.
+std::optional<std::string> text_of_file(const std::string& path);
+
 // Is thrown when standard output takes no more: the disk is full, or the descriptor is closed.
 class OutputError : public Error {
  public:

@@ -76,11 +76,12 @@ std::unique_ptr<frontend::ShaderCache> open_shader_cache(const ShaderOptions& op
       frontend::ShaderCache::Options{build.empty() ? "" : cache_folder("shaders"), build});
 }
 
-std::unique_ptr<pipeline::StructureCache> open_structure_cache(const ShaderOptions& options) {
+std::unique_ptr<pipeline::StructureCache> open_structure_cache(const ShaderOptions& options,
+                                                               const std::vector<Plugin>& plugins) {
   const std::string build = build_id();
   if (options.no_cache || build.empty()) return nullptr;
   return std::make_unique<pipeline::StructureCache>(
-      pipeline::StructureCache::Options{cache_folder("structures"), build});
+      pipeline::StructureCache::Options{cache_folder("structures"), build + identity_of(plugins)});
 }
 
 }  // namespace glint::app

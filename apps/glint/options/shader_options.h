@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/glint/options/command_line.h"
+#include "apps/glint/options/plugins.h"
 #include "frontend/cache.h"
 #include "frontend/compile.h"
 #include "pipeline/structure_cache.h"
@@ -29,6 +30,8 @@ frontend::GlslOptions glsl_options(const ShaderOptions& options, frontend::Shade
 std::unique_ptr<frontend::ShaderCache> open_shader_cache(const ShaderOptions& options);
 
 // Opens the cache in the folder `structures` beside it. Returns null with --no-cache.
-std::unique_ptr<pipeline::StructureCache> open_structure_cache(const ShaderOptions& options);
+// A plugin may bring a node format, so structures of other plugins are not found.
+std::unique_ptr<pipeline::StructureCache> open_structure_cache(const ShaderOptions& options,
+                                                               const std::vector<Plugin>& plugins);
 
 }  // namespace glint::app

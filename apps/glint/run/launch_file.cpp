@@ -25,7 +25,7 @@ const std::vector<std::string> kTypes{"u8", "s8", "u16", "s16", "u32", "s32", "u
 bool is_type(std::string_view name) {
   return std::find(kTypes.begin(), kTypes.end(), name) != kTypes.end();
 }
-size_t bytes_of(const std::string& type) {
+size_t bytes_of_type(const std::string& type) {
   return std::stoul(type.substr(1)) / 8;
 }
 
@@ -34,7 +34,7 @@ std::vector<std::byte> number_bytes(const std::string& type, double real, int64_
   if (type == "f32") return pipeline::KernelWorld::argument(float(real));
   if (type == "f64") return pipeline::KernelWorld::argument(real);
   std::vector<std::byte> out = pipeline::KernelWorld::argument(whole);
-  out.resize(bytes_of(type));
+  out.resize(bytes_of_type(type));
   return out;
 }
 
@@ -186,7 +186,7 @@ class Reader {
     out.save = flag(table, "save", false);
     out.show = uint32_t(integer(table, "show", 0, 1 << 20).value_or(0));
     constexpr int64_t kMostBytes = int64_t{1} << 32;
-    const size_t element = bytes_of(out.type);
+    const size_t element = bytes_of_type(out.type);
     std::optional<int64_t> bytes = integer(table, "bytes", 1, kMostBytes);
     if (const auto count = integer(table, "count", 1, kMostBytes / int64_t(element)))
       bytes = *count * int64_t(element);
@@ -262,7 +262,7 @@ LaunchFile read_launch(const std::string& path) {
 }
 
 std::string first_values(const std::string& type, const std::byte* data, size_t bytes, uint32_t count) {
-  const size_t element = bytes_of(type);
+  const size_t element = bytes_of_type(type);
   std::string out;
   for (size_t i = 0; i < count && (i + 1) * element <= bytes; ++i) {
     const std::byte* at = data + i * element;

@@ -30,7 +30,7 @@ std::string as(const std::byte* at) {
   return fmt::format("{}", value);
 }
 
-std::string number_text(const std::string& type, const std::byte* at) {
+std::string element_text(const std::string& type, const std::byte* at) {
   const uint32_t bytes = pipeline::bytes_of_number(type);
   if (type[0] == 'f') {
     if (bytes == 8) return as<double>(at);
@@ -71,7 +71,7 @@ std::string first_numbers(const std::string& named, std::span<const std::byte> b
   const size_t each = pipeline::bytes_of_number(type);
   std::string out;
   for (size_t i = 0; i < count && (i + 1) * each <= bytes.size(); ++i)
-    out += (i ? " " : "") + number_text(type, bytes.data() + i * each);
+    out += (i ? " " : "") + element_text(type, bytes.data() + i * each);
   return out;
 }
 
@@ -85,7 +85,7 @@ std::string buffer_file(const std::string& file, const std::string& named, std::
   }
   if (ending != ".csv") return std::string(text_of(bytes));
   std::string out = "value\n";
-  for (size_t i = 0; i < count; ++i) out += number_text(type, bytes.data() + i * each) + "\n";
+  for (size_t i = 0; i < count; ++i) out += element_text(type, bytes.data() + i * each) + "\n";
   return out;
 }
 

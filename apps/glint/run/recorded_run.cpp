@@ -23,6 +23,8 @@ report::RunInfo new_run_info(const Session& session, const pipeline::GpuParams& 
   info.version = GLINT_VERSION;
   info.git = GLINT_GIT;
   info.compiler = __VERSION__;
+  for (const Plugin& plugin : session.plugins)
+    info.plugins.emplace_back(plugin.path, fmt::format("{:016x}", plugin.hash));
   info.config = config;
   info.config_hash = config_hash(gpu);
   info.mode = mode;

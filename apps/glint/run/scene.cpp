@@ -102,7 +102,8 @@ pipeline::RenderResult render_into(const Session& session, const report::RunDire
 Exit run_scene(const Session& session, SceneOptions options, const LaunchOptions& launch) {
   take_workload_name(options);
   const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(launch.shaders);
-  const std::unique_ptr<pipeline::StructureCache> structures = open_structure_cache(launch.shaders);
+  const std::unique_ptr<pipeline::StructureCache> structures =
+      open_structure_cache(launch.shaders, session.plugins);
   exec::PrintLog prints(launch.print_limit);
   pipeline::RenderJob job = make_job(session, options, launch);
   job.glsl = glsl_options(launch.shaders, cache.get());

@@ -11,6 +11,7 @@ namespace glint {
 namespace {
 
 struct Animal {
+  static constexpr PolicyKind kKind{"zoo.animal", "zoo/animals"};
   struct Context {
     int legs;
   };

@@ -1,0 +1,28 @@
+// Loads policies that were built apart from Glint, as shared libraries.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "apps/glint/options/command_line.h"
+
+namespace glint::app {
+
+struct Plugin {
+  std::string path;   // absolute
+  uint64_t hash = 0;  // of the file's bytes
+};
+
+// Adds `--plugin`, which any subcommand takes too. Its default is the environment variable GLINT_PLUGINS.
+void add_plugin_option(Command app, std::vector<std::string>& files);
+
+// Loads each file, so that its policies are registered. The library stays until the process ends. UserError
+// when a file is not a plugin, was built against other headers than this program, cannot be linked, registers
+// a name that is taken, or registers nothing.
+std::vector<Plugin> load_plugins(const std::vector<std::string>& files);
+
+// Names the files and their contents; caches and resumed suites compare it. "" without plugins.
+std::string identity_of(const std::vector<Plugin>& plugins);
+
+}  // namespace glint::app
