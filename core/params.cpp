@@ -1,4 +1,4 @@
-// How many warps and blocks fit into a core, and why no more.
+// Computes how many warps and blocks fit into a core, and what limits them.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/params.h"
 
@@ -43,7 +43,7 @@ Residency residency(const Params& params, const LaunchNeeds& needs) {
 void check(const Params& params, uint32_t num_registers, Diagnostics& diagnostics) {
   if (occupancy(params, num_registers) > 0) return;
   diagnostics.error({},
-                    fmt::format("a warp of this pipeline needs {} registers ({} a lane), a core has {}",
+                    fmt::format("a warp of this pipeline needs {} registers ({} per lane), and a core has {}",
                                 registers_per_warp(num_registers), num_registers, params.registers),
                     fmt::format("set core.registers to {} or more", registers_per_warp(num_registers)));
 }
@@ -52,14 +52,14 @@ void check_block(const Params& params, uint32_t num_registers, uint64_t threads,
                  Diagnostics& diagnostics) {
   if (threads > exec::kMaxBlockThreads)
     diagnostics.error(
-        {}, fmt::format("a block of {} threads, expected at most {}", threads, exec::kMaxBlockThreads));
+        {}, fmt::format("a block has {} threads, expected at most {}", threads, exec::kMaxBlockThreads));
   const uint64_t warps = (threads + kLanes - 1) / kLanes, fit = occupancy(params, num_registers);
   if (fit > 0 && warps > fit)
     diagnostics.error({}, fmt::format("a block has {} warps, and {} fit into a core", warps, fit),
                       "core.warps and core.registers limit them");
   if (shared_bytes > params.shared_bytes)
     diagnostics.error({},
-                      fmt::format("a block needs {} bytes of shared memory, a core has {}", shared_bytes,
+                      fmt::format("a block needs {} bytes of shared memory, and a core has {}", shared_bytes,
                                   params.shared_bytes),
                       fmt::format("set core.shared_bytes to {} or more", shared_bytes));
 }

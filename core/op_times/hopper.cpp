@@ -1,4 +1,4 @@
-// Times of ops `hopper`: where an op of an H200 differs from its unit, as microbenchmarks measured it.
+// Holds the times `hopper`: those of an H200's ops that differ from their unit, by microbenchmarks.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 
@@ -9,15 +9,16 @@ namespace {
 
 using isa::Unit;
 
-// Source: dependent chains and 32 warps of independent ones on an NVIDIA H200 (1980 MHz), of PTX ops as its
-// assembler translates them; intervals are 32 lanes x 4 schedulers over the lane operations that a core did
-// in a cycle. Latencies of steps of two ops are split at the latencies that the other op has alone and the
-// crossing of pipes (1 cycle). The last number, where there is one: machine instructions of the op as they
-// execute without a slow path, from the listings that the same measurements took; for divisions of 64 bits,
-// whose listings end at a call, a guess. Model: a sequence of instructions holds one pipe for its throughput,
-// whatever pipes its parts run on.
+// Source: dependent chains, and 32 warps of independent chains, on an NVIDIA H200 (1980 MHz), of PTX ops as
+// its assembler translates them. Intervals are 32 lanes x 4 schedulers over the lane operations that a core
+// did per cycle. Latencies of steps of two ops are split by the latencies that the other op has alone and by
+// the crossing of pipes (1 cycle). The last number, where there is one, is the number of machine instructions
+// of the op as they execute without a slow path, from the listings that the same measurements took. It is a
+// guess for divisions of 64 bits, whose listings end at a call. Model: a sequence of instructions holds one
+// pipe for its throughput, whatever pipes its parts run on.
 constexpr OpTime kTimes[] = {
-    // The assembler turns every second addition into a multiply-add on the other pipe: 5 cycles, one a cycle.
+    // The assembler turns every second addition into a multiply-add on the other pipe: 5 cycles, one per
+    // cycle.
     {"add.cc.*", 4, 2},
     {"sub.cc.*", 4, 2},
     {"add.sat.s32", 4, 2},
@@ -43,8 +44,8 @@ constexpr OpTime kTimes[] = {
     {"mad.lo.*64", 12, 8, Unit::Fp32, false, 4},
     {"mul.hi.*64", 30, 16, Unit::Fp32, false, 8},
     {"mad.hi.*64", 30, 16, Unit::Fp32, false, 8},  // guess: four wide products
-    // Two instructions each. Comparisons of 64 bits: two, of which the second has the result.
-    // Those of 64-bit sums run on two pipes, and their issue slots alone limit them.
+    // These ops have two instructions each. Of comparisons of 64 bits, the second has the result. 64-bit sums
+    // run on two pipes, and only their issue slots limit them.
     {"add.s64", 4, 1, Unit::Int, false, 2},
     {"add.u64", 4, 1, Unit::Int, false, 2},
     {"sub.s64", 4, 1, Unit::Int, false, 2},
@@ -62,15 +63,15 @@ constexpr OpTime kTimes[] = {
     {"bfe.*32", 8, 7.5, Unit::Int, false, 3},
     {"bfi.b32", 8, 9, Unit::Int, false, 4},
     {"clz.b32", 23, 8, Unit::Count, false, 2},
-    // Integer division and remainder: sequences.
+    // Integer division and remainder are sequences.
     {"div.s32", 131, 33, Unit::Count, false, 23},
     {"div.u32", 124, 29, Unit::Count, false, 17},
     {"rem.s32", 132, 30, Unit::Count, false, 20},
     {"rem.u32", 126, 28, Unit::Count, false, 16},
     {"div.s64", 331, 120, Unit::Count, false, 70},
-    {"div.u64", 331, 120, Unit::Count, false, 70},  // intervals: guess
+    {"div.u64", 331, 120, Unit::Count, false, 70},  // the intervals are guesses
     {"rem.s64", 331, 120, Unit::Count, false, 70},
-    {"rem.u64", 331, 120, Unit::Count, false, 70},  // the same
+    {"rem.u64", 331, 120, Unit::Count, false, 70},  // the intervals are guesses
     // Comparisons, minima and the like run on the integer pipe.
     {"setp.*.f32", 4, 2, Unit::Int},
     {"set.*.f32", 4, 2, Unit::Int},
@@ -81,7 +82,7 @@ constexpr OpTime kTimes[] = {
     {"mul.rn*.f16x2", 8, 1},
     {"fma.rn*.f16x2", 8, 1},
     {"fma.rn*.bf16x2", 8, 1},
-    // Sequences around the special-function unit.
+    // These are sequences around the special-function unit.
     {"div.rn*.f32", 57, 17, Unit::Count, false, 10},
     {"rcp.rn*.f32", 77, 12, Unit::Count, false, 10},
     {"sqrt.rn*.f32", 55, 11, Unit::Count, false, 11},
@@ -95,18 +96,18 @@ constexpr OpTime kTimes[] = {
     {"div.full*", 40, 8, Unit::Count, false, 7},  // rcp and mul
     {"rcp.approx.ftz.f64", 17, 8, Unit::Sfu},
     {"rsqrt.approx.ftz.f64", 17, 8, Unit::Sfu},
-    {"fma.r*.f64", 8, 2.1875},  // three operands of 64 bits: reads of registers hold it up
+    {"fma.r*.f64", 8, 2.1875},  // three operands of 64 bits, so reads of registers hold it up
     {"div.r*.f64", 124, 26, Unit::Count, false, 16},
     {"sqrt.rn.f64", 92, 28, Unit::Count, false, 15},
     {"rcp.rn.f64", 92, 20, Unit::Count, false, 11},  // guess
-    // Conversions.
+    // These are conversions.
     {"cvt.rn.f32.s32", 4, 2, Unit::Int},
     {"cvt.rn.f32.u32", 4, 2, Unit::Int},
     {"cvt.rn.f16.f32", 4, 2, Unit::Int},
     {"cvt.f32.f16", 4, 1, Unit::Fp32},
     {"cvt.f64.f32", 18, 8.5, Unit::Sfu},
     {"cvt.rn.f32.f64", 18, 8.5, Unit::Sfu},
-    // Across lanes.
+    // These work across lanes.
     {"vote.*", 13, 2, Unit::Int},
     {"match.*", 28, 8},
     {"shfl.sync.up.*", 24, 4},
@@ -117,7 +118,8 @@ constexpr OpTime kTimes[] = {
 class Hopper final : public OpTimes {
  public:
   static constexpr std::string_view kName = "hopper";
-  static constexpr std::string_view kDoc = "An H200, op by op, where an op differs from its unit.";
+  static constexpr std::string_view kDoc =
+      "Ops that differ from their unit on an NVIDIA H200 have the measured times.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

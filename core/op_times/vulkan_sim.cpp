@@ -1,4 +1,4 @@
-// Times of ops `vulkan_sim`: that simulator's table of PTX opcodes, and the pipeline around it.
+// Holds the times `vulkan_sim`: that simulator's table of PTX opcodes, and the pipeline around it.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 
@@ -11,10 +11,10 @@ using isa::Unit;
 
 // Source: Vulkan-Sim 2.0.0, SM75_RTX2060 and MOBILE (the same): -ptx_opcode_latency_* and
 // -ptx_opcode_initiation_*, and 1 / 1 for every opcode that set_opcode_and_latency() does not name: moves,
-// comparisons, logic, shifts, conversions. Five cycles are added to each: its logs' sums of issue to
-// completion are 7.0 cycles an arithmetic instruction (SHIP, path tracing), and the table's own latencies 1
-// to 5. Divisions are its pairs of rcp (100) and mul (4); fma is mul and add, into which its compiler breaks
-// it.
+// comparisons, logic, shifts, conversions. Five cycles are added to each, because its logs' sums from issue
+// to completion are 7.0 cycles per arithmetic instruction (SHIP, path tracing), and the table's own latencies
+// are 1 to 5. Divisions are its pairs of rcp (100) and mul (4); fma is mul and add, into which its compiler
+// breaks it.
 constexpr uint32_t kPipe = 5;
 constexpr OpTime kTimes[] = {
     {"add.*f64", 8 + kPipe, 4},
@@ -65,7 +65,8 @@ class VulkanSim final : public OpTimes {
  public:
   static constexpr std::string_view kName = "vulkan_sim";
   static constexpr std::string_view kDoc =
-      "Vulkan-Sim's table of PTX opcodes: 1 cycle for what it does not name, 100 for roots.";
+      "Ops have the times of Vulkan-Sim's table of PTX opcodes: 1 cycle for what it does not name, and 100 "
+      "for roots.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

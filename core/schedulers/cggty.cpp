@@ -1,4 +1,4 @@
-// Issue policy `cggty`: stay with the warp issued last while it is ready, else take the youngest ready warp.
+// Implements the issue policy `cggty`: the warp issued last while it is ready, else the youngest ready warp.
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <string_view>
@@ -9,21 +9,22 @@
 namespace glint::core {
 namespace {
 
-// "Analyzing Modern NVIDIA GPU cores", MICRO 2025, section 5.1.2: compiler-guided greedy, then youngest.
-// Model: the compiler guides by stall counts, which the scoreboard's ready times stand for. Its yield bit,
-// which asks for another warp once, does not exist in this ISA.
+// Source: "Analyzing Modern NVIDIA GPU cores", MICRO 2025, section 5.1.2: compiler-guided greedy, then
+// youngest. Model: the compiler guides by stall counts, which the scoreboard's ready times stand for. Its
+// yield bit, which asks for another warp once, does not exist in this ISA.
 class GreedyThenYoungest final : public IssueScheduler {
  public:
   static constexpr std::string_view kName = "cggty";
   static constexpr std::string_view kDoc =
-      "Compiler-guided greedy, then youngest: the warp issued last while it is ready.";
+      "The warp issued last while it is ready, otherwise the youngest ready warp (compiler-guided greedy "
+      "then youngest).";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };
   GreedyThenYoungest(Params, Context) {}
 
   uint32_t pick(const IssueView& view) override {
-    // A new warp in the same place is not the one we were greedy for.
+    // A new warp in the same place is not the warp that was issued last.
     if ((view.ready >> last_ & 1) && view.age[last_] == last_age_) return last_;
     uint32_t youngest = uint32_t(std::countr_zero(view.ready));
     for (uint64_t rest = view.ready & (view.ready - 1); rest; rest &= rest - 1) {

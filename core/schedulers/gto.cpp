@@ -1,4 +1,4 @@
-// Issue policy `gto`: stay with the warp issued last while it is ready, else take the oldest ready warp.
+// Implements the issue policy `gto`: the warp issued last while it is ready, else the oldest ready warp.
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <string_view>
@@ -9,18 +9,19 @@
 namespace glint::core {
 namespace {
 
-// Rogers et al., "Cache-Conscious Wavefront Scheduling", MICRO 2012, section 5: greedy then oldest.
+// Source: Rogers et al., "Cache-Conscious Wavefront Scheduling", MICRO 2012, section 5: greedy then oldest.
 class GreedyThenOldest final : public IssueScheduler {
  public:
   static constexpr std::string_view kName = "gto";
-  static constexpr std::string_view kDoc = "Greedy, then oldest: the warp issued last while it is ready.";
+  static constexpr std::string_view kDoc =
+      "The warp issued last while it is ready, otherwise the oldest ready warp (greedy then oldest).";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };
   GreedyThenOldest(Params, Context) {}
 
   uint32_t pick(const IssueView& view) override {
-    // A new warp in the same place is not the one we were greedy for.
+    // A new warp in the same place is not the warp that was issued last.
     if ((view.ready >> last_ & 1) && view.age[last_] == last_age_) return last_;
     uint32_t oldest = uint32_t(std::countr_zero(view.ready));
     for (uint64_t rest = view.ready & (view.ready - 1); rest; rest &= rest - 1) {

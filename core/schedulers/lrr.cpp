@@ -1,4 +1,4 @@
-// Issue policy `lrr`: loose round robin, the next ready warp after the one issued last.
+// Implements the issue policy `lrr`: loose round robin, the next ready warp after the one issued last.
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <string_view>
@@ -13,14 +13,14 @@ class LooseRoundRobin final : public IssueScheduler {
  public:
   static constexpr std::string_view kName = "lrr";
   static constexpr std::string_view kDoc =
-      "Loose round robin: the next ready warp after the one issued last.";
+      "The next ready warp after the one issued last (loose round robin).";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };
   LooseRoundRobin(Params, Context context) : last_(context.num_warps - 1) {}
 
   uint32_t pick(const IssueView& view) override {
-    // Two shifts, because a shift by 64 is undefined.
+    // There are two shifts, because a shift by 64 is undefined.
     const uint64_t after = view.ready & (~uint64_t{0} << last_ << 1);
     last_ = uint32_t(std::countr_zero(after ? after : view.ready));
     return last_;

@@ -39,7 +39,7 @@ class Microbench(GlintTest):
 
     def test_measuring_nothing_is_an_error(self):
         self.expect(2, ["no benchmark"], "microbench", "--only", "no such")
-        self.expect(2, ["shared memory, a core has 0", "core.shared_bytes"], "microbench", "--config", "mobile", "--set", "core.shared_bytes=0", "--only", "shared chase")
+        self.expect(2, ["shared memory, and a core has 0", "core.shared_bytes"], "microbench", "--config", "mobile", "--set", "core.shared_bytes=0", "--only", "shared chase")
 
 
 if __name__ == "__main__":
