@@ -1,4 +1,4 @@
-// Which lines and banks the access of a warp instruction touches.
+// Finds which lines and banks the access of a warp instruction touches.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/access_lines.h"
 
@@ -35,10 +35,9 @@ void AccessLines::collect(MemoryAccess& access, const exec::WarpContext& warp,
   }
 }
 
-// The entries of the candidates whose shaders are called.
-// Model: the unit makes one read for all of a warp's lanes, together with their records of the binding table.
-// What the shaders then read of a candidate is in registers. Tables of nested traces share their place,
-// because an outer table is empty by then.
+// Collects the entries of the candidates whose shaders are called. Model: the unit makes one read for all of
+// a warp's lanes, together with their records of the binding table. What the shaders then read of a candidate
+// is in registers. Tables of nested traces share their place, because an outer table is empty by then.
 void AccessLines::collect_candidates(MemoryAccess& access, const exec::WarpContext& warp,
                                      LaneMask lanes) const {
   if (tables_.rows == 0) return;
@@ -50,8 +49,8 @@ void AccessLines::collect_candidates(MemoryAccess& access, const exec::WarpConte
   access.num_table_lines = uint32_t(access.lines.lines().size());
 }
 
-// Loads, stores and atomics. Model: lanes of a generic access that are in local memory travel as global
-// traffic, and lanes in the constant bank take no time of their own.
+// Collects loads, stores and atomics. Model: lanes of a generic access that are in local memory travel as
+// global traffic, and lanes in the constant bank take no time of their own.
 void AccessLines::collect_memory(MemoryAccess& access, const exec::WarpContext& warp,
                                  const exec::Issued& issued) const {
   const isa::Access& addresses = warp.regs.access;

@@ -1,4 +1,4 @@
-// Which lines of the cache and which banks of shared memory the access of a warp instruction touches.
+// Finds which lines of the cache and which banks of shared memory the access of a warp instruction touches.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "core/coalesce.h"

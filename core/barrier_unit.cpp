@@ -1,4 +1,4 @@
-// The barrier unit of a core.
+// Implements the barrier unit of a core.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/barrier_unit.h"
 
@@ -18,7 +18,7 @@ void BarrierUnit::end_warp(const exec::Block& block, Cycle now) {
   pass(block, now + core_.params.units.barrier.latency, now);
 }
 
-// Warps of the block whose barrier has opened can issue from `at` on.
+// Lets the warps of the block whose barrier has opened issue from `at` on.
 void BarrierUnit::pass(const exec::Block& block, Cycle at, Cycle now) {
   for (uint32_t w = 0; w < block.num_warps(); ++w) {
     if (!(block.live() >> w & 1) || block.warps[w]->waiting_at_barrier) continue;

@@ -1,4 +1,4 @@
-// The places that a core has for blocks.
+// Holds the places that a core has for blocks.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
@@ -10,19 +10,19 @@
 
 namespace glint::core {
 
-// A block holds its place until all accesses of all its warps have ended.
+// Holds a block until all accesses of all its warps have ended.
 struct BlockPlace {
   exec::Block block;
-  uint32_t warps = 0;  // Warps of the block that still hold a slot. 0: the place is free.
+  uint32_t warps = 0;  // warps of the block that still hold a slot; 0: the place is free
 };
 
-// Places keep their addresses: warps point to their block.
+// Holds all places. They keep their addresses, because warps point to their block.
 class BlockPlaces {
  public:
   explicit BlockPlaces(uint32_t count) : places_(count) {}
   uint32_t size() const { return uint32_t(places_.size()); }
   uint32_t num_taken() const { return num_taken_; }
-  // The first free place, for a block of `warps` warps.
+  // Returns the first free place, for a block of `warps` warps.
   BlockPlace& take(uint32_t warps) {
     const auto free = std::find_if(places_.begin(), places_.end(),
                                    [](const BlockPlace& place) { return place.warps == 0; });
@@ -31,7 +31,7 @@ class BlockPlaces {
     ++num_taken_;
     return *free;
   }
-  // One warp of the block has left its slot.
+  // Notes that one warp of the block has left its slot.
   void leave(BlockPlace& place) {
     if (--place.warps == 0) --num_taken_;
   }

@@ -14,7 +14,7 @@ void LineList::add(Address physical, uint32_t bytes, int lane) {
   const Address last = (physical + bytes - 1) / mem::kSectorBytes;
   for (Address sector = first; sector <= last; ++sector) {
     const Address address = sector * mem::kSectorBytes, line = address & ~mask_;
-    // Parts of the line that lie in the sector and in [physical, physical + bytes) as a whole.
+    // These are the parts of the line that lie as a whole in the sector and in [physical, physical + bytes).
     const uint64_t round_up = (uint64_t{1} << part_shift_) - 1;
     const uint64_t begin = (std::max(physical, address) - line + round_up) >> part_shift_;
     const uint64_t end = (std::min(physical + bytes, address + mem::kSectorBytes) - line) >> part_shift_;
@@ -61,7 +61,7 @@ void coalesce_global(LineList& out, const mem::AddressSpace& memory, const isa::
 
 void coalesce_local(LineList& out, const LocalLayout& layout, uint32_t warp_slot, const isa::Access& access,
                     LaneMask lanes, uint32_t bytes) {
-  // Part by part, as the hardware moves one word of every lane at a time.
+  // The access is taken part by part, because the hardware moves one word of every lane at a time.
   for (uint32_t byte = 0; byte < bytes; byte += 4) {
     for_each_lane(lanes, [&](int lane) {
       const uint64_t word = (access.address[size_t(lane)] + byte) / 4;

@@ -15,18 +15,18 @@
 
 namespace glint::core {
 
-// The widest access: all texels of 32 lanes, each in a line of its own.
+// The widest access has all texels of 32 lanes, each in a line of its own.
 inline constexpr uint32_t kMaxLines = exec::kMaxTexels * kLanes;
 
 struct LineSectors {
   Address line = 0;           // physical
   uint8_t sectors = 0;        // bit i: sector i
-  mem::AtomicLanes atomic{};  // of an atomic, see count_turns()
-  mem::WordMask words = 0;    // which of its 32 parts are touched whole
-  LaneMask lanes = 0;         // that touch it
+  mem::AtomicLanes atomic{};  // lanes of an atomic (count_turns())
+  mem::WordMask words = 0;    // the parts, of 32, that are touched as a whole
+  LaneMask lanes = 0;         // lanes that touch the line
 };
 
-// The lines that one warp instruction touches, in the order of their first lane.
+// Holds the lines that one warp instruction touches, in the order of their first lane.
 class LineList {
  public:
   explicit LineList(uint32_t line_bytes)
@@ -37,43 +37,43 @@ class LineList {
   std::span<const LineSectors> lines() const { return {lines_.data(), count_}; }
   uint32_t num_sectors() const;
   void set_atomic(size_t line, mem::AtomicLanes atomic) { lines_[line].atomic = atomic; }
-  Address offset(Address physical) const { return physical & mask_; }  // in its line
+  Address offset(Address physical) const { return physical & mask_; }  // offset in its line
 
  private:
   void add_sector(Address line, uint32_t sector, mem::WordMask words, LaneMask lanes);
 
   Address mask_;         // line size - 1
-  uint32_t part_shift_;  // of the 32 parts of a line
+  uint32_t part_shift_;  // shift to one of the 32 parts of a line
   uint32_t count_ = 0, last_ = 0;
   std::array<LineSectors, kMaxLines> lines_;
 };
 
-// Where the lanes' stacks lie in physical memory: word w of lane l of warp slot s at
-// base + ((s * words + w) * 32 + l) * 4, so that lanes at the same offset share lines.
+// Says where the lanes' stacks lie in physical memory. Word w of lane l of warp slot s is at base + ((s *
+// words + w) * 32 + l) * 4, so that lanes at the same offset share lines.
 struct LocalLayout {
   Address base = 0;    // physical, of this core
-  uint32_t words = 0;  // a lane
+  uint32_t words = 0;  // per lane
   uint64_t bytes_per_warp() const { return uint64_t{words} * kLanes * 4; }
 };
 
-// Loads and stores: `access.address` of `lanes`. Virtual addresses must be valid (the executor has checked
-// them).
+// Adds the lines of loads and stores at `access.address` of `lanes`. The virtual addresses must be valid,
+// which the executor has checked.
 void coalesce_global(LineList& out, const mem::AddressSpace& memory, const isa::Access& access,
                      LaneMask lanes, uint32_t bytes);
 void coalesce_local(LineList& out, const LocalLayout& layout, uint32_t warp_slot, const isa::Access& access,
                     LaneMask lanes, uint32_t bytes);
 
 // Fills in LineSectors::atomic of lines that coalesce_global() has made. A turn takes the lanes of a sector
-// in order, up to the first whose word it has already: so an H200's times go (docs/validation.md). Without
-// `turns` each sector has one. Model: lanes of a reduction (not `returns`) that all meet in one word are one
-// lane: an assembler adds them up before, where it knows their address to be the same; here it is enough that
-// it is.
+// in order, up to the first whose word it already has. An H200's times follow this rule (docs/validation.md).
+// Without `turns` each sector has one turn. Model: lanes of a reduction (not `returns`) that all meet in one
+// word count as one lane. An assembler adds them up before when it knows their addresses to be the same; here
+// it is enough that they are the same.
 void count_turns(LineList& lines, const mem::AddressSpace& memory, const isa::Access& access, uint32_t bytes,
                  bool turns, bool returns);
 
-// Times that shared memory has to be read or written for a warp's access: the largest number of different
-// words in one bank (32 banks of 4 bytes; lanes that want one word share it), of atomics the largest number
-// of lanes.
+// Returns how many times shared memory has to be read or written for a warp's access. This is the largest
+// number of different words in one bank (32 banks of 4 bytes; lanes that want one word share it) or, for
+// atomics, the largest number of lanes.
 uint32_t shared_passes(const isa::Access& access, LaneMask lanes, uint32_t bytes, bool is_atomic);
 
 }  // namespace glint::core

@@ -1,4 +1,4 @@
-// The cache of a core behind its instruction and constant caches.
+// Implements the cache of a core behind its instruction and constant caches.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/code_cache.h"
 
@@ -38,7 +38,8 @@ void CodeCache::tick(Cycle now) {
   send(now);
 }
 
-// The cycle between asking and here is the first of the latency, so that an unloaded cache adds just that.
+// Looks up one line. The cycle between asking and here is the first of the latency, so that an unloaded cache
+// adds just that.
 void CodeCache::look_up(Cycle now) {
   if (asked_.empty() || now < lookup_free_ || now <= asked_.front().at) return;
   const Asked asked = asked_.front();

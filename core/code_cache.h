@@ -1,5 +1,5 @@
-// The cache of a core behind its instruction and constant caches (level 1.5): misses go to the L2 through the
-// core's port.
+// Models the cache behind a core's instruction and constant caches (level 1.5). Misses go through the core's
+// port to the L2.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -14,7 +14,8 @@
 
 namespace glint::core {
 
-// Looks up one line a cycle, in the order asked. A line on its way is asked for once, whoever waits for it.
+// Looks up one line per cycle, in the order asked. A line on its way is asked for once, however many wait for
+// it.
 class CodeCache {
  public:
   static constexpr uint32_t kMaxClients = 16;
@@ -23,15 +24,15 @@ class CodeCache {
     Address line = 0;
   };
 
-  // `most`: lines that all clients together may wait for at a time.
+  // `most` is the number of lines that all clients together may wait for at a time.
   CodeCache(const CodeCacheParams& params, uint32_t most, mem::L1Port& l1, CodeStats& stats);
 
   void ask(uint32_t client, Address line, mem::Traffic traffic, Cycle now);
-  // Advances to `now`; afterwards answers() holds the lines that come in this cycle, each once a client that
-  // waits.
+  // Advances to `now`. Afterwards answers() holds the lines that come in this cycle, once for each client
+  // that waits.
   void tick(Cycle now);
   std::span<const Answer> answers() const { return answers_; }
-  Cycle next_event(Cycle now) const;  // answers of the L1 are the L1's events
+  Cycle next_event(Cycle now) const;  // the L1's answers are the L1's events
   bool idle() const { return asked_.empty() && hits_.empty() && fills_.empty() && num_missing_ == 0; }
   uint32_t line_bytes() const { return line_bytes_; }
 
@@ -45,7 +46,7 @@ class CodeCache {
   struct Missing {
     Address line = 0;
     Cycle send_at = 0;
-    uint32_t clients = 0;  // bit a client; 0: the entry is free
+    uint32_t clients = 0;  // one bit per client; 0: the entry is free
     bool sent = false;
     mem::Traffic traffic = mem::Traffic::Instruction;
   };

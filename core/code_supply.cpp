@@ -1,4 +1,4 @@
-// A core's caches of instructions and constants, and the lines that they wait for.
+// Holds a core's caches of instructions and constants, and hands out the lines that warps wait for.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/code_supply.h"
 
@@ -8,7 +8,8 @@
 namespace glint::core {
 namespace {
 
-// The constant cache's number among the clients of the cache behind; schedulers have the numbers below.
+// This is the constant cache's number among the clients of the cache behind; schedulers have the numbers
+// below.
 constexpr uint32_t kConstantClient = kMaxSchedulers;
 
 }  // namespace

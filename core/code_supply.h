@@ -1,4 +1,4 @@
-// What feeds a core with instructions and constants where they are not always there: its code caches.
+// Feeds a core with instructions and constants through its code caches, when these are not perfect.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
@@ -15,14 +15,14 @@ namespace glint::core {
 class ConstantPort;
 class WarpSlots;
 
-// Where the image's instructions and the constant bank lie in physical memory.
+// Says where the image's instructions and the constant bank lie in physical memory.
 struct CodePlaces {
   Address code = 0, constants = 0;
 };
 
 class CodeSupply {
  public:
-  // Null where instructions and constants are both perfect.
+  // Returns null when instructions and constants are both perfect.
   static std::unique_ptr<CodeSupply> make(const Params& params, const exec::World& world,
                                           const CodePlaces& places, mem::L1Port& l1, stats::Group* parent);
   CodeSupply(const Params& params, const exec::World& world, const CodePlaces& places, mem::L1Port& l1,
@@ -33,8 +33,8 @@ class CodeSupply {
   Cycle next_event(Cycle now) const { return cache_.next_event(now); }
   bool idle() const { return cache_.idle(); }
 
-  InstructionFetch* fetch() { return fetch_.get(); }       // Null where instructions are perfect.
-  ConstantCache* constants() { return constants_.get(); }  // Null where constants are perfect.
+  InstructionFetch* fetch() { return fetch_.get(); }       // null when instructions are perfect
+  ConstantCache* constants() { return constants_.get(); }  // null when constants are perfect
 
  private:
   CodeStats stats_;

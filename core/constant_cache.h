@@ -1,4 +1,4 @@
-// The constant cache of a core: which lines of constant loads are there, and which warps wait for others.
+// Models a core's constant cache: which lines of constant loads it has, and which warps wait for others.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -10,20 +10,23 @@
 
 namespace glint::core {
 
-// Different words that the lanes of an access begin at: the turns that broadcasting one after another takes.
+// Returns the number of different words at which the lanes of an access begin, which is the number of turns
+// that broadcasting one after another takes.
 uint32_t different_words(const isa::Access& access, LaneMask lanes);
 
-// A load whose lines are all there takes its fixed time; else its warp waits for all of them.
+// Serves loads. A load whose lines are all present takes its fixed time; otherwise its warp waits for all of
+// them.
 class ConstantCache {
  public:
-  // `base`: physical address of the constant bank, of `bytes`; `client`: its number in the cache behind.
+  // `base` is the physical address of the constant bank, which has `bytes` bytes. `client` is this cache's
+  // number in the cache behind.
   ConstantCache(const ConstantParams& params, Address base, uint64_t bytes, uint32_t client, CodeCache& cache,
                 CodeStats& stats);
 
-  // Looks up the lines at `offset + access.address` of the lanes: none is longer than the line it is in, all
-  // are aligned. False: the warp of `slot` waits, until arrive().
+  // Looks up the lines at `offset + access.address` of the lanes. Each access is aligned and lies in one
+  // line. Returns false when the warp of `slot` has to wait until arrive().
   bool look_up(uint32_t slot, const isa::Access& access, LaneMask lanes, uint64_t offset, Cycle now);
-  // A line from the cache behind; `served` is called with each slot that waits for nothing any more.
+  // Takes a line from the cache behind. `served` is called with each slot that waits for nothing any more.
   template <class Served>
   void arrive(Address line, Served&& served) {
     for (size_t i = waits_.size(); i-- > 0;) {
@@ -35,7 +38,7 @@ class ConstantCache {
       if (--missing_[slot] == 0) served(slot);
     }
   }
-  // Lines that a core's warps may wait for.
+  // Number of lines that a core's warps may wait for.
   static constexpr uint32_t kMost = 64 * uint32_t(kLanes);
 
  private:
@@ -53,7 +56,7 @@ class ConstantCache {
   CodeStats& stats_;
   mem::TagArray tags_;
   std::vector<Wait> waits_;             // reserved once
-  std::array<uint32_t, 64> missing_{};  // a slot: lines it waits for
+  std::array<uint32_t, 64> missing_{};  // for each slot, the lines that it waits for
 };
 
 }  // namespace glint::core

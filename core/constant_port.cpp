@@ -1,4 +1,4 @@
-// The constant port of a core.
+// Implements the constant port of a core.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/constant_port.h"
 
@@ -12,7 +12,8 @@ ConstantPort::ConstantPort(const CoreParts& core, ConstantCache* cache)
       loads_(core.warps.size()) {
 }
 
-// A load that misses waits in front of its warp, and has its result the latency of a hit after its last line.
+// Starts a load. A load that misses waits in front of its warp, and has its result one hit latency after its
+// last line.
 void ConstantPort::start(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now) {
   WarpSlot& at = core_.warps[slot];
   const isa::Access& access = at.warp.regs.access;

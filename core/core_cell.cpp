@@ -1,4 +1,4 @@
-// A core from outside: construction, launching blocks, going through time and accounting for it.
+// Constructs a core, launches its blocks, takes it through time and accounts for it.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/core_cell.h"
 
@@ -122,7 +122,8 @@ void CoreCell::step(Cycle now) {
   const bool had_warps = warps_.num_resident() > 0;
   if (had_warps) account_until(now);
   l1_.tick(now);
-  // Choice: who comes to the L1 first alternates, so that neither starves the other.
+  // Choice: the RT unit and the load-store unit alternate in who comes to the L1 first, so that neither
+  // starves the other.
   if (now & 1) rt_.tick(now);
   lsu_.tick(now);
   if (!(now & 1)) rt_.tick(now);
@@ -153,7 +154,7 @@ void CoreCell::account_until(Cycle now) {
   accounted_ = now;
 }
 
-// Cycles without any warp have that as their reason, whatever a scheduler waited for last.
+// Notes that the core has no warp. Its cycles have that reason, whatever a scheduler waited for last.
 void CoreCell::become_empty() {
   if (warps_.num_resident() > 0) return;
   for (Scheduler& scheduler : warps_.schedulers()) scheduler.become_empty();

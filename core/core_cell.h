@@ -1,4 +1,4 @@
-// One core: warp slots, schedulers and units, wired together and taken through time.
+// Wires warp slots, schedulers and units together to one core, and takes it through time.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -28,92 +28,95 @@
 
 namespace glint::core {
 
-// A cycle, in order: L1, RT unit and load-store unit; their answers wake warps; each scheduler issues one
-// instruction, which is executed at once and charged for afterwards. Cycles in which nothing can happen are
-// skipped, and give the same result as stepping through them.
+// Goes through a cycle in this order: L1, RT unit and load-store unit; then their answers wake warps; then
+// each scheduler issues one instruction, which is executed at once and charged for afterwards. Cycles in
+// which nothing can happen are skipped, which gives the same result as stepping through them.
 class CoreCell final : public Cell {
  public:
   struct Context {
     const exec::World& world;
-    mem::L1Port& l1;             // The core ticks it, and its next_event covers what the core waits for.
-    rt::RtPort& rt;              // The core ticks it.
-    Address local_physical = 0;  // The stacks of this core's lanes: local_bytes() bytes.
+    mem::L1Port& l1;             // the core ticks it, and its next_event covers what the core waits for
+    rt::RtPort& rt;              // the core ticks it
+    Address local_physical = 0;  // stacks of this core's lanes, with local_bytes() bytes
     stats::Group* parent = nullptr;
-    std::string name = "core";  // Name of the statistics: "core[3]".
-    bool no_skip = false;       // Steps every cycle: slow, for checking.
+    std::string name = "core";  // name of the statistics: "core[3]"
+    bool no_skip = false;       // steps through every cycle, which is slow; for checking
     uint32_t index = 0, cores = 1;
-    double clock_mhz = 0.0;  // 0: programs read no time.
-    Address tables = 0;      // Physical: the candidates of the core's rays, table_bytes() bytes.
-    CodePlaces places;       // Used where the caches of instructions or constants are not perfect.
-    Cycle turn = 0;  // Cycles after which other cores see what this one wrote. 0: there are no others.
+    double clock_mhz = 0.0;  // 0: programs read no time
+    Address tables = 0;  // physical address of the candidates of the core's rays, with table_bytes() bytes
+    CodePlaces places;   // used when the caches of instructions or constants are not perfect
+    Cycle turn = 0;      // cycles after which other cores see what this one wrote; 0: there are no others
   };
-  // Program and parameters must have passed check().
+  // The program and the parameters must have passed check().
   CoreCell(const Params& params, const Context& context);
   ~CoreCell() override;
 
-  // Bytes of simulated memory that a core's lanes need for their stacks.
+  // Returns the bytes of simulated memory that a core's lanes need for their stacks.
   static uint64_t local_bytes(const Params& params, const exec::World& world);
-  // Bytes that a core needs for the candidates of its rays, in the deferred any-hit mode.
+  // Returns the layout of the candidates of a core's rays in the deferred any-hit mode.
   static rt::TableLayout table_layout(const exec::World& world, Address base);
   static uint64_t table_bytes(const Params& params, const exec::World& world);
-  // Bytes that all cores together need for instructions and for constants. 0: these are always there.
+  // Returns the bytes that all cores together need for instructions and constants, or 0 when these are always
+  // present.
   static uint64_t code_bytes(const Params& params, const exec::World& world);
   static uint64_t constant_bytes(const Params& params, const exec::World& world);
 
-  // Launching, between windows only.
+  // These serve launching, between windows only.
   uint32_t num_slots() const { return warps_.size(); }
   uint32_t num_resident() const { return warps_.num_resident(); }
-  // Room for a whole block: warp slots, shared memory, and a block's place.
-  // Model: a warp's slot and registers are free when the warp has ended; hardware keeps them until the block
-  // has.
+  // Returns whether there is room for a whole block: warp slots, shared memory, and a block's place. Model: a
+  // warp's slot and registers are free when the warp has ended; hardware keeps them until the block has
+  // ended.
   bool has_room() const;
-  // Blocks and warps that fit at a time, and what limits them.
+  // Returns how many blocks and warps fit at a time, and what limits them.
   static LaunchNeeds needs_of(const exec::World& world);
   // Puts block `block_index` of the launch into the lowest free slots. Its first instructions can issue at
   // `ready`.
   void launch(Cycle now, uint32_t block_index, Cycle ready);
 
-  // Cell.
+  // These implement Cell.
   void advance(Cycle from, Cycle until) override;
   Cycle next_event(Cycle from) const override;
   bool finished() const override {
     return warps_.num_resident() == 0 && lsu_.idle() && (!code_ || code_->idle()) &&
-           l1_.next_event(accounted_) == kNever;  // The last writes have left.
+           l1_.next_event(accounted_) == kNever;  // the last writes have left
   }
   uint64_t progress() const override { return counts_.progress; }
-  // Grows when a warp begins, ends or is handed to the RT unit, and with what exec::Executor::changes()
-  // counts. Warps that spin for ever change none of these.
+  // Returns a number that grows when a warp begins, ends or is handed to the RT unit, and with what
+  // exec::Executor::changes() counts. Warps that spin for ever change none of these.
   uint64_t changes() const;
   std::string describe_stall() const override;
 
-  // The first fault of a warp here; the cell does nothing from then on.
+  // Returns the first fault of a warp here. The cell does nothing from then on.
   const std::optional<exec::Fault>& fault() const { return issue_.fault(); }
-  // What went wrong here and was let pass.
+  // Returns what went wrong here and was let pass.
   const exec::FaultLog& passed() const { return executor_.passed(); }
-  // The cycle after the last one in which anything happened here.
+  // Returns the cycle after the last one in which anything happened here.
   Cycle active_until() const { return accounted_; }
-  // Gives the cycles up to `end` to their reasons: once, at the end of the run. `end` >= active_until().
+  // Gives the cycles up to `end` to their reasons. It is called once, at the end of the run, with `end` >=
+  // active_until().
   void finish(Cycle end);
 
-  exec::Executor& executor() { return executor_; }  // To listen to what retires.
-  // What the core has done to global memory in the present turn; null without other cores.
+  exec::Executor& executor() { return executor_; }  // for listening to what retires
+  // Returns what the core has done to global memory in the present turn, or null without other cores.
   exec::MemoryView* view() { return view_.get(); }
   const CoreStats& stats() const { return counts_.stats; }
-  // Counts by instruction too, from before the first launch on; otherwise there is no profile.
+  // Starts to count by instruction. It is called before the first launch; otherwise there is no profile.
   void start_profile();
   const Profile* profile() const { return counts_.profile.get(); }
-  // Tells `observer`, which outlives the run, of all that happens from now on; before the first launch.
+  // Tells `observer`, which outlives the run, of all that happens from now on. It is called before the first
+  // launch.
   void observe(CoreObserver& observer);
-  // The lanes of access `access`, the token of its requests, that touch a line. `slot`: the slot of their
-  // warp.
+  // Returns the lanes of access `access`, the token of its requests, that touch a line. `slot` becomes the
+  // slot of their warp.
   LaneMask readers_of(mem::Token access, Address line, uint32_t& slot) const {
     return memory_.readers_of(access, line, slot);
   }
   IntervalSampler& sampler() { return sampler_; }
-  // Warp instructions and lanes by op, indexed as isa::op_table().
+  // Return warp instructions and lanes by op, indexed as isa::op_table().
   const std::vector<uint64_t>& op_counts() const { return counts_.op_counts; }
   const std::vector<uint64_t>& op_lanes() const { return counts_.op_lanes; }
-  // Cycles of every warp instruction that waits for memory, from its issue to its last sector.
+  // Returns the cycles of every warp instruction that waits for memory, from its issue to its last sector.
   const mem::Latencies& latencies() const { return counts_.latencies; }
 
  private:
@@ -133,7 +136,7 @@ class CoreCell final : public Cell {
   const std::unique_ptr<exec::MemoryView> view_;
   CoreCounts counts_;
   CoreObservers observers_;
-  const std::unique_ptr<CodeSupply> code_;  // Null where instructions and constants are always there.
+  const std::unique_ptr<CodeSupply> code_;  // null when instructions and constants are always present
   WarpSlots warps_;
   Lsu lsu_;
   MemoryAccesses memory_;
@@ -141,9 +144,9 @@ class CoreCell final : public Cell {
   RayDoor rays_;
   BarrierUnit barriers_;
   IssueStage issue_;
-  exec::Seat seat_;        // The seat of the warp launched last.
-  Cycle block_start_ = 0;  // When the first instructions of the block launched last can issue.
-  Cycle accounted_ = 0;    // Every cycle before has been given to a reason.
+  exec::Seat seat_;        // the seat of the warp launched last
+  Cycle block_start_ = 0;  // when the first instructions of the block launched last can issue
+  Cycle accounted_ = 0;    // every cycle before this one has been given to a reason
   IntervalSampler sampler_;
 };
 

@@ -1,4 +1,4 @@
-// Counting an issued instruction.
+// Counts an issued instruction.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/core_counts.h"
 

@@ -1,4 +1,4 @@
-// Interface: who hears what happens to the warps of one core, as its cell simulates it.
+// Interface: hears what happens to the warps of one core, as its cell simulates it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -11,33 +11,33 @@
 namespace glint::core {
 
 // Contract:
-//  - events of a slot come in order of time: start_warp, then issues and rays, then end_warp; after it the
-//  slot may start another.
-//  - select() comes before issue() of the same cycle; an issue slot of a sequence (docs/core.md) has a
-//  select() only.
-//  - every start_rays() has one end_rays() with the same lanes, before the warp's next issue.
-//  - an observer reads: what it hears changes no cycle, and it allocates nothing.
+//  - The events of a slot come in order of time: start_warp, then issues and rays, then end_warp. After
+//    end_warp the slot may start another warp.
+//  - select() comes before issue() of the same cycle. An issue slot of a sequence (docs/core.md) has only a
+//    select().
+//  - Every start_rays() has one end_rays() with the same lanes, before the warp's next issue.
+//  - An observer only reads: what it hears changes no cycle, and it allocates nothing.
 class CoreObserver {
  public:
   virtual ~CoreObserver() = default;
   // The warp holds the slot from cycle `now` on.
   virtual void start_warp(Cycle /*now*/, uint32_t /*slot*/, const exec::WarpContext&) {}
-  // The instruction at `pc` of the warp is about to issue. It waited for `wait` until `ready`, and from then
-  // on for its turn at `door` (Stall::Issued: at the scheduler, or a pipe).
+  // The instruction at `pc` of the warp is about to issue. It waited for `wait` until `ready`, and then for
+  // its turn at `door` (Stall::Issued: at the scheduler, or a pipe).
   virtual void select(Cycle /*now*/, uint32_t /*slot*/, Cycle /*ready*/, Stall /*wait*/, Stall /*door*/,
                       uint32_t /*pc*/) {}
-  // It was executed.
+  // The instruction was executed.
   virtual void issue(Cycle /*now*/, uint32_t /*slot*/, const exec::Issued&) {}
-  // Lanes begin a shader of that stage, called by another.
+  // Lanes begin a shader of that stage, which another shader has called.
   virtual void call(uint32_t /*slot*/, isa::Stage, LaneMask) {}
-  // Rays of these lanes travel from now on; they have stopped.
+  // The rays of these lanes travel from now on (start_rays) or have stopped (end_rays).
   virtual void start_rays(uint32_t /*slot*/, LaneMask, const rt::RayState*) {}
   virtual void end_rays(uint32_t /*slot*/, LaneMask, const rt::RayState*) {}
-  // The warp has given its slot free: cycle `now` is no longer its own.
+  // The warp has freed its slot: cycle `now` is no longer its own.
   virtual void end_warp(Cycle /*now*/, uint32_t /*slot*/) {}
 };
 
-// All observers of a core.
+// Holds all observers of a core.
 class CoreObservers {
  public:
   void add(CoreObserver& observer) { list_.push_back(&observer); }

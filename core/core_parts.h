@@ -1,4 +1,4 @@
-// What the units of a core have in common.
+// Holds what the units of a core have in common.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "core/core_counts.h"
@@ -10,8 +10,8 @@
 
 namespace glint::core {
 
-// Every unit holds a copy of these references. What else a unit knows is its own: no unit reads the state of
-// another.
+// Every unit holds a copy of these references. Everything else that a unit knows is its own, and no unit
+// reads the state of another.
 struct CoreParts {
   const Params& params;
   const exec::World& world;

@@ -1,4 +1,4 @@
-// Charging the lanes of a warp for what it does.
+// Charges the lanes of a warp for what it does.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/cost_recorder.h"
 
@@ -14,7 +14,7 @@ size_t num_threads(const exec::World& world) {
   const uint64_t threads = uint64_t{world.launch_size[0]} * world.launch_size[1] * world.launch_size[2];
   if (threads > LaunchCosts::kMaxThreads)
     throw UserError({}, fmt::format("a launch of {} threads is too large for maps of cost", threads),
-                    fmt::format("leave --heat out, or launch no more than {}", LaunchCosts::kMaxThreads));
+                    fmt::format("leave out --heat, or launch at most {}", LaunchCosts::kMaxThreads));
   return size_t(threads);
 }
 
@@ -40,7 +40,7 @@ void CostRecorder::issue(Cycle now, uint32_t slot, const exec::Issued& issued) {
     ++warp.lane[size_t(lane)].instructions;
     warp.end[size_t(lane)] = now;
   });
-  // Choice: the slots of an instruction whose guard is false in all lanes go to those that came to it.
+  // Choice: the slots of an instruction whose guard is false in all lanes go to the lanes that came to it.
   const LaneMask payers = issued.lanes ? issued.lanes : issued.active;
   const double share = double(kLanes) / double(num_lanes(payers));
   for_each_lane(payers, [&](int lane) { warp.lane[size_t(lane)].slots += share; });
@@ -58,7 +58,8 @@ void CostRecorder::start_rays(uint32_t slot, LaneMask lanes, const rt::RayState*
   Slot& warp = slots_[slot];
   for_each_lane(lanes, [&](int lane) {
     const rt::RayState& state = states[lane];
-    if (state.nodes_visited == 0) ++warp.lane[size_t(lane)].rays;  // one that goes on has visited some
+    if (state.nodes_visited == 0)
+      ++warp.lane[size_t(lane)].rays;  // a ray that goes on has already visited some
     warp.nodes[size_t(lane)] = state.nodes_visited;
     warp.triangle_tests[size_t(lane)] = state.triangle_tests;
   });

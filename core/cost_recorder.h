@@ -1,5 +1,5 @@
-// What each thread of a launch cost: time, instructions, idle slots, rays and misses, kept only when asked
-// for.
+// Records what each thread of a launch cost: time, instructions, idle slots, rays and misses. It runs only
+// when asked for.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -10,12 +10,13 @@
 
 namespace glint::core {
 
-// Of one thread (launch index). Sums over all threads are statistics of the run where one is named.
+// Holds the costs of one thread (launch index). Sums over all threads are statistics of the run where one is
+// named.
 struct ThreadCost {
   uint32_t cycles = 0;  // from the thread's first instruction to its last
   uint32_t active_cycles =
       0;  // of them, those after an instruction that it executed, up to the next of its warp
-  uint32_t instructions = 0;        // that it executed: core.lane_instructions
+  uint32_t instructions = 0;        // executed instructions: core.lane_instructions
   uint32_t rays = 0;                // rt_unit.rays
   uint32_t nodes = 0;               // rt_unit.nodes
   uint32_t triangle_tests = 0;      // rt_unit.triangle_tests
@@ -23,14 +24,15 @@ struct ThreadCost {
   uint32_t intersection_calls = 0;  // core.intersection.invocations
   double slots =
       0;  // lane slots, 32 for each instruction, shared among those that execute it: core.lane_slots
-  double l1_misses = 0;  // l1.misses but of instructions and constants, each shared among the lanes it is for
+  double l1_misses =
+      0;  // l1.misses without those of instructions and constants, each shared among the lanes that it is for
 };
 
-// All threads of a launch, z slowest. Cores write to the threads that they run only, so that several may at a
-// time.
+// Holds the costs of all threads of a launch, z slowest. Cores write only to the threads that they run, so
+// several cores may write at a time.
 class LaunchCosts {
  public:
-  // UserError where the launch has more threads than kMaxThreads.
+  // Throws UserError when the launch has more threads than kMaxThreads.
   explicit LaunchCosts(const exec::World& world);
   static constexpr uint64_t kMaxThreads = 1 << 25;
 
@@ -47,7 +49,7 @@ class LaunchCosts {
   std::vector<ThreadCost> threads_;
 };
 
-// Of one core: hears what its warps do. On the functional machine the cycles are all 0.
+// Hears what the warps of one core do. On the functional machine all cycles are 0.
 class CostRecorder final : public CoreObserver {
  public:
   CostRecorder(LaunchCosts& costs, uint32_t slots) : costs_(costs), slots_(slots) {}
@@ -58,7 +60,7 @@ class CostRecorder final : public CoreObserver {
   void start_rays(uint32_t slot, LaneMask lanes, const rt::RayState* states) override;
   void end_rays(uint32_t slot, LaneMask lanes, const rt::RayState* states) override;
   void end_warp(Cycle now, uint32_t slot) override;
-  // A read of the L1 missed that `of` lanes in all wait for, these among them.
+  // Charges a read of the L1 that missed to `lanes`. `of` lanes in all wait for it, these among them.
   void miss(uint32_t slot, LaneMask lanes, int of);
 
  private:
@@ -68,7 +70,7 @@ class CostRecorder final : public CoreObserver {
              last = 0;  // lanes that came to an instruction; have executed one; executed the last one
     Cycle last_issue = 0;
     std::array<Cycle, kLanes> first{}, end{};
-    std::array<uint32_t, kLanes> nodes{}, triangle_tests{};  // of the rays under way, when they started
+    std::array<uint32_t, kLanes> nodes{}, triangle_tests{};  // of the rays under way, at their start
     std::array<ThreadCost, kLanes> lane;
   };
 

@@ -10,17 +10,17 @@
 
 namespace glint::core {
 
-// Acts between windows only, one block a core in turn, cores in their fixed order: so the assignment is a
-// function of the model and not of how cells are run. Room that becomes free in a window is filled at the
-// window's end. Model: hardware would fill it some cycles earlier or later; windows are shorter than a memory
-// access.
+// Acts only between windows. It gives one block to each core in turn, with the cores in their fixed order, so
+// the assignment is a function of the model and not of how cells are run. Room that becomes free in a window
+// is filled at the window's end. Model: hardware would fill it some cycles earlier or later; windows are
+// shorter than a memory access.
 class Dispatcher {
  public:
   Dispatcher(const Params& params, uint32_t num_blocks, std::vector<CoreCell*> cores);
   // Fills the cores at `now`, the start of a window.
   void dispatch(Cycle now);
   bool done() const { return next_ == num_blocks_; }
-  uint32_t num_dispatched() const { return next_; }  // blocks
+  uint32_t num_dispatched() const { return next_; }  // number of blocks
 
  private:
   const Cycle launch_latency_, warp_launch_latency_;

@@ -1,4 +1,4 @@
-// The schedulers' instruction caches.
+// Implements the schedulers' instruction caches.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/instruction_fetch.h"
 
@@ -24,8 +24,8 @@ InstructionFetch::InstructionFetch(const FetchParams& params, uint32_t scheduler
   }
 }
 
-// A stream that is given up leaves its lines on the way: at most as many again for each warp that gives one
-// up.
+// Returns the most lines that may be in flight. A stream that is given up leaves its lines on the way: at
+// most as many again for each warp that gives one up.
 uint32_t InstructionFetch::most_in_flight(uint32_t schedulers) {
   return schedulers * (kMaxWarps + 2 * kMaxPrefetch);
 }
@@ -37,7 +37,7 @@ bool InstructionFetch::come_to(uint32_t scheduler, uint32_t line, Cycle now) {
     l0.tags.touch(slot);
     return true;
   }
-  // Out of the stream go the line and those before it; all of them when it is not there.
+  // The line and those before it leave the stream, or all of them when the line is not in it.
   const auto first = l0.ahead.begin(), last = first + l0.num_ahead;
   const auto found = std::find_if(first, last, [line](const Ahead& ahead) { return ahead.line == line; });
   const bool here = found != last && found->here;
@@ -58,7 +58,8 @@ void InstructionFetch::run_ahead(L0& l0, uint32_t scheduler, uint32_t line, Cycl
   uint32_t next = l0.num_ahead ? l0.ahead[l0.num_ahead - 1].line + 1 : line + 1;
   for (; l0.num_ahead < prefetch_ && next < num_lines_; ++next) {
     const bool here = l0.tags.find(address_of(next)) != mem::TagArray::kNone;
-    // Lines of streams given up may still be on the way; there is no room to wait for many more.
+    // Lines of streams that were given up may still be on the way, and there is no room to wait for many
+    // more.
     if (!here && l0.in_flight.size() + kMaxWarps >= most_in_flight(1)) return;
     l0.ahead[l0.num_ahead++] = {next, here};
     if (here) continue;

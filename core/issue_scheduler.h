@@ -1,4 +1,4 @@
-// Interface: which ready warp a scheduler of a core issues from this cycle.
+// Interface: chooses which ready warp a scheduler of a core issues from in a cycle.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace glint::core {
 
-inline constexpr uint32_t kMaxWarpsPerScheduler = 64;  // bits of IssueView::ready
+inline constexpr uint32_t kMaxWarpsPerScheduler = 64;  // number of bits of IssueView::ready
 
-// What a scheduler sees of its warps in one cycle. Warps are numbered locally, from 0.
+// Holds what a scheduler sees of its warps in one cycle. Warps are numbered locally, from 0.
 struct IssueView {
   uint64_t ready = 0;             // bit i: warp i can issue this cycle; at least one bit is set
   std::span<const uint64_t> age;  // launch number of each warp: smaller is older; unique among resident warps
@@ -21,9 +21,9 @@ struct IssueView {
 
 // Contract (tests/contract/issue_scheduler_test.cpp):
 //  - pick() returns the number of a set bit of `ready`.
-//  - the pick is a function of the views so far and the policy's own state: the same views give the same
-//  picks.
-//  - no ready warp starves: when a picked warp is not ready for as many picks as there are warps, every warp
+//  - The pick is a function of the views so far and of the policy's own state: the same views give the same
+//    picks.
+//  - No ready warp starves: when a picked warp is not ready for as many picks as there are warps, every warp
 //    that stays ready is picked. (A greedy policy may stay with one warp for as long as that warp is ready.)
 //  - pick() is called only in cycles with a ready warp, so a policy must not count calls as cycles.
 class IssueScheduler {

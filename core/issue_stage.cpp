@@ -1,4 +1,4 @@
-// Issuing an instruction: choosing its warp, executing it, and handing it over to its unit.
+// Issues an instruction: chooses its warp, executes it, and hands it over to its unit.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/issue_stage.h"
 
@@ -32,8 +32,8 @@ void IssueStage::start_sequence(WarpSlot& at, const IssueRow& row, uint32_t pc, 
   at.front = {now + step, row.wait};
 }
 
-// Model: a machine instruction that had to wait for its issue slot does not hold up the next one beyond its
-// own step, because sequences have slack between their long operations.
+// Issues the rest of a sequence. Model: a machine instruction that had to wait for its issue slot does not
+// hold up the next one beyond its own step, because sequences have slack between their long operations.
 void IssueStage::issue_rest(uint32_t slot, Cycle now) {
   WarpSlot& at = core_.warps[slot];
   Sequence& rest = at.sequence;
@@ -67,7 +67,8 @@ inline void IssueStage::finish_fixed(uint32_t slot, const IssueRow& row, const e
                       row.alternates ? Pipe::Count : row.pipe);
 }
 
-// `late`: cycles that the instruction waits in front of its pipe.
+// Hands an instruction over to its unit. `late` is the number of cycles that the instruction waits in front
+// of its pipe.
 inline void IssueStage::hand_over(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle late,
                                   Cycle now) {
   WarpSlot& at = core_.warps[slot];
@@ -145,8 +146,8 @@ void IssueStage::retire(uint32_t slot, Cycle now) {
     core_.warps.drain(slot);
 }
 
-// Model: a warp that is ready to go through a door counts as waiting for it, even where only another warp was
-// picked before it.
+// Tells observers of a selected warp. Model: a warp that is ready to go through a door counts as waiting for
+// it, even when only another warp was picked before it.
 void IssueStage::tell_select(uint32_t slot, Cycle now) const {
   const WarpSlot& at = core_.warps[slot];
   const NextIssue next = at.scheduler->next_of(at.local);
@@ -159,9 +160,9 @@ void IssueStage::tell_select(uint32_t slot, Cycle now) const {
   });
 }
 
-// The instruction that an idle cycle is charged to. As in hardware's sampling that is where the blamed warp
-// waits: the instruction that it would issue next. Waits for rays are charged to the instruction that traced
-// them.
+// Returns the instruction that an idle cycle is charged to. As in hardware's sampling, that is where the
+// blamed warp waits: the instruction that it would issue next. Waits for rays are charged to the instruction
+// that traced them.
 uint32_t IssueStage::blamed_pc(const Scheduler& scheduler, Cycle now) const {
   const std::optional<uint32_t> local = scheduler.to_blame(now, doors_);
   if (!local) return Profile::kNowhere;

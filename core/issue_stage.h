@@ -1,4 +1,4 @@
-// The issue stage of a core: schedulers choose warps, whose instructions are executed and go to units.
+// Issues instructions of a core: schedulers choose warps, whose instructions are executed and go to units.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -26,7 +26,7 @@ class IssueStage {
 
   // Gives this cycle of the scheduler to an instruction or to a reason.
   void run(Scheduler& scheduler, Cycle now);
-  // The first fault of a warp. The core does nothing from then on.
+  // Returns the first fault of a warp. The core does nothing from then on.
   const std::optional<exec::Fault>& fault() const { return fault_; }
 
  private:

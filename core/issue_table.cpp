@@ -75,7 +75,7 @@ Finish finish_of(const isa::OpRow& row) {
     // Lanes of a warp see each other's accesses in order anyway.
     case Effect::Fence:
       return isa::FenceScope(row.detail) == isa::FenceScope::Warp ? Finish::Control : Finish::Fence;
-    // ssy only notes a place; the next instruction is the next one.
+    // ssy only notes a place, and the next instruction follows it.
     case Effect::PushReconvergence:
     case Effect::None:
     case Effect::ImageQuery:
@@ -200,7 +200,7 @@ IssueTable::IssueTable(const exec::Image& image, const Params& params) {
   }
 }
 
-// Constants, specials and predicates are not in the banks.
+// Counts the register reads by bank. Constants, specials and predicates are not in the banks.
 void IssueTable::count_bank_reads(const IssueRow& row, const RegisterFileParams& params) {
   BankReads reads{};
   if (row.finish == Finish::Fixed)

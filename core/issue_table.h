@@ -1,4 +1,4 @@
-// What the issue logic needs of each instruction, decoded once: its pipe, its latency, its registers.
+// Decodes once what the issue logic needs of each instruction: its pipe, its latency, its registers.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -14,27 +14,28 @@
 
 namespace glint::core {
 
-// Model: each scheduler has one pipe of each kind, as a Turing sub-core has; int, move and predicate share
-// the integer pipe; divisions run on the special-function pipe. Memory is the door to the units that all
-// schedulers share (load-store, texture): it is limited by a queue (core/lsu.h), not by an interval.
+// Names the pipes. Model: each scheduler has one pipe of each kind, as a Turing sub-core has. Int, move and
+// predicate share the integer pipe, and divisions run on the special-function pipe. Memory is the door to the
+// units that all schedulers share (load-store, texture); a queue (core/lsu.h) limits it, not an interval.
 enum class Pipe : uint8_t { Int, Fp32, Fp64, Sfu, Const, Branch, RtUnit, Memory, Count };
 inline constexpr int kNumPipes = int(Pipe::Count);
 Pipe pipe_of(isa::Unit unit);
 
-// How an instruction's end is known.
+// Says how the end of an instruction is known.
 enum class Finish : uint8_t {
   Fixed,       // `latency` cycles after issue
   Memory,      // when the L1 has answered
   Rays,        // when the RT unit has answered
-  Control,     // fixed, and the warp does not issue before
+  Control,     // after a fixed time; the warp does not issue before
   CallRecord,  // as Control, and then when the record of the binding table has been read
-  Barrier,     // when the other warps have come; of bar.arrive, as Control
+  Barrier,     // when the other warps have come; a bar.arrive ends as Control
   Fence,       // when the warp's earlier accesses are done, and then `latency` cycles
 };
 
 struct IssueRow {
-  uint32_t first_use = 0;  // of IssueTable's list: registers to be ready, the destinations last
-  uint8_t num_uses = 0;    // with the destinations
+  uint32_t first_use =
+      0;  // index into IssueTable's list of registers that have to be ready, the destinations last
+  uint8_t num_uses = 0;  // including the destinations
   uint8_t num_defs = 0;
   Pipe pipe = Pipe::Int;
   Finish finish = Finish::Fixed;
@@ -44,38 +45,40 @@ struct IssueRow {
   bool is_conditional : 1 = false;  // a guarded branch
   bool is_guarded : 1 = false;      // the last source is its guard
   bool alternates : 1 = false;      // OpTime::alternates
-  bool is_texture : 1 = false;      // through the texture unit
+  bool is_texture : 1 = false;      // goes through the texture unit
   bool is_sequence : 1 = false;     // IssueTable::issues() is more than 1
   AtomicKind atomic : 2 = AtomicKind::Integer;
   uint16_t latency = 1;
-  uint16_t interval = OpTime::kParts;  // of the pipe, in parts of a cycle
+  uint16_t interval = OpTime::kParts;  // interval of the pipe, in parts of a cycle
 };
 static_assert(sizeof(IssueRow) == 16);
 
-// Scoreboard index of a predicate; 32-bit registers come first.
+// Scoreboard index of the first predicate. The indices of 32-bit registers come first.
 inline constexpr uint16_t kFirstPredicate = 256;
 inline constexpr uint16_t kScoreboardEntries = kFirstPredicate + isa::kNumPredicates;
 
-// All instructions of an image. Read-only while running.
+// Holds all instructions of an image. It is not written while the core runs.
 class IssueTable {
  public:
   IssueTable(const exec::Image& image, const Params& params);
   const IssueRow& row(uint32_t pc) const { return rows_[pc]; }
-  // Sources, guard and destinations: all have to be ready before issue.
+  // Returns sources, guard and destinations, which all have to be ready before issue.
   std::span<const uint16_t> uses(const IssueRow& row) const {
     return {registers_.data() + row.first_use, row.num_uses};
   }
-  // Registers that a memory instruction reads when it leaves its queue: the sources without the guard.
+  // Returns the registers that a memory instruction reads when it leaves its queue: the sources without the
+  // guard.
   std::span<const uint16_t> sources(const IssueRow& row) const {
     return {registers_.data() + row.first_use, size_t(row.num_uses - row.num_defs - row.is_guarded)};
   }
   std::span<const uint16_t> defs(const IssueRow& row) const {
     return {registers_.data() + row.first_use + row.num_uses - row.num_defs, row.num_defs};
   }
-  // Instructions of the part that the one at `pc` stands for, where it is a sequence.
+  // Returns the number of machine instructions that the instruction at `pc` stands for; more than 1 is a
+  // sequence.
   uint32_t issues(uint32_t pc) const { return issues_[pc]; }
-  // Registers that an instruction of fixed latency reads from each bank of the register file, at most the
-  // window's cycles. Empty where there are no banks.
+  // Holds the registers that an instruction of fixed latency reads from each bank of the register file, at
+  // most as many as the window has cycles. It is empty when there are no banks.
   using BankReads = std::array<uint8_t, kMaxRegisterBanks>;
   const BankReads& bank_reads(uint32_t pc) const { return bank_reads_[pc]; }
 

@@ -1,4 +1,4 @@
-// The load-store unit of a core.
+// Implements the load-store unit of a core.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/lsu.h"
 
@@ -61,7 +61,7 @@ void Lsu::take_answers(Cycle now) {
   }
 }
 
-// Round robin over the schedulers' queues, one access in accept_interval cycles.
+// Takes one access in accept_interval cycles from the schedulers' queues, which take turns.
 void Lsu::accept(Group& group, Cycle now) {
   if (now < group.accept_at || group.capacity == 0) return;
   for (uint32_t i = 0; i < num_queues_; ++i) {
@@ -110,7 +110,7 @@ void Lsu::enter(uint32_t id, Pipe& pipe, Cycle now) {
   accepted_[num_accepted_++] = id;
 }
 
-// Of the texture units, for the samples of an access; 0 where only the interval counts.
+// Returns the cycles of the texture units for the samples of an access, or 0 when only the interval counts.
 Cycle Lsu::texture_cycles(const MemoryAccess& access) const {
   return samples_per_cycle_ ? (access.samples + samples_per_cycle_ - 1) / samples_per_cycle_ : 0;
 }
@@ -119,8 +119,9 @@ Cycle Lsu::shared_cycles(const MemoryAccess& access) const {
   return access.atomic ? 1 + (access.passes - 1) * Cycle{shared_.atomic_pass} : access.passes;
 }
 
-// Model: turns of a compare-and-swap or a floating-point addition keep the unit no longer than those of an
-// integer's: what they take longer is between their accesses.
+// Returns the latency in shared memory. Model: turns of a compare-and-swap or a floating-point addition keep
+// the unit busy no longer than those of an integer atomic, because their extra time lies between their
+// accesses.
 Cycle Lsu::shared_latency(const MemoryAccess& access) const {
   if (!access.atomic) return shared_.latency + conflict_latency(access.passes - 1);
   const AtomicParams& own = access.atomic_kind == AtomicKind::Swap ? shared_.swap : shared_.float_add;
@@ -141,7 +142,7 @@ void Lsu::finish_shared(Cycle now) {
     completed_.push_back(pipe.front());
 }
 
-// Lines of one access a cycle and door; the pipe not served last goes first.
+// Sends lines of one access per cycle and door. The pipe that was not served last goes first.
 void Lsu::send(Cycle now) {
   finish_shared(now);
   const uint32_t first = next_pipe_;

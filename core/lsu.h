@@ -1,5 +1,5 @@
-// The load-store unit of a core: takes warp accesses from the schedulers' queues, sends their lines to the
-// L1.
+// Models the load-store unit of a core: takes accesses from the schedulers' queues and sends their lines to
+// the L1.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
@@ -15,60 +15,62 @@
 
 namespace glint::core {
 
-// A warp's access between issue and completion.
+// Holds a warp's access between issue and completion.
 struct MemoryAccess {
   explicit MemoryAccess(uint32_t line_bytes) : lines(line_bytes) {}
   uint32_t slot = 0;  // warp slot
   uint32_t pc = 0;
   Cycle issued = 0;
-  Cycle late_until = 0;  // registers that it fills are not written before
+  Cycle late_until = 0;  // the registers that it fills are not written before this cycle
   mem::Traffic traffic = mem::Traffic::ShaderGlobal;
   bool write = false;
-  bool texture = false;  // through the texture unit
-  uint32_t samples = 0;  // then: of up to four texels
-  bool atomic = false;   // one that shared memory does, if it is there
+  bool texture = false;  // goes through the texture unit
+  uint32_t samples = 0;  // for textures: samples of up to four texels
+  bool atomic = false;   // an atomic that shared memory does, if the word is there
   AtomicKind atomic_kind = AtomicKind::Integer;
-  uint32_t bank_turns = 1;  // words of the fullest bank of the L1's array, where that counts
-  uint32_t passes = 0;      // of shared memory; an access may go there and to lines (generic addresses)
+  uint32_t bank_turns = 1;  // words of the fullest bank of the L1's array, where banks count
+  uint32_t passes = 0;      // passes of shared memory; a generic access may go there and to lines
   LineList lines;
-  uint32_t num_table_lines = 0;  // the first of them: candidates that the called shaders see
+  uint32_t num_table_lines = 0;  // the first lines, which hold the candidates that the called shaders see
 
  private:
   friend class Lsu;
   uint32_t num_sent = 0, num_answers = 0;
-  Cycle hold = 0;   // of the L1's array before its first line, for words that meet in a bank
+  Cycle hold = 0;   // cycles of the L1's array before its first line, for words that meet in a bank
   Cycle ready = 0;  // in the pipe: when its first line can go to the L1
 };
 
-// Queue of each scheduler -> (accept_interval) -> load-store pipe -> lines_per_cycle -> L1,
-//                                              or -> shared memory, one pass a cycle.
-// The same for the texture pipe, which has queues and a door of its own or shares those of loads.
-// Model: shared memory and L1 do not disturb each other, where hardware has one array for both.
+// Takes accesses through these stages: queue of each scheduler -> (accept_interval) -> load-store pipe ->
+// lines_per_cycle -> L1, or -> shared memory, one pass per cycle. The texture pipe has the same stages, with
+// queues and a door of its own, or it shares those of loads. Model: shared memory and L1 do not disturb each
+// other, although hardware has one array for both.
 class Lsu {
  public:
   Lsu(const Params& params, mem::L1Port& l1);
 
-  // Whether an instruction of that scheduler can issue: room in its queue and in the table of accesses.
+  // Returns whether an instruction of that scheduler can issue: its queue and the table of accesses have
+  // room.
   bool can_take(uint32_t scheduler, bool texture = false) const {
     const Group& group = groups_[texture && own_queue_];
     return !free_.empty() && group.queues[scheduler].count < group.capacity;
   }
-  // Grows whenever can_take() may have become true for some scheduler.
+  // Returns a number that grows whenever can_take() may have become true for some scheduler.
   uint64_t num_vacated() const { return num_vacated_; }
-  // A new access at the end of the scheduler's queue: the caller fills all of it in before the next tick.
+  // Returns a new access at the end of the scheduler's queue. The caller fills in all of it before the next
+  // tick.
   MemoryAccess& take(uint32_t scheduler, Cycle now, bool texture = false);
-  // Advances to `now`; afterwards completed() holds the accesses that ended in this cycle, each once:
-  // reads when their last line has come, writes when the L1 has taken the last line.
+  // Advances to `now`. Afterwards completed() holds the accesses that ended in this cycle, each once: reads
+  // when their last line has come, and writes when the L1 has taken the last line.
   void tick(Cycle now);
   std::span<const uint32_t> completed() const { return {completed_.data(), completed_.size()}; }
-  // Those that have left their queues in this cycle.
+  // Returns the accesses that have left their queues in this cycle.
   std::span<const uint32_t> accepted() const { return {accepted_.data(), num_accepted_}; }
   const MemoryAccess& access(uint32_t id) const { return accesses_[id]; }
   void release(uint32_t id) {
     free_.push_back(id);
     ++num_vacated_;
   }
-  // Earliest cycle after `now` with work of its own (answers are the L1's events); kNever when none.
+  // Returns the earliest cycle after `now` with work of its own, or kNever. Answers are the L1's events.
   Cycle next_event(Cycle now) const;
   bool idle() const { return free_.size() == accesses_.size(); }
 
@@ -77,9 +79,9 @@ class Lsu {
   struct Queue {
     std::array<uint32_t, kMaxQueue> id{};
     uint32_t head = 0, count = 0;
-    Cycle free_at = 0;  // of this scheduler's address generation
+    Cycle free_at = 0;  // when this scheduler's address generation is free
   };
-  struct Group {  // queues that one unit takes from in turn
+  struct Group {  // queues from which one unit takes in turn
     std::array<Queue, kMaxSchedulers> queues{};
     uint32_t capacity = 0, next = 0;
     Cycle accept_at = 0;
@@ -103,7 +105,7 @@ class Lsu {
   static size_t pipe_of(const MemoryAccess& access) {
     return access.lines.lines().empty() ? kShared : access.texture;
   }
-  // Latency of `turns` further turns of the banks.
+  // Returns the latency of `turns` further turns of the banks.
   Cycle conflict_latency(Cycle turns) const {
     return std::max<Cycle>(turns * shared_.conflict_turn, shared_.conflict_hidden) - shared_.conflict_hidden;
   }
@@ -115,12 +117,12 @@ class Lsu {
   const SharedParams shared_;
   const UnitParams lsu_unit_, tex_unit_;
   const uint32_t num_queues_, samples_per_cycle_;
-  const bool own_queue_, own_door_;  // of the texture unit
+  const bool own_queue_, own_door_;  // the texture unit has a queue and a door of its own
   std::array<Group, 2> groups_;      // of loads and stores, and of textures if they have their own
   static constexpr size_t kShared = 2;
   std::array<Pipe, 3> pipes_;  // load-store, texture, shared memory
   uint32_t next_pipe_ = 0;
-  std::array<Cycle, 2> door_free_{};  // to the L1; the second is the texture unit's own
+  std::array<Cycle, 2> door_free_{};  // doors to the L1; the second is the texture unit's own
   std::array<uint32_t, 2> accepted_{};
   uint32_t num_accepted_ = 0;
   uint64_t num_vacated_ = 0;

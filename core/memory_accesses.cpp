@@ -1,4 +1,4 @@
-// The memory accesses of a core's warps.
+// Handles the memory accesses of a core's warps.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/memory_accesses.h"
 
@@ -75,7 +75,7 @@ void MemoryAccesses::count(const isa::OpRow& op) {
   }
 }
 
-// Model: a fence of the whole system takes longer than any acknowledgement anyway.
+// Starts a fence. Model: a fence of the whole system takes longer than any acknowledgement anyway.
 void MemoryAccesses::start_fence(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now) {
   ++core_.counts.stats.fences;
   Pending& pending = pending_[slot];
@@ -95,7 +95,8 @@ void MemoryAccesses::take_answers(Cycle now) {
   for (uint32_t id : lsu_.completed()) complete(id, now);
 }
 
-// An access has left its queue: the unit reads its registers, and others may write them from then on.
+// Notes that an access has left its queue. The unit reads its registers, and others may write them from then
+// on.
 void MemoryAccesses::read_operands(uint32_t access_id, Cycle now) {
   const MemoryAccess& access = lsu_.access(access_id);
   const IssueRow& row = core_.table.row(access.pc);

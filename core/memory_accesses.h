@@ -1,4 +1,4 @@
-// The memory accesses of a core's warps, from issue to completion, and the fences that wait for them.
+// Handles the memory accesses of a core's warps from issue to completion, and the fences that wait for them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -16,33 +16,34 @@ class MemoryAccesses {
  public:
   struct Context {
     Lsu& lsu;
-    LocalLayout local;       // Of the core's lanes' stacks.
-    rt::TableLayout tables;  // Of the candidates of the core's rays.
-    Cycle turn = 0;  // Length of the turns after which other cores see what this one wrote; 0: no others.
+    LocalLayout local;       // layout of the core's lanes' stacks
+    rt::TableLayout tables;  // layout of the candidates of the core's rays
+    Cycle turn =
+        0;  // length of the turns after which other cores see what this one wrote; 0: there are no others
   };
   MemoryAccesses(const CoreParts& core, const Context& context);
 
-  // A warp begins in the slot.
+  // Notes that a warp begins in the slot.
   void start_warp(uint32_t slot) { pending_[slot] = {}; }
-  // Hands the access of an executed instruction to the load-store unit; false when no lane makes one.
+  // Hands the access of an executed instruction to the load-store unit. Returns false when no lane makes one.
   bool start(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now);
-  // A fence lets the warp go on when the warp's earlier accesses are done, and then a latency later. A fence
+  // Starts a fence, which lets the warp go on a latency after the warp's earlier accesses are done. A fence
   // among cores lasts until the other cores see what came before it, however short its latency.
   void start_fence(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now);
-  // After the load-store unit's tick: accesses that it has read or completed in this cycle.
+  // Takes the accesses that the load-store unit has read or completed in this cycle, after the unit's tick.
   void take_answers(Cycle now);
 
-  // Accesses of the slot's warp between issue and completion.
+  // Returns the accesses of the slot's warp between issue and completion.
   uint32_t in_flight(uint32_t slot) const { return pending_[slot].accesses; }
-  // The lanes of access `access`, the token of its requests, that touch a line. `slot`: the slot of their
-  // warp.
+  // Returns the lanes of access `access`, the token of its requests, that touch a line. `slot` becomes the
+  // slot of their warp.
   LaneMask readers_of(mem::Token access, Address line, uint32_t& slot) const;
 
  private:
   struct Pending {
     uint32_t accesses = 0;
-    Cycle fence = 0;          // Latency of the fence that waits for the accesses. 0: none does.
-    bool has_stored = false;  // The warp has stored to global memory since its last fence among cores.
+    Cycle fence = 0;          // latency of the fence that waits for the accesses; 0: none does
+    bool has_stored = false;  // the warp has stored to global memory since its last fence among cores
   };
   void count(const isa::OpRow& op);
   void read_operands(uint32_t access_id, Cycle now);
@@ -59,7 +60,7 @@ class MemoryAccesses {
   const AccessLines lines_;
   const Cycle turn_;
   const bool holds_operands_;
-  std::vector<Pending> pending_;  // One a slot.
+  std::vector<Pending> pending_;  // one per slot
 };
 
 }  // namespace glint::core

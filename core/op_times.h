@@ -1,4 +1,4 @@
-// Interface: the time of single ops, where it is not that of their unit.
+// Interface: gives the times of single ops, where they are not those of their unit.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -11,18 +11,18 @@
 
 namespace glint::core {
 
-// Units give one latency and interval to all their ops; a real part takes longer for some of them, or runs
-// them on another pipe, or makes a sequence of instructions of one.
+// Holds the time of one op. Units give one latency and interval to all their ops. A real part takes longer
+// for some of them, or runs them on another pipe, or makes a sequence of instructions of one.
 struct OpTime {
-  std::string_view name;  // of an op; one '*' stands for any text
-  uint32_t latency = 1;   // cycles from issue to issue of a dependent instruction
+  std::string_view name;  // name of an op; one '*' stands for any text
+  uint32_t latency = 1;   // cycles from issue to the issue of a dependent instruction
   double interval =
       1;  // cycles from issue to the next issue on the pipe, on average: a multiple of 1 / kParts
-  isa::Unit pipe = isa::Unit::Count;  // the unit on whose pipe it runs; Count: on its own
-  bool alternates = false;            // between pipes, so that `latency` has their crossing in it
-  uint32_t issues = 1;  // instructions of the part that make up the op: issue slots, spread over the latency
+  isa::Unit pipe = isa::Unit::Count;  // the unit on whose pipe it runs; Count: its own unit
+  bool alternates = false;  // it alternates between pipes, so that `latency` includes their crossing
+  uint32_t issues = 1;      // machine instructions that make up the op: issue slots, spread over the latency
 
-  static constexpr uint32_t kParts = 16;  // of a cycle
+  static constexpr uint32_t kParts = 16;  // parts of a cycle
 };
 
 // Contract (tests/timing/op_times_test.cpp): every entry names at least one op, times are at least 1, and no
@@ -32,9 +32,9 @@ class OpTimes {
   static constexpr PolicyKind kKind{"core.op_times", "core/op_times"};
   struct Context {};
   virtual ~OpTimes() = default;
-  virtual std::span<const OpTime> entries() const = 0;  // the first that fits an op is taken
+  virtual std::span<const OpTime> entries() const = 0;  // the first entry that fits an op is taken
 
-  // Null: the op has the time of its unit.
+  // Returns null when the op has the time of its unit.
   const OpTime* find(std::string_view op) const {
     for (const OpTime& entry : entries())
       if (fits(entry.name, op)) return &entry;

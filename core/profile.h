@@ -1,4 +1,4 @@
-// Where a core's cycles go, by instruction: kept only when asked for.
+// Counts where a core's cycles go, by instruction. It runs only when asked for.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -15,17 +15,17 @@ struct InstructionCounts : ProfileCounts {
   std::array<uint64_t, size_t(Stall::Count)> slots{};  // cycles of schedulers
 };
 
-// Every cycle of a scheduler goes to the instruction that it issued or, when it issued none, to the one that
-// the warp nearest to issue waits at. So the slots of all instructions add up to the core's issue slots,
-// reason by reason.
+// Counts by instruction. Every cycle of a scheduler goes to the instruction that it issued or, when it issued
+// none, to the one at which the warp nearest to issue waits. So the slots of all instructions add up to the
+// core's issue slots, reason by reason.
 class Profile {
  public:
-  static constexpr uint32_t kNowhere = ~0u;  // no warp was there
+  static constexpr uint32_t kNowhere = ~0u;  // there was no warp
 
   Profile(size_t num_instructions, uint32_t schedulers)
       : counts_(num_instructions + 1), at_(schedulers, kNowhere) {}
 
-  // The scheduler's cycles are this instruction's from now on.
+  // Gives the scheduler's cycles to this instruction from now on.
   void point(uint32_t scheduler, uint32_t pc) { at_[scheduler] = pc; }
   void spend(uint32_t scheduler, Stall reason, uint64_t cycles) {
     const uint32_t pc = reason == Stall::NoWarp ? kNowhere : at_[scheduler];
@@ -51,7 +51,7 @@ class Profile {
   const InstructionCounts& nowhere() const { return counts_.back(); }
 
  private:
-  std::vector<InstructionCounts> counts_;  // one an instruction, and the last for none
+  std::vector<InstructionCounts> counts_;  // one per instruction, and the last for none
   std::vector<uint32_t> at_;
 };
 

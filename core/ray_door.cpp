@@ -1,4 +1,4 @@
-// The door between a core and its RT unit.
+// Implements the door between a core and its RT unit.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/ray_door.h"
 

@@ -1,4 +1,4 @@
-// The door between a core and its RT unit: hands the rays of warps over, and takes warps back.
+// Hands the rays of warps over from a core to its RT unit, and takes warps back.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -16,22 +16,22 @@ class RayDoor {
   // Gives the rays of an rt.trace, rt.resume or rq.proceed to the RT unit. The warp goes on at once when none
   // of its rays has to travel.
   void start(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now);
-  // Warps whose rays have all stopped by `now` go on.
+  // Lets warps go on whose rays have all stopped by `now`.
   void take_answers(Cycle now);
-  // The instruction that handed over the slot's rays last.
+  // Returns the instruction that handed over the slot's rays last.
   uint32_t traced_at(uint32_t slot) const { return trips_[slot].pc; }
 
  private:
   struct Trip {
     Cycle issued = 0;
     uint32_t pc = 0;
-    LaneMask lanes = 0;  // Lanes whose rays travel.
+    LaneMask lanes = 0;  // lanes whose rays travel
   };
   void complete(uint32_t slot, Cycle now);
 
   const CoreParts core_;
   rt::RtPort& rt_;
-  std::vector<Trip> trips_;  // The last trip of each slot.
+  std::vector<Trip> trips_;  // the last trip of each slot
 };
 
 }  // namespace glint::core

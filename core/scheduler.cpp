@@ -1,4 +1,4 @@
-// A scheduler of a core: the scan over its warps, and the blame for a cycle without issue.
+// Scans a scheduler's warps, and finds the reason for a cycle without issue.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/scheduler.h"
 
@@ -70,7 +70,7 @@ NextIssue Scheduler::next_of(uint32_t warp) const {
   return {ready_at_[warp], wait_[warp], pipe_[warp], door};
 }
 
-// The reason that the scheduler would have if this warp were its only one.
+// Returns the reason that the scheduler would have if this warp were its only one.
 Stall Scheduler::reason_of(uint32_t warp, Cycle now, const Doors& doors) const {
   const NextIssue next = next_of(warp);
   if (next.ready_at > now) return next.wait;
@@ -83,7 +83,7 @@ Stall Scheduler::reason_of(uint32_t warp, Cycle now, const Doors& doors) const {
 std::optional<uint32_t> Scheduler::to_blame(Cycle now, const Doors& doors) const {
   std::optional<uint32_t> best;
   bool best_fits = false;
-  // Whether warp `a` is to blame rather than warp `b`.
+  // Returns whether warp `a` is to blame rather than warp `b`.
   const auto before = [&](uint32_t a, uint32_t b) {
     const Cycle until_a = std::max(ready_at_[a], now), until_b = std::max(ready_at_[b], now);
     return until_a != until_b ? until_a < until_b : age_[a] < age_[b];

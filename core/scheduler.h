@@ -1,4 +1,4 @@
-// One scheduler of a core: what each of its warps waits for, and which warps can issue.
+// Models one scheduler of a core: what each of its warps waits for, and which warps can issue.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
@@ -18,30 +18,30 @@
 
 namespace glint::core {
 
-// The queue in front of a shared unit that a warp's next instruction has to enter.
+// Names the queue in front of a shared unit that a warp's next instruction has to enter.
 enum class Door : uint8_t { None, Lsu, Texture, RtUnit };
 
-// What the next instruction of a warp waits for, and where it goes.
+// Says what the next instruction of a warp waits for, and where it goes.
 struct NextIssue {
-  Cycle ready_at = 0;            // Cycle in which its operands are there. kNever: nobody knows it yet.
-  Stall wait = Stall::RawFixed;  // What the instruction waits for until then.
+  Cycle ready_at = 0;            // cycle in which its operands are present; kNever: nobody knows it yet
+  Stall wait = Stall::RawFixed;  // what the instruction waits for until then
   Pipe pipe = Pipe::Int;
   Door door = Door::None;
 };
 
-// The units behind the doors, which say whether there is room.
+// Holds the units behind the doors, which say whether there is room.
 struct Doors {
   const Lsu& lsu;
   const rt::RtPort& rt;
 };
 
-// The registers of a scheduler lie in banks with one read port each. An instruction reads its registers in a
-// window of cycles that begins with its issue, one register a bank and cycle, after the instructions before
-// it.
+// Models the banks of a scheduler's registers, which have one read port each. An instruction reads its
+// registers in a window of cycles that begins with its issue, one register per bank and cycle, after the
+// instructions before it.
 class RegisterBanks {
  public:
   using Reads = IssueTable::BankReads;
-  // The first cycle from `now` on in which an instruction that reads `reads` can issue.
+  // Returns the first cycle from `now` on in which an instruction that reads `reads` can issue.
   Cycle free_at(const Reads& reads, Cycle now, Cycle window) const {
     Cycle at = now;
     for (size_t bank = 0; bank < reads.size(); ++bank)
@@ -54,19 +54,19 @@ class RegisterBanks {
   }
 
  private:
-  std::array<Cycle, kMaxRegisterBanks> port_free_{};  // First cycle in which the bank's port is free.
+  std::array<Cycle, kMaxRegisterBanks> port_free_{};  // first cycle in which the bank's port is free
 };
 
-// A scheduler numbers its warps locally: warp slot w is warp w / schedulers of scheduler w mod schedulers.
-// A scheduler sleeps while no warp can issue and its reason stays the same. Three things end the sleep: the
-// cycle that it waits for comes, somebody tells of a change to one of its warps, or a door that it watches
-// may have opened.
+// Issues from its warps, which it numbers locally: warp slot w is warp w / schedulers of scheduler w mod
+// schedulers. A scheduler sleeps while no warp can issue and its reason stays the same. Three things end the
+// sleep: the cycle that it waits for comes, somebody tells of a change to one of its warps, or a door that it
+// watches may have opened.
 class Scheduler {
  public:
-  // `slots`: warp slots of the whole core.
+  // `slots` is the number of warp slots of the whole core.
   Scheduler(uint32_t index, uint32_t slots, const Params& params);
 
-  // What happens to warps. Each of these calls wakes the scheduler, except drain().
+  // These calls say what happens to warps. Each wakes the scheduler, except drain().
   void add(uint32_t warp, uint64_t age);
   void remove(uint32_t warp);
   void set_next(uint32_t warp, const NextIssue& next) {
@@ -79,21 +79,22 @@ class Scheduler {
     needs_rt_ = (needs_rt_ & others) | uint64_t{next.door == Door::RtUnit} << warp;
     wake();
   }
-  // The warp has ended and waits for its last accesses.
+  // Notes that the warp has ended and waits for its last accesses.
   void drain(uint32_t warp) {
     ready_at_[warp] = kNever;
     wait_[warp] = Stall::Drain;
   }
-  // The core has no warps: the reason of its cycles is that from now on.
+  // Notes that the core has no warps, which is the reason of its cycles from now on.
   void become_empty() { reason_ = Stall::NoWarp; }
 
-  // Whether find_ready() may say something else than the last time.
+  // Returns whether find_ready() may give another result than the last time.
   bool is_awake(Cycle now, const Lsu& lsu) const {
     return now >= sleep_until_ || watches_rt_ || (watches_lsu_ && lsu_vacated_ != lsu.num_vacated());
   }
-  // Bit i: warp i can issue now. When no bit is set, reason() says why and the scheduler sleeps.
+  // Returns the warps that can issue now, as bits. When no bit is set, reason() says why, and the scheduler
+  // sleeps.
   uint64_t find_ready(Cycle now, const Doors& doors);
-  // Warps of `ready` whose register reads meet those of earlier instructions may not issue before `next`.
+  // Holds back warps of `ready` whose register reads meet those of earlier instructions until `next`.
   void hold_for_banks(Cycle next) {
     reason_ = std::min(reason_, Stall::RegisterBanks);
     sleep_until_ = std::min(sleep_until_, next);
@@ -107,8 +108,8 @@ class Scheduler {
     return warp;
   }
 
-  // An instruction issues to a pipe. Returns by how many cycles it enters the pipe later. That is 0 without
-  // latches; with latches the instruction enters when the pipe has finished the one before, and the next
+  // Issues an instruction to a pipe. Returns by how many cycles it enters the pipe later. That is 0 without
+  // latches. With latches the instruction enters when the pipe has finished the one before, and the next
   // instruction can issue as soon as this one has entered.
   Cycle occupy(Pipe at, Cycle now, Cycle parts) {
     constexpr Cycle kParts = OpTime::kParts;
@@ -119,7 +120,7 @@ class Scheduler {
     pipe_free_[size_t(at)] = start / kParts + 1;
     return start / kParts - now;
   }
-  // An instruction goes to a pipe that is free. Intervals that are no whole number of cycles are kept on
+  // Sends an instruction to a pipe that is free. Intervals that are not a whole number of cycles are kept on
   // average: an interval begins where the last one ended, within the cycle, if the pipe has not been idle
   // since.
   void take(Pipe at, Cycle now, Cycle parts) {
@@ -130,12 +131,12 @@ class Scheduler {
   }
 
   uint32_t index() const { return index_; }
-  Stall reason() const { return reason_; }            // What the scheduler's cycles are spent on.
-  Cycle sleep_until() const { return sleep_until_; }  // Nothing happens before, unless a door opens.
+  Stall reason() const { return reason_; }            // what the scheduler's cycles are spent on
+  Cycle sleep_until() const { return sleep_until_; }  // nothing happens before, unless a door opens
   bool is_resident(uint32_t warp) const { return resident_ >> warp & 1; }
   NextIssue next_of(uint32_t warp) const;
-  // The warp whose wait gave the scheduler its reason: the one that can go on first, the oldest of several.
-  // None when the scheduler has no warps.
+  // Returns the warp whose wait gave the scheduler its reason: the one that can go on first, or the oldest of
+  // several. Returns none when the scheduler has no warps.
   std::optional<uint32_t> to_blame(Cycle now, const Doors& doors) const;
 
   RegisterBanks banks;
@@ -144,26 +145,25 @@ class Scheduler {
   void wake() { sleep_until_ = 0; }
   Stall reason_of(uint32_t warp, Cycle now, const Doors& doors) const;
 
-  // find_ready() scans these in almost every cycle of a core, so each field of all warps is an array of its
-  // own.
+  // find_ready() scans these in almost every cycle of a core, so each field is an array over all warps.
   const uint32_t index_;
-  uint64_t resident_ = 0;  // Bit i: warp i holds its slot.
+  uint64_t resident_ = 0;  // bit i: warp i holds its slot
   std::array<Cycle, kMaxWarpsPerScheduler> ready_at_{};
   std::array<Stall, kMaxWarpsPerScheduler> wait_{};
   std::array<Pipe, kMaxWarpsPerScheduler> pipe_{};
   uint64_t needs_lsu_ = 0, needs_tex_ = 0,
-           needs_rt_ = 0;                     // Bit i: the next instruction of warp i enters that door.
-  std::array<Cycle, kNumPipes> pipe_free_{};  // First cycle in which another instruction can go to the pipe.
-  std::array<uint64_t, kMaxWarpsPerScheduler> age_{};  // Launch number of each warp.
-  std::array<Cycle, kNumPipes> pipe_busy_{};           // When the pipe has finished, in parts of a cycle.
+           needs_rt_ = 0;                     // bit i: the next instruction of warp i enters that door
+  std::array<Cycle, kNumPipes> pipe_free_{};  // first cycle in which another instruction can go to the pipe
+  std::array<uint64_t, kMaxWarpsPerScheduler> age_{};  // launch number of each warp
+  std::array<Cycle, kNumPipes> pipe_busy_{};           // when the pipe has finished, in parts of a cycle
 
   Cycle sleep_until_ = 0;
   bool watches_rt_ = false,
-       watches_lsu_ = false;  // Doors that were full; either queue of the load-store unit.
-  uint64_t lsu_vacated_ = 0;  // Lsu::num_vacated() when the doors were looked at.
+       watches_lsu_ = false;  // doors that were full; lsu: either queue of the load-store unit
+  uint64_t lsu_vacated_ = 0;  // Lsu::num_vacated() when the doors were looked at
   Stall reason_ = Stall::NoWarp;
   std::unique_ptr<IssueScheduler> policy_;
-  const bool has_latches_;  // Params::dispatch_latch.
+  const bool has_latches_;  // Params::dispatch_latch
 };
 
 }  // namespace glint::core

@@ -1,4 +1,4 @@
-// When each register and predicate of one warp can be read or overwritten.
+// Knows when each register and predicate of one warp can be read or overwritten.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
@@ -12,15 +12,15 @@
 
 namespace glint::core {
 
-// An instruction issues when its sources are ready (read after write) and its destinations are too (write
-// after write: results of one register arrive in order). Write after read needs no check but for memory
-// instructions, which read their registers when they leave their queue. Model: hardware of this kind leaves
-// fixed latencies to stall counts that the compiler sets, and counts variable ones in six counters a warp; a
-// ready time a register gives the same cycles when those are set well.
+// Holds the ready times. An instruction issues when its sources are ready (read after write) and its
+// destinations are, too (write after write: results of one register arrive in order). Write after read needs
+// a check only for memory instructions, which read their registers when they leave their queue. Model:
+// hardware of this kind leaves fixed latencies to stall counts that the compiler sets, and counts variable
+// ones in six counters per warp. A ready time per register gives the same cycles when those are set well.
 class Scoreboard {
  public:
   struct Ready {
-    Cycle at = 0;                  // kNever: when an access or the RT unit answers
+    Cycle at = 0;                  // kNever: known when an access or the RT unit answers
     Stall wait = Stall::RawFixed;  // what the last of the registers waits for
   };
 
@@ -31,14 +31,15 @@ class Scoreboard {
     readers_.fill(0);
     held_.fill(0);
   }
-  // When all of `registers` are ready; not before `start`, which waits for `start.wait`.
+  // Returns when all of `registers` are ready. It is not before `start`, which waits for `start.wait`.
   Ready ready(std::span<const uint16_t> registers, Ready start) const {
     for (uint16_t r : registers)
       if (ready_[r] > start.at) start = {ready_[r], wait_[r]};
     return start;
   }
-  // The same where results reach other pipes `crossing` cycles later than their own, and guards `guard`
-  // cycles later; and where the instruction's own results may come `slack` cycles after those it waits for.
+  // Does the same when results reach other pipes `crossing` cycles later than their own and guards `guard`
+  // cycles later, and when the instruction's own results may come `slack` cycles after those that it waits
+  // for.
   Ready ready(std::span<const uint16_t> registers, Ready start, const IssueRow& row, Cycle crossing,
               Cycle guard, Cycle slack) const {
     const size_t guard_at = row.is_guarded ? size_t(row.num_uses - row.num_defs - 1) : registers.size();
@@ -53,8 +54,8 @@ class Scoreboard {
     }
     return start;
   }
-  // The same for an instruction whose results come `latency` cycles after its issue: earlier ones of its
-  // registers need only come before them.
+  // Does the same for an instruction whose results come `latency` cycles after its issue. Earlier results of
+  // its registers only have to come before these.
   Ready ready_in_order(std::span<const uint16_t> sources, std::span<const uint16_t> results, Ready start,
                        Cycle latency) const {
     start = ready(sources, start);
@@ -64,7 +65,7 @@ class Scoreboard {
     }
     return start;
   }
-  // Not before all of `registers` have been read by those that hold them.
+  // Returns when all of `registers` have been read by the instructions that hold them.
   Ready unread(std::span<const uint16_t> registers, Ready start) const {
     for (uint16_t r : registers) {
       const Cycle at = readers_[r] ? kNever : held_[r];
@@ -75,14 +76,15 @@ class Scoreboard {
   void hold(std::span<const uint16_t> registers) {
     for (uint16_t r : registers) ++readers_[r];
   }
-  // One of those that hold them reads them until `end`.
+  // Notes that an instruction which holds the registers reads them until `end`.
   void read(std::span<const uint16_t> registers, Cycle end) {
     for (uint16_t r : registers) {
       --readers_[r];
       held_[r] = std::max(held_[r], end);
     }
   }
-  // `from`: the pipe whose result it is; Count: none whose results reach others later.
+  // Sets the ready time. `from` is the pipe whose result it is; Count: a result that does not reach others
+  // later.
   void set(std::span<const uint16_t> registers, Ready value, Pipe from = Pipe::Count) {
     for (uint16_t r : registers) {
       ready_[r] = value.at;
@@ -100,7 +102,7 @@ class Scoreboard {
   std::array<Stall, kScoreboardEntries> wait_{};
   std::array<Pipe, kScoreboardEntries> from_{};
   std::array<uint16_t, kScoreboardEntries> readers_{};  // memory instructions that have not read it yet
-  std::array<Cycle, kScoreboardEntries> held_{};        // until then by those that are reading it
+  std::array<Cycle, kScoreboardEntries> held_{};        // held until then by instructions that are reading it
 };
 
 }  // namespace glint::core

@@ -1,4 +1,4 @@
-// What an issue slot was spent on: each scheduler gives each of its cycles exactly one of these.
+// Names what an issue slot is spent on. Each scheduler gives each of its cycles exactly one of these.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -8,31 +8,32 @@
 
 namespace glint::core {
 
-// Ordered by nearness to issue. When several warps of a scheduler wait for different things, the cycle is
-// given to the first of them in this order: the warp that had least left to wait for is what was missed.
+// Names the reasons, ordered by nearness to issue. When several warps of a scheduler wait for different
+// things, the cycle is given to the first of them in this order, because the warp that had least left to wait
+// for is what was missed.
 enum class Stall : uint8_t {
   Issued,          // an instruction was issued
-  MathThrottle,    // operands ready, the execution pipe still takes the previous instruction
-  RegisterBanks,   // operands ready, the banks of the register file still read those of another instruction
-  LsuThrottle,     // operands ready, the scheduler's memory queue or the table of accesses is full
-  TexThrottle,     // the same of the queue of texture instructions
-  RtFull,          // rays ready, the RT unit takes no more warps
+  MathThrottle,    // operands are ready, but the execution pipe still takes the previous instruction
+  RegisterBanks,   // operands are ready, but the banks of the register file still read those of another one
+  LsuThrottle,     // operands are ready, but the scheduler's memory queue or the table of accesses is full
+  TexThrottle,     // operands are ready, but the queue of texture instructions is full
+  RtFull,          // rays are ready, but the RT unit takes no more warps
   RawFixed,        // result of an integer, floating-point, move or predicate instruction
-  OperandRead,     // a register to overwrite that a memory instruction has not read yet
+  OperandRead,     // read of a register to overwrite, by a memory instruction that has not read it yet
   RawSfu,          // result of the special-function pipe: transcendentals and divisions
   Const,           // result of a constant load
-  Branch,          // target of a branch not yet known
+  Branch,          // target of a branch that is not yet known
   NoInstruction,   // line of instructions
   LocalMemory,     // load from local memory
-  SharedMemory,    // load from shared memory, or atomic on it
+  SharedMemory,    // load from shared memory, or an atomic on it
   Texture,         // texture or image load
   LongScoreboard,  // load from global memory, whichever level answers
   Call,            // record of the shader binding table
-  Barrier,         // other warps of the block have not come
-  Fence,           // earlier accesses of the warp are not yet seen by those it asks for
+  Barrier,         // other warps of the block that have not come
+  Fence,           // earlier accesses of the warp, not yet seen by those that the fence asks for
   RtWait,          // the warp is in the RT unit
   Dispatch,        // the warp is being launched
-  Drain,           // the warp has ended, its last accesses have not
+  Drain,           // the warp has ended, but its last accesses have not
   NoWarp,          // no warp is resident
   Count
 };

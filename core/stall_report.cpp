@@ -1,4 +1,4 @@
-// What the warps of a core wait for, in words.
+// Says in words what the warps of a core wait for.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/stall_report.h"
 
@@ -14,8 +14,8 @@
 namespace glint::core {
 namespace {
 
-// Where the warp is, what it waits for, and whom it waits for: the warps of its block, or whoever writes what
-// it has read last.
+// Says where the warp is, what it waits for, and for whom: the warps of its block, or whoever writes what it
+// has read last.
 std::string describe_warp(const WarpSlot& slot, uint32_t accesses, const exec::World& world) {
   const exec::WarpContext& warp = slot.warp;
   const NextIssue next = slot.scheduler->next_of(slot.local);
@@ -42,7 +42,8 @@ std::string describe_warp(const WarpSlot& slot, uint32_t accesses, const exec::W
 }  // namespace
 
 std::string describe_warps(const WarpSlots& warps, const MemoryAccesses& memory, const exec::World& world) {
-  std::vector<std::pair<std::string, std::vector<uint64_t>>> groups;  // What is said, and of which warps.
+  std::vector<std::pair<std::string, std::vector<uint64_t>>>
+      groups;  // texts, each with the warps that it is about
   for (uint32_t slot = 0; slot < warps.size(); ++slot) {
     if (!warps.is_resident(slot)) continue;
     std::string text = describe_warp(warps[slot], memory.in_flight(slot), world);

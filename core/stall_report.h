@@ -1,4 +1,4 @@
-// What the warps of a core wait for, in words: for a machine that is stuck.
+// Says in words what the warps of a core wait for, for a machine that is stuck.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace glint::core {
 
-// One line for all warps that wait alike.
+// Returns one line for all warps that wait alike.
 std::string describe_warps(const WarpSlots& warps, const MemoryAccesses& memory, const exec::World& world);
 
 }  // namespace glint::core

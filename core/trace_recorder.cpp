@@ -1,4 +1,4 @@
-// From what a core's warps do to slices of a trace.
+// Makes slices of a trace from what a core's warps do.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/trace_recorder.h"
 
@@ -12,7 +12,8 @@ namespace {
 
 constexpr uint32_t kRunning = 0;
 
-// Results of pipes come in a known, short time: a warp that waits for one runs.
+// Returns whether a wait counts as running. Results of pipes come in a known, short time, so a warp that
+// waits for one runs.
 bool is_part_of_running(Stall reason) {
   switch (reason) {
     case Stall::Issued:
@@ -66,7 +67,7 @@ void TraceRecorder::start_warp(Cycle now, uint32_t slot, const exec::WarpContext
   slots_[slot] = {warp.warp_index, image_.shader_of[warp.simt.pc], now, now, now, now};
 }
 
-// A wait is part of the stage whose instruction waits; but for rays, of the one that traced them.
+// Notes a wait. It is part of the stage whose instruction waits or, for rays, of the one that traced them.
 void TraceRecorder::select(Cycle now, uint32_t slot, Cycle ready, Stall reason, Stall door, uint32_t pc) {
   if (reason != Stall::RtWait) enter_stage(slot, pc);
   wait(slot, reason, std::min(ready, now));
@@ -74,7 +75,7 @@ void TraceRecorder::select(Cycle now, uint32_t slot, Cycle ready, Stall reason, 
   wait(slot, door, now);
 }
 
-// The warp is in the shader of this instruction since what is known ends.
+// Notes that the warp is in the shader of this instruction since the end of what is known.
 void TraceRecorder::enter_stage(uint32_t slot, uint32_t pc) {
   Slot& warp = slots_[slot];
   const uint32_t shader = image_.shader_of[pc];
@@ -85,7 +86,7 @@ void TraceRecorder::enter_stage(uint32_t slot, uint32_t pc) {
   warp.shader = shader;
 }
 
-// The warp waits from what is known up to `until`.
+// Notes that the warp waits from the end of what is known up to `until`.
 void TraceRecorder::wait(uint32_t slot, Stall reason, Cycle until) {
   Slot& warp = slots_[slot];
   if (until <= warp.known) return;

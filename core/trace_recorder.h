@@ -1,4 +1,4 @@
-// Notes what the warps of one core do from cycle to cycle, as slices of a trace, within a window and a bound.
+// Records what the warps of one core do, as slices of a trace, within a window and a bound.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -11,17 +11,17 @@
 
 namespace glint::core {
 
-// Slices are cut at the window's ends. When the bound is reached the window ends there: every slice before is
-// kept.
+// Cuts slices at the window's ends. When the bound is reached, the window ends there, and every slice before
+// is kept.
 class TraceRecorder final : public CoreObserver {
  public:
-  // Choice: what takes less than this many cycles is no wait of its own but part of running.
+  // Choice: what takes less than this many cycles is part of running and not a wait of its own.
   static constexpr Cycle kShortWait = 4;
 
-  // `room`: slices; at least least_room(). Nothing is allocated later.
+  // `room` is a number of slices, at least least_room(). Nothing is allocated later.
   TraceRecorder(const exec::Image& image, uint32_t warp_slots, uint32_t rt_places, Cycle begin, Cycle end,
                 uint64_t room);
-  // What all tracks may still add after the window has ended.
+  // Returns the slices that all tracks may still add after the window has ended.
   static uint64_t least_room(uint32_t warp_slots, uint32_t rt_places) {
     return uint64_t{6} * warp_slots + 2 * rt_places;
   }
@@ -30,24 +30,24 @@ class TraceRecorder final : public CoreObserver {
   void select(Cycle now, uint32_t slot, Cycle ready, Stall wait, Stall door, uint32_t pc) override;
   void issue(Cycle now, uint32_t slot, const exec::Issued& issued) override;
   void end_warp(Cycle now, uint32_t slot) override;
-  // A warp in a place of the RT unit's warp buffer.
+  // Notes that a warp enters a place of the RT unit's warp buffer.
   void enter_rt(Cycle now, uint32_t place, uint32_t slot, LaneMask lanes, const rt::RayState* states);
   void leave_rt(Cycle now, uint32_t place, LaneMask lanes, const rt::RayState* states);
 
-  Cycle end() const { return end_; }  // earlier than asked for where the bound was reached
-  // In order of their ends, but for those that were open then.
+  Cycle end() const { return end_; }  // earlier than asked for when the bound was reached
+  // Returns the slices in order of their ends, except for those that were open at the end.
   const std::vector<TraceSlice>& slices() const { return slices_; }
 
-  // TraceTable::states: "running", then the waits.
+  // Returns TraceTable::states: "running", then the waits.
   static std::vector<std::string> state_names();
 
  private:
   struct Slot {
     uint32_t warp = 0, shader = 0;
-    Cycle begin = 0;  // of the warp
+    Cycle begin = 0;  // begin of the warp
     Cycle stage_begin = 0;
-    Cycle run_begin = 0;  // of the running state, which lasts up to `known`
-    Cycle known = 0;      // what was before is in a slice, or runs
+    Cycle run_begin = 0;  // begin of the running state, which lasts up to `known`
+    Cycle known = 0;      // what came before is in a slice, or is running
   };
   struct Place {
     Cycle begin = 0;

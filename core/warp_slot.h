@@ -1,4 +1,4 @@
-// One warp slot of a core: its warp, and what has to happen before the next instruction can issue.
+// Holds one warp slot of a core: its warp, and what has to happen before its next instruction can issue.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -13,18 +13,18 @@
 
 namespace glint::core {
 
-// Issuing an instruction touches one slot, so all of its state lies together. What a scheduler scans in every
-// cycle lies in the scheduler instead, as arrays over its warps.
+// Holds all state that issuing an instruction touches, which is that of one slot. What a scheduler scans in
+// every cycle is in the scheduler instead, as arrays over its warps.
 struct WarpSlot {
   exec::WarpContext warp;
   Scoreboard scoreboard;
-  Scoreboard::Ready front;  // Before this cycle the warp issues nothing, whatever its registers say.
-  Sequence sequence;        // The sequence that the warp is in.
-  uint32_t line = InstructionFetch::kNone;  // The line of instructions that the warp is in or waits for.
+  Scoreboard::Ready front;  // the warp issues nothing before this cycle, whatever its registers say
+  Sequence sequence;        // the sequence that the warp is in
+  uint32_t line = InstructionFetch::kNone;  // the line of instructions that the warp is in or waits for
   bool waits_for_line = false;
-  BlockPlace* home = nullptr;      // The place of the warp's block.
-  Scheduler* scheduler = nullptr;  // The slot's scheduler, for ever.
-  uint32_t local = 0;              // The number of the slot in its scheduler.
+  BlockPlace* home = nullptr;      // the place of the warp's block
+  Scheduler* scheduler = nullptr;  // the slot's scheduler, which never changes
+  uint32_t local = 0;              // the number of the slot in its scheduler
 };
 
 }  // namespace glint::core

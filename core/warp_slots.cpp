@@ -1,4 +1,4 @@
-// The warp slots of a core: when the next instruction of each warp can issue.
+// Finds when the next instruction of each warp can issue.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/warp_slots.h"
 
@@ -68,8 +68,8 @@ void WarpSlots::refresh(uint32_t slot, Cycle now) {
   WarpSlot& at = slots_[slot];
   if (fetch_) come_to_line(at, now);
   if (at.sequence.is_under_way()) {
-    // The rest of a sequence needs an issue slot only: no operands, and the memory pipe is never busy by
-    // itself.
+    // The rest of a sequence needs only an issue slot: it has no operands, and the memory pipe is never busy
+    // by itself.
     at.scheduler->set_next(at.local, {at.front.at, at.front.wait, Pipe::Memory, Door::None});
     return;
   }
@@ -98,7 +98,7 @@ Scoreboard::Ready WarpSlots::operands_ready(const WarpSlot& slot, const IssueRow
   return ready;
 }
 
-// The warp's next instruction may be in another line than the instruction before it.
+// Follows the warp to the line of its next instruction, which may be another than before.
 void WarpSlots::come_to_line(WarpSlot& slot, Cycle now) {
   const uint32_t line = fetch_->line_of(slot.warp.simt.pc);
   if (line == slot.line) return;

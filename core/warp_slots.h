@@ -1,4 +1,4 @@
-// The warp slots of a core and the schedulers that they belong to.
+// Holds the warp slots of a core and the schedulers that they belong to.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -9,10 +9,11 @@
 
 namespace glint::core {
 
-// Units change what a warp waits for in its slot and then call refresh(), which tells the slot's scheduler.
+// Holds the slots. Units change what a warp waits for in its slot and then call refresh(), which tells the
+// slot's scheduler.
 class WarpSlots {
  public:
-  // `fetch` is null where every instruction is there when its warp comes to it.
+  // `fetch` is null when every instruction is present when its warp comes to it.
   WarpSlots(uint32_t size, const Params& params, const exec::World& world, const IssueTable& table,
             InstructionFetch* fetch, const CoreObservers& observers);
 
@@ -29,17 +30,18 @@ class WarpSlots {
   bool is_resident(uint32_t slot) const { return slots_[slot].scheduler->is_resident(slots_[slot].local); }
   uint32_t first_free() const;
 
-  // The warp in the slot, which the executor has started, can issue its first instruction at `ready`.
+  // Starts the warp in the slot, which the executor has started. It can issue its first instruction at
+  // `ready`.
   void start(uint32_t slot, BlockPlace& home, Cycle ready, Cycle now);
-  // Looks up when the warp's next instruction is there and has its operands: to be called after each change
-  // to its front, its scoreboard, its sequence or its place in the program.
+  // Looks up when the warp's next instruction is present and has its operands. It has to be called after each
+  // change to the warp's front, scoreboard, sequence or place in the program.
   void refresh(uint32_t slot, Cycle now);
-  // The warp has ended, and its last accesses have not.
+  // Notes that the warp has ended while its last accesses have not.
   void drain(uint32_t slot) { slots_[slot].scheduler->drain(slots_[slot].local); }
-  // The warp has ended with all of its accesses: the slot can be taken by another warp.
+  // Notes that the warp has ended with all of its accesses. Another warp can take the slot.
   void free(uint32_t slot, Cycle now);
 
-  // A line of instructions has come: warps of the scheduler that wait for it go on.
+  // Notes that a line of instructions has come. Warps of the scheduler that wait for it go on.
   void take_line(uint32_t scheduler, uint32_t line, Cycle now);
 
  private:
@@ -51,8 +53,8 @@ class WarpSlots {
   const IssueTable& table_;
   const CoreObservers& observers_;
   InstructionFetch* const fetch_;
-  const bool holds_operands_;  // Memory instructions read their registers when they leave their queue.
-  const uint32_t prologue_;    // Machine instructions before a warp's first instruction.
+  const bool holds_operands_;  // memory instructions read their registers when they leave their queue
+  const uint32_t prologue_;    // machine instructions before a warp's first instruction
   std::vector<Scheduler> schedulers_;
   std::vector<WarpSlot> slots_;
   BlockPlaces blocks_;
