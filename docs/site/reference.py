@@ -6,6 +6,8 @@ import re
 import subprocess
 from typing import Any
 
+import help_text
+
 
 def _run(glint, *words):
     return subprocess.run([glint, *words], capture_output=True, text=True, check=True).stdout
@@ -27,30 +29,19 @@ def write(glint: str, root: pathlib.Path, source: pathlib.Path) -> None:
 
 def commands(glint: str) -> str:
     """Every command's own help."""
-    top = _run(glint, "--help")
-    names = re.findall(r"^  (\w+) {2,}\S", top.split("Subcommands:")[1], re.M)
-    pages = ["# Commands\n\nThis page has what `glint COMMAND --help` prints. The page [errors](../errors.md) explains exit codes. A command writes the data that you asked for to stdout, and everything else to stderr.\n", _help_tables(top.split("Usage:", 1)[1])]
-    for name in names:
-        summary, _, rest = _run(glint, name, "--help").strip().partition("Usage:")
-        usage, _, rest = rest.partition("\n")
-        pages.append(f"## {name}\n\n{summary.strip()}.\n\n```text\n{usage.strip()}\n```\n\n{_help_tables(rest)}")
-    return "\n".join(pages)
+    pages = help_text.read_all(glint)
+    top = pages.pop("")
+    out = ["# Commands\n\nThis page has what `glint COMMAND --help` prints. The page [errors](../errors.md) explains exit codes. A command writes the data that you asked for to stdout, and everything else to stderr.\n", _tables(top)]
+    out += [f"## {name}\n\n{page.summary}.\n\n```text\n{page.usage}\n```\n\n{_tables(page)}" for name, page in pages.items()]
+    return "\n".join(out)
 
 
-def _help_tables(text: str) -> str:
-    """The sections of a help text (Options:, Positionals:) as tables of what is written and what it means."""
-    out, rows = [], []
-    for line in [*text.splitlines(), "end:"]:
-        entry = re.match(r"  (\S.*?)(?: {2,}(\S.*))?$", line)
-        if re.match(r"\S.*:$", line):
-            if rows:
-                out += ["| written | meaning |\n|---|---|"] + [f"| {_words(name)} | {_cell(meaning)} |" for name, meaning in rows] + [""]
-            rows = []
-            out += [f"**{line}**\n"] if line not in ("end:", "Options:") else []
-        elif entry:
-            rows.append((entry[1], entry[2] or ""))
-        elif rows and line.strip():  # a meaning that stands on the next line
-            rows[-1] = (rows[-1][0], f"{rows[-1][1]} {line.strip()}".strip())
+def _tables(page: help_text.Help) -> str:
+    """The sections of a help text (Options, Positionals) as tables of what is written and what it means."""
+    out = []
+    for heading, entries in page.sections:
+        out += [f"**{heading}:**\n"] if heading != "Options" else []
+        out += ["| written | meaning |\n|---|---|"] + [f"| {_words(entry.written)} | {_cell(entry.meaning)} |" for entry in entries] + [""]
     return "\n".join(out)
 
 
