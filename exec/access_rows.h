@@ -1,4 +1,4 @@
-// The registers of a load, a store or an atomic: which rows it fills or reads, and what a lane's part is.
+// Finds the registers of a load, a store or an atomic: which rows it fills or reads, and each lane's part.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -12,10 +12,10 @@
 
 namespace glint::exec {
 
-// Where the data of each lane lies.
+// Says where the data of each lane lies.
 using LanePlaces = std::array<std::byte*, kLanes>;
 
-// Slot of the first value operand: loads write from slot 0, stores read after the address.
+// Slot of the first value operand: loads write from slot 0, and stores read after the address.
 inline constexpr size_t kLoadFirst = 0, kStoreFirst = 1;
 
 inline uint32_t narrow(const std::byte* from, const isa::Memory& shape) {
@@ -25,15 +25,16 @@ inline uint32_t narrow(const std::byte* from, const isa::Memory& shape) {
   return shape.bytes == 1 ? uint32_t(int32_t(int8_t(value))) : uint32_t(int32_t(int16_t(value)));
 }
 
-// Registers that an access fills or reads a lane: one a part, two for parts of 8 bytes.
+// Returns the number of registers per lane that an access fills or reads: one per part, or two for parts of 8
+// bytes.
 inline uint32_t rows_of(const isa::Memory& shape) {
   return shape.bytes == 8 ? 2u * shape.count : shape.count;
 }
-// Bytes of each in memory.
+// Returns the bytes of each part in memory.
 inline uint32_t row_bytes(const isa::Memory& shape) {
   return shape.bytes == 8 ? 4u : shape.bytes;
 }
-// Register row of row `row`: a pair for 64-bit values, any registers for vectors.
+// Returns the register row of row `row`: a pair for 64-bit values, any registers for vectors.
 inline isa::Slot slot_of(const isa::Inst& inst, const isa::Memory& shape, size_t first, uint32_t row) {
   return shape.bytes == 8 ? isa::Slot(inst.operand[first] + row) : inst.operand[first + row];
 }
@@ -51,7 +52,7 @@ void load_rows(WarpContext& warp, const isa::Inst& inst, const isa::Memory& shap
   }
 }
 
-// The answer of a load or an atomic that went nowhere.
+// Writes the answer of a load or an atomic that went nowhere.
 inline void load_zeros(WarpContext& warp, const isa::Inst& inst, const isa::Memory& shape, LaneMask lanes) {
   for (uint32_t row = 0; row < rows_of(shape); ++row) {
     uint32_t* const to = warp.regs.write(slot_of(inst, shape, kLoadFirst, row));

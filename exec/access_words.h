@@ -1,4 +1,4 @@
-// How messages about faults call accesses and spaces.
+// Names accesses and spaces for messages about faults.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <iterator>

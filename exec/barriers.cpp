@@ -1,4 +1,4 @@
-// Barriers: warps of a block that wait for each other, and what becomes of those that wait in vain.
+// Runs barriers: warps of a block wait for each other, and those that wait in vain are a fault.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/barriers.h"
 
@@ -18,8 +18,8 @@ using isa::BarrierKind;
 
 namespace {
 
-// Operands: results first. Slots of the barrier's number, the number of threads, and the predicate of
-// bar.red.
+// Names the operands after the results: the slots of the barrier's number, of the number of threads, and of
+// the predicate of bar.red.
 struct BarrierSlots {
   size_t barrier, threads, predicate;
 };
@@ -36,17 +36,18 @@ bool is_uniform(const uint32_t* row, LaneMask lanes) {
 
 }  // namespace
 
-// Model: only whole warps arrive. PTX leaves what a warp does that is divided at a bar.sync undefined
-// (hardware from Volta on counts its threads one by one); here it is a fault.
+// Model: only whole warps arrive. PTX leaves undefined what a warp does that is divided at a bar.sync
+// (hardware from Volta on counts its threads one by one). Here it is a fault.
 bool Barriers::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
   const LaneMask exec = warp.regs.exec, live = warp.simt.live();
   const auto kind = BarrierKind(row.detail);
   if (exec == 0) return ++warp.simt.pc, true;
   const int lane = std::countr_zero(exec);
   if (exec != live)
-    return faults_.fail(warp, lane,
-                        fmt::format("{} of the {} lanes of the warp come to {}: all have to come together",
-                                    num_lanes(exec), num_lanes(live), row.name));
+    return faults_.fail(
+        warp, lane,
+        fmt::format("{} of the {} lanes of the warp come to {}, but all have to come together",
+                    num_lanes(exec), num_lanes(live), row.name));
   const BarrierSlots slots = slots_of(kind);
   const uint32_t* const barriers = warp.regs.read(inst.operand[slots.barrier]);
   const uint32_t* const counts = warp.regs.read(inst.operand[slots.threads]);
@@ -62,7 +63,7 @@ bool Barriers::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& r
   if (!block.arrive(barrier, warp.warp_in_block, threads / uint32_t(kLanes), waits))
     return faults_.fail(
         warp, lane,
-        fmt::format("comes to barrier {} for {} threads: others wait there for another number", barrier,
+        fmt::format("comes to barrier {} for {} threads, and others wait there for another number", barrier,
                     threads));
   if (kind != BarrierKind::Sync && waits)
     block.contribute(barrier, num_lanes(exec),
@@ -82,13 +83,13 @@ bool Barriers::check(WarpContext& warp, uint32_t barrier, uint32_t threads) {
   const int lane = std::countr_zero(warp.regs.exec);
   if (barrier >= isa::kNumBarriers)
     return faults_.fail(warp, lane,
-                        fmt::format("comes to barrier {}: a block has {}", barrier, isa::kNumBarriers));
+                        fmt::format("comes to barrier {}, and a block has {}", barrier, isa::kNumBarriers));
   const uint32_t most = warp.block->num_warps() * uint32_t(kLanes);
   if (threads % uint32_t(kLanes) != 0 || threads > most)
     return faults_.fail(
         warp, lane,
-        fmt::format("a barrier for {} threads: expected a multiple of {} up to the block's {}", threads,
-                    kLanes, most));
+        fmt::format("comes to a barrier for {} threads, expected a multiple of {} up to the block's {}",
+                    threads, kLanes, most));
   return true;
 }
 
@@ -110,7 +111,7 @@ void Barriers::open(Block& block, uint32_t barrier) {
   }
 }
 
-// The warp has ended: barriers that wait for all may be complete without it.
+// Notes that the warp has ended. Barriers that wait for all warps may be complete without it.
 bool Barriers::end_warp(WarpContext& warp) {
   Block& block = *warp.block;
   block.end(warp.warp_in_block);
@@ -121,7 +122,7 @@ bool Barriers::end_warp(WarpContext& warp) {
 }
 
 bool Barriers::fail_stuck(const Block& block) {
-  std::map<std::pair<uint32_t, uint32_t>, uint32_t> waiting;  // instruction and barrier; warps
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> waiting;  // maps instruction and barrier to warps
   const WarpContext* first = nullptr;
   for (WarpMask rest = block.waiting(); rest; rest &= rest - 1) {
     const WarpContext& warp = *block.warps[size_t(std::countr_zero(rest))];

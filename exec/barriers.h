@@ -1,4 +1,4 @@
-// Barriers: warps of a block that wait for each other, and what becomes of warps that wait in vain.
+// Runs barriers: warps of a block wait for each other, and those that wait in vain are a fault.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -8,14 +8,16 @@
 
 namespace glint::exec {
 
-// A bar.* that has to wait leaves `warp.waiting_at_barrier` set, until another warp opens the barrier.
+// Runs bar.*. One that has to wait leaves `warp.waiting_at_barrier` set, until another warp opens the
+// barrier.
 class Barriers {
  public:
   Barriers(const World& world, FaultGate& faults) : world_(world), faults_(faults) {}
 
-  // False after a fault.
+  // Returns false after a fault.
   bool run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
-  // The warp has ended: barriers that wait for all warps may be complete without it. False after a fault.
+  // Notes that the warp has ended. Barriers that wait for all warps may be complete without it. Returns false
+  // after a fault.
   bool end_warp(WarpContext& warp);
 
  private:

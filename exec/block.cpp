@@ -1,4 +1,4 @@
-// Barriers of a block: who has arrived, and when they open.
+// Implements the barriers of a block: who has arrived, and when they open.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/block.h"
 

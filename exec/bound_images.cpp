@@ -1,4 +1,4 @@
-// Finding the image of a handle, and telling of handles that name none.
+// Finds the image of a handle, and reports handles that name none.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/bound_images.h"
 
@@ -15,7 +15,8 @@ using isa::ImageShape;
 
 namespace {
 
-// Whether an op of geometry `op` may work on the image. Surface ops see a cube as an array of its faces.
+// Returns whether an op of geometry `op` may work on the image. Surface ops see a cube as an array of its
+// faces.
 bool fits(const isa::ImageAccess& op, ImageShape image) {
   const auto is_texture = op.request == ImageRequest::Sample || op.request == ImageRequest::Gather;
   const auto axes = [](ImageShape s) { return isa::is_cube(s) ? 2 : isa::num_coordinates(s); };
@@ -37,7 +38,7 @@ const ImageView* BoundImages::find(const WarpContext& warp, const isa::OpRow& ro
                  sampler = handle >> isa::kHandleSamplerShift;
   if (number >= world_.images.size() || sampler > world_.samplers.size()) [[unlikely]] {
     faults_.let_pass(warp, lane, FaultKind::Image, [&] {
-      return fmt::format("uses image {} with sampler {}: {} images and {} samplers are bound", number,
+      return fmt::format("uses image {} with sampler {}, and {} images and {} samplers are bound", number,
                          sampler, world_.images.size(), world_.samplers.size());
     });
     return nullptr;

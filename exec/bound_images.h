@@ -1,4 +1,4 @@
-// The images and samplers that a launch has bound, as handles name them.
+// Finds the images and samplers that a launch has bound, by their handles.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "exec/fault_gate.h"
@@ -10,11 +10,11 @@ class BoundImages {
  public:
   BoundImages(const World& world, FaultGate& faults) : world_(world), faults_(faults) {}
 
-  // The image of a lane's handle. Null: there is none that the op can use, which is a fault or was let pass
-  // (FaultGate::fault() is then not set).
+  // Returns the image of a lane's handle. Null says that there is none that the op can use. That is a fault,
+  // or it was let pass (FaultGate::fault() is then not set).
   const ImageView* find(const WarpContext& warp, const isa::OpRow& row, int lane);
   const Sampler& sampler_of(const ImageView& image, Address handle) const;
-  // The format of the image of a lane's handle.
+  // Returns the format of the image of a lane's handle.
   TexelFormat format_of(const WarpContext& warp, int lane) const {
     return world_.images[warp.regs.access.address[size_t(lane)] % (1u << isa::kHandleSamplerShift)].format;
   }

@@ -1,4 +1,5 @@
-// Rays that gather candidates before their shaders run (rtunit/any_hit_mode.h): tables, choices and counts.
+// Handles rays that gather candidates before their shaders run (rtunit/any_hit_mode.h): tables, choices,
+// counts.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -7,12 +8,12 @@
 
 namespace glint::exec {
 
-// What intersection and any-hit shaders had to do.
+// Counts what intersection and any-hit shaders had to do.
 struct CandidateCounts {
   uint64_t calls = 0,
            lanes = 0;  // Calls of such shaders, one a warp and shader, and the lanes that made them.
-  // Candidates of ended traces (rtunit/candidate_table.h), and times that a ray stopped because its table was
-  // full.
+  // Candidates of ended traces (rtunit/candidate_table.h), and the number of times that a ray stopped because
+  // its table was full.
   uint64_t gathered = 0, dropped = 0, overflows = 0;
 };
 
@@ -21,17 +22,17 @@ class Candidates {
   Candidates(const World& world, CandidateCounts& counts)
       : world_(world), counts_(counts), table_rows_(world.any_hit ? world.any_hit->table_rows() : 0) {}
 
-  // The lane's table in a level of traces; null when the mode has no tables.
+  // Returns the lane's table in a level of traces, or null when the mode has no tables.
   rt::CandidateTable* table_of(TraceFrame& frame, int lane) const;
   // Chooses the candidate that each of the lanes presents to a shader.
   void present(WarpContext& warp, LaneMask gathered) const;
-  // Counts what the tables of the innermost trace held; the trace ends.
+  // Counts what the tables of the innermost trace held, at the end of the trace.
   void count(const WarpContext& warp);
 
  private:
   const World& world_;
   CandidateCounts& counts_;
-  const uint32_t table_rows_;  // Rows of a table in the any-hit mode.
+  const uint32_t table_rows_;  // rows of a table in the any-hit mode
 };
 
 }  // namespace glint::exec

@@ -1,4 +1,4 @@
-// The call of the traversal program, and what its record says before and after.
+// Calls the traversal program, and writes and reads its record.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/code_traversal.h"
 
@@ -13,7 +13,7 @@
 namespace glint::exec {
 namespace {
 
-// A lane's record.
+// Holds a lane's record.
 class Record {
  public:
   Record(WarpContext& warp, uint32_t address, int lane)
@@ -37,8 +37,8 @@ bool read_leaf(const mem::AddressSpace& memory, Address address, rt::InstanceLea
   return bytes != nullptr;
 }
 
-// Leaves are named by their blocks: of the instance in the ray's structure, of the triangle in the
-// instance's.
+// Returns the block that names a leaf: in the ray's structure for an instance, and in the instance's
+// structure for a triangle.
 uint32_t block_of_leaf(Address leaf, Address structure) {
   return leaf ? uint32_t((leaf - structure) / rt::kBlockBytes) : 0;
 }
@@ -61,7 +61,7 @@ void put_hit(Record& record, uint32_t word, const rt::Ray& ray, const rt::Hit& h
                          : 0;
 }
 
-// False when the record names a leaf that is none.
+// Reads a hit from the record. Returns false when the record names something that is not a leaf.
 bool get_hit(Record& record, uint32_t word, const rt::Ray& ray, const mem::AddressSpace& memory,
              rt::Hit& hit) {
   hit = rt::Hit{};
@@ -122,7 +122,7 @@ void take_ray(Record record, rt::RayState& state, const mem::AddressSpace& memor
 
 }  // namespace
 
-// Where the records of the rays lie that wait: of the innermost trace, or of a ray query.
+// Returns where the records of the waiting rays lie: those of the innermost trace, or of a ray query.
 uint32_t CodeTraversal::record_of_rays(const WarpContext& warp) const {
   const TraversalCode& code = world_.traversal;
   uint32_t index = warp.depth - 1;
@@ -135,9 +135,9 @@ uint32_t CodeTraversal::record_of_rays(const WarpContext& warp) const {
   return code.first_record + index * code.record_bytes();
 }
 
-// The rays of rt.trace, rt.resume or rq.proceed at `pc`: calls the traversal program for those that travel.
-// Without any, they wait on, and the machine finishes them. Model: the ray goes to its record, and the
-// verdict of an any-hit shader, without instructions of their own.
+// Handles the rays of rt.trace, rt.resume or rq.proceed at `pc`: calls the traversal program for those that
+// travel. When none travels, they go on waiting, and the machine finishes them. Model: the ray goes to its
+// record, and so does the verdict of an any-hit shader, without instructions of their own.
 void CodeTraversal::walk(WarpContext& warp, uint32_t pc) {
   LaneMask travelling = 0;
   for_each_lane(warp.ray_lanes, [&](int lane) {
@@ -150,7 +150,7 @@ void CodeTraversal::walk(WarpContext& warp, uint32_t pc) {
     rt::RayState& state = warp.rays[lane];
     Record record(warp, at, lane);
     if (state.stack_size > 0)
-      put_ray(record, state, world_.traversal.stack_entries);  // as begin() has left it
+      put_ray(record, state, world_.traversal.stack_entries);  // in the state that begin() left
     put_hit(record, kHit, state.ray, state.committed, *world_.memory);
     warp.regs.bank[2][size_t(isa::Special::Payload) * kLanes + size_t(lane)] = at;
   });

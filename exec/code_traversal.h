@@ -1,4 +1,4 @@
-// Rays that code walks where a machine has no RT unit (exec/traversal_record.h).
+// Walks rays by code when a machine has no RT unit (exec/traversal_record.h).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -14,10 +14,10 @@ class CodeTraversal {
       : world_(world), rays_(rays), calls_(calls) {}
 
   bool is_used() const { return world_.traversal.shader != kNoShader; }
-  // The rays of rt.trace, rt.resume or rq.proceed at `pc`: calls the traversal program for those that travel.
-  // Without any, the rays wait on, and the machine finishes them.
+  // Handles the rays of rt.trace, rt.resume or rq.proceed at `pc`: calls the traversal program for those that
+  // travel. When none travels, they go on waiting, and the machine finishes them.
   void walk(WarpContext& warp, uint32_t pc);
-  // The traversal program has returned.
+  // Takes the rays after the traversal program has returned.
   void take_rays(WarpContext& warp);
 
  private:

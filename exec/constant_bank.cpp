@@ -36,7 +36,7 @@ bool ConstantBank::load(WarpContext& warp, const isa::Inst& inst, const isa::OpR
     }
     if (address & (bytes - 1)) [[unlikely]] {
       if (!faults_.let_pass(warp, lane, FaultKind::Misaligned,
-                            [&] { return what(fmt::format(", which is no multiple of {}", bytes)); }))
+                            [&] { return what(fmt::format(", which is not a multiple of {}", bytes)); }))
         return false;
       address -= address & (bytes - 1);
     }

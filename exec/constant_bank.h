@@ -1,4 +1,5 @@
-// The constant bank: descriptors, push constants and the parameters of a kernel, which programs only read.
+// Loads from the constant bank: descriptors, push constants and the parameters of a kernel, which are
+// read-only.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "exec/fault_gate.h"
@@ -10,7 +11,7 @@ class ConstantBank {
  public:
   ConstantBank(const World& world, FaultGate& faults) : world_(world), faults_(faults) {}
 
-  // `space`: Const, or Param. False after a fault.
+  // Loads from `space`, which is Const or Param. Returns false after a fault.
   bool load(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space,
             LaneMask lanes);
 

@@ -1,4 +1,4 @@
-// Control flow on the SIMT stack.
+// Runs control flow on the SIMT stack.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/control.h"
 
@@ -48,7 +48,8 @@ bool Control::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& ro
     case Effect::Terminate:
       return return_from(warp, row.effect);
     case Effect::Fence:
-      // Every access has its effect when it is executed, in one order for all: nothing to wait for but time.
+      // Every access has its effect when it is executed, in one order for all, so a fence has nothing to wait
+      // for but time.
       ++simt.pc;
       return true;
     default:
@@ -64,7 +65,7 @@ bool Control::branch(WarpContext& warp, uint32_t target) {
   } else if (exec == 0) {
     ++simt.pc;
   } else if (world_.image->target_is_join[simt.pc]) {
-    // Lanes that go to a join wait there at once: a loop's exits never grow the stack.
+    // Lanes that go to a join wait there at once, so a loop's exits never grow the stack.
     if (!simt.arrive(target, exec))
       return faults_.fail(warp, std::countr_zero(exec), "branches to a join without its ssy");
     simt.active = stay;
@@ -82,8 +83,8 @@ bool Control::branch(WarpContext& warp, uint32_t target) {
   return true;
 }
 
-// Lanes with one index go together, those of the lowest lane first; lanes that the guard leaves out go before
-// all.
+// Branches by index. Lanes with one index go together, those of the lowest lane first. Lanes that the guard
+// leaves out go before all others.
 bool Control::branch_indexed(WarpContext& warp, const isa::Inst& inst) {
   SimtStack& simt = warp.simt;
   const uint32_t* const index = warp.regs.read(inst.operand[0]);
@@ -111,7 +112,8 @@ bool Control::branch_indexed(WarpContext& warp, const isa::Inst& inst) {
 }
 
 bool Control::call_function(WarpContext& warp, uint32_t target) {
-  // Choice: PTX programs with a stack of their own end long before; this catches recursion without end.
+  // Choice: PTX programs with a stack of their own end long before this number, which catches recursion
+  // without end.
   constexpr size_t kMaxNesting = 1 << 16;
   SimtStack& simt = warp.simt;
   const LaneMask exec = warp.regs.exec;
@@ -126,8 +128,8 @@ bool Control::call_function(WarpContext& warp, uint32_t target) {
   return true;
 }
 
-// ret goes back to the innermost call; out of a shader, it decides what the stage has to decide. rt.ignore
-// and rt.terminate leave the shader, out of all functions.
+// Returns from a call. ret goes back to the innermost call; out of a shader, it decides what the stage has to
+// decide. rt.ignore and rt.terminate leave the shader, out of all functions.
 bool Control::return_from(WarpContext& warp, Effect effect) {
   SimtStack& simt = warp.simt;
   const LaneMask exec = warp.regs.exec;

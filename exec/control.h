@@ -1,4 +1,4 @@
-// Control flow: branches, calls and returns, regions whose lanes meet again, and ends.
+// Runs control flow: branches, calls and returns, regions whose lanes meet again, and ends.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -12,7 +12,7 @@ class Control {
   Control(const World& world, FaultGate& faults, ShaderCalls& calls, CodeTraversal& traversal)
       : world_(world), faults_(faults), calls_(calls), traversal_(traversal) {}
 
-  // False after a fault.
+  // Returns false after a fault.
   bool run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
 
  private:

@@ -1,4 +1,4 @@
-// Executes instructions of a warp: the one place where an effect meets memory, control flow and rays.
+// Executes instructions of a warp. Only here does an effect meet memory, control flow and rays.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -25,50 +25,51 @@
 
 namespace glint::exec {
 
-// What one executed instruction did, for the timing machine: everything that a unit needs to charge for it.
+// Says what one executed instruction did: everything that a unit of the timing machine needs to charge for
+// it.
 struct Issued {
   uint32_t pc = 0;
   const isa::Inst* inst = nullptr;
   const isa::OpRow* row = nullptr;
-  LaneMask lanes = 0;   // Lanes that executed it: active, and let through by the guard.
-  LaneMask active = 0;  // Lanes that were running.
+  LaneMask lanes = 0;   // lanes that executed it: active, and let through by the guard
+  LaneMask active = 0;  // lanes that were running
   // Loads, stores, texture and surface ops leave their addresses in warp.regs.access until the next
-  // execute(). Texture and surface ops touched texels(). Of shader calls `lanes` are the lanes that called,
+  // execute(). Texture and surface ops touched texels(). For shader calls, `lanes` are the lanes that called,
   // and address[lane] is the binding-table record of each of them.
-  bool finished = false;  // The warp has ended.
+  bool finished = false;  // the warp has ended
 };
 
-// One instruction that a warp has executed, for whoever listens: co-simulation, traces.
+// Describes one instruction that a warp has executed, for listeners such as co-simulation and traces.
 struct Retired {
-  const WarpContext& warp;  // Its registers after the instruction.
+  const WarpContext& warp;  // its registers after the instruction
   const Issued& issued;
 };
 
-// Both machines use it, so their results cannot differ; the timing machine adds only when things happen. Each
-// family of effects is an object of its own.
+// Executes instructions. Both machines use it, so their results cannot differ; the timing machine only adds
+// when things happen. Each family of effects is an object of its own.
 class Executor {
  public:
   Probe<Retired> retired;
   Probe<Called> called;
 
-  // `clock_mhz` turns cycles into the time that programs read; 0: they read 0.
+  // `clock_mhz` turns cycles into the time that programs read. With 0 they read 0.
   explicit Executor(const World& world, double clock_mhz = 0.0);
-  Executor(const Executor&) = delete;  // The families refer to each other.
+  Executor(const Executor&) = delete;  // the families refer to each other
   Executor& operator=(const Executor&) = delete;
 
   uint32_t num_blocks() const { return exec::num_blocks(world_); }
   uint32_t warps_per_block() const { return exec::warps_per_block(world_); }
   uint32_t num_warps() const { return num_blocks() * warps_per_block(); }
 
-  // Starts blocks and warps as launch.h says.
+  // These start blocks and warps as launch.h says.
   void start(Block& block, uint32_t index) const { start_block(world_, block, index); }
   void start(WarpContext& warp, Block& block, uint32_t warp_in_block, const Seat& seat = {}) const {
     start_warp(world_, warp, block, warp_in_block, seat);
   }
-  // In a launch without blocks: puts warp `warp_index` into `warp`, as a block of its own.
+  // Puts warp `warp_index` of a launch without blocks into `warp`, as a block of its own.
   void start(WarpContext& warp, uint32_t warp_index) const;
 
-  // The instruction that execute() would run next.
+  // Returns the instruction that execute() would run next.
   const isa::Inst& next(const WarpContext& warp) const { return world_.image->code[warp.simt.pc]; }
   const isa::OpRow& next_row(const WarpContext& warp) const { return *world_.image->rows[warp.simt.pc]; }
 
@@ -81,26 +82,26 @@ class Executor {
   // Writes the answer predicate of the rays that the warp waits for.
   void finish_rays(WarpContext& warp) const { rays_.finish(warp); }
 
-  // Set when an execute() faulted; the warp is left as it was before the instruction.
+  // Returns the fault of an execute(). The warp is left as it was before the instruction.
   const std::optional<Fault>& fault() const { return faults_.fault(); }
-  // What went wrong and was let pass, because World::on_fault says so.
+  // Returns what went wrong and was let pass, because World::on_fault says so.
   const FaultLog& passed() const { return faults_.passed(); }
 
   const CandidateCounts& candidates() const { return candidate_counts_; }
-  // Lanes that have begun a shader of the stage because another called it.
+  // Returns the number of lanes that have begun a shader of the stage because another shader called it.
   uint64_t called_lanes(isa::Stage stage) const { return calls_.called_lanes(stage); }
 
-  // The texels of the last texture or surface op; empty when it needed no memory.
+  // Returns the texels of the last texture or surface op, or none when it needed no memory.
   const TexelList& texels() const { return images_.texels(); }
-  // The lanes whose access the last load, store or atomic made in that space.
+  // Returns the lanes whose access the last load, store or atomic made in that space.
   LaneMask lanes_in(isa::Space space) const { return memory_.lanes_in(space); }
 
-  // Global memory is reached through `view` from now on; without one, effects on it happen at once.
+  // Reaches global memory through `view` from now on. Without a view, effects on it happen at once.
   void use(MemoryView* view) { seen_.use(view); }
-  // Whether the last load or atomic writes its registers only when the view is committed.
+  // Returns whether the last load or atomic writes its registers only when the view is committed.
   bool is_late() const { return seen_.is_late(); }
-  // Grows with every store outside of a view and every atomic there that has changed something: shared
-  // memory, mostly.
+  // Returns a number that grows with every store outside of a view and every atomic there that has changed
+  // something, mostly in shared memory.
   uint64_t changes() const { return memory_.changes(); }
 
   const World& world() const { return world_; }
@@ -110,7 +111,7 @@ class Executor {
   bool is_in_trace(WarpContext& warp, const isa::OpRow& row);
 
   const World& world_;
-  const bool reads_clock_;  // Any shader does: its rows are filled before each instruction.
+  const bool reads_clock_;  // a shader does, so its rows are filled before each instruction
   const double clock_mhz_;
   CandidateCounts candidate_counts_;
   FaultGate faults_;

@@ -1,4 +1,4 @@
-// Wording and collecting of faults.
+// Words and collects faults.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/fault.h"
 

@@ -1,4 +1,4 @@
-// Stopping a run at a mistake of its program, or noting the mistake.
+// Stops a run at a mistake of its program, or notes the mistake.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/fault_gate.h"
 

@@ -1,4 +1,4 @@
-// What happens when a program does something wrong: the run stops, or the lane goes on.
+// Decides what happens when a program does something wrong: the run stops, or the lane goes on.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -11,7 +11,8 @@
 
 namespace glint::exec {
 
-// Functions of the executor's families return false after a fault that ends the run, as fail() does.
+// Holds the fault. Functions of the executor's families return false after a fault that ends the run, as
+// fail() does.
 class FaultGate {
  public:
   explicit FaultGate(const World& world) : world_(world) {}
@@ -19,8 +20,8 @@ class FaultGate {
   // Ends the run. Always returns false.
   bool fail(const WarpContext& warp, int lane, std::string what);
   bool fail(Fault fault);
-  // False: the mistake ends the run, as World::on_fault says. True: the mistake is noted, and the lane goes
-  // on without effect.
+  // Returns false when the mistake ends the run, as World::on_fault says. Returns true when the mistake is
+  // noted and the lane goes on without effect.
   bool let_pass(const WarpContext& warp, int lane, FaultKind kind, const std::function<std::string()>& what);
 
   const std::optional<Fault>& fault() const { return fault_; }
@@ -32,7 +33,7 @@ class FaultGate {
   FaultLog passed_;
 };
 
-// The fault of a warp that has run for longer than any real one, at the instruction `pc`.
+// Returns the fault of a warp that has run for longer than any real one, at the instruction `pc`.
 Fault no_end_in_sight(const World& world, const WarpContext& warp, uint32_t pc, uint64_t instruction_budget);
 
 }  // namespace glint::exec

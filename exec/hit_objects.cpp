@@ -1,4 +1,4 @@
-// Hit objects: making them, reading them, and tracing with what they hold.
+// Makes hit objects, reads them, and traces with what they hold.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/hit_objects.h"
 
@@ -20,7 +20,7 @@ namespace {
 using isa::HitObjectOp;
 using isa::HitObjectValue;
 
-// Operands of ho.miss, and of ho.hit up to the SBT stride; origin, tmin, direction and tmax follow.
+// Names the operands of ho.miss, and of ho.hit up to the SBT stride. Origin, tmin, direction and tmax follow.
 enum MissOperand : size_t { kMissIndex = 1, kMissRay };
 enum HitOperand : size_t { kStructure = 1, kInstance, kPrimitive, kGeometry, kKind, kOffset, kStride };
 
@@ -30,7 +30,7 @@ rt::Ray ray_of(const WarpContext& warp, const isa::Inst& inst, size_t first, int
   return ray;
 }
 
-// The 16 words of attributes of a lane; outside of local memory 0, and stores are dropped.
+// Loads the 16 words of attributes of a lane. Outside of local memory loads give 0, and stores are dropped.
 void load_attributes(const WarpContext& warp, uint32_t address, int lane, HitObject& object) {
   for (size_t w = 0; w < object.attributes.size(); ++w) {
     const size_t at = (address / 4 + w) * kLanes + size_t(lane);
@@ -44,7 +44,7 @@ void store_attributes(WarpContext& warp, uint32_t address, int lane, const HitOb
   }
 }
 
-// Address of the leaf of an instance below the node at `block`; 0 when there is none.
+// Returns the address of the leaf of an instance below the node at `block`, or 0 when there is none.
 Address find_instance(const mem::AddressSpace& memory, const rt::NodeFormat& format, Address structure,
                       uint32_t block, uint32_t instance) {
   std::vector<rt::DecodedChild> children(format.width());
@@ -65,7 +65,7 @@ Address find_instance(const mem::AddressSpace& memory, const rt::NodeFormat& for
   return 0;
 }
 
-// 0 for what is not a top-level structure, too.
+// Does the same for a whole structure. Returns 0 also for what is not a top-level structure.
 Address find_instance(const mem::AddressSpace& memory, Address structure, uint32_t instance) {
   rt::StructureHeader header;
   const auto* bytes = memory.find(structure, sizeof header);
@@ -121,7 +121,7 @@ bool HitObjects::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow&
       case HitObjectOp::SetTime:
       case HitObjectOp::GetTime:
       case HitObjectOp::Corner:
-        break;  // above
+        break;  // handled above
       case HitObjectOp::Attributes:
         store_attributes(warp, read_word(warp.regs, inst, 1, lane), lane, object);
         break;
@@ -152,7 +152,8 @@ bool HitObjects::record(WarpContext& warp, int lane, HitObject& object) {
   return true;
 }
 
-// Outside of any trace the time is 0: only a program that lies about its stage reads it there.
+// Reads or sets the time. Outside of any trace it is 0; only a program that lies about its stage reads it
+// there.
 bool HitObjects::run_time(WarpContext& warp, const isa::Inst& inst, bool set) {
   if (set) {
     const uint32_t* const from = warp.regs.read(inst.operand[0]);
@@ -166,7 +167,7 @@ bool HitObjects::run_time(WarpContext& warp, const isa::Inst& inst, bool set) {
   return true;
 }
 
-// Model: read from the leaf that the RT unit tested, at no cost; hardware fetches it again.
+// Model: the corners are read from the leaf that the RT unit tested, at no cost; hardware fetches it again.
 bool HitObjects::run_corner(WarpContext& warp, const isa::Inst& inst) {
   const isa::Stage stage = world_.image->shaders[world_.image->shader_of[warp.simt.pc]].stage;
   const uint32_t* const number = warp.regs.read(inst.operand[1]);
@@ -221,7 +222,7 @@ bool HitObjects::make_hit(WarpContext& warp, const isa::Inst& inst, bool has_str
   return true;
 }
 
-// Choice: values that a miss or an empty object does not have are 0.
+// Returns a value of a hit object. Choice: values that a miss or an empty object does not have are 0.
 uint32_t HitObjects::value_of(const HitObject& object, uint32_t value) const {
   using V = HitObjectValue;
   const bool hit = object.type == HitObject::Type::Hit, empty = object.type == HitObject::Type::Empty;
@@ -277,7 +278,7 @@ bool HitObjects::begin_trace(WarpContext& warp, const isa::Inst& inst) {
     rt::RayState& state = warp.frame().ray[size_t(lane)];
     warp.frame().time[size_t(lane)] = object.time;
     state.ray = object.ray;
-    state.ray.sbt_offset = state.ray.sbt_stride = 0;  // the record is known
+    state.ray.sbt_offset = state.ray.sbt_stride = 0;  // the record is already known
     state.ray.miss_index = object.record;
     state.committed = object.hit;
     state.committed.sbt_record = object.record;

@@ -1,4 +1,4 @@
-// Hit objects: ho.*, what a ray has found or a shader has made up, kept until its shader is executed.
+// Runs ho.*. A hit object keeps what a ray has found or a shader has made up until its shader is executed.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -12,7 +12,7 @@ class HitObjects {
   HitObjects(const World& world, FaultGate& faults, RayFaults& ray_faults, Rays& rays)
       : world_(world), faults_(faults), ray_faults_(ray_faults), rays_(rays) {}
 
-  // Both: false after a fault.
+  // Both functions return false after a fault.
   bool run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
   // Opens a trace whose rays have already found what the objects hold.
   bool begin_trace(WarpContext& warp, const isa::Inst& inst);

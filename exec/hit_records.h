@@ -1,4 +1,4 @@
-// Which record of the shader binding table belongs to a hit (Vulkan, "Hit Shader Binding Table Indexing").
+// Finds the record of the shader binding table for a hit (Vulkan, "Hit Shader Binding Table Indexing").
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -12,7 +12,8 @@ inline uint32_t hit_record(const World& world, const rt::Ray& ray, const rt::Hit
   return world.table.hit.number(hit.sbt_record + hit.geometry * ray.sbt_stride + ray.sbt_offset);
 }
 
-// The shaders of the hit, and the number of their record. Null: the record is outside of the table.
+// Returns the shaders of the hit, and the number of their record, or null when the record is outside of the
+// table.
 inline const HitGroup* hit_group(const World& world, const rt::Ray& ray, const rt::Hit& hit,
                                  uint32_t& record) {
   record = hit_record(world, ray, hit);

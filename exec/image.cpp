@@ -1,4 +1,4 @@
-// Linking: code of all shaders end to end, branch targets and constants relocated.
+// Links the code of all shaders end to end, and relocates branch targets and constants.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/image.h"
 
@@ -18,7 +18,8 @@ bool has_label(const isa::OpRow& row) {
   return false;
 }
 
-// Constant slots of `inst` move by `first_constant` rows, its label by `first_inst` instructions.
+// Returns the instruction with its constant slots moved by `first_constant` rows and its label by
+// `first_inst` instructions.
 isa::Inst relocate(isa::Inst inst, const isa::OpRow& row, uint32_t first_inst, uint32_t first_constant) {
   int slot = 0;
   for (isa::OperandKind kind : row.operands.view()) {

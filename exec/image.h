@@ -1,5 +1,4 @@
-// All shaders of a pipeline linked into one code image, and the world they run in: what a warp executes
-// against.
+// Links all shaders of a pipeline into one code image, and holds the world in which warps execute it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
@@ -27,19 +26,20 @@ namespace glint::exec {
 
 inline constexpr uint32_t kNoShader = 0xffff'ffff;
 
-// One linked shader: where its code lies in Image::code.
+// Describes one linked shader, and where its code lies in Image::code.
 struct Shader {
   std::string name;
   isa::Stage stage = isa::Stage::Compute;
   uint32_t entry = 0, end = 0;  // instruction indices [entry, end)
   uint32_t local_bytes = 0;
   isa::SpecialSet specials_used;
-  std::vector<isa::ParsedMessage> messages;  // of print and print.part, by number
+  std::vector<isa::ParsedMessage> messages;  // messages of print and print.part, by number
   bool uses_ray = false,
        uses_matrices = false;  // reads %payload or what follows; %object.origin or what follows
 };
 
-// Rows of 32 lanes, aligned to cache lines: what the handlers' vector loads want. Uninitialised.
+// Frees rows of 32 lanes. They are aligned to cache lines, as the handlers' vector loads need, and not
+// initialised.
 struct FreeRows {
   void operator()(uint32_t* rows) const { std::free(rows); }
 };
@@ -48,24 +48,24 @@ inline Rows allocate_rows(size_t count) {
   return Rows(static_cast<uint32_t*>(std::aligned_alloc(64, std::max<size_t>(count, 1) * sizeof(isa::Row))));
 }
 
-// Code of all shaders, branch targets absolute, constants in one table of 32-lane rows.
+// Holds the code of all shaders, with absolute branch targets and constants in one table of 32-lane rows.
 struct Image {
   std::vector<isa::Inst> code;
-  std::vector<const isa::OpRow*> rows;  // one an instruction: op_table()[code[i].op]
-  std::vector<uint8_t> target_is_join;  // one an instruction: a branch here goes to a `join`
-  std::vector<isa::Line> lines;         // one an instruction; file indexes Image::files
+  std::vector<const isa::OpRow*> rows;  // one per instruction: op_table()[code[i].op]
+  std::vector<uint8_t> target_is_join;  // one per instruction: a branch here goes to a `join`
+  std::vector<isa::Line> lines;         // one per instruction; file indexes Image::files
   std::vector<std::string> files;
-  std::vector<uint32_t> shader_of;  // one an instruction
+  std::vector<uint32_t> shader_of;  // one per instruction
   std::vector<Shader> shaders;
-  std::vector<isa::Program> programs;  // one a shader, as they were compiled: for listings
+  std::vector<isa::Program> programs;  // one per shader, as they were compiled; for listings
   Rows constants;
-  uint32_t num_registers = 1;  // highest of all shaders
+  uint32_t num_registers = 1;  // the highest of all shaders
 
-  std::string place_of(uint32_t pc) const;  // "shader.rchit:12 (instruction 87: fma.rn.f32)"
+  std::string place_of(uint32_t pc) const;  // such as "shader.rchit:12 (instruction 87: fma.rn.f32)"
 };
 Image link(const std::vector<isa::Program>& programs);
 
-// A hit group: indices into Image::shaders or kNoShader.
+// Holds a hit group: indices into Image::shaders, or kNoShader.
 struct HitGroup {
   uint32_t closest_hit = kNoShader, any_hit = kNoShader, intersection = kNoShader;
 };
@@ -73,8 +73,8 @@ struct HitGroup {
 inline constexpr uint32_t kHandleBytes =
     32;  // of a group, at the start of a record: the published drivers' shaderGroupHandleSize
 
-// Records of one kind in the shader binding table (VkStridedDeviceAddressRegionKHR). Stride 0: every index
-// means the first record.
+// Holds the records of one kind in the shader binding table (VkStridedDeviceAddressRegionKHR). With stride 0,
+// every index means the first record.
 struct RecordRegion {
   Address base = 0;
   uint32_t stride = kHandleBytes;
@@ -82,51 +82,53 @@ struct RecordRegion {
   Address address(uint32_t index) const { return base + Address(index) * stride; }
 };
 
-// Where the records lie; their data follow the handle. What they call is in World.
+// Says where the records lie. Their data follow the handle, and World says what they call.
 struct BindingTable {
   Address raygen = 0;
   RecordRegion miss, hit, callable;
 };
 
-// Everything a launch gives to its warps. Read-only while warps run (memory contents apart).
+// Holds everything that a launch gives to its warps. It is not written while warps run, except for the
+// memory's contents.
 struct World {
   const Image* image = nullptr;
   mem::AddressSpace* memory = nullptr;
   PrintLog* prints = nullptr;            // where print and print.part go; null: nowhere
   std::vector<std::byte> constant_bank;  // kConstantBankBytes: descriptors and push constants (isa/program.h)
-  std::vector<ImageView> images;         // texture and image handles index this (isa/image_access.h)
-  std::vector<Sampler> samplers;         // besides those of the images
-  // Vulkan's robustBufferAccess: accesses outside of buffers and images read 0 and write nothing, and are no
-  // faults.
+  std::vector<ImageView> images;         // indexed by texture and image handles (isa/image_access.h)
+  std::vector<Sampler> samplers;         // in addition to those of the images
+  // These are Vulkan's robustBufferAccess: accesses outside of buffers and images read 0 and write nothing,
+  // and are not faults.
   bool robust_images = false, robust_buffers = false;
   OnFault on_fault = OnFault::Stop;
-  uint32_t raygen = kNoShader;  // or the compute shader
-  std::vector<uint32_t> miss;   // what each record of the binding table calls, or kNoShader
+  uint32_t raygen = kNoShader;  // the ray generation shader, or the compute shader
+  std::vector<uint32_t> miss;   // the shader that each record of the binding table calls, or kNoShader
   std::vector<HitGroup> hit;
   std::vector<uint32_t> callable;
   BindingTable table;
-  std::array<uint32_t, 3> launch_size{1, 1, 1};  // threads
+  std::array<uint32_t, 3> launch_size{1, 1, 1};  // number of threads
   // Threads of a block (at most kMaxBlockThreads); `launch_size` is then a multiple of it in each direction.
-  // Zeros: the launch has no blocks, and each warp is one of its own (ray generation); `layout` says of which
-  // threads.
+  // With zeros the launch has no blocks, and each warp is a block of its own (ray generation); `layout` says
+  // which threads it has.
   std::array<uint32_t, 3> block_size{0, 0, 0};
   std::shared_ptr<const WarpLayout> layout;       // null: linear
   uint32_t shared_bytes = 0;                      // shared memory of a block
   uint32_t dynamic_shared_bytes = 0;              // the part of it that the launch asked for, not the program
   std::shared_ptr<const rt::AnyHitMode> any_hit;  // null: immediate
   bool nearest_first_hit = true;                  // rt::TraversalRules::end_at_first_hit is its opposite
-  TraversalCode traversal;                        // without: the RT unit walks rays
-  uint32_t local_bytes = 0;                       // stack a lane, and what `traversal` needs
+  TraversalCode traversal;                        // empty: the RT unit walks rays
+  uint32_t local_bytes = 0;                       // bytes of a lane's stack and of what `traversal` needs
   uint32_t max_trace_depth = 1;                   // nested rt.trace (Vulkan's recursion depth)
   uint32_t max_callable_depth =
       31;  // nested executeCallableEXT. Choice: Vulkan only limits the stack's bytes
 };
 
-// Bytes of a table of records without data, and putting it at `base`: ray generation, miss, hit, callable.
+// Return the bytes of a table of records without data, and put it at `base`: ray generation, miss, hit,
+// callable.
 uint64_t plain_table_bytes(const World& world);
 void place_plain_table(World& world, Address base);
 
-// A grid of blocks of threads: sets sizes and shared memory. `dynamic_bytes` come after the program's own.
+// Sets sizes and shared memory for a grid of blocks of threads. `dynamic_bytes` come after the program's own.
 void set_blocks(World& world, std::array<uint32_t, 3> grid, std::array<uint32_t, 3> block,
                 uint32_t static_bytes, uint32_t dynamic_bytes = 0);
 

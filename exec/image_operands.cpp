@@ -1,4 +1,4 @@
-// The operands of an image op.
+// Reads the operands of an image op.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/image_operands.h"
 

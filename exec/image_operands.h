@@ -1,4 +1,4 @@
-// The operands of an image op: coordinates, level of detail, data, and the texel that they name.
+// Reads the operands of an image op: coordinates, level of detail, data, and the texel that they name.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -12,22 +12,22 @@
 
 namespace glint::exec {
 
-// Slots of an op's operands, in the order that isa/image_access.h gives.
+// Holds the slots of an op's operands, in the order that isa/image_access.h gives.
 struct ImageSlots {
   explicit ImageSlots(const isa::OpRow& row);
   size_t results = 0, layer, at, level, offset, reference, data;
 };
 
-// Words that a surface op stores, or takes besides its place.
+// Returns the number of words that a surface op stores, or takes besides its place.
 size_t num_data(const isa::OpRow& row);
 
-// The operands of one lane.
+// Reads the operands of one lane.
 class ImageLane {
  public:
   ImageLane(const isa::Warp& warp, const isa::Inst& inst, int lane) : warp_(warp), inst_(inst), lane_(lane) {}
   uint32_t word(size_t slot) const { return warp_.read(inst_.operand[slot])[lane_]; }
   int32_t integer(size_t slot) const { return int32_t(word(slot)); }
-  // An atomic's operand: a pair of registers where it changes 64 bits.
+  // Returns an atomic's operand, which is a pair of registers when the atomic changes 64 bits.
   uint64_t bits(size_t slot, const isa::OpRow& row) const {
     const uint64_t high = row.memory.bytes == 8 ? warp_.read(isa::Slot(inst_.operand[slot] + 1))[lane_] : 0;
     return word(slot) | high << 32;
@@ -40,12 +40,12 @@ class ImageLane {
   int lane_;
 };
 
-// What a sampling op asks of an image for one lane.
+// Returns what a sampling op asks of an image for one lane.
 SampleRequest request_of(const isa::ImageAccess& op, const ImageSlots& slots, const ImageLane& lane,
                          const ImageView& image);
 
-// A texel that an integer coordinate names: x, y, z, and layer, and how much there is of each. Byte accesses
-// count x in bytes.
+// Holds the texel that integer coordinates name: x, y, z and layer, with the number of texels along each.
+// Byte accesses count x in bytes.
 struct TexelPlace {
   std::array<int64_t, 4> at{}, end{};
   uint32_t level = 0;
@@ -61,7 +61,7 @@ struct TexelPlace {
 TexelPlace place_of(const isa::ImageAccess& op, const ImageSlots& slots, const ImageLane& lane,
                     const ImageView& image, uint32_t bytes);
 
-// For messages: which texel that is, and how large its image.
+// Says for messages which texel it is, and how large its image is.
 std::string describe(const TexelPlace& place, const ImageView& image);
 
 }  // namespace glint::exec

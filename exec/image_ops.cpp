@@ -1,4 +1,4 @@
-// The way of an image op to its family.
+// Sends an image op to its family.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/image_ops.h"
 

@@ -1,4 +1,4 @@
-// Image ops of the lanes of a warp: textures, surfaces, and questions about images.
+// Runs image ops of the lanes of a warp: textures, surfaces, and queries of images.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "exec/bound_images.h"
@@ -16,9 +16,9 @@ class ImageOps {
         textures_(world, faults, images_, texels_),
         surfaces_(world, faults, seen, images_, texels_) {}
 
-  // False after a fault.
+  // Returns false after a fault.
   bool run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
-  // The texels that the last op touched; empty when it needed no memory.
+  // Returns the texels that the last op touched, or none when it needed no memory.
   const TexelList& texels() const { return texels_; }
 
  private:

@@ -1,4 +1,4 @@
-// An image in simulated memory: its size, its format, where its texels lie, and how it is sampled.
+// Describes an image in simulated memory: its size, its format, where its texels lie, and how it is sampled.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -24,23 +24,23 @@ enum class Comparison : uint8_t {
   Always
 };
 
-// Vulkan's VkSampler. Anisotropy is not modelled: sampling is isotropic.
+// Corresponds to Vulkan's VkSampler. Anisotropy is not modelled, so sampling is isotropic.
 struct Sampler {
   Filter mag = Filter::Linear, min = Filter::Linear, mip = Filter::Nearest;
   std::array<Wrap, 3> wrap{Wrap::ClampToEdge, Wrap::ClampToEdge, Wrap::ClampToEdge};
-  Words border{};  // bits, in the kind of the format: floats or integers
+  Words border{};  // bits of floats or integers, as the format has them
   float lod_bias = 0.0f, min_lod = 0.0f, max_lod = 1000.0f;
-  bool unnormalized = false;  // coordinates count texels; level 0 only
+  bool unnormalized = false;  // coordinates count texels, and only level 0 is read
   Comparison compare = Comparison::Never;
-  std::string unbound{};  // not empty: nobody bound it, and this is where it would be
+  std::string unbound{};  // not empty: nobody bound it, and this names the place
 };
 
 struct TexelIndex {
   uint32_t x = 0, y = 0, z = 0, layer = 0, level = 0;
 };
 
-// Model: texels lie in linear rows: x, then y, then z, then layer, then level, nothing between them. Hardware
-// swizzles. Cubes are six layers each: +x -x +y -y +z -z.
+// Describes an image. Model: texels lie in linear rows: x, then y, then z, then layer, then level, with
+// nothing between them. Hardware swizzles. A cube has six layers: +x -x +y -y +z -z.
 struct ImageView {
   using Format = TexelFormat;
   Format format = Format::Rgba32Float;
@@ -49,17 +49,18 @@ struct ImageView {
   std::string name;
   isa::ImageShape shape = isa::ImageShape::D2;
   uint32_t depth = 1, layers = 1, levels = 1;
-  uint32_t samples = 1;  // of a texel: that many layers each
+  uint32_t samples = 1;  // samples of a texel, which are that many layers
   Sampler sampler{};
-  bool is_bound = true;  // if not, its use is a fault and `name` says where it would be
+  bool is_bound = true;  // false: its use is a fault, and `name` names the place
 
   uint32_t texel_bytes() const { return info_of(format).bytes; }
-  // Texels along an axis of a level: half of the level above, at least 1.
+  // Returns the texels along an axis of a level: half of the level above, and at least 1.
   uint32_t extent(int axis, uint32_t level) const {
     const uint32_t full = axis == 0 ? width : axis == 1 ? height : depth;
     return level < 32 && full >> level > 1 ? full >> level : 1;
   }
-  // Bytes of all layers of the levels before `level`; of `levels`: of the image.
+  // Returns the bytes of all layers of the levels before `level`. With `levels`, these are the bytes of the
+  // image.
   uint64_t bytes_before_level(uint32_t level) const {
     uint64_t texels = 0;
     for (uint32_t l = 0; l < level; ++l)

@@ -1,4 +1,4 @@
-// Putting blocks and warps of a launch to their start: who they are, and what they read about themselves.
+// Starts blocks and warps of a launch: says who they are, and what they read about themselves.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/launch.h"
 
@@ -32,7 +32,7 @@ std::array<uint32_t, 3> grid_size(const World& world) {
   return grid;
 }
 
-// Tiles of a launch without blocks; zeros where its warps are consecutive launch indices.
+// Holds the tiles of a launch without blocks, or zeros when its warps are consecutive launch indices.
 struct Tiles {
   uint32_t width = 0, height = 0, columns = 0, rows = 0;
 };
@@ -44,7 +44,7 @@ Tiles tiles_of(const World& world) {
   return {width, height, (size[0] + width - 1) / width, (size[1] + height - 1) / height};
 }
 
-// Block `index` of the launch, in the layout's order.
+// Returns the id of block `index` of the launch, in the layout's order.
 std::array<uint32_t, 3> block_id(const World& world, uint32_t index) {
   const std::array<uint32_t, 3> grid = grid_size(world);
   if (!world.layout) return coordinates(index, grid);
@@ -52,7 +52,8 @@ std::array<uint32_t, 3> block_id(const World& world, uint32_t index) {
   return {x, y, index / (grid[0] * grid[1])};
 }
 
-// Lanes that have a thread: all but at the edges of the launch or of the block.
+// Returns the lanes that have a thread, which are all lanes except at the edges of the launch or of the
+// block.
 LaneMask lanes_of(const World& world, uint32_t warp_index, uint32_t warp_in_block) {
   if (tiles_of(world).width == 0) {
     const uint64_t all = product(has_blocks(world) ? world.block_size : world.launch_size);

@@ -1,4 +1,4 @@
-// Blocks and warps of a launch: how many there are, which threads they hold, and how they start.
+// Says how many blocks and warps a launch has and which threads they hold, and starts them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -8,31 +8,31 @@
 
 namespace glint::exec {
 
-// Where a machine has put a warp, as the warp's program may ask: %warpid, %nwarpid, %smid, %nsmid.
+// Says where a machine has put a warp, as the warp's program may ask: %warpid, %nwarpid, %smid, %nsmid.
 struct Seat {
-  uint32_t slot = 0, slots = 1;  // The warp slot of the core, and how many the core has.
+  uint32_t slot = 0, slots = 1;  // the warp slot of the core, and how many slots the core has
   uint32_t core = 0, cores = 1;
 };
 
 uint32_t num_blocks(const World& world);
-uint32_t warps_per_block(const World& world);  // 1 in a launch without blocks.
+uint32_t warps_per_block(const World& world);  // 1 in a launch without blocks
 
-// Launch coordinates of a lane of a warp, as World::layout has them. In a launch with blocks x runs fastest
-// within the block. A lane without a thread is outside of the launch.
+// Returns the launch coordinates of a lane of a warp, as World::layout gives them. In a launch with blocks, x
+// runs fastest within the block. A lane without a thread is outside of the launch.
 std::array<uint32_t, 3> launch_id(const World& world, uint32_t warp_index, int lane);
 
-// Empties `block` for block `index` of the launch: zeroed shared memory, no warp has arrived anywhere. Blocks
-// are numbered x fastest, if the layout does not say otherwise.
+// Empties `block` for block `index` of the launch: shared memory is zeroed, and no warp has arrived anywhere.
+// Blocks are numbered x fastest, unless the layout says otherwise.
 void start_block(const World& world, Block& block, uint32_t index);
 // Puts a warp of the block into `warp`, at the entry of the ray generation or compute shader. Neither may
 // move until the warp has ended.
 void start_warp(const World& world, WarpContext& warp, Block& block, uint32_t warp_in_block,
                 const Seat& seat);
 
-// Whether any shader of the image reads the clock or the time.
+// Returns whether any shader of the image reads the clock or the time.
 bool reads_clock(const Image& image);
-// Writes clock and time for the warp's next instruction. `clock_mhz` turns cycles into time; 0: the time is
-// 0.
+// Writes clock and time for the warp's next instruction. `clock_mhz` turns cycles into time; with 0 the time
+// is 0.
 void fill_clock(WarpContext& warp, Cycle now, double clock_mhz);
 
 }  // namespace glint::exec

@@ -1,4 +1,4 @@
-// Loads and stores of the lanes' stacks.
+// Loads from and stores to the lanes' stacks.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/local_memory.h"
 
@@ -14,8 +14,8 @@ namespace glint::exec {
 
 using isa::Effect;
 
-// The slow way of access(): somebody is outside of the stack or misaligned. A frame that does not fit is
-// an overflow, which nothing lets pass; lanes that are outside without it leave `lanes`.
+// Checks an access() in which a lane is outside of the stack or misaligned. A frame that does not fit is an
+// overflow, which nothing lets pass. Lanes that are outside without an overflow leave `lanes`.
 bool LocalMemory::check(WarpContext& warp, const isa::OpRow& row, LaneMask& lanes) {
   const uint32_t bytes = row.memory.bytes * row.memory.count, part = row_bytes(row.memory);
   const uint32_t frame = world_.image->shaders[world_.image->shader_of[warp.simt.pc]].local_bytes;
@@ -37,7 +37,7 @@ bool LocalMemory::check(WarpContext& warp, const isa::OpRow& row, LaneMask& lane
       lanes &= ~(LaneMask{1} << lane);
     } else if (address % part != 0) {
       if (!faults_.let_pass(warp, lane, FaultKind::Misaligned,
-                            [&] { return what(fmt::format(", which is no multiple of {}", part)); }))
+                            [&] { return what(fmt::format(", which is not a multiple of {}", part)); }))
         return false;
       address -= address % part;
     }
@@ -45,7 +45,8 @@ bool LocalMemory::check(WarpContext& warp, const isa::OpRow& row, LaneMask& lane
   return true;
 }
 
-// Local memory lies word by word, all lanes of a word together: a vector may start at any word, as spills do.
+// Runs a load or store. Local memory lies word by word, with all lanes of a word together, so a vector may
+// start at any word, as spills do.
 bool LocalMemory::access(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask& made) {
   LaneMask lanes = made;
   const isa::Memory& shape = row.memory;

@@ -1,4 +1,4 @@
-// Loads, stores and atomics: moving data between registers and simulated memory, checking each access.
+// Moves data between registers and simulated memory: loads, stores and atomics, with a check of each access.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/memory_ops.h"
 
@@ -20,7 +20,8 @@ using isa::Space;
 
 namespace {
 
-// Lane by lane: where two lanes write one place, the higher lane's value stays. Choice: PTX leaves it open.
+// Stores lane by lane, so that where two lanes write one place the higher lane's value stays. Choice: PTX
+// leaves it open.
 void store_rows(const WarpContext& warp, const isa::Inst& inst, const isa::Memory& shape, LaneMask lanes,
                 const LanePlaces& to) {
   const uint32_t bytes = row_bytes(shape);
@@ -31,7 +32,7 @@ void store_rows(const WarpContext& warp, const isa::Inst& inst, const isa::Memor
   });
 }
 
-// "32 bytes past the end of the block's shared memory (64 bytes)"
+// Says where an access lies, such as "32 bytes past the end of the block's shared memory (64 bytes)".
 std::string outside_of(std::string_view object, Address address, uint64_t bytes, uint64_t size) {
   if (address >= size)
     return fmt::format("{} bytes past the end of {} ({} bytes)", address - size, object, size);
@@ -89,7 +90,7 @@ bool MemoryOps::access(WarpContext& warp, const isa::Inst& inst, const isa::OpRo
   GLINT_PANIC("{}: no such space", row.name);
 }
 
-// An access that its space does not have: let pass, it does nothing and answers 0.
+// Refuses an access that its space does not have. When it is let pass, it does nothing and answers 0.
 bool MemoryOps::refuse(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, Space space,
                        LaneMask lanes, const std::string& why) {
   for (LaneMask rest = lanes; rest; rest &= rest - 1)
@@ -100,9 +101,9 @@ bool MemoryOps::refuse(WarpContext& warp, const isa::Inst& inst, const isa::OpRo
   return true;
 }
 
-// Where the lanes' data lies. Accesses are aligned to their size, as PTX asks. A lane whose access is let
-// pass leaves `lanes` when it is outside. Choice: a misaligned one that is let pass goes to the multiple of
-// its size below.
+// Finds where the lanes' data lies. Accesses are aligned to their size, as PTX requires. A lane whose access
+// is let pass leaves `lanes` when it is outside. Choice: a misaligned access that is let pass goes to the
+// multiple of its size below.
 bool MemoryOps::locate(WarpContext& warp, const isa::OpRow& row, Space space, LaneMask& lanes,
                        LanePlaces& at) {
   const uint32_t bytes = row.memory.bytes * row.memory.count;
@@ -130,8 +131,8 @@ bool MemoryOps::locate(WarpContext& warp, const isa::OpRow& row, Space space, La
     if (const auto beyond = uint32_t(address & (bytes - 1)); beyond) [[unlikely]] {
       if (!faults_.let_pass(warp, lane, FaultKind::Misaligned, [&] {
             return fmt::format(
-                "{} {} bytes at {} address {:#x}, which is no multiple of {}{}", verb_of(row.effect), bytes,
-                name_of(space), address, bytes,
+                "{} {} bytes at {} address {:#x}, which is not a multiple of {}{}", verb_of(row.effect),
+                bytes, name_of(space), address, bytes,
                 space == Space::Global ? ": " + whereabouts(*world_.memory, address, bytes) : "");
           }))
         return false;
@@ -164,7 +165,7 @@ bool MemoryOps::move_data(WarpContext& warp, const isa::Inst& inst, const isa::O
   return true;
 }
 
-// Lanes take turns, the lowest first. Choice: PTX leaves their order open.
+// Runs an atomic. Lanes take turns, the lowest first. Choice: PTX leaves their order open.
 bool MemoryOps::modify(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, Space space,
                        LaneMask lanes) {
   LanePlaces at;

@@ -1,4 +1,4 @@
-// Loads, stores and atomics of the lanes of a warp, in whichever space their addresses are.
+// Runs loads, stores and atomics of the lanes of a warp, in whichever space their addresses are.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -18,14 +18,15 @@ class MemoryOps {
   MemoryOps(const World& world, FaultGate& faults, SeenMemory& seen)
       : world_(world), faults_(faults), seen_(seen), local_(world, faults), constants_(world, faults) {}
 
-  // False after a fault.
+  // Returns false after a fault.
   bool run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
 
-  // The lanes whose access the last run() made in that space. Their Access::address is then an address of the
-  // space, of generic accesses too. Lanes whose access was let pass and went nowhere are left out.
+  // Returns the lanes whose access the last run() made in that space. Their Access::address is then an
+  // address of the space, also for generic accesses. Lanes whose access was let pass and went nowhere are
+  // left out.
   LaneMask lanes_in(isa::Space space) const { return lanes_in_[size_t(space)]; }
-  // Grows with every store outside of a view and every atomic there that has changed something: shared
-  // memory, mostly.
+  // Returns a number that grows with every store outside of a view and every atomic there that has changed
+  // something, mostly in shared memory.
   uint64_t changes() const { return changes_; }
 
  private:

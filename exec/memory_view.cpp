@@ -1,4 +1,4 @@
-// What a core writes in a turn: kept apart, then put into memory in the machine's one order.
+// Keeps what a core writes in a turn apart, then puts it into memory in the machine's one order.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/memory_view.h"
 
@@ -39,7 +39,7 @@ uint32_t widened(const MemoryView::Load& load) {
   return load.bytes == 1 ? uint32_t(int32_t(int8_t(value))) : uint32_t(int32_t(int16_t(value)));
 }
 
-// Whether the value has changed.
+// Runs an atomic and returns whether the value has changed.
 bool run_modify(const MemoryView::Modify& op) {
   uint64_t old = 0;
   std::memcpy(&old, op.at, op.bytes);
@@ -73,7 +73,8 @@ const MemoryView::Line* MemoryView::find(const std::byte* place) const {
   }
 }
 
-// Memory stands still within a turn: a copy taken now is as good as one of its beginning.
+// Returns the core's copy of a line. Memory does not change within a turn, so a copy taken now is as good as
+// one of its beginning.
 MemoryView::Line& MemoryView::line_of(std::byte* place) {
   if (!lines_.empty() && lines_.back().place == place) return lines_.back();
   if (const Line* line = find(place)) return lines_[size_t(line - lines_.data())];
@@ -101,7 +102,7 @@ void MemoryView::store(std::byte* at, const void* from, uint32_t bytes) {
   for_each_part(at, bytes, [&](std::byte* place, uint32_t offset, uint32_t done, uint32_t count) {
     Line& line = line_of(place);
     std::memcpy(line.data.data() + offset, source + done, count);
-    line.waits &= ~mask_of(offset, count);  // whoever reads here now reads what was stored
+    line.waits &= ~mask_of(offset, count);  // whoever reads here from now on reads what was stored
   });
   for (uint32_t done = 0; done < bytes;) {
     Store& store = stores_.emplace_back();
@@ -182,13 +183,13 @@ void MemoryView::clear() {
   texels_.clear();
   lines_.clear();
   next_ = 0;
-  if (++turn_ == 0) {  // 2^32 turns: old stamps could be taken for new ones
+  if (++turn_ == 0) {  // after 2^32 turns, old stamps could be taken for new ones
     std::fill(slots_.begin(), slots_.end(), Slot{});
     turn_ = 1;
   }
 }
 
-// The views are few and their batches are in order: the earliest of all is at one of their heads.
+// The views are few and their batches are in order, so the earliest of all is at one of their heads.
 bool MemoryView::commit(std::span<MemoryView* const> views) {
   bool changed = false;
   for (;;) {

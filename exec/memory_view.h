@@ -1,4 +1,4 @@
-// Global memory as one core sees it within a turn: its own stores at once, those of other cores from the next
+// Shows global memory to one core within a turn: its own stores at once, those of other cores from the next
 // turn on.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -14,17 +14,18 @@
 
 namespace glint::exec {
 
-// Cores run a turn apart from each other (engine/engine_loop.h), so within a turn none may see what another
-// one does. A core's stores go to copies of the lines they touch and into a list; atomics into the list
-// alone. Between turns commit() does what the lists of all cores say, in order of cycle, then core. So a
-// store is seen by other cores some tens of cycles after its issue, which is sooner than it could come to the
-// L2, and everything that happened to memory has one order that does not depend on how the machine is run. An
-// atomic's old value comes with commit(), as does a load of bytes that an atomic of the same turn changes:
-// their registers are written then. The core sees to it that nobody reads them before. Model: textures,
-// acceleration structures and binding tables are read as they were before the turn.
+// Holds what one core does to global memory in a turn. Cores run a turn apart from each other
+// (engine/engine_loop.h), so within a turn no core may see what another one does. A core's stores go to
+// copies of the lines that they touch and into a list; atomics go only into the list. Between turns, commit()
+// does what the lists of all cores say, in order of cycle, then core.
+// So other cores see a store some tens of cycles after its issue, which is sooner than it could reach the L2,
+// and everything that happened to memory has one order that does not depend on how the machine is run. An
+// atomic's old value comes with commit(), and so does a load of bytes that an atomic of the same turn
+// changes: their registers are written then. The core ensures that nobody reads them before.
+// Model: textures, acceleration structures and binding tables are read as they were before the turn.
 class MemoryView {
  public:
-  static constexpr uint32_t kLine = 64;    // bytes, of the host: allocations are aligned to it
+  static constexpr uint32_t kLine = 64;    // bytes on the host; allocations are aligned to it
   static constexpr uint32_t kWidest = 32;  // bytes of a lane's access
 
   struct Modify {
@@ -32,7 +33,7 @@ class MemoryView {
     isa::AtomicFunction function;
     uint64_t b, c;
     uint8_t bytes;  // 2, 4 or 8
-    uint32_t* to;   // where the old value goes: a lane of a row, and of the next for 8 bytes; or null
+    uint32_t* to;   // the lane of a row (and of the next row for 8 bytes) for the old value; or null
   };
   struct Load {
     const std::byte* at;
@@ -44,30 +45,31 @@ class MemoryView {
     const std::byte* at;
     const isa::OpRow* row;
     TexelFormat format;
-    std::array<uint32_t*, 4> to;  // null past the results
+    std::array<uint32_t*, 4> to;  // null beyond the results
   };
 
-  // What follows happens at `now`.
+  // Sets the time of what follows to `now`.
   void begin(Cycle now);
   void store(std::byte* at, const void* from, uint32_t bytes);
   void modify(const Modify& modify);
-  void load(const Load& load);  // with commit()
+  void load(const Load& load);  // takes place with commit()
   void load(const LoadTexel& load);
 
-  // Whether reads have to ask: somebody here has written in this turn.
+  // Returns whether this core has written in this turn, so that reads have to ask.
   bool touched() const { return !lines_.empty(); }
-  // Whether an atomic changes any of the bytes at the turn's end.
+  // Returns whether an atomic changes any of the bytes at the turn's end.
   bool waits(const std::byte* at, uint32_t bytes) const;
-  // Where the bytes can be read: at their place, or in `scratch`, where this core has written some of them.
+  // Returns where the bytes can be read: at their place, or in `scratch` when this core has written some of
+  // them.
   const std::byte* read(const std::byte* at, uint32_t bytes, std::span<std::byte, kWidest> scratch) const;
 
-  // Ends the turn for all cores of the machine. `views` in the order of the cores. Whether any byte of memory
-  // has changed.
+  // Ends the turn for all cores of the machine. `views` are in the order of the cores. Returns whether any
+  // byte of memory has changed.
   static bool commit(std::span<MemoryView* const> views);
 
  private:
   struct Line {
-    std::byte* place;    // of its first byte
+    std::byte* place;    // place of its first byte
     uint64_t waits = 0;  // bytes that atomics will change
     std::array<std::byte, kLine> data;
   };
@@ -76,7 +78,7 @@ class MemoryView {
     uint32_t bytes;
     std::array<std::byte, 16> data;
   };
-  // Effects of one kind at one time: [first, end) of the kind's list.
+  // Holds effects of one kind at one time: [first, end) of the kind's list.
   enum class Kind : uint8_t { Store, Modify, Load, LoadTexel };
   struct Batch {
     Cycle at;
@@ -97,18 +99,18 @@ class MemoryView {
   std::vector<Modify> modifies_;
   std::vector<Load> loads_;
   std::vector<LoadTexel> texels_;
-  // Capacities are kept: no heap once warm. Slots hold a line's number + 1 and count only if they are of this
-  // turn.
+  // Capacities are kept, so that a warm view allocates nothing. Slots hold a line's number + 1 and count only
+  // if they are of this turn.
   struct Slot {
     uint32_t turn = 0, line = 0;
   };
   std::vector<Line> lines_;
   std::vector<Slot> slots_ = std::vector<Slot>(256);
   uint32_t turn_ = 1;
-  uint32_t next_ = 0;  // of the batches, while they are committed
+  uint32_t next_ = 0;  // next batch while they are committed
 };
 
-// A texel as an image op loads it.
+// Returns a texel as an image op loads it.
 Words load_texel(const isa::OpRow& row, TexelFormat format, const std::byte* at);
 
 }  // namespace glint::exec

@@ -1,4 +1,4 @@
-// The number by which the lanes of a warp name an object.
+// Finds the number by which the lanes of a warp name an object.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/numbered.h"
 
@@ -15,7 +15,7 @@ std::optional<uint32_t> shared_number(FaultGate& faults, const WarpContext& warp
   for_each_lane(warp.regs.exec, [&](int lane) { same &= number[lane] == number[first]; });
   if (same && number[first] < kMaxNumbered) return number[first];
   faults.fail(warp, first,
-              same ? fmt::format("uses {} {}: a shader has at most {}", what, number[first], kMaxNumbered)
+              same ? fmt::format("uses {} {}, and a shader has at most {}", what, number[first], kMaxNumbered)
                    : fmt::format("the lanes of a warp use more than one {} at once", what));
   return std::nullopt;
 }

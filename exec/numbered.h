@@ -1,4 +1,4 @@
-// Ray queries and hit objects are named by number: finding those that an instruction names.
+// Finds ray queries and hit objects, which instructions name by number.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -12,12 +12,13 @@
 
 namespace glint::exec {
 
-// The number that all executing lanes give in `operand`; nothing after a fault. `what`: the kind of object,
-// for its message.
+// Returns the number that all executing lanes give in `operand`, or nothing after a fault. `what` names the
+// kind of object for the message.
 std::optional<uint32_t> shared_number(FaultGate& faults, const WarpContext& warp, isa::Slot operand,
                                       std::string_view what);
 
-// The objects of a level of traces, one a lane, that the executing lanes name alike; null after a fault.
+// Returns the objects of a level of traces, one per lane, that all executing lanes name, or null after a
+// fault.
 template <class Object>
 Object* find_numbered(FaultGate& faults, WarpContext& warp, Numbered<Object>& objects, isa::Slot operand,
                       uint32_t level, std::string_view what) {

@@ -1,4 +1,4 @@
-// Keeping the first lines of a launch.
+// Keeps the first lines of a launch.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/print_log.h"
 
@@ -8,8 +8,8 @@
 
 namespace glint::exec {
 
-// Once the log is full it stays so, and the last of its threads only comes nearer: a line that has no room
-// now will never.
+// Returns whether a line has room. A full log stays full, and the last of its threads only comes nearer, so a
+// line that has no room now will never have it.
 bool PrintLog::has_room(uint64_t thread) const {
   return kept_ < limit_ || (!lines_.empty() && thread < std::prev(lines_.end())->first);
 }
@@ -45,7 +45,7 @@ std::string PrintLog::take() {
   std::string out;
   for (const auto& [thread, lines] : lines_)
     for (const std::string& line : lines) out += line;
-  for (const auto& [thread, line] : open_)  // of lanes that a fault has stopped in the middle
+  for (const auto& [thread, line] : open_)  // lines of lanes that a fault has stopped in the middle
     if (has_room(thread)) out += line + "\n";
   if (dropped_) out += fmt::format("({} more messages not shown; the limit is {})\n", dropped_, limit_);
   lines_.clear(), open_.clear();

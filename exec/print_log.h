@@ -1,4 +1,4 @@
-// What the shaders of a launch print: ordered by launch id, then as each thread goes, whenever they ran.
+// Collects what the shaders of a launch print, by launch id and then as each thread goes, whenever they ran.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -15,12 +15,12 @@ class PrintLog {
  public:
   explicit PrintLog(uint64_t limit = 1000) : limit_(limit) {}
 
-  // False: a line that `thread` (its place in the launch, x fastest) began now would not be kept.
+  // Returns false when a line that `thread` (its place in the launch, x fastest) began now would not be kept.
   bool wants(uint64_t thread) const;
-  // Adds to the thread's present line, and ends it if `ends`.
+  // Adds to the thread's present line, and ends the line if `ends` is set.
   void add(uint64_t thread, const std::string& text, bool ends);
 
-  // The lines, each with an end of line, and a last one that counts those left out. Empties the log.
+  // Returns the lines, each with an end of line, and a last one that counts those left out. Empties the log.
   std::string take();
   uint64_t dropped() const { return dropped_; }
 
@@ -30,7 +30,7 @@ class PrintLog {
   const uint64_t limit_;
   mutable std::mutex mutex_;
   uint64_t kept_ = 0, dropped_ = 0;
-  std::map<uint64_t, std::vector<std::string>> lines_;  // by thread
+  std::map<uint64_t, std::vector<std::string>> lines_;  // ordered by thread
   std::map<uint64_t, std::string> open_;                // lines that have not ended
 };
 

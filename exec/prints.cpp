@@ -1,4 +1,4 @@
-// Printing: the words that lanes give to a message become text in the launch's log.
+// Turns the words that lanes give to a message into text in the launch's log.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/prints.h"
 
@@ -11,7 +11,7 @@ void run_print(const World& world, WarpContext& warp, const isa::Inst& inst, con
   const uint32_t pc = warp.simt.pc++;
   if (!world.prints || warp.regs.exec == 0) return;
   const bool ends = row.effect == isa::Effect::Print;
-  // Every lane has the same number: it is a constant (isa/verify.h).
+  // Every lane has the same number, because it is a constant (isa/verify.h).
   const isa::ParsedMessage& message =
       world.image->shaders[world.image->shader_of[pc]].messages[warp.regs.read(inst.operand[0])[0]];
   for_each_lane(warp.regs.exec, [&](int lane) {

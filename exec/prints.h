@@ -1,4 +1,4 @@
-// Printing: the words that lanes give to a message become text in the launch's log.
+// Turns the words that lanes give to a message into text in the launch's log.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "exec/warp_context.h"

@@ -1,4 +1,4 @@
-// Wording of the mistakes of programs that trace rays.
+// Words the mistakes of programs that trace rays.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/ray_faults.h"
 
@@ -12,7 +12,7 @@ namespace glint::exec {
 bool RayFaults::let_pass_record(const WarpContext& warp, int lane, std::string_view region, uint32_t record,
                                 size_t records, const std::string& how) {
   return gate_.let_pass(warp, lane, FaultKind::Record, [&] {
-    return fmt::format("needs {} record {}{}: the binding table has {}", region, record, how, records);
+    return fmt::format("needs {} record {}{}, and the binding table has {}", region, record, how, records);
   });
 }
 
@@ -35,8 +35,8 @@ bool RayFaults::let_pass_structure(const WarpContext& warp, int lane, std::strin
 bool RayFaults::let_pass_broken(const WarpContext& warp, int lane, rt::RayState& state) {
   if (!gate_.let_pass(warp, lane, FaultKind::Structure, [&] {
         return fmt::format(
-            "traced a ray through {:#x}, an acceleration structure whose bytes lead outside memory: they "
-            "were overwritten: {}",
+            "traced a ray through {:#x}, an acceleration structure whose bytes were overwritten and lead "
+            "outside memory: {}",
             state.ray.structure,
             whereabouts(*world_.memory, state.ray.structure, sizeof(rt::StructureHeader)));
       }))

@@ -1,4 +1,4 @@
-// Mistakes of programs that trace rays: records outside of the binding table, and structures that are none.
+// Reports mistakes of programs that trace rays: records outside of the binding table, and invalid structures.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -10,18 +10,18 @@
 
 namespace glint::exec {
 
-// Each function answers as FaultGate::let_pass().
+// Each function returns what FaultGate::let_pass() returns.
 class RayFaults {
  public:
   RayFaults(const World& world, FaultGate& gate) : world_(world), gate_(gate) {}
 
-  // A record outside of its region calls nothing. `how`: the numbers that name it.
+  // Reports a record outside of its region, which calls nothing. `how` holds the numbers that name it.
   bool let_pass_record(const WarpContext& warp, int lane, std::string_view region, uint32_t record,
                        size_t records, const std::string& how = {});
   bool let_pass_hit_record(const WarpContext& warp, int lane, const rt::Ray& ray, const rt::Hit& hit);
-  // A ray misses what is no structure.
+  // Reports a ray that is traced into something that is not a structure, which it misses.
   bool let_pass_structure(const WarpContext& warp, int lane, std::string_view verb, Address structure);
-  // A ray whose structure's bytes led outside of memory has missed.
+  // Reports a ray that has missed because its structure's bytes led outside of memory.
   bool let_pass_broken(const WarpContext& warp, int lane, rt::RayState& state);
 
  private:

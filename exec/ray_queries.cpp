@@ -1,4 +1,4 @@
-// Ray queries: their values, and what a shader decides about candidates.
+// Computes the values of ray queries, and what a shader decides about candidates.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/ray_queries.h"
 
@@ -17,7 +17,7 @@ using isa::Query;
 using rt::RayState;
 using rt::RayStatus;
 
-// Operands of rq.initialize.
+// Names the operands of rq.initialize.
 enum InitializeOperand : size_t { kQuery, kStructure, kFlags, kMask, kRay };
 
 uint32_t kind_of_hit(const RayState& state, bool committed) {
@@ -26,7 +26,7 @@ uint32_t kind_of_hit(const RayState& state, bool committed) {
   return state.committed.kind >= rt::kHitKindFront ? 1 : 2;
 }
 
-// A value of the ray itself; the element is counted from Query::Tmin.
+// Returns a value of the ray itself. The element is counted from Query::Tmin.
 uint32_t ray_value(const rt::Ray& ray, int element) {
   const int first_origin = int(Query::Origin) - int(Query::Tmin), first_direction = first_origin + 3;
   if (element == 0) return as_bits(ray.t_min);
@@ -35,7 +35,7 @@ uint32_t ray_value(const rt::Ray& ray, int element) {
                                            : ray.direction[size_t(element - first_direction)]);
 }
 
-// A value that depends on the instance; of no instance, 0 (Choice: Vulkan leaves it undefined).
+// Returns a value that depends on the instance, or 0 when there is none (Choice: Vulkan leaves it undefined).
 uint32_t instance_value(const RayState& state, const rt::Hit& hit, int field,
                         const mem::AddressSpace& memory) {
   if (!hit.valid()) return 0;
@@ -87,13 +87,13 @@ void commit(RayState& state) {
   if (state.status == RayStatus::NeedsAnyHit) rt::accept_candidate(state);
 }
 
-// Model: a generated hit passes no any-hit shader; its kind is 0.
+// Generates a hit. Model: a generated hit passes no any-hit shader, and its kind is 0.
 void generate(RayState& state, float t) {
   if (state.status != RayStatus::NeedsIntersection) return;
   if (rt::report(state, t, 0) == rt::Report::NeedsAnyHit) rt::accept_candidate(state);
 }
 
-// The shader asks for more without having taken the candidate.
+// Handles a shader that asks for more without having taken the candidate.
 void pass_over(RayState& state) {
   if (state.status == RayStatus::NeedsAnyHit) rt::ignore_candidate(state);
   if (state.status == RayStatus::NeedsIntersection) rt::finish_intersection(state);
@@ -109,7 +109,7 @@ bool RayQueries::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow&
     RayState* const states =
         find_numbered(faults_, warp, warp.queries, inst.operand[reads ? 1 : 0], warp.depth, "ray query");
     if (!states) return false;
-    // After a ray has been walked, shaders ask for more or for what it found.
+    // After a ray has been walked, shaders ask for more candidates or for what the ray found.
     const bool asks =
         row.effect == isa::Effect::QueryProceed || row.detail == isa::detail_of(Query::Type, true);
     for (LaneMask lanes = asks ? exec : 0; lanes; lanes &= lanes - 1)

@@ -1,4 +1,4 @@
-// Ray queries: rq.*, whose rays a shader walks by itself.
+// Runs ray queries: rq.*, whose rays a shader walks by itself.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "exec/rays.h"
@@ -10,7 +10,7 @@ class RayQueries {
   RayQueries(const World& world, FaultGate& faults, RayFaults& ray_faults)
       : world_(world), faults_(faults), ray_faults_(ray_faults) {}
 
-  // False after a fault.
+  // Returns false after a fault.
   bool run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
 
  private:

@@ -1,4 +1,4 @@
-// What a shader reads of its ray, its hit, its payload and its record of the binding table.
+// Writes what a shader reads of its ray, its hit, its payload and its record of the binding table.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/ray_specials.h"
 
@@ -15,7 +15,7 @@ using isa::Stage;
 
 namespace {
 
-// What the shaders of one stage see of a ray.
+// Holds what the shaders of one stage see of a ray.
 struct Seen {
   const rt::Hit& hit;
   float t;
@@ -53,7 +53,8 @@ void set_record(WarpContext& warp, size_t lane, Address record) {
   set(warp, lane, Special::RecordHi, uint32_t(data >> 32));
 }
 
-// A word of local memory; 0 outside of it, where only a program that lies about its addresses can lead.
+// Returns a word of local memory, or 0 outside of it, where only a program that lies about its addresses can
+// lead.
 uint32_t local_word(const WarpContext& warp, uint32_t address, size_t lane) {
   const size_t at = size_t(address / 4) * kLanes + lane;
   return at < warp.local.size() ? warp.local[at] : 0;
@@ -86,7 +87,7 @@ void fill_ray_specials(const World& world, WarpContext& warp, int lane, const Sh
   set(warp, i, Special::HitKind, seen.hit.kind);
   set_float(warp, i, Special::HitU, seen.hit.u);
   set_float(warp, i, Special::HitV, seen.hit.v);
-  // Model: the first two words of an intersection shader's attributes come where a triangle's weights come,
+  // Model: the first two words of an intersection shader's attributes take the place of a triangle's weights,
   // so that a hit shader with a pair of floats serves both.
   if (seen.hit.valid() && seen.hit.kind < rt::kHitKindFront) {
     set(warp, i, Special::HitU, local_word(warp, attributes, i));

@@ -1,4 +1,4 @@
-// What a shader reads of its ray, its hit, its payload and its record of the binding table.
+// Writes what a shader reads of its ray, its hit, its payload and its record of the binding table.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "exec/warp_context.h"
@@ -9,7 +9,7 @@ namespace glint::exec {
 // callables.
 void fill_specials(const World& world, WarpContext& warp, LaneMask lanes, const Shader& shader);
 
-// Writes them for all running lanes, in the shader that the warp is in.
+// Writes the special registers for all running lanes, in the shader that the warp is in.
 inline void refill_specials(const World& world, WarpContext& warp) {
   fill_specials(world, warp, warp.simt.active, world.image->shaders[world.image->shader_of[warp.simt.pc]]);
 }

@@ -1,4 +1,4 @@
-// What several ray instructions read alike: a ray's operands, object space, objects that shaders number.
+// Reads what several ray instructions have in common: a ray's operands, object space, numbered objects.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -22,7 +22,7 @@ inline uint32_t as_bits(float x) {
   return std::bit_cast<uint32_t>(x);
 }
 
-// A lane's value of an operand of 32 bits, and of one of 64.
+// Return a lane's value of an operand of 32 bits, and of one of 64 bits.
 inline uint32_t read_word(const isa::Warp& regs, const isa::Inst& inst, size_t operand, int lane) {
   return regs.read(inst.operand[operand])[lane];
 }
@@ -31,7 +31,7 @@ inline Address read_address(const isa::Warp& regs, const isa::Inst& inst, size_t
                                                     << 32;
 }
 
-// Eight operands from `first` on: origin, tmin, direction, tmax.
+// Number of operands of a ray: origin, tmin, direction, tmax.
 inline constexpr size_t kRayOperands = 8;
 inline void read_ray(const isa::Warp& regs, const isa::Inst& inst, size_t first, int lane, rt::Ray& ray) {
   const auto value = [&](size_t i) { return as_float(read_word(regs, inst, first + i, lane)); };
@@ -43,7 +43,7 @@ inline void read_ray(const isa::Warp& regs, const isa::Inst& inst, size_t first,
   ray.t_max = value(7);
 }
 
-// Coordinate `axis` of a point or direction of the world in the space of an instance.
+// Returns coordinate `axis` of a point or direction of the world in the space of an instance.
 inline float object_point(const rt::InstanceLeaf& leaf, const std::array<float, 3>& x, size_t axis) {
   const float* m = leaf.world_to_object.data() + 4 * axis;
   return m[0] * x[0] + m[1] * x[1] + m[2] * x[2] + m[3];
@@ -53,8 +53,8 @@ inline float object_direction(const rt::InstanceLeaf& leaf, const std::array<flo
   return m[0] * x[0] + m[1] * x[1] + m[2] * x[2];
 }
 
-// Coordinate `number` of the corners of the triangle that was hit: x, y, z of the first, of the second, of
-// the third. Choice: 0 where there is no triangle; Vulkan leaves it undefined.
+// Returns coordinate `number` of the corners of the triangle that was hit: x, y, z of the first, of the
+// second, of the third. Choice: it is 0 when there is no triangle; Vulkan leaves it undefined.
 inline float corner_of(const rt::Hit& hit, uint32_t number, const mem::AddressSpace& memory) {
   const std::byte* const bytes =
       hit.triangle_leaf ? memory.find(hit.triangle_leaf, sizeof(rt::TriangleLeaf)) : nullptr;

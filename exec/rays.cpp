@@ -1,4 +1,4 @@
-// Ray instructions: opening and closing traces, handing rays over and taking them back, and reports of hits.
+// Opens and closes traces, hands rays over and takes them back, and reports hits.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/rays.h"
 
@@ -20,7 +20,7 @@ using rt::RayStatus;
 
 namespace {
 
-// A rt.trace's operands after the answer predicate and the structure.
+// Names the operands of rt.trace after the answer predicate and the structure.
 enum TraceOperand : size_t {
   kFlags = 2,
   kMask,
@@ -36,9 +36,9 @@ void set_ray(const isa::Warp& regs, const isa::Inst& inst, int lane, rt::Ray& ra
   ray.structure = read_address(regs, inst, 1, lane);
   ray.flags = value(kFlags);
   ray.cull_mask = value(kMask) & 0xff;
-  ray.sbt_offset = value(kSbtOffset) & 15;  // SPV_KHR_ray_tracing: only the 4 low bits count
+  ray.sbt_offset = value(kSbtOffset) & 15;  // by SPV_KHR_ray_tracing only the 4 low bits count
   ray.sbt_stride = value(kSbtStride) & 15;
-  ray.miss_index = value(kMiss) & 0xffff;  // and 16 here
+  ray.miss_index = value(kMiss) & 0xffff;  // and here 16 bits
   read_ray(regs, inst, kRay, lane, ray);
 }
 
@@ -72,11 +72,11 @@ bool Rays::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) 
   }
 }
 
-// Opens a level with the payloads and attributes of its lanes; no ray travels yet.
+// Opens a level with the payloads and attributes of its lanes. No ray travels yet.
 bool Rays::open_trace(WarpContext& warp, const isa::Inst& inst, size_t payload_operand) {
   if (warp.depth == world_.max_trace_depth)
     return faults_.fail(warp, std::countr_zero(warp.regs.exec),
-                        fmt::format("traces a ray at depth {}: the pipeline allows {} nested traces",
+                        fmt::format("traces a ray at depth {}, and the pipeline allows {} nested traces",
                                     warp.depth + 1, world_.max_trace_depth));
   if (warp.frames.size() == warp.depth) warp.frames.push_back(std::make_unique<TraceFrame>());
   TraceFrame& frame = *warp.frames[warp.depth];

@@ -1,4 +1,4 @@
-// Ray instructions: rt.*, which open and close traces and give rays to whoever walks them.
+// Runs ray instructions: rt.*, which open and close traces and give rays to whoever walks them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "exec/candidates.h"
@@ -12,15 +12,17 @@ class Rays {
   Rays(const World& world, FaultGate& faults, RayFaults& ray_faults, Candidates& candidates)
       : world_(world), faults_(faults), ray_faults_(ray_faults), candidates_(candidates) {}
 
-  // False after a fault.
+  // Returns false after a fault.
   bool run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
 
-  // Opens a level with the payloads and attributes of its lanes; no ray travels yet. `payload_operand`: the
-  // operand of the payload, which the attributes' follows. False after a fault.
+  // Opens a level with the payloads and attributes of its lanes. No ray travels yet. `payload_operand` is the
+  // operand of the payload, which that of the attributes follows. Returns false after a fault.
   bool open_trace(WarpContext& warp, const isa::Inst& inst, size_t payload_operand);
-  // The executing lanes wait for their `rays`, one a lane; `answer` is the predicate that they will get.
+  // Lets the executing lanes wait for their `rays`, one per lane. `answer` is the predicate that they will
+  // get.
   static void wait_for(WarpContext& warp, rt::RayState* rays, isa::Slot answer);
-  // Writes the answer predicate of the rays that the warp has waited for: which lanes need a shader.
+  // Writes the answer predicate of the rays that the warp has waited for, which says which lanes need a
+  // shader.
   void finish(WarpContext& warp) const;
 
  private:

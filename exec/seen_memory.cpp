@@ -1,4 +1,4 @@
-// Loads, stores and atomics of global memory that is seen through a view.
+// Loads, stores and modifies global memory that is seen through a view.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/seen_memory.h"
 
@@ -30,7 +30,7 @@ void SeenMemory::load(WarpContext& warp, const isa::Inst& inst, const isa::OpRow
   }
 }
 
-// Lanes in the same order as without a view.
+// Stores lanes in the same order as without a view.
 void SeenMemory::store(const WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes,
                        const LanePlaces& at) {
   const isa::Memory& shape = row.memory;

@@ -1,4 +1,4 @@
-// Global memory as the executor of one of several cores reaches it: through the core's view.
+// Reaches global memory for the executor of one of several cores, through the core's view.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "exec/access_rows.h"
@@ -6,20 +6,21 @@
 
 namespace glint::exec {
 
-// Without a view effects on global memory happen at once, and only is_used() and is_late() may be called.
+// Reaches global memory. Without a view, effects on it happen at once, and only is_used() and is_late() may
+// be called.
 class SeenMemory {
  public:
   void use(MemoryView* view) { view_ = view; }
   bool is_used() const { return view_ != nullptr; }
   MemoryView& view() { return *view_; }
 
-  // Another access begins.
+  // Notes that another access begins.
   void begin_access() { is_late_ = false; }
-  // Whether the last load or atomic writes its registers only when the view is committed.
+  // Returns whether the last load or atomic writes its registers only when the view is committed.
   bool is_late() const { return is_late_; }
   void be_late(bool is_late) { is_late_ = is_late; }
 
-  // `at`: where the data of each of the lanes lies.
+  // `at` says where the data of each of the lanes lies.
   void load(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes,
             const LanePlaces& at);
   void store(const WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes,

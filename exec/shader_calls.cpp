@@ -1,4 +1,4 @@
-// Calls of other shaders: one path for each distinct shader that the lanes call.
+// Calls other shaders: one path for each distinct shader that the lanes call.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/shader_calls.h"
 
@@ -33,7 +33,7 @@ bool ShaderCalls::call(WarpContext& warp, Effect effect) {
 bool ShaderCalls::call_callable(WarpContext& warp, const isa::Inst& inst) {
   if (warp.callables == world_.max_callable_depth)
     return faults_.fail(warp, std::countr_zero(warp.regs.exec),
-                        fmt::format("calls a callable shader at depth {}: the pipeline allows {}",
+                        fmt::format("calls a callable shader at depth {}, and the pipeline allows {}",
                                     warp.callables + 1, world_.max_callable_depth));
   if (warp.callable_frames.size() == warp.callables)
     warp.callable_frames.push_back(std::make_unique<CallableFrame>());
@@ -57,8 +57,9 @@ bool ShaderCalls::call_callable(WarpContext& warp, const isa::Inst& inst) {
   return true;
 }
 
-// As a null group: a candidate of triangles is taken, one of boxes reports nothing. Choice: a record outside
-// of the table, which somebody has let pass, costs what the region's first one costs.
+// Handles a record that calls nothing like a null group: a candidate of triangles is taken, and one of boxes
+// reports nothing. Choice: a record outside of the table that is let pass costs what the region's first
+// record costs.
 void ShaderCalls::call_nothing(WarpContext& warp, int lane, rt::RayState& state, Effect effect) {
   const bool hit = effect != Effect::CallHit || state.committed.valid();
   warp.regs.access.address[size_t(lane)] = (hit ? world_.table.hit : world_.table.miss).address(0);
@@ -69,7 +70,8 @@ void ShaderCalls::call_nothing(WarpContext& warp, int lane, rt::RayState& state,
     rt::finish_intersection(state);
 }
 
-// Fills `target` with the shader of each calling lane, or kNoShader: a null shader, decided here at once.
+// Fills `target` with the shader of each calling lane, or kNoShader for a null shader, which is decided here
+// at once.
 bool ShaderCalls::call_targets(WarpContext& warp, Effect effect, std::array<uint32_t, kLanes>& target) {
   for (LaneMask lanes = warp.regs.exec; lanes; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
@@ -82,7 +84,7 @@ bool ShaderCalls::call_targets(WarpContext& warp, Effect effect, std::array<uint
       continue;
     }
     if (state.status == RayStatus::Gathered &&
-        effect != Effect::CallHit) {  // runs nothing this time, reads no record
+        effect != Effect::CallHit) {  // it runs nothing this time and reads no record
       target[i] = kNoShader;
       warp.regs.exec &= ~(LaneMask{1} << lane);
       continue;
@@ -119,8 +121,8 @@ bool ShaderCalls::call_targets(WarpContext& warp, Effect effect, std::array<uint
   return true;
 }
 
-// Runs the shader of each calling lane, one path a distinct shader, in the order of the lowest lane that
-// calls it.
+// Runs the shader of each calling lane, with one path for each distinct shader, in the order of the lowest
+// lane that calls it.
 uint32_t ShaderCalls::call_by_shader(WarpContext& warp, const std::array<uint32_t, kLanes>& target,
                                      LaneMask callers, bool is_callable) {
   SimtStack& simt = warp.simt;

@@ -1,4 +1,4 @@
-// Calls of other shaders through the binding table, and what a called shader decides at its end.
+// Calls other shaders through the binding table, and decides what a called shader decides at its end.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace glint::exec {
 
-// Lanes of a warp that begin a shader because another called it.
+// Holds the lanes of a warp that begin a shader because another called it.
 struct Called {
   const WarpContext& warp;
   isa::Stage stage;
@@ -24,18 +24,19 @@ class ShaderCalls {
               CandidateCounts& counts)
       : world_(world), faults_(faults), ray_faults_(ray_faults), called_(called), counts_(counts) {}
 
-  // Calls the shaders that the lanes' rays ask for. False after a fault.
+  // Calls the shaders that the lanes' rays ask for. Returns false after a fault.
   bool call(WarpContext& warp, isa::Effect effect);
   bool call_callable(WarpContext& warp, const isa::Inst& inst);
-  // Lanes end their shader with `effect`, and decide what their stage has to decide.
+  // Ends the shader of the lanes with `effect`, and decides what their stage has to decide.
   void finish_shader(WarpContext& warp, isa::Effect effect);
 
-  // Lanes that have begun a shader of the stage because another called it.
+  // Returns the number of lanes that have begun a shader of the stage because another shader called it.
   uint64_t called_lanes(isa::Stage stage) const { return called_lanes_[size_t(stage)]; }
   void count_called(isa::Stage stage, uint64_t lanes) { called_lanes_[size_t(stage)] += lanes; }
 
  private:
-  // Fills `target` with the shader of each calling lane, or kNoShader: a null shader, decided here at once.
+  // Fills `target` with the shader of each calling lane, or kNoShader for a null shader, which is decided
+  // here at once.
   bool call_targets(WarpContext& warp, isa::Effect effect, std::array<uint32_t, kLanes>& target);
   void call_nothing(WarpContext& warp, int lane, rt::RayState& state, isa::Effect effect);
   // Returns the number of shaders called.

@@ -1,11 +1,13 @@
-// The SIMT stack: which lanes of a warp run now, which wait, and where they meet again.
+// Implements the SIMT stack: which lanes of a warp run now, which wait, and where they meet again.
 //
-// Entries are of three kinds. Path: lanes that will run from `pc` later. Join: lanes that have arrived at
-// the reconvergence point `pc` (a `join` instruction) and wait for the rest. Call: lanes that have returned
-// from a call and wait for the rest; they resume at `pc`. When the running lanes are used up, the top
-// entry is taken: a Path runs, a Join or Call whose lanes have all arrived resumes them.
-// Because lanes arrive at any enclosing Join, not only the innermost, break, continue and early exits out of
-// several constructs need no special case.
+// Entries are of three kinds:
+//  - Path: lanes that will run from `pc` later.
+//  - Join: lanes that have arrived at the reconvergence point `pc` (a `join` instruction) and wait for the
+//    rest.
+//  - Call: lanes that have returned from a call and wait for the rest; they resume at `pc`.
+// When the running lanes are used up, the top entry is taken: a Path runs, and a Join or Call whose lanes
+// have all arrived resumes them. Because lanes arrive at any enclosing Join, not only at the innermost,
+// break, continue and early exits out of several constructs need no special case.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -26,8 +28,8 @@ class SimtStack {
     uint32_t depth = 0;         // Call: trace depth to return to
     uint32_t shader = 0;        // Call: the caller's shader
     uint32_t callables = 0;     // Call: callable depth to return to
-    bool is_function = false;   // Call: of a function of the same shader, not of another shader
-    bool is_traversal = false;  // Call: of the program that walks rays
+    bool is_function = false;   // Call: it is of a function of the same shader, not of another shader
+    bool is_traversal = false;  // Call: it is of the program that walks rays
   };
 
   uint32_t pc = 0;
@@ -47,11 +49,11 @@ class SimtStack {
     entries_.push_back({Kind::Call, return_pc, arrived, depth, shader, callables, is_function});
   }
 
-  // The call pushed last is of the program that walks rays.
+  // Notes that the call pushed last is of the program that walks rays.
   void mark_traversal() { entries_.back().is_traversal = true; }
 
-  // Lanes reach the join at `join_pc`: they wait in its entry. The caller then leaves the running set.
-  // False when no enclosing ssy names the place: a malformed program.
+  // Lets lanes that reach the join at `join_pc` wait in its entry. The caller then removes them from the
+  // running set. Returns false when no enclosing ssy names the place, which is a malformed program.
   bool arrive(uint32_t join_pc, LaneMask lanes) {
     for (size_t i = entries_.size(); i-- > 0;) {
       if (entries_[i].kind == Kind::Call) return false;
@@ -62,29 +64,29 @@ class SimtStack {
     }
     return false;
   }
-  // The innermost call, of a shader or of either kind; null when nobody called.
+  // Returns the innermost call, of a shader or of either kind, or null when nobody called.
   const Entry* innermost_call(bool of_shader) const {
     for (size_t i = entries_.size(); i-- > 0;)
       if (entries_[i].kind == Kind::Call && !(of_shader && entries_[i].is_function)) return &entries_[i];
     return nullptr;
   }
-  // Lanes return to the innermost call, or to that of the shader, out of all functions. False when nobody
-  // called.
+  // Lets lanes return to the innermost call, or to that of the shader, out of all functions. Returns false
+  // when nobody called.
   bool arrive_return(LaneMask lanes, bool of_shader = false) {
     const Entry* call = innermost_call(of_shader);
     if (!call) return false;
     entries_[size_t(call - entries_.data())].lanes |= lanes;
     return true;
   }
-  // All lanes that have not ended, wherever they wait.
+  // Returns all lanes that have not ended, wherever they wait.
   LaneMask live() const {
     LaneMask lanes = active;
     for (const Entry& entry : entries_) lanes |= entry.lanes;
     return lanes;
   }
 
-  // With no lanes running, takes entries until some run or the stack is empty. Returns the Call entry that
-  // resumed, if one did, by value in *resumed.
+  // Takes entries while no lanes run, until some run or the stack is empty. When a Call entry resumed,
+  // returns true and puts it into *resumed_call.
   bool resume_next(Entry* resumed_call) {
     bool resumed = false;
     while (active == 0 && !entries_.empty()) {
@@ -92,7 +94,7 @@ class SimtStack {
       entries_.pop_back();
       active = top.lanes;
       pc = top.kind == Kind::Join ? top.pc + 1 : top.pc;
-      if (top.kind == Kind::Call) {  // even with no lanes left its context is the caller's again
+      if (top.kind == Kind::Call) {  // even with no lanes left, its context is the caller's again
         *resumed_call = top;
         resumed = true;
       }
@@ -104,7 +106,7 @@ class SimtStack {
   const std::vector<Entry>& entries() const { return entries_; }
 
  private:
-  std::vector<Entry> entries_;  // grows once to the program's nesting, then no heap
+  std::vector<Entry> entries_;  // grows once to the program's nesting, then allocates nothing
 };
 
 }  // namespace glint::exec

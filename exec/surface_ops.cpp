@@ -1,4 +1,4 @@
-// Surface ops of a warp, with every access checked.
+// Runs surface ops of a warp, with a check of every access.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/surface_ops.h"
 
@@ -30,7 +30,8 @@ Words load_texel(const isa::OpRow& row, TexelFormat format, const std::byte* at)
   return words;
 }
 
-// Where a lane's surface op goes: null, with a fault or without one, when it goes nowhere. It then loads 0.
+// Returns where a lane's surface op goes. Null, with a fault or without one, says that it goes nowhere and
+// loads 0.
 std::byte* SurfaceOps::find_texel(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, int lane) {
   const isa::ImageAccess& op = row.image;
   const ImageView* image = images_.find(warp, row, lane);
@@ -46,7 +47,7 @@ std::byte* SurfaceOps::find_texel(WarpContext& warp, const isa::Inst& inst, cons
       return fmt::format("accesses {} bytes at byte {} of a row of image '{}'", bytes, place.at[0],
                          image->name);
     });
-  // Texels of 64 bits are two channels of 32: their low half and their high one.
+  // Texels of 64 bits have two channels of 32: their low half and their high half.
   if (row.atomic && whole && (info_of(image->format).bits != 32 || image->texel_bytes() != row.memory.bytes))
     return refuse([&] {
       return fmt::format("atomic on image '{}', whose format is {}", image->name,
@@ -85,8 +86,8 @@ bool SurfaceOps::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow&
     if (!place[size_t(lane)] && faults_.fault()) return false;
   }
   if (seen_.is_used()) return run_seen(warp, inst, row, place), true;
-  // Lane by lane: atomics take turns; of stores to one texel the highest lane's stays. Choice: PTX leaves it
-  // open.
+  // Lanes run one by one: atomics take turns, and of stores to one texel the highest lane's stays. Choice:
+  // PTX leaves it open.
   for_each_lane(warp.regs.exec, [&](int lane) {
     const ImageLane operands(warp.regs, inst, lane);
     std::byte* const at = place[size_t(lane)];
@@ -115,7 +116,7 @@ bool SurfaceOps::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow&
   return true;
 }
 
-// run() where the image is seen through a view. A lane without a place loads 0.
+// Does what run() does when the image is seen through a view. A lane without a place loads 0.
 void SurfaceOps::run_seen(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row,
                           const LanePlaces& place) {
   const ImageSlots slots(row);

@@ -1,4 +1,4 @@
-// Surface ops: loads, stores and atomics of single texels, or of bytes of a row, of the lanes of a warp.
+// Runs surface ops of a warp's lanes: loads, stores and atomics of single texels, or of bytes of a row.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -11,11 +11,11 @@ namespace glint::exec {
 
 class SurfaceOps {
  public:
-  // `texels`: the list that receives what an op touches.
+  // `texels` is the list that receives what an op touches.
   SurfaceOps(const World& world, FaultGate& faults, SeenMemory& seen, BoundImages& images, TexelList& texels)
       : world_(world), faults_(faults), seen_(seen), images_(images), texels_(texels) {}
 
-  // False after a fault.
+  // Returns false after a fault.
   bool run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
 
  private:

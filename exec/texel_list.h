@@ -1,4 +1,4 @@
-// Where the texels lie that one image instruction touches, for the timing of its memory accesses.
+// Lists the texels that one image instruction touches, for the timing of its memory accesses.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -9,11 +9,11 @@
 
 namespace glint::exec {
 
-// The most texels of one lane: a linear filter in three dimensions of two levels.
+// The most texels of one lane are those of a linear filter in three dimensions of two levels.
 inline constexpr uint32_t kMaxTexels = 16;
 
-// Virtual addresses, row by row: the first texel of each lane, then the second of each that has one. A texel
-// is aligned to its size, so it lies in one sector.
+// Holds virtual addresses, row by row: the first texel of each lane, then the second of each that has one. A
+// texel is aligned to its size, so it lies in one sector.
 class TexelList {
  public:
   static constexpr Address kNone = 0;  // no allocation holds address 0

@@ -1,4 +1,4 @@
-// From coordinates to texels, after the Vulkan specification's chapter "Image Operations".
+// Turns coordinates into texels, after the Vulkan specification's chapter "Image Operations".
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/texture_address.h"
 
@@ -17,8 +17,8 @@ int64_t mirror(int64_t a) {
   return a >= 0 ? a : -(1 + a);
 }
 
-// Axes of a face: which component of a direction is s, t and r, and its sign there (Vulkan, table "Cube map
-// face and coordinate selection").
+// Holds the axes of a face: which component of a direction is s, t and r, and its sign there (Vulkan, table
+// "Cube map face and coordinate selection").
 struct Face {
   uint8_t s, t, r;
   float sign_s, sign_t, sign_r;
@@ -26,7 +26,7 @@ struct Face {
 constexpr Face kFaces[6] = {{2, 1, 0, -1, -1, 1}, {2, 1, 0, 1, -1, -1}, {0, 2, 1, 1, 1, 1},
                             {0, 2, 1, 1, -1, -1}, {0, 1, 2, 1, -1, 1},  {0, 1, 2, -1, -1, -1}};
 
-// Ties go to z, then y.
+// Returns the face that a direction meets. Ties go to z, then y.
 uint32_t face_of(const std::array<float, 3>& direction) {
   const float x = std::fabs(direction[0]), y = std::fabs(direction[1]), z = std::fabs(direction[2]);
   if (z >= x && z >= y) return direction[2] < 0.0f ? 5 : 4;
@@ -34,10 +34,11 @@ uint32_t face_of(const std::array<float, 3>& direction) {
   return direction[0] < 0.0f ? 1 : 0;
 }
 
-// log2 by the series of atanh: the same bits with every C library. x is positive and finite.
+// Computes log2 by the series of atanh, which gives the same bits with every C library. x is positive and
+// finite.
 double log2_of(double x) {
   int exponent = 0;
-  double mantissa = std::frexp(x, &exponent);  // [0.5, 1)
+  double mantissa = std::frexp(x, &exponent);  // in [0.5, 1)
   if (mantissa < 0.70710678118654752) mantissa *= 2, --exponent;
   const double z = (mantissa - 1) / (mantissa + 1), zz = z * z;  // |z| < 0.172: ten terms leave 2^-55
   double sum = 0;
@@ -69,7 +70,7 @@ double tame(Wrap mode, float x, uint32_t size) {
   if (std::isnan(x)) return 0.0;
   if (std::fabs(x) < kFar) return x;
   if (std::isinf(x) || (mode != Wrap::Repeat && mode != Wrap::MirroredRepeat)) return std::copysign(kFar, x);
-  return std::fmod(double(x), 2.0 * size);  // exact
+  return std::fmod(double(x), 2.0 * size);  // this is exact
 }
 
 CubePoint cube_point(const std::array<float, 3>& direction) {
@@ -81,7 +82,7 @@ CubePoint cube_point(const std::array<float, 3>& direction) {
 
 CubeTexel across_edge(uint32_t face, int64_t x, int64_t y, int64_t size) {
   const Face& f = kFaces[face];
-  // A point just past the edge: the direction to it meets the neighbour's row at that edge, next to the same
+  // The direction to a point just past the edge meets the neighbour's row at that edge, next to the same
   // texel.
   const auto middle = [&](int64_t i) {
     if (i < 0 || i >= size) return std::copysign(1.0f + 0x1p-20f, float(i));
@@ -107,7 +108,8 @@ float level_of_detail(const ImageView& image, int count, const Gradient& dx, con
   }
   const double squared = std::max(x, y);
   if (std::isinf(squared)) return std::numeric_limits<float>::infinity();
-  if (!(squared > 0.0)) return -std::numeric_limits<float>::infinity();  // no footprint, or not a number
+  if (!(squared > 0.0))
+    return -std::numeric_limits<float>::infinity();  // there is no footprint, or it is not a number
   return float(0.5 * log2_of(squared));
 }
 

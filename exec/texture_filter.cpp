@@ -1,4 +1,4 @@
-// Sampling, after the Vulkan specification's chapter "Image Operations".
+// Samples after the Vulkan specification's chapter "Image Operations".
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/texture_filter.h"
 
@@ -42,7 +42,7 @@ bool holds(Comparison comparison, float reference, float texel) {
   return false;
 }
 
-// Levels to read, and the weight of the second.
+// Holds the levels to read, and the weight of the second.
 struct Levels {
   uint32_t first = 0, second = 0;
   float weight = 0.0f;
@@ -51,7 +51,7 @@ Levels levels_of(const ImageView& image, const Sampler& sampler, float lod) {
   if (image.levels == 1) return {};
   const auto last = float(image.levels - 1);
   const float d = lod > 0.0f ? std::min(lod, last) : 0.0f;
-  // Vulkan, "Image Level(s) Selection": the nearest level, the finer one from the middle.
+  // By Vulkan's "Image Level(s) Selection", the nearest level is taken, and the finer one from the middle.
   if (sampler.mip == Filter::Nearest) {
     const auto level = uint32_t(std::max(std::ceil(d + 0.5f) - 1.0f, 0.0f));
     return {level, level, 0.0f};
@@ -86,7 +86,7 @@ TexelReader::Axis TexelReader::axis_of(const SampleRequest& request, const Place
   const double middle = tame(mode, x, size), first = std::floor(middle);
   const int64_t i = int64_t(first) + request.offset[n];
   if (!linear) return {wrap(mode, i, size), 0, 0.0f};
-  // On cubes the neighbour's texels stand for those outside: they are found when they are read.
+  // On cubes the neighbour's texels stand for those outside. They are found when they are read.
   if (place.is_cube) {
     const int64_t edge = std::clamp<int64_t>(i, -1, size - 1);
     return {edge, edge + 1, float(middle - first)};
@@ -144,8 +144,8 @@ void TexelReader::read_block(const SampleRequest& request, const Place& place, u
       out[k] = read(request, place, level, at);
   }
   if (corner == 8) return;
-  // Where three faces meet there is no fourth texel: the average of the three (Vulkan, "Cube Map Edge
-  // Handling"), of integers a neighbour.
+  // Where three faces meet there is no fourth texel. It is the average of the three (Vulkan, "Cube Map Edge
+  // Handling") or, for integers, a neighbour.
   if (is_integer(info_of(image_.format))) {
     out[corner] = out[corner ^ 1];
     return;
@@ -177,7 +177,7 @@ Words TexelReader::filter(const SampleRequest& request, const Place& place, uint
 Words TexelReader::sample(const SampleRequest& request) {
   const Place place = place_of(request);
   const float biased = request.lod + sampler_.lod_bias;
-  // Vulkan, "LOD": not a number counts as the smallest.
+  // By Vulkan's "LOD", not-a-number counts as the smallest value.
   const float lod = std::min(biased > sampler_.min_lod ? biased : sampler_.min_lod, sampler_.max_lod);
   const Filter filter_kind = lod > 0.0f ? sampler_.min : sampler_.mag;
   const Levels levels = sampler_.unnormalized ? Levels{} : levels_of(image_, sampler_, lod);

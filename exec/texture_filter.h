@@ -1,4 +1,4 @@
-// The texture unit's work on one lane: reads texels of one image, filters them, and remembers where they lay.
+// Does the texture unit's work on one lane: reads an image's texels, filters them, and notes where they lay.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -14,32 +14,33 @@ namespace glint::exec {
 struct SampleRequest {
   isa::ImageShape shape = isa::ImageShape::D2;
   std::array<float, 3> at{};        // normalised coordinates, or the direction from the middle of a cube
-  int32_t layer = 0;                // clamped to the layers there are
-  float lod = 0.0f;                 // before the sampler's bias and limits
+  int32_t layer = 0;                // clamped to the existing layers
+  float lod = 0.0f;                 // level of detail before the sampler's bias and limits
   std::array<int32_t, 3> offset{};  // texels
   bool compare = false;
   float reference = 0.0f;
 };
 
-// One request to one image. After a mistake of the program, error() says what it is and the result means
-// nothing.
+// Serves one request to one image. After a mistake of the program, error() says what it is, and the result
+// means nothing.
 class TexelReader {
  public:
   TexelReader(const ImageView& image, const Sampler& sampler, const mem::AddressSpace& memory)
       : image_(image), sampler_(sampler), memory_(memory) {}
 
-  // Filtered texels. Model: weights are floats; hardware has 8 bits of fraction.
+  // Returns filtered texels. Model: weights are floats; hardware has 8 bits of fraction.
   Words sample(const SampleRequest& request);
-  // Component `component` of the four texels of a linear filter at level 0: (0,1), (1,1), (1,0), (0,0).
+  // Returns component `component` of the four texels of a linear filter at level 0: (0,1), (1,1), (1,0),
+  // (0,0).
   Words gather(const SampleRequest& request, size_t component);
-  // One texel, which must lie in the image.
+  // Returns one texel, which must lie in the image.
   Words fetch(const TexelIndex& at);
 
   std::span<const Address> texels() const { return {texels_.data(), num_texels_}; }
-  const char* error() const { return error_; }  // null: none
+  const char* error() const { return error_; }  // null: there was none
 
  private:
-  // Two neighbours on an axis and the weight of the second.
+  // Holds two neighbours on an axis, and the weight of the second.
   struct Axis {
     int64_t first = 0, second = 0;
     float weight = 0.0f;
@@ -47,13 +48,13 @@ class TexelReader {
   struct Place {
     std::array<float, 3> at;
     uint32_t layer;
-    int axes;  // that are filtered: 1 to 3
+    int axes;  // axes that are filtered: 1 to 3
     bool is_cube;
   };
   Place place_of(const SampleRequest& request) const;
   Axis axis_of(const SampleRequest& request, const Place& place, int axis, uint32_t level, bool linear) const;
   Words filter(const SampleRequest& request, const Place& place, uint32_t level, Filter filter);
-  // The texels of a linear filter: bit 0 of the index is x, bit 1 y, bit 2 z.
+  // Reads the texels of a linear filter: bit 0 of the index is x, bit 1 is y, bit 2 is z.
   void read_block(const SampleRequest& request, const Place& place, uint32_t level,
                   const std::array<Axis, 3>& axes, std::array<Words, 8>& out);
   Words read(const SampleRequest& request, const Place& place, uint32_t level, std::array<int64_t, 3> at);

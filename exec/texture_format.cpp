@@ -1,5 +1,4 @@
-// Conversions of texels, after the Vulkan specification's chapters "Fixed-Point Data Conversions" and
-// "Numbers".
+// Converts texels, after the Vulkan specification's chapters "Fixed-Point Data Conversions" and "Numbers".
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/texture_format.h"
 
@@ -17,7 +16,7 @@ namespace {
 using F = TexelFormat;
 using enum Numeric;
 
-// Orders of cl.h.
+// These are the orders of cl.h.
 constexpr uint16_t kR = 0x10b0, kRg = 0x10b2, kRgb = 0x10b4, kRgba = 0x10b5, kBgra = 0x10b6, kSrgba = 0x10c1,
                    kSbgra = 0x10c2;
 
@@ -71,7 +70,7 @@ static_assert(std::size(kFormats) == size_t(F::Count));
 uint32_t bits_of(float x) {
   return std::bit_cast<uint32_t>(x);
 }
-// Floats of 5 exponent bits, bias 15, without sign: halves, and the channels of 11 and 10 bits.
+// The floats have 5 exponent bits, bias 15, and no sign: halves, and the channels of 11 and 10 bits.
 constexpr int kBias = 15;
 float from_small(uint32_t bits, int mantissa_bits) {
   const uint32_t mantissa = bits & ((1u << mantissa_bits) - 1);
@@ -81,23 +80,23 @@ float from_small(uint32_t bits, int mantissa_bits) {
   return std::ldexp(float(mantissa | 1u << mantissa_bits), exponent - kBias - mantissa_bits);
 }
 
-// To nearest even; what is too large becomes `largest`. `magnitude` is not NaN.
+// Rounds to nearest even. What is too large becomes `largest`. `magnitude` is not NaN.
 uint32_t to_small(float magnitude, int mantissa_bits, uint32_t largest) {
   if (magnitude >= 65536.0f) return std::isinf(magnitude) ? 31u << mantissa_bits : largest;
   const int exponent = std::max(magnitude == 0.0f ? -126 : std::ilogb(magnitude), 1 - kBias);
-  // Units of the last place; a carry out of the mantissa steps the exponent up by itself.
+  // The units are those of the last place. A carry out of the mantissa increases the exponent by itself.
   const auto units = uint32_t(std::nearbyint(std::ldexp(double(magnitude), mantissa_bits - exponent)));
   const uint32_t bits = units + (uint32_t(exponent + kBias - 1) << mantissa_bits);
   return bits >= 31u << mantissa_bits ? largest : bits;
 }
 
-// Unsigned floats: negative numbers become 0, large ones the largest finite one, NaN stays.
+// Converts to unsigned floats: negative numbers become 0, large ones the largest finite one, and NaN stays.
 uint32_t to_unsigned_small(float x, int mantissa_bits) {
   if (std::isnan(x)) return (32u << mantissa_bits) - 1;
   return x > 0.0f ? to_small(x, mantissa_bits, (31u << mantissa_bits) - 1) : 0;
 }
 
-// Vulkan, "RGB to Shared Exponent Conversion": 9 bits a channel, 5 of exponent.
+// By Vulkan's "RGB to Shared Exponent Conversion", there are 9 bits per channel and 5 of exponent.
 constexpr int kSharedBits = 9;
 uint32_t to_shared_exponent(const Words& words) {
   constexpr double kLargest = 65408.0;  // (2^9 - 1) / 2^9 * 2^16
@@ -113,7 +112,7 @@ uint32_t to_shared_exponent(const Words& words) {
   return scaled(c[0]) | scaled(c[1]) << 9 | scaled(c[2]) << 18 | uint32_t(exponent) << 27;
 }
 
-// Khronos Data Format specification 1.3, "sRGB EOTF" and its inverse.
+// Convert by "sRGB EOTF" of the Khronos Data Format specification 1.3, and by its inverse.
 float from_srgb(uint8_t byte) {
   static const std::array<float, 256> table = [] {
     std::array<float, 256> out;
@@ -149,7 +148,8 @@ uint32_t decode_channel(uint32_t bits, int width, Numeric numeric, bool is_alpha
   return 0;
 }
 
-// In doubles: the product of a float and the highest integer is exact, so only one rounding takes place.
+// Computes in doubles: the product of a float and the highest integer is exact, so only one rounding takes
+// place.
 uint32_t to_unorm(float x, int width, bool srgb = false) {
   double clamped = x > 0.0f ? std::min(double(x), 1.0) : 0.0;
   if (srgb) clamped = to_srgb(clamped);
@@ -179,7 +179,7 @@ uint32_t encode_channel(uint32_t word, int width, Numeric numeric, bool is_alpha
   return 0;
 }
 
-// Formats whose channels differ in size: 32 bits, the first channel lowest.
+// Decodes formats of 32 bits whose channels differ in size, the first channel lowest.
 Words decode_packed(F format, uint32_t bits) {
   const auto field = [&](int at, int width) { return bits >> at & ((1u << width) - 1); };
   switch (format) {
@@ -244,7 +244,8 @@ uint16_t to_half(float value) {
 
 Words decode(TexelFormat format, const std::byte* from) {
   Words four;
-  if (format == F::Rgba32Float) {  // the two formats of most textures come first: they need no loop over bits
+  if (format ==
+      F::Rgba32Float) {  // the two formats of most textures come first, because they need no loop over bits
     std::memcpy(four.data(), from, sizeof four);
     return four;
   }

@@ -1,4 +1,4 @@
-// Formats of texels: what their bits mean, and conversion to and from the words of a register.
+// Knows formats of texels: what their bits mean, and how to convert to and from the words of a register.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -13,7 +13,7 @@ inline float float_of(uint32_t bits) {
   return std::bit_cast<float>(bits);
 }
 
-// Named by Vulkan's channels and bits. In the order of the table in texture_format.cpp.
+// Names formats by Vulkan's channels and bits, in the order of the table in texture_format.cpp.
 enum class TexelFormat : uint8_t {
   R8Unorm,
   R8Snorm,
@@ -64,10 +64,10 @@ enum class TexelFormat : uint8_t {
 enum class Numeric : uint8_t { Unorm, Snorm, Uint, Sint, Float, Srgb };
 
 struct FormatInfo {
-  std::string_view name;  // "rgba8_unorm"
-  uint8_t bytes;          // of a texel: 1, 2, 4, 8 or 16
+  std::string_view name;  // such as "rgba8_unorm"
+  uint8_t bytes;          // bytes of a texel: 1, 2, 4, 8 or 16
   uint8_t channels;
-  uint8_t bits;  // of a channel; 0: channels differ, by hand
+  uint8_t bits;  // bits of a channel; 0: the channels differ
   Numeric numeric;
   uint16_t opencl_type;  // cl.h: CL_UNORM_INT8 and so on, which PTX's queries answer; 0: there is none
   uint16_t opencl_order;
@@ -76,24 +76,25 @@ const FormatInfo& info_of(TexelFormat format);
 inline bool is_integer(const FormatInfo& info) {
   return info.numeric == Numeric::Uint || info.numeric == Numeric::Sint;
 }
-// Texels that lie between 0 and 1, or -1 and 1.
+// Returns whether texels lie between 0 and 1, or -1 and 1.
 inline bool is_normalized(const FormatInfo& info) {
   return !is_integer(info) && info.numeric != Numeric::Float;
 }
 
-// Red, green, blue, alpha: bits of floats, or integers where the format has them.
+// Holds red, green, blue, alpha: bits of floats, or integers when the format has them.
 using Words = std::array<uint32_t, 4>;
 
-// Channels that a format lacks are 0, alpha is 1 (Vulkan, "Conversion to RGBA").
+// Returns the words of a texel. Channels that a format lacks are 0, and alpha is 1 (Vulkan, "Conversion to
+// RGBA").
 Words decode(TexelFormat format, const std::byte* from);
-// `words` without the channels that the format lacks: what a border colour becomes.
+// Returns `words` without the channels that the format lacks, which is what a border colour becomes.
 Words keep_channels(TexelFormat format, Words words);
 
-// Floats are clamped to the range of normalised formats and rounded to nearest even, NaN becomes 0 there.
-// Choice: integers out of range are clamped, as Direct3D does; Vulkan leaves them undefined.
+// Writes a texel. Floats are clamped to the range of normalised formats and rounded to nearest even, and NaN
+// becomes 0 there. Choice: integers out of range are clamped, as Direct3D does; Vulkan leaves them undefined.
 void encode(TexelFormat format, const Words& words, std::byte* to);
 
-// Floats of 16 bits.
+// Convert floats of 16 bits.
 float from_half(uint16_t bits);
 uint16_t to_half(float value);
 

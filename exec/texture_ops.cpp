@@ -1,4 +1,4 @@
-// Texture ops of a warp, with every access checked.
+// Runs texture ops of a warp, with a check of every access.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/texture_ops.h"
 

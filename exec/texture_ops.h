@@ -1,4 +1,4 @@
-// Texture ops: samples, gathers and fetches of the lanes of a warp, and questions about images.
+// Runs texture ops: samples, gathers and fetches of the lanes of a warp, and queries of images.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "exec/bound_images.h"
@@ -6,10 +6,10 @@
 
 namespace glint::exec {
 
-// Each function answers false after a fault.
+// Runs texture ops. Each function returns false after a fault.
 class TextureOps {
  public:
-  // `texels`: the list that receives what an op touches.
+  // `texels` is the list that receives what an op touches.
   TextureOps(const World& world, FaultGate& faults, BoundImages& images, TexelList& texels)
       : world_(world), faults_(faults), images_(images), texels_(texels) {}
 

@@ -1,11 +1,11 @@
-// Rays that code walks: which program does it, and the record that it works on in each lane's local memory.
+// Names the program that walks rays by code, and the record that it works on in each lane's local memory.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 
 namespace glint::exec {
 
-// Words of a record: shaders/traversal/traversal.rcall has the same. The stack's entries, of two words,
+// Number the words of a record, as shaders/traversal/traversal.rcall does. The stack's entries, of two words,
 // follow.
 namespace traversal_word {
 inline constexpr uint32_t kOrigin = 0, kTmin = 3, kDirection = 4, kTmax = 7, kFlags = 8, kMask = 9,
@@ -14,16 +14,16 @@ inline constexpr uint32_t kOrigin = 0, kTmin = 3, kDirection = 4, kTmax = 7, kFl
                           kCandidate = 28, kStack = 36;
 }
 
-// What a walk ends with: traversal_word::kStatus.
+// Says what a walk ends with (traversal_word::kStatus).
 enum class WalkStatus : uint32_t { Done, NeedsAnyHit, NeedsIntersection, NeedsIntersectionOpaque, Broken };
 
-// How a launch's rays are walked without an RT unit. Each level of rt.trace and each ray query of each level
-// has a record; they lie behind the stack of the lane's shaders.
+// Says how a launch's rays are walked without an RT unit. Each level of rt.trace, and each ray query of each
+// level, has a record. The records lie behind the stack of the lane's shaders.
 struct TraversalCode {
-  uint32_t shader = 0xffff'ffff;  // of the image; kNoShader: the RT unit walks rays
+  uint32_t shader = 0xffff'ffff;  // index in the image; kNoShader: the RT unit walks rays
   uint32_t first_record = 0;      // byte of local memory, a multiple of 16
-  uint32_t stack_entries = 0;     // of a record
-  uint32_t queries = 0;           // of a level
+  uint32_t stack_entries = 0;     // stack entries of a record
+  uint32_t queries = 0;           // ray queries of a level
   uint32_t record_bytes() const { return (traversal_word::kStack * 4 + stack_entries * 8 + 15) / 16 * 16; }
 };
 

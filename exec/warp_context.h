@@ -1,4 +1,4 @@
-// One resident warp: registers, SIMT stack, local memory and the rays it has in flight.
+// Holds one resident warp: registers, SIMT stack, local memory and the rays that it has in flight.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -14,36 +14,36 @@
 
 namespace glint::exec {
 
-// The rays of one nesting level of rt.trace..
+// Holds the rays of one nesting level of rt.trace.
 struct TraceFrame {
   std::array<rt::RayState, kLanes> ray;
   std::array<uint32_t, kLanes> payload{}, attributes{};  // local addresses
   std::array<uint32_t, kLanes> time{};                   // bits of a float
-  std::vector<rt::CandidateTable> tables;                // one a lane, if the any-hit mode has tables
+  std::vector<rt::CandidateTable> tables;                // one per lane, if the any-hit mode has tables
 };
 
-// The callables of one nesting level of call.sbt.callable.
+// Holds the callables of one nesting level of call.sbt.callable.
 struct CallableFrame {
   std::array<uint32_t, kLanes> data{};   // local addresses
-  std::array<Address, kLanes> record{};  // of the binding table
+  std::array<Address, kLanes> record{};  // records of the binding table
 };
 
 // Model: the two attribute buffers are a fixed 64 bytes each (Vulkan's minimum for hit attributes is 32).
 inline constexpr uint32_t kAttributeBytes = 64;
 
-// Ray queries and hit objects are named by number. Each level of rt.trace has its own: a hit shader's do not
-// disturb its caller's. Made when first used.
+// Holds ray queries or hit objects, which are named by number. Each level of rt.trace has its own, so a hit
+// shader's objects do not disturb its caller's. They are made when first used.
 template <class Object>
 using Numbered = std::vector<std::unique_ptr<std::array<Object, kLanes>>>;
 inline constexpr uint32_t kMaxNumbered =
     16;  // of a kind and level. Choice: neither Vulkan nor the extension sets a limit
 
-// What a ray found, as a shader keeps it (SPV_NV_shader_invocation_reorder).
+// Holds what a ray found, as a shader keeps it (SPV_NV_shader_invocation_reorder).
 struct HitObject {
   enum class Type : uint8_t { Empty, Hit, Miss } type = Type::Empty;
   rt::Ray ray;
   rt::Hit hit;
-  uint32_t record = 0;  // of the hit or miss region
+  uint32_t record = 0;  // record of the hit or miss region
   std::array<uint32_t, kAttributeBytes / 4> attributes{};
   uint32_t time = 0;  // bits of a float
 };
@@ -51,32 +51,33 @@ struct HitObject {
 struct WarpContext {
   isa::Warp regs;
   SimtStack simt;
-  uint32_t warp_index = 0;  // of the launch, in the order of World::layout
-  Block* block = nullptr;   // that it belongs to
+  uint32_t warp_index = 0;  // number in the launch, in the order of World::layout
+  Block* block = nullptr;   // the block that the warp belongs to
   uint32_t warp_in_block = 0;
-  uint32_t slot = 0;       // Seat::slot: where the machine has put the warp.
+  uint32_t slot = 0;       // Seat::slot: where the machine has put the warp
   uint32_t depth = 0;      // open rt.trace levels
   uint32_t callables = 0;  // open call.sbt.callable levels
-  std::vector<std::unique_ptr<CallableFrame>> callable_frames;  // as `frames`
+  std::vector<std::unique_ptr<CallableFrame>> callable_frames;  // like `frames`
   Numbered<HitObject> hit_objects;
-  std::array<uint32_t, kLanes> next_time{};  // of the next ray. Model: nothing moves; shaders read it back
+  std::array<uint32_t, kLanes>
+      next_time{};  // of the next ray. Model: nothing moves; shaders read the value back
   std::vector<std::unique_ptr<TraceFrame>> frames;  // allocated when first needed, then kept
   Numbered<rt::RayState> queries;
   std::vector<uint32_t> local;    // [word][lane]
   uint64_t instructions = 0;      // retired since start, for the instruction budget
   bool waiting_for_rays = false;  // an rt.trace or rt.resume has not been finished
-  LaneMask ray_lanes = 0;         // that it handed over
-  rt::RayState* rays = nullptr;   // one a lane, in `frames` or `queries`
-  isa::Slot ray_answer = 0;       // predicate it writes
-  LaneMask walking = 0;           // of ray_lanes: those whose rays World::traversal walks
+  LaneMask ray_lanes = 0;         // lanes that it handed over
+  rt::RayState* rays = nullptr;   // one per lane, in `frames` or `queries`
+  isa::Slot ray_answer = 0;       // predicate that receives the answer
+  LaneMask walking = 0;           // those of ray_lanes whose rays World::traversal walks
 
   bool waiting_at_barrier = false;  // executes nothing until another warp of the block has opened the barrier
-  uint32_t barrier = 0, barrier_pc = 0;  // then: which one, and the instruction that waits
+  uint32_t barrier = 0, barrier_pc = 0;  // then: the barrier, and the instruction that waits
   LaneMask barrier_lanes = 0;
 
-  std::unique_ptr<Block> own_block;  // of a launch without blocks: a warp is one of its own
+  std::unique_ptr<Block> own_block;  // used in a launch without blocks, where each warp is a block of its own
 
-  // Rows of the specials bank, and of the register bank when the machine has not set one.
+  // These are the rows of the specials bank, and those of the register bank when the machine has not set one.
   Rows own_registers, own_specials;
 
   TraceFrame& frame() { return *frames[depth - 1]; }

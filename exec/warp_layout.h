@@ -1,4 +1,4 @@
-// Interface: which threads of a launch form a warp, and the order in which warps or blocks start.
+// Interface: says which threads of a launch form a warp, and in which order warps or blocks start.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -12,14 +12,14 @@ namespace glint::exec {
 
 // Contract (tests/contract/warp_layout_test.cpp):
 //  - tile() has kLanes places, or is {0, 0}: warps are then kLanes consecutive launch indices, whatever the
-//  launch's width.
+//    launch's width.
 //  - lane_place() gives each lane another place of the tile.
 //  - nth() gives each n below columns * rows another place of that grid.
-//  - all three are functions of their arguments only: results of a launch never depend on when they are
-//  asked.
+//  - All three are functions of their arguments only: results of a launch never depend on when they are
+//    called.
 // Tiles apply to launches without blocks. Model: the warps of a block are its consecutive threads under every
-// layout, as PTX has it and drivers do for Vulkan; of a launch with blocks the layout only orders the blocks.
-// Choice: a launch of fewer rows than a tile is high is laid out by consecutive launch indices, so that its
+// layout, as PTX has it and drivers do for Vulkan; for a launch with blocks the layout only orders the
+// blocks. Choice: a launch with fewer rows than a tile is laid out by consecutive launch indices, so that its
 // warps are full.
 class WarpLayout {
  public:

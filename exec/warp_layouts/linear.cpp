@@ -1,4 +1,4 @@
-// Warp layout `linear`: 32 consecutive launch indices, warp after warp.
+// Implements the warp layout `linear`: 32 consecutive launch indices, warp after warp.
 // SPDX-License-Identifier: Apache-2.0
 #include <string_view>
 #include <tuple>
@@ -12,7 +12,7 @@ class Linear final : public WarpLayout {
  public:
   static constexpr std::string_view kName = "linear";
   static constexpr std::string_view kDoc =
-      "32 consecutive launch indices (32x1 where rows are that long), row after row.";
+      "A warp has 32 consecutive launch indices (32x1 where rows are that long), row after row.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

@@ -1,4 +1,4 @@
-// Warp layout `morton`: warps are tiles of 8 by 4 threads in Z-order, lanes in Z-order too.
+// Implements the warp layout `morton`: warps are tiles of 8 by 4 threads in Z-order, and so are lanes.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <bit>
@@ -10,12 +10,13 @@
 namespace glint::exec {
 namespace {
 
-// Morton, "A Computer Oriented Geodetic Data Base", IBM 1966: bits of x and y in turns, x lowest. Warps that
-// start together lie in a square of the picture.
+// Source: Morton, "A Computer Oriented Geodetic Data Base", IBM 1966: the bits of x and y alternate, x
+// lowest. Warps that start together lie in a square of the picture.
 class MortonOrder final : public WarpLayout {
  public:
   static constexpr std::string_view kName = "morton";
-  static constexpr std::string_view kDoc = "Tiles of 8x4 threads in Z-order, also of lanes and of blocks.";
+  static constexpr std::string_view kDoc =
+      "A warp is a tile of 8x4 threads. Tiles, lanes and blocks are in Z-order.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };
@@ -27,8 +28,9 @@ class MortonOrder final : public WarpLayout {
     return {bit(0) | bit(2) << 1 | bit(4) << 2, bit(1) | bit(3) << 1};
   }
 
-  // The nth place of the Z curve through the smallest square around the grid, without those outside of it:
-  // each quadrant is passed over as a whole while more places lie before the nth one than it has.
+  // Returns the nth place of the Z curve through the smallest square around the grid, without the places
+  // outside of the grid. Each quadrant is passed over as a whole while more places lie before the nth one
+  // than it has.
   Place nth(uint32_t n, uint32_t columns, uint32_t rows) const override {
     Place at;
     for (uint32_t half = std::bit_ceil(std::max(columns, rows)) / 2; half > 0; half /= 2) {

@@ -1,4 +1,4 @@
-// Warp layout `tile_8x4`: warps are tiles of 8 by 4 threads, row after row of tiles.
+// Implements the warp layout `tile_8x4`: warps are tiles of 8 by 4 threads, row after row of tiles.
 // SPDX-License-Identifier: Apache-2.0
 #include <string_view>
 #include <tuple>
@@ -8,11 +8,11 @@
 namespace glint::exec {
 namespace {
 
-// Neighbours in two directions share more of what their rays meet than 32 in a row do.
+// Neighbours in two directions share more of what their rays meet than 32 threads in a row do.
 class Tile8x4 final : public WarpLayout {
  public:
   static constexpr std::string_view kName = "tile_8x4";
-  static constexpr std::string_view kDoc = "Tiles of 8x4 threads, row after row.";
+  static constexpr std::string_view kDoc = "A warp is a tile of 8x4 threads. Tiles go row after row.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

@@ -99,7 +99,7 @@ TEST_CASE("an index that leaves the lane's stack is let pass, the stack's size i
 
 TEST_CASE("a misaligned address names where it lies, and is rounded down when let pass") {
   check_memory({"got = Word(data_address + uint64_t(i == 5u ? 10u : 4u)).value;",
-                "which is no multiple of 4: byte 10 of 'binding 1' (160 bytes)",
+                "which is not a multiple of 4: byte 10 of 'binding 1' (160 bytes)",
                 FaultKind::Misaligned,
                 1,
                 {5, 0, 0},

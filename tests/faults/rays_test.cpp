@@ -45,7 +45,7 @@ uint32_t column(uint32_t lane) {
 TEST_CASE(
     "a miss record outside of the table is named with the table's size, and calls nothing when let pass") {
   check_mistake({trace("top", "id.y == 3u ? 2u : 1u", "0u"),
-                 "needs miss record 2: the binding table has 2",
+                 "needs miss record 2, and the binding table has 2",
                  FaultKind::Record,
                  2,
                  {0, 3, 0},
@@ -60,7 +60,7 @@ TEST_CASE(
     "a hit record outside of the table says how its number came about, and calls nothing when let pass") {
   check_mistake(
       {trace("top", "0u", "id.y == 1u ? 3u : 0u"),
-       "needs hit record 4 (instance 0's 0 + geometry 1 x stride 1 + offset 3): the binding table has 4",
+       "needs hit record 4 (instance 0's 0 + geometry 1 x stride 1 + offset 3), and the binding table has 4",
        FaultKind::Record,
        2,
        {3, 1, 0},
@@ -74,7 +74,7 @@ TEST_CASE(
 
 TEST_CASE("a callable outside of the table is named, and is not called when let pass") {
   check_mistake({"executeCallableEXT(id.x == 2u ? 7u : 0u, 1); got = data;",
-                 "needs callable record 7: the binding table has 1",
+                 "needs callable record 7, and the binding table has 1",
                  FaultKind::Record,
                  6,
                  {2, 0, 0},
@@ -110,7 +110,7 @@ TEST_CASE("traces deeper than the pipeline allows stop the run also when faults 
                                            return run_with("faults/again.rchit", code, options, faults);
                                          });
     CHECK_THAT(message, Contains("glsl/faults/again.rchit:7 (instruction ") &&
-                            Contains("traces a ray at depth 2: the pipeline allows 1 nested traces") &&
+                            Contains("traces a ray at depth 2, and the pipeline allows 1 nested traces") &&
                             Contains("launch id (2, 0, 0)"));
   }
 }

@@ -157,13 +157,13 @@ TEST_CASE("an access that is not aligned to its size is a fault") {
     return launch.fault();
   };
   for (const auto& [instruction, text] :
-       {std::pair{"ld.global.b32 %r4, [%rd2 + 2];", "which is no multiple of 4"},
-        {"st.global.v4.b32 [%rd2 + 8], {1, 2, 3, 4};", "which is no multiple of 16"},
+       {std::pair{"ld.global.b32 %r4, [%rd2 + 2];", "which is not a multiple of 4"},
+        {"st.global.v4.b32 [%rd2 + 8], {1, 2, 3, 4};", "which is not a multiple of 16"},
         {"mov.b32 %r6, 4; ld.shared.b64 %rd4, [%r6];",
-         "reads 8 bytes at shared address 0x4, which is no multiple of 8"},
-        {"mov.b32 %r6, 1; ld.local.b16 %r4, [%r6];", "which is no multiple of 2"},
+         "reads 8 bytes at shared address 0x4, which is not a multiple of 8"},
+        {"mov.b32 %r6, 1; ld.local.b16 %r4, [%r6];", "which is not a multiple of 2"},
         {"mov.b32 %r6, 4; ld.param.b64 %rd4, [%r6];",
-         "reads 8 bytes at parameter address 0x4, which is no multiple of 8"}}) {
+         "reads 8 bytes at parameter address 0x4, which is not a multiple of 8"}}) {
     CAPTURE(instruction);
     CHECK(fault(instruction).find(text) != std::string::npos);
   }

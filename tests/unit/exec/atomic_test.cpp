@@ -177,7 +177,7 @@ TEST_CASE("an atomic on local memory, and a misaligned one, are faults") {
   TextLaunch odd("    ld.param.b64 %rd2, [0];\n    red.global.add.u32 [%rd2 + 2], 1;\n    exit;\n", {});
 
   CHECK(local.fault().find("an atomic on local memory") != std::string::npos);
-  CHECK(odd.fault().find("which is no multiple of 4") != std::string::npos);
+  CHECK(odd.fault().find("which is not a multiple of 4") != std::string::npos);
 }
 
 }  // namespace glint::exec

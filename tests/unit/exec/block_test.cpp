@@ -232,8 +232,8 @@ DONE:
 )",
                     {});
 
-  CHECK(
-      contains(launch.fault(), "16 of the 32 lanes of the warp come to bar.sync: all have to come together"));
+  CHECK(contains(launch.fault(),
+                 "16 of the 32 lanes of the warp come to bar.sync, but all have to come together"));
 }
 
 TEST_CASE("barriers that are not there and counts that cannot be are faults") {
@@ -241,7 +241,7 @@ TEST_CASE("barriers that are not there and counts that cannot be are faults") {
     TextLaunch launch("    " + instruction + "\n    exit;\n", {.block = {64, 1, 1}});
     return launch.fault();
   };
-  CHECK(contains(fault("bar.sync 16, 0;"), "comes to barrier 16: a block has 16"));
+  CHECK(contains(fault("bar.sync 16, 0;"), "comes to barrier 16, and a block has 16"));
   CHECK(contains(fault("bar.sync 0, 33;"), "a multiple of 32"));
   CHECK(contains(fault("bar.sync 0, 96;"), "up to the block's 64"));
   CHECK(contains(fault("bar.arrive 0, 0;"), "has to say how many threads"));
