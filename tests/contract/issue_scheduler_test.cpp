@@ -1,4 +1,4 @@
-// The promises of IssueScheduler, for every registered policy; and what each policy is for.
+// Tests the promises of IssueScheduler for every registered policy, and what each policy is for.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/issue_scheduler.h"
 
@@ -50,7 +50,7 @@ TEST_CASE("every issue policy reaches every warp when picked warps have to wait"
     const auto policy = make(name, kWarps);
     const std::vector<uint64_t> age = ages(kWarps);
     uint64_t ready = 0xffff;
-    for (Cycle now = 0; ready; ++now) {  // a picked warp never becomes ready again: each pick is a new one
+    for (Cycle now = 0; ready; ++now) {  // a picked warp never becomes ready again, so each pick is a new one
       REQUIRE(now < kWarps);
       ready &= ~(uint64_t{1} << policy->pick({ready, age, now}));
     }

@@ -1,4 +1,4 @@
-// Every registered any-hit mode keeps the promises of rtunit/any_hit_mode.h.
+// Tests that every registered any-hit mode keeps the promises of rtunit/any_hit_mode.h.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <bit>
@@ -12,7 +12,7 @@
 namespace glint::rt::test {
 namespace {
 
-// A warp whose rays have gathered candidates for a few shaders; primitives tell the shaders.
+// Holds a warp whose rays have gathered candidates for a few shaders. Their primitives tell the shaders.
 struct Warp {
   std::array<RayState, kLanes> ray;
   std::array<CandidateTable, kLanes> table;
@@ -58,7 +58,8 @@ TEST_CASE(
     if (mode->table_rows() == 0) continue;
     for (int trial = 0; trial < 200; ++trial) {
       Warp warp(random, mode->table_rows(), 1 + random.below(100));
-      const LaneMask others = warp.gathered & random.bits();  // of another trace: not ours to present
+      const LaneMask others =
+          warp.gathered & random.bits();  // these are of another trace, and not ours to present
       const LaneMask ours = warp.gathered & ~others;
       uint32_t rounds = 0;
       for (LaneMask waiting = ours; waiting; ++rounds) {

@@ -1,4 +1,4 @@
-// Every registered child order keeps the promises of rtunit/child_order.h.
+// Tests that every registered child order keeps the promises of rtunit/child_order.h.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <initializer_list>
@@ -13,7 +13,7 @@ namespace {
 
 using Order = std::vector<uint8_t>;
 
-// Children by distance and kind, in index order.
+// Holds children by distance and kind, in index order.
 struct Hits {
   std::vector<float> t;
   std::vector<NodeRef> child;

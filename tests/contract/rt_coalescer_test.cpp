@@ -1,4 +1,4 @@
-// Every registered coalescing policy keeps the promises of rtunit/coalescer.h.
+// Tests that every registered coalescing policy keeps the promises of rtunit/coalescer.h.
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 

@@ -1,5 +1,4 @@
-// In every registered node format a ray finds what testing every primitive finds, to the bit, under all of
-// Vulkan's flags.
+// Tests that rays find to the bit in every node format what tests of every primitive find, under all flags.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
@@ -20,7 +19,7 @@ Positions scaled(Positions p, float scale, std::array<float, 3> move = {}) {
   return p;
 }
 
-// Points, lines and not-a-numbers among the triangles, several of them twice.
+// Returns triangles with points, lines and not-a-numbers among them, several of them twice.
 Positions with_degenerate(Random& random, Positions p) {
   for (int i = 0; i < 20; ++i) {
     const size_t at = 3 * random.below(uint32_t(p.size() / 3)),
@@ -57,7 +56,7 @@ std::vector<Bounds> some_boxes(Random& random, int count, float size) {
 struct Named {
   const char* name;
   Scene scene;
-  float size = 10;  // rays start within twice of it around `center`, and aim at what is there
+  float size = 10;  // rays start within twice this size around `center`, and aim at what is there
   std::array<float, 3> center{};
 };
 
@@ -77,7 +76,7 @@ Named mixed(uint64_t seed) {
     instance.bottom = i % 4;
     instance.flags = random.below(16);
     instance.mask = random.below(3) ? 0xff : 1u << random.below(8);
-    if (i % 5 == 4) instance.transform = out.scene.instances[i - 4].transform;  // exactly in one place
+    if (i % 5 == 4) instance.transform = out.scene.instances[i - 4].transform;  // at exactly the same place
     out.scene.instances.push_back(instance);
   }
   return out;
@@ -104,7 +103,8 @@ std::vector<Named> scenes() {
   far_off.add_triangles(scaled(soup(random, 80, 10, 5), 1, {3e5f, -2e6f, 1e4f}), true);
   out.push_back(plain("far from the origin", std::move(far_off), 10));
   out.back().center = {3e5f, -2e6f, 1e4f};
-  for (int i = 0; i < 40; ++i)  // each triangle half as large as the one before: unbalanced trees
+  for (int i = 0; i < 40;
+       ++i)  // each triangle is half as large as the one before, which gives unbalanced trees
     spread.add_triangles(scaled({{-1, -1, -1}, {2, 0, 1}, {0, 2, 1}}, std::ldexp(1.f, -i)), true);
   out.push_back(plain("of all sizes", std::move(spread), 1));
   Positions copies;
@@ -140,7 +140,7 @@ bool same(const Hit& a, const Hit& b) {
          a.instance == b.instance && a.geometry == b.geometry && a.primitive == b.primitive;
 }
 
-// Compares one ray in one format; of a ray that any hit ends, the hit is one of all.
+// Compares one ray in one format. For a ray that any hit ends, the hit only has to be one of all.
 void check_ray(const BuiltScene& built, RayState state, const std::vector<Hit>& expected) {
   state.ray.structure = built.top.address;
   REQUIRE(begin(state, built.memory));
@@ -211,7 +211,8 @@ TEST_CASE("in every node format a lane's timed ray ends as the functional one, w
           REQUIRE(same(timed[w][lane].committed, functional[w][lane].committed));
           REQUIRE(timed[w][lane].nodes_visited == functional[w][lane].nodes_visited);
         }
-      // a node's bytes in sectors of 32: at most one more than its own size where it begins within one
+      // A node's bytes lie in sectors of 32, so there is at most one more than its size needs when it begins
+      // within one.
       const RtStats& s = unit.stats();
       const uint64_t leaves = s.fetches.value() * 128;
       CHECK(s.sectors.value() * 32 >= s.fetches.value() * std::min(64u, node_bytes));

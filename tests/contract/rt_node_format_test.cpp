@@ -1,4 +1,4 @@
-// Every registered node format keeps the promises of rtunit/node_format.h.
+// Tests that every registered node format keeps the promises of rtunit/node_format.h.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <cstring>
@@ -60,7 +60,7 @@ TEST_CASE("a bottom level of another node format is refused") {
                     Catch::Contains("another node format"));
 }
 
-// Width and bytes as published; the number of nodes between a full tree's and a binary one's.
+// Width and bytes are as published, and the number of nodes lies between a full tree's and a binary one's.
 TEST_CASE("nodes have the published sizes, and a structure is its header, nodes and leaves") {
   const std::map<std::string, std::pair<uint32_t, uint32_t>> known{
       {"bvh2", {2, 64}}, {"bvh4", {4, 128}}, {"bvh6", {6, 64}}, {"bvh8", {8, 80}}};
@@ -87,14 +87,14 @@ TEST_CASE("nodes have the published sizes, and a structure is its header, nodes 
   }
 }
 
-// Of any size: Random::point itself multiplies by 2^24.
+// Returns a point of any size. Random::point itself multiplies by 2^24.
 std::array<float, 3> scaled_point(Random& random, float size) {
   auto p = random.point(1);
   for (float& x : p) x *= size;
   return p;
 }
 
-// Any width of up to the format's, any size and place.
+// The test takes any number of children up to the format's width, of any size and place.
 TEST_CASE("boxes as decoded contain what they were made of") {
   for (const std::string& name : Registry<NodeFormat>::names()) {
     CAPTURE(name);
@@ -133,7 +133,7 @@ TEST_CASE("boxes as decoded contain what they were made of") {
   }
 }
 
-// Must fail: in every format a box that shrinks and a child that is lost are seen.
+// In every format the validator must refuse a box that shrinks and a child that is lost.
 TEST_CASE("the validator finds damage in every node format") {
   Random random{3};
   const Positions positions = soup(random, 100, 10, 1);
@@ -151,8 +151,8 @@ TEST_CASE("the validator finds damage in every node format") {
       view[at] = before;
     }
     CHECK(validate(memory, info.address).empty());
-    CHECK(found >
-          node_bytes / 4);  // of the bytes changed one by one; low bits of planes and padding may go unseen
+    CHECK(found > node_bytes / 4);  // of the bytes changed one by one; changes of low bits of planes and of
+                                    // padding may go unseen
   }
 }
 

@@ -1,4 +1,4 @@
-// Whatever the RT unit's policies and limits are, its rays find what the functional traversal finds.
+// Tests that rays find what the functional traversal finds, whatever the RT unit's policies and limits are.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <cstdint>
@@ -40,7 +40,7 @@ bool same_hit(const Hit& a, const Hit& b) {
          a.geometry == b.geometry && a.primitive == b.primitive;
 }
 
-// Every policy that a traversal may depend on, and the limits beside it.
+// Returns every policy that a traversal may depend on, and the limits beside it.
 std::vector<Params> combinations() {
   std::vector<Params> out;
   uint32_t number = 0;
@@ -111,7 +111,7 @@ TEST_CASE(
   }
   CHECK(combination == combinations().size());
   CHECK(hits > 10000);
-  // Each mechanism has been at work.
+  // Each mechanism must have been at work.
   for (const uint64_t count : {spills, restarts, across, stale, full}) CHECK(count > 100);
 }
 

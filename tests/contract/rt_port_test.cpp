@@ -1,4 +1,4 @@
-// The RT unit keeps the promises of rtunit/rt_port.h, under every scheduler.
+// Tests that the RT unit keeps the promises of rtunit/rt_port.h under every scheduler.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdint>
 #include <map>

@@ -1,4 +1,4 @@
-// Every registered ray scheduler keeps the promises of rtunit/ray_scheduler.h.
+// Tests that every registered ray scheduler keeps the promises of rtunit/ray_scheduler.h.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 

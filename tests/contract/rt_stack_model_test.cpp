@@ -1,4 +1,4 @@
-// Every registered stack model keeps the promises of rtunit/stack_model.h.
+// Tests that every registered stack model keeps the promises of rtunit/stack_model.h.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <set>
@@ -16,7 +16,7 @@ std::unique_ptr<StackModel> model_of(const std::string& name) {
   return Registry<StackModel>::instance().entry(name).make_default({});
 }
 
-// A ray that does nothing but push and pop.
+// Holds a ray that does nothing but push and pop.
 struct Walker {
   RayState ray;
   RayPath path;

@@ -1,5 +1,5 @@
-// The contract of warp layouts: every thread of a launch is in exactly one lane of one warp, every block
-// starts once.
+// Tests the contract of warp layouts: every thread is in exactly one lane of one warp, every block starts
+// once.
 // SPDX-License-Identifier: Apache-2.0
 #include <set>
 #include <tuple>
@@ -20,7 +20,7 @@ std::shared_ptr<const exec::WarpLayout> make(const std::string& name) {
   return Registry<exec::WarpLayout>::instance().entry(name).make_default({});
 }
 
-// A launch of a program that does nothing.
+// Holds a launch of a program that does nothing.
 struct Launch {
   Launch(const std::string& layout, std::array<uint32_t, 3> size) {
     Code code;

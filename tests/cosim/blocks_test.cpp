@@ -1,4 +1,4 @@
-// Blocks on both machines: race-free programs leave the same memory, and time behaves.
+// Tests blocks on both machines: race-free programs leave the same memory, and time behaves.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/timing_machine.h"
 #include "tests/support/catch.h"
@@ -24,7 +24,7 @@ Cycle run_timing(exec::TextLaunch& launch, bool no_skip = false,
   return cycles;
 }
 
-// Sums 0 to 255 of each block in shared memory; the block's result goes to its word, and into a global sum at
+// Sums 0 to 255 of each block in shared memory. The block's result goes to its word, and into a global sum at
 // word 0.
 const std::string kReduce = R"(
     mov.b32 %r4, %tid.x;
@@ -60,7 +60,7 @@ MEET:
     exit;
 )";
 
-// Counts the residues of the thread numbers modulo 16: first in shared memory, then of all blocks in global
+// Counts the residues of the thread numbers modulo 16, first in shared memory, then for all blocks in global
 // memory. The old values of a second atomic add up to the same whatever the order.
 const std::string kHistogram = R"(
     mad.lo.u32 %r4, %ctaid.x, %ntid.x, %tid.x;
@@ -120,7 +120,7 @@ TEST_CASE("an atomic costs a trip to the L2, and a red does not") {
     exec::TextLaunch launch(text + "    exit;\n", {});
     return run_timing(launch);
   };
-  // A chain: each atomic adds what the one before returned.
+  // This is a chain: each atomic adds what the one before returned.
   const Cycle chain = cycles("atom.global.add.u32 %r4, [%rd2], %r4;"),
               apart = cycles("red.global.add.u32 [%rd2], 1;");
 

@@ -1,4 +1,4 @@
-// Both machines in step: every warp retires the same instructions with the same results.
+// Runs both machines in step: every warp retires the same instructions with the same results.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstring>
@@ -16,7 +16,7 @@ using namespace glint;
 
 namespace {
 
-// One retired instruction: where, for which lanes, and a hash of what it wrote there.
+// Holds one retired instruction: where, for which lanes, and a hash of what it wrote there.
 struct Step {
   uint32_t pc;
   LaneMask lanes;
@@ -61,7 +61,7 @@ std::string describe(const exec::World& world, const Step& step) {
                      step.result);
 }
 
-// "" when equal, otherwise the first difference.
+// Returns "" when the histories are equal, and otherwise the first difference.
 std::string first_difference(const exec::World& world, const History& a, const History& b) {
   for (size_t warp = 0; warp < a.size(); ++warp)
     for (size_t i = 0; i < std::max(a[warp].size(), b[warp].size()); ++i) {

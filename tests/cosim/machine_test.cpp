@@ -1,4 +1,4 @@
-// The whole timing machine: nothing is lost, every cycle has a reason, and skipping idle time changes
+// Tests the timing machine: nothing is lost, every cycle has a reason, and skipping idle time changes
 // nothing.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/scene_world.h"

@@ -1,4 +1,4 @@
-// Profile, time series and conservation of the whole machine: they add up, and watching changes nothing.
+// Tests that profile, time series and conservation of the machine add up, and that watching changes nothing.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
@@ -92,7 +92,7 @@ TEST_CASE("watching changes no cycle, and stepping or another window no figure")
   CHECK(watched.cycles == narrow.cycles);
   CHECK(same(ProfileTable{{}, {watched.profile.rows.begin(), watched.profile.rows.end() - 1}, {}},
              ProfileTable{{}, {narrow.profile.rows.begin(), narrow.profile.rows.end() - 1}, {}}));
-  // The end of a run is in whole windows: the last rows differ by that.
+  // The end of a run is in whole windows, so the last rows differ by that.
   const size_t whole = std::min(watched.attributed, narrow.attributed) / 1000;
   CHECK(std::equal(watched.series.rows.begin(), watched.series.rows.begin() + ptrdiff_t(whole),
                    narrow.series.rows.begin()));

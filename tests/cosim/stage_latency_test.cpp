@@ -1,5 +1,5 @@
-// Latency by shader stage: it adds up to latency by class, is the same however a run is made, and follows the
-// code.
+// Tests that latency by stage adds up to latency by class, is the same for every way of running, and follows
+// the code.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
@@ -32,7 +32,7 @@ struct Latencies {
   ProfileTable profile;
 };
 
-// Path tracing of procedural spheres: ray generation, intersection, closest hit and miss.
+// Runs path tracing of procedural spheres: ray generation, intersection, closest hit and miss.
 Latencies run(uint32_t threads, bool no_skip, bool profile = false) {
   const pipeline::RenderJob job = test::small_job("WKND", pipeline::Workload::PathTracing, 16, 1);
   pipeline::SceneWorld scene(job);
@@ -85,8 +85,8 @@ TEST_CASE("latencies of all stages add up to latency by class, on one thread or 
     CHECK(of_stage(plain, stage, isa::Class::Alu) == 0);
 }
 
-// The profile knows an instruction's stage from the program that it stands in, and times accesses and traces
-// only; the others end a few cycles after their issue.
+// The profile knows an instruction's stage from the program that it stands in. It times only accesses and
+// traces; the others end a few cycles after their issue.
 TEST_CASE(
     "what a stage's accesses and traces took is in the latency of that stage, though other stages run when "
     "they end") {

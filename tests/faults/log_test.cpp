@@ -1,4 +1,4 @@
-// The log of faults: one entry a place and kind, whatever the order in which lanes come.
+// Tests that the log of faults has one entry per place and kind, whatever the order in which lanes come.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/fault.h"
 #include "tests/support/catch.h"

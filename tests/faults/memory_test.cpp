@@ -1,4 +1,4 @@
-// Mistakes with buffers, addresses, shared and local memory, descriptors and images.
+// Tests mistakes with buffers, addresses, shared and local memory, descriptors and images.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/faults/faults.h"
 #include "tests/shaders/compute_lab.h"

@@ -1,4 +1,4 @@
-// Mistakes with records, structures and depth.
+// Tests mistakes with records, structures and depth.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/faults/faults.h"
 #include "tests/support/catch.h"
@@ -12,8 +12,8 @@ using exec::FaultKind;
 const std::string kPlace = "glsl/faults/rays.rgen:16";
 constexpr const char* kClosest = "faults/rays.rchit";
 
-// Two miss records, one callable, and hit records 0 to 3: that of the boxes, 4, and more are not there.
-// Nothing lies in columns 0 and 1; quads of records 0 and 1 in 2 to 5.
+// Runs with two miss records, one callable, and hit records 0 to 3. That of the boxes, 4, and further ones do
+// not exist. Nothing lies in columns 0 and 1; quads of records 0 and 1 lie in 2 to 5.
 std::vector<uint32_t> run_with(const std::string& closest, const std::string& code, const LabOptions& options,
                                exec::FaultLog& faults) {
   LabShaders shaders{

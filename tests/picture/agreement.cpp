@@ -1,4 +1,4 @@
-// How well Glint's picture of a scene agrees with the reference renderer's.
+// Measures how well Glint's picture of a scene agrees with the reference renderer's.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/picture/agreement.h"
 
@@ -44,7 +44,7 @@ std::vector<reference::ReferenceResult> references(const pipeline::RenderJob& jo
   return results;
 }
 
-// A folder that is gone with the object.
+// Holds a folder that is removed with the object.
 struct Folder {
   std::filesystem::path path =
       std::filesystem::temp_directory_path() / ("glint_structures_" + std::to_string(getpid()));
@@ -84,7 +84,7 @@ std::vector<Agreement> agreements(pipeline::RenderJob job, const std::vector<Cas
   const Folder folder;
   pipeline::StructureCache structures({.folder = folder.path.string(), .build = "test"});
   job.structure_cache = &structures;  // built for the first case only
-  job.timing = false;                 // the timing machine gives the same bytes: tests/cosim
+  job.timing = false;                 // the timing machine gives the same bytes (tests/cosim)
   std::vector<Agreement> out;
   pipeline::RenderResult picture;
   for (size_t i = 0; i < cases.size(); ++i) {

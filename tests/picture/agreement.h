@@ -1,4 +1,4 @@
-// How well Glint's picture of a scene agrees with the reference renderer's.
+// Measures how well Glint's picture of a scene agrees with the reference renderer's.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace glint::test {
 
-// Embree has its own triangle test and takes any of several triangles at equal distance; Exact has Glint's
-// rule.
+// Names the oracles. Embree has its own triangle test and takes any of several triangles at equal distance;
+// Exact has Glint's rule.
 enum class Oracle { Embree, Exact };
 
 struct Agreement {
@@ -21,15 +21,16 @@ struct Agreement {
 };
 Agreement compare(const pipeline::RenderResult& picture, const reference::ReferenceResult& expected);
 
-// A scene's shader set with so many bounces, compared with one of the oracles.
+// Describes a scene's shader set with a number of bounces, compared with one of the oracles.
 struct Case {
   pipeline::Workload workload;
   uint32_t bounces;
   Oracle oracle;
 };
 
-// Loads the scene once and renders all the cases with both: the references first, so that large scenes need
-// no more memory than one of the two. Prints a row of a table for each. The scene may have instances.
+// Loads the scene once and renders all the cases with both renderers: the references first, so that large
+// scenes need no more memory than one of the two. Prints a row of a table for each case. The scene may have
+// instances.
 std::vector<Agreement> agreements(const std::string& scene, const std::string& assets, uint32_t size,
                                   const std::vector<Case>& cases);
 std::vector<Agreement> agreements(pipeline::RenderJob job, const std::vector<Case>& cases);

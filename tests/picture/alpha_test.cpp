@@ -1,4 +1,4 @@
-// Textures and any-hit shaders, end to end: rays pass where the texture's alpha is exactly zero.
+// Tests textures and any-hit shaders, end to end: rays pass where the texture's alpha is exactly zero.
 // SPDX-License-Identifier: Apache-2.0
 #include <utility>
 
@@ -12,8 +12,8 @@ namespace {
 
 constexpr uint32_t kSize = 64;
 
-// A quad of x, y in [-1, 1] facing the camera under the sky. Its texture has two texels side by side, the
-// left one with alpha 0; between their centres, u = 1/4 and 3/4, alpha is filtered and not zero.
+// Returns a quad of x, y in [-1, 1] that faces the camera under the sky. Its texture has two texels side by
+// side, the left one with alpha 0; between their centres, u = 1/4 and 3/4, alpha is filtered and not zero.
 scenes::Scene quad_scene(bool with_quad) {
   scenes::Scene scene;
   scene.name = "QUAD";
@@ -44,7 +44,8 @@ pipeline::RenderResult picture(bool with_quad, bool timing, const char* any_hit 
   return pipeline::render(job);
 }
 
-// Column of the pixels that see `x` on the quad's plane: 5 away, half the picture is tan(20 deg) * 5 wide.
+// Returns the column of the pixels that see `x` on the quad's plane, which is 5 away; half the picture is
+// tan(20 deg) * 5 wide.
 uint32_t column(float x) {
   return uint32_t((x / 1.8199f * 0.5f + 0.5f) * kSize);
 }

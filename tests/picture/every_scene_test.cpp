@@ -1,4 +1,4 @@
-// Every scene of LumiBench, generated and from files, against the reference renderer at 32x32.
+// Tests every scene of LumiBench, generated and from files, against the reference renderer at 32x32.
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <cstdlib>
@@ -18,8 +18,8 @@ namespace {
 
 constexpr uint32_t kSize = 32;
 
-// Large: a second or more of building structures, or files of more than 30 MB. None: WKND comes from code,
-// and of CRNVL no file is there.
+// Says what a scene costs. Large: a second or more of building structures, or files of more than 30 MB. None:
+// there are no files, because WKND comes from code and no file of CRNVL exists.
 enum class Cost { None, Small, Large };
 struct Row {
   const char* scene;
@@ -42,9 +42,9 @@ bool is_run(const std::string& what, Cost cost) {
   return cost != Cost::None;
 }
 
-// 909 of the original ship's 6,255 triangles lie exactly on another that faces the other way. Which of the
-// two a ray meets decides whether its path goes on, and Embree leaves that open (92 % of pixels agree with
-// its choice).
+// Says whether Embree can judge a case. 909 of the original ship's 6,255 triangles lie exactly on another one
+// that faces the other way. Which of the two a ray meets decides whether its path goes on, and Embree leaves
+// that open (92 % of pixels agree with its choice).
 bool is_for_embree(const std::string& scene, const std::string& assets, const Case& now) {
   return now.workload != Workload::PathTracing || scene != "SHIP" || assets.empty();
 }
@@ -66,7 +66,7 @@ void check_scene(const std::string& scene, const std::string& assets) {
       CHECK(found[i].pixels >= 0.998);
       CHECK(std::abs(found[i].ray_ratio - 1) < 1e-3);
     } else if (cases[i].workload == Workload::PathTracing && cases[i].bounces > 2) {
-      // what begins in the last bit of a hit grows with each bounce
+      // What begins in the last bit of a hit grows with each bounce.
       CHECK(found[i].mean_error <= 0.01);
       CHECK(std::abs(found[i].ray_ratio - 1) <= 0.005);
     } else {
@@ -87,7 +87,7 @@ TEST_CASE("pictures of every generated scene agree with the exact reference and 
 TEST_CASE("pictures of every scene from files agree with the exact reference and with Embree") {
   for (const Row& row : kScenes) DYNAMIC_SECTION(row.scene) {
       if (!is_run(row.scene + std::string(" from files"), row.files)) continue;
-      // PARK's stand-in is made of other scenes' files
+      // PARK's stand-in is made of other scenes' files.
       const bool is_park = row.scene == std::string("PARK");
       const test::SceneData data(row.scene, is_park ? std::vector<std::string>{"SPRNG", "FRST", "ROBOT"}
                                                     : std::vector<std::string>{});

@@ -1,5 +1,5 @@
-// Pictures of scenes whose copies are shared, and of a scene with instances, masks and textures of every
-// kind.
+// Tests pictures of scenes whose copies are shared, and of a scene with instances, masks and textures of all
+// kinds.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
@@ -28,7 +28,7 @@ pipeline::RenderResult picture(pipeline::RenderJob job, Workload workload) {
   return pipeline::render(job);
 }
 
-// Fraction of pixels whose channels agree within 1e-3 relative.
+// Returns the fraction of pixels whose channels agree within 1e-3 relative.
 double equal_pixels(const std::vector<float>& a, const std::vector<float>& b) {
   size_t equal = 0;
   for (size_t i = 0; i < a.size(); i += 4) {
@@ -40,10 +40,10 @@ double equal_pixels(const std::vector<float>& a, const std::vector<float>& b) {
   return 4 * double(equal) / double(a.size());
 }
 
-// What may differ: a copy's corners are rounded after its matrix, so a ray that grazes an edge or begins on a
-// surface may meet another triangle; the y of a vertical wall's normal is zero but for rounding, and its sign
-// decides whether a shadow ray towards the zenith is traced at all (17 of 1,024 pixels of PARTY, all brighter
-// by what two such rays take).
+// Checks a scene with shared copies. Some pixels may differ. A copy's corners are rounded after its matrix,
+// so a ray that grazes an edge or begins on a surface may meet another triangle. The y of a vertical wall's
+// normal is zero except for rounding, and its sign decides whether a shadow ray towards the zenith is traced
+// at all (17 of 1,024 pixels of PARTY, all brighter by what two such rays take).
 void check_shared(const std::string& scene, const std::string& assets) {
   const pipeline::RenderJob stored = test::small_job(scene, Workload::Shadow, kSize, 2, assets);
   pipeline::RenderJob shared = stored;
@@ -58,14 +58,14 @@ void check_shared(const std::string& scene, const std::string& assets) {
     CHECK(equal_pixels(a.accumulation, b.accumulation) >= (workload == Workload::Shadow ? 0.98 : 0.995));
     CHECK(std::abs(double(b.rays.rays) / double(a.rays.rays) - 1) <= 0.02);
   }
-  // and exactly that of its instances moved into the world
+  // It agrees exactly with the picture of its instances moved into the world.
   const Agreement moved = test::agreements(shared, {{Workload::Shadow, 16, Oracle::Exact}}).front();
   CHECK(moved.pixels >= 0.995);
   CHECK(std::abs(moved.ray_ratio - 1) < 1e-3);
 }
 
-// A floor of a coarse texture that repeats and is stored as sRGB; above it two copies of a leaf with holes,
-// one of them stretched, turned and mirrored; a ball with a texture of its own.
+// Returns a floor of a coarse texture that repeats and is stored as sRGB. Above it are two copies of a leaf
+// with holes, one of them stretched, turned and mirrored, and a ball with a texture of its own.
 scenes::Scene garden() {
   scenes::Scene scene;
   scene.name = "GARDEN";
@@ -131,7 +131,7 @@ TEST_CASE("the forest of files whose copies are shared has the picture of one th
   pipeline::RenderJob shared = stored;
   shared.scene = scenes::load_scene("FRST", {data.path, true});
   CHECK(shared.scene.stored_triangles() * 10 < stored.scene.stored_triangles());
-  // of grass and leaves, whose tips are less than a pixel: 1,016 of 1,024 pixels
+  // 1,016 of 1,024 pixels agree, because of grass and leaves whose tips are less than a pixel.
   for (const Workload workload : {Workload::AmbientOcclusion, Workload::PathTracing})
     CHECK(equal_pixels(picture(stored, workload).accumulation, picture(shared, workload).accumulation) >=
           0.985);

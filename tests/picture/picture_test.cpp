@@ -1,5 +1,5 @@
-// Four scenes' pictures and ray counts at 64x64 against the plain C++ reference renderer, which shares no
-// code with the machine.
+// Tests four scenes' pictures and ray counts at 64x64 against the C++ reference renderer, which shares no
+// code.
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 

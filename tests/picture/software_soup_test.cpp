@@ -1,5 +1,4 @@
-// Ray queries over random triangles, boxes and instances, walked in code: what the shared traversal finds,
-// bit for bit.
+// Tests ray queries over random triangles, boxes and instances, walked in code, against the shared traversal.
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <cstring>
@@ -20,7 +19,8 @@ namespace {
 constexpr uint32_t kRays = 1024, kRayWords = 10, kHitWords = 8;
 constexpr uint64_t kBudget = 100'000'000;
 
-// Takes every other triangle that is not opaque, and in boxes a hit where their even primitives begin.
+// The shader takes every other triangle that is not opaque, and in boxes a hit where their even primitives
+// begin.
 const char* const kShader = R"(#version 460
 #extension GL_EXT_ray_query : require
 layout(local_size_x = 64) in;
@@ -54,7 +54,7 @@ void main() {
 }
 )";
 
-// Faces of all kinds, some hidden, and the same ones twice: ties.
+// Returns faces of all kinds, some of them hidden, and the same ones twice, which gives ties.
 Scene various(uint64_t seed) {
   Scene out = crowd(seed, 100);
   for (uint32_t i = 0; i < out.instances.size(); ++i) {
@@ -82,7 +82,7 @@ std::vector<uint32_t> rays_of(uint64_t seed) {
   return words;
 }
 
-// The words that the shader stores.
+// Returns the words that the shader stores.
 std::vector<uint32_t> hits_of(uint64_t seed, std::string_view unit, uint32_t max_registers) {
   BuiltScene built(various(seed), "bvh6");
   pipeline::GpuParams gpu;

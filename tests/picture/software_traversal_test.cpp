@@ -1,4 +1,4 @@
-// Rays walked in code: the pictures of the RT unit, bit for bit, and what cannot be asked for.
+// Tests that rays walked in code give the pictures of the RT unit, bit for bit, and what cannot be asked for.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdint>
 #include <string_view>

@@ -1,4 +1,4 @@
-// Both intersectors on one Embree tree.
+// Implements both intersectors on one Embree tree.
 // SPDX-License-Identifier: Apache-2.0
 //
 // Geometry i of the tree is model i. Spheres are user geometry whose candidates tests/reference/shapes.cpp
@@ -61,7 +61,7 @@ class EmbreeIntersector final : public Intersector {
     rh.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     test::intersect(tree_, query.context, rh);
     if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-    // a user-geometry hit keeps its numbers in the query
+    // A user-geometry hit keeps its numbers in the query.
     if (!query.best.missed() && query.best.model == rh.hit.geomID) return query.best;
     return {rh.hit.geomID, rh.hit.primID, rh.ray.tfar, rh.hit.u, rh.hit.v};
   }
@@ -109,7 +109,7 @@ class EmbreeIntersector final : public Intersector {
         low[axis] = std::min({corner[0], corner[1], corner[2]});
         high[axis] = std::max({corner[0], corner[1], corner[2]});
       }
-      // room for the rounding of our own tests, so that the tree never loses what they accept
+      // This is room for the rounding of our own tests, so that the tree never loses what they accept.
       const float pad = 1e-5f * std::max({1.0f, std::abs(low[axis]), std::abs(high[axis])});
       low[axis] -= pad;
       high[axis] += pad;

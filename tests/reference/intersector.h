@@ -1,4 +1,4 @@
-// Who answers the reference renderer's rays: Embree's own triangle test, or our own test on every candidate.
+// Answers the reference renderer's rays, by Embree's triangle test or by our own test on every candidate.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -23,24 +23,26 @@ struct Hit {
   bool missed() const { return model == kMiss; }
 };
 
-// The closest hit with t_min < t < t_max. Rays that may end at their first hit get the closest one too.
+// Finds the closest hit with t_min < t < t_max. Rays that may end at their first hit get the closest one,
+// too.
 class Intersector {
  public:
   virtual ~Intersector() = default;
   virtual Hit closest(const Ray& ray) = 0;
 };
 
-// Embree's robust triangle test; spheres by the intersection shader's formula.
+// Returns Embree's robust triangle test, with spheres by the intersection shader's formula.
 std::unique_ptr<Intersector> make_embree_intersector(const scenes::Scene& scene);
-// Woop, Benthin and Wald 2013 in scalar float for every triangle whose box the ray meets (Embree only finds
-// the boxes); equal distances go to the lowest (model, primitive).
+// Returns the test of Woop, Benthin and Wald 2013 in scalar float for every triangle whose box the ray meets
+// (Embree only finds the boxes). Equal distances go to the lowest (model, primitive).
 std::unique_ptr<Intersector> make_exact_intersector(const scenes::Scene& scene);
 
-// Woop's test on three corners: fills t, u, v and returns true when the ray's line meets the triangle; the
-// caller checks t against the interval.
+// Does Woop's test on three corners: fills t, u, v and returns true when the ray's line meets the triangle.
+// The caller checks t against the interval.
 bool meets_triangle(const Ray& ray, const Vec& a, const Vec& b, const Vec& c, Hit& hit);
 
-// The sphere intersection shader: a distance in [t_min, t_max), or a negative number.
+// Does the test of the sphere intersection shader. Returns a distance in [t_min, t_max), or a negative
+// number.
 float meets_sphere(const Ray& ray, const Vec& center, float radius);
 
 }  // namespace glint::reference

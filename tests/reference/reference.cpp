@@ -1,4 +1,4 @@
-// The three workloads in plain C++: what a picture must be, from code that shares nothing with the machine.
+// Renders the three workloads in plain C++, with code that shares nothing with the machine.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/reference/reference.h"
 
@@ -51,13 +51,13 @@ Vec draw_in_unit_sphere(uint32_t& state) {
   return p;
 }
 
-// Column-major matrix times (v, w): xyz of the result, columns in order.
+// Returns xyz of a column-major matrix times (v, w), computed column by column in order.
 Vec transform(const scenes::Mat4& m, const Vec& v, float w) {
   const auto row = [&](size_t r) { return m[r] * v.x + m[4 + r] * v.y + m[8 + r] * v.z + m[12 + r] * w; };
   return {row(0), row(1), row(2)};
 }
 
-// `texel`: the texture's colour where the ray hit. Lights have none.
+// Scatters a ray. `texel` is the texture's colour where the ray hit. Lights have none.
 void scatter(Payload& ray, const Material& material, const Vec& texel, const Vec& ray_direction,
              const Vec& normal, float distance) {
   const Vec diffuse{material.diffuse[0], material.diffuse[1], material.diffuse[2]};
@@ -76,7 +76,7 @@ void scatter(Payload& ray, const Material& material, const Vec& texel, const Vec
       ray.goes_on = dot(reflected, normal) > 0;
       return;
     }
-    case MaterialModel::Isotropic:  // the shader has no such branch and falls to dielectric
+    case MaterialModel::Isotropic:  // the shader has no such branch and falls through to dielectric
     case MaterialModel::Dielectric: {
       const float index = material.refraction_index;
       const bool leaves = projection > 0;

@@ -1,4 +1,4 @@
-// The three workloads in plain C++: what a picture must be, from code that shares nothing with the machine.
+// Renders the three workloads in plain C++, with code that shares nothing with the machine.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -16,16 +16,16 @@ struct ReferenceResult {
   std::vector<Vec> mean;     // sum / samples
   std::vector<Vec> picture;  // square root of the mean, as stored to image 2
   std::vector<uint32_t> rays_of_pixel;
-  uint64_t rays = 0;  // traced, over all pixels
+  uint64_t rays = 0;  // rays traced over all pixels
 };
 
 // Renders in float, in the order in which the shaders compute. The scene must have no instances (surface.h:
-// flattened). Rays that may end at their first hit get the closest one: for ambient occlusion, whose next ray
-// depends on the blocker's normal, a machine may therefore differ in single pixels.
+// flattened). Rays that may end at their first hit get the closest one. In ambient occlusion the next ray
+// depends on the blocker's normal, so a machine may differ in single pixels.
 ReferenceResult render(const scenes::Scene& scene, scenes::Workload workload,
                        const scenes::RenderParams& params, Intersector& intersector);
 
-// The shaders' random numbers.
+// These are the shaders' random numbers.
 uint32_t hash_pair(uint32_t first, uint32_t second);
 float random_float(uint32_t& state);
 

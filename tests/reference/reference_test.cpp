@@ -1,4 +1,4 @@
-// The reference renderer against hand-computed values, itself, and Embree's own triangle test.
+// Tests the reference renderer against hand-computed values, itself, and Embree's own triangle test.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/reference/reference.h"
 

@@ -1,4 +1,4 @@
-// A picture from the reference renderer: render_reference SCENE pt|sh|ao SIZE SAMPLES OUT.png [ASSETS].
+// Writes a picture of the reference renderer: render_reference SCENE pt|sh|ao SIZE SAMPLES OUT.png [ASSETS].
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstdio>

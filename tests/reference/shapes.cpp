@@ -1,4 +1,4 @@
-// The two shapes' tests in scalar float: the watertight triangle and the shader's sphere.
+// Tests the two shapes in scalar float: the watertight triangle and the shader's sphere.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cfloat>
@@ -18,7 +18,8 @@ float at(const Vec& v, int axis) {
   return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
 
-// Woop et al. 2013, 3.2: z is the direction's largest component; x and y keep the winding.
+// Permutes the axes by Woop et al. 2013, 3.2: z is the direction's largest component, and x and y keep the
+// winding.
 Axes permute(const Vec& d) {
   const float ax = std::abs(d.x), ay = std::abs(d.y), az = std::abs(d.z);
   int z = 0;
@@ -29,7 +30,8 @@ Axes permute(const Vec& d) {
   return axes;
 }
 
-// The scaled signed area of two sheared corners; again in double when float says exactly zero.
+// Holds the scaled signed area of two sheared corners. It is computed again in double when float says exactly
+// zero.
 struct Corner {
   float x, y, z;
 };
@@ -40,8 +42,8 @@ float edge_in_double(const Corner& p, const Corner& q) {
   return float(double(p.x) * double(q.y) - double(p.y) * double(q.x));
 }
 
-// x, y or z of the normal from whichever corner's cross product cancels less, fused as Embree's robust test
-// has it.
+// Returns x, y or z of the normal from whichever corner's cross product cancels less, fused as in Embree's
+// robust test.
 float steadier(float p1, float p2, float q1, float q2, float r1, float r2) {
   const float first = p2 * q1, second = q2 * r1;
   if (std::abs(first) < std::abs(second)) return std::fma(p1, q2, -first);
@@ -52,7 +54,7 @@ float fused_dot(const Vec& a, const Vec& b) {
   return std::fma(a.x, b.x, std::fma(a.y, b.y, a.z * b.z));
 }
 
-// Where the triangle's plane crosses the ray; false when the plane is edge-on.
+// Finds where the triangle's plane crosses the ray. Returns false when the plane is edge-on.
 bool meets_plane(const Ray& ray, const Vec& a, const Vec& b, const Vec& c, float& t) {
   const Vec to_a = a - ray.origin, to_b = b - ray.origin, to_c = c - ray.origin;
   const Vec ac = to_c - to_a, ba = to_a - to_b, cb = to_b - to_c;
@@ -84,7 +86,8 @@ bool meets_triangle(const Ray& ray, const Vec& a, const Vec& b, const Vec& c, Hi
   if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return false;
   const float determinant = u + v + w;
   if (determinant == 0) return false;
-  // the plane's distance, unless it leaves the depths of the corners (slivers): then the weighted one
+  // This is the plane's distance, unless it leaves the depths of the corners (slivers); then it is the
+  // weighted one.
   float t = (u * pa.z + v * pb.z + w * pc.z) / determinant;
   if (t != t) return false;
   const auto [low, high] = std::minmax({pa.z, pb.z, pc.z});

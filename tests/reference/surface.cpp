@@ -1,4 +1,4 @@
-// What the shaders see of a triangle that a ray met, and whether its texture lets the ray pass.
+// Computes what the shaders see of a triangle that a ray met, and whether its texture lets the ray pass.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/reference/surface.h"
 
@@ -42,7 +42,7 @@ bool is_hole(const scenes::Scene& scene, const Hit& hit) {
 
 namespace {
 
-// In double, rounded once.
+// Moves a model in double, with one rounding at the end.
 void move(scenes::Model& model, const scenes::Affine& m) {
   const auto at = [&m](size_t row, size_t column) { return double(m[4 * row + column]); };
   for (scenes::Vertex& vertex : model.vertices) {
@@ -53,7 +53,7 @@ void move(scenes::Model& model, const scenes::Affine& m) {
       double sum = at(r, 3);
       for (size_t c = 0; c < 3; ++c) sum += at(r, c) * double(p[c]);
       vertex.position[r] = float(sum);
-      // a row of cofactors is the inverse transpose's times the determinant
+      // A row of cofactors is that of the inverse transpose times the determinant.
       const size_t r1 = (r + 1) % 3, r2 = (r + 2) % 3;
       normal[r] = 0;
       for (size_t c = 0; c < 3; ++c) {

@@ -1,4 +1,4 @@
-// The reference's textures, holes and moved copies against hand-computed values.
+// Tests the reference's textures, holes and moved copies against hand-computed values.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/reference/surface.h"
 
@@ -12,12 +12,12 @@ namespace scenes = glint::scenes;
 
 namespace {
 
-// Two texels side by side, black without alpha and white.
+// Returns two texels side by side: black without alpha, and white.
 scenes::Texture two_texels() {
   return {"two", 2, 1, {0, 0, 0, 0, 255, 255, 255, 255}};
 }
 
-// A right triangle with that texture at z = 0, and the same of plain white at z = -1.
+// Returns a right triangle with that texture at z = 0, and the same triangle in plain white at z = -1.
 scenes::Scene two_triangles() {
   scenes::Scene scene;
   scene.alpha_test = true;
@@ -90,7 +90,7 @@ TEST_CASE("rays that are not opaque pass holes and nothing else, in both interse
 TEST_CASE("a mirrored and stretched instance is moved with normals that stay at right angles to it") {
   scenes::Scene scene = two_triangles();
   scene.models[0].vertices[0].normal = {0, 0.6f, 0.8f};
-  // x doubled, y and z swapped (a mirror image), then moved
+  // The matrix doubles x, swaps y and z (a mirror image), then moves.
   scene.instances = {{1, scenes::kIdentity}, {0, {2, 0, 0, 10, 0, 0, 1, 20, 0, 1, 0, 30}}};
   const scenes::Scene flat = flattened(scene);
 

@@ -1,4 +1,4 @@
-// A texture's colour at a point, by the Vulkan specification's formulas in scalar code.
+// Computes a texture's colour at a point by the Vulkan specification's formulas in scalar code.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/reference/texture.h"
 
@@ -9,7 +9,7 @@
 namespace glint::reference {
 namespace {
 
-// The two texels of an axis around coordinate x, and how much the second weighs.
+// Holds the two texels of an axis around coordinate x, and the weight of the second.
 struct Pair {
   uint32_t texel[2];
   float weight;
@@ -30,7 +30,7 @@ Pair neighbours(float x, uint32_t size, bool repeat) {
   return out;
 }
 
-// IEC 61966-2-1.
+// Converts by IEC 61966-2-1.
 float linear(float srgb) {
   return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f);
 }

@@ -1,4 +1,4 @@
-// Three floats with GLSL's operations, each rounded once and in GLSL's order: the reference's own arithmetic.
+// Holds three floats with GLSL's operations, each rounded once and in GLSL's order, for the reference.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -46,7 +46,7 @@ inline Vec reflect(const Vec& d, const Vec& n) {
   return d - n * (2.0f * dot(n, d));
 }
 
-// GLSL specification, 8.5: the zero vector on total reflection.
+// Returns the zero vector on total reflection (GLSL specification, 8.5).
 inline Vec refract(const Vec& d, const Vec& n, float eta) {
   const float projection = dot(n, d);
   const float k = 1.0f - eta * eta * (1.0f - projection * projection);

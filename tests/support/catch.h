@@ -1,4 +1,4 @@
-// Catch2 under either of its two names: 2.13 (Debian 12) or 3 (Ubuntu 24.04).
+// Includes Catch2 under either of its two names: 2.13 (Debian 12) or 3 (Ubuntu 24.04).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #if __has_include(<catch2/catch_all.hpp>)

@@ -9,7 +9,8 @@
 
 namespace glint::mem {
 
-// Core and command clocks are equal, all times are whole clocks, and an access moves 4 clocks of data.
+// Returns parameters in which core and command clocks are equal, all times are whole clocks, and an access
+// moves 4 clocks of data.
 inline DramParams plain() {
   DramParams p;
   p.clock_mhz = 1000.0;
@@ -19,7 +20,8 @@ inline DramParams plain() {
   return p;
 }
 
-// One channel; addresses are chosen by bank group, bank in the group and row, with the mapping turned back.
+// Drives one channel. Addresses are chosen by bank group, bank in the group and row, through the inverse of
+// the mapping.
 class DramRig {
  public:
   explicit DramRig(const DramParams& params)
@@ -34,7 +36,7 @@ class DramRig {
     channel.advance(now);
     channel.add(now, name * 128, 1, place_.at({bank, row}), write);
   }
-  // Runs to the end; the cycle at which each read's data was complete, by name.
+  // Runs to the end. Returns the cycle at which each read's data was complete, by name.
   std::map<uint32_t, Cycle> run() {
     std::map<uint32_t, Cycle> out;
     while (channel.next_command() != kNever) channel.advance(channel.next_command());
@@ -42,7 +44,7 @@ class DramRig {
       out[uint32_t(channel.returns().front().line / 128)] = channel.returns().front().ready;
     return out;
   }
-  // The end of run(), as a cycle that is later than all that was asked for.
+  // Moves the end of run() to a cycle that is later than all that was asked for.
   void idle_until(Cycle now) { channel.advance(now), idle_ = now; }
   Cycle read_alone(uint32_t bank, uint32_t row) {
     const Cycle start = idle_;

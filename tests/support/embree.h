@@ -1,4 +1,4 @@
-// Embree under either of its two interfaces: 3.13 (Debian 12) or 4 (Ubuntu 24.04).
+// Includes Embree under either of its two interfaces: 3.13 (Debian 12) or 4 (Ubuntu 24.04).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #if __has_include(<embree4/rtcore.h>)

@@ -1,4 +1,4 @@
-// A memory for tests of other parts: every read is answered after the same number of cycles.
+// Models a memory for tests of other parts: every read is answered after the same number of cycles.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -13,8 +13,8 @@
 
 namespace glint::mem {
 
-// Never refuses except past `accesses_per_cycle`, remembers every accepted request. Meets the contract of
-// L1Port.
+// Refuses nothing except beyond `accesses_per_cycle`, and remembers every accepted request. It meets the
+// contract of L1Port.
 class FixedLatencyMemory final : public L1Port {
  public:
   explicit FixedLatencyMemory(Cycle latency, uint32_t accesses_per_cycle = ~0u, uint32_t line_bytes = 128)
@@ -50,7 +50,7 @@ class FixedLatencyMemory final : public L1Port {
   }
   uint32_t line_bytes() const override { return line_bytes_; }
 
-  // From now on reads are taken and never answered.
+  // Takes reads from now on and never answers them.
   void swallow() { swallows_ = true; }
   std::string describe() const override {
     return fmt::format("  memory: {} reads never answered\n", swallowed_);

@@ -11,7 +11,7 @@
 
 namespace glint::mem {
 
-// The struct's defaults without what the presets leave off too: a test turns on what it is about.
+// Returns the struct's defaults without what the presets leave off. A test turns on what it is about.
 inline Params bare() {
   Params p;
   p.l1.fill_takes_access = p.l2.fill_takes_service = p.l2.write_masks = false;
@@ -20,7 +20,7 @@ inline Params bare() {
   return p;
 }
 
-// One token that came back.
+// Holds one token that came back.
 struct Answered {
   Cycle at = 0;
   uint32_t core = 0;
@@ -29,7 +29,8 @@ struct Answered {
   bool operator==(const Answered&) const = default;
 };
 
-// What a core does in a cycle: tries to access; it runs in every cycle in which it may have something to do.
+// Does what a core does in a cycle: tries to access. It runs in every cycle in which it may have something to
+// do.
 class MemoryRig {
  public:
   explicit MemoryRig(const Params& params, uint32_t cores = 1, double core_mhz = 1000.0)
@@ -42,8 +43,8 @@ class MemoryRig {
   void set_window(Cycle window) { window_ = window; }
   void set_step_every_cycle(bool step) { step_ = step; }
 
-  // Called per core and cycle after tick(); returns the next cycle at which it wants to be called (kNever:
-  // done).
+  // Is called for each core and cycle after tick(). Returns the next cycle at which it wants to be called, or
+  // kNever when it is done.
   using Driver = std::function<Cycle(uint32_t core, Cycle now)>;
 
   // Runs until nothing is in flight and every driver is done. Answers are collected in canonical order.
@@ -67,12 +68,12 @@ class MemoryRig {
       return a.at != b.at ? a.at < b.at : a.core != b.core ? a.core < b.core : a.client < b.client;
     });
   }
-  // Runs with nobody accessing.
+  // Runs without any access.
   void drain() {
     run([](uint32_t, Cycle) { return kNever; });
   }
-  // Issues one read at `at` (not before now) on an otherwise idle system and returns the cycle its token came
-  // back.
+  // Issues one read at `at` (not before now) on an otherwise idle system, and returns the cycle in which its
+  // token came back.
   Cycle read_latency(Address line, uint8_t sectors, bool write = false) {
     const Cycle start = now_;
     const size_t before = answers_.size();

@@ -1,4 +1,4 @@
-// The presets of the repository, for tests.
+// Reads the presets of the repository, for tests.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace glint::test {
 
-// The parameters of a preset in configs/.
+// Returns the parameters of a preset in configs/.
 inline pipeline::GpuParams preset(const std::string& name) {
   Config config;
   config.add_file(std::string(GLINT_SOURCE_DIR) + "/configs/" + name + ".toml");

@@ -1,5 +1,4 @@
-// Scenes of everything that a structure can hold, and the hit of a ray found by testing all of it, without
-// boxes around it.
+// Makes scenes of everything that a structure can hold, and finds a ray's hits by testing all primitives.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
@@ -21,7 +20,7 @@
 
 namespace glint::rt::test {
 
-// Geometries of a bottom level; the vectors keep what the geometries point to.
+// Holds the geometries of a bottom level. The vectors keep what the geometries point to.
 struct BottomScene {
   BottomScene() = default;
   BottomScene(BottomScene&&) = default;
@@ -49,7 +48,7 @@ struct Scene {
   std::vector<Instance> instances;
 };
 
-// A scene in memory, in one node format.
+// Holds a scene in memory, in one node format.
 struct BuiltScene {
   mem::AddressSpace memory;
   std::vector<StructureInfo> bottoms;
@@ -63,7 +62,7 @@ struct BuiltScene {
   }
 };
 
-// Every leaf of a structure, by the format's own decoding.
+// Visits every leaf of a structure, by the format's own decoding.
 template <class Visit>
 void for_each_leaf(const mem::AddressSpace& memory, const NodeFormat& format, Address structure,
                    uint32_t block, Visit visit) {
@@ -80,8 +79,8 @@ void for_each_leaf(const mem::AddressSpace& memory, const NodeFormat& format, Ad
   }
 }
 
-// Candidates of one ray, tested one by one. Written from Vulkan's rules anew; only the arithmetic of a
-// transform, of a box's entry and of a triangle is the unit's, whose bits are compared.
+// Tests the candidates of one ray one by one. It was written anew from Vulkan's rules; only the arithmetic of
+// a transform, of a box's entry and of a triangle is that of the unit, whose bits are compared.
 class BruteForce {
  public:
   BruteForce(const Scene& scene, const BuiltScene& built) : scene_(scene) {
@@ -94,8 +93,8 @@ class BruteForce {
   }
   size_t num_instances() const { return leaves_.size(); }
 
-  // All hits that shaders and rules accept, nearest first; of equals the lowest instance, geometry,
-  // primitive.
+  // Returns all hits that shaders and rules accept, nearest first, and of equals the lowest instance,
+  // geometry, primitive.
   std::vector<Hit> hits(const Ray& ray) const {
     std::vector<Hit> out;
     for (const InstanceLeaf& leaf : leaves_) {
@@ -190,7 +189,7 @@ class BruteForce {
   std::vector<InstanceLeaf> leaves_;
 };
 
-// `closed` triangles that need shaders and twice as many others, boxes, instances that overlap.
+// Returns `closed` triangles that need shaders and twice as many others, boxes, and instances that overlap.
 inline Scene crowd(uint64_t seed, uint32_t closed) {
   Random random{seed};
   Scene out;

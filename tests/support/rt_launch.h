@@ -16,7 +16,8 @@ namespace glint::rt::test {
 
 using WarpRays = std::array<RayState, kLanes>;
 
-// What a core does with a ray that needs a shader, in these tests: a fixed rule of the candidate's primitive.
+// Does what a core does in these tests with a ray that needs a shader: decides by a fixed rule of the
+// candidate's primitive.
 inline void decide(RayState& state) {
   while (state.status == RayStatus::NeedsAnyHit || state.status == RayStatus::NeedsIntersection) {
     if (state.status == RayStatus::NeedsAnyHit) {
@@ -30,7 +31,7 @@ inline void decide(RayState& state) {
   }
 }
 
-// Until it goes on; tables from the first row on.
+// Decides until the ray goes on. Tables are read from the first row on.
 inline void resolve(RayState& state) {
   decide(state);
   while (state.status == RayStatus::Gathered) {
@@ -54,12 +55,12 @@ inline std::vector<WarpRays> one_lane(const RayState& ray) {
 
 struct Launch {
   Cycle last_completion = 0;
-  std::vector<Cycle> completion;  // of each warp, the last one
+  std::vector<Cycle> completion;  // completion of each warp, the last one
   uint64_t completions = 0;
 };
 
-// Runs all warps to their ends, submitting in order as soon as there is room; the unit is ticked every cycle
-// or only at events.
+// Runs all warps to their ends, and submits them in order as soon as there is room. The unit is ticked every
+// cycle or only at events.
 inline Launch launch(RtUnit& unit, mem::FixedLatencyMemory& l1, std::vector<WarpRays>& warps,
                      bool every_cycle, Cycle limit = 10'000'000) {
   Launch out;

@@ -1,4 +1,4 @@
-// Random scenes for the RT unit's tests: a deterministic generator, soups of triangles, transforms.
+// Makes random scenes for the RT unit's tests: a deterministic generator, soups of triangles, transforms.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -13,7 +13,8 @@
 
 namespace glint::rt::test {
 
-// Own generator: std distributions differ between standard libraries.
+// Draws random numbers by a generator of its own, because distributions of std differ between standard
+// libraries.
 struct Random {
   uint64_t state;
   uint32_t bits() {
@@ -48,7 +49,7 @@ inline Positions soup(Random& random, uint32_t count, float size, float edge) {
   return out;
 }
 
-// Rotation about a random axis, scale (mirrored when negative) and translation.
+// Returns a rotation about a random axis, a scale (mirrored when negative) and a translation.
 inline std::array<float, 12> random_transform(Random& random, float scale, float distance) {
   float q[4], length = 0;
   for (float& x : q) x = random.uniform(-1, 1), length += x * x;
@@ -79,7 +80,7 @@ inline RayState ray_of(Address structure, std::array<float, 3> origin, std::arra
   return state;
 }
 
-// A single instance of one geometry, with the identity transform.
+// Returns a single instance of one geometry, with the identity transform.
 inline StructureInfo single(mem::AddressSpace& memory, const Geometry& geometry,
                             const BuildOptions& options = {}) {
   const StructureInfo bottom = build_bottom(memory, "bottom", {{geometry}}, options);

@@ -1,4 +1,4 @@
-// Original scene data, where it stands beside the project: unpacked into a folder of its own for one test.
+// Unpacks original scene data that exists beside the project into a folder for one test.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdlib>
@@ -11,10 +11,10 @@
 
 namespace glint::test {
 
-// The archive shared/data/scenes/<name>.tar.zst and those of `others`, unpacked beside each other while the
-// object lives. Without one of them `path` is empty, and the test has said that it skips.
+// Holds the archive shared/data/scenes/<name>.tar.zst and those of `others`, unpacked beside each other while
+// the object lives. Without one of them `path` is empty, and the test has said that it skips.
 struct SceneData {
-  std::string path;  // of the folder that holds <name>/
+  std::string path;  // folder that holds <name>/
 
   explicit SceneData(const std::string& name, const std::vector<std::string>& others = {}) {
     namespace fs = std::filesystem;

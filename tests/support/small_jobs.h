@@ -1,4 +1,4 @@
-// Frames small enough to run in a test.
+// Makes frames that are small enough to run in a test.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -21,7 +21,7 @@ inline const char* shader_folder(pipeline::Workload workload) {
   return "";
 }
 
-// `size` x `size` pixels of a built-in scene on a small GPU of two cores.
+// Returns `size` x `size` pixels of a built-in scene on a small GPU of two cores.
 inline pipeline::RenderJob small_job(const std::string& scene, pipeline::Workload workload, uint32_t size,
                                      uint32_t samples, const std::string& assets = {}) {
   pipeline::RenderJob job;

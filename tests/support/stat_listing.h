@@ -1,4 +1,4 @@
-// All statistics of a machine as text, and where two of them differ.
+// Lists all statistics of a machine as text, and finds where two listings differ.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <fmt/format.h>
@@ -9,7 +9,7 @@
 
 namespace glint::test {
 
-// All numbers of a tree, one a line: two runs are equal when these are.
+// Lists all numbers of a tree, one per line. Two runs are equal when their listings are.
 class Listing final : public stats::Visitor {
  public:
   void enter(const stats::Group& group) override { text += group.name() + "{"; }
@@ -29,7 +29,7 @@ class Listing final : public stats::Visitor {
   std::string text;
 };
 
-// The first line in which two listings differ, or "".
+// Returns the first line in which two listings differ, or "".
 inline std::string first_difference(const std::string& a, const std::string& b) {
   std::istringstream lines_a(a), lines_b(b);
   for (std::string line_a, line_b, group; std::getline(lines_a, line_a) && std::getline(lines_b, line_b);) {

@@ -1,4 +1,4 @@
-// Threads that advance cells: each cell once a window, whoever does it.
+// Tests threads that advance cells: each cell is advanced once per window, whoever does it.
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/cell_pool.h"
 
@@ -12,7 +12,7 @@
 namespace glint {
 namespace {
 
-// Notes its windows; sends a number to the next cell of a ring in each of them.
+// Notes its windows, and sends a number to the next cell of a ring in each of them.
 class RingCell final : public Cell {
  public:
   RingCell(Channel<uint64_t>* in, Channel<uint64_t>* out, Cycle latency, Cycle end)
@@ -40,7 +40,7 @@ class RingCell final : public Cell {
   Cycle latency_, end_, now_ = 0;
 };
 
-// What a ring of cells comes to.
+// Returns what a ring of cells comes to.
 std::vector<uint64_t> run_ring(size_t size, const EngineLoop::Options& options) {
   std::vector<Channel<uint64_t>> channels(size);
   std::vector<std::unique_ptr<RingCell>> cells;

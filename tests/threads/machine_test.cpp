@@ -1,5 +1,4 @@
-// The whole timing machine on several threads: the same bytes and numbers, whoever runs which cell for how
-// long at a time.
+// Tests the timing machine on several threads: the bytes and numbers are the same, whoever runs which cell.
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <cstring>
@@ -16,7 +15,7 @@ using pipeline::HostOptions;
 
 namespace {
 
-// Ways to run a machine of 8 cores and 4 partitions, all but the plainest one.
+// Returns ways to run a machine of 8 cores and 4 partitions, all except the plainest one.
 std::vector<HostOptions> ways() {
   const std::vector<uint32_t> shuffled{5, 2, 7, 0, 1, 6, 3, 4, 2, 0, 1, 3},
       crowded{0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1};
@@ -75,7 +74,7 @@ void check_equal(const Outcome& a, const Outcome& b) {
   CHECK((a.memory == b.memory));
 }
 
-// Every thread: loads, stores, exchanges and adds that race with those of all others, and mix what they read
+// In every thread, loads, stores, exchanges and adds race with those of all others and mix what they read
 // into what they write, so that any other order shows. Words 64 to 67 count adds of 1.
 const std::string kRaces = R"(
     ld.param.b64 %rd2, [0];
@@ -110,7 +109,7 @@ LOOP:
 const exec::TextLaunch::Options kRacesGrid{
     .grid = {24, 1, 1}, .block = {64, 1, 1}, .buffer_words = 512 + 24 * 64};
 
-// A ticket lock: the first thread of each block adds 1 to word 2 and to word 40, which only the lock
+// In a ticket lock, the first thread of each block adds 1 to word 2 and to word 40, which only the lock
 // protects.
 const std::string kLock = R"(
     setp.ne.u32 %p1, %tid.x, 0;
@@ -134,8 +133,8 @@ WAIT:
     exit;
 )";
 
-// Two blocks, one a core: each stores to its word, and reads the other's behind a fence, in 40 places. It
-// counts in word 1000 + block how often it has read 0.
+// Two blocks, one per core, each store to their word and read the other's word behind a fence, in 40 places.
+// Each counts in word 1000 + block how often it has read 0.
 const std::string kEachOther = R"(
     ld.param.b64 %rd2, [0];
     mov.b32 %r4, %ctaid.x;

@@ -1,5 +1,4 @@
-// Every preset, and every mechanism that keeps time of its own: stepping, skipping and threads give the same
-// machine.
+// Tests that stepping, skipping and threads give the same machine under every preset and timing mechanism.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <functional>
@@ -15,7 +14,7 @@ using pipeline::GpuParams;
 
 namespace {
 
-// Cycles and all statistics of a frame.
+// Returns cycles and all statistics of a frame.
 std::string run(const pipeline::RenderJob& job, bool no_skip, uint32_t threads) {
   pipeline::SceneWorld scene(job);
   pipeline::TimingMachine machine(job.gpu, scene.world, no_skip, {.threads = threads});
@@ -29,7 +28,7 @@ void check_equal(const pipeline::RenderJob& job) {
   CHECK(test::first_difference(run(job, false, 2), plain) == "");
 }
 
-// Triangles in instances, and boxes with intersection shaders.
+// Returns frames of triangles in instances, and of boxes with intersection shaders.
 std::vector<pipeline::RenderJob> frames(const GpuParams& gpu) {
   std::vector<pipeline::RenderJob> out{test::small_job("WKND", pipeline::Workload::PathTracing, 10, 1),
                                        test::small_job("SHIP", pipeline::Workload::Shadow, 12, 1)};

@@ -1,5 +1,5 @@
-// What cores see of each other's stores and atomics within a turn, and in which order all of it reaches
-// memory.
+// Tests what cores see of each other's stores and atomics within a turn, and the order in which memory gets
+// them.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/memory_view.h"
 
@@ -30,7 +30,7 @@ struct TwoCores {
     view.begin(now);
     view.store(at(word), &value, 4);
   }
-  // Puts `add` on top, and the old value into `to`.
+  // Adds `add` to the word, and puts the old value into `to`.
   void add(MemoryView& view, Cycle now, uint32_t word, uint32_t add, uint32_t* to) {
     view.begin(now);
     view.modify({at(word), [](uint64_t old, uint64_t b, uint64_t) { return old + b; }, add, 0, 4, to});

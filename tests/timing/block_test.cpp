@@ -1,4 +1,4 @@
-// When blocks, barriers, shared memory, atomics and fences let a warp go on: to the cycle.
+// Tests to the cycle when blocks, barriers, shared memory, atomics and fences let a warp go on.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdint>
 
@@ -14,12 +14,12 @@ uint64_t stall(const OneCore& core, Stall reason) {
   return core.stats().stalls.count(reason);
 }
 
-// %r2 = laneid * stride: a shared address.
+// Sets %r2 = laneid * stride, a shared address.
 void add_shared_address(Code& code, uint32_t stride) {
   code.add("mul.lo.u32", {reg(2), special(Special::LaneId), code.constant(stride)});
 }
 
-// Cycles of one warp that loads from shared memory at a stride and uses the value.
+// Returns the cycles of one warp that loads from shared memory at a stride and uses the value.
 Cycle load_cycles(uint32_t stride, std::string_view op = "ld.shared.b32",
                   const Params& params = quick_params()) {
   Code code;
@@ -49,7 +49,7 @@ TEST_CASE("a barrier takes 13 cycles and 2 for each warp of the block") {
 
     const Cycle end = core.run();
 
-    // The release, and then the exits of each scheduler's warps, two cycles apart.
+    // First comes the release, and then the exits of each scheduler's warps, two cycles apart.
     CHECK(end == 13 + 2 * warps + 2 * ((warps + 3) / 4 - 1) + 1);
     CHECK(core.stats().barriers.value() == warps);
   }
@@ -235,7 +235,7 @@ TEST_CASE("a core takes as many blocks as its slots, its shared memory and its p
     return double(core.stats().resident_cycles.value()) / double(core.stats().cycles.value());
   };
 
-  // Mean resident warps: all 32; 4 at a time by shared memory; 2 blocks of 4 warps.
+  // The mean numbers of resident warps are: all 32; 4 at a time by shared memory; 2 blocks of 4 warps.
   CHECK(most_at_once(64, 0, 16) > 20);
   CHECK(most_at_once(32, 1024, 16) <= 4);
   CHECK(most_at_once(32, 1024, 16) > 2);

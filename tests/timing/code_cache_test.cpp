@@ -1,4 +1,4 @@
-// The cache behind instructions and constants, and the L0 with its stream buffer, to the cycle.
+// Tests the cache behind instructions and constants, and the L0 with its stream buffer, to the cycle.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/code_cache.h"
 
@@ -17,7 +17,7 @@ constexpr Cycle kMemory = 20;
 struct Rig {
   explicit Rig(CodeCacheParams params = {}, uint32_t accesses_per_cycle = ~0u)
       : memory(kMemory, accesses_per_cycle), cache(params, 64, memory, stats) {}
-  // Steps until something comes, from `from` on; returns when.
+  // Steps from `from` on until something comes, and returns when.
   Cycle next_answer(Cycle from) {
     for (Cycle now = from;; ++now) {
       REQUIRE(now < from + 10'000);
@@ -103,7 +103,7 @@ namespace {
 struct FetchRig : Rig {
   explicit FetchRig(FetchParams params, size_t instructions = 1000)
       : Rig({.latency = 10}), fetch(params, 2, 0, instructions, cache, stats) {}
-  // Cycle in which a warp of scheduler 0 that comes to `line` in cycle `now` can go on.
+  // Returns the cycle in which a warp of scheduler 0 that comes to `line` in cycle `now` can go on.
   Cycle come_to(uint32_t line, Cycle now) {
     if (fetch.come_to(0, line, now)) return now;
     for (Cycle at = now + 1;; ++at) {

@@ -1,4 +1,4 @@
-// A core whose instructions and constants have to come first, to the cycle.
+// Tests a core whose instructions and constants first have to come, to the cycle.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdint>
 
@@ -8,7 +8,7 @@
 namespace glint::core {
 namespace {
 
-// Misses take 10 cycles to the cache behind and back, and 20 of memory.
+// Returns parameters in which misses take 10 cycles to the cache behind and back, and 20 of memory.
 Params params_with_fetch(uint32_t prefetch) {
   Params params = quick_params();
   params.fetch = {false, 16384, 32, prefetch};
@@ -24,7 +24,7 @@ Params params_with_constants() {
   return params;
 }
 
-// `n` additions that do not wait for each other, and exit.
+// Adds `n` additions that do not wait for each other, and an exit.
 void add_line(Code& code, int n) {
   for (int i = 0; i < n; ++i) code.add("add.u32", {reg(i + 1), reg(0), reg(0)});
   code.add("exit");
@@ -138,7 +138,7 @@ TEST_CASE("a constant load takes a turn for each different word") {
     params.units.constant = {26, 2};
     OneCore core(code, params, {});
 
-    // In 8; the result in 26 and two for each word but one.
+    // The line comes in 8, and the result in 26 and two for each word but one.
     CHECK(core.run() == 8 + 26 + 2 * (words - 1) + 2);
     CHECK(stall(core, Stall::MathThrottle) == 2 * words - 1);
   }

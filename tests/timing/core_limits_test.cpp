@@ -1,5 +1,5 @@
-// Limits of a core that show in one cycle only: room for blocks, exits at barriers, accesses of no lane,
-// records of calls, banks.
+// Tests limits of a core that show in one cycle only: room for blocks, exits at barriers, records of calls,
+// banks.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/timing_machine.h"
 #include "tests/support/catch.h"
@@ -11,7 +11,7 @@
 namespace glint::core {
 namespace {
 
-// One warp that loads twice from global memory at a stride and uses both values.
+// Returns the cycles of one warp that loads twice from global memory at a stride and uses both values.
 Cycle two_loads(const Params& params, uint32_t stride) {
   mem::AddressSpace space;
   const Address base =
@@ -28,7 +28,8 @@ Cycle two_loads(const Params& params, uint32_t stride) {
   return core.run();
 }
 
-// One warp whose lanes call the callable shaders of `num_called` records of 32 B; all return at once.
+// Returns the cycles of one warp whose lanes call the callable shaders of `num_called` records of 32 B. All
+// return at once.
 Cycle call_of_callables(const Params& params, uint32_t num_called, Cycle& waited) {
   Code caller;
   caller.add("min.u32", {reg(4), special(isa::Special::LaneId), caller.constant(num_called - 1)});
@@ -47,7 +48,7 @@ Cycle call_of_callables(const Params& params, uint32_t num_called, Cycle& waited
   return end;
 }
 
-// Cycles of a launch of one block of one warp on a machine of `cores` cores.
+// Returns the cycles of a launch of one block of one warp on a machine of `cores` cores.
 Cycle machine_cycles(const std::string& text, uint32_t cores) {
   exec::TextLaunch launch(text, {});
   pipeline::GpuParams params = test::preset("mobile");
@@ -89,11 +90,12 @@ TEST_CASE("a called shader begins when its record is there, or its branch resolv
   Params params = quick_params();
   const Cycle branch = params.units.branch.latency;
   Cycle waited = 0;
-  // the index, the unit's 12 and the memory's 20, the return, which is a branch, the exit
+  // The sum has the index, the unit's 12 and the memory's 20, the return, which is a branch, and the exit.
   const Cycle one = call_of_callables(params, 1, waited);
   CHECK(one == 4 + 12 + 20 + branch + 1);
   CHECK(waited == 12 + 20 - 1);
-  // four records are a line, whose sectors hold the door for two cycles; then comes the line of the fifth
+  // Four records are a line, whose sectors hold the door for two cycles. Then comes the line of the fifth
+  // record.
   CHECK(call_of_callables(params, 4, waited) == one);
   CHECK(call_of_callables(params, 5, waited) == one + 2);
   params.units.branch.latency = 12 + 20;
@@ -114,8 +116,8 @@ TEST_CASE("the last warp's exit opens a barrier for the others, 13 cycles later"
   const int last = code.add("exit");
   OneCore core(code, quick_params(), {.num_warps = 2, .block_threads = 64});
 
-  // Comparison 4, branch 4, twenty additions; the exit in cycle 8 + 19 * 4 + 1, and after the barrier the
-  // other's.
+  // The comparison and the branch take 4 each, then come twenty additions. The exit is in cycle 8 + 19 * 4 +
+  // 1, and the other's exit comes after the barrier.
   CHECK(core.run() == 8 + 19 * 4 + 1 + 13 + 1);
   CHECK(last == 24);
 }

@@ -1,4 +1,4 @@
-// Pieces of programs that tests of a core's cycles share.
+// Holds pieces of programs that tests of a core's cycles share.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
@@ -12,20 +12,20 @@ inline uint64_t stall(const OneCore& core, Stall reason) {
   return core.stats().stalls.count(reason);
 }
 
-// %rd2 = base + lane * stride: 4 cycles, at cycle 0.
+// Sets %rd2 = base + lane * stride, which takes 4 cycles from cycle 0 on.
 inline void add_address(Code& code, Address base, uint32_t stride) {
   code.add("mad.wide.u32",
            {reg(2), special(isa::Special::LaneId), code.constant(stride), code.constant64(base)});
 }
 
-// rt.trace of one ray a lane into `structure`.
+// Adds an rt.trace of one ray per lane into `structure`.
 inline void add_trace(Code& code, isa::Slot structure) {
   const isa::Slot zero = code.constant(0), one = code.constant(std::bit_cast<uint32_t>(1.0f));
   code.add("rt.trace", {0, structure, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, one,
                         one, zero, zero});
 }
 
-// A top level that rays may enter; the RT unit of these tests does not read it.
+// Allocates a top level that rays may enter. The RT unit of these tests does not read it.
 inline Address allocate_structure(mem::AddressSpace& memory) {
   const Address at = memory.allocate("structure", 4096);
   rt::StructureHeader header;

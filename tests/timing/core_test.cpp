@@ -1,4 +1,4 @@
-// When a core issues: latencies, intervals, hazards and stalls, to the cycle.
+// Tests to the cycle when a core issues: latencies, intervals, hazards and stalls.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <vector>
@@ -245,7 +245,7 @@ TEST_CASE("warps beyond the occupancy wait for a slot") {
 
   CHECK(core.stats().warps.value() == 5);
   CHECK(core.stats().slot_cycles.value() == 2 * cycles);
-  // Three rounds of 398 cycles, each begun at the start of a window of 32.
+  // There are three rounds of 398 cycles, each begun at the start of a window of 32.
   CHECK(cycles == 2 * 416 + 398);
   // A slot is free after its warp's last cycle.
   CHECK(core.stats().resident_cycles.value() == 5 * 397);

@@ -1,5 +1,4 @@
-// Hazards beside the reading of results: registers that memory instructions still read, the order of writes,
-// register banks.
+// Tests further hazards: registers that memory instructions still read, the order of writes, register banks.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdint>
 
@@ -11,13 +10,13 @@ namespace {
 
 using isa::Special;
 
-// The address of a buffer, the same in every space that has nothing before it.
+// Returns the address of a buffer, which is the same in every space that has nothing before it.
 Address first_buffer() {
   mem::AddressSpace space;
   return space.allocate("buffer", 4096);
 }
 
-// %rd2 = buffer + 4 * lane, at cycle 0: 4 cycles.
+// Sets %rd2 = buffer + 4 * lane, which takes 4 cycles from cycle 0 on.
 void add_address(Code& code) {
   code.add("mad.wide.u32",
            {reg(2), special(Special::LaneId), code.constant(4), code.constant64(first_buffer())});
@@ -161,7 +160,8 @@ TEST_CASE("what depends on a register waits for the last of its writers") {
   CHECK(core.run() == 22 + 2);
 }
 
-// The listing of "Analyzing Modern NVIDIA GPU cores", MICRO 2025, section 5.3: none, one and two bubbles.
+// The code is the listing of "Analyzing Modern NVIDIA GPU cores", MICRO 2025, section 5.3: none, one and two
+// bubbles.
 TEST_CASE("registers of one bank are read one a cycle, within the window") {
   const auto run = [](int second, int third, uint32_t banks, uint32_t window = 3) {
     Code code;

@@ -1,5 +1,5 @@
-// Both machines over a whole frame: no mechanism of a core and no layout of threads changes a picture, nor do
-// skipping and threads cycles.
+// Tests that core mechanisms and layouts of threads change no picture, and that skipping and threads change
+// no cycles.
 // SPDX-License-Identifier: Apache-2.0
 #include <vector>
 
@@ -10,7 +10,7 @@
 namespace glint::core {
 namespace {
 
-// A frame whose edges cut tiles, of spheres and rays that scatter.
+// Returns a frame whose edges cut tiles, of spheres and rays that scatter.
 pipeline::RenderJob frame() {
   pipeline::RenderJob job = test::small_job("WKND", pipeline::Workload::PathTracing, 0, 1);
   job.frame.width = 27;
@@ -22,7 +22,7 @@ pipeline::RenderJob frame() {
   return job;
 }
 
-// Every mechanism of a core that the preset leaves off.
+// Turns on every mechanism of a core that the preset leaves off.
 Params all_on(Params params) {
   params.issue = PolicyChoice<IssueScheduler>("cggty");
   params.block_interval = 1;

@@ -1,5 +1,4 @@
-// Times of single ops, crossings between pipes, guards, and words that meet in a bank of the L1: to the
-// cycle.
+// Tests times of single ops, crossings between pipes, guards, and words that meet in a bank, to the cycle.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/op_times.h"
 
@@ -23,7 +22,7 @@ Params hopper_params() {
   return params;
 }
 
-// Cycles until the exit behind ten steps could issue, less those behind none.
+// Returns the cycles until the exit behind ten steps could issue, less those behind none.
 Cycle chain(const Params& params, const std::function<void(Code&)>& step) {
   Cycle end[2];
   for (int n : {0, 10}) {
@@ -79,8 +78,8 @@ TEST_CASE("an op of the table has its own latency, and results reach another pip
 TEST_CASE(
     "with a latch in front of each pipe an instruction issues to a busy one, and the pipe loses no cycle to "
     "others") {
-  // Two of two cycles each, and what a free pipe takes: the third of the same pipe waits until the second has
-  // entered.
+  // Returns the cycles of two ops of two cycles each, and what a free pipe takes. The third op of the same
+  // pipe waits until the second has entered.
   const auto cycles = [](bool latch, const std::vector<const char*>& ops) {
     Params params = hopper_params();
     params.dispatch_latch = latch;
@@ -94,14 +93,14 @@ TEST_CASE(
   const auto added = [&](bool latch, const std::vector<const char*>& ops) {
     return cycles(latch, ops) - cycles(latch, {"fma.rn.f32"});
   };
-  // At 0, 2, 4, 5 without; at 0, 1, 3, 4 with.
+  // They issue at 0, 2, 4, 5 without latches, and at 0, 1, 3, 4 with them.
   CHECK(added(false, {"prmt.b32", "prmt.b32", "prmt.b32", "fma.rn.f32"}) == 5);
   CHECK(added(true, {"prmt.b32", "prmt.b32", "prmt.b32", "fma.rn.f32"}) == 4);
-  // At 0, 2, 3, 5 without: the pipe is free at 4 when the other issues at 3; with, 0, 1, 2, 3: the third
-  // enters at 4.
+  // They issue at 0, 2, 3, 5 without latches, because the pipe is free at 4 when the other issues at 3. With
+  // latches they issue at 0, 1, 2, 3, and the third enters at 4.
   CHECK(added(false, {"prmt.b32", "prmt.b32", "fma.rn.f32", "fma.rn.f32"}) == 4);
   CHECK(added(true, {"prmt.b32", "prmt.b32", "fma.rn.f32", "fma.rn.f32"}) == 3);
-  // What waited in front of its pipe is as much later.
+  // What waited in front of its pipe is later by as much.
   const auto dependent = [](bool latch) {
     Params params = hopper_params();
     params.dispatch_latch = latch;

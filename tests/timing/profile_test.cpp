@@ -1,4 +1,4 @@
-// Whom a core's cycles are charged to, and what a core says that waits forever.
+// Tests to whom a core's cycles are charged, and what a core says that waits forever.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdint>
 #include <utility>
@@ -30,13 +30,13 @@ TEST_CASE("a wait is charged to the instruction that waits, an issue to the one 
   CHECK(slots(core, 1, Stall::Issued) == 1);
   CHECK(slots(core, 2, Stall::Issued) == 1);
   CHECK(core.cell->profile()->of(0).lanes == 32);
-  // The other three schedulers have no warp: 23 cycles each.
+  // The other three schedulers have no warp, for 23 cycles each.
   CHECK(core.cell->profile()->nowhere().slots[size_t(Stall::NoWarp)] == 3 * 23);
 }
 
 TEST_CASE("of several warps that wait for the same, the one that goes on first is charged") {
-  // Warps 0 and 4 of one scheduler: the younger is an instruction behind, so the wait belongs to the older
-  // one.
+  // Warps 0 and 4 belong to one scheduler. The younger is an instruction behind, so the wait belongs to the
+  // older one.
   Code code;
   code.add("sin.f32", {reg(1), reg(1)});
   code.add("sin.f32", {reg(2), reg(1)});

@@ -1,4 +1,5 @@
-// A mixture of everything on a core: stepping and skipping are equal, every cycle has a reason.
+// Tests on a mixture of everything on a core that stepping and skipping are equal and every cycle has a
+// reason.
 // SPDX-License-Identifier: Apache-2.0
 #include <string_view>
 #include <utility>
@@ -12,7 +13,7 @@ namespace {
 
 using isa::Special;
 
-// Loops over loads, stores, transcendentals, local memory and rays.
+// Adds loops over loads, stores, transcendentals, local memory and rays.
 void add_mixture(Code& code, Address buffer, Address structure) {
   add_address(code, buffer, 36);
   const int loop = code.here();
@@ -75,7 +76,7 @@ Outcome run_mixture(Params params, OneCore::Options options) {
 
 namespace {
 
-// Every mechanism that may cost cycles, each as tight as it can be.
+// Returns every mechanism that may cost cycles, each as tight as it can be.
 Params costly_params() {
   Params params = quick_params();
   params.warps = 16;

@@ -1,4 +1,5 @@
-// The texture unit's own way to the L1: its queues, its door, and the samples that it filters a cycle.
+// Tests the texture unit's own way to the L1: its queues, its door, and the samples that it filters per
+// cycle.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/lsu.h"
 #include "tests/support/catch.h"
@@ -52,7 +53,7 @@ TEST_CASE("a load is taken in the cycle of a texture, where that has a queue of 
     Lsu lsu(unit_params({0, queue, true}), memory);
     take(lsu, 0, 0, true);
     take(lsu, 0, 0, false);
-    // In one queue the load is taken when the scheduler's address generation is free again.
+    // In one queue, the load is taken when the scheduler's address generation is free again.
     CHECK(completions(lsu, 1) == std::vector<Cycle>{32, queue ? 32u : 36u});
   }
 }
@@ -63,7 +64,7 @@ TEST_CASE("lines of textures and of loads are asked for in the same cycle, where
     Lsu lsu(unit_params({0, 5, own}), memory);
     take(lsu, 0, 0, true, 4);
     take(lsu, 1, 0, false, 4);
-    // Whole lines take a door two cycles each.
+    // Whole lines take a door for two cycles each.
     CHECK(completions(lsu, 1) == (own ? std::vector<Cycle>{38, 38} : std::vector<Cycle>{44, 46}));
   }
 }
@@ -82,7 +83,7 @@ TEST_CASE("samples take the texture units a cycle for as many as there are units
     uint32_t rate, samples;
     Cycle first, second;
   };
-  // The interval of 4 is the least; the last sample is the access's.
+  // The interval of 4 is the least, and the last sample is the access's.
   for (const auto& [rate, samples, first, second] :
        {Case{4, 16, 35, 39}, {4, 17, 36, 41}, {4, 32, 39, 47}, {4, 4, 32, 36}, {0, 32, 32, 36}}) {
     CAPTURE(rate, samples);

@@ -1,4 +1,4 @@
-// The contract of DramModel, for every registered model, and the arithmetic of the simple one.
+// Tests the contract of DramModel for every registered model, and the arithmetic of the simple one.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <map>
@@ -20,7 +20,8 @@ struct Outcome {
   bool operator==(const Outcome&) const = default;
 };
 
-// 2000 requests in bursts; `often`: advanced in every cycle, not only when it asks to be.
+// Runs 2000 requests in bursts. With `often` the model is advanced in every cycle, not only when it asks to
+// be.
 Outcome exercise(const std::string& name, bool often) {
   const DramParams params;
   stats::Group root(nullptr, "test");
@@ -65,7 +66,7 @@ Outcome exercise(const std::string& name, bool often) {
   return out;
 }
 
-// Cycles at which `count` reads of one moment are back.
+// Returns the cycles at which `count` reads of one moment are back.
 std::vector<Cycle> at_once(const char* settings, uint32_t count) {
   PolicyChoice<DramModel> choice("simple");
   Config config;
@@ -100,7 +101,7 @@ TEST_CASE(
 }
 
 TEST_CASE("the simple model takes its latency and then one transfer after another") {
-  // 4 clocks of data each; seen at the next clock.
+  // Each has 4 clocks of data, and is seen at the next clock.
   CHECK(at_once("latency = 30.0\nefficiency = 1.0", 3) ==
         std::vector<Cycle>{11 + 30 + 4, 11 + 34 + 4, 11 + 38 + 4});
   CHECK(at_once("latency = 31.0\nefficiency = 1.0", 1) == std::vector<Cycle>{11 + 31 + 4});

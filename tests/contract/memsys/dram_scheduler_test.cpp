@@ -1,4 +1,4 @@
-// The contract of DramScheduler, for every registered policy.
+// Tests the contract of DramScheduler for every registered policy.
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/dram_scheduler.h"
 
@@ -15,7 +15,7 @@ namespace {
 
 constexpr uint32_t kBanks = 8, kSlots = 32;
 
-// Adds and picks at random; returns the picks in order and checks each.
+// Adds and picks at random. Returns the picks in order, and checks each.
 std::vector<uint32_t> exercise(const std::string& name, uint32_t seed) {
   const auto scheduler = PolicyChoice<DramScheduler>(name.c_str()).make({kBanks, kSlots});
   std::mt19937 random(seed);
@@ -88,7 +88,7 @@ TEST_CASE("write_drain keeps writes back until enough wait, drains to its lower 
   const auto scheduler = choice.make({1, 16});
   for (uint32_t i = 0; i < 2; ++i) scheduler->add(i, {0, 5, i, true});
   for (uint32_t i = 2; i < 6; ++i) scheduler->add(i, {0, 5, i, false});
-  CHECK(scheduler->pick(0, 5) == 2);  // two writes are older, and not enough
+  CHECK(scheduler->pick(0, 5) == 2);  // two writes are older, which is not enough
   scheduler->add(6, {0, 5, 6, true});
   CHECK(scheduler->pick(0, 5) == 0);
   CHECK(scheduler->pick(0, 5) == 1);

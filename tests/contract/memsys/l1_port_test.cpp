@@ -1,4 +1,4 @@
-// The contract of L1Port, for the L1 cache and for the fixed-latency memory of the tests.
+// Tests the contract of L1Port, for the L1 cache and for the fixed-latency memory of the tests.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdint>
 #include <map>
@@ -19,8 +19,8 @@ struct Tried {
   Client client = Client::Lsu;
 };
 
-// A random mix of reads and writes, at most one accepted a cycle; refused requests are tried again as they
-// are.
+// Sends a random mix of reads and writes, of which at most one per cycle is accepted. Refused requests are
+// tried again unchanged.
 class Mix {
  public:
   Cycle step(L1Port& port, Cycle now) {

@@ -1,4 +1,4 @@
-// The contract of Replacement, for every registered policy, and the order of victims of each.
+// Tests the contract of Replacement for every registered policy, and the order of victims of each.
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/replacement.h"
 
@@ -27,7 +27,7 @@ PolicyChoice<Replacement> chosen(const std::string& name, const std::string& par
   return choice;
 }
 
-// Lines of one cache, and the policy that is under test.
+// Holds the lines of one cache, and the policy under test.
 struct Cache {
   Cache(const std::string& name, uint32_t sets, uint32_t ways)
       : ways(ways), lines(size_t{sets} * ways), policy(chosen(name).make({sets, ways})) {}
@@ -38,7 +38,7 @@ struct Cache {
   std::unique_ptr<Replacement> policy;
 };
 
-// One random event of the set; returns the slot that it chose, or kNone.
+// Makes one random event of the set. Returns the slot that it chose, or kNone.
 uint32_t random_event(Cache& cache, uint32_t set, std::mt19937& random) {
   const uint32_t slot = set * cache.ways + uint32_t(random() % cache.ways);
   CacheLine& line = cache.lines[slot];
@@ -63,7 +63,7 @@ uint32_t random_event(Cache& cache, uint32_t set, std::mt19937& random) {
   return victim;
 }
 
-// The victims of a set under random events, each of them checked.
+// Returns the victims of a set under random events, and checks each of them.
 std::vector<uint32_t> exercise(Cache& cache, uint32_t set, uint32_t seed,
                                const std::function<void()>& other) {
   std::mt19937 random(seed);
@@ -85,7 +85,7 @@ std::vector<uint32_t> exercise(Cache& cache, uint32_t set, uint32_t seed,
   return victims;
 }
 
-// The lines that make way when `lines` are read one after another in a cache of one set.
+// Returns the lines that make way when `lines` are read one after another in a cache of one set.
 std::vector<Address> victims(const PolicyChoice<Replacement>& policy, uint32_t ways,
                              const std::vector<Address>& lines) {
   TagArray tags({1, ways, 128}, policy);
@@ -178,7 +178,8 @@ TEST_CASE("lru replaces the line that was used longest ago, fifo the line that c
 }
 
 TEST_CASE("plru follows its bits away from the lines used last, and past ways that do not exist") {
-  // Ways are filled in order. After 0 1 2 3 the root names the lower half and both halves their lower way.
+  // Ways are filled in order. After 0 1 2 3 the root names the lower half, and both halves name their lower
+  // way.
   CHECK(victims(chosen("plru"), 4, {0, 1, 2, 3, 4, 5}) == Lines{0, 2});
   // 0 turns the root to the upper half, whose lower way is 2; true LRU would take 1.
   CHECK(victims(chosen("plru"), 4, {0, 1, 2, 3, 0, 4}) == Lines{2});
@@ -193,7 +194,8 @@ TEST_CASE("srrip keeps a line that was used again while lines that were not used
   // A line that was used once grows old: two fills bring 0 from 0 to 2, and of equals the lower slot makes
   // way.
   CHECK(victims(chosen("srrip"), 2, {0, 1, 0, 2, 3, 4}) == Lines{1, 2, 0});
-  // With one bit it is "not recently used": a new line is expected at 0, as one that was used again.
+  // With one bit the policy is "not recently used": a new line is expected at 0, like one that was used
+  // again.
   CHECK(victims(chosen("srrip", "bits = 1\n"), 2, {0, 1, 0, 2, 3, 4}) == Lines{0, 1, 2});
 }
 
@@ -203,7 +205,7 @@ TEST_CASE("srrip takes a line that lost its sectors first, and ages no other lin
   tags.touch(tags.find(0));
   tags.drop(tags.find(0), 1);
   CHECK_FALSE(tags.victim(384).used());
-  tags.insert(384).valid = 1;  // expected at 2, as 128 and 256
+  tags.insert(384).valid = 1;  // expected at 2, like 128 and 256
   tags.touch(tags.find(128));
   CHECK(tags.victim(512).address == 384);  // the lower slot of two that are expected at 2
 }
@@ -214,7 +216,8 @@ TEST_CASE("random draws every way about as often, another seed draws another seq
   const Lines out = victims(chosen("random"), 8, reads);
   CHECK(out == victims(chosen("random", "seed = 1\n"), 8, reads));
   CHECK(out != victims(chosen("random", "seed = 2\n"), 8, reads));
-  // The age of a victim is geometric with mean 8 fills: one line in eight stays for more than 15 fills.
+  // The age of a victim is geometric with a mean of 8 fills, so one line in eight stays for more than 15
+  // fills.
   size_t old = 0;
   for (size_t i = 0; i < out.size(); ++i) old += i + 8 - out[i] > 15;
   CHECK(old > out.size() / 10);

@@ -1,4 +1,4 @@
-// Random traffic: counts against a trivially simple reference, and independence of windows, skipping and
+// Tests random traffic: counts against a simple reference, and independence of windows, skipping and
 // repetition.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdint>
@@ -16,9 +16,9 @@ using namespace glint::mem;
 namespace {
 
 constexpr uint32_t kCores = 3;
-constexpr uint32_t kRequests = 1500;  // a core
+constexpr uint32_t kRequests = 1500;  // per core
 
-// Small enough that every limit is met.
+// Returns parameters so small that every limit is met.
 Params cramped(uint32_t variant) {
   Params p;
   p.l1.size = 32 * 128, p.l1.ways = variant % 2 ? 4 : 0;
@@ -102,7 +102,7 @@ struct Outcome {
   bool operator==(const Outcome&) const = default;
 };
 
-constexpr Cycle kEnd = 2'000'000;  // accounts are closed here whatever the window
+constexpr Cycle kEnd = 2'000'000;  // accounts are closed here, whatever the window is
 
 Outcome simulate(uint32_t variant, Cycle window, bool step, uint32_t seed = 5) {
   MemoryRig rig(cramped(variant), kCores, 1365.0);

@@ -1,5 +1,4 @@
-// Rays recorded through a real Vulkan driver find the same here: instance, primitive, kind, distance, any-hit
-// calls.
+// Tests that rays recorded through a real Vulkan driver find the same here: hit, distance and any-hit calls.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <cstdio>
@@ -37,7 +36,7 @@ struct RecordedRay {
   float origin[3], t_min, direction[3], t_max;
 };
 
-// The recording's scene and shaders, by hand.
+// Holds the recording's scene and shaders, written by hand.
 struct Recording {
   nlohmann::json json;
   std::vector<RecordedRay> rays;
@@ -97,7 +96,7 @@ struct Recording {
     const int rule = mode["ahMode"];
     if (rule == 2) return ignore_candidate(f.state);
     if (rule == 3) return terminate_candidate(f.state);
-    // the recording's hit records with an alpha test
+    // These are the recording's hit records with an alpha test.
     const uint32_t record =
         c.sbt_record + c.geometry * uint32_t(mode["sbtStride"]) + uint32_t(mode["sbtOffset"]);
     const bool hole =

@@ -1,4 +1,4 @@
-// Closest hits of random scenes agree with Embree's own intersector.
+// Tests that closest hits of random scenes agree with Embree's own intersector.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/embree.h"
 
@@ -24,7 +24,7 @@ std::array<float, 3> transformed(const std::array<float, 12>& m, const std::arra
   return out;
 }
 
-// Embree's scene with one instance a part.
+// Holds Embree's scene, with one instance for each part.
 class Oracle {
  public:
   explicit Oracle(const std::vector<Part>& parts) {
@@ -90,7 +90,7 @@ struct Comparison {
            wrong = 0;  // decided: they differ, and exact arithmetic finds no fault
 };
 
-// The hit of one triangle in double precision, and how far float rounding may move it: `blur` grows for
+// Holds the hit of one triangle in double precision, and how far float rounding may move it. `blur` grows for
 // grazing rays and for slivers, relative to the scene's size and the triangle's.
 struct Exact {
   double t = 0, margin = 0, blur = 0;
@@ -127,8 +127,8 @@ Exact exact_hit(const Ray& ray, const Part& part, uint32_t primitive) {
   return out;
 }
 
-// Rounding of t: the weights' blur times the triangle's extent along the ray is bounded by reach / (|d|
-// sine).
+// Returns the rounding of t: the weights' blur times the triangle's extent along the ray is bounded by reach
+// / (|d| sine).
 double t_blur(const Exact& e, const Ray& ray, float size) {
   double d = 0;
   for (float x : ray.direction) d += double(x) * x;
@@ -223,7 +223,7 @@ TEST_CASE("rays on random soups hit what Embree's robust intersector hits") {
     CHECK(c.decided <= 75);  // of the 187 rays that aim at an edge or a vertex, half may fall on either side
     sum.hits += c.hits, sum.misses += c.misses;
   }
-  CHECK(sum.hits > 20000);  // the test has teeth: both outcomes are frequent
+  CHECK(sum.hits > 20000);  // the test has teeth, because both outcomes are frequent
   CHECK(sum.misses > 5000);
 }
 

@@ -1,4 +1,4 @@
-// One traversal, three ways to drive it: run(), step by step, and the timed unit give the same bits.
+// Tests that run(), step by step and the timed unit drive one traversal to the same bits.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <bit>
@@ -13,7 +13,7 @@
 namespace glint::rt::test {
 namespace {
 
-// Opaque and alpha triangles and boxes in several instances; rays of every kind.
+// Holds opaque and alpha triangles and boxes in several instances, with rays of every kind.
 struct Zoo {
   mem::AddressSpace memory;
   Positions opaque, alpha;
@@ -75,7 +75,8 @@ void check_same(const RayState& a, const RayState& b) {
   REQUIRE(a.triangle_tests == b.triangle_tests);
 }
 
-// Gives the rays of a warp tables and starts them again. Their hit may not depend on which is found first.
+// Gives the rays of a warp tables and starts them again. Their hit may not depend on which candidate is found
+// first.
 struct Tables {
   std::vector<std::array<CandidateTable, kLanes>> of_warp;
   Tables(std::vector<WarpRays>& warps, uint32_t rows, const mem::AddressSpace& memory)
@@ -218,7 +219,7 @@ TEST_CASE("the timed unit finds what run finds, under every scheduler, memory an
         run_to_end(functional[w][lane], zoo.memory);
         check_same(functional[w][lane], timed[w][lane]);
       }
-    // conservation
+    // Nothing may be lost.
     const RtStats& s = unit.stats();
     CHECK(s.finished.value() + s.suspended.value() == s.rays.value() + s.resumed.value());
     CHECK(done.completions == s.warps.value());
@@ -229,7 +230,7 @@ TEST_CASE("the timed unit finds what run finds, under every scheduler, memory an
   }
 }
 
-// Each interface's promise that skipping changes nothing: same cycles, same accounts.
+// Each interface promises that skipping changes nothing: the cycles and accounts are the same.
 TEST_CASE("ticking at events only gives the same cycles and counts as ticking always") {
   for (uint64_t seed = 20; seed < 26; ++seed) {
     Zoo zoo(seed);

@@ -1,4 +1,4 @@
-// Closed meshes never leak: a ray from inside always hits, through edges and vertices too.
+// Tests that closed meshes never leak: a ray from inside always hits, through edges and vertices, too.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 
@@ -8,8 +8,8 @@
 namespace glint::rt::test {
 namespace {
 
-// An octahedron split `levels` times, its vertices moved to distances of 1 to 1.3 by a rule that neighbours
-// share.
+// Returns an octahedron split `levels` times. Its vertices are moved to distances of 1 to 1.3 by a rule that
+// neighbours share.
 Positions bumpy_sphere(int levels, float size, const std::array<float, 3>& center) {
   Positions faces;
   for (int i = 0; i < 8; ++i) {

@@ -1,5 +1,5 @@
-// Refresh to the clock: when it begins, what it closes, how long its banks wait, and what the clocks are
-// counted as.
+// Tests refresh to the clock: when it begins, what it closes, how long banks wait, and how clocks are
+// counted.
 // SPDX-License-Identifier: Apache-2.0
 #include <string_view>
 
@@ -11,7 +11,7 @@ using namespace glint::mem;
 
 namespace {
 
-// Refresh every 1000 clocks for 200 (all banks) or 60 (one).
+// Returns parameters with a refresh every 1000 clocks that takes 200 (all banks) or 60 (one bank).
 DramParams refreshed(const char* mode) {
   DramParams p = plain();
   p.refresh = mode;
@@ -125,9 +125,8 @@ TEST_CASE("a stream loses the share of refresh and of opening its rows again, an
   };
   const Cycle without = clocks("none"), with = clocks("all_bank");
   CHECK(without >= 4000 * kData);
-  // 16,000 clocks of data in pieces of at most 800 less the drain: 20 refreshes at least, each 200 and at
-  // most tRAS + tRP
-  // + tRCD + tCL more.
+  // There are 16,000 clocks of data in pieces of at most 800 less the drain, which gives at least 20
+  // refreshes, each of 200 and at most tRAS + tRP + tRCD + tCL more.
   CHECK(with > without + 20 * 200);
   CHECK(with < without + 22 * (200 + 30 + 16 + 15 + 14 + 20));
 }
@@ -139,8 +138,8 @@ TEST_CASE("while the bus turns, waiting column commands are counted as turnaroun
   rig.add(9000, 1, 1, false, 2);
   rig.run();
   rig.channel.finish(10'000);
-  // The write goes at 9001 and moves data for 4 clocks by the split's count; the read at 9001 + WL + data +
-  // tWTR.
+  // The write goes at 9001 and moves data for 4 clocks by the split's count. The read goes at 9001 + WL +
+  // data + tWTR.
   CHECK(use(rig, DramUse::Turnaround) == (4 + kData + 8) - kData);
   CHECK(rig.channel.stats().use.total() == 10'000);
 }

@@ -1,4 +1,4 @@
-// DRAM commands to the clock: row hits, misses, conflicts, windows and turnarounds.
+// Tests DRAM commands to the clock: row hits, misses, conflicts, windows and turnarounds.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.h"
 #include "tests/support/dram_rig.h"
@@ -33,7 +33,7 @@ TEST_CASE("a bank that was just opened is not closed before tRAS") {
   rig.add(0, 0, 2, false, 2);
   auto at = rig.run();
   CHECK(at[1] == kEdge + 15 + 14 + kData);
-  // Precharge at 1 + 30, activate 16 later: tRC = 46 agrees.
+  // The precharge is at 1 + 30 and the activate 16 later, which agrees with tRC = 46.
   CHECK(at[2] == kEdge + 30 + 16 + 15 + 14 + kData);
 }
 
@@ -188,13 +188,14 @@ TEST_CASE("every command clock is attributed and the ratios follow their definit
   CHECK(s.use.total() == 1000);
   CHECK(s.use.count(DramUse::Data) == 2 * kData);
   CHECK(s.utilisation.value() == Approx(0.008));
-  // Clock 1: both banks take a request. 16 and 21: their reads. Bank 0's row may run its tRC to clock 47,
-  // bank 1's to 52.
+  // At clock 1 both banks take a request; their reads are at 16 and 21. Bank 0's row may run its tRC to clock
+  // 47, and bank 1's to 52.
   CHECK(s.any_bank_clocks.value() == 20);
   CHECK(s.bank_clocks.value() == 15 + 20);
   CHECK(s.active_clocks.value() == 51);
   CHECK(s.efficiency.value() == Approx(8.0 / 51.0));
-  // Clocks 1 to 15 wait for tRCD, clock 20 for the second read; the data of both start with their commands.
+  // Clocks 1 to 15 wait for tRCD, and clock 20 waits for the second read. The data of both start with their
+  // commands.
   CHECK(s.use.count(DramUse::ColumnWait) == 15 + 1);
   CHECK(s.use.count(DramUse::RowWait) == 0);
   CHECK(s.use.count(DramUse::Idle) == 1000 - 8 - 16);

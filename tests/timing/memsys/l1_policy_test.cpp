@@ -1,4 +1,5 @@
-// What the L1's allocation and write policies, and fills at its ports, change: to the cycle and to the line.
+// Tests what the L1's allocation and write policies, and fills at its ports, change, to the cycle and to the
+// line.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.h"
 #include "tests/support/memory_rig.h"

@@ -1,4 +1,4 @@
-// The L1 and the round trip behind it, to the cycle.
+// Tests the L1 and the round trip behind it, to the cycle.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.h"
 #include "tests/support/memory_rig.h"
@@ -10,7 +10,7 @@ namespace {
 
 constexpr Address kLine = 128 * 1000;
 
-// The README's formula; one sector fits a default port in one cycle.
+// Returns the README's formula. One sector fits a default port in one cycle.
 Cycle l2_hit_round_trip(const Params& p) {
   return p.l1.miss_latency + 1 + p.noc.request_latency + p.l2.latency + 1 + p.noc.reply_latency;
 }
@@ -50,7 +50,7 @@ TEST_CASE(
   Params params;
   MemoryRig rig(params);
   rig.read_latency(kLine, 0b1111, true);
-  // 4 sectors: the last is read a cycle after the first two; 136 bytes are 4 port cycles instead of 1.
+  // Of 4 sectors the last is read a cycle after the first two, and 136 bytes are 4 port cycles instead of 1.
   CHECK(rig.read_latency(kLine, 0b1111) == l2_hit_round_trip(params) + 1 + 3);
 }
 
@@ -79,7 +79,7 @@ TEST_CASE("an unloaded DRAM access takes the L2 path, the way to DRAM, and activ
   params.dram.clock_mhz = 1000.0;
   params.dram.rcd = 15, params.dram.cl = 14;
   MemoryRig same_clock(params, 1, 1000.0);
-  // The request is seen at the clock edge after it arrives; data of 16 transfers take 4 clocks.
+  // The request is seen at the clock edge after it arrives, and data of 16 transfers take 4 clocks.
   CHECK(same_clock.read_latency(kLine, 1) ==
         l2_hit_round_trip(params) + params.dram.latency + 1 + 15 + 14 + 4);
 }
@@ -95,7 +95,7 @@ TEST_CASE("misses of different lines leave the request port one a cycle") {
       for (Token i = 0; i < 4; ++i) REQUIRE(rig.l1().access(now, Client::Lsu, read(kLine + i * 128, i)));
     return kNever;
   });
-  // Different partitions serve them, so the port alone spaces them; fills are one a cycle.
+  // Different partitions serve them, so only the port spaces them; there is one fill per cycle.
   for (Token i = 0; i < 4; ++i) CHECK(rig.answers()[i].at == start + l2_hit_round_trip(params) + i);
 }
 

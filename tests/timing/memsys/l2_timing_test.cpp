@@ -1,4 +1,4 @@
-// L2 slices to the cycle: several of a partition, near and far ones, credits, writes in part, fills.
+// Tests L2 slices to the cycle: several of a partition, near and far ones, credits, partial writes, fills.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <utility>
@@ -22,7 +22,7 @@ Request write(Address line, uint8_t sectors, WordMask words) {
   return {line, sectors, true, Traffic::ShaderGlobal, 0, words};
 }
 
-// Lines of one slice, a partition's first.
+// Returns lines of one slice, the first of a partition.
 std::vector<Address> lines_of(const PartitionMap& map, uint32_t slice, uint32_t count) {
   std::vector<Address> out;
   for (Address line = 0; out.size() < count; line += 128)
@@ -110,8 +110,8 @@ TEST_CASE(
   };
   CHECK(second(2) == kL2Hit + 1);
   CHECK(second(0) == kL2Hit + 1);
-  // The first is served at 20 + 1 + 48, its credit is back 1 + 48 later; then the second's 1 + 48, slice and
-  // way back.
+  // The first is served at 20 + 1 + 48, and its credit is back 1 + 48 later. Then follow the second's 1 + 48,
+  // slice and way back.
   CHECK(second(1) == (20 + 49) + 49 + 49 + 42 + 49);
 }
 
@@ -185,7 +185,7 @@ TEST_CASE("a sector written in part takes the slice for its interval, a whole on
 TEST_CASE(
     "a write takes the slice for its visit and its sectors, in sixteenths of a cycle that add up over those "
     "that wait") {
-  // Writes that come a cycle apart and wait for each other: when the last has been served.
+  // The writes come a cycle apart and wait for each other. This returns when the last has been served.
   const auto end = [](uint32_t writes, uint8_t sectors, WordMask words) {
     Params params = bare();
     params.l2.write_visit = 1.25;
@@ -201,11 +201,12 @@ TEST_CASE(
   const auto cost = [&](uint32_t writes, uint8_t sectors, WordMask words, Cycle one) {
     return end(writes, sectors, words) - end(1, sectors, words) + one;
   };
-  // 16 writes of one sector in part: 16 x (1.25 + 1.3125) = 41; 2: 5.125, 3: 7.6875, rounded up once.
+  // 16 writes of one sector in part take 16 x (1.25 + 1.3125) = 41; 2 take 5.125 and 3 take 7.6875, rounded
+  // up once.
   CHECK(cost(16, 1, 0x01, 3) == 41);
   CHECK(cost(2, 1, 0x01, 3) == 6);
   CHECK(cost(3, 1, 0x01, 3) == 8);
-  // A whole sector takes 1.25 + 1, a line 5.25, four in part 1.25 + 4 x 1.3125.
+  // A whole sector takes 1.25 + 1, a line 5.25, and four sectors in part 1.25 + 4 x 1.3125.
   CHECK(cost(4, 1, 0xff, 3) == 9);
   CHECK(cost(4, 0xf, kAllWords, 6) == 21);
   CHECK(cost(2, 0xf, 0x0101'0101, 7) == 13);
@@ -238,8 +239,8 @@ TEST_CASE("a sector written in part is written back on eviction without having b
 TEST_CASE(
     "a sector from DRAM takes the slice a cycle when they share a port: who is served in that cycle waits "
     "for one") {
-  // A miss, and a hit in the same slice that is asked for `after` cycles later: when each has its token. 0:
-  // no hit.
+  // Takes a miss, and a hit in the same slice that is asked for `after` cycles later (0: no hit). Returns
+  // when each has its token.
   const auto tokens = [](bool shared, Cycle after) {
     Params params = bare();
     params.l2.fill_takes_service = shared;

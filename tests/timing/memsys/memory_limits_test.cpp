@@ -1,4 +1,4 @@
-// Limits of L1, network and L2 that show in one cycle or byte only.
+// Tests limits of L1, network and L2 that show only in one cycle or byte.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.h"
 #include "tests/support/memory_rig.h"
@@ -21,7 +21,7 @@ Request atomic(Address line, Token token, uint8_t sectors = 1) {
   return request(line, sectors, token, false, Traffic::ShaderAtomic);
 }
 
-// From the request to its token, of sectors that the L2 holds.
+// Returns the cycles from the request to its token, for sectors that the L2 holds.
 Cycle l2_latency(const Params& params, const Request& request) {
   MemoryRig rig(params);
   rig.read_latency(kLine, 0b1111, true);
@@ -31,7 +31,7 @@ Cycle l2_latency(const Params& params, const Request& request) {
   return rig.answers().back().at - start;
 }
 
-// When each token came, from the start on; all are asked for in the first cycle, token i by core i.
+// Returns when each token came, from the start on. All are asked for in the first cycle, token i by core i.
 std::vector<Cycle> together(const Params& params, const std::vector<Request>& requests) {
   MemoryRig rig(params, uint32_t(requests.size()));
   for (uint32_t core = 0; core < requests.size(); ++core)
@@ -82,7 +82,7 @@ TEST_CASE("an atomic takes its interval of the slice for each sector") {
   CHECK(l2_latency(params, atomic(kLine, 1)) == kL2Hit + 2 - 1);
   params.l2.atomic_interval = 5;
   CHECK(l2_latency(params, atomic(kLine, 1)) == kL2Hit + 5 - 1);
-  // A packet of two sectors, and its reply, take a cycle more of each 40-byte port.
+  // A packet of two sectors, and its reply, take one more cycle of each 40-byte port.
   CHECK(l2_latency(params, atomic(kLine, 1, 0b11)) == kL2Hit + 2 * 5 - 1 + 2);
 }
 
@@ -91,8 +91,8 @@ TEST_CASE("lanes of an atomic that take turns take the slice's time for each, an
   params.l2.atomic_interval = 5;
   Request turns = atomic(kLine, 1);
   turns.atomic = {.lanes = 32, .turns = 3};
-  // Three sectors' worth of data on the way there: 104 bytes are two cycles more of the 40-byte port than 40
-  // are.
+  // Data of three sectors are on the way there: 104 bytes take two more cycles of the 40-byte port than 40
+  // bytes.
   CHECK(l2_latency(params, turns) == kL2Hit + 3 * 5 - 1 + 2);
   params.l2.atomic_lane_interval = 0.125;
   CHECK(l2_latency(params, turns) == kL2Hit + 3 * 5 + 4 - 1 + 2);

@@ -1,4 +1,4 @@
-// Where the time of a miss goes: each stage to the cycle, and their sum.
+// Tests where the time of a miss goes: each stage to the cycle, and their sum.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <fmt/format.h>
@@ -25,7 +25,7 @@ Split difference(const Split& after, const Split& before) {
   return out;
 }
 
-// The stages of one read of a line that the L2 has.
+// Returns the stages of one read of a line that the L2 has.
 Split l2_hit(const Params& params) {
   MemoryRig rig(params);
   rig.read_latency(kLine, 1, true);
@@ -105,7 +105,7 @@ TEST_CASE("packets that meet at a slice wait in its queue, and the stages add up
   CHECK(misses == 400);
   CHECK(all[size_t(Stage::L2Queue)] > 0);
   CHECK(all[size_t(Stage::DramQueue)] > all[size_t(Stage::DramService)]);
-  // What nothing can delay: the slice's own latency and the way to DRAM.
+  // These are what nothing can delay: the slice's own latency and the way to DRAM.
   CHECK(all[size_t(Stage::L2Service)] == 400 * 42);
   CHECK(all[size_t(Stage::DramWay)] == 400 * 100);
   CHECK(cycles > 400 * 276);

@@ -1,4 +1,4 @@
-// Cycles of the RT unit, exactly: fetch, test and hand-over latencies, port and pipeline limits, merging.
+// Tests the RT unit's cycles exactly: fetch, test and hand-over latencies, port and pipeline limits, merging.
 // SPDX-License-Identifier: Apache-2.0
 #include <optional>
 
@@ -39,7 +39,7 @@ TEST_CASE("a lone ray takes its fetches and tests in sequence, and two cycles to
     const Launch done = launch(unit, l1, warps, false);
     const RtStats& s = unit.stats();
     REQUIRE(s.internal_nodes.value() > 2);
-    // a node's requests leave one a cycle; the last answer counts
+    // A node's requests leave one per cycle, and the last answer counts.
     const Cycle extra = 64 / params.request_bytes - 1, extra_instance = 128 / params.request_bytes - 1;
     const Cycle expected = 1 + s.internal_nodes.value() * (latency + extra + params.box.latency) +
                            s.triangle_leaves.value() * (latency + extra + params.triangle.latency) +
@@ -81,7 +81,7 @@ TEST_CASE("a test pipeline starts no more tests than its units and interval allo
   params.triangle.interval = 1;
   mem::FixedLatencyMemory l1(20);
   RtUnit unit(params, {scene.memory, l1});
-  // the first node of all lanes: the root; its last test starts 15 * 4 cycles after its first
+  // The first node of all lanes is the root, and its last test starts 15 * 4 cycles after its first.
   std::vector<Cycle> starts;
   unit.node_visited().listen([&](const NodeVisited& visit) {
     if (visit.node.address == scene.top.address + 64) starts.push_back(visit.cycle);

@@ -1,5 +1,4 @@
-// Cycles of the RT unit's policies, exactly: entries for reads, stacks that leave the chip, restarts, sharing
-// across warps.
+// Tests the cycles of the RT unit's policies exactly: reads, stacks that leave the chip, restarts, sharing.
 // SPDX-License-Identifier: Apache-2.0
 #include <optional>
 
@@ -10,7 +9,7 @@
 namespace glint::rt::test {
 namespace {
 
-// Triangles that overlap so much that stacks grow deep.
+// Holds triangles that overlap so much that stacks grow deep.
 struct Thicket {
   mem::AddressSpace memory;
   Positions positions;
@@ -58,7 +57,7 @@ Params plain() {
   return params;
 }
 
-// Cycles of a lone ray: its nodes one after the other, one cycle to enter and one to leave.
+// Returns the cycles of a lone ray: its nodes one after the other, one cycle to enter and one to leave.
 Cycle time_of(const RtStats& s, const Params& p, Cycle latency) {
   return 2 + s.internal_nodes.value() * (latency + p.box.latency) +
          s.triangle_leaves.value() * (latency + p.triangle.latency) +

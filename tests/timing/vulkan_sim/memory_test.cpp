@@ -1,5 +1,5 @@
-// The published simulator's memory system under its presets: hits without time, stores that evict, one-flit
-// packets.
+// Tests the published simulator's memory system under its presets: hits without time, stores that evict,
+// small packets.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.h"
 #include "tests/support/memory_rig.h"
@@ -48,7 +48,7 @@ TEST_CASE("a store to global or local memory drops what it hits, so the next loa
     CHECK(rig.read_latency(kLine, 1) == kL2Hit);
     CHECK(rig.read_latency(kLine, 1) == 0);
   }
-  // hardware-like: the line has the new bytes, local memory is written back
+  // In hardware-like presets the line has the new bytes, and local memory is written back.
   for (Traffic traffic : {Traffic::ShaderGlobal, Traffic::ShaderLocal}) {
     const Params params = preset("desktop").memory;
     MemoryRig rig(params, 1, 1365.0);
@@ -80,8 +80,8 @@ TEST_CASE(
                 hit = (rig.read_latency(kLine + 128 * 64, 1, true), rig.read_latency(kLine + 128 * 64, 1));
     return miss - hit;
   };
-  // RCD 20, CL 20, data 4 (mobile: two commands of 4) at 3500 MHz in cycles of 1365 MHz, and up to two to
-  // change clocks
+  // RCD is 20, CL is 20 and data are 4 (mobile: two commands of 4) at 3500 MHz, in cycles of 1365 MHz, and
+  // there are up to two to change clocks.
   CHECK(beyond_l2("vulkan-sim-desktop") >= 100 + 18);
   CHECK(beyond_l2("vulkan-sim-desktop") <= 100 + 20);
   CHECK(beyond_l2("vulkan-sim-mobile") - beyond_l2("vulkan-sim-desktop") <= 2);

@@ -1,5 +1,4 @@
-// The published simulator's RT unit, one ray at a time: cycles under its presets as its own arithmetic gives
-// them.
+// Tests the published simulator's RT unit, one ray at a time, against the cycles of its own arithmetic.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.h"
 #include "tests/support/preset.h"
@@ -43,9 +42,9 @@ struct Scene {
   }
 };
 
-// Cycles from a ray's first request to the end of its last test, all hits: a record of n requests whose test
-// takes L keeps the ray for n + L - 1 cycles, as the test begins with the last request and the next request
-// goes out when it ends.
+// Returns the cycles from a ray's first request to the end of its last test, when all reads hit. A record of
+// n requests whose test takes L keeps the ray for n + L - 1 cycles, because the test begins with the last
+// request and the next request goes out when it ends.
 Cycle sum_of_records(const RtStats& s) {
   const uint64_t instances = s.instance_leaves.value(), entered = s.headers.value() - s.rays.value();
   return 5 * s.rays.value() + 9 * s.internal_nodes.value() + 11 * instances + 5 * entered +
@@ -73,7 +72,7 @@ TEST_CASE(
         CHECK(s.descriptors.value() == s.triangle_leaves.value());
         if (s.hit_writes.value()) continue;
         misses += s.triangle_leaves.value() > 1;
-        // a cycle to enter, one to be given back
+        // It takes a cycle to enter and one to be given back.
         CHECK(done.last_completion == 1 + sum_of_records(s) + 1);
       }
     CHECK(misses > 4);
@@ -96,7 +95,7 @@ TEST_CASE("each triangle met is a store at a place of its own that takes the por
     const RtStats& s = unit.stats();
     CHECK(s.hit_writes.value() == ray.hits_in_interval);
     hits += int(ray.hits_in_interval);
-    // the store of the last record goes out in the cycle in which its test ends: it delays nothing
+    // The store of the last record goes out in the cycle in which its test ends, so it delays nothing.
     CHECK(done.last_completion == 1 + sum_of_records(s) + before_last + 1);
     Address line = 0;
     for (const mem::Request& request : l1.log()) {
@@ -123,7 +122,7 @@ TEST_CASE(
     REQUIRE(begin(ray, memory));
     auto warps = one_lane(ray);
     const Launch done = launch(unit, l1, warps, way % 2);
-    // header, root, instance and header, root, descriptor and triangle; then the store
+    // The ray reads header, root, instance and header, root, descriptor and triangle; then comes the store.
     CHECK(done.last_completion == 1 + (5 + 9 + 11 + 5 + 9 + 4 + 9) + way + 1);
     CHECK(unit.stats().hit_writes.value() == 1);
   }
@@ -192,7 +191,7 @@ TEST_CASE("without the switches nothing but nodes is read and nothing stored") {
   CHECK(s.headers.value() + s.descriptors.value() + s.hit_writes.value() == 0);
   CHECK(s.requests.value() ==
         2 * (s.internal_nodes.value() + s.triangle_leaves.value()) + 4 * s.instance_leaves.value());
-  // a node of 64 B: two requests, and the second answer after 7 cycles
+  // A node of 64 B takes two requests, and the second answer comes after 7 cycles.
   CHECK(done.last_completion == 1 + (s.internal_nodes.value() + s.triangle_leaves.value()) * (1 + 7 + 8) +
                                     s.instance_leaves.value() * (3 + 7 + 8) + 1);
 }
