@@ -1,4 +1,4 @@
-// Random structured programs, lane by lane against the interpreter.
+// Runs random structured programs, lane by lane against the interpreter.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <exception>
@@ -98,13 +98,13 @@ class Minimiser {
   }
 
  private:
-  // Differences are alike; other problems by their first words.
+  // Returns the kind of a problem. All differences are alike; other problems differ by their first words.
   static std::string kind_of(const std::string& problem) {
     if (problem.find("expected 0x") != std::string::npos) return "difference";
     return problem.substr(0, 12) +
            problem.substr(std::min(problem.size(), problem.find("machine, ") + 9)).substr(0, 60);
   }
-  // Statement number `at` in the order of reading.
+  // Removes statement number `at` in the order of reading.
   static bool remove(std::vector<Stmt>& list, size_t& at, bool unwrap) {
     for (size_t i = 0; i < list.size(); ++i) {
       if (at == 0) {
@@ -149,10 +149,10 @@ void torture(bool spirv, uint64_t default_first, uint64_t default_count) {
     CHECK(verdict.problem.empty());
   }
   CHECK(failures == 0);
-  CHECK((count < 100 || skipped * 10 <= count));  // else little was compared
+  CHECK((count < 100 || skipped * 10 <= count));  // otherwise little was compared
   INFO(statements << " statements");
   CHECK(statements >= count * 5);
-  CHECK((count < 100 || divergent * 10 >= count * 5));  // else one lane would have done
+  CHECK((count < 100 || divergent * 10 >= count * 5));  // otherwise one lane would have been enough
 }
 
 TEST_CASE("Random GLSL programs compute in every lane what the interpreter computes") {
@@ -163,7 +163,7 @@ TEST_CASE("Random SPIR-V control flow computes in every lane what the interprete
   torture(true, 1, 500);
 }
 
-// A selection whose one arm leaves for the continue target, which nothing else reaches.
+// One arm of this selection leaves for the continue target, which nothing else reaches.
 TEST_CASE("SPIR-V programs that once found mistakes compute what the interpreter computes") {
   torture(true, 2356, 1);
 }

@@ -1,4 +1,4 @@
-// Random expressions over all exact ops, bit by bit against the interpreter.
+// Runs random expressions over all exact ops, bit by bit against the interpreter.
 // SPDX-License-Identifier: Apache-2.0
 #include <exception>
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 namespace glint::test::torture {
 namespace {
 
-// The first value that differs in any lane, and what its operands were.
+// Names the first value that differs in any lane, and its operands.
 std::string name_difference(const ExpressionProgram& program, const std::vector<uint32_t>& got,
                             const std::vector<uint32_t>& expected) {
   const size_t a_lane = program.values.size() * kValueWords;

@@ -23,8 +23,8 @@ bool is_float(Kind kind) {
   return kind == F32 || kind == F64;
 }
 
-// How operands are made fit: Any; Count: less than the width; NotZero; Field: three more operands of a bit
-// field.
+// Says how operands are made fit. Any: not at all. Count: less than the width. NotZero: not zero. Field:
+// three more operands of a bit field.
 enum class Form : uint8_t {
   Any,
   Shift,
@@ -209,7 +209,8 @@ class Maker {
   Id load_word();
   Known fresh(Kind kind, uint32_t count);
   Known operand(Kind kind, uint32_t count);
-  // The bits of a float, those of NaN set to 0: which NaN a result is, Vulkan leaves open.
+  // Returns the bits of a float, with those of NaN set to 0, because Vulkan leaves open which NaN a result
+  // is.
   Id bits_of(Kind kind, uint32_t count, Id x) {
     const Kind to = kind == F32 ? U32 : U64;
     const Id is_nan = op(OpIsNan, type(Bool, count), {x});
@@ -243,7 +244,7 @@ Id Maker::load_word() {
   return op(OpLoad, w_.int_type(), {pointer});
 }
 
-// A value from the inputs.
+// Returns a value from the inputs.
 Known Maker::fresh(Kind kind, uint32_t count) {
   Words parts;
   for (uint32_t i = 0; i < count; ++i) {

@@ -1,4 +1,4 @@
-// Variables as phis, expressions, and statements with the constructs around them.
+// Writes variables as phis, expressions, and statements with the constructs around them.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/torture/function_writer.h"
 
@@ -270,7 +270,7 @@ void FunctionWriter::choice(const Stmt& s, Targets targets) {
   begin_merge(end_of_switch, s.dead);
 }
 
-// counter < (bound & 3) + 1 and the condition
+// Returns the condition `counter < (bound & 3) + 1` and the loop's own condition.
 Id FunctionWriter::goes_on(const Stmt& s) {
   const Id bound = op(OpIAdd, word_type(), {masked(value(s.args[0]), 3), w_.word(1)});
   const Id in_bound = op(OpULessThan, w_.bool_type(), {get(s.value), bound});

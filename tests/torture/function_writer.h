@@ -24,8 +24,8 @@ struct Phi {
   Words operands;
 };
 
-// SSA while writing, by Braun et al., "Simple and Efficient Construction of Static Single Assignment Form"
-// (2013); phis that only pass one value on are kept.
+// Holds the SSA form while it is written, by Braun et al., "Simple and Efficient Construction of Static
+// Single Assignment Form" (2013). Phis that only pass on one value are kept.
 struct BlockCode {
   Id label = 0;
   bool is_sealed = true, is_closed = false;  // all predecessors are known; ends with a terminator
@@ -36,7 +36,7 @@ struct BlockCode {
   Words code;
 };
 
-// Where exits go from here.
+// Says where exits go from here.
 struct Targets {
   BlockCode *loop_merge = nullptr, *loop_continue = nullptr, *nearest_merge = nullptr;
   BlockCode *leave = nullptr, *next_case = nullptr;
@@ -89,7 +89,7 @@ class FunctionWriter {
     here_ = block;
     order_.push_back(block);
   }
-  // As begin(), for a block behind a construct: nothing may arrive there.
+  // Does what begin() does for a block behind a construct, at which nothing may arrive.
   void begin_merge(BlockCode* block, bool write_dead_code) {
     begin(block);
     if (block->predecessors.empty() && !write_dead_code) end(spv::Op::OpUnreachable, {});
@@ -154,7 +154,7 @@ class FunctionWriter {
   std::deque<BlockCode> blocks_;
   std::vector<BlockCode*> order_;
   BlockCode* here_ = nullptr;
-  std::vector<Id> memory_;  // of variables that are not phis
+  std::vector<Id> memory_;  // memory of variables that are not phis
   Id lane_ = 0, elements_ = 0;
 };
 

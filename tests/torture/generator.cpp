@@ -19,9 +19,10 @@ constexpr int kMostDepth = 5;
 struct Place {
   int depth = 0;
   bool in_loop = false, switch_is_nearer = false, in_continue = false;
-  bool may_leave = false, may_fall = false;  // directly in a branch of an `if`, in a case with a next one
-  bool is_uniform = false;                   // all lanes of the group come here together
-  bool loop_is_uniform = false;              // exchanges in the loop: no lane may leave it alone
+  bool may_leave = false,
+       may_fall = false;         // it is directly in a branch of an `if`, or in a case with a next one
+  bool is_uniform = false;       // all lanes of the group come here together
+  bool loop_is_uniform = false;  // the loop has exchanges, so no lane may leave it alone
 };
 
 class Generator {
@@ -46,7 +47,7 @@ class Generator {
     tree_.in_memory.push_back(random_.chance(spirv_ ? 35 : 0));
     return uint32_t(tree_.variables.size() - 1);
   }
-  uint32_t word_variable() {  // the hash too, and counters
+  uint32_t word_variable() {  // including the hash and counters
     uint32_t v;
     do v = random_.below(uint32_t(tree_.variables.size()));
     while (tree_.variables[v] != Sort::Word);
@@ -107,7 +108,7 @@ Expr Generator::word(int depth) {
 Expr Generator::condition(int depth) {
   if (depth <= 0 || random_.chance(20)) {
     if (random_.chance(40)) return make(Op::BoolVariable, {}, kWords + random_.below(kBools));
-    // A bit of the lane or of data: part of the warp each time.
+    // A bit of the lane or of data gives a part of the warp each time.
     const Expr bit = make(Op::And, {make(Op::Shr, {word(0), make(Op::Constant, {}, random_.below(5))}),
                                     make(Op::Constant, {}, 1 + random_.below(3))});
     return make(Op::Equal, {bit, make(Op::Constant, {}, 0)});
@@ -188,7 +189,7 @@ Stmt Generator::simple() {
   }
 }
 
-// Ways out. Bare ones are branches, not ends of the function.
+// Returns the ways out. Bare ones are branches, not ends of the function.
 std::vector<Kind> Generator::exits(const Place& place, bool bare) {
   std::vector<Kind> all;
   if (place.in_continue || place.is_uniform) return all;
@@ -202,7 +203,7 @@ std::vector<Kind> Generator::exits(const Place& place, bool bare) {
   return all;
 }
 
-// An exit under a condition, or none (then the list is over).
+// Adds an exit under a condition, or one without (then the list is over).
 bool Generator::add_exit(const Place& place, std::vector<Stmt>& to) {
   const bool bare = spirv_ && random_.chance(60);
   const std::vector<Kind> kinds = exits(place, bare);

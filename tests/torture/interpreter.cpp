@@ -17,7 +17,7 @@ namespace {
 
 constexpr uint32_t kHeaderWords = 5;
 
-// Which of the first operands are the result's type and the result.
+// Returns which of the first operands are the result's type and the result.
 bool has_result(spv::Op op, bool* has_type) {
   bool has = false;
   spv::HasResultAndType(op, &has, has_type);  // of the header, with SPV_ENABLE_UTILITY_CODE
@@ -181,7 +181,7 @@ void Interpreter::declare_constant(const Decoded& inst) {
   constants_.at(inst.result) = value;
 }
 
-// Buffers must be dense arrays of words, so that a scalar's number is its word's.
+// Checks that buffers are dense arrays of words, so that a scalar's number is its word's.
 void Interpreter::check_layout() const {
   for (const auto& [id, stride] : array_stride_)
     if (types_.count(id) && stride != 4 * types_.at(types_.at(id).element).scalars)

@@ -1,5 +1,4 @@
-// A scalar interpreter of SPIR-V: one invocation at a time, on its own reading of the words; shares no code
-// with the frontend.
+// Interprets SPIR-V, one invocation and one scalar at a time. It shares no code with the frontend.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -14,8 +13,8 @@ namespace glint::test::torture {
 
 using Id = uint32_t;
 
-// All scalars of a value in order. Bool: 0 or 1; integers zero-extended from their width; floats: their bits.
-// A pointer is two scalars: the memory and the scalar in it.
+// Holds all scalars of a value in order. A bool is 0 or 1, integers are zero-extended from their width, and
+// floats are their bits. A pointer is two scalars: the memory and the scalar in it.
 struct Value {
   static constexpr size_t kMost = 20;
   uint32_t count = 0;
@@ -29,10 +28,10 @@ struct Scalar {
 
 struct TypeInfo {
   spv::Op op{};
-  Scalar scalar;         // of the first part
-  Id element = 0;        // of vectors, matrices, arrays; the pointee of pointers
-  uint32_t count = 0;    // elements; 0 in a runtime array
-  uint32_t scalars = 0;  // of a value
+  Scalar scalar;         // scalar of the first part
+  Id element = 0;        // element of vectors, matrices and arrays; the pointee of pointers
+  uint32_t count = 0;    // number of elements; 0 in a runtime array
+  uint32_t scalars = 0;  // number of scalars of a value
   std::vector<Id> members;
 };
 
@@ -49,21 +48,21 @@ struct FunctionCode {
   std::map<Id, uint32_t> at_label;
 };
 
-// The launch that a module is run with. Buffers are of 32-bit words, by binding in set 0, and are written in
-// place.
+// Describes the launch that a module is run with. Buffers are of 32-bit words, by binding in set 0, and are
+// written in place.
 struct ScalarLaunch {
   std::array<uint32_t, 3> threads{1, 1, 1};
   std::map<uint32_t, std::vector<uint32_t>> buffers;
-  uint64_t steps_a_lane = 1u << 20;  // more: std::runtime_error
+  uint64_t steps_a_lane = 1u << 20;  // beyond them, std::runtime_error is thrown
 };
 
 class Interpreter {
  public:
-  // std::runtime_error names what it does not know.
+  // Throws std::runtime_error that names what it does not know.
   explicit Interpreter(const std::vector<uint32_t>& words);
 
-  // Every invocation to its end, those of a workgroup in turns from barrier to barrier. Returns the longest's
-  // steps.
+  // Runs every invocation to its end, those of a workgroup in turns from barrier to barrier. Returns the
+  // steps of the longest.
   uint64_t run(ScalarLaunch& launch) const;
 
  private:
@@ -75,13 +74,14 @@ class Interpreter {
   void declare_type(const Decoded& inst);
   void declare_constant(const Decoded& inst);
   void check_layout() const;
-  bool step(Invocation& lane) const;  // false at a barrier and at the end
+  bool step(Invocation& lane) const;  // returns false at a barrier and at the end
   bool step_control(Invocation& lane, const Decoded& inst) const;
   bool step_memory(Invocation& lane, const Decoded& inst) const;
   bool step_composite(Invocation& lane, const Decoded& inst) const;
   void enter_block(Invocation& lane, Id label) const;
   uint64_t run_group(std::vector<Invocation>& lanes, uint64_t most_steps) const;
-  uint32_t first_scalar(Id* type, uint32_t index) const;  // of a member; then *type is the member's
+  uint32_t first_scalar(Id* type,
+                        uint32_t index) const;  // first scalar of a member; *type becomes the member's type
   Value builtin(const Invocation& lane, spv::BuiltIn what) const;
 
   uint32_t bound_ = 0;
@@ -89,7 +89,7 @@ class Interpreter {
   std::array<uint32_t, 3> local_size_{0, 0, 0};
   std::vector<Id> local_size_ids_;  // constants, where it is given so
   std::map<Id, TypeInfo> types_;
-  std::vector<Value> constants_;  // by id; other values have count 0
+  std::vector<Value> constants_;  // by id; other ids have count 0
   std::vector<Id> type_of_;       // by id
   std::map<Id, FunctionCode> functions_;
   std::map<Id, uint32_t> binding_of_;
@@ -104,17 +104,17 @@ class Interpreter {
   std::map<std::pair<Id, uint32_t>, uint32_t> member_offset_;
 };
 
-// What an op without memory or control computes, part by part; false when it is none of those known.
+// Computes an op without memory or control, part by part. Returns false when the op is not known.
 bool compute(const Decoded& inst, Scalar to, Scalar from, const std::vector<const Value*>& arguments,
              Value* result);
 bool compute_glsl(uint32_t function, Scalar to, const std::vector<const Value*>& arguments, Value* result);
 
-// Bits and numbers.
+// These convert bits and numbers.
 float float_of(uint64_t bits);
 double double_of(uint64_t bits);
 uint64_t bits_of(float x);  // a NaN is the canonical one of PTX
 uint64_t bits_of(double x);
-int64_t extended(uint64_t x, uint32_t width);  // by its sign
+int64_t extended(uint64_t x, uint32_t width);  // extends by the sign
 uint64_t cut(uint64_t x, uint32_t width);
 
 }  // namespace glint::test::torture

@@ -1,4 +1,4 @@
-// The functions of GLSL.std.450 that are exact: no transcendental ones.
+// Computes the exact functions of GLSL.std.450, without transcendental ones.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <bit>
@@ -10,7 +10,7 @@
 namespace glint::test::torture {
 namespace {
 
-// Of two numbers the smaller, -0 before 0; of a number and a NaN the number.
+// Returns the smaller of two numbers, with -0 before 0; of a number and a NaN it returns the number.
 float smaller(float a, float b) {
   if (std::isnan(a)) return b;
   if (std::isnan(b)) return a;
@@ -32,7 +32,7 @@ float smooth_step(float low, float high, float x) {
   return t * t * (3 - 2 * t);
 }
 
-// Scaling by parts, the last of which rounds: std::ldexp rounds once as well.
+// Scales by parts, of which the last rounds. std::ldexp rounds once as well.
 float scaled(float x, int64_t n) {
   return std::ldexp(x, int(std::clamp<int64_t>(n, -1000, 1000)));
 }

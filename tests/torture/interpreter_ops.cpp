@@ -1,4 +1,4 @@
-// What arithmetic means, part by part, in plain C++.
+// Computes arithmetic, part by part, in plain C++.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <bit>
@@ -31,8 +31,8 @@ int64_t extended(uint64_t x, uint32_t width) {
 
 namespace {
 
-// Choice, as the frontend's: division by 0 gives all ones, its remainder the dividend; the smallest by -1
-// itself and 0.
+// Divides. Choice, as in the frontend: division by 0 gives all ones, and its remainder is the dividend; the
+// smallest number divided by -1 gives itself and 0.
 uint64_t divided(uint64_t a, uint64_t b, uint32_t width, bool is_signed, bool rest) {
   if (b == 0) return rest ? a : ~0ull;
   if (!is_signed) return rest ? a % b : a / b;
@@ -46,7 +46,7 @@ uint64_t modulo(uint64_t a, uint64_t b, uint32_t width) {
   return uint64_t(rest != 0 && (rest < 0) != (y < 0) ? rest + y : rest);
 }
 
-// Choice: counts from the width on shift everything out.
+// Shifts. Choice: counts from the width on shift everything out.
 uint64_t shifted(spv::Op op, uint64_t a, uint64_t count, uint32_t width) {
   if (op == OpShiftRightArithmetic) return uint64_t(extended(a, width) >> std::min<uint64_t>(count, 63));
   if (count >= width) return 0;
@@ -221,8 +221,8 @@ bool float_binary(spv::Op op, T a, T b, uint64_t* r) {
   }
 }
 
-// Truncated, saturated to 32 or 64 bits; then cut. Choice, as hardware's: a NaN gives 0 from 32 bits to 32,
-// else the highest bit alone.
+// Truncates, saturates to 32 or 64 bits, and then cuts. Choice, as in hardware: a NaN gives 0 from 32 bits to
+// 32, and otherwise only the highest bit.
 template <class T>
 uint64_t to_integer(T x, bool is_signed, uint32_t width) {
   const uint32_t bits = width > 32 ? 64 : 32;
@@ -239,7 +239,7 @@ uint64_t to_integer(T x, bool is_signed, uint32_t width) {
   return cut(uint64_t(x), width);
 }
 
-// x + 0 of bits n: as a float.
+// Returns x + 0 of bits n, as a float.
 template <class T>
 uint64_t from_integer(uint64_t x, bool is_signed, uint32_t width) {
   return bits_of(is_signed ? T(extended(x, width)) : T(x));
@@ -327,7 +327,7 @@ uint64_t field(uint64_t base, uint64_t offset, uint64_t count, bool is_signed) {
 
 }  // namespace
 
-// Structs of two: all low or sum parts, then all high or carry parts.
+// Computes structs of two: all low or sum parts, then all high or carry parts.
 static bool compute_extended(spv::Op op, const Value& a, const Value& b, Value* result) {
   result->count = 2 * a.count;
   for (uint32_t i = 0; i < a.count; ++i) {

@@ -1,4 +1,4 @@
-// The walk of invocations through a module: control, calls, memory, composites.
+// Walks invocations through a module: control, calls, memory, composites.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <fmt/format.h>
@@ -18,12 +18,12 @@ namespace {
 
 constexpr size_t kMostFrames = 20;
 
-// A called function: where it is, its values, and which value of the caller gets its result.
+// Holds a called function: where it is, its values, and which value of the caller gets its result.
 struct Frame {
   const FunctionCode* function = nullptr;
   uint32_t at = 0;
   Id block = 0, result = 0;
-  size_t memories = 0;  // when it was entered
+  size_t memories = 0;  // number of memories when it was entered
   std::vector<Value> values;
 };
 
@@ -32,9 +32,9 @@ struct Frame {
 struct Interpreter::Invocation {
   std::array<uint32_t, 3> id{}, size{};
   std::vector<Frame> frames;
-  const std::vector<Value>* constants = nullptr;  // and the pointers of module-level variables
+  const std::vector<Value>* constants = nullptr;  // with the pointers of module-level variables
   Memories* shared = nullptr;                     // buffers and workgroup variables
-  Memories own;                                   // numbered after those shared
+  Memories own;                                   // numbered after the shared ones
   uint64_t steps = 0;
   bool ended = false;
 
@@ -47,8 +47,8 @@ struct Interpreter::Invocation {
   }
 };
 
-// The scalars that all lanes of a group see come first, then those of each lane: numbers are the same in all
-// lanes.
+// Runs all groups. The scalars that all lanes of a group see come first, then those of each lane, so numbers
+// are the same in all lanes.
 uint64_t Interpreter::run(ScalarLaunch& launch) const {
   Memories shared, own;
   std::vector<Value> constants = constants_;
@@ -101,7 +101,7 @@ uint64_t Interpreter::run(ScalarLaunch& launch) const {
   return longest;
 }
 
-// Each lane runs to the next barrier; lanes that have ended are not waited for.
+// Runs each lane to the next barrier. Lanes that have ended are not waited for.
 uint64_t Interpreter::run_group(std::vector<Invocation>& lanes, uint64_t most_steps) const {
   uint64_t longest = 0;
   for (bool all_ended = false; !all_ended;) {
@@ -183,7 +183,7 @@ bool Interpreter::step_control(Invocation& lane, const Decoded& inst) const {
   Frame& f = lane.frames.back();
   const auto& o = inst.operands;
   switch (inst.op) {
-    case OpLabel:  // only the function's first: others are entered by branches
+    case OpLabel:  // only the function's first one; others are entered by branches
       f.block = inst.result;
       return true;
     case OpBranch:
@@ -207,7 +207,7 @@ bool Interpreter::step_control(Invocation& lane, const Decoded& inst) const {
       std::vector<Value> arguments;
       for (size_t i = 1; i < o.size(); ++i) arguments.push_back(f.values[o[i]]);
       const FunctionCode& callee = functions_.at(o[0]);
-      lane.enter(callee, inst.result);  // `f` is no more
+      lane.enter(callee, inst.result);  // `f` is invalid from here on
       for (size_t i = 0; i < arguments.size(); ++i)
         lane.frames.back().values[callee.parameters[i]] = arguments[i];
       return true;
@@ -279,7 +279,7 @@ bool Interpreter::step_composite(Invocation& lane, const Decoded& inst) const {
   auto& values = lane.frames.back().values;
   const auto& o = inst.operands;
   Value& result = values[inst.result];
-  // The parts that literal indices choose, from operand `i` on.
+  // Finds the parts that literal indices choose, from operand `i` on.
   const auto find = [&](Id type, size_t i, uint32_t* first) {
     for (*first = 0; i < o.size(); ++i) *first += first_scalar(&type, o[i]);
     return types_.at(type).scalars;

@@ -1,4 +1,4 @@
-// A small world for one compute or ray-generation shader whose buffers are words.
+// Runs one compute or ray-generation shader in a small world whose buffers are words.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/torture/machines.h"
 
@@ -112,11 +112,11 @@ Verdict judge(Trial& trial, const std::vector<Way>& ways) {
   for (const Way& way : ways) {
     verdict.problem = difference(trial, expected, way);
     if (verdict.problem.empty()) continue;
-    // The optimiser's inlining into a continue target may make an invalid module; the frontend then refuses
+    // The optimiser's inlining into a continue target may make an invalid module. The frontend then refuses
     // the calls.
     if (verdict.problem.find("OpFunctionCall") != std::string::npos) return {{}, true, verdict.steps, false};
     if (!way.simplified) return verdict;
-    ScalarLaunch again = trial.launch;  // whose mistake?
+    ScalarLaunch again = trial.launch;  // this tells whose mistake it is
     try {
       Interpreter(trial.simplified).run(again);
       verdict.problem +=

@@ -1,5 +1,4 @@
-// Runs one module on the interpreter and on both machines, in all the ways a program may be compiled, and
-// compares.
+// Runs one module on the interpreter and on both machines, in all ways of compiling it, and compares.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -25,23 +24,23 @@ struct Trial {
   std::string name;
   std::vector<uint32_t> spirv;
   std::vector<uint32_t> simplified;  // filled by the first comparison that needs it
-  ScalarLaunch launch;               // with the buffers as they are at the start
-  uint32_t words_a_lane = 1;         // of the results
+  ScalarLaunch launch;               // buffers have their contents at the start
+  uint32_t words_a_lane = 1;         // words per lane in the results
 };
 
-// The buffers after the launch. glint::Error for whatever goes wrong.
+// Returns the buffers after the launch. Throws glint::Error for whatever goes wrong.
 std::map<uint32_t, std::vector<uint32_t>> run_machine(Trial& trial, const Way& way);
 
-// What differs from the interpreter's run of the same words, or is thrown; empty when nothing is. `expected`
-// is the launch after the interpreter's run.
+// Returns what differs from the interpreter's run of the same words, or is thrown, or "" when nothing does.
+// `expected` is the launch after the interpreter's run.
 std::string difference(Trial& trial, const ScalarLaunch& expected, const Way& way);
 
-// The whole comparison, on every way given; the first difference.
+// Holds the result of the whole comparison on every given way: the first difference.
 struct Verdict {
-  std::string problem;        // empty: all agree
-  bool skipped = false;       // it runs too long, or the validator refuses it: nothing was compared
-  uint64_t steps = 0;         // of the longest lane
-  bool lanes_differ = false;  // in their results
+  std::string problem;        // empty when all agree
+  bool skipped = false;       // nothing was compared, because it runs too long or the validator refuses it
+  uint64_t steps = 0;         // steps of the longest lane
+  bool lanes_differ = false;  // the lanes' results differ
 };
 Verdict judge(Trial& trial, const std::vector<Way>& ways);
 

@@ -1,4 +1,4 @@
-// Which programs a run tries: from the environment, so that a failure can be run again alone.
+// Reads from the environment which programs a run tries, so that a failure can be run again alone.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>

@@ -22,7 +22,7 @@ class SpirvWriter {
 
   Id new_id() { return next_++; }
 
-  // A type or constant, the same id for the same words.
+  // Declares a type or constant. The same words get the same id.
   Id declare(spv::Op op, Words operands, bool is_constant = false) {
     Words key{uint32_t(op)};
     key.insert(key.end(), operands.begin(), operands.end());
@@ -54,14 +54,14 @@ class SpirvWriter {
     all.insert(all.end(), operands.begin(), operands.end());
     append(decorations, spv::Op::OpDecorate, all);
   }
-  // A module-level variable, in the entry point's interface.
+  // Declares a module-level variable, which is in the entry point's interface.
   Id variable(spv::StorageClass storage, Id type) {
     const Id pointer = pointer_to(storage, type), id = new_id();
     append(globals_, spv::Op::OpVariable, {pointer, id, uint32_t(storage)});
     interface_.push_back(id);
     return id;
   }
-  // struct { uint words[]; } in set 0.
+  // Declares struct { uint words[]; } in set 0.
   Id buffer_of_words(uint32_t binding) {
     if (!block_) {
       const Id array = new_id();
@@ -83,7 +83,7 @@ class SpirvWriter {
     return id;
   }
 
-  // The module of a compute shader.
+  // Returns the module of a compute shader.
   Words assemble(Id entry, uint32_t local_size, Id glsl_import,
                  const std::vector<spv::Capability>& capabilities) const {
     Words words{spv::MagicNumber, 0x0001'0600, 0, next_, 0};

@@ -1,4 +1,5 @@
-// Random structured programs as trees: what generator, writers of GLSL and SPIR-V, and minimiser share.
+// Holds random structured programs as trees, which generator, writers of GLSL and SPIR-V, and minimiser
+// share.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -7,7 +8,7 @@
 
 namespace glint::test::torture {
 
-// Splitmix64: the same programs from the same seed everywhere.
+// Draws random numbers by Splitmix64, which gives the same programs from the same seed everywhere.
 class Random {
  public:
   explicit Random(uint64_t seed) : state_(seed) {}
@@ -28,7 +29,7 @@ enum class Sort : uint8_t { Word, Bool, Float };
 
 struct Expr {
   enum class Op : uint8_t {
-    // words
+    // These are words.
     Constant,
     Variable,
     Lane,
@@ -47,7 +48,7 @@ struct Expr {
     Mod,
     Select,
     Truncate,
-    // bools
+    // These are bools.
     BoolVariable,
     Less,
     SignedLess,
@@ -56,7 +57,7 @@ struct Expr {
     Both,
     Either,
     Not,
-    // floats
+    // These are floats.
     FloatVariable,
     FloatConstant,
     FloatAdd,
@@ -82,14 +83,16 @@ struct Stmt {
     Break,
     Continue,
     Return,
-    LoopBreak,  // from inside a switch out of the loop around it. SPIR-V only, as all below
+    LoopBreak,  // from inside a switch out of the loop around it; SPIR-V only, like all below
     Leave,      // to the end of the `if` whose branch this list is
     NextCase,   // to the next case of the switch whose case this list is
   } kind = Kind::Trace;
-  // Loops. Single: one block. SkipFirst: the header goes to the body or to the continue target.
+  // This is the style of a loop. Single: one block. SkipFirst: the header goes to the body or to the continue
+  // target.
   enum class Style : uint8_t { While, HeaderTest, DoWhile, Endless, Single, SkipFirst } style = Style::While;
-  bool bare = false;  // If: a conditional branch without a merge, for its only statement is an exit
-  bool dead = false;  // If, Switch, Loop: code goes on where nothing arrives; else OpUnreachable stands there
+  bool bare = false;  // If: a conditional branch without a merge, because its only statement is an exit
+  bool dead =
+      false;  // If, Switch, Loop: code goes on where nothing arrives; otherwise OpUnreachable is there
   uint32_t value = 0, other = 0;
   std::vector<Expr> args;
   std::vector<std::vector<Stmt>> bodies;
@@ -107,14 +110,14 @@ struct FunctionTree {
 
 struct ProgramTree {
   uint64_t seed = 0;
-  bool spirv = true;       // may have shapes that GLSL has not
-  bool is_compute = true;  // else ray generation
+  bool spirv = true;       // may have shapes that GLSL does not have
+  bool is_compute = true;  // otherwise ray generation
   uint32_t group = 32, groups = 2;
   std::vector<FunctionTree> functions;  // the last is the entry point; each calls those before it
 };
 
 inline constexpr uint32_t kInputWords = 64, kOwnWords = 4, kElements = 4;
-// Bindings of storage buffers.
+// These are the bindings of storage buffers.
 inline constexpr uint32_t kInputBinding = 0, kResultBinding = 1, kOwnBinding = 2;
 
 ProgramTree generate(uint64_t seed, bool spirv);

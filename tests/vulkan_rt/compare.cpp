@@ -1,4 +1,4 @@
-// The rules by which two correct implementations may differ (README.md), each checked in double precision.
+// Checks in double precision the rules by which two correct implementations may differ (README.md).
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/vulkan_rt/compare.h"
 
@@ -18,7 +18,8 @@ constexpr uint32_t kTriangle = 1, kSphere = 2;  // Record::kind of hits
 constexpr uint32_t kTerminateOnFirstHit = 0x4;
 constexpr double kTolerance = 1e-5;  // relative, of t; absolute, of weights
 constexpr double kUnit = 0x1p-24;    // half a unit in the last place, relative
-// Roundings, all in one direction, that a shader or a unit for triangles may make on the way to a result.
+// Number of roundings, all in one direction, that a shader or a unit for triangles may make on the way to a
+// result.
 constexpr double kRoundings = 16;
 
 Double3 sub(const Double3& a, const Double3& b) {
@@ -34,7 +35,7 @@ Double3 wide(const Vec3& v) {
   return {v[0], v[1], v[2]};
 }
 
-// Into the object space of an instance: solves the 3x3 system by Cramer's rule.
+// Transforms into the object space of an instance, by solving the 3x3 system with Cramer's rule.
 Double3 to_object(const Instance& instance, Double3 x, bool point) {
   const auto& m = instance.transform;
   if (point) x = sub(x, {m[3], m[7], m[11]});
@@ -58,7 +59,7 @@ Exact exact_triangle(const Double3& o, const Double3& d, const Double3& p0, cons
   if (det == 0) return {};
   Exact out{true, dot(e2, q) / det, 0, dot(s, p) / det, dot(d, q) / det, 1, 0, 0};
   out.slope = std::fabs(dot(n, d)) / (length(n) * length(d));
-  // A shift of the plane or of the ray by a unit of the coordinates' size.
+  // This is the shift of the plane or of the ray by a unit of the coordinates' size.
   const double across =
       kUnit *
       (largest(o) + std::max({largest(p0), largest(p1), largest(p2)}) + std::fabs(out.t) * largest(d)) /
@@ -77,7 +78,7 @@ Exact exact_sphere(const Double3& o, const Double3& d, const std::array<float, 4
       std::sqrt(std::fabs(discriminant)) / (std::sqrt(a) * double(sphere[3]));  // 1: through the centre
   if (discriminant < 0) return {false, -b / a, -b / a, 0, 0, slope, 0, 0};
   Exact out{true, (-b - std::sqrt(discriminant)) / a, (-b + std::sqrt(discriminant)) / a, 0, 0, slope, 0, 0};
-  // The shader takes a product from a square: what is lost there moves the root.
+  // The shader takes a product from a square, and what is lost there moves the root.
   out.t_unit =
       kUnit * (b * b + std::fabs(a * c)) / (a * std::sqrt(discriminant)) + kUnit * std::fabs(out.t_far);
   out.weight_unit = (out.t_unit * std::sqrt(a) + kUnit * largest(oc)) / double(sphere[3]);
@@ -101,7 +102,7 @@ bool near_vector(const Vec3& a, const Vec3& b) {
   return true;
 }
 
-// Everything that is not a number of the hit's place.
+// Compares everything that is not a number of the hit's place.
 bool same_identity(const Record& a, const Record& b) {
   return a.kind == b.kind && a.instance == b.instance && a.custom == b.custom && a.primitive == b.primitive &&
          a.geometry == b.geometry && a.hit_kind == b.hit_kind && a.tag == b.tag && a.flags == b.flags &&
@@ -123,7 +124,7 @@ class Judge {
  public:
   Judge(const Recording& r, const Mode& mode, const Ray& ray) : r_(r), mode_(mode), ray_(ray) {}
 
-  // The name of the rule that explains the difference; empty when none does.
+  // Returns the name of the rule that explains the difference, or "" when none does.
   std::string explain(const Record& ours, const Record& theirs) const {
     if (ours.call != theirs.call) return "";
     if (counts_all() && (ours.anyhits != theirs.anyhits || ours.hash != theirs.hash))
@@ -142,7 +143,8 @@ class Judge {
     return "";
   }
 
-  // Any-hit shaders that ignore everything are called once for each hit, in whatever order.
+  // Says whether counts are comparable. Any-hit shaders that ignore everything are called once for each hit,
+  // in whatever order.
   bool counts_all() const { return mode_.any_hit_mode == 2; }
 
  private:
@@ -152,7 +154,8 @@ class Judge {
     return exact(r_, ray_, hit.instance, hit.geometry, hit.primitive);
   }
 
-  // The hit's distance and weights are those of exact arithmetic, as near as single precision comes.
+  // Returns whether the hit's distance and weights are those of exact arithmetic, as near as single precision
+  // comes.
   bool is_where_it_says(const Record& hit) const {
     if (!is_hit(hit)) return false;
     const Exact e = exact_of(hit);
@@ -164,7 +167,7 @@ class Judge {
            (near(hit.u, e.u, weight) && near(hit.v, e.v, weight) && border(e) >= -weight);
   }
 
-  // The normal of a sphere carries the error of t; a triangle's does not depend on the hit.
+  // Compares normals. The normal of a sphere carries the error of t; a triangle's does not depend on the hit.
   bool same_normal(const Record& ours, const Record& theirs) const {
     const double error =
         std::max(kTolerance, ours.kind == kSphere ? 2 * kRoundings * exact_of(ours).weight_unit : 0);
@@ -172,7 +175,7 @@ class Judge {
            (ours.kind != kSphere || (near(ours.u, theirs.u, error) && near(ours.v, theirs.v, error)));
   }
 
-  // Two triangles of one instance, met at one distance, both at their border.
+  // Returns whether two triangles of one instance were met at one distance, both at their border.
   bool on_shared_edge(const Record& ours, const Record& theirs) const {
     if (ours.kind != kTriangle || theirs.kind != kTriangle || ours.instance != theirs.instance) return false;
     const Exact a = exact_of(ours), b = exact_of(theirs);
@@ -182,8 +185,8 @@ class Judge {
            std::fabs(border(b)) <= kRoundings * b.weight_unit;
   }
 
-  // One of the two hit a sphere that the ray touches: its discriminant is lost in rounding, so the other may
-  // pass by.
+  // Returns whether one of the two hit a sphere that the ray touches. Its discriminant is lost in rounding,
+  // so the other may pass by.
   bool touches_sphere(const Record& hit, const Record& other) const {
     if (hit.kind != kSphere) return false;
     const Exact e = exact_of(hit);
@@ -191,11 +194,12 @@ class Judge {
     return lost && (!is_hit(other) || is_where_it_says(other));
   }
 
-  // What sph.rahit adds to the hash for one report.
+  // Returns what sph.rahit adds to the hash for one report.
   static uint32_t hash_of(uint32_t instance, uint32_t primitive, uint32_t hit_kind) {
     return (instance * 73856093u) ^ (primitive * 19349663u) ^ (hit_kind << 20);
   }
-  // One of the two reported both roots of a sphere that the ray touches, the other none, and that is all.
+  // Returns whether one of the two reported both roots of a sphere that the ray touches and the other none,
+  // and that is all.
   bool counts_differ_by_touched_sphere(const Record& ours, const Record& theirs) const {
     const Record &more = ours.anyhits > theirs.anyhits ? ours : theirs,
                  &less = ours.anyhits > theirs.anyhits ? theirs : ours;
@@ -211,8 +215,8 @@ class Judge {
     return false;
   }
 
-  // Of the squared radius: what 16 roundings of the square of a distance of 6 are, for the smallest of the
-  // spheres.
+  // This fraction of the squared radius is 16 roundings of the square of a distance of 6, for the smallest of
+  // the spheres.
   static constexpr double kTouching = kRoundings * kUnit * 36 / (0.15 * 0.15);
 
   const Recording& r_;

@@ -1,5 +1,5 @@
-// Compares a record with the recorded one; what differs is explained by a rule that is checked, or is
-// different.
+// Compares a record with the recorded one. A difference is explained by a rule that is checked, or is a
+// failure.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -10,11 +10,11 @@
 
 namespace glint::vulkan_rt {
 
-// Where exact arithmetic sees a primitive on the line of a ray.
+// Says where exact arithmetic sees a primitive on the line of a ray.
 struct Exact {
   bool on_line = false;  // the line meets the plane, or the sphere
   double t = 0;          // of the plane; of the nearer root
-  double t_far = 0;      // sphere: of the farther root
+  double t_far = 0;      // sphere: t of the farther root
   double u = 0, v = 0;   // triangle: weights of the second and third corner
   double slope = 1;      // triangle: cosine between normal and ray; sphere: root of the relative discriminant
   // What one rounding to 24 bits of the largest number on the way does to t, to a weight (triangle) and to
@@ -25,13 +25,13 @@ Exact exact(const Recording& r, const Ray& ray, uint32_t instance, uint32_t geom
 
 struct Tally {
   uint32_t rays = 0, equal = 0, different = 0;
-  std::map<std::string, uint32_t> explained;  // by rule
+  std::map<std::string, uint32_t> explained;  // ordered by rule
   std::string first_different;                // for the message
   uint32_t num_explained() const;
   std::string line(const std::string& name) const;
 };
 
-// All rays of a mode. `ours` and `theirs` hold one record a ray.
+// Compares all rays of a mode. `ours` and `theirs` hold one record per ray.
 Tally compare(const Recording& r, const Mode& mode, const Record* ours, const Record* theirs);
 
 }  // namespace glint::vulkan_rt

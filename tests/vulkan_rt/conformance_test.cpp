@@ -1,4 +1,4 @@
-// The recorded conformance set, its shaders unchanged: every ray of every mode, and the picture.
+// Tests the recorded conformance set with its shaders unchanged: every ray of every mode, and the picture.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
@@ -20,8 +20,8 @@ bool skipped() {
   return true;
 }
 
-// But for what depends on how many candidates were looked at before the hit was known. Where any-hit shaders
-// ignore all (mode 2), each candidate is looked at once.
+// Compares hits without what depends on how many candidates were looked at before the hit was known. Where
+// any-hit shaders ignore all (mode 2), each candidate is looked at once.
 bool same_hit(Record a, Record b, const Mode& mode) {
   a.inters = b.inters = 0;
   if (mode.any_hit_mode != 2) a.anyhits = b.anyhits = a.hash = b.hash = 0;
@@ -39,7 +39,7 @@ TEST_CASE(
     std::cout << fmt::format("{:<10} {}\n", any_hit, tally.line(r.modes[m].name));
     INFO(tally.line(r.modes[m].name) << tally.first_different);
     CHECK(tally.different == 0);
-    // Only where rays aim at edges, or any hit will do, may more than a few differ by choice.
+    // Only where rays aim at edges, or where any hit is accepted, may more than a few differ by choice.
     const bool any_first = (r.modes[m].ray_flags & 4) || r.modes[m].any_hit_mode == 3;
     const auto edges = tally.explained.find("shared edge"), firsts = tally.explained.find("any first hit");
     const uint32_t by_choice = (edges == tally.explained.end() ? 0 : edges->second) +

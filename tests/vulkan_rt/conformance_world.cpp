@@ -55,7 +55,7 @@ rt::StructureInfo build_scene(const Recording& r, mem::AddressSpace& memory, con
   return rt::build_top(memory, "top level", instances, bottoms, options);
 }
 
-// Memory, shaders and table of one launch. Not movable: the world points into it.
+// Holds memory, shaders and table of one launch. It cannot be moved, because the world points into it.
 class Host {
  public:
   explicit Host(const Recording& r, const std::string& format = "bvh6") : recording_(r) {
@@ -109,7 +109,7 @@ class Host {
     table.groups.push_back({exec::kNoShader, {or_none(closest), or_none(any), or_none(intersection)}});
     return uint32_t(table.groups.size() - 1);
   }
-  // Records 3 and 8 are of the instance with spheres.
+  // Sets hit records. Records 3 and 8 are of the instance with spheres.
   void hit_records(uint32_t triangles, uint32_t spheres, const std::vector<RecordData>& data) {
     for (size_t i = 0; i < data.size(); ++i) {
       TableRecord record{i % 5 == 3 ? spheres : triangles, std::vector<std::byte>(sizeof data[i])};
@@ -153,9 +153,9 @@ TableRecord callable_record(uint32_t group, uint32_t tag) {
 }  // namespace
 
 const std::vector<RecordData>& hit_records() {
-  // Tags and bases from the records: tag of each hit, normals of each triangle. Alpha from which hits are
-  // missing where any-hit shaders run. Colours: the only ones that give the picture (a linear system; each
-  // pixel one equation).
+  // These are tags and bases from the records: the tag of each hit, and the normals of each triangle. Alpha
+  // is known from the hits that are missing where any-hit shaders run. The colours are the only ones that
+  // give the picture (a linear system in which each pixel is one equation).
   static const std::vector<RecordData> kRecords = [] {
     std::vector<RecordData> records;
     const uint32_t bases[5] = {0, 360, 600, 0, 1464};
@@ -183,7 +183,7 @@ std::vector<Record> run_mode(const Recording& r, const Mode& mode, const std::st
   host.hit_records(triangles, spheres, hit_records());
   host.table.callable.records = {callable_record(host.general("c0.rcall"), 3000),
                                  callable_record(host.general("c1.rcall"), 3001)};
-  // A set may hold later rays of a launch: the ones before are launched too, and not looked at.
+  // A set may hold later rays of a launch. The rays before them are launched, too, and not looked at.
   const uint32_t first = r.first_launch_index, count = first + r.rays_per_pattern;
   std::vector<Ray> rays(first, r.rays.front());
   rays.insert(rays.end(), r.rays.begin(), r.rays.end());

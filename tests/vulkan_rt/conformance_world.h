@@ -1,4 +1,4 @@
-// The recorded scene in simulated memory, with its two pipelines: records of rays, and the picture.
+// Puts the recorded scene into simulated memory, with its two pipelines: records of rays, and the picture.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -16,15 +16,15 @@ struct RecordData {  // struct SbtData of shaders/common.glsl
   std::array<float, 4> color;
 };
 
-// What the recording does not hold: the data of the hit records (see README.md).
+// Returns what the recording does not hold: the data of the hit records (see README.md).
 const std::vector<RecordData>& hit_records();
 
-// Compiles the set's shaders, as they are, and runs a mode with structures of a node format; one record a
-// ray. `software`: rays are walked in code.
+// Compiles the set's unchanged shaders and runs a mode with structures of a node format. Returns one record
+// per ray. With `software`, rays are walked in code.
 std::vector<Record> run_mode(const Recording& recording, const Mode& mode, const std::string& any_hit,
                              bool timing = false, const std::string& format = "bvh6", bool software = false);
 
-// The picture, RGBA, `size` x `size`. The records' data may be given.
+// Returns the picture, RGBA, `size` x `size`. The records' data may be given.
 std::vector<float> run_image(const Recording& recording, uint32_t size,
                              const std::vector<RecordData>& records = hit_records());
 

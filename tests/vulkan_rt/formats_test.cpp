@@ -1,4 +1,4 @@
-// The recorded conformance set in every node format: the same records for every ray of every mode.
+// Tests the recorded conformance set in every node format: the same records for every ray of every mode.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstring>
 #include <fmt/format.h>
@@ -15,15 +15,15 @@ namespace {
 
 constexpr uint32_t kAnyHitIgnores = 2, kAnyHitTerminates = 3;  // any-hit modes of the recording's shaders
 
-// But for what depends on the order of visits: how many candidates were looked at before the hit was known.
-// Where any-hit shaders ignore all, each candidate is looked at once.
+// Compares hits without what depends on the order of visits: how many candidates were looked at before the
+// hit was known. Where any-hit shaders ignore all, each candidate is looked at once.
 bool same_hit(Record a, Record b, const Mode& mode) {
   a.inters = b.inters = 0;
   if (mode.any_hit_mode != kAnyHitIgnores) a.anyhits = b.anyhits = a.hash = b.hash = 0;
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-// The first rays of every pattern. Two walks of the whole set in every format would take a minute.
+// Returns the first rays of every pattern. Two walks of the whole set in every format would take a minute.
 Recording first_rays(const Recording& all, uint32_t rays) {
   if (all.rays_per_pattern <= rays) return all;
   const auto cut = [&](const auto& from) {

@@ -1,4 +1,4 @@
-// The recorded conformance set: its scene, rays, records and picture as the driver of a GPU left them.
+// Holds the recorded conformance set: its scene, rays, records and picture as the driver of a GPU left them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -61,10 +61,11 @@ struct Recording {
   }
 };
 
-// GLINT_VULKAN_RT_DIR, or the folder beside the repository.
+// Returns GLINT_VULKAN_RT_DIR, or the folder beside the repository.
 std::filesystem::path recording_folder();
 bool has_recording();
-// Files as they are or packed with zstd. Throws std::runtime_error when something lacks or does not fit.
+// Reads the files, which are plain or packed with zstd. Throws std::runtime_error when something is missing
+// or does not fit.
 const Recording& recording();
 
 }  // namespace glint::vulkan_rt

@@ -1,5 +1,4 @@
-// The recorded conformance set with rays walked in code: the records of the traversal that the machines
-// share, bit for bit.
+// Tests the recorded conformance set with rays walked in code against the shared traversal, bit for bit.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstring>
 #include <iostream>
