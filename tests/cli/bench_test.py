@@ -1,4 +1,4 @@
-# Workloads by name, suites of them, their metrics, and the paper's statements. Runs the real binary.
+# Tests workloads by name, suites of them, their metrics, and the paper's statements with the real binary.
 # SPDX-License-Identifier: Apache-2.0
 """usage: bench_test.py GLINT SOURCE_DIR"""
 import csv
@@ -51,7 +51,7 @@ class Workloads(BenchTest):
         self.assertIn("--shader", self.glint(2, "run", "SHIP_AO", "--shader", "sh", *SMALL).stderr)
 
     def rays(self, *arguments):
-        """All rays, and those that may end at any hit."""
+        """Returns the numbers of all rays and of those that may end at any hit."""
         self.glint(0, "run", *arguments, *SMALL, "--out", "out")
         lines = self.glint(0, "stats", "out", "--format", "metrics").stdout.splitlines()
         values = {line.split()[0]: line.split()[1] for line in lines}
@@ -60,11 +60,11 @@ class Workloads(BenchTest):
     def test_the_counts_of_rays_are_those_of_the_options(self):
         self.assertEqual(self.rays("WKND_PT", "--bounces", "1"), (256, 0))
         three, six = self.rays("SHIP_AO", "--ao-rays", "3"), self.rays("SHIP_AO", "--ao-rays", "6")
-        self.assertEqual((three[0] - three[1], six[0] - six[1]), (256, 256))  # a primary ray a pixel
+        self.assertEqual((three[0] - three[1], six[0] - six[1]), (256, 256))  # one primary ray per pixel
         self.assertEqual((three[1] % 3, six[1]), (0, 2 * three[1]))
         self.assertGreater(three[1], 0)
         one, four = self.rays("SHIP_SH", "--shadow-rays", "1"), self.rays("SHIP_SH", "--shadow-rays", "4")
-        self.assertEqual((one[0] - one[1], four[1]), (256, 4 * one[1]))  # outdoors all go the same way
+        self.assertEqual((one[0] - one[1], four[1]), (256, 4 * one[1]))  # outdoors, all rays go the same way
 
 
 class Bench(BenchTest):
@@ -131,7 +131,7 @@ class Bench(BenchTest):
         for done in (model, report):
             self.assertRegex(done.stderr, "left out.*: SHIP_SH WKND_SH\n")
         facts = json.loads((self.folder / "b/SHIP_SH/run.json").read_text())
-        (self.folder / "b/SHIP_SH/run.json").write_text(json.dumps(facts | {"exit": 4}))  # one that failed spoils nothing
+        (self.folder / "b/SHIP_SH/run.json").write_text(json.dumps(facts | {"exit": 4}))  # a failed run must spoil nothing
         self.glint(0, "report", "b", "-o", "page.html")
         self.glint(0, "model", "b", "--statistics-only")
 
@@ -149,7 +149,7 @@ class Bench(BenchTest):
 
     def test_a_workload_that_fails_does_not_stop_the_others_and_the_exit_status_says_so(self):
         (self.folder / "out/SHIP_SH").mkdir(parents=True)
-        (self.folder / "out/SHIP_SH/stats.csv").mkdir()  # cannot be replaced by a file
+        (self.folder / "out/SHIP_SH/stats.csv").mkdir()  # a folder that no file can replace
         done = self.glint(1, "bench", "SHIP_SH", "WKND_SH", *SMALL, "--out", "out")
         self.assertIn("FAILED", done.stdout)
         self.assertIn("SHIP_SH", done.stderr)
@@ -179,7 +179,7 @@ class Bench(BenchTest):
 
 
 class Paper(unittest.TestCase):
-    """tools/check_paper.py on figures made for it."""
+    """Tests tools/check_paper.py on figures made for it."""
 
     def table(self, **changes):
         rows = []

@@ -1,4 +1,4 @@
-# `glint characterize`: its tables, the report's sections in a real browser, and what is refused.
+# Tests `glint characterize`: its tables, the report's sections in a real browser, and what is refused.
 # SPDX-License-Identifier: Apache-2.0
 """usage: characterize_test.py GLINT SOURCE_DIR SUITE...; the suite Browser needs Chromium and says so where there is none."""
 import csv
@@ -92,13 +92,13 @@ FIGURES = {"scree", "plane-1-2", "plane-3-4", "dendrogram", "kiviats", "model-cy
 
 
 def plain(text):
-    """A number as the page shows it."""
+    """Returns a number as the page shows it."""
     return float(text.replace("\u202f", "").replace("−", "-").removesuffix(" %"))
 
 
 class Report(Characterize):
     def make_suite(self):
-        """A folder as of a bench, but for its runs: metrics, models, characterisation."""
+        """Makes a folder like that of a bench without its runs: metrics, models, characterisation."""
         (self.folder / "suite").mkdir()
         shutil.copy(METRICS, self.folder / "suite")
         self.write("suite/models.csv", MODELS)
@@ -113,7 +113,7 @@ class Report(Characterize):
         return (self.folder / "page.html").read_text()
 
     def static_rows(self, page, kind):
-        """Cells of a table that reads without script."""
+        """Returns the cells of a table that reads without script."""
         found = re.findall(rf'<table class="metrics" data-table="{kind}">.*?<tbody>(.*?)</tbody>', page, re.S)
         self.assertEqual(len(found), 1, kind)
         return [[re.sub(r"<[^>]*>", "", cell) for cell in re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row)] for row in re.findall(r"<tr>.*?</tr>", found[0], re.S)]
@@ -146,7 +146,7 @@ class Page(Report):
         self.assertEqual(self.static_rows(page, "models")[0][2:], ["34.2 %", "0.92", "50.0 %", "A"])
 
     def same(self, shown, known):
-        """Four digits below 1000."""
+        """Returns a number with four digits below 1000."""
         for one, other in zip(shown, known, strict=True):
             self.assertAlmostEqual(one, other, delta=6e-4 * abs(other) + 1e-12)
 
@@ -200,7 +200,7 @@ class Page(Report):
 
 class Browser(Report):
     def load(self, *named):
-        """The page after its script has run, with all files that its figures hand out."""
+        """Returns the page after its script has run, with all files that its figures hand out."""
         keep = """
           const kept = {}, show = () => { document.body.dataset.kept = JSON.stringify(kept); };
           let last = null;
@@ -240,7 +240,7 @@ class Browser(Report):
         of = lambda name, *columns: [[float(row[column]) for column in columns] for row in self.table(name)]
         self.assertEqual([[float(row[1])] for row in rows["scree.csv"]], of("eigenvalues.csv", "eigenvalue"))
         for row, known in zip(rows["scree.csv"], self.table("eigenvalues.csv"), strict=True):
-            self.assertAlmostEqual(float(row[2]), float(known["share"]), places=14)  # a sum's last bit depends on its order
+            self.assertAlmostEqual(float(row[2]), float(known["share"]), places=14)  # the last bit of a sum depends on its order
         self.assertEqual(number(rows["plane-1-2.csv"], 3), of("scores.csv", "PC1", "PC2"))
         self.assertEqual(number(rows["plane-3-4.csv"], 3), of("scores.csv", "PC3", "PC4"))
         clusters = {row["workload"]: row["cluster"] for row in self.table("leaves.csv")}

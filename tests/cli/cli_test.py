@@ -1,4 +1,4 @@
-# What `glint` answers to good and bad input: exit codes, messages, files. Runs the real binary.
+# Tests what `glint` answers to good and bad input with the real binary: exit codes, messages, files.
 # SPDX-License-Identifier: Apache-2.0
 """usage: cli_test.py GLINT SOURCE_DIR [SUITE...]"""
 import json
@@ -15,7 +15,7 @@ SMALL = ["--size", "16x16", "--spp", "1"]
 
 class ShadersTest(GlintTest):
     def shaders_with(self, name, text):
-        """A copy of the path tracer in which one file is replaced; the copied includes lie beside it."""
+        """Makes a copy of the path tracer in which one file is replaced. The copied includes lie beside it."""
         shutil.copytree(ROOT / "shaders", self.folder / "shaders", dirs_exist_ok=True)
         folder = self.folder / "shaders/path_tracing"
         (folder / name).write_text(text)

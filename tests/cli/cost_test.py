@@ -1,4 +1,4 @@
-# What `glint run --heat --trace` leaves: maps of cost and traces that agree with the statistics. Runs the real binary.
+# Tests that the maps and traces of `glint run --heat --trace` agree with the statistics, with the real binary.
 # SPDX-License-Identifier: Apache-2.0
 """usage: cost_test.py GLINT SOURCE_DIR SUITE..."""
 import ast
@@ -24,7 +24,7 @@ CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shuti
 SMALL = ["--size", "24x16", "--spp", "1"]
 TIMED = ["cycles", "active_cycles", "l1_misses"]
 COUNTED = ["instructions", "rays", "nodes", "triangle_tests", "any_hit_calls", "intersection_calls"]
-# Statistics that are the sums of maps, of the timing machine and of the functional one.
+# These statistics of the timing machine and of the functional one are the sums of maps.
 SUMS = {"instructions": r"gpu\.core\[\d+\]\.lane_instructions", "rays": r"gpu\.rt_unit\[\d+\]\.rt\.rays", "nodes": r"gpu\.rt_unit\[\d+\]\.rt\.nodes",
         "triangle_tests": r"gpu\.rt_unit\[\d+\]\.rt\.triangle_tests", "any_hit_calls": r"gpu\.core\[\d+\]\.any_hit\.invocations",
         "intersection_calls": r"gpu\.core\[\d+\]\.intersection\.invocations", "l1_misses": r"gpu\.memory\.core\[\d+\]\.l1\.misses::(?!instruction|constant)\w+"}
@@ -44,7 +44,7 @@ class CostTest(GlintTest):
         return sum(found)
 
     def map_of(self, out, name):
-        """Rows of numbers of heat/NAME.npy, read as NumPy's format 1.0 says."""
+        """Returns the rows of numbers of heat/NAME.npy, read as NumPy's format 1.0 says."""
         data = (self.folder / out / "heat" / f"{name}.npy").read_bytes()
         self.assertEqual(data[:8], b"\x93NUMPY\x01\x00")
         length = struct.unpack("<H", data[8:10])[0]
@@ -200,7 +200,7 @@ class Trace(CostTest):
         events = [event for event in self.trace("out")["traceEvents"] if event["ph"] != "M"]
         self.assertEqual(len(events), about["events"])
         self.assertLessEqual(len(events), 4000)
-        # What is there is whole: the same slices as without a limit.
+        # The slices that exist are the same as without a limit.
         self.run_glint("window", "WKND", *SMALL, "--trace", "--trace-window", f":{about['end']}")
         self.assertEqual(self.slices("out"), self.slices("window"))
 

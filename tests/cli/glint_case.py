@@ -1,4 +1,4 @@
-# What all tests of the command share: the binary, a folder of one's own to run it in, and a look at what it says.
+# Shares with all tests of the command: the binary, a folder to run it in, and checks of what it says.
 # SPDX-License-Identifier: Apache-2.0
 """For scripts that are called with GLINT SOURCE_DIR [SUITE...]."""
 import base64
@@ -23,19 +23,19 @@ class GlintTest(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
 
     def write(self, name, text):
-        """Writes a file of the test's folder, and gives its name."""
+        """Writes a file into the test's folder and returns its name."""
         path = self.folder / name
         path.parent.mkdir(exist_ok=True)
         path.write_text(text)
         return name
 
     def glint(self, *arguments, text=True, **environment):
-        """Runs glint in the test's folder; what it says comes as bytes with text=False."""
+        """Runs glint in the test's folder. Its output is bytes with text=False."""
         return subprocess.run([GLINT, *map(str, arguments)], capture_output=True, text=text, cwd=self.folder, timeout=300,
                               env={**os.environ, **environment})
 
     def expect(self, code, parts, *arguments):
-        """Runs glint; it must exit with `code` and say every one of `parts` on stderr."""
+        """Runs glint, which must exit with `code` and say every one of `parts` on stderr."""
         done = self.glint(*arguments)
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
         for part in parts:
@@ -44,7 +44,7 @@ class GlintTest(unittest.TestCase):
 
 
 def read_png(path):
-    """Width, height and the bytes of an 8-bit RGB image (PNG specification: chunks and filters)."""
+    """Returns width, height and the bytes of an 8-bit RGB image (PNG specification: chunks and filters)."""
     data, at, packed, width, height = path.read_bytes(), 8, b"", 0, 0
     while at < len(data):
         length, kind = struct.unpack(">I4s", data[at:at + 8])
@@ -67,7 +67,7 @@ def read_png(path):
 
 
 def page_document(page):
-    """What a report holds, packed, as its script reads it: statistics, metrics, configuration and pictures run by run (docs/report.md)."""
+    """Returns what a report holds, as its script reads it: statistics, metrics, configuration and pictures run by run (docs/report.md)."""
     data = json.loads(zlib.decompress(base64.b64decode(re.search(r'<script type="text/plain" id="data">([^<]*)</script>', page).group(1))))
     at = lambda column, i: column[0 if len(column) == 1 else i]
     for i, run in enumerate(data["runs"]):
@@ -88,7 +88,7 @@ def page_document(page):
 
 
 def slices(columns):
-    """Rows of a timeline: begins are counted from the end of the one before, of the same kind and thread."""
+    """Returns the rows of a timeline, in which begins are counted from the end of the row before of the same kind and thread."""
     rows, ends = [], {}
     for thread, kind, gap, length, *rest in zip(*columns):
         begin = ends.get((kind, thread), 0) + gap
@@ -98,7 +98,7 @@ def slices(columns):
 
 
 def quotient(over, under):
-    """Instance by instance, 0 where the second is 0; the number 0 stands for 0 in all of them."""
+    """Returns the quotients instance by instance, with 0 where the second is 0. The number 0 stands for 0 in all instances."""
     if 0 in (over, under):
         return 0
     count = max(len(over), len(under))
@@ -108,13 +108,13 @@ def quotient(over, under):
 
 
 def reader():
-    """The page's own reader of its document, as a script: it has the function readDocument()."""
+    """Returns the page's own reader of its document as a script, which has the function readDocument()."""
     parts = [(ROOT / "web/src" / name).read_text() for name in ("packed.js", "document.js")]
     return "".join(parts).replace("export ", "").replace('import { unpacked } from "./packed.js";', "")
 
 
 def when_ready(page, script):
-    """The report with a script of a test in it, which runs after the page's own."""
+    """Returns the report with a script of a test in it, which runs after the page's own."""
     wait = f'const go = () => {{ {script} }}; const wait = () => (document.documentElement.dataset.ready === "yes" ? go() : setTimeout(wait, 20)); wait();'
     return page.replace("</body>", f"<script>(() => {{ {wait} }})();</script></body>")
 

@@ -1,10 +1,10 @@
-# Configurations that cannot be: each is refused at the line of a key that makes it so, before anything runs. Runs the real binary.
+# Tests with the real binary that impossible configurations are refused at the line of a key that causes it, before anything runs.
 # SPDX-License-Identifier: Apache-2.0
 """usage: impossible_test.py GLINT SOURCE_DIR"""
 import glint_case
 from glint_case import GlintTest
 
-# Text of a configuration, the line that is to be named, and what has to be said.
+# Each entry has the text of a configuration, the line that must be named, and what must be said.
 WRONG = [
     ("cores = 0", 1, "'cores' is 0, expected 1 to 256 core"),
     ("clock_mhz = -5.0", 1, "'clock_mhz' is -5, expected 1 to 10000 MHz"),

@@ -1,4 +1,4 @@
-# `glint run` of PTX kernels: results on both machines, and what is said of mistakes. Runs the real binary.
+# Tests `glint run` of PTX kernels with the real binary: results on both machines, and what is said of mistakes.
 # SPDX-License-Identifier: Apache-2.0
 """usage: kernel_test.py GLINT SOURCE_DIR"""
 import re

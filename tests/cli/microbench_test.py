@@ -1,4 +1,4 @@
-# `glint microbench` on configurations other than the one it is compared with: what it measures is theirs, and what does not fit is said.
+# Tests that `glint microbench` measures configurations other than the reference, and says what does not fit.
 # SPDX-License-Identifier: Apache-2.0
 """usage: microbench_test.py GLINT SOURCE_DIR"""
 import glint_case
@@ -7,7 +7,7 @@ from glint_case import GlintTest
 
 class Microbench(GlintTest):
     def measure(self, *arguments):
-        """Values by name and parameter, None for '-'; and what stands on stderr."""
+        """Returns the values by name and parameter, with None for '-', and the text of stderr."""
         done = self.glint("microbench", *arguments)
         self.assertEqual(done.returncode, 0, done.stderr)
         lines = done.stdout.splitlines()

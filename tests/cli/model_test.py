@@ -1,4 +1,4 @@
-# `glint model`: predictions beside simulated cycles, with their inputs, and what it refuses.
+# Tests `glint model`: predictions beside simulated cycles, with their inputs, and what it refuses.
 # SPDX-License-Identifier: Apache-2.0
 """usage: model_test.py GLINT SOURCE_DIR"""
 import csv

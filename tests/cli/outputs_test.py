@@ -1,4 +1,4 @@
-# What is left when a run or a write fails: nothing old, nothing half, and never exit code 0. Runs the real binary.
+# Tests with the real binary that a failed run or write leaves nothing old and nothing half, and never exits with 0.
 # SPDX-License-Identifier: Apache-2.0
 """usage: outputs_test.py GLINT SOURCE_DIR"""
 import json
@@ -27,7 +27,7 @@ class Outputs(GlintTest):
         return sorted(path.name for path in (self.folder / folder).iterdir())
 
     def limited(self, most, *arguments):
-        """Runs glint where no file can grow beyond `most` bytes, as on a full disk (Python ignores SIGXFSZ, and the child with it)."""
+        """Runs glint where no file can grow beyond `most` bytes, as on a full disk. (Python ignores SIGXFSZ, and so does its child.)"""
         return subprocess.run([GLINT, *arguments], capture_output=True, text=True, cwd=self.folder, timeout=300, restore_signals=False,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most)))
 
@@ -38,7 +38,7 @@ class Outputs(GlintTest):
         self.assertEqual(self.left("run"), ["config.toml", "run.json"])
         readers = [["compare", "base", "run", "--fail-on", "cycles>1%"], ["imgdiff", "base", "run"], ["annotate", "run"], ["model", "run"], ["report", "run"],
                    *(["stats", "run", "--format", form] for form in ("txt", "csv", "json", "metrics", "vulkan-sim"))]
-        shutil.copytree(self.folder / "base", self.folder / "run", dirs_exist_ok=True, ignore=lambda *_: ["run.json"])  # as older versions left it
+        shutil.copytree(self.folder / "base", self.folder / "run", dirs_exist_ok=True, ignore=lambda *_: ["run.json"])  # as older versions left the folder
         for reader in readers:
             with self.subTest(reader=reader):
                 self.expect(2, ["run.json", "the run failed", "no end in sight"], *reader)
@@ -104,7 +104,7 @@ class Outputs(GlintTest):
             self.assertIn(done.returncode, code)
 
     def test_of_an_option_given_twice_the_last_one_counts(self):
-        """As the command of ./demo is called with options of one's own."""
+        """Runs the command of ./demo with further options."""
         line = next(line for line in (ROOT / "demo").read_text().splitlines() if "/glint run " in line and not line.startswith("step"))
         arguments = line.split()[1:-1]
         self.assertIn("--size", arguments)

@@ -1,4 +1,4 @@
-# `glint run FILE.toml`, `glint run SHADER` and `glint init`: examples, defaults, inputs, outputs, and every kind of mistake.
+# Tests `glint run FILE.toml`, `glint run SHADER` and `glint init`: examples, defaults, inputs, outputs, and all kinds of mistakes.
 # SPDX-License-Identifier: Apache-2.0
 """usage: pipeline_test.py GLINT SOURCE_DIR [SUITE...]"""
 import base64
@@ -14,7 +14,7 @@ PICTURES = ["mandelbrot", "hello_triangle", "spheres", "cutout", "materials", "a
 
 
 def npy(path):
-    """Header text and bytes of a NumPy file."""
+    """Returns header text and bytes of a NumPy file."""
     data = path.read_bytes()
     assert data[:8] == b"\x93NUMPY\x01\x00", data[:8]
     length = struct.unpack("<H", data[8:10])[0]
@@ -32,7 +32,7 @@ class PipelineTest(GlintTest):
         shutil.copytree(ROOT / "examples" / example, self.folder, dirs_exist_ok=True)
 
     def edit(self, *changes):
-        """The example's file with texts replaced; each must be there."""
+        """Returns the example's file with texts replaced, each of which must exist."""
         text = (self.folder / "pipeline.toml").read_text()
         for old, new in changes:
             self.assertIn(old, text)
@@ -173,7 +173,7 @@ class Inputs(PipelineTest):
             return
         self.assertEqual(done.returncode, 0, done.stderr)
         found, wanted = glint_case.read_png(self.folder / "out/picture.png")[2], glint_case.read_png(ROOT / "docs/images/example_hello_triangle.png")[2]
-        self.assertLess(sum(abs(a - b) > 1 for a, b in zip(found, wanted)), 3 * 128)  # corners round differently: some edge pixels
+        self.assertLess(sum(abs(a - b) > 1 for a, b in zip(found, wanted)), 3 * 128)  # corners round differently, so some edge pixels differ
 
 
 class Defaults(PipelineTest):

@@ -1,4 +1,4 @@
-# What `glint run --profile --sample` leaves, and what `glint annotate` shows of it. Runs the real binary.
+# Tests with the real binary what `glint run --profile --sample` leaves, and what `glint annotate` shows of it.
 # SPDX-License-Identifier: Apache-2.0
 """usage: profile_test.py GLINT SOURCE_DIR"""
 import csv
@@ -45,9 +45,9 @@ class Profile(GlintTest):
         self.assertAlmostEqual(sum(shares), 100.0, delta=1.0)
 
     def figures(self, *options):
-        """The first column of `glint annotate`, added up."""
+        """Returns the sum of the first column of `glint annotate`."""
         shown = self.glint(0, "annotate", "out", *options).stdout
-        # Lines that did not run have their number alone.
+        # Lines that did not run have only their number.
         return sum(int(n.replace(" ", "")) for n in re.findall(r"(?m)^ *(\d{1,3}(?: \d{3})*)  +(?:\d+  |\d+$|\()", shown[shown.index("issues"):]))
 
     def test_every_view_adds_up_to_the_statistics(self):

@@ -1,4 +1,4 @@
-# `glint report` in a real browser: its page loads without a word on the console, draws, and shows the numbers of stats.json.
+# Tests `glint report` in a real browser: its page loads without a word on the console, draws, and shows the numbers of stats.json.
 # SPDX-License-Identifier: Apache-2.0
 """usage: report_browser_test.py GLINT SOURCE_DIR; needs Chromium and says so where there is none."""
 import csv
@@ -18,7 +18,7 @@ from report_case import SMALL, Elements, ReportTest, leaves
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 
-# Presses all buttons below figures; data-kept of the body gets what they save.
+# This script presses all buttons below figures. data-kept of the body gets what they save.
 HAND_OUT = """
   const kept = {};
   let last = null;
@@ -30,7 +30,7 @@ HAND_OUT = """
 
 class Browser(ReportTest):
     def load(self, *names, script=""):
-        """The page's document after its script has run, and then `script`; the console must have said nothing."""
+        """Returns the page's document after its script and then `script` have run. The console must have said nothing."""
         page = self.report(*names)
         self.write("report.html", glint_case.when_ready(page, script))
         done = subprocess.run(
@@ -79,7 +79,7 @@ class Browser(ReportTest):
         self.stages_equal_stats(figures["stages"], name)
 
     def stages_equal_stats(self, figure, name):
-        """Counts and latencies of every stage and class, and what they add up to."""
+        """Counts and latencies of every stage and class have the sums of the whole."""
         rows = {stage: [float(value) for value in re.findall(r'data-value="([^"]*)"', row)] for stage, row in re.findall(r'<tr><th scope="row">([^<]*)</th>(.*?)</tr>', figure, re.S)}
         self.assertEqual(list(rows), ["ray generation", "intersection", "closest hit", "miss"])
         for shown, stage in zip(rows, ("raygen", "intersection", "closest_hit", "miss")):
@@ -178,7 +178,7 @@ class Browser(ReportTest):
         self.assertNotIn('<figure id="geometry"', text)  # one scene, the same structures
 
     def test_configurations_are_told_apart_by_every_key_and_compared_for_the_same_work_only(self):
-        """Copies of one run: three keys changed step by step, a run of another size, and the same run twice."""
+        """Tests copies of one run: three keys changed step by step, a run of another size, and the same run twice."""
         keys = ["requests_per_cycle", "request_bytes", "retires_per_cycle"]
         for copy, changed in {"one": 1, "two": 2, "three": 3, "large": 0, "again": 0}.items():
             shutil.copytree(self.runs["wknd"], self.folder / copy)

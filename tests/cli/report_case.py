@@ -1,4 +1,4 @@
-# What the tests of `glint report` share: two runs, the page of them, and its elements.
+# Shares with the tests of `glint report`: two runs, the page of them, and its elements.
 # SPDX-License-Identifier: Apache-2.0
 import html.parser
 import json
@@ -14,7 +14,7 @@ SMALL = ["--size", "16x16", "--spp", "1"]
 
 
 def leaves(tree, path=""):
-    """(pattern, instance, value) of every number of stats.json; a histogram is one value."""
+    """Yields (pattern, instance, value) of every number of stats.json. A histogram is one value."""
     for name, child in tree.items():
         here = f"{path}.{name}" if path else name
         if not isinstance(child, dict):
@@ -36,7 +36,7 @@ def trimmed(bins):
 
 
 class Elements(html.parser.HTMLParser):
-    """Attributes and text of elements, in order."""
+    """Collects attributes and text of elements, in order."""
 
     def __init__(self, text):
         super().__init__()
@@ -88,7 +88,7 @@ class ReportTest(GlintTest):
         return json.loads(pathlib.Path(self.runs[name], "stats.json").read_text())
 
     def equal_to_stats_json(self, stats, name):
-        """How many numbers there are; `stats`: of the page, path by path."""
+        """Returns how many numbers there are. `stats` are those of the page, path by path."""
         count = 0
         for path, instance, value in leaves(self.stats(name)):
             there = stats[path] if stats[path] == 0 else stats[path][instance]

@@ -1,4 +1,4 @@
-# `glint report`, `compare` and `imgdiff` by what they write: the page is whole, loads nothing from elsewhere, and holds the numbers of stats.json.
+# Tests what `glint report`, `compare` and `imgdiff` write: the page is whole, loads nothing from elsewhere, and holds the numbers of stats.json.
 # SPDX-License-Identifier: Apache-2.0
 """usage: report_test.py GLINT SOURCE_DIR SUITE..."""
 import csv
@@ -220,7 +220,7 @@ class Compare(ReportTest):
         self.expect(2, ["stats.csv"], "imgdiff", f"{self.runs['wknd']}/stats.csv", self.runs["slow"])
 
     def pfm(self, name, *pixels):
-        """Of 16 by 12 pixels: black but for the first ones."""
+        """Makes a picture of 16 by 12 pixels that is black except for the first ones."""
         values = [channel for pixel in pixels for channel in pixel] + [0] * (576 - 3 * len(pixels))
         (self.folder / name).write_bytes(b"PF\n16 12\n-1.0\n" + b"".join(struct.pack("<48f", *values[y * 48 : y * 48 + 48]) for y in reversed(range(12))))
         return name

@@ -1,4 +1,4 @@
-# Rules of ray tracing and inputs and outputs of pipeline files, on scenes that a file describes, through the real binary on both machines.
+# Tests rules of ray tracing, and inputs and outputs of pipeline files, on scenes that a file describes, with the real binary on both machines.
 # SPDX-License-Identifier: Apache-2.0
 """usage: rules_test.py GLINT SOURCE_DIR [SUITE...]"""
 import json
@@ -35,7 +35,7 @@ void main() { payload = vec4(gl_HitTEXT, gl_HitKindEXT, gl_InstanceID * 100 + gl
     "large.rchit": HEAD + "layout(location = 0) rayPayloadInEXT vec4 payload[2];\nvoid main() { payload[1] = vec4(1.0); }\n",
 }
 DOWN = ((0, 0, 1), (0, 0, -1))  # meets the triangle at 1
-# Seen from above in the left-handed space of Vulkan's rule: clockwise.
+# It is clockwise, seen from above in the left-handed space of Vulkan's rule.
 TRIANGLE = "vertices = [[-1, -1, 0], [1, -1, 0], [0, 1, 0]]"
 LEVEL = '[[bottom_level]]\nname = "{name}"\n[[bottom_level.geometry]]\n{geometry}\n'
 HIT = '[[hit]]\nclosest_hit = "probe.rchit"\ndata = {{ tag = {tag} }}\n'
@@ -56,7 +56,7 @@ class RulesTest(GlintTest):
         return [float(v) for v in (self.folder / "out" / name).read_text().split()[1:]]
 
     def shoot(self, instances="", flags=0, mask=255, offset=0, stride=0, miss=0, ray=DOWN, ends=((0, 100),), hits=HIT.format(tag=7), geometry=TRIANGLE, more="", table=""):
-        """What the payload holds after each ray: (t, kind, 100 instance + 10 geometry + primitive, the record's tag)."""
+        """Returns what the payload holds after each ray: (t, kind, 100 instance + 10 geometry + primitive, the record's tag)."""
         rays = ", ".join(f"{v}" for low, high in ends for v in (*ray[0], low, *ray[1], high))
         text = f'[raygen]\nshader = "probe.rgen"\n[[miss]]\nshader = "probe.rmiss"\n[[miss]]\nshader = "other.rmiss"\n{hits}[launch]\nsize = [{len(ends)}]\n{table}' \
                f'[push_constants]\nflags = {flags}\nmask = {mask}\noffset = {offset}\nstride = {stride}\nmiss = {miss}\n' \
@@ -131,7 +131,7 @@ class Rays(RulesTest):
                 found = self.shoot(instance(f"sbt_offset = {base}"), offset=offset, stride=stride, hits=hits, geometry=two)
                 self.assertEqual(found, [(0.75, FRONT, 10, 10 + record)])
         found = self.shoot(instance("sbt_offset = 3"), offset=2, stride=1, hits=hits, geometry=two, table="[table]\nhit_stride = 0\n")
-        self.assertEqual(found, [(0.75, FRONT, 10, 10)])  # a stride of 0: the first record, whatever the index
+        self.assertEqual(found, [(0.75, FRONT, 10, 10)])  # a stride of 0 means the first record, whatever the index
 
     def test_the_miss_record_is_that_of_the_low_16_bits(self):
         beside = ((5, 5, 1), (0, 0, -1))
@@ -153,7 +153,7 @@ class Rays(RulesTest):
 
 
 def glb(corners):
-    """A binary glTF file of one triangle list."""
+    """Returns a binary glTF file of one triangle list."""
     data = struct.pack(f"<{len(corners)}f", *corners)
     text = json.dumps({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
                        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "buffers": [{"byteLength": len(data)}],
@@ -178,7 +178,7 @@ class Files(RulesTest):
         self.assertEqual(found, [(0.75, FRONT, 0, 7)])
 
     def test_an_hdr_picture_keeps_numbers_above_1_and_goes_out_as_pfm_raw_npy_and_csv(self):
-        # Radiance: 4 x 1 flat pixels of shared exponent; 128 * 2^(e - 136) each.
+        # The Radiance file has 4 x 1 flat pixels of shared exponent, of 128 * 2^(e - 136) each.
         texels = bytes([128, 64, 32, 129, 128, 128, 128, 133, 255, 0, 0, 128, 0, 0, 0, 0])
         (self.folder / "sky.hdr").write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 4\n" + texels)
         look = "#version 460\nlayout(local_size_x = 4) in;\nlayout(binding = 0) uniform sampler2D t;\nlayout(binding = 1, rgba32f) uniform image2D o;\n" \

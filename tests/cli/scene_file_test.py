@@ -1,4 +1,4 @@
-# Scenes of the user's own files: glTF with its nodes, materials, camera and lamp; OBJ; instances of copies.
+# Tests scenes of the user's own files: glTF with its nodes, materials, camera and lamp; OBJ; instances of copies.
 # SPDX-License-Identifier: Apache-2.0
 """usage: scene_file_test.py GLINT SOURCE_DIR"""
 import base64
@@ -12,11 +12,11 @@ import unittest
 import zlib
 
 GLINT = pathlib.Path(sys.argv[1]).resolve()
-RED, GREEN = 0, 1  # materials of the glTF files here: they glow
+RED, GREEN = 0, 1  # materials of the glTF files here, which glow
 
 
 def png(rows):
-    """A picture of rows of (r, g, b, a)."""
+    """Returns a picture of rows of (r, g, b, a)."""
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
     texels = b"".join(b"\0" + bytes(sum(row, ())) for row in rows)
@@ -29,7 +29,7 @@ def uri(data, kind="application/octet-stream"):
 
 
 def gltf(nodes, **more):
-    """Unit squares in x and y around the origin, facing +z: mesh i has material i. Seen by a camera at z = 4 unless `nodes` have one."""
+    """Returns unit squares in x and y around the origin that face +z. Mesh i has material i. A camera at z = 4 sees them unless `nodes` have one."""
     corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
     positions = b"".join(struct.pack("<3f", x, y, 0) for x, y in corners)
     coordinates = b"".join(struct.pack("<2f", 2 * (x + 0.5), y + 0.5) for x, y in corners)  # u to 2: the texture twice
@@ -62,7 +62,7 @@ class SceneFiles(unittest.TestCase):
         return subprocess.run([GLINT, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, timeout=120)
 
     def render(self, name, text=None, *more):
-        """The picture as rows of (r, g, b) in 0 to 255, 32 x 32, and run.json."""
+        """Returns the picture as rows of (r, g, b) in 0 to 255, 32 x 32, and run.json."""
         if text:
             (self.folder / name).write_text(text)
         done = self.glint("run", name, "--mode", "functional", "--size", "32x32", "--spp", "1", "--out", "out", *more)
@@ -113,7 +113,7 @@ class SceneFiles(unittest.TestCase):
         self.assertEqual((run["scene"]["form"], run["scene"]["triangles"]), ("file", 6))
 
     def test_a_turned_and_unevenly_scaled_square_is_lit_as_its_normal_says(self):
-        # Shadows: a surface whose normal points up sees the sky's light above it, one that points down does not.
+        # A surface whose normal points up sees the sky's light above it, and one that points down does not.
         grey = {"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1], "metallicFactor": 0}}
         tilt = {"mesh": 0, "rotation": [-0.5, 0, 0, 0.8660254], "scale": [1, 3, 1]}  # 60 degrees: the normal is up and towards the camera
         up, _ = self.render("up.gltf", gltf([tilt, CAMERA], materials=[grey]), "--shader", "sh")
@@ -130,7 +130,7 @@ class SceneFiles(unittest.TestCase):
         row = [green for _, green, _ in picture[16]]
         inside = row[5:27]  # what the square covers
         edges = [x for x in range(1, len(inside)) if (inside[x] == 255) != (inside[x - 1] == 255)]
-        # Twice not masked, twice masked: the texture lies there two times; and the filter's half of the first column at the right edge.
+        # The texture lies there two times, so the row is twice not masked and twice masked. The filter adds half of the first column at the right edge.
         self.assertEqual(len(edges), 4, row)
 
     def test_a_point_light_is_a_lamp_and_takes_the_skys_place(self):
@@ -164,7 +164,7 @@ class SceneFiles(unittest.TestCase):
         (self.folder / "body.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
         alone, run = self.render("body.obj", None, "--shader", "ao")
         again, same = self.render("body.obj", None, "--shader", "ao", "--instancing")
-        self.assertEqual(alone, again)  # one model: nothing to share
+        self.assertEqual(alone, again)  # one model has nothing to share
         self.assertEqual(run["scene"]["hash"], same["scene"]["hash"])
         self.assertEqual(run["scene"]["triangles"], 4)
 

@@ -1,4 +1,4 @@
-# Shaders through the command: what they print, the cache, contraction, and the forms that `compile` emits.
+# Tests shaders through the command: what they print, the cache, contraction, and the forms that `compile` emits.
 # SPDX-License-Identifier: Apache-2.0
 """usage: shader_test.py GLINT SOURCE_DIR [SUITE...]"""
 import json

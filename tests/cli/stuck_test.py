@@ -1,4 +1,4 @@
-# Programs that never end: which exit code, and who is said to wait for whom. Runs the real binary.
+# Tests with the real binary which exit code programs have that never end, and who is said to wait for whom.
 # SPDX-License-Identifier: Apache-2.0
 """usage: stuck_test.py GLINT SOURCE_DIR"""
 import json
@@ -32,7 +32,7 @@ WAIT_AT_BARRIER = PTX.replace("BODY", """  setp.ge.u32 %p1, %r1, 64;
   @%p1 bra DONE;
   bar.sync 1, 128;
 DONE:""")
-# A lock that nobody gives back: whoever has it ends with it.
+# Nobody gives this lock back: whoever has it ends with it.
 SPIN_LOCK = PTX.replace("BODY", """  setp.ne.u32 %p1, %r1, 0;
   @%p1 bra DONE;
 TRY:
@@ -40,7 +40,7 @@ TRY:
   setp.ne.u32 %p2, %r2, 0;
   @%p2 bra TRY;
 DONE:""")
-# Two blocks that wait for each other's flag, set too late.
+# These two blocks wait for each other's flag, which is set too late.
 EACH_OTHER = PTX.replace("BODY", """  mov.u32 %r2, %ctaid.x;
   xor.b32 %r3, %r2, 1;
   mul.wide.u32 %rd2, %r3, 4;
@@ -74,7 +74,7 @@ class Stuck(GlintTest):
             said = self.run_kernel(5, ["the machine is stuck", "nothing in memory has changed", "k.ptx:", "byte 0 of 'lock'", "core.livelock_budget"],
                                    SPIN_LOCK, 3, 32, "--set", f"cores={cores}", *SOON)
             waiting = re.findall(r"(?m)^  warps? ([\d, ]+): .*last access: byte 0 of 'lock'", said)
-            self.assertEqual(len(", ".join(waiting).split(", ")), 2, said)  # of three warps one had the lock
+            self.assertEqual(len(", ".join(waiting).split(", ")), 2, said)  # one of the three warps had the lock
 
     def test_two_blocks_that_wait_for_each_other_exit_with_5_and_each_names_the_others_word(self):
         said = self.run_kernel(5, ["warp 0: at k.ptx:", "warp 1: at k.ptx:"], EACH_OTHER, 2, 32, *SOON)

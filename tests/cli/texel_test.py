@@ -1,4 +1,4 @@
-# Images of a pipeline file whose texels stand in the file itself: every shape, any binding, and mistakes.
+# Tests images whose texels are in the pipeline file itself: every shape, any binding, and mistakes.
 # SPDX-License-Identifier: Apache-2.0
 """usage: texel_test.py GLINT SOURCE_DIR"""
 import glint_case

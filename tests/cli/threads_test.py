@@ -1,4 +1,4 @@
-# `--threads N`: the same bytes of every file for any N. Runs the real binary.
+# Tests with the real binary that `--threads N` gives the same bytes of every file for any N.
 # SPDX-License-Identifier: Apache-2.0
 """usage: threads_test.py GLINT SOURCE_DIR"""
 import json
