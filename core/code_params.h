@@ -11,8 +11,8 @@
 
 namespace glint::core {
 
-inline constexpr uint32_t kInstructionBytes =
-    16;  // Volta and later: 128-bit instructions (Jia et al. 2018, section 2.1)
+// Volta and later have 128-bit instructions (Jia et al. 2018, section 2.1).
+inline constexpr uint32_t kInstructionBytes = 16;
 inline constexpr uint32_t kMaxPrefetch = 32;
 
 // Holds the parameters of the schedulers' instruction caches. Defaults: "Analyzing Modern NVIDIA GPU cores",

@@ -14,18 +14,19 @@ namespace glint::core {
 // named.
 struct ThreadCost {
   uint32_t cycles = 0;  // from the thread's first instruction to its last
-  uint32_t active_cycles =
-      0;  // of them, those after an instruction that it executed, up to the next of its warp
+  // Cycles from an instruction that the thread executed to the next one of its warp.
+  uint32_t active_cycles = 0;
   uint32_t instructions = 0;        // executed instructions: core.lane_instructions
   uint32_t rays = 0;                // rt_unit.rays
   uint32_t nodes = 0;               // rt_unit.nodes
   uint32_t triangle_tests = 0;      // rt_unit.triangle_tests
   uint32_t any_hit_calls = 0;       // core.any_hit.invocations
   uint32_t intersection_calls = 0;  // core.intersection.invocations
-  double slots =
-      0;  // lane slots, 32 for each instruction, shared among those that execute it: core.lane_slots
-  double l1_misses =
-      0;  // l1.misses without those of instructions and constants, each shared among the lanes that it is for
+  // Lane slots, 32 for each instruction, shared among the lanes that execute it: core.lane_slots.
+  double slots = 0;
+  // Value of l1.misses without those of instructions and constants. Each miss is shared among the lanes that
+  // it is for.
+  double l1_misses = 0;
 };
 
 // Holds the costs of all threads of a launch, z slowest. Cores write only to the threads that they run, so
@@ -66,8 +67,8 @@ class CostRecorder final : public CoreObserver {
  private:
   struct Slot {
     uint32_t warp_index = 0;
-    LaneMask present = 0, started = 0,
-             last = 0;  // lanes that came to an instruction; have executed one; executed the last one
+    // Lanes that came to an instruction, that have executed one, and that executed the last one.
+    LaneMask present = 0, started = 0, last = 0;
     Cycle last_issue = 0;
     std::array<Cycle, kLanes> first{}, end{};
     std::array<uint32_t, kLanes> nodes{}, triangle_tests{};  // of the rays under way, at their start

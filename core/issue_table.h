@@ -33,8 +33,8 @@ enum class Finish : uint8_t {
 };
 
 struct IssueRow {
-  uint32_t first_use =
-      0;  // index into IssueTable's list of registers that have to be ready, the destinations last
+  // Index into IssueTable's list of registers that have to be ready, the destinations last.
+  uint32_t first_use = 0;
   uint8_t num_uses = 0;  // including the destinations
   uint8_t num_defs = 0;
   Pipe pipe = Pipe::Int;

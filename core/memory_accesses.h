@@ -18,8 +18,8 @@ class MemoryAccesses {
     Lsu& lsu;
     LocalLayout local;       // layout of the core's lanes' stacks
     rt::TableLayout tables;  // layout of the candidates of the core's rays
-    Cycle turn =
-        0;  // length of the turns after which other cores see what this one wrote; 0: there are no others
+    // Length of the turns after which other cores see what this one wrote. 0: there are no others.
+    Cycle turn = 0;
   };
   MemoryAccesses(const CoreParts& core, const Context& context);
 

@@ -16,8 +16,8 @@ namespace glint::core {
 struct OpTime {
   std::string_view name;  // name of an op; one '*' stands for any text
   uint32_t latency = 1;   // cycles from issue to the issue of a dependent instruction
-  double interval =
-      1;  // cycles from issue to the next issue on the pipe, on average: a multiple of 1 / kParts
+  // Mean cycles from issue to the next issue on the pipe, a multiple of 1 / kParts.
+  double interval = 1;
   isa::Unit pipe = isa::Unit::Count;  // the unit on whose pipe it runs; Count: its own unit
   bool alternates = false;  // it alternates between pipes, so that `latency` includes their crossing
   uint32_t issues = 1;      // machine instructions that make up the op: issue slots, spread over the latency

@@ -22,8 +22,8 @@ namespace glint::core {
 inline constexpr uint32_t kMaxWarps = 64;  // most resident warps of a core (GA100, GH100)
 inline constexpr uint32_t kMaxSchedulers = 8;
 inline constexpr uint32_t kMaxRegisterBanks = 8;
-inline constexpr uint32_t kRegisterUnit =
-    8;  // registers of a lane are given out in eights (CUDA occupancy tables)
+// Registers of a lane are given out in eights (CUDA occupancy tables).
+inline constexpr uint32_t kRegisterUnit = 8;
 
 struct UnitParams {
   uint32_t latency = 4;   // cycles from issue to the first cycle in which a dependent instruction can issue
@@ -294,8 +294,8 @@ struct Params {
   SharedParams shared;
   FenceParams fence;
   PrologueParams prologue;
-  bool ends_when_written =
-      false;  // hardware: true; false: the launch ends when its last write has left its core
+  // Hardware has true. With false, the launch ends when its last write has left its core.
+  bool ends_when_written = false;
   uint32_t launch_latency = 5000;  // Vulkan-Sim, -gpgpu_kernel_launch_latency
   uint32_t warp_launch_latency = 0;
   uint32_t block_interval = 1;  // GPGPU-Sim and Accel-Sim: a core takes one block a cycle (issue_block2core)

@@ -158,8 +158,8 @@ class Scheduler {
   std::array<Cycle, kNumPipes> pipe_busy_{};           // when the pipe has finished, in parts of a cycle
 
   Cycle sleep_until_ = 0;
-  bool watches_rt_ = false,
-       watches_lsu_ = false;  // doors that were full; lsu: either queue of the load-store unit
+  // Doors that were full. The second stands for both queues of the load-store unit.
+  bool watches_rt_ = false, watches_lsu_ = false;
   uint64_t lsu_vacated_ = 0;  // Lsu::num_vacated() when the doors were looked at
   Stall reason_ = Stall::NoWarp;
   std::unique_ptr<IssueScheduler> policy_;

@@ -42,8 +42,8 @@ std::string describe_warp(const WarpSlot& slot, uint32_t accesses, const exec::W
 }  // namespace
 
 std::string describe_warps(const WarpSlots& warps, const MemoryAccesses& memory, const exec::World& world) {
-  std::vector<std::pair<std::string, std::vector<uint64_t>>>
-      groups;  // texts, each with the warps that it is about
+  // Each text has the warps that it is about.
+  std::vector<std::pair<std::string, std::vector<uint64_t>>> groups;
   for (uint32_t slot = 0; slot < warps.size(); ++slot) {
     if (!warps.is_resident(slot)) continue;
     std::string text = describe_warp(warps[slot], memory.in_flight(slot), world);

@@ -34,8 +34,8 @@ struct Shader {
   uint32_t local_bytes = 0;
   isa::SpecialSet specials_used;
   std::vector<isa::ParsedMessage> messages;  // messages of print and print.part, by number
-  bool uses_ray = false,
-       uses_matrices = false;  // reads %payload or what follows; %object.origin or what follows
+  // The shader reads %payload or what follows it, and %object.origin or what follows it.
+  bool uses_ray = false, uses_matrices = false;
 };
 
 // Frees rows of 32 lanes. They are aligned to cache lines, as the handlers' vector loads need, and not
@@ -70,8 +70,8 @@ struct HitGroup {
   uint32_t closest_hit = kNoShader, any_hit = kNoShader, intersection = kNoShader;
 };
 
-inline constexpr uint32_t kHandleBytes =
-    32;  // of a group, at the start of a record: the published drivers' shaderGroupHandleSize
+// The handle of a group, at the start of a record, has the published drivers' shaderGroupHandleSize.
+inline constexpr uint32_t kHandleBytes = 32;
 
 // Holds the records of one kind in the shader binding table (VkStridedDeviceAddressRegionKHR). With stride 0,
 // every index means the first record.
@@ -119,8 +119,8 @@ struct World {
   TraversalCode traversal;                        // empty: the RT unit walks rays
   uint32_t local_bytes = 0;                       // bytes of a lane's stack and of what `traversal` needs
   uint32_t max_trace_depth = 1;                   // nested rt.trace (Vulkan's recursion depth)
-  uint32_t max_callable_depth =
-      31;  // nested executeCallableEXT. Choice: Vulkan only limits the stack's bytes
+  // Nested executeCallableEXT. Choice: Vulkan only limits the stack's bytes.
+  uint32_t max_callable_depth = 31;
 };
 
 // Return the bytes of a table of records without data, and put it at `base`: ray generation, miss, hit,

@@ -35,8 +35,8 @@ inline constexpr uint32_t kAttributeBytes = 64;
 // shader's objects do not disturb its caller's. They are made when first used.
 template <class Object>
 using Numbered = std::vector<std::unique_ptr<std::array<Object, kLanes>>>;
-inline constexpr uint32_t kMaxNumbered =
-    16;  // of a kind and level. Choice: neither Vulkan nor the extension sets a limit
+// Number of objects of a kind and level. Choice: neither Vulkan nor the extension sets a limit.
+inline constexpr uint32_t kMaxNumbered = 16;
 
 // Holds what a ray found, as a shader keeps it (SPV_NV_shader_invocation_reorder).
 struct HitObject {
@@ -59,8 +59,8 @@ struct WarpContext {
   uint32_t callables = 0;  // open call.sbt.callable levels
   std::vector<std::unique_ptr<CallableFrame>> callable_frames;  // like `frames`
   Numbered<HitObject> hit_objects;
-  std::array<uint32_t, kLanes>
-      next_time{};  // of the next ray. Model: nothing moves; shaders read the value back
+  // Time of the next ray. Model: nothing moves; shaders read the value back.
+  std::array<uint32_t, kLanes> next_time{};
   std::vector<std::unique_ptr<TraceFrame>> frames;  // allocated when first needed, then kept
   Numbered<rt::RayState> queries;
   std::vector<uint32_t> local;    // [word][lane]

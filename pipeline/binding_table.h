@@ -20,15 +20,16 @@ struct ShaderGroup {
 };
 
 struct TableRecord {
-  uint32_t group =
-      kNoGroup;  // index into TableInput::groups; kNoGroup: a handle of zeros, which calls nothing
+  // Index into TableInput::groups. kNoGroup stands for a handle of zeros, which calls nothing.
+  uint32_t group = kNoGroup;
   std::vector<std::byte> data;  // what the shader's shaderRecordEXT block holds
 };
 
 struct TableRegion {
   std::vector<TableRecord> records;
-  std::optional<uint32_t>
-      stride;  // bytes; without one, the smallest that holds every record. 0: only the first record counts
+  // Bytes from one record to the next. Without a value, it is the smallest stride that holds every record.
+  // With 0, only the first record counts.
+  std::optional<uint32_t> stride;
 };
 
 struct TableInput {

@@ -18,8 +18,8 @@ class StructureCache {
     std::string folder;  // empty: nothing is kept
     std::string build;   // identifies the builder; structures of another one are not found
     uint64_t max_bytes = uint64_t{6} << 30;  // limit of the folder's size; all of LumiBench takes 5 GB
-    uint64_t least_primitives =
-        16384;  // smaller structures are not kept; this many take about 10 ms to build
+    // Smaller structures are not kept. This many primitives take about 10 ms to build.
+    uint64_t least_primitives = 16384;
   };
   struct Counts {
     uint64_t found = 0, built = 0;

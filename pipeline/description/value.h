@@ -58,8 +58,8 @@ class TableReader {
   bool flag(const std::string& key, bool fallback);
   std::vector<std::string> texts(const std::string& key);  // a string or a list of strings
   std::vector<double> numbers(const std::string& key);     // a number or a list; lists in lists are flattened
-  std::vector<uint32_t> sizes(const std::string& key,
-                              size_t most);  // one number, or up to `most`, each from 1 to kMostOfAxis
+  // Reads one number, or up to `most`, each from 1 to kMostOfAxis.
+  std::vector<uint32_t> sizes(const std::string& key, size_t most);
   std::vector<const Value*> tables(const std::string& key);  // [[key]] or [key]
   void finish();
   const SourceLocation& where() const { return table_.where; }

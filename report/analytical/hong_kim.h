@@ -17,15 +17,16 @@ struct HongKimInputs {
   double cores = 0, warps = 0;  // warps: number that is resident on a core at a time (the paper's N)
   double repetitions = 0;       // times that a core is filled with these warps
   double instructions = 0;      // instructions of a warp
-  double memory_instructions =
-      0;  // of them: memory, texture, and traces. Choice: a trace is a memory instruction of many accesses
+  // Memory and texture instructions and traces of a warp. Choice: a trace is a memory instruction of many
+  // accesses.
+  double memory_instructions = 0;
   double accesses = 0;  // L1 accesses of a memory instruction, which are the model's uncoalesced transactions
   double dram_latency = 0,
          miss_rate = 0;        // cycles from an L1 miss to its data; fraction of L1 reads that miss
   double departure_delay = 0;  // cycles between two accesses of a core
   double issue_cycles = 0;     // cycles of a core for a warp instruction
-  double bytes =
-      0;  // of DRAM, for a memory instruction. Choice: what misses; the paper adjusts the latency alone
+  // DRAM bytes of a memory instruction. Choice: only misses count; the paper adjusts only the latency.
+  double bytes = 0;
   double bandwidth = 0;  // DRAM bytes per cycle
 
   // Returns the latency with LumiBench's adjustment.

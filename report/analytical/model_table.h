@@ -12,8 +12,8 @@ struct ModelRow {
   std::string workload;
   double cycles = 0;              // simulated
   std::vector<double> predicted;  // by model
-  std::vector<std::pair<std::string, double>>
-      inputs;  // and intermediate values; every row has the same names
+  // Inputs and intermediate values. Every row has the same names.
+  std::vector<std::pair<std::string, double>> inputs;
 };
 
 struct ModelScore {

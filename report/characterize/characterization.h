@@ -17,8 +17,8 @@ struct CharacterizationOptions {
   Linkage linkage = Linkage::Average;
   int clusters = 8;       // also the number of workloads of the subset; at most the number of workloads
   SearchSettings search;  // settings of the search for representative metrics
-  std::vector<std::string>
-      reference;  // names of a published subset to compare with; those that the table lacks are left out
+  // Names of a published subset to compare with. Those that the table lacks are left out.
+  std::vector<std::string> reference;
   std::string reference_name;  // whose subset the reference is
 };
 
@@ -36,8 +36,8 @@ struct Characterization {
   std::vector<Join> joins;
   std::vector<int> leaves;      // rows, from left to right of the dendrogram
   std::vector<int> cluster_of;  // cluster of each row
-  double cut_low = 0,
-         cut_high = 0;  // a line between these two distances crosses as many branches as there are clusters
+  // A line between these two distances crosses as many branches as there are clusters.
+  double cut_low = 0, cut_high = 0;
   double cophenetic = 0;
   std::vector<Representative> chosen;  // ordered by cluster
   Subset subset, reference;            // `reference` is empty without options.reference

@@ -12,8 +12,9 @@ struct FeatureTable {
     std::string column, why;
   };
   std::vector<std::string> workloads;  // distinct
-  std::vector<std::string> scenes,
-      shaders;  // of each workload; from its name (SCENE_SHADER) where the table has no such columns
+  // Scene and shader set of each workload. They come from its name (SCENE_SHADER) when the table has no such
+  // columns.
+  std::vector<std::string> scenes, shaders;
   std::vector<std::string> metrics;
   Eigen::MatrixXd values;        // workloads x metrics, as they are in the file
   Eigen::MatrixXd standardised;  // each column with mean 0 and variance 1 (over n, not n - 1)

@@ -11,8 +11,8 @@ PrincipalComponents principal_components(const Eigen::MatrixXd& standardised) {
   const Eigen::MatrixXd correlation = standardised.transpose() * standardised / double(standardised.rows());
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation);
   PrincipalComponents out;
-  out.eigenvalues =
-      solver.eigenvalues().reverse().cwiseMax(0);  // rounding leaves some values a little below 0
+  // Rounding leaves some values a little below 0.
+  out.eigenvalues = solver.eigenvalues().reverse().cwiseMax(0);
   out.kept = std::max<Eigen::Index>(1, (out.eigenvalues.array() > 1).count());
   out.directions = solver.eigenvectors().rowwise().reverse().leftCols(out.kept);
   for (auto direction : out.directions.colwise()) {

@@ -163,8 +163,8 @@ void Annotator::add_below(Rows& rows, uint32_t program, const std::vector<uint32
 
 std::string Annotator::all(size_t number) const {
   const SourceFile& file = map_.files.at(number);
-  std::map<uint32_t, std::map<uint32_t, std::vector<uint32_t>>>
-      lines;  // maps lines to programs to instructions
+  // Maps lines to programs to instructions.
+  std::map<uint32_t, std::map<uint32_t, std::vector<uint32_t>>> lines;
   for (uint32_t p = 0; p < map_.programs.size(); ++p)
     for (uint32_t i = 0; i < map_.programs[p].isa.size(); ++i)
       if (const ListedLine& line = map_.programs[p].isa[i]; line.line && line.file == number)

@@ -72,8 +72,8 @@ class RunDirectory {
   const std::string& path() const { return path_; }
   std::string path_of(const std::string& name) const { return path_ + "/" + name; }
 
-  void write(const std::string& name,
-             const std::string& bytes) const;  // "heat/rays.png" is in a folder below it
+  // Writes a file. "heat/rays.png" is in a folder below.
+  void write(const std::string& name, const std::string& bytes) const;
   void remove(const std::string& name) const;  // removes a file or folder of an earlier run, if it exists
   // Removes all that an earlier run left except config.toml, run.json first, and also `saved`. Files of other
   // commands stay.

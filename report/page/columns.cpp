@@ -20,8 +20,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr size_t kMaxNumbers =
-    200'000;  // of statistics, at 2 to 3 bytes each: with more, a page would not stay below 1 MB
+// Numbers of statistics, at 2 to 3 bytes each. With more, a page would not stay below 1 MB.
+constexpr size_t kMaxNumbers = 200'000;
 constexpr double kMaxWhole = 9007199254740992.0;  // 2^53; from there on a double is not an exact count
 
 // Writes 5.0 as 5, at any depth.

@@ -138,8 +138,8 @@ Json run_json(const PageRun& run, Json& stat_docs, Json& key_docs) {
     throw UserError({directory + "/stats.json"}, "the statistics have no gpu.cycles",
                     "another version of Glint wrote it: run it again with this one");
   out["metrics"] = metrics_json(RunRecord::read(directory));
-  add_config(run, *bytes_of(directory + "/config.toml"), out,
-             key_docs);  // RunRecord has already read this file
+  // RunRecord has already read this file.
+  add_config(run, *bytes_of(directory + "/config.toml"), out, key_docs);
   if (const auto csv = bytes_of(directory + "/series.csv"))
     out["series"] = columns_of(*csv, directory + "/series.csv");
   if (const auto csv = bytes_of(directory + "/profile.csv")) {

@@ -15,8 +15,9 @@ namespace glint::report {
 struct PageRun {
   std::string directory;
   std::string preset_name, preset;
-  std::optional<TimelineRequest>
-      timeline{};  // asked for; none: the middle of the trace's core 0, if there is a trace
+  // The timeline that was asked for. Without one, it is the middle of the trace's core 0, if there is a
+  // trace.
+  std::optional<TimelineRequest> timeline{};
 };
 
 // Returns {"schema", "version", "runs", "stat_docs", "metric_docs", "key_docs"}; docs/report.md has the

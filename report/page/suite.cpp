@@ -16,8 +16,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr size_t kLeastForR2 = 3;  // because a line through two points always fits
-constexpr int kEigenvalues =
-    20;  // shown, as in the figure (web/src/characterization/scree.js); all are in the CSV
+// Number of eigenvalues shown, as in the figure (web/src/characterization/scree.js). The CSV has all.
+constexpr int kEigenvalues = 20;
 constexpr double kStrongLoading = 0.7;  // a correlation of this size explains half of the variance
 
 std::string text_of(const Json& one, const char* key) {

@@ -30,8 +30,8 @@ struct ImageDifference {
   uint64_t pixels_apart = 0;           // pixels in which any channel is not the same
   uint64_t pixels_beyond_measure = 0;  // of these; with at least one, mse, psnr and ssim are not numbers
   uint64_t first_beyond_measure = 0;   // the first of those pixels
-  uint64_t pixels_not_finite =
-      0;  // the same in both pictures, with a channel that is not finite: it adds nothing
+  // Pixels that are the same in both pictures and have a channel that is not finite. They add nothing.
+  uint64_t pixels_not_finite = 0;
 };
 
 // Measures pictures of one size, and throws UserError for others. SSIM follows Wang, Bovik, Sheikh,

@@ -52,8 +52,8 @@ std::string png_bytes(const ImageView& image) {
 
 std::string pfm_bytes(const ImageView& image) {
   check_size(image);
-  std::string out =
-      fmt::format("PF\n{} {}\n-1.0\n", image.width, image.height);  // a negative scale says little endian
+  // A negative scale says little endian.
+  std::string out = fmt::format("PF\n{} {}\n-1.0\n", image.width, image.height);
   for (uint32_t row = image.height; row-- > 0;)
     for (uint32_t x = 0; x < image.width; ++x)
       for (size_t c = 0; c < 3; ++c) {

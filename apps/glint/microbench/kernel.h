@@ -25,8 +25,9 @@ struct MicroBench {
 
 // Describes a kernel around a body, with the parameters `data` (the address of a buffer) and `n`.
 struct MicroKernel {
-  std::string before, body,
-      after;  // `body` is repeated `unroll` times in a loop of n turns (%turn counts down)
+  // A loop of n turns repeats `body` `unroll` times; %turn counts the turns down. `before` and `after` stand
+  // around the loop.
+  std::string before, body, after;
   uint32_t unroll = 1;
   uint32_t turns = 1;
   std::vector<uint64_t> data{0};  // words of 8 bytes

@@ -210,8 +210,8 @@ double mix_of(const Mix& mix, const pipeline::GpuParams& gpu) {
                                             : "st.global.b32 [%rd0],%r2#;");
   kernel.threads = full_block(gpu);
   pipeline::GpuParams in_order = with_one_core(gpu);
-  in_order.compiler.schedule =
-      false;  // scheduling would put the chains of one kind before those of the other
+  // Scheduling would put the chains of one kind before those of the other.
+  in_order.compiler.schedule = false;
   return 2.0 * kChains * 32 / cycles_per_body(kernel, 8, 16, in_order);
 }
 
