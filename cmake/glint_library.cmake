@@ -1,7 +1,7 @@
 # glint_library(name FLOORS subfolder... DEPENDS folder... LINKS target... POLICIES subfolder... EXCEPT file...)
 #
-# One static library a folder, alias glint::<name>, with the project's flags and header checks. Its sources and
-# headers are the files of its folder and of its FLOORS, so a file is found where it lies and stands in no list.
+# Makes one static library of a folder, alias glint::<name>, with the project's flags and header checks. Its sources
+# and headers are the files of its folder and of its FLOORS, so a file is found where it lies and is in no list.
 # DEPENDS are folders of ours. LINKS are libraries from packages; the folder's users see them only if its headers
 # include them. POLICIES are folders in which each file registers one policy and nothing else refers to it.
 # EXCEPT are files that the caller adds under conditions of its own. PRECOMPILE are headers of ours that most
@@ -37,14 +37,14 @@ function(glint_library name)
     target_include_directories(glint_${name}_policies PRIVATE ${PROJECT_SOURCE_DIR})
     target_precompile_headers(glint_${name}_policies REUSE_FROM glint_${name})
     target_link_libraries(glint_${name}_policies PUBLIC ${ARG_DEPENDS} ${ARG_LINKS} PRIVATE $<BUILD_INTERFACE:glint_warnings>)
-    # Whole archive: a static library drops objects that nothing refers to, and with them the registrations.
+    # The whole archive is linked, because a static library drops objects that nothing refers to, and with them the registrations.
     set_property(GLOBAL APPEND PROPERTY GLINT_LIBRARIES glint_${name}_policies)
     set_target_properties(glint_${name}_policies PROPERTIES EXPORT_NAME ${name}_policies)
     target_link_libraries(glint_${name} PUBLIC "$<LINK_LIBRARY:WHOLE_ARCHIVE,glint_${name}_policies>")
   endif()
 endfunction()
 
-# glint_glob(variable pattern subfolder...): the files below the caller's folder that match; "." is the folder itself.
+# glint_glob(variable pattern subfolder...) lists the files below the caller's folder that match; "." is the folder itself.
 function(glint_glob variable pattern)
   list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ OUTPUT_VARIABLE patterns)
   list(TRANSFORM patterns APPEND /${pattern})
@@ -52,13 +52,13 @@ function(glint_glob variable pattern)
   set(${variable} ${found} PARENT_SCOPE)
 endfunction()
 
-# glint_cold(target): see COLD above. Names in anonymous namespaces are therefore unique within a folder.
+# glint_cold(target) does what COLD says above. Names in anonymous namespaces are therefore unique within a folder.
 function(glint_cold target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O2>)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${GLINT_UNITY} UNITY_BUILD_BATCH_SIZE 12)
 endfunction()
 
-# glint_precompile(target header...): parses the headers of packages that nearly every file includes, and these of
+# glint_precompile(target header...) parses the headers of packages that nearly every file includes, and these of
 # ours, once for the target. A file still includes what it uses: the target all_verify_interface_header_sets compiles
 # each header alone.
 function(glint_precompile target)

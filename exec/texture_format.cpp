@@ -244,8 +244,8 @@ uint16_t to_half(float value) {
 
 Words decode(TexelFormat format, const std::byte* from) {
   Words four;
-  if (format ==
-      F::Rgba32Float) {  // the two formats of most textures come first, because they need no loop over bits
+  // The two formats of most textures come first, because they need no loop over bits.
+  if (format == F::Rgba32Float) {
     std::memcpy(four.data(), from, sizeof four);
     return four;
   }

@@ -35,12 +35,12 @@ struct ModelTable {
 };
 
 std::string model_text(const ModelTable& table);  // text for a terminal
-std::string model_csv(
-    const ModelTable& table);  // columns: workload, cycles, then one for each model and input
+// Returns the columns: workload, cycles, then one for each model and input.
+std::string model_csv(const ModelTable& table);
 // Reads model_csv() back. Throws UserError when the text is not such a table.
 ModelTable parse_models(const std::string& csv, const std::string& name);
-nlohmann::ordered_json models_json(
-    const ModelTable& table);  // {"models": [{name, r2, mape, ratio, worst, worst_error}], "workloads":
-                               // [{name, cycles, predicted}]}
+// Returns {"models": [{name, r2, mape, ratio, worst, worst_error}], "workloads": [{name, cycles,
+// predicted}]}.
+nlohmann::ordered_json models_json(const ModelTable& table);
 
 }  // namespace glint::report

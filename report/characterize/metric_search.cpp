@@ -95,8 +95,8 @@ class Search {
       columns.push_back(*pick);
       one.erase(pick);
     }
-    while (dice_.below(2) ==
-           0) {  // half of the children have one metric exchanged, a quarter have two, and so on
+    // Half of the children have one metric exchanged, a quarter have two, and so on.
+    while (dice_.below(2) == 0) {
       columns.erase(columns.begin() + dice_.below(columns.size()));
       columns = filled(std::move(columns));
     }

@@ -15,8 +15,8 @@ namespace glint::report {
 struct MixRow {
   std::string name;
   uint64_t count = 0;  // warp instructions executed
-  uint64_t latency =
-      0;  // core cycles from issue to completion, summed over the instructions; 0 in functional runs
+  // Core cycles from issue to completion, summed over the instructions. It is 0 in functional runs.
+  uint64_t latency = 0;
 };
 
 struct HitRate {

@@ -1,4 +1,4 @@
-# Characterisation of workloads and analytical models: against values of other libraries, and the command.
+# Adds tests of the characterisation and the analytical models, against values of other libraries and by the command.
 find_package(nlohmann_json REQUIRED)
 glint_test(unit_characterize FOLDER unit/characterize LINKS glint::characterize nlohmann_json::nlohmann_json)
 glint_test(unit_analytical FOLDER unit/analytical LINKS glint::analytical nlohmann_json::nlohmann_json)

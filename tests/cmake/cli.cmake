@@ -1,4 +1,4 @@
-# The command as a user meets it: through the real binary.
+# Adds tests of the command as a user meets it, with the real binary.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 if(TARGET glint)
   foreach(suite Workloads Bench Paper)

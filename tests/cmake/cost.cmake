@@ -1,4 +1,4 @@
-# Maps of cost and traces.
+# Adds tests of maps of cost and traces.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 if(TARGET glint)
   foreach(suite Heat Trace Report Browser)

@@ -1,4 +1,4 @@
-# The documentation: every command and program in it runs, and the site is built from it.
+# Adds tests of the documentation: every command and program in it runs, and the site is built from it.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 if(TARGET glint)
   foreach(suite Commands Programs Inline Policy Files Harness)

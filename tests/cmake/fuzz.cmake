@@ -1,6 +1,6 @@
-# Inputs that fuzzers have kept, replayed; with -DGLINT_FUZZ=ON the fuzzers themselves (tests/fuzz/README.md).
+# Adds tests that replay the inputs that fuzzers have kept, and with -DGLINT_FUZZ=ON the fuzzers (tests/fuzz/README.md).
 if(TARGET glint::core)
-  # The machine alone: the rest of the pipeline compiles shaders, which no fuzzer here does.
+  # Only the machine is linked, because the rest of the pipeline compiles shaders, which no fuzzer here does.
   set(fuzz_sources ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/entry.cpp ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/program_of.cpp
     ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/tiny_world.cpp ${PROJECT_SOURCE_DIR}/pipeline/functional_machine.cpp)
   glint_test(fuzz LINKS glint::core SOURCES fuzz/replay_test.cpp ${fuzz_sources})

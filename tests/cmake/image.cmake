@@ -1,3 +1,3 @@
-# Textures and storage images.
+# Adds tests of textures and storage images.
 glint_test(unit_image LINKS glint::pipeline
   SOURCES unit/exec/texture_format_test.cpp unit/exec/texture_test.cpp unit/exec/surface_test.cpp)

@@ -1,4 +1,4 @@
-# Rules about the sources; each rule is a test, so that a failure says which.
+# Adds the rules about the sources. Each rule is a test, so that a failure names it.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 set(lint ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/lint/lint.py)
 foreach(rule layers layout includes sizes headers readmes doc_paths wording semantics)

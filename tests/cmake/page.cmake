@@ -1,4 +1,4 @@
-# The HTML report: the page as text, and in a browser.
+# Adds tests of the HTML report: the page as text, and in a browser.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 if(TARGET glint)
   foreach(suite Page Compare)

@@ -1,4 +1,4 @@
-# Where the time goes: profiles, time series, conservation, machines that are stuck.
+# Adds tests of where the time goes: profiles, time series, conservation, machines that are stuck.
 glint_test(timing_profile LINKS glint::pipeline SOURCES timing/profile_test.cpp)
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 if(TARGET glint)

@@ -1,4 +1,4 @@
-# The Python package: reader, figures, notebook, and what `cmake --install` makes of it.
+# Adds tests of the Python package: reader, figures, notebook, and its installation by `cmake --install`.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 if(TARGET glint)
   foreach(part reader damage sweep plot layout notebook)

@@ -1,4 +1,4 @@
-# Scenes, and the reference renderer that checks pictures of them.
+# Adds tests of scenes, and the reference renderer that checks pictures of them.
 add_library(glint_reference STATIC reference/embree_intersector.cpp reference/reference.cpp reference/shapes.cpp
   reference/surface.cpp reference/texture.cpp)
 add_library(glint::reference ALIAS glint_reference)

@@ -1,4 +1,4 @@
-# Pipelines from files: the real binary on the examples, on inputs of every kind, and on mistakes.
+# Adds tests of pipelines from files: the real binary on the examples, on inputs of every kind, and on mistakes.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 if(TARGET glint)
   foreach(suite Examples Inputs Defaults Mistakes)

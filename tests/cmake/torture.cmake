@@ -1,4 +1,4 @@
-# Random programs against a scalar interpreter of SPIR-V.
+# Adds tests that run random programs against a scalar interpreter of SPIR-V.
 if(TARGET glint::pipeline AND TARGET glint::frontend)
   add_library(glint_torture STATIC torture/interpreter.cpp torture/interpreter_glsl.cpp torture/interpreter_ops.cpp torture/interpreter_run.cpp
     torture/expressions.cpp torture/function_writer.cpp torture/generator.cpp torture/machines.cpp torture/tree_glsl.cpp torture/tree_spirv.cpp)

@@ -58,8 +58,8 @@ TEST_CASE(
     if (mode->table_rows() == 0) continue;
     for (int trial = 0; trial < 200; ++trial) {
       Warp warp(random, mode->table_rows(), 1 + random.below(100));
-      const LaneMask others =
-          warp.gathered & random.bits();  // these are of another trace, and not ours to present
+      // These rays are of another trace, and not ours to present.
+      const LaneMask others = warp.gathered & random.bits();
       const LaneMask ours = warp.gathered & ~others;
       uint32_t rounds = 0;
       for (LaneMask waiting = ours; waiting; ++rounds) {

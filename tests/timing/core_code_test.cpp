@@ -43,8 +43,8 @@ TEST_CASE("a warp waits for each line of instructions that nobody has fetched") 
     add_line(code, n);
     OneCore core(code, params_with_fetch(0), {});
 
-    CHECK(core.run() ==
-          (n == 7 ? 30u + 8 : 30u + 7 + 30 + 1));  // the second line is asked for when the eighth has issued
+    // The second line is asked for when the eighth instruction has issued.
+    CHECK(core.run() == (n == 7 ? 30u + 8 : 30u + 7 + 30 + 1));
     CHECK(stall(core, Stall::NoInstruction) == (n == 7 ? 30 : 30 + 29));
     CHECK(core.stats().instructions.value() == uint64_t(n) + 1);
   }

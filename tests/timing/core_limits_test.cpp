@@ -14,8 +14,8 @@ namespace {
 // Returns the cycles of one warp that loads twice from global memory at a stride and uses both values.
 Cycle two_loads(const Params& params, uint32_t stride) {
   mem::AddressSpace space;
-  const Address base =
-      space.allocate("buffer", 1 << 16);  // the first allocation's address is the same in every space
+  // The first allocation's address is the same in every space.
+  const Address base = space.allocate("buffer", 1 << 16);
   Code code;
   code.add("mad.wide.u32",
            {reg(2), special(isa::Special::LaneId), code.constant(stride), code.constant64(base)});
@@ -136,8 +136,8 @@ TEST_CASE(
   CHECK(two_loads(params, 8) == base + 2);       // two turns each: one more than the tags take
   CHECK(two_loads(params, 32) == base + 2 * 7);  // eight turns
   params.shared.conflict_turn = 3;
-  CHECK(two_loads(params, 32) ==
-        base + 2 * 7 + 2 * 7);  // 21 cycles instead of 7, which overlap but for those of the door
+  // There are 21 cycles instead of 7, which overlap except for those of the door.
+  CHECK(two_loads(params, 32) == base + 2 * 7 + 2 * 7);
   params.lsu.lines_per_cycle = 4;
   params.shared.conflict_turn = 1;
   CHECK(two_loads(params, 32) ==

@@ -74,8 +74,8 @@ TEST_CASE("warps of one scheduler share its pipes, warps of different schedulers
 
 TEST_CASE("a load is ready for use after the unit's and the memory's latency") {
   mem::AddressSpace space;
-  const Address base =
-      space.allocate("buffer", 4096);  // the first allocation's address is the same in every space
+  // The first allocation's address is the same in every space.
+  const Address base = space.allocate("buffer", 4096);
   Code code;
   add_address(code, base, 4);
   code.add("ld.global.b32", {reg(4), reg(2)});

@@ -100,8 +100,8 @@ TEST_CASE("a core whose memory never answers is stuck, and says which warp waits
   code.add("add.u32", {reg(4), reg(1), reg(1)});
   code.add("exit");
   mem::AddressSpace probe;
-  const Address at =
-      probe.allocate("buffer", 4096);  // the first allocation lies at the same place in every space
+  // The first allocation lies at the same place in every space.
+  const Address at = probe.allocate("buffer", 4096);
   code.program().constants[1] = uint32_t(at);
   code.program().constants[2] = uint32_t(at >> 32);
   OneCore core(code, quick_params(), {});

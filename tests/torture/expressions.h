@@ -12,8 +12,8 @@ inline constexpr uint32_t kExpressionInputs = 256;
 
 struct ExpressionProgram {
   std::vector<uint32_t> spirv;
-  std::vector<std::string>
-      values;  // what each value computes, in the order of their words in a lane's results
+  // What each value computes, in the order of their words in a lane's results.
+  std::vector<std::string> values;
   uint32_t lanes = 64;
 };
 

@@ -15,8 +15,9 @@ struct Way {
   uint32_t max_registers = 64;
   bool schedule = true;
   bool timing = false;
-  bool simplified =
-      true;  // by the optimiser's passes; else lowered as it is, which a module without calls can be
+  // The optimiser's passes simplify the module. Otherwise it is lowered as it is, which is possible for a
+  // module without calls.
+  bool simplified = true;
   std::string to_string() const;
 };
 

@@ -91,8 +91,8 @@ struct Stmt {
   // target.
   enum class Style : uint8_t { While, HeaderTest, DoWhile, Endless, Single, SkipFirst } style = Style::While;
   bool bare = false;  // If: a conditional branch without a merge, because its only statement is an exit
-  bool dead =
-      false;  // If, Switch, Loop: code goes on where nothing arrives; otherwise OpUnreachable is there
+  // If, Switch, Loop: code goes on where nothing arrives. Otherwise OpUnreachable is there.
+  bool dead = false;
   uint32_t value = 0, other = 0;
   std::vector<Expr> args;
   std::vector<std::vector<Stmt>> bodies;
@@ -102,8 +102,8 @@ struct Stmt {
 };
 
 struct FunctionTree {
-  std::vector<Sort>
-      variables;  // word 0 is the hash; words 1 and 2 start as the arguments, or the lane and an input
+  // Word 0 is the hash. Words 1 and 2 start as the arguments, or as the lane and an input.
+  std::vector<Sort> variables;
   std::vector<uint8_t> in_memory;
   std::vector<Stmt> body;
 };

@@ -55,8 +55,8 @@ TEST_CASE("both any-hit modes find the same hit for every ray of every mode") {
   for (const Mode& mode : r.modes) {
     const std::vector<Record> immediate = run_mode(r, mode, "immediate"),
                               deferred = run_mode(r, mode, "deferred");
-    const bool terminates =
-        mode.any_hit_mode == 3;  // terminateRayEXT ends at whichever candidate comes first
+    // terminateRayEXT ends at whichever candidate comes first.
+    const bool terminates = mode.any_hit_mode == 3;
     for (size_t i = 0; i < immediate.size(); ++i)
       differ += !terminates && !same_hit(immediate[i], deferred[i], mode);
     rays += terminates ? 0 : uint32_t(immediate.size());

@@ -39,8 +39,8 @@ constexpr SceneNeeds kNeeds[] = {
 
 // The measured peaks of the generated scenes are 44 to 93 % of what these constants give.
 constexpr double kProgram = 150e6;  // bytes without a scene
-constexpr double kPerTriangle =
-    200;                          // bytes: geometry, its copies while it is built and uploaded, structures
+// Bytes of a triangle: geometry, its copies while it is built and uploaded, structures.
+constexpr double kPerTriangle = 200;
 constexpr double kFromFiles = 2;  // guess: the text, and the vertices before they are merged
 constexpr double kPerPixel = 64;  // bytes: pictures and their copies
 

@@ -85,8 +85,8 @@ struct Recording {
   struct Found {
     RayState state;
     uint32_t any_hits = 0, hash = 0;
-    bool tangent =
-        false;  // a sphere was met within rounding of its rim: the driver's compiler may decide otherwise
+    // A sphere was met within rounding of its rim, where the driver's compiler may decide otherwise.
+    bool tangent = false;
   };
   void any_hit(Found& f, const nlohmann::json& mode) const {
     const Hit& c = f.state.candidate;
@@ -163,8 +163,8 @@ Tally compare_mode(const Recording& recording, size_t m) {
     if (!hit || !ours.valid() || !closest || any) continue;
     const bool same = ours.instance == theirs.instance && ours.primitive == theirs.primitive &&
                       ours.geometry == theirs.geometry;
-    tally.primitive +=
-        !same && std::fabs(ours.t - theirs.t) > 1e-5f * theirs.t;  // on an edge either neighbour is right
+    // On an edge, either neighbour is right.
+    tally.primitive += !same && std::fabs(ours.t - theirs.t) > 1e-5f * theirs.t;
     if (!same) continue;
     const bool values =
         ours.custom_index == theirs.custom && ours.kind == theirs.hit_kind &&

@@ -69,8 +69,8 @@ TEST_CASE_METHOD(Fixture,
   CHECK(int(turns([](size_t i) { return i * 8; }).lanes) == 4);
   CHECK(int(turns([](size_t) { return 3; }).turns) == 32);
   CHECK(int(turns([](size_t i) { return i % 2; }).turns) == 16);
-  CHECK(int(turns([](size_t i) { return i / 4; }).turns) ==
-        25);  // 0, 0, 0, 0+1, 1, 1, 1+2, ...: without the first of each
+  // The turns take 0, 0, 0, 0+1, 1, 1, 1+2, ..., without the first of each.
+  CHECK(int(turns([](size_t i) { return i / 4; }).turns) == 25);
   CHECK(int(turns([](size_t i) { return i % 8; }).turns) == 4);
   CHECK(int(turns([](size_t i) { return i % 8 * 2; }, 0xff, 8).turns) == 2);  // two sectors of four
   CHECK(int(turns([](size_t) { return 3; }, 0x101).turns) == 2);

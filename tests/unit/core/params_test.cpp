@@ -50,8 +50,8 @@ TEST_CASE("what is used up first limits the blocks of a core") {
   CHECK(of({32, 1, 0, false}) == std::tuple{Limit::Warps, 32u, 32u});
   CHECK(of({33, 1, 0, false}) == std::tuple{Limit::Registers, 25u, 25u});
   CHECK(of({32, 1, 0, true}) == std::tuple{Limit::Blocks, 16u, 16u});
-  CHECK(of({32, 2, 4096, true}) ==
-        std::tuple{Limit::Warps, 16u, 32u});  // all limits are met at once, and the first is named
+  // All limits are met at once, and the first is named.
+  CHECK(of({32, 2, 4096, true}) == std::tuple{Limit::Warps, 16u, 32u});
   CHECK(of({32, 2, 4097, true}) == std::tuple{Limit::SharedMemory, 15u, 30u});
   CHECK(of({64, 5, 0, true}) == std::tuple{Limit::Registers, 3u, 15u});
   CHECK(of({16, 5, 0, true}) == std::tuple{Limit::Warps, 6u, 30u});

@@ -203,8 +203,8 @@ TEST_CASE("unnormalised coordinates count texels, and offsets move by texels") {
   ImageLab lab;
   const uint32_t handle = add_ramp(lab, Wrap::Repeat, Filter::Nearest);
   CHECK(number(lab.run_one("tex.offset.1d.v4.f32.f32", {handle, bits(0.125f), 2})[0]) == 2.0f);
-  CHECK(number(lab.run_one("tex.offset.1d.v4.f32.f32", {handle, bits(0.125f), 0xff})[0]) ==
-        3.0f);  // the offset is -1
+  // The offset is -1.
+  CHECK(number(lab.run_one("tex.offset.1d.v4.f32.f32", {handle, bits(0.125f), 0xff})[0]) == 3.0f);
   lab.image(handle).sampler.unnormalized = true;
   CHECK(number(lab.run_one("tex.1d.v4.f32.f32", {handle, bits(2.5f)})[0]) == 2.0f);
   CHECK(lab.run_one("txq.normalized_coords.b32", {handle})[0] == 0);

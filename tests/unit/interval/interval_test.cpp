@@ -73,8 +73,8 @@ TEST_CASE("Local memory that a core writes and reads again stays in its L1 until
   const uint32_t lines = uint32_t(gpu.memory.l1.size / gpu.memory.line);
   for (uint32_t i = 1; i <= lines; ++i) memory.read(0, i * gpu.memory.line, 1, 3000 + i, Asker::Shader);
   CHECK(memory.read(0, 0, 15, 900000, Asker::Shader) - 900000 > gpu.memory.l1.hit_latency);
-  CHECK(memory.l2().misses ==
-        lines);  // the line that came back was there, because it was written when it was displaced
+  // The line that came back was there, because it was written when it was displaced.
+  CHECK(memory.l2().misses == lines);
 }
 
 TEST_CASE("The pass executes what the functional machine does and leaves its picture", "[interval]") {

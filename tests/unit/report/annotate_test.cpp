@@ -107,8 +107,8 @@ TEST_CASE("a file whose text is not known shows the lines with figures, and no o
   const ProfileTable profiled = profile();
   const SourceMap source = source_map({program()}, [](const std::string&) { return std::nullopt; });
   const std::string text = Annotator(profiled, source, kUsualMeasures, {}).file(source.files[0]);
-  CHECK(std::count(text.begin(), text.end(), '\n') ==
-        5);  // the lines are the heading, the columns, two lines and an empty one
+  // The lines are the heading, the columns, two lines and an empty one.
+  CHECK(std::count(text.begin(), text.end(), '\n') == 5);
 }
 
 TEST_CASE(

@@ -56,8 +56,8 @@ TEST_CASE("the two triangles of a quad share a leaf") {
     REQUIRE(begin(state, memory));
     run(state, memory);
     CHECK(state.committed.primitive == i);
-    CHECK(state.committed.u ==
-          (second ? 0.25f : 0.5f));  // the weights are in the order of the triangle's own corners
+    // The weights are in the order of the triangle's own corners.
+    CHECK(state.committed.u == (second ? 0.25f : 0.5f));
     CHECK(state.committed.v == (second ? 0.5f : 0.25f));
   }
 }

@@ -205,8 +205,8 @@ TEST_CASE("the original ship loads with 6,255 triangles and 11 materials from th
   const glint::test::SceneData data("SHIP");
   if (data.path.empty()) return;
   const Scene scene = load_scene("SHIP", {data.path});
-  CHECK(load_scene("SHIP", {data.path + "/SHIP"}).hash() ==
-        scene.hash());  // the folder itself is accepted, too
+  // The folder itself is accepted, too.
+  CHECK(load_scene("SHIP", {data.path + "/SHIP"}).hash() == scene.hash());
   CHECK(scene.form == "original");
   CHECK(scene.triangles() == 6255);
   CHECK(scene.materials.size() == 11);
