@@ -24,8 +24,8 @@ std::vector<Change> changes(const RunRecord& before, const RunRecord& after);
 // Names the metrics that only one of the runs has, A or B. Returns "" when both have the same.
 std::string uncompared_text(const RunRecord& before, const RunRecord& after);
 
-// Is "METRIC<-2%" or "METRIC>5%". It holds when the metric changed by less or more than this percentage of
-// its value before.
+// Holds a condition such as "METRIC<-2%" or "METRIC>5%". It is met when the metric changed by less or more
+// than this percentage of its value before.
 struct Condition {
   std::string text, metric;
   bool below = false;

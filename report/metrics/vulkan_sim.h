@@ -9,8 +9,8 @@
 
 namespace glint::report {
 
-// Is a line `name = value` of a log. When `formula` is "", Glint has no such number and `note` says why;
-// otherwise `note` says what differs, if anything.
+// Describes a line `name = value` of a log. When `formula` is "", Glint has no such number and `note` says
+// why; otherwise `note` says what differs, if anything.
 struct PeerStat {
   std::string_view name, formula, note;
 };

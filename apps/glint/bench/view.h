@@ -38,7 +38,7 @@ class BenchView {
 // run has fewer.
 std::string figures_of(const report::RunRecord& run);
 
-// Is a row of the table at the end, which has one for each workload with results.
+// Holds a row of the table at the end, which has one for each workload with results.
 struct BenchRow {
   const BenchTask* task;
   const Process* process;
