@@ -1,0 +1,136 @@
+# Tests that no policy changes the picture, that each costs the cycles that policies.csv records, and that a policy can live outside of the tree.
+# SPDX-License-Identifier: Apache-2.0
+"""usage: policy_test.py GLINT SOURCE_DIR [Table|Plugin|NewPolicy]
+
+policies.csv has one row for each policy: its key, its name, and the cycles of one small frame with it. An empty number means
+"not recorded yet": tools/new_policy.py writes such a row, and tools/update_golden.py fills it in."""
+import csv
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import glint_case
+from glint_case import GLINT, ROOT, GlintTest
+
+sys.path.insert(0, str(ROOT / "tools"))
+import policy_table  # noqa: E402
+
+YOUNGEST = (ROOT / "docs/howto/policy.md").read_text().split("```cpp\n")[1].split("```")[0]
+
+
+class Table(GlintTest):
+    def test_every_policy_has_a_row_and_costs_its_cycles_with_the_same_picture(self):
+        recorded = {(row["key"], row["name"]): row["cycles"] for row in csv.DictReader((ROOT / policy_table.PATH).read_text().splitlines())}
+        self.assertEqual(sorted(recorded), sorted(policy_table.policies(GLINT)), "tools/update_golden.py writes the rows anew")
+        pictures = {}
+        for key, name in recorded:
+            with self.subTest(key=key, policy=name):
+                cycles, picture = policy_table.measure(GLINT, key, name, self.folder / "out")
+                self.assertEqual(str(cycles), recorded[key, name], "tools/update_golden.py records a number anew")
+                pictures.setdefault(picture, f"{key}={name}")
+        self.assertEqual(len(pictures), 1, f"these give pictures of their own: {list(pictures.values())}")
+
+
+class Plugin(GlintTest):
+    """An issue scheduler that knows only an installed Glint."""
+    @classmethod
+    def setUpClass(cls):
+        build = GLINT.parents[2]
+        if not (build / "cmake_install.cmake").exists() or not shutil.which("cmake"):
+            raise unittest.SkipTest("the command does not lie in a build folder")
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.prefix = pathlib.Path(folder.name)
+        for component in ("glint", "dev"):
+            subprocess.run(["cmake", "--install", build, "--prefix", cls.prefix, "--component", component], check=True, capture_output=True)
+
+    def build(self, name, source=None):
+        """Begins a plugin as a user does, builds it against the installed headers, and returns its file."""
+        folder = self.folder / name
+        subprocess.run([sys.executable, ROOT / "tools/new_policy.py", "core.issue", name, "--plugin", folder], check=True, capture_output=True)
+        if source:
+            (folder / f"{name}.cpp").write_text(source)
+        for command in (["cmake", "-S", folder, "-B", folder / "build", "-DCMAKE_BUILD_TYPE=Release", f"-DCMAKE_PREFIX_PATH={self.prefix}"], ["cmake", "--build", folder / "build"]):
+            done = subprocess.run(command, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return folder / f"build/{name}.so"
+
+    def installed(self, *words, **environment):
+        return subprocess.run([self.prefix / "bin/glint", *words], capture_output=True, text=True, cwd=self.folder, env=os.environ | environment)
+
+    def test_a_scheduler_from_outside_runs_and_is_written_down(self):
+        plugin = self.build("youngest", YOUNGEST)
+        run = ["run", "SHIP_SH", "--size", "16x16", "--spp", "1", "--set", "core.issue=youngest", "--out", "out"]
+        self.assertEqual(self.installed(*run).returncode, 2)  # nobody knows the name without the plugin
+        for words, environment in ((["--plugin", plugin, *run], {}), ([*run, "--plugin", plugin], {}), (run, {"GLINT_PLUGINS": str(plugin)})):
+            done = self.installed(*words, **environment)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual(list(json.loads((self.folder / "out/run.json").read_text())["plugins"]), [str(plugin)])
+        self.assertIn('issue = "youngest"', (self.folder / "out/config.toml").read_text())
+        self.assertRegex(self.installed("list", "policies", "--plugin", plugin).stdout, r"core\.issue +youngest +The ready warp")
+        suite = ["bench", "SHIP_SH", "--size", "16x16", "--spp", "1", "--set", "core.issue=youngest", "--out", "suite", "--plugin", plugin]
+        self.assertEqual(self.installed(*suite).returncode, 0)
+        self.assertIn("1 of them complete", self.installed(*suite, "--resume").stdout + self.installed(*suite, "--resume").stderr)
+
+    def test_a_copied_policy_costs_the_same_as_its_original(self):
+        plugin = self.build("mine")
+        cycles = {}
+        for name in ("oldest", "mine"):
+            done = self.installed("run", "SHIP_SH", "--size", "16x16", "--spp", "1", "--set", f"core.issue={name}", "--out", name, "--plugin", plugin)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            cycles[name] = next(line for line in (self.folder / name / "stats.csv").read_text().splitlines() if line.startswith("gpu.cycles,"))
+        self.assertEqual(cycles["oldest"], cycles["mine"])
+
+    def test_a_plugin_that_takes_a_name_or_brings_nothing_or_is_of_another_glint_is_refused(self):
+        taken = self.build("taken", YOUNGEST.replace('"youngest"', '"gto"'))
+        empty = self.build("empty", "int nothing = 0;\n")
+        other = self.folder / "other.so"
+        other.write_bytes(empty.read_bytes().replace(b"glint-plugin-stamp:0", b"glint-plugin-stamp:9"))
+        text = self.folder / "text.so"
+        text.write_text("no library")
+        for file, message in ((taken, "name is taken (core/schedulers: gto)"), (empty, "registers no policy"), (other, "built against other headers"), (text, "not a plugin of Glint"),
+                              (self.folder / "absent.so", "cannot read the file")):
+            with self.subTest(file=file.name):
+                done = self.installed("list", "policies", "--plugin", file)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertIn(message, done.stderr)
+
+
+class NewPolicy(GlintTest):
+    """tools/new_policy.py in a copy of what it reads and writes."""
+
+    def setUp(self):
+        super().setUp()
+        for path in (*ROOT.glob("core/*.h"), *ROOT.glob("core/schedulers/*.cpp"), ROOT / "tools/new_policy.py", ROOT / policy_table.PATH, ROOT / "CHANGELOG.md"):
+            copy = self.folder / path.relative_to(ROOT)
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(path, copy)
+
+    def begin(self, *words):
+        return subprocess.run([sys.executable, self.folder / "tools/new_policy.py", *words], capture_output=True, text=True)
+
+    def test_it_writes_a_file_a_row_and_a_line(self):
+        done = self.begin("IssueScheduler", "youngest_first", "--like", "gto")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        text = (self.folder / "core/schedulers/youngest_first.cpp").read_text()
+        for part in ('kName = "youngest_first"', "class YoungestFirst final", "const Register<IssueScheduler, YoungestFirst> registered;", "// SPDX-License-Identifier"):
+            self.assertIn(part, text)
+        self.assertIn("core.issue,youngest_first,\n", (self.folder / policy_table.PATH).read_text())
+        self.assertIn("youngest_first", (self.folder / "CHANGELOG.md").read_text())
+
+    def test_it_refuses_what_there_is_and_what_there_is_not(self):
+        for words, message in ((("IssueScheduler", "gto"), "has a policy 'gto' already"), (("core.issue", "Gto"), "not a name of lower-case"), (("core.nothing", "x"), "no kind of policy"),
+                               (("core.issue", "x", "--like", "y"), "has no policy 'y'")):
+            with self.subTest(words=words):
+                done = self.begin(*words)
+                self.assertEqual(done.returncode, 1)
+                self.assertIn(message, done.stderr)
+
+
+if __name__ == "__main__":
+    glint_case.main()

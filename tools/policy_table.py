@@ -1,0 +1,41 @@
+# Measures one small frame with each registered policy, for tests/cli/policies.csv.
+# SPDX-License-Identifier: Apache-2.0
+import csv
+import hashlib
+import io
+import pathlib
+import re
+import subprocess
+import tempfile
+
+PATH = "tests/cli/policies.csv"
+# One core with a small L1, so that a few warps compete for all of its parts.
+FRAME = ["WKND_PT", "--config", "mobile", "--size", "24x16", "--spp", "1", "--set", "cores=1", "--set", "memory.l1.size=4096"]
+# Keys that stand for several, and what else a key needs to have an effect.
+KEYS = {"*.replacement": "memory.l1.replacement"}
+NEEDS = {"memory.dram.scheduler": ["memory.dram.model=banked"]}
+
+
+def policies(glint) -> list[tuple[str, str]]:
+    """Key and name of every policy that a configuration can choose."""
+    listed = subprocess.run([glint, "list", "policies"], capture_output=True, text=True, check=True).stdout
+    rows = [re.split(r" {2,}", line.strip(), maxsplit=3)[1:3] for line in listed.splitlines()]
+    return [(KEYS.get(key, key), name) for key, name in rows if not key.startswith("(")]
+
+
+def measure(glint, key: str, name: str, folder: pathlib.Path) -> tuple[int, str]:
+    """Cycles of the frame with the policy, and a hash of its picture."""
+    settings = [f"--set={setting}" for setting in [*NEEDS.get(key, []), f"{key}={name}"]]
+    subprocess.run([glint, "run", *FRAME, *settings, "--out", folder], capture_output=True, text=True, check=True)
+    cycles = next(row["value"] for row in csv.DictReader((folder / "stats.csv").read_text().splitlines()) if row["path"] == "gpu.cycles")
+    return int(cycles), hashlib.sha256((folder / "image.png").read_bytes()).hexdigest()
+
+
+def table(glint) -> str:
+    out = io.StringIO()
+    rows = csv.writer(out, lineterminator="\n")
+    rows.writerow(["key", "name", "cycles"])
+    with tempfile.TemporaryDirectory() as folder:
+        for key, name in policies(glint):
+            rows.writerow([key, name, measure(glint, key, name, pathlib.Path(folder) / "out")[0]])
+    return out.getvalue()
