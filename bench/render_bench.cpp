@@ -1,5 +1,5 @@
-// How fast the machines run whole frames and arithmetic: warp instructions a second, node visits, simulated
-// cycles.
+// Measures how fast the machines run whole frames and arithmetic, in warp instructions per second, node
+// visits per second and simulated cycles.
 // SPDX-License-Identifier: Apache-2.0
 #include <benchmark/benchmark.h>
 
@@ -11,7 +11,7 @@ using namespace glint;
 
 namespace {
 
-// Times the run alone: compiling shaders and building structures is not part of it.
+// Runs a frame. Its time is that of the run alone, without compiling shaders and building structures.
 void run_frame(benchmark::State& state, const char* scene, pipeline::Workload workload, bool timing) {
   pipeline::RenderJob job = test::small_job(scene, workload, 128, 2);
   job.gpu = test::preset("mobile");
@@ -31,7 +31,7 @@ void run_frame(benchmark::State& state, const char* scene, pipeline::Workload wo
   if (timing) state.counters["cycles"] = cycles / double(state.iterations());
 }
 
-// 65,536 threads that only calculate, on one thread of the host.
+// Runs 65,536 threads that only calculate, on one thread of the host.
 void run_arithmetic(benchmark::State& state, bool timing) {
   const std::string shader = std::string(GLINT_SOURCE_DIR) + "/bench/arithmetic.comp";
   const pipeline::PipelineDescription description =

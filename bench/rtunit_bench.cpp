@@ -1,4 +1,4 @@
-// Node visits a second of the functional traversal and of the timed RT unit.
+// Measures the node visits per second of the functional traversal and of the timed RT unit.
 // SPDX-License-Identifier: Apache-2.0
 #include <benchmark/benchmark.h>
 #include <cstdint>

@@ -1,4 +1,5 @@
-// Handing windows to threads, and waiting for each other without keeping a busy machine from its work.
+// Hands windows to threads, and lets threads wait for each other without taking processors from other
+// programs.
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/cell_pool.h"
 
@@ -10,8 +11,9 @@ namespace {
 
 constexpr uint64_t kEnd = ~uint64_t{0};
 
-// Choice: polls before a thread sleeps. They take about as long as what is done between two windows, a few
-// microseconds: longer waits mean that somebody else has the processor, and polling would keep it from them.
+// Choice: a thread polls this many times before it sleeps. The polls take a few microseconds, which is about
+// as long as the work between two windows. A longer wait means that another program has the processor that
+// the awaited thread needs, and polling on would keep that thread from it.
 constexpr int kPolls = 2'000;
 
 void relax() {
@@ -20,7 +22,7 @@ void relax() {
 #endif
 }
 
-// Waits until `value` is no longer `old`; returns what it is then.
+// Waits until `value` is no longer `old`, and returns the new value.
 uint64_t wait_change(const std::atomic<uint64_t>& value, uint64_t old) {
   for (int i = 0; i < kPolls; ++i) {
     if (const uint64_t now = value.load(std::memory_order_acquire); now != old) return now;
@@ -74,7 +76,8 @@ void CellPool::work(uint32_t thread, uint64_t window) {
   for (size_t i = 0; i < num_places_; ++i) take(places_[i], window);
 }
 
-// A thread that comes late, when its window is over, finds every cell taken: in each window each cell is.
+// Takes the cell and advances it, unless another thread has taken it for this window. Every cell is taken
+// once in each window, so a thread that comes after the end of its window finds no cell to take.
 void CellPool::take(Place& place, uint64_t window) {
   uint64_t before = window - 1;
   if (place.taken.load(std::memory_order_relaxed) != before) return;

@@ -1,8 +1,9 @@
-// Simulated time: cells that advance on their own for a window, and channels of timestamped messages between
-// them.
+// Declares the parts of simulated time: cells, which advance on their own for a window of cycles, and
+// channels, which carry timestamped messages between cells.
 //
-// The window is no longer than the shortest channel latency, so what a cell needs in a window was sent before
-// it: cells may advance in any order or in parallel and the result is the same (docs/architecture.md, D6).
+// A window is no longer than the shortest latency of a channel, so every message that a cell needs in a
+// window was sent before the window began. Cells may therefore advance in any order or in parallel, and the
+// result is the same (docs/architecture.md, D6).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -15,20 +16,23 @@
 
 namespace glint {
 
-// Handed over between windows by the engine.
+// Is what the engine knows of a channel: it hands over the messages between two windows.
 class ChannelBase {
  public:
   virtual ~ChannelBase() = default;
-  virtual void deliver() = 0;              // what was sent in the last window becomes visible
-  virtual Cycle next_arrival() const = 0;  // of delivered and undelivered messages; kNever when empty
+  // Makes the messages that were sent in the last window visible to the consumer.
+  virtual void deliver() = 0;
+  // Returns the earliest arrival of all messages, delivered or not. Returns kNever when there are none.
+  virtual Cycle next_arrival() const = 0;
 };
 
-// Messages from one cell to one other, in order of arrival time. send() is the producer's, the rest the
-// consumer's.
+// Carries messages from one cell to one other, in the order of their arrival times. The producer calls
+// send(), and the consumer calls the other functions.
 template <class Message>
 class Channel final : public ChannelBase {
  public:
-  // `arrival` may not decrease from one send to the next, and is at least the channel's latency ahead.
+  // Sends a message. `arrival` may not decrease from one message to the next, and it is at least the latency
+  // of the channel ahead of the present cycle.
   void send(Cycle arrival, const Message& message) {
     GLINT_DCHECK(sent_.empty() || sent_.back().arrival <= arrival, "messages must be sent in order");
     sent_.push_back({arrival, message});
@@ -57,20 +61,24 @@ class Channel final : public ChannelBase {
     Cycle arrival;
     Message message;
   };
-  std::vector<Timed> inbox_, sent_;  // capacity is kept: no heap once warm
+  std::vector<Timed> inbox_, sent_;  // keep their capacity, so that sending soon stops allocating
   size_t head_ = 0;
 };
 
-// A part of the machine with its own state: a core with its L1 and RT unit, a memory partition.
+// Is a part of the machine with its own state, such as a core with its L1 and RT unit, or a memory partition.
 class Cell {
  public:
   virtual ~Cell() = default;
-  // Simulates cycles [from, until). Reads only its own state and delivered messages.
+  // Simulates the cycles [from, until). It reads only the cell's own state and delivered messages.
   virtual void advance(Cycle from, Cycle until) = 0;
-  // Earliest cycle >= `from` at which it has work without new messages; kNever when idle.
+  // Returns the earliest cycle >= `from` in which the cell has work even if no new message comes. Returns
+  // kNever when it has none.
   virtual Cycle next_event(Cycle from) const = 0;
-  virtual bool finished() const = 0;      // holds no work at all
-  virtual uint64_t progress() const = 0;  // grows whenever anything moved: the watchdog reads it
+  // Tells whether the cell holds no work at all.
+  virtual bool finished() const = 0;
+  // Returns a count that grows whenever anything in the cell has moved. The watchdog reads it.
+  virtual uint64_t progress() const = 0;
+  // Returns lines of text that say what the cell waits for.
   virtual std::string describe_stall() const = 0;
 };
 

@@ -1,4 +1,4 @@
-// Takes cells and channels through simulated time, window by window.
+// Runs turns and windows, skips idle time, and notices when a machine is stuck.
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/engine_loop.h"
 
@@ -43,7 +43,7 @@ Cycle EngineLoop::run(const Between& between) {
 }
 
 void EngineLoop::run_turn(Cycle from, uint64_t progress) {
-  // Who asks for a number of threads gets it.
+  // A number of threads that was asked for is used throughout. Only a free choice depends on the pace.
   const bool in_parallel =
       pool_ && (options_.threads || pace_.in_parallel(std::chrono::steady_clock::now(), progress));
   const Cycle end = from + options_.turn, step = options_.window ? options_.window : options_.turn;

@@ -15,35 +15,41 @@
 
 namespace glint {
 
-// Time goes in turns, and a turn in windows. A turn's length is the model's: what acts between turns (blocks
-// are handed out, stores become visible to other cores) acts in the same cycles however the machine is run. A
-// window is what a cell advances alone; its length, the threads and the cells each of them runs change
-// nothing but the time that a run takes. Turns start at multiples of their length, so that skipping idle time
-// does not move them.
+// Runs simulated time in turns, and each turn in windows. The length of a turn belongs to the model: blocks
+// are handed out and stores become visible to other cores between turns, so these things happen in the same
+// cycles however the machine is run. A window is the time that a cell advances alone. The length of a window,
+// the number of threads and the cells that each thread runs change nothing but the time that a run takes.
+// Turns start at multiples of their length, so that skipping idle time does not move them.
 class EngineLoop {
  public:
   struct Options {
-    Cycle turn = 32;                // at most the shortest latency of the channels
-    bool no_skip = false;           // visits every turn; cells have a switch of their own
-    Cycle watchdog = 1'000'000;     // cycles without progress of any cell before the machine counts as stuck
-    uint32_t threads = 1;           // 0: as many as the host has processors, while they are faster than one
-    Cycle window = 0;               // at most a turn, and the last of a turn ends with it; 0: a turn
-    std::vector<uint32_t> homes{};  // of the cells (cell_pool.h)
+    Cycle turn = 32;             // cycles of a turn, at most the shortest latency of the channels
+    bool no_skip = false;        // True: the loop visits every turn. Cells have a switch of their own.
+    Cycle watchdog = 1'000'000;  // cycles without progress of any cell before the machine counts as stuck
+    // Number of threads. 0: as many as the host has processors, in the phases in which they are faster than
+    // one.
+    uint32_t threads = 1;
+    // Cycles of a window, at most those of a turn. The last window of a turn ends with the turn. 0: a whole
+    // turn.
+    Cycle window = 0;
+    std::vector<uint32_t> homes{};  // the threads to which the cells belong (cell_pool.h)
   };
   enum class Next { Continue, NothingMore, Stop };
-  // Called at the start of each turn. Continue: more work may be handed out later. NothingMore: run until all
-  // cells are finished. Stop: end at once, because of a fault for instance.
+  // Is called at the start of each turn, and says how to go on. Continue: more work may be handed out later.
+  // NothingMore: the loop runs until all cells are finished. Stop: the loop ends at once, for instance
+  // because of a fault.
   using Between = std::function<Next(Cycle now)>;
 
   explicit EngineLoop(Options options) : options_(std::move(options)) {}
   void add(Cell& cell) { cells_.push_back(&cell); }
   void add(ChannelBase& channel) { channels_.push_back(&channel); }
 
-  // Runs to the end; returns the start of the turn that was not run any more. Throws Error(Exit::Stuck) with
-  // every cell's description when nothing has moved for `watchdog` cycles or nothing ever will.
+  // Runs to the end, and returns the start of the first turn that was not run. Throws Error(Exit::Stuck) with
+  // the description of every unfinished cell when nothing has moved for `watchdog` cycles or nothing will
+  // move again.
   Cycle run(const Between& between);
 
-  // That options_.threads comes to on this host, for `cells` cells.
+  // Returns the number of threads that this host uses for `cells` cells when `threads` is asked for.
   static uint32_t num_threads(uint32_t threads, size_t cells);
 
  private:
@@ -57,7 +63,7 @@ class EngineLoop {
   const Options options_;
   std::vector<Cell*> cells_;
   std::vector<ChannelBase*> channels_;
-  std::unique_ptr<CellPool> pool_;  // from the first run on; null with one thread
+  std::unique_ptr<CellPool> pool_;  // exists from the first run on; null with one thread
   Pace pace_;
 };
 

@@ -1,4 +1,5 @@
-// Whether several threads are faster than one, for the launch that runs and the processors that are free.
+// Decides whether several threads are faster than one, for the present launch and the processors that are
+// free.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <chrono>
@@ -6,13 +7,15 @@
 
 namespace glint {
 
-// Tries a few windows each way, goes on in the faster way for many, then tries again. It looks at the clock
-// of the host: what it chooses differs from run to run, and no result depends on it.
+// Tries a few windows with one thread and a few with several, goes on in the faster way for many windows, and
+// then tries again. It reads the clock of the host, so its choice differs from run to run. No result depends
+// on the choice.
 class Pace {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  // Of the window that begins now; `progress` counts what the machine has done so far (Cell::progress).
+  // Tells whether the window that begins now shall run on several threads. `progress` counts what the machine
+  // has done so far (Cell::progress).
   bool in_parallel(Time now, uint64_t progress) {
     if (windows_ == 0) begin(now, progress);
     if (windows_++ < length()) return way_ == Way::Parallel;
@@ -22,7 +25,7 @@ class Pace {
     return way_ == Way::Parallel;
   }
 
-  // Choice: a trial is long enough for caches to settle; all trials are a twentieth of the time.
+  // Choice: a trial has enough windows for the caches to settle. Trials make up a twentieth of all windows.
   static constexpr uint32_t kTrial = 32, kStay = 40 * kTrial;
 
  private:
@@ -35,7 +38,7 @@ class Pace {
     progress_ = progress;
     windows_ = 0;
   }
-  // Time a step, in any unit: a phase in which nothing moved says nothing.
+  // Ends a phase, whose cost is its time per unit of progress. If nothing moved, the whole time is the cost.
   void end(Time now, uint64_t progress) {
     const double time = std::chrono::duration<double>(now - started_).count();
     const double cost = time / double(progress > progress_ ? progress - progress_ : 1);
@@ -58,10 +61,10 @@ class Pace {
 
   Phase phase_ = Phase::TrySerial;
   Way way_ = Way::Serial;
-  uint32_t windows_ = 0;   // of the phase
-  uint64_t progress_ = 0;  // when it began
+  uint32_t windows_ = 0;   // number of windows that the phase has had
+  uint64_t progress_ = 0;  // the progress when the phase began
   Time started_{};
-  double serial_ = 0;  // cost of the last trial
+  double serial_ = 0;  // the cost of the last trial with one thread
 };
 
 }  // namespace glint
