@@ -5,8 +5,8 @@
 // The scheme is that of S. Oberman and M. Siu, "A high-performance area-efficient multifunction interpolator"
 // (ARITH 2005). The leading mantissa bits choose a segment. The result is C0 + C1 x + C2 square(x) of the
 // bits below, where the squarer drops the partial products of low weight. tools/fit_approximate.py explains
-// widths and coefficients. The unit takes subnormals for 0 and gives 0 for them. Only isa/ops/*.cpp include
-// this file (see op_makers.h).
+// widths and coefficients. The unit takes subnormals for 0 and gives 0 for them. Only files of isa/ops
+// include this file (see op_makers.h).
 #pragma once
 #include <cstddef>
 #include <cstdint>

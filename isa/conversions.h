@@ -3,7 +3,7 @@
 //
 // The functions are branch-free, so that loops over lanes become vectors. They use only +, -, comparisons and
 // bits, so that every path gives the same result. The host must round to nearest, except where a function
-// says otherwise. Only isa/ops/*.cpp include this file.
+// says otherwise. Only files of isa/ops include this file.
 #pragma once
 #include <cstdint>
 #include <type_traits>

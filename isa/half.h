@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The functions are branch-free, so that loops over lanes become vectors. They use integer operations and one
-// addition, so that every path gives the same bits. Only isa/ops/*.cpp include this file (see op_makers.h).
+// addition, so that every path gives the same bits. Only files of isa/ops include this file (see
+// op_makers.h).
 #pragma once
 #include <cstdint>
 
@@ -46,7 +47,6 @@ template <bool kFtz = false>
 //
 // When a float is added to 2^13 times its own power of two (2^-14 at least, where f16 becomes subnormal), it
 // is rounded to the steps of an f16, and the low bits of the sum count these steps.
-// to the steps of an f16: the low bits of the sum count them.
 template <bool kFtz = false>
 [[gnu::always_inline]] inline uint32_t half_bits(float x) {
   const uint32_t bits = float_bits(x) & 0x7fff'ffffu;

@@ -4,7 +4,7 @@
 //
 // One intrinsic replaces ten steps of isa/half.h, which every compiler vectorises. The bits are the same
 // (test "every value op gives the same bits on every path"). Rows of floats and words are 64-byte aligned.
-// Only isa/ops/*.cpp include this file (see op_makers.h).
+// Only files of isa/ops include this file (see op_makers.h).
 #pragma once
 #include <cstdint>
 
@@ -92,11 +92,10 @@ template <class FmaToOdd>
     const __m512i low = _mm512_loadu_si512(x.low + i), high = _mm512_loadu_si512(x.high + i);
     const __m512d first = _mm512_castsi512_pd(_mm512_permutex2var_epi32(low, even, high));
     const __m512d second = _mm512_castsi512_pd(_mm512_permutex2var_epi32(low, odd, high));
-    const auto both = [](__m256 a, __m256 b) { return _mm512_insertf32x8(_mm512_castps256_ps512(a), b, 1); };
-    _mm512_store_ps(out + i, odd_of(both(_mm512_cvt_roundpd_ps(first, kStaticRound<Round::Down>),
-                                         _mm512_cvt_roundpd_ps(second, kStaticRound<Round::Down>)),
-                                    both(_mm512_cvt_roundpd_ps(first, kStaticRound<Round::Up>),
-                                         _mm512_cvt_roundpd_ps(second, kStaticRound<Round::Up>))));
+    _mm512_store_ps(out + i, odd_of(joined_parts(_mm512_cvt_roundpd_ps(first, kStaticRound<Round::Down>),
+                                                 _mm512_cvt_roundpd_ps(second, kStaticRound<Round::Down>)),
+                                    joined_parts(_mm512_cvt_roundpd_ps(first, kStaticRound<Round::Up>),
+                                                 _mm512_cvt_roundpd_ps(second, kStaticRound<Round::Up>))));
   }
 #else
   all_lanes([&](int i) { out[i] = odd_float(x.at(i)); });

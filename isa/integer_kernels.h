@@ -1,7 +1,7 @@
 // Builds integer parts of the ops: counts, fields, wide products, quotients without division instructions.
 // SPDX-License-Identifier: Apache-2.0
 //
-// The functions are branch-free, so that loops over lanes become vectors. Only isa/ops/*.cpp include this
+// The functions are branch-free, so that loops over lanes become vectors. Only files of isa/ops include this
 // file (see op_makers.h).
 #pragma once
 #include <cstdint>

@@ -3,8 +3,8 @@
 //
 // The functions use only +, -, *, /, fma and integer operations. They work in double and round once, so
 // results are nearly correctly rounded. Model: the results are more accurate than those of the hardware's
-// tables (2 ulp in the ptxas manuals); timing does not depend on them. Only isa/ops/*.cpp include this file
-// (see op_makers.h).
+// tables (2 ulp in the ptxas manuals); timing does not depend on them. Only files of isa/ops include this
+// file (see op_makers.h).
 #pragma once
 #include <cstdint>
 

@@ -1,7 +1,7 @@
 // Makes op rows: wraps the work of one lane into a handler for the whole warp.
 // SPDX-License-Identifier: Apache-2.0
 //
-// Only isa/ops/*.cpp include this file. They are compiled once for each SIMD path. Everything here is in a
+// Only files of isa/ops include this file. They are compiled once for each SIMD path. Everything here is in a
 // namespace of its path, and rows pass lambdas of an unnamed namespace, so no path can link another path's
 // code.
 #pragma once
@@ -13,10 +13,7 @@
 #include <utility>
 
 #if defined(__AVX2__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wuninitialized"  // g++ 12 warns of its own _mm512_undefined (GCC bug 105593)
 #include <immintrin.h>
-#pragma GCC diagnostic pop
 #endif
 
 #include "isa/kernels.h"
@@ -57,7 +54,7 @@ struct Pair {
   T low, high;
 };
 
-// Holds the results of an op with two destinations, written `%r1|%p2`.
+// Holds the results of an op with two destinations, written `%r1|%p2`. B is bool.
 template <class A, class B>
 struct Two {
   A first;
@@ -132,37 +129,35 @@ template <class T>
     return __builtin_bit_cast(uint32_t, x);
 }
 
-// Runs `value(i)` for all lanes and keeps it for those of `exec`; R says how wide a result row is.
+// Writes value(i) of every lane; R says how wide a result row is.
 template <class R, class Value>
-[[gnu::always_inline]] inline void write_lanes(Warp& warp, Slot slot, Value&& value) {
+[[gnu::always_inline]] inline void write_all_lanes(Warp& warp, Slot slot, Value&& value) {
   uint32_t* const low = warp.bank[0] + slot * kLanes;
-  const LaneMask exec = warp.exec;
   if constexpr (sizeof(R) == 8) {
     uint32_t* const high = low + kLanes;
-    if (exec == kAllLanes) [[likely]] {
-      all_lanes([&](int i) {
-        const uint64_t x = bits_of(value(i));
-        low[i] = uint32_t(x);
-        high[i] = uint32_t(x >> 32);
-      });
-      return;
-    }
     all_lanes([&](int i) {
       const uint64_t x = bits_of(value(i));
-      const bool write = (exec & kLaneBit[i]) != 0;
-      low[i] = write ? uint32_t(x) : low[i];
-      high[i] = write ? uint32_t(x >> 32) : high[i];
+      low[i] = uint32_t(x);
+      high[i] = uint32_t(x >> 32);
     });
   } else {
-    if (exec == kAllLanes) [[likely]] {
-      all_lanes([&](int i) { low[i] = bits_of(value(i)); });
-      return;
-    }
-    all_lanes([&](int i) {
-      const uint32_t x = bits_of(value(i));
-      low[i] = (exec & kLaneBit[i]) != 0 ? x : low[i];
-    });
+    all_lanes([&](int i) { low[i] = bits_of(value(i)); });
   }
+}
+
+// Writes value(i) of the lanes of `exec`.
+template <class R, class Value>
+[[gnu::always_inline]] inline void write_lanes(Warp& warp, Slot slot, Value&& value) {
+  const LaneMask exec = warp.exec;
+  if (exec == kAllLanes) [[likely]]
+    return write_all_lanes<R>(warp, slot, value);
+  uint32_t* const low = warp.bank[0] + slot * kLanes;
+  all_lanes([&](int i) {
+    const auto x = bits_of(value(i));
+    const bool write = (exec & kLaneBit[i]) != 0;
+    low[i] = write ? uint32_t(x) : low[i];
+    if constexpr (sizeof(R) == 8) low[kLanes + i] = write ? uint32_t(x >> 32) : low[kLanes + i];
+  });
 }
 
 // Writes a predicate: the lanes of `exec` take their bit of `mask`.
@@ -192,49 +187,65 @@ template <class Test>
 #endif
 }
 
-// Writes value(i) of each lane of `exec`: a bool to a predicate, 8 bytes to a register pair, and fewer bytes
-// to a register.
-template <class R, class Value>
-[[gnu::always_inline]] inline void write_result(Warp& warp, Slot slot, Value&& value) {
-  if constexpr (std::is_same_v<R, bool>)
-    write_predicate(warp, slot, mask_of(value));
-  else
-    write_lanes<R>(warp, slot, value);
+// Calls `run` as if all lanes executed, and then gives the other lanes of the destination their old values
+// back. Handlers share this function, so each of them has code for a full warp only.
+template <int kRows>
+[[gnu::noinline]] void run_some_lanes(Warp& warp, const Inst& inst, Handler run) {
+  const LaneMask exec = warp.exec;
+  const auto predicates = warp.predicate;
+  uint32_t* const row = warp.bank[0] + inst.operand.front() * kLanes;
+  alignas(64) uint32_t old[kRows * kLanes];
+  __builtin_memcpy(old, row, sizeof old);
+  warp.exec = kAllLanes;
+  run(warp, inst);
+  warp.exec = exec;
+  for (int first = 0; first < kRows * kLanes; first += kLanes)
+    all_lanes([&](int i) { row[first + i] = (exec & kLaneBit[i]) != 0 ? row[first + i] : old[first + i]; });
+  for (size_t p = 0; p < predicates.size(); ++p)
+    warp.predicate[p] = (warp.predicate[p] & exec) | (predicates[p] & ~exec);
 }
 
-// Handler of a value op: applies F to the sources of types A... lane by lane. F's result type is the
+// Tells whether lanes are missing. If so, it has called `run` for the lanes that execute. R is the type of
+// the first destination.
+template <class R>
+[[gnu::always_inline]] inline bool ran_some_lanes(Warp& warp, const Inst& inst, Handler run) {
+  if (warp.exec == kAllLanes) [[likely]]
+    return false;
+  run_some_lanes<sizeof(R) == 8 ? 2 : 1>(warp, inst, run);
+  return true;
+}
+
+// Handles a value op: applies F to the sources of types A... lane by lane. F's result type is the
 // destination: bool a predicate, 8 bytes a register pair, 4 bytes a register.
 template <class F, class... A>
-[[gnu::flatten]] void run_value(Warp& warp, const Inst& inst) {
+[[gnu::flatten, gnu::noinline]] void run_value(Warp& warp, const Inst& inst) {
+  using R = decltype(F{}(A{}...));
   [&]<size_t... N>(std::index_sequence<N...>) {
     const Slot* const slot = &inst.operand.front();
     const std::tuple<Source<A>...> source{Source<A>(warp, slot[N + 1])...};
     const auto value = [&](int i) { return F{}(std::get<N>(source).at(i)...); };
-    write_result<decltype(value(0))>(warp, slot[0], value);
+    if constexpr (std::is_same_v<R, bool>)
+      write_predicate(warp, slot[0], mask_of(value));
+    else if (!ran_some_lanes<R>(warp, inst, &run_value<F, A...>))
+      write_all_lanes<R>(warp, slot[0], value);
   }
   (std::index_sequence_for<A...>{});
 }
 
-// The same of an F that gives Two<R, S>. Either destination may be a source, so nothing is written before all
-// is known: a predicate is a mask until then, other results go through memory of their own.
+// Does the same for an F that gives Two<R, bool>. Either destination may be a source, so the predicate is a
+// mask until the other result is written.
 template <class F, class... A>
 [[gnu::flatten]] void run_two_values(Warp& warp, const Inst& inst) {
+  using R = decltype(F{}(A{}...).first);
+  if (ran_some_lanes<R>(warp, inst, &run_two_values<F, A...>)) return;
   [&]<size_t... N>(std::index_sequence<N...>) {
     const Slot* const slot = &inst.operand.front();
     const std::tuple<Source<A>...> source{Source<A>(warp, slot[N + 2])...};
     const auto value = [&](int i) { return F{}(std::get<N>(source).at(i)...); };
-    using R = decltype(value(0));
-    if constexpr (std::is_same_v<decltype(R::second), bool>) {
-      LaneMask second = 0;  // without a condition: carries come from predicates as well
-      for (int i = 0; i < kLanes; ++i) second |= kLaneBit[i] & (LaneMask{0} - LaneMask(value(i).second));
-      write_result<decltype(R::first)>(warp, slot[0], [&](int i) { return value(i).first; });
-      write_predicate(warp, slot[1], second);
-    } else {
-      R result[kLanes];
-      for (int i = 0; i < kLanes; ++i) result[i] = value(i);
-      write_result<decltype(R::first)>(warp, slot[0], [&](int i) { return result[i].first; });
-      write_result<decltype(R::second)>(warp, slot[1], [&](int i) { return result[i].second; });
-    }
+    LaneMask second = 0;  // without a condition: carries come from predicates as well
+    for (int i = 0; i < kLanes; ++i) second |= kLaneBit[i] & (LaneMask{0} - LaneMask(value(i).second));
+    write_all_lanes<R>(warp, slot[0], [&](int i) { return value(i).first; });
+    write_predicate(warp, slot[1], second);
   }
   (std::index_sequence_for<A...>{});
 }

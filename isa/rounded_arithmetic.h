@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // `of` rounds as MXCSR says, and `rounded` as its argument says. `rounded_times_2_to_32` gives 2^32 times the
-// result of sources that are zero or normal. Only isa/ops/*.cpp include this file (see rounding.h).
+// result of sources that are zero or normal. Only files of isa/ops include this file (see rounding.h).
 #pragma once
 #include "isa/rounding.h"
 

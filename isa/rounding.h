@@ -3,7 +3,7 @@
 //
 // AVX-512 rounds by a field of the instruction and flushes by comparisons. Other paths set the host's MXCSR
 // meanwhile. This is correct but not always fast: on some processors a pair of its loads takes 50 ns. Only
-// isa/ops/*.cpp include this file.
+// files of isa/ops include this file.
 #pragma once
 #include <cstdint>
 #include <string_view>
@@ -21,6 +21,15 @@ enum class Round : uint8_t { Nearest = 0, Down = 1, Up = 2, Zero = 3 };
 // Gives the direction in the form of vector instructions, which then ignore MXCSR.
 template <Round kRound>
 inline constexpr int kStaticRound = int(kRound) | 8;  // _MM_FROUND_NO_EXC
+
+// Does the arithmetic of a lane and finishes it.
+template <class Work, class F>
+struct Finished {
+  template <class... A>
+  [[gnu::always_inline]] auto operator()(A... a) const {
+    return F{}(Work::of(a...), a...);
+  }
+};
 
 #if defined(__AVX512F__)
 
@@ -56,61 +65,45 @@ template <class Work, Round kRound, class... Vector>
 
 template <Round kRound, bool kFtz, class Work, class F, class... A>
 [[gnu::flatten]] void run_rounded(Warp& warp, const Inst& inst) {
+  using R = decltype(F{}(Work::of(A{}...), A{}...));
+  if (ran_some_lanes<R>(warp, inst, &run_rounded<kRound, kFtz, Work, F, A...>)) return;
   [&]<size_t... N>(std::index_sequence<N...>) {
     const Slot* const slot = &inst.operand.front();
     const std::tuple<Source<A>...> source{Source<A>(warp, slot[N + 1])...};
     using Raw = decltype(Work::of(A{}...));
     alignas(64) Raw raw[kLanes];
-    constexpr int kStep = ((sizeof(A) == 8) || ...) ? 8 : 16;
-    for (int i = 0; i < kLanes; i += kStep)
+    const auto part = [&](int i) {
       if constexpr (kFtz)
-        store_part(raw + i, flushed_part<Work, kRound>(load_part(std::get<N>(source), i)...));
+        return flushed_part<Work, kRound>(load_part(std::get<N>(source), i)...);
       else
-        store_part(raw + i, Work::template rounded<kRound>(load_part(std::get<N>(source), i)...));
-    const auto value = [&](int i) { return F{}(raw[i], std::get<N>(source).at(i)...); };
-    write_result<decltype(value(0))>(warp, slot[0], value);
+        return Work::template rounded<kRound>(load_part(std::get<N>(source), i)...);
+    };
+    constexpr int kStep = ((sizeof(A) == 8) || ...) ? 8 : 16;
+    for (int i = 0; i < kLanes; i += 64 / int(sizeof(Raw)))
+      if constexpr (kStep * sizeof(Raw) < 64)
+        store_part(raw + i, joined_parts(part(i), part(i + kStep)));
+      else
+        store_part(raw + i, part(i));
+    write_all_lanes<R>(warp, slot[0], [&](int i) { return F{}(raw[i], std::get<N>(source).at(i)...); });
   }
   (std::index_sequence_for<A...>{});
 }
 
 #else
 
-// Sets the rounding direction while it lives. With kFtz, single and double subnormals of sources and results
-// become zeros of their sign (MXCSR's DAZ and FTZ; a result counts as subnormal by its size after rounding
-// with an unbounded exponent, as with PTX's .ftz). The hardware does so for all lanes at once. The compiler
-// does not know of the mode, so fences keep it from moving loads and stores, and the code between them,
-// across. Every thread that runs Glint has MXCSR's state of process start. Therefore the state is set and not
-// saved, because reading it takes longer than the arithmetic.
-template <Round kRound, bool kFtz>
-class RoundingScope {
- public:
-  [[gnu::always_inline]] RoundingScope() {
-    _mm_setcsr(kProcessStart | uint32_t(kRound) << 13 | (kFtz ? 0x8040u : 0));
-    asm volatile("" ::: "memory");
-  }
-  [[gnu::always_inline]] ~RoundingScope() {
-    asm volatile("" ::: "memory");
-    _mm_setcsr(kProcessStart);
-  }
-  RoundingScope(const RoundingScope&) = delete;
-  RoundingScope& operator=(const RoundingScope&) = delete;
-
- private:
+// Calls the handler kRun while the host rounds in a direction. With kFtz, single and double subnormals of
+// sources and results become zeros of their sign (MXCSR's DAZ and FTZ; a result counts as subnormal by its
+// size after rounding with an unbounded exponent, as with PTX's .ftz). The hardware does so for all lanes at
+// once. The compiler does not know of the mode, but it moves no arithmetic across the call of a function that
+// is not inlined. Every thread that runs Glint has MXCSR's state of process start. Therefore the state is set
+// and not saved, because reading it takes longer than the arithmetic.
+template <Round kRound, bool kFtz, Handler kRun>
+void run_in_mode(Warp& warp, const Inst& inst) {
   // Rounds to nearest, flushes nothing and traps nothing (System V ABI, 3.4.1).
-  static constexpr uint32_t kProcessStart = 0x1f80;
-};
-
-template <class Work, class F>
-struct Finished {
-  template <class... A>
-  [[gnu::always_inline]] auto operator()(A... a) const {
-    return F{}(Work::of(a...), a...);
-  }
-};
-template <Round kRound, bool kFtz, class Work, class F, class... A>
-[[gnu::flatten]] void run_rounded(Warp& warp, const Inst& inst) {
-  const RoundingScope<kRound, kFtz> scope;
-  run_value<Finished<Work, F>, A...>(warp, inst);
+  constexpr uint32_t kProcessStart = 0x1f80;
+  _mm_setcsr(kProcessStart | uint32_t(kRound) << 13 | (kFtz ? 0x8040u : 0));
+  kRun(warp, inst);
+  _mm_setcsr(kProcessStart);
 }
 
 #endif
@@ -119,9 +112,13 @@ template <Round kRound, bool kFtz, class Work, class F, class... A>
 // (isa/rounded_arithmetic.h), rounded in a direction and flushed. `finish` itself must depend on neither.
 template <Round kRound, bool kFtz, class Work, class... A, class F>
 constexpr OpRow flushed_op(std::string_view name, Unit unit, std::string_view doc, F, Examples examples) {
-  OpRow row = value_op<A...>(
-      name, unit, doc, [](A... a) { return F{}(Work::of(a...), a...); }, examples);
+  OpRow row = value_op<A...>(name, unit, doc, Finished<Work, F>{}, examples);
+#if defined(__AVX512F__)
   if constexpr (kRound != Round::Nearest || kFtz) row.run = &run_rounded<kRound, kFtz, Work, F, A...>;
+#else
+  if constexpr (kRound != Round::Nearest || kFtz)
+    row.run = &run_in_mode<kRound, kFtz, &run_value<Finished<Work, F>, A...>>;
+#endif
   return row;
 }
 // Makes a row like flushed_op(), but keeps subnormals.

@@ -3,7 +3,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // It is used where no compiler finds the instruction: conversions, and rounding with a direction in the
-// instruction. Only isa/ops/*.cpp include this file (see op_makers.h). It is empty on paths without AVX-512.
+// instruction. Only files of isa/ops include this file (see op_makers.h). It is empty on paths without
+// AVX-512.
 #pragma once
 #include <cstdint>
 #include <type_traits>
@@ -39,14 +40,21 @@ template <class T>
 [[gnu::always_inline]] inline void store_part(float* out, __m512 x) {
   _mm512_store_ps(out, x);
 }
-[[gnu::always_inline]] inline void store_part(float* out, __m256 x) {
-  _mm256_store_ps(out, x);
-}
 [[gnu::always_inline]] inline void store_part(double* out, __m512d x) {
   _mm512_store_pd(out, x);
 }
-[[gnu::always_inline]] inline void store_part(uint32_t* out, __m512i x) {
-  _mm512_store_si512(out, x);
+[[gnu::always_inline]] inline void store_part(uint32_t* row, __m256i words) {
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(row), words);
+}
+// Stores long integers to a row and the next one.
+[[gnu::always_inline]] inline void store_part(uint32_t* row, __m512i longs) {
+  store_part(row, _mm512_cvtepi64_epi32(longs));
+  store_part(row + kLanes, _mm512_cvtepi64_epi32(_mm512_srli_epi64(longs, 32)));
+}
+
+// Joins two vectors, so that they are stored as one: a load of both would wait for two stores.
+[[gnu::always_inline]] inline __m512 joined_parts(__m256 low, __m256 high) {
+  return _mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1);
 }
 
 #endif

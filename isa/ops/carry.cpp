@@ -61,6 +61,7 @@ inline T half_product(T a, T b) {
 // for both results.
 template <class T, bool kHigh, bool kCarryIn>
 [[gnu::flatten]] void run_product(Warp& warp, const Inst& inst) {
+  if (ran_some_lanes<T>(warp, inst, &run_product<T, kHigh, kCarryIn>)) return;
   const Slot* const slot = &inst.operand.front();
   const Source<T> a(warp, slot[2]), b(warp, slot[3]), c(warp, slot[4]);
   const Source<bool> carry(warp, kCarryIn ? slot[5] : Slot(0));
@@ -69,7 +70,7 @@ template <class T, bool kHigh, bool kCarryIn>
   const auto sum = [&](int i) { return sum_with_carry(product[i], c.at(i), kCarryIn && carry.at(i)); };
   LaneMask out = 0;
   for (int i = 0; i < kLanes; ++i) out |= kLaneBit[i] & (LaneMask{0} - LaneMask(sum(i).second));
-  write_lanes<T>(warp, slot[0], [&](int i) { return sum(i).first; });
+  write_all_lanes<T>(warp, slot[0], [&](int i) { return sum(i).first; });
   write_predicate(warp, slot[1], out);
 }
 constexpr OpRow with_handler(OpRow row, Handler run) {

@@ -2,7 +2,7 @@
 // lanes.
 // SPDX-License-Identifier: Apache-2.0
 //
-// Only isa/ops/*.cpp include this file. Everything is in an unnamed namespace, so each file has its own
+// Only files of isa/ops include this file. Everything is in an unnamed namespace, so each file has its own
 // handlers.
 #pragma once
 #include <cstdint>

@@ -153,6 +153,7 @@ inline uint32_t narrowed_nan(double nan) {
 // nothing: a subnormal still rounds up or down to the least f16.
 template <class D, class S, Round kRound, bool kSat, bool kRelu>
 [[gnu::flatten]] void run_narrow(Warp& warp, const Inst& inst) {
+  if (ran_some_lanes<uint32_t>(warp, inst, &run_narrow<D, S, kRound, kSat, kRelu>)) return;
   constexpr bool kFromDouble = std::is_same_v<S, TypeF64>;
   const Slot* const slot = &inst.operand.front();
   const Source<typename S::Type> source(warp, slot[1]);
@@ -168,7 +169,7 @@ template <class D, class S, Round kRound, bool kSat, bool kRelu>
     narrow_to_halves<kRound>(x, out);
   else
     all_lanes([&](int i) { out[i] = rounded_bfloat<kRound>(x[i]).bits; });
-  write_lanes<uint32_t>(warp, slot[0], [&](int i) {
+  write_all_lanes<uint32_t>(warp, slot[0], [&](int i) {
     if constexpr (!kFromDouble || kSat) return out[i];
     const double number = source.at(i);
     return number != number ? narrowed_nan<D>(number) : out[i];

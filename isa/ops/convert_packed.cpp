@@ -26,11 +26,12 @@ template <class N, Round kRound, bool kRelu>
 }
 template <class N, Round kRound, bool kRelu>
 [[gnu::flatten]] void run_pair(Warp& warp, const Inst& inst) {
+  if (ran_some_lanes<uint32_t>(warp, inst, &run_pair<N, kRound, kRelu>)) return;
   const Slot* const slot = &inst.operand.front();
   alignas(64) uint32_t high[kLanes], low[kLanes];
   narrow_row<N, kRound, kRelu>(Source<float>(warp, slot[1]), high);
   narrow_row<N, kRound, kRelu>(Source<float>(warp, slot[2]), low);
-  write_lanes<uint32_t>(warp, slot[0], [&](int i) { return high[i] << 16 | low[i]; });
+  write_all_lanes<uint32_t>(warp, slot[0], [&](int i) { return high[i] << 16 | low[i]; });
 }
 // Converts two floats to a pair. The first source becomes the upper half.
 template <class N, Round kRound, bool kRelu>

@@ -35,7 +35,9 @@ template <class To, Round kRound, bool kFromDouble>
     const __m512d inside = _mm512_min_pd(above, _mm512_set1_pd(double(kHigh)));
     const __m256i number = std::is_same_v<To, uint32_t> ? _mm512_cvt_roundpd_epu32(inside, kDirection)
                                                         : _mm512_cvt_roundpd_epi32(inside, kDirection);
-    return _mm256_mask_set1_epi32(number, is_nan, int(kNan));
+    const __m256i kept = _mm256_mask_set1_epi32(number, is_nan, int(kNan));
+    // A result of 16 bits leaves the upper half 0.
+    return sizeof(To) == 2 ? _mm256_and_si256(kept, _mm256_set1_epi32(0xffff)) : kept;
   } else {
     const __m512i number =
         kIsSigned ? _mm512_cvt_roundpd_epi64(above, kDirection) : _mm512_cvt_roundpd_epu64(above, kDirection);
@@ -61,14 +63,13 @@ template <class S, bool kFtz, class Take>
 // Handles a whole row in place of the work of a lane, which is ten times as fast.
 template <class To, class S, Round kRound, bool kFtz>
 [[gnu::flatten]] void run_convert(Warp& warp, const Inst& inst) {
+  if (ran_some_lanes<Register<To>>(warp, inst, &run_convert<To, S, kRound, kFtz>)) return;
   const Slot* const slot = &inst.operand.front();
   const Source<typename S::Type> source(warp, slot[1]);
-  alignas(64) std::conditional_t<sizeof(To) == 8, uint64_t, uint32_t> out[kLanes];
+  uint32_t* const out = warp.bank[0] + slot[0] * kLanes;
   each_doubles<S, kFtz>(source, [&](int i, __m512d x) {
-    const auto numbers = to_integer_part<To, kRound, std::is_same_v<S, TypeF64>>(x);
-    __builtin_memcpy(out + i, &numbers, sizeof numbers);
+    store_part(out + i, to_integer_part<To, kRound, std::is_same_v<S, TypeF64>>(x));
   });
-  write_lanes<Register<To>>(warp, slot[0], [&](int i) { return Register<To>(out[i]); });
 }
 
 #endif

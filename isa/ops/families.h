@@ -3,6 +3,20 @@
 #pragma once
 #include "isa/ops/row_list.h"
 
+// The files of isa/ops/effects are compiled for the baseline path only. The machine does the work of their
+// ops, so other paths would be no faster.
+namespace glint::isa::baseline {
+RowList atomic_rows();
+RowList barrier_rows();
+RowList texture_rows();
+RowList surface_rows();
+RowList control_rows();
+RowList ray_tracing_rows();
+RowList ray_query_rows();
+RowList hit_object_rows();
+RowList print_rows();
+}  // namespace glint::isa::baseline
+
 namespace glint::isa::GLINT_ISA_PATH {
 
 RowList move_rows();
@@ -23,15 +37,6 @@ RowList convert_float_rows();
 RowList convert_packed_rows();
 RowList predicate_rows();
 RowList memory_rows();
-RowList atomic_rows();
 RowList warp_rows();
-RowList barrier_rows();
-RowList texture_rows();
-RowList surface_rows();
-RowList control_rows();
-RowList ray_tracing_rows();
-RowList ray_query_rows();
-RowList hit_object_rows();
-RowList print_rows();
 
 }  // namespace glint::isa::GLINT_ISA_PATH

@@ -172,11 +172,12 @@ template <uint32_t kLeast>
 template <class Format, bool kPair, class Op, bool kFtz, bool kSat, bool kRelu>
 struct Arithmetic {
   [[gnu::flatten]] static void run(Warp& warp, const Inst& inst) {
+    if (ran_some_lanes<uint32_t>(warp, inst, &run)) return;
     alignas(64) uint32_t low[kLanes], high[kLanes];
     half<false>(warp, inst, low);
     if constexpr (kPair) half<true>(warp, inst, high);
-    write_lanes<uint32_t>(warp, inst.operand.front(),
-                          [&](int i) { return kPair ? low[i] | high[i] << 16 : low[i]; });
+    write_all_lanes<uint32_t>(warp, inst.operand.front(),
+                              [&](int i) { return kPair ? low[i] | high[i] << 16 : low[i]; });
   }
   template <bool kUpper>
   [[gnu::always_inline]] static void half(const Warp& warp, const Inst& inst, uint32_t* out) {

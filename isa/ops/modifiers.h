@@ -2,7 +2,7 @@
 // combinations.
 // SPDX-License-Identifier: Apache-2.0
 //
-// Only isa/ops/*.cpp include this file (see op_makers.h).
+// Only files of isa/ops include this file (see op_makers.h).
 #pragma once
 #include <array>
 #include <utility>

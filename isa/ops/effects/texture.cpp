@@ -3,8 +3,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 
+#include "isa/ops/effects/image_rows.h"
 #include "isa/ops/families.h"
-#include "isa/ops/image_rows.h"
 
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
