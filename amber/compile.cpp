@@ -121,8 +121,8 @@ std::vector<uint32_t> spirv_of(const Shader& shader, isa::Stage stage, frontend:
   try {
     return assemble_or_compile(shader, stage, cache);
   } catch (const UserError& error) {
-    // The shader needs a newer assembler or GLSL compiler than Glint was built with, which is no mistake of
-    // the script.
+    // The shader needs a newer assembler or GLSL compiler than Glint was built with, which is not a mistake
+    // of the script.
     const std::string message = error.what();
     for (const char* unknown : {"Invalid capability '", "Invalid Opcode name '", "extension not supported: "})
       if (message.find(unknown) != std::string::npos)

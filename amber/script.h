@@ -91,7 +91,7 @@ struct Binding {
 struct Pipeline {
   std::string name;
   bool is_ray_tracing = false;
-  bool is_robust = false;           // accesses outside of buffers and images are no faults
+  bool is_robust = false;           // accesses outside of buffers and images are not faults
   std::vector<Attachment> shaders;  // a compute pipeline has one
   std::vector<std::pair<std::string, std::vector<std::string>>> groups;
   std::map<std::string, std::vector<std::string>> tables;  // names of groups, by name of the table

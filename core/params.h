@@ -377,7 +377,8 @@ struct LaunchNeeds {
   bool has_blocks = false;
 };
 struct Residency {
-  // Which of a core's resources is used up first. When several are, the first in this order is named.
+  // Names the resource of a core that is used up first. When several are used up at once, it is the first of
+  // them in this order.
   enum class Limit : uint8_t { Warps, Registers, Blocks, SharedMemory } limit = Limit::Warps;
   uint32_t blocks = 0, warps = 0;
 };

@@ -27,8 +27,8 @@ struct TableRecord {
 
 struct TableRegion {
   std::vector<TableRecord> records;
-  // Bytes from one record to the next. Without a value, it is the smallest stride that holds every record.
-  // With 0, only the first record counts.
+  // Bytes from one record to the next. If it is absent, the smallest stride that holds every record is used.
+  // If it is 0, only the first record is used.
   std::optional<uint32_t> stride;
 };
 

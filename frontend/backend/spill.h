@@ -10,7 +10,7 @@ namespace glint::frontend {
 
 // Says where the spilled values of one round live.
 struct SpillPlan {
-  // For each virtual register, the representative of the group to spill, or kNoRegister.
+  // Holds, for each virtual register, the representative of the group to spill, or kNoRegister.
   std::vector<VirtualRegister> group;
   std::vector<bool>* unspillable;  // grows by the registers of spill code, which must not spill again
 };

@@ -129,7 +129,7 @@ class Print {
 void lower_print(ModuleLowering& lowering, const Instruction& inst) {
   const auto& strings = lowering.module().strings;
   const auto format = inst.operands.size() > 2 ? strings.find(inst.operands[2]) : strings.end();
-  if (format == strings.end()) return lowering.unsupported("a print whose format is no OpString");
+  if (format == strings.end()) return lowering.unsupported("a print whose format is not an OpString");
   Print(lowering, inst, format->second).run();
 }
 

@@ -162,7 +162,7 @@ void gather(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   if (!s) return;
   const auto component =
       has_reference(inst.op) ? std::optional<uint32_t>(0) : l.module().constant_u32(inst.operands[2]);
-  if (!component || *component > 3) return l.unsupported("a gather of a component that is no constant");
+  if (!component || *component > 3) return l.unsupported("a gather of a component that is not a constant");
   if (!s->extra.offsets) {
     std::optional<Operand> offset;
     if (s->extra.offset) offset = packed_offset(l.emit(), l.value(*s->extra.offset));

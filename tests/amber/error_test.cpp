@@ -133,7 +133,7 @@ TEST_CASE("a store outside of a buffer fails with the lines of RUN and of the sh
   CHECK(contains(outcome.message, "t.amber:5"));
 }
 
-TEST_CASE("under robustBufferAccess a store outside of a buffer is dropped and is no fault", "[amber]") {
+TEST_CASE("under robustBufferAccess a store outside of a buffer is dropped and is not a fault", "[amber]") {
   const Outcome outcome = outcome_of("DEVICE_FEATURE robustBufferAccess\n" + kPipeline + "RUN p 1 1 1\n");
   CHECK(outcome.exit == Exit::Ok);
   CHECK(outcome.message == "");

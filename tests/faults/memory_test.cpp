@@ -160,7 +160,7 @@ TEST_CASE(
                 [](uint32_t lane) { return lane % 8 < 4 ? 5 : 0; }});
 }
 
-TEST_CASE("a ray query in what is no structure names what lies there, and finds nothing when let pass") {
+TEST_CASE("a ray query in what is not a structure names what lies there, and finds nothing when let pass") {
   check_memory(
       {"rayQueryEXT q; rayQueryInitializeEXT(q, accelerationStructureEXT(data_address + uint64_t(16u)), 0, "
        "0xff, vec3(0), 0.0, vec3(1), 9.0); "

@@ -82,7 +82,7 @@ TEST_CASE("a callable outside of the table is named, and is not called when let 
                 kPlace, run_wrong);
 }
 
-TEST_CASE("a trace into what is no structure names what lies there, and misses when let pass") {
+TEST_CASE("a trace into what is not a structure names what lies there, and misses when let pass") {
   check_mistake(
       {trace("accelerationStructureEXT(uint64_t(8u))", "0u", "0u"),
        "traces a ray into 0x8, which is not a top-level acceleration structure: a null pointer plus 8 bytes",
@@ -93,7 +93,7 @@ TEST_CASE("a trace into what is no structure names what lies there, and misses w
       kPlace, run_wrong);
 }
 
-TEST_CASE("a ray that is not a number misses and is no fault") {
+TEST_CASE("a ray that is not a number misses and is not a fault") {
   for (const bool timing : {false, true}) {
     exec::FaultLog faults;
     const auto results =

@@ -82,7 +82,7 @@ TEST_CASE("a stride of 0 means the first record at every index, and a wider one 
 
 TEST_CASE("a table that no host may ask for is refused with the record's name") {
   Bench b;
-  SECTION("a stride that is no multiple of the handle's alignment") {
+  SECTION("a stride that is not a multiple of the handle's alignment") {
     b.input.hit.stride = 100;
     CHECK_THAT(b.error(), Contains("the stride of the hit region is 100: it must be a multiple of 32"));
   }

@@ -118,7 +118,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "the vendor's extension traces by the payload's location, and its any-hit ends are no terminators") {
+    "the vendor's extension traces by the payload's location, and its any-hit ends are not terminators") {
   RayLab lab({"rt/vendor.rgen",
               {"rt/vendor.rmiss"},
               {{"rt/vendor.rchit", "rt/vendor.rahit", ""},

@@ -79,7 +79,7 @@ TEST_CASE("a load from shared memory takes 23 cycles, and one more for each furt
   const Cycle base = 4 + 23 + 2;  // address, load, add, exit
   CHECK(load_cycles(4) == base);
   CHECK(load_cycles(0) == base);         // one word for all
-  CHECK(load_cycles(8) == base + 1);     // 2 words a bank
+  CHECK(load_cycles(8) == base + 1);     // 2 words per bank
   CHECK(load_cycles(128) == base + 31);  // all in one bank
   CHECK(load_cycles(132) == base);       // each in a bank of its own
   CHECK(load_cycles(1, "ld.shared.u8") == base);
@@ -104,7 +104,7 @@ TEST_CASE(
 
   CHECK(cycles(4, "atom.shared.add.u32") == 76);
   CHECK(cycles(0, "atom.shared.add.u32") == 76 + 31 * 2 - 12);
-  CHECK(cycles(32, "atom.shared.add.u32") == 76 + 7 * 2 - 12);  // 8 lanes a bank
+  CHECK(cycles(32, "atom.shared.add.u32") == 76 + 7 * 2 - 12);  // 8 lanes per bank
   CHECK(cycles(16, "atom.shared.add.u32") == 76);               // 4: three turns are hidden
   CHECK(cycles(4, "atom.shared.cas.b32") == 126);
   CHECK(cycles(0, "atom.shared.cas.b32") == 126 + 31 * 4 - 17);

@@ -18,7 +18,7 @@
 namespace glint::test::torture {
 namespace {
 
-constexpr uint64_t kBudget = 4'000'000;  // instructions a warp
+constexpr uint64_t kBudget = 4'000'000;  // instructions per warp
 
 isa::Program compile(Trial& trial, const Way& way) {
   Diagnostics diagnostics;

@@ -109,7 +109,7 @@ TEST_CASE("the simple model takes its latency and then one transfer after anothe
         std::vector<Cycle>{11 + 30 + 4, 11 + 38 + 4, 11 + 46 + 4});
 }
 
-TEST_CASE("the simple model meets an efficiency that is no whole number of clocks in the long run") {
+TEST_CASE("the simple model meets an efficiency that is not a whole number of clocks in the long run") {
   const std::vector<Cycle> at = at_once("latency = 0.0\nefficiency = 0.9", 64);
   CHECK(double(at[63] - at[0]) == Approx(63 * 4 / 0.9).margin(1.0));
 }

@@ -181,21 +181,20 @@ TEST_CASE("plru follows its bits away from the lines used last, and past ways th
   // Ways are filled in order. After 0 1 2 3 the root names the lower half, and both halves name their lower
   // way.
   CHECK(victims(chosen("plru"), 4, {0, 1, 2, 3, 4, 5}) == Lines{0, 2});
-  // 0 turns the root to the upper half, whose lower way is 2; true LRU would take 1.
+  // Line 0 turns the root to the upper half, whose lower way is 2. True LRU would take 1.
   CHECK(victims(chosen("plru"), 4, {0, 1, 2, 3, 0, 4}) == Lines{2});
   CHECK(victims(chosen("plru"), 4, {0, 1, 2, 3, 0, 2, 4, 5, 6}) == Lines{1, 3, 0});
-  // Of three ways, the fourth leaf is passed over: the upper half always gives way 2.
+  // The tree of three ways has a fourth leaf, which is passed over: the upper half always gives way 2.
   CHECK(victims(chosen("plru"), 3, {0, 1, 2, 3, 4, 5, 6}) == Lines{0, 2, 1, 4});
 }
 
 TEST_CASE("srrip keeps a line that was used again while lines that were not used again make way") {
-  // New lines are expected at 2; 0 and 1 are used again and expected at 0; the set ages until 2 reaches 3.
+  // New lines get the value 2. Lines 0 and 1 are used again and get 0. Then the set ages until line 2 has 3.
   CHECK(victims(chosen("srrip"), 4, {0, 1, 2, 3, 0, 1, 4, 5, 6, 7}) == Lines{2, 3, 4, 5});
-  // A line that was used once grows old: two fills bring 0 from 0 to 2, and of equals the lower slot makes
-  // way.
+  // A line that was used once grows old: two fills bring line 0 from value 0 to 2. Of lines with equal
+  // values, the one in the lower slot makes way.
   CHECK(victims(chosen("srrip"), 2, {0, 1, 0, 2, 3, 4}) == Lines{1, 2, 0});
-  // With one bit the policy is "not recently used": a new line is expected at 0, like one that was used
-  // again.
+  // With one bit the policy is "not recently used": a new line gets 0, like a line that was used again.
   CHECK(victims(chosen("srrip", "bits = 1\n"), 2, {0, 1, 0, 2, 3, 4}) == Lines{0, 1, 2});
 }
 

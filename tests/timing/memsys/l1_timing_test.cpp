@@ -50,7 +50,8 @@ TEST_CASE(
   Params params;
   MemoryRig rig(params);
   rig.read_latency(kLine, 0b1111, true);
-  // Of 4 sectors the last is read a cycle after the first two, and 136 bytes are 4 port cycles instead of 1.
+  // The last of the 4 sectors is read a cycle after the first two, and 136 bytes take 4 cycles of the port
+  // instead of 1.
   CHECK(rig.read_latency(kLine, 0b1111) == l2_hit_round_trip(params) + 1 + 3);
 }
 

@@ -212,7 +212,7 @@ TEST_CASE("a refused request is tried again until it is taken, and the cycles ar
   CHECK(unit.stats().cycles.total() == now + 1);  // cycle 0 included
 }
 
-TEST_CASE("results are stored as 32 bytes a ray, one request a line, before the warp returns") {
+TEST_CASE("results are stored as 32 bytes per ray, one request per line, before the warp returns") {
   const Scene scene;
   std::vector<WarpRays> warps(1);
   for (size_t lane = 0; lane < kLanes; ++lane) warps[0][lane] = scene.ray(200 + lane);

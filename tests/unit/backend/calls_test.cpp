@@ -14,7 +14,7 @@ void call(CodeBuilder& code) {
   code.marker(VirtualInst::Kind::RestoreLive);
 }
 
-TEST_CASE("Only values that are live across a call are saved, four words an instruction") {
+TEST_CASE("Only values that are live across a call are saved, four words per instruction") {
   CodeBuilder code;
   code.program.local_bytes = 20;
   const Operand address = code.pair();

@@ -88,7 +88,7 @@ TEST_CASE("both ends of a range are allowed and one beyond either is not") {
   }
 }
 
-TEST_CASE("an integer is a number but a number is no integer") {
+TEST_CASE("an integer is a number but a number is not an integer") {
   Config config;
   config.add_text("gpu.toml", "a = 3\nb = 3.0\n");
   Diagnostics diagnostics;

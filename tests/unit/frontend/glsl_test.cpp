@@ -129,7 +129,7 @@ TEST_CASE("SPIR-V text becomes the newest version under which it is valid") {
              Contains("component 2 of a vector of 2"));
 }
 
-TEST_CASE("words that are no valid module are refused") {
+TEST_CASE("words that are not a valid module are refused") {
   Diagnostics warnings;
   CHECK_THROWS_AS(simplify({1, 2, 3}, "x", warnings), UserError);
   CHECK_THROWS_AS(Module::parse({1, 2, 3, 4, 5, 6}, "x"), UserError);

@@ -64,7 +64,7 @@ TEST_CASE("a formula has no value where a statistic, a fact or a divisor is miss
   CHECK_FALSE(evaluate("1 / (sum(gpu.cycles) - 200)", run));
 }
 
-TEST_CASE("text that is no formula is refused") {
+TEST_CASE("text that is not a formula is refused") {
   const RunRecord run = small_run();
   for (const char* text : {"", "1 +", "sum(gpu.cycles", "(1", "1 2", "median(gpu.cycles)", "gpu.cycles"}) {
     CAPTURE(text);

@@ -53,7 +53,7 @@ TEST_CASE("a profile that is written and read again has the same instructions, c
   CHECK(profile_csv(again) == profile_csv(sample()));
 }
 
-TEST_CASE("a file that is no profile is refused with its place") {
+TEST_CASE("a file that is not a profile is refused with its place") {
   CHECK_THROWS_WITH(parse_profile("path,value\n", "p.csv"), Catch::Contains("p.csv:1"));
   std::string cut = profile_csv(sample());
   cut.resize(cut.size() - 4);
