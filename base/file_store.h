@@ -24,7 +24,7 @@ class FileStore {
   struct Options {
     std::string folder;  // made at the first store; empty: nothing is kept
     std::string ending;  // file name extension, such as ".shader"
-    std::string build;   // of the program that makes the values; values of other builds are not found
+    std::string build;   // build of the program that makes the values; values of other builds are not found
     // Limit for all files of the folder with this ending. Above it, the files that were read longest ago go.
     uint64_t max_bytes = 0;
   };

@@ -35,9 +35,9 @@ struct ProfileCounts {
 // A row holds the counts of an instruction, or of all instructions of a source line.
 struct ProfileRow : ProfileCounts {
   std::string shader, stage;  // both are empty for cycles that belong to no instruction
-  std::string file;           // as the compiler was given it; empty when unknown
+  std::string file;           // path that the compiler was given; empty when unknown
   uint32_t line = 0;          // 0: unknown
-  uint32_t index = 0;         // of the instruction in its shader
+  uint32_t index = 0;         // number of the instruction in its shader
   std::string op;
   uint32_t program = 0;         // index into ProfileTable::programs
   uint32_t spirv = 0;           // line of its SPIR-V, from 1; 0: unknown

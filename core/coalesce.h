@@ -52,7 +52,7 @@ class LineList {
 // words + w) * 32 + l) * 4, so that lanes at the same offset share lines.
 struct LocalLayout {
   Address base = 0;    // physical, of this core
-  uint32_t words = 0;  // per lane
+  uint32_t words = 0;  // words per lane
   uint64_t bytes_per_warp() const { return uint64_t{words} * kLanes * 4; }
 };
 

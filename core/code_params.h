@@ -19,9 +19,9 @@ inline constexpr uint32_t kMaxPrefetch = 32;
 // MICRO 2025, RTX A6000: section 5.2 and the configuration of its artifact.
 struct FetchParams {
   bool perfect = false;
-  uint32_t size = 16384;  // for each scheduler: 4 sets of 32 lines
+  uint32_t size = 16384;  // bytes for each scheduler: 4 sets of 32 lines
   uint32_t ways = 32;
-  uint32_t prefetch = 8;                              // of a stream buffer (Jouppi, ISCA 1990)
+  uint32_t prefetch = 8;                              // lines of a stream buffer (Jouppi, ISCA 1990)
   PolicyChoice<mem::Replacement> replacement{"lru"};  // Choice: unpublished
   static constexpr auto params() {
     return std::tuple{

@@ -56,7 +56,7 @@ class ConstantCache {
   CodeStats& stats_;
   mem::TagArray tags_;
   std::vector<Wait> waits_;             // reserved once
-  std::array<uint32_t, 64> missing_{};  // for each slot, the lines that it waits for
+  std::array<uint32_t, 64> missing_{};  // number of lines that each slot waits for
 };
 
 }  // namespace glint::core

@@ -71,7 +71,7 @@ class CostRecorder final : public CoreObserver {
     LaneMask present = 0, started = 0, last = 0;
     Cycle last_issue = 0;
     std::array<Cycle, kLanes> first{}, end{};
-    std::array<uint32_t, kLanes> nodes{}, triangle_tests{};  // of the rays under way, at their start
+    std::array<uint32_t, kLanes> nodes{}, triangle_tests{};  // counts at the start of the rays under way
     std::array<ThreadCost, kLanes> lane;
   };
 

@@ -21,15 +21,15 @@ enum class Pipe : uint8_t { Int, Fp32, Fp64, Sfu, Const, Branch, RtUnit, Memory,
 inline constexpr int kNumPipes = int(Pipe::Count);
 Pipe pipe_of(isa::Unit unit);
 
-// Says how the end of an instruction is known.
+// Says what ends an instruction.
 enum class Finish : uint8_t {
-  Fixed,       // `latency` cycles after issue
-  Memory,      // when the L1 has answered
-  Rays,        // when the RT unit has answered
-  Control,     // after a fixed time; the warp does not issue before
-  CallRecord,  // as Control, and then when the record of the binding table has been read
-  Barrier,     // when the other warps have come; a bar.arrive ends as Control
-  Fence,       // when the warp's earlier accesses are done, and then `latency` cycles
+  Fixed,       // `latency` cycles have passed since issue
+  Memory,      // the L1 has answered
+  Rays,        // the RT unit has answered
+  Control,     // a fixed time has passed, in which the warp does not issue
+  CallRecord,  // what ends Control, and then the read of the record of the binding table
+  Barrier,     // the other warps have come; a bar.arrive ends as Control does
+  Fence,       // the warp's earlier accesses are done, and then `latency` cycles have passed
 };
 
 struct IssueRow {

@@ -25,7 +25,7 @@ struct MemoryAccess {
   mem::Traffic traffic = mem::Traffic::ShaderGlobal;
   bool write = false;
   bool texture = false;  // goes through the texture unit
-  uint32_t samples = 0;  // for textures: samples of up to four texels
+  uint32_t samples = 0;  // number of samples of up to four texels; 0 unless `texture`
   bool atomic = false;   // an atomic that shared memory does, if the word is there
   AtomicKind atomic_kind = AtomicKind::Integer;
   uint32_t bank_turns = 1;  // words of the fullest bank of the L1's array, where banks count
@@ -37,7 +37,7 @@ struct MemoryAccess {
   friend class Lsu;
   uint32_t num_sent = 0, num_answers = 0;
   Cycle hold = 0;   // cycles of the L1's array before its first line, for words that meet in a bank
-  Cycle ready = 0;  // in the pipe: when its first line can go to the L1
+  Cycle ready = 0;  // cycle in which its first line can go from the pipe to the L1
 };
 
 // Takes accesses through these stages: queue of each scheduler -> (accept_interval) -> load-store pipe ->
@@ -79,7 +79,7 @@ class Lsu {
   struct Queue {
     std::array<uint32_t, kMaxQueue> id{};
     uint32_t head = 0, count = 0;
-    Cycle free_at = 0;  // when this scheduler's address generation is free
+    Cycle free_at = 0;  // cycle from which this scheduler's address generation is free
   };
   struct Group {  // queues from which one unit takes in turn
     std::array<Queue, kMaxSchedulers> queues{};
@@ -118,7 +118,7 @@ class Lsu {
   const UnitParams lsu_unit_, tex_unit_;
   const uint32_t num_queues_, samples_per_cycle_;
   const bool own_queue_, own_door_;  // the texture unit has a queue and a door of its own
-  std::array<Group, 2> groups_;      // of loads and stores, and of textures if they have their own
+  std::array<Group, 2> groups_;  // the group of loads and stores, and that of textures if they have their own
   static constexpr size_t kShared = 2;
   std::array<Pipe, 3> pipes_;  // load-store, texture, shared memory
   uint32_t next_pipe_ = 0;

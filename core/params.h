@@ -83,7 +83,8 @@ struct Units {
         section(&Units::rt_unit, "rt_unit",
                 "Times of ray instructions. The latency begins with the RT unit's answer.")};
   }
-  std::array<UnitParams, size_t(isa::Unit::Count)> by_unit() const {  // in the order of isa::Unit
+  // Returns the units in the order of isa::Unit.
+  std::array<UnitParams, size_t(isa::Unit::Count)> by_unit() const {
     return {integer,   int_div, fp32, fp_div,   fp64, fp64_div, fp16,    sfu,    move,
             predicate, shuffle, lsu,  constant, tex,  branch,   barrier, rt_unit};
   }
@@ -371,9 +372,9 @@ uint32_t occupancy(const Params& params, uint32_t num_registers);
 
 // Says what a launch asks of a core.
 struct LaunchNeeds {
-  uint32_t registers = 1;     // per lane
-  uint32_t warps = 1;         // per block; 1 without blocks
-  uint32_t shared_bytes = 0;  // per block
+  uint32_t registers = 1;     // registers per lane
+  uint32_t warps = 1;         // warps per block; 1 without blocks
+  uint32_t shared_bytes = 0;  // bytes of shared memory per block
   bool has_blocks = false;
 };
 struct Residency {

@@ -155,7 +155,7 @@ class Scheduler {
            needs_rt_ = 0;                     // bit i: the next instruction of warp i enters that door
   std::array<Cycle, kNumPipes> pipe_free_{};  // first cycle in which another instruction can go to the pipe
   std::array<uint64_t, kMaxWarpsPerScheduler> age_{};  // launch number of each warp
-  std::array<Cycle, kNumPipes> pipe_busy_{};           // when the pipe has finished, in parts of a cycle
+  std::array<Cycle, kNumPipes> pipe_busy_{};           // end of the pipe's work, in parts of a cycle
 
   Cycle sleep_until_ = 0;
   // Doors that were full. The second stands for both queues of the load-store unit.

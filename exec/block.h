@@ -14,7 +14,8 @@ namespace glint::exec {
 
 struct WarpContext;
 
-inline constexpr uint32_t kMaxBlockThreads = 1024;  // on every GPU of the last ten years, by PTX and Vulkan
+// Most threads of a block on every GPU of the last ten years, by PTX and Vulkan.
+inline constexpr uint32_t kMaxBlockThreads = 1024;
 inline constexpr uint32_t kMaxBlockWarps = kMaxBlockThreads / uint32_t(kLanes);
 
 using WarpMask = uint32_t;  // bit i: warp i of a block

@@ -96,7 +96,7 @@ struct World {
   PrintLog* prints = nullptr;            // where print and print.part go; null: nowhere
   std::vector<std::byte> constant_bank;  // kConstantBankBytes: descriptors and push constants (isa/program.h)
   std::vector<ImageView> images;         // indexed by texture and image handles (isa/image_access.h)
-  std::vector<Sampler> samplers;         // in addition to those of the images
+  std::vector<Sampler> samplers;         // samplers in addition to those of the images
   // These are Vulkan's robustBufferAccess: accesses outside of buffers and images read 0 and write nothing,
   // and are not faults.
   bool robust_images = false, robust_buffers = false;

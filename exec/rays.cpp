@@ -38,7 +38,7 @@ void set_ray(const isa::Warp& regs, const isa::Inst& inst, int lane, rt::Ray& ra
   ray.cull_mask = value(kMask) & 0xff;
   ray.sbt_offset = value(kSbtOffset) & 15;  // by SPV_KHR_ray_tracing only the 4 low bits count
   ray.sbt_stride = value(kSbtStride) & 15;
-  ray.miss_index = value(kMiss) & 0xffff;  // and here 16 bits
+  ray.miss_index = value(kMiss) & 0xffff;  // only the 16 low bits count
   read_ray(regs, inst, kRay, lane, ray);
 }
 

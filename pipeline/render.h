@@ -30,7 +30,8 @@ struct RenderJob {
   scenes::RenderParams frame;
   GpuParams gpu;
   bool timing = true;
-  bool no_skip = false;                       // steps through every cycle, which is slow; for checking
+  // True: every cycle is simulated. This is slow and serves to check the skipping.
+  bool no_skip = false;
   uint32_t threads = 1;                       // threads of the host for the timing machine (HostOptions)
   StructureCache* structure_cache = nullptr;  // null: every structure is built
   std::string shader_dir;                     // folder with raygen.rgen, miss.rmiss, triangle.rchit and so on
@@ -39,7 +40,7 @@ struct RenderJob {
   // Is called now and then with the number of the launch's warps that have ended.
   std::function<void(uint64_t done, uint64_t total)> progress;
   exec::OnFault on_fault = exec::OnFault::Stop;
-  Observation observe;  // of the timing machine, except for `heat`
+  Observation observe;  // what to note of a run of the timing machine; `heat` serves either machine
 };
 
 // Holds what either machine counts.
@@ -70,19 +71,19 @@ struct RenderResult {
   uint32_t width = 0, height = 0;
   std::vector<float> rgba;          // what the shader stored to binding 2, row 0 first
   std::vector<float> accumulation;  // binding 1, the sum over samples
-  uint64_t cycles = 0;              // of the timing machine
+  uint64_t cycles = 0;              // cycles of the timing machine
   uint64_t warp_instructions = 0, lane_instructions = 0;
   ClassCounts by_class[size_t(isa::Class::Count)];
   RayCounts rays;
   StructureCounts structures;
-  core::Residency residency;          // of each core, timing machine
+  core::Residency residency;          // the blocks and warps that fit on a core of the timing machine
   exec::FaultLog faults;              // the faults that World::on_fault let pass
-  std::vector<std::string> warnings;  // of compiling the shaders
-  ProfileTable profile;               // of the timing machine, when it was asked for
+  std::vector<std::string> warnings;  // warnings of compiling the shaders
+  ProfileTable profile;               // profile of the timing machine, if one was asked for
   SeriesTable series;
-  std::vector<CostMap> costs;  // when they were asked for
+  std::vector<CostMap> costs;  // maps of cost, if they were asked for
   TraceTable trace;
-  double wall_seconds = 0;  // of the run alone, without compiling and building
+  double wall_seconds = 0;  // time of the run alone, without compiling and building
   std::unique_ptr<RunStats> stats;
   const stats::Group& statistics() const;  // root of the tree
 };

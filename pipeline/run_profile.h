@@ -18,10 +18,11 @@ inline double ratio(double a, double b) {
 
 class TimingMachine;
 
+// Says what to note of a run.
 struct Observation {
-  bool profile = false;  // by instruction
+  bool profile = false;  // True: the run makes a profile of each instruction.
   Cycle sample = 0;      // interval of the time series, in cycles; 0: none
-  bool heat = false;     // maps of cost by pixel
+  bool heat = false;     // True: the run makes maps of cost by pixel.
   TraceRequest trace{};
 
   // Returns the interval of counters for the time series or the trace, or 0 without either.

@@ -60,12 +60,13 @@ struct IntervalMachine::Core {
   uint32_t index;
   RayModel rays;
   std::vector<exec::WarpContext> warps;  // indexed by slot
-  std::vector<Cycle> issue;              // when each scheduler has issued all that it was given
+  std::vector<Cycle> issue;              // cycle in which each scheduler has issued all that it was given
   double issue_work = 0;
   core::LineList lines;
   core::LocalLayout local;
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events;
-  std::array<Cycle, core::kScoreboardEntries> ready{};  // when the registers of the running warp are ready
+  // Cycles in which the registers of the running warp are ready.
+  std::array<Cycle, core::kScoreboardEntries> ready{};
 };
 
 IntervalMachine::IntervalMachine(const GpuParams& params, const exec::World& world)

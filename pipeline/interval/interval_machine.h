@@ -21,10 +21,10 @@ namespace glint::pipeline {
 
 // Holds what the model says of a launch, and where it comes from.
 struct IntervalEstimate {
-  Cycle cycles = 0;                      // predicted
+  Cycle cycles = 0;                      // predicted cycles
   uint64_t instructions = 0, lanes = 0;  // warp and lane instructions
   RayModelCounts rays;                   // summed over all cores
-  std::array<CacheCounts, 2> l1;         // by Asker
+  std::array<CacheCounts, 2> l1;         // counts, indexed by Asker
   CacheCounts l2;
   uint64_t dram_sectors = 0;
   // Cycles of work of the busiest resource of each kind. Whatever overlaps, no run is shorter than these. The

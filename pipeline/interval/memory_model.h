@@ -35,7 +35,7 @@ class MemoryModel {
   // Writes sectors of a line. Nobody waits for a write.
   void write(uint32_t core, Address line, uint8_t sectors, Cycle at, bool is_local);
 
-  const std::array<CacheCounts, 2>& l1() const { return l1_counts_; }  // by Asker
+  const std::array<CacheCounts, 2>& l1() const { return l1_counts_; }  // indexed by Asker
   const CacheCounts& l2() const { return l2_counts_; }
   uint64_t dram_sectors() const { return dram_sectors_; }
   // Return core cycles of work of the busiest resource of each kind. No run is shorter than these.
@@ -57,7 +57,7 @@ class MemoryModel {
   struct Cache {
     Cache(const mem::CacheShape& shape, const PolicyChoice<mem::Replacement>& replacement);
     mem::TagArray tags;
-    std::vector<Fill> fills;  // by line of the tag array: the last fetch
+    std::vector<Fill> fills;  // the last fetch of each line of the tag array
   };
   struct Core {
     Cache l1;

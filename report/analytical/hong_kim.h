@@ -35,11 +35,11 @@ struct HongKimInputs {
 
 struct HongKimResult {
   HongKimInputs inputs;
-  double memory_cycles = 0, computation_cycles = 0;                   // of a warp
+  double memory_cycles = 0, computation_cycles = 0;                   // cycles of a warp
   double mwp_without_bandwidth = 0, mwp_peak_bandwidth = 0, mwp = 0;  // memory warp parallelism
   double cwp = 0;                                                     // computation warp parallelism
   int equation = 0;   // the paper's equation that applies: 22, 23 or 24
-  double cycles = 0;  // predicted
+  double cycles = 0;  // predicted cycles
 };
 
 HongKimResult hong_kim(const HongKimInputs& inputs);

@@ -10,8 +10,8 @@ namespace glint::report {
 
 struct ModelRow {
   std::string workload;
-  double cycles = 0;              // simulated
-  std::vector<double> predicted;  // by model
+  double cycles = 0;              // simulated cycles
+  std::vector<double> predicted;  // cycles that each model predicts
   // Inputs and intermediate values. Every row has the same names.
   std::vector<std::pair<std::string, double>> inputs;
 };
@@ -22,19 +22,20 @@ struct ModelScore {
   double r2 = 0;
   double mean_error = 0;  // mean of |predicted / simulated - 1|
   double worst_error = 0;
-  std::string worst;  // workload
+  std::string worst;  // the workload of the worst error
   double ratio = 0;   // geometric mean of predicted / simulated, which is the bias
 };
 
 struct ModelTable {
-  std::vector<std::string> models;  // names
+  std::vector<std::string> models;  // names of the models
   std::vector<ModelRow> rows;
 
   // Returns the scores of a model. R2 of a single workload is 0.
   ModelScore score(size_t model) const;
 };
 
-std::string model_text(const ModelTable& table);  // text for a terminal
+// Returns a text for a terminal.
+std::string model_text(const ModelTable& table);
 // Returns the columns: workload, cycles, then one for each model and input.
 std::string model_csv(const ModelTable& table);
 // Reads model_csv() back. Throws UserError when the text is not such a table.

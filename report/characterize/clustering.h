@@ -18,7 +18,7 @@ std::string_view name_of(Linkage linkage);
 // Holds two groups that join. A leaf's number is its row; the group of join i has number n + i, as in SciPy.
 struct Join {
   int first = 0, second = 0;  // first < second
-  double distance = 0;        // in the units of the scores
+  double distance = 0;        // distance in the units of the scores
   int size = 0;               // leaves of both groups
 };
 

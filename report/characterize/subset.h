@@ -12,7 +12,7 @@ namespace glint::report {
 
 struct Representative {
   int row = 0, cluster = 0;
-  double distance = 0;  // to the centre of its cluster
+  double distance = 0;  // distance to the centre of its cluster
 };
 
 // Returns one workload of each cluster, ordered by cluster. It is the one nearest to the centre (the mean of

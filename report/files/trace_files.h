@@ -33,8 +33,9 @@ struct Timeline {
   };
   uint32_t core = 0, cores = 0;
   Cycle begin = 0, end = 0, trace_begin = 0, trace_end = 0;
-  bool is_cut = false;        // it ends at the limit of slices, before the end of the wanted window
-  std::vector<Slice> slices;  // by begin, outer before inner; cut at the window's ends
+  bool is_cut = false;  // it ends at the limit of slices, before the end of the wanted window
+  // The slices are ordered by begin, outer slices before inner ones, and cut at the window's ends.
+  std::vector<Slice> slices;
 };
 
 // Reads a file that trace_json_gz() wrote. Throws UserError when there is no such core or window, or when the

@@ -26,8 +26,8 @@ namespace glint::report {
 namespace {
 
 using Rgb = ColourMap::Rgb;
-constexpr uint32_t kMostPixels = 2048;   // on a side of a picture
-constexpr uint32_t kWantedPixels = 512;  // to which small maps are enlarged
+constexpr uint32_t kMostPixels = 2048;   // most pixels on a side of a picture
+constexpr uint32_t kWantedPixels = 512;  // pixels on the longer side to which small maps are enlarged
 constexpr int kFontScale = 2, kLine = 12 * kFontScale, kMargin = 16, kBar = 22, kTick = 6;
 
 class Canvas {

@@ -24,7 +24,8 @@ double known(float value) {
 // Says how the three channels from `first` on differ.
 struct PixelPair {
   bool is_same = true, is_beyond_measure = false, is_finite = true;
-  double squares = 0, largest = 0;  // of differences between finite values
+  // The sum of the squares of the differences between finite values, and the largest difference.
+  double squares = 0, largest = 0;
 };
 
 PixelPair pair_of(const Picture& a, const Picture& b, size_t first) {

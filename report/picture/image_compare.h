@@ -23,13 +23,14 @@ Picture read_picture(const std::string& path);
 bool is_beyond_measure(const Picture& a, const Picture& b, size_t pixel);
 
 struct ImageDifference {
-  double mse = 0;                      // mean over pixels and channels
-  double psnr = 0;                     // dB, for a peak of 1; infinite when nothing differs
-  double ssim = 0;                     // of luminance; 1 for equal pictures
-  double largest = 0;                  // of any channel in which both are finite
-  uint64_t pixels_apart = 0;           // pixels in which any channel is not the same
-  uint64_t pixels_beyond_measure = 0;  // of these; with at least one, mse, psnr and ssim are not numbers
-  uint64_t first_beyond_measure = 0;   // the first of those pixels
+  double mse = 0;             // mean over pixels and channels
+  double psnr = 0;            // dB, for a peak of 1; infinite when nothing differs
+  double ssim = 0;            // similarity of luminance; 1 for equal pictures
+  double largest = 0;         // largest difference of a channel in which both are finite
+  uint64_t pixels_apart = 0;  // pixels in which any channel is not the same
+  // Number of pixels beyond measure. If there are any, mse, psnr and ssim are not numbers.
+  uint64_t pixels_beyond_measure = 0;
+  uint64_t first_beyond_measure = 0;  // the first pixel beyond measure
   // Pixels that are the same in both pictures and have a channel that is not finite. They add nothing.
   uint64_t pixels_not_finite = 0;
 };

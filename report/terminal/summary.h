@@ -27,8 +27,8 @@ struct HitRate {
 struct TimingSummary {
   uint64_t cycles = 0;  // core cycles
   double clock_mhz = 0;
-  uint32_t resident_warps = 0,
-           warp_slots = 0;      // of a core: those that fit of the launch, those that there are
+  uint32_t resident_warps = 0,  // warps of the launch that fit on a core
+      warp_slots = 0;           // warp slots of a core
   std::string residency_limit;  // what is used up first, such as "registers"
   std::string memory_peaks;     // the best that the memory system could do, in one line
   HitRate l1_rt, l1_shader, l2;

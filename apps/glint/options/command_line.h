@@ -65,7 +65,7 @@ class Command {
   // Lets options of this command also stand after its subcommands' names. Call it before adding subcommands.
   void options_reach_subcommands();
 
-  std::vector<std::string> option_names() const;  // with their dashes, long names only
+  std::vector<std::string> option_names() const;  // returns the long names, with their dashes
   std::vector<std::string> subcommand_names() const;
   Command subcommand(const std::string& name) const;  // the subcommand has to exist
 

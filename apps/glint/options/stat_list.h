@@ -8,8 +8,11 @@
 
 namespace glint::app {
 
-std::vector<report::StatRow> all_stats();  // without values; [*] stands for an instance's number
-std::string stat_list();                   // aligned columns
-std::string stat_list_markdown();          // the table of docs/stats.md
+// Returns rows without values, in which [*] stands for the number of an instance.
+std::vector<report::StatRow> all_stats();
+// Returns the list in aligned columns.
+std::string stat_list();
+// Returns the table of docs/stats.md.
+std::string stat_list_markdown();
 
 }  // namespace glint::app

@@ -10,7 +10,7 @@ namespace glint::app {
 namespace {
 
 constexpr const char* kClassTitles[] = {"ALU", "SFU",  "Mem",
-                                        "Tex", "Ctrl", "RT"};  // in the order of isa::Class
+                                        "Tex", "Ctrl", "RT"};  // names in the order of isa::Class
 static_assert(std::size(kClassTitles) == size_t(isa::Class::Count));
 
 // Sums statistics over all instances.
